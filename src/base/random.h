@@ -1,0 +1,94 @@
+/*
+ * Random numbers that are addressed, not drawn in sequence: Philox 4x32-10 (Salmon et al., SC11; Random123) of
+ *
+ *   counter = { entity, purpose + 256 draw, step (low 32 bits), step (high 32 bits) },   key = seed (low, high)
+ *
+ * so whoever knows the address has the number, in any order, on any machine. docs/porting.md is the address book.
+ */
+#ifndef UNCROSS_RANDOM_H
+#define UNCROSS_RANDOM_H
+
+#include <Random123/philox.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/vec3.h"
+
+enum random_purpose {
+  RANDOM_GRID_SHIFT = 1,        /* entity 0: words 0, 1, 2 shift x, y, z */
+  RANDOM_ROTATION_AXIS = 2,     /* entity = cell */
+  RANDOM_VERTEX_ORDER = 3,      /* permutation; draw = 0 or 1: the sweep within the step */
+  RANDOM_VELOCITY_SWAP = 4,     /* permutation of the solvent's velocities */
+  RANDOM_THERMOSTAT = 5,        /* entity = cell; draw = attempt */
+  RANDOM_SOLVENT_POSITION = 16, /* entity = particle id; step 0 from here on: starting states */
+  RANDOM_SOLVENT_VELOCITY = 17, /* entity = particle id */
+  RANDOM_VERTEX_VELOCITY = 18,  /* entity = vertex */
+  RANDOM_FIBER_POSITION = 19,   /* entity = fiber */
+  RANDOM_FIBER_DIRECTION = 20,  /* entity = fiber; draw = attempt */
+  RANDOM_BOND_LENGTH = 21,      /* entity = bond (its first vertex); draw = attempt */
+  RANDOM_BEND = 22,             /* entity = vertex */
+  RANDOM_BEND_AZIMUTH = 23      /* entity = vertex; draw = attempt */
+};
+
+struct random_words {
+  uint32_t w[4];
+};
+
+static inline struct random_words random_at(uint64_t seed, enum random_purpose purpose, uint32_t draw, uint64_t step,
+                                            uint32_t entity)
+{
+  philox4x32_ctr_t counter = {{entity, (uint32_t)purpose + 256 * draw, (uint32_t)step, (uint32_t)(step >> 32)}};
+  philox4x32_key_t key = {{(uint32_t)seed, (uint32_t)(seed >> 32)}};
+  philox4x32_ctr_t r = philox4x32(counter, key);
+  return (struct random_words){{r.v[0], r.v[1], r.v[2], r.v[3]}};
+}
+
+/* Words 2k and 2k+1 (low, high) as one 64-bit integer; k = 0 or 1. */
+static inline uint64_t random_u64(struct random_words r, int k)
+{
+  return (uint64_t)r.w[2 * k] | (uint64_t)r.w[2 * k + 1] << 32;
+}
+
+/* Uniform in the open interval (0,1): odd multiples of 2^-53; k = 0 or 1. */
+static inline double random_uniform(struct random_words r, int k)
+{
+  return ((double)(random_u64(r, k) >> 12) + 0.5) * 0x1p-52;
+}
+
+/* Two independent normal deviates of unit variance (Box and Muller 1958). Uses log, cos, sin: its last bits depend on
+ * the C library. */
+void random_normal_pair(struct random_words r, double out[2]);
+
+/* Words 2k, 2k+1 as a point (u,v) in the square (-1,1)^2, then as a unit vector n uniform on the sphere (Marsaglia,
+ * Ann. Math. Stat. 43, 645 (1972)): needs only a square root. Returns 0 where the point is outside the unit disk
+ * (probability 1 - pi/4) and another must be taken. */
+static inline int random_axis_from_words(struct random_words r, int k, struct vec3 *n)
+{
+  double u = ((double)(int32_t)r.w[2 * k] + 0.5) * 0x1p-31;
+  double v = ((double)(int32_t)r.w[2 * k + 1] + 0.5) * 0x1p-31;
+  double s = u * u + v * v;
+  if (s >= 1.0)
+    return 0;
+  double root = sqrt(1.0 - s);
+  *n = (struct vec3){2.0 * u * root, 2.0 * v * root, 1.0 - 2.0 * s};
+  return 1;
+}
+
+/* Uniform unit vector at an address: words 0, 1 of draw 0, else words 2, 3, else the same of draw 1, 2, ... */
+static inline struct vec3 random_axis(uint64_t seed, enum random_purpose purpose, uint64_t step, uint32_t entity)
+{
+  struct vec3 n;
+  for (uint32_t draw = 0;; draw++) {
+    struct random_words r = random_at(seed, purpose, draw, step, entity);
+    if (random_axis_from_words(r, 0, &n) || random_axis_from_words(r, 1, &n))
+      return n;
+  }
+}
+
+/* A uniform random permutation of 0 .. n-1 (Fisher and Yates; Durstenfeld 1964): for k = n-1 down to 1, entries k and
+ * j = floor((k+1) R_k / 2^64) are exchanged, R_k = 64-bit integer (k mod 2) of entity k/2. Its bias, below n/2^64, is
+ * not observable. */
+void random_permutation(uint64_t seed, enum random_purpose purpose, uint32_t draw, uint64_t step, uint32_t n,
+                        uint32_t *order);
+
+#endif

@@ -1,0 +1,141 @@
+#include "fiber/start.h"
+
+#include "base/random.h"
+
+/* <l> for p(l) ~ l^2 exp(-k (l-l0)^2/2), l > 0. With z = l sqrt(k), c = l0 sqrt(k), and the half-line moments
+ * I_n = int_0^inf z^n exp(-(z-c)^2/2) dz: I_{n+1} = c I_n + n I_{n-1} (+ exp(-c^2/2) for n = 0), <z> = I_3/I_2. */
+double fiber_mean_bond(const struct fiber_kind *kind)
+{
+  const double root = sqrt(kind->spring), c = kind->bond_length * root;
+  const double i0 = 1.2533141373155002512 * (1.0 + erf(c * 0.70710678118654752440));
+  const double i1 = c * i0 + exp(-0.5 * c * c);
+  const double i2 = c * i1 + i0;
+  const double i3 = c * i2 + 2.0 * i1;
+  return i3 / i2 / root;
+}
+
+/* A bond length in equilibrium. The tangent of the log at the mode m bounds 2 log(l) from above, so a Gaussian about m of
+ * variance 1/k bounds the distribution: l from it is kept with probability exp(2 (log(l/m) - (l/m - 1))), l > 0. */
+static double sample_bond_length(const struct model *model, const struct fiber_kind *kind, uint32_t bond)
+{
+  const double l0 = kind->bond_length, mode = 0.5 * (l0 + sqrt(l0 * l0 + 8.0 / kind->spring));
+  for (uint32_t draw = 0;; draw += 2) {
+    double normal[2];
+    random_normal_pair(random_at(model->seed, RANDOM_BOND_LENGTH, draw, 0, bond), normal);
+    double x = 1.0 + normal[0] / (sqrt(kind->spring) * mode);
+    double u = random_uniform(random_at(model->seed, RANDOM_BOND_LENGTH, draw + 1, 0, bond), 0);
+    if (x > 0.0 && log(u) < 2.0 * (log(x) - (x - 1.0)))
+      return x * mode;
+  }
+}
+
+/* cos(theta) from p ~ exp(kappa cos) on [-1,1], by inversion. */
+static double sample_bend(const struct model *model, const struct fiber_kind *kind, uint32_t vertex)
+{
+  double u = random_uniform(random_at(model->seed, RANDOM_BEND, 0, 0, vertex), 0);
+  if (kind->bending < 1e-8)
+    return 2.0 * u - 1.0;
+  double c = 1.0 + log(u + (1.0 - u) * exp(-2.0 * kind->bending)) / kind->bending;
+  return c < -1.0 ? -1.0 : c;
+}
+
+/* A unit vector across u, of uniform azimuth: the part across u of a uniform direction. */
+static struct vec3 sample_across(const struct model *model, uint32_t vertex, struct vec3 u)
+{
+  struct vec3 n = random_axis(model->seed, RANDOM_BEND_AZIMUTH, 0, vertex);
+  n = vec3_add_scaled(n, -vec3_dot(n, u), u);
+  return vec3_scale(1.0 / vec3_norm(n), n);
+}
+
+static struct vec3 random_place(const struct model *model, uint32_t fiber)
+{
+  struct random_words xy = random_at(model->seed, RANDOM_FIBER_POSITION, 0, 0, fiber);
+  struct random_words z = random_at(model->seed, RANDOM_FIBER_POSITION, 1, 0, fiber);
+  return (struct vec3){random_uniform(xy, 0) * model->box.cells[0], random_uniform(xy, 1) * model->box.cells[1],
+                       random_uniform(z, 0) * model->box.cells[2]};
+}
+
+/* One fiber to be laid: its number, its first vertex, its place. */
+struct site {
+  uint32_t fiber, first;
+  struct vec3 center, direction;
+};
+
+static void lay_equilibrium(struct point *position, const struct model *model, const struct fiber_kind *kind,
+                            const struct site *site)
+{
+  struct vec3 u = site->direction;
+  position[site->first] = point_move((struct point){0, 0, 0}, site->center);
+  for (uint32_t i = 1; i < kind->vertices; i++) {
+    uint32_t bond = site->first + i - 1;
+    if (i > 1) {
+      double cosine = sample_bend(model, kind, bond);
+      double sine = sqrt(fmax(0.0, 1.0 - cosine * cosine));
+      u = vec3_add(vec3_scale(cosine, u), vec3_scale(sine, sample_across(model, bond, u)));
+      u = vec3_scale(1.0 / vec3_norm(u), u);
+    }
+    position[bond + 1] = point_move(position[bond], vec3_scale(sample_bond_length(model, kind, bond), u));
+  }
+}
+
+static void lay_straight(struct point *position, const struct model *model, const struct fiber_kind *kind,
+                         const struct site *site)
+{
+  (void)model;
+  const double l = fiber_mean_bond(kind);
+  const struct point middle = point_move((struct point){0, 0, 0}, site->center);
+  for (uint32_t i = 0; i < kind->vertices; i++)
+    position[site->first + i] = point_move(middle, vec3_scale((i - 0.5 * (kind->vertices - 1)) * l, site->direction));
+}
+
+static void lay_circle(struct point *position, const struct model *model, const struct fiber_kind *kind,
+                       const struct site *site)
+{
+  (void)model;
+  const double turn = 6.283185307179586477 / kind->vertices, radius = 0.5 * fiber_mean_bond(kind) / sin(0.5 * turn);
+  const struct vec3 n = site->direction;
+  const struct vec3 e = fabs(n.x) < 0.6 ? (struct vec3){1, 0, 0} : (struct vec3){0, 1, 0};
+  struct vec3 a = vec3_cross(n, e);
+  a = vec3_scale(1.0 / vec3_norm(a), a);
+  const struct vec3 b = vec3_cross(n, a);
+  const struct point middle = point_move((struct point){0, 0, 0}, site->center);
+  for (uint32_t i = 0; i < kind->vertices; i++) {
+    struct vec3 r = vec3_add(vec3_scale(radius * cos(i * turn), a), vec3_scale(radius * sin(i * turn), b));
+    position[site->first + i] = point_move(middle, r);
+  }
+}
+
+static void (*const layings[])(struct point *, const struct model *, const struct fiber_kind *, const struct site *) = {
+    [START_EQUILIBRIUM] = lay_equilibrium,
+    [START_STRAIGHT] = lay_straight,
+    [START_CIRCLE] = lay_circle,
+};
+
+static void start_velocities(struct state *state, const struct model *model)
+{
+  for (uint32_t v = 0; v < state->vertices; v++) {
+    double a[2], b[2];
+    random_normal_pair(random_at(model->seed, RANDOM_VERTEX_VELOCITY, 0, 0, v), a);
+    random_normal_pair(random_at(model->seed, RANDOM_VERTEX_VELOCITY, 1, 0, v), b);
+    state->velocity[v] = vec3_scale(sqrt(model->inverse_mass[v]), (struct vec3){a[0], a[1], b[0]});
+  }
+}
+
+void fiber_start(struct state *state, const struct model *model)
+{
+  for (uint32_t fiber = 0, k = 0, within = 0; fiber < model->fibers; fiber++, within++) {
+    if (model->fiber_kind_of[fiber] != k) {
+      k = model->fiber_kind_of[fiber];
+      within = 0;
+    }
+    const struct fiber_kind *kind = &model->kind[k];
+    struct site site = {fiber, model->fiber_first[fiber], random_place(model, fiber),
+                        random_axis(model->seed, RANDOM_FIBER_DIRECTION, 0, fiber)};
+    if (within < kind->placed) {
+      site.center = kind->center[within];
+      site.direction = vec3_scale(1.0 / vec3_norm(kind->direction[within]), kind->direction[within]);
+    }
+    layings[kind->start](state->position, model, kind, &site);
+  }
+  start_velocities(state, model);
+}

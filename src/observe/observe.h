@@ -1,0 +1,86 @@
+/*
+ * Observables: const state in, numbers out. What nobody asked for costs nothing; what is asked for is sampled at its own
+ * cadence. An observer's memory is two flat blocks, so that a checkpoint can keep it and an interrupted run ends with the
+ * tables of an uninterrupted one.
+ */
+#ifndef UNCROSS_OBSERVE_H
+#define UNCROSS_OBSERVE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "state/model.h"
+#include "state/state.h"
+
+enum observable {
+  OBSERVE_CONSERVED,   /* time series: energies, momentum */
+  OBSERVE_TEMPERATURE, /* time series: solvent and vertex temperature */
+  OBSERVE_STATICS,     /* averages per kind of fiber: bonds, bends, end-to-end distance */
+  OBSERVE_DYNAMICS,    /* against lag, per kind: g(t), g_cm(t), d^2(t), end-to-end correlation, diffusion coefficient */
+  OBSERVE_COLLISIONS,  /* time series: crossings possible, executed, negative, and their rates */
+  OBSERVABLES
+};
+
+/* What a scene asks for. */
+struct observe_plan {
+  uint64_t every[OBSERVABLES]; /* steps between samples; 0: not asked for */
+  uint64_t longest_lag;        /* of the dynamics, in steps; 0: as long as the run allows */
+};
+
+/* Names as scenes and files use them: "conserved", "temperature", ... */
+extern const char *const observable_names[OBSERVABLES];
+
+/* A table of numbers. A time series grows by rows; a summary is made anew each time it is asked for. */
+struct observe_table {
+  const char *name;          /* file name without ".csv" */
+  const char *const *column; /* [columns] e.g. "time", "g", "g_error" */
+  size_t columns, rows;
+  double *value;             /* [rows * columns] */
+};
+
+struct observers; /* all observers of a run */
+
+/* Where rows of time series go. */
+struct observe_sink {
+  bool (*row)(void *context, enum observable which, size_t columns, const double *values);
+  void *context;
+};
+
+/* Observers for this plan; NULL if memory is short. */
+struct observers *observers_create(const struct observe_plan *plan, const struct model *model);
+void observers_free(struct observers *observers);
+
+/* True if some observer wants to see the state of this step. */
+bool observers_due(const struct observers *observers, uint64_t step);
+
+/* Shows the state to every observer that is due; rows of time series go to the sink. Call once per step, at step 0 too.
+ * False if the sink fails or memory is short. */
+bool observers_sample(struct observers *observers, const struct model *model, const struct state *state,
+                      const struct observe_sink *sink);
+
+/* Column names of a time series, for its file's first line; 0 if `which` is not a time series. */
+size_t observe_series_columns(enum observable which, const char *const **names);
+
+/* Summaries as they stand now. Each is given to `take`, then freed. */
+bool observers_summaries(const struct observers *observers, const struct model *model,
+                         bool (*take)(void *context, const struct observe_table *table), void *context);
+
+/* The observers' memory, for checkpoints: blocks of doubles or of 64-bit integers, each under a name that is unique and
+ * stable. A resumed run creates the observers from the same plan and model, and fills the blocks of the same names. */
+struct observe_block {
+  const char *name;
+  bool integer;
+  size_t count;
+  void *data; /* double or int64_t [count] */
+};
+size_t observers_blocks(struct observers *observers, const struct observe_block **blocks);
+
+/* Energy, momentum and temperature of a state, in id order so that the numbers do not depend on memory order. */
+struct conserved {
+  double solvent_kinetic, vertex_kinetic, bond, bend, total; /* kT */
+  struct vec3 momentum;                                       /* m a0/t0 */
+};
+struct conserved observe_conserved(const struct model *model, const struct state *state);
+
+#endif

@@ -1,0 +1,48 @@
+#include "solvent/solvent.h"
+
+/* One Cartesian component of all particles: x += v t + a t^2/2, v += a t, wrapped once. Returns a value with its sign bit
+ * set if some particle is still outside the box, or moved beyond what lattice_round can hold. */
+static int64_t stream_component(uint32_t n, int64_t *restrict x, double *restrict v, double t, double a, int64_t edge)
+{
+  const double step = t * LATTICE_PER_A0, offset = 0.5 * a * t * step, gain = a * t;
+  int64_t outside = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    int64_t p = x[i] + lattice_round(v[i] * step + offset);
+    p += p < 0 ? edge : 0;
+    p -= p >= edge ? edge : 0;
+    outside |= p | (int64_t)((uint64_t)(edge - 1) - (uint64_t)p);
+    x[i] = p;
+    v[i] += gain;
+  }
+  return outside;
+}
+
+/* Finishes what one wrap did not: folds particles that flew further than a box edge, and finds those for which the flight
+ * itself was out of range. lattice_round of a displacement beyond its range, or of a NaN, is some integer: so the
+ * velocity, not the position, is judged. */
+static bool fold_far(struct state *state, const struct model *model, struct work *work, double t)
+{
+  struct solvent *s = &state->solvent;
+  int64_t *x[3] = {s->x, s->y, s->z};
+  double *v[3] = {s->vx, s->vy, s->vz};
+  for (int k = 0; k < 3; k++)
+    for (uint32_t i = 0; i < s->n; i++) {
+      if (!(fabs(v[k][i] * t) < LATTICE_MAX_MOVE))
+        return work_fault(work, FAULT_SOLVENT_MOVE, state->step + 1, s->id[i], v[k][i] * t, LATTICE_MAX_MOVE);
+      x[k][i] = lattice_fold(x[k][i], model->box.edge[k]);
+    }
+  return true;
+}
+
+bool solvent_stream(struct state *state, const struct model *model, struct work *work)
+{
+  struct solvent *s = &state->solvent;
+  const double t = 0.5 * state->solvent_lag * model->time_step;
+  const struct vec3 a = model->solvent.acceleration;
+  const int64_t *edge = model->box.edge;
+  state->solvent_lag = 0;
+  int64_t outside = stream_component(s->n, s->x, s->vx, t, a.x, edge[0]);
+  outside |= stream_component(s->n, s->y, s->vy, t, a.y, edge[1]);
+  outside |= stream_component(s->n, s->z, s->vz, t, a.z, edge[2]);
+  return outside >= 0 || fold_far(state, model, work, t);
+}

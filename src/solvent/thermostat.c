@@ -1,0 +1,68 @@
+#include "solvent/thermostat.h"
+
+#include "solvent/srd.h"
+
+#define RELATIVE_UNIT 0x1p-32
+
+double thermostat_gamma(uint64_t seed, uint64_t step, uint32_t cell, double shape)
+{
+  const double d = shape - 1.0 / 3.0, c = 1.0 / sqrt(9.0 * d);
+  for (uint32_t draw = 0;; draw += 2) {
+    double normal[2];
+    random_normal_pair(random_at(seed, RANDOM_THERMOSTAT, draw, step, cell), normal);
+    double u = random_uniform(random_at(seed, RANDOM_THERMOSTAT, draw + 1, step, cell), 0);
+    double root = 1.0 + c * normal[0], v = root * root * root;
+    if (v > 0.0 && log(u) < 0.5 * normal[0] * normal[0] + d - d * v + d * log(v))
+      return d * v;
+  }
+}
+
+/* One factor for all cells: 3 (N-1) degrees of freedom in each cell of N members share kT/2 each
+ * (Padding 2009, step 4: "rescale velocities relative to center-of-mass velocity"). */
+static void rescale(struct work *work, const struct model *model, uint64_t step)
+{
+  (void)step;
+  const int64_t cells = box_cell_count(&model->box);
+  struct collision_work *c = &work->collision;
+  double freedoms = 0.0, energy = 0.0;
+  for (int64_t k = 0; k < cells; k++) {
+    if (c->turn[k].active == 0.0)
+      continue;
+    freedoms += 3.0 * (srd_members(&c->sum[k]) - 1);
+    energy += (double)c->relative[k] * RELATIVE_UNIT;
+  }
+  double factor = energy > 0.0 ? sqrt(freedoms / energy) : 1.0;
+  for (int64_t k = 0; k < cells; k++)
+    c->turn[k].factor = factor;
+}
+
+/* Canonical: each cell's relative kinetic energy is drawn afresh from its Gamma distribution of 3 (N-1) degrees of
+ * freedom (Huang, Chatterji, Sutmann, Gompper and Winkler, J. Comput. Phys. 229, 168 (2010)). */
+static void maxwell_boltzmann(struct work *work, const struct model *model, uint64_t step)
+{
+  const int64_t cells = box_cell_count(&model->box);
+  struct collision_work *c = &work->collision;
+  for (int64_t k = 0; k < cells; k++) {
+    if (c->turn[k].active == 0.0)
+      continue;
+    double energy = 0.5 * (double)c->relative[k] * RELATIVE_UNIT;
+    double wanted = thermostat_gamma(model->seed, step, (uint32_t)k, 1.5 * (srd_members(&c->sum[k]) - 1));
+    c->turn[k].factor = energy > 0.0 ? sqrt(wanted / energy) : 1.0;
+  }
+}
+
+static void none(struct work *work, const struct model *model, uint64_t step)
+{
+  (void)work, (void)model, (void)step;
+}
+
+static void (*const thermostats[])(struct work *, const struct model *, uint64_t) = {
+    [THERMOSTAT_NONE] = none,
+    [THERMOSTAT_RESCALE] = rescale,
+    [THERMOSTAT_MAXWELL_BOLTZMANN] = maxwell_boltzmann,
+};
+
+void thermostat_factors(struct work *work, const struct model *model, uint64_t step)
+{
+  thermostats[model->solvent.thermostat](work, model, step);
+}

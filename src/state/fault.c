@@ -1,0 +1,25 @@
+#include "state/fault.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+
+static const struct {
+  const char *entity, *what, *unit;
+} wording[] = {
+    [FAULT_NONE] = {"", "nothing wrong", ""},
+    [FAULT_SOLVENT_MOVE] = {"solvent particle", "moves too far in one collision interval:", "a0"},
+    [FAULT_CELL_RANGE] = {"collision cell", "exceeds the range of its momentum sum:", "m a0/t0"},
+    [FAULT_VERTEX_MOVE] = {"vertex", "moves too far in one time step:", "a0"},
+    [FAULT_BOND_TOO_LONG] = {"bond", "is longer than half the shortest box edge:", "a0"},
+    [FAULT_NO_MEMORY] = {"bond", "has more neighbor bonds than memory holds:", "entries"},
+};
+
+void fault_describe(const struct fault *fault, char *text, size_t size)
+{
+  const char *hint = fault->code == FAULT_NO_MEMORY || fault->code == FAULT_NONE
+                         ? ""
+                         : " (a time step that is too large, or a heated system, is the usual cause)";
+  snprintf(text, size, "step %" PRIu64 ": %s %" PRId64 " %s %g %s; at most %g is allowed%s", fault->step,
+           wording[fault->code].entity, fault->entity, wording[fault->code].what, fault->value,
+           wording[fault->code].unit, fault->limit, hint);
+}

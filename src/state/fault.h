@@ -1,0 +1,28 @@
+/* Why a run had to stop: found by the physics, said by whoever runs it. */
+#ifndef UNCROSS_FAULT_H
+#define UNCROSS_FAULT_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+enum fault_code {
+  FAULT_NONE = 0,
+  FAULT_SOLVENT_MOVE,  /* a solvent particle moves further than LATTICE_MAX_MOVE in one flight, or not a number */
+  FAULT_CELL_RANGE,    /* a cell's members or momentum exceed the range of the fixed-point sums, or not a number */
+  FAULT_VERTEX_MOVE,   /* a vertex moves further than half the shortest edge in one step, or not a number */
+  FAULT_BOND_TOO_LONG, /* a bond is longer than half the shortest edge */
+  FAULT_NO_MEMORY      /* a list of neighbor bonds could not grow */
+};
+
+struct fault {
+  enum fault_code code;
+  uint64_t step;   /* the step that was being made */
+  int64_t entity;  /* particle id, vertex, bond (its first vertex) or cell; -1 if none */
+  double value;    /* the offending length or momentum */
+  double limit;    /* what it may be */
+};
+
+/* One sentence that says what went wrong where, and what is allowed. */
+void fault_describe(const struct fault *fault, char *text, size_t size);
+
+#endif

@@ -1,0 +1,80 @@
+#include "state/model.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static bool allocate(struct model *m)
+{
+  size_t v = m->vertices ? m->vertices : 1, f = m->fibers ? m->fibers : 1;
+  m->fiber_first = calloc(f + 1, sizeof *m->fiber_first);
+  m->fiber_kind_of = calloc(f, sizeof *m->fiber_kind_of);
+  m->fiber_of = calloc(v, sizeof *m->fiber_of);
+  m->next = calloc(v, sizeof *m->next);
+  m->prev = calloc(v, sizeof *m->prev);
+  m->mass = calloc(v, sizeof *m->mass);
+  m->inverse_mass = calloc(v, sizeof *m->inverse_mass);
+  return m->fiber_first && m->fiber_kind_of && m->fiber_of && m->next && m->prev && m->mass && m->inverse_mass;
+}
+
+static void lay_fiber(struct model *m, uint32_t fiber, uint32_t first, uint32_t kind)
+{
+  const struct fiber_kind *k = &m->kind[kind];
+  m->fiber_first[fiber] = first;
+  m->fiber_kind_of[fiber] = kind;
+  for (uint32_t i = 0; i < k->vertices; i++) {
+    uint32_t v = first + i;
+    bool last = i + 1 == k->vertices;
+    m->fiber_of[v] = fiber;
+    m->next[v] = !last ? (int32_t)v + 1 : k->ring ? (int32_t)first : -1;
+    m->prev[v] = i > 0 ? (int32_t)v - 1 : k->ring ? (int32_t)(first + k->vertices - 1) : -1;
+    m->mass[v] = k->mass;
+    m->inverse_mass[v] = 1.0 / k->mass;
+    m->bonds += m->next[v] >= 0;
+  }
+}
+
+bool model_finish(struct model *m)
+{
+  uint64_t fibers = 0, vertices = 0;
+  for (uint32_t k = 0; k < m->kinds; k++) {
+    fibers += m->kind[k].count;
+    vertices += (uint64_t)m->kind[k].count * m->kind[k].vertices;
+  }
+  if (vertices > INT32_MAX)
+    return false;
+  m->fibers = (uint32_t)fibers;
+  m->vertices = (uint32_t)vertices;
+  m->bonds = 0;
+  if (!allocate(m))
+    return false;
+
+  m->total_mass = m->solvent.particles;
+  m->max_mass = 1.0;
+  uint32_t fiber = 0, first = 0;
+  for (uint32_t k = 0; k < m->kinds; k++) {
+    if (m->kind[k].mass > m->max_mass)
+      m->max_mass = m->kind[k].mass;
+    m->total_mass += m->kind[k].mass * m->kind[k].vertices * m->kind[k].count;
+    for (uint32_t n = 0; n < m->kind[k].count; n++, fiber++, first += m->kind[k].vertices)
+      lay_fiber(m, fiber, first, k);
+  }
+  m->fiber_first[fiber] = first;
+  return true;
+}
+
+void model_free(struct model *m)
+{
+  for (uint32_t k = 0; k < m->kinds; k++) {
+    free(m->kind[k].center);
+    free(m->kind[k].direction);
+  }
+  free(m->kind);
+  free(m->fiber_first);
+  free(m->fiber_kind_of);
+  free(m->fiber_of);
+  free(m->next);
+  free(m->prev);
+  free(m->mass);
+  free(m->inverse_mass);
+  memset(m, 0, sizeof *m);
+}

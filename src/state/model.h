@@ -1,0 +1,109 @@
+/*
+ * model: what never changes during a run. Built from a scene (io/scene.c) or by hand in tests.
+ *
+ * Units: a0 (cell edge) = kT = m (solvent particle) = 1, time in t0 = a0 sqrt(m/kT) (Padding 2009, Table I).
+ */
+#ifndef UNCROSS_MODEL_H
+#define UNCROSS_MODEL_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/lattice.h"
+
+#define MODEL_NAME_SIZE 64
+
+/* Where drift, collision and kick stand within a step: see step.c. */
+enum order { ORDER_PAPER, ORDER_KICK_SPLIT, ORDER_DRIFT_SPLIT };
+
+enum thermostat { THERMOSTAT_NONE, THERMOSTAT_RESCALE, THERMOSTAT_MAXWELL_BOLTZMANN };
+
+/* Which bonds a moving bond is not tested against. */
+enum exclusion {
+  EXCLUSION_SHARED_VERTEX, /* those that share a vertex with it */
+  EXCLUSION_PAPER          /* those linked to either of the two moving bonds (Padding 2009, Sec. III A, literally) */
+};
+
+/* How the fibers of a kind are laid at the start. */
+enum fiber_start {
+  START_EQUILIBRIUM, /* exact sample of the phantom chain, open fibers only */
+  START_STRAIGHT,    /* evenly spaced by the mean bond length along a line, open fibers only */
+  START_CIRCLE       /* evenly spaced on a circle, rings only */
+};
+
+/* Fibers of one kind: alike in all but place. */
+struct fiber_kind {
+  char name[MODEL_NAME_SIZE];
+  uint32_t count;         /* fibers of this kind */
+  uint32_t vertices;      /* N_v, per fiber */
+  bool ring;              /* the last vertex is bonded to the first */
+  double mass;            /* M, in m: a multiple of MODEL_MASS_UNIT */
+  double bond_length;     /* l0, in a0 */
+  double spring;          /* k = K/l0, in kT/a0^2 (Padding 2009, Eq. 1) */
+  double bending;         /* kappa = l_p/l0 (Padding 2009, Eq. 2); 0: no bend forces */
+  struct vec3 force;      /* constant force on each vertex, in kT/a0 */
+  enum fiber_start start;
+  uint32_t placed;        /* fibers whose place is given below; the rest is placed at random */
+  struct vec3 *center;    /* [placed] a0: middle of the straight fiber or of the circle */
+  struct vec3 *direction; /* [placed] along the straight fiber, or normal to the circle; any length but 0 */
+};
+
+#define MODEL_MASS_UNIT 0x1p-16 /* masses are multiples of this, so that a cell's mass is summed exactly */
+
+struct solvent_model {
+  uint32_t particles;       /* N_s = gamma x cells; 0: no solvent, and no collisions */
+  double per_cell;          /* gamma */
+  uint32_t interval_steps;  /* dt_c / dt: a collision every so many steps */
+  double rotation_angle;    /* alpha, in degrees */
+  double cosine, sine;      /* of alpha; exactly 0 and 1 at 90 degrees */
+  enum thermostat thermostat;
+  bool hydrodynamics;       /* false: the solvent's velocities are permuted after each collision */
+  struct vec3 acceleration; /* constant body force per mass, in a0/t0^2 */
+};
+
+struct crossing_model {
+  bool forbidden; /* false: phantom fibers */
+  enum exclusion exclusion;
+};
+
+struct model {
+  struct box box;
+  uint64_t seed;      /* key of every random number */
+  double time_step;   /* dt, in t0 */
+  enum order order;
+  struct vec3 flow;   /* uniform flow given to everything at the start, in a0/t0 */
+  struct solvent_model solvent;
+  struct crossing_model crossing;
+
+  uint32_t kinds;
+  struct fiber_kind *kind; /* [kinds] */
+
+  /* Derived by model_finish. Vertices are numbered fiber by fiber, fibers kind by kind; bond j joins j and next[j]. */
+  uint32_t fibers, vertices, bonds;
+  uint32_t *fiber_first;   /* [fibers + 1]: first vertex of each fiber */
+  uint32_t *fiber_kind_of; /* [fibers] */
+  uint32_t *fiber_of;      /* [vertices] */
+  int32_t *next, *prev;    /* [vertices]: bonded neighbors along the fiber, -1 at an open end */
+  double *mass;            /* [vertices] M */
+  double *inverse_mass;    /* [vertices] 1/M */
+  double max_mass;         /* of any member of a collision cell */
+  double total_mass;       /* of solvent and vertices */
+};
+
+/* Fills the derived part from box, solvent and kinds. Returns false if memory is short or vertices are too many. */
+bool model_finish(struct model *model);
+
+/* Frees the derived part, the kinds and their places. */
+void model_free(struct model *model);
+
+static inline bool model_has_solvent(const struct model *model)
+{
+  return model->solvent.particles > 0;
+}
+
+static inline double model_collision_interval(const struct model *model)
+{
+  return model->time_step * model->solvent.interval_steps;
+}
+
+#endif

@@ -1,0 +1,98 @@
+#include "state/state.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <xxhash.h>
+
+bool state_alloc(struct state *s, const struct model *model)
+{
+  memset(s, 0, sizeof *s);
+  size_t n = model->solvent.particles ? model->solvent.particles : 1, v = model->vertices ? model->vertices : 1;
+  s->solvent.n = model->solvent.particles;
+  s->vertices = model->vertices;
+  int64_t **lattice[] = {&s->solvent.x, &s->solvent.y, &s->solvent.z};
+  double **real[] = {&s->solvent.vx, &s->solvent.vy, &s->solvent.vz};
+  bool ok = true;
+  for (int k = 0; k < 3; k++) {
+    ok &= (*lattice[k] = calloc(n, sizeof **lattice[k])) != NULL;
+    ok &= (*real[k] = calloc(n, sizeof **real[k])) != NULL;
+  }
+  ok &= (s->solvent.id = calloc(n, sizeof *s->solvent.id)) != NULL;
+  ok &= (s->position = calloc(v, sizeof *s->position)) != NULL;
+  ok &= (s->velocity = calloc(v, sizeof *s->velocity)) != NULL;
+  if (!ok) {
+    state_free(s);
+    return false;
+  }
+  for (uint32_t i = 0; i < s->solvent.n; i++)
+    s->solvent.id[i] = i;
+  return true;
+}
+
+void state_free(struct state *s)
+{
+  free(s->solvent.x);
+  free(s->solvent.y);
+  free(s->solvent.z);
+  free(s->solvent.vx);
+  free(s->solvent.vy);
+  free(s->solvent.vz);
+  free(s->solvent.id);
+  free(s->position);
+  free(s->velocity);
+  memset(s, 0, sizeof *s);
+}
+
+void state_solvent_slots(const struct state *s, uint32_t *slot)
+{
+  for (uint32_t i = 0; i < s->solvent.n; i++)
+    slot[s->solvent.id[i]] = i;
+}
+
+/* One particle or vertex as it is hashed: 48 bytes, little-endian on every machine that this project supports. */
+struct hashed {
+  int64_t position[3];
+  double velocity[3];
+};
+
+uint64_t state_hash(const struct state *s)
+{
+  const struct solvent *p = &s->solvent;
+  XXH64_state_t *hash = XXH64_createState();
+  uint32_t *slot = malloc(((size_t)p->n + 1) * sizeof *slot);
+  if (!hash || !slot) {
+    free(slot);
+    XXH64_freeState(hash);
+    return 0;
+  }
+  state_solvent_slots(s, slot);
+  uint64_t head[4] = {s->step, s->solvent_lag, p->n, s->vertices};
+  XXH64_reset(hash, 0);
+  XXH64_update(hash, head, sizeof head);
+  for (uint32_t id = 0; id < p->n; id++) {
+    uint32_t i = slot[id];
+    struct hashed h = {{p->x[i], p->y[i], p->z[i]}, {p->vx[i], p->vy[i], p->vz[i]}};
+    XXH64_update(hash, &h, sizeof h);
+  }
+  for (uint32_t v = 0; v < s->vertices; v++) {
+    struct hashed h = {{s->position[v].x, s->position[v].y, s->position[v].z},
+                       {s->velocity[v].x, s->velocity[v].y, s->velocity[v].z}};
+    XXH64_update(hash, &h, sizeof h);
+  }
+  uint64_t digest = XXH64_digest(hash);
+  XXH64_freeState(hash);
+  free(slot);
+  return digest;
+}
+
+struct point state_solvent_position(const struct state *s, const struct model *model, uint32_t i)
+{
+  const struct solvent *p = &s->solvent;
+  double t = 0.5 * s->solvent_lag * model->time_step;
+  struct vec3 a = model->solvent.acceleration;
+  int64_t x = p->x[i] + lattice_from_a0(p->vx[i] * t + 0.5 * a.x * t * t);
+  int64_t y = p->y[i] + lattice_from_a0(p->vy[i] * t + 0.5 * a.y * t * t);
+  int64_t z = p->z[i] + lattice_from_a0(p->vz[i] * t + 0.5 * a.z * t * t);
+  const int64_t *edge = model->box.edge;
+  return (struct point){lattice_fold(x, edge[0]), lattice_fold(y, edge[1]), lattice_fold(z, edge[2])};
+}

@@ -1,0 +1,97 @@
+#include "state/work.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "state/state.h"
+
+/* One array of the work: where its pointer stands, and how many bytes this model needs of it. */
+struct need {
+  void **where;
+  size_t count, size;
+};
+
+enum { NEEDS = 11 };
+
+/* The single place that says which scratch a model uses. */
+static void list_needs(struct work *w, const struct model *m, struct need need[NEEDS])
+{
+  size_t cells = model_has_solvent(m) ? (size_t)box_cell_count(&m->box) : 0;
+  size_t particles = m->solvent.particles;
+  size_t colliding = model_has_solvent(m) ? m->vertices : 0;
+  size_t thermostatted = m->solvent.thermostat != THERMOSTAT_NONE ? cells : 0;
+  size_t swapped = m->solvent.hydrodynamics ? 0 : particles;
+  size_t bent = m->bonds ? m->vertices : 0;
+  struct collision_work *c = &w->collision;
+  struct fiber_work *f = &w->fiber;
+  const struct need all[NEEDS] = {
+      {(void **)&c->sum, cells, sizeof *c->sum},
+      {(void **)&c->turn, cells, sizeof *c->turn},
+      {(void **)&c->relative, thermostatted, sizeof *c->relative},
+      {(void **)&c->solvent_cell, particles, sizeof *c->solvent_cell},
+      {(void **)&c->vertex_cell, colliding, sizeof *c->vertex_cell},
+      {(void **)&c->order, particles, sizeof *c->order},
+      {(void **)&c->slot, swapped, sizeof *c->slot},
+      {(void **)&c->column, particles, sizeof *c->column},
+      {(void **)&f->order, m->vertices, sizeof *f->order},
+      {(void **)&f->force, m->vertices, sizeof *f->force},
+      {(void **)&f->direction, bent, sizeof *f->direction + sizeof *f->inverse_length},
+  };
+  memcpy(need, all, sizeof all);
+}
+
+bool work_alloc(struct work *w, const struct model *m)
+{
+  memset(w, 0, sizeof *w);
+  struct need need[NEEDS];
+  list_needs(w, m, need);
+  for (int k = 0; k < NEEDS; k++) {
+    if (need[k].count == 0)
+      continue;
+    *need[k].where = aligned_alloc(64, (need[k].count * need[k].size + 63) / 64 * 64);
+    if (!*need[k].where) {
+      work_free(w);
+      return false;
+    }
+    memset(*need[k].where, 0, need[k].count * need[k].size);
+  }
+  if (w->fiber.direction)
+    w->fiber.inverse_length = (double *)(w->fiber.direction + m->vertices);
+  return true;
+}
+
+void work_free(struct work *w)
+{
+  struct need need[NEEDS];
+  const struct model nothing = {0};
+  list_needs(w, &nothing, need);
+  for (int k = 0; k < NEEDS; k++)
+    free(*need[k].where);
+  free(w->fiber.neighbors.box);
+  free(w->fiber.neighbors.count);
+  free(w->fiber.neighbors.list);
+  free(w->fiber.neighbors.head);
+  free(w->fiber.neighbors.entry);
+  memset(w, 0, sizeof *w);
+}
+
+uint64_t work_bytes(const struct model *m)
+{
+  struct work w = {0};
+  struct need need[NEEDS];
+  list_needs(&w, m, need);
+  uint64_t bytes = (uint64_t)m->solvent.particles * (6 * sizeof(double) + sizeof(uint32_t)) +
+                   (uint64_t)m->vertices * (sizeof(struct point) + sizeof(struct vec3));
+  for (int k = 0; k < NEEDS; k++)
+    bytes += need[k].count * need[k].size;
+  if (m->crossing.forbidden)
+    bytes += (uint64_t)m->bonds * (sizeof(struct margin_box) + 8 * sizeof(struct neighbor) + 8 * sizeof(struct grid_entry));
+  return bytes;
+}
+
+bool work_fault(struct work *w, enum fault_code code, uint64_t step, int64_t entity, double value, double limit)
+{
+  if (w->fault.code == FAULT_NONE)
+    w->fault = (struct fault){code, step, entity, value, limit};
+  return false;
+}
