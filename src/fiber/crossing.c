@@ -12,19 +12,22 @@ static struct difference difference(struct point a, struct point b)
 
 /* --- exact determinant --------------------------------------------------------------------------------------------- */
 
+__extension__ typedef __int128 int128;
+__extension__ typedef unsigned __int128 uint128;
+
 /* high * 2^64 + low; low collects a few 64-bit terms, whose carries are moved up at the end */
 struct wide {
-  __int128 high;
-  unsigned __int128 low;
+  int128 high;
+  uint128 low;
 };
 
 /* sum += minor * c, |minor| < 2^107, |c| < 2^53. */
-static void wide_add_product(struct wide *sum, __int128 minor, int64_t c)
+static void wide_add_product(struct wide *sum, int128 minor, int64_t c)
 {
-  __int128 minor_high = minor >> 64;
+  int128 minor_high = minor >> 64;
   uint64_t minor_low = (uint64_t)minor;
   sum->high += minor_high * c;
-  __int128 low = (__int128)minor_low * c; /* within 2^117 */
+  int128 low = (int128)minor_low * c; /* within 2^117 */
   sum->high += low >> 64;
   sum->low += (uint64_t)low;
 }
@@ -33,10 +36,10 @@ static void wide_add_product(struct wide *sum, __int128 minor, int64_t c)
 static double exact_determinant(struct difference p, struct difference q, struct difference r)
 {
   struct wide sum = {0, 0};
-  wide_add_product(&sum, (__int128)p.y * q.z - (__int128)p.z * q.y, r.x);
-  wide_add_product(&sum, (__int128)p.z * q.x - (__int128)p.x * q.z, r.y);
-  wide_add_product(&sum, (__int128)p.x * q.y - (__int128)p.y * q.x, r.z);
-  sum.high += (__int128)(sum.low >> 64);
+  wide_add_product(&sum, (int128)p.y * q.z - (int128)p.z * q.y, r.x);
+  wide_add_product(&sum, (int128)p.z * q.x - (int128)p.x * q.z, r.y);
+  wide_add_product(&sum, (int128)p.x * q.y - (int128)p.y * q.x, r.z);
+  sum.high += (int128)(sum.low >> 64);
   uint64_t low = (uint64_t)sum.low;
   bool negative = sum.high < 0;
   if (negative) { /* two's complement, so that no part cancels another in the sum of doubles */
