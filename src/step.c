@@ -10,8 +10,8 @@
  *   7  again                                            whoever calls step_advance
  *   8  save                                             io/
  *
- * A step is a short list of stages. On most steps it is the leap-frog's: drift, force, kick. On a step with a collision,
- * the collision stands where the scene's `order` puts it (docs/accuracy.md measures what the choice costs):
+ * A step is a short list of stages. On most steps it is the leap-frog's: drift, force, kick. On a step with a
+ * collision, the collision stands where the scene's `order` puts it (docs/accuracy.md measures what the choice costs):
  *
  *   paper        after the drift, before the kick: velocities of half a step ago collide at positions of now
  *   kick-split   between two half kicks: velocities and positions of the same time
@@ -85,7 +85,8 @@ static void set_total_momentum(struct state *state, const struct model *model)
   for (uint32_t v = 0; v < state->vertices; v++)
     p = vec3_add_scaled(p, model->mass[v], state->velocity[v]);
 
-  struct vec3 change = model->total_mass > 0.0 ? vec3_add_scaled(model->flow, -1.0 / model->total_mass, p) : model->flow;
+  struct vec3 change =
+      model->total_mass > 0.0 ? vec3_add_scaled(model->flow, -1.0 / model->total_mass, p) : model->flow;
   for (uint32_t i = 0; i < s->n; i++) {
     s->vx[i] += change.x;
     s->vy[i] += change.y;

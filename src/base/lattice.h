@@ -16,12 +16,12 @@
 
 #include "base/vec3.h"
 
-#define LATTICE_BITS 40                       /* a0 = 2^40 lattice units */
-#define LATTICE_UNIT 0x1p-40                  /* a0 per lattice unit */
-#define LATTICE_PER_A0 0x1p40                 /* lattice units per a0 */
+#define LATTICE_BITS 40                           /* a0 = 2^40 lattice units */
+#define LATTICE_UNIT 0x1p-40                      /* a0 per lattice unit */
+#define LATTICE_PER_A0 0x1p40                     /* lattice units per a0 */
 #define LATTICE_CELL ((int64_t)1 << LATTICE_BITS) /* edge of a collision cell, in lattice units */
-#define LATTICE_MAX_EDGE 1024                 /* cells */
-#define LATTICE_MAX_MOVE 2047.0               /* a0; lattice_round is right below this */
+#define LATTICE_MAX_EDGE 1024                     /* cells */
+#define LATTICE_MAX_MOVE 2047.0                   /* a0; lattice_round is right below this */
 
 /* A point in lattice units. Vertices are unwrapped: a fiber keeps its shape when it leaves the box. */
 struct point {

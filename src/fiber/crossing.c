@@ -10,7 +10,8 @@ static struct difference difference(struct point a, struct point b)
   return (struct difference){a.x - b.x, a.y - b.y, a.z - b.z};
 }
 
-/* --- exact determinant --------------------------------------------------------------------------------------------- */
+/* --- exact determinant ---------------------------------------------------------------------------------------------
+ */
 
 __extension__ typedef __int128 int128;
 __extension__ typedef unsigned __int128 uint128;
@@ -50,7 +51,8 @@ static double exact_determinant(struct difference p, struct difference q, struct
   return negative ? -size : size;
 }
 
-/* --- determinant in doubles, where it can be trusted --------------------------------------------------------------- */
+/* --- determinant in doubles, where it can be trusted ---------------------------------------------------------------
+ */
 
 /* (p x q).r in lattice units cubed. Its sign is exact, and so, nearly, is its value. The bound is that of Shewchuk
  * (Discrete Comput. Geom. 18, 305 (1997), orient3d, first stage) for exact differences, with room to spare. */
@@ -61,7 +63,8 @@ static double determinant(struct difference p, struct difference q, struct diffe
   const double rx = (double)r.x, ry = (double)r.y, rz = (double)r.z;
   const double yz = py * qz, zy = pz * qy, zx = pz * qx, xz = px * qz, xy = px * qy, yx = py * qx;
   const double det = rx * (yz - zy) + ry * (zx - xz) + rz * (xy - yx);
-  const double size = fabs(rx) * (fabs(yz) + fabs(zy)) + fabs(ry) * (fabs(zx) + fabs(xz)) + fabs(rz) * (fabs(xy) + fabs(yx));
+  const double size =
+      fabs(rx) * (fabs(yz) + fabs(zy)) + fabs(ry) * (fabs(zx) + fabs(xz)) + fabs(rz) * (fabs(xy) + fabs(yx));
   if (fabs(det) > 16.0 * 0x1p-53 * size)
     return det;
   return exact_determinant(p, q, r);
@@ -73,7 +76,8 @@ int crossing_orientation(struct point origin, struct point u, struct point v, st
   return (d > 0.0) - (d < 0.0);
 }
 
-/* --- the test ------------------------------------------------------------------------------------------------------ */
+/* --- the test ------------------------------------------------------------------------------------------------------
+ */
 
 /* Side of a determinant, zero counted as positive; flip: zero counted as negative, for determinants that are taken in
  * the mirrored order of their points. */
@@ -97,8 +101,9 @@ static void closest_points(struct vec3 p, struct vec3 q, struct vec3 r, struct c
 }
 
 /* Padding 2009, Eq. (21), turned so that it points the way the vertex moves: the exchange does not depend on that, but
- * the sign of dP then says whether the bonds approach each other (footnote 61). Where the bonds are parallel to rounding when they meet, the part of the displacement across
- * the standing bond takes its place: the crossing is real, and must be answered. */
+ * the sign of dP then says whether the bonds approach each other (footnote 61). Where the bonds are parallel to
+ * rounding when they meet, the part of the displacement across the standing bond takes its place: the crossing is real,
+ * and must be answered. */
 static struct vec3 common_normal(struct vec3 p, struct vec3 q, struct vec3 displacement)
 {
   struct vec3 n = vec3_cross(p, q);

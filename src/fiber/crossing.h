@@ -5,9 +5,9 @@
  * them sweeps the triangle (pivot, from, to). It crosses the standing bond (a, b) if (a, b) pierces that triangle.
  *
  * Whether it does is decided by signs of orientation determinants of lattice points, and these signs are exact: in
- * doubles where rounding cannot matter, else in 192-bit integers. A determinant that is exactly zero counts as positive,
- * each in a fixed order of its points, so that of two successive moves, or of two bonds that share the vertex which is
- * touched, not both can disown a crossing. When and where along the bonds is then computed in doubles.
+ * doubles where rounding cannot matter, else in 192-bit integers. A determinant that is exactly zero counts as
+ * positive, each in a fixed order of its points, so that of two successive moves, or of two bonds that share the vertex
+ * which is touched, not both can disown a crossing. When and where along the bonds is then computed in doubles.
  */
 #ifndef UNCROSS_CROSSING_H
 #define UNCROSS_CROSSING_H
@@ -25,9 +25,9 @@ struct crossing_query {
 };
 
 struct crossing_hit {
-  double time;  /* t_I as a fraction of the move, [0,1]; Eq. (11) */
-  double s;     /* along the moving bond, 0 at the moving vertex, 1 at the pivot; Eq. (14) */
-  double s_standing; /* s', 0 at a, 1 at b; Eq. (15) */
+  double time;        /* t_I as a fraction of the move, [0,1]; Eq. (11) */
+  double s;           /* along the moving bond, 0 at the moving vertex, 1 at the pivot; Eq. (14) */
+  double s_standing;  /* s', 0 at a, 1 at b; Eq. (15) */
   struct vec3 normal; /* n, unit vector along p x q; Eq. (21) */
 };
 

@@ -30,8 +30,8 @@ static void add_pair(struct vec3 *force, uint32_t j, uint32_t next, struct vec3 
 }
 
 /* Springs without a rest length pull along the bond vector itself: no square root. */
-static bool springs_of_zero_length(const struct state *state, const struct model *model, struct work *work, uint64_t step,
-                                   const struct fiber_kind *kind, uint32_t first)
+static bool springs_of_zero_length(const struct state *state, const struct model *model, struct work *work,
+                                   uint64_t step, const struct fiber_kind *kind, uint32_t first)
 {
   bool ok = true;
   for (uint32_t j = first; j < first + kind->vertices; j++) {

@@ -14,8 +14,8 @@ double fiber_mean_bond(const struct fiber_kind *kind)
   return i3 / i2 / root;
 }
 
-/* A bond length in equilibrium. The tangent of the log at the mode m bounds 2 log(l) from above, so a Gaussian about m of
- * variance 1/k bounds the distribution: l from it is kept with probability exp(2 (log(l/m) - (l/m - 1))), l > 0. */
+/* A bond length in equilibrium. The tangent of the log at the mode m bounds 2 log(l) from above, so a Gaussian about m
+ * of variance 1/k bounds the distribution: l from it is kept with probability exp(2 (log(l/m) - (l/m - 1))), l > 0. */
 static double sample_bond_length(const struct model *model, const struct fiber_kind *kind, uint32_t bond)
 {
   const double l0 = kind->bond_length, mode = 0.5 * (l0 + sqrt(l0 * l0 + 8.0 / kind->spring));

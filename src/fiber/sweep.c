@@ -69,8 +69,8 @@ static bool apart(int64_t a0, int64_t a1, int64_t b0, int64_t b1, int64_t b2)
 /* The box around the standing bond and the box around the swept triangle do not overlap. */
 static bool boxes_apart(const struct crossing_query *q)
 {
-  return apart(q->a.x, q->b.x, q->pivot.x, q->from.x, q->to.x) || apart(q->a.y, q->b.y, q->pivot.y, q->from.y, q->to.y) ||
-         apart(q->a.z, q->b.z, q->pivot.z, q->from.z, q->to.z);
+  return apart(q->a.x, q->b.x, q->pivot.x, q->from.x, q->to.x) ||
+         apart(q->a.y, q->b.y, q->pivot.y, q->from.y, q->to.y) || apart(q->a.z, q->b.z, q->pivot.z, q->from.z, q->to.z);
 }
 
 /* All hits of one of the two bonds of the moving vertex. */
@@ -91,7 +91,8 @@ static void test_bond(const struct state *state, const struct model *model, cons
       continue;
     if (model->crossing.exclusion == EXCLUSION_PAPER && linked_to_moving(model, t->vertex, n))
       continue;
-    struct sweep_event event = {t->vertex, bond, (uint32_t)n->bond, {n->image[0], n->image[1], n->image[2]}, {.time = 0.0}, false, 0.0};
+    struct sweep_event event = {
+        t->vertex, bond, (uint32_t)n->bond, {n->image[0], n->image[1], n->image[2]}, {.time = 0.0}, false, 0.0};
     if (crossing_find(&q, &event.hit))
       note_hit(t, event);
   }
@@ -187,8 +188,8 @@ static void prefetch_ahead(const struct state *state, const struct model *model,
     prefetch_partners(state, nb, order[k + PREFETCH_NEAR]);
 }
 
-static bool sweep_noncrossing(struct state *state, const struct model *model, struct work *work, double dt, uint64_t step,
-                              uint32_t sweep, const struct sweep_log *log)
+static bool sweep_noncrossing(struct state *state, const struct model *model, struct work *work, double dt,
+                              uint64_t step, uint32_t sweep, const struct sweep_log *log)
 {
   if (!work->fiber.neighbors.built && !neighbors_build(state, model, work))
     return false;

@@ -9,13 +9,13 @@
 
 /* A hit that a trial move found, and what was done about it. */
 struct sweep_event {
-  uint32_t vertex;       /* that tried to move */
-  uint32_t moving_bond;  /* its first vertex */
+  uint32_t vertex;      /* that tried to move */
+  uint32_t moving_bond; /* its first vertex */
   uint32_t standing_bond;
-  int32_t image[3];      /* of the standing bond, in box edges */
+  int32_t image[3]; /* of the standing bond, in box edges */
   struct crossing_hit hit;
-  bool executed;         /* the first of this move's hits; the others were not acted upon */
-  double momentum;       /* dP of Eq. (28) if executed, else 0 */
+  bool executed;   /* the first of this move's hits; the others were not acted upon */
+  double momentum; /* dP of Eq. (28) if executed, else 0 */
 };
 
 /* Where hits are told, for oracles and tests; NULL in runs. */

@@ -23,8 +23,8 @@ uint32_t solvent_cell_of(const struct box *box, struct point position, struct po
  * False, with the fault recorded, if a cell exceeds the range of its sums. */
 bool solvent_collide(struct state *state, const struct model *model, struct work *work, uint64_t step);
 
-/* Solvent velocities permuted at random over the particles (Padding 2009, Sec. V B 2): particle id takes the velocity of
- * particle order[id]. */
+/* Solvent velocities permuted at random over the particles (Padding 2009, Sec. V B 2): particle id takes the velocity
+ * of particle order[id]. */
 void solvent_swap_velocities(struct state *state, const struct model *model, struct work *work, uint64_t step);
 
 /* Particles reordered in memory by collision cell, as last binned; no effect on results. */

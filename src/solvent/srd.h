@@ -82,7 +82,8 @@ static inline struct vec3 srd_turn(struct vec3 w, struct vec3 n, double cosine, 
 }
 
 /* A member's velocity after the collision: Padding 2009, Eqs. (5) and (6). */
-static inline struct vec3 srd_apply(const struct cell_turn *turn, struct vec3 v, bool quarter, double cosine, double sine)
+static inline struct vec3 srd_apply(const struct cell_turn *turn, struct vec3 v, bool quarter, double cosine,
+                                    double sine)
 {
   struct vec3 w = vec3_sub(v, turn->center);
   struct vec3 turned = quarter ? srd_quarter_turn(w, turn->axis) : srd_turn(w, turn->axis, cosine, sine);

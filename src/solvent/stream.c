@@ -1,7 +1,7 @@
 #include "solvent/solvent.h"
 
-/* One Cartesian component of all particles: x += v t + a t^2/2, v += a t, wrapped once. Returns a value with its sign bit
- * set if some particle is still outside the box, or moved beyond what lattice_round can hold. */
+/* One Cartesian component of all particles: x += v t + a t^2/2, v += a t, wrapped once. Returns a value with its sign
+ * bit set if some particle is still outside the box, or moved beyond what lattice_round can hold. */
 static int64_t stream_component(uint32_t n, int64_t *restrict x, double *restrict v, double t, double a, int64_t edge)
 {
   const double step = t * LATTICE_PER_A0, offset = 0.5 * a * t * step, gain = a * t;
@@ -17,9 +17,9 @@ static int64_t stream_component(uint32_t n, int64_t *restrict x, double *restric
   return outside;
 }
 
-/* Finishes what one wrap did not: folds particles that flew further than a box edge, and finds those for which the flight
- * itself was out of range. lattice_round of a displacement beyond its range, or of a NaN, is some integer: so the
- * velocity, not the position, is judged. */
+/* Finishes what one wrap did not: folds particles that flew further than a box edge, and finds those for which the
+ * flight itself was out of range. lattice_round of a displacement beyond its range, or of a NaN, is some integer: so
+ * the velocity, not the position, is judged. */
 static bool fold_far(struct state *state, const struct model *model, struct work *work, double t)
 {
   struct solvent *s = &state->solvent;

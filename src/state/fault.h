@@ -16,10 +16,10 @@ enum fault_code {
 
 struct fault {
   enum fault_code code;
-  uint64_t step;   /* the step that was being made */
-  int64_t entity;  /* particle id, vertex, bond (its first vertex) or cell; -1 if none */
-  double value;    /* the offending length or momentum */
-  double limit;    /* what it may be */
+  uint64_t step;  /* the step that was being made */
+  int64_t entity; /* particle id, vertex, bond (its first vertex) or cell; -1 if none */
+  double value;   /* the offending length or momentum */
+  double limit;   /* what it may be */
 };
 
 /* One sentence that says what went wrong where, and what is allowed. */

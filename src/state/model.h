@@ -34,14 +34,14 @@ enum fiber_start {
 /* Fibers of one kind: alike in all but place. */
 struct fiber_kind {
   char name[MODEL_NAME_SIZE];
-  uint32_t count;         /* fibers of this kind */
-  uint32_t vertices;      /* N_v, per fiber */
-  bool ring;              /* the last vertex is bonded to the first */
-  double mass;            /* M, in m: a multiple of MODEL_MASS_UNIT */
-  double bond_length;     /* l0, in a0 */
-  double spring;          /* k = K/l0, in kT/a0^2 (Padding 2009, Eq. 1) */
-  double bending;         /* kappa = l_p/l0 (Padding 2009, Eq. 2); 0: no bend forces */
-  struct vec3 force;      /* constant force on each vertex, in kT/a0 */
+  uint32_t count;     /* fibers of this kind */
+  uint32_t vertices;  /* N_v, per fiber */
+  bool ring;          /* the last vertex is bonded to the first */
+  double mass;        /* M, in m: a multiple of MODEL_MASS_UNIT */
+  double bond_length; /* l0, in a0 */
+  double spring;      /* k = K/l0, in kT/a0^2 (Padding 2009, Eq. 1) */
+  double bending;     /* kappa = l_p/l0 (Padding 2009, Eq. 2); 0: no bend forces */
+  struct vec3 force;  /* constant force on each vertex, in kT/a0 */
   enum fiber_start start;
   uint32_t placed;        /* fibers whose place is given below; the rest is placed at random */
   struct vec3 *center;    /* [placed] a0: middle of the straight fiber or of the circle */
@@ -51,11 +51,11 @@ struct fiber_kind {
 #define MODEL_MASS_UNIT 0x1p-16 /* masses are multiples of this, so that a cell's mass is summed exactly */
 
 struct solvent_model {
-  uint32_t particles;       /* N_s = gamma x cells; 0: no solvent, and no collisions */
-  double per_cell;          /* gamma */
-  uint32_t interval_steps;  /* dt_c / dt: a collision every so many steps */
-  double rotation_angle;    /* alpha, in degrees */
-  double cosine, sine;      /* of alpha; exactly 0 and 1 at 90 degrees */
+  uint32_t particles;      /* N_s = gamma x cells; 0: no solvent, and no collisions */
+  double per_cell;         /* gamma */
+  uint32_t interval_steps; /* dt_c / dt: a collision every so many steps */
+  double rotation_angle;   /* alpha, in degrees */
+  double cosine, sine;     /* of alpha; exactly 0 and 1 at 90 degrees */
   enum thermostat thermostat;
   bool hydrodynamics;       /* false: the solvent's velocities are permuted after each collision */
   struct vec3 acceleration; /* constant body force per mass, in a0/t0^2 */
@@ -68,10 +68,10 @@ struct crossing_model {
 
 struct model {
   struct box box;
-  uint64_t seed;      /* key of every random number */
-  double time_step;   /* dt, in t0 */
+  uint64_t seed;    /* key of every random number */
+  double time_step; /* dt, in t0 */
   enum order order;
-  struct vec3 flow;   /* uniform flow given to everything at the start, in a0/t0 */
+  struct vec3 flow; /* uniform flow given to everything at the start, in a0/t0 */
   struct solvent_model solvent;
   struct crossing_model crossing;
 

@@ -17,9 +17,9 @@
 /* Structure of arrays, in memory order (re-sorted by cell now and then); id says who is who. */
 struct solvent {
   uint32_t n;
-  int64_t *x, *y, *z;    /* lattice units, within the box */
-  double *vx, *vy, *vz;  /* a0/t0 */
-  uint32_t *id;          /* 0 .. n-1, each once */
+  int64_t *x, *y, *z;   /* lattice units, within the box */
+  double *vx, *vy, *vz; /* a0/t0 */
+  uint32_t *id;         /* 0 .. n-1, each once */
 };
 
 /* Crossings since the start (Padding 2009, Sec. III A). */
@@ -31,12 +31,12 @@ struct collision_counts {
 };
 
 struct state {
-  uint64_t step;         /* steps made; time is step * dt */
-  uint32_t solvent_lag;  /* half time steps since the solvent was last streamed */
+  uint64_t step;        /* steps made; time is step * dt */
+  uint32_t solvent_lag; /* half time steps since the solvent was last streamed */
   struct solvent solvent;
   uint32_t vertices;
-  struct point *position;  /* [vertices] lattice units, unwrapped */
-  struct vec3 *velocity;   /* [vertices] a0/t0, of the half step ahead */
+  struct point *position; /* [vertices] lattice units, unwrapped */
+  struct vec3 *velocity;  /* [vertices] a0/t0, of the half step ahead */
   struct collision_counts counts;
 };
 

@@ -85,7 +85,8 @@ uint64_t work_bytes(const struct model *m)
   for (int k = 0; k < NEEDS; k++)
     bytes += need[k].count * need[k].size;
   if (m->crossing.forbidden)
-    bytes += (uint64_t)m->bonds * (sizeof(struct margin_box) + 8 * sizeof(struct neighbor) + 8 * sizeof(struct grid_entry));
+    bytes +=
+        (uint64_t)m->bonds * (sizeof(struct margin_box) + 8 * sizeof(struct neighbor) + 8 * sizeof(struct grid_entry));
   return bytes;
 }
 

@@ -22,22 +22,22 @@ struct cell_sum {
 
 /* What a cell does to each of its members: v' = v_cm + factor R (v - v_cm). One cache line. */
 struct cell_turn {
-  struct vec3 center;  /* v_cm */
-  struct vec3 axis;    /* unit vector of R */
-  double factor;       /* 1, or the thermostat's */
-  double active;       /* 0: fewer than two members, velocities stay as they are */
+  struct vec3 center; /* v_cm */
+  struct vec3 axis;   /* unit vector of R */
+  double factor;      /* 1, or the thermostat's */
+  double active;      /* 0: fewer than two members, velocities stay as they are */
 };
 
 struct collision_work {
-  struct cell_sum *sum;       /* [cells] */
-  struct cell_turn *turn;     /* [cells] */
-  int64_t *relative;          /* [cells] twice the kinetic energy relative to v_cm, 2^-32 kT; thermostat only, else NULL */
-  uint32_t *solvent_cell;     /* [particles] in memory order */
-  uint32_t *vertex_cell;      /* [vertices] */
-  uint32_t *order;            /* [particles] sorting and velocity swap */
-  uint32_t *slot;             /* [particles] velocity swap only, else NULL */
-  int64_t *column;            /* [particles] one column while it is permuted */
-  uint32_t since_sort;        /* collisions since particles were last sorted by cell */
+  struct cell_sum *sum;   /* [cells] */
+  struct cell_turn *turn; /* [cells] */
+  int64_t *relative;      /* [cells] twice the kinetic energy relative to v_cm, 2^-32 kT; thermostat only, else NULL */
+  uint32_t *solvent_cell; /* [particles] in memory order */
+  uint32_t *vertex_cell;  /* [vertices] */
+  uint32_t *order;        /* [particles] sorting and velocity swap */
+  uint32_t *slot;         /* [particles] velocity swap only, else NULL */
+  int64_t *column;        /* [particles] one column while it is permuted */
+  uint32_t since_sort;    /* collisions since particles were last sorted by cell */
 };
 
 /* --- fibers ------------------------------------------------------------------------------------------------------- */
@@ -62,10 +62,10 @@ struct grid_entry {
 
 struct neighbors {
   bool built;
-  int64_t margin;              /* lattice units around a bond when its margin box is drawn */
-  struct margin_box *box;      /* [vertices] by bond */
-  uint32_t *count;             /* [vertices] partners of each bond */
-  struct neighbor *list;       /* [vertices * stride] */
+  int64_t margin;         /* lattice units around a bond when its margin box is drawn */
+  struct margin_box *box; /* [vertices] by bond */
+  uint32_t *count;        /* [vertices] partners of each bond */
+  struct neighbor *list;  /* [vertices * stride] */
   uint32_t stride;
   int32_t cells[3];            /* of the search grid */
   int64_t cell_edge[3];        /* lattice units */
