@@ -1,8 +1,7 @@
 # uncross: `make demo` runs the main job, `make check` the tests; `make help` lists the rest.
 
-CC      ?= gcc
 ifeq ($(origin CC),default)
-CC      := gcc
+CC := gcc
 endif
 MARCH   ?= native
 PREFIX  ?= /usr/local
@@ -12,25 +11,40 @@ BUILD   ?= build
 STRICT   := -std=c11 -ffp-contract=off -fno-math-errno -D_POSIX_C_SOURCE=200809L
 OPTIMIZE ?= -O3 -march=$(MARCH)
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Werror
-INCLUDES := -Isrc $(patsubst -I%,-isystem %,$(shell pkg-config --cflags-only-I hdf5 2>/dev/null))
+INCLUDES  = -Isrc $(patsubst -I%,-isystem %,$(shell pkg-config --cflags-only-I hdf5))
 CFLAGS   ?= -g
 ALL_CFLAGS = $(STRICT) $(OPTIMIZE) $(WARNINGS) $(INCLUDES) $(CFLAGS)
-LIBS      = $(shell pkg-config --libs hdf5 yaml-0.1 jansson libxxhash 2>/dev/null) -lm
+LIBS      = $(shell pkg-config --libs hdf5 yaml-0.1 jansson libxxhash) -lm
 TEST_LIBS = -lcmocka -lgsl -lgslcblas -lgmp
 
 SOURCES := $(sort $(shell find src -name '*.c'))
 OBJECTS := $(SOURCES:%.c=$(BUILD)/%.o)
 LIBRARY := $(BUILD)/libuncross.a
-TESTS   := $(sort $(shell find tests -name 'test_*.c' 2>/dev/null))
-TEST_PROGRAMS := $(TESTS:%.c=$(BUILD)/%)
+TESTS   := $(sort $(shell find tests -name 'test_*.c'))
+TEST_PROGRAMS    := $(TESTS:%.c=$(BUILD)/%)
+MEASURES         := $(sort $(wildcard validation/measure/*.c))
+MEASURE_PROGRAMS := $(MEASURES:%.c=$(BUILD)/%)
 
 .PHONY: all
 all: $(BUILD)/uncross
 
-$(BUILD)/uncross: $(BUILD)/src/main.o $(LIBRARY)
+.PHONY: help
+help:
+	@echo 'make                 builds $(BUILD)/uncross'
+	@echo 'make demo            installs what it needs, builds, runs the paper'\''s semidilute system for a minute, writes a page'
+	@echo 'make check           installs what it needs, builds, runs all tests'
+	@echo 'make lint            formatting, warnings of gcc and clang, static checks, include floors, equation table'
+	@echo 'make measure         builds the programs behind docs/accuracy.md'
+	@echo 'make install         PREFIX=$(PREFIX) DESTDIR=$(DESTDIR)'
+	@echo 'make clean           removes $(BUILD)'
+	@echo 'variables            CC=gcc|clang  MARCH=native|x86-64|...  BUILD=folder'
+
+# --- program and library ----------------------------------------------------------------------------------------------
+
+$(BUILD)/uncross: $(BUILD)/src/main.o $(BUILD)/src/run.o $(LIBRARY)
 	$(CC) $(ALL_CFLAGS) $^ $(LIBS) -o $@
 
-$(LIBRARY): $(filter-out $(BUILD)/src/main.o,$(OBJECTS))
+$(LIBRARY): $(filter-out $(BUILD)/src/main.o $(BUILD)/src/run.o,$(OBJECTS))
 	rm -f $@
 	ar rcs $@ $^
 
@@ -38,12 +52,61 @@ $(BUILD)/%.o: %.c Makefile
 	@mkdir -p $(@D)
 	$(CC) $(ALL_CFLAGS) -MMD -MP -c $< -o $@
 
+# Written anew only when it says something new, so that nothing is rebuilt for nothing.
+$(BUILD)/build-info.inc: force
+	@mkdir -p $(@D)
+	@{ echo '#define BUILD_COMMIT "$(shell git describe --always --dirty --abbrev=12 2>/dev/null || echo unknown)"'; \
+	   echo '#define BUILD_COMPILER "$(shell $(CC) --version | head -n 1)"'; \
+	   echo '#define BUILD_FLAGS "$(STRICT) $(OPTIMIZE)"'; } > $@.new
+	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
+$(BUILD)/src/io/build_info.o: $(BUILD)/build-info.inc
+$(BUILD)/src/io/build_info.o: INCLUDES += -I$(BUILD)
+
+.PHONY: force
+force:
+
+.PHONY: install
+install: $(BUILD)/uncross
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/share/uncross
+	install $(BUILD)/uncross $(DESTDIR)$(PREFIX)/bin/uncross
+	cp -r scenes docs $(DESTDIR)$(PREFIX)/share/uncross/
+
+# --- tests, checks, demo ----------------------------------------------------------------------------------------------
+
 $(BUILD)/tests/%: tests/%.c $(LIBRARY) Makefile
 	@mkdir -p $(@D)
 	$(CC) $(ALL_CFLAGS) -Itests -MMD -MP $< $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
 
--include $(OBJECTS:.o=.d) $(TEST_PROGRAMS:=.d)
+$(BUILD)/validation/measure/%: validation/measure/%.c $(LIBRARY) Makefile
+	@mkdir -p $(@D)
+	$(CC) $(ALL_CFLAGS) -Itests -MMD -MP $< $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
+
+.PHONY: tests
+tests: $(BUILD)/uncross $(TEST_PROGRAMS)
+
+.PHONY: measure
+measure: $(MEASURE_PROGRAMS)
+
+# What needs packages asks for them first, then builds in a second make: pkg-config may only now be there.
+.PHONY: check
+check:
+	tools/install-dependencies run test
+	$(MAKE) -j2 tests
+	tests/run $(BUILD)
+
+.PHONY: lint
+lint:
+	tools/install-dependencies run test lint
+	tools/lint
+
+.PHONY: demo
+demo:
+	tools/install-dependencies run demo
+	$(MAKE) -j2 $(BUILD)/uncross
+	tools/demo $(BUILD)/uncross $(BUILD)/demo
 
 .PHONY: clean
 clean:
 	rm -rf $(BUILD)
+
+-include $(OBJECTS:.o=.d) $(TEST_PROGRAMS:=.d) $(MEASURE_PROGRAMS:=.d)

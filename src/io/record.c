@@ -1,0 +1,69 @@
+#include "io/record.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <jansson.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "io/build_info.h"
+#include "version.h"
+
+/* JSON knows no NaN: null. */
+static json_t *real(double x)
+{
+  return isfinite(x) ? json_real(x) : json_null();
+}
+
+static json_t *conserved(double energy, struct vec3 p)
+{
+  return json_pack("{s:o, s:[o, o, o]}", "energy", real(energy), "momentum", real(p.x), real(p.y), real(p.z));
+}
+
+static json_t *counts(const struct collision_counts *c)
+{
+  return json_pack("{s:I, s:I, s:I, s:I}", "moves", (json_int_t)c->moves, "possible", (json_int_t)c->possible, "executed",
+                   (json_int_t)c->executed, "negative", (json_int_t)c->negative);
+}
+
+static json_t *hexadecimal(uint64_t x)
+{
+  char text[32];
+  snprintf(text, sizeof text, "%016" PRIx64, x);
+  return json_string(text);
+}
+
+/* Seeds are 64-bit: a string where JSON readers would round. */
+static json_t *seed(uint64_t x)
+{
+  char text[32];
+  snprintf(text, sizeof text, "%" PRIu64, x);
+  return json_string(text);
+}
+
+bool record_write(const char *folder, const struct scene *scene, const struct state *state, const struct record *r,
+                  struct message *message)
+{
+  const struct conserved now = observe_conserved(&scene->model, state);
+  json_t *root = json_pack(
+      "{s:s, s:s?, s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:I, s:I, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:s}", "status",
+      r->status, "reason", r->reason, "program", "uncross", "version", UNCROSS_VERSION, "commit", build_info.commit,
+      "compiler", build_info.compiler, "flags", build_info.flags, "seed", seed(scene->model.seed), "scene_fingerprint",
+      hexadecimal(scene->fingerprint), "steps", (json_int_t)state->step, "steps_wanted", (json_int_t)scene->steps, "time",
+      (double)state->step * scene->model.time_step, "wall_seconds", r->wall_seconds, "steps_per_second",
+      r->steps_per_second, "collisions", counts(&state->counts), "start", conserved(r->start_energy, r->start_momentum),
+      "end", conserved(now.total, now.momentum), "state_hash", hexadecimal(state_hash(state)), "scene", scene->text);
+  if (!root)
+    return message_set(message, "%s/run.json: no memory, or a scene that is not UTF-8", folder);
+
+  char path[4096], aside[4160];
+  snprintf(path, sizeof path, "%s/run.json", folder);
+  snprintf(aside, sizeof aside, "%s.part", path);
+  bool ok = json_dump_file(root, aside, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) == 0 && rename(aside, path) == 0;
+  json_decref(root);
+  if (!ok) {
+    message_set(message, "%s: cannot write: %s", path, strerror(errno));
+    remove(aside);
+  }
+  return ok;
+}
