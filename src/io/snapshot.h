@@ -7,6 +7,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdio.h>
 
 #include "io/message.h"
 #include "observe/observe.h"
@@ -17,66 +18,91 @@
 struct checkpoint_head {
   uint64_t fingerprint; /* of the scene: scene.h */
   uint64_t seed;
-  uint64_t state_hash;  /* of the state as written; checked when read */
-  double wall_seconds;  /* spent so far, over all sessions */
-  double start_energy;         /* kT, at step 0, for run.json of a resumed run */
+  uint64_t state_hash; /* of the state as written; checked when read */
+  double wall_seconds; /* spent so far, over all sessions */
+  double start_energy; /* kT, at step 0, for run.json of a resumed run */
   struct vec3 start_momentum;
   char version[64];
 };
 
 /* Writes path.part, syncs it, and renames it to path: path is at every moment either the old or the new checkpoint.
- * blocks: the observers' memory. False, with a message, on any failure; path is then untouched. */
-bool checkpoint_write(const char *path, const struct checkpoint_head *head, const struct state *state,
-                      const struct observe_block *blocks, size_t block_count, const char *scene_text,
-                      struct message *message);
+ * blocks: the observers' memory. head->state_hash is not read: the hash of the state is taken here. False, with a
+ * message, on any failure; path is then untouched, and path.part gone. */
+bool checkpoint_write(const char *path, const struct checkpoint_head *head, const struct model *model,
+                      const struct state *state, const struct observe_block *blocks, size_t block_count,
+                      const char *scene_text, struct message *message);
 
-/* Reads a checkpoint into a state allocated for this model. Checks that it is one, is whole, has this model's numbers of
- * particles and vertices and box, and that the state hash is right. blocks: filled where given (block_count may be 0).
- * False, with a message that names the file and what is wrong, on any failure. */
+/* Reads a checkpoint into a state allocated for this model. Checks that it is one, is whole, has this model's numbers
+ * of particles and vertices, its box and its bonds, and that the state hash is right. Particles come back in id order.
+ * blocks: filled where given (block_count may be 0); one that the file does not hold, or in another size, is a failure.
+ * False, with a message that names the file and what is wrong, on any failure; the state is then not to be used. The
+ * fingerprint is handed back in head, for the caller to compare. */
 bool checkpoint_read(const char *path, const struct model *model, struct checkpoint_head *head, struct state *state,
                      const struct observe_block *blocks, size_t block_count, struct message *message);
 
-/* A start from somebody's state: a checkpoint, or the last frame of an H5MD file with vertices (and solvent, if the model
- * has one) with velocities. Sets step 0. */
+/* The scene text of a checkpoint, to be freed; NULL, with a message, if it cannot be read. */
+char *checkpoint_scene_text(const char *path, struct message *message);
+
+/* A start from somebody's state: a checkpoint, or the last frame of an H5MD file with vertices (and solvent, if the
+ * model has one) with velocities. Sets step 0, lag 0 and no crossings so far: solvent that lags in a checkpoint is
+ * streamed to where it is. Velocities of vertices are taken to be of the half step ahead, as uncross writes them. Box,
+ * numbers and bonds must be the model's; whether bonds fit the box is for the caller to check. */
 bool snapshot_read_start(const char *path, const struct model *model, struct state *state, struct message *message);
 
-/* --- trajectory ---------------------------------------------------------------------------------------------------- */
+/* --- trajectory ----------------------------------------------------------------------------------------------------
+ */
 
 struct trajectory; /* an open H5MD file */
 
 struct trajectory_options {
-  bool solvent;    /* frames hold the solvent, else only the vertices */
+  bool solvent; /* frames hold the solvent, else only the vertices */
   bool velocities;
   uint64_t seed;
   const char *author; /* creator fields of H5MD are filled from version.h */
 };
 
 /* Creates a trajectory, or opens the one that is there and drops frames after `keep_to_step` (a resume; keep_to_step is
- * UINT64_MAX to keep all). scene_text is stored in the file, so that `uncross analyze` needs nothing else. */
-struct trajectory *trajectory_open(const char *path, const struct model *model, const struct trajectory_options *options,
-                                   bool resume, uint64_t keep_to_step, const char *scene_text, struct message *message);
-/* Appends the state as a frame, and flushes. Positions are unwrapped for vertices, wrapped for the solvent. */
+ * UINT64_MAX to keep all). scene_text is stored in the file, so that `uncross analyze` needs nothing else.
+ * A resume that finds no file starts one; one that finds a file which cannot be read (a crash or a full disk broke it)
+ * renames that to NAME.damaged.1.h5 (or .2, ...) and starts a new one. After a success message->text is empty, or such
+ * a note for the user. NULL, with a message, on any failure; a readable file of other particles than asked for is one.
+ */
+struct trajectory *trajectory_open(const char *path, const struct model *model,
+                                   const struct trajectory_options *options, bool resume, uint64_t keep_to_step,
+                                   const char *scene_text, struct message *message);
+/* Appends the state as a frame, and flushes. Positions are unwrapped for vertices, wrapped for the solvent, which is
+ * shown where it is now. Refuses vertices 8192 a0 or more from the origin, where doubles no longer hold every lattice
+ * point. */
 bool trajectory_append(struct trajectory *trajectory, const struct model *model, const struct state *state,
                        struct message *message);
+/* Closes it, NULL too; the handle is freed in any case. False, with a message, if data could not be written. */
 bool trajectory_close(struct trajectory *trajectory, struct message *message);
 
-/* Reading: number of frames, scene text, and one frame into a state (vertices always; velocities and solvent if stored;
- * positions come back to the very lattice points they were). */
+/* Reading: number of frames, scene text, and one frame into a state (vertices always; velocities and solvent if stored,
+ * else as they were; positions come back to the very lattice points they were; lag 0). */
 struct trajectory *trajectory_open_read(const char *path, struct message *message);
 uint64_t trajectory_frames(const struct trajectory *trajectory);
 char *trajectory_scene_text(const struct trajectory *trajectory); /* to be freed; NULL if not one of ours */
+bool trajectory_has_velocities(const struct trajectory *trajectory);
+bool trajectory_has_solvent(const struct trajectory *trajectory, const struct model *model);
 bool trajectory_read(struct trajectory *trajectory, const struct model *model, uint64_t frame, struct state *state,
                      struct message *message);
 
-/* --- other forms --------------------------------------------------------------------------------------------------- */
+/* --- other forms ---------------------------------------------------------------------------------------------------
+ */
 
-/* Extended XYZ of a trajectory or checkpoint to a stdio stream (OVITO, ASE): `uncross export`. Bonds as a per-vertex
- * column. */
+/* What of a file goes to Extended XYZ. */
 struct export_options {
-  bool solvent;
-  bool wrapped;
-  uint64_t first, last, stride; /* frames */
+  bool solvent; /* the solvent too, if the file holds it */
+  bool wrapped; /* vertices folded into the box, else unwrapped as stored */
+  uint64_t first, last,
+      stride; /* frames first, first + stride, ... up to last (UINT64_MAX: to the end); stride 0 is 1 */
 };
+
+/* Extended XYZ of a trajectory or checkpoint to a stdio stream (OVITO, ASE): `uncross export`. Columns: a chemical
+ * symbol that stands for the kind, position, velocity if stored, id, and the id of the vertex to which a bond goes on
+ * (-1: none). False, with a message, if the file cannot be read or the stream not be written. */
+bool trajectory_export(const char *path, const struct export_options *options, FILE *out, struct message *message);
 
 /* Prints what a file is, in a few lines: `uncross info`. Knows scenes, checkpoints, trajectories, run.json, CSV tables.
  * False, with a message, if it is none of them or cannot be read. */
