@@ -10,8 +10,7 @@ static struct difference difference(struct point a, struct point b)
   return (struct difference){a.x - b.x, a.y - b.y, a.z - b.z};
 }
 
-/* --- exact determinant ---------------------------------------------------------------------------------------------
- */
+/* --- exact determinant ------------------------------------------------------------------------------------------- */
 
 __extension__ typedef __int128 int128;
 __extension__ typedef unsigned __int128 uint128;
@@ -51,8 +50,7 @@ static double exact_determinant(struct difference p, struct difference q, struct
   return negative ? -size : size;
 }
 
-/* --- determinant in doubles, where it can be trusted ---------------------------------------------------------------
- */
+/* --- determinant in doubles, where it can be trusted ------------------------------------------------------------- */
 
 /* (p x q).r in lattice units cubed. Its sign is exact, and so, nearly, is its value. The bound is that of Shewchuk
  * (Discrete Comput. Geom. 18, 305 (1997), orient3d, first stage) for exact differences, with room to spare. */
@@ -76,8 +74,7 @@ int crossing_orientation(struct point origin, struct point u, struct point v, st
   return (d > 0.0) - (d < 0.0);
 }
 
-/* --- the test ------------------------------------------------------------------------------------------------------
- */
+/* --- the test ---------------------------------------------------------------------------------------------------- */
 
 /* Side of a determinant, zero counted as positive; flip: zero counted as negative, for determinants that are taken in
  * the mirrored order of their points. */
@@ -114,7 +111,8 @@ static struct vec3 common_normal(struct vec3 p, struct vec3 q, struct vec3 displ
 
 bool crossing_find(const struct crossing_query *k, struct crossing_hit *hit)
 {
-  /* Volumes of (a, b, pivot, vertex) before and after the move, Eq. (10): they must differ in sign. */
+  /* Padding 2009, Eq. (10): a, b, pivot and vertex lie in one plane at some time of the move if the volume that they
+   * span changes sign. */
   const struct difference ab = difference(k->b, k->a), pivot = difference(k->pivot, k->a);
   const struct difference from = difference(k->from, k->a), to = difference(k->to, k->a);
   const double before = determinant(ab, pivot, from), after = determinant(ab, pivot, to);
@@ -132,7 +130,7 @@ bool crossing_find(const struct crossing_query *k, struct crossing_hit *hit)
       positive(determinant(u, v, difference(k->b, k->pivot)), false))
     return false;
 
-  /* Eq. (11), from the two volumes instead of the velocity. */
+  /* Padding 2009, Eqs. (9) and (11), with the two volumes in place of the velocity. */
   hit->time = before / (before - after);
   struct vec3 at = vec3_add_scaled(point_difference(k->from, k->a), hit->time, point_difference(k->to, k->from));
   struct vec3 p = vec3_sub(point_difference(k->pivot, k->a), at), q = point_difference(k->b, k->a);

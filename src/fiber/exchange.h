@@ -14,7 +14,7 @@ struct exchange_end {
  * velocity of the two contact points reverses along n: kinetic energy and momentum are kept. Returns dP, with its sign
  * (negative where the points were separating, footnote 61).
  *
- * Padding 2009, Eqs. (22)-(28), here for vertices of any mass: with equal masses
+ * Padding 2009, Eqs. (22)-(25) and (28), here for vertices of any mass: with equal masses
  * dP = 2M [(1-s) V_i + s V_{i+1} - (1-s') V_j - s' V_{j+1}].n / [(1-s)^2 + s^2 + (1-s')^2 + s'^2]. */
 static inline double exchange_momentum(const struct exchange_end moving[2], const struct exchange_end standing[2],
                                        double s, double s_standing, struct vec3 n)

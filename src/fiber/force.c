@@ -1,17 +1,18 @@
 #include "fiber/force.h"
 
-/* Padding 2009, Eq. (1): derivative of the energy of a bond of this length; positive pulls its ends together. */
+/* Derivative of bond_energy; positive pulls the ends of the bond together. */
 static inline double bond_tension(const struct fiber_kind *k, double length)
 {
   return k->spring * (length - k->bond_length);
 }
 
+/* Padding 2009, Eq. (1), with k = K/l0. */
 static inline double bond_energy(const struct fiber_kind *k, double length)
 {
   return 0.5 * k->spring * (length - k->bond_length) * (length - k->bond_length);
 }
 
-/* Padding 2009, Eq. (2). */
+/* Padding 2009, Eq. (2), with kappa = l_p/l0. Its forces are derived in force.h. */
 static inline double bend_energy(const struct fiber_kind *k, double cosine)
 {
   return k->bending * (1.0 - cosine);
@@ -97,6 +98,7 @@ bool fiber_forces(const struct state *state, const struct model *model, struct w
   return ok;
 }
 
+/* Padding 2009, Eq. (8). */
 void fiber_kick(struct state *state, const struct model *model, const struct work *work, double fraction)
 {
   const double dt = fraction * model->time_step;

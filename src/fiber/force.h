@@ -13,11 +13,11 @@
 #include "state/state.h"
 #include "state/work.h"
 
-/* work->fiber.force of every vertex: bonds, bends, and the constant body force, in kT/a0 (Padding 2009, step 5).
+/* work->fiber.force of every vertex: bonds, bends, and the constant body force, in kT/a0 (the paper's step 5).
  * False, with the fault recorded, if a bond is longer than half the shortest box edge. */
 bool fiber_forces(const struct state *state, const struct model *model, struct work *work, uint64_t step);
 
-/* Velocities of all vertices advanced by fraction * dt (Padding 2009, Eq. 8). */
+/* Velocities of all vertices advanced by fraction * dt (Eq. (8)). */
 void fiber_kick(struct state *state, const struct model *model, const struct work *work, double fraction);
 
 struct fiber_energy {

@@ -8,8 +8,7 @@
 #define FIRST_STRIDE 8     /* partners per bond before the lists grow */
 #define FIRST_ENTRIES 8    /* grid entries per bond before they grow */
 
-/* --- margin boxes ---------------------------------------------------------------------------------------------------
- */
+/* --- margin boxes ------------------------------------------------------------------------------------------------ */
 
 static struct point lower(struct point a, struct point b)
 {
@@ -33,8 +32,7 @@ static struct margin_box draw_box(const struct state *state, const struct model 
   return box;
 }
 
-/* --- lists ----------------------------------------------------------------------------------------------------------
- */
+/* --- lists ------------------------------------------------------------------------------------------------------- */
 
 static bool grow_lists(struct neighbors *nb, uint32_t bonds)
 {
@@ -73,8 +71,7 @@ static struct neighbor mirrored(uint32_t bond, const int32_t image[3])
   return (struct neighbor){(int32_t)bond, {-image[0], -image[1], -image[2]}};
 }
 
-/* --- grid -----------------------------------------------------------------------------------------------------------
- */
+/* --- grid -------------------------------------------------------------------------------------------------------- */
 
 /* The range of search cells that a margin box touches, in unwrapped cell coordinates. */
 struct cell_range {
@@ -148,8 +145,7 @@ static void leave_cell(struct neighbors *nb, uint32_t bond, const int64_t at[3])
   }
 }
 
-/* --- search ---------------------------------------------------------------------------------------------------------
- */
+/* --- search ------------------------------------------------------------------------------------------------------ */
 
 static bool share_vertex(const struct model *model, uint32_t a, uint32_t b)
 {
@@ -217,8 +213,7 @@ static bool visit_cells(struct neighbors *nb, const struct model *model, uint32_
   return true;
 }
 
-/* --- the two entrances ----------------------------------------------------------------------------------------------
- */
+/* --- the two entrances ------------------------------------------------------------------------------------------- */
 
 static bool short_of_memory(const struct state *state, struct work *work, uint32_t bond)
 {

@@ -144,7 +144,7 @@ static bool try_move(struct state *state, const struct model *model, struct work
   return true;
 }
 
-/* Where vertex i wants to go; false if that is too far, or not a number. */
+/* Padding 2009, Eq. (4): where vertex i wants to go. False if that is too far, or not a number. */
 static bool trial_point(const struct state *state, const struct model *model, struct work *work, uint32_t i, double dt,
                         struct point *to)
 {

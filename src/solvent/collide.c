@@ -66,8 +66,8 @@ static uint64_t sum_cells(const struct state *state, const struct model *model, 
   return span;
 }
 
-/* The sums are right if members times the largest momentum fits in 63 bits, and members times the largest mass in 40.
- */
+/* The sums are right if members times the largest momentum fits in 63 bits, and members times the largest mass in
+ * 40. */
 static bool check_range(const struct model *model, struct work *work, uint64_t span, uint64_t step)
 {
   const struct cell_sum *sum = work->collision.sum;

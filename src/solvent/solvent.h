@@ -6,8 +6,8 @@
 #include "state/state.h"
 #include "state/work.h"
 
-/* Lets every solvent particle fly for the time it lags behind, halfsteps half time steps included (Padding 2009, Eq. 3,
- * exact also under the constant body force), and wraps it into the box. Afterwards the lag is 0.
+/* Lets every solvent particle fly for the time it lags behind (Eqs. (3) and (7) at once, exact for the constant body
+ * force), and wraps it into the box. Afterwards the lag is 0.
  * False, with the fault recorded, if a particle would move too far. */
 bool solvent_stream(struct state *state, const struct model *model, struct work *work);
 

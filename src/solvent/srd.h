@@ -52,7 +52,7 @@ static inline uint64_t srd_add(struct cell_sum *sum, double mass, uint64_t load,
   return (uint64_t)(px ^ (px >> 63)) | (uint64_t)(py ^ (py >> 63)) | (uint64_t)(pz ^ (pz >> 63));
 }
 
-/* v_cm of a cell: its momentum over its mass (Padding 2009, below Eq. 6). */
+/* v_cm of a cell: its momentum over its mass (below Eq. (6)). */
 static inline struct vec3 srd_center(const struct cell_sum *sum)
 {
   double scale = SRD_MOMENTUM_UNIT / srd_mass(sum);

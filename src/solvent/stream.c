@@ -1,7 +1,8 @@
 #include "solvent/solvent.h"
 
-/* One Cartesian component of all particles: x += v t + a t^2/2, v += a t, wrapped once. Returns a value with its sign
- * bit set if some particle is still outside the box, or moved beyond what lattice_round can hold. */
+/* Padding 2009, Eqs. (3) and (7), over the whole flight at once: one Cartesian component of all particles,
+ * x += v t + a t^2/2, v += a t, wrapped once. Returns a value with its sign bit set if some particle is still outside
+ * the box, or moved beyond what lattice_round can hold. */
 static int64_t stream_component(uint32_t n, int64_t *restrict x, double *restrict v, double t, double a, int64_t edge)
 {
   const double step = t * LATTICE_PER_A0, offset = 0.5 * a * t * step, gain = a * t;

@@ -39,8 +39,8 @@ struct fiber_kind {
   bool ring;          /* the last vertex is bonded to the first */
   double mass;        /* M, in m: a multiple of MODEL_MASS_UNIT */
   double bond_length; /* l0, in a0 */
-  double spring;      /* k = K/l0, in kT/a0^2 (Padding 2009, Eq. 1) */
-  double bending;     /* kappa = l_p/l0 (Padding 2009, Eq. 2); 0: no bend forces */
+  double spring;      /* k = K/l0, in kT/a0^2: Eq. (1) */
+  double bending;     /* kappa = l_p/l0: Eq. (2); 0: no bend forces */
   struct vec3 force;  /* constant force on each vertex, in kT/a0 */
   enum fiber_start start;
   uint32_t placed;        /* fibers whose place is given below; the rest is placed at random */
