@@ -41,10 +41,12 @@ help:
 
 # --- program and library ----------------------------------------------------------------------------------------------
 
-$(BUILD)/uncross: $(BUILD)/src/main.o $(BUILD)/src/run.o $(LIBRARY)
+TOP := $(addprefix $(BUILD)/src/,main.o run.o analyze.o)
+
+$(BUILD)/uncross: $(TOP) $(LIBRARY)
 	$(CC) $(ALL_CFLAGS) $^ $(LIBS) -o $@
 
-$(LIBRARY): $(filter-out $(BUILD)/src/main.o $(BUILD)/src/run.o,$(OBJECTS))
+$(LIBRARY): $(filter-out $(TOP),$(OBJECTS))
 	rm -f $@
 	ar rcs $@ $^
 

@@ -1,15 +1,13 @@
 #include "run.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "fiber/force.h"
+#include "io/folder.h"
 #include "io/output.h"
 #include "io/progress.h"
 #include "io/record.h"
@@ -70,42 +68,15 @@ static void checkpoint_path(const struct run *run, char *path, size_t size)
   snprintf(path, size, "%s/checkpoint.h5", run->options->folder);
 }
 
-static bool exists(const char *folder, const char *name)
-{
-  char path[4096];
-  snprintf(path, sizeof path, "%s/%s", folder, name);
-  return access(path, F_OK) == 0;
-}
-
-/* mkdir -p */
-static bool make_folder(const char *folder, struct message *message)
-{
-  char path[4096];
-  if (snprintf(path, sizeof path, "%s", folder) >= (int)sizeof path)
-    return message_set(message, "%s: the name is too long", folder);
-  for (char *p = path + 1;; p++) {
-    if (*p != '/' && *p != '\0')
-      continue;
-    char rest = *p;
-    *p = '\0';
-    if (mkdir(path, 0777) != 0 && errno != EEXIST)
-      return message_set(message, "%s: cannot make this folder: %s", path, strerror(errno));
-    if (rest == '\0')
-      break;
-    *p = rest;
-  }
-  return access(folder, W_OK | X_OK) == 0 || message_set(message, "%s: cannot write here: %s", folder, strerror(errno));
-}
-
 /* The folder must be new to a new run, and known to a resumed one: nothing is written over. */
 static bool check_folder(const struct run_options *o, struct message *message)
 {
   static const char *const ours[] = {"checkpoint.h5", "run.json", "trajectory.h5"};
   if (o->resume)
-    return exists(o->folder, "checkpoint.h5") ||
+    return folder_has(o->folder, "checkpoint.h5") ||
            message_set(message, "%s: nothing to resume, there is no checkpoint.h5; leave out --resume to start", o->folder);
   for (size_t k = 0; k < sizeof ours / sizeof *ours; k++)
-    if (exists(o->folder, ours[k]))
+    if (folder_has(o->folder, ours[k]))
       return message_set(message, "%s: holds a run already (%s); continue it with --resume, or name another folder",
                          o->folder, ours[k]);
   return true;
@@ -188,7 +159,7 @@ static bool save(struct run *run, const char *status, const char *reason)
                                 run->head.start_momentum};
   run->last_checkpoint = clock_seconds();
   return output_flush(&run->output, &run->message) &&
-         checkpoint_write(path, &run->head, &run->state, blocks, count, run->scene.text, &run->message) &&
+         checkpoint_write(path, &run->head, &run->scene.model, &run->state, blocks, count, run->scene.text, &run->message) &&
          output_summaries(&run->output, run->observers, &run->scene.model, &run->message) &&
          record_write(run->options->folder, &run->scene, &run->state, &record, &run->message);
 }
@@ -244,7 +215,7 @@ static enum exit_code run_in_folder(struct run *run)
   enum exit_code code = resume ? start_from_checkpoint(run) : start_anew(run);
   if (code != EXIT_DONE)
     return code;
-  if (!make_folder(run->options->folder, &run->message))
+  if (!folder_make(run->options->folder, &run->message))
     return complain(run, EXIT_BAD_INPUT);
   if (!output_open(&run->output, &run->scene, run->options->folder, resume, run->state.step, &run->message))
     return complain(run, EXIT_NOT_WRITTEN);

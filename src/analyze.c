@@ -1,0 +1,92 @@
+/* `uncross analyze`: the observables of a scene, from the frames of a trajectory. */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "io/folder.h"
+#include "io/output.h"
+#include "io/scene.h"
+#include "io/snapshot.h"
+#include "run.h"
+
+static uint64_t least_common_multiple(uint64_t a, uint64_t b)
+{
+  uint64_t x = a, y = b;
+  while (y != 0) {
+    uint64_t rest = x % y;
+    x = y;
+    y = rest;
+  }
+  return a / x * b;
+}
+
+/* What the frames can show of what the scene asked for: only steps that were stored, energies and temperatures only if
+ * solvent and velocities were, and no counts of crossings, which are not in frames. */
+static void fit_plan(struct scene *scene, const struct trajectory *frames)
+{
+  const bool everything = trajectory_has_velocities(frames) && trajectory_has_solvent(frames, &scene->model);
+  const bool possible[OBSERVABLES] = {[OBSERVE_CONSERVED] = everything,
+                                      [OBSERVE_TEMPERATURE] = everything,
+                                      [OBSERVE_STATICS] = true,
+                                      [OBSERVE_DYNAMICS] = true,
+                                      [OBSERVE_COLLISIONS] = false};
+  for (int k = 0; k < OBSERVABLES; k++) {
+    uint64_t *every = &scene->observe.every[k];
+    if (*every > 0 && !possible[k])
+      fprintf(stderr, "uncross: %s: cannot be had from this trajectory, left out\n", observable_names[k]);
+    *every = *every > 0 && possible[k] ? least_common_multiple(*every, scene->trajectory_every) : 0;
+  }
+}
+
+static bool sample_frames(struct scene *scene, struct trajectory *frames, const char *folder, struct state *state,
+                          struct observers *observers, struct message *message)
+{
+  struct output output;
+  scene->trajectory_every = 0; /* tables only */
+  bool ok = output_open(&output, scene, folder, false, 0, message);
+  for (uint64_t k = 0; ok && k < trajectory_frames(frames); k++)
+    ok = trajectory_read(frames, &scene->model, k, state, message) &&
+         output_sample(&output, observers, &scene->model, state, message);
+  ok = ok && output_summaries(&output, observers, &scene->model, message);
+  return output_close(&output, message) && ok;
+}
+
+static enum exit_code analyze(struct scene *scene, struct trajectory *frames, const char *folder,
+                              struct message *message)
+{
+  struct state state;
+  fit_plan(scene, frames);
+  if (!folder_make(folder, message))
+    return EXIT_BAD_INPUT;
+  struct observers *observers = observers_create(&scene->observe, &scene->model);
+  enum exit_code code = EXIT_TROUBLE;
+  message_set(message, "no memory for this trajectory");
+  if (observers && state_alloc(&state, &scene->model)) {
+    code = sample_frames(scene, frames, folder, &state, observers, message) ? EXIT_DONE : EXIT_NOT_WRITTEN;
+    state_free(&state);
+  }
+  observers_free(observers);
+  return code;
+}
+
+enum exit_code run_analyze(const char *path, const char *folder)
+{
+  struct message message;
+  struct scene scene;
+  enum exit_code code = EXIT_BAD_INPUT;
+  struct trajectory *frames = trajectory_open_read(path, &message);
+  char *text = frames ? trajectory_scene_text(frames) : NULL;
+  if (frames && !text)
+    message_set(&message, "%s: holds no scene; only trajectories that uncross wrote can be analyzed", path);
+  if (text && scene_parse(text, path, &scene, &message)) {
+    code = analyze(&scene, frames, folder, &message);
+    scene_free(&scene);
+  }
+  free(text);
+  if (frames) {
+    struct message ignored;
+    trajectory_close(frames, &ignored);
+  }
+  if (code != EXIT_DONE)
+    fprintf(stderr, "uncross: %s\n", message.text);
+  return code;
+}
