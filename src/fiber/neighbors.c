@@ -169,7 +169,7 @@ static bool search_cell(struct neighbors *nb, const struct model *model, uint32_
   int32_t here[3];
   for (int32_t k = nb->head[wrap_cell(nb, at, here)]; k >= 0; k = nb->entry[k].next) {
     const struct grid_entry *e = &nb->entry[k];
-    uint32_t other = (uint32_t)e->bond;
+    uint32_t other = (uint32_t)e->bond; // NOLINT(clang-analyzer-core.NullDereference): no entries, no heads
     if (share_vertex(model, bond, other))
       continue;
     const int32_t image[3] = {here[0] - e->image[0], here[1] - e->image[1], here[2] - e->image[2]};

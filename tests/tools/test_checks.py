@@ -1,0 +1,178 @@
+"""The checks of the house must be able to fail: each rule is broken once in a small tree made for it."""
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+TOOLS = pathlib.Path(__file__).resolve().parents[2] / "tools"
+
+FILES = {
+    "src/base/vec.h": "",
+    "src/state/state.h": '#include "base/vec.h"\n',
+    "src/solvent/flow.h": '#include "state/state.h"\n',
+    "src/solvent/flow.c": '#include "solvent/flow.h"\n/* Padding 2009, Eqs. (1)-(20) and (22), (25). */\nvoid flow(void)\n{\n}\n',
+    "src/fiber/bend.h": '#include "state/state.h"\n/* Padding 2009, Eq. (21). */\nstatic inline int bend(int x)\n{\n}\n',
+    "src/fiber/bend.c": '#include "fiber/bend.h"\nint twist(int x)\n{\n  /* Padding 2009, Eqs. (23) and (24). */\n}\n',
+    "src/step.h": "",
+    "src/step.c": '#include "step.h"\n#include "fiber/bend.h"\n#include "solvent/flow.h"\n',
+    "src/observe/mean.h": '#include "fiber/bend.h" /* Eq. (1) */\n',
+    "src/io/file.h": "#include <hdf5.h>\n",
+    "src/main.c": '#include "io/file.h"\n#include "observe/mean.h"\n#include "step.h"\n',
+    "docs/equations.tsv": "# comment\n" + "".join(
+        f"{n}\t{'code' if n < 26 else 'later'}\tmeaning\t{'src/step.c' if n < 26 else '-'}\t-\n" for n in range(1, 44)),
+}
+
+
+class Tree(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = pathlib.Path(folder.name)
+        for name, text in FILES.items():
+            self.put(name, text)
+
+    def put(self, name, text):
+        path = self.root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+
+    def add(self, name, text):
+        self.put(name, (self.root / name).read_text() + text)
+
+    def replace(self, name, old, new):
+        text = (self.root / name).read_text()
+        self.assertIn(old, text)
+        self.put(name, text.replace(old, new, 1))
+
+    def call(self, tool, *options):
+        done = subprocess.run([TOOLS / tool, *options, self.root], capture_output=True, text=True, check=False)
+        self.assertEqual(done.stderr, "")
+        return done.returncode, done.stdout
+
+    def assert_complains(self, tool, words):
+        status, output = self.call(tool)
+        self.assertEqual(status, 1, output)
+        self.assertIn(words, output)
+
+
+class Floors(Tree):
+    def complain(self, words):
+        self.assert_complains("check-floors", words)
+
+    def test_accepts_the_house(self):
+        status, output = self.call("check-floors")
+        self.assertEqual(status, 0, output)
+
+    def test_upward_include(self):
+        self.add("src/state/state.h", '#include "step.h"\n')
+        self.complain("src/state/state.h:2: state (floor 1) must not include step (floor 3)")
+
+    def test_solvent_and_fiber_never_meet(self):
+        self.add("src/solvent/flow.c", '  # include "fiber/bend.h"\n')
+        self.complain("solvent (floor 2) must not include fiber (floor 2)")
+
+    def test_fiber_and_solvent_never_meet(self):
+        self.add("src/fiber/bend.h", '#include "solvent/flow.h"\n')
+        self.complain("fiber (floor 2) must not include solvent (floor 2)")
+
+    def test_angle_brackets_are_no_way_around(self):
+        self.add("src/solvent/flow.c", "#include <fiber/bend.h>\n")
+        self.complain('files of this project are included as "room/file.h"')
+
+    def test_macro_is_no_way_around(self):
+        self.add("src/solvent/flow.c", "#include BEND\n")
+        self.complain("#include BEND")
+
+    def test_unknown_room(self):
+        self.put("src/attic/box.h", "")
+        self.complain("room 'attic' has no floor")
+
+    def test_missing_file(self):
+        self.add("src/step.c", '#include "fiber/knot.h"\n')
+        self.complain("there is no src/fiber/knot.h")
+
+    def test_cycle(self):
+        self.put("src/fiber/twist.h", '#include "fiber/bend.h"\n')
+        self.add("src/fiber/bend.h", '#include "fiber/twist.h"\n')
+        self.complain("include cycle: ")
+
+    def test_unreachable_header(self):
+        self.put("src/fiber/knot.h", "")
+        self.complain("src/fiber/knot.h:1: not reachable")
+
+    def test_unreachable_source(self):
+        self.put("src/fiber/knot.c", '#include "state/state.h"\n')
+        self.complain("src/fiber/knot.c:1: not reachable")
+
+    def test_file_library_in_the_physics(self):
+        self.add("src/observe/mean.h", "#include <hdf5.h>\n")
+        self.complain("hdf5.h belongs to floor 4 and above")
+
+    def test_test_library_in_the_program(self):
+        self.add("src/main.c", "#include <gsl/gsl_math.h>\n")
+        self.complain("gsl/gsl_math.h must not be used in src/")
+
+
+class Equations(Tree):
+    def setUp(self):
+        super().setUp()
+        self.assertEqual(self.call("check-equations", "--write")[0], 0)
+
+    def complain(self, words):
+        self.assert_complains("check-equations", words)
+
+    def test_accepts_the_table(self):
+        status, output = self.call("check-equations")
+        self.assertEqual(status, 0, output)
+        page = (self.root / "docs/equations.md").read_text()
+        self.assertIn("| (20) | meaning | code | `src/solvent/flow.c: flow` |", page)
+        self.assertIn("| (21) | meaning | code | `src/fiber/bend.h: bend` |", page)
+        self.assertIn("| (24) | meaning | code | `src/fiber/bend.c: twist` |", page)
+
+    def test_code_without_home(self):
+        self.replace("src/fiber/bend.h", "Padding 2009, Eq. (21)", "Eq. (21)")
+        self.complain("Eq. (21) is listed as code, but nothing in src/ is tagged with it")
+
+    def test_two_homes(self):
+        self.add("src/step.c", "/* Padding 2009, Eq. (7) */\n")
+        self.complain("Eq. (7) has more than one home: src/solvent/flow.c:2, src/step.c:4")
+
+    def test_tag_of_what_is_not_code(self):
+        self.add("src/step.c", "/* Padding 2009, Eq. (29) */\n")
+        self.complain("src/step.c:4: Eq. (29) is tagged here, but listed as later")
+
+    def test_malformed_tag(self):
+        self.add("src/step.c", "/* (Padding 2009, Eq. 3) */\n")
+        self.complain("src/step.c:4: malformed tag")
+
+    def test_equation_left_out(self):
+        self.replace("docs/equations.tsv", "13\tcode", "#13\tcode")
+        self.complain("Eq. (13) is missing")
+
+    def test_equation_listed_twice(self):
+        self.add("docs/equations.tsv", "43\tlater\tmeaning\t-\t-\n")
+        self.complain("Eq. (43) is listed twice")
+
+    def test_equation_that_the_paper_has_not(self):
+        self.add("docs/equations.tsv", "44\tlater\tmeaning\t-\t-\n")
+        self.complain("equation 44 is not one of (1)-(43)")
+
+    def test_unknown_status(self):
+        self.replace("docs/equations.tsv", "43\tlater", "43\tsoon")
+        self.complain("status 'soon' is not one of")
+
+    def test_code_without_test(self):
+        self.replace("docs/equations.tsv", "3\tcode\tmeaning\tsrc/step.c", "3\tcode\tmeaning\t-")
+        self.complain("Eq. (3) is listed as code, but no test or validation holds it")
+
+    def test_test_that_is_not_there(self):
+        self.replace("docs/equations.tsv", "src/step.c", "tests/none.c")
+        self.complain("Eq. (1) names tests/none.c, which is not there")
+
+    def test_stale_page(self):
+        self.replace("docs/equations.tsv", "meaning", "another meaning")
+        self.complain("docs/equations.md:1: out of date")
+
+
+if __name__ == "__main__":
+    unittest.main()
