@@ -44,15 +44,17 @@ help:
 TOP := $(addprefix $(BUILD)/src/,main.o run.o analyze.o)
 
 $(BUILD)/uncross: $(TOP) $(LIBRARY)
-	$(CC) $(ALL_CFLAGS) $^ $(LIBS) -o $@
+	@echo '  LD $@'
+	@$(CC) $(ALL_CFLAGS) $^ $(LIBS) -o $@
 
 $(LIBRARY): $(filter-out $(TOP),$(OBJECTS))
-	rm -f $@
-	ar rcs $@ $^
+	@rm -f $@
+	@ar rcs $@ $^
 
 $(BUILD)/%.o: %.c Makefile
 	@mkdir -p $(@D)
-	$(CC) $(ALL_CFLAGS) -MMD -MP -c $< -o $@
+	@echo '  CC $<'
+	@$(CC) $(ALL_CFLAGS) -MMD -MP -c $< -o $@
 
 # Written anew only when it says something new, so that nothing is rebuilt for nothing.
 $(BUILD)/build-info.inc: force
@@ -77,11 +79,13 @@ install: $(BUILD)/uncross
 
 $(BUILD)/tests/%: tests/%.c $(LIBRARY) Makefile
 	@mkdir -p $(@D)
-	$(CC) $(ALL_CFLAGS) -Itests -MMD -MP $< $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
+	@echo '  CC $<'
+	@$(CC) $(ALL_CFLAGS) -Itests -MMD -MP $< $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
 
 $(BUILD)/validation/measure/%: validation/measure/%.c $(LIBRARY) Makefile
 	@mkdir -p $(@D)
-	$(CC) $(ALL_CFLAGS) -Itests -MMD -MP $< $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
+	@echo '  CC $<'
+	@$(CC) $(ALL_CFLAGS) -Itests -MMD -MP $< $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
 
 .PHONY: tests
 tests: $(BUILD)/uncross $(TEST_PROGRAMS)

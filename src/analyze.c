@@ -1,6 +1,7 @@
 /* `uncross analyze`: the observables of a scene, from the frames of a trajectory. */
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "io/folder.h"
 #include "io/output.h"
@@ -77,7 +78,7 @@ enum exit_code run_analyze(const char *path, const char *folder)
   char *text = frames ? trajectory_scene_text(frames) : NULL;
   if (frames && !text)
     message_set(&message, "%s: holds no scene; only trajectories that uncross wrote can be analyzed", path);
-  if (text && scene_parse(text, path, &scene, &message)) {
+  if (text && scene_read_text(path, text, strlen(text), &scene, &message)) {
     code = analyze(&scene, frames, folder, &message);
     scene_free(&scene);
   }
