@@ -1,0 +1,75 @@
+/*
+ * Small helpers over the HDF5 C API: little-endian types in the file, no time stamps (equal content makes equal bytes),
+ * the library's own error printing silenced and turned into one sentence.
+ *
+ * Metadata written here carries HDF5's checksums (file format of HDF5 1.8); h5_array_* add an XXH64 of the data, kept
+ * as attribute `xxh64` of the dataset, so that a flipped bit anywhere is found when it is read.
+ *
+ * Handles are below 0 where a call failed; h5_close takes such handles too.
+ */
+#ifndef UNCROSS_IO_HDF5_H
+#define UNCROSS_IO_HDF5_H
+
+#include <hdf5.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "io/message.h"
+
+/* The innermost entry of HDF5's error stack as a sentence; "unknown HDF5 error" if the stack is empty. */
+void h5_reason(char *text, size_t size);
+
+/* Says `path: doing: reason`, the reason from the error stack. Returns 0. */
+int h5_fail(struct message *message, const char *path, const char *doing);
+
+/* Opens a file, after finding out in plain words whether it is there, free to use, and HDF5. */
+enum h5_trouble {
+  H5_FINE,
+  H5_UNREADABLE, /* not there, no permission, or in use by another process */
+  H5_DAMAGED     /* not HDF5, truncated, or its checksums are wrong */
+};
+hid_t h5_open(const char *path, bool writable, enum h5_trouble *trouble, struct message *message);
+
+/* Creates a file on disk, in place of one that may be there. */
+hid_t h5_create(const char *path);
+
+/* Creates a file in memory, with room for about so many bytes; h5_image gives its bytes, to be freed. */
+hid_t h5_create_in_memory(size_t bytes);
+void *h5_image(hid_t file, size_t *bytes);
+
+/* Creates the group `name` (no path). */
+hid_t h5_group(hid_t parent, const char *name);
+
+/* Opens the group `name` (no path): below 0 if the parent is not open or has none. */
+hid_t h5_open_group(hid_t parent, const char *name);
+
+/* Creates a dataset of this rank; grows: the first dimension is unlimited, in chunks of `chunk` rows (dims[0] is 0
+ * then). */
+hid_t h5_dataset(hid_t parent, const char *name, hid_t type, int rank, const hsize_t *dims, bool grows, hsize_t chunk);
+
+/* Closes a handle of any sort; true for one that never was. */
+bool h5_close(hid_t handle);
+
+/* Attributes: a scalar (count 0) or a row of `count`; reading checks the number. `type` is the type in memory, the file
+ * gets its little-endian form. */
+bool h5_put(hid_t object, const char *name, hid_t type, size_t count, const void *data);
+bool h5_get(hid_t object, const char *name, hid_t type, size_t count, void *data);
+bool h5_put_text(hid_t object, const char *name, const char *text);
+bool h5_get_text(hid_t object, const char *name, char *text, size_t size); /* false if it does not fit */
+
+/* Whole datasets, with the hash of their data. h5_array_read checks class of type, shape and, where there is one, the
+ * hash. Rank at most 4. */
+bool h5_array_write(hid_t parent, const char *name, hid_t type, int rank, const hsize_t *dims, const void *data);
+bool h5_array_read(hid_t parent, const char *name, hid_t type, int rank, const hsize_t *dims, void *data);
+
+/* A text of any length as a scalar dataset; reading returns memory to be freed, or NULL. */
+bool h5_text_write(hid_t parent, const char *name, const char *text);
+char *h5_text_read(hid_t parent, const char *name);
+
+/* Shape of a dataset: returns its rank, or -1; at most `most` dimensions are stored, a higher rank is -1. */
+int h5_shape(hid_t dataset, int most, hsize_t *dims);
+
+/* True if the link `name` (no path) is there and what it points to too. */
+bool h5_has(hid_t parent, const char *name);
+
+#endif

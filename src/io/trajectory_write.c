@@ -1,0 +1,362 @@
+/* Trajectories are made, continued and appended to. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "io/structure.h"
+#include "io/trajectory.h"
+#include "version.h"
+
+#define FORMAT_VERSION 1
+#define PATH_SIZE 4096
+#define CHUNK_BYTES 65536 /* of small frames so many as fill this share a chunk */
+
+/* --- creating ----------------------------------------------------------------------------------------------------- */
+
+static bool write_h5md(hid_t file, const char *author)
+{
+  const int32_t version[2] = {1, 1};
+  hid_t root = h5_group(file, "h5md"), by = h5_group(root, "author"), creator = h5_group(root, "creator");
+  bool ok = h5_put(root, "version", H5T_NATIVE_INT32, 2, version) &&
+            h5_put_text(by, "name", author ? author : "unknown") && h5_put_text(creator, "name", "uncross") &&
+            h5_put_text(creator, "version", UNCROSS_VERSION);
+  h5_close(by);
+  h5_close(creator);
+  h5_close(root);
+  return ok;
+}
+
+/* What H5MD leaves to each program: parameters/uncross. */
+static bool write_parameters(hid_t file, const struct model *model, const struct trajectory_options *options,
+                             const char *scene_text)
+{
+  const int32_t version = FORMAT_VERSION;
+  hid_t all = h5_group(file, "parameters"), own = h5_group(all, "uncross");
+  bool ok = h5_put(own, "format_version", H5T_NATIVE_INT32, 0, &version) &&
+            h5_put(own, "seed", H5T_NATIVE_UINT64, 0, &options->seed) &&
+            h5_put(own, "time_step", H5T_NATIVE_DOUBLE, 0, &model->time_step) &&
+            h5_put(own, "vertices", H5T_NATIVE_UINT32, 0, &model->vertices) &&
+            h5_text_write(own, "scene", scene_text ? scene_text : "");
+  h5_close(own);
+  h5_close(all);
+  return ok;
+}
+
+static bool write_connectivity(hid_t file, const struct model *model)
+{
+  hobj_ref_t particles;
+  hid_t group = h5_group(file, "connectivity");
+  bool ok =
+      structure_write_bonds(group, model) && H5Rcreate(&particles, file, "/particles/trajectory", H5R_OBJECT, -1) >= 0;
+  hid_t bonds = ok ? H5Dopen2(group, "bonds", H5P_DEFAULT) : -1;
+  ok = ok && h5_put(bonds, "particles_group", H5T_STD_REF_OBJ, 0, &particles);
+  h5_close(bonds);
+  h5_close(group);
+  return ok;
+}
+
+/* A time-dependent element: a group with `value`, and links to the one `step` and `time` of the whole file. */
+static hid_t add_element(struct trajectory *t, hid_t parent, const char *name, int rank, const hsize_t *dims)
+{
+  hsize_t bytes = sizeof(double);
+  for (int k = 1; k < rank; k++)
+    bytes *= dims[k];
+  hid_t element = h5_group(parent, name);
+  hid_t value =
+      h5_dataset(element, "value", H5T_NATIVE_DOUBLE, rank, dims, true, bytes < CHUNK_BYTES ? CHUNK_BYTES / bytes : 1);
+  if (t->step < 0) {
+    const hsize_t none[1] = {0};
+    t->step = h5_dataset(element, "step", H5T_NATIVE_INT64, 1, none, true, 1024);
+    t->time = h5_dataset(element, "time", H5T_NATIVE_DOUBLE, 1, none, true, 1024);
+  } else {
+    H5Olink(t->step, element, "step", H5P_DEFAULT, H5P_DEFAULT);
+    H5Olink(t->time, element, "time", H5P_DEFAULT, H5P_DEFAULT);
+  }
+  h5_close(element);
+  return value;
+}
+
+static bool add_box(struct trajectory *t)
+{
+  const int32_t dimension = 3;
+  const char boundary[3][9] = {"periodic", "periodic", "periodic"};
+  const hsize_t dims[3] = {0, 3, 3};
+  hid_t type = H5Tcopy(H5T_C_S1);
+  H5Tset_size(type, sizeof boundary[0]);
+  hid_t box = h5_group(t->group, "box");
+  bool ok = h5_put(box, "dimension", H5T_NATIVE_INT32, 0, &dimension) && h5_put(box, "boundary", type, 3, boundary);
+  t->edges = add_element(t, box, "edges", 3, dims);
+  h5_close(type);
+  h5_close(box);
+  return ok && t->edges >= 0;
+}
+
+static bool make_room(struct trajectory *t, const struct model *model)
+{
+  t->row = malloc(((size_t)t->particles + 1) * 3 * sizeof *t->row);
+  t->slot = t->solvent ? malloc(((size_t)model->solvent.particles + 1) * sizeof *t->slot) : NULL;
+  return t->row && (t->slot || !t->solvent);
+}
+
+static bool create_contents(struct trajectory *t, const struct model *model, const struct trajectory_options *options,
+                            const char *scene_text)
+{
+  const hsize_t dims[3] = {0, t->particles, 3};
+  hid_t particles = h5_group(t->file, "particles");
+  t->group = h5_group(particles, "trajectory");
+  h5_close(particles);
+  t->position = t->group < 0 ? -1 : add_element(t, t->group, "position", 3, dims);
+  if (options->velocities && t->position >= 0)
+    t->velocity = add_element(t, t->group, "velocity", 3, dims);
+  return t->position >= 0 && (t->velocity >= 0 || !options->velocities) && add_box(t) &&
+         structure_write_particles(t->group, model, t->solvent) && write_h5md(t->file, options->author) &&
+         write_parameters(t->file, model, options, scene_text) && write_connectivity(t->file, model) &&
+         H5Fflush(t->file, H5F_SCOPE_GLOBAL) >= 0;
+}
+
+static uint32_t rows_wanted(const struct model *model, const struct trajectory_options *options)
+{
+  return model->vertices + (options->solvent ? model->solvent.particles : 0);
+}
+
+static struct trajectory *create(const char *path, const struct model *model, const struct trajectory_options *options,
+                                 const char *scene_text, struct message *message)
+{
+  struct trajectory *t = trajectory_allocate(path);
+  if (!t) {
+    message_set(message, "%s: out of memory", path);
+    return NULL;
+  }
+  t->solvent = options->solvent && model_has_solvent(model);
+  t->particles = rows_wanted(model, options);
+  t->file = h5_create(path);
+  if (t->file < 0 || !make_room(t, model) || !create_contents(t, model, options, scene_text)) {
+    h5_fail(message, path, "trajectory cannot be created");
+    return trajectory_give_up(t);
+  }
+  return t;
+}
+
+/* --- resuming ----------------------------------------------------------------------------------------------------- */
+
+static bool set_frames(struct trajectory *t, uint64_t frames)
+{
+  const hid_t datasets[] = {t->position, t->velocity, t->edges, t->time, t->step};
+  bool ok = true;
+  for (size_t k = 0; k < sizeof datasets / sizeof *datasets; k++) {
+    hsize_t dims[3];
+    if (datasets[k] < 0)
+      continue;
+    ok = ok && h5_shape(datasets[k], 3, dims) >= 1;
+    dims[0] = frames;
+    ok = ok && H5Dset_extent(datasets[k], dims) >= 0;
+  }
+  t->frames = frames;
+  return ok;
+}
+
+/* Drops frames after a step. False if the steps cannot be read or do not increase: the file is damaged. */
+static bool drop_after(struct trajectory *t, uint64_t keep_to_step)
+{
+  hsize_t stored;
+  if (t->step < 0 || t->time < 0 || t->edges < 0 || h5_shape(t->step, 1, &stored) != 1)
+    return false;
+  int64_t *steps = malloc(((size_t)stored + 1) * sizeof *steps);
+  bool ok = steps && H5Dread(t->step, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, steps) >= 0;
+  uint64_t keep = 0;
+  for (; ok && keep < t->frames && steps[keep] >= 0 && (uint64_t)steps[keep] <= keep_to_step; keep++) {
+    ok = keep == 0 || steps[keep] > steps[keep - 1];
+    t->last_step = (uint64_t)steps[keep];
+  }
+  free(steps);
+  return ok && set_frames(t, keep) && H5Fflush(t->file, H5F_SCOPE_GLOBAL) >= 0;
+}
+
+/* The file must be of the same particles, or the frames to come would not fit. */
+static bool same_contents(const struct trajectory *t, const struct model *model,
+                          const struct trajectory_options *options, struct message *message)
+{
+  if (t->particles != rows_wanted(model, options) || (t->velocity >= 0) != options->velocities)
+    return message_set(
+        message,
+        "%s: its frames hold %u particles %s velocities, the scene asks for %u %s; move the file away, or "
+        "resume with the interrupted run's settings",
+        t->path, t->particles, t->velocity >= 0 ? "with" : "without", rows_wanted(model, options),
+        options->velocities ? "with" : "without");
+  hid_t connectivity = h5_open_group(t->file, "connectivity");
+  bool same = connectivity >= 0 && structure_same_bonds(connectivity, model);
+  h5_close(connectivity);
+  return same || message_set(message, "%s: its bonds are not the scene's; move the file away", t->path);
+}
+
+/* Renames a damaged file to the first free NAME.damaged.N.h5. */
+static bool set_aside(const char *path, const char *why, struct message *message)
+{
+  char aside[PATH_SIZE];
+  struct stat status;
+  size_t stem = strlen(path);
+  if (stem > 3 && strcmp(path + stem - 3, ".h5") == 0)
+    stem -= 3;
+  for (int n = 1; n < 10000; n++) {
+    if (snprintf(aside, sizeof aside, "%.*s.damaged.%d.h5", (int)stem, path, n) >= (int)sizeof aside)
+      break;
+    if (stat(aside, &status) == 0)
+      continue;
+    if (rename(path, aside) != 0)
+      break;
+    message_set(message, "%s cannot be continued (%.300s); it was renamed to %.300s and a new trajectory begins here",
+                path, why, aside);
+    return true;
+  }
+  return message_set(message, "%s: damaged, and cannot be renamed: move it away", path);
+}
+
+static struct trajectory *resume_existing(const char *path, const struct model *model,
+                                          const struct trajectory_options *options, uint64_t keep_to_step,
+                                          bool *damaged, struct message *message)
+{
+  enum h5_trouble trouble;
+  struct trajectory *t = trajectory_open_existing(path, true, &trouble, message);
+  *damaged = trouble == H5_DAMAGED;
+  if (!t)
+    return NULL;
+  if (!same_contents(t, model, options, message))
+    return trajectory_give_up(t);
+  t->solvent = options->solvent && model_has_solvent(model);
+  if (!make_room(t, model)) {
+    message_set(message, "%s: out of memory", path);
+    return trajectory_give_up(t);
+  }
+  if (!drop_after(t, keep_to_step)) {
+    *damaged = true;
+    h5_fail(message, path, "its steps cannot be read");
+    return trajectory_give_up(t);
+  }
+  return t;
+}
+
+struct trajectory *trajectory_open(const char *path, const struct model *model,
+                                   const struct trajectory_options *options, bool resume, uint64_t keep_to_step,
+                                   const char *scene_text, struct message *message)
+{
+  struct stat status;
+  message->text[0] = '\0';
+  if (rows_wanted(model, options) == 0) {
+    message_set(message, "%s: a trajectory of no particles: there are no fibers, and the solvent is not asked for",
+                path);
+    return NULL;
+  }
+  if (resume && stat(path, &status) == 0) {
+    struct message why = {""};
+    bool damaged;
+    struct trajectory *t = resume_existing(path, model, options, keep_to_step, &damaged, &why);
+    if (t)
+      return t;
+    if (!damaged)
+      *message = why;
+    if (!damaged || !set_aside(path, why.text, message))
+      return NULL;
+  }
+  return create(path, model, options, scene_text, message);
+}
+
+/* --- appending ---------------------------------------------------------------------------------------------------- */
+
+static bool append_block(hid_t dataset, uint64_t frame, int rank, const hsize_t *frame_dims, hid_t type,
+                         const void *data)
+{
+  hsize_t dims[3] = {frame + 1}, start[3] = {frame}, count[3] = {1};
+  for (int k = 1; k < rank; k++)
+    dims[k] = count[k] = frame_dims[k - 1];
+  if (H5Dset_extent(dataset, dims) < 0)
+    return false;
+  hid_t file_space = H5Dget_space(dataset), memory = H5Screate_simple(rank, count, NULL);
+  bool ok = H5Sselect_hyperslab(file_space, H5S_SELECT_SET, start, NULL, count, NULL) >= 0 &&
+            H5Dwrite(dataset, type, memory, file_space, H5P_DEFAULT, data) >= 0;
+  h5_close(memory);
+  h5_close(file_space);
+  return ok;
+}
+
+static bool fill_positions(struct trajectory *t, const struct model *model, const struct state *state,
+                           struct message *message)
+{
+  double *row = t->row;
+  for (uint32_t v = 0; v < state->vertices; v++, row += 3) {
+    struct vec3 r = point_in_a0(state->position[v]);
+    if (!(fabs(r.x) < TRAJECTORY_LIMIT && fabs(r.y) < TRAJECTORY_LIMIT && fabs(r.z) < TRAJECTORY_LIMIT))
+      return message_set(
+          message,
+          "%s: step %llu: vertex %u is at (%.6g, %.6g, %.6g); frames hold unwrapped positions below %g a0 "
+          "only",
+          t->path, (unsigned long long)state->step, v, r.x, r.y, r.z, TRAJECTORY_LIMIT);
+    row[0] = r.x, row[1] = r.y, row[2] = r.z;
+  }
+  for (uint32_t id = 0; t->solvent && id < state->solvent.n; id++, row += 3) {
+    struct vec3 r = point_in_a0(state_solvent_position(state, model, t->slot[id]));
+    row[0] = r.x, row[1] = r.y, row[2] = r.z;
+  }
+  return true;
+}
+
+/* Solvent velocities at the time of the frame, as its positions are: the body force's share of the lag is added. */
+static void fill_velocities(struct trajectory *t, const struct model *model, const struct state *state)
+{
+  double *row = t->row;
+  const struct solvent *p = &state->solvent;
+  const struct vec3 gain = vec3_scale(0.5 * state->solvent_lag * model->time_step, model->solvent.acceleration);
+  memcpy(row, state->velocity, (size_t)state->vertices * sizeof *state->velocity);
+  row += 3 * (size_t)state->vertices;
+  for (uint32_t id = 0; t->solvent && id < p->n; id++, row += 3) {
+    uint32_t i = t->slot[id];
+    row[0] = p->vx[i] + gain.x, row[1] = p->vy[i] + gain.y, row[2] = p->vz[i] + gain.z;
+  }
+}
+
+/* The step comes last: a frame without it does not count. */
+static bool write_frame(struct trajectory *t, const struct model *model, const struct state *state,
+                        struct message *message)
+{
+  const hsize_t rows[2] = {t->particles, 3}, matrix[2] = {3, 3};
+  const int *cells = model->box.cells;
+  const double edges[9] = {cells[0], 0, 0, 0, cells[1], 0, 0, 0, cells[2]};
+  const double time = (double)state->step * model->time_step;
+  const int64_t step = (int64_t)state->step;
+  message->text[0] = '\0';
+  if (!fill_positions(t, model, state, message))
+    return false;
+  bool ok = append_block(t->position, t->frames, 3, rows, H5T_NATIVE_DOUBLE, t->row);
+  if (ok && t->velocity >= 0) {
+    fill_velocities(t, model, state);
+    ok = append_block(t->velocity, t->frames, 3, rows, H5T_NATIVE_DOUBLE, t->row);
+  }
+  ok = ok && append_block(t->edges, t->frames, 3, matrix, H5T_NATIVE_DOUBLE, edges) &&
+       append_block(t->time, t->frames, 1, NULL, H5T_NATIVE_DOUBLE, &time) &&
+       append_block(t->step, t->frames, 1, NULL, H5T_NATIVE_INT64, &step) && H5Fflush(t->file, H5F_SCOPE_GLOBAL) >= 0;
+  if (!ok)
+    h5_fail(message, t->path, "a frame could not be written (disk full?)");
+  return ok;
+}
+
+bool trajectory_append(struct trajectory *t, const struct model *model, const struct state *state,
+                       struct message *message)
+{
+  if (t->broken)
+    return message_set(message, "%s: an earlier frame could not be written", t->path);
+  if (t->frames > 0 && state->step == t->last_step)
+    return true;
+  if (t->frames > 0 && state->step < t->last_step)
+    return message_set(message, "%s: a frame of step %llu cannot follow that of step %llu", t->path,
+                       (unsigned long long)state->step, (unsigned long long)t->last_step);
+  if (t->slot)
+    state_solvent_slots(state, t->slot);
+  if (!write_frame(t, model, state, message)) {
+    t->broken = true;
+    return false;
+  }
+  t->frames++;
+  t->last_step = state->step;
+  return true;
+}
