@@ -1,15 +1,17 @@
 #!/usr/bin/env bash
-# The program from outside: runs, resumes, interruptions, bad input. Each check prints "ok - ..." or "not ok - ...".
+# The program from outside: runs, resumes, interruptions, bad input. Prints TAP.
 # Needs: UNCROSS, the program (default build/uncross).
 set -u
 uncross=$(realpath "${UNCROSS:-build/uncross}")
 top=$(cd "$(dirname "$0")/../.." && pwd)
 dir=$(mktemp -d)
 trap 'chmod -R u+w "$dir"; rm -rf "$dir"' EXIT
+count=0
 failures=0
 
-ok() {
-  if [ "$1" = 0 ]; then echo "ok - $2"; else echo "not ok - $2"; failures=$((failures + 1)); fi
+ok() { # ok STATUS NAME
+  count=$((count + 1))
+  if [ "$1" = 0 ]; then echo "ok $count - $2"; else echo "not ok $count - $2"; failures=$((failures + 1)); fi
 }
 same() { # same WANTED FOUND NAME
   [ "$1" = "$2" ]; ok $? "$3 ($2)"
@@ -183,4 +185,5 @@ same 2 $? "no command: exit code 2"
 "$uncross" info "$dir/file" >/dev/null 2>&1
 same 2 $? "info of an empty file: exit code 2"
 
+echo "1..$count"
 exit $((failures > 0))

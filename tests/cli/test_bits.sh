@@ -1,0 +1,54 @@
+#!/usr/bin/env bash
+# The same bits from gcc and clang, for any processor or this one: state hashes of short runs of several scenes.
+# Needs: UNCROSS, the program (default build/uncross); builds two more into its build folder. Prints TAP.
+set -u
+uncross=$(realpath "${UNCROSS:-build/uncross}")
+top=$(cd "$(dirname "$0")/../.." && pwd)
+build=$(dirname "$uncross")
+dir=$(mktemp -d)
+trap 'rm -rf "$dir"' EXIT
+count=0
+failures=0
+
+ok() { # ok STATUS NAME
+  count=$((count + 1))
+  if [ "$1" = 0 ]; then echo "ok $count - $2"; else echo "not ok $count - $2"; failures=$((failures + 1)); fi
+}
+
+scene() { # scene ORDER THERMOSTAT HYDRODYNAMICS ANGLE FORBIDDEN
+  cat <<YAML
+box: [8, 9, 7]
+time_step: 0.01
+steps: 200
+order: $1
+solvent: {per_cell: 5, collision_interval: 0.02, thermostat: $2, hydrodynamics: $3, rotation_angle: $4}
+fibers:
+  - {name: fiber, count: 25, vertices: 16, mass: 5, bond_length: 0.5, spring: 100, persistence_length: 8}
+  - {name: chain, count: 9, vertices: 10, mass: 3, bond_length: 0, spring: 12}
+crossing: {forbidden: $5}
+YAML
+}
+scene kick-split none true 90 true >"$dir/default.yaml"
+scene drift-split rescale true 130 true >"$dir/rescale-130.yaml"
+scene paper maxwell-boltzmann true 90 true >"$dir/paper-boltzmann.yaml"
+scene kick-split none false 90 false >"$dir/phantom-no-hydrodynamics.yaml"
+
+hashes() { # of all scenes, by this program
+  for scene in "$dir"/*.yaml; do
+    "$1" run "$scene" --out "$dir/run" --quiet || echo "failed"
+    sed -n 's/.*"state_hash": "\([0-9a-f]*\)".*/\1/p' "$dir/run/run.json"
+    rm -rf "$dir/run"
+  done
+}
+wanted=$(hashes "$uncross")
+for variant in "gcc x86-64" "clang native"; do
+  read -r compiler march <<<"$variant"
+  folder=$build/bits-$compiler-$march
+  MAKEFLAGS='' make -s -j2 -C "$top" CC="$compiler" MARCH="$march" BUILD="$folder" "$folder/uncross" >"$dir/log" 2>&1 || cat "$dir/log"
+  [ "$(hashes "$folder/uncross")" = "$wanted" ]
+  ok $? "$compiler -march=$march: the same bits in four scenes"
+done
+[ "$(echo "$wanted" | sort -u | wc -l)" = 4 ]
+ok $? "the four scenes differ"
+echo "1..$count"
+exit $((failures > 0))
