@@ -3,7 +3,7 @@
  *
  *   counter = { entity, purpose + 256 draw, step (low 32 bits), step (high 32 bits) },   key = seed (low, high)
  *
- * so whoever knows the address has the number, in any order, on any machine. docs/porting.md is the address book.
+ * so whoever knows the address has the number, in any order, on any machine. docs/conventions.md is the address book.
  */
 #ifndef UNCROSS_RANDOM_H
 #define UNCROSS_RANDOM_H

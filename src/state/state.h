@@ -47,7 +47,7 @@ void state_free(struct state *state);
 /* slot[id] = index of solvent particle id in memory. slot: [solvent.n]. */
 void state_solvent_slots(const struct state *state, uint32_t *slot);
 
-/* 64-bit hash (XXH64, seed 0) of everything above but counts, in id order: docs/porting.md lists the bytes. */
+/* 64-bit hash (XXH64, seed 0) of everything above but counts, in id order: docs/conventions.md lists the bytes. */
 uint64_t state_hash(const struct state *state);
 
 /* Where solvent particle number i (in memory order) is now, its lag made up for: lattice units, within the box. */

@@ -174,5 +174,30 @@ class Equations(Tree):
         self.complain("docs/equations.md:1: out of date")
 
 
+class Links(Tree):
+    def call_links(self):
+        done = subprocess.run([TOOLS / "check-links", "docs/page.md", "src/step.c"], cwd=self.root, capture_output=True,
+                              text=True, check=False)
+        return done.returncode, done.stdout
+
+    def test_accepts_what_is_there(self):
+        self.put("docs/page.md", "[table](equations.tsv) [part](page.md#part) [far](https://example.org/x)\n")
+        self.add("src/step.c", "/* see docs/equations.tsv */\n")
+        self.assertEqual(self.call_links()[0], 0)
+
+    def test_dangling_link(self):
+        self.put("docs/page.md", "\n[table](table.md#part)\n")
+        status, output = self.call_links()
+        self.assertEqual(status, 1)
+        self.assertIn("docs/page.md:2: there is no docs/table.md", output)
+
+    def test_dangling_mention(self):
+        self.put("docs/page.md", "")
+        self.add("src/step.c", "/* see docs/none.md */\n")
+        status, output = self.call_links()
+        self.assertEqual(status, 1)
+        self.assertIn("src/step.c:4: there is no docs/none.md", output)
+
+
 if __name__ == "__main__":
     unittest.main()
