@@ -1,7 +1,7 @@
 /*
- * Observables: const state in, numbers out. What nobody asked for costs nothing; what is asked for is sampled at its own
- * cadence. An observer's memory is two flat blocks, so that a checkpoint can keep it and an interrupted run ends with the
- * tables of an uninterrupted one.
+ * Observables: const state in, numbers out. What nobody asked for costs nothing; what is asked for is sampled at its
+ * own cadence. An observer's memory is two flat blocks, so that a checkpoint can keep it and an interrupted run ends
+ * with the tables of an uninterrupted one.
  */
 #ifndef UNCROSS_OBSERVE_H
 #define UNCROSS_OBSERVE_H
@@ -25,7 +25,7 @@ enum observable {
 /* What a scene asks for. */
 struct observe_plan {
   uint64_t every[OBSERVABLES]; /* steps between samples; 0: not asked for */
-  uint64_t longest_lag;        /* of the dynamics, in steps; 0: as long as the run allows */
+  uint64_t longest_lag;        /* of the dynamics, in steps; 0: 2^20 samples. Decides the size of its memory. */
 };
 
 /* Names as scenes and files use them: "conserved", "temperature", ... */
@@ -36,7 +36,7 @@ struct observe_table {
   const char *name;          /* file name without ".csv" */
   const char *const *column; /* [columns] e.g. "time", "g", "g_error" */
   size_t columns, rows;
-  double *value;             /* [rows * columns] */
+  double *value; /* [rows * columns] */
 };
 
 struct observers; /* all observers of a run */
@@ -54,8 +54,9 @@ void observers_free(struct observers *observers);
 /* True if some observer wants to see the state of this step. */
 bool observers_due(const struct observers *observers, uint64_t step);
 
-/* Shows the state to every observer that is due; rows of time series go to the sink. Call once per step, at step 0 too.
- * False if the sink fails or memory is short. */
+/* Shows the state to every observer that is due; rows of time series go to the sink, if it is not NULL. Call once per
+ * step, at step 0 too; the same step shown again counts once. Numbers depend on the state alone, so states read from a
+ * trajectory, shown at the same steps, make the same tables. False if the sink fails. */
 bool observers_sample(struct observers *observers, const struct model *model, const struct state *state,
                       const struct observe_sink *sink);
 
@@ -76,10 +77,11 @@ struct observe_block {
 };
 size_t observers_blocks(struct observers *observers, const struct observe_block **blocks);
 
-/* Energy, momentum and temperature of a state, in id order so that the numbers do not depend on memory order. */
+/* Energy and momentum of a state, at the time of the step (conserved.h); independent of memory order. NaN if memory is
+ * short. */
 struct conserved {
   double solvent_kinetic, vertex_kinetic, bond, bend, total; /* kT */
-  struct vec3 momentum;                                       /* m a0/t0 */
+  struct vec3 momentum;                                      /* m a0/t0 */
 };
 struct conserved observe_conserved(const struct model *model, const struct state *state);
 

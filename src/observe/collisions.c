@@ -1,0 +1,47 @@
+/* Crossings counted by the sweep: totals, and the rate since the row before. */
+#include "observe/observer.h"
+
+#include <string.h>
+
+enum { LAST_STEP = 1, LAST_EXECUTED, INTEGERS };
+
+static void size_collisions(const struct observer *observer, const struct model *model, struct observer_size *size)
+{
+  (void)observer;
+  (void)model;
+  size->integers = INTEGERS;
+}
+
+static double ratio(double a, double b)
+{
+  return b > 0.0 ? a / b : 0.0;
+}
+
+static void sample_collisions(struct observer *observer, struct view *view, double *row)
+{
+  const struct collision_counts *c = &view->state->counts;
+  const double executed = (double)c->executed;
+  const double time = (double)((int64_t)view->state->step - observer->integer[LAST_STEP]) * view->model->time_step;
+  const double new = (double)((int64_t)c->executed - observer->integer[LAST_EXECUTED]);
+  const double values[] = {view_time(view),
+                           (double)c->moves,
+                           (double)c->possible,
+                           executed,
+                           (double)c->negative,
+                           ratio(executed, (double)c->possible),
+                           ratio(new, time * view->model->vertices)};
+  memcpy(row, values, sizeof values);
+  observer->integer[LAST_STEP] = (int64_t)view->state->step;
+  observer->integer[LAST_EXECUTED] = (int64_t)c->executed;
+}
+
+static const char *const columns[] = {
+    "time", "moves", "possible", "executed", "negative", "executed_per_possible", "rate_per_vertex"};
+
+const struct observer_type collisions_observer = {
+    .name = "collisions",
+    .column = columns,
+    .columns = sizeof columns / sizeof *columns,
+    .size = size_collisions,
+    .sample = sample_collisions,
+};

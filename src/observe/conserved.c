@@ -1,0 +1,186 @@
+#include "observe/conserved.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "fiber/force.h"
+#include "observe/observer.h"
+
+/* A sum that does not depend on the order of its terms: each is split into a multiple of 2^-16 and a multiple of 2^-50
+ * (rounded), and integers are summed. Terms below 2^34; 2^29 terms. */
+struct exact_sum {
+  int64_t coarse, fine;
+};
+
+#define COARSE_SCALE 0x1p16
+#define COARSE_UNIT 0x1p-16
+#define FINE_SCALE 0x1p50
+#define FINE_UNIT 0x1p-50
+#define LARGEST_VELOCITY 0x1p17
+
+static inline void exact_add(struct exact_sum *sum, double x)
+{
+  const double coarse =
+      (x * COARSE_SCALE + 0x1.8p52) - 0x1.8p52; /* the integer that lattice_round gives, as a double */
+  sum->coarse += lattice_round(x * COARSE_SCALE);
+  sum->fine += lattice_round((x - coarse * COARSE_UNIT) * FINE_SCALE);
+}
+
+static double exact_value(const struct exact_sum *sum)
+{
+  return (double)sum->coarse * COARSE_UNIT + (double)sum->fine * FINE_UNIT;
+}
+
+/* Sums of v and v^2 of one component, v = velocity + gain. */
+static void solvent_component(const struct state *state, const double *velocity, double gain, double *sum,
+                              double *squares)
+{
+  struct exact_sum s = {0, 0}, s2 = {0, 0};
+  uint32_t bad = 0;
+  for (uint32_t i = 0; i < state->solvent.n; i++) {
+    const double v = velocity[i] + gain;
+    const uint32_t wild = !(fabs(v) < LARGEST_VELOCITY);
+    bad |= wild;
+    exact_add(&s, wild ? 0.0 : v);
+    exact_add(&s2, wild ? 0.0 : v * v);
+  }
+  *sum = bad ? NAN : exact_value(&s);
+  *squares = bad ? NAN : exact_value(&s2);
+}
+
+static void measure_solvent(const struct model *model, const struct state *state, struct motion *m)
+{
+  const double lag = 0.5 * state->solvent_lag * model->time_step;
+  const struct vec3 gain = vec3_scale(lag, model->solvent.acceleration);
+  solvent_component(state, state->solvent.vx, gain.x, &m->solvent_sum.x, &m->solvent_squares.x);
+  solvent_component(state, state->solvent.vy, gain.y, &m->solvent_sum.y, &m->solvent_squares.y);
+  solvent_component(state, state->solvent.vz, gain.z, &m->solvent_sum.z, &m->solvent_squares.z);
+}
+
+static void vertex_add(struct vertex_motion *sum, double mass, struct vec3 v)
+{
+  sum->kinetic += 0.5 * mass * vec3_dot(v, v);
+  sum->momentum = vec3_add_scaled(sum->momentum, mass, v);
+}
+
+static void measure_vertices(const struct model *model, const struct state *state, struct work *work, struct motion *m)
+{
+  fiber_forces(state, model, work, state->step); /* a bond too long for the box stops the run, not its observers */
+  const double half = 0.5 * model->time_step;
+  for (uint32_t i = 0; i < state->vertices; i++) {
+    const struct vec3 ahead = state->velocity[i];
+    vertex_add(&m->vertex_half, model->mass[i], ahead);
+    vertex_add(&m->vertex, model->mass[i],
+               vec3_add_scaled(ahead, -half * model->inverse_mass[i], work->fiber.force[i]));
+  }
+  const struct fiber_energy energy = fiber_energies(state, model);
+  m->bond = energy.bond;
+  m->bend = energy.bend;
+}
+
+bool motion_work(struct work *work, const struct model *model)
+{
+  struct model fibers_only = *model; /* forces need no room for collisions */
+  fibers_only.solvent.particles = 0;
+  return work_alloc(work, &fibers_only);
+}
+
+struct motion motion_measure(const struct model *model, const struct state *state, struct work *work)
+{
+  struct motion m = {.bond = 0.0};
+  measure_solvent(model, state, &m);
+  measure_vertices(model, state, work, &m);
+  return m;
+}
+
+static struct conserved conserved_of(const struct motion *m)
+{
+  const double solvent = 0.5 * (m->solvent_squares.x + m->solvent_squares.y + m->solvent_squares.z);
+  const double kinetic = solvent + m->vertex.kinetic;
+  return (struct conserved){solvent, m->vertex.kinetic,           m->bond,
+                            m->bend, kinetic + m->bond + m->bend, vec3_add(m->solvent_sum, m->vertex.momentum)};
+}
+
+struct conserved observe_conserved(const struct model *model, const struct state *state)
+{
+  struct work work;
+  if (!motion_work(&work, model))
+    return (struct conserved){NAN, NAN, NAN, NAN, NAN, {NAN, NAN, NAN}};
+  const struct motion motion = motion_measure(model, state, &work);
+  work_free(&work);
+  return conserved_of(&motion);
+}
+
+/* Sum of (v - u)^2 over n particles, from the sums of v^2 and v. */
+static double squares_about(double squares, double sum, double n, double u)
+{
+  return squares - 2.0 * u * sum + n * u * u;
+}
+
+/* Temperature of vertices whose total mass is m, of n degrees of freedom, about u. */
+static double vertex_temperature(const struct vertex_motion *v, double mass, double freedom, struct vec3 u)
+{
+  return 2.0 * (v->kinetic - vec3_dot(u, v->momentum) + 0.5 * mass * vec3_dot(u, u)) / freedom;
+}
+
+struct temperatures motion_temperatures(const struct model *model, const struct motion *m)
+{
+  const double n = model->solvent.particles, total = model->total_mass, vertices = total - n;
+  const struct vec3 u = vec3_scale(1.0 / total, vec3_add(m->solvent_sum, m->vertex.momentum));
+  const double solvent_freedom = n * (1.0 - 1.0 / total), vertex_freedom = 3.0 * (model->vertices - vertices / total);
+  const struct vec3 squares = {squares_about(m->solvent_squares.x, m->solvent_sum.x, n, u.x),
+                               squares_about(m->solvent_squares.y, m->solvent_sum.y, n, u.y),
+                               squares_about(m->solvent_squares.z, m->solvent_sum.z, n, u.z)};
+  return (struct temperatures){vec3_scale(1.0 / solvent_freedom, squares),
+                               vertex_temperature(&m->vertex, vertices, vertex_freedom, u),
+                               vertex_temperature(&m->vertex_half, vertices, vertex_freedom, u)};
+}
+
+/* --- the observers -------------------------------------------------------------------------------------------------
+ */
+
+const struct motion *view_motion(struct view *view)
+{
+  if (!view->motion_known)
+    view->motion = motion_measure(view->model, view->state, view->work);
+  view->motion_known = true;
+  return &view->motion;
+}
+
+static void sample_conserved(struct observer *observer, struct view *view, double *row)
+{
+  (void)observer;
+  const struct conserved c = conserved_of(view_motion(view));
+  const double values[] = {view_time(view), c.solvent_kinetic, c.vertex_kinetic, c.bond,      c.bend,
+                           c.total,         c.momentum.x,      c.momentum.y,     c.momentum.z};
+  memcpy(row, values, sizeof values);
+}
+
+static const char *const conserved_columns[] = {
+    "time", "solvent_kinetic", "vertex_kinetic", "bond", "bend", "total", "px", "py", "pz"};
+
+const struct observer_type conserved_observer = {
+    .name = "conserved",
+    .column = conserved_columns,
+    .columns = sizeof conserved_columns / sizeof *conserved_columns,
+    .sample = sample_conserved,
+};
+
+static void sample_temperature(struct observer *observer, struct view *view, double *row)
+{
+  (void)observer;
+  const struct temperatures t = motion_temperatures(view->model, view_motion(view));
+  const double mean = (t.solvent.x + t.solvent.y + t.solvent.z) / 3.0;
+  const double values[] = {view_time(view), mean, t.solvent.x, t.solvent.y, t.solvent.z, t.vertex, t.vertex_half};
+  memcpy(row, values, sizeof values);
+}
+
+static const char *const temperature_columns[] = {"time",      "solvent", "solvent_x",       "solvent_y",
+                                                  "solvent_z", "vertex",  "vertex_half_step"};
+
+const struct observer_type temperature_observer = {
+    .name = "temperature",
+    .column = temperature_columns,
+    .columns = sizeof temperature_columns / sizeof *temperature_columns,
+    .sample = sample_temperature,
+};

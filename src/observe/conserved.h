@@ -1,0 +1,46 @@
+/*
+ * Motion of a whole state: momentum, energies, temperatures.
+ *
+ * Velocities of vertices in a state are those of the half step ahead. Energy and momentum are those of the step itself:
+ * v(t) = v(t + dt/2) - F(t) dt / (2 M), with the forces computed anew. So measured, the energy of a leap-frog
+ * fluctuates by O(dt^2) and does not drift; with half-step velocities it would fluctuate by O(dt). Solvent particles
+ * fly freely since they were last streamed; under a constant acceleration a they have gained a x lag, which is added.
+ *
+ * Sums over the solvent are made in fixed point, exactly, so that they do not depend on the order in memory: a
+ * checkpoint keeps particles in id order, a running state sorts them by cell.
+ */
+#ifndef UNCROSS_CONSERVED_H
+#define UNCROSS_CONSERVED_H
+
+#include "observe/observe.h"
+#include "state/work.h"
+
+/* Sums over vertices. */
+struct vertex_motion {
+  double kinetic;       /* kT */
+  struct vec3 momentum; /* m a0/t0 */
+};
+
+struct motion {
+  struct vec3 solvent_sum;                  /* of v, a0/t0 */
+  struct vec3 solvent_squares;              /* of v_x^2, v_y^2, v_z^2, (a0/t0)^2 */
+  struct vertex_motion vertex, vertex_half; /* with velocities of the step, and of the half step ahead */
+  double bond, bend;                        /* kT */
+};
+
+/* Scratch for motion_measure, freed by work_free. False if memory is short. */
+bool motion_work(struct work *work, const struct model *model);
+
+/* Measures a state. Numbers are NaN if a solvent velocity is not a number, or beyond 2^17 a0/t0. */
+struct motion motion_measure(const struct model *model, const struct state *state, struct work *work);
+
+/* Temperatures relative to the velocity of the centre of mass of everything, in kT. Where total momentum is fixed, a
+ * particle of mass m has m <(v - v_cm)^2> = 3 kT (1 - m/M_total), not 3 kT: each sum is divided accordingly, so that
+ * the mean is 1 at any system size. NaN where there is nothing to measure. */
+struct temperatures {
+  struct vec3 solvent;        /* by component */
+  double vertex, vertex_half; /* mass-weighted over all vertices, with velocities of the step, and of the half step */
+};
+struct temperatures motion_temperatures(const struct model *model, const struct motion *motion);
+
+#endif

@@ -1,0 +1,50 @@
+/*
+ * How fibers move: averages against lag time, per kind of fiber, one table "dynamics-<kind>" with a row per lag. Names
+ * and meanings of its columns are in docs/observables.md.
+ *
+ * Lags are 1, 2, 3, 4, 6, 8, 12, 16, 24, ... samples: 2^k and 3 2^(k-1). Each lag has an origin of its own, a copy of
+ * all positions: when the lag has passed, origin and present are compared, and the present becomes the origin.
+ * Intervals of a lag thus follow each other without overlap, and all lags together cost less than 8/3 comparisons per
+ * sample.
+ *
+ * Displacements are differences of lattice points, exact, less what everything moved together: see dynamics_drift.
+ */
+#ifndef UNCROSS_DYNAMICS_H
+#define UNCROSS_DYNAMICS_H
+
+#include "state/model.h"
+
+/* What one fiber did between an origin and now; 0 where the kind has no such thing. */
+struct fiber_motion {
+  double vertices;           /* a0^2: squared displacement of its vertices, averaged */
+  double center;             /* a0^2: of its centre of mass */
+  double middle;             /* a0^2: of its middle vertex */
+  double tube, tube_contour; /* a0^2: squared distance of the middle vertex now from the nearest vertex, and from the
+                                nearest point of the contour, then */
+  double turned; /* a0^2: |R(t) - R(0)|^2 / 2 of the end-to-end vector R; open fibers only, as the following */
+  double square; /* a0^2: (R(0)^2 + R(t)^2) / 2, so that R(0).R(t) = square - turned */
+  double cosine; /* of the angle between R(0) and R(t) */
+};
+
+/* Compares a fiber with itself. origin, now: [vertices]; drift is what the frame moved, in a0; scratch: [vertices]. */
+struct fiber_motion fiber_motion(const struct fiber_kind *kind, const struct point *origin, const struct point *now,
+                                 struct vec3 drift, struct vec3 *scratch);
+
+/* The middle vertex, counted from 0: the paper's m = N_v/2, counted from 1, for even N_v; the middle one for odd N_v.
+ */
+static inline uint32_t dynamics_middle(const struct fiber_kind *kind)
+{
+  return (kind->vertices - 1) / 2;
+}
+
+/* What the centre of mass of everything moved between two times (t0), in a0: the flow of the start, and half the net
+ * body force's acceleration times the difference of squared times. */
+struct vec3 dynamics_drift(const struct model *model, double from, double to);
+
+/* Lag number k = 0, 1, 2, ..., in samples. */
+static inline uint64_t dynamics_lag(uint32_t k)
+{
+  return k % 2 ? (uint64_t)1 << (k + 1) / 2 : k ? (uint64_t)3 << (k / 2 - 1) : 1;
+}
+
+#endif

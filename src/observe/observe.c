@@ -1,0 +1,150 @@
+#include "observe/observe.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "observe/observer.h"
+
+static const struct observer_type *const types[OBSERVABLES] = {
+    [OBSERVE_CONSERVED] = &conserved_observer,   [OBSERVE_TEMPERATURE] = &temperature_observer,
+    [OBSERVE_STATICS] = &statics_observer,       [OBSERVE_DYNAMICS] = &dynamics_observer,
+    [OBSERVE_COLLISIONS] = &collisions_observer,
+};
+
+const char *const observable_names[OBSERVABLES] = {
+    [OBSERVE_CONSERVED] = "conserved", [OBSERVE_TEMPERATURE] = "temperature", [OBSERVE_STATICS] = "statics",
+    [OBSERVE_DYNAMICS] = "dynamics",   [OBSERVE_COLLISIONS] = "collisions",
+};
+
+enum { MAX_BLOCKS = 2 * OBSERVABLES };
+
+struct observers {
+  struct observer observer[OBSERVABLES]; /* every = 0: not asked for */
+  struct work work;
+  struct observe_block block[MAX_BLOCKS];
+  char block_name[MAX_BLOCKS][OBSERVER_NAME_SIZE];
+  size_t blocks;
+};
+
+static void add_block(struct observers *all, const char *name, const char *suffix, bool integer, size_t count,
+                      void *data)
+{
+  if (count == 0)
+    return;
+  char *label = all->block_name[all->blocks];
+  snprintf(label, OBSERVER_NAME_SIZE, "%s-%s", name, suffix);
+  all->block[all->blocks++] = (struct observe_block){label, integer, count, data};
+}
+
+/* calloc that gives something for nothing. */
+static void *zeroed(size_t count, size_t size)
+{
+  return calloc(count ? count : 1, size);
+}
+
+static bool create(struct observers *all, enum observable which, const struct observe_plan *plan,
+                   const struct model *model)
+{
+  struct observer *o = &all->observer[which];
+  *o = (struct observer){.type = types[which], .every = plan->every[which], .longest_lag = plan->longest_lag};
+  if (o->every == 0)
+    return true;
+  o->size = (struct observer_size){.integers = 1};
+  if (o->type->size)
+    o->type->size(o, model, &o->size);
+  o->real = zeroed(o->size.reals, sizeof *o->real);
+  o->integer = zeroed(o->size.integers, sizeof *o->integer);
+  o->scratch = zeroed(o->size.scratch, sizeof *o->scratch);
+  add_block(all, observable_names[which], "reals", false, o->size.reals, o->real);
+  add_block(all, observable_names[which], "integers", true, o->size.integers, o->integer);
+  return o->real && o->integer && o->scratch;
+}
+
+struct observers *observers_create(const struct observe_plan *plan, const struct model *model)
+{
+  struct observers *all = calloc(1, sizeof *all);
+  if (!all)
+    return NULL;
+  bool ok = motion_work(&all->work, model);
+  for (int k = 0; ok && k < OBSERVABLES; k++)
+    ok = create(all, (enum observable)k, plan, model);
+  if (!ok) {
+    observers_free(all);
+    return NULL;
+  }
+  return all;
+}
+
+void observers_free(struct observers *all)
+{
+  if (!all)
+    return;
+  for (int k = 0; k < OBSERVABLES; k++) {
+    free(all->observer[k].real);
+    free(all->observer[k].integer);
+    free(all->observer[k].scratch);
+  }
+  work_free(&all->work);
+  free(all);
+}
+
+static bool due(const struct observer *observer, uint64_t step)
+{
+  return observer->every > 0 && step % observer->every == 0;
+}
+
+bool observers_due(const struct observers *all, uint64_t step)
+{
+  bool any = false;
+  for (int k = 0; k < OBSERVABLES; k++)
+    any |= due(&all->observer[k], step);
+  return any;
+}
+
+static bool sample(struct observer *o, enum observable which, struct view *view, const struct observe_sink *sink)
+{
+  double row[OBSERVER_MAX_COLUMNS];
+  const int64_t mark = (int64_t)view->state->step + 1;
+  if (o->integer[0] == mark)
+    return true;
+  o->integer[0] = mark;
+  o->type->sample(o, view, row);
+  return o->type->columns == 0 || !sink || sink->row(sink->context, which, o->type->columns, row);
+}
+
+bool observers_sample(struct observers *all, const struct model *model, const struct state *state,
+                      const struct observe_sink *sink)
+{
+  struct view view = {.model = model, .state = state, .work = &all->work};
+  bool ok = true;
+  for (int k = 0; ok && k < OBSERVABLES; k++)
+    if (due(&all->observer[k], state->step))
+      ok = sample(&all->observer[k], (enum observable)k, &view, sink);
+  return ok;
+}
+
+size_t observe_series_columns(enum observable which, const char *const **names)
+{
+  *names = types[which]->column;
+  return types[which]->columns;
+}
+
+bool observers_summaries(const struct observers *all, const struct model *model,
+                         bool (*take)(void *context, const struct observe_table *table), void *context)
+{
+  const struct observer_take to = {take, context};
+  bool ok = true;
+  for (int k = 0; ok && k < OBSERVABLES; k++) {
+    const struct observer *o = &all->observer[k];
+    if (o->every > 0 && o->type->summarise)
+      ok = o->type->summarise(o, model, &to);
+  }
+  return ok;
+}
+
+size_t observers_blocks(struct observers *all, const struct observe_block **blocks)
+{
+  *blocks = all->block;
+  return all->blocks;
+}
