@@ -17,7 +17,7 @@ static double ratio(double a, double b)
   return b > 0.0 ? a / b : 0.0;
 }
 
-static void sample_collisions(struct observer *observer, struct view *view, double *row)
+static void collisions_row(struct observer *observer, struct view *view, double *row)
 {
   const struct collision_counts *c = &view->state->counts;
   const double executed = (double)c->executed;
@@ -43,5 +43,5 @@ const struct observer_type collisions_observer = {
     .column = columns,
     .columns = sizeof columns / sizeof *columns,
     .size = size_collisions,
-    .sample = sample_collisions,
+    .row = collisions_row,
 };

@@ -147,7 +147,7 @@ const struct motion *view_motion(struct view *view)
   return &view->motion;
 }
 
-static void sample_conserved(struct observer *observer, struct view *view, double *row)
+static void conserved_row(struct observer *observer, struct view *view, double *row)
 {
   (void)observer;
   const struct conserved c = conserved_of(view_motion(view));
@@ -163,10 +163,10 @@ const struct observer_type conserved_observer = {
     .name = "conserved",
     .column = conserved_columns,
     .columns = sizeof conserved_columns / sizeof *conserved_columns,
-    .sample = sample_conserved,
+    .row = conserved_row,
 };
 
-static void sample_temperature(struct observer *observer, struct view *view, double *row)
+static void temperature_row(struct observer *observer, struct view *view, double *row)
 {
   (void)observer;
   const struct temperatures t = motion_temperatures(view->model, view_motion(view));
@@ -182,5 +182,5 @@ const struct observer_type temperature_observer = {
     .name = "temperature",
     .column = temperature_columns,
     .columns = sizeof temperature_columns / sizeof *temperature_columns,
-    .sample = sample_temperature,
+    .row = temperature_row,
 };

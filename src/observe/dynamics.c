@@ -218,9 +218,8 @@ static void compare(const struct observer *observer, const struct model *model, 
 
 /* A lag whose time has come is compared and begins anew; so does, without comparison, one that missed it: no sample was
  * shown then. */
-static void sample_dynamics(struct observer *observer, struct view *view, double *row)
+static void add_dynamics(struct observer *observer, struct view *view)
 {
-  (void)row;
   const struct model *model = view->model;
   const uint64_t step = view->state->step;
   const uint32_t lags = count_lags(observer);
@@ -284,11 +283,9 @@ static void put_end_to_end(struct cells *c, bool defined)
   *c->next++ = defined ? tally_error(c->shape, c->memory, TURNED_SQUARE, 1.0 / y, -x / (y * y)) : NAN;
 }
 
-static void fill_row(const struct fiber_kind *kind, const struct tally_shape *shape, const double *memory, double time,
-                     double *row)
+static void fill_row(const struct fiber_kind *kind, struct cells c, double time)
 {
   const bool ends = !kind->ring && kind->vertices > 1;
-  struct cells c = {shape, memory, row};
   *c.next++ = time;
   put(&c, true, VERTICES_CENTER, 0, 1.0);
   put(&c, true, VERTICES_CENTER, 1, 1.0);
@@ -298,7 +295,7 @@ static void fill_row(const struct fiber_kind *kind, const struct tally_shape *sh
   put_end_to_end(&c, ends);
   put(&c, ends, MIDDLE_COSINE, 1, 1.0);
   put(&c, true, VERTICES_CENTER, 1, 1.0 / (6.0 * time)); /* D(t) = g_cm(t) / 6t */
-  *c.next = tally_count(shape, memory);
+  *c.next = tally_count(c.shape, c.memory);
 }
 
 /* The table of one kind; its tally follows those of the kinds before it, in each lag. Lags without an interval yet are
@@ -319,9 +316,11 @@ static bool summarise_kind(const struct observer *observer, const struct model *
       memory += tally_size(&before);
     }
     const struct tally_shape shape = tally_of(&model->kind[kind], n);
-    const double time = (double)(lag.samples * observer->every) * model->time_step;
-    if (tally_count(&shape, memory) > 0.0)
-      fill_row(&model->kind[kind], &shape, memory, time, &value[table.rows++ * COLUMNS]);
+    const struct cells cells = {&shape, memory, &value[table.rows * COLUMNS]};
+    if (tally_count(&shape, memory) == 0.0)
+      continue;
+    fill_row(&model->kind[kind], cells, (double)(lag.samples * observer->every) * model->time_step);
+    table.rows++;
   }
   return to->take(to->context, &table);
 }
@@ -338,6 +337,6 @@ static bool summarise_dynamics(const struct observer *observer, const struct mod
 const struct observer_type dynamics_observer = {
     .name = "dynamics",
     .size = size_dynamics,
-    .sample = sample_dynamics,
+    .add = add_dynamics,
     .summarise = summarise_dynamics,
 };

@@ -27,14 +27,14 @@ struct observers {
   size_t blocks;
 };
 
-static void add_block(struct observers *all, const char *name, const char *suffix, bool integer, size_t count,
+static void add_block(struct observers *observers, const char *name, const char *suffix, bool integer, size_t count,
                       void *data)
 {
   if (count == 0)
     return;
-  char *label = all->block_name[all->blocks];
+  char *label = observers->block_name[observers->blocks];
   snprintf(label, OBSERVER_NAME_SIZE, "%s-%s", name, suffix);
-  all->block[all->blocks++] = (struct observe_block){label, integer, count, data};
+  observers->block[observers->blocks++] = (struct observe_block){label, integer, count, data};
 }
 
 /* calloc that gives something for nothing. */
@@ -43,10 +43,10 @@ static void *zeroed(size_t count, size_t size)
   return calloc(count ? count : 1, size);
 }
 
-static bool create(struct observers *all, enum observable which, const struct observe_plan *plan,
+static bool create(struct observers *observers, enum observable which, const struct observe_plan *plan,
                    const struct model *model)
 {
-  struct observer *o = &all->observer[which];
+  struct observer *o = &observers->observer[which];
   *o = (struct observer){.type = types[which], .every = plan->every[which], .longest_lag = plan->longest_lag};
   if (o->every == 0)
     return true;
@@ -56,37 +56,37 @@ static bool create(struct observers *all, enum observable which, const struct ob
   o->real = zeroed(o->size.reals, sizeof *o->real);
   o->integer = zeroed(o->size.integers, sizeof *o->integer);
   o->scratch = zeroed(o->size.scratch, sizeof *o->scratch);
-  add_block(all, observable_names[which], "reals", false, o->size.reals, o->real);
-  add_block(all, observable_names[which], "integers", true, o->size.integers, o->integer);
+  add_block(observers, observable_names[which], "reals", false, o->size.reals, o->real);
+  add_block(observers, observable_names[which], "integers", true, o->size.integers, o->integer);
   return o->real && o->integer && o->scratch;
 }
 
 struct observers *observers_create(const struct observe_plan *plan, const struct model *model)
 {
-  struct observers *all = calloc(1, sizeof *all);
-  if (!all)
+  struct observers *observers = calloc(1, sizeof *observers);
+  if (!observers)
     return NULL;
-  bool ok = motion_work(&all->work, model);
+  bool ok = motion_work(&observers->work, model);
   for (int k = 0; ok && k < OBSERVABLES; k++)
-    ok = create(all, (enum observable)k, plan, model);
+    ok = create(observers, (enum observable)k, plan, model);
   if (!ok) {
-    observers_free(all);
+    observers_free(observers);
     return NULL;
   }
-  return all;
+  return observers;
 }
 
-void observers_free(struct observers *all)
+void observers_free(struct observers *observers)
 {
-  if (!all)
+  if (!observers)
     return;
   for (int k = 0; k < OBSERVABLES; k++) {
-    free(all->observer[k].real);
-    free(all->observer[k].integer);
-    free(all->observer[k].scratch);
+    free(observers->observer[k].real);
+    free(observers->observer[k].integer);
+    free(observers->observer[k].scratch);
   }
-  work_free(&all->work);
-  free(all);
+  work_free(&observers->work);
+  free(observers);
 }
 
 static bool due(const struct observer *observer, uint64_t step)
@@ -94,11 +94,11 @@ static bool due(const struct observer *observer, uint64_t step)
   return observer->every > 0 && step % observer->every == 0;
 }
 
-bool observers_due(const struct observers *all, uint64_t step)
+bool observers_due(const struct observers *observers, uint64_t step)
 {
   bool any = false;
   for (int k = 0; k < OBSERVABLES; k++)
-    any |= due(&all->observer[k], step);
+    any |= due(&observers->observer[k], step);
   return any;
 }
 
@@ -109,18 +109,22 @@ static bool sample(struct observer *o, enum observable which, struct view *view,
   if (o->integer[0] == mark)
     return true;
   o->integer[0] = mark;
-  o->type->sample(o, view, row);
-  return o->type->columns == 0 || !sink || sink->row(sink->context, which, o->type->columns, row);
+  if (o->type->add) {
+    o->type->add(o, view);
+    return true;
+  }
+  o->type->row(o, view, row);
+  return !sink || sink->row(sink->context, which, o->type->columns, row);
 }
 
-bool observers_sample(struct observers *all, const struct model *model, const struct state *state,
+bool observers_sample(struct observers *observers, const struct model *model, const struct state *state,
                       const struct observe_sink *sink)
 {
-  struct view view = {.model = model, .state = state, .work = &all->work};
+  struct view view = {.model = model, .state = state, .work = &observers->work};
   bool ok = true;
   for (int k = 0; ok && k < OBSERVABLES; k++)
-    if (due(&all->observer[k], state->step))
-      ok = sample(&all->observer[k], (enum observable)k, &view, sink);
+    if (due(&observers->observer[k], state->step))
+      ok = sample(&observers->observer[k], (enum observable)k, &view, sink);
   return ok;
 }
 
@@ -130,21 +134,21 @@ size_t observe_series_columns(enum observable which, const char *const **names)
   return types[which]->columns;
 }
 
-bool observers_summaries(const struct observers *all, const struct model *model,
+bool observers_summaries(const struct observers *observers, const struct model *model,
                          bool (*take)(void *context, const struct observe_table *table), void *context)
 {
   const struct observer_take to = {take, context};
   bool ok = true;
   for (int k = 0; ok && k < OBSERVABLES; k++) {
-    const struct observer *o = &all->observer[k];
+    const struct observer *o = &observers->observer[k];
     if (o->every > 0 && o->type->summarise)
       ok = o->type->summarise(o, model, &to);
   }
   return ok;
 }
 
-size_t observers_blocks(struct observers *all, const struct observe_block **blocks)
+size_t observers_blocks(struct observers *observers, const struct observe_block **blocks)
 {
-  *blocks = all->block;
-  return all->blocks;
+  *blocks = observers->block;
+  return observers->blocks;
 }

@@ -45,13 +45,16 @@ struct observer_take {
 
 struct observer_type {
   const char *name;
-  /* A time series has columns, and sample fills a row; a summary has none, and sample gets row = NULL. */
-  const char *const *column;
-  size_t columns;
   /* Adds what it needs beyond integer[0]; NULL if nothing. */
   void (*size)(const struct observer *observer, const struct model *model, struct observer_size *size);
-  void (*sample)(struct observer *observer, struct view *view, double *row);
-  /* Gives a table for each kind of fiber; NULL for time series. */
+
+  /* A time series: its columns, and what fills a row. */
+  const char *const *column;
+  size_t columns;
+  void (*row)(struct observer *observer, struct view *view, double *row);
+
+  /* A summary: what adds a sample, and what gives a table for each kind of fiber. NULL for time series. */
+  void (*add)(struct observer *observer, struct view *view);
   bool (*summarise)(const struct observer *observer, const struct model *model, const struct observer_take *to);
 };
 

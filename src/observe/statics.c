@@ -89,9 +89,8 @@ static void size_statics(const struct observer *observer, const struct model *mo
   }
 }
 
-static void sample_statics(struct observer *observer, struct view *view, double *row)
+static void add_statics(struct observer *observer, struct view *view)
 {
-  (void)row;
   double *memory = observer->real, *sums = observer->scratch;
   const struct point *position = view->state->position;
   for (uint32_t k = 0; k < view->model->kinds; k++) {
@@ -189,6 +188,6 @@ static bool summarise_statics(const struct observer *observer, const struct mode
 const struct observer_type statics_observer = {
     .name = "statics",
     .size = size_statics,
-    .sample = sample_statics,
+    .add = add_statics,
     .summarise = summarise_statics,
 };
