@@ -23,7 +23,16 @@ struct reason {
 static herr_t take_innermost(unsigned n, const H5E_error2_t *error, void *context)
 {
   const struct reason *reason = context;
-  if (n == 0 && error->desc)
+  if (n > 0 || !error->desc)
+    return 0;
+  /* Of a failed read or write HDF5 tells the time of day and all arguments; the system's own words are enough. */
+  const char *rest = strstr(error->desc, ": time = "), *quoted = rest ? strstr(rest, "error message = '") : NULL;
+  if (quoted)
+    quoted += strlen("error message = '");
+  if (quoted)
+    snprintf(reason->text, reason->size, "%.*s: %.*s", (int)(rest - error->desc), error->desc,
+             (int)strcspn(quoted, "'"), quoted);
+  else
     snprintf(reason->text, reason->size, "%s", error->desc);
   return 0;
 }
@@ -43,8 +52,11 @@ int h5_fail(struct message *message, const char *path, const char *doing)
   return message_set(message, "%s: %s: %s", path, doing, reason);
 }
 
+/* Not at exit either: the library would try once more to close a file that it could not write, and crash (1.10.8). Our
+ * files are closed by then. */
 static void silence(void)
 {
+  H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
 }
 
@@ -166,6 +178,36 @@ bool h5_close(hid_t handle)
   else
     H5Eclose_stack(errors);
   return ok;
+}
+
+/* --- room on the disk --------------------------------------------------------------------------------------------- */
+
+static int descriptor_of(hid_t file)
+{
+  int *fd = NULL;
+  return H5Fget_vfd_handle(file, H5P_DEFAULT, (void **)&fd) >= 0 && fd ? *fd : -1;
+}
+
+int h5_reserve(hid_t file, size_t bytes)
+{
+  hsize_t size;
+  int fd = descriptor_of(file);
+  if (fd < 0 || H5Fget_filesize(file, &size) < 0)
+    return EIO;
+  int error = posix_fallocate(fd, (off_t)size, (off_t)bytes);
+  if (error)
+    h5_trim(file);
+  return error;
+}
+
+void h5_trim(hid_t file)
+{
+  hsize_t size;
+  struct stat status;
+  int fd = descriptor_of(file);
+  if (fd >= 0 && H5Fget_filesize(file, &size) >= 0 && fstat(fd, &status) == 0 && (hsize_t)status.st_size > size &&
+      ftruncate(fd, (off_t)size) != 0)
+    return; /* a longer file is sound too */
 }
 
 /* --- objects ------------------------------------------------------------------------------------------------------ */

@@ -37,6 +37,12 @@ hid_t h5_create(const char *path);
 hid_t h5_create_in_memory(size_t bytes);
 void *h5_image(hid_t file, size_t *bytes);
 
+/* Makes sure that the disk has room for so many bytes behind the end of an open file; returns 0, or errno's number.
+ * HDF5 must not meet a full disk: it can neither close the file then nor leave it sound. h5_trim gives back what was
+ * not used. */
+int h5_reserve(hid_t file, size_t bytes);
+void h5_trim(hid_t file);
+
 /* Creates the group `name` (no path). */
 hid_t h5_group(hid_t parent, const char *name);
 

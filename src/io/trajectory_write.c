@@ -1,4 +1,5 @@
 /* Trajectories are made, continued and appended to. */
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,6 +13,7 @@
 #define FORMAT_VERSION 1
 #define PATH_SIZE 4096
 #define CHUNK_BYTES 65536 /* of small frames so many as fill this share a chunk */
+#define SLACK 262144      /* room for what HDF5 itself needs: headers, indices of chunks */
 
 /* --- creating ----------------------------------------------------------------------------------------------------- */
 
@@ -116,6 +118,12 @@ static bool create_contents(struct trajectory *t, const struct model *model, con
          H5Fflush(t->file, H5F_SCOPE_GLOBAL) >= 0;
 }
 
+static bool reserve(hid_t file, const char *path, size_t bytes, struct message *message)
+{
+  int error = h5_reserve(file, bytes);
+  return error == 0 || message_set(message, "%s: no room for %zu bytes more: %s", path, bytes, strerror(error));
+}
+
 static uint32_t rows_wanted(const struct model *model, const struct trajectory_options *options)
 {
   return model->vertices + (options->solvent ? model->solvent.particles : 0);
@@ -132,11 +140,19 @@ static struct trajectory *create(const char *path, const struct model *model, co
   t->solvent = options->solvent && model_has_solvent(model);
   t->particles = rows_wanted(model, options);
   t->file = h5_create(path);
-  if (t->file < 0 || !make_room(t, model) || !create_contents(t, model, options, scene_text)) {
-    h5_fail(message, path, "trajectory cannot be created");
+  if (t->file < 0) {
+    message_set(message, "%s: cannot be created: %s", path, strerror(errno));
     return trajectory_give_up(t);
   }
-  return t;
+  size_t bytes = 32 * ((size_t)t->particles + model->bonds) + strlen(scene_text ? scene_text : "") + SLACK;
+  bool ok = reserve(t->file, path, bytes, message);
+  if (ok && !(make_room(t, model) && create_contents(t, model, options, scene_text)))
+    ok = h5_fail(message, path, "trajectory cannot be created");
+  h5_trim(t->file);
+  if (ok)
+    return t;
+  remove(path);
+  return trajectory_give_up(t);
 }
 
 /* --- resuming ----------------------------------------------------------------------------------------------------- */
@@ -316,28 +332,28 @@ static void fill_velocities(struct trajectory *t, const struct model *model, con
 }
 
 /* The step comes last: a frame without it does not count. */
-static bool write_frame(struct trajectory *t, const struct model *model, const struct state *state,
-                        struct message *message)
+static bool write_frame(struct trajectory *t, const struct model *model, const struct state *state)
 {
   const hsize_t rows[2] = {t->particles, 3}, matrix[2] = {3, 3};
   const int *cells = model->box.cells;
   const double edges[9] = {cells[0], 0, 0, 0, cells[1], 0, 0, 0, cells[2]};
   const double time = (double)state->step * model->time_step;
   const int64_t step = (int64_t)state->step;
-  message->text[0] = '\0';
-  if (!fill_positions(t, model, state, message))
-    return false;
   bool ok = append_block(t->position, t->frames, 3, rows, H5T_NATIVE_DOUBLE, t->row);
   if (ok && t->velocity >= 0) {
     fill_velocities(t, model, state);
     ok = append_block(t->velocity, t->frames, 3, rows, H5T_NATIVE_DOUBLE, t->row);
   }
-  ok = ok && append_block(t->edges, t->frames, 3, matrix, H5T_NATIVE_DOUBLE, edges) &&
-       append_block(t->time, t->frames, 1, NULL, H5T_NATIVE_DOUBLE, &time) &&
-       append_block(t->step, t->frames, 1, NULL, H5T_NATIVE_INT64, &step) && H5Fflush(t->file, H5F_SCOPE_GLOBAL) >= 0;
-  if (!ok)
-    h5_fail(message, t->path, "a frame could not be written (disk full?)");
-  return ok;
+  return ok && append_block(t->edges, t->frames, 3, matrix, H5T_NATIVE_DOUBLE, edges) &&
+         append_block(t->time, t->frames, 1, NULL, H5T_NATIVE_DOUBLE, &time) &&
+         append_block(t->step, t->frames, 1, NULL, H5T_NATIVE_INT64, &step) && H5Fflush(t->file, H5F_SCOPE_GLOBAL) >= 0;
+}
+
+/* The most that a frame can take: a new chunk of every dataset. */
+static size_t frame_bytes(const struct trajectory *t)
+{
+  size_t rows = 24 * (size_t)t->particles;
+  return 2 * (rows > CHUNK_BYTES ? rows : CHUNK_BYTES) + CHUNK_BYTES + SLACK;
 }
 
 bool trajectory_append(struct trajectory *t, const struct model *model, const struct state *state,
@@ -352,9 +368,13 @@ bool trajectory_append(struct trajectory *t, const struct model *model, const st
                        (unsigned long long)state->step, (unsigned long long)t->last_step);
   if (t->slot)
     state_solvent_slots(state, t->slot);
-  if (!write_frame(t, model, state, message)) {
-    t->broken = true;
+  if (!fill_positions(t, model, state, message) || !reserve(t->file, t->path, frame_bytes(t), message))
     return false;
+  bool ok = write_frame(t, model, state);
+  h5_trim(t->file);
+  if (!ok) {
+    t->broken = true;
+    return h5_fail(message, t->path, "a frame could not be written");
   }
   t->frames++;
   t->last_step = state->step;
