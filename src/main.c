@@ -13,7 +13,8 @@
 
 static const char help[] =
     "uncross: noncrossing fibers and chains in a hydrodynamic solvent\n"
-    "(SRD solvent, semiflexible fibers, bonds that exchange momentum instead of crossing: Padding, JCP 130, 144903, 2009)\n"
+    "(SRD solvent, semiflexible fibers, bonds that exchange momentum instead of crossing: Padding, JCP 130, 144903, "
+    "2009)\n"
     "\n"
     "usage:\n"
     "  uncross check SCENE                    what a scene says, all its derived numbers, memory, time, warnings\n"
@@ -48,8 +49,19 @@ static enum exit_code usage_error(const char *what, const char *which)
 }
 
 /* Options of all commands. */
-enum option_code { OPTION_OUT = 256, OPTION_STEPS, OPTION_SEED, OPTION_RESUME, OPTION_QUIET, OPTION_OUTPUT, OPTION_SOLVENT,
-                   OPTION_WRAPPED, OPTION_FIRST, OPTION_LAST, OPTION_STRIDE };
+enum option_code {
+  OPTION_OUT = 256,
+  OPTION_STEPS,
+  OPTION_SEED,
+  OPTION_RESUME,
+  OPTION_QUIET,
+  OPTION_OUTPUT,
+  OPTION_SOLVENT,
+  OPTION_WRAPPED,
+  OPTION_FIRST,
+  OPTION_LAST,
+  OPTION_STRIDE
+};
 
 struct arguments {
   const char *file;
@@ -115,7 +127,7 @@ static enum exit_code take_option(struct arguments *a, int code)
   }
 }
 
-/* --- commands ------------------------------------------------------------------------------------------------------- */
+/* --- commands ---------------------------------------------------------------------------------------------------- */
 
 static enum exit_code command_check(struct arguments *a)
 {
@@ -154,8 +166,9 @@ static enum exit_code command_export(struct arguments *a)
     return usage_error("export: ", "--stride must be at least 1");
   FILE *out = a->output ? fopen(a->output, "wx") : stdout;
   if (!out) {
-    fprintf(stderr, "uncross: %s: cannot create: %s\n", a->output, strerror(errno));
-    return errno == EEXIST ? EXIT_BAD_INPUT : EXIT_NOT_WRITTEN;
+    int why = errno;
+    fprintf(stderr, "uncross: %s: cannot create: %s\n", a->output, strerror(why));
+    return why == EEXIST ? EXIT_BAD_INPUT : EXIT_NOT_WRITTEN;
   }
   bool ok = trajectory_export(a->file, &a->export, out, &message);
   if (!ok)
@@ -179,12 +192,10 @@ static enum exit_code command_analyze(struct arguments *a)
 #define WITH_ARGUMENT 1
 
 static const struct option no_options[] = {{0, 0, NULL, 0}};
-static const struct option run_table[] = {{"out", WITH_ARGUMENT, NULL, OPTION_OUT},
-                                          {"steps", WITH_ARGUMENT, NULL, OPTION_STEPS},
-                                          {"seed", WITH_ARGUMENT, NULL, OPTION_SEED},
-                                          {"resume", NO_ARGUMENT, NULL, OPTION_RESUME},
-                                          {"quiet", NO_ARGUMENT, NULL, OPTION_QUIET},
-                                          {0, 0, NULL, 0}};
+static const struct option run_table[] = {
+    {"out", WITH_ARGUMENT, NULL, OPTION_OUT},   {"steps", WITH_ARGUMENT, NULL, OPTION_STEPS},
+    {"seed", WITH_ARGUMENT, NULL, OPTION_SEED}, {"resume", NO_ARGUMENT, NULL, OPTION_RESUME},
+    {"quiet", NO_ARGUMENT, NULL, OPTION_QUIET}, {0, 0, NULL, 0}};
 static const struct option export_table[] = {{"output", WITH_ARGUMENT, NULL, OPTION_OUTPUT},
                                              {"solvent", NO_ARGUMENT, NULL, OPTION_SOLVENT},
                                              {"wrapped", NO_ARGUMENT, NULL, OPTION_WRAPPED},
@@ -199,8 +210,8 @@ static const struct command {
   const struct option *options;
   enum exit_code (*act)(struct arguments *);
 } commands[] = {
-    {"check", no_options, command_check},       {"run", run_table, command_run},
-    {"info", no_options, command_info},         {"export", export_table, command_export},
+    {"check", no_options, command_check},        {"run", run_table, command_run},
+    {"info", no_options, command_info},          {"export", export_table, command_export},
     {"analyze", analyze_table, command_analyze},
 };
 
@@ -230,7 +241,8 @@ int main(int count, char **words)
     return EXIT_DONE;
   }
   if (strcmp(words[1], "--version") == 0) {
-    printf("uncross %s (commit %s; %s; %s)\n", UNCROSS_VERSION, build_info.commit, build_info.compiler, build_info.flags);
+    printf("uncross %s (commit %s; %s; %s)\n", UNCROSS_VERSION, build_info.commit, build_info.compiler,
+           build_info.flags);
     return EXIT_DONE;
   }
   for (size_t k = 0; k < sizeof commands / sizeof *commands; k++)

@@ -61,7 +61,7 @@ static enum exit_code complain_fault(struct run *run, enum exit_code code)
   return complain(run, code);
 }
 
-/* --- how it starts -------------------------------------------------------------------------------------------------- */
+/* --- how it starts ----------------------------------------------------------------------------------------------- */
 
 static void checkpoint_path(const struct run *run, char *path, size_t size)
 {
@@ -74,7 +74,8 @@ static bool check_folder(const struct run_options *o, struct message *message)
   static const char *const ours[] = {"checkpoint.h5", "run.json", "trajectory.h5"};
   if (o->resume)
     return folder_has(o->folder, "checkpoint.h5") ||
-           message_set(message, "%s: nothing to resume, there is no checkpoint.h5; leave out --resume to start", o->folder);
+           message_set(message, "%s: nothing to resume, there is no checkpoint.h5; leave out --resume to start",
+                       o->folder);
   for (size_t k = 0; k < sizeof ours / sizeof *ours; k++)
     if (folder_has(o->folder, ours[k]))
       return message_set(message, "%s: holds a run already (%s); continue it with --resume, or name another folder",
@@ -133,8 +134,9 @@ static enum exit_code start_from_checkpoint(struct run *run)
   if (!checkpoint_read(path, &run->scene.model, &run->head, &run->state, blocks, count, &run->message))
     return complain(run, EXIT_BAD_INPUT);
   if (run->head.fingerprint != run->scene.fingerprint) {
-    message_set(&run->message, "%s: is of another scene than %s; resume with the scene of the run (it is kept in run.json)",
-                path, run->scene.path);
+    message_set(&run->message,
+                "%s: is of another scene than %s; resume with the scene of the run (it is kept in run.json)", path,
+                run->scene.path);
     return complain(run, EXIT_BAD_INPUT);
   }
   if (run->options->has_seed && run->options->seed != run->head.seed) {
@@ -146,7 +148,7 @@ static enum exit_code start_from_checkpoint(struct run *run)
   return EXIT_DONE;
 }
 
-/* --- how it goes on and ends ---------------------------------------------------------------------------------------- */
+/* --- how it goes on and ends ------------------------------------------------------------------------------------- */
 
 static double wall_seconds(const struct run *run)
 {
@@ -170,7 +172,8 @@ static bool save(struct run *run, const char *status, const char *reason)
                                 run->head.start_momentum};
   run->last_checkpoint = clock_seconds();
   return output_flush(&run->output, &run->message) &&
-         checkpoint_write(path, &run->head, &run->scene.model, &run->state, blocks, count, run->scene.text, &run->message) &&
+         checkpoint_write(path, &run->head, &run->scene.model, &run->state, blocks, count, run->scene.text,
+                          &run->message) &&
          output_summaries(&run->output, run->observers, &run->scene.model, &run->message) &&
          record_write(run->options->folder, &run->scene, &run->state, &record, &run->message);
 }

@@ -26,6 +26,6 @@ struct run_options {
 enum exit_code run_scene(const struct run_options *options);
 
 /* Recomputes the observables of a trajectory's scene from its frames, into tables in the folder. */
-enum exit_code run_analyze(const char *trajectory, const char *folder);
+enum exit_code run_analyze(const char *path, const char *folder);
 
 #endif

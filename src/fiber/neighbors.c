@@ -6,7 +6,6 @@
 #define MARGIN_A0 0.06     /* measured: see docs/accuracy.md; results do not depend on it */
 #define SEARCH_CELL_A0 1.0 /* least edge of a search cell */
 #define FIRST_STRIDE 8     /* partners per bond before the lists grow */
-#define FIRST_ENTRIES 8    /* grid entries per bond before they grow */
 
 /* --- margin boxes ------------------------------------------------------------------------------------------------ */
 

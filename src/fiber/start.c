@@ -55,9 +55,9 @@ static struct vec3 random_place(const struct model *model, uint32_t fiber)
                        random_uniform(z, 0) * model->box.cells[2]};
 }
 
-/* One fiber to be laid: its number, its first vertex, its place. */
+/* One fiber to be laid: its first vertex, its place. */
 struct site {
-  uint32_t fiber, first;
+  uint32_t first;
   struct vec3 center, direction;
 };
 
@@ -129,7 +129,7 @@ void fiber_start(struct state *state, const struct model *model)
       within = 0;
     }
     const struct fiber_kind *kind = &model->kind[k];
-    struct site site = {fiber, model->fiber_first[fiber], random_place(model, fiber),
+    struct site site = {model->fiber_first[fiber], random_place(model, fiber),
                         random_axis(model->seed, RANDOM_FIBER_DIRECTION, 0, fiber)};
     if (within < kind->placed) {
       site.center = kind->center[within];

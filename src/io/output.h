@@ -12,8 +12,8 @@
 struct output {
   const char *folder;
   uint64_t trajectory_every;
-  struct trajectory *trajectory;        /* NULL: none asked for */
-  struct series series[OBSERVABLES];    /* not open where not asked for, or not a series */
+  struct trajectory *trajectory;     /* NULL: none asked for */
+  struct series series[OBSERVABLES]; /* not open where not asked for, or not a series */
 };
 
 /* Opens what the scene asks for; on a resume, cuts everything back to what it was at step `step`. */

@@ -22,8 +22,8 @@ static json_t *conserved(double energy, struct vec3 p)
 
 static json_t *counts(const struct collision_counts *c)
 {
-  return json_pack("{s:I, s:I, s:I, s:I}", "moves", (json_int_t)c->moves, "possible", (json_int_t)c->possible, "executed",
-                   (json_int_t)c->executed, "negative", (json_int_t)c->negative);
+  return json_pack("{s:I, s:I, s:I, s:I}", "moves", (json_int_t)c->moves, "possible", (json_int_t)c->possible,
+                   "executed", (json_int_t)c->executed, "negative", (json_int_t)c->negative);
 }
 
 static json_t *hexadecimal(uint64_t x)
@@ -49,8 +49,8 @@ bool record_write(const char *folder, const struct scene *scene, const struct st
       "{s:s, s:s?, s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:I, s:I, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:s}", "status",
       r->status, "reason", r->reason, "program", "uncross", "version", UNCROSS_VERSION, "commit", build_info.commit,
       "compiler", build_info.compiler, "flags", build_info.flags, "seed", seed(scene->model.seed), "scene_fingerprint",
-      hexadecimal(scene->fingerprint), "steps", (json_int_t)state->step, "steps_wanted", (json_int_t)scene->steps, "time",
-      (double)state->step * scene->model.time_step, "wall_seconds", r->wall_seconds, "steps_per_second",
+      hexadecimal(scene->fingerprint), "steps", (json_int_t)state->step, "steps_wanted", (json_int_t)scene->steps,
+      "time", (double)state->step * scene->model.time_step, "wall_seconds", r->wall_seconds, "steps_per_second",
       r->steps_per_second, "collisions", counts(&state->counts), "start", conserved(r->start_energy, r->start_momentum),
       "end", conserved(now.total, now.momentum), "state_hash", hexadecimal(state_hash(state)), "scene", scene->text);
   if (!root)

@@ -8,8 +8,8 @@
 #include "state/state.h"
 
 struct record {
-  const char *status; /* "finished", "interrupted", "stopped", "running" */
-  const char *reason; /* why it stopped; NULL if it did not */
+  const char *status;      /* "finished", "interrupted", "stopped", "running" */
+  const char *reason;      /* why it stopped; NULL if it did not */
   double wall_seconds;     /* over all sessions */
   double steps_per_second; /* of this session, everything included */
   double start_energy;     /* kT */

@@ -136,8 +136,7 @@ struct temperatures motion_temperatures(const struct model *model, const struct 
                                vertex_temperature(&m->vertex_half, vertices, vertex_freedom, u)};
 }
 
-/* --- the observers -------------------------------------------------------------------------------------------------
- */
+/* --- the observers ----------------------------------------------------------------------------------------------- */
 
 const struct motion *view_motion(struct view *view)
 {

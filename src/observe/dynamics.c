@@ -7,8 +7,7 @@
 #include "observe/observer.h"
 #include "observe/tally.h"
 
-/* --- one fiber, two times ------------------------------------------------------------------------------------------
- */
+/* --- one fiber, two times ---------------------------------------------------------------------------------------- */
 
 /* Mean square displacements of vertices, centre of mass and middle vertex: Padding 2009, Eqs. (41) and (42). */
 static void displacements(const struct fiber_kind *kind, const struct point *origin, const struct point *now,
@@ -97,8 +96,7 @@ struct vec3 dynamics_drift(const struct model *model, double from, double to)
   return vec3_add_scaled(vec3_scale(to - from, model->flow), half_squares, force);
 }
 
-/* --- all lags ------------------------------------------------------------------------------------------------------
- */
+/* --- all lags ---------------------------------------------------------------------------------------------------- */
 
 /* Quantities of the tally, each a pair (x, y). */
 enum {
@@ -237,8 +235,7 @@ static void add_dynamics(struct observer *observer, struct view *view)
   }
 }
 
-/* --- the table -----------------------------------------------------------------------------------------------------
- */
+/* --- the table --------------------------------------------------------------------------------------------------- */
 
 static const char *const columns[] = {"time",
                                       "g",

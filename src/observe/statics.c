@@ -110,8 +110,7 @@ static void add_statics(struct observer *observer, struct view *view)
   }
 }
 
-/* --- the table -----------------------------------------------------------------------------------------------------
- */
+/* --- the table --------------------------------------------------------------------------------------------------- */
 
 static const char *const columns[] = {
     "l",           "l_error",           "l2",          "l2_error",          "cos",    "cos_error",

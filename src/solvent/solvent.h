@@ -27,7 +27,7 @@ bool solvent_collide(struct state *state, const struct model *model, struct work
  * of particle order[id]. */
 void solvent_swap_velocities(struct state *state, const struct model *model, struct work *work, uint64_t step);
 
-/* Particles reordered in memory by collision cell, as last binned; no effect on results. */
+/* Particles reordered in memory by the cells of the unshifted grid; no effect on results. */
 void solvent_sort(struct state *state, const struct model *model, struct work *work);
 
 /* Uniform positions, Maxwell velocities (kT = 1). Momentum is taken out by start.c. */

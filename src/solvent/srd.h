@@ -39,8 +39,8 @@ static inline double srd_mass(const struct cell_sum *sum)
   return (double)(sum->load & (SRD_MEMBER - 1)) * SRD_MASS_UNIT;
 }
 
-/* Adds a member. Returns a number whose highest set bit bounds that of each momentum component, in momentum units, from
- * above; its top bit is set if a component was out of range or not a number (llrint gives INT64_MIN then). */
+/* Adds a member. Returns a number that is at least the size of each momentum component, in momentum units; it is
+ * 2^63 - 1 if a component was out of range or not a number (llrint gives INT64_MIN then). */
 static inline uint64_t srd_add(struct cell_sum *sum, double mass, uint64_t load, struct vec3 v)
 {
   const double scale = mass * SRD_MOMENTUM_SCALE;

@@ -1,14 +1,14 @@
 #include "solvent/solvent.h"
 
-/* Padding 2009, Eqs. (3) and (7), over the whole flight at once: one Cartesian component of all particles,
- * x += v t + a t^2/2, v += a t, wrapped once. Returns a value with its sign bit set if some particle is still outside
- * the box, or moved beyond what lattice_round can hold. */
+/* Moves one Cartesian component of all particles by its whole flight, wrapped once, and lets the body force act on the
+ * velocity over that time: Padding 2009, Eq. (7). Returns a value with its sign bit set if some particle is still
+ * outside the box, or moved beyond what lattice_round can hold. */
 static int64_t stream_component(uint32_t n, int64_t *restrict x, double *restrict v, double t, double a, int64_t edge)
 {
-  const double step = t * LATTICE_PER_A0, offset = 0.5 * a * t * step, gain = a * t;
+  const double gain = a * t;
   int64_t outside = 0;
   for (uint32_t i = 0; i < n; i++) {
-    int64_t p = x[i] + lattice_round(v[i] * step + offset);
+    int64_t p = x[i] + state_flight(v[i], a, t);
     p += p < 0 ? edge : 0;
     p -= p >= edge ? edge : 0;
     outside |= p | (int64_t)((uint64_t)(edge - 1) - (uint64_t)p);

@@ -90,9 +90,9 @@ struct point state_solvent_position(const struct state *s, const struct model *m
   const struct solvent *p = &s->solvent;
   double t = 0.5 * s->solvent_lag * model->time_step;
   struct vec3 a = model->solvent.acceleration;
-  int64_t x = p->x[i] + lattice_from_a0(p->vx[i] * t + 0.5 * a.x * t * t);
-  int64_t y = p->y[i] + lattice_from_a0(p->vy[i] * t + 0.5 * a.y * t * t);
-  int64_t z = p->z[i] + lattice_from_a0(p->vz[i] * t + 0.5 * a.z * t * t);
+  int64_t x = p->x[i] + state_flight(p->vx[i], a.x, t);
+  int64_t y = p->y[i] + state_flight(p->vy[i], a.y, t);
+  int64_t z = p->z[i] + state_flight(p->vz[i], a.z, t);
   const int64_t *edge = model->box.edge;
   return (struct point){lattice_fold(x, edge[0]), lattice_fold(y, edge[1]), lattice_fold(z, edge[2])};
 }

@@ -50,6 +50,13 @@ void state_solvent_slots(const struct state *state, uint32_t *slot);
 /* 64-bit hash (XXH64, seed 0) of everything above but counts, in id order: docs/conventions.md lists the bytes. */
 uint64_t state_hash(const struct state *state);
 
+/* How far a particle of velocity v gets in a time t under a constant acceleration a, in lattice units: one Cartesian
+ * component of Padding 2009, Eq. (3), exact over any number of time steps. Right below LATTICE_MAX_MOVE. */
+static inline int64_t state_flight(double v, double a, double t)
+{
+  return lattice_from_a0(v * t + 0.5 * a * t * t);
+}
+
 /* Where solvent particle number i (in memory order) is now, its lag made up for: lattice units, within the box. */
 struct point state_solvent_position(const struct state *state, const struct model *model, uint32_t i);
 

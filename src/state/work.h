@@ -12,7 +12,7 @@
 #include "state/fault.h"
 #include "state/model.h"
 
-/* --- solvent ------------------------------------------------------------------------------------------------------ */
+/* --- solvent ----------------------------------------------------------------------------------------------------- */
 
 /* Sums over the members of a collision cell, in integers: the same whatever the order of the members. */
 struct cell_sum {
@@ -40,7 +40,7 @@ struct collision_work {
   uint32_t since_sort;    /* collisions since particles were last sorted by cell */
 };
 
-/* --- fibers ------------------------------------------------------------------------------------------------------- */
+/* --- fibers ------------------------------------------------------------------------------------------------------ */
 
 /* A partner bond that may be touched: bond number, and the image of it, in box edges. */
 struct neighbor {
