@@ -144,8 +144,8 @@ static void report_table_2(const struct model *m, const struct fiber_kind *k)
   row("  density", "c L^3", k->count * length * length * length / box_volume(&m->box), "", "");
   row("  mesh size", "xi", mesh, "a0", "Eq. (34), all kinds");
   row("  relative mesh size", "xi*", mesh / length, "", "xi/L");
-  if (lp <= 0.0)
-    return;
+  if (lp <= 0.0 || k->ring || mesh > length)
+    return; /* no tube */
   const double tube = theory_tube_diameter(length, lp, mesh);
   row("  tube diameter", "L_perp", tube, "a0", "Eq. (35)");
   row("  tube plateau of d^2(t)", "2L_perp^2", 2.0 * tube * tube, "a0^2", "");
@@ -253,10 +253,10 @@ static void report_parts(const struct scene *scene)
 }
 
 /* Rates measured on one core of an x86-64 of the 2020s, in ns: good for a guess within a factor of 2. */
-static const double solvent_rate = 15.0;          /* per particle and collision */
-static const double vertex_rate = 25.0;           /* per vertex and step, phantom fibers */
-static const double crossing_rate = 300.0;        /* per vertex and step, with the search for crossings ... */
-static const double crossing_density_rate = 80.0; /* ... and more for each unit of fiber length per volume */
+static const double solvent_rate = 15.0;           /* per particle and collision */
+static const double vertex_rate = 25.0;            /* per vertex and step, phantom fibers */
+static const double crossing_rate = 140.0;         /* per vertex and step, with the search for crossings ... */
+static const double crossing_density_rate = 135.0; /* ... and more for each unit of fiber length per volume */
 
 static void report_cost(const struct scene *scene)
 {

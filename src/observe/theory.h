@@ -145,7 +145,8 @@ double theory_line_density(const struct model *model);
 /* Collisions of bonds per t0 in the whole box: that of an ideal gas of isotropic line segments of mean length <l> whose
  * ends have independent Maxwell velocities,
  *   (1/2) V sum_AB c_A <l>_A c_B <l>_B (pi/4) sqrt(2/pi) int ds ds' sqrt(w(s)/M_A + w(s')/M_B),  w(s) = (1-s)^2 + s^2.
- * What the algorithm executes, less twice those with dP < 0, has this rate; it executes 1.15 times as many. */
+ * Moving one vertex after the other adds some with dP < 0 and as many to undo them, so the algorithm executes
+ * about 1.15 times as many. */
 double theory_collision_rate(const struct model *model);
 
 /* Total constant force on solvent and vertices, kT/a0; 0 is balanced. */
