@@ -36,17 +36,17 @@ struct key_table;
 
 struct key {
   const char *name;
-  enum key_type type;
   const char *fallback;         /* value if absent, as a scene would say it; NULL: must be given, unless `optional` */
-  bool optional;                /* may be absent; then nothing is stored */
   double low, high;             /* numbers */
-  bool above;                   /* numbers: low itself is not allowed */
   uint64_t least, most;         /* whole numbers */
   const char *const *choice;    /* words, ended by NULL */
   const struct key_table *keys; /* of a section, or of each item of a list */
   size_t item_size;             /* of a list */
   size_t offset;                /* of the destination, in the struct that is filled */
   const char *unit, *symbol;    /* for docs/scene.md; symbol: the paper's; NULL: none */
+  enum key_type type;
+  bool optional; /* may be absent; then nothing is stored */
+  bool above;    /* numbers: low itself is not allowed */
 };
 
 struct key_table {

@@ -43,7 +43,7 @@ char *scene_snapshot_path(const struct scene *scene);
 
 /* Writes the effective scene, every default filled in, as YAML that reads back to the same scene. physics_only leaves
  * out seed, steps, observables, trajectory and checkpoints: the text whose hash is the fingerprint. */
-void scene_write(const struct scene *scene, FILE *stream, bool physics_only);
+void scene_write(const struct scene *scene, FILE *f, bool physics_only);
 
 /* All tables of keys, the top level first: what docs/scene.md is held against. */
 const struct key_table *const *scene_key_tables(size_t *count);

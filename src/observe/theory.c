@@ -156,8 +156,10 @@ static void bond_moments(const struct fiber_kind *kind, double z, double moment[
   const double c = kind->bond_length * sqrt(kind->spring), edge = exp(-0.5 * (z - c) * (z - c));
   moment[0] = sqrt(0.5 * pi) * erfc((z - c) / sqrt(2.0));
   double power = 1.0;
-  for (int n = 0; n < 4; n++, power *= z)
+  for (int n = 0; n < 4; n++) {
     moment[n + 1] = c * moment[n] + (n > 0 ? n * moment[n - 1] : 0.0) + power * edge;
+    power *= z;
+  }
 }
 
 double theory_bond_square(const struct fiber_kind *kind)
@@ -204,10 +206,13 @@ double theory_effective_persistence(const struct fiber_kind *kind)
  */
 double theory_end_to_end_square(const struct fiber_kind *kind)
 {
-  const double n = theory_bonds(kind), mean = fiber_mean_bond(kind), cosine = theory_bend_cosine(kind->bending);
+  const double mean = fiber_mean_bond(kind), cosine = theory_bend_cosine(kind->bending);
+  const uint32_t n = kind->ring ? kind->vertices : kind->vertices - 1;
   double sum = 0.0, power = cosine;
-  for (double d = 1.0; d < n && power > 1e-17; d++, power *= cosine)
+  for (uint32_t d = 1; d < n && power > 1e-17; d++) {
     sum += (n - d) * power;
+    power *= cosine;
+  }
   return n * theory_bond_square(kind) + 2.0 * mean * mean * sum;
 }
 
