@@ -86,6 +86,7 @@ uint64_t work_bytes(const struct model *m)
     bytes += need[k].count * need[k].size;
   if (m->crossing.forbidden)
     bytes +=
+        (uint64_t)box_cell_count(&m->box) * sizeof(int32_t) +
         (uint64_t)m->bonds * (sizeof(struct margin_box) + 8 * sizeof(struct neighbor) + 8 * sizeof(struct grid_entry));
   return bytes;
 }
