@@ -11,7 +11,7 @@
 
 #define PATH_SIZE 4096
 
-/* --- the numbers, listed once for writing and reading ------------------------------------------------------------- */
+/* --- the numbers, listed once for writing and reading ------------------------------------------------------------ */
 
 struct field {
   const char *group, *name;
@@ -63,7 +63,7 @@ static bool each_field(hid_t file, struct checkpoint_summary *summary, bool writ
   return ok;
 }
 
-/* --- writing ------------------------------------------------------------------------------------------------------ */
+/* --- writing ----------------------------------------------------------------------------------------------------- */
 
 static bool write_rows(hid_t group, const char *name, hid_t type, uint32_t rows, const void *data)
 {
@@ -251,7 +251,7 @@ bool checkpoint_write(const char *path, const struct checkpoint_head *head, cons
   return ok;
 }
 
-/* --- reading ------------------------------------------------------------------------------------------------------ */
+/* --- reading ----------------------------------------------------------------------------------------------------- */
 
 bool checkpoint_is(hid_t file)
 {

@@ -39,7 +39,7 @@ static const char *symbol_of(int32_t species)
   return symbols[(size_t)(species < 0 ? 0 : species) % n];
 }
 
-/* --- sources ------------------------------------------------------------------------------------------------------ */
+/* --- sources ----------------------------------------------------------------------------------------------------- */
 
 static bool open_structure(struct source *s, hid_t particles, hid_t connectivity, uint32_t rows,
                            struct message *message)
@@ -160,7 +160,7 @@ static bool load(struct source *s, uint64_t frame, struct message *message)
   return ok || h5_fail(message, s->path, "a frame cannot be read");
 }
 
-/* --- printing ----------------------------------------------------------------------------------------------------- */
+/* --- printing ---------------------------------------------------------------------------------------------------- */
 
 static bool row_is_solvent(const struct source *s, uint32_t row)
 {

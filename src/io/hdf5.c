@@ -13,7 +13,7 @@
 
 #define HASH_NAME "xxh64"
 
-/* --- errors ------------------------------------------------------------------------------------------------------- */
+/* --- errors ------------------------------------------------------------------------------------------------------ */
 
 struct reason {
   char *text;
@@ -60,7 +60,7 @@ static void silence(void)
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
 }
 
-/* --- files -------------------------------------------------------------------------------------------------------- */
+/* --- files ------------------------------------------------------------------------------------------------------- */
 
 /* HDF5 locks the files it opens (flock) and would call one in use damaged, so who holds it is asked first. */
 static bool readable(const char *path, bool writable, struct message *message)
@@ -180,7 +180,7 @@ bool h5_close(hid_t handle)
   return ok;
 }
 
-/* --- room on the disk --------------------------------------------------------------------------------------------- */
+/* --- room on the disk -------------------------------------------------------------------------------------------- */
 
 static int descriptor_of(hid_t file)
 {
@@ -210,7 +210,7 @@ void h5_trim(hid_t file)
     return; /* a longer file is sound too */
 }
 
-/* --- objects ------------------------------------------------------------------------------------------------------ */
+/* --- objects ----------------------------------------------------------------------------------------------------- */
 
 hid_t h5_group(hid_t parent, const char *name)
 {
@@ -275,7 +275,7 @@ bool h5_has(hid_t parent, const char *name)
   return has;
 }
 
-/* --- attributes --------------------------------------------------------------------------------------------------- */
+/* --- attributes -------------------------------------------------------------------------------------------------- */
 
 bool h5_put(hid_t object, const char *name, hid_t type, size_t count, const void *data)
 {
@@ -349,7 +349,7 @@ bool h5_get_text(hid_t object, const char *name, char *text, size_t size)
   return ok;
 }
 
-/* --- whole datasets ----------------------------------------------------------------------------------------------- */
+/* --- whole datasets ---------------------------------------------------------------------------------------------- */
 
 static uint64_t hash_of(hid_t type, int rank, const hsize_t *dims, const void *data)
 {

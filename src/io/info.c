@@ -26,7 +26,7 @@ static bool ends_with(const char *text, const char *end)
   return n >= m && strcmp(text + n - m, end) == 0;
 }
 
-/* --- HDF5 --------------------------------------------------------------------------------------------------------- */
+/* --- HDF5 -------------------------------------------------------------------------------------------------------- */
 
 static bool is_hdf5(const struct look *look)
 {
@@ -121,7 +121,7 @@ static bool tell_hdf5(const struct look *look, struct message *message)
   return (checkpoint ? tell_checkpoint : tell_trajectory)(look->path, message);
 }
 
-/* --- JSON --------------------------------------------------------------------------------------------------------- */
+/* --- JSON -------------------------------------------------------------------------------------------------------- */
 
 static bool is_json(const struct look *look)
 {
@@ -156,7 +156,7 @@ static bool tell_json(const struct look *look, struct message *message)
   return true;
 }
 
-/* --- text --------------------------------------------------------------------------------------------------------- */
+/* --- text -------------------------------------------------------------------------------------------------------- */
 
 static bool is_text(const struct look *look)
 {
@@ -237,7 +237,7 @@ static bool tell_scene(const struct look *look, struct message *message)
   return true;
 }
 
-/* --- all ---------------------------------------------------------------------------------------------------------- */
+/* --- all --------------------------------------------------------------------------------------------------------- */
 
 static const struct sort {
   bool (*is)(const struct look *look);

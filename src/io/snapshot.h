@@ -49,8 +49,7 @@ char *checkpoint_scene_text(const char *path, struct message *message);
  * numbers and bonds must be the model's; whether bonds fit the box is for the caller to check. */
 bool snapshot_read_start(const char *path, const struct model *model, struct state *state, struct message *message);
 
-/* --- trajectory ----------------------------------------------------------------------------------------------------
- */
+/* --- trajectory -------------------------------------------------------------------------------------------------- */
 
 struct trajectory; /* an open H5MD file */
 
@@ -88,8 +87,7 @@ bool trajectory_has_solvent(const struct trajectory *trajectory, const struct mo
 bool trajectory_read(struct trajectory *trajectory, const struct model *model, uint64_t frame, struct state *state,
                      struct message *message);
 
-/* --- other forms ---------------------------------------------------------------------------------------------------
- */
+/* --- other forms ------------------------------------------------------------------------------------------------- */
 
 /* What of a file goes to Extended XYZ. */
 struct export_options {

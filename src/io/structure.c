@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* --- writing ------------------------------------------------------------------------------------------------------ */
+/* --- writing ----------------------------------------------------------------------------------------------------- */
 
 /* Names of an enumeration must differ: a kind that is called like an earlier one, or like the solvent, gets its number.
  */
@@ -89,7 +89,7 @@ bool structure_same_bonds(hid_t group, const struct model *model)
   return same;
 }
 
-/* --- reading ------------------------------------------------------------------------------------------------------ */
+/* --- reading ----------------------------------------------------------------------------------------------------- */
 
 static bool read_names(hid_t dataset, struct structure *s)
 {

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* --- opening and closing ------------------------------------------------------------------------------------------ */
+/* --- opening and closing ----------------------------------------------------------------------------------------- */
 
 struct trajectory *trajectory_allocate(const char *path)
 {
@@ -46,7 +46,7 @@ struct trajectory *trajectory_give_up(struct trajectory *t)
   return NULL;
 }
 
-/* --- finding what a file holds ------------------------------------------------------------------------------------ */
+/* --- finding what a file holds ----------------------------------------------------------------------------------- */
 
 static hid_t open_dataset(hid_t parent, const char *name)
 {
@@ -135,7 +135,7 @@ struct trajectory *trajectory_open_existing(const char *path, bool writable, enu
   return t;
 }
 
-/* --- reading ------------------------------------------------------------------------------------------------------ */
+/* --- reading ----------------------------------------------------------------------------------------------------- */
 
 struct trajectory *trajectory_open_read(const char *path, struct message *message)
 {

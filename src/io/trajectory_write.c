@@ -15,7 +15,7 @@
 #define CHUNK_BYTES 65536 /* of small frames so many as fill this share a chunk */
 #define SLACK 262144      /* room for what HDF5 itself needs: headers, indices of chunks */
 
-/* --- creating ----------------------------------------------------------------------------------------------------- */
+/* --- creating ---------------------------------------------------------------------------------------------------- */
 
 static bool write_h5md(hid_t file, const char *author)
 {
@@ -155,7 +155,7 @@ static struct trajectory *create(const char *path, const struct model *model, co
   return trajectory_give_up(t);
 }
 
-/* --- resuming ----------------------------------------------------------------------------------------------------- */
+/* --- resuming ---------------------------------------------------------------------------------------------------- */
 
 static bool set_frames(struct trajectory *t, uint64_t frames)
 {
@@ -278,7 +278,7 @@ struct trajectory *trajectory_open(const char *path, const struct model *model,
   return create(path, model, options, scene_text, message);
 }
 
-/* --- appending ---------------------------------------------------------------------------------------------------- */
+/* --- appending --------------------------------------------------------------------------------------------------- */
 
 static bool append_block(hid_t dataset, uint64_t frame, int rank, const hsize_t *frame_dims, hid_t type,
                          const void *data)
