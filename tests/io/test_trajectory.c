@@ -175,7 +175,8 @@ static void resume_drops_later_frames(void **unused)
   struct test_run late = small_run(170);
   step_and_append(t, &late, 130);
   close_or_fail(t);
-  t = open_or_fail(resumed, &b.model, &fibers_only, true, 170);
+  close_or_fail(open_or_fail(resumed, &b.model, &fibers_only, true, 170));
+  t = open_or_fail(resumed, &b.model, &fibers_only, true, UINT64_MAX);
   assert_true(trajectory_frames(t) == 170);
   step_and_append(t, &b, 30);
   close_or_fail(t);
