@@ -231,8 +231,11 @@ static enum exit_code run_in_folder(struct run *run)
     return code;
   if (!folder_make(run->options->folder, &run->message))
     return complain(run, EXIT_BAD_INPUT);
+  message_set(&run->message, "%s", "");
   if (!output_open(&run->output, &run->scene, run->options->folder, resume, run->state.step, &run->message))
     return complain(run, EXIT_NOT_WRITTEN);
+  if (run->message.text[0] != '\0') /* opened all the same, with something to say */
+    complain(run, EXIT_DONE);
   watch_signals();
   code = loop(run);
   if (!output_close(&run->output, &run->message) && code == EXIT_DONE)

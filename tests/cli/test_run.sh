@@ -116,6 +116,13 @@ for table in "$dir/observed"/*.csv; do
   ok $? "analyze: the run's own table ${table##*/}"
 done
 
+# A trajectory that a crash has damaged: set aside, said so, and the run goes on.
+cp -r "$dir/crashed" "$dir/damaged"
+head -c 3000 "$dir/crashed/trajectory.h5" >"$dir/damaged/trajectory.h5"
+run "$dir/damaged" --resume --steps 420
+{ [ "$code" = 0 ] && grep -q damaged "$dir/err" && [ -e "$dir/damaged/trajectory.damaged.1.h5" ]; }
+ok $? "a damaged trajectory is set aside: $(head -c 160 "$dir/err")"
+
 # Bad input: exit code 2, a message, nothing written.
 refused() { # refused NAME PATTERN [options of run]: scene in $dir/scene.yaml
   local name=$1 pattern=$2
