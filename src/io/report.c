@@ -236,7 +236,7 @@ static void report_parts(const struct scene *scene)
       {"... rotation by 90 degrees", "solvent/srd.h", solvent && quarter},
       {"... rotation by any angle", "solvent/srd.h", solvent && !quarter},
       {"thermostat's sums and factors", "solvent/thermostat.c", solvent && s->thermostat != THERMOSTAT_NONE},
-      {"permuted velocities", "solvent/collide.c", solvent && !s->hydrodynamics},
+      {"permuted velocities", "solvent/reorder.c", solvent && !s->hydrodynamics},
       {"moves of vertices", "fiber/sweep.c", m->vertices > 0},
       {"search for crossings", "fiber/neighbors.c, crossing.c", m->crossing.forbidden && m->bonds > 0},
       {"springs", "fiber/force.c", any_kind(m, is_bonded)},

@@ -18,6 +18,9 @@ struct point solvent_grid_shift(const struct model *model, uint64_t step);
 /* Cell number (z Ly + y) Lx + x of a position anywhere, on the grid shifted by this much. */
 uint32_t solvent_cell_of(const struct box *box, struct point position, struct point shift);
 
+/* The cells of all solvent particles and vertices on this grid, into work->collision; particles must be in the box. */
+void solvent_bin(const struct state *state, const struct model *model, struct work *work, struct point shift);
+
 /* The collision of step number `step`: grid shift, cell sums over solvent and vertices, rotation, thermostat, and the
  * velocity swap where hydrodynamics is off. Positions must stand at the time of the collision.
  * False, with the fault recorded, if a cell exceeds the range of its sums. */
