@@ -19,7 +19,8 @@
 #include "state/work.h"
 #include "step.h"
 
-/* |actual - expected| <= tolerance, and neither is NaN. (CMocka's own assert_float_equal casts to float and passes NaN.) */
+/* |actual - expected| <= tolerance, and neither is NaN. (CMocka's own assert_float_equal casts to float and passes
+ * NaN.) */
 #define assert_close(actual, expected, tolerance)                                                                      \
   do {                                                                                                                 \
     double actual_ = (actual), expected_ = (expected), tolerance_ = (tolerance);                                       \

@@ -210,12 +210,16 @@ static size_t key_length(const char *line)
 
 static bool is_scene(const struct look *look)
 {
-  bool found = false;
-  for (const char *line = look->head; line && !found; line = strchr(line, '\n')) {
-    line += *line == '\n';
-    found = key_length(line) > 0;
+  if (!is_text(look))
+    return false;
+  const char *line = look->head;
+  while (key_length(line) == 0) {
+    const char *end = strchr(line, '\n');
+    if (!end)
+      return false;
+    line = end + 1;
   }
-  return is_text(look) && found;
+  return true;
 }
 
 static bool tell_scene(const struct look *look, struct message *message)

@@ -303,14 +303,11 @@ static bool fill_positions(struct trajectory *t, const struct model *model, cons
   for (uint32_t v = 0; v < state->vertices; v++, row += 3) {
     struct vec3 r = point_in_a0(state->position[v]);
     if (!(fabs(r.x) < TRAJECTORY_LIMIT && fabs(r.y) < TRAJECTORY_LIMIT && fabs(r.z) < TRAJECTORY_LIMIT))
-      return message_set(
-          message,
-          "%s: step %llu: vertex %u is at (%.6g, %.6g, %.6g); frames hold unwrapped positions below %g a0 "
-          "only",
-          t->path, (unsigned long long)state->step, v, r.x, r.y, r.z, TRAJECTORY_LIMIT);
+      return message_set(message, "%s: step %llu: vertex %u is at (%.6g, %.6g, %.6g), unwrapped; frames hold %g a0",
+                         t->path, (unsigned long long)state->step, v, r.x, r.y, r.z, TRAJECTORY_LIMIT);
     row[0] = r.x, row[1] = r.y, row[2] = r.z;
   }
-  for (uint32_t id = 0; t->solvent && id < state->solvent.n; id++, row += 3) {
+  for (uint32_t id = 0; t->slot && id < state->solvent.n; id++, row += 3) {
     struct vec3 r = point_in_a0(state_solvent_position(state, model, t->slot[id]));
     row[0] = r.x, row[1] = r.y, row[2] = r.z;
   }
@@ -325,7 +322,7 @@ static void fill_velocities(struct trajectory *t, const struct model *model, con
   const struct vec3 gain = vec3_scale(0.5 * state->solvent_lag * model->time_step, model->solvent.acceleration);
   memcpy(row, state->velocity, (size_t)state->vertices * sizeof *state->velocity);
   row += 3 * (size_t)state->vertices;
-  for (uint32_t id = 0; t->solvent && id < p->n; id++, row += 3) {
+  for (uint32_t id = 0; t->slot && id < p->n; id++, row += 3) {
     uint32_t i = t->slot[id];
     row[0] = p->vx[i] + gain.x, row[1] = p->vy[i] + gain.y, row[2] = p->vz[i] + gain.z;
   }
