@@ -415,6 +415,40 @@ static void first_of_several(void **unused)
     }
 }
 
+/* A fiber of four vertices whose third (or, named backwards, second) moves up, so that the bond beyond it meets the
+ * first bond: in a box of 8 cells the bond itself, which the paper leaves out and the stricter option does not; in a
+ * box of 4 the bond's image, which is not linked to anything. */
+static void exclusion_is_of_bonds_not_of_images(void **unused)
+{
+  (void)unused;
+  const double x[4][3] = {{2.5, 0.5, 0.1}, {4.0, 0.0, 0.0}, {1.7, 0.0, 0.0}, {3.2, 0.6, 0.0}};
+  for (int k = 0; k < 8; k++) {
+    const bool image = k & 1, backwards = k & 2, paper = k & 4;
+    struct model m = test_model(image ? 4 : 8, image ? 4 : 8, image ? 4 : 8, 0, 0.5, 2);
+    m.crossing.exclusion = paper ? EXCLUSION_PAPER : EXCLUSION_SHARED_VERTEX;
+    test_add_kind(&m, 1, 4);
+    struct dice d = {1};
+    struct test_run r = dice_run(m, &d);
+    for (int v = 0; v < 4; v++) {
+      const int at = backwards ? 3 - v : v;
+      const double shift = image && v < 2 ? -4.0 : 0.0;
+      r.state.position[at] = point_move((struct point){0, 0, 0}, (struct vec3){x[v][0] + shift, x[v][1], x[v][2]});
+      r.state.velocity[at] = (struct vec3){0, 0, v == 2 ? 0.8 : 0.0};
+    }
+    struct events *told = calloc(1, sizeof *told);
+    const struct sweep_log log = {collect, told};
+    assert_true(fiber_sweep(&r.state, &r.model, &r.work, 1.0, 5, 0, &log));
+    assert_int_equal(told->n, paper && !image ? 0 : 1);
+    if (told->n == 1) {
+      assert_int_equal(told->event[0].moving_bond, backwards ? 0 : 2);
+      assert_int_equal(told->event[0].standing_bond, backwards ? 2 : 0);
+      assert_int_equal(told->event[0].image[0], image ? 1 : 0);
+    }
+    free(told);
+    test_end(&r);
+  }
+}
+
 /* --- the limits of a move -------------------------------------------------------------------------------------------
  */
 
@@ -607,6 +641,7 @@ int main(void)
       cmocka_unit_test(boxes_of_few_cells),
       cmocka_unit_test(one_fiber_meets_itself),
       cmocka_unit_test(first_of_several),
+      cmocka_unit_test(exclusion_is_of_bonds_not_of_images),
       cmocka_unit_test(impossible_moves_are_found),
       cmocka_unit_test(phantom_fibers_just_move),
       cmocka_unit_test(links_are_kept),
