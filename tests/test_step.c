@@ -392,7 +392,8 @@ static void faults_stop_the_step(void **unused)
   for (int k = 0; k < 4; k++) {
     struct test_run r = test_start(suspension(ORDER_KICK_SPLIT, 1, true));
     test_steps(&r, 3);
-    const enum fault_code expected[] = {FAULT_SOLVENT_MOVE, FAULT_VERTEX_MOVE, FAULT_BOND_TOO_LONG, FAULT_CELL_RANGE};
+    const enum fault_code expected[] = {FAULT_SOLVENT_MOVE, FAULT_VERTEX_MOVE, FAULT_BOND_TOO_LONG,
+                                        FAULT_SOLVENT_SPEED};
     if (k == 0)
       r.state.solvent.vx[7] = NAN;
     if (k == 1)

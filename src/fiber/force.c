@@ -117,7 +117,8 @@ struct fiber_energy fiber_energies(const struct state *state, const struct model
     e.bond += bond_energy(kind, vec3_norm(r));
     if (kind->bending != 0.0 && model->prev[j] >= 0) {
       struct vec3 before = fiber_bond(state, model, (uint32_t)model->prev[j]);
-      e.bend += bend_energy(kind, vec3_dot(before, r) / (vec3_norm(before) * vec3_norm(r)));
+      double lengths = vec3_norm(before) * vec3_norm(r);
+      e.bend += bend_energy(kind, lengths > 0.0 ? vec3_dot(before, r) / lengths : 0.0); /* as the forces have it */
     }
   }
   return e;

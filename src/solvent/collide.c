@@ -30,9 +30,39 @@ static uint64_t sum_cells(const struct state *state, const struct model *model, 
   return span;
 }
 
+/* The size of a velocity's largest component; infinite if one is not a number. */
+static double largest_component(struct vec3 v)
+{
+  double largest = fmax(fabs(v.x), fmax(fabs(v.y), fabs(v.z)));
+  return isnan(v.x + v.y + v.z) ? INFINITY : largest;
+}
+
+/* Records who has the largest momentum of all. */
+static bool blame_fastest(const struct state *state, const struct model *model, struct work *work, double limit,
+                          uint64_t step)
+{
+  const struct solvent *s = &state->solvent;
+  enum fault_code code = FAULT_SOLVENT_SPEED;
+  int64_t who = -1;
+  double most = 0.0;
+  for (uint32_t i = 0; i < s->n; i++)
+    if (largest_component(solvent_velocity(s, i)) > most) {
+      most = largest_component(solvent_velocity(s, i));
+      who = s->id[i];
+    }
+  for (uint32_t v = 0; v < state->vertices; v++)
+    if (model->mass[v] * largest_component(state->velocity[v]) > most) {
+      most = model->mass[v] * largest_component(state->velocity[v]);
+      code = FAULT_VERTEX_SPEED;
+      who = v;
+    }
+  return work_fault(work, code, step, who, most, limit);
+}
+
 /* The sums are right if members times the largest momentum fits in 63 bits, and members times the largest mass in
  * 40. */
-static bool check_range(const struct model *model, struct work *work, uint64_t span, uint64_t step)
+static bool check_range(const struct state *state, const struct model *model, struct work *work, uint64_t span,
+                        uint64_t step)
 {
   const struct cell_sum *sum = work->collision.sum;
   const int64_t cells = box_cell_count(&model->box);
@@ -43,13 +73,12 @@ static bool check_range(const struct model *model, struct work *work, uint64_t s
       most = srd_members(&sum[k]);
       where = k;
     }
-  double largest = ((double)span + 1.0) * SRD_MOMENTUM_UNIT;
   double limit = 0x1p63 * SRD_MOMENTUM_UNIT / most;
-  if (!(largest < limit))
-    return work_fault(work, FAULT_CELL_RANGE, step, where, largest, limit);
-  if (!(most * model->max_mass < 0x1p24))
-    return work_fault(work, FAULT_CELL_RANGE, step, where, most * model->max_mass, 0x1p24);
-  return true;
+  if (!(((double)span + 1.0) * SRD_MOMENTUM_UNIT < limit))
+    return blame_fastest(state, model, work, limit, step);
+  const double heaviest = 0x1p40 * SRD_MASS_UNIT;
+  return most * model->max_mass < heaviest ||
+         work_fault(work, FAULT_CELL_MASS, step, where, most * model->max_mass, heaviest);
 }
 
 static void solve_cells(const struct model *model, struct work *work, uint64_t step)
@@ -63,6 +92,12 @@ static void solve_cells(const struct model *model, struct work *work, uint64_t s
   }
 }
 
+/* Wraps where a sum of int64 may not; whether it has is seen afterwards. */
+static void add_energy(int64_t *sum, double energy)
+{
+  *sum = (int64_t)((uint64_t)*sum + (uint64_t)llrint(RELATIVE_SCALE * energy));
+}
+
 /* Twice the kinetic energy of each cell's members relative to its v_cm, summed in integers as the momenta are. */
 static bool sum_relative_energy(const struct state *state, const struct model *model, struct work *work, uint64_t step)
 {
@@ -73,15 +108,15 @@ static bool sum_relative_energy(const struct state *state, const struct model *m
   for (uint32_t i = 0; i < s->n; i++) {
     struct vec3 w = vec3_sub(solvent_velocity(s, i), c->turn[c->solvent_cell[i]].center);
     total += vec3_dot(w, w);
-    c->relative[c->solvent_cell[i]] += llrint(RELATIVE_SCALE * vec3_dot(w, w));
+    add_energy(&c->relative[c->solvent_cell[i]], vec3_dot(w, w));
   }
   for (uint32_t v = 0; v < state->vertices; v++) {
     struct vec3 w = vec3_sub(state->velocity[v], c->turn[c->vertex_cell[v]].center);
     total += model->mass[v] * vec3_dot(w, w);
-    c->relative[c->vertex_cell[v]] += llrint(RELATIVE_SCALE * model->mass[v] * vec3_dot(w, w));
+    add_energy(&c->relative[c->vertex_cell[v]], model->mass[v] * vec3_dot(w, w));
   }
   const double limit = 0x1p62 / RELATIVE_SCALE; /* if all of them fit, so does each cell */
-  return total < limit || work_fault(work, FAULT_CELL_RANGE, step, -1, total, limit);
+  return total < limit || blame_fastest(state, model, work, sqrt(limit), step);
 }
 
 /* Inlined twice, with quarter a constant in each. */
@@ -121,7 +156,7 @@ static void turn_by_angle(struct state *state, const struct model *model, const 
 bool solvent_collide(struct state *state, const struct model *model, struct work *work, uint64_t step)
 {
   solvent_bin(state, model, work, solvent_grid_shift(model, step));
-  if (!check_range(model, work, sum_cells(state, model, work), step))
+  if (!check_range(state, model, work, sum_cells(state, model, work), step))
     return false;
   solve_cells(model, work, step);
   if (model->solvent.thermostat != THERMOSTAT_NONE) {

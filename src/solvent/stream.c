@@ -8,7 +8,8 @@ static int64_t stream_component(uint32_t n, int64_t *restrict x, double *restric
   const double gain = a * t;
   int64_t outside = 0;
   for (uint32_t i = 0; i < n; i++) {
-    int64_t p = x[i] + state_flight(v[i], a, t);
+    int64_t p =
+        (int64_t)((uint64_t)x[i] + (uint64_t)state_flight(v[i], a, t)); /* wraps, where a sum of int64 may not */
     p += p < 0 ? edge : 0;
     p -= p >= edge ? edge : 0;
     outside |= p | (int64_t)((uint64_t)(edge - 1) - (uint64_t)p);

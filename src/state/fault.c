@@ -8,7 +8,9 @@ static const struct {
 } wording[] = {
     [FAULT_NONE] = {"", "nothing wrong", ""},
     [FAULT_SOLVENT_MOVE] = {"solvent particle", "moves too far in one collision interval:", "a0"},
-    [FAULT_CELL_RANGE] = {"collision cell", "exceeds the range of its momentum sum:", "m a0/t0"},
+    [FAULT_SOLVENT_SPEED] = {"solvent particle", "has a momentum beyond the range of its cell's sums:", "m a0/t0"},
+    [FAULT_VERTEX_SPEED] = {"vertex", "has a momentum beyond the range of its cell's sums:", "m a0/t0"},
+    [FAULT_CELL_MASS] = {"collision cell", "holds more mass than its sum can:", "m"},
     [FAULT_VERTEX_MOVE] = {"vertex", "moves too far in one time step:", "a0"},
     [FAULT_BOND_TOO_LONG] = {"bond", "is longer than half the shortest box edge:", "a0"},
     [FAULT_NO_MEMORY] = {"bond", "has more neighbor bonds than memory holds:", "entries"},

@@ -344,11 +344,14 @@ static void range_faults(void **unused)
                            &r.state.velocity[3].x, &r.state.velocity[0].y, &r.state.velocity[1].z};
     *component[k % 6] = v;
     assert_false(solvent_collide(&r.state, &r.model, &r.work, 17));
-    assert_int_equal(r.work.fault.code, FAULT_CELL_RANGE);
+    const bool solvent = k % 6 < 3;
+    const int64_t who[] = {r.state.solvent.id[3], r.state.solvent.id[0], r.state.solvent.id[26], 3, 0, 1};
+    assert_int_equal(r.work.fault.code, solvent ? FAULT_SOLVENT_SPEED : FAULT_VERTEX_SPEED);
+    assert_true(r.work.fault.entity == who[k % 6]);
     assert_true(r.work.fault.step == 17);
     char text[512];
     fault_describe(&r.work.fault, text, sizeof text);
-    assert_non_null(strstr(text, "step 17: collision cell"));
+    assert_non_null(strstr(text, solvent ? "step 17: solvent particle" : "step 17: vertex"));
     test_end(&r);
   }
   struct dice d = {1};

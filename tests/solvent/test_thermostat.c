@@ -179,7 +179,8 @@ static void energy_range_faults(void **unused)
     struct test_run r = thermostatted(THERMOSTAT_RESCALE, 90, 0.05, 1.0, &d);
     r.state.solvent.vy[0] = bad[k];
     assert_false(solvent_collide(&r.state, &r.model, &r.work, 4));
-    assert_int_equal(r.work.fault.code, FAULT_CELL_RANGE);
+    assert_int_equal(r.work.fault.code, FAULT_SOLVENT_SPEED);
+    assert_true(r.work.fault.entity == r.state.solvent.id[0]);
     test_end(&r);
   }
 }
