@@ -123,7 +123,7 @@ static enum exit_code take_option(struct arguments *a, int code)
   case OPTION_STRIDE:
     return take_number("stride", optarg, &a->export.stride);
   default:
-    return EXIT_BAD_INPUT; /* getopt_long has said why */
+    return usage_error("", "not such options"); /* getopt_long has said which */
   }
 }
 
@@ -218,6 +218,9 @@ static const struct command {
 static enum exit_code dispatch(const struct command *command, int count, char **words)
 {
   struct arguments a = {.export = {.last = UINT64_MAX, .stride = 1}};
+  char name[64]; /* under which getopt_long complains */
+  snprintf(name, sizeof name, "uncross %s", command->name);
+  words[0] = name;
   int code;
   while ((code = getopt_long(count, words, "", command->options, NULL)) != -1) {
     enum exit_code taken = take_option(&a, code);
