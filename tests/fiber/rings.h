@@ -37,22 +37,87 @@ static inline int linking_twice(const struct test_run *r, struct exact_test *x, 
   return twice;
 }
 
-enum { REACH = 1, IMAGES = 2 * REACH + 1 };
+enum { MOST_LINKS = 400 };
 
-/* Linking of all pairs of rings in all images nearby, a ring with its own images included. */
-static inline uint32_t linking_table(const struct test_run *r, struct exact_test *x, int *table)
+/* Two rings that are linked, the second in an image. */
+struct link {
+  uint32_t ring, other;
+  int64_t image[3], twice;
+};
+
+struct links {
+  uint32_t n;
+  uint64_t judged; /* pairs and images whose boxes overlap */
+  struct link link[MOST_LINKS];
+};
+
+static inline void ring_extent(const struct test_run *r, uint32_t ring, int64_t low[3], int64_t high[3])
 {
-  uint32_t n = 0;
+  for (int c = 0; c < 3; c++) {
+    low[c] = INT64_MAX;
+    high[c] = INT64_MIN;
+  }
+  for (uint32_t v = r->model.fiber_first[ring]; v < r->model.fiber_first[ring + 1]; v++) {
+    const int64_t at[3] = {r->state.position[v].x, r->state.position[v].y, r->state.position[v].z};
+    for (int c = 0; c < 3; c++) {
+      low[c] = at[c] < low[c] ? at[c] : low[c];
+      high[c] = at[c] > high[c] ? at[c] : high[c];
+    }
+  }
+}
+
+/* Linking of one pair in all images in which the boxes around them overlap. */
+static inline void link_pair(const struct test_run *r, struct exact_test *x, uint32_t one, uint32_t other,
+                             struct links *links)
+{
+  int64_t low[3], high[3], low2[3], high2[3], from[3], to[3];
   const int64_t *edge = r->model.box.edge;
+  ring_extent(r, one, low, high);
+  ring_extent(r, other, low2, high2);
+  for (int c = 0; c < 3; c++) {
+    from[c] = -floor_divide(high2[c] - low[c], edge[c]);
+    to[c] = floor_divide(high[c] - low2[c], edge[c]);
+  }
+  for (int64_t i = from[0]; i <= to[0]; i++)
+    for (int64_t j = from[1]; j <= to[1]; j++)
+      for (int64_t k = from[2]; k <= to[2]; k++) {
+        if (one == other && i == 0 && j == 0 && k == 0)
+          continue;
+        const int twice = linking_twice(r, x, one, other, (struct point){i * edge[0], j * edge[1], k * edge[2]});
+        assert_true(twice % 2 == 0);
+        links->judged++;
+        if (twice == 0)
+          continue;
+        assert_true(links->n < MOST_LINKS);
+        links->link[links->n++] = (struct link){one, other, {i, j, k}, twice};
+      }
+}
+
+/* All links between rings, those of a ring with its own images included. */
+static inline void find_links(const struct test_run *r, struct exact_test *x, struct links *links)
+{
+  memset(links, 0, sizeof *links);
   for (uint32_t a = 0; a < r->model.fibers; a++)
     for (uint32_t b = a; b < r->model.fibers; b++)
-      for (int k = 0; k < IMAGES * IMAGES * IMAGES; k++) {
-        const struct point shift = {(k % IMAGES - REACH) * edge[0], (k / IMAGES % IMAGES - REACH) * edge[1],
-                                    (k / IMAGES / IMAGES - REACH) * edge[2]};
-        if (a != b || shift.x || shift.y || shift.z)
-          table[n++] = linking_twice(r, x, a, b, shift);
-      }
-  return n;
+      link_pair(r, x, a, b, links);
+}
+
+/* A model of rings that start at these places. */
+static inline struct model ring_model(int cells, double per_cell, double dt, uint32_t rings, uint32_t vertices,
+                                      const struct vec3 *center, const struct vec3 *direction)
+{
+  struct model m = test_model(cells, cells, cells, per_cell, dt, 2);
+  m.solvent.thermostat = per_cell > 0.0 ? THERMOSTAT_RESCALE : THERMOSTAT_NONE;
+  struct fiber_kind *k = test_add_kind(&m, rings, vertices);
+  k->ring = true;
+  k->bending = 2.0;
+  k->start = START_CIRCLE;
+  k->placed = rings;
+  k->center = malloc(rings * sizeof *k->center);
+  k->direction = malloc(rings * sizeof *k->direction);
+  memcpy(k->center, center, rings * sizeof *center);
+  memcpy(k->direction, direction, rings * sizeof *direction);
+  return m;
 }
 
 /* Rings 0 and 1 form a Hopf link across the corner of the box (ring 1 is placed an image away), rings 2 and 3 lie about
@@ -60,45 +125,28 @@ static inline uint32_t linking_table(const struct test_run *r, struct exact_test
 static inline struct test_run linked_rings(double per_cell, double dt, enum exclusion exclusion, bool forbidden,
                                            uint64_t seed)
 {
-  struct model m = test_model(4, 4, 4, per_cell, dt, 2);
+  const struct vec3 center[4] = {{0.1, 0.2, 4.1}, {1.3 - 4.0, 0.2, 0.1}, {2.2, 2.2, 1.7}, {2.0, 2.6, 3.0}};
+  const struct vec3 direction[4] = {{0.1, 0.13, 1}, {0.07, 1, 0.11}, {1, 0.2, 0.3}, {1, 1, 0.17}};
+  struct model m = ring_model(4, per_cell, dt, 4, 14, center, direction);
   m.seed = seed;
   m.crossing.exclusion = exclusion;
   m.crossing.forbidden = forbidden;
-  m.solvent.thermostat = per_cell > 0.0 ? THERMOSTAT_RESCALE : THERMOSTAT_NONE;
-  struct fiber_kind *k = test_add_kind(&m, 4, 14);
-  k->ring = true;
-  k->bending = 2.0;
-  k->start = START_CIRCLE;
-  k->placed = 4;
-  k->center = malloc(4 * sizeof *k->center);
-  k->direction = malloc(4 * sizeof *k->direction);
-  const struct vec3 center[4] = {{0.1, 0.2, 4.1}, {1.3 - 4.0, 0.2, 0.1}, {2.2, 2.2, 1.7}, {2.0, 2.6, 3.0}};
-  const struct vec3 direction[4] = {{0.1, 0.13, 1}, {0.07, 1, 0.11}, {1, 0.2, 0.3}, {1, 1, 0.17}};
-  memcpy(k->center, center, sizeof center);
-  memcpy(k->direction, direction, sizeof direction);
   return test_start(m);
 }
 
-/* Returns how often the table of linking numbers was found changed. */
+/* Returns how often the links were found changed: looked at every 100 steps. */
 static inline uint32_t follow_links(struct test_run *r, uint64_t steps, uint64_t *executed)
 {
   struct exact_test x;
   exact_open(&x);
-  int start[10 * IMAGES * IMAGES * IMAGES], now[10 * IMAGES * IMAGES * IMAGES];
-  const uint32_t n = linking_table(r, &x, start);
-  uint32_t links = 0, changed = 0;
-  for (uint32_t k = 0; k < n; k++) {
-    assert_true(start[k] == 0 || abs(start[k]) == 2);
-    links += start[k] != 0;
-  }
-  print_message("  %u pairs of rings, images included, %u of them linked\n", n, links);
-  assert_true(links >= 1);
+  struct links start, now;
+  uint32_t changed = 0;
+  find_links(r, &x, &start);
+  assert_true(start.n >= 1);
   for (uint64_t done = 0; done < steps; done += 100) {
     test_steps(r, 100);
-    linking_table(r, &x, now);
-    for (uint32_t k = 0; k < n; k++)
-      assert_true(now[k] % 2 == 0);
-    changed += memcmp(now, start, n * sizeof *now) != 0;
+    find_links(r, &x, &now);
+    changed += now.n != start.n || memcmp(now.link, start.link, now.n * sizeof *now.link) != 0;
   }
   exact_close(&x);
   *executed = r->state.counts.executed;
