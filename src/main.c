@@ -123,7 +123,7 @@ static enum exit_code take_option(struct arguments *a, int code)
   case OPTION_STRIDE:
     return take_number("stride", optarg, &a->export.stride);
   default:
-    return usage_error("", "not such options"); /* getopt_long has said which */
+    return usage_error("wrong options", ""); /* getopt_long has said which */
   }
 }
 
