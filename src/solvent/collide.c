@@ -1,3 +1,5 @@
+#include "solvent/collide.h"
+
 #include <string.h>
 
 #include "solvent/solvent.h"
@@ -81,7 +83,7 @@ static bool check_range(const struct state *state, const struct model *model, st
          work_fault(work, FAULT_CELL_MASS, step, where, most * model->max_mass, heaviest);
 }
 
-static void solve_cells(const struct model *model, struct work *work, uint64_t step)
+void collide_solve(const struct model *model, struct work *work, uint64_t step)
 {
   struct collision_work *c = &work->collision;
   const int64_t cells = box_cell_count(&model->box);
@@ -153,18 +155,33 @@ static void turn_by_angle(struct state *state, const struct model *model, const 
   turn_members(state, model, work, false);
 }
 
+bool collide_sum(const struct state *state, const struct model *model, struct work *work, uint64_t step)
+{
+  return check_range(state, model, work, sum_cells(state, model, work), step);
+}
+
+bool collide_thermostat(const struct state *state, const struct model *model, struct work *work, uint64_t step)
+{
+  if (!sum_relative_energy(state, model, work, step))
+    return false;
+  thermostat_factors(work, model, step);
+  return true;
+}
+
+void collide_turn(struct state *state, const struct model *model, const struct work *work)
+{
+  (model->solvent.cosine == 0.0 ? turn_quarter : turn_by_angle)(state, model, work);
+}
+
 bool solvent_collide(struct state *state, const struct model *model, struct work *work, uint64_t step)
 {
   solvent_bin(state, model, work, solvent_grid_shift(model, step));
-  if (!check_range(state, model, work, sum_cells(state, model, work), step))
+  if (!collide_sum(state, model, work, step))
     return false;
-  solve_cells(model, work, step);
-  if (model->solvent.thermostat != THERMOSTAT_NONE) {
-    if (!sum_relative_energy(state, model, work, step))
-      return false;
-    thermostat_factors(work, model, step);
-  }
-  (model->solvent.cosine == 0.0 ? turn_quarter : turn_by_angle)(state, model, work);
+  collide_solve(model, work, step);
+  if (model->solvent.thermostat != THERMOSTAT_NONE && !collide_thermostat(state, model, work, step))
+    return false;
+  collide_turn(state, model, work);
   if (!model->solvent.hydrodynamics)
     solvent_swap_velocities(state, model, work, step);
   if (work->collision.since_sort++ % COLLISIONS_PER_SORT == 0)
