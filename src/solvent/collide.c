@@ -39,26 +39,31 @@ static double largest_component(struct vec3 v)
   return isnan(v.x + v.y + v.z) ? INFINITY : largest;
 }
 
-/* Records who has the largest momentum of all. */
+struct fastest {
+  double momentum; /* the largest component */
+  enum fault_code code;
+  int64_t who;
+};
+
+/* Who has the largest momentum of all. */
+static struct fastest find_fastest(const struct state *state, const struct model *model)
+{
+  const struct solvent *s = &state->solvent;
+  struct fastest f = {0.0, FAULT_SOLVENT_SPEED, -1};
+  for (uint32_t i = 0; i < s->n; i++)
+    if (largest_component(solvent_velocity(s, i)) > f.momentum)
+      f = (struct fastest){largest_component(solvent_velocity(s, i)), FAULT_SOLVENT_SPEED, s->id[i]};
+  for (uint32_t v = 0; v < state->vertices; v++)
+    if (model->mass[v] * largest_component(state->velocity[v]) > f.momentum)
+      f = (struct fastest){model->mass[v] * largest_component(state->velocity[v]), FAULT_VERTEX_SPEED, v};
+  return f;
+}
+
 static bool blame_fastest(const struct state *state, const struct model *model, struct work *work, double limit,
                           uint64_t step)
 {
-  const struct solvent *s = &state->solvent;
-  enum fault_code code = FAULT_SOLVENT_SPEED;
-  int64_t who = -1;
-  double most = 0.0;
-  for (uint32_t i = 0; i < s->n; i++)
-    if (largest_component(solvent_velocity(s, i)) > most) {
-      most = largest_component(solvent_velocity(s, i));
-      who = s->id[i];
-    }
-  for (uint32_t v = 0; v < state->vertices; v++)
-    if (model->mass[v] * largest_component(state->velocity[v]) > most) {
-      most = model->mass[v] * largest_component(state->velocity[v]);
-      code = FAULT_VERTEX_SPEED;
-      who = v;
-    }
-  return work_fault(work, code, step, who, most, limit);
+  const struct fastest f = find_fastest(state, model);
+  return work_fault(work, f.code, step, f.who, f.momentum, limit);
 }
 
 /* The sums are right if members times the largest momentum fits in 63 bits, and members times the largest mass in
@@ -76,8 +81,9 @@ static bool check_range(const struct state *state, const struct model *model, st
       where = k;
     }
   double limit = 0x1p63 * SRD_MOMENTUM_UNIT / most;
-  if (!(((double)span + 1.0) * SRD_MOMENTUM_UNIT < limit))
-    return blame_fastest(state, model, work, limit, step);
+  if (!(((double)span + 1.0) * SRD_MOMENTUM_UNIT < limit)) /* the span may be up to twice the largest momentum */
+    if (!(find_fastest(state, model).momentum + SRD_MOMENTUM_UNIT < limit))
+      return blame_fastest(state, model, work, limit, step);
   const double heaviest = 0x1p40 * SRD_MASS_UNIT;
   return most * model->max_mass < heaviest ||
          work_fault(work, FAULT_CELL_MASS, step, where, most * model->max_mass, heaviest);

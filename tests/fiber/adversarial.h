@@ -201,15 +201,23 @@ static inline void audit_sweeps(uint64_t seed, uint64_t suspensions)
   const struct {
     const char *name;
     double size;
-    int sweeps;
-  } kinds[] = {{"moves of 0.02", 0.02, 8}, {"moves of 0.1", 0.1, 6}, {"moves of 0.3", 0.3, 2}, {"touches", 0.0, 2}};
+    int sweeps, edge;
+    uint32_t fibers;
+  } kinds[] = {{"moves of 0.02", 0.02, 8, 4, 40},
+               {"moves of 0.1", 0.1, 6, 4, 40},
+               {"moves of 0.2", 0.2, 2, 4, 40},
+               {"moves of 0.5", 0.5, 1, 6, 100},
+               {"touches", 0.0, 2, 4, 40}};
   print_message("  %-14s %9s %9s %9s %9s  none missed, none invented\n", "", "moves", "hits", "executed", "touches");
-  for (int kind = 0; kind < 4; kind++) {
+  for (int kind = 0; kind < 5; kind++) {
+    const int edge = kinds[kind].edge;
+    const uint32_t fibers = kinds[kind].fibers;
     struct reference total = {.seed = 0, .by_convention = kinds[kind].size == 0.0};
     for (uint64_t k = 0; k < suspensions; k++) {
       struct dice d = {seed + 10 * k};
-      struct test_run r = total.by_convention ? coarse(4, 40, 8, &d) : dense(5, 4, 4, 40, 8, 0.54, &d);
-      compare_sweeps(&r, &d, kinds[kind].sweeps, kinds[kind].size, d.state, &total);
+      struct test_run r =
+          total.by_convention ? coarse(edge, fibers, 8, &d) : dense(edge, edge, edge, fibers, 8, 0.54, &d);
+      compare_sweeps(&r, &d, kinds[kind].sweeps, kinds[kind].size, seed + 10 * k, &total);
       test_end(&r);
     }
     const struct collision_counts *c = &total.counts;
