@@ -22,6 +22,8 @@ OBJECTS := $(SOURCES:%.c=$(BUILD)/%.o)
 LIBRARY := $(BUILD)/libuncross.a
 TESTS   := $(sort $(shell find tests -name 'test_*.c'))
 TEST_PROGRAMS    := $(TESTS:%.c=$(BUILD)/%)
+STRESS           := $(sort $(wildcard tests/stress/stress_*.c))
+STRESS_PROGRAMS  := $(STRESS:%.c=$(BUILD)/%)
 MEASURES         := $(sort $(wildcard validation/measure/*.c))
 MEASURE_PROGRAMS := $(MEASURES:%.c=$(BUILD)/%)
 
@@ -33,6 +35,7 @@ help:
 	@echo 'make                 builds $(BUILD)/uncross'
 	@echo 'make demo            installs what it needs, builds, runs the paper'\''s semidilute system for a minute, writes a page'
 	@echo 'make check           installs what it needs, builds, runs all tests'
+	@echo 'make stress          long runs: exact audit, linking numbers, 10^7 steps (some minutes)'
 	@echo 'make lint            formatting, warnings of gcc and clang, static checks, include floors, equation table'
 	@echo 'make measure         builds the programs behind docs/accuracy.md'
 	@echo 'make install         PREFIX=$(PREFIX) DESTDIR=$(DESTDIR)'
@@ -100,6 +103,15 @@ check:
 	$(MAKE) -j2 tests
 	tests/run $(BUILD)
 
+.PHONY: stress
+stress:
+	tools/install-dependencies run test
+	$(MAKE) -j2 stress-programs
+	tests/run --stress $(BUILD)
+
+.PHONY: stress-programs
+stress-programs: $(BUILD)/uncross $(STRESS_PROGRAMS)
+
 .PHONY: lint
 lint:
 	tools/install-dependencies run test lint
@@ -115,4 +127,4 @@ demo:
 clean:
 	rm -rf $(BUILD)
 
--include $(OBJECTS:.o=.d) $(TEST_PROGRAMS:=.d) $(MEASURE_PROGRAMS:=.d)
+-include $(OBJECTS:.o=.d) $(TEST_PROGRAMS:=.d) $(STRESS_PROGRAMS:=.d) $(MEASURE_PROGRAMS:=.d)

@@ -1,0 +1,94 @@
+/* Linking numbers of rings through 1.2 million steps in all: Hopf links, chains of three, unlinked rings, many rings in
+ * a small box; across the boundary, at several dt, with and without solvent. */
+#include "stress.h"
+
+#include "fiber/rings.h"
+
+/* Three rings in a chain across the corner of the box, and a fourth about them. */
+static struct model chain(double per_cell, double dt)
+{
+  const struct vec3 center[4] = {{0.1, 0.1, 0.1}, {1.3, 0.1, 0.2}, {2.5 - 4.0, 0.2, 4.1}, {2.0, 2.3, 2.2}};
+  const struct vec3 direction[4] = {{0.1, 0.13, 1}, {0.07, 1, 0.11}, {0.12, 0.09, 1}, {1, 1, 0.17}};
+  return ring_model(4, per_cell, dt, 4, 14, center, direction);
+}
+
+/* Two linked, two not, all touching their images. */
+static struct model pairs(double per_cell, double dt)
+{
+  const struct vec3 center[4] = {{0.1, 0.2, 4.1}, {1.3 - 4.0, 0.2, 0.1}, {2.2, 2.2, 1.7}, {2.0, 2.6, 3.0}};
+  const struct vec3 direction[4] = {{0.1, 0.13, 1}, {0.07, 1, 0.11}, {1, 0.2, 0.3}, {1, 1, 0.17}};
+  return ring_model(4, per_cell, dt, 4, 14, center, direction);
+}
+
+/* Sixteen rings at random in a box hardly wider than one. */
+static struct model dense_rings(double per_cell, double dt)
+{
+  struct vec3 center[16], direction[16];
+  struct dice d = {dice_seed(2601)};
+  for (int k = 0; k < 16; k++) {
+    center[k].x = dice_between(&d, 0, 3);
+    center[k].y = dice_between(&d, 0, 3);
+    center[k].z = dice_between(&d, 0, 3);
+    direction[k] = dice_direction(&d);
+  }
+  return ring_model(3, per_cell, dt, 16, 10, center, direction);
+}
+
+static const struct scene {
+  const char *name;
+  struct model (*make)(double per_cell, double dt);
+  double per_cell, dt;
+  uint64_t runs; /* of 20 000 steps each: without solvent nothing takes the heat of the exchanges */
+} scenes[] = {
+    {"pairs", pairs, 0, 0.005, 5},      {"pairs", pairs, 0, 0.01, 5},       {"pairs", pairs, 0, 0.02, 5},
+    {"pairs", pairs, 3, 0.005, 4},      {"pairs", pairs, 3, 0.01, 4},       {"pairs", pairs, 3, 0.02, 4},
+    {"chain", chain, 0, 0.005, 5},      {"chain", chain, 0, 0.01, 5},       {"chain", chain, 0, 0.02, 5},
+    {"chain", chain, 3, 0.005, 4},      {"chain", chain, 3, 0.01, 4},       {"chain", chain, 3, 0.02, 4},
+    {"dense", dense_rings, 0, 0.01, 2}, {"dense", dense_rings, 3, 0.01, 2}, {"dense", dense_rings, 3, 0.02, 2},
+};
+enum { SCENES = sizeof scenes / sizeof scenes[0] };
+
+static void follow(const struct scene *scene, uint64_t *steps)
+{
+  const uint64_t each = scaled_count(20000);
+  uint64_t executed = 0;
+  uint32_t links = 0;
+  for (uint64_t run = 0; run < scene->runs; run++) {
+    struct model m = scene->make(scene->per_cell, scene->dt);
+    m.seed = dice_seed(2602) + 100 * run;
+    m.crossing.exclusion = run % 2 ? EXCLUSION_PAPER : EXCLUSION_SHARED_VERTEX;
+    struct test_run r = test_start(m);
+    uint64_t prevented;
+    if (follow_links(&r, each, &prevented) > 0)
+      fail_msg("%s, dt %g, gamma %g, run %lu: a linking number changes", scene->name, scene->dt, scene->per_cell,
+               (unsigned long)run);
+    executed += prevented;
+    *steps += each;
+    struct exact_test x;
+    struct links now;
+    exact_open(&x);
+    find_links(&r, &x, &now);
+    links = now.n;
+    exact_close(&x);
+    test_end(&r);
+  }
+  print_message("  %-6s gamma %g dt %-6g %2u links kept through %lu steps, %lu crossings prevented\n", scene->name,
+                scene->per_cell, scene->dt, links, (unsigned long)(scene->runs * each), (unsigned long)executed);
+}
+
+static void links_are_kept(void **unused)
+{
+  (void)unused;
+  uint64_t steps = 0;
+  for (int k = 0; k < SCENES; k++)
+    follow(&scenes[k], &steps);
+  print_message("  %lu steps in all\n", (unsigned long)steps);
+  assert_true(stress_scale < 1.0 || steps >= 1000000);
+}
+
+int main(int argc, char **argv)
+{
+  stress_arguments(argc, argv);
+  const struct CMUnitTest tests[] = {cmocka_unit_test(links_are_kept)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
