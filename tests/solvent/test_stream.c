@@ -106,11 +106,13 @@ static void faces_wrap(void **unused)
   (void)unused;
   struct dice d = {1};
   const int64_t edge = 3 * LATTICE_CELL;
-  for (int64_t back = -1; back <= 1; back++) {
+  for (int k = 0; k < 6; k++) {
+    const int64_t back = k % 3 - 1;
+    const double v = k < 3 ? 1.0 : 7.0; /* half a cell, or a box edge more: wrapped once, it still lies outside */
     struct test_run r = dice_run(test_model(3, 3, 3, 1, 0.5, 2), &d);
     r.state.solvent.x[0] = edge - LATTICE_CELL / 2 + back;
     r.state.solvent.y[0] = LATTICE_CELL / 2 + back;
-    set_solvent_v(&r.state, 0, (struct vec3){1, -1, 0});
+    set_solvent_v(&r.state, 0, (struct vec3){v, -v, 0});
     r.state.solvent_lag = 2;
     assert_true(solvent_stream(&r.state, &r.model, &r.work));
     assert_true(r.state.solvent.x[0] == (back < 0 ? edge + back : back));
