@@ -46,7 +46,11 @@ static bool collide(struct state *state, const struct model *model, struct work 
   return solvent_stream(state, model, work) && solvent_collide(state, model, work, step);
 }
 
-bool step_advance(struct state *state, const struct model *model, struct work *work, const struct sweep_log *log)
+static const char *const action_names[] = {
+    [END] = "end", [DRIFT] = "drift", [COLLIDE] = "collide", [FORCE] = "force", [KICK] = "kick"};
+
+bool step_advance_watched(struct state *state, const struct model *model, struct work *work,
+                          const struct sweep_log *log, const struct step_watch *watch)
 {
   const uint64_t step = state->step + 1;
   const struct stage *stage = step_collides(model, step) ? with_collision[model->order] : without_collision;
@@ -70,9 +74,16 @@ bool step_advance(struct state *state, const struct model *model, struct work *w
     case END:
       break;
     }
+    if (watch)
+      watch->look(watch->context, action_names[stage->action], state);
   }
   state->step = step;
   return ok;
+}
+
+bool step_advance(struct state *state, const struct model *model, struct work *work, const struct sweep_log *log)
+{
+  return step_advance_watched(state, model, work, log, NULL);
 }
 
 /* Takes the total momentum out of the state and gives it the flow's: the same change of velocity for everybody. */

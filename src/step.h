@@ -11,6 +11,17 @@
  * False, with work->fault saying why, if the step cannot be made; the state is then not to be used any more. */
 bool step_advance(struct state *state, const struct model *model, struct work *work, const struct sweep_log *log);
 
+/* Who looks at the state after each stage of a step (drift, collide, force, kick), while state->step is still the one
+ * before; NULL in runs. */
+struct step_watch {
+  void (*look)(void *context, const char *stage, const struct state *state);
+  void *context;
+};
+
+/* The same step, watched. */
+bool step_advance_watched(struct state *state, const struct model *model, struct work *work,
+                          const struct sweep_log *log, const struct step_watch *watch);
+
 /* True if a collision belongs to step number `step` (the first step is number 1). */
 static inline bool step_collides(const struct model *model, uint64_t step)
 {
