@@ -38,6 +38,7 @@ help:
 	@echo 'make stress          long runs: exact audit, linking numbers, 10^7 steps (some minutes)'
 	@echo 'make lint            formatting, warnings of gcc and clang, static checks, include floors, equation table'
 	@echo 'make measure         builds the programs behind docs/accuracy.md'
+	@echo 'make fuzz            the fuzzer of scenes, checkpoints and trajectories, for SECONDS=60'
 	@echo 'make install         PREFIX=$(PREFIX) DESTDIR=$(DESTDIR)'
 	@echo 'make clean           removes $(BUILD)'
 	@echo 'variables            CC=gcc|clang  MARCH=native|x86-64|...  BUILD=folder'
@@ -85,13 +86,27 @@ $(BUILD)/tests/%: tests/%.c $(LIBRARY) Makefile
 	@echo '  CC $<'
 	@$(CC) $(ALL_CFLAGS) -Itests -MMD -MP $< $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
 
+# Memory, files and HDF5 that fail on demand (tests/faults/inject.h): the program, and the tests of tests/faults.
+INJECTOR := $(BUILD)/tests/faults/inject.o
+INJECT    = $(INJECTOR) $$(nm $(INJECTOR) | sed -n 's/.* T __wrap_/-Wl,--wrap=/p')
+$(INJECTOR): INCLUDES += -Itests
+
+$(BUILD)/uncross-faults: $(TOP) $(LIBRARY) $(INJECTOR)
+	@echo '  LD $@'
+	@$(CC) $(ALL_CFLAGS) $(TOP) $(INJECT) $(LIBRARY) $(LIBS) -o $@
+
+$(BUILD)/tests/faults/test_%: tests/faults/test_%.c $(LIBRARY) $(INJECTOR) Makefile
+	@mkdir -p $(@D)
+	@echo '  CC $<'
+	@$(CC) $(ALL_CFLAGS) -Itests -MMD -MP $< $(INJECT) $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
+
 $(BUILD)/validation/measure/%: validation/measure/%.c $(LIBRARY) Makefile
 	@mkdir -p $(@D)
 	@echo '  CC $<'
 	@$(CC) $(ALL_CFLAGS) -Itests -MMD -MP $< $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
 
 .PHONY: tests
-tests: $(BUILD)/uncross $(TEST_PROGRAMS)
+tests: $(BUILD)/uncross $(BUILD)/uncross-faults $(TEST_PROGRAMS)
 
 .PHONY: measure
 measure: $(MEASURE_PROGRAMS)
@@ -122,6 +137,24 @@ demo:
 	tools/install-dependencies run demo
 	$(MAKE) -j2 $(BUILD)/uncross
 	tools/demo $(BUILD)/uncross $(BUILD)/demo
+
+# The same sources and tests under other flags, each in a folder of its own. Physics tests are long and add nothing here.
+EXACT_TESTS := $(filter-out tests/physics/% tests/stress/%,$(TESTS))
+
+# Inputs that find something new go to build/fuzz/corpus; what was found is a file crash-* there, which FUZZ=file runs again.
+SECONDS ?= 60
+FUZZ    ?= -max_total_time=$(SECONDS) build/fuzz/corpus tests/fuzz/corpus
+.PHONY: fuzz
+fuzz:
+	tools/install-dependencies run hard
+	$(MAKE) -j2 CC=clang BUILD=build/fuzz OPTIMIZE=-O1 CFLAGS='-g -fsanitize=fuzzer-no-link,address,undefined \
+	   -fno-sanitize-recover=all' build/fuzz/readers
+	mkdir -p build/fuzz/corpus
+	TMPDIR=build/fuzz LSAN_OPTIONS=suppressions=tests/fuzz/leaks:print_suppressions=0 build/fuzz/readers -artifact_prefix=build/fuzz/ -max_len=4096 -timeout=10 -print_final_stats=1 $(FUZZ)
+
+$(BUILD)/readers: $(BUILD)/tests/fuzz/fuzz_readers.o $(LIBRARY)
+	@echo '  LD $@'
+	@$(CC) $(ALL_CFLAGS) -fsanitize=fuzzer $^ $(LIBS) -o $@
 
 .PHONY: clean
 clean:

@@ -76,9 +76,10 @@ enum exit_code run_analyze(const char *path, const char *folder)
   enum exit_code code = EXIT_BAD_INPUT;
   struct trajectory *frames = trajectory_open_read(path, &message);
   char *text = frames ? trajectory_scene_text(frames) : NULL;
-  if (frames && !text)
-    message_set(&message, "%s: holds no scene; only trajectories that uncross wrote can be analyzed", path);
-  if (text && scene_read_text(path, text, strlen(text), &scene, &message)) {
+  bool ours = text && trajectory_has_steps(frames);
+  if (frames && !ours)
+    message_set(&message, "%s: holds no scene or no steps; only trajectories that uncross wrote can be analyzed", path);
+  if (ours && scene_read_text(path, text, strlen(text), &scene, &message)) {
     code = analyze(&scene, frames, folder, &message);
     scene_free(&scene);
   }

@@ -96,6 +96,7 @@ static void apply_options(struct run *run)
 static enum exit_code start_from_snapshot(struct run *run)
 {
   char *path = scene_snapshot_path(&run->scene);
+  message_set(&run->message, "no memory for the path of the snapshot");
   bool ok = path && snapshot_read_start(path, &run->scene.model, &run->state, &run->message);
   free(path);
   if (!ok)
@@ -171,6 +172,8 @@ static bool save(struct run *run, const char *status, const char *reason)
                                 run->head.start_energy,
                                 run->head.start_momentum};
   run->last_checkpoint = clock_seconds();
+  if (run->head.state_hash == 0)
+    return message_set(&run->message, "no memory for the hash of the state");
   return output_flush(&run->output, &run->message) &&
          checkpoint_write(path, &run->head, &run->scene.model, &run->state, blocks, count, run->scene.text,
                           &run->message) &&
@@ -232,8 +235,11 @@ static enum exit_code run_in_folder(struct run *run)
   if (!folder_make(run->options->folder, &run->message))
     return complain(run, EXIT_BAD_INPUT);
   message_set(&run->message, "%s", "");
-  if (!output_open(&run->output, &run->scene, run->options->folder, resume, run->state.step, &run->message))
+  if (!output_open(&run->output, &run->scene, run->options->folder, resume, run->state.step, &run->message)) {
+    struct message ignored;
+    output_close(&run->output, &ignored);
     return complain(run, EXIT_NOT_WRITTEN);
+  }
   if (run->message.text[0] != '\0') /* opened all the same, with something to say */
     complain(run, EXIT_DONE);
   watch_signals();
@@ -247,8 +253,10 @@ static enum exit_code run_in_folder(struct run *run)
 enum exit_code run_scene(const struct run_options *options)
 {
   struct run *run = calloc(1, sizeof *run);
-  if (!run)
+  if (!run) {
+    fprintf(stderr, "uncross: no memory to begin with\n");
     return EXIT_TROUBLE;
+  }
   run->options = options;
   enum exit_code code = EXIT_TROUBLE;
   if (!scene_read(options->scene, &run->scene, &run->message) || !check_folder(options, &run->message)) {

@@ -245,6 +245,8 @@ bool checkpoint_write(const char *path, const struct checkpoint_head *head, cons
 {
   struct contents contents = {summary_of(head, model, state), model, state, blocks, block_count, scene_text};
   size_t bytes;
+  if (contents.summary.head.state_hash == 0)
+    return message_set(message, "%s: checkpoint not written: no memory; an earlier one is untouched", path);
   void *image = make_image(&contents, &bytes, path, message);
   bool ok = image && put_in_place(path, image, bytes, message);
   free(image);

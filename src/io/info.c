@@ -258,9 +258,9 @@ static bool look_at(const char *path, struct look *look, struct message *message
   FILE *file = fopen(path, "rb");
   if (file)
     look->bytes = fread(look->head, 1, HEAD_BYTES, file);
-  if (!file || ferror(file))
-    message_set(message, "%s: cannot be read: %s", path, strerror(errno));
   bool ok = file && !ferror(file);
+  if (!ok)
+    message_set(message, "%s: cannot be read: %s", path, strerror(errno));
   if (file)
     fclose(file);
   return ok;

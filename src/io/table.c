@@ -30,7 +30,7 @@ static void write_values(FILE *file, const char *between, size_t columns, const 
   fputc('\n', file);
 }
 
-/* Length in bytes of the header and of all whole rows up to and including this step. */
+/* Length in bytes of the header and of all whole rows up to and including this step; -1 if they cannot be read. */
 static long kept_length(FILE *file, uint64_t keep_to_step)
 {
   char *line = NULL;
@@ -42,8 +42,9 @@ static long kept_length(FILE *file, uint64_t keep_to_step)
       break;
     kept += length;
   }
+  bool read = length > 0 || feof(file);
   free(line);
-  return kept;
+  return read ? kept : -1;
 }
 
 bool series_open(struct series *s, const char *folder, const char *name, size_t columns, const char *const *names,
@@ -51,9 +52,11 @@ bool series_open(struct series *s, const char *folder, const char *name, size_t 
 {
   snprintf(s->path, sizeof s->path, "%s/%s.csv", folder, name);
   s->file = resume ? fopen(s->path, "r+") : NULL;
+  if (resume && !s->file && errno != ENOENT)
+    return failed(message, s->path, "open");
   if (s->file) {
     long kept = kept_length(s->file, keep_to_step);
-    if (ftruncate(fileno(s->file), kept) != 0 || fseek(s->file, kept, SEEK_SET) != 0)
+    if (kept < 0 || ftruncate(fileno(s->file), kept) != 0 || fseek(s->file, kept, SEEK_SET) != 0)
       return failed(message, s->path, "cut to the checkpoint");
     if (kept > 0)
       return true;

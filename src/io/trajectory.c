@@ -153,6 +153,11 @@ uint64_t trajectory_frames(const struct trajectory *t)
   return t->frames;
 }
 
+bool trajectory_has_steps(const struct trajectory *t)
+{
+  return t->step >= 0;
+}
+
 bool trajectory_has_velocities(const struct trajectory *t)
 {
   return t->velocity >= 0;

@@ -1,0 +1,201 @@
+"""The program when memory, files or HDF5 fail: for n = 1, 2, 3, ... the n-th call fails, alone or with all that follow.
+
+It must never crash; must say why it stopped; must never lose a checkpoint; and whatever it calls done must be right.
+Needs BUILD, with uncross and uncross-faults. FAULTS=all tries every call (HDF5: else some 25 of each command).
+"""
+import concurrent.futures
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+BUILD = pathlib.Path(os.environ.get("BUILD", "build")).resolve()
+MOST = 10**9 if os.environ.get("FAULTS") == "all" else 25
+SCENE = """
+box: [5, 4, 4]
+time_step: 0.01
+steps: 4
+seed: 3
+solvent:
+  per_cell: 3
+  collision_interval: 0.02
+fibers:
+  - {name: rod, count: 2, vertices: 4, mass: 5, bond_length: 0.5, spring: 100, bending: 8}
+  - {name: loop, count: 1, vertices: 5, mass: 5, bond_length: 0.4, spring: 100, bending: 0, ring: true}
+  - {name: fixed, count: 1, vertices: 3, mass: 5, bond_length: 0.4, spring: 100, bending: 1, start: straight,
+     places: [{center: [1, 1, 1], direction: [1, 0, 0]}]}
+observe:
+  conserved: {every: 1}
+  temperature: {every: 1}
+  statics: {every: 1}
+  dynamics: {every: 1}
+  collisions: {every: 1}
+trajectory: {every: 2, velocities: true, solvent: true}
+"""
+
+
+def run(program, words, folder, **settings):
+    return subprocess.run([str(BUILD / program), *words], cwd=folder, stdin=subprocess.DEVNULL, capture_output=True,
+                          timeout=60, check=False, env=dict(os.environ, **settings))
+
+
+def state_hash(path):
+    """Of a checkpoint, as the program tells it: which reads and checks it; None if there is none."""
+    if not path.exists():
+        return None
+    told = run("uncross", ["info", path], path.parent)
+    found = re.search(rb"state hash ([0-9a-f]{16})", told.stdout)
+    assert told.returncode == 0 and found, (told.stdout, told.stderr)
+    return found[1]
+
+
+class Faults(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp())
+        cls.start = cls.folder / "start"  # what every try starts from: two of the four steps are made
+        cls.start.mkdir()
+        (cls.start / "scene.yaml").write_text(SCENE)
+        (cls.start / "from.yaml").write_text(SCENE + "start: {snapshot: run/checkpoint.h5}\n")
+        (cls.start / "frame.yaml").write_text(SCENE + "start: {snapshot: run/trajectory.h5}\n")
+        words = ["run", "scene.yaml", "--out", "run", "--quiet"]
+        assert run("uncross", words + ["--steps", "2"], cls.start).returncode == 0
+        cls.half = state_hash(cls.start / "run/checkpoint.h5")
+        whole = cls.folder / "whole"
+        shutil.copytree(cls.start, whole)
+        assert run("uncross", words + ["--resume"], whole).returncode == 0
+        cls.whole = state_hash(whole / "run/checkpoint.h5")
+        cls.series = (whole / "run/conserved.csv").read_bytes()
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.folder)
+
+    def one(self, words, wish, look):
+        """One try: the exit code says what happened, and `look` (folder, result, wish) what else must be so."""
+        with tempfile.TemporaryDirectory(dir=self.folder) as place:
+            folder = pathlib.Path(place) / "f"
+            shutil.copytree(self.start, folder)
+            done = run("uncross-faults", words, folder, UNCROSS_FAIL=wish)
+            self.assertIn(done.returncode, (0, 1, 2, 3, 4), (wish, done.stderr))
+            if done.returncode:
+                self.assertRegex(done.stderr, rb"^uncross: .{10,}", wish)
+            look(folder, done, wish)
+            return done.returncode
+
+    def attempt(self, words, wish, look):
+        """The exit code of one try, or what was wrong with it."""
+        try:
+            return self.one(words, wish, look)
+        except AssertionError as wrong:
+            return f"{wish}: {wrong}"
+
+    def all_of(self, words, look=lambda folder, done, wish: None):
+        with tempfile.TemporaryDirectory(dir=self.folder) as place:
+            folder = pathlib.Path(place) / "f"
+            shutil.copytree(self.start, folder)
+            right = run("uncross-faults", words, folder, UNCROSS_CALLS="calls")
+            self.assertEqual(right.returncode, 0, right.stderr)
+            look(folder, right, "none")
+            calls = dict(line.split() for line in (folder / "calls").read_text().splitlines())
+        wishes = []
+        for kind, count in calls.items():
+            stride = max(1, -(-int(count) // MOST)) if kind == "hdf5" else 1
+            for n in range(1, int(count) + 1, stride):
+                wishes += [f"{kind}:{n}"] if n % 3 else [f"{kind}:{n}", f"{kind}:{n}+"]
+        with concurrent.futures.ThreadPoolExecutor(2) as pool:
+            codes = list(pool.map(lambda wish: self.attempt(words, wish, look), wishes))
+        wrong = [code for code in codes if isinstance(code, str)]
+        self.assertFalse(wrong, f"{' '.join(words)}: {len(wrong)} of {len(wishes)} failures were not borne:\n"
+                         + "\n".join(text[:600] for text in wrong[:20]))
+        told = {code: codes.count(code) for code in sorted(set(codes))}
+        print(f"# {' '.join(words)}: {calls}; exit codes of {len(wishes)} failures: {told}")
+        self.assertTrue(any(codes), "no failure was noticed")
+        return right
+
+    def same_output(self, words, part=lambda text: text):
+        """Exit code 0: what is printed, or this part of it, is what is printed without failures."""
+        expected = []
+
+        def look(_folder, done, wish):
+            if wish == "none":
+                expected.append(part(done.stdout))
+            if done.returncode == 0:
+                self.assertEqual(part(done.stdout), expected[0], wish)
+
+        self.all_of(words, look)
+
+    def test_resume(self):
+        words = ["run", "scene.yaml", "--out", "run", "--quiet", "--resume"]
+
+        def look(folder, done, wish):
+            self.assertIn(state_hash(folder / "run/checkpoint.h5"), (self.half, self.whole), wish)
+            if done.returncode == 0:
+                self.assertEqual(state_hash(folder / "run/checkpoint.h5"), self.whole, wish)
+            again = run("uncross", words, folder)
+            self.assertEqual(again.returncode, 0, (wish, done.stderr, again.stderr))
+            self.assertEqual(state_hash(folder / "run/checkpoint.h5"), self.whole, wish)
+            self.assertEqual((folder / "run/conserved.csv").read_bytes(), self.series, (wish, done.stderr))
+
+        self.all_of(words, look)
+
+    def test_new_run(self):
+        words = ["run", "scene.yaml", "--out", "new/run", "--quiet"]
+
+        def look(folder, done, wish):
+            found = state_hash(folder / "new/run/checkpoint.h5")
+            self.assertIn(found, (None, self.whole), wish)
+            if done.returncode == 0:
+                self.assertEqual(found, self.whole, wish)
+                self.assertEqual((folder / "new/run/conserved.csv").read_bytes(), self.series, wish)
+            if done.returncode == 2:
+                self.assertFalse((folder / "new/run").exists() and any((folder / "new/run").iterdir()), wish)
+
+        self.all_of(words, look)
+
+    def test_start_from_checkpoint(self):
+        self.all_of(["run", "from.yaml", "--out", "new", "--quiet", "--steps", "1"])
+
+    def test_start_from_trajectory(self):
+        self.all_of(["run", "frame.yaml", "--out", "new", "--quiet", "--steps", "1"])
+
+    def test_check(self):
+        self.same_output(["check", "scene.yaml"])
+
+    def test_info(self):
+        for file in "checkpoint.h5", "conserved.csv":
+            self.same_output(["info", "run/" + file])
+        self.same_output(["info", "run/run.json"], lambda text: len(text.splitlines()))
+
+    def test_info_of_a_trajectory(self):
+        """It tells what it can read; a failure of a detail leaves out the detail."""
+        self.all_of(["info", "run/trajectory.h5"])
+
+    def test_export(self):
+        """A trajectory may lose a detail (velocities, bonds), but no position."""
+        self.same_output(["export", "run/trajectory.h5", "--solvent"],
+                         lambda text: [line.split()[:4] for line in text.splitlines() if b"Lattice" not in line])
+        self.same_output(["export", "run/checkpoint.h5", "--solvent", "--wrapped"])
+
+    def test_export_to_a_file(self):
+        def look(folder, done, wish):
+            if done.returncode == 0:
+                self.assertGreater((folder / "out.xyz").stat().st_size, 1000, wish)
+
+        self.all_of(["export", "run/trajectory.h5", "--output", "out.xyz"], look)
+
+    def test_analyze(self):
+        def look(folder, done, wish):
+            for table in (folder / "again").glob("*.csv") if done.returncode == 0 else ():
+                self.assertEqual(table.read_bytes(), (self.start / "right" / table.name).read_bytes(), wish)
+
+        words = ["analyze", "run/trajectory.h5", "--out"]
+        self.assertEqual(run("uncross", words + ["right"], self.start).returncode, 0)
+        self.all_of(words + ["again"], look)
+
+
+if __name__ == "__main__":
+    unittest.main()
