@@ -38,6 +38,8 @@ help:
 	@echo 'make stress          long runs: exact audit, linking numbers, 10^7 steps (some minutes)'
 	@echo 'make lint            formatting, warnings of gcc and clang, static checks, include floors, equation table'
 	@echo 'make measure         builds the programs behind docs/accuracy.md'
+	@echo 'make sanitize        the exact tests and short runs with address and undefined-behavior sanitizers'
+	@echo 'make coverage        which lines and branches of src/ the exact tests reach: build/coverage/index.html'
 	@echo 'make fuzz            the fuzzer of scenes, checkpoints and trajectories, for SECONDS=60'
 	@echo 'make install         PREFIX=$(PREFIX) DESTDIR=$(DESTDIR)'
 	@echo 'make clean           removes $(BUILD)'
@@ -138,8 +140,24 @@ demo:
 	$(MAKE) -j2 $(BUILD)/uncross
 	tools/demo $(BUILD)/uncross $(BUILD)/demo
 
-# The same sources and tests under other flags, each in a folder of its own. Physics tests are long and add nothing here.
-EXACT_TESTS := $(filter-out tests/physics/% tests/stress/%,$(TESTS))
+# The exact tests under other flags, in folders of their own. Physics tests are long and add nothing here.
+EXACT_TESTS := $(filter-out tests/physics/% tests/stress/% tests/mutants/% tests/tools/% tests/cli/test_bits.sh, \
+   $(sort $(shell find tests -name 'test_*.c' -o -name 'test_*.py' -o -name 'test_*.sh')))
+.PHONY: exact
+exact: $(BUILD)/uncross $(BUILD)/uncross-faults $(patsubst %.c,$(BUILD)/%,$(filter %.c,$(EXACT_TESTS)))
+
+.PHONY: sanitize
+sanitize:
+	tools/install-dependencies run hard
+	$(MAKE) -j2 CC=gcc BUILD=build/sanitize OPTIMIZE=-O1 \
+	   CFLAGS='-g -Wno-error -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all' exact
+	tools/sanitize build/sanitize $(EXACT_TESTS)
+
+.PHONY: coverage
+coverage:
+	tools/install-dependencies run hard
+	$(MAKE) -j2 CC=gcc BUILD=build/coverage OPTIMIZE=-O0 CFLAGS='-g --coverage -Wno-error' exact
+	tools/coverage build/coverage $(EXACT_TESTS)
 
 # Inputs that find something new go to build/fuzz/corpus; what was found is a file crash-* there, which FUZZ=file runs again.
 SECONDS ?= 60

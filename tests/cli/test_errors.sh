@@ -1,0 +1,125 @@
+#!/usr/bin/env bash
+# What the command line refuses, and with which exit code and words; what it says while it runs. Prints TAP.
+# Needs: UNCROSS, the program (default build/uncross).
+set -u
+uncross=$(realpath "${UNCROSS:-build/uncross}")
+dir=$(mktemp -d)
+trap 'chattr -i "$dir/fixed" 2>/dev/null; chmod -R u+w "$dir"; rm -rf "$dir"' EXIT
+count=0
+failures=0
+
+ok() { # ok STATUS NAME
+  count=$((count + 1))
+  if [ "$1" = 0 ]; then echo "ok $count - $2"; else echo "not ok $count - $2"; failures=$((failures + 1)); fi
+}
+gives() { # gives CODE PATTERN ARGUMENTS ...: the exit code, and a line of standard error
+  local wanted=$1 pattern=$2
+  shift 2
+  "$uncross" "$@" >"$dir/out" 2>"$dir/err"
+  local code=$?
+  { [ "$code" = "$wanted" ] && { [ -z "$pattern" ] || grep -q -- "$pattern" "$dir/err"; }; }
+  ok $? "uncross ${*//"$dir"\//}: $code, $(sed "s|$dir/||g; 1q" "$dir/err" | cut -c 1-120)"
+}
+
+cat >"$dir/scene.yaml" <<YAML
+box: [4, 4, 4]
+time_step: 0.01
+steps: 20
+seed: 1
+solvent: {per_cell: 3, collision_interval: 0.02}
+fibers:
+  - {name: a, count: 2, vertices: 4, mass: 5, bond_length: 0.5, spring: 100, bending: 4}
+observe:
+  conserved: {every: 1}
+  dynamics: {every: 1}
+trajectory: {every: 10, velocities: true}
+YAML
+scene=$dir/scene.yaml run=$dir/run
+gives 0 '' run "$scene" --out "$run"
+grep -q '^finished at step 20 of 20 after ' "$dir/out" && grep -q '^state hash [0-9a-f]\{16\}$' "$dir/out"
+ok $? "a run says how it ended"
+{ cat "$run/trajectory.h5"; } >"$dir/frames.h5"
+
+# words
+gives 2 'unknown command' fly "$scene"
+gives 2 'unrecognized option' run "$scene" --output "$run"
+gives 2 'requires an argument' run "$scene" --out
+gives 2 'a file is missing' check
+gives 2 'one file only' check "$scene" "$scene"
+gives 2 '--out DIR is missing' run "$scene"
+gives 2 '--out DIR is missing' analyze "$dir/frames.h5"
+gives 2 'stride must be at least 1' export "$dir/frames.h5" --stride 0
+for number in x 1x '' -1 1.5 18446744073709551616; do
+  gives 2 "--first $number: not a whole number" export "$dir/frames.h5" --first "$number"
+done
+
+# files
+gives 2 'missing.yaml' check "$dir/missing.yaml"
+gives 2 'missing.h5' info "$dir/missing.h5"
+gives 2 'missing.h5' export "$dir/missing.h5"
+gives 2 'missing.h5' analyze "$dir/missing.h5" --out "$dir/new"
+gives 2 'not an HDF5 file' analyze "$scene" --out "$dir/new"
+gives 2 'not a file but' export "$dir"
+gives 2 'without an H5MD trajectory' analyze "$run/checkpoint.h5" --out "$dir/new"
+gives 2 'cannot create' export "$dir/frames.h5" --output "$scene"
+gives 4 'cannot create' export "$dir/frames.h5" --output "$dir/nowhere/out.xyz"
+gives 2 'first frame 3 asked for' export "$dir/frames.h5" --first 3 --output "$dir/out.xyz"
+[ ! -e "$dir/out.xyz" ]
+ok $? "an export that fails leaves no file"
+gives 2 'is not a folder' analyze "$dir/frames.h5" --out "$scene"
+gives 0 'cannot be had from this trajectory' analyze "$dir/frames.h5" --out "$dir/tables"
+if [ -w /dev/full ]; then
+  "$uncross" export "$dir/frames.h5" >/dev/full 2>"$dir/err"
+  [ $? = 2 ] || [ $? = 4 ]
+  grep -q 'written: No space left\|cannot write: No space left' "$dir/err"
+  ok $? "export to a full device says so"
+fi
+
+# frames
+for choice in "--first 1" "--last 1" "--stride 2" "--wrapped" "--first 1 --last 1"; do
+  # shellcheck disable=SC2086
+  "$uncross" export "$dir/frames.h5" $choice >"$dir/out" 2>"$dir/err"
+  ok $? "export $choice: steps$(sed -n 's/.* Step=\([0-9]*\) .*/ \1/p' "$dir/out" | tr -d '\n')"
+done
+[ "$(sed -n 's/.* Step=\([0-9]*\) .*/\1/p' "$dir/out")" = 10 ]
+ok $? "export --first 1 --last 1 gives the frame of step 10 alone"
+
+# runs
+gives 2 'holds a run already (checkpoint.h5)' run "$scene" --out "$run"
+gives 0 '' run "$scene" --out "$run" --resume --steps 21 --seed 1 --quiet
+gives 2 "seed 1; a resumed run keeps its seed" run "$scene" --out "$run" --resume --steps 22 --seed 2
+sed 's/seed: 1/seed: 2/' "$scene" >"$dir/other.yaml"
+gives 0 '' run "$dir/other.yaml" --out "$run" --resume --steps 22
+sed 's/bending: 4/bending: 5/' "$scene" >"$dir/other.yaml"
+gives 2 'is of another scene' run "$dir/other.yaml" --out "$run" --resume --steps 23
+sed 's/conserved: {every: 1}/statics: {every: 1}/' "$scene" >"$dir/other.yaml"
+gives 2 'no memory of the observable' run "$dir/other.yaml" --out "$run" --resume --steps 23
+"$uncross" run "$scene" --out "$dir/stopped" --steps 100000000 >"$dir/out" 2>"$dir/err" &
+sleep 0.4
+kill -INT $!
+wait $!
+[ $? = 5 ] && grep -q '^go on with --resume$' "$dir/out"
+ok $? "SIGINT: exit code 5, and what to do next"
+
+# Nothing can be written: root may write anywhere, but not where no file can change.
+mkdir "$dir/fixed"
+if chattr +i "$dir/fixed" 2>/dev/null; then
+  gives 2 'cannot' run "$scene" --out "$dir/fixed/run"
+  gives 2 'cannot' analyze "$dir/frames.h5" --out "$dir/fixed"
+  chattr -i "$dir/fixed"
+else
+  echo "# no folder can be made immutable here: skipped"
+fi
+if mkdir "$dir/mounted" && mount -t tmpfs -o size=4m none "$dir/mounted" 2>/dev/null; then
+  "$uncross" run "$scene" --out "$dir/mounted/run" --quiet --steps 5
+  before=$(cksum <"$dir/mounted/run/checkpoint.h5")
+  mount -o remount,ro "$dir/mounted"
+  gives 2 'Read-only' run "$scene" --out "$dir/mounted/run" --resume
+  [ "$before" = "$(cksum <"$dir/mounted/run/checkpoint.h5")" ]
+  ok $? "a file system that became read-only: the checkpoint stays"
+  umount "$dir/mounted"
+else
+  echo "# no tmpfs may be mounted here: a read-only file system was not tried"
+fi
+echo "1..$count"
+exit $((failures > 0))

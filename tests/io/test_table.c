@@ -1,0 +1,263 @@
+/* Tables: numbers that read back exactly, rows cut at a resume, disks that are full, folders and records of runs. */
+#include "io/files.h"
+
+#include "io/folder.h"
+#include "io/progress.h"
+#include "io/table.h"
+
+static const char *const names[] = {"a", "b"};
+
+static void write_rows(const char *folder, uint64_t first, uint64_t last, bool resume)
+{
+  struct series s;
+  struct message m;
+  assert_true(series_open(&s, folder, "t", 2, names, resume, first - 1, &m));
+  for (uint64_t step = first; step <= last; step++)
+    assert_true(series_row(&s, step, 2, (double[]){0.1 * (double)step, -1e-300}, &m));
+  assert_true(series_flush(&s, &m));
+  assert_true(series_close(&s, &m));
+}
+
+static void test_numbers_read_back_to_the_last_bit(void **unused)
+{
+  (void)unused;
+  char folder[64];
+  make_folder(folder);
+  struct series s;
+  struct message m;
+  const double written[2] = {1.0 / 3.0, 5e-324};
+  double a, b;
+  assert_true(series_open(&s, folder, "t", 2, names, false, 0, &m));
+  assert_true(series_row(&s, 18446744073709551615u, 2, written, &m));
+  assert_true(series_close(&s, &m));
+  size_t bytes;
+  char *text = slurp(in_folder(folder, "t.csv"), &bytes);
+  assert_int_equal(sscanf(text, "step,a,b\n18446744073709551615,%lf,%lf\n", &a, &b), 2);
+  assert_true(a == written[0] && b == written[1]);
+  free(text);
+  remove_folder(folder);
+}
+
+/* Rows after the checkpoint, and a last row that was cut in the middle, are made again. */
+static void test_a_resume_keeps_what_the_checkpoint_knows(void **unused)
+{
+  (void)unused;
+  static const char *const tails[] = {"", "8,0.5", "7,0.7,1\n8,"};
+  char folder[64];
+  make_folder(folder);
+  const char *path = in_folder(folder, "t.csv");
+  write_rows(folder, 1, 9, false);
+  size_t bytes, again;
+  char *expected = slurp(path, &bytes);
+  for (size_t k = 0; k < sizeof tails / sizeof *tails; k++) {
+    write_rows(folder, 1, 7, false);
+    FILE *file = fopen(path, "a");
+    fputs(tails[k], file);
+    fclose(file);
+    write_rows(folder, 6, 9, true);
+    char *found = slurp(path, &again);
+    assert_int_equal(again, bytes);
+    assert_memory_equal(found, expected, bytes);
+    free(found);
+  }
+  free(expected);
+  remove_folder(folder);
+}
+
+static void test_a_resume_without_a_table_begins_one(void **unused)
+{
+  (void)unused;
+  char folder[64];
+  make_folder(folder);
+  write_rows(folder, 5, 5, true);
+  size_t bytes;
+  char *text = slurp(in_folder(folder, "t.csv"), &bytes);
+  assert_memory_equal(text, "step,a,b\n5,", 11);
+  free(text);
+  spill(in_folder(folder, "t.csv"), "st", 2); /* killed while the header was written */
+  write_rows(folder, 5, 5, true);
+  text = slurp(in_folder(folder, "t.csv"), &bytes);
+  assert_memory_equal(text, "step,a,b\n5,", 11);
+  free(text);
+  remove_folder(folder);
+}
+
+static void test_what_cannot_be_opened_is_not_written_over(void **unused)
+{
+  (void)unused;
+  char folder[64];
+  make_folder(folder);
+  struct series s;
+  struct message m;
+  const char *path = in_folder(folder, "t.csv");
+  assert_int_equal(mkdir(path, 0777), 0);
+  assert_false(series_open(&s, folder, "t", 2, names, true, 3, &m));
+  assert_non_null(strstr(m.text, "t.csv: cannot open"));
+  assert_false(series_open(&s, folder, "t", 2, names, false, 0, &m));
+  assert_non_null(strstr(m.text, "t.csv: cannot create"));
+  rmdir(path);
+  remove_folder(folder);
+}
+
+static void test_a_full_disk_is_noticed(void **unused)
+{
+  (void)unused;
+  char folder[64];
+  make_folder(folder);
+  struct series s;
+  struct message m = {""};
+  const double row[2] = {0.1, 0.2};
+  assert_true(series_open(&s, folder, "t", 2, names, false, 0, &m));
+  limit_files(64);
+  assert_true(series_row(&s, 1, 2, row, &m)); /* still in the buffer */
+  assert_true(series_row(&s, 2, 2, row, &m));
+  assert_false(series_flush(&s, &m));
+  assert_non_null(strstr(m.text, "t.csv: cannot write"));
+  assert_false(series_row(&s, 3, 2, row, &m));
+  series_close(&s, &m);
+  double many[80] = {0.1};
+  const struct observe_table table = {.name = "sum", .columns = 2, .column = names, .rows = 40, .value = many};
+  assert_false(table_write(folder, &table, &m));
+  limit_files(RLIM_INFINITY);
+  assert_non_null(strstr(m.text, "sum.csv: cannot write"));
+  assert_false(is_there(in_folder(folder, "sum.csv")) || is_there(in_folder(folder, "sum.csv.part")));
+  remove_folder(folder);
+}
+
+static void test_an_earlier_summary_survives_a_failure(void **unused)
+{
+  (void)unused;
+  char folder[64];
+  make_folder(folder);
+  struct message m;
+  double value[4] = {1, 2, 3, 4};
+  const struct observe_table table = {.name = "sum", .columns = 2, .column = names, .rows = 2, .value = value};
+  assert_true(table_write(folder, &table, &m));
+  assert_int_equal(mkdir(in_folder(folder, "sum.csv.part"), 0777), 0);
+  assert_false(table_write(folder, &table, &m));
+  assert_non_null(strstr(m.text, "sum.csv.part: cannot create"));
+  size_t bytes;
+  char *text = slurp(in_folder(folder, "sum.csv"), &bytes);
+  assert_string_equal(text, "a,b\n1,2\n3,4\n");
+  free(text);
+  rmdir(in_folder(folder, "sum.csv.part"));
+  remove_folder(folder);
+}
+
+/* --- folders ------------------------------------------------------------------------------------------------------ */
+
+static void test_folders_are_made_with_those_above(void **unused)
+{
+  (void)unused;
+  char folder[64];
+  make_folder(folder);
+  struct message m;
+  assert_true(folder_make(in_folder(folder, "a/b/c"), &m));
+  assert_true(folder_make(in_folder(folder, "a/b/c/"), &m));
+  assert_true(folder_has(in_folder(folder, "a/b"), "c"));
+  assert_false(folder_has(in_folder(folder, "a/b"), "d"));
+  spill(in_folder(folder, "file"), "x", 1);
+  assert_false(folder_make(in_folder(folder, "file"), &m));
+  assert_non_null(strstr(m.text, "is not a folder"));
+  assert_false(folder_make(in_folder(folder, "file/below"), &m));
+  assert_non_null(strstr(m.text, "file"));
+  assert_false(folder_make("", &m));
+  assert_non_null(strstr(m.text, "not the name of a folder"));
+  rmdir(in_folder(folder, "a/b/c"));
+  rmdir(in_folder(folder, "a/b"));
+  rmdir(in_folder(folder, "a"));
+  remove_folder(folder);
+}
+
+/* --- progress ----------------------------------------------------------------------------------------------------- */
+
+static void test_durations_as_people_say_them(void **unused)
+{
+  (void)unused;
+  static const struct {
+    double seconds;
+    const char *text;
+  } said[] = {{0.0, "0 s"},           {59.4, "59 s"},         {59.6, "1 min 00 s"},     {185.0, "3 min 05 s"},
+              {3600.0, "1 h 00 min"}, {7800.0, "2 h 10 min"}, {86399.0, "23 h 59 min"}, {273600.0, "3 d 4 h"}};
+  for (size_t k = 0; k < sizeof said / sizeof *said; k++) {
+    char text[64];
+    duration_text(said[k].seconds, text, sizeof text);
+    assert_string_equal(text, said[k].text);
+  }
+}
+
+/* What is told on stderr at this step, 20 s and 50 steps after the beginning; to be freed. */
+static char *told(struct progress p, uint64_t step, bool and_end)
+{
+  char folder[64];
+  make_folder(folder);
+  const char *path = in_folder(folder, "err");
+  fflush(stderr);
+  int saved = dup(STDERR_FILENO);
+  assert_non_null(freopen(path, "w", stderr));
+  progress_tell(&p, step);
+  progress_tell(&p, step); /* at once again: nothing more is said */
+  if (and_end)
+    progress_end(&p);
+  fflush(stderr);
+  dup2(saved, STDERR_FILENO);
+  close(saved);
+  size_t bytes;
+  char *text = slurp(path, &bytes);
+  remove_folder(folder);
+  return text;
+}
+
+static void test_progress_is_told_now_and_then(void **unused)
+{
+  (void)unused;
+  const double then = clock_seconds() - 20.0;
+  const struct progress plain = {.first = 100, .last = 200, .started = then, .told = then};
+  struct progress quiet = plain, terminal = plain, early = plain, idle = plain;
+  quiet.quiet = terminal.terminal = true;
+  early.told = clock_seconds() - 5.0;
+  idle.first = 150;
+  const struct {
+    struct progress progress;
+    const char *begins, *holds;
+  } cases[] = {{plain, "step 150 of 200 (75.0 %), 2.5 steps/s, 20 s left\n", ""},
+               {terminal, "\r\033[Kstep 150 of 200", "20 s left\r\033[K"},
+               {idle, "step 150 of 200", "0.0 steps/s, ? left\n"},
+               {quiet, "", NULL},
+               {early, "", NULL}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+    char *text = told(cases[k].progress, 150, true);
+    if (strncmp(text, cases[k].begins, strlen(cases[k].begins)) != 0)
+      fail_msg("case %zu: '%s'", k, text);
+    if (cases[k].holds ? !strstr(text, cases[k].holds) : text[0] != '\0')
+      fail_msg("case %zu: '%s'", k, text);
+    free(text);
+  }
+}
+
+static void test_the_rate_counts_this_session(void **unused)
+{
+  (void)unused;
+  struct progress p;
+  progress_begin(&p, 1000, 2000, true);
+  assert_true(p.quiet);
+  p.started -= 10.0;
+  assert_close(progress_rate(&p, 1500), 50.0, 0.5);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_numbers_read_back_to_the_last_bit),
+      cmocka_unit_test(test_a_resume_keeps_what_the_checkpoint_knows),
+      cmocka_unit_test(test_a_resume_without_a_table_begins_one),
+      cmocka_unit_test(test_what_cannot_be_opened_is_not_written_over),
+      cmocka_unit_test(test_a_full_disk_is_noticed),
+      cmocka_unit_test(test_an_earlier_summary_survives_a_failure),
+      cmocka_unit_test(test_folders_are_made_with_those_above),
+      cmocka_unit_test(test_durations_as_people_say_them),
+      cmocka_unit_test(test_progress_is_told_now_and_then),
+      cmocka_unit_test(test_the_rate_counts_this_session),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
