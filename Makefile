@@ -47,7 +47,7 @@ help:
 
 # --- program and library ----------------------------------------------------------------------------------------------
 
-TOP := $(addprefix $(BUILD)/src/,main.o run.o analyze.o)
+TOP := $(addprefix $(BUILD)/src/,main.o run.o analyze.o oracle.o)
 
 $(BUILD)/uncross: $(TOP) $(LIBRARY)
 	@echo '  LD $@'

@@ -8,6 +8,7 @@
 #include "io/build_info.h"
 #include "io/scene.h"
 #include "io/snapshot.h"
+#include "oracle.h"
 #include "run.h"
 #include "version.h"
 
@@ -30,6 +31,8 @@ static const char help[] =
     "      --wrapped       vertices folded into the box\n"
     "      --first N, --last N, --stride N   these frames only (numbered from 0)\n"
     "  uncross analyze TRAJECTORY --out DIR   recomputes the observables of its scene from its frames, as tables\n"
+    "  uncross oracle ACTION ...              packs and traces to hold other implementations against: `uncross oracle "
+    "--help`\n"
     "  uncross --help, uncross --version\n"
     "\n"
     "exit codes:\n"
@@ -39,6 +42,8 @@ static const char help[] =
     "  3  the run had to stop (a bond too long, a velocity out of range, ...); the last checkpoint stays\n"
     "  4  a file could not be written; the last checkpoint stays\n"
     "  5  interrupted by SIGINT or SIGTERM; a checkpoint was written, --resume goes on\n"
+    "  6  oracle compare: different, but within the derived tolerances\n"
+    "  7  oracle compare: different beyond them\n"
     "\n"
     "Scenes are YAML files: docs/scene.md lists every key, scenes/ holds examples.\n";
 
@@ -251,5 +256,7 @@ int main(int count, char **words)
   for (size_t k = 0; k < sizeof commands / sizeof *commands; k++)
     if (strcmp(words[1], commands[k].name) == 0)
       return dispatch(&commands[k], count - 1, words + 1);
+  if (strcmp(words[1], "oracle") == 0)
+    return oracle_command(count - 1, words + 1);
   return usage_error("unknown command ", words[1]);
 }

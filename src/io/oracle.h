@@ -1,0 +1,49 @@
+/*
+ * The oracle: what other implementations are held against. A pack holds input and output of every operator alone, so
+ * that nothing chaotic lies between; a trace holds hashes of the state after every stage of a short run, for ports that
+ * promise the same bits. docs/porting.md is the contract.
+ */
+#ifndef UNCROSS_IO_ORACLE_H
+#define UNCROSS_IO_ORACLE_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "io/message.h"
+#include "io/pack.h"
+#include "io/scene.h"
+#include "state/state.h"
+#include "state/work.h"
+
+/* The starting state of a scene, be it drawn or a snapshot. state and work are allocated for scene->model. */
+bool oracle_start(const struct scene *scene, struct state *state, struct work *work, struct message *message);
+
+/* Fills a pack with the scene's numbers and every operator's input and output, at the first step that has a collision
+ * and at the last one of the scene. The pack needs freeing in any case. */
+bool oracle_emit(const struct scene *scene, struct pack *pack, struct message *message);
+
+/* Writes the trace of the whole scene as CSV: one row per stage of each step. */
+bool oracle_trace(const struct scene *scene, FILE *out, struct message *message);
+
+/* Puts a pack's tables in the order of steps, and of operators within a step: files keep them by name. */
+void oracle_sort(struct pack *pack);
+
+/* --- comparison -------------------------------------------------------------------------------------------------- */
+
+enum oracle_verdict {
+  ORACLE_SAME,   /* every number, to the last bit */
+  ORACLE_CLOSE,  /* all differences within the derived tolerances */
+  ORACLE_DIFFERS /* some are not, or something is missing */
+};
+
+struct oracle_options {
+  bool single;      /* tolerances of single-precision arithmetic, else double */
+  const char *only; /* these operators, with commas between; NULL: all */
+};
+
+/* Prints how the outputs of `theirs` differ from those of `ours`, operator by operator, the first difference, and what
+ * its pattern usually means. False, with a message, if memory is short or `only` names no operator. */
+bool oracle_compare(const struct pack *ours, const struct pack *theirs, const struct oracle_options *options, FILE *out,
+                    enum oracle_verdict *verdict, struct message *message);
+
+#endif

@@ -1,0 +1,203 @@
+#include "io/oracle_compare.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+#include "io/oracle.h"
+
+/* Doubles in the order of their values, as integers: neighbors differ by one, -0 and +0 by none. */
+static int64_t rank_of(double x)
+{
+  int64_t bits;
+  memcpy(&bits, &x, sizeof bits);
+  return bits < 0 ? INT64_MIN - bits : bits;
+}
+
+/* Distance in ulps; of integers in units. */
+static uint64_t distance(const struct oracle_pair *p, size_t k)
+{
+  const bool reals = p->ours->real;
+  int64_t a = reals ? rank_of(p->ours->value.number[k]) : p->ours->value.integer[k];
+  double other = p->theirs->real ? p->theirs->value.number[k] : (double)p->theirs->value.integer[k];
+  int64_t b = reals             ? rank_of(other)
+              : p->theirs->real ? (fabs(other) < 0x1p62 ? llrint(other) : INT64_MAX)
+                                : p->theirs->value.integer[k];
+  return a > b ? (uint64_t)a - (uint64_t)b : (uint64_t)b - (uint64_t)a;
+}
+
+/* Size of the difference that a tolerance is for. Reals of theirs that stand for integers are taken as they are. */
+static double difference(const struct oracle_pair *p, uint32_t row, uint32_t column)
+{
+  const size_t k = (size_t)row * p->ours->columns + column;
+  if (!p->ours->real && !p->theirs->real)
+    return (double)distance(p, k);
+  return fabs(pack_value(p->ours, row, column) - pack_value(p->theirs, row, column));
+}
+
+struct tally {
+  uint64_t values, different, beyond, worst; /* worst: ulps */
+  bool found;                                /* a first one is known: beyond tolerance if any is, else different */
+  struct oracle_pair first;
+  uint32_t row, column;
+  double tolerance;
+};
+
+static void tally_value(struct tally *t, const struct oracle_pair *p, uint32_t row, uint32_t column)
+{
+  const uint64_t ulps = distance(p, (size_t)row * p->ours->columns + column);
+  t->values++;
+  const double size = difference(p, row, column);
+  if (ulps == 0 && size == 0.0)
+    return;
+  t->different++;
+  t->worst = ulps > t->worst ? ulps : t->worst;
+  const double tolerance = oracle_tolerance(p, row, column);
+  const bool beyond = !(size <= tolerance);
+  if ((beyond && t->beyond == 0) || !t->found) {
+    t->first = *p;
+    t->row = row, t->column = column, t->tolerance = tolerance;
+    t->found = true;
+  }
+  t->beyond += beyond;
+}
+
+static void print_number(FILE *out, const struct pack_table *t, uint32_t row, uint32_t column)
+{
+  const size_t k = (size_t)row * t->columns + column;
+  if (t->real)
+    fprintf(out, "%.17g", t->value.number[k]);
+  else
+    fprintf(out, "%" PRId64, t->value.integer[k]);
+}
+
+static const char *entity_of(const struct pack_table *t)
+{
+  static const char *const words[][3] = {{"stream", "", "particle"},
+                                         {"swap", "", "particle"},
+                                         {"bin", "out.solvent", "particle"},
+                                         {"rotate", "out.solvent", "particle"},
+                                         {"sum", "", "cell"},
+                                         {"solve", "", "cell"},
+                                         {"rescale", "", "cell"},
+                                         {"maxwell_boltzmann", "", "cell"},
+                                         {"long_sweep", "out.event", "event"},
+                                         {"long_sweep", "out.hit", "event"},
+                                         {"sweep", "out.event", "event"},
+                                         {"sweep", "out.hit", "event"},
+                                         {"random", "", "address"},
+                                         {"shift", "", "row"}};
+  for (size_t k = 0; k < sizeof words / sizeof *words; k++)
+    if (strcmp(words[k][0], t->place.operator_name) == 0 && (!words[k][1][0] || strcmp(words[k][1], t->name) == 0))
+      return words[k][2];
+  return "vertex";
+}
+
+static void print_first(const struct tally *t, FILE *out)
+{
+  const struct oracle_pair *p = &t->first;
+  const uint64_t ulps = distance(p, (size_t)t->row * p->ours->columns + t->column);
+  fprintf(out, "first difference: %s, step %" PRIu64 ", %s %" PRIu32 ", %s.%s: ", p->ours->place.operator_name,
+          p->ours->place.step, entity_of(p->ours), t->row, p->ours->name, p->ours->component[t->column]);
+  print_number(out, p->ours, t->row, t->column);
+  fputs(" here, ", out);
+  print_number(out, p->theirs, t->row, t->column);
+  fprintf(out, " there: %" PRIu64 " %s, tolerance %.3g\n", ulps, p->ours->real ? "ulps" : "units", t->tolerance);
+  const char *meaning = !(difference(p, t->row, t->column) <= t->tolerance)
+                            ? oracle_diagnose(p)
+                            : "order of operations, fused multiply-add, or library functions";
+  fprintf(out, "this pattern: %s\n", meaning ? meaning : "none of those known");
+}
+
+/* Tables of unlike shape are compared as far as both go; what is missing counts as beyond any tolerance. */
+static void tally_table(struct tally *t, const struct oracle_pair *p, FILE *out)
+{
+  const struct tally before = *t;
+  const uint32_t rows = p->ours->rows < p->theirs->rows ? p->ours->rows : p->theirs->rows;
+  if (p->ours->columns != p->theirs->columns) {
+    fprintf(out, "%-18s %6" PRIu64 "  %-14s %" PRIu32 " columns here, %" PRIu32 " there\n",
+            p->ours->place.operator_name, p->ours->place.step, p->ours->name, p->ours->columns, p->theirs->columns);
+    t->beyond++;
+    return;
+  }
+  t->worst = 0;
+  for (uint32_t row = 0; row < rows; row++)
+    for (uint32_t column = 0; column < p->ours->columns; column++)
+      tally_value(t, p, row, column);
+  if (t->different > before.different)
+    fprintf(out,
+            "%-18s %6" PRIu64 "  %-14s of %" PRIu64 " values %" PRIu64 " differ, %" PRIu64
+            " beyond tolerance, by up to %" PRIu64 " %s\n",
+            p->ours->place.operator_name, p->ours->place.step, p->ours->name, t->values - before.values,
+            t->different - before.different, t->beyond - before.beyond, t->worst, p->ours->real ? "ulps" : "units");
+  if (p->ours->rows != p->theirs->rows) {
+    fprintf(out, "  rows: %" PRIu32 " here, %" PRIu32 " there\n", p->ours->rows, p->theirs->rows);
+    if (t->beyond == 0 && rows < p->ours->rows) {
+      t->first = *p;
+      t->row = rows, t->column = 0, t->tolerance = 0.0;
+    }
+    t->beyond++;
+  }
+}
+
+static bool wanted(const char *only, const char *name)
+{
+  const size_t length = strlen(name);
+  for (const char *at = only; at && (at = strstr(at, name)); at += length)
+    if ((at == only || at[-1] == ',') && (at[length] == ',' || at[length] == '\0'))
+      return true;
+  return !only;
+}
+
+/* Inputs that they repeat must be ours, else all else is moot. */
+static bool same_input(const struct pack_table *ours, const struct pack_table *theirs)
+{
+  return ours->rows == theirs->rows && ours->columns == theirs->columns && ours->real == theirs->real &&
+         memcmp(ours->value.data, theirs->value.data, (size_t)ours->rows * ours->columns * 8) == 0;
+}
+
+static void print_shape(const struct tally *t, FILE *out)
+{
+  const struct oracle_pair *p = &t->first;
+  if (t->first.ours && t->row >= p->theirs->rows)
+    fprintf(out, "first difference: %s, step %" PRIu64 ", %s %" PRIu32 ": missing\nthis pattern: %s\n",
+            p->ours->place.operator_name, p->ours->place.step, entity_of(p->ours), t->row,
+            oracle_diagnose(p) ? oracle_diagnose(p) : "none of those known");
+  else if (t->found)
+    print_first(t, out);
+}
+
+bool oracle_compare(const struct pack *ours, const struct pack *theirs, const struct oracle_options *options, FILE *out,
+                    enum oracle_verdict *verdict, struct message *message)
+{
+  struct tally t = {0};
+  bool any = false;
+  for (size_t k = 0; k < ours->count; k++) {
+    const struct pack_table *mine = &ours->table[k];
+    if (!wanted(options->only, mine->place.operator_name))
+      continue;
+    const struct pack_table *its = pack_find(theirs, &mine->place, mine->name);
+    const bool output = strncmp(mine->name, "out.", 4) == 0;
+    any |= output;
+    if (!output && its && !same_input(mine, its)) {
+      fprintf(out, "%s, step %" PRIu64 ": %s is not ours\n", mine->place.operator_name, mine->place.step, mine->name);
+      t.beyond++;
+    } else if (output && !its && mine->rows > 0) {
+      fprintf(out, "%-18s %6" PRIu64 "  %-14s not there\n", mine->place.operator_name, mine->place.step, mine->name);
+      t.beyond++;
+    } else if (output && its) {
+      tally_table(&t, &(struct oracle_pair){ours, mine, its, options->single ? 0x1p-24 : 0x1p-53}, out);
+    }
+  }
+  if (!any)
+    return message_set(message, "nothing to compare; --only takes names of operators of the pack, commas between");
+  *verdict = t.beyond ? ORACLE_DIFFERS : t.different ? ORACLE_CLOSE : ORACLE_SAME;
+  fprintf(out, "%" PRIu64 " values compared, %" PRIu64 " differ, %" PRIu64 " beyond tolerance\n", t.values, t.different,
+          t.beyond);
+  print_shape(&t, out);
+  fprintf(out, "%s\n",
+          *verdict == ORACLE_SAME    ? "same: every bit"
+          : *verdict == ORACLE_CLOSE ? "close: all differences within tolerance"
+                                     : "differs");
+  return true;
+}

@@ -1,0 +1,26 @@
+/* Inside the oracle: differences, tolerances, and what their patterns mean. */
+#ifndef UNCROSS_IO_ORACLE_COMPARE_H
+#define UNCROSS_IO_ORACLE_COMPARE_H
+
+#include "io/pack.h"
+
+/* One output table of one operator, ours and theirs, same shape. */
+struct oracle_pair {
+  const struct pack *pack; /* ours: inputs, model */
+  const struct pack_table *ours, *theirs;
+  double rounding; /* u: 2^-53 or 2^-24 */
+};
+
+/* Bound on |ours - theirs| in this column, if both made the operator's roundings and no mistake: docs/porting.md. */
+double oracle_tolerance(const struct oracle_pair *pair, uint32_t row, uint32_t column);
+
+/* What the pattern of differences usually means; NULL if it is none of those known. */
+const char *oracle_diagnose(const struct oracle_pair *pair);
+
+/* A table of the same operator and step, of our pack; NULL if there is none. */
+static inline const struct pack_table *oracle_sibling(const struct oracle_pair *pair, const char *name)
+{
+  return pack_find(pair->pack, &pair->ours->place, name);
+}
+
+#endif

@@ -1,0 +1,152 @@
+/* Packs and traces of scenes. */
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fiber/force.h"
+#include "io/oracle.h"
+#include "io/oracle_operators.h"
+#include "io/snapshot.h"
+#include "step.h"
+
+static bool say_fault(const struct work *work, struct message *message)
+{
+  char text[512];
+  fault_describe(&work->fault, text, sizeof text);
+  return message_set(message, "%s", text);
+}
+
+bool oracle_start(const struct scene *scene, struct state *state, struct work *work, struct message *message)
+{
+  if (!scene->snapshot)
+    return step_start(state, &scene->model, work) || say_fault(work, message);
+  char *path = scene_snapshot_path(scene);
+  bool ok = path && snapshot_read_start(path, &scene->model, state, message);
+  free(path);
+  return ok && (fiber_forces(state, &scene->model, work, 0) || say_fault(work, message));
+}
+
+/* --- packs ------------------------------------------------------------------------------------------------------- */
+
+static bool advance_to(struct oracle_stage *g, uint64_t step, struct message *message)
+{
+  while (g->state->step < step)
+    if (!step_advance(g->state, g->model, g->work, NULL))
+      return say_fault(g->work, message);
+  return true;
+}
+
+/* All operators of step number `step`, in a run of its own: what they leave behind is no state of the scene's run. */
+static bool emit_step(const struct scene *scene, struct model *model, uint64_t step, struct pack *pack,
+                      struct message *message)
+{
+  struct model greedy = *model; /* work with all scratch, whatever the scene needs */
+  greedy.solvent.thermostat = THERMOSTAT_RESCALE;
+  greedy.solvent.hydrodynamics = false;
+  struct state state = {0};
+  struct work work = {0};
+  uint32_t *slot = malloc(((size_t)model->solvent.particles + 1) * sizeof *slot);
+  bool ok = slot && state_alloc(&state, model) && work_alloc(&work, &greedy);
+  message_set(message, "no memory for this scene");
+  if (ok) {
+    struct oracle_stage g = {model, &state, &work, pack, {"", 0}, slot};
+    ok = oracle_start(scene, &state, &work, message) && advance_to(&g, step - 1, message) &&
+         (oracle_run_operators(&g) || pack->failed || say_fault(&work, message));
+  }
+  work_free(&work);
+  state_free(&state);
+  free(slot);
+  return ok && !pack->failed;
+}
+
+bool oracle_emit(const struct scene *scene, struct pack *pack, struct message *message)
+{
+  struct model model = scene->model;
+  const uint64_t interval = model_has_solvent(&model) ? model.solvent.interval_steps : 1;
+  const uint64_t last = scene->steps / interval * interval;
+  memset(pack, 0, sizeof *pack);
+  if (last == 0)
+    return message_set(message, "%s: no collision within its %" PRIu64 " steps; a pack needs one", scene->path,
+                       scene->steps);
+  oracle_put_model(pack, &model);
+  return emit_step(scene, &model, interval, pack, message) &&
+         (last == interval || emit_step(scene, &model, last, pack, message));
+}
+
+static int by_place(const void *left, const void *right)
+{
+  const struct pack_table *a = left, *b = right;
+  const int rank_a = oracle_operator_rank(a->place.operator_name),
+            rank_b = oracle_operator_rank(b->place.operator_name);
+  if (a->place.step != b->place.step)
+    return a->place.step < b->place.step ? -1 : 1;
+  return rank_a != rank_b ? rank_a - rank_b : strcmp(a->name, b->name);
+}
+
+void oracle_sort(struct pack *pack)
+{
+  if (pack->count > 0)
+    qsort(pack->table, pack->count, sizeof *pack->table, by_place);
+}
+
+/* --- traces ------------------------------------------------------------------------------------------------------ */
+
+struct tracer {
+  const struct model *model;
+  FILE *out;
+  uint32_t *slot;
+  uint64_t step;
+};
+
+/* Plain sums in the order of ids and vertices, of velocities as they stand, half steps and lag or not. */
+static void trace_row(void *context, const char *stage, const struct state *state)
+{
+  const struct tracer *t = context;
+  const struct solvent *s = &state->solvent;
+  struct vec3 momentum = {0, 0, 0};
+  double solvent = 0.0, vertex = 0.0;
+  state_solvent_slots(state, t->slot);
+  for (uint32_t id = 0; id < s->n; id++) {
+    const uint32_t i = t->slot[id];
+    const struct vec3 v = {s->vx[i], s->vy[i], s->vz[i]};
+    momentum = vec3_add(momentum, v);
+    solvent += 0.5 * vec3_dot(v, v);
+  }
+  for (uint32_t j = 0; j < state->vertices; j++) {
+    momentum = vec3_add_scaled(momentum, t->model->mass[j], state->velocity[j]);
+    vertex += 0.5 * t->model->mass[j] * vec3_dot(state->velocity[j], state->velocity[j]);
+  }
+  const struct fiber_energy e = fiber_energies(state, t->model);
+  fprintf(t->out, "%" PRIu64 ",%s,%016" PRIx64 ",%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n", t->step, stage,
+          state_hash(state), momentum.x, momentum.y, momentum.z, solvent, vertex, e.bond, e.bend);
+}
+
+static bool trace_steps(const struct scene *scene, struct state *state, struct work *work, struct tracer *t,
+                        struct message *message)
+{
+  const struct step_watch watch = {trace_row, t};
+  fputs("step,stage,state_hash,momentum_x,momentum_y,momentum_z,solvent_kinetic,vertex_kinetic,bond,bend\n", t->out);
+  trace_row(t, "start", state);
+  while (state->step < scene->steps) {
+    t->step = state->step + 1;
+    if (!step_advance_watched(state, &scene->model, work, NULL, &watch))
+      return say_fault(work, message);
+    trace_row(t, "end", state);
+  }
+  return true;
+}
+
+bool oracle_trace(const struct scene *scene, FILE *out, struct message *message)
+{
+  struct state state = {0};
+  struct work work = {0};
+  struct tracer t = {.model = &scene->model, .out = out};
+  t.slot = malloc(((size_t)scene->model.solvent.particles + 1) * sizeof *t.slot);
+  bool ok = t.slot && state_alloc(&state, &scene->model) && work_alloc(&work, &scene->model);
+  message_set(message, "no memory for this scene");
+  ok = ok && oracle_start(scene, &state, &work, message) && trace_steps(scene, &state, &work, &t, message);
+  work_free(&work);
+  state_free(&state);
+  free(t.slot);
+  return ok;
+}

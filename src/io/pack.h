@@ -1,0 +1,72 @@
+/*
+ * A pack: inputs and outputs of single operators, as named tables of numbers. docs/porting.md describes both its forms:
+ *
+ *   HDF5   group `operator.step`, dataset `in.name` or `out.name` [rows][columns], attribute `components`
+ *   text   lines `operator step row in.name.component value`
+ */
+#ifndef UNCROSS_IO_PACK_H
+#define UNCROSS_IO_PACK_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include "io/message.h"
+
+#define PACK_FORMAT "uncross pack"
+#define PACK_VERSION 1
+#define PACK_WORD 32
+#define PACK_COLUMNS 16
+
+/* Whose numbers: an operator, and the number of the step to which it belongs. */
+struct pack_place {
+  char operator_name[PACK_WORD];
+  uint64_t step;
+};
+
+/* rows x columns numbers, all integers or all reals. A row is an entity: a particle id, a vertex, a cell, an event. */
+struct pack_table {
+  struct pack_place place;
+  char name[PACK_WORD]; /* in.position, out.velocity, ... */
+  bool real;
+  uint32_t rows, columns;
+  char component[PACK_COLUMNS][PACK_WORD];
+  union {
+    int64_t *integer;
+    double *number;
+    void *data;
+  } value; /* [rows * columns] */
+};
+
+struct pack {
+  size_t count;
+  struct pack_table *table; /* [count] in the order in which they were put */
+  bool failed;              /* memory was short once */
+};
+
+/* Appends a table, zeroed, its components as words with blanks between. Returns its data, to be filled before the next
+ * call; NULL, with failed set, if memory is short. */
+int64_t *pack_put_integers(struct pack *pack, const struct pack_place *place, const char *name, const char *components,
+                           uint32_t rows);
+double *pack_put_reals(struct pack *pack, const struct pack_place *place, const char *name, const char *components,
+                       uint32_t rows);
+
+/* The table of this name at this place; NULL if there is none. */
+const struct pack_table *pack_find(const struct pack *pack, const struct pack_place *place, const char *name);
+
+/* One value as a real number, whatever the table holds; NaN where it has none. */
+double pack_value(const struct pack_table *table, uint32_t row, uint32_t column);
+
+void pack_free(struct pack *pack);
+
+/* Writes a pack as HDF5, byte for byte the same for equal packs. */
+bool pack_write(const struct pack *pack, const char *path, struct message *message);
+
+/* Reads a pack of either form. False, with a message (for text `file:line:col: ...`), if it is neither, or damaged. */
+bool pack_read(const char *path, struct pack *pack, struct message *message);
+
+/* The text form, reals as hexadecimal floating-point constants, exact. False if the stream cannot be written. */
+bool pack_dump(const struct pack *pack, FILE *out);
+
+#endif

@@ -1,0 +1,236 @@
+#include "io/pack_text.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool pack_dump(const struct pack *pack, FILE *out)
+{
+  fprintf(out, "# %s %d: operator step row table.component value\n", PACK_FORMAT, PACK_VERSION);
+  for (size_t n = 0; n < pack->count; n++) {
+    const struct pack_table *t = &pack->table[n];
+    for (uint32_t row = 0; row < t->rows; row++)
+      for (uint32_t k = 0; k < t->columns; k++) {
+        const size_t at = (size_t)row * t->columns + k;
+        fprintf(out, "%s %" PRIu64 " %" PRIu32 " %s.%s ", t->place.operator_name, t->place.step, row, t->name,
+                t->component[k]);
+        if (t->real)
+          fprintf(out, "%a\n", t->value.number[at]);
+        else
+          fprintf(out, "%" PRId64 "\n", t->value.integer[at]);
+      }
+  }
+  return !ferror(out);
+}
+
+#define MOST_TABLES 4096
+#define MOST_ROWS (UINT32_MAX / PACK_COLUMNS - 1)
+
+/* --- reading ----------------------------------------------------------------------------------------------------- */
+
+/* One line. A value that is a whole number in decimal digits is kept exactly. */
+struct line {
+  struct pack_place place;
+  uint32_t row;
+  char table[PACK_WORD], component[PACK_WORD];
+  bool real;
+  int64_t integer;
+  double number;
+};
+
+/* What is known of a table while its lines come in, in any order of rows; columns in the order first met. */
+struct draft {
+  size_t values, room; /* lines so far; rows that fit */
+  double *number;      /* [room * PACK_COLUMNS] */
+  int64_t *integer;
+};
+
+static bool parse_value(const char *text, struct line *line)
+{
+  char *end;
+  errno = 0;
+  line->integer = strtoll(text, &end, 10);
+  line->real = *end != '\0' || end == text;
+  if (!line->real && errno != 0)
+    return false;
+  line->number = line->real ? strtod(text, &end) : (double)line->integer;
+  return end != text && *end == '\0';
+}
+
+/* A whole number in decimal digits, and nothing else. */
+static bool parse_whole(const char *word, uint64_t most, uint64_t *value)
+{
+  char *end;
+  errno = 0;
+  *value = strtoull(word, &end, 10);
+  return word[0] >= '0' && word[0] <= '9' && *end == '\0' && errno == 0 && *value <= most;
+}
+
+/* Splits `table.component` at its last dot. */
+static bool parse_name(const char *word, struct line *line)
+{
+  const char *dot = strrchr(word, '.');
+  if (!dot || dot == word || dot - word >= PACK_WORD || dot[1] == '\0' || strlen(dot + 1) >= PACK_WORD)
+    return false;
+  snprintf(line->table, sizeof line->table, "%.*s", (int)(dot - word), word);
+  snprintf(line->component, sizeof line->component, "%s", dot + 1);
+  return true;
+}
+
+enum word { OPERATOR, STEP, ROW, NAME, VALUE, WORDS };
+
+static bool parse_word(const char *text, enum word which, struct line *line)
+{
+  uint64_t row = 0;
+  switch (which) {
+  case OPERATOR:
+    snprintf(line->place.operator_name, PACK_WORD, "%s", text);
+    return text[0] != '\0' && strlen(text) < PACK_WORD;
+  case STEP:
+    return parse_whole(text, UINT64_MAX, &line->place.step);
+  case ROW:
+    if (!parse_whole(text, MOST_ROWS, &row))
+      return false;
+    line->row = (uint32_t)row;
+    return true;
+  case NAME:
+    return parse_name(text, line);
+  default:
+    return parse_value(text, line);
+  }
+}
+
+/* Takes a line apart, in place. The column, counted from 1, of what is wrong; 0 if nothing is. */
+static size_t parse_line(char *text, struct line *line)
+{
+  size_t at = strspn(text, " ");
+  for (int k = 0; k < WORDS; k++) {
+    const size_t length = strcspn(text + at, " "), next = at + length + strspn(text + at + length, " ");
+    const bool last = text[next] == '\0';
+    text[at + length] = '\0';
+    if (!parse_word(text + at, (enum word)k, line))
+      return at + 1;
+    if (last != (k == WORDS - 1))
+      return next + 1;
+    at = next;
+  }
+  return 0;
+}
+
+static int column_of(struct pack_table *t, const char *component)
+{
+  for (uint32_t k = 0; k < t->columns; k++)
+    if (strcmp(t->component[k], component) == 0)
+      return (int)k;
+  if (t->columns == PACK_COLUMNS)
+    return -1;
+  snprintf(t->component[t->columns], PACK_WORD, "%s", component);
+  return (int)t->columns++;
+}
+
+static bool make_room(struct draft *d, uint32_t row)
+{
+  size_t room = d->room ? d->room : 64;
+  while (room <= row)
+    room *= 2;
+  if (room == d->room)
+    return true;
+  double *number = realloc(d->number, room * PACK_COLUMNS * sizeof *number);
+  d->number = number ? number : d->number;
+  int64_t *integer = realloc(d->integer, room * PACK_COLUMNS * sizeof *integer);
+  d->integer = integer ? integer : d->integer;
+  d->room = number && integer ? room : d->room;
+  return number && integer;
+}
+
+/* Consecutive lines mostly belong to one table, so the last one is looked at first. */
+static size_t table_of(struct pack *pack, const struct line *line)
+{
+  for (size_t k = pack->count; k-- > 0;)
+    if (pack_find(&(struct pack){.count = 1, .table = &pack->table[k]}, &line->place, line->table))
+      return k;
+  if (pack->count == MOST_TABLES || !pack_put_integers(pack, &line->place, line->table, "", 0))
+    return SIZE_MAX;
+  return pack->count - 1;
+}
+
+/* NULL, or what is wrong. */
+static const char *take(struct pack *pack, struct draft drafts[MOST_TABLES], const struct line *line)
+{
+  size_t n = table_of(pack, line);
+  if (n == SIZE_MAX)
+    return "more than 4096 tables, or memory is short";
+  struct pack_table *t = &pack->table[n];
+  struct draft *d = &drafts[n];
+  int column = column_of(t, line->component);
+  if (column < 0)
+    return "more than 16 components in one table";
+  if (!make_room(d, line->row))
+    return "memory is short";
+  const size_t at = (size_t)line->row * PACK_COLUMNS + (size_t)column;
+  d->number[at] = line->number;
+  d->integer[at] = line->integer;
+  d->values++;
+  t->real |= line->real;
+  t->rows = line->row >= t->rows ? line->row + 1 : t->rows;
+  return NULL;
+}
+
+/* Puts the draft's numbers where they belong, if each was given once. */
+static bool finish(struct pack_table *t, const struct draft *d, const char *path, struct message *message)
+{
+  if (d->values != (size_t)t->rows * t->columns)
+    return message_set(message,
+                       "%s: %s step %" PRIu64 " %s: %zu values for %" PRIu32 " rows of %" PRIu32
+                       " components; each is given once, rows from 0",
+                       path, t->place.operator_name, t->place.step, t->name, d->values, t->rows, t->columns);
+  int64_t *data = calloc(d->values + 1, sizeof *data);
+  if (!data)
+    return message_set(message, "%s: memory is short", path);
+  free(t->value.data);
+  t->value.integer = data;
+  for (size_t k = 0; k < d->values; k++) {
+    const size_t at = k / t->columns * PACK_COLUMNS + k % t->columns;
+    if (t->real)
+      t->value.number[k] = d->number[at];
+    else
+      data[k] = d->integer[at];
+  }
+  return true;
+}
+
+static bool read_lines(FILE *in, const char *path, struct pack *pack, struct draft drafts[MOST_TABLES],
+                       struct message *message)
+{
+  char text[512];
+  for (size_t number = 1; fgets(text, sizeof text, in); number++) {
+    struct line line;
+    text[strcspn(text, "\r\n")] = '\0';
+    if (text[0] == '#' || text[0] == '\0')
+      continue;
+    size_t column = parse_line(text, &line);
+    if (column > 0)
+      return message_at(message, path, number, column,
+                        "not understood; a line is `operator step row table.component value`");
+    const char *wrong = take(pack, drafts, &line);
+    if (wrong)
+      return message_at(message, path, number, 1, "%s", wrong);
+  }
+  return !ferror(in) || message_set(message, "%s: cannot be read", path);
+}
+
+bool pack_read_text(FILE *in, const char *path, struct pack *pack, struct message *message)
+{
+  struct draft *drafts = calloc(MOST_TABLES, sizeof *drafts);
+  if (!drafts)
+    return message_set(message, "%s: memory is short", path);
+  bool ok = read_lines(in, path, pack, drafts, message);
+  for (size_t n = 0; n < pack->count; n++) {
+    ok = ok && finish(&pack->table[n], &drafts[n], path, message);
+    free(drafts[n].number);
+    free(drafts[n].integer);
+  }
+  free(drafts);
+  return ok && (pack->count > 0 || message_set(message, "%s: holds no values; a pack is HDF5 or lines of text", path));
+}

@@ -1,0 +1,182 @@
+#include "oracle.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "io/oracle.h"
+
+static const char help[] =
+    "uncross oracle: what other implementations are held against (docs/porting.md)\n"
+    "\n"
+    "usage:\n"
+    "  uncross oracle emit SCENE -o PACK.h5      inputs and outputs of every operator, at two steps\n"
+    "  uncross oracle trace SCENE -o TRACE.csv   state hashes and sums after every stage of the scene's steps\n"
+    "  uncross oracle dump PACK                  the pack as text, to standard output (or -o FILE)\n"
+    "  uncross oracle compare OURS THEIRS        packs, each HDF5 or text: the first difference and what it means\n"
+    "      --single                              tolerances of single precision instead of double\n"
+    "      --only OPERATOR[,OPERATOR ...]        these operators only\n"
+    "\n"
+    "exit codes of compare:\n"
+    "  0  the same, every bit\n"
+    "  2  bad input\n"
+    "  6  different, but all within the derived tolerances\n"
+    "  7  different beyond them, or something is missing\n"
+    "The others end as all of uncross: see `uncross --help`.\n";
+
+struct words {
+  const char *file[2];
+  const char *output;
+  struct oracle_options options;
+};
+
+static enum exit_code complain(const struct message *message, enum exit_code code)
+{
+  fprintf(stderr, "uncross: %s\n", message->text);
+  return code;
+}
+
+/* The file asked for, which must not exist, or standard output. */
+static FILE *open_output(const char *path, struct message *message)
+{
+  FILE *out = path ? fopen(path, "wx") : stdout;
+  if (!out)
+    message_set(message, "%s: cannot create: %s", path, strerror(errno));
+  return out;
+}
+
+static enum exit_code close_output(FILE *out, bool ok, const char *path, struct message *message)
+{
+  bool written = !ferror(out);
+  written = (out == stdout ? fflush(out) : fclose(out)) == 0 && written;
+  if (!(ok && written) && path)
+    remove(path);
+  if (!ok)
+    return complain(message, EXIT_BAD_INPUT);
+  message_set(message, "%s: cannot write", path ? path : "standard output");
+  return written ? EXIT_DONE : complain(message, EXIT_NOT_WRITTEN);
+}
+
+static enum exit_code emit(const struct words *w)
+{
+  struct message message;
+  struct scene scene;
+  struct pack pack;
+  if (!w->output) {
+    message_set(&message, "oracle emit: -o PACK.h5 is missing");
+    return complain(&message, EXIT_BAD_INPUT);
+  }
+  if (!scene_read(w->file[0], &scene, &message))
+    return complain(&message, EXIT_BAD_INPUT);
+  enum exit_code code = oracle_emit(&scene, &pack, &message) ? EXIT_DONE : complain(&message, EXIT_BAD_INPUT);
+  if (code == EXIT_DONE && !pack_write(&pack, w->output, &message))
+    code = complain(&message, EXIT_NOT_WRITTEN);
+  pack_free(&pack);
+  scene_free(&scene);
+  return code;
+}
+
+static enum exit_code trace(const struct words *w)
+{
+  struct message message;
+  struct scene scene;
+  if (!scene_read(w->file[0], &scene, &message))
+    return complain(&message, EXIT_BAD_INPUT);
+  FILE *out = open_output(w->output, &message);
+  enum exit_code code = EXIT_NOT_WRITTEN;
+  if (out)
+    code = close_output(out, oracle_trace(&scene, out, &message), w->output, &message);
+  else
+    complain(&message, code);
+  scene_free(&scene);
+  return code;
+}
+
+static enum exit_code dump(const struct words *w)
+{
+  struct message message;
+  struct pack pack;
+  if (!pack_read(w->file[0], &pack, &message))
+    return complain(&message, EXIT_BAD_INPUT);
+  oracle_sort(&pack);
+  FILE *out = open_output(w->output, &message);
+  enum exit_code code = EXIT_NOT_WRITTEN;
+  if (out) {
+    pack_dump(&pack, out);
+    code = close_output(out, true, w->output, &message);
+  } else {
+    complain(&message, code);
+  }
+  pack_free(&pack);
+  return code;
+}
+
+static enum exit_code compare(const struct words *w)
+{
+  static const enum exit_code codes[] = {
+      [ORACLE_SAME] = EXIT_DONE, [ORACLE_CLOSE] = EXIT_CLOSE, [ORACLE_DIFFERS] = EXIT_DIFFERS};
+  struct message message;
+  struct pack ours, theirs;
+  enum oracle_verdict verdict = ORACLE_DIFFERS;
+  if (!pack_read(w->file[0], &ours, &message))
+    return complain(&message, EXIT_BAD_INPUT);
+  if (!pack_read(w->file[1], &theirs, &message)) {
+    pack_free(&ours);
+    return complain(&message, EXIT_BAD_INPUT);
+  }
+  oracle_sort(&ours);
+  bool ok = oracle_compare(&ours, &theirs, &w->options, stdout, &verdict, &message);
+  pack_free(&ours);
+  pack_free(&theirs);
+  return ok ? codes[verdict] : complain(&message, EXIT_BAD_INPUT);
+}
+
+static const struct {
+  const char *name;
+  int files;
+  enum exit_code (*act)(const struct words *);
+} actions[] = {{"emit", 1, emit}, {"trace", 1, trace}, {"dump", 1, dump}, {"compare", 2, compare}};
+
+enum option_code { OPTION_HELP = 256, OPTION_SINGLE, OPTION_ONLY };
+
+static const struct option options[] = {{"output", 1, NULL, 'o'},
+                                        {"single", 0, NULL, OPTION_SINGLE},
+                                        {"only", 1, NULL, OPTION_ONLY},
+                                        {"help", 0, NULL, OPTION_HELP},
+                                        {0, 0, NULL, 0}};
+
+static enum exit_code usage_error(const char *what, const char *which)
+{
+  fprintf(stderr, "uncross: oracle%s%s; `uncross oracle --help` lists what is allowed\n", what, which);
+  return EXIT_BAD_INPUT;
+}
+
+enum exit_code oracle_command(int count, char **arguments)
+{
+  struct words w = {.output = NULL};
+  int code;
+  while ((code = getopt_long(count, arguments, "o:", options, NULL)) != -1) {
+    if (code == OPTION_HELP)
+      return fputs(help, stdout) >= 0 ? EXIT_DONE : EXIT_NOT_WRITTEN;
+    if (code == 'o')
+      w.output = optarg;
+    else if (code == OPTION_SINGLE)
+      w.options.single = true;
+    else if (code == OPTION_ONLY)
+      w.options.only = optarg;
+    else
+      return EXIT_BAD_INPUT; /* getopt_long has said why */
+  }
+  const char *name = optind < count ? arguments[optind] : "";
+  for (size_t k = 0; k < sizeof actions / sizeof *actions; k++) {
+    if (strcmp(name, actions[k].name) != 0)
+      continue;
+    if (count - optind - 1 != actions[k].files)
+      return usage_error(" ", actions[k].files == 2 ? "compare: two files" : "takes one file");
+    for (int f = 0; f < actions[k].files; f++)
+      w.file[f] = arguments[optind + 1 + f];
+    return actions[k].act(&w);
+  }
+  return usage_error(": no such action: ", name[0] ? name : "(none given)");
+}

@@ -1,0 +1,308 @@
+#!/usr/bin/python3
+"""The oracle: this code against its own packs and traces in reference-data/, and the comparison of packs against ports
+that are wrong in known ways. Each wrong port is made from the text of a right one, by formulas written out here.
+"""
+import math
+import os
+import pathlib
+import struct
+import subprocess
+import tempfile
+import unittest
+
+TOP = pathlib.Path(__file__).resolve().parents[2]
+DATA = TOP / "reference-data"
+UNCROSS = os.environ.get("UNCROSS", str(TOP / "build/uncross"))
+SCENES = ("dense", "mixed")
+CELL = 1 << 40  # lattice units
+
+# What uses log, exp, sin or cos: these bits belong to the C library.
+LIBM = ("random", "maxwell_boltzmann")
+
+
+def run(*words):
+    done = subprocess.run([UNCROSS, "oracle", *map(str, words)], capture_output=True, text=True, check=False)
+    return done.returncode, done.stdout + done.stderr
+
+
+def number(text):
+    if "0x" in text:
+        return float.fromhex(text)
+    return int(text) if text.lstrip("-").isdigit() else float(text)
+
+
+def philox(counter, key):
+    """Philox 4x32-10, as docs/porting.md writes it."""
+    c, k = list(counter), list(key)
+    for _ in range(10):
+        a, b = 0xD2511F53 * c[0], 0xCD9E8D57 * c[2]
+        c = [b >> 32 ^ c[1] ^ k[0], b & 0xFFFFFFFF, a >> 32 ^ c[3] ^ k[1], a & 0xFFFFFFFF]
+        k = [(k[0] + 0x9E3779B9) & 0xFFFFFFFF, (k[1] + 0xBB67AE85) & 0xFFFFFFFF]
+    return c
+
+
+class Port:
+    """The numbers of a pack, to be made wrong: port[operator, step][row, "table.component"]."""
+
+    def __init__(self, text):
+        self.places = {}
+        for line in text.splitlines():
+            if not line.startswith("#"):
+                name, step, row, component, value = line.split()
+                self.places.setdefault((name, int(step)), {})[int(row), component] = number(value)
+
+    def rows(self, place, component):
+        return sum(1 for _, name in self.places[place] if name == component)
+
+    def vector(self, place, row, table):
+        return [self.places[place][row, f"{table}.{k}"] for k in "xyz"]
+
+    def set_vector(self, place, row, table, values):
+        for k, value in zip("xyz", values):
+            self.places[place][row, f"{table}.{k}"] = value
+
+    def text(self):
+        lines = []
+        for (name, step), values in self.places.items():
+            for (row, component), value in values.items():
+                lines.append(f"{name} {step} {row} {component} {value.hex() if isinstance(value, float) else value}")
+        return "\n".join(lines) + "\n"
+
+
+class OracleTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.dir = pathlib.Path(cls.folder.name)
+        cls.dumps = {}
+        for name in SCENES:
+            status, cls.dumps[name] = run("dump", DATA / f"{name}.pack.h5")
+            assert status == 0, cls.dumps[name]
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def compare(self, port, *options, ours="dense"):
+        path = self.dir / "theirs.txt"
+        path.write_text(port if isinstance(port, str) else port.text())
+        return run("compare", DATA / f"{ours}.pack.h5", path, *options)
+
+    def assert_named(self, port, *words, ours="dense"):
+        status, said = self.compare(port, ours=ours)
+        self.assertEqual(status, 7, said)
+        for word in words:
+            self.assertIn(word, said)
+
+    # --- the code itself ---
+
+    def test_packs_are_those_of_this_code(self):
+        for name in SCENES:
+            pack = self.dir / f"{name}.h5"
+            self.assertEqual(run("emit", DATA / f"{name}.yaml", "-o", pack), (0, ""))
+            status, said = run("compare", DATA / f"{name}.pack.h5", pack)
+            self.assertIn(status, (0, 6), said)
+            exact = [p for p in dict.fromkeys(place for place, _ in Port(self.dumps[name]).places)
+                     if p not in LIBM and p != "model" and (p != "rotate" or name == "dense")]
+            status, said = run("compare", DATA / f"{name}.pack.h5", pack, "--only", ",".join(exact))
+            self.assertEqual(status, 0, said)
+
+    def test_traces_are_those_of_this_code(self):
+        status, said = run("trace", DATA / "dense.yaml")
+        self.assertEqual(status, 0, said)
+        self.assertEqual(said.splitlines(), (DATA / "dense.trace.csv").read_text().splitlines())
+        # mixed turns by 130 degrees: its bits belong to the C library after the first collision
+        status, said = run("trace", DATA / "mixed.yaml")
+        wanted = (DATA / "mixed.trace.csv").read_text().splitlines()
+        until = next(k for k, line in enumerate(wanted) if ",collide," in line)
+        self.assertEqual(said.splitlines()[:until], wanted[:until])
+
+    def test_packs_show_what_matters(self):
+        """Crossings through faces, several hits of a move, negative dP, and cells of one member and of none."""
+        port = Port(self.dumps["dense"])
+        for place in (("long_sweep", 2), ("long_sweep", 20)):
+            values = port.places[place]
+            events = range(port.rows(place, "out.event.vertex"))
+            self.assertTrue(any(values[k, "out.event.image_x"] for k in events))
+            self.assertTrue(any(not values[k, "out.event.executed"] for k in events))
+            self.assertTrue(any(values[k, "out.hit.momentum"] < 0 for k in events))
+        mixed = Port(self.dumps["mixed"])
+        loads = {v for (_, name), v in mixed.places["sum", 3].items() if name == "out.load.members"}
+        self.assertTrue({0, 1, 2} <= loads, loads)
+
+    def test_text_holds_every_bit(self):
+        for name in SCENES:
+            status, said = self.compare(self.dumps[name], ours=name)
+            self.assertEqual(status, 0, said)
+
+    def test_random_numbers_by_the_contract(self):
+        port = Port(self.dumps["dense"])
+        model, values = port.places["model", 0], port.places["random", 2]
+        key = model[0, "in.numbers.seed_low"], model[0, "in.numbers.seed_high"]
+        for row in range(port.rows(("random", 2), "in.address.purpose")):
+            purpose, draw, step, entity = (values[row, f"in.address.{k}"]
+                                           for k in ("purpose", "draw", "step", "entity"))
+            words = philox((entity, purpose + 256 * draw, step & 0xFFFFFFFF, step >> 32), key)
+            self.assertEqual(words, [values[row, f"out.word.{k}"] for k in range(4)])
+            self.assertEqual(((words[0] + (words[1] << 32) >> 12) + 0.5) * 2.0**-52, values[row, "out.uniform.0"])
+            if f"{purpose}, {draw}, {step}, {entity}" in ("1, 0, 2, 0", "2, 0, 2, 0", "3, 1, 1, 0"):
+                page = (TOP / "docs/porting.md").read_text()
+                self.assertIn(" ".join(map(str, words)) + f" | {values[row, 'out.uniform.0']!r}", page)
+
+    # --- other codes ---
+
+    def test_one_ulp_is_close(self):
+        port = Port(self.dumps["dense"])
+        values = port.places["kick", 2]
+        values[17, "out.velocity.y"] = math.nextafter(values[17, "out.velocity.y"], 1e9)
+        status, said = self.compare(port)
+        self.assertEqual(status, 6, said)
+        self.assertIn("kick, step 2, vertex 17, out.velocity.y", said)
+        self.assertIn(": 1 ulps", said)
+
+    def test_nan_differs(self):
+        port = Port(self.dumps["dense"])
+        port.places["kick", 2][17, "out.velocity.y"] = math.nan
+        self.assert_named(port, "kick, step 2, vertex 17, out.velocity.y")
+
+    def test_missing_operator_differs(self):
+        port = Port(self.dumps["dense"])
+        del port.places["stream", 20]
+        self.assert_named(port, "stream", "not there")
+        self.assertEqual(self.compare(port, "--only", "kick,bin")[0], 0)
+
+    def binned(self, tables, sign, transpose=False):
+        port = Port(self.dumps["dense"])
+        box = [port.places["model", 0][0, f"in.box.{k}"] for k in "xyz"]
+        for step in (2, 20):
+            place = "bin", step
+            shift = port.vector(place, 0, "in.shift")
+            for table in tables:
+                for row in range(port.rows(place, f"out.{table}.cell")):
+                    r = port.vector(place, row, f"in.{table}")
+                    x, y, z = ((p + sign * s) // CELL % n for p, s, n in zip(r, shift, box))
+                    cell = (x * box[1] + y) * box[2] + z if transpose else (z * box[1] + y) * box[0] + x
+                    port.places[place][row, f"out.{table}.cell"] = cell
+        return port
+
+    def test_grid(self):
+        self.assertEqual(self.compare(self.binned(("solvent", "vertex"), 1))[0], 0)
+        self.assert_named(self.binned(("solvent", "vertex"), -1), "grid shift sign")
+        self.assert_named(self.binned(("vertex",), 0), "solvent only")
+        self.assert_named(self.binned(("solvent", "vertex"), 0), "no grid shift")
+        self.assert_named(self.binned(("solvent", "vertex"), 1, transpose=True), "x slowest")
+
+    def rotated(self, sense, with_factor):
+        """R w = n (n.w) +- n x w, at 90 degrees."""
+        port = Port(self.dumps["dense"])
+        place = "rotate", 2
+        values = port.places[place]
+        for table in ("solvent", "vertex"):
+            for row in range(port.rows(place, f"in.{table}_cell.cell")):
+                cell = values[row, f"in.{table}_cell.cell"]
+                if not values[cell, "in.active.active"]:
+                    continue
+                n, c = port.vector(place, cell, "in.axis"), port.vector(place, cell, "in.center")
+                w = [a - b for a, b in zip(port.vector(place, row, f"in.{table}"), c)]
+                along = sum(a * b for a, b in zip(n, w))
+                cross = [n[1] * w[2] - n[2] * w[1], n[2] * w[0] - n[0] * w[2], n[0] * w[1] - n[1] * w[0]]
+                f = values[cell, "in.factor.factor"] if with_factor else 1.0
+                port.set_vector(place, row, f"out.{table}",
+                                [c[k] + f * (along * n[k] + sense * cross[k]) for k in range(3)])
+        return port
+
+    def test_rotation(self):
+        self.assertIn(self.compare(self.rotated(1, True))[0], (0, 6))
+        self.assert_named(self.rotated(-1, True), "rotate, step 2", "rotation transposed")
+        self.assert_named(self.rotated(1, False), "factor")
+
+    def changed(self, place, table, change):
+        port = Port(self.dumps["dense"])
+        for (row, name), value in list(port.places[place].items()):
+            if name.startswith(table + "."):
+                port.places[place][row, name] = change(port.places[place], row, name, value)
+        return port
+
+    def test_kick(self):
+        def half(values, row, name, value):
+            before = values[row, name.replace("out.", "in.")]
+            return before + 0.5 * (value - before)
+        self.assert_named(self.changed(("kick", 2), "out.velocity", half), "half a step")
+
+    def test_forces(self):
+        self.assert_named(self.changed(("bend_force", 2), "out.force", lambda *a: -a[3]), "bend_force", "negative")
+
+    def test_single_precision(self):
+        port = self.changed(("force", 2), "out.force", lambda *a: struct.unpack("f", struct.pack("f", a[3]))[0])
+        self.assert_named(port, "single precision")
+        status, said = self.compare(port, "--single")
+        self.assertEqual(status, 6, said)
+
+    def test_stream(self):
+        edge = 4 * CELL
+        def unwrapped(values, row, name, value):
+            return value + edge if name.endswith(".x") and value < CELL // 8 else value
+        self.assert_named(self.changed(("stream", 2), "out.position", unwrapped), "not wrapped")
+
+    # --- sweeps: the events of a long one, changed ---
+
+    def events(self, keep=lambda event: True, change=lambda event: event):
+        port = Port(self.dumps["dense"])
+        values = port.places["long_sweep", 2]
+        rows = [{name: values.pop((row, name)) for r, name in list(values) if r == row and
+                 name.startswith(("out.event.", "out.hit."))} for row in range(port.rows(("long_sweep", 2), "out.event.vertex"))]
+        for row, event in enumerate(change(event) for event in rows if keep(event)):
+            for name, value in event.items():
+                values[row, name] = value
+        return port
+
+    def test_events(self):
+        def across(event):
+            return not any(event[f"out.event.image_{k}"] for k in "xyz")
+
+        def clip(event):
+            return event | {"out.hit.momentum": max(event["out.hit.momentum"], 0.0)}
+
+        def swap_lever(event):
+            return event | {k: 1.0 - event[k] for k in ("out.hit.s", "out.hit.s_standing")}
+
+        def turn(event):
+            return event | {k: -event[k] for k in event if "normal" in k or "momentum" in k}
+
+        def other(event):
+            return event | {"out.event.executed": 1 - event["out.event.executed"]}
+
+        self.assertEqual(self.compare(self.events())[0], 0)
+        self.assert_named(self.events(keep=across), "missing image")
+        self.assert_named(self.events(change=clip), "clipped")
+        self.assert_named(self.events(change=swap_lever), "lever")
+        self.assert_named(self.events(change=turn), "normal turned")
+        self.assert_named(self.events(change=other), "another hit than the first")
+        count = [0]
+
+        def all_but_third(event):
+            count[0] += across(event)
+            return count[0] != 3 or not across(event)
+        self.assert_named(self.events(keep=all_but_third), "a crossing is missed")
+
+    # --- bad input ---
+
+    def test_bad_text(self):
+        for text, where in (("kick 2 0 out.velocity.x\n", ":1:"), ("# fine\nkick two 0 out.v.x 1\n", ":2:6:"),
+                            ("kick 2 0 velocity 1\n", ":1:10:"), ("kick 2 0 out.v.x 1y\n", ":1:18:"),
+                            ("kick 2 1 out.v.x 1\n", "1 values for 2 rows"), ("", "holds no values")):
+            status, said = self.compare(text)
+            self.assertEqual(status, 2, said)
+            self.assertIn(where, said)
+
+    def test_bad_words(self):
+        self.assertEqual(run("emit", DATA / "dense.yaml")[0], 2)
+        self.assertEqual(run("compare", DATA / "dense.pack.h5")[0], 2)
+        self.assertEqual(run("compare", DATA / "dense.pack.h5", DATA / "dense.pack.h5", "--only", "kic")[0], 2)
+        self.assertEqual(run("emit", DATA / "dense.yaml", "-o", DATA / "dense.pack.h5")[0], 4)
+        self.assertEqual(run("dump", DATA / "dense.start.h5")[0], 2)
+        self.assertEqual(run("--help")[0], 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
