@@ -122,12 +122,12 @@ check:
 
 .PHONY: stress
 stress:
-	tools/install-dependencies run test
+	tools/install-dependencies run test stress
 	$(MAKE) -j2 stress-programs
 	tests/run --stress $(BUILD)
 
 .PHONY: stress-programs
-stress-programs: $(BUILD)/uncross $(STRESS_PROGRAMS)
+stress-programs: $(BUILD)/uncross $(BUILD)/uncross-faults $(STRESS_PROGRAMS)
 
 .PHONY: lint
 lint:

@@ -1,0 +1,195 @@
+/* Memory that runs out at the n-th call, for n = 1, 2, 3, ... until nothing fails: each function says so, leaves
+ * nothing open and nothing behind. (What it leaks is for `make sanitize` to see.) */
+#include "io/files.h"
+
+#include "faults/inject.h"
+#include "io/scene.h"
+
+static const char text[] =
+    "box: [5, 4, 4]\ntime_step: 0.01\nsteps: 2\nseed: 1\nsolvent: {per_cell: 2, "
+    "collision_interval: 0.02, thermostat: rescale}\nfibers:\n  - {name: a, count: 2, vertices: 4, "
+    "mass: 5, bond_length: 0.5, spring: 100, bending: 4}\n  - {name: b, count: 1, vertices: 3, "
+    "mass: 5, bond_length: 0.5, spring: 100, bending: 4, start: straight, "
+    "places: [{center: [1, 1, 1], direction: [1, 0, 0]}]}\n";
+
+/* What a function under test works with, made without failures. */
+struct bench {
+  struct test_run run;
+  struct scene scene;
+  char folder[64];
+};
+
+static void write_checkpoint(const struct bench *b, const char *path)
+{
+  struct message m;
+  const struct checkpoint_head head = {.seed = 1, .version = "test"};
+  assert_true(checkpoint_write(path, &head, &b->run.model, &b->run.state, NULL, 0, text, &m));
+}
+
+/* Each makes something and frees it again; false if that failed. */
+static bool try_model(struct bench *b)
+{
+  struct model m = b->run.model;
+  m.kind = NULL;
+  m.kinds = 0;
+  bool ok = model_finish(&m);
+  model_free(&m);
+  return ok;
+}
+
+static bool try_state(struct bench *b)
+{
+  struct state s;
+  if (!state_alloc(&s, &b->run.model))
+    return false;
+  state_free(&s);
+  return true;
+}
+
+static bool try_work(struct bench *b)
+{
+  struct work w;
+  if (!work_alloc(&w, &b->scene.model))
+    return false;
+  work_free(&w);
+  return true;
+}
+
+static bool try_start(struct bench *b)
+{
+  struct state s;
+  struct work w;
+  if (!state_alloc(&s, &b->run.model))
+    return false;
+  if (!work_alloc(&w, &b->run.model)) {
+    state_free(&s);
+    return false;
+  }
+  bool ok = step_start(&s, &b->run.model, &w) && step_advance(&s, &b->run.model, &w, NULL);
+  assert_true(ok || w.fault.code == FAULT_NO_MEMORY);
+  work_free(&w);
+  state_free(&s);
+  return ok;
+}
+
+static bool try_observers(struct bench *b)
+{
+  const struct observe_plan plan = {.every = {1, 1, 1, 1, 1}};
+  struct observers *o = observers_create(&plan, &b->run.model);
+  observers_free(o);
+  return o != NULL;
+}
+
+static bool try_scene(struct bench *b)
+{
+  (void)b;
+  struct scene s;
+  struct message m = {""};
+  if (!scene_read_text("t.yaml", text, strlen(text), &s, &m)) {
+    assert_non_null(strstr(m.text, "t.yaml: out of memory"));
+    return false;
+  }
+  scene_free(&s);
+  return true;
+}
+
+/* The checkpoint that is there stays, byte for byte, and no part of a new one. */
+static bool try_checkpoint_write(struct bench *b)
+{
+  const struct checkpoint_head head = {.seed = 2, .version = "new"};
+  const char *path = in_folder(b->folder, "c.h5");
+  struct message m = {""};
+  size_t before, after;
+  char *old = slurp(path, &before);
+  bool ok = checkpoint_write(path, &head, &b->run.model, &b->run.state, NULL, 0, text, &m);
+  if (!ok) {
+    char *found = slurp(path, &after);
+    assert_int_equal(after, before);
+    assert_memory_equal(found, old, before);
+    assert_true(m.text[0] != '\0');
+    assert_false(is_there(in_folder(b->folder, "c.h5.part")));
+    free(found);
+  }
+  free(old);
+  return ok;
+}
+
+static bool try_checkpoint_read(struct bench *b)
+{
+  struct checkpoint_head head;
+  struct message m = {""};
+  const char *path = in_folder(b->folder, "r.h5");
+  bool ok = checkpoint_read(path, &b->run.model, &head, &b->run.state, NULL, 0, &m);
+  assert_true(ok || m.text[0] != '\0');
+  return ok;
+}
+
+static bool try_trajectory(struct bench *b)
+{
+  const struct trajectory_options options = {.solvent = true, .velocities = true, .seed = 1};
+  const char *path = in_folder(b->folder, "t.h5");
+  struct message m = {""};
+  remove(path);
+  struct trajectory *t = trajectory_open(path, &b->run.model, &options, false, 0, text, &m);
+  if (!t) {
+    assert_true(m.text[0] != '\0');
+    assert_false(is_there(path));
+    return false;
+  }
+  bool ok = trajectory_append(t, &b->run.model, &b->run.state, &m);
+  assert_true(ok || m.text[0] != '\0');
+  return trajectory_close(t, &m) && ok;
+}
+
+static const struct {
+  const char *name;
+  bool (*act)(struct bench *b);
+  unsigned least; /* calls that can fail, at least */
+} tries[] = {
+    {"model_finish", try_model, 7},
+    {"state_alloc", try_state, 9},
+    {"work_alloc", try_work, 8},
+    {"step_start, step_advance", try_start, 3},
+    {"observers_create", try_observers, 10},
+    {"scene_read", try_scene, 10},
+    {"checkpoint_write", try_checkpoint_write, 5},
+    {"checkpoint_read", try_checkpoint_read, 4},
+    {"trajectory_open", try_trajectory, 6},
+};
+
+static void test_memory_runs_out_at_every_call(void **unused)
+{
+  (void)unused;
+  struct bench b = {.run = small_run(3)};
+  struct message m;
+  make_folder(b.folder);
+  assert_true(scene_read_text("t.yaml", text, strlen(text), &b.scene, &m));
+  write_checkpoint(&b, in_folder(b.folder, "c.h5"));
+  write_checkpoint(&b, in_folder(b.folder, "r.h5"));
+  for (size_t k = 0; k < sizeof tries / sizeof *tries; k++) {
+    unsigned n = 0;
+    for (bool hit = true; hit;) {
+      /* The test's own slurp counts too; it comes first, so its calls are left out. */
+      inject_arm(INJECT_MEMORY, ++n + (tries[k].act == try_checkpoint_write), false);
+      bool ok = tries[k].act(&b);
+      hit = inject_disarm();
+      if (ok == hit)
+        fail_msg("%s: allocation %u %s, and it returned %s", tries[k].name, n, hit ? "failed" : "went well",
+                 ok ? "true" : "false");
+      assert_all_closed();
+      assert_true(n < 1000);
+    }
+    print_message("  %s: %u allocations\n", tries[k].name, n - 1);
+    if (n - 1 < tries[k].least)
+      fail_msg("%s: only %u allocations were seen", tries[k].name, n - 1);
+  }
+  scene_free(&b.scene);
+  test_end(&b.run);
+  remove_folder(b.folder);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_memory_runs_out_at_every_call)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
