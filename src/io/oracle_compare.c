@@ -37,7 +37,7 @@ static double difference(const struct oracle_pair *p, uint32_t row, uint32_t col
 
 struct tally {
   uint64_t values, different, beyond, worst; /* worst: ulps */
-  bool found;                                /* a first one is known: beyond tolerance if any is, else different */
+  bool found, found_beyond;                  /* a first one is known, and beyond tolerance if any is */
   struct oracle_pair first;
   uint32_t row, column;
   double tolerance;
@@ -54,10 +54,11 @@ static void tally_value(struct tally *t, const struct oracle_pair *p, uint32_t r
   t->worst = ulps > t->worst ? ulps : t->worst;
   const double tolerance = oracle_tolerance(p, row, column);
   const bool beyond = !(size <= tolerance);
-  if ((beyond && t->beyond == 0) || !t->found) {
+  if ((beyond && !t->found_beyond) || !t->found) {
     t->first = *p;
     t->row = row, t->column = column, t->tolerance = tolerance;
     t->found = true;
+    t->found_beyond = beyond;
   }
   t->beyond += beyond;
 }
@@ -132,7 +133,8 @@ static void tally_table(struct tally *t, const struct oracle_pair *p, FILE *out)
             t->different - before.different, t->beyond - before.beyond, t->worst, p->ours->real ? "ulps" : "units");
   if (p->ours->rows != p->theirs->rows) {
     fprintf(out, "  rows: %" PRIu32 " here, %" PRIu32 " there\n", p->ours->rows, p->theirs->rows);
-    if (t->beyond == 0 && rows < p->ours->rows) {
+    if (!t->found_beyond && rows < p->ours->rows) {
+      t->found = t->found_beyond = true;
       t->first = *p;
       t->row = rows, t->column = 0, t->tolerance = 0.0;
     }
@@ -149,11 +151,36 @@ static bool wanted(const char *only, const char *name)
   return !only;
 }
 
-/* Inputs that they repeat must be ours, else all else is moot. */
-static bool same_input(const struct pack_table *ours, const struct pack_table *theirs)
+/* Inputs that they repeat must be ours, else the outputs are answers to another question. */
+static bool same_inputs(const struct pack *ours, const struct pack *theirs, const struct pack_place *place,
+                        const char **other)
 {
-  return ours->rows == theirs->rows && ours->columns == theirs->columns && ours->real == theirs->real &&
-         memcmp(ours->value.data, theirs->value.data, (size_t)ours->rows * ours->columns * 8) == 0;
+  for (size_t k = 0; k < ours->count; k++) {
+    const struct pack_table *mine = &ours->table[k];
+    const struct pack_table *its = pack_find(theirs, place, mine->name);
+    if (pack_find(ours, place, mine->name) != mine || strncmp(mine->name, "in.", 3) != 0 || !its)
+      continue;
+    *other = mine->name;
+    if (mine->rows != its->rows || mine->columns != its->columns || mine->real != its->real ||
+        memcmp(mine->value.data, its->value.data, (size_t)mine->rows * mine->columns * 8) != 0)
+      return false;
+  }
+  return true;
+}
+
+/* One output table of ours. */
+static void look_at(struct tally *t, const struct pack *ours, const struct pack *theirs, const struct pack_table *mine,
+                    double rounding, FILE *out)
+{
+  const struct pack_table *its = pack_find(theirs, &mine->place, mine->name);
+  const char *other = NULL;
+  if (its && same_inputs(ours, theirs, &mine->place, &other)) {
+    tally_table(t, &(struct oracle_pair){ours, mine, its, rounding}, out);
+  } else if (its || mine->rows > 0) {
+    fprintf(out, "%-18s %6" PRIu64 "  %-14s not %s%s\n", mine->place.operator_name, mine->place.step, mine->name,
+            its ? "compared, for another input: " : "there", its ? other : "");
+    t->beyond++;
+  }
 }
 
 static void print_shape(const struct tally *t, FILE *out)
@@ -176,18 +203,10 @@ bool oracle_compare(const struct pack *ours, const struct pack *theirs, const st
     const struct pack_table *mine = &ours->table[k];
     if (!wanted(options->only, mine->place.operator_name))
       continue;
-    const struct pack_table *its = pack_find(theirs, &mine->place, mine->name);
     const bool output = strncmp(mine->name, "out.", 4) == 0;
     any |= output;
-    if (!output && its && !same_input(mine, its)) {
-      fprintf(out, "%s, step %" PRIu64 ": %s is not ours\n", mine->place.operator_name, mine->place.step, mine->name);
-      t.beyond++;
-    } else if (output && !its && mine->rows > 0) {
-      fprintf(out, "%-18s %6" PRIu64 "  %-14s not there\n", mine->place.operator_name, mine->place.step, mine->name);
-      t.beyond++;
-    } else if (output && its) {
-      tally_table(&t, &(struct oracle_pair){ours, mine, its, options->single ? 0x1p-24 : 0x1p-53}, out);
-    }
+    if (output)
+      look_at(&t, ours, theirs, mine, options->single ? 0x1p-24 : 0x1p-53, out);
   }
   if (!any)
     return message_set(message, "nothing to compare; --only takes names of operators of the pack, commas between");

@@ -171,6 +171,11 @@ class OracleTest(unittest.TestCase):
         self.assert_named(port, "stream", "not there")
         self.assertEqual(self.compare(port, "--only", "kick,bin")[0], 0)
 
+    def test_another_input_differs(self):
+        port = Port(self.dumps["dense"])
+        port.places["kick", 2][3, "in.force.z"] += 1.0
+        self.assert_named(port, "kick", "for another input: in.force")
+
     def binned(self, tables, sign, transpose=False):
         port = Port(self.dumps["dense"])
         box = [port.places["model", 0][0, f"in.box.{k}"] for k in "xyz"]
