@@ -120,18 +120,35 @@ static inline struct model ring_model(int cells, double per_cell, double dt, uin
   return m;
 }
 
+/* Three rings in a chain across the corner of the box, and a fourth about them. */
+static inline struct model chain(double per_cell, double dt)
+{
+  const struct vec3 center[4] = {{0.1, 0.1, 0.1}, {1.3, 0.1, 0.2}, {2.5 - 4.0, 0.2, 4.1}, {2.0, 2.3, 2.2}};
+  const struct vec3 direction[4] = {{0.1, 0.13, 1}, {0.07, 1, 0.11}, {0.12, 0.09, 1}, {1, 1, 0.17}};
+  return ring_model(4, per_cell, dt, 4, 14, center, direction);
+}
+
 /* Rings 0 and 1 form a Hopf link across the corner of the box (ring 1 is placed an image away), rings 2 and 3 lie about
  * unlinked. All are so large that they touch their images. */
-static inline struct test_run linked_rings(double per_cell, double dt, enum exclusion exclusion, bool forbidden,
-                                           uint64_t seed)
+static inline struct model pairs(double per_cell, double dt)
 {
   const struct vec3 center[4] = {{0.1, 0.2, 4.1}, {1.3 - 4.0, 0.2, 0.1}, {2.2, 2.2, 1.7}, {2.0, 2.6, 3.0}};
   const struct vec3 direction[4] = {{0.1, 0.13, 1}, {0.07, 1, 0.11}, {1, 0.2, 0.3}, {1, 1, 0.17}};
-  struct model m = ring_model(4, per_cell, dt, 4, 14, center, direction);
-  m.seed = seed;
-  m.crossing.exclusion = exclusion;
-  m.crossing.forbidden = forbidden;
-  return test_start(m);
+  return ring_model(4, per_cell, dt, 4, 14, center, direction);
+}
+
+/* Sixteen rings at random in a box hardly wider than one. */
+static inline struct model dense_rings(double per_cell, double dt)
+{
+  struct vec3 center[16], direction[16];
+  struct dice d = {2601};
+  for (int k = 0; k < 16; k++) {
+    center[k].x = dice_between(&d, 0, 3);
+    center[k].y = dice_between(&d, 0, 3);
+    center[k].z = dice_between(&d, 0, 3);
+    direction[k] = dice_direction(&d);
+  }
+  return ring_model(3, per_cell, dt, 16, 10, center, direction);
 }
 
 /* Returns how often the links were found changed: looked at every 100 steps. */

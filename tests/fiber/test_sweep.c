@@ -203,32 +203,58 @@ static void phantom_fibers_just_move(void **unused)
  * --------------------------------------------------------------------------------------------------------- */
 
 /* THEORY test 6: 10^4 steps at several dt, with and without solvent (which takes the heat of many exchanges at the
- * longest step), either exclusion. */
+ * longest step), either exclusion; chains of three; many rings in a small box. */
 static void links_are_kept(void **unused)
 {
   (void)unused;
   const struct {
+    struct model (*make)(double per_cell, double dt);
     double per_cell, dt;
-  } runs[] = {{0, 0.005}, {0, 0.01}, {0, 0.02}, {3, 0.01}, {3, 0.02}, {3, 0.04}};
-  for (int k = 0; k < 6; k++) {
-    const uint64_t seed = dice_seed(1104) + (uint64_t)k;
-    const enum exclusion exclusion = k % 2 ? EXCLUSION_PAPER : EXCLUSION_SHARED_VERTEX;
-    struct test_run r = linked_rings(runs[k].per_cell, runs[k].dt, exclusion, true, seed);
+    uint64_t steps;
+  } runs[] = {{pairs, 0, 0.005, 10000}, {pairs, 0, 0.01, 10000}, {pairs, 0, 0.02, 10000},
+              {pairs, 3, 0.01, 10000},  {pairs, 3, 0.02, 10000}, {pairs, 3, 0.04, 10000},
+              {chain, 0, 0.01, 10000},  {chain, 3, 0.02, 10000}, {dense_rings, 3, 0.02, 1000}};
+  for (int k = 0; k < 9; k++) {
+    struct model m = runs[k].make(runs[k].per_cell, runs[k].dt);
+    m.seed = dice_seed(1104) + (uint64_t)k;
+    m.crossing.exclusion = k % 2 ? EXCLUSION_PAPER : EXCLUSION_SHARED_VERTEX;
+    struct test_run r = test_start(m);
     uint64_t executed;
-    if (follow_links(&r, 10000, &executed) > 0)
-      fail_msg("seed %lu: a linking number changes at dt = %g", (unsigned long)seed, runs[k].dt);
-    print_message("  dt %g%s: %lu crossings prevented\n", runs[k].dt, k < 3 ? "" : ", solvent",
+    if (follow_links(&r, runs[k].steps, &executed) > 0)
+      fail_msg("seed %lu: a linking number changes at dt = %g", (unsigned long)r.model.seed, runs[k].dt);
+    print_message("  gamma %g, dt %g: %lu crossings prevented\n", runs[k].per_cell, runs[k].dt,
                   (unsigned long)executed);
     assert_true(executed > 40);
     test_end(&r);
   }
 }
 
+/* Links as they were laid: of a chain the first with the second, the second with the third. */
+static void links_of_a_chain(void **unused)
+{
+  (void)unused;
+  struct test_run r = test_start(chain(0.0, 0.01));
+  struct exact_test x;
+  struct links links;
+  exact_open(&x);
+  find_links(&r, &x, &links);
+  exact_close(&x);
+  assert_int_equal(links.n, 2);
+  for (uint32_t k = 0; k < 2; k++) {
+    assert_true(links.link[k].ring == k && links.link[k].other == k + 1);
+    assert_int_equal(llabs(links.link[k].twice), 2);
+  }
+  test_end(&r);
+}
+
 /* The same rings as phantoms do not stay linked: the test above can fail. */
 static void phantom_links_are_lost(void **unused)
 {
   (void)unused;
-  struct test_run r = linked_rings(0.0, 0.02, EXCLUSION_SHARED_VERTEX, false, 5);
+  struct model m = pairs(0.0, 0.02);
+  m.crossing.forbidden = false;
+  m.seed = 5;
+  struct test_run r = test_start(m);
   uint64_t executed;
   assert_true(follow_links(&r, 3000, &executed) > 5);
   assert_true(executed == 0);
@@ -245,6 +271,7 @@ int main(void)
       cmocka_unit_test(exclusion_is_of_bonds_not_of_images),
       cmocka_unit_test(impossible_moves_are_found),
       cmocka_unit_test(phantom_fibers_just_move),
+      cmocka_unit_test(links_of_a_chain),
       cmocka_unit_test(links_are_kept),
       cmocka_unit_test(phantom_links_are_lost),
   };
