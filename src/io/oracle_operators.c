@@ -6,136 +6,11 @@
 #include "base/random.h"
 #include "fiber/force.h"
 #include "fiber/sweep.h"
+#include "io/oracle_columns.h"
 #include "solvent/collide.h"
 #include "solvent/solvent.h"
-#include "solvent/srd.h"
-#include "solvent/thermostat.h"
 
 #define LONG_SWEEP 32.0 /* dt */
-
-/* --- columns ----------------------------------------------------------------------------------------------------- */
-
-static int64_t *put_integers(struct oracle_stage *g, const char *name, const char *components, uint32_t rows)
-{
-  return pack_put_integers(g->pack, &g->place, name, components, rows);
-}
-
-static double *put_reals(struct oracle_stage *g, const char *name, const char *components, uint32_t rows)
-{
-  return pack_put_reals(g->pack, &g->place, name, components, rows);
-}
-
-static void put_vectors(struct oracle_stage *g, const char *name, const struct vec3 *v, uint32_t rows)
-{
-  double *to = put_reals(g, name, "x y z", rows);
-  for (uint32_t k = 0; to && k < rows; k++)
-    to[3 * k] = v[k].x, to[3 * k + 1] = v[k].y, to[3 * k + 2] = v[k].z;
-}
-
-static void put_points(struct oracle_stage *g, const char *name, const struct point *p, uint32_t rows)
-{
-  int64_t *to = put_integers(g, name, "x y z", rows);
-  for (uint32_t k = 0; to && k < rows; k++)
-    to[3 * k] = p[k].x, to[3 * k + 1] = p[k].y, to[3 * k + 2] = p[k].z;
-}
-
-static void put_counts(struct oracle_stage *g, const char *name, const char *component, const uint32_t *n,
-                       uint32_t rows)
-{
-  int64_t *to = put_integers(g, name, component, rows);
-  for (uint32_t k = 0; to && k < rows; k++)
-    to[k] = n[k];
-}
-
-static void put_number(struct oracle_stage *g, const char *name, const char *component, double value)
-{
-  double *to = put_reals(g, name, component, 1);
-  if (to)
-    *to = value;
-}
-
-/* Solvent, by id. */
-static void put_solvent_positions(struct oracle_stage *g, const char *name)
-{
-  const struct solvent *s = &g->state->solvent;
-  int64_t *to = put_integers(g, name, "x y z", s->n);
-  for (uint32_t id = 0; to && id < s->n; id++) {
-    const uint32_t i = g->slot[id];
-    to[3 * id] = s->x[i], to[3 * id + 1] = s->y[i], to[3 * id + 2] = s->z[i];
-  }
-}
-
-static void put_solvent_velocities(struct oracle_stage *g, const char *name)
-{
-  const struct solvent *s = &g->state->solvent;
-  double *to = put_reals(g, name, "x y z", s->n);
-  for (uint32_t id = 0; to && id < s->n; id++) {
-    const uint32_t i = g->slot[id];
-    to[3 * id] = s->vx[i], to[3 * id + 1] = s->vy[i], to[3 * id + 2] = s->vz[i];
-  }
-}
-
-static void put_velocities(struct oracle_stage *g, const char *solvent, const char *vertex)
-{
-  put_solvent_velocities(g, solvent);
-  put_vectors(g, vertex, g->state->velocity, g->state->vertices);
-}
-
-static void put_cells(struct oracle_stage *g, const char *solvent, const char *vertex)
-{
-  const struct collision_work *c = &g->work->collision;
-  int64_t *to = put_integers(g, solvent, "cell", g->state->solvent.n);
-  for (uint32_t id = 0; to && id < g->state->solvent.n; id++)
-    to[id] = c->solvent_cell[g->slot[id]];
-  put_counts(g, vertex, "cell", c->vertex_cell, g->state->vertices);
-}
-
-static uint32_t cells_of(const struct oracle_stage *g)
-{
-  return (uint32_t)box_cell_count(&g->model->box);
-}
-
-static void put_sums(struct oracle_stage *g, const char *momentum, const char *load)
-{
-  const struct cell_sum *sum = g->work->collision.sum;
-  const uint32_t cells = cells_of(g);
-  int64_t *p = put_integers(g, momentum, "x y z", cells);
-  for (uint32_t k = 0; p && k < cells; k++)
-    p[3 * k] = sum[k].px, p[3 * k + 1] = sum[k].py, p[3 * k + 2] = sum[k].pz;
-  int64_t *l = put_integers(g, load, "members mass", cells);
-  for (uint32_t k = 0; l && k < cells; k++) {
-    l[2 * k] = srd_members(&sum[k]);
-    l[2 * k + 1] = (int64_t)(sum[k].load & (SRD_MEMBER - 1));
-  }
-}
-
-/* Zeros where a cell is left alone. */
-static void put_centers(struct oracle_stage *g, const char *name)
-{
-  double *to = put_reals(g, name, "x y z", cells_of(g));
-  for (uint32_t k = 0; to && k < cells_of(g); k++) {
-    const struct cell_turn *t = &g->work->collision.turn[k];
-    if (t->active != 0.0)
-      to[3 * k] = t->center.x, to[3 * k + 1] = t->center.y, to[3 * k + 2] = t->center.z;
-  }
-}
-
-static void put_axes(struct oracle_stage *g, const char *name)
-{
-  double *to = put_reals(g, name, "x y z", cells_of(g));
-  for (uint32_t k = 0; to && k < cells_of(g); k++) {
-    const struct cell_turn *t = &g->work->collision.turn[k];
-    if (t->active != 0.0)
-      to[3 * k] = t->axis.x, to[3 * k + 1] = t->axis.y, to[3 * k + 2] = t->axis.z;
-  }
-}
-
-static void put_active(struct oracle_stage *g, const char *name)
-{
-  int64_t *to = put_integers(g, name, "active", cells_of(g));
-  for (uint32_t k = 0; to && k < cells_of(g); k++)
-    to[k] = g->work->collision.turn[k].active != 0.0;
-}
 
 /* --- random numbers ---------------------------------------------------------------------------------------------- */
 
@@ -175,7 +50,7 @@ enum { ADDRESSES = sizeof addresses / sizeof *addresses };
 
 static bool run_random(struct oracle_stage *g)
 {
-  int64_t *in = put_integers(g, "in.address", "purpose draw step entity", ADDRESSES);
+  int64_t *in = oracle_put_integers(g, "in.address", "purpose draw step entity", ADDRESSES);
   for (uint32_t k = 0; in && k < ADDRESSES; k++) {
     const struct address *a = &addresses[k];
     in[4 * k] = a->purpose, in[4 * k + 1] = a->draw, in[4 * k + 2] = (int64_t)a->step, in[4 * k + 3] = a->entity;
@@ -185,19 +60,19 @@ static bool run_random(struct oracle_stage *g)
     const struct address *a = &addresses[k];
     words[k] = random_at(g->model->seed, a->purpose, a->draw, a->step, a->entity);
   }
-  int64_t *word = put_integers(g, "out.word", "0 1 2 3", ADDRESSES);
+  int64_t *word = oracle_put_integers(g, "out.word", "0 1 2 3", ADDRESSES);
   for (uint32_t k = 0; word && k < 4 * ADDRESSES; k++)
     word[k] = words[k / 4].w[k % 4];
-  double *uniform = put_reals(g, "out.uniform", "0 1", ADDRESSES);
+  double *uniform = oracle_put_reals(g, "out.uniform", "0 1", ADDRESSES);
   for (uint32_t k = 0; uniform && k < 2 * ADDRESSES; k++)
     uniform[k] = random_uniform(words[k / 2], (int)(k % 2));
-  double *normal = put_reals(g, "out.normal", "first second", ADDRESSES);
+  double *normal = oracle_put_reals(g, "out.normal", "first second", ADDRESSES);
   for (uint32_t k = 0; normal && k < ADDRESSES; k++)
     random_normal_pair(words[k], &normal[2 * (size_t)k]);
   struct vec3 axis[ADDRESSES];
   for (uint32_t k = 0; k < ADDRESSES; k++)
     axis[k] = random_axis(g->model->seed, addresses[k].purpose, addresses[k].step, addresses[k].entity);
-  put_vectors(g, "out.axis", axis, ADDRESSES);
+  oracle_put_vectors(g, "out.axis", axis, ADDRESSES);
   return true;
 }
 
@@ -206,7 +81,7 @@ static bool run_random(struct oracle_stage *g)
 static bool run_order(struct oracle_stage *g)
 {
   random_permutation(g->model->seed, RANDOM_VERTEX_ORDER, 0, g->place.step, g->state->vertices, g->work->fiber.order);
-  put_counts(g, "out.order", "vertex", g->work->fiber.order, g->state->vertices);
+  oracle_put_counts(g, "out.order", "vertex", g->work->fiber.order, g->state->vertices);
   return true;
 }
 
@@ -277,21 +152,22 @@ static void sort_moves(struct events *e)
 
 static void put_events(struct oracle_stage *g, const struct events *e)
 {
-  int64_t *who = put_integers(g, "out.event", "vertex moving standing image_x image_y image_z executed", e->count);
+  int64_t *who =
+      oracle_put_integers(g, "out.event", "vertex moving standing image_x image_y image_z executed", e->count);
   for (uint32_t k = 0; who && k < e->count; k++) {
     const struct sweep_event *v = &e->logged[k].event;
     const int64_t row[7] = {v->vertex,   v->moving_bond, v->standing_bond, v->image[0],
                             v->image[1], v->image[2],    v->executed};
     memcpy(&who[7 * (size_t)k], row, sizeof row);
   }
-  double *how = put_reals(g, "out.hit", "time s s_standing normal_x normal_y normal_z momentum", e->count);
+  double *how = oracle_put_reals(g, "out.hit", "time s s_standing normal_x normal_y normal_z momentum", e->count);
   for (uint32_t k = 0; how && k < e->count; k++) {
     const struct sweep_event *v = &e->logged[k].event;
     const struct vec3 n = v->hit.normal;
     const double row[7] = {v->hit.time, v->hit.s, v->hit.s_standing, n.x, n.y, n.z, v->momentum};
     memcpy(&how[7 * (size_t)k], row, sizeof row);
   }
-  double *condition = put_reals(g, "bound.hit", "condition", e->count);
+  double *condition = oracle_put_reals(g, "bound.hit", "condition", e->count);
   for (uint32_t k = 0; condition && k < e->count; k++)
     condition[k] = e->logged[k].condition;
 }
@@ -302,15 +178,15 @@ static bool sweep_for(struct oracle_stage *g, double fraction, uint32_t sweep)
   const struct sweep_log log = {take_event, &events};
   random_permutation(g->model->seed, RANDOM_VERTEX_ORDER, sweep, g->place.step, g->state->vertices,
                      g->work->fiber.order);
-  put_number(g, "in.time", "dt", events.time);
-  put_counts(g, "in.order", "vertex", g->work->fiber.order, g->state->vertices);
-  put_points(g, "in.position", g->state->position, g->state->vertices);
-  put_vectors(g, "in.velocity", g->state->velocity, g->state->vertices);
+  oracle_put_number(g, "in.time", "dt", events.time);
+  oracle_put_counts(g, "in.order", "vertex", g->work->fiber.order, g->state->vertices);
+  oracle_put_points(g, "in.position", g->state->position, g->state->vertices);
+  oracle_put_vectors(g, "in.velocity", g->state->velocity, g->state->vertices);
   bool ok = fiber_sweep(g->state, g->model, g->work, fraction, g->place.step, sweep, &log);
   sort_moves(&events);
   put_events(g, &events);
-  put_points(g, "out.position", g->state->position, g->state->vertices);
-  put_vectors(g, "out.velocity", g->state->velocity, g->state->vertices);
+  oracle_put_points(g, "out.position", g->state->position, g->state->vertices);
+  oracle_put_vectors(g, "out.velocity", g->state->velocity, g->state->vertices);
   g->pack->failed |= events.failed;
   free(events.logged);
   return ok;
@@ -357,9 +233,9 @@ static bool put_forces(struct oracle_stage *g, bool springs, bool bends, bool bo
     part.kind[k].bending *= bends;
     part.kind[k].force = vec3_scale(body, part.kind[k].force);
   }
-  put_points(g, "in.position", g->state->position, g->state->vertices);
+  oracle_put_points(g, "in.position", g->state->position, g->state->vertices);
   bool ok = fiber_forces(g->state, &part, g->work, g->place.step);
-  put_vectors(g, "out.force", g->work->fiber.force, g->state->vertices);
+  oracle_put_vectors(g, "out.force", g->work->fiber.force, g->state->vertices);
   free(part.kind);
   return ok;
 }
@@ -381,11 +257,11 @@ static bool run_force(struct oracle_stage *g)
 
 static bool run_kick(struct oracle_stage *g)
 {
-  put_number(g, "in.time", "dt", 0.5 * g->model->time_step);
-  put_vectors(g, "in.velocity", g->state->velocity, g->state->vertices);
-  put_vectors(g, "in.force", g->work->fiber.force, g->state->vertices);
+  oracle_put_number(g, "in.time", "dt", 0.5 * g->model->time_step);
+  oracle_put_vectors(g, "in.velocity", g->state->velocity, g->state->vertices);
+  oracle_put_vectors(g, "in.force", g->work->fiber.force, g->state->vertices);
   fiber_kick(g->state, g->model, g->work, 0.5);
-  put_vectors(g, "out.velocity", g->state->velocity, g->state->vertices);
+  oracle_put_vectors(g, "out.velocity", g->state->velocity, g->state->vertices);
   return true;
 }
 
@@ -394,69 +270,69 @@ static bool run_kick(struct oracle_stage *g)
 static bool run_stream(struct oracle_stage *g)
 {
   state_solvent_slots(g->state, g->slot);
-  put_number(g, "in.time", "dt", 0.5 * g->state->solvent_lag * g->model->time_step);
-  put_solvent_positions(g, "in.position");
-  put_solvent_velocities(g, "in.velocity");
+  oracle_put_number(g, "in.time", "dt", 0.5 * g->state->solvent_lag * g->model->time_step);
+  oracle_put_solvent_positions(g, "in.position");
+  oracle_put_solvent_velocities(g, "in.velocity");
   bool ok = solvent_stream(g->state, g->model, g->work);
-  put_solvent_positions(g, "out.position");
-  put_solvent_velocities(g, "out.velocity");
+  oracle_put_solvent_positions(g, "out.position");
+  oracle_put_solvent_velocities(g, "out.velocity");
   return ok;
 }
 
 static bool run_shift(struct oracle_stage *g)
 {
   const struct point shift = solvent_grid_shift(g->model, g->place.step);
-  put_points(g, "out.shift", &shift, 1);
+  oracle_put_points(g, "out.shift", &shift, 1);
   return true;
 }
 
 static bool run_bin(struct oracle_stage *g)
 {
   const struct point shift = solvent_grid_shift(g->model, g->place.step);
-  put_points(g, "in.shift", &shift, 1);
-  put_solvent_positions(g, "in.solvent");
-  put_points(g, "in.vertex", g->state->position, g->state->vertices);
+  oracle_put_points(g, "in.shift", &shift, 1);
+  oracle_put_solvent_positions(g, "in.solvent");
+  oracle_put_points(g, "in.vertex", g->state->position, g->state->vertices);
   solvent_bin(g->state, g->model, g->work, shift);
-  put_cells(g, "out.solvent", "out.vertex");
+  oracle_put_cells(g, "out.solvent", "out.vertex");
   return true;
 }
 
 static bool run_sum(struct oracle_stage *g)
 {
-  put_cells(g, "in.solvent_cell", "in.vertex_cell");
-  put_velocities(g, "in.solvent", "in.vertex");
+  oracle_put_cells(g, "in.solvent_cell", "in.vertex_cell");
+  oracle_put_velocities(g, "in.solvent", "in.vertex");
   bool ok = collide_sum(g->state, g->model, g->work, g->place.step);
-  put_sums(g, "out.momentum", "out.load");
+  oracle_put_sums(g, "out.momentum", "out.load");
   return ok;
 }
 
 static bool run_solve(struct oracle_stage *g)
 {
-  put_sums(g, "in.momentum", "in.load");
+  oracle_put_sums(g, "in.momentum", "in.load");
   collide_solve(g->model, g->work, g->place.step);
-  put_active(g, "out.active");
-  put_centers(g, "out.center");
-  put_axes(g, "out.axis");
+  oracle_put_active(g, "out.active");
+  oracle_put_centers(g, "out.center");
+  oracle_put_axes(g, "out.axis");
   return true;
 }
 
 /* Both thermostats are run on the same input; their factors are not used further on. */
 static bool run_thermostat(struct oracle_stage *g, enum thermostat thermostat)
 {
-  const uint32_t cells = cells_of(g);
+  const uint32_t cells = oracle_cells(g);
   struct collision_work *c = &g->work->collision;
   const enum thermostat scenes = g->model->solvent.thermostat;
-  put_cells(g, "in.solvent_cell", "in.vertex_cell");
-  put_velocities(g, "in.solvent", "in.vertex");
-  put_sums(g, "in.momentum", "in.load");
-  put_centers(g, "in.center");
+  oracle_put_cells(g, "in.solvent_cell", "in.vertex_cell");
+  oracle_put_velocities(g, "in.solvent", "in.vertex");
+  oracle_put_sums(g, "in.momentum", "in.load");
+  oracle_put_centers(g, "in.center");
   g->model->solvent.thermostat = thermostat;
   bool ok = collide_thermostat(g->state, g->model, g->work, g->place.step);
   g->model->solvent.thermostat = scenes;
-  int64_t *relative = put_integers(g, "out.relative", "energy", cells);
+  int64_t *relative = oracle_put_integers(g, "out.relative", "energy", cells);
   for (uint32_t k = 0; relative && k < cells; k++)
     relative[k] = c->turn[k].active != 0.0 ? c->relative[k] : 0;
-  double *factor = put_reals(g, "out.factor", "factor", cells);
+  double *factor = oracle_put_reals(g, "out.factor", "factor", cells);
   for (uint32_t k = 0; factor && k < cells; k++)
     factor[k] = c->turn[k].active != 0.0 ? c->turn[k].factor : 1.0;
   return ok;
@@ -475,26 +351,26 @@ static bool run_maxwell_boltzmann(struct oracle_stage *g)
 /* Factors of its own, so that a port that forgets them is found: 1, 1 + 1/64, ... exact in binary. */
 static bool run_rotate(struct oracle_stage *g)
 {
-  const uint32_t cells = cells_of(g);
-  double *factor = put_reals(g, "in.factor", "factor", cells);
+  const uint32_t cells = oracle_cells(g);
+  double *factor = oracle_put_reals(g, "in.factor", "factor", cells);
   for (uint32_t k = 0; factor && k < cells; k++)
     factor[k] = g->work->collision.turn[k].factor = 1.0 + 0x1p-6 * (k % 8);
-  put_cells(g, "in.solvent_cell", "in.vertex_cell");
-  put_active(g, "in.active");
-  put_centers(g, "in.center");
-  put_axes(g, "in.axis");
-  put_velocities(g, "in.solvent", "in.vertex");
+  oracle_put_cells(g, "in.solvent_cell", "in.vertex_cell");
+  oracle_put_active(g, "in.active");
+  oracle_put_centers(g, "in.center");
+  oracle_put_axes(g, "in.axis");
+  oracle_put_velocities(g, "in.solvent", "in.vertex");
   collide_turn(g->state, g->model, g->work);
-  put_velocities(g, "out.solvent", "out.vertex");
+  oracle_put_velocities(g, "out.solvent", "out.vertex");
   return true;
 }
 
 static bool run_swap(struct oracle_stage *g)
 {
-  put_solvent_velocities(g, "in.velocity");
+  oracle_put_solvent_velocities(g, "in.velocity");
   solvent_swap_velocities(g->state, g->model, g->work, g->place.step);
-  put_counts(g, "out.order", "particle", g->work->collision.order, g->state->solvent.n);
-  put_solvent_velocities(g, "out.velocity");
+  oracle_put_counts(g, "out.order", "particle", g->work->collision.order, g->state->solvent.n);
+  oracle_put_solvent_velocities(g, "out.velocity");
   return true;
 }
 
@@ -548,10 +424,11 @@ int oracle_operator_rank(const char *name)
 
 static void put_vertices(struct oracle_stage *g, const struct model *m)
 {
-  int64_t *who = put_integers(g, "in.chain", "next prev fiber", m->vertices);
+  int64_t *who = oracle_put_integers(g, "in.chain", "next prev fiber", m->vertices);
   for (uint32_t v = 0; who && v < m->vertices; v++)
     who[3 * v] = m->next[v], who[3 * v + 1] = m->prev[v], who[3 * v + 2] = m->fiber_of[v];
-  double *what = put_reals(g, "in.vertex", "mass bond_length spring bending force_x force_y force_z", m->vertices);
+  double *what =
+      oracle_put_reals(g, "in.vertex", "mass bond_length spring bending force_x force_y force_z", m->vertices);
   for (uint32_t v = 0; what && v < m->vertices; v++) {
     const struct fiber_kind *k = &m->kind[m->fiber_kind_of[m->fiber_of[v]]];
     const double row[7] = {m->mass[v], k->bond_length, k->spring, k->bending, k->force.x, k->force.y, k->force.z};
@@ -562,18 +439,19 @@ static void put_vertices(struct oracle_stage *g, const struct model *m)
 void oracle_put_model(struct pack *pack, const struct model *m)
 {
   struct oracle_stage g = {.pack = pack, .place = {"model", 0}};
-  int64_t *box = put_integers(&g, "in.box", "x y z", 1);
+  int64_t *box = oracle_put_integers(&g, "in.box", "x y z", 1);
   for (int k = 0; box && k < 3; k++)
     box[k] = m->box.cells[k];
   int64_t *numbers =
-      put_integers(&g, "in.numbers", "seed_low seed_high particles interval forbidden exclusion_paper", 1);
+      oracle_put_integers(&g, "in.numbers", "seed_low seed_high particles interval forbidden exclusion_paper", 1);
   const int64_t n[6] = {(uint32_t)m->seed,         (int64_t)(m->seed >> 32), m->solvent.particles,
                         m->solvent.interval_steps, m->crossing.forbidden,    m->crossing.exclusion == EXCLUSION_PAPER};
   if (numbers)
     memcpy(numbers, n, sizeof n);
   const struct vec3 a = m->solvent.acceleration;
   const double r[6] = {m->time_step, m->solvent.cosine, m->solvent.sine, a.x, a.y, a.z};
-  double *reals = put_reals(&g, "in.reals", "time_step cosine sine acceleration_x acceleration_y acceleration_z", 1);
+  double *reals =
+      oracle_put_reals(&g, "in.reals", "time_step cosine sine acceleration_x acceleration_y acceleration_z", 1);
   if (reals)
     memcpy(reals, r, sizeof r);
   put_vertices(&g, m);
