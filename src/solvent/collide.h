@@ -19,7 +19,7 @@ void collide_solve(const struct model *model, struct work *work, uint64_t step);
  * the energies exceed their range. */
 bool collide_thermostat(const struct state *state, const struct model *model, struct work *work, uint64_t step);
 
-/* Velocities of all members, from the turns of their cells: Padding 2009, Eqs. (5) and (6). */
+/* Velocities of all members, from the turns of their cells (srd_apply). */
 void collide_turn(struct state *state, const struct model *model, const struct work *work);
 
 #endif
