@@ -71,10 +71,15 @@ static void make_files(void)
   take_file(&all.trajectory);
 }
 
-static void remove_files(void)
+static void end(void)
 {
   remove(all.checkpoint.path);
   remove(all.trajectory.path);
+  free(all.checkpoint.data);
+  free(all.trajectory.data);
+  state_free(&all.state);
+  scene_free(&all.scene);
+  memset(&all, 0, sizeof all);
 }
 
 int LLVMFuzzerInitialize(int *count, char ***words)
@@ -91,7 +96,7 @@ int LLVMFuzzerInitialize(int *count, char ***words)
   snprintf(all.checkpoint.path, sizeof all.checkpoint.path, "%.40s/uncross-fuzz-%d-c.h5", folder, (int)getpid());
   snprintf(all.trajectory.path, sizeof all.trajectory.path, "%.40s/uncross-fuzz-%d-t.h5", folder, (int)getpid());
   make_files();
-  atexit(remove_files);
+  atexit(end);
   return 0;
 }
 
