@@ -82,7 +82,7 @@ bool trajectory_close(struct trajectory *trajectory, struct message *message);
 struct trajectory *trajectory_open_read(const char *path, struct message *message);
 uint64_t trajectory_frames(const struct trajectory *trajectory);
 char *trajectory_scene_text(const struct trajectory *trajectory); /* to be freed; NULL if not one of ours */
-bool trajectory_has_steps(const struct trajectory *trajectory); /* else every frame reads as step 0 */
+bool trajectory_has_steps(const struct trajectory *trajectory);   /* else every frame reads as step 0 */
 bool trajectory_has_velocities(const struct trajectory *trajectory);
 bool trajectory_has_solvent(const struct trajectory *trajectory, const struct model *model);
 bool trajectory_read(struct trajectory *trajectory, const struct model *model, uint64_t frame, struct state *state,
