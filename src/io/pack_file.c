@@ -77,10 +77,13 @@ static bool link_name(hid_t group, hsize_t k, char *name, size_t size)
   return length > 0 && (size_t)length < size;
 }
 
-static hsize_t links(hid_t group)
+/* How many links a group has. */
+static bool count_links(hid_t group, hsize_t *count)
 {
-  H5G_info_t info;
-  return H5Gget_info(group, &info) >= 0 ? info.nlinks : 0;
+  H5G_info_t info = {.nlinks = 0};
+  bool ok = group >= 0 && H5Gget_info(group, &info) >= 0;
+  *count = info.nlinks;
+  return ok;
 }
 
 static bool is_real(hid_t dataset)
@@ -97,6 +100,15 @@ static const char *default_components(hsize_t columns)
   return columns == 1 ? "value" : columns == 3 ? "x y z" : "0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15";
 }
 
+/* Only an attribute that is not there is made up for, never one that cannot be read. */
+static bool read_components(hid_t dataset, hsize_t columns, char *words, size_t size)
+{
+  htri_t there = H5Aexists(dataset, "components");
+  if (there == 0)
+    snprintf(words, size, "%s", default_components(columns));
+  return there == 0 || (there > 0 && h5_get_text(dataset, "components", words, size));
+}
+
 static bool read_table(hid_t group, const struct pack_place *place, const char *name, struct pack *pack)
 {
   hid_t dataset = H5Dopen2(group, name, H5P_DEFAULT);
@@ -105,8 +117,7 @@ static bool read_table(hid_t group, const struct pack_place *place, const char *
   int rank = h5_shape(dataset, 2, dims);
   bool ok = (rank == 1 || rank == 2) && dims[0] < UINT32_MAX && dims[1] >= 1 && dims[1] <= PACK_COLUMNS;
   const bool real = ok && is_real(dataset);
-  if (!h5_get_text(dataset, "components", words, sizeof words))
-    snprintf(words, sizeof words, "%s", default_components(dims[1]));
+  ok = ok && read_components(dataset, dims[1], words, sizeof words);
   h5_close(dataset);
   if (!ok)
     return false;
@@ -128,8 +139,8 @@ static bool read_group(hid_t file, const char *name, struct pack *pack)
   snprintf(place.operator_name, sizeof place.operator_name, "%.*s", (int)(dot - name), name);
   place.step = strtoull(dot + 1, NULL, 10);
   hid_t group = h5_open_group(file, name);
-  bool ok = group >= 0;
-  const hsize_t count = ok ? links(group) : 0;
+  hsize_t count;
+  bool ok = count_links(group, &count);
   for (hsize_t k = 0; ok && k < count; k++) {
     char table[PACK_WORD];
     ok = link_name(group, k, table, sizeof table) && read_table(group, &place, table, pack);
@@ -151,7 +162,9 @@ static bool read_hdf5(const char *path, struct pack *pack, struct message *messa
        h5_get(file, "version", H5T_NATIVE_INT, 0, &version) && version == PACK_VERSION) ||
       message_set(message, "%s: not a pack of version %d; `uncross oracle emit` writes one, docs/porting.md says how",
                   path, PACK_VERSION);
-  const hsize_t count = ok ? links(file) : 0;
+  hsize_t count = 0;
+  if (ok && !count_links(file, &count))
+    ok = h5_fail(message, path, "cannot be read");
   for (hsize_t k = 0; ok && k < count; k++)
     ok = link_name(file, k, name, sizeof name) &&
          (read_group(file, name, pack) ||
