@@ -1,7 +1,8 @@
 """The program when memory, files or HDF5 fail: for n = 1, 2, 3, ... the n-th call fails, alone or with all that follow.
 
 It must never crash; must say why it stopped; must never lose a checkpoint; and whatever it calls done must be right.
-Needs BUILD, with uncross and uncross-faults. At most 25 calls of HDF5 and 125 of the others are tried for each command; with FAULTS=many ten times as many.
+Needs BUILD, with uncross and uncross-faults. At most 25 calls of HDF5 and 125 of the others are tried for each command;
+with FAULTS=many ten times as many.
 """
 import concurrent.futures
 import os
