@@ -35,6 +35,7 @@ help:
 	@echo 'make                 builds $(BUILD)/uncross'
 	@echo 'make demo            installs what it needs, builds, runs the paper'\''s semidilute system for a minute, writes a page'
 	@echo 'make check           installs what it needs, builds, runs all tests'
+	@echo 'make mutants         plants bugs in a copy of the sources, one at a time, and runs the tests that should see them'
 	@echo 'make stress          long runs: exact audit, linking numbers, 10^7 steps (some minutes)'
 	@echo 'make lint            formatting, warnings of gcc and clang, static checks, include floors, equation table'
 	@echo 'make measure         builds the programs behind docs/accuracy.md'
@@ -133,6 +134,11 @@ stress-programs: $(BUILD)/uncross $(BUILD)/uncross-faults $(STRESS_PROGRAMS)
 lint:
 	tools/install-dependencies run test lint
 	tools/lint
+
+.PHONY: mutants
+mutants:
+	tools/install-dependencies run test
+	tools/mutants
 
 .PHONY: demo
 demo:
