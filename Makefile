@@ -138,7 +138,7 @@ lint:
 .PHONY: mutants
 mutants:
 	tools/install-dependencies run test
-	tools/mutants
+	tools/mutants --docs docs/mutants.md
 
 .PHONY: demo
 demo:
