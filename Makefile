@@ -26,6 +26,8 @@ STRESS           := $(sort $(wildcard tests/stress/stress_*.c))
 STRESS_PROGRAMS  := $(STRESS:%.c=$(BUILD)/%)
 MEASURES         := $(sort $(wildcard validation/measure/*.c))
 MEASURE_PROGRAMS := $(MEASURES:%.c=$(BUILD)/%)
+BENCHES          := $(sort $(wildcard validation/bench/*.c))
+BENCH_PROGRAMS   := $(BENCHES:%.c=$(BUILD)/%)
 
 .PHONY: all
 all: $(BUILD)/uncross
@@ -39,6 +41,8 @@ help:
 	@echo 'make stress          long runs: exact audit, linking numbers, 10^7 steps (some minutes)'
 	@echo 'make lint            formatting, warnings of gcc and clang, static checks, include floors, equation table'
 	@echo 'make measure         builds the programs behind docs/accuracy.md'
+	@echo 'make bench           speed, scaling, run time against error: build/bench/bench.json; BENCH=speed,... chooses sections'
+	@echo 'make bench-peers     against Debian'\''s LAMMPS, in turn: build/bench/peers.json'
 	@echo 'make sanitize        the exact tests and short runs with address and undefined-behavior sanitizers'
 	@echo 'make coverage        which lines and branches of src/ the exact tests reach: build/coverage/index.html'
 	@echo 'make fuzz            the fuzzer of scenes, checkpoints and trajectories, for SECONDS=60'
@@ -103,7 +107,7 @@ $(BUILD)/tests/faults/test_%: tests/faults/test_%.c $(LIBRARY) $(INJECTOR) Makef
 	@echo '  CC $<'
 	@$(CC) $(ALL_CFLAGS) -Itests -MMD -MP $< $(INJECT) $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
 
-$(BUILD)/validation/measure/%: validation/measure/%.c $(LIBRARY) Makefile
+$(BUILD)/validation/%: validation/%.c $(LIBRARY) Makefile
 	@mkdir -p $(@D)
 	@echo '  CC $<'
 	@$(CC) $(ALL_CFLAGS) -Itests -MMD -MP $< $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
@@ -113,6 +117,22 @@ tests: $(BUILD)/uncross $(BUILD)/uncross-faults $(TEST_PROGRAMS)
 
 .PHONY: measure
 measure: $(MEASURE_PROGRAMS)
+
+# What was measured before with the same programs is kept: an interrupted run goes on where it was.
+.PHONY: bench
+bench:
+	tools/install-dependencies run bench
+	$(MAKE) -j2 bench-programs
+	validation/bench/run --build $(BUILD) $(if $(BENCH),--sections $(BENCH))
+
+.PHONY: bench-peers
+bench-peers:
+	tools/install-dependencies run bench peers
+	$(MAKE) -j2 $(BUILD)/uncross
+	validation/bench/peers --build $(BUILD)
+
+.PHONY: bench-programs
+bench-programs: $(BUILD)/uncross $(BENCH_PROGRAMS)
 
 # What needs packages asks for them first, then builds in a second make: pkg-config may only now be there.
 .PHONY: check
@@ -184,4 +204,4 @@ $(BUILD)/readers: $(BUILD)/tests/fuzz/fuzz_readers.o $(LIBRARY)
 clean:
 	rm -rf $(BUILD)
 
--include $(OBJECTS:.o=.d) $(TEST_PROGRAMS:=.d) $(STRESS_PROGRAMS:=.d) $(MEASURE_PROGRAMS:=.d)
+-include $(OBJECTS:.o=.d) $(TEST_PROGRAMS:=.d) $(STRESS_PROGRAMS:=.d) $(MEASURE_PROGRAMS:=.d) $(BENCH_PROGRAMS:=.d)
