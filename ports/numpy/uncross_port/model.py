@@ -1,0 +1,62 @@
+"""What all operators share: the table `model` of a pack, with names."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass
+class Model:
+    """A system's constants. Arrays have one row per vertex."""
+
+    seed: int
+    box: np.ndarray  # cells
+    particles: int
+    interval: int  # steps between collisions
+    forbidden: bool
+    exclusion_paper: bool
+    dt: float
+    cosine: float
+    sine: float
+    acceleration: np.ndarray
+    next: np.ndarray
+    prev: np.ndarray
+    mass: np.ndarray
+    bond_length: np.ndarray
+    spring: np.ndarray
+    bending: np.ndarray
+    constant_force: np.ndarray
+
+    @property
+    def cells(self):
+        return int(np.prod(self.box))
+
+    @property
+    def bonds(self):
+        """Numbers of the vertices that have a bond to a next one."""
+        return np.flatnonzero(self.next >= 0)
+
+
+def from_tables(tables):
+    """The model of `model.0`: {name of an input: [rows, columns]}."""
+    seed_low, seed_high, particles, interval, forbidden, paper = (int(x) for x in tables["numbers"][0])
+    reals, vertex, chain = tables["reals"][0], tables["vertex"], tables["chain"]
+    return Model(
+        seed=seed_low + (seed_high << 32),
+        box=tables["box"][0],
+        particles=particles,
+        interval=interval,
+        forbidden=bool(forbidden),
+        exclusion_paper=bool(paper),
+        dt=float(reals[0]),
+        cosine=float(reals[1]),
+        sine=float(reals[2]),
+        acceleration=reals[3:6],
+        next=chain[:, 0],
+        prev=chain[:, 1],
+        mass=vertex[:, 0],
+        bond_length=vertex[:, 1],
+        spring=vertex[:, 2],
+        bending=vertex[:, 3],
+        constant_force=vertex[:, 4:7],
+    )

@@ -1,0 +1,147 @@
+"""The operators of docs/porting.md: each takes the model, the step and the `in.` tables, and gives its `out.` ones."""
+
+import numpy as np
+
+from . import fiber, random, solvent
+from . import model as models
+from . import sweep as sweeps
+
+
+def scalar(table):
+    return table[0, 0]
+
+
+def column(values):
+    return np.asarray(values)[:, None]
+
+
+def random_operator(model, step, given):
+    purpose, draw, steps, entity = given["address"].T
+    word = random.words(model.seed, purpose, draw, steps, entity)
+    axis = [random.axes(model.seed, p, s, [e])[0] for p, s, e in zip(purpose, steps, entity)]
+    normal = [random.normal_pair(row) for row in word]
+    return {"word": word.astype(np.int64), "uniform": random.uniforms(word), "normal": normal, "axis": axis}
+
+
+def order(model, step, given):
+    return {"order": column(fiber.vertex_order(model, step, 0))}
+
+
+def sweep(model, step, given):
+    position, velocity, event, hit = sweeps.sweep(
+        model, given["order"][:, 0], given["position"], given["velocity"], scalar(given["time"])
+    )
+    return {"event": event, "hit": hit, "position": position, "velocity": velocity}
+
+
+def bond_force(model, step, given):
+    force = np.zeros(given["position"].shape)
+    fiber.add_bonds(model, given["position"], force)
+    return {"force": force}
+
+
+def bend_force(model, step, given):
+    force = np.zeros(given["position"].shape)
+    fiber.add_bends(model, given["position"], force)
+    return {"force": force}
+
+
+def force(model, step, given):
+    return {"force": fiber.forces(model, given["position"])}
+
+
+def kick(model, step, given):
+    return {"velocity": fiber.kick(model, given["velocity"], given["force"], scalar(given["time"]))}
+
+
+def stream(model, step, given):
+    position, velocity = solvent.stream(model, given["position"], given["velocity"], scalar(given["time"]))
+    return {"position": position, "velocity": velocity}
+
+
+def shift(model, step, given):
+    return {"shift": solvent.grid_shift(model, step)[None]}
+
+
+def bin_operator(model, step, given):
+    return {kind: column(solvent.cell_of(model, given[kind], given["shift"][0])) for kind in ("solvent", "vertex")}
+
+
+def members(model, given):
+    return solvent.members(
+        model, given["solvent_cell"][:, 0], given["vertex_cell"][:, 0], given["solvent"], given["vertex"]
+    )
+
+
+def sum_operator(model, step, given):
+    momentum, load = solvent.sum_cells(model, *members(model, given))
+    return {"momentum": momentum, "load": load}
+
+
+def solve(model, step, given):
+    active, center, axis = solvent.solve(model, step, given["momentum"], given["load"])
+    return {"active": column(active.astype(np.int64)), "center": center, "axis": axis}
+
+
+def rescale(model, step, given):
+    relative = solvent.relative_energy(model, *members(model, given), given["center"], given["load"])
+    return {"relative": column(relative), "factor": column(solvent.rescale(model, given["load"], relative))}
+
+
+def maxwell_boltzmann(model, step, given):
+    relative = solvent.relative_energy(model, *members(model, given), given["center"], given["load"])
+    factor = solvent.maxwell_boltzmann(model, step, given["load"], relative)
+    return {"relative": column(relative), "factor": column(factor)}
+
+
+def rotate(model, step, given):
+    cells = given["active"][:, 0] != 0, given["center"], given["axis"], given["factor"][:, 0]
+    return {
+        kind: solvent.rotate(model, given[f"{kind}_cell"][:, 0], given[kind], *cells) for kind in ("solvent", "vertex")
+    }
+
+
+def swap(model, step, given):
+    permutation = solvent.swap_order(model, step, len(given["velocity"]))
+    return {"order": column(permutation), "velocity": given["velocity"][permutation]}
+
+
+OPERATORS = {
+    "random": random_operator,
+    "order": order,
+    "long_sweep": sweep,
+    "sweep": sweep,
+    "bond_force": bond_force,
+    "bend_force": bend_force,
+    "force": force,
+    "kick": kick,
+    "stream": stream,
+    "shift": shift,
+    "bin": bin_operator,
+    "sum": sum_operator,
+    "solve": solve,
+    "rescale": rescale,
+    "maxwell_boltzmann": maxwell_boltzmann,
+    "rotate": rotate,
+    "swap": swap,
+}
+
+
+def inputs(tables):
+    return {name.removeprefix("in."): values for name, values in tables.items() if name.startswith("in.")}
+
+
+def model_of(pack):
+    return models.from_tables(inputs(pack["model", 0]))
+
+
+def run(pack):
+    """Our outputs of every operator of a pack, from its inputs."""
+    model, ours = model_of(pack), {}
+    for (operator, step), tables in pack.items():
+        if operator != "model":
+            out = OPERATORS[operator](model, step, inputs(tables))
+            ours[operator, step] = {f"out.{name}": np.asarray(values) for name, values in out.items()}
+    return ours
+
+

@@ -1,0 +1,87 @@
+"""Philox 4x32-10, and what is made of its words (docs/conventions.md, "Random numbers have addresses")."""
+
+import math
+
+import numpy as np
+
+# Purposes. The names are those of the address book.
+GRID_SHIFT, AXIS, VERTEX_ORDER, VELOCITY_SWAP, THERMOSTAT = 1, 2, 3, 4, 5
+
+ROUNDS = 10
+LOW = np.uint64(0xFFFFFFFF)
+
+
+def words(seed, purpose, draw, step, entity):
+    """Four 32-bit words for each address. All but the seed may be arrays: [...] in, [..., 4] out."""
+    address = (np.asarray(x, np.uint64) for x in (purpose, draw, step, entity))
+    purpose, draw, step, entity = np.broadcast_arrays(*address)
+    c0, c1, c2, c3 = entity & LOW, (purpose + np.uint64(256) * draw) & LOW, step & LOW, step >> np.uint64(32)
+    k0, k1 = seed & 0xFFFFFFFF, seed >> 32
+    for _ in range(ROUNDS):
+        first, second = np.uint64(0xD2511F53) * c0, np.uint64(0xCD9E8D57) * c2
+        c0, c1, c2, c3 = (
+            (second >> np.uint64(32)) ^ c1 ^ np.uint64(k0),
+            second & LOW,
+            (first >> np.uint64(32)) ^ c3 ^ np.uint64(k1),
+            first & LOW,
+        )
+        k0, k1 = (k0 + 0x9E3779B9) & 0xFFFFFFFF, (k1 + 0xBB67AE85) & 0xFFFFFFFF
+    return np.stack([c0, c1, c2, c3], axis=-1)
+
+
+def integers(word):
+    """The two 64-bit integers of each address: [..., 4] words in, [..., 2] out."""
+    return word[..., 0::2] | (word[..., 1::2] << np.uint64(32))
+
+
+def uniforms(word):
+    """The two uniforms of each address, never 0 or 1."""
+    return ((integers(word) >> np.uint64(12)).astype(float) + 0.5) * 2.0**-52
+
+
+def normal_pair(word):
+    """Two normal deviates from the words of one address; math's log, cos and sin are those of the C library."""
+    first, second = (float(u) for u in uniforms(word))
+    radius, angle = math.sqrt(-2 * math.log(first)), 2 * math.pi * second
+    return radius * math.cos(angle), radius * math.sin(angle)
+
+
+def axes(seed, purpose, step, entities):
+    """A unit vector for each entity, uniform on the sphere (Marsaglia 1972): [n, 3]."""
+    entities = np.asarray(entities)
+    axis, missing, draw = np.zeros((len(entities), 3)), np.arange(len(entities)), 0
+    while len(missing):
+        signed = words(seed, purpose, draw, step, entities[missing]).astype(np.uint32).view(np.int32).reshape(-1, 4)
+        for pair in (signed[:, :2], signed[:, 2:]):
+            u, v = ((pair + 0.5) * 2.0**-31).T
+            q = u * u + v * v
+            found = (q < 1) & ~axis[missing].any(axis=1)
+            root = np.sqrt(1 - q[found])
+            axis[missing[found]] = np.stack([2 * u[found] * root, 2 * v[found] * root, 1 - 2 * q[found]], axis=1)
+        missing, draw = missing[~axis[missing].any(axis=1)], draw + 1
+    return axis
+
+
+def permutation(seed, purpose, draw, step, n):
+    """A random order of 0 .. n - 1 (Fisher and Yates). Products of 64 bits by an index need Python's integers."""
+    order = list(range(n))
+    deviates = integers(words(seed, purpose, draw, step, np.arange((n + 1) // 2))).ravel()
+    for k in range(n - 1, 0, -1):
+        other = (k + 1) * int(deviates[k]) >> 64
+        order[k], order[other] = order[other], order[k]
+    return np.array(order, np.int64)
+
+
+def gamma(seed, step, cell, shape):
+    """A Gamma deviate (Marsaglia and Tsang 2000) from the thermostat's addresses of a cell."""
+    d = shape - 1 / 3
+    c = 1 / math.sqrt(9 * d)
+    attempt = 0
+    while True:
+        x, _ = normal_pair(words(seed, THERMOSTAT, 2 * attempt, step, cell))
+        w = float(uniforms(words(seed, THERMOSTAT, 2 * attempt + 1, step, cell))[0])
+        root = 1 + c * x
+        v = root * root * root
+        if v > 0 and math.log(w) < 0.5 * x * x + d - d * v + d * math.log(v):
+            return d * v
+        attempt += 1

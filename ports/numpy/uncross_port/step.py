@@ -1,0 +1,153 @@
+"""Whole steps: the operators in the three orders of docs/conventions.md, and the state hash after every stage."""
+
+import struct
+from dataclasses import dataclass
+from pathlib import Path
+
+import h5py
+import numpy as np
+import xxhash
+import yaml
+
+from . import fiber, solvent, sweep
+from .lattice import UNIT, dot
+
+# Stages of a step: name and duration in steps. A collision has none; other steps are drift, force, kick.
+QUIET = [("drift", 1.0), ("force", None), ("kick", 1.0)]
+COLLIDING = {
+    "paper": [("drift", 1.0), ("collide", None), ("force", None), ("kick", 1.0)],
+    "kick-split": [("drift", 1.0), ("force", None), ("kick", 0.5), ("collide", None), ("kick", 0.5)],
+    "drift-split": [("drift", 0.5), ("collide", None), ("drift", 0.5), ("force", None), ("kick", 1.0)],
+}
+
+
+@dataclass
+class Scene:
+    """What a pack does not say about a run, from the scene file."""
+
+    steps: int
+    order: str
+    thermostat: str
+    hydrodynamics: bool
+    start: Path
+
+
+def read_scene(path):
+    scene = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
+    liquid = scene.get("solvent", {})
+    return Scene(
+        steps=scene["steps"],
+        order=scene.get("order", "kick-split"),
+        thermostat=liquid.get("thermostat", "none"),
+        hydrodynamics=liquid.get("hydrodynamics", True),
+        start=Path(path).parent / scene["start"]["snapshot"],
+    )
+
+
+class System:
+    """A state and the stages that change it. Positions in lattice units; `lag`: half steps the solvent is behind."""
+
+    def __init__(self, model, scene):
+        self.model, self.scene = model, scene
+        with h5py.File(scene.start) as file:
+            state = file["state"]
+            self.solvent, self.solvent_velocity = state["solvent_position"][:], state["solvent_velocity"][:]
+            self.vertex, self.vertex_velocity = state["vertex_position"][:], state["vertex_velocity"][:]
+            self.lag = int(state.attrs["solvent_lag"])
+        self.finished = 0  # steps
+        self.force = None
+        self.stream()
+
+    def stream(self):
+        if self.lag:
+            time = self.lag * (0.5 * self.model.dt)
+            self.solvent, self.solvent_velocity = solvent.stream(self.model, self.solvent, self.solvent_velocity, time)
+            self.lag = 0
+
+    def drift(self, share, sweep_number):
+        model = self.model
+        time = share * model.dt
+        if model.forbidden:
+            order = fiber.vertex_order(model, self.finished + 1, sweep_number)
+            moved = sweep.sweep(model, order, self.vertex, self.vertex_velocity, time)
+            self.vertex, self.vertex_velocity = moved[:2]
+        else:
+            self.vertex = self.vertex + sweep.to_lattice(time * self.vertex_velocity)
+        self.lag += int(2 * share)
+
+    def kick(self, share):
+        self.vertex_velocity = fiber.kick(self.model, self.vertex_velocity, self.force, share * self.model.dt)
+
+    def collide(self):
+        model, step = self.model, self.finished + 1
+        self.stream()
+        shift = solvent.grid_shift(model, step)
+        cells = solvent.cell_of(model, self.solvent, shift), solvent.cell_of(model, self.vertex, shift)
+        members = solvent.members(model, *cells, self.solvent_velocity, self.vertex_velocity)
+        momentum, load = solvent.sum_cells(model, *members)
+        active, center, axis = solvent.solve(model, step, momentum, load)
+        factor = self.thermostat(step, members, center, load)
+        turn = active, center, axis, factor
+        self.solvent_velocity = solvent.rotate(model, cells[0], self.solvent_velocity, *turn)
+        self.vertex_velocity = solvent.rotate(model, cells[1], self.vertex_velocity, *turn)
+        if not self.scene.hydrodynamics:
+            self.solvent_velocity = self.solvent_velocity[solvent.swap_order(model, step, model.particles)]
+
+    def thermostat(self, step, members, center, load):
+        if self.scene.thermostat == "none":
+            return np.ones(self.model.cells)
+        relative = solvent.relative_energy(self.model, *members, center, load)
+        if self.scene.thermostat == "rescale":
+            return solvent.rescale(self.model, load, relative)
+        return solvent.maxwell_boltzmann(self.model, step, load, relative)
+
+    def step(self):
+        """One step; yields the name of each stage after it."""
+        collides = self.model.particles > 0 and (self.finished + 1) % self.model.interval == 0
+        sweeps = 0
+        for stage, share in COLLIDING[self.scene.order] if collides else QUIET:
+            if stage == "drift":
+                self.drift(share, sweeps)
+                sweeps += 1
+            elif stage == "force":
+                self.force = fiber.forces(self.model, self.vertex)
+            elif stage == "kick":
+                self.kick(share)
+            else:
+                self.collide()
+            yield stage
+        self.finished += 1
+        yield "end"
+
+    def state_hash(self):
+        counts = self.finished, self.lag, len(self.solvent), len(self.vertex)
+        digest = xxhash.xxh64(struct.pack("<4Q", *counts))
+        for position, velocity in ((self.solvent, self.solvent_velocity), (self.vertex, self.vertex_velocity)):
+            digest.update(np.hstack([position, velocity.view(np.int64)]).astype("<i8").tobytes())
+        return digest.hexdigest()
+
+    def sums(self):
+        """Momentum, kinetic energies of solvent and vertices, bond and bend energy: plain sums."""
+        model = self.model
+        momentum = self.solvent_velocity.sum(axis=0) + (model.mass[:, None] * self.vertex_velocity).sum(axis=0)
+        kinetic = [
+            0.5 * (mass * dot(velocity, velocity)).sum()
+            for mass, velocity in ((1.0, self.solvent_velocity), (model.mass, self.vertex_velocity))
+        ]
+        vector = fiber.bond_vectors(model, self.vertex)
+        length = np.sqrt(dot(vector, vector))
+        bond = (0.5 * model.spring[model.bonds] * (length - model.bond_length[model.bonds]) ** 2).sum()
+        middle = np.flatnonzero((model.next >= 0) & (model.prev >= 0) & (model.bending != 0))
+        before = (self.vertex[middle] - self.vertex[model.prev[middle]]) * UNIT
+        after = (self.vertex[model.next[middle]] - self.vertex[middle]) * UNIT
+        cosine = dot(before, after) / np.sqrt(dot(before, before) * dot(after, after))
+        return [*momentum, *kinetic, bond, (model.bending[middle] * (1 - cosine)).sum()]
+
+
+def trace(model, scene):
+    """Rows of a trace: step, stage, hash, sums."""
+    system = System(model, scene)
+    yield 0, "start", system.state_hash(), system.sums()
+    for step in range(1, scene.steps + 1):
+        for stage in system.step():
+            yield step, stage, system.state_hash(), system.sums()
