@@ -38,6 +38,8 @@ help:
 	@echo 'make demo            installs what it needs, builds, runs the paper'\''s semidilute system for a minute, writes a page'
 	@echo 'make check           installs what it needs, builds, runs all tests'
 	@echo 'make mutants         plants bugs in a copy of the sources, one at a time, and runs the tests that should see them'
+	@echo 'make counts          instructions of each stage against a table; nothing is done that a scene does not need'
+	@echo 'make counts-baseline writes that table anew: tests/counts/baseline.txt'
 	@echo 'make stress          long runs: exact audit, linking numbers, 10^7 steps (some minutes)'
 	@echo 'make lint            formatting, warnings of gcc and clang, static checks, include floors, equation table'
 	@echo 'make measure         builds the programs behind docs/accuracy.md'
@@ -159,6 +161,20 @@ lint:
 mutants:
 	tools/install-dependencies run test
 	tools/mutants --docs docs/mutants.md
+
+# Instructions, counted by callgrind: of a build that every x86-64 machine of the last ten years makes alike.
+COUNTED := CC=gcc BUILD=build/counts OPTIMIZE='-O3 -march=x86-64-v3' CFLAGS=-g build/counts/uncross
+.PHONY: counts
+counts:
+	tools/install-dependencies run counts
+	$(MAKE) -j2 $(COUNTED)
+	tools/counts build/counts/uncross; counts=$$?; tools/skips build/counts/uncross && exit $$counts
+
+.PHONY: counts-baseline
+counts-baseline:
+	tools/install-dependencies run counts
+	$(MAKE) -j2 $(COUNTED)
+	tools/counts build/counts/uncross --baseline
 
 .PHONY: demo
 demo:
