@@ -39,7 +39,7 @@ help:
 	@echo 'make check           installs what it needs, builds, runs all tests'
 	@echo 'make mutants         plants bugs in a copy of the sources, one at a time, and runs the tests that should see them'
 	@echo 'make counts          instructions of each stage against a table; nothing is done that a scene does not need'
-	@echo 'make counts-baseline writes that table anew: tests/counts/baseline.txt'
+	@echo 'make counts-baseline writes that table anew (tests/counts/baseline.txt), and the one of docs/speed.md'
 	@echo 'make stress          long runs: exact audit, linking numbers, 10^7 steps (some minutes)'
 	@echo 'make lint            formatting, warnings of gcc and clang, static checks, include floors, equation table'
 	@echo 'make measure         builds the programs behind docs/accuracy.md'
@@ -175,6 +175,7 @@ counts-baseline:
 	tools/install-dependencies run counts
 	$(MAKE) -j2 $(COUNTED)
 	tools/counts build/counts/uncross --baseline
+	tools/skips build/counts/uncross --docs docs/speed.md
 
 .PHONY: demo
 demo:

@@ -93,7 +93,7 @@ class Counter:
                                    self.program, "run", path, "--out", folder + "/run", "--steps", str(steps), "--quiet"],
                                   capture_output=True, text=True, check=False)
             if done.returncode != 0:
-                raise Unusable(f"valgrind or the run failed:\n{done.stderr}")
+                raise RuntimeError(f"{' '.join(map(str, done.args))}:\n{done.stderr}")
             return parse(out.read_text(), self.program)
 
     def per_step(self, scene, first=4, last=10):
