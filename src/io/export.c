@@ -54,8 +54,10 @@ static bool open_trajectory(struct source *s, struct message *message)
   if (!s->trajectory)
     return false;
   struct trajectory *t = s->trajectory;
-  hid_t connectivity = h5_open_group(t->file, "connectivity");
-  bool ok = open_structure(s, t->group, connectivity, t->particles, message);
+  int found = h5_look(t->file, "connectivity");
+  hid_t connectivity = found > 0 ? H5Oopen(t->file, "connectivity", H5P_DEFAULT) : -1;
+  bool ok = found == 0 || connectivity >= 0 || h5_fail(message, s->path, "its bonds cannot be read");
+  ok = ok && open_structure(s, t->group, connectivity, t->particles, message);
   h5_close(connectivity);
   s->frames = trajectory_frames(t);
   s->picture.rows = t->particles;

@@ -260,17 +260,24 @@ hid_t h5_dataset(hid_t parent, const char *name, hid_t type, int rank, const hsi
 
 int h5_shape(hid_t dataset, int most, hsize_t *dims)
 {
-  hid_t space = dataset < 0 ? -1 : H5Dget_space(dataset);
+  if (dataset < 0)
+    return -1;
+  hid_t space = H5Dget_space(dataset);
   int rank = space < 0 ? -1 : H5Sget_simple_extent_ndims(space);
-  if (rank > most || (rank > 0 && H5Sget_simple_extent_dims(space, dims, NULL) < 0))
-    rank = -1;
+  bool readable = rank >= 0 && (rank > most || rank == 0 || H5Sget_simple_extent_dims(space, dims, NULL) >= 0);
   h5_close(space);
-  return rank;
+  return !readable ? -2 : rank > most ? -1 : rank;
+}
+
+int h5_look(hid_t parent, const char *name)
+{
+  int found = H5Lexists(parent, name, H5P_DEFAULT);
+  return found > 0 ? H5Oexists_by_name(parent, name, H5P_DEFAULT) : found;
 }
 
 bool h5_has(hid_t parent, const char *name)
 {
-  bool has = H5Lexists(parent, name, H5P_DEFAULT) > 0 && H5Oexists_by_name(parent, name, H5P_DEFAULT) > 0;
+  bool has = h5_look(parent, name) > 0;
   H5Eclear2(H5E_DEFAULT);
   return has;
 }

@@ -72,10 +72,14 @@ bool h5_array_read(hid_t parent, const char *name, hid_t type, int rank, const h
 bool h5_text_write(hid_t parent, const char *name, const char *text);
 char *h5_text_read(hid_t parent, const char *name);
 
-/* Shape of a dataset: returns its rank, or -1; at most `most` dimensions are stored, a higher rank is -1. */
+/* Shape of a dataset: returns its rank; -1 if that is more than `most` dimensions, or there is no dataset; -2 if it
+ * cannot be read. */
 int h5_shape(hid_t dataset, int most, hsize_t *dims);
 
-/* True if the link `name` (no path) is there and what it points to too. */
+/* 1 if the link `name` (no path) is there and what it points to too, 0 if not, below 0 if that cannot be found out. */
+int h5_look(hid_t parent, const char *name);
+
+/* True if h5_look is 1. */
 bool h5_has(hid_t parent, const char *name);
 
 #endif

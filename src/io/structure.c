@@ -96,7 +96,7 @@ static bool read_names(hid_t dataset, struct structure *s)
   hid_t type = H5Dget_type(dataset);
   int members = type >= 0 && H5Tget_class(type) == H5T_ENUM ? H5Tget_nmembers(type) : 0;
   hid_t base = members > 0 ? H5Tget_super(type) : -1;
-  bool ok = base < 0 || H5Tget_size(base) == sizeof(int32_t); /* as we write them */
+  bool ok = type >= 0 && (members == 0 || (base >= 0 && H5Tget_size(base) == sizeof(int32_t))); /* as we write them */
   s->name = calloc((size_t)members + 1, sizeof *s->name);
   for (int k = 0; s->name && ok && k < members; k++) {
     int32_t value = -1;
@@ -115,13 +115,14 @@ static bool read_names(hid_t dataset, struct structure *s)
 static bool read_species(hid_t particles, struct structure *s)
 {
   hsize_t n = 0;
-  hid_t dataset = h5_has(particles, "species") ? H5Oopen(particles, "species", H5P_DEFAULT) : -1;
+  int found = h5_look(particles, "species");
+  hid_t dataset = found > 0 ? H5Oopen(particles, "species", H5P_DEFAULT) : -1;
   s->species = calloc((size_t)s->particles + 1, sizeof *s->species);
-  bool ok = s->species != NULL;
+  bool ok = s->species != NULL && (found == 0 || dataset >= 0);
   if (ok && dataset >= 0 && H5Iget_type(dataset) == H5I_DATASET) {
     hid_t type = H5Dget_type(dataset);
     bool is_enum = H5Tget_class(type) == H5T_ENUM;
-    ok = read_names(dataset, s) && h5_shape(dataset, 1, &n) == 1 && n == s->particles &&
+    ok = type >= 0 && read_names(dataset, s) && h5_shape(dataset, 1, &n) == 1 && n == s->particles &&
          h5_array_read(particles, "species", is_enum ? type : H5T_NATIVE_INT32, 1, &n, s->species);
     h5_close(type);
   }
@@ -137,8 +138,9 @@ static bool read_bonds(hid_t connectivity, struct structure *s)
     return false;
   for (uint32_t i = 0; i < s->particles; i++)
     s->next[i] = -1;
-  if (connectivity < 0 || !h5_has(connectivity, "bonds"))
-    return true;
+  int found = connectivity < 0 ? 0 : h5_look(connectivity, "bonds");
+  if (found <= 0)
+    return found == 0;
   hid_t dataset = H5Dopen2(connectivity, "bonds", H5P_DEFAULT);
   bool ok = h5_shape(dataset, 2, dims) == 2 && dims[1] == 2 && dims[0] <= INT32_MAX;
   h5_close(dataset);

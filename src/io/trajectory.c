@@ -48,20 +48,34 @@ struct trajectory *trajectory_give_up(struct trajectory *t)
 
 /* --- finding what a file holds ----------------------------------------------------------------------------------- */
 
-static hid_t open_dataset(hid_t parent, const char *name)
+/* An object of this name, or below 0; that it cannot be read must not look as if it were not there. */
+static hid_t find_object(struct trajectory *t, hid_t parent, const char *name)
 {
-  return parent >= 0 && h5_has(parent, name) ? H5Dopen2(parent, name, H5P_DEFAULT) : -1;
+  int found = parent < 0 ? 0 : h5_look(parent, name);
+  hid_t object = found > 0 ? H5Oopen(parent, name, H5P_DEFAULT) : -1;
+  t->unread |= found < 0 || (found > 0 && object < 0);
+  return object;
+}
+
+/* The rank of a dataset, -1 for another object or none. */
+static int find_shape(struct trajectory *t, hid_t object, hsize_t dims[3])
+{
+  if (object < 0 || H5Iget_type(object) != H5I_DATASET)
+    return -1;
+  int rank = h5_shape(object, 3, dims);
+  t->unread |= rank == -2;
+  return rank;
 }
 
 /* particles/trajectory, or the first group of particles that another program wrote. */
-static hid_t find_particles(hid_t file)
+static hid_t find_particles(struct trajectory *t)
 {
-  hid_t particles = h5_open_group(file, "particles");
-  hid_t group = h5_open_group(particles, "trajectory");
+  hid_t particles = find_object(t, t->file, "particles");
+  hid_t group = find_object(t, particles, "trajectory");
   char name[256];
   if (particles >= 0 && group < 0 &&
       H5Lget_name_by_idx(particles, ".", H5_INDEX_NAME, H5_ITER_INC, 0, name, sizeof name, H5P_DEFAULT) > 0)
-    group = h5_open_group(particles, name);
+    group = find_object(t, particles, name);
   h5_close(particles);
   return group;
 }
@@ -70,9 +84,9 @@ static hid_t find_particles(hid_t file)
 static hid_t find_vectors(struct trajectory *t, const char *name)
 {
   hsize_t dims[3];
-  hid_t element = h5_open_group(t->group, name), value = open_dataset(element, "value");
+  hid_t element = find_object(t, t->group, name), value = find_object(t, element, "value");
   h5_close(element);
-  if (h5_shape(value, 3, dims) != 3 || dims[2] != 3 || dims[1] > INT32_MAX ||
+  if (find_shape(t, value, dims) != 3 || dims[2] != 3 || dims[1] > INT32_MAX ||
       (t->particles && t->particles != dims[1])) {
     h5_close(value);
     return -1;
@@ -86,8 +100,8 @@ static hid_t find_vectors(struct trajectory *t, const char *name)
 static hid_t find_series(struct trajectory *t, hid_t parent, const char *name, int rank)
 {
   hsize_t dims[3];
-  hid_t series = open_dataset(parent, name);
-  if (h5_shape(series, 3, dims) != rank) {
+  hid_t series = find_object(t, parent, name);
+  if (find_shape(t, series, dims) != rank) {
     h5_close(series);
     return -1;
   }
@@ -98,21 +112,20 @@ static hid_t find_series(struct trajectory *t, hid_t parent, const char *name, i
 static bool find_contents(struct trajectory *t)
 {
   t->frames = UINT64_MAX;
-  t->group = find_particles(t->file);
+  t->group = find_particles(t);
   t->position = t->group < 0 ? -1 : find_vectors(t, "position");
   if (t->position < 0)
     return false;
   t->velocity = find_vectors(t, "velocity");
-  hid_t element = h5_open_group(t->group, "position");
+  hid_t element = find_object(t, t->group, "position");
   t->step = find_series(t, element, "step", 1);
   t->time = find_series(t, element, "time", 1);
-  hid_t box = h5_open_group(t->group, "box"), edges = h5_open_group(box, "edges");
+  hid_t box = find_object(t, t->group, "box"), edges = find_object(t, box, "edges");
   t->edges = find_series(t, edges, "value", 3);
   h5_close(edges);
   h5_close(box);
   h5_close(element);
-  H5Eclear2(H5E_DEFAULT);
-  return true;
+  return !t->unread;
 }
 
 struct trajectory *trajectory_open_existing(const char *path, bool writable, enum h5_trouble *trouble,
@@ -129,7 +142,10 @@ struct trajectory *trajectory_open_existing(const char *path, bool writable, enu
     return trajectory_give_up(t);
   if (!find_contents(t)) {
     *trouble = H5_DAMAGED;
-    message_set(message, "%s: an HDF5 file without an H5MD trajectory (particles/trajectory/position/value)", path);
+    if (t->unread)
+      h5_fail(message, path, "damaged, its contents cannot be read");
+    else
+      message_set(message, "%s: an HDF5 file without an H5MD trajectory (particles/trajectory/position/value)", path);
     return trajectory_give_up(t);
   }
   return t;

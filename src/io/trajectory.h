@@ -20,6 +20,7 @@ struct trajectory {
   uint64_t last_step; /* of the last frame; when writing */
   uint32_t particles; /* rows of a frame */
   bool solvent;       /* frames hold the solvent; when writing */
+  bool unread;        /* something that is there could not be read */
   bool broken;        /* a write failed: nothing more is written */
   double *row;        /* [3 particles] */
   uint32_t *slot;     /* [solvent particles]; when writing solvent */
