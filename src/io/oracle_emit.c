@@ -96,13 +96,16 @@ struct tracer {
   FILE *out;
   uint32_t *slot;
   uint64_t step;
+  bool short_of_memory; /* for a hash */
 };
 
 /* Plain sums in the order of ids and vertices, of velocities as they stand, half steps and lag or not. */
 static void trace_row(void *context, const char *stage, const struct state *state)
 {
-  const struct tracer *t = context;
+  struct tracer *t = context;
   const struct solvent *s = &state->solvent;
+  const uint64_t hash = state_hash(state);
+  t->short_of_memory |= hash == 0;
   struct vec3 momentum = {0, 0, 0};
   double solvent = 0.0, vertex = 0.0;
   state_solvent_slots(state, t->slot);
@@ -117,8 +120,8 @@ static void trace_row(void *context, const char *stage, const struct state *stat
     vertex += 0.5 * t->model->mass[j] * vec3_dot(state->velocity[j], state->velocity[j]);
   }
   const struct fiber_energy e = fiber_energies(state, t->model);
-  fprintf(t->out, "%" PRIu64 ",%s,%016" PRIx64 ",%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n", t->step, stage,
-          state_hash(state), momentum.x, momentum.y, momentum.z, solvent, vertex, e.bond, e.bend);
+  fprintf(t->out, "%" PRIu64 ",%s,%016" PRIx64 ",%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n", t->step, stage, hash,
+          momentum.x, momentum.y, momentum.z, solvent, vertex, e.bond, e.bend);
 }
 
 static bool trace_steps(const struct scene *scene, struct state *state, struct work *work, struct tracer *t,
@@ -133,7 +136,7 @@ static bool trace_steps(const struct scene *scene, struct state *state, struct w
       return say_fault(work, message);
     trace_row(t, "end", state);
   }
-  return true;
+  return !t->short_of_memory || message_set(message, "no memory for the hash of the state");
 }
 
 bool oracle_trace(const struct scene *scene, FILE *out, struct message *message)

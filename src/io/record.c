@@ -45,6 +45,9 @@ bool record_write(const char *folder, const struct scene *scene, const struct st
                   struct message *message)
 {
   const struct conserved now = observe_conserved(&scene->model, state);
+  const uint64_t hash = state_hash(state);
+  if (hash == 0)
+    return message_set(message, "%s/run.json: no memory for the hash of the state", folder);
   json_t *root = json_pack(
       "{s:s, s:s?, s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:I, s:I, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:s}", "status",
       r->status, "reason", r->reason, "program", "uncross", "version", UNCROSS_VERSION, "commit", build_info.commit,
@@ -52,7 +55,7 @@ bool record_write(const char *folder, const struct scene *scene, const struct st
       hexadecimal(scene->fingerprint), "steps", (json_int_t)state->step, "steps_wanted", (json_int_t)scene->steps,
       "time", (double)state->step * scene->model.time_step, "wall_seconds", r->wall_seconds, "steps_per_second",
       r->steps_per_second, "collisions", counts(&state->counts), "start", conserved(r->start_energy, r->start_momentum),
-      "end", conserved(now.total, now.momentum), "state_hash", hexadecimal(state_hash(state)), "scene", scene->text);
+      "end", conserved(now.total, now.momentum), "state_hash", hexadecimal(hash), "scene", scene->text);
   if (!root)
     return message_set(message, "%s/run.json: no memory, or a scene that is not UTF-8", folder);
 

@@ -75,31 +75,32 @@ class Faults(unittest.TestCase):
     def tearDownClass(cls):
         shutil.rmtree(cls.folder)
 
-    def one(self, words, wish, look):
+    def one(self, words, wish, look, right_code):
         """One try: the exit code says what happened, and `look` (folder, result, wish) what else must be so."""
         with tempfile.TemporaryDirectory(dir=self.folder) as place:
             folder = pathlib.Path(place) / "f"
             shutil.copytree(self.start, folder)
             done = run("uncross-faults", words, folder, UNCROSS_FAIL=wish)
-            self.assertIn(done.returncode, (0, 1, 2, 3, 4), (wish, done.stderr))
-            if done.returncode:
+            self.assertIn(done.returncode, (0, 1, 2, 3, 4, right_code), (wish, done.stderr))
+            if done.returncode not in (0, right_code):
                 self.assertRegex(done.stderr, rb"^uncross: .{10,}", wish)
             look(folder, done, wish)
             return done.returncode
 
-    def attempt(self, words, wish, look):
+    def attempt(self, words, wish, look, right_code):
         """The exit code of one try, or what was wrong with it."""
         try:
-            return self.one(words, wish, look)
+            return self.one(words, wish, look, right_code)
         except AssertionError as wrong:
             return f"{wish}: {wrong}"
 
-    def all_of(self, words, look=lambda folder, done, wish: None):
+    def all_of(self, words, look=lambda folder, done, wish: None, right_code=0):
+        """Tries failure after failure; right_code is the exit code without any."""
         with tempfile.TemporaryDirectory(dir=self.folder) as place:
             folder = pathlib.Path(place) / "f"
             shutil.copytree(self.start, folder)
             right = run("uncross-faults", words, folder, UNCROSS_CALLS="calls")
-            self.assertEqual(right.returncode, 0, right.stderr)
+            self.assertEqual(right.returncode, right_code, right.stderr)
             look(folder, right, "none")
             calls = dict(line.split() for line in (folder / "calls").read_text().splitlines())
         wishes = []
@@ -108,13 +109,13 @@ class Faults(unittest.TestCase):
             for n in range(1, int(count) + 1, stride):
                 wishes += [f"{kind}:{n}"] if n % 3 else [f"{kind}:{n}", f"{kind}:{n}+"]
         with concurrent.futures.ThreadPoolExecutor(2) as pool:
-            codes = list(pool.map(lambda wish: self.attempt(words, wish, look), wishes))
+            codes = list(pool.map(lambda wish: self.attempt(words, wish, look, right_code), wishes))
         wrong = [code for code in codes if isinstance(code, str)]
         self.assertFalse(wrong, f"{' '.join(words)}: {len(wrong)} of {len(wishes)} failures were not borne:\n"
                          + "\n".join(text[:600] for text in wrong[:20]))
         told = {code: codes.count(code) for code in sorted(set(codes))}
         print(f"# {' '.join(words)}: {calls}; exit codes of {len(wishes)} failures: {told}")
-        self.assertTrue(any(codes), "no failure was noticed")
+        self.assertTrue(any(code != right_code for code in codes), "no failure was noticed")
         return right
 
     def same_output(self, words, part=lambda text: text):
@@ -206,6 +207,31 @@ class Faults(unittest.TestCase):
         self.all_of(["oracle", "emit", "scene.yaml", "-o", "out"], look)
         self.assertEqual(run("uncross", ["oracle", "emit", "scene.yaml", "-o", "pack.h5"], self.start).returncode, 0)
         self.same_output(["oracle", "dump", "pack.h5"], lambda text: len(text.splitlines()))
+
+    def test_trace(self):
+        words = ["oracle", "trace", "scene.yaml", "-o"]
+        self.assertEqual(run("uncross", words + ["right.csv"], self.start).returncode, 0)
+        right = (self.start / "right.csv").read_bytes()
+
+        def look(folder, done, wish):
+            if done.returncode == 0:
+                self.assertEqual((folder / "trace.csv").read_bytes(), right, wish)
+
+        self.all_of(words + ["trace.csv"], look)
+
+    def test_compare(self):
+        """Whatever fails, different packs are never told to be equal."""
+        self.assertEqual(run("uncross", ["oracle", "emit", "scene.yaml", "-o", "ours.h5"], self.start).returncode, 0)
+        text = run("uncross", ["oracle", "dump", "ours.h5"], self.start).stdout
+        (self.start / "same.txt").write_bytes(text)
+        lines = text.splitlines(keepends=True)
+        last = max(k for k, line in enumerate(lines) if line.startswith(b"kick ") and b" out.velocity.x " in line)
+        lines[last] = lines[last].rsplit(b" ", 1)[0] + b" 0x1.8p+3\n"
+        (self.start / "wrong.txt").write_bytes(b"".join(lines))
+
+        self.same_output(["oracle", "compare", "ours.h5", "same.txt"])
+        self.all_of(["oracle", "compare", "ours.h5", "wrong.txt"],
+                    lambda folder, done, wish: self.assertNotIn(done.returncode, (0, 6), wish), right_code=7)
 
 
 if __name__ == "__main__":
