@@ -115,7 +115,7 @@ $(BUILD)/validation/%: validation/%.c $(LIBRARY) Makefile
 	@$(CC) $(ALL_CFLAGS) -Itests -MMD -MP $< $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
 
 .PHONY: tests
-tests: $(BUILD)/uncross $(BUILD)/uncross-faults $(TEST_PROGRAMS)
+tests: $(BUILD)/uncross $(BUILD)/uncross-faults $(TEST_PROGRAMS) $(BENCH_PROGRAMS)
 
 .PHONY: measure
 measure: $(MEASURE_PROGRAMS)

@@ -1,4 +1,5 @@
-"""What the benchmarks share: running programs and counting their CPU time, medians, results that survive an interruption."""
+"""What the benchmarks share: programs and their CPU time, medians, results that survive an interruption."""
+import concurrent.futures
 import hashlib
 import json
 import os
@@ -6,6 +7,7 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 import numpy
@@ -28,10 +30,12 @@ def digest(*paths):
 
 
 class Store:
-    """A JSON file of measured items by key, written after each; items of other programs are dropped."""
+    """A JSON file of what programs printed, by command line, written after each run; what other programs printed is
+    dropped. `jobs` runs at a time where several are asked for and their speed is not the point."""
 
-    def __init__(self, path, stamp):
-        self.path, self.stamp, self.items = pathlib.Path(path), stamp, {}
+    def __init__(self, path, stamp, programs, jobs):
+        self.path, self.stamp, self.programs, self.jobs = pathlib.Path(path), stamp, programs, jobs
+        self.items, self.lock = {}, threading.Lock()
         self.path.parent.mkdir(parents=True, exist_ok=True)
         try:
             old = json.loads(self.path.read_text())
@@ -40,13 +44,22 @@ class Store:
         except (OSError, ValueError, KeyError, TypeError):
             pass
 
-    def get(self, key, measure):
-        """The item of this key; measure() makes it if it is not there yet."""
+    def run(self, *command):
+        """What this program of validation/bench prints, from the file if it is there."""
+        command = [str(c) for c in command]
+        key = " ".join(command)
         if key not in self.items:
-            say(key)
-            self.items[key] = measure()
-            write_json(self.path, {"stamp": self.stamp, "items": self.items})
+            say(key if len(key) < 110 else key[:107] + "...")
+            _, _, text = run_program([self.programs / command[0], *command[1:]])
+            with self.lock:
+                self.items[key] = text
+                write_json(self.path, {"stamp": self.stamp, "items": self.items})
         return self.items[key]
+
+    def run_all(self, commands):
+        """What each of these prints."""
+        with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
+            return list(pool.map(lambda command: self.run(*command), commands))
 
 
 def write_json(path, content):
@@ -89,10 +102,20 @@ def load_baseline():
 
 
 def row(name, unit, values=None, value=None, error=None):
-    """An entry of bench.json, of several readings (median, spread) or of a value with its error."""
+    """An entry of bench.json: of several readings (median, spread), or of a value with its error. An error that a
+    short run cannot tell is none.
+    """
     if values is not None:
         value, error = median(values), spread(values)
+    if error is not None and not numpy.isfinite(error):
+        error = None
     return {"name": name, "value": value, "unit": unit, "spread": error, "baseline": load_baseline().get(name)}
+
+
+def quantities(text):
+    """{name: (value, error, ...)} of lines "name value error ..."."""
+    lines = (line.split() for line in text.splitlines())
+    return {name: tuple(map(float, numbers)) for name, *numbers in lines}
 
 
 def show(rows):

@@ -7,11 +7,10 @@ SWEEP_BOXES = (16, 24, 32, 48)         # at c L^3 = 300
 SWEEP_DENSITIES = (30, 100, 300, 1000, 2000)
 
 
-def blocks(programs, rounds, seconds, scenes):
+def blocks(store, rounds, seconds, scenes):
     """{scene: [CPU seconds per step, one per round]}, and the peak memory in bytes."""
-    _, _, text = common.run_program([programs / "steps", rounds, seconds, *scenes])
     times, peak = {scene: [] for scene in scenes}, 0
-    for line in text.splitlines():
+    for line in store.run("steps", rounds, seconds, *scenes).splitlines():
         fields = line.split("\t")
         if fields[0] == "peak":
             peak = 1024 * int(fields[1])
@@ -24,11 +23,12 @@ def rows_of_ratio(name, times, above, below):
     return common.row(name, "ratio", [a / b for a, b in zip(times[above], times[below])])
 
 
-def solvent(programs, effort):
+def solvent(store, effort):
     """The floor, and the solvent alone from 16^3 to 100^3: cost of a particle and collision, and relative to 32^3."""
     rounds, scenes = max(3, round(7 * effort)), {edge: f"cells={edge},dt=0.02,every=1" for edge in BOXES}
-    times, _ = blocks(programs, rounds, 0.4, ["triad=12", "triad=600", *scenes.values()])
-    rows = [common.row(f"floor/triad of {mb} MB", "GB/s", [mb / 1e3 / t for t in times[f"triad={mb}"]]) for mb in (12, 600)]
+    times, _ = blocks(store, rounds, 0.4, ["triad=12", "triad=600", *scenes.values()])
+    rows = [common.row(f"floor/triad of {mb} MB", "GB/s", [mb / 1e3 / t for t in times[f"triad={mb}"]])
+            for mb in (12, 600)]
     for edge, scene in scenes.items():
         nanoseconds = [1e9 * t / (5 * edge**3) for t in times[scene]]
         rows.append(common.row(f"speed/solvent {edge}^3", "ns per particle and collision", nanoseconds))
@@ -38,11 +38,11 @@ def solvent(programs, effort):
     return rows
 
 
-def suspensions(programs, effort):
+def suspensions(store, effort):
     """Fibers of 64 vertices, dt 0.01, dt_c 0.02, in 32^3 cells: time of a step over the time of the solvent alone."""
     rounds, alone = max(3, round(7 * effort)), "cells=32"
     scenes = {fibers: f"cells=32,fibers={fibers}" for fibers in DENSITIES}
-    times, _ = blocks(programs, rounds, 0.4, [alone, *scenes.values()])
+    times, _ = blocks(store, rounds, 0.4, [alone, *scenes.values()])
     rows = [common.row("speed/solvent 32^3, dt 0.01", "ms per step", [1e3 * t for t in times[alone]])]
     for fibers, scene in scenes.items():
         rows.append(common.row(f"speed/cL^3 = {fibers}", "ms per step", [1e3 * t for t in times[scene]]))
@@ -50,18 +50,20 @@ def suspensions(programs, effort):
     return rows
 
 
-def detection(programs, effort):
+def detection(store, effort):
     """What refusing to cross costs: a step of the fibers alone, less the same step of phantoms, per vertex."""
     rounds = max(3, round(7 * effort))
 
     def measure(pairs):
-        scenes = [f"per_cell=0,cells={edge},fibers={fibers},crossing={on}" for edge, fibers in pairs.values() for on in (0, 1)]
-        times, _ = blocks(programs, rounds, 0.15, scenes)
+        scenes = [f"per_cell=0,cells={edge},fibers={fibers},crossing={on}"
+                  for edge, fibers in pairs.values() for on in (0, 1)]
+        times, _ = blocks(store, rounds, 0.15, scenes)
         rows = []
         for (name, (_, fibers)), off, on in zip(pairs.items(), scenes[::2], scenes[1::2]):
             nanoseconds = [1e9 * (a - b) / (64 * fibers) for a, b in zip(times[on], times[off])]
             rows.append(common.row(f"detection/{name}", "ns per vertex and step", nanoseconds))
-            rows.append(common.row(f"phantoms/{name}", "ns per vertex and step", [1e9 * t / 64 / fibers for t in times[off]]))
+            rows.append(common.row(f"phantoms/{name}", "ns per vertex and step",
+                                   [1e9 * t / 64 / fibers for t in times[off]]))
         return rows
 
     by_size = {f"{64 * round(300 * (edge / 32)**3)} vertices at cL^3 = 300": (edge, round(300 * (edge / 32)**3))
@@ -70,12 +72,12 @@ def detection(programs, effort):
     return measure(by_size) + measure(by_density)
 
 
-def memory(programs, effort):
+def memory(store, effort):
     """Bytes per particle, per cell and per vertex, from the peak of processes that differ in just that."""
     del effort
 
     def peak(scene):
-        return blocks(programs, 1, 0.0, [scene])[1]
+        return blocks(store, 1, 0.0, [scene])[1]
 
     def slope(name, unit, count, small, large):
         return common.row(name, unit, value=(peak(large) - peak(small)) / count, error=0.0)
@@ -83,7 +85,8 @@ def memory(programs, effort):
     return [
         slope("memory/solvent particle", "bytes", 35 * 32**3, "cells=32", "cells=32,per_cell=40"),
         slope("memory/cell", "bytes", 80**3 - 40**3, "cells=40,per_cell=8", "cells=80,per_cell=1"),
-        slope("memory/vertex, cL^3 = 100", "bytes", 64 * 700, "per_cell=0,cells=32,fibers=100", "per_cell=0,cells=64,fibers=800"),
+        slope("memory/vertex, cL^3 = 100", "bytes", 64 * 700, "per_cell=0,cells=32,fibers=100",
+              "per_cell=0,cells=64,fibers=800"),
         slope("memory/vertex, cL^3 = 1000", "bytes", 64 * 2375, "per_cell=0,cells=32,fibers=1000",
               "per_cell=0,cells=48,fibers=3375"),
     ]
