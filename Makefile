@@ -40,6 +40,7 @@ help:
 	@echo 'make mutants         plants bugs in a copy of the sources, one at a time, and runs the tests that should see them'
 	@echo 'make counts          instructions of each stage against a table; nothing is done that a scene does not need'
 	@echo 'make counts-baseline writes that table anew (tests/counts/baseline.txt), and the one of docs/speed.md'
+	@echo 'make judge-power     what `uncross oracle judge` makes of codes with planted bugs (ten minutes)'
 	@echo 'make stress          long runs: exact audit, linking numbers, 10^7 steps (some minutes)'
 	@echo 'make lint            formatting, warnings of gcc and clang, static checks, include floors, equation table'
 	@echo 'make measure         builds the programs behind docs/accuracy.md'
@@ -177,6 +178,12 @@ counts-baseline:
 	tools/counts build/counts/uncross --baseline
 	tools/skips build/counts/uncross --docs docs/speed.md
 
+.PHONY: judge-power
+judge-power:
+	tools/install-dependencies run test
+	$(MAKE) -j2 $(BUILD)/uncross
+	tools/judge-power --uncross $(BUILD)/uncross --build $(BUILD)/judge-power
+
 .PHONY: demo
 demo:
 	tools/install-dependencies run demo
@@ -193,13 +200,13 @@ exact: $(BUILD)/uncross $(BUILD)/uncross-faults $(patsubst %.c,$(BUILD)/%,$(filt
 sanitize:
 	tools/install-dependencies run hard
 	$(MAKE) -j2 CC=gcc BUILD=build/sanitize OPTIMIZE=-O1 \
-	   CFLAGS='-g -Wno-error -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all' exact
+	   CFLAGS='-g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all' exact
 	tools/sanitize build/sanitize $(EXACT_TESTS)
 
 .PHONY: coverage
 coverage:
 	tools/install-dependencies run hard
-	$(MAKE) -j2 CC=gcc BUILD=build/coverage OPTIMIZE=-O0 CFLAGS='-g --coverage -Wno-error' exact
+	$(MAKE) -j2 CC=gcc BUILD=build/coverage OPTIMIZE=-O0 CFLAGS='-g --coverage' exact
 	tools/coverage build/coverage $(EXACT_TESTS)
 
 # Inputs that find something new go to build/fuzz/corpus; what was found is a file crash-* there, which FUZZ=file runs again.

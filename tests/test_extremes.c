@@ -183,7 +183,7 @@ static void judge_scene(const struct extreme *e)
   struct scene scene;
   struct message message = {""};
   enum outcome outcome = REFUSED;
-  char why[512] = "";
+  char why[sizeof message.text] = "";
   char text[2000];
   write_scene(e, text);
   if (scene_read_text(e->name, text, strlen(text), &scene, &message)) {
