@@ -43,6 +43,7 @@ help:
 	@echo 'make judge-power     what `uncross oracle judge` makes of codes with planted bugs (ten minutes)'
 	@echo 'make stress          long runs: exact audit, linking numbers, 10^7 steps (some minutes)'
 	@echo 'make lint            formatting, warnings of gcc and clang, static checks, include floors, equation table'
+	@echo 'make port            the port to NumPy against packs and traces, and with bugs planted in it (ports/numpy)'
 	@echo 'make measure         builds the programs behind docs/accuracy.md'
 	@echo 'make bench           speed, scaling, run time against error: build/bench/bench.json; BENCH=speed,... chooses sections'
 	@echo 'make bench-peers     against Debian'\''s LAMMPS, in turn: build/bench/peers.json'
@@ -183,6 +184,12 @@ judge-power:
 	tools/install-dependencies run test
 	$(MAKE) -j2 $(BUILD)/uncross
 	tools/judge-power --uncross $(BUILD)/uncross --build $(BUILD)/judge-power
+
+.PHONY: port
+port:
+	tools/install-dependencies run port
+	$(MAKE) -j2 $(BUILD)/uncross
+	ports/numpy/check $(BUILD)/uncross
 
 .PHONY: demo
 demo:

@@ -21,6 +21,7 @@ class Model:
     acceleration: np.ndarray
     next: np.ndarray
     prev: np.ndarray
+    fiber: np.ndarray
     mass: np.ndarray
     bond_length: np.ndarray
     spring: np.ndarray
@@ -40,7 +41,7 @@ class Model:
 def from_tables(tables):
     """The model of `model.0`: {name of an input: [rows, columns]}."""
     seed_low, seed_high, particles, interval, forbidden, paper = (int(x) for x in tables["numbers"][0])
-    reals, vertex, chain = tables["reals"][0], tables["vertex"], tables["chain"]
+    reals, vertex, chain = tables["reals"][0], tables["vertex"].reshape(-1, 7), tables["chain"]
     return Model(
         seed=seed_low + (seed_high << 32),
         box=tables["box"][0],
@@ -54,6 +55,7 @@ def from_tables(tables):
         acceleration=reals[3:6],
         next=chain[:, 0],
         prev=chain[:, 1],
+        fiber=chain[:, 2],
         mass=vertex[:, 0],
         bond_length=vertex[:, 1],
         spring=vertex[:, 2],

@@ -5,6 +5,7 @@ import numpy as np
 from . import fiber, random, solvent
 from . import model as models
 from . import sweep as sweeps
+from .pack import Tables
 
 
 def scalar(table):
@@ -128,7 +129,7 @@ OPERATORS = {
 
 
 def inputs(tables):
-    return {name.removeprefix("in."): values for name, values in tables.items() if name.startswith("in.")}
+    return Tables({name.removeprefix("in."): values for name, values in tables.items() if name.startswith("in.")})
 
 
 def model_of(pack):

@@ -22,6 +22,13 @@ COLUMNS_AT = {("order", "order"): "vertex", ("swap", "order"): "particle"}
 COLUMNS_AT |= {("bin", "solvent"): "cell", ("bin", "vertex"): "cell"}
 
 
+class Tables(dict):
+    """Tables of one operator by name. The text form has no lines for a table without rows, so a missing one is empty."""
+
+    def __missing__(self, name):
+        return np.zeros((0, 3), np.int64)
+
+
 def columns(operator, name):
     return COLUMNS_AT.get((operator, name)) or COLUMNS.get(name, "x y z")
 

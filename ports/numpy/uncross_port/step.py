@@ -65,14 +65,9 @@ class System:
             self.lag = 0
 
     def drift(self, share, sweep_number):
-        model = self.model
-        time = share * model.dt
-        if model.forbidden:
-            order = fiber.vertex_order(model, self.finished + 1, sweep_number)
-            moved = sweep.sweep(model, order, self.vertex, self.vertex_velocity, time)
-            self.vertex, self.vertex_velocity = moved[:2]
-        else:
-            self.vertex = self.vertex + sweep.to_lattice(time * self.vertex_velocity)
+        order = fiber.vertex_order(self.model, self.finished + 1, sweep_number)
+        moved = sweep.sweep(self.model, order, self.vertex, self.vertex_velocity, share * self.model.dt)
+        self.vertex, self.vertex_velocity = moved[:2]
         self.lag += int(2 * share)
 
     def kick(self, share):

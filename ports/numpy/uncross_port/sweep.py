@@ -55,6 +55,13 @@ def crosses(start, end, pivot, a, b, flip):
     return (volume(move, leg, difference(a, start)) >= 0) != (volume(move, leg, difference(b, start)) >= 0)
 
 
+def rounded_volume(p, q, r):
+    """(p x q) . r in doubles of a0^3, but for an exact zero, which stays one: times of 0 and 1, and ties, depend on it."""
+    if volume(p.tolist(), q.tolist(), r.tolist()) == 0:
+        return 0.0
+    return dot(cross(p * UNIT, q * UNIT), r * UNIT)
+
+
 def excluded(model, vertex, moving):
     """Bonds (by their number) that the moving bond is not tested against."""
     bonds = [moving]
@@ -79,13 +86,13 @@ def partners(model, position, start, end, pivot, skip):
 
 def describe(position, vertex, end, pivot, moving, standing, image, a, b):
     """Time, contact points and normal of a crossing, in doubles of a0."""
-    bond, arm = (b - a) * UNIT, (position[pivot] - a) * UNIT
-    start_a, move = (position[vertex] - a) * UNIT, (end - position[vertex]) * UNIT
-    before = dot(cross(bond, arm), start_a)
-    after = dot(cross(bond, arm), (end - a) * UNIT)
+    start = position[vertex]
+    before = rounded_volume(b - a, position[pivot] - a, start - a)
+    after = rounded_volume(b - a, position[pivot] - a, end - a)
     time = min(max(before / (before - after), 0.0), 1.0)
-    at = start_a + time * move
-    p, q = arm - at, bond
+    move = (end - start) * UNIT
+    at = (start - a) * UNIT + time * move
+    p, q = (position[pivot] - a) * UNIT - at, (b - a) * UNIT
     pp, pq, qq, pt, qt = dot(p, p), dot(p, q), dot(q, q), dot(p, at), dot(q, at)
     denominator = pp * qq - pq * pq
     s, s_standing = 0.5, 0.5
@@ -131,7 +138,7 @@ def sweep(model, order, position, velocity, time):
     position, velocity, events, rows = position.copy(), velocity.copy(), [], []
     for vertex in order:
         end = position[vertex] + to_lattice(time * velocity[vertex])
-        hits = hits_of_move(model, position, vertex, end)
+        hits = hits_of_move(model, position, vertex, end) if model.forbidden else []
         if not hits:
             position[vertex] = end
         for rank, hit in enumerate(hits):
