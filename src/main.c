@@ -31,7 +31,7 @@ static const char help[] =
     "      --wrapped       vertices folded into the box\n"
     "      --first N, --last N, --stride N   these frames only (numbered from 0)\n"
     "  uncross analyze TRAJECTORY --out DIR   recomputes the observables of its scene from its frames, as tables\n"
-    "  uncross oracle ACTION ...              packs and traces to hold other implementations against: `uncross oracle "
+    "  uncross oracle ACTION ...              what to hold other implementations against: `uncross oracle "
     "--help`\n"
     "  uncross --help, uncross --version\n"
     "\n"
@@ -43,7 +43,8 @@ static const char help[] =
     "  4  a file could not be written; the last checkpoint stays\n"
     "  5  interrupted by SIGINT or SIGTERM; a checkpoint was written, --resume goes on\n"
     "  6  oracle compare: different, but within the derived tolerances\n"
-    "  7  oracle compare: different beyond them\n"
+    "  7  oracle compare: different beyond them; oracle judge: different\n"
+    "  8  oracle judge: cannot tell, since observables are missing or their errors too large\n"
     "\n"
     "Scenes are YAML files: docs/scene.md lists every key, scenes/ holds examples.\n";
 

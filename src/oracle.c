@@ -3,9 +3,11 @@
 #include <errno.h>
 #include <getopt.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "io/oracle.h"
+#include "io/oracle_judge.h"
 
 static const char help[] =
     "uncross oracle: what other implementations are held against (docs/porting.md)\n"
@@ -17,18 +19,26 @@ static const char help[] =
     "  uncross oracle compare OURS THEIRS        packs, each HDF5 or text: the first difference and what it means\n"
     "      --single                              tolerances of single precision instead of double\n"
     "      --only OPERATOR[,OPERATOR ...]        these operators only\n"
+    "  uncross oracle judge OURS THEIRS          tables of observables (docs/judging.md): could both be the same "
+    "code?\n"
+    "      --only OBSERVABLE[,OBSERVABLE ...]    these observables only\n"
+    "      --false-alarm P                       chance that equal codes are found different (1e-9 .. 0.5; default "
+    "1e-3)\n"
     "\n"
-    "exit codes of compare:\n"
-    "  0  the same, every bit\n"
-    "  2  bad input\n"
-    "  6  different, but all within the derived tolerances\n"
-    "  7  different beyond them, or something is missing\n"
+    "exit codes of compare:              of judge:\n"
+    "  0  the same, every bit              0  consistent\n"
+    "  2  bad input                        2  bad input\n"
+    "  6  different, but all within        7  different\n"
+    "     the derived tolerances           8  cannot tell: an observable is missing,\n"
+    "  7  different beyond them,              or its error too large\n"
+    "     or something is missing\n"
     "The others end as all of uncross: see `uncross --help`.\n";
 
 struct words {
   const char *file[2];
   const char *output;
   struct oracle_options options;
+  double false_alarm;
 };
 
 static enum exit_code complain(const struct message *message, enum exit_code code)
@@ -132,19 +142,31 @@ static enum exit_code compare(const struct words *w)
   return ok ? codes[verdict] : complain(&message, EXIT_BAD_INPUT);
 }
 
+static enum exit_code judge(const struct words *w)
+{
+  static const enum exit_code codes[] = {
+      [JUDGE_CONSISTENT] = EXIT_DONE, [JUDGE_CANNOT_TELL] = EXIT_CANNOT_TELL, [JUDGE_DIFFERS] = EXIT_DIFFERS};
+  const struct judge_options how = {w->false_alarm, w->options.only};
+  struct message message;
+  struct observable_means ours, theirs;
+  enum judge_verdict verdict = JUDGE_CANNOT_TELL;
+  const bool ok = observable_means_read(w->file[0], NULL, &ours, &message) &&
+                  observable_means_read(w->file[1], &ours, &theirs, &message) &&
+                  oracle_judge(&ours, &theirs, &how, stdout, &verdict, &message);
+  return ok ? codes[verdict] : complain(&message, EXIT_BAD_INPUT);
+}
+
 static const struct {
   const char *name;
   int files;
   enum exit_code (*act)(const struct words *);
-} actions[] = {{"emit", 1, emit}, {"trace", 1, trace}, {"dump", 1, dump}, {"compare", 2, compare}};
+} actions[] = {{"emit", 1, emit}, {"trace", 1, trace}, {"dump", 1, dump}, {"compare", 2, compare}, {"judge", 2, judge}};
 
-enum option_code { OPTION_HELP = 256, OPTION_SINGLE, OPTION_ONLY };
+enum option_code { OPTION_HELP = 256, OPTION_SINGLE, OPTION_ONLY, OPTION_FALSE_ALARM };
 
-static const struct option options[] = {{"output", 1, NULL, 'o'},
-                                        {"single", 0, NULL, OPTION_SINGLE},
-                                        {"only", 1, NULL, OPTION_ONLY},
-                                        {"help", 0, NULL, OPTION_HELP},
-                                        {0, 0, NULL, 0}};
+static const struct option options[] = {{"output", 1, NULL, 'o'},       {"single", 0, NULL, OPTION_SINGLE},
+                                        {"only", 1, NULL, OPTION_ONLY}, {"false-alarm", 1, NULL, OPTION_FALSE_ALARM},
+                                        {"help", 0, NULL, OPTION_HELP}, {0, 0, NULL, 0}};
 
 static enum exit_code usage_error(const char *what, const char *which)
 {
@@ -152,9 +174,16 @@ static enum exit_code usage_error(const char *what, const char *which)
   return EXIT_BAD_INPUT;
 }
 
+static bool take_false_alarm(const char *text, double *rate)
+{
+  char *end;
+  *rate = strtod(text, &end);
+  return end != text && *end == '\0' && *rate >= 1e-9 && *rate <= 0.5;
+}
+
 enum exit_code oracle_command(int count, char **arguments)
 {
-  struct words w = {.output = NULL};
+  struct words w = {.false_alarm = 1e-3};
   int code;
   while ((code = getopt_long(count, arguments, "o:", options, NULL)) != -1) {
     if (code == OPTION_HELP)
@@ -165,7 +194,9 @@ enum exit_code oracle_command(int count, char **arguments)
       w.options.single = true;
     else if (code == OPTION_ONLY)
       w.options.only = optarg;
-    else
+    else if (code == OPTION_FALSE_ALARM && !take_false_alarm(optarg, &w.false_alarm))
+      return usage_error(": --false-alarm takes a number from 1e-9 to 0.5, not ", optarg);
+    else if (code != OPTION_FALSE_ALARM)
       return EXIT_BAD_INPUT; /* getopt_long has said why */
   }
   const char *name = optind < count ? arguments[optind] : "";
@@ -173,7 +204,7 @@ enum exit_code oracle_command(int count, char **arguments)
     if (strcmp(name, actions[k].name) != 0)
       continue;
     if (count - optind - 1 != actions[k].files)
-      return usage_error(" ", actions[k].files == 2 ? "compare: two files" : "takes one file");
+      return usage_error(" ", actions[k].files == 2 ? "takes two files" : "takes one file");
     for (int f = 0; f < actions[k].files; f++)
       w.file[f] = arguments[optind + 1 + f];
     return actions[k].act(&w);

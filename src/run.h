@@ -14,7 +14,8 @@ enum exit_code {
   EXIT_NOT_WRITTEN = 4, /* a file could not be written; the last checkpoint stays */
   EXIT_INTERRUPTED = 5, /* SIGINT or SIGTERM; a checkpoint was written, --resume goes on */
   EXIT_CLOSE = 6,       /* oracle compare: different within tolerance */
-  EXIT_DIFFERS = 7      /* oracle compare: different beyond it */
+  EXIT_DIFFERS = 7,     /* oracle compare: different beyond it; oracle judge: different */
+  EXIT_CANNOT_TELL = 8  /* oracle judge: observables missing, or errors too large */
 };
 
 struct run_options {

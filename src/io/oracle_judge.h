@@ -1,0 +1,75 @@
+/*
+ * Statistical verdicts on codes whose bits are not ours: tables of observables, each a mean with its standard error
+ * from independent blocks. docs/judging.md defines the observables, the files and the rate of false alarms.
+ */
+#ifndef UNCROSS_IO_ORACLE_JUDGE_H
+#define UNCROSS_IO_ORACLE_JUDGE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+
+#include "io/message.h"
+
+enum {
+  OBSERVABLES_MOST = 64,  /* rows of a table */
+  OBSERVABLES_NAME = 48,  /* room for a name */
+  JUDGE_LEAST_BLOCKS = 10 /* with fewer, means are not normal and their errors not known well enough */
+};
+
+/* A row of a table. */
+struct observable_mean {
+  char name[OBSERVABLES_NAME];
+  double value, error, blocks;
+  double theory;  /* NaN: none is known, or the table has no such column */
+  double resolve; /* our table only: relative difference that a verdict must be able to see */
+};
+
+struct observable_means {
+  size_t count;
+  struct observable_mean row[OBSERVABLES_MOST];
+};
+
+/* Reads a table (CSV, `#` begins a comment line). `reference` is ours, which names all observables there are; NULL:
+ * this is ours, and needs `resolve`. False, with a message `file:line:col: ...`, if it is none. */
+bool observable_means_read(const char *path, const struct observable_means *reference, struct observable_means *means,
+                           struct message *message);
+
+/* The row of this name; NULL if there is none. */
+const struct observable_mean *observable_means_find(const struct observable_means *means, const char *name);
+
+/* One observable, ours against theirs. */
+struct judgement {
+  const struct observable_mean *ours, *theirs; /* theirs NULL: missing */
+  double difference, error;                    /* theirs - ours, and the standard error of that */
+  double freedoms;                             /* of the error: Welch */
+  double t, p;                                 /* difference/error; P(|T| > |t|) if both codes are the same, or 1 */
+  double sees;  /* difference over |ours| found with 90 % probability; NaN: too few blocks */
+  bool differs; /* by Holm's rule, over all observables */
+  bool judged;  /* there, from enough blocks, and sees what it must */
+};
+
+/* Judges `ours` against `theirs`, of which NULL is the missing one; `level` is the p below which it would count if it
+ * were the only one to differ. `differs` is left false. */
+struct judgement judge_one(const struct observable_mean *ours, const struct observable_mean *theirs, double level);
+
+/* Sets `differs` of those that do, so that with equal codes the probability of any is at most `false_alarm`, whatever
+ * their correlations: Holm, Scand. J. Statist. 6, 65 (1979). */
+void judge_together(struct judgement *judgement, size_t count, double false_alarm);
+
+enum judge_verdict {
+  JUDGE_CONSISTENT,  /* everything was judged, nothing differs */
+  JUDGE_CANNOT_TELL, /* nothing differs, but not everything could be judged */
+  JUDGE_DIFFERS
+};
+
+struct judge_options {
+  double false_alarm; /* 1e-9 .. 0.5 */
+  const char *only;   /* these observables, with commas between; NULL: all */
+};
+
+/* Prints the judgements and the verdict. False, with a message, if `only` names what there is not. */
+bool oracle_judge(const struct observable_means *ours, const struct observable_means *theirs,
+                  const struct judge_options *options, FILE *out, enum judge_verdict *verdict, struct message *message);
+
+#endif
