@@ -5,7 +5,7 @@
 
 #include "base/student.h"
 
-#define POWER 0.9
+#define NORMAL_90 1.2815515655446004 /* what a normal deviate is below with 90 % probability */
 
 struct judgement judge_one(const struct observable_mean *ours, const struct observable_mean *theirs, double level)
 {
@@ -20,8 +20,10 @@ struct judgement judge_one(const struct observable_mean *ours, const struct obse
   if (fmin(ours->blocks, theirs->blocks) < JUDGE_LEAST_BLOCKS)
     return j;
   j.p = student_tail(fabs(j.t), j.freedoms);
-  /* |T| exceeds its quantile with probability POWER if the mean of T is that and one more quantile away. */
-  const double away = student_quantile(level, j.freedoms) + student_quantile(2.0 * (1.0 - POWER), j.freedoms);
+  /* A normal deviate about `away` exceeds `limit` estimated errors, which scatter by 1/sqrt(2 freedoms) about
+   * 1 - 1/(4 freedoms): the non-central t to first order, as Johnson and Welch, Biometrika 31, 362 (1940). */
+  const double limit = student_quantile(level, j.freedoms);
+  const double away = limit * (1.0 - 0.25 / j.freedoms) + NORMAL_90 * sqrt(1.0 + 0.5 * limit * limit / j.freedoms);
   j.sees = away * j.error / fabs(ours->value);
   j.judged = j.sees <= ours->resolve;
   return j;
