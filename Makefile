@@ -46,6 +46,7 @@ help:
 	@echo 'make port            the port to NumPy against packs and traces, and with bugs planted in it (ports/numpy)'
 	@echo 'make measure         builds the programs behind docs/accuracy.md'
 	@echo 'make bench           speed, scaling, run time against error: build/bench/bench.json; BENCH=speed,... chooses sections'
+	@echo 'make bench-docs      the same, and its tables and figures into docs/'
 	@echo 'make bench-peers     against Debian'\''s LAMMPS, in turn: build/bench/peers.json'
 	@echo 'make sanitize        the exact tests and short runs with address and undefined-behavior sanitizers'
 	@echo 'make coverage        which lines and branches of src/ the exact tests reach: build/coverage/index.html'
@@ -128,6 +129,11 @@ bench:
 	tools/install-dependencies run bench
 	$(MAKE) -j2 bench-programs
 	validation/bench/run --build $(BUILD) $(if $(BENCH),--sections $(BENCH))
+
+# The tables and figures of the documents, from what was measured.
+.PHONY: bench-docs
+bench-docs: bench
+	validation/bench/run --build $(BUILD) $(if $(BENCH),--sections $(BENCH)) --docs
 
 .PHONY: bench-peers
 bench-peers:

@@ -16,6 +16,7 @@ import efficiency
 import precision
 import scaling
 import speed
+import tables
 
 BUILD = pathlib.Path(os.environ.get("BUILD", "build")).resolve()
 FIELDS = {"name", "value", "unit", "spread", "baseline"}
@@ -37,7 +38,7 @@ def seconds_of(text):
 
 
 class MadeUp:
-    """Prints what the programs would in that world. The stiffest mode has 1/(1 - 4 dt^2), with drift-split 1."""
+    """Prints what the programs would in that world. The stiffest mode has 1/(1 - 100 dt^2), with drift-split 1."""
 
     def run(self, program, *arguments):
         return getattr(self, program)(*map(str, arguments))
@@ -56,7 +57,7 @@ class MadeUp:
         s = scene_of(scene)
         if s["order"] == 0 and s["dt"] > 0.01 and not s.get("thermostat"):
             return "fault 7 0\n"
-        stiffest = 1.0 / (1.0 - 4.0 * s["dt"]**2) if s["order"] < 2 else 1.0
+        stiffest = 1.0 / (1.0 - 100.0 * s["dt"]**2) if s["order"] < 2 else 1.0
         return f"cpu 1 0\nstiffest {stiffest} 0.0001\nbend 1 0.001\nmsd 2 0.01\ndrift 0 1e-6\n"
 
     def efficiency(self, mode, *_):
@@ -101,9 +102,10 @@ class Rows(unittest.TestCase):
 
     def test_precision(self):
         rows = rows_of(precision)
-        self.assertAlmostEqual(rows["precision/c of 1/(1 - c dt^2), kick-split"]["value"], 4.0)
-        self.assertAlmostEqual(rows["precision/dt for 1 %, kick-split"]["value"], (0.01 / 1.01 / 4)**0.5)
-        self.assertEqual(rows["precision/largest dt within 1 %, kick-split"]["value"], 0.04)
+        self.assertAlmostEqual(rows["precision/c of 1/(1 - c dt^2), kick-split"]["value"], 100.0)
+        self.assertAlmostEqual(rows["precision/dt for 1 %, kick-split"]["value"], (0.01 / 1.01 / 100)**0.5)
+        self.assertEqual(rows["precision/largest dt within 1 %, kick-split"]["value"], 0.005)
+        self.assertEqual(rows["precision/largest dt within 1 %, drift-split"]["value"], 0.04)
         self.assertNotIn("precision/dt for 1 %, drift-split", rows)
         self.assertAlmostEqual(rows["precision/g(10 t0), paper, dt 0.02"]["value"], 1.0)
         self.assertNotIn("precision/g(10 t0), paper, dt 0.04", rows)
@@ -117,6 +119,36 @@ class Rows(unittest.TestCase):
         name = "efficiency/vertex, 8 in 8^3, mean square displacement"
         self.assertAlmostEqual(rows[name + ", with images"]["value"], 0.0217519, delta=1e-7)
         self.assertAlmostEqual(rows[name + ", CPU for 1 %"]["value"], 10 * (0.0004 / 0.0217519 / 0.01)**2, delta=1e-3)
+
+
+class Tables(unittest.TestCase):
+    def test_values_with_errors(self):
+        shown = {(2.14837, 0.0081): "2.148 ± 0.008", (2.14837, 0.0131): "2.148 ± 0.013", (21.3, 1.26): "21.3 ± 1.3",
+                 (-3.4e-7, 4.1e-7): "(−0.3 ± 0.4)·10⁻⁶", (1.21e-4, 1.3e-5): "(121 ± 13)·10⁻⁶", (14.237, None): "14.2",
+                 (0.02, 0.0): "0.0200", (221.4, None): "221"}
+        for (value, error), text in shown.items():
+            self.assertEqual(tables.with_error({"value": value, "spread": error}), text)
+
+    def test_documents(self):
+        modules = (speed, scaling, precision, efficiency)
+        rows = {name: row for module in modules for name, row in rows_of(module).items()}
+        with tempfile.TemporaryDirectory() as name:
+            root = pathlib.Path(name)
+            (root / "docs").mkdir()
+            for document in ("docs/speed.md", "docs/accuracy.md"):
+                marks = [f"<!-- bench: {n} -->\nold {n}\n<!-- end of {n} -->\n"
+                         for n, (d, _) in tables.TABLES.items() if d == document]
+                (root / document).write_text("before\n" + "between\n".join(marks) + "after\n")
+            tables.write({name: row for name, row in rows.items() if not name.startswith("scaling/")}, root)
+            speed_page, accuracy_page = ((root / page).read_text() for page in ("docs/speed.md", "docs/accuracy.md"))
+        self.assertIn("| cL³ = 100 over its solvent alone | 1.5 | 1.3 | 1.39 |", speed_page)  # 1 + 6400 100/(10 163840)
+        self.assertIn("old scaling", speed_page)
+        self.assertNotIn("old speed", speed_page)
+        self.assertIn("| `paper` | 0.02 |", accuracy_page)
+        self.assertIn("stops at 7 t0", accuracy_page)
+        self.assertIn("| `kick-split`, from the fit | 0.00995", accuracy_page)  # (0.01/1.01/100)^0.5
+        for page in (speed_page, accuracy_page):
+            self.assertTrue(page.startswith("before\n<!-- bench: ") and page.endswith("-->\nafter\n"))
 
 
 class Kept(unittest.TestCase):
