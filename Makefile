@@ -124,16 +124,18 @@ tests: $(BUILD)/uncross $(BUILD)/uncross-faults $(TEST_PROGRAMS) $(BENCH_PROGRAM
 measure: $(MEASURE_PROGRAMS)
 
 # What was measured before with the same programs is kept: an interrupted run goes on where it was.
+# EFFORT=0.1 for a look.
+EFFORT ?= 1
 .PHONY: bench
 bench:
 	tools/install-dependencies run bench
 	$(MAKE) -j2 bench-programs
-	validation/bench/run --build $(BUILD) $(if $(BENCH),--sections $(BENCH))
+	validation/bench/run --build $(BUILD) --effort $(EFFORT) $(if $(BENCH),--sections $(BENCH))
 
 # The tables and figures of the documents, from what was measured.
 .PHONY: bench-docs
 bench-docs: bench
-	validation/bench/run --build $(BUILD) $(if $(BENCH),--sections $(BENCH)) --docs
+	validation/bench/run --build $(BUILD) --effort $(EFFORT) $(if $(BENCH),--sections $(BENCH)) --docs
 
 .PHONY: bench-peers
 bench-peers:
