@@ -1,0 +1,63 @@
+"""CI sums what its stages count, and fails if one of them does: with stages made for it."""
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+RUN = pathlib.Path(__file__).resolve().parents[2] / ".ci" / "run"
+
+MAKEFILE = """
+check:
+\t@echo 1 passed, 9 failed, but not in a line of its own
+\t@echo 3 passed, 0 failed
+counts:
+\t@echo 2 passed, 0 failed
+\t@echo 4 passed, 0 failed
+lint:
+\t@true
+coverage:
+\t@echo 5 passed, 1 failed
+sanitize:
+\t@echo 5 passed, 1 failed; exit 3
+fuzz:
+\t@echo no count; exit 1
+"""
+
+
+class Ci(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.tree = pathlib.Path(folder.name)
+        (self.tree / ".ci").mkdir()
+        shutil.copy(RUN, self.tree / ".ci" / "run")
+        (self.tree / "Makefile").write_text(MAKEFILE)
+
+    def ends(self, *stages):
+        """Exit status and last line."""
+        done = subprocess.run([str(self.tree / ".ci" / "run"), *stages], capture_output=True, text=True, check=False)
+        return done.returncode, (done.stdout or done.stderr).splitlines()[-1]
+
+    def test_sum(self):
+        self.assertEqual(self.ends("check", "lint", "counts"), (0, "9 passed, 0 failed"))
+
+    def test_stages_that_fail(self):
+        self.assertEqual(self.ends("check", "sanitize", "lint"), (1, "8 passed, 1 failed"))
+        self.assertEqual(self.ends("fuzz", "check"), (1, "3 passed, 1 failed"))
+        self.assertEqual(self.ends("check", "fuzz"), (1, "3 passed, 1 failed"))
+
+    def test_a_failure_that_the_stage_hides(self):
+        self.assertEqual(self.ends("coverage", "lint"), (1, "5 passed, 1 failed"))
+
+    def test_a_tool_that_is_not_there(self):
+        self.assertEqual(self.ends("check", "mutants"), (1, "3 passed, 1 failed"))
+
+    def test_unknown_stage(self):
+        status, line = self.ends("checks")
+        self.assertEqual(status, 2)
+        self.assertIn("there are install check lint sanitize coverage mutants counts port fuzz", line)
+
+
+if __name__ == "__main__":
+    unittest.main()
