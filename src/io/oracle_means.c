@@ -96,13 +96,28 @@ static bool take_name(struct reader *r, const struct cell *cell, struct observab
   return true;
 }
 
+static bool in_range(enum column column, double x)
+{
+  switch (column) {
+  case ERROR:
+    return x >= 0.0;
+  case BLOCKS:
+    return x >= 2.0 && x == floor(x);
+  case RESOLVE:
+    return x > 0.0;
+  default:
+    return true;
+  }
+}
+
 static bool take_cell(struct reader *r, const struct cell *cell, enum column column, struct observable_mean *row)
 {
-  static const char *const allowed[COLUMNS] = {[VALUE] = "allowed is a finite number",
-                                               [ERROR] = "allowed is a number above 0, one standard error",
-                                               [BLOCKS] = "allowed is a whole number, 2 or more",
-                                               [THEORY] = "allowed is a finite number, or nothing",
-                                               [RESOLVE] = "allowed is a number above 0"};
+  static const char *const allowed[COLUMNS] = {
+      [VALUE] = "allowed is a finite number",
+      [ERROR] = "allowed is one standard error, not negative; 0 only if all blocks are equal",
+      [BLOCKS] = "allowed is a whole number, 2 or more",
+      [THEORY] = "allowed is a finite number, or nothing",
+      [RESOLVE] = "allowed is a number above 0"};
   double *const place[COLUMNS] = {[VALUE] = &row->value,
                                   [ERROR] = &row->error,
                                   [BLOCKS] = &row->blocks,
@@ -115,11 +130,10 @@ static bool take_cell(struct reader *r, const struct cell *cell, enum column col
   if (!parse_number(cell->text, place[column]))
     return complain(r, cell, "is not a number", allowed[column]);
   const double x = *place[column];
-  const bool fits = column == BLOCKS ? x >= 2.0 && x == floor(x) : column == VALUE || column == THEORY || x > 0.0;
-  if (!fits)
+  if (!in_range(column, x))
     return complain(r, cell, "is out of range", allowed[column]);
-  return !(column == VALUE && !r->reference && x == 0.0) ||
-         complain(r, cell, "is out of range", "our values are not 0, for differences are relative to them");
+  return r->reference || x != 0.0 || (column != VALUE && column != ERROR) ||
+         complain(r, cell, "is out of range", "values and errors of the reference table are not 0");
 }
 
 static bool take_row(struct reader *r, const struct cell *cell, size_t cells)
