@@ -61,7 +61,7 @@ def wanted(rows):
           for what, least, name in (("solvent particle", "80", "solvent particle"), ("cell", "96", "cell"),
                                     ("vertex", "1000", "vertex, cL^3 = 1000"))),
     ]
-    return table(["", "at least", "aim", "measured"], lines)
+    return table(["", "required", "aim", "measured"], lines)
 
 
 def by_size(rows):
