@@ -34,6 +34,22 @@ struct crossing_hit {
 /* True, and *hit filled, if the moving bond crosses the standing one. All points within 4096 a0 of each other. */
 bool crossing_find(const struct crossing_query *query, struct crossing_hit *hit);
 
+/* Most partners are far enough away to see at once that the moving vertex stays on one side of both bonds' common
+ * plane: true if that is beyond doubt. All vectors in a0: the standing bond, from its first end to the pivot, and the
+ * moving bond before and after. What is computed is Eq. (10)'s volume, (q x w).r; the bound, some 50 times its
+ * rounding. */
+static inline bool crossing_far(struct vec3 standing, struct vec3 to_pivot, struct vec3 before, struct vec3 after)
+{
+  const struct vec3 n = vec3_cross(standing, to_pivot);
+  const double x = vec3_dot(n, before), y = vec3_dot(n, after);
+  const double size =
+      (fabs(standing.x) + fabs(standing.y) + fabs(standing.z)) *
+      (fabs(to_pivot.x) + fabs(to_pivot.y) + fabs(to_pivot.z)) *
+      (fabs(before.x) + fabs(before.y) + fabs(before.z) + fabs(after.x) + fabs(after.y) + fabs(after.z));
+  const double doubt = 1e-14 * size;
+  return (x > doubt && y > doubt) || (x < -doubt && y < -doubt);
+}
+
 /* Exact sign (-1, 0, 1) of the determinant of p, q, r = u - origin, v - origin, w - origin: (p x q).r. */
 int crossing_orientation(struct point origin, struct point u, struct point v, struct point w);
 

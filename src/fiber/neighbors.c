@@ -3,66 +3,53 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MARGIN_A0 0.06     /* measured: see docs/accuracy.md; results do not depend on it */
+#include "fiber/capsule.h"
+
+#define MARGIN_A0 0.10     /* measured: see docs/accuracy.md; results do not depend on it */
 #define SEARCH_CELL_A0 1.0 /* least edge of a search cell */
-#define FIRST_STRIDE 8     /* partners per bond before the lists grow */
+#define FIRST_ROOM 4       /* of a row */
 
-/* --- margin boxes ------------------------------------------------------------------------------------------------ */
+/* --- capsules ---------------------------------------------------------------------------------------------------- */
 
-static struct point lower(struct point a, struct point b)
+/* Where a bond may be before an end of it takes a new anchor. */
+static inline struct capsule capsule_of(const struct neighbors *nb, const struct model *model, uint32_t bond,
+                                        struct point origin)
 {
-  return (struct point){a.x < b.x ? a.x : b.x, a.y < b.y ? a.y : b.y, a.z < b.z ? a.z : b.z};
-}
-
-static struct point upper(struct point a, struct point b)
-{
-  return (struct point){a.x > b.x ? a.x : b.x, a.y > b.y ? a.y : b.y, a.z > b.z ? a.z : b.z};
-}
-
-/* The box around a bond and the point `to`, with the margin. */
-static struct margin_box draw_box(const struct state *state, const struct model *model, const struct neighbors *nb,
-                                  uint32_t bond, struct point to)
-{
-  struct point a = state->position[bond], b = state->position[model->next[bond]];
-  struct margin_box box = {lower(lower(a, b), to), upper(upper(a, b), to)};
-  const int64_t m = nb->margin;
-  box.low = (struct point){box.low.x - m, box.low.y - m, box.low.z - m};
-  box.high = (struct point){box.high.x + m, box.high.y + m, box.high.z + m};
-  return box;
+  const struct anchor *a = &nb->anchor[bond], *b = &nb->anchor[model->next[bond]];
+  return (struct capsule){point_difference(a->at, origin), point_difference(b->at, origin),
+                          capsule_most(a->reach, b->reach)};
 }
 
 /* --- lists ------------------------------------------------------------------------------------------------------- */
 
-static bool grow_lists(struct neighbors *nb, uint32_t bonds)
+static bool add(struct neighbor_row *row, struct neighbor n)
 {
-  uint32_t stride = 2 * nb->stride;
-  struct neighbor *list = malloc((size_t)bonds * stride * sizeof *list);
-  if (!list)
-    return false;
-  for (uint32_t j = 0; j < bonds; j++)
-    memcpy(&list[(size_t)j * stride], &nb->list[(size_t)j * nb->stride], nb->count[j] * sizeof *list);
-  free(nb->list);
-  nb->list = list;
-  nb->stride = stride;
+  if (row->count == row->room) {
+    const uint32_t room = row->room ? 2 * row->room : FIRST_ROOM;
+    struct neighbor *bigger = realloc(row->at, room * sizeof *bigger);
+    if (!bigger)
+      return false;
+    row->at = bigger;
+    row->room = room;
+  }
+  row->at[row->count++] = n;
   return true;
 }
 
-static bool add_partner(struct neighbors *nb, uint32_t bonds, uint32_t bond, struct neighbor partner)
+/* Where n stands in a row; the length of the row if it does not. */
+static uint32_t find(const struct neighbor_row *row, const struct neighbor *n)
 {
-  if (nb->count[bond] == nb->stride && !grow_lists(nb, bonds))
-    return false;
-  nb->list[(size_t)bond * nb->stride + nb->count[bond]++] = partner;
-  return true;
+  uint32_t k = 0;
+  while (k < row->count && memcmp(&row->at[k], n, sizeof *n) != 0)
+    k++;
+  return k;
 }
 
-static void remove_partner(struct neighbors *nb, uint32_t bond, struct neighbor partner)
+static void take_out(struct neighbor_row *row, struct neighbor n)
 {
-  struct neighbor *list = &nb->list[(size_t)bond * nb->stride];
-  for (uint32_t k = 0; k < nb->count[bond]; k++)
-    if (memcmp(&list[k], &partner, sizeof partner) == 0) {
-      list[k] = list[--nb->count[bond]];
-      return;
-    }
+  const uint32_t k = find(row, &n);
+  if (k < row->count)
+    row->at[k] = row->at[--row->count];
 }
 
 static struct neighbor mirrored(uint32_t bond, const int32_t image[3])
@@ -70,194 +57,176 @@ static struct neighbor mirrored(uint32_t bond, const int32_t image[3])
   return (struct neighbor){(int32_t)bond, {-image[0], -image[1], -image[2]}};
 }
 
+/* Empties the list of a bond, and takes it off the lists of its partners. */
+static void leave_partners(struct neighbors *nb, uint32_t bond)
+{
+  struct neighbor_row *row = &nb->partners[bond];
+  while (row->count > 0) {
+    const struct neighbor last = row->at[--row->count];
+    take_out(&nb->partners[last.bond], mirrored(bond, last.image));
+  }
+}
+
 /* --- grid -------------------------------------------------------------------------------------------------------- */
 
-/* The range of search cells that a margin box touches, in unwrapped cell coordinates. */
-struct cell_range {
-  int64_t low[3], high[3];
+/* A search cell: its number, and the image that an unwrapped coordinate is of it. */
+struct grid_place {
+  uint32_t cell;
+  int32_t image[3];
 };
 
-static struct cell_range range_of(const struct neighbors *nb, const struct margin_box *box)
+/* The search cells along one axis that an interval touches: the first, its image, and how many. */
+struct cell_span {
+  int32_t first, image, count;
+};
+
+static struct cell_span span_of(int64_t low, int64_t high, int64_t edge, int32_t cells)
 {
-  const int64_t low[3] = {box->low.x, box->low.y, box->low.z}, high[3] = {box->high.x, box->high.y, box->high.z};
-  struct cell_range r;
-  for (int k = 0; k < 3; k++) {
-    r.low[k] = lattice_image(low[k], nb->cell_edge[k]);
-    r.high[k] = lattice_image(high[k], nb->cell_edge[k]);
-  }
-  return r;
+  const int64_t first = lattice_image(low, edge), image = lattice_image(first, cells);
+  return (struct cell_span){(int32_t)(first - image * cells), (int32_t)image,
+                            (int32_t)(lattice_image(high, edge) - first) + 1};
 }
 
-/* Cell number of an unwrapped cell coordinate, and the image that this coordinate is of it. */
-static int32_t wrap_cell(const struct neighbors *nb, const int64_t at[3], int32_t image[3])
+static struct cell_span axis_span(int64_t a, int64_t b, int64_t reach, int64_t edge, int32_t cells)
 {
-  int64_t c[3];
-  for (int k = 0; k < 3; k++) {
-    image[k] = (int32_t)lattice_image(at[k], nb->cells[k]);
-    c[k] = at[k] - (int64_t)image[k] * nb->cells[k];
-  }
-  return (int32_t)((c[2] * nb->cells[1] + c[1]) * nb->cells[0] + c[0]);
+  return span_of((a < b ? a : b) - reach, (a > b ? a : b) + reach, edge, cells);
 }
 
-static bool take_entry(struct neighbors *nb, int32_t *taken)
-{
-  if (nb->free_entry < 0) {
-    int32_t more = nb->entries > 0 ? 2 * nb->entries : 64;
-    struct grid_entry *entry = realloc(nb->entry, (size_t)more * sizeof *entry);
-    if (!entry)
-      return false;
-    nb->entry = entry;
-    for (int32_t k = nb->entries; k < more; k++)
-      entry[k].next = k + 1 < more ? k + 1 : -1;
-    nb->free_entry = nb->entries;
-    nb->entries = more;
-  }
-  *taken = nb->free_entry;
-  nb->free_entry = nb->entry[*taken].next;
-  return true;
-}
+/* Something done with a bond in one cell. */
+typedef bool visit(struct neighbors *, const struct model *, uint32_t bond, const struct capsule *,
+                   const struct grid_place *);
 
-static bool enter_cell(struct neighbors *nb, uint32_t bond, const int64_t at[3])
+/* All cells that the box around a bond's capsule touches. */
+static bool visit_cells(struct neighbors *nb, const struct model *model, uint32_t bond, visit *what)
 {
-  int32_t k, image[3], cell = wrap_cell(nb, at, image);
-  if (!take_entry(nb, &k))
-    return false;
-  nb->entry[k] = (struct grid_entry){(int32_t)bond, nb->head[cell], {image[0], image[1], image[2]}};
-  nb->head[cell] = k;
-  return true;
-}
-
-static void leave_cell(struct neighbors *nb, uint32_t bond, const int64_t at[3])
-{
-  int32_t image[3];
-  int32_t *link = &nb->head[wrap_cell(nb, at, image)];
-  while (*link >= 0) {
-    struct grid_entry *e = &nb->entry[*link];
-    if (e->bond == (int32_t)bond && memcmp(e->image, image, sizeof image) == 0) {
-      int32_t freed = *link;
-      *link = e->next;
-      e->next = nb->free_entry;
-      nb->free_entry = freed;
-      return;
+  const struct anchor *a = &nb->anchor[bond], *b = &nb->anchor[model->next[bond]];
+  const struct capsule mine = capsule_of(nb, model, bond, a->at);
+  const int64_t reach = lattice_from_a0(mine.reach + CAPSULE_SLACK);
+  const struct cell_span x = axis_span(a->at.x, b->at.x, reach, nb->cell_edge[0], nb->cells[0]),
+                         y = axis_span(a->at.y, b->at.y, reach, nb->cell_edge[1], nb->cells[1]),
+                         z = axis_span(a->at.z, b->at.z, reach, nb->cell_edge[2], nb->cells[2]);
+  for (int32_t k = z.first, iz = z.image, nz = z.count; nz > 0; nz--) {
+    for (int32_t j = y.first, iy = y.image, ny = y.count; ny > 0; ny--) {
+      for (int32_t i = x.first, ix = x.image, nx = x.count; nx > 0; nx--) {
+        const struct grid_place place = {(uint32_t)((k * nb->cells[1] + j) * nb->cells[0] + i), {ix, iy, iz}};
+        if (!what(nb, model, bond, &mine, &place))
+          return false;
+        if (++i == nb->cells[0])
+          i = 0, ix++;
+      }
+      if (++j == nb->cells[1])
+        j = 0, iy++;
     }
-    link = &e->next;
+    if (++k == nb->cells[2])
+      k = 0, iz++;
   }
+  return true;
 }
 
-/* --- search ------------------------------------------------------------------------------------------------------ */
+static bool enter_cell(struct neighbors *nb, const struct model *model, uint32_t bond, const struct capsule *mine,
+                       const struct grid_place *place)
+{
+  (void)model, (void)mine;
+  return add(&nb->entries[place->cell],
+             (struct neighbor){(int32_t)bond, {place->image[0], place->image[1], place->image[2]}});
+}
+
+static bool leave_cell(struct neighbors *nb, const struct model *model, uint32_t bond, const struct capsule *mine,
+                       const struct grid_place *place)
+{
+  (void)model, (void)mine;
+  take_out(&nb->entries[place->cell],
+           (struct neighbor){(int32_t)bond, {place->image[0], place->image[1], place->image[2]}});
+  return true;
+}
 
 static bool share_vertex(const struct model *model, uint32_t a, uint32_t b)
 {
   return a == b || model->next[a] == (int32_t)b || model->next[b] == (int32_t)a;
 }
 
-/* The lower corner of the overlap of a box with another one shifted by an image; false if they do not overlap. */
-static bool overlap_corner(const struct margin_box *box, const struct margin_box *other, const int32_t image[3],
-                           const struct box *periodic, struct point *corner)
+/* Adds to the lists all partners of a bond that are entered in this cell, each once: they may meet in several. */
+static bool search_cell(struct neighbors *nb, const struct model *model, uint32_t bond, const struct capsule *mine,
+                        const struct grid_place *place)
 {
-  struct point low = point_image(other->low, image, periodic), high = point_image(other->high, image, periodic);
-  *corner = upper(box->low, low);
-  return low.x <= box->high.x && low.y <= box->high.y && low.z <= box->high.z && high.x >= box->low.x &&
-         high.y >= box->low.y && high.z >= box->low.z;
-}
-
-/* Adds to the lists all partners of a bond that are entered in this cell. A pair that meets in several cells is taken
- * in the one that holds the lower corner of the overlap. */
-static bool search_cell(struct neighbors *nb, const struct model *model, uint32_t bond, const int64_t at[3])
-{
-  int32_t here[3];
-  for (int32_t k = nb->head[wrap_cell(nb, at, here)]; k >= 0; k = nb->entry[k].next) {
-    const struct grid_entry *e = &nb->entry[k];
-    uint32_t other = (uint32_t)e->bond; // NOLINT(clang-analyzer-core.NullDereference): no entries, no heads
+  const struct neighbor_row *row = &nb->entries[place->cell];
+  for (uint32_t k = 0; k < row->count; k++) {
+    const struct neighbor *e = &row->at[k];
+    const uint32_t other = (uint32_t)e->bond;
     if (share_vertex(model, bond, other))
       continue;
-    const int32_t image[3] = {here[0] - e->image[0], here[1] - e->image[1], here[2] - e->image[2]};
-    struct point corner;
-    if (!overlap_corner(&nb->box[bond], &nb->box[other], image, &model->box, &corner))
+    const struct neighbor found = {
+        e->bond, {place->image[0] - e->image[0], place->image[1] - e->image[1], place->image[2] - e->image[2]}};
+    const int32_t back[3] = {-found.image[0], -found.image[1], -found.image[2]};
+    const struct capsule its = capsule_of(nb, model, other, point_image(nb->anchor[bond].at, back, &model->box));
+    if (capsules_apart(mine, &its) || find(&nb->partners[bond], &found) < nb->partners[bond].count)
       continue;
-    if (lattice_image(corner.x, nb->cell_edge[0]) != at[0] || lattice_image(corner.y, nb->cell_edge[1]) != at[1] ||
-        lattice_image(corner.z, nb->cell_edge[2]) != at[2])
-      continue;
-    if (!add_partner(nb, model->vertices, bond, (struct neighbor){e->bond, {image[0], image[1], image[2]}}) ||
-        !add_partner(nb, model->vertices, other, mirrored(bond, image)))
+    if (!add(&nb->partners[bond], found) || !add(&nb->partners[other], mirrored(bond, found.image)))
       return false;
   }
   return true;
 }
 
-typedef bool visit(struct neighbors *, const struct model *, uint32_t, const int64_t[3]);
-
-static bool visit_enter(struct neighbors *nb, const struct model *model, uint32_t bond, const int64_t at[3])
+static bool enter(struct neighbors *nb, const struct model *model, uint32_t bond)
 {
-  (void)model;
-  return enter_cell(nb, bond, at);
+  return visit_cells(nb, model, bond, search_cell) && visit_cells(nb, model, bond, enter_cell);
 }
 
-static bool visit_leave(struct neighbors *nb, const struct model *model, uint32_t bond, const int64_t at[3])
+static void leave(struct neighbors *nb, const struct model *model, uint32_t bond)
 {
-  (void)model;
-  leave_cell(nb, bond, at);
-  return true;
-}
-
-static bool visit_cells(struct neighbors *nb, const struct model *model, uint32_t bond, visit *what)
-{
-  const struct cell_range r = range_of(nb, &nb->box[bond]);
-  int64_t at[3];
-  for (at[2] = r.low[2]; at[2] <= r.high[2]; at[2]++)
-    for (at[1] = r.low[1]; at[1] <= r.high[1]; at[1]++)
-      for (at[0] = r.low[0]; at[0] <= r.high[0]; at[0]++)
-        if (!what(nb, model, bond, at))
-          return false;
-  return true;
+  leave_partners(nb, bond);
+  visit_cells(nb, model, bond, leave_cell);
 }
 
 /* --- the two entrances ------------------------------------------------------------------------------------------- */
 
 static bool short_of_memory(const struct state *state, struct work *work, uint32_t bond)
 {
-  const struct neighbors *nb = &work->fiber.neighbors;
-  return work_fault(work, FAULT_NO_MEMORY, state->step + 1, bond, nb->stride, nb->stride);
+  return work_fault(work, FAULT_NO_MEMORY, state->step + 1, bond, 0.0, 0.0);
 }
 
-bool neighbors_cover(const struct state *state, const struct model *model, struct work *work, uint32_t bond,
+bool neighbors_renew(const struct state *state, const struct model *model, struct work *work, uint32_t vertex,
                      struct point to)
 {
   struct neighbors *nb = &work->fiber.neighbors;
-  if (margin_box_holds(&nb->box[bond], to))
-    return true;
-  visit_cells(nb, model, bond, visit_leave);
-  while (nb->count[bond] > 0) {
-    struct neighbor last = nb->list[(size_t)bond * nb->stride + --nb->count[bond]];
-    remove_partner(nb, (uint32_t)last.bond, mirrored(bond, last.image));
-  }
-  nb->box[bond] = draw_box(state, model, nb, bond, to);
-  nb->redrawn++;
-  return (visit_cells(nb, model, bond, search_cell) && visit_cells(nb, model, bond, visit_enter)) ||
-         short_of_memory(state, work, bond);
+  const int32_t before = model->prev[vertex], after = model->next[vertex] >= 0 ? (int32_t)vertex : -1;
+  if (before >= 0)
+    leave(nb, model, (uint32_t)before);
+  if (after >= 0)
+    leave(nb, model, (uint32_t)after);
+  /* Both ends of the move are within reach, whether it is made or refused. */
+  const double move = vec3_norm(point_difference(to, state->position[vertex]));
+  nb->anchor[vertex] = (struct anchor){to, fmax(nb->margin, move)};
+  nb->renewed++;
+  return ((before < 0 || enter(nb, model, (uint32_t)before)) && (after < 0 || enter(nb, model, (uint32_t)after))) ||
+         short_of_memory(state, work, vertex);
 }
 
-/* Search cells divide the box edges exactly: both are whole numbers of collision cells. */
+/* Search cells divide the box edges exactly; there are no more than bonds to put in, or so. */
 static void choose_grid(const struct model *model, struct neighbors *nb)
 {
+  const double edge = fmax(SEARCH_CELL_A0, cbrt(box_volume(&model->box) / (double)model->bonds));
   for (int k = 0; k < 3; k++) {
-    nb->cells[k] = (int32_t)(model->box.cells[k] / SEARCH_CELL_A0);
-    nb->cell_edge[k] = model->box.edge[k] / nb->cells[k];
+    int cells = (int)fmax(1.0, model->box.cells[k] / edge);
+    while (model->box.cells[k] % cells != 0)
+      cells--;
+    nb->cells[k] = cells;
+    nb->cell_edge[k] = model->box.edge[k] / cells;
   }
+  nb->cell_count = (uint32_t)(nb->cells[0] * nb->cells[1] * nb->cells[2]);
 }
 
 static bool allocate(const struct model *model, struct neighbors *nb)
 {
-  if (nb->box)
+  if (nb->anchor)
     return true;
   choose_grid(model, nb);
-  nb->margin = lattice_from_a0(MARGIN_A0);
-  nb->stride = FIRST_STRIDE;
-  nb->box = malloc(model->vertices * sizeof *nb->box);
-  nb->count = malloc(model->vertices * sizeof *nb->count);
-  nb->list = malloc((size_t)model->vertices * nb->stride * sizeof *nb->list);
-  nb->head = malloc((size_t)nb->cells[0] * nb->cells[1] * nb->cells[2] * sizeof *nb->head);
-  return nb->box && nb->count && nb->list && nb->head;
+  nb->margin = MARGIN_A0;
+  nb->bonds = model->vertices;
+  nb->anchor = aligned_alloc(64, (model->vertices * sizeof *nb->anchor + 63) / 64 * 64);
+  nb->partners = calloc(nb->bonds, sizeof *nb->partners);
+  nb->entries = calloc(nb->cell_count, sizeof *nb->entries);
+  return nb->anchor && nb->partners && nb->entries;
 }
 
 bool neighbors_build(const struct state *state, const struct model *model, struct work *work)
@@ -265,19 +234,15 @@ bool neighbors_build(const struct state *state, const struct model *model, struc
   struct neighbors *nb = &work->fiber.neighbors;
   if (!allocate(model, nb))
     return short_of_memory(state, work, 0);
-  memset(nb->count, 0, model->vertices * sizeof *nb->count);
-  memset(nb->head, 0xff, (size_t)nb->cells[0] * nb->cells[1] * nb->cells[2] * sizeof *nb->head);
-  free(nb->entry);
-  nb->entry = NULL;
-  nb->entries = 0;
-  nb->free_entry = -1;
-  for (uint32_t j = 0; j < model->vertices; j++) {
-    if (model->next[j] < 0)
-      continue;
-    nb->box[j] = draw_box(state, model, nb, j, state->position[j]);
-    if (!visit_cells(nb, model, j, search_cell) || !visit_cells(nb, model, j, visit_enter))
+  for (uint32_t j = 0; j < nb->bonds; j++)
+    nb->partners[j].count = 0;
+  for (uint32_t c = 0; c < nb->cell_count; c++)
+    nb->entries[c].count = 0;
+  for (uint32_t j = 0; j < model->vertices; j++)
+    nb->anchor[j] = (struct anchor){state->position[j], nb->margin};
+  for (uint32_t j = 0; j < model->vertices; j++)
+    if (model->next[j] >= 0 && !enter(nb, model, j))
       return short_of_memory(state, work, j);
-  }
   nb->built = true;
   return true;
 }

@@ -1,14 +1,19 @@
 /*
  * Which bonds could a moving bond touch?
  *
- * Every bond has a margin box: the smallest box around it when the box was drawn, widened by a margin. A bond may move
- * freely inside its margin box; two bonds whose margin boxes do not overlap cannot touch. So the partners of a bond are
- * the bonds (and the images of bonds) whose margin boxes overlap its own, and a bond that is about to leave its margin
- * box renews its own list and tells its old and new partners: one fast vertex costs one bond's work, not everybody's.
+ * Every vertex has an anchor: the place where it stood when its bonds last looked for partners. While it stays within a
+ * margin of its anchor, its bonds stay in capsules around the lines between anchors, and bonds whose capsules are apart
+ * cannot touch. So the partners of a bond are the bonds (and the images of bonds) whose capsules are not shown to be
+ * apart, and a vertex that is about to leave its anchor takes a new one, with new lists for its one or two bonds, told
+ * to their old and new partners: one fast vertex costs two bonds' work, not everybody's.
  *
- * Partners are found in a grid whose cells list every margin box that touches them, each with the image that puts it
- * there. That holds for bonds of any length, in boxes of any size down to one cell. Bonds that share a vertex with this
- * one, or an image of it, are never partners: no bond reaches half a box edge, so they cannot cross.
+ * Capsules are apart if a plane with a margin on either side goes between them: perpendicular to an edge of the box, or
+ * to both bonds. Bonds that pass each other at right angles have wide boxes and a clear distance; the second kind of
+ * plane spares most of the partners that boxes alone would give.
+ *
+ * Partners are found in a grid whose cells list every bond whose capsule's box touches them, each with the image that
+ * puts it there. That holds for bonds of any length, in boxes of any size down to one cell. Bonds that share a vertex
+ * with this one, or an image of it, are never partners: no bond reaches half a box edge, so they cannot cross.
  */
 #ifndef UNCROSS_NEIGHBORS_H
 #define UNCROSS_NEIGHBORS_H
@@ -17,18 +22,19 @@
 #include "state/state.h"
 #include "state/work.h"
 
-/* Margin boxes, grid and lists of all bonds from scratch. False, with the fault recorded, if memory is short. */
+/* Anchors, grid and lists of all bonds from scratch. False, with the fault recorded, if memory is short. */
 bool neighbors_build(const struct state *state, const struct model *model, struct work *work);
 
-/* Makes sure that bond j stays inside its margin box while one of its ends moves to `to`, redrawing the box if need be.
- * False, with the fault recorded, if memory is short. */
-bool neighbors_cover(const struct state *state, const struct model *model, struct work *work, uint32_t bond,
+/* A new anchor for a vertex that moves, or tries to move, to `to`, and new lists for its bonds. False, with the fault
+ * recorded, if memory is short. */
+bool neighbors_renew(const struct state *state, const struct model *model, struct work *work, uint32_t vertex,
                      struct point to);
 
-static inline bool margin_box_holds(const struct margin_box *box, struct point p)
+/* Is a vertex at p still where its anchor's lists are good for? */
+static inline bool neighbors_hold(const struct neighbors *nb, uint32_t vertex, struct point p)
 {
-  return p.x >= box->low.x && p.y >= box->low.y && p.z >= box->low.z && p.x <= box->high.x && p.y <= box->high.y &&
-         p.z <= box->high.z;
+  const struct vec3 d = point_difference(p, nb->anchor[vertex].at);
+  return vec3_dot(d, d) <= nb->margin * nb->margin;
 }
 
 /* The image of a point, so many box edges away. */

@@ -3,14 +3,12 @@
 #include "base/random.h"
 #include "fiber/exchange.h"
 #include "fiber/neighbors.h"
-
-/* How many vertices ahead their data are asked for: the order is known, memory is slow. */
-#define PREFETCH_FAR 16
-#define PREFETCH_NEAR 8
+#include "fiber/turns.h"
 
 /* One trial move: vertex i from its place to `to`. */
 struct trial {
   uint32_t vertex;
+  double dt;
   struct point to;
   uint32_t hits;
   struct sweep_event first;
@@ -58,37 +56,24 @@ static bool linked_to_moving(const struct model *model, uint32_t vertex, const s
   return after >= 0 && model->next[after] >= 0 && n->bond == after;
 }
 
-static bool apart(int64_t a0, int64_t a1, int64_t b0, int64_t b1, int64_t b2)
-{
-  int64_t low = b0 < b1 ? b0 : b1, high = b0 < b1 ? b1 : b0;
-  low = b2 < low ? b2 : low;
-  high = b2 > high ? b2 : high;
-  return (a0 < low && a1 < low) || (a0 > high && a1 > high);
-}
-
-/* The box around the standing bond and the box around the swept triangle do not overlap. */
-static bool boxes_apart(const struct crossing_query *q)
-{
-  return apart(q->a.x, q->b.x, q->pivot.x, q->from.x, q->to.x) ||
-         apart(q->a.y, q->b.y, q->pivot.y, q->from.y, q->to.y) || apart(q->a.z, q->b.z, q->pivot.z, q->from.z, q->to.z);
-}
-
 /* All hits of one of the two bonds of the moving vertex. */
 static void test_bond(const struct state *state, const struct model *model, const struct neighbors *nb, uint32_t bond,
                       struct trial *t)
 {
-  const struct neighbor *list = &nb->list[(size_t)bond * nb->stride];
+  const struct neighbor_row *partners = &nb->partners[bond];
   const bool is_first = bond == t->vertex;
   struct crossing_query q = {.from = state->position[t->vertex],
                              .to = t->to,
                              .pivot = state->position[is_first ? (uint32_t)model->next[bond] : bond],
                              .flip = is_first};
-  for (uint32_t k = 0; k < nb->count[bond]; k++) {
-    const struct neighbor *n = &list[k];
+  const struct vec3 before = point_difference(q.from, q.pivot), after = point_difference(q.to, q.pivot);
+  for (uint32_t k = 0; k < partners->count; k++) {
+    const struct neighbor *n = &partners->at[k];
+    const struct point b = state->position[model->next[n->bond]];
     q.a = point_image(state->position[n->bond], n->image, &model->box);
-    q.b = point_image(state->position[model->next[n->bond]], n->image, &model->box);
-    if (boxes_apart(&q))
+    if (crossing_far(point_difference(b, state->position[n->bond]), point_difference(q.pivot, q.a), before, after))
       continue;
+    q.b = point_image(b, n->image, &model->box);
     if (model->crossing.exclusion == EXCLUSION_PAPER && linked_to_moving(model, t->vertex, n))
       continue;
     struct sweep_event event = {
@@ -104,7 +89,7 @@ static struct exchange_end end_of(struct state *state, const struct model *model
 }
 
 /* The first hit takes the place of the move: momentum is exchanged, and the vertex stays. */
-static void execute(struct state *state, const struct model *model, struct trial *t)
+static void execute(struct state *state, const struct model *model, struct work *work, struct trial *t)
 {
   struct sweep_event *e = &t->first;
   uint32_t pivot = e->moving_bond == t->vertex ? (uint32_t)model->next[t->vertex] : e->moving_bond;
@@ -112,6 +97,9 @@ static void execute(struct state *state, const struct model *model, struct trial
   const struct exchange_end standing[2] = {end_of(state, model, e->standing_bond),
                                            end_of(state, model, (uint32_t)model->next[e->standing_bond])};
   e->momentum = exchange_momentum(moving, standing, e->hit.s, e->hit.s_standing, e->hit.normal);
+  const uint32_t changed[3] = {pivot, e->standing_bond, (uint32_t)model->next[e->standing_bond]};
+  for (int k = 0; k < 3; k++)
+    turns_reconsider(state, model, work, changed[k], t->dt, work->fiber.rank[t->vertex]);
   e->executed = true;
   record(t->log, e);
   state->counts.possible += t->hits;
@@ -124,81 +112,45 @@ static bool try_move(struct state *state, const struct model *model, struct work
   const struct neighbors *nb = &work->fiber.neighbors;
   const uint32_t i = t->vertex;
   const int32_t before = model->prev[i];
-  const bool has_after = model->next[i] >= 0;
-  if (before >= 0) {
-    if (!neighbors_cover(state, model, work, (uint32_t)before, t->to))
+  if (!neighbors_hold(nb, i, t->to)) {
+    if (!neighbors_renew(state, model, work, i, t->to))
       return false;
-    if (nb->count[before] > 0)
-      test_bond(state, model, nb, (uint32_t)before, t);
+    turns_reconsider(state, model, work, i, t->dt, work->fiber.rank[i]);
   }
-  if (has_after) {
-    if (!neighbors_cover(state, model, work, i, t->to))
-      return false;
-    if (nb->count[i] > 0)
-      test_bond(state, model, nb, i, t);
-  }
+  if (before >= 0)
+    test_bond(state, model, nb, (uint32_t)before, t);
+  if (model->next[i] >= 0)
+    test_bond(state, model, nb, i, t);
   if (t->hits == 0)
     state->position[i] = t->to;
   else
-    execute(state, model, t);
+    execute(state, model, work, t);
   return true;
 }
 
-/* Padding 2009, Eq. (4): where vertex i wants to go. False if that is too far, or not a number. */
-static bool trial_point(const struct state *state, const struct model *model, struct work *work, uint32_t i, double dt,
-                        struct point *to)
+static void draw_order(const struct state *state, const struct model *model, struct fiber_work *f, uint64_t step,
+                       uint32_t sweep)
 {
-  struct vec3 d = vec3_scale(dt, state->velocity[i]);
-  double far = fmax(fabs(d.x), fmax(fabs(d.y), fabs(d.z)));
-  const double limit = 0.5 * box_shortest_edge(&model->box);
-  if (!(fabs(d.x) < limit && fabs(d.y) < limit && fabs(d.z) < limit))
-    return work_fault(work, FAULT_VERTEX_MOVE, state->step + 1, i, far, limit);
-  *to = point_move(state->position[i], d);
-  return true;
-}
-
-/* A sweep in random order waits for memory more than it computes. The order is known, so the data of a vertex are asked
- * for in time: first what its own bonds hold, and, when that has arrived, the places of their partners. */
-static void prefetch_own(const struct state *state, const struct model *model, const struct neighbors *nb, uint32_t v)
-{
-  __builtin_prefetch(&state->position[v]);
-  __builtin_prefetch(&state->velocity[v]);
-  const uint32_t bond[2] = {v, v > 0 ? v - 1 : v};
-  for (int k = 0; k < 2; k++) {
-    __builtin_prefetch(&nb->box[bond[k]]);
-    __builtin_prefetch(&nb->count[bond[k]]);
-    __builtin_prefetch(&nb->list[(size_t)bond[k] * nb->stride]);
-  }
-  __builtin_prefetch(&model->next[v]);
-}
-
-static void prefetch_partners(const struct state *state, const struct neighbors *nb, uint32_t v)
-{
-  for (uint32_t bond = v > 0 ? v - 1 : v; bond <= v; bond++)
-    for (uint32_t k = 0; k < nb->count[bond]; k++)
-      __builtin_prefetch(&state->position[nb->list[(size_t)bond * nb->stride + k].bond]);
-}
-
-static void prefetch_ahead(const struct state *state, const struct model *model, const struct neighbors *nb,
-                           const uint32_t *order, uint32_t k, uint32_t n)
-{
-  if (k + PREFETCH_FAR < n)
-    prefetch_own(state, model, nb, order[k + PREFETCH_FAR]);
-  if (k + PREFETCH_NEAR < n)
-    prefetch_partners(state, nb, order[k + PREFETCH_NEAR]);
+  random_permutation(model->seed, RANDOM_VERTEX_ORDER, sweep, step, state->vertices, f->order);
+  for (uint32_t k = 0; k < state->vertices; k++)
+    f->rank[f->order[k]] = k;
 }
 
 static bool sweep_noncrossing(struct state *state, const struct model *model, struct work *work, double dt,
                               uint64_t step, uint32_t sweep, const struct sweep_log *log)
 {
-  if (!work->fiber.neighbors.built && !neighbors_build(state, model, work))
+  struct fiber_work *f = &work->fiber;
+  if (!f->neighbors.built && !neighbors_build(state, model, work))
     return false;
-  const uint32_t *order = work->fiber.order;
-  random_permutation(model->seed, RANDOM_VERTEX_ORDER, sweep, step, state->vertices, work->fiber.order);
+  draw_order(state, model, f, step, sweep);
+  if (!turns_plan(state, model, work, dt))
+    return false;
   for (uint32_t k = 0; k < state->vertices; k++) {
-    prefetch_ahead(state, model, &work->fiber.neighbors, order, k, state->vertices);
-    struct trial t = {.vertex = order[k], .log = log};
-    if (!trial_point(state, model, work, t.vertex, dt, &t.to) || !try_move(state, model, work, &t))
+    if (!f->waits[f->order[k]])
+      continue;
+    f->waited++;
+    struct trial t = {.vertex = f->order[k], .dt = dt, .log = log};
+    if (!turns_trial(state, model, work, t.vertex, dt, &t.to) || !try_move(state, model, work, &t))
       return false;
   }
   state->counts.moves += state->vertices;
@@ -208,7 +160,7 @@ static bool sweep_noncrossing(struct state *state, const struct model *model, st
 static bool sweep_phantom(struct state *state, const struct model *model, struct work *work, double dt)
 {
   for (uint32_t i = 0; i < state->vertices; i++)
-    if (!trial_point(state, model, work, i, dt, &state->position[i]))
+    if (!turns_trial(state, model, work, i, dt, &state->position[i]))
       return false;
   return true;
 }

@@ -11,7 +11,7 @@ struct need {
   size_t count, size;
 };
 
-enum { NEEDS = 11 };
+enum { NEEDS = 14 };
 
 /* The single place that says which scratch a model uses. */
 static void list_needs(struct work *w, const struct model *m, struct need need[NEEDS])
@@ -22,6 +22,7 @@ static void list_needs(struct work *w, const struct model *m, struct need need[N
   size_t thermostatted = m->solvent.thermostat != THERMOSTAT_NONE ? cells : 0;
   size_t swapped = m->solvent.hydrodynamics ? 0 : particles;
   size_t bent = m->bonds ? m->vertices : 0;
+  size_t noncrossing = m->crossing.forbidden ? m->vertices : 0;
   struct collision_work *c = &w->collision;
   struct fiber_work *f = &w->fiber;
   const struct need all[NEEDS] = {
@@ -34,6 +35,9 @@ static void list_needs(struct work *w, const struct model *m, struct need need[N
       {(void **)&c->slot, swapped, sizeof *c->slot},
       {(void **)&c->column, particles, sizeof *c->column},
       {(void **)&f->order, m->vertices, sizeof *f->order},
+      {(void **)&f->rank, noncrossing, sizeof *f->rank},
+      {(void **)&f->range, noncrossing, sizeof *f->range},
+      {(void **)&f->waits, noncrossing, sizeof *f->waits},
       {(void **)&f->force, m->vertices, sizeof *f->force},
       {(void **)&f->direction, bent, sizeof *f->direction + sizeof *f->inverse_length},
   };
@@ -60,6 +64,13 @@ bool work_alloc(struct work *w, const struct model *m)
   return true;
 }
 
+static void free_rows(struct neighbor_row *row, uint32_t count)
+{
+  for (uint32_t k = 0; row && k < count; k++)
+    free(row[k].at);
+  free(row);
+}
+
 void work_free(struct work *w)
 {
   struct need need[NEEDS];
@@ -67,11 +78,9 @@ void work_free(struct work *w)
   list_needs(w, &nothing, need);
   for (int k = 0; k < NEEDS; k++)
     free(*need[k].where);
-  free(w->fiber.neighbors.box);
-  free(w->fiber.neighbors.count);
-  free(w->fiber.neighbors.list);
-  free(w->fiber.neighbors.head);
-  free(w->fiber.neighbors.entry);
+  free(w->fiber.neighbors.anchor);
+  free_rows(w->fiber.neighbors.partners, w->fiber.neighbors.bonds);
+  free_rows(w->fiber.neighbors.entries, w->fiber.neighbors.cell_count);
   memset(w, 0, sizeof *w);
 }
 
@@ -86,8 +95,7 @@ uint64_t work_bytes(const struct model *m)
     bytes += need[k].count * need[k].size;
   if (m->crossing.forbidden)
     bytes +=
-        (uint64_t)box_cell_count(&m->box) * sizeof(int32_t) +
-        (uint64_t)m->bonds * (sizeof(struct margin_box) + 8 * sizeof(struct neighbor) + 8 * sizeof(struct grid_entry));
+        (uint64_t)m->bonds * (sizeof(struct anchor) + 2 * sizeof(struct neighbor_row) + 16 * sizeof(struct neighbor));
   return bytes;
 }
 

@@ -48,39 +48,41 @@ struct neighbor {
   int32_t image[3];
 };
 
-/* A bond stays inside its margin box; two bonds whose margin boxes do not overlap cannot touch. Unwrapped. */
-struct margin_box {
-  struct point low, high;
+/* Where a vertex stood when its bonds last looked for partners. */
+struct anchor {
+  struct point at; /* unwrapped */
+  double reach;    /* a0: how far the vertex may be from there */
 };
 
-/* A bond's entry in one cell of the search grid, in a linked list; image is the one that puts the bond there. */
-struct grid_entry {
-  int32_t bond;
-  int32_t next; /* entry, -1 at the end */
-  int32_t image[3];
+/* A list that grows. */
+struct neighbor_row {
+  struct neighbor *at;
+  uint32_t count, room;
 };
 
 struct neighbors {
   bool built;
-  int64_t margin;         /* lattice units around a bond when its margin box is drawn */
-  struct margin_box *box; /* [vertices] by bond */
-  uint32_t *count;        /* [vertices] partners of each bond */
-  struct neighbor *list;  /* [vertices * stride] */
-  uint32_t stride;
-  int32_t cells[3];            /* of the search grid */
-  int64_t cell_edge[3];        /* lattice units */
-  int32_t *head;               /* [search cells] first entry, -1 if none */
-  struct grid_entry *entry;    /* [entries] */
-  int32_t entries, free_entry; /* allocated; head of the list of unused ones */
-  uint64_t redrawn;            /* margin boxes drawn so far, for benchmarks */
+  double margin;                 /* a0: a vertex further than this from its anchor takes a new one */
+  uint32_t bonds;                /* one for each vertex, used or not */
+  struct anchor *anchor;         /* [vertices] */
+  struct neighbor_row *partners; /* [bonds] */
+  int32_t cells[3];              /* of the search grid */
+  int64_t cell_edge[3];          /* lattice units */
+  uint32_t cell_count;
+  struct neighbor_row *entries; /* [cell_count] bonds, with the image that puts them there */
+  uint64_t renewed;             /* anchors taken so far, for benchmarks */
 };
 
 struct fiber_work {
   uint32_t *order;        /* [vertices] of the sweep */
+  uint32_t *rank;         /* [vertices] order[rank[i]] = i; this and the next two for noncrossing fibers only */
+  double *range;          /* [vertices] a0: how far at most from where it is a vertex may go in this sweep */
+  uint8_t *waits;         /* [vertices] 1: moves when its turn comes, 0: at once */
   struct vec3 *force;     /* [vertices] kT/a0 */
   struct vec3 *direction; /* [vertices] unit vector of bond j; longest fiber suffices, kept per vertex for simplicity */
   double *inverse_length; /* [vertices] of bond j */
   struct neighbors neighbors;
+  uint64_t waited, called_back; /* moves so far that waited for their turn; of these, called back: for benchmarks */
 };
 
 struct work {

@@ -18,50 +18,97 @@ static bool joined(const struct model *m, uint32_t a, uint32_t b)
 static bool listed(const struct neighbors *nb, uint32_t bond, int32_t other, int64_t i, int64_t j, int64_t k)
 {
   uint32_t times = 0;
-  for (uint32_t n = 0; n < nb->count[bond]; n++) {
-    const struct neighbor *e = &nb->list[(size_t)bond * nb->stride + n];
+  for (uint32_t n = 0; n < nb->partners[bond].count; n++) {
+    const struct neighbor *e = &nb->partners[bond].at[n];
     times += e->bond == other && e->image[0] == i && e->image[1] == j && e->image[2] == k;
   }
   assert_true(times <= 1); /* twice would count a hit twice */
   return times == 1;
 }
 
-/* Every list holds exactly the bonds and images whose margin boxes overlap its own, each once; no bond has left its
- * box. Returns the number of partners. */
-static uint64_t check_lists(const struct test_run *r, uint64_t seed)
+static struct vec3 apart_by(struct vec3 a, struct vec3 b, double s, struct vec3 c, struct vec3 d, double t)
+{
+  return vec3_sub(vec3_add_scaled(vec3_scale(1.0 - s, a), s, b), vec3_add_scaled(vec3_scale(1.0 - t, c), t, d));
+}
+
+/* The distance of a point p from the line between a and b. */
+static double point_distance(struct vec3 p, struct vec3 a, struct vec3 b)
+{
+  const struct vec3 ab = vec3_sub(b, a);
+  const double s = fmin(fmax(vec3_dot(vec3_sub(p, a), ab) / vec3_dot(ab, ab), 0.0), 1.0);
+  return vec3_norm(vec3_sub(p, vec3_add_scaled(a, s, ab)));
+}
+
+/* The distance of two bonds: between ends and lines, and, where the closest points of the two infinite lines lie inside
+ * both bonds (found by Cramer's rule from d/ds = d/dt = 0), between these. */
+static double bond_distance(struct vec3 a, struct vec3 b, struct vec3 c, struct vec3 d)
+{
+  double least = fmin(fmin(point_distance(a, c, d), point_distance(b, c, d)),
+                      fmin(point_distance(c, a, b), point_distance(d, a, b)));
+  const struct vec3 u = vec3_sub(b, a), v = vec3_sub(d, c), w = vec3_sub(a, c);
+  const double uu = vec3_dot(u, u), uv = vec3_dot(u, v), vv = vec3_dot(v, v), det = uu * vv - uv * uv;
+  if (det > 1e-9 * uu * vv) {
+    const double s = (uv * vec3_dot(v, w) - vv * vec3_dot(u, w)) / det;
+    const double t = (uu * vec3_dot(v, w) - uv * vec3_dot(u, w)) / det;
+    if (s > 0.0 && s < 1.0 && t > 0.0 && t < 1.0)
+      least = fmin(least, vec3_norm(apart_by(a, b, s, c, d, t)));
+  }
+  return least;
+}
+
+struct totals {
+  uint64_t partners, close; /* listed; and so close that they have to be */
+};
+
+/* All images of bond b that may come near bond a. */
+static void check_pair(const struct test_run *r, uint32_t a, uint32_t b, uint64_t seed, struct totals *sum)
 {
   const struct neighbors *nb = &r->work.fiber.neighbors;
+  const struct anchor *p[2] = {&nb->anchor[a], &nb->anchor[r->model.next[a]]};
+  const struct anchor *q[2] = {&nb->anchor[b], &nb->anchor[r->model.next[b]]};
+  const double reach = fmax(p[0]->reach, p[1]->reach) + fmax(q[0]->reach, q[1]->reach);
   const int64_t *edge = r->model.box.edge;
-  uint64_t partners = 0;
-  for (uint32_t a = 0; a < r->model.vertices; a++) {
-    if (r->model.next[a] < 0)
-      continue;
-    const struct margin_box *p = &nb->box[a];
-    assert_true(margin_box_holds(p, r->state.position[a]) && margin_box_holds(p, r->state.position[r->model.next[a]]));
-    uint64_t expected = 0;
-    for (uint32_t b = 0; b < r->model.vertices; b++) {
-      if (r->model.next[b] < 0 || joined(&r->model, a, b))
-        continue;
-      const struct margin_box *q = &nb->box[b];
-      int64_t x[2], y[2], z[2];
-      image_range(p->low.x, p->high.x, q->low.x, q->high.x, edge[0], x);
-      image_range(p->low.y, p->high.y, q->low.y, q->high.y, edge[1], y);
-      image_range(p->low.z, p->high.z, q->low.z, q->high.z, edge[2], z);
-      for (int64_t i = x[0]; i <= x[1]; i++)
-        for (int64_t j = y[0]; j <= y[1]; j++)
-          for (int64_t k = z[0]; k <= z[1]; k++) {
-            expected++;
-            if (!listed(nb, a, (int32_t)b, i, j, k))
-              fail_msg("seed %lu: bond %u misses bond %u in image %ld %ld %ld", (unsigned long)seed, a, b, (long)i,
-                       (long)j, (long)k);
-          }
-    }
-    if (expected != nb->count[a])
-      fail_msg("seed %lu: bond %u has %u partners, expected %lu", (unsigned long)seed, a, nb->count[a],
-               (unsigned long)expected);
-    partners += expected;
+  int64_t range[3][2];
+  for (int k = 0; k < 3; k++) {
+    const int64_t *u = &p[0]->at.x, *v = &p[1]->at.x, *x = &q[0]->at.x, *y = &q[1]->at.x, wide = lattice_from_a0(reach);
+    image_range((u[k] < v[k] ? u[k] : v[k]) - wide, (u[k] > v[k] ? u[k] : v[k]) + wide, x[k] < y[k] ? x[k] : y[k],
+                x[k] > y[k] ? x[k] : y[k], edge[k], range[k]);
   }
-  return partners;
+  const struct point o = p[0]->at;
+  for (int64_t i = range[0][0]; i <= range[0][1]; i++)
+    for (int64_t j = range[1][0]; j <= range[1][1]; j++)
+      for (int64_t k = range[2][0]; k <= range[2][1]; k++) {
+        const struct point back = {o.x - i * edge[0], o.y - j * edge[1], o.z - k * edge[2]};
+        const double distance = bond_distance((struct vec3){0, 0, 0}, point_difference(p[1]->at, o),
+                                              point_difference(q[0]->at, back), point_difference(q[1]->at, back));
+        const bool there = listed(nb, a, (int32_t)b, i, j, k);
+        sum->partners += there;
+        sum->close += distance <= reach;
+        if (distance <= reach && !there)
+          fail_msg("seed %lu: bond %u misses bond %u in image %ld %ld %ld", (unsigned long)seed, a, b, (long)i, (long)j,
+                   (long)k);
+        if (there && !listed(nb, b, (int32_t)a, -i, -j, -k))
+          fail_msg("seed %lu: bond %u is not told of bond %u", (unsigned long)seed, b, a);
+      }
+}
+
+/* Every list holds all bonds and images that are within reach of the bond, each once, and none beyond the boxes around
+ * both; no vertex has left its anchor. */
+static struct totals check_lists(const struct test_run *r, uint64_t seed)
+{
+  const struct neighbors *nb = &r->work.fiber.neighbors;
+  struct totals sum = {0, 0};
+  uint64_t listed_in_all = 0;
+  for (uint32_t a = 0; a < r->model.vertices; a++) {
+    const double from_anchor = vec3_norm(point_difference(r->state.position[a], nb->anchor[a].at));
+    assert_true(from_anchor <= nb->anchor[a].reach + 1e-9);
+    listed_in_all += nb->partners[a].count;
+    for (uint32_t b = 0; b < r->model.vertices && r->model.next[a] >= 0; b++)
+      if (r->model.next[b] >= 0 && !joined(&r->model, a, b))
+        check_pair(r, a, b, seed, &sum);
+  }
+  assert_true(listed_in_all == sum.partners); /* nothing else is in a list */
+  return sum;
 }
 
 /* Bonds of all lengths up to half the shortest edge, rings and open fibers, in images far away. */
@@ -86,25 +133,20 @@ static struct test_run random_bonds(int lx, int ly, int lz, uint32_t count, stru
   return r;
 }
 
-/* Moves a random vertex by up to `size`, as a sweep does: cover both bonds, then go (or, every third time, stay). Moves
- * that would make a bond longer than half the box are left out. */
+/* Moves a random vertex by up to `size`, as a sweep does: a new anchor if need be, then go (or, every third time,
+ * stay). Moves that would make a bond longer than half the box are left out. */
 static void random_move(struct test_run *r, struct dice *d, double size)
 {
   const uint32_t v = (uint32_t)dice_integer(d, 0, r->state.vertices - 1);
   const struct point to = point_move(r->state.position[v], dice_rod(d, 0.0, size));
-  const int32_t bond[2] = {r->model.prev[v], r->model.next[v] >= 0 ? (int32_t)v : -1};
+  const int32_t pivot[2] = {r->model.prev[v], r->model.next[v]};
   const double half = 0.5 * box_shortest_edge(&r->model.box);
   for (int k = 0; k < 2; k++)
-    if (bond[k] >= 0) {
-      uint32_t pivot = k == 0 ? (uint32_t)bond[0] : (uint32_t)r->model.next[v];
-      if (vec3_norm(point_difference(to, r->state.position[pivot])) >= half)
-        return;
-    }
-  for (int k = 0; k < 2; k++)
-    if (bond[k] >= 0) {
-      assert_true(neighbors_cover(&r->state, &r->model, &r->work, (uint32_t)bond[k], to));
-      assert_true(margin_box_holds(&r->work.fiber.neighbors.box[bond[k]], to));
-    }
+    if (pivot[k] >= 0 && vec3_norm(point_difference(to, r->state.position[pivot[k]])) >= half)
+      return;
+  if (!neighbors_hold(&r->work.fiber.neighbors, v, to))
+    assert_true(neighbors_renew(&r->state, &r->model, &r->work, v, to));
+  assert_true(neighbors_hold(&r->work.fiber.neighbors, v, to));
   if (dice_integer(d, 0, 2))
     r->state.position[v] = to;
 }
@@ -120,62 +162,70 @@ static const struct place places[] = {{1, 1, 1, 8},  {1, 2, 3, 10}, {2, 2, 2, 16
 static void lists_are_complete_after_a_build(void **unused)
 {
   (void)unused;
+  uint64_t partners = 0, close = 0;
   for (size_t p = 0; p < sizeof places / sizeof *places; p++)
     for (uint64_t again = 0; again < 4; again++) {
       const uint64_t seed = dice_seed(1001) + 10 * p + again;
       struct dice d = {seed};
       struct test_run r = random_bonds(places[p].lx, places[p].ly, places[p].lz, places[p].count, &d);
       assert_true(neighbors_build(&r.state, &r.model, &r.work));
-      uint64_t partners = check_lists(&r, seed);
-      assert_true(partners > 0);
+      const struct totals sum = check_lists(&r, seed);
+      assert_true(sum.close > 0);
+      partners += sum.partners;
+      close += sum.close;
       for (uint32_t v = 0; v < r.state.vertices; v++) /* all images move: a rebuild finds as many partners */
         r.state.position[v].x += 7 * r.model.box.edge[0], r.state.position[v].z -= 1000 * r.model.box.edge[2];
       assert_true(neighbors_build(&r.state, &r.model, &r.work));
-      assert_true(check_lists(&r, seed) == partners);
+      assert_true(check_lists(&r, seed).partners == sum.partners);
       test_end(&r);
     }
+  /* Boxes and the common normal leave little that is not within reach. */
+  print_message("  %lu partners, %lu of them within reach\n", (unsigned long)partners, (unsigned long)close);
+  assert_true(partners < 2 * close);
 }
 
 /* Short moves, as in a run, and long ones; lists grow on the way. */
 static void lists_stay_complete_under_moves(void **unused)
 {
   (void)unused;
-  uint64_t redrawn = 0;
+  uint64_t renewed = 0;
   for (size_t p = 0; p < sizeof places / sizeof *places; p++) {
     const uint64_t seed = dice_seed(1002) + p;
     struct dice d = {seed};
     struct test_run r = random_bonds(places[p].lx, places[p].ly, places[p].lz, places[p].count, &d);
     assert_true(neighbors_build(&r.state, &r.model, &r.work));
-    for (int k = 0; k < 3000; k++) {
+    for (int k = 0; k < 4000; k++) {
       random_move(&r, &d, k % 100 ? 0.1 : 0.45 * box_shortest_edge(&r.model.box));
       if (k % 250 == 249)
         check_lists(&r, seed);
     }
-    redrawn += r.work.fiber.neighbors.redrawn;
+    renewed += r.work.fiber.neighbors.renewed;
     test_end(&r);
   }
-  print_message("  %lu margin boxes redrawn\n", (unsigned long)redrawn);
-  assert_true(redrawn > 5000);
+  print_message("  %lu anchors taken\n", (unsigned long)renewed);
+  assert_true(renewed > 5000);
 }
 
-/* A bond within its margin costs nothing; one step beyond, it is redrawn, around the place it may go to as well. */
-static void boxes_are_redrawn_when_left(void **unused)
+/* A vertex within the margin of its anchor is held; one lattice unit beyond, it is not. A new anchor stands where the
+ * vertex goes, and reaches to where it was. */
+static void anchors_hold_within_the_margin(void **unused)
 {
   (void)unused;
   struct dice d = {3};
   struct test_run r = random_bonds(6, 6, 6, 10, &d);
+  struct neighbors *nb = &r.work.fiber.neighbors;
   assert_true(neighbors_build(&r.state, &r.model, &r.work));
-  const struct margin_box box = r.work.fiber.neighbors.box[0];
-  const struct point a = r.state.position[0], b = r.state.position[1];
-  const int64_t high = a.x > b.x ? a.x : b.x;
-  assert_true(box.high.x > high && box.low.y < a.y && box.low.z < b.z);
-  uint64_t drawn = r.work.fiber.neighbors.redrawn;
-  assert_true(neighbors_cover(&r.state, &r.model, &r.work, 0, (struct point){box.high.x, a.y, a.z}));
-  assert_true(r.work.fiber.neighbors.redrawn == drawn);
-  const struct point out = {box.high.x + 1, a.y, a.z};
-  assert_true(neighbors_cover(&r.state, &r.model, &r.work, 0, out));
-  assert_true(r.work.fiber.neighbors.redrawn == drawn + 1);
-  assert_true(margin_box_holds(&r.work.fiber.neighbors.box[0], out));
+  const struct point a = r.state.position[1];
+  const int64_t margin = lattice_from_a0(nb->margin);
+  const struct point within = {a.x + margin - 1, a.y, a.z}, beyond = {a.x, a.y, a.z - margin - 1};
+  assert_true(neighbors_hold(nb, 1, within) && !neighbors_hold(nb, 1, beyond));
+  assert_true(neighbors_renew(&r.state, &r.model, &r.work, 1, beyond));
+  assert_true(neighbors_hold(nb, 1, beyond) && !neighbors_hold(nb, 1, a));
+  assert_true(nb->renewed == 1 && nb->anchor[1].at.z == beyond.z);
+  assert_close(nb->anchor[1].reach, nb->margin, 1e-11);
+  const struct point far = {a.x, a.y + lattice_from_a0(2.0), a.z};
+  assert_true(neighbors_renew(&r.state, &r.model, &r.work, 1, far));
+  assert_close(nb->anchor[1].reach, 2.0, 1e-11);
   check_lists(&r, 3);
   test_end(&r);
 }
@@ -185,7 +235,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(lists_are_complete_after_a_build),
       cmocka_unit_test(lists_stay_complete_under_moves),
-      cmocka_unit_test(boxes_are_redrawn_when_left),
+      cmocka_unit_test(anchors_hold_within_the_margin),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

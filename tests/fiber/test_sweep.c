@@ -19,6 +19,73 @@ static void dense_suspensions(void **unused)
   assert_true(total.counts.negative > 50 && total.second_bond > 400 && total.image_hits > 100);
 }
 
+/* Slow suspensions, where nearly all vertices move before their turn, with a few fast vertices: what these hit gets
+ * fast in turn, and calls back others that thought they would meet nobody. */
+static void calm_suspensions_with_fast_vertices(void **unused)
+{
+  (void)unused;
+  struct reference total = {.seed = 0, .fast = 0.05};
+  uint64_t waited = 0, called_back = 0;
+  for (uint64_t k = 0; k < 60; k++) {
+    const uint64_t seed = dice_seed(1104) + k;
+    struct dice d = {seed};
+    struct test_run r = dense(5, 4, 4, 40, 8, 0.54, &d);
+    compare_sweeps(&r, &d, 10, 0.002, seed, &total);
+    waited += r.work.fiber.waited;
+    called_back += r.work.fiber.called_back;
+    test_end(&r);
+  }
+  report(&total);
+  print_message("  %lu waited for their turn, %lu of them called back\n", (unsigned long)waited,
+                (unsigned long)called_back);
+  assert_true(total.counts.executed > 1000 && called_back > 200 && 4 * waited < 3 * total.counts.moves);
+}
+
+/* A heavy bond F hits a light one S, which then flies further than any list looked ahead, into C; and C has moved
+ * before its turn, since it met nobody. Where its turn is after S's, it must be where it was: all orders of the turns.
+ */
+static void lists_made_on_the_way_call_back(void **unused)
+{
+  (void)unused;
+  struct model m = test_model(8, 8, 8, 0, 0.01, 2);
+  test_add_kind(&m, 1, 2)->mass = 50.0;
+  test_add_kind(&m, 1, 2)->mass = 1.25;
+  test_add_kind(&m, 1, 2)->mass = 5.0;
+  struct dice d = {dice_seed(1105)};
+  struct test_run r = dice_run(m, &d);
+  const struct vec3 place[6] = {{3.6, 4, 3.9}, {4.5, 4, 3.9},   {4, 3.6, 4.0},
+                                {4, 4.5, 4.0}, {3.5, 4.1, 4.5}, {4.6, 4.1, 4.5}};
+  const struct vec3 velocity[6] = {{0, 0, 30}, {0, 0, 30}, {0, 0, 0}, {0, 0, 0}, {0, 1, 0}, {0, 1, 0}};
+  struct events *told = calloc(1, sizeof *told);
+  struct reference ref = {.model = &r.model, .told = told, .seed = 1105};
+  ref.position = malloc(6 * sizeof *ref.position);
+  ref.velocity = malloc(6 * sizeof *ref.velocity);
+  exact_open(&ref.exact);
+  told->run = &r;
+  const struct sweep_log log = {collect, told};
+  for (uint64_t step = 1; step <= 400; step++) {
+    told->n = told->read = 0;
+    for (int v = 0; v < 6; v++) {
+      r.state.position[v] = point_move((struct point){0, 0, 0}, place[v]);
+      r.state.velocity[v] = velocity[v];
+    }
+    r.work.fiber.neighbors.built = false; /* they were moved by hand */
+    copy_state(&ref, &r.state);
+    assert_true(fiber_sweep(&r.state, &r.model, &r.work, 1.0, step, 0, &log));
+    sweep_by_hand(&ref, r.model.time_step, step, 0);
+    assert_int_equal(told->read, told->n);
+    compare_states(&ref, &r.state);
+  }
+  print_message("  %lu hits in 400 orders, %lu called back\n", (unsigned long)ref.counts.executed,
+                (unsigned long)r.work.fiber.called_back);
+  assert_true(ref.counts.executed > 450 && r.work.fiber.called_back > 50);
+  exact_close(&ref.exact);
+  free(ref.position);
+  free(ref.velocity);
+  free(told);
+  test_end(&r);
+}
+
 /* Boxes of one to three cells: bonds meet their own fiber's images, and one bond several images of another. */
 static void boxes_of_few_cells(void **unused)
 {
@@ -265,6 +332,8 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(dense_suspensions),
+      cmocka_unit_test(calm_suspensions_with_fast_vertices),
+      cmocka_unit_test(lists_made_on_the_way_call_back),
       cmocka_unit_test(boxes_of_few_cells),
       cmocka_unit_test(one_fiber_meets_itself),
       cmocka_unit_test(first_of_several),

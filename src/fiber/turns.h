@@ -1,0 +1,33 @@
+/*
+ * Who has to wait for its turn?
+ *
+ * A sweep moves vertices one at a time, in random order, because a move may end at a bond that has moved before, or has
+ * not. But hardly any vertex comes near another bond in one time step. If the two bonds of a pair cannot touch however
+ * far their ends go in this sweep, the pair does not care who goes first; a vertex none of whose bonds may touch
+ * anything makes the same move at any time. Such vertices move at once, in the order of memory, without a test; the
+ * others wait for their turn.
+ *
+ * An exchange of momentum changes what its vertices will do when their turn comes. Who gets faster looks at its
+ * partners again, and calls back those that moved before their turn, if that is still to come.
+ */
+#ifndef UNCROSS_TURNS_H
+#define UNCROSS_TURNS_H
+
+#include "state/model.h"
+#include "state/state.h"
+#include "state/work.h"
+
+/* Padding 2009, Eq. (4): where vertex i wants to go in a time dt. False, with the fault recorded, if that is further
+ * than half the shortest edge, or not a number. */
+bool turns_trial(const struct state *state, const struct model *model, struct work *work, uint32_t i, double dt,
+                 struct point *to);
+
+/* Before a sweep in the order work->fiber.order: anchors for all that need new ones, work->fiber.waits for all vertices
+ * (1: waits for its turn), and all others moved. False, with the fault recorded, as turns_trial and neighbors_renew. */
+bool turns_plan(struct state *state, const struct model *model, struct work *work, double dt);
+
+/* Vertex i, whose turn comes after `now`, has got another velocity, or its bonds new partners. */
+void turns_reconsider(struct state *state, const struct model *model, struct work *work, uint32_t i, double dt,
+                      uint32_t now);
+
+#endif
