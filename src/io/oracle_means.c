@@ -78,8 +78,6 @@ static bool take_header(struct reader *r, const struct cell *cell, size_t cells)
 static bool parse_number(const char *text, double *x)
 {
   char *end;
-  if (!strchr("+-.0123456789", text[0])) /* not what strtod would also take: nan, inf, blanks */
-    return false;
   *x = strtod(text, &end);
   return end != text && *end == '\0' && isfinite(*x);
 }

@@ -95,6 +95,11 @@ class JudgeTest(unittest.TestCase):
         for only in ("bond", "bond_length,", "bond_length,x", "", "x" * 100):
             code, said = self.judge_text(theirs, None, "--only", only)
             self.assertEqual(code, 2, said)
+        longest = "x" * 47
+        for more, wanted in (("", 0), ("x", 2)):
+            code, said = self.judge_text(HEADER + f"{longest},1,0.001,40\n",
+                                         REFERENCE_HEADER + f"{longest},1,0.001,40,,0.1\n", "--only", longest + more)
+            self.assertEqual(code, wanted, said)
 
     def test_forms_that_are_allowed(self):
         ours = "# a comment\r\nresolve,observable,blocks,error,value\r\n\r\n0.02, a ,320,1e-3,+1\r\n"
@@ -138,6 +143,13 @@ class JudgeTest(unittest.TestCase):
             code, said = self.judge_text(HEADER + "a,1,0.1,40\n", text)
             self.assertEqual(code, 2, said)
             self.assertIn(where, said)
+
+    def test_a_verdict_that_cannot_be_printed(self):
+        for words in (("judge", REFERENCE, POWER / "same.csv"), ("compare", *[TOP / "reference-data/dense.pack.h5"] * 2)):
+            with open("/dev/full", "w", encoding="utf-8") as full:
+                done = subprocess.run([UNCROSS, "oracle", *map(str, words)], stdout=full, stderr=subprocess.DEVNULL,
+                                      check=False)
+            self.assertEqual(done.returncode, 4)
 
     def test_bad_words(self):
         self.assertEqual(judge(REFERENCE)[0], 2)
