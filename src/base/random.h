@@ -43,6 +43,10 @@ static inline struct random_words random_at(uint64_t seed, enum random_purpose p
   return (struct random_words){{r.v[0], r.v[1], r.v[2], r.v[3]}};
 }
 
+/* The words of n entities, a column for each word: [4][n]. The same as random_at, in a form that vectorises. */
+void random_columns(uint64_t seed, enum random_purpose purpose, uint32_t draw, uint64_t step, const uint32_t *entity,
+                    uint32_t n, uint32_t *restrict column[4]);
+
 /* Words 2k and 2k+1 (low, high) as one 64-bit integer; k = 0 or 1. */
 static inline uint64_t random_u64(struct random_words r, int k)
 {
@@ -84,6 +88,11 @@ static inline struct vec3 random_axis(uint64_t seed, enum random_purpose purpose
       return n;
   }
 }
+
+/* The unit vectors of n entities, n <= RANDOM_AXES. The same as random_axis, in a form that vectorises. */
+#define RANDOM_AXES 64
+void random_axes(uint64_t seed, enum random_purpose purpose, uint64_t step, const uint32_t *entity, uint32_t n,
+                 struct vec3 *axis);
 
 /* A uniform random permutation of 0 .. n-1 (Fisher and Yates; Durstenfeld 1964): for k = n-1 down to 1, entries k and
  * j = floor((k+1) R_k / 2^64) are exchanged, R_k = 64-bit integer (k mod 2) of entity k/2. Its bias, below n/2^64, is

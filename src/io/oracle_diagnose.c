@@ -241,7 +241,7 @@ static double rotated(const struct oracle_pair *p, uint32_t row, uint32_t column
                                  .axis = {sense * n[0], sense * n[1], sense * n[2]},
                                  .factor = with_factor ? pack_value(factor, in_cell, 0) : 1.0};
   const struct vec3 w =
-      srd_apply(&turn, (struct vec3){v[0], v[1], v[2]}, false, pack_value(reals, 0, 1), pack_value(reals, 0, 2));
+      srd_apply(&turn, (struct vec3){v[0], v[1], v[2]}, false, pack_value(reals, 0, 1), pack_value(reals, 0, 2), true);
   return column == 0 ? w.x : column == 1 ? w.y : w.z;
 }
 

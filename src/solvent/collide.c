@@ -17,6 +17,46 @@ static struct vec3 solvent_velocity(const struct solvent *s, uint32_t i)
   return (struct vec3){s->vx[i], s->vy[i], s->vz[i]};
 }
 
+/* Momenta of some particles, a column for each component, so that their conversion vectorises. */
+enum { MOMENTA = 64 };
+struct momenta {
+  int64_t x[MOMENTA], y[MOMENTA], z[MOMENTA];
+};
+
+/* A column of velocities in momentum units, as srd_add has them. Returns the union of their spans, or all ones if one
+ * is beyond what lattice_round can hold, or not a number. */
+static uint64_t momentum_column(const double *restrict v, uint32_t n, int64_t *restrict p)
+{
+  uint64_t span = 0;
+  for (uint32_t k = 0; k < n; k++) {
+    const double x = SRD_MOMENTUM_SCALE * v[k];
+    p[k] = lattice_round(x);
+    const uint64_t size = (uint64_t)(p[k] ^ (p[k] >> 63));
+    const uint64_t beyond = fabs(x) < 0x1p50 ? 0 : UINT64_MAX;
+    span |= size | beyond;
+  }
+  return span;
+}
+
+/* The sums of n particles from number `first` on. Returns the union of their momentum spans. */
+static uint64_t sum_particles(const struct solvent *s, struct collision_work *c, uint32_t first, uint32_t n)
+{
+  const uint64_t load = srd_load(1.0);
+  const uint32_t *cell = &c->solvent_cell[first];
+  struct momenta p;
+  uint64_t span = momentum_column(&s->vx[first], n, p.x) | momentum_column(&s->vy[first], n, p.y) |
+                  momentum_column(&s->vz[first], n, p.z);
+  if (span != UINT64_MAX) {
+    for (uint32_t k = 0; k < n; k++)
+      srd_add_momentum(&c->sum[cell[k]], load, p.x[k], p.y[k], p.z[k]);
+    return span;
+  }
+  uint64_t slow = 0;
+  for (uint32_t k = 0; k < n; k++)
+    slow |= srd_add(&c->sum[cell[k]], 1.0, load, solvent_velocity(s, first + k));
+  return slow;
+}
+
 /* Sums of all cells. Returns the union of the members' momentum spans, see srd_add. */
 static uint64_t sum_cells(const struct state *state, const struct model *model, struct work *work)
 {
@@ -24,9 +64,8 @@ static uint64_t sum_cells(const struct state *state, const struct model *model, 
   struct collision_work *c = &work->collision;
   memset(c->sum, 0, (size_t)box_cell_count(&model->box) * sizeof *c->sum);
   uint64_t span = 0;
-  const uint64_t load = srd_load(1.0);
-  for (uint32_t i = 0; i < s->n; i++)
-    span |= srd_add(&c->sum[c->solvent_cell[i]], 1.0, load, solvent_velocity(s, i));
+  for (uint32_t i = 0; i < s->n; i += MOMENTA)
+    span |= sum_particles(s, c, i, s->n - i < MOMENTA ? s->n - i : MOMENTA);
   for (uint32_t v = 0; v < state->vertices; v++)
     span |= srd_add(&c->sum[c->vertex_cell[v]], model->mass[v], srd_load(model->mass[v]), state->velocity[v]);
   return span;
@@ -89,14 +128,29 @@ static bool check_range(const struct state *state, const struct model *model, st
          work_fault(work, FAULT_CELL_MASS, step, where, most * model->max_mass, heaviest);
 }
 
+/* Axes of some cells at once. */
+static void draw_axes(const struct model *model, struct collision_work *c, uint64_t step, const uint32_t *cell,
+                      uint32_t n)
+{
+  struct vec3 axis[RANDOM_AXES];
+  random_axes(model->seed, RANDOM_ROTATION_AXIS, step, cell, n, axis);
+  for (uint32_t k = 0; k < n; k++)
+    c->turn[cell[k]].axis = axis[k];
+}
+
 void collide_solve(const struct model *model, struct work *work, uint64_t step)
 {
   struct collision_work *c = &work->collision;
-  const int64_t cells = box_cell_count(&model->box);
-  for (int64_t k = 0; k < cells; k++) {
+  const uint32_t cells = (uint32_t)box_cell_count(&model->box);
+  uint32_t active[RANDOM_AXES], n = 0;
+  for (uint32_t k = 0; k < cells; k++) {
     srd_solve(&c->sum[k], &c->turn[k]);
-    if (c->turn[k].active != 0.0)
-      c->turn[k].axis = random_axis(model->seed, RANDOM_ROTATION_AXIS, step, (uint32_t)k);
+    active[n] = k;
+    n += c->turn[k].active != 0.0;
+    if (n == RANDOM_AXES || k + 1 == cells) {
+      draw_axes(model, c, step, active, n);
+      n = 0;
+    }
   }
 }
 
@@ -127,19 +181,20 @@ static bool sum_relative_energy(const struct state *state, const struct model *m
   return total < limit || blame_fastest(state, model, work, sqrt(limit), step);
 }
 
-/* Inlined twice, with quarter a constant in each. */
+/* Inlined four times, with `quarter` and `scaled` constants in each. */
 static inline __attribute__((always_inline)) void turn_members(struct state *state, const struct model *model,
-                                                               const struct work *work, const bool quarter)
+                                                               const struct work *work, const bool quarter,
+                                                               const bool scaled)
 {
   struct solvent *s = &state->solvent;
   const struct cell_turn *turn = work->collision.turn;
-  const uint32_t *cell = work->collision.solvent_cell;
+  const uint32_t *cell = work->collision.solvent_cell, n = s->n;
   const double cosine = model->solvent.cosine, sine = model->solvent.sine;
-  for (uint32_t i = 0; i < s->n; i++) {
+  for (uint32_t i = 0; i < n; i++) {
     const struct cell_turn *t = &turn[cell[i]];
     if (t->active == 0.0)
       continue;
-    struct vec3 v = srd_apply(t, solvent_velocity(s, i), quarter, cosine, sine);
+    struct vec3 v = srd_apply(t, solvent_velocity(s, i), quarter, cosine, sine, scaled);
     s->vx[i] = v.x;
     s->vy[i] = v.y;
     s->vz[i] = v.z;
@@ -147,18 +202,28 @@ static inline __attribute__((always_inline)) void turn_members(struct state *sta
   for (uint32_t v = 0; v < state->vertices; v++) {
     const struct cell_turn *t = &turn[work->collision.vertex_cell[v]];
     if (t->active != 0.0)
-      state->velocity[v] = srd_apply(t, state->velocity[v], quarter, cosine, sine);
+      state->velocity[v] = srd_apply(t, state->velocity[v], quarter, cosine, sine, scaled);
   }
 }
 
 static void turn_quarter(struct state *state, const struct model *model, const struct work *work)
 {
-  turn_members(state, model, work, true);
+  turn_members(state, model, work, true, false);
+}
+
+static void turn_quarter_scaled(struct state *state, const struct model *model, const struct work *work)
+{
+  turn_members(state, model, work, true, true);
 }
 
 static void turn_by_angle(struct state *state, const struct model *model, const struct work *work)
 {
-  turn_members(state, model, work, false);
+  turn_members(state, model, work, false, false);
+}
+
+static void turn_by_angle_scaled(struct state *state, const struct model *model, const struct work *work)
+{
+  turn_members(state, model, work, false, true);
 }
 
 bool collide_sum(const struct state *state, const struct model *model, struct work *work, uint64_t step)
@@ -176,7 +241,9 @@ bool collide_thermostat(const struct state *state, const struct model *model, st
 
 void collide_turn(struct state *state, const struct model *model, const struct work *work)
 {
-  (model->solvent.cosine == 0.0 ? turn_quarter : turn_by_angle)(state, model, work);
+  typedef void turn(struct state *, const struct model *, const struct work *);
+  static turn *const turns[2][2] = {{turn_by_angle, turn_by_angle_scaled}, {turn_quarter, turn_quarter_scaled}};
+  turns[model->solvent.cosine == 0.0][model->solvent.thermostat != THERMOSTAT_NONE](state, model, work);
 }
 
 bool solvent_collide(struct state *state, const struct model *model, struct work *work, uint64_t step)

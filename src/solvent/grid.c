@@ -32,7 +32,8 @@ void solvent_bin(const struct state *state, const struct model *model, struct wo
   const uint32_t lx = (uint32_t)box->cells[0], ly = (uint32_t)box->cells[1], lz = (uint32_t)box->cells[2];
   const int64_t *restrict x = s->x, *restrict y = s->y, *restrict z = s->z;
   uint32_t *restrict cell = work->collision.solvent_cell;
-  for (uint32_t i = 0; i < s->n; i++)
+  const uint32_t n = s->n;
+  for (uint32_t i = 0; i < n; i++)
     cell[i] = (cell_index(z[i], shift.z, lz) * ly + cell_index(y[i], shift.y, ly)) * lx + cell_index(x[i], shift.x, lx);
   for (uint32_t v = 0; v < state->vertices; v++)
     work->collision.vertex_cell[v] = solvent_cell_of(box, state->position[v], shift);

@@ -14,8 +14,10 @@ static int64_t stream_component(uint32_t n, int64_t *restrict x, double *restric
     p -= p >= edge ? edge : 0;
     outside |= p | (int64_t)((uint64_t)(edge - 1) - (uint64_t)p);
     x[i] = p;
-    v[i] += gain;
   }
+  if (gain != 0.0)
+    for (uint32_t i = 0; i < n; i++)
+      v[i] += gain;
   return outside;
 }
 

@@ -243,6 +243,34 @@ static void addresses_are_distinct(void **unused)
     assert_memory_not_equal(&base, &others[k], sizeof base);
 }
 
+/* Made in columns, words and axes are those of one at a time, to the bit, for any number and any entities. */
+static void columns_are_the_same(void **unused)
+{
+  (void)unused;
+  struct dice d = {dice_seed(1)};
+  uint32_t entity[RANDOM_AXES], w[4][RANDOM_AXES], *columns[4] = {w[0], w[1], w[2], w[3]}, second = 0, later = 0;
+  struct vec3 axis[RANDOM_AXES];
+  for (uint32_t n = 0; n <= RANDOM_AXES; n++) {
+    const uint64_t seed = dice_u64(&d), step = dice_u64(&d);
+    for (uint32_t k = 0; k < n; k++)
+      entity[k] = (uint32_t)dice_u64(&d);
+    random_columns(seed, RANDOM_ROTATION_AXIS, n, step, entity, n, columns);
+    random_axes(seed, RANDOM_ROTATION_AXIS, step, entity, n, axis);
+    for (uint32_t k = 0; k < n; k++) {
+      const struct random_words one = random_at(seed, RANDOM_ROTATION_AXIS, n, step, entity[k]);
+      for (int i = 0; i < 4; i++)
+        assert_true(one.w[i] == w[i][k]);
+      struct vec3 same = random_axis(seed, RANDOM_ROTATION_AXIS, step, entity[k]), first;
+      assert_memory_equal(&same, &axis[k], sizeof same);
+      const struct random_words words = random_at(seed, RANDOM_ROTATION_AXIS, 0, step, entity[k]);
+      const bool outside = !random_axis_from_words(words, 0, &first);
+      second += outside;
+      later += outside && !random_axis_from_words(words, 1, &first);
+    }
+  }
+  assert_true(second > 350 && later > 50); /* of 2080: a share 0.215 and 0.046 */
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -251,6 +279,7 @@ int main(void)
       cmocka_unit_test(normal_deviates),
       cmocka_unit_test(axes_are_uniform_on_the_sphere),
       cmocka_unit_test(axes_take_the_documented_words),
+      cmocka_unit_test(columns_are_the_same),
       cmocka_unit_test(permutation_is_as_defined),
       cmocka_unit_test(permutations_are_equally_likely),
       cmocka_unit_test(long_permutations_mix),

@@ -40,7 +40,7 @@ static void collide_cell(struct cell *c, struct vec3 axis, double degrees)
   turn.axis = axis;
   const double angle = degrees * 3.14159265358979323846 / 180.0;
   for (int i = 0; i < c->n; i++)
-    c->v[i] = srd_apply(&turn, c->v[i], degrees == 90.0, cos(angle), sin(angle));
+    c->v[i] = srd_apply(&turn, c->v[i], degrees == 90.0, cos(angle), sin(angle), true);
 }
 
 static struct vec3 momentum(const struct cell *c)
@@ -213,9 +213,9 @@ static void apply_turns_about_the_center(void **unused)
     const double angle = dice_between(&d, 0.0, 3.2), factor = dice_between(&d, 0.5, 2.0);
     const struct cell_turn turn = {center, n, factor, 1.0};
     struct vec3 w = by_quaternion(vec3_sub(v, center), n, (long double)angle);
-    assert_same(srd_apply(&turn, v, false, cos(angle), sin(angle)), vec3_add_scaled(center, factor, w), 2e-14);
+    assert_same(srd_apply(&turn, v, false, cos(angle), sin(angle), true), vec3_add_scaled(center, factor, w), 2e-14);
     w = by_quaternion(vec3_sub(v, center), n, 1.57079632679489661923L);
-    assert_same(srd_apply(&turn, v, true, 0.0, 1.0), vec3_add_scaled(center, factor, w), 2e-14);
+    assert_same(srd_apply(&turn, v, true, 0.0, 1.0, true), vec3_add_scaled(center, factor, w), 2e-14);
   }
 }
 

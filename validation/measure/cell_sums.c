@@ -173,7 +173,7 @@ static void turn_all(struct run *run)
     const struct cell_turn *t = &run->work.collision.turn[run->work.collision.solvent_cell[i]];
     if (t->active == 0.0)
       continue;
-    struct vec3 v = srd_apply(t, (struct vec3){s->vx[i], s->vy[i], s->vz[i]}, true, 0.0, 1.0);
+    struct vec3 v = srd_apply(t, (struct vec3){s->vx[i], s->vy[i], s->vz[i]}, true, 0.0, 1.0, true);
     s->vx[i] = v.x;
     s->vy[i] = v.y;
     s->vz[i] = v.z;
