@@ -5,6 +5,8 @@
 #include "fiber/capsule.h"
 #include "fiber/neighbors.h"
 
+#define AHEAD 16 /* bonds */
+
 bool turns_trial(const struct state *state, const struct model *model, struct work *work, uint32_t i, double dt,
                  struct point *to)
 {
@@ -39,13 +41,16 @@ static bool may_meet(const struct state *state, const struct model *model, const
 
 static void find_meetings(const struct state *state, const struct model *model, struct fiber_work *f)
 {
-  const struct neighbors *nb = &f->neighbors;
-  for (uint32_t j = 0; j < state->vertices; j++)
-    for (uint32_t k = 0; k < nb->partners[j].count; k++) {
-      const struct neighbor *n = &nb->partners[j].at[k];
+  const struct neighbor_row *partners = f->neighbors.partners;
+  for (uint32_t j = 0; j < state->vertices; j++) {
+    if (j + AHEAD < state->vertices)
+      __builtin_prefetch(partners[j + AHEAD].at); /* rows lie all over memory */
+    for (uint32_t k = 0; k < partners[j].count; k++) {
+      const struct neighbor *n = &partners[j].at[k];
       if (n->bond > (int32_t)j && may_meet(state, model, f, j, n))
         f->waits[j] = f->waits[model->next[j]] = f->waits[n->bond] = f->waits[model->next[n->bond]] = 1;
     }
+  }
 }
 
 bool turns_plan(struct state *state, const struct model *model, struct work *work, double dt)
