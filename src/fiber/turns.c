@@ -56,8 +56,8 @@ static void find_meetings(const struct state *state, const struct model *model, 
 bool turns_plan(struct state *state, const struct model *model, struct work *work, double dt)
 {
   struct fiber_work *f = &work->fiber;
-  struct point to;
   for (uint32_t i = 0; i < state->vertices; i++) {
+    struct point to = state->position[i];
     if (!turns_trial(state, model, work, i, dt, &to))
       return false;
     f->range[i] = dt * vec3_norm(state->velocity[i]);
