@@ -360,7 +360,10 @@ static bool run_rotate(struct oracle_stage *g)
   oracle_put_centers(g, "in.center");
   oracle_put_axes(g, "in.axis");
   oracle_put_velocities(g, "in.solvent", "in.vertex");
+  const enum thermostat scenes = g->model->solvent.thermostat;
+  g->model->solvent.thermostat = THERMOSTAT_RESCALE; /* without a thermostat, factors have no say */
   collide_turn(g->state, g->model, g->work);
+  g->model->solvent.thermostat = scenes;
   oracle_put_velocities(g, "out.solvent", "out.vertex");
   return true;
 }
