@@ -142,16 +142,17 @@ void collide_solve(const struct model *model, struct work *work, uint64_t step)
 {
   struct collision_work *c = &work->collision;
   const uint32_t cells = (uint32_t)box_cell_count(&model->box);
-  uint32_t active[RANDOM_AXES], n = 0;
+  uint32_t active[RANDOM_AXES] = {0}, n = 0;
   for (uint32_t k = 0; k < cells; k++) {
     srd_solve(&c->sum[k], &c->turn[k]);
-    active[n] = k;
-    n += c->turn[k].active != 0.0;
-    if (n == RANDOM_AXES || k + 1 == cells) {
+    if (c->turn[k].active != 0.0)
+      active[n++] = k;
+    if (n == RANDOM_AXES) {
       draw_axes(model, c, step, active, n);
       n = 0;
     }
   }
+  draw_axes(model, c, step, active, n);
 }
 
 /* Wraps where a sum of int64 may not; whether it has is seen afterwards. */
