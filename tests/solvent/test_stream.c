@@ -144,6 +144,7 @@ static void impossible_flights_are_found(void **unused)
     if (solvent_stream(&r.state, &r.model, &r.work) || r.work.fault.code != FAULT_SOLVENT_MOVE)
       fail_msg("a flight of %g a0 passed", 0.5 * v);
     assert_true(r.work.fault.entity == who && r.work.fault.step == 1);
+    assert_true(r.work.fault.value == 0.5 * v || isnan(v)); /* t is 0.5: what is told is the flight */
     test_end(&r);
   }
 }
