@@ -133,7 +133,7 @@ static void tally_table(struct tally *t, const struct oracle_pair *p, FILE *out)
             t->different - before.different, t->beyond - before.beyond, t->worst, p->ours->real ? "ulps" : "units");
   if (p->ours->rows != p->theirs->rows) {
     fprintf(out, "  rows: %" PRIu32 " here, %" PRIu32 " there\n", p->ours->rows, p->theirs->rows);
-    if (!t->found_beyond && rows < p->ours->rows) {
+    if (!t->found_beyond) {
       t->found = t->found_beyond = true;
       t->first = *p;
       t->row = rows, t->column = 0, t->tolerance = 0.0;
@@ -175,7 +175,7 @@ static void look_at(struct tally *t, const struct pack *ours, const struct pack 
   const struct pack_table *its = pack_find(theirs, &mine->place, mine->name);
   const char *other = NULL;
   if (its && same_inputs(ours, theirs, &mine->place, &other)) {
-    tally_table(t, &(struct oracle_pair){ours, mine, its, rounding}, out);
+    tally_table(t, &(struct oracle_pair){ours, theirs, mine, its, rounding}, out);
   } else if (its || mine->rows > 0) {
     fprintf(out, "%-18s %6" PRIu64 "  %-14s not %s%s\n", mine->place.operator_name, mine->place.step, mine->name,
             its ? "compared, for another input: " : "there", its ? other : "");
@@ -183,15 +183,39 @@ static void look_at(struct tally *t, const struct pack *ours, const struct pack 
   }
 }
 
+/* Of events and hits, two tables of the same rows, the first row that differs counts: what follows is consequence. */
+static void prefer_earlier_hit(struct tally *t)
+{
+  const struct oracle_pair *event = &t->first;
+  if (!t->found_beyond || strcmp(event->ours->name, "out.event") != 0)
+    return;
+  struct oracle_pair hit = *event;
+  hit.ours = oracle_sibling(event, "out.hit");
+  hit.theirs = oracle_sibling_of_theirs(event, "out.hit");
+  if (!hit.ours || !hit.theirs || hit.ours->columns != hit.theirs->columns)
+    return;
+  for (uint32_t row = 0; row < t->row && row < hit.ours->rows && row < hit.theirs->rows; row++)
+    for (uint32_t column = 0; column < hit.ours->columns; column++) {
+      const double tolerance = oracle_tolerance(&hit, row, column);
+      if (difference(&hit, row, column) <= tolerance)
+        continue;
+      t->first = hit;
+      t->row = row, t->column = column, t->tolerance = tolerance;
+      return;
+    }
+}
+
 static void print_shape(const struct tally *t, FILE *out)
 {
   const struct oracle_pair *p = &t->first;
-  if (t->first.ours && t->row >= p->theirs->rows)
-    fprintf(out, "first difference: %s, step %" PRIu64 ", %s %" PRIu32 ": missing\nthis pattern: %s\n",
-            p->ours->place.operator_name, p->ours->place.step, entity_of(p->ours), t->row,
-            oracle_diagnose(p) ? oracle_diagnose(p) : "none of those known");
-  else if (t->found)
+  if (t->found && t->row < p->theirs->rows && t->row < p->ours->rows) {
     print_first(t, out);
+  } else if (t->found) {
+    const char *meaning = oracle_diagnose(p);
+    fprintf(out, "first difference: %s, step %" PRIu64 ", %s %" PRIu32 ": %s\nthis pattern: %s\n",
+            p->ours->place.operator_name, p->ours->place.step, entity_of(p->ours), t->row,
+            t->row < p->ours->rows ? "missing" : "not here", meaning ? meaning : "none of those known");
+  }
 }
 
 bool oracle_compare(const struct pack *ours, const struct pack *theirs, const struct oracle_options *options, FILE *out,
@@ -213,6 +237,7 @@ bool oracle_compare(const struct pack *ours, const struct pack *theirs, const st
   *verdict = t.beyond ? ORACLE_DIFFERS : t.different ? ORACLE_CLOSE : ORACLE_SAME;
   fprintf(out, "%" PRIu64 " values compared, %" PRIu64 " differ, %" PRIu64 " beyond tolerance\n", t.values, t.different,
           t.beyond);
+  prefer_earlier_hit(&t);
   print_shape(&t, out);
   fprintf(out, "%s\n",
           *verdict == ORACLE_SAME    ? "same: every bit"

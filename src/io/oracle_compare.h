@@ -6,7 +6,8 @@
 
 /* One output table of one operator, ours and theirs, same shape. */
 struct oracle_pair {
-  const struct pack *pack; /* ours: inputs, model */
+  const struct pack *pack;        /* ours: inputs, model */
+  const struct pack *pack_theirs; /* their outputs */
   const struct pack_table *ours, *theirs;
   double rounding; /* u: 2^-53 or 2^-24 */
 };
@@ -21,6 +22,12 @@ const char *oracle_diagnose(const struct oracle_pair *pair);
 static inline const struct pack_table *oracle_sibling(const struct oracle_pair *pair, const char *name)
 {
   return pack_find(pair->pack, &pair->ours->place, name);
+}
+
+/* Theirs of the same operator and step. */
+static inline const struct pack_table *oracle_sibling_of_theirs(const struct oracle_pair *pair, const char *name)
+{
+  return pack_find(pair->pack_theirs, &pair->ours->place, name);
 }
 
 #endif

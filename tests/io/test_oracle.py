@@ -274,15 +274,19 @@ class OracleTest(unittest.TestCase):
         def turn(event):
             return event | {k: -event[k] for k in event if "normal" in k or "momentum" in k}
 
-        def other(event):
-            return event | {"out.event.executed": 1 - event["out.event.executed"]}
+        def none(event):
+            return event | {"out.event.executed": 0}
+
+        def every(event):
+            return event | {"out.event.executed": 1}
 
         self.assertEqual(self.compare(self.events())[0], 0)
         self.assert_named(self.events(keep=across), "missing image")
         self.assert_named(self.events(change=clip), "clipped")
         self.assert_named(self.events(change=swap_lever), "lever")
         self.assert_named(self.events(change=turn), "normal turned")
-        self.assert_named(self.events(change=other), "another hit than the first")
+        self.assert_named(self.events(change=none), "no hit of a move executed")
+        self.assert_named(self.events(change=every), "more than the first hit of a move executed")
         count = [0]
 
         def all_but_third(event):
