@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "io/oracle_compare.h"
 #include "io/oracle_patterns.h"
 
 bool oracle_guessed(const struct oracle_pair *p, uint32_t row, uint32_t column, double guess)

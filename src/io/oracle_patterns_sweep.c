@@ -1,225 +1,14 @@
-/*
- * What went wrong in a sweep. A wrong exchange changes the moves that follow, so only the first row that differs is
- * judged: of what came before it, our tables tell everything. A vertex whose turn is over stands where it ended, the
- * others where they began, and the exchanges so far have made the velocities.
- */
+/* What went wrong in a sweep. A wrong exchange changes the moves that follow, so only the first row that differs is
+ * judged. */
 #include <math.h>
 #include <string.h>
 
-#include "fiber/crossing.h"
 #include "io/oracle_patterns.h"
+#include "io/oracle_swept.h"
 
-enum event_column { VERTEX, MOVING, STANDING, IMAGE_X, IMAGE_Y, IMAGE_Z, EXECUTED, EVENT_COLUMNS };
-enum hit_column { TIME, S, S_STANDING, NORMAL_X, NORMAL_Y, NORMAL_Z, MOMENTUM, HIT_COLUMNS };
+/* --- zeros, and hits that only they have ------------------------------------------------------------------------- */
 
-/* All tables of a sweep. */
-struct swept {
-  const struct oracle_pair *pair;
-  struct oracle_pair event, hit; /* ours and theirs */
-  const struct pack_table *order, *from, *start, *to, *chain;
-};
-
-static bool take(const struct oracle_pair *p, struct swept *w)
-{
-  w->pair = p;
-  w->event = w->hit = *p;
-  w->event.ours = oracle_sibling(p, "out.event"), w->event.theirs = oracle_sibling_of_theirs(p, "out.event");
-  w->hit.ours = oracle_sibling(p, "out.hit"), w->hit.theirs = oracle_sibling_of_theirs(p, "out.hit");
-  w->order = oracle_sibling(p, "in.order");
-  w->from = oracle_sibling(p, "in.position"), w->to = oracle_sibling(p, "out.position");
-  w->start = oracle_sibling(p, "in.velocity"), w->chain = oracle_model(p, "in.chain");
-  return w->event.ours && w->event.theirs && w->hit.ours && w->hit.theirs && w->order && w->from && w->to && w->start &&
-         w->chain && w->event.ours->columns == EVENT_COLUMNS && w->event.theirs->columns == EVENT_COLUMNS &&
-         w->hit.ours->columns == HIT_COLUMNS && w->hit.theirs->columns == HIT_COLUMNS &&
-         w->hit.ours->rows == w->event.ours->rows && w->hit.theirs->rows == w->event.theirs->rows &&
-         oracle_is_vectors(w->from, false, 0) && oracle_is_vectors(w->to, false, w->from->rows - 1) &&
-         oracle_is_vectors(w->start, true, w->from->rows - 1) && w->chain->rows == w->from->rows;
-}
-
-/* --- events ------------------------------------------------------------------------------------------------------ */
-
-static bool same_event(const struct pack_table *a, uint32_t row, const struct pack_table *b, uint32_t other)
-{
-  for (uint32_t k = VERTEX; k < EXECUTED; k++)
-    if (pack_value(a, row, k) != pack_value(b, other, k))
-      return false;
-  return true;
-}
-
-/* The first row whose event is not the same, or not executed in both; all rows that both have if there is none. */
-static uint32_t first_other(const struct swept *w)
-{
-  uint32_t row = 0;
-  while (row < oracle_common_rows(&w->event) && same_event(w->event.ours, row, w->event.theirs, row) &&
-         pack_value(w->event.ours, row, EXECUTED) == pack_value(w->event.theirs, row, EXECUTED))
-    row++;
-  return row;
-}
-
-/* When this vertex has its turn. */
-static uint32_t turn_of(const struct swept *w, double vertex)
-{
-  uint32_t k = 0;
-  while (k < w->order->rows && pack_value(w->order, k, 0) != vertex)
-    k++;
-  return k;
-}
-
-/* The vertex whose move is the first that differs; -1 if none does. */
-static double first_mover(const struct swept *w)
-{
-  const uint32_t row = first_other(w);
-  const double ours = row < w->event.ours->rows ? pack_value(w->event.ours, row, VERTEX) : -1.0;
-  const double theirs = row < w->event.theirs->rows ? pack_value(w->event.theirs, row, VERTEX) : -1.0;
-  return turn_of(w, theirs) < turn_of(w, ours) ? theirs : ours;
-}
-
-static bool contains(const struct pack_table *t, const struct pack_table *other, uint32_t row)
-{
-  for (uint32_t k = 0; k < t->rows; k++)
-    if (same_event(t, k, other, row))
-      return true;
-  return false;
-}
-
-/* A row of the first mover's in t that the other table has not; its rows if there is none. */
-static uint32_t row_alone(const struct swept *w, const struct pack_table *t, const struct pack_table *other)
-{
-  const double mover = first_mover(w);
-  uint32_t row = 0;
-  while (row < t->rows && (pack_value(t, row, VERTEX) != mover || contains(other, t, row)))
-    row++;
-  return row;
-}
-
-static bool missed(const struct swept *w, uint32_t *row)
-{
-  *row = row_alone(w, w->event.ours, w->event.theirs);
-  return *row < w->event.ours->rows;
-}
-
-static bool invented(const struct swept *w, uint32_t *row)
-{
-  *row = row_alone(w, w->event.theirs, w->event.ours);
-  return *row < w->event.theirs->rows;
-}
-
-/* --- the state that a move found --------------------------------------------------------------------------------- */
-
-static int64_t next_of(const struct swept *w, int64_t vertex)
-{
-  return vertex >= 0 && vertex < w->chain->rows ? oracle_model_integer(w->pair, "in.chain", (uint32_t)vertex, 0) : -1;
-}
-
-/* Moving vertex, pivot, and the ends of the standing bond of an event. False if there are no such vertices. */
-static bool vertices_of(const struct swept *w, const struct pack_table *t, uint32_t row, uint32_t four[4])
-{
-  const double vertex = pack_value(t, row, VERTEX), moving = pack_value(t, row, MOVING);
-  const double standing = pack_value(t, row, STANDING), vertices = w->chain->rows;
-  if (!(vertex >= 0.0 && vertex < vertices && moving >= 0.0 && moving < vertices && standing >= 0.0 &&
-        standing < vertices))
-    return false;
-  const int64_t at[4] = {(int64_t)vertex, moving == vertex ? next_of(w, (int64_t)moving) : (int64_t)moving,
-                         (int64_t)standing, next_of(w, (int64_t)standing)};
-  for (int k = 0; k < 4; k++) {
-    if (at[k] < 0 || at[k] >= w->chain->rows)
-      return false;
-    four[k] = (uint32_t)at[k];
-  }
-  return true;
-}
-
-static void levers(const struct swept *w, uint32_t row, bool swapped, double lever[4])
-{
-  const double s = pack_value(w->hit.ours, row, S), t = pack_value(w->hit.ours, row, S_STANDING);
-  const double right[4] = {1.0 - s, s, t - 1.0, -t}, wrong[4] = {s, 1.0 - s, -t, t - 1.0};
-  memcpy(lever, swapped ? wrong : right, sizeof right);
-}
-
-static struct vec3 normal_of(const struct swept *w, uint32_t row)
-{
-  return (struct vec3){pack_value(w->hit.ours, row, NORMAL_X), pack_value(w->hit.ours, row, NORMAL_Y),
-                       pack_value(w->hit.ours, row, NORMAL_Z)};
-}
-
-static double mass_of(const struct swept *w, uint32_t vertex)
-{
-  const struct pack_table *t = oracle_model(w->pair, "in.vertex");
-  return t ? pack_value(t, vertex, 0) : NAN;
-}
-
-/* Velocity after our exchanges in the first `rows` events, those of `mover` left out. */
-static struct vec3 velocity_at(const struct swept *w, uint32_t vertex, uint32_t rows, double mover)
-{
-  struct vec3 v = oracle_vector(w->start, vertex);
-  for (uint32_t row = 0; row < rows && row < w->event.ours->rows; row++) {
-    uint32_t four[4];
-    double lever[4];
-    if (pack_value(w->event.ours, row, EXECUTED) == 0.0 || pack_value(w->event.ours, row, VERTEX) == mover ||
-        !vertices_of(w, w->event.ours, row, four))
-      continue;
-    levers(w, row, false, lever);
-    for (int k = 0; k < 4; k++)
-      if (four[k] == vertex)
-        v = vec3_add_scaled(v, -lever[k] * pack_value(w->hit.ours, row, MOMENTUM) / mass_of(w, vertex),
-                            normal_of(w, row));
-  }
-  return v;
-}
-
-static struct point position_at(const struct swept *w, uint32_t vertex, double mover)
-{
-  return oracle_point(turn_of(w, vertex) < turn_of(w, mover) ? w->to : w->from, vertex);
-}
-
-static bool within_reach(struct point p)
-{
-  const int64_t reach = (int64_t)1 << 52;
-  return p.x > -reach && p.x < reach && p.y > -reach && p.y < reach && p.z > -reach && p.z < reach;
-}
-
-/* --- the conditions of a crossing, for an event of either table -------------------------------------------------- */
-
-struct signs {
-  int before, after, far_side, a, b; /* of the determinants of docs/conventions.md, in its order */
-};
-
-static bool signs_of(const struct swept *w, const struct pack_table *t, uint32_t row, struct signs *d)
-{
-  uint32_t four[4];
-  struct box box;
-  int64_t image[3];
-  if (!vertices_of(w, t, row, four) || !oracle_box(w->pair, &box))
-    return false;
-  for (uint32_t k = 0; k < 3; k++) {
-    const double i = pack_value(t, row, IMAGE_X + k);
-    if (!(fabs(i) < 1024.0))
-      return false;
-    image[k] = (int64_t)i;
-  }
-  struct point at[4];
-  for (int k = 0; k < 4; k++) {
-    at[k] = position_at(w, four[k], four[0]);
-    if (!within_reach(at[k]))
-      return false;
-  }
-  for (int k = 2; k < 4; k++) {
-    at[k].x += image[0] * box.edge[0], at[k].y += image[1] * box.edge[1], at[k].z += image[2] * box.edge[2];
-  }
-  const struct vec3 v = velocity_at(w, four[0], first_other(w), four[0]);
-  const double time = pack_value(oracle_sibling(w->pair, "in.time"), 0, 0);
-  if (!(fabs(time) * vec3_norm(v) < 1024.0))
-    return false;
-  const struct point from = at[0], pivot = at[1], a = at[2], b = at[3];
-  const struct point to = {from.x + lattice_from_a0(time * v.x), from.y + lattice_from_a0(time * v.y),
-                           from.z + lattice_from_a0(time * v.z)};
-  *d = (struct signs){crossing_orientation(a, b, pivot, from), crossing_orientation(a, b, pivot, to),
-                      crossing_orientation(a, b, from, to), crossing_orientation(from, to, pivot, a),
-                      crossing_orientation(from, to, pivot, b)};
-  return true;
-}
-
-static bool has_zero(const struct signs *d)
+static bool has_zero(const struct swept_signs *d)
 {
   return d->before == 0 || d->after == 0 || d->far_side == 0 || d->a == 0 || d->b == 0;
 }
@@ -227,29 +16,30 @@ static bool has_zero(const struct signs *d)
 static bool zero_decides(const struct oracle_pair *p)
 {
   struct swept w;
-  struct signs d;
+  struct swept_signs d;
   uint32_t row;
-  return take(p, &w) && ((missed(&w, &row) && signs_of(&w, w.event.ours, row, &d) && has_zero(&d)) ||
-                         (invented(&w, &row) && signs_of(&w, w.event.theirs, row, &d) && has_zero(&d)));
+  return oracle_swept_take(p, &w) &&
+         ((swept_missed(&w, &row) && swept_signs(&w, w.event.ours, row, &d) && has_zero(&d)) ||
+          (swept_invented(&w, &row) && swept_signs(&w, w.event.theirs, row, &d) && has_zero(&d)));
 }
 
 /* The first hit that only they have. */
-static bool invented_signs(const struct oracle_pair *p, struct signs *d)
+static bool invented_signs(const struct oracle_pair *p, struct swept_signs *d)
 {
   struct swept w;
   uint32_t row;
-  return take(p, &w) && invented(&w, &row) && signs_of(&w, w.event.theirs, row, d);
+  return oracle_swept_take(p, &w) && swept_invented(&w, &row) && swept_signs(&w, w.event.theirs, row, d);
 }
 
 static bool beyond_moving(const struct oracle_pair *p)
 {
-  struct signs d;
+  struct swept_signs d;
   return invented_signs(p, &d) && d.before * d.after < 0 && d.far_side == -d.before;
 }
 
 static bool beyond_standing(const struct oracle_pair *p)
 {
-  struct signs d;
+  struct swept_signs d;
   return invented_signs(p, &d) && d.before * d.after < 0 && d.far_side == d.before && d.a * d.b > 0;
 }
 
@@ -257,7 +47,7 @@ static bool linked_tested(const struct oracle_pair *p)
 {
   struct swept w;
   uint32_t row, v[4];
-  return take(p, &w) && invented(&w, &row) && vertices_of(&w, w.event.theirs, row, v) &&
+  return oracle_swept_take(p, &w) && swept_invented(&w, &row) && swept_vertices(&w, w.event.theirs, row, v) &&
          (v[0] == v[2] || v[0] == v[3] || v[1] == v[2] || v[1] == v[3]);
 }
 
@@ -274,7 +64,7 @@ static bool image_missing(const struct oracle_pair *p)
 {
   struct swept w;
   uint32_t row;
-  if (!take(p, &w) || !missed(&w, &row) || boxes_away(w.event.ours, row) == 0.0)
+  if (!oracle_swept_take(p, &w) || !swept_missed(&w, &row) || boxes_away(w.event.ours, row) == 0.0)
     return false;
   for (uint32_t k = 0; k < w.event.theirs->rows; k++)
     if (boxes_away(w.event.theirs, k) >= boxes_away(w.event.ours, row))
@@ -285,7 +75,7 @@ static bool image_missing(const struct oracle_pair *p)
 static bool of_one_fiber(const struct swept *w, const struct pack_table *t, uint32_t row)
 {
   uint32_t v[4];
-  return vertices_of(w, t, row, v) &&
+  return swept_vertices(w, t, row, v) &&
          oracle_model_integer(w->pair, "in.chain", v[0], 2) == oracle_model_integer(w->pair, "in.chain", v[2], 2);
 }
 
@@ -294,7 +84,7 @@ static bool fiber_excluded(const struct oracle_pair *p)
 {
   struct swept w;
   uint32_t row;
-  if (!take(p, &w) || !missed(&w, &row) || !of_one_fiber(&w, w.event.ours, row))
+  if (!oracle_swept_take(p, &w) || !swept_missed(&w, &row) || !of_one_fiber(&w, w.event.ours, row))
     return false;
   for (uint32_t k = 0; k < w.event.theirs->rows; k++)
     if (of_one_fiber(&w, w.event.theirs, k))
@@ -306,7 +96,7 @@ static bool crossing_missing(const struct oracle_pair *p)
 {
   struct swept w;
   uint32_t row;
-  return take(p, &w) && missed(&w, &row);
+  return oracle_swept_take(p, &w) && swept_missed(&w, &row);
 }
 
 /* --- the same hits, another choice ------------------------------------------------------------------------------- */
@@ -319,9 +109,9 @@ struct choice {
 static bool choose(const struct oracle_pair *p, struct swept *w, struct choice *c)
 {
   uint32_t row;
-  if (!take(p, w) || missed(w, &row) || invented(w, &row))
+  if (!oracle_swept_take(p, w) || swept_missed(w, &row) || swept_invented(w, &row))
     return false;
-  const double mover = first_mover(w);
+  const double mover = swept_first_mover(w);
   *c = (struct choice){UINT32_MAX, UINT32_MAX, 0, UINT32_MAX, 0};
   for (uint32_t k = 0; k < w->event.ours->rows; k++) {
     if (pack_value(w->event.ours, k, VERTEX) != mover)
@@ -331,7 +121,7 @@ static bool choose(const struct oracle_pair *p, struct swept *w, struct choice *
     if (c->nearest == UINT32_MAX || pack_value(w->hit.ours, k, S) < pack_value(w->hit.ours, c->nearest, S))
       c->nearest = k;
     for (uint32_t j = 0; j < w->event.theirs->rows; j++)
-      if (same_event(w->event.ours, k, w->event.theirs, j) && pack_value(w->event.theirs, j, EXECUTED) != 0.0)
+      if (swept_same_event(w->event.ours, k, w->event.theirs, j) && pack_value(w->event.theirs, j, EXECUTED) != 0.0)
         c->theirs = k, c->executed++;
   }
   return c->first != UINT32_MAX;
@@ -388,7 +178,8 @@ static bool rejected_moves(const struct oracle_pair *p)
   struct swept w;
   uint32_t four[4];
   const struct pack_table *theirs = oracle_sibling_of_theirs(p, "out.position"), *time = oracle_sibling(p, "in.time");
-  if (!take(p, &w) || !theirs || !time || first_other(&w) == 0 || !vertices_of(&w, w.event.ours, 0, four))
+  if (!oracle_swept_take(p, &w) || !theirs || !time || swept_first_other(&w) == 0 ||
+      !swept_vertices(&w, w.event.ours, 0, four))
     return false;
   const struct point from = oracle_point(w.from, four[0]);
   const struct vec3 move = vec3_scale(pack_value(time, 0, 0), oracle_vector(w.start, four[0]));
@@ -406,7 +197,7 @@ static bool no_exchange(const struct oracle_pair *p)
 {
   struct swept w;
   const struct pack_table *out = oracle_sibling_of_theirs(p, "out.velocity");
-  if (!take(p, &w) || first_other(&w) == 0 || !out || out->rows != w.start->rows)
+  if (!oracle_swept_take(p, &w) || swept_first_other(&w) == 0 || !out || out->rows != w.start->rows)
     return false;
   for (uint32_t row = 0; row < out->rows; row++)
     for (uint32_t k = 0; k < 3; k++)
@@ -427,7 +218,7 @@ static bool row_agrees(const struct oracle_pair *p, uint32_t row, uint32_t from,
 
 static bool take_hit(const struct oracle_pair *p, struct swept *w, uint32_t *row)
 {
-  if (!take(p, w))
+  if (!oracle_swept_take(p, w))
     return false;
   for (*row = 0; *row < oracle_common_rows(&w->hit); ++*row)
     if (!row_agrees(&w->hit, *row, TIME, HIT_COLUMNS))
@@ -483,12 +274,12 @@ static double exchanged(const struct swept *w, uint32_t row, bool swapped, bool 
 {
   uint32_t four[4];
   double lever[4], approach = 0.0, compliance = 0.0;
-  if (!vertices_of(w, w->event.ours, row, four))
+  if (!swept_vertices(w, w->event.ours, row, four))
     return NAN;
-  levers(w, row, swapped, lever);
+  swept_levers(w, row, swapped, lever);
   for (int k = 0; k < 4; k++) {
-    approach += lever[k] * vec3_dot(velocity_at(w, four[k], row, -1.0), normal_of(w, row));
-    compliance += lever[k] * lever[k] / mass_of(w, four[one_mass ? 0 : k]);
+    approach += lever[k] * vec3_dot(swept_velocity(w, four[k], row, -1.0), swept_normal(w, row));
+    compliance += lever[k] * lever[k] / swept_mass(w, four[one_mass ? 0 : k]);
   }
   return 2.0 * approach / compliance;
 }
@@ -527,7 +318,7 @@ static bool masses_alike(const struct oracle_pair *p)
 static bool hits_single(const struct oracle_pair *p)
 {
   struct swept w;
-  return take(p, &w) && oracle_is_single(&w.hit, first_other(&w));
+  return oracle_swept_take(p, &w) && oracle_is_single(&w.hit, swept_first_other(&w));
 }
 
 const struct oracle_pattern oracle_patterns_sweep[] = {
