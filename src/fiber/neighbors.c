@@ -196,7 +196,8 @@ bool neighbors_renew(const struct state *state, const struct model *model, struc
     leave(nb, model, (uint32_t)after);
   /* Both ends of the move are within reach, whether it is made or refused. */
   const double move = vec3_norm(point_difference(to, state->position[vertex]));
-  nb->anchor[vertex] = (struct anchor){to, fmax(nb->margin, move)};
+  const struct point at = {to.x - nb->moved.x, to.y - nb->moved.y, to.z - nb->moved.z};
+  nb->anchor[vertex] = (struct anchor){at, fmax(nb->margin, move)};
   nb->renewed++;
   return ((before < 0 || enter(nb, model, (uint32_t)before)) && (after < 0 || enter(nb, model, (uint32_t)after))) ||
          short_of_memory(state, work, vertex);
@@ -243,6 +244,7 @@ bool neighbors_build(const struct state *state, const struct model *model, struc
   for (uint32_t j = 0; j < model->vertices; j++)
     if (model->next[j] >= 0 && !enter(nb, model, j))
       return short_of_memory(state, work, j);
+  nb->moved = (struct point){0, 0, 0};
   nb->built = true;
   return true;
 }

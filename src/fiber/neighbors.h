@@ -33,7 +33,8 @@ bool neighbors_renew(const struct state *state, const struct model *model, struc
 /* Is a vertex at p still where its anchor's lists are good for? */
 static inline bool neighbors_hold(const struct neighbors *nb, uint32_t vertex, struct point p)
 {
-  const struct vec3 d = point_difference(p, nb->anchor[vertex].at);
+  const struct point at = nb->anchor[vertex].at, moved = nb->moved;
+  const struct vec3 d = point_difference(p, (struct point){at.x + moved.x, at.y + moved.y, at.z + moved.z});
   return vec3_dot(d, d) <= nb->margin * nb->margin;
 }
 

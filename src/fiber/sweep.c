@@ -107,7 +107,8 @@ static void execute(struct state *state, const struct model *model, struct work 
   state->counts.negative += e->momentum < 0.0;
 }
 
-static bool try_move(struct state *state, const struct model *model, struct work *work, struct trial *t)
+/* Both bonds against their partners, at the vertex's turn. False, with the fault recorded, if memory is short. */
+static bool find_hits(struct state *state, const struct model *model, struct work *work, struct trial *t)
 {
   const struct neighbors *nb = &work->fiber.neighbors;
   const uint32_t i = t->vertex;
@@ -121,11 +122,40 @@ static bool try_move(struct state *state, const struct model *model, struct work
     test_bond(state, model, nb, (uint32_t)before, t);
   if (model->next[i] >= 0)
     test_bond(state, model, nb, i, t);
-  if (t->hits == 0)
-    state->position[i] = t->to;
-  else
-    execute(state, model, work, t);
   return true;
+}
+
+/* What is left of the time after the hit, with the velocity after it: one straight move from where the vertex stands to
+ * where it would be, made if it crosses nothing. What it might hit is not answered, nor told. */
+static bool bounce(struct state *state, const struct model *model, struct work *work, const struct trial *hit,
+                   struct vec3 before)
+{
+  const uint32_t i = hit->vertex;
+  const double time = hit->first.hit.time;
+  struct trial t = {.vertex = i, .dt = hit->dt};
+  const struct vec3 after = vec3_sub(state->velocity[i], model_frame_velocity(model));
+  const struct vec3 d = vec3_add_scaled(vec3_scale(time * t.dt, vec3_sub(before, model_frame_velocity(model))),
+                                        (1.0 - time) * t.dt, after);
+  turns_reconsider(state, model, work, i, t.dt, work->fiber.rank[i]);
+  t.to = point_move(state->position[i], d);
+  if (!find_hits(state, model, work, &t))
+    return false;
+  if (t.hits == 0)
+    state->position[i] = t.to;
+  return true;
+}
+
+static bool try_move(struct state *state, const struct model *model, struct work *work, struct trial *t)
+{
+  const struct vec3 before = state->velocity[t->vertex];
+  if (!find_hits(state, model, work, t))
+    return false;
+  if (t->hits == 0) {
+    state->position[t->vertex] = t->to;
+    return true;
+  }
+  execute(state, model, work, t);
+  return model->crossing.refusal == REFUSAL_STAY || bounce(state, model, work, t, before);
 }
 
 static void draw_order(const struct state *state, const struct model *model, struct fiber_work *f, uint64_t step,
@@ -134,6 +164,19 @@ static void draw_order(const struct state *state, const struct model *model, str
   random_permutation(model->seed, RANDOM_VERTEX_ORDER, sweep, step, state->vertices, f->order);
   for (uint32_t k = 0; k < state->vertices; k++)
     f->rank[f->order[k]] = k;
+}
+
+/* The frame of the moves has moved, and everything in it: that crosses nothing. */
+static void follow_frame(struct state *state, const struct model *model, struct neighbors *nb, double dt)
+{
+  const struct point origin = {0, 0, 0}, shift = point_move(origin, vec3_scale(dt, model_frame_velocity(model)));
+  if (shift.x == 0 && shift.y == 0 && shift.z == 0)
+    return;
+  for (uint32_t i = 0; i < state->vertices; i++) {
+    struct point *p = &state->position[i];
+    *p = (struct point){p->x + shift.x, p->y + shift.y, p->z + shift.z};
+  }
+  nb->moved = (struct point){nb->moved.x + shift.x, nb->moved.y + shift.y, nb->moved.z + shift.z};
 }
 
 static bool sweep_noncrossing(struct state *state, const struct model *model, struct work *work, double dt,
@@ -169,7 +212,10 @@ bool fiber_sweep(struct state *state, const struct model *model, struct work *wo
                  uint32_t sweep, const struct sweep_log *log)
 {
   const double dt = fraction * model->time_step;
-  if (model->crossing.forbidden && model->bonds > 1)
-    return sweep_noncrossing(state, model, work, dt, step, sweep, log);
-  return sweep_phantom(state, model, work, dt);
+  const bool noncrossing = model->crossing.forbidden && model->bonds > 1;
+  if (!(noncrossing ? sweep_noncrossing(state, model, work, dt, step, sweep, log)
+                    : sweep_phantom(state, model, work, dt)))
+    return false;
+  follow_frame(state, model, &work->fiber.neighbors, dt);
+  return true;
 }

@@ -7,10 +7,16 @@
 
 #define AHEAD 16 /* bonds */
 
+/* Padding 2009, Eq. (4), in the frame of the moves. */
+static struct vec3 displacement(const struct state *state, const struct model *model, uint32_t i, double dt)
+{
+  return vec3_scale(dt, vec3_sub(state->velocity[i], model_frame_velocity(model)));
+}
+
 bool turns_trial(const struct state *state, const struct model *model, struct work *work, uint32_t i, double dt,
                  struct point *to)
 {
-  const struct vec3 d = vec3_scale(dt, state->velocity[i]);
+  const struct vec3 d = displacement(state, model, i, dt);
   const double limit = 0.5 * box_shortest_edge(&model->box);
   if (!(fabs(d.x) < limit && fabs(d.y) < limit && fabs(d.z) < limit)) {
     const double far = fmax(fabs(d.x), fmax(fabs(d.y), fabs(d.z)));
@@ -60,7 +66,7 @@ bool turns_plan(struct state *state, const struct model *model, struct work *wor
     struct point to = state->position[i];
     if (!turns_trial(state, model, work, i, dt, &to))
       return false;
-    f->range[i] = dt * vec3_norm(state->velocity[i]);
+    f->range[i] = vec3_norm(displacement(state, model, i, dt));
     if (!neighbors_hold(&f->neighbors, i, to) && !neighbors_renew(state, model, work, i, to))
       return false;
   }
@@ -68,16 +74,17 @@ bool turns_plan(struct state *state, const struct model *model, struct work *wor
   find_meetings(state, model, f);
   for (uint32_t i = 0; i < state->vertices; i++)
     if (!f->waits[i])
-      state->position[i] = point_move(state->position[i], vec3_scale(dt, state->velocity[i]));
+      state->position[i] = point_move(state->position[i], displacement(state, model, i, dt));
   return true;
 }
 
 /* A vertex that has moved before its turn goes back and waits for it. */
-static void call_back(struct state *state, struct fiber_work *f, uint32_t i, double dt, uint32_t now)
+static void call_back(struct state *state, const struct model *model, struct fiber_work *f, uint32_t i, double dt,
+                      uint32_t now)
 {
   if (f->waits[i] || f->rank[i] <= now)
     return;
-  state->position[i] = point_move(state->position[i], vec3_scale(-dt, state->velocity[i]));
+  state->position[i] = point_move(state->position[i], displacement(state, model, i, -dt));
   f->waits[i] = 1;
   f->called_back++;
 }
@@ -89,7 +96,7 @@ void turns_reconsider(struct state *state, const struct model *model, struct wor
   const struct neighbors *nb = &f->neighbors;
   if (f->rank[i] < now)
     return;
-  f->range[i] = fmax(f->range[i], dt * vec3_norm(state->velocity[i]));
+  f->range[i] = fmax(f->range[i], vec3_norm(displacement(state, model, i, dt)));
   const int32_t bonds[2] = {model->prev[i], model->next[i] >= 0 ? (int32_t)i : -1};
   for (int b = 0; b < 2; b++)
     for (uint32_t k = 0; bonds[b] >= 0 && k < nb->partners[bonds[b]].count; k++) {
@@ -98,6 +105,6 @@ void turns_reconsider(struct state *state, const struct model *model, struct wor
         continue;
       const int32_t ends[4] = {bonds[b], model->next[bonds[b]], n->bond, model->next[n->bond]};
       for (int e = 0; e < 4; e++)
-        call_back(state, f, (uint32_t)ends[e], dt, now);
+        call_back(state, model, f, (uint32_t)ends[e], dt, now);
     }
 }

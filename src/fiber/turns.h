@@ -17,8 +17,8 @@
 #include "state/state.h"
 #include "state/work.h"
 
-/* Padding 2009, Eq. (4): where vertex i wants to go in a time dt. False, with the fault recorded, if that is further
- * than half the shortest edge, or not a number. */
+/* Padding 2009, Eq. (4): where vertex i wants to go in a time dt, in the frame of the moves. False, with the fault
+ * recorded, if that is further than half the shortest edge, or not a number. */
 bool turns_trial(const struct state *state, const struct model *model, struct work *work, uint32_t i, double dt,
                  struct point *to);
 

@@ -7,6 +7,8 @@
 const char *const scene_order_words[] = {"paper", "kick-split", "drift-split", NULL};
 const char *const scene_thermostat_words[] = {"none", "rescale", "maxwell-boltzmann", NULL};
 const char *const scene_exclusion_words[] = {"shared-vertex", "paper", NULL};
+const char *const scene_refusal_words[] = {"stay", "bounce", NULL};
+const char *const scene_frame_words[] = {"laboratory", "flow", NULL};
 const char *const scene_start_words[] = {"equilibrium", "straight", "circle", NULL};
 
 static const struct key solvent_keys[] = {
@@ -150,6 +152,16 @@ static const struct key crossing_keys[] = {
      .fallback = "shared-vertex",
      .choice = scene_exclusion_words,
      .offset = IN_SCENE(model.crossing.exclusion)},
+    {.name = "refusal",
+     .type = KEY_CHOICE,
+     .fallback = "stay",
+     .choice = scene_refusal_words,
+     .offset = IN_SCENE(model.crossing.refusal)},
+    {.name = "frame",
+     .type = KEY_CHOICE,
+     .fallback = "laboratory",
+     .choice = scene_frame_words,
+     .offset = IN_SCENE(model.crossing.frame)},
 };
 static const struct key_table crossing_table = {"crossing", COUNT(crossing_keys), crossing_keys};
 

@@ -83,8 +83,9 @@ static void write_physics(FILE *f, const struct scene *scene)
     fputs("fibers:\n", f);
   for (uint32_t k = 0; k < m->kinds; k++)
     write_kind(f, &m->kind[k]);
-  fprintf(f, "crossing:\n  forbidden: %s\n  exclusion: %s\n", word(m->crossing.forbidden),
-          scene_exclusion_words[m->crossing.exclusion]);
+  fprintf(f, "crossing:\n  forbidden: %s\n  exclusion: %s\n  refusal: %s\n  frame: %s\n", word(m->crossing.forbidden),
+          scene_exclusion_words[m->crossing.exclusion], scene_refusal_words[m->crossing.refusal],
+          scene_frame_words[m->crossing.frame]);
 }
 
 /* A text in double quotes, as YAML reads it. */

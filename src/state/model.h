@@ -24,6 +24,18 @@ enum exclusion {
   EXCLUSION_PAPER          /* those linked to either of the two moving bonds (Padding 2009, Sec. III A, literally) */
 };
 
+/* What a vertex does whose move would cross a bond, after the exchange of momentum. */
+enum refusal {
+  REFUSAL_STAY,  /* it stays where it is (Padding 2009, Sec. III A) */
+  REFUSAL_BOUNCE /* it goes on with its new velocity for what was left of the time, if that crosses nothing */
+};
+
+/* Where a refused move leaves its vertex: moves are made in a frame. */
+enum frame {
+  FRAME_LABORATORY, /* refused vertices stand, and so lag behind a flow (Padding 2009) */
+  FRAME_FLOW        /* they go with the scene's flow */
+};
+
 /* How the fibers of a kind are laid at the start. */
 enum fiber_start {
   START_EQUILIBRIUM, /* exact sample of the phantom chain, open fibers only */
@@ -64,6 +76,8 @@ struct solvent_model {
 struct crossing_model {
   bool forbidden; /* false: phantom fibers */
   enum exclusion exclusion;
+  enum refusal refusal;
+  enum frame frame;
 };
 
 struct model {
@@ -99,6 +113,12 @@ void model_free(struct model *model);
 static inline bool model_has_solvent(const struct model *model)
 {
   return model->solvent.particles > 0;
+}
+
+/* a0/t0: the velocity of the frame in which moves are made. */
+static inline struct vec3 model_frame_velocity(const struct model *model)
+{
+  return model->crossing.frame == FRAME_FLOW ? model->flow : (struct vec3){0, 0, 0};
 }
 
 static inline double model_collision_interval(const struct model *model)

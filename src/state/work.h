@@ -70,6 +70,7 @@ struct neighbors {
   int64_t cell_edge[3];          /* lattice units */
   uint32_t cell_count;
   struct neighbor_row *entries; /* [cell_count] bonds, with the image that puts them there */
+  struct point moved;           /* how far everything has moved as one since anchors were first taken */
   uint64_t renewed;             /* anchors taken so far, for benchmarks */
 };
 

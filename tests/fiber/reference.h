@@ -54,6 +54,7 @@ struct reference {
   uint64_t image_hits;        /* hits of bonds that are not in the image 0 */
   uint64_t linked_image_hits; /* hits of an image of a bond that shares a vertex */
   uint64_t second_bond;       /* hits of the bond after the vertex */
+  uint64_t stopped;           /* bounces that would have crossed something */
   uint64_t touches;           /* standing bonds that are exactly touched, and judged by convention */
   bool by_convention;         /* touches are expected */
   double fast;                /* share of the vertices that are thrown 150 times as far as the others */
@@ -186,9 +187,9 @@ static inline double exchange_by_hand(struct reference *ref, const struct found 
   return (double)dp;
 }
 
-/* The events told of this vertex are exactly the hits found; the first of them is executed. */
-static inline void compare_events(struct reference *ref, uint32_t vertex, const struct found *found, uint32_t n,
-                                  struct point to)
+/* The events told of this vertex are exactly the hits found; the first of them is executed. Returns its time. */
+static inline double compare_events(struct reference *ref, uint32_t vertex, const struct found *found, uint32_t n,
+                                    struct point to)
 {
   uint32_t first = 0, executed = 0;
   for (uint32_t k = 1; k < n; k++)
@@ -220,6 +221,7 @@ static inline void compare_events(struct reference *ref, uint32_t vertex, const 
   ref->counts.possible += n;
   ref->counts.executed++;
   ref->counts.negative += dp < 0.0;
+  return found[first].time;
 }
 
 /* The same where touches are expected. Times of hits may then tie exactly, and normals are free where bonds are
@@ -254,6 +256,27 @@ static inline void compare_touches(struct reference *ref, uint32_t vertex, const
   ref->counts.negative += executed->momentum < 0.0;
 }
 
+/* What is left of the step after a hit at this time, with the velocity that the exchange left: the vertex goes there if
+ * nothing is in the way. */
+static inline void bounce_by_hand(struct reference *ref, uint32_t i, struct vec3 before, double time, double dt,
+                                  struct found *found)
+{
+  const struct vec3 after = ref->velocity[i];
+  struct point to = ref->position[i];
+  to.x += llrint(0x1p40 * dt * (time * before.x + (1.0 - time) * after.x));
+  to.y += llrint(0x1p40 * dt * (time * before.y + (1.0 - time) * after.y));
+  to.z += llrint(0x1p40 * dt * (time * before.z + (1.0 - time) * after.z));
+  uint32_t hits = 0;
+  if (ref->model->prev[i] >= 0)
+    hits += find_hits(ref, i, ref->model->prev[i], to, found);
+  if (ref->model->next[i] >= 0)
+    hits += find_hits(ref, i, i, to, found + hits);
+  if (hits == 0)
+    ref->position[i] = to;
+  else
+    ref->stopped++;
+}
+
 static inline void sweep_by_hand(struct reference *ref, double dt, uint64_t step, uint32_t sweep)
 {
   const uint32_t n = ref->model->vertices;
@@ -277,8 +300,11 @@ static inline void sweep_by_hand(struct reference *ref, double dt, uint64_t step
       ref->position[i] = to;
     else if (ref->by_convention)
       compare_touches(ref, i, found, hits);
-    else
-      compare_events(ref, i, found, hits, to);
+    else {
+      const double time = compare_events(ref, i, found, hits, to);
+      if (ref->model->crossing.refusal == REFUSAL_BOUNCE)
+        bounce_by_hand(ref, i, v, time, dt, found);
+    }
   }
   free(order);
   free(found);
@@ -391,6 +417,7 @@ static inline void compare_sweeps(struct test_run *r, struct dice *d, int sweeps
   total->linked_image_hits += ref.linked_image_hits;
   total->second_bond += ref.second_bond;
   total->touches += ref.touches;
+  total->stopped += ref.stopped;
   exact_close(&ref.exact);
   free(ref.position);
   free(ref.velocity);
