@@ -10,7 +10,7 @@
 #include "solvent/collide.h"
 #include "solvent/solvent.h"
 
-#define LONG_SWEEP 32.0 /* dt */
+#define LONG_SWEEP 32.0 /* dt, or 16, 8, ... if no more fits into the box */
 
 /* --- random numbers ---------------------------------------------------------------------------------------------- */
 
@@ -192,24 +192,49 @@ static bool sweep_for(struct oracle_stage *g, double fraction, uint32_t sweep)
   return ok;
 }
 
-/* Moves many times as long as the scene's cross often, several bonds at once; then all is put back. */
+/* Positions and velocities of the vertices, to be put back. */
+struct vertices {
+  struct point *position;
+  struct vec3 *velocity;
+};
+
+static void put_back(struct oracle_stage *g, const struct vertices *saved)
+{
+  const size_t n = g->state->vertices;
+  memcpy(g->state->position, saved->position, n * sizeof *saved->position);
+  memcpy(g->state->velocity, saved->velocity, n * sizeof *saved->velocity);
+  g->work->fiber.neighbors.built = false;
+}
+
+/* True if no vertex of a sweep moves further than the box allows; exchanges can make one faster. All is put back. */
+static bool moves_fit(struct oracle_stage *g, double fraction, const struct vertices *saved)
+{
+  const bool ok = fiber_sweep(g->state, g->model, g->work, fraction, g->place.step, 1, NULL);
+  const bool fits = ok || g->work->fault.code != FAULT_VERTEX_MOVE;
+  if (!fits)
+    g->work->fault = (struct fault){0};
+  put_back(g, saved);
+  return fits;
+}
+
+/* Moves many times as long as the scene's, as long as the box allows: they cross often, several bonds at once. */
 static bool run_long_sweep(struct oracle_stage *g)
 {
   const size_t n = g->state->vertices;
-  struct point *position = malloc((n + 1) * sizeof *position);
-  struct vec3 *velocity = malloc((n + 1) * sizeof *velocity);
-  g->pack->failed |= !position || !velocity;
-  bool ok = position && velocity;
+  struct vertices saved = {malloc((n + 1) * sizeof *saved.position), malloc((n + 1) * sizeof *saved.velocity)};
+  bool ok = saved.position && saved.velocity;
+  g->pack->failed |= !ok;
   if (ok) {
-    memcpy(position, g->state->position, n * sizeof *position);
-    memcpy(velocity, g->state->velocity, n * sizeof *velocity);
-    ok = sweep_for(g, LONG_SWEEP, 1);
-    memcpy(g->state->position, position, n * sizeof *position);
-    memcpy(g->state->velocity, velocity, n * sizeof *velocity);
-    g->work->fiber.neighbors.built = false;
+    memcpy(saved.position, g->state->position, n * sizeof *saved.position);
+    memcpy(saved.velocity, g->state->velocity, n * sizeof *saved.velocity);
+    double fraction = LONG_SWEEP;
+    while (fraction > 1.0 && !moves_fit(g, fraction, &saved))
+      fraction *= 0.5;
+    ok = sweep_for(g, fraction, 1);
+    put_back(g, &saved);
   }
-  free(position);
-  free(velocity);
+  free(saved.position);
+  free(saved.velocity);
   return ok;
 }
 
