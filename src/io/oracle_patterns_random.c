@@ -71,15 +71,17 @@ static bool step_short(const struct oracle_pair *p)
   return words_are(p, (struct recipe){.rounds = 10, .step_short = true});
 }
 
-/* From the first address on, whatever it is. */
+/* All but a few addresses, which may look the same either way. */
 static bool words_unlike(const struct oracle_pair *p)
 {
   const struct pack_table *ours = oracle_sibling(p, "out.word"), *theirs = oracle_sibling_of_theirs(p, "out.word");
+  uint32_t values = 0, right = 0;
   for (uint32_t row = 0; ours && theirs && row < ours->rows; row++)
-    for (uint32_t k = 0; k < ours->columns; k++)
-      if (pack_value(ours, row, k) == pack_value(theirs, row, k))
-        return false;
-  return ours && theirs;
+    for (uint32_t k = 0; k < ours->columns; k++) {
+      values++;
+      right += pack_value(ours, row, k) == pack_value(theirs, row, k);
+    }
+  return right < values && 8 * (uint64_t)right <= values;
 }
 
 static double without_half(const struct oracle_pair *p, uint32_t row, uint32_t column)
@@ -227,7 +229,7 @@ const struct oracle_pattern oracle_patterns_random[] = {
     {"random", NULL, key_exchanged, "the key's words exchanged: the low one of the seed comes first"},
     {"random", NULL, entity_short, "entities cut to 16 bits"},
     {"random", NULL, step_short, "steps cut to 32 bits: the high word is the counter's last"},
-    {"random", NULL, words_unlike, "no word is right: counter, key or rounds of Philox"},
+    {"random", NULL, words_unlike, "hardly a word is right: counter, key or rounds of Philox"},
     {"random", "out.uniform", half_missing, "uniforms without their half: multiples of 2^-52, and 0 among them"},
     {"shift", "out.shift", shift_of_other_step, "random address: the shift of the step before or after"},
     {NULL, "out.order", is_inverse, "the inverse permutation: applied from the other side"},
