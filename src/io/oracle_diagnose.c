@@ -187,10 +187,10 @@ const char *oracle_diagnose(const struct oracle_pair *p)
 {
   /* Those of an operator first. */
   static const struct oracle_pattern *const lists[] = {oracle_patterns_random, oracle_patterns_solvent,
-                                                       oracle_patterns_sweep, oracle_patterns_any};
+                                                       oracle_patterns_sweep, oracle_patterns_any, NULL};
   const bool swept = strcmp(p->ours->place.operator_name, "long_sweep") == 0;
   const char *meaning = NULL;
-  for (size_t k = 0; k < sizeof lists / sizeof *lists && !meaning && p->ours->columns == p->theirs->columns; k++)
+  for (size_t k = 0; lists[k] && !meaning && p->ours->columns == p->theirs->columns; k++)
     meaning = search(lists[k], p, swept ? "sweep" : p->ours->place.operator_name);
   return meaning;
 }
