@@ -18,12 +18,13 @@
  *   drift-split  between two half drifts: the same, half a step earlier
  *
  * Solvent particles fly freely between collisions, so they are streamed when a collision needs them, over the whole
- * interval at once; until then a drift only adds to their lag.
+ * interval at once; until then a drift only adds to their lag. A bath of phantoms has no particles to stream.
  */
 #include "step.h"
 
 #include "fiber/force.h"
 #include "fiber/start.h"
+#include "solvent/bath.h"
 #include "solvent/solvent.h"
 
 enum action { END, DRIFT, COLLIDE, FORCE, KICK };
@@ -41,10 +42,14 @@ static const struct stage with_collision[][6] = {
     [ORDER_DRIFT_SPLIT] = {{DRIFT, 0.5}, {COLLIDE, 0}, {DRIFT, 0.5}, {FORCE, 0}, {KICK, 1.0}, {END, 0}},
 };
 
-static bool collide(struct state *state, const struct model *model, struct work *work, uint64_t step)
+static bool collide_with_particles(struct state *state, const struct model *model, struct work *work, uint64_t step)
 {
   return solvent_stream(state, model, work) && solvent_collide(state, model, work, step);
 }
+
+typedef bool collision(struct state *, const struct model *, struct work *, uint64_t step);
+
+static collision *const collide[] = {[BATH_PARTICLES] = collide_with_particles, [BATH_PHANTOMS] = bath_collide};
 
 static const char *const action_names[] = {
     [END] = "end", [DRIFT] = "drift", [COLLIDE] = "collide", [FORCE] = "force", [KICK] = "kick"};
@@ -63,7 +68,7 @@ bool step_advance_watched(struct state *state, const struct model *model, struct
       state->solvent_lag += stage->fraction == 0.5 ? 1 : 2;
       break;
     case COLLIDE:
-      ok = collide(state, model, work, step);
+      ok = collide[model->solvent.bath](state, model, work, step);
       break;
     case FORCE:
       ok = fiber_forces(state, model, work, step);
@@ -86,7 +91,8 @@ bool step_advance(struct state *state, const struct model *model, struct work *w
   return step_advance_watched(state, model, work, log, NULL);
 }
 
-/* Takes the total momentum out of the state and gives it the flow's: the same change of velocity for everybody. */
+/* Takes the total momentum out of the state and gives it the flow's: the same change of velocity for everybody. A bath
+ * exchanges momentum with the fibers, so there it is no constant, and left as it was drawn. */
 static void set_total_momentum(struct state *state, const struct model *model)
 {
   struct solvent *s = &state->solvent;
@@ -96,8 +102,8 @@ static void set_total_momentum(struct state *state, const struct model *model)
   for (uint32_t v = 0; v < state->vertices; v++)
     p = vec3_add_scaled(p, model->mass[v], state->velocity[v]);
 
-  struct vec3 change =
-      model->total_mass > 0.0 ? vec3_add_scaled(model->flow, -1.0 / model->total_mass, p) : model->flow;
+  const bool conserved = !model_has_phantoms(model) && model->total_mass > 0.0;
+  struct vec3 change = conserved ? vec3_add_scaled(model->flow, -1.0 / model->total_mass, p) : model->flow;
   for (uint32_t i = 0; i < s->n; i++) {
     s->vx[i] += change.x;
     s->vy[i] += change.y;

@@ -25,11 +25,12 @@ bool step_advance_watched(struct state *state, const struct model *model, struct
 /* True if a collision belongs to step number `step` (the first step is number 1). */
 static inline bool step_collides(const struct model *model, uint64_t step)
 {
-  return model_has_solvent(model) && step % model->solvent.interval_steps == 0;
+  return model_collides(model) && step % model->solvent.interval_steps == 0;
 }
 
-/* The starting state (Padding 2009, Sec. III, step 1): solvent, fibers, no total momentum but the flow's, and
- * velocities half a step ahead. False, with the fault recorded, if a bond does not fit the box. */
+/* The starting state (Padding 2009, Sec. III, step 1): solvent, fibers, no total momentum but the flow's (in a bath of
+ * phantoms, a thermal one), and velocities half a step ahead. False, with the fault recorded, if a bond does not fit
+ * the box. */
 bool step_start(struct state *state, const struct model *model, struct work *work);
 
 #endif

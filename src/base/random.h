@@ -20,6 +20,8 @@ enum random_purpose {
   RANDOM_VERTEX_ORDER = 3,      /* permutation; draw = 0 or 1: the sweep within the step */
   RANDOM_VELOCITY_SWAP = 4,     /* permutation of the solvent's velocities */
   RANDOM_THERMOSTAT = 5,        /* entity = cell; draw = attempt */
+  RANDOM_PHANTOM_NUMBER = 6,    /* entity = cell; draw = part/2 */
+  RANDOM_PHANTOM_VELOCITY = 7,  /* entity = cell; draw = 0 or 1 */
   RANDOM_SOLVENT_POSITION = 16, /* entity = particle id; step 0 from here on: starting states */
   RANDOM_SOLVENT_VELOCITY = 17, /* entity = particle id */
   RANDOM_VERTEX_VELOCITY = 18,  /* entity = vertex */

@@ -44,9 +44,10 @@ static void report_kind_parameters(const struct fiber_kind *k)
 static void report_table_1(const struct model *m)
 {
   heading("Parameters (paper, Table I)");
-  if (model_has_solvent(m)) {
+  if (model_collides(m)) {
     row("particles per cell", "gamma", m->solvent.per_cell, "1/a0^3", "");
-    row("particles", "N_s", m->solvent.particles, "", "");
+    if (model_has_solvent(m))
+      row("particles", "N_s", m->solvent.particles, "", "");
     row("collision interval", "dt_c", model_collision_interval(m), "t0", "");
     row("rotation angle", "alpha", m->solvent.rotation_angle, "degrees", "");
   }
@@ -89,8 +90,9 @@ static void report_vertex(const struct model *m, const struct fiber_kind *k)
   row("  velocity kept per collision", "c", theory_vertex_retention(k->mass, gamma, cosine), "", "");
   row("  vertex diffusion, without HI", "D_0", d0, "a0^2/t0", "");
   row("  vertex friction, without HI", "kT/D_0", 1.0 / d0, "m/t0", "");
-  row("  hydrodynamic radius, from D_0 alone", "a_h", theory_hydrodynamic_radius(viscosity(m), d0), "a0",
-      "with HI: 0.25 to 0.3");
+  if (model_has_solvent(m))
+    row("  hydrodynamic radius, from D_0 alone", "a_h", theory_hydrodynamic_radius(viscosity(m), d0), "a0",
+        "with HI: 0.25 to 0.3");
   if (k->bending == 0.0 && k->bond_length == 0.0 && !k->ring && k->vertices > 1)
     row("  slowest Rouse mode, without HI", "tau_1", theory_rouse_time(k, 1.0 / d0), "t0", "");
 }
@@ -166,7 +168,7 @@ static void report_flow(const struct model *m, const struct fiber_kind *k)
 static void report_kind(const struct model *m, const struct fiber_kind *k)
 {
   printf("\nFibers '%s'\n", k->name);
-  if (model_has_solvent(m))
+  if (model_collides(m))
     report_vertex(m, k);
   if (k->vertices < 2)
     return;
@@ -229,12 +231,13 @@ static void report_parts(const struct scene *scene)
 {
   const struct model *m = &scene->model;
   const struct solvent_model *s = &m->solvent;
-  const bool solvent = model_has_solvent(m), quarter = s->cosine == 0.0;
+  const bool solvent = model_has_solvent(m), collides = model_collides(m), quarter = s->cosine == 0.0;
   const struct part parts[] = {
       {"streaming of the solvent", "solvent/stream.c", solvent},
-      {"collisions", "solvent/collide.c", solvent},
-      {"... rotation by 90 degrees", "solvent/srd.h", solvent && quarter},
-      {"... rotation by any angle", "solvent/srd.h", solvent && !quarter},
+      {"collisions", "solvent/collide.c", collides},
+      {"... with phantoms for a solvent", "solvent/bath.c", model_has_phantoms(m)},
+      {"... rotation by 90 degrees", "solvent/srd.h", collides && quarter},
+      {"... rotation by any angle", "solvent/srd.h", collides && !quarter},
       {"thermostat's sums and factors", "solvent/thermostat.c", solvent && s->thermostat != THERMOSTAT_NONE},
       {"permuted velocities", "solvent/reorder.c", solvent && !s->hydrodynamics},
       {"moves of vertices", "fiber/sweep.c", m->vertices > 0},
@@ -254,6 +257,7 @@ static void report_parts(const struct scene *scene)
 
 /* Rates measured on one core of an x86-64 of the 2020s, in ns: good for a guess within a factor of 2. */
 static const double solvent_rate = 15.0;           /* per particle and collision */
+static const double phantom_rate = 170.0;          /* per vertex and collision, phantoms for a solvent */
 static const double vertex_rate = 25.0;            /* per vertex and step, phantom fibers */
 static const double crossing_rate = 140.0;         /* per vertex and step, with the search for crossings ... */
 static const double crossing_density_rate = 135.0; /* ... and more for each unit of fiber length per volume */
@@ -263,8 +267,9 @@ static void report_cost(const struct scene *scene)
   const struct model *m = &scene->model;
   const bool search = m->crossing.forbidden && m->bonds > 0;
   const double vertex = search ? crossing_rate + crossing_density_rate * theory_line_density(m) : vertex_rate;
-  const double collisions = model_has_solvent(m) ? 1.0 / m->solvent.interval_steps : 0.0;
-  const double step = 1e-9 * (solvent_rate * m->solvent.particles * collisions + vertex * m->vertices);
+  const double collisions = model_collides(m) ? 1.0 / m->solvent.interval_steps : 0.0;
+  const double phantoms = model_has_phantoms(m) ? phantom_rate * collisions : 0.0;
+  const double step = 1e-9 * (solvent_rate * m->solvent.particles * collisions + (vertex + phantoms) * m->vertices);
   heading("Cost (an estimate, without observables and files)");
   row("memory", "", (double)work_bytes(m) / 1048576.0, "MiB", "");
   row("steps per second", "", 1.0 / step, "1/s", "");

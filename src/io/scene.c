@@ -62,9 +62,33 @@ static bool settle_interval(const struct settling *s, const yaml_node_t *node)
   return true;
 }
 
+enum { MOST_PHANTOMS = 1000 }; /* per cell: keeps their momentum within a part of its sum's range, see solvent/bath.c */
+
+/* Phantoms are a heat bath of their own, without a past or a motion that others could act on. */
+static bool settle_phantoms(const struct settling *s, const yaml_node_t *node)
+{
+  const struct solvent_model *m = &s->draft->scene.model.solvent;
+  const struct {
+    bool ok;
+    const char *why;
+  } rows[] = {
+      {!m->hydrodynamics, "phantoms carry no hydrodynamic interactions; allowed with hydrodynamics: false"},
+      {m->thermostat == THERMOSTAT_NONE, "phantoms are a thermostat; allowed with thermostat: none"},
+      {vec3_norm(m->acceleration) == 0.0, "phantoms are not accelerated; allowed with acceleration: [0, 0, 0]"},
+      {m->per_cell <= MOST_PHANTOMS, "too many phantoms; allowed with a per_cell of at most 1000"},
+      {s->draft->fibers.count > 0, "phantoms are drawn for fibers only, and there are none; allowed: particles"},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+    if (!rows[i].ok)
+      return yaml_refuse(s->file, place_of(s, node, "bath"), s->message, "solvent.bath: %s", rows[i].why);
+  return true;
+}
+
 static bool settle_particles(const struct settling *s, const yaml_node_t *node)
 {
   struct model *m = &s->draft->scene.model;
+  if (model_has_phantoms(m))
+    return settle_phantoms(s, node);
   double particles = nearbyint(m->solvent.per_cell * box_volume(&m->box));
   if (!(particles >= 1.0 && particles < 2147483648.0))
     return yaml_refuse(s->file, place_of(s, node, "per_cell"), s->message,

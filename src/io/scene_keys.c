@@ -6,6 +6,7 @@
 
 const char *const scene_order_words[] = {"paper", "kick-split", "drift-split", NULL};
 const char *const scene_thermostat_words[] = {"none", "rescale", "maxwell-boltzmann", NULL};
+const char *const scene_bath_words[] = {"particles", "phantoms", NULL};
 const char *const scene_exclusion_words[] = {"shared-vertex", "paper", NULL};
 const char *const scene_refusal_words[] = {"stay", "bounce", NULL};
 const char *const scene_frame_words[] = {"laboratory", "flow", NULL};
@@ -47,6 +48,11 @@ static const struct key solvent_keys[] = {
      .fallback = "true",
      .offset = IN_SCENE(model.solvent.hydrodynamics),
      .symbol = "HI"},
+    {.name = "bath",
+     .type = KEY_CHOICE,
+     .fallback = "particles",
+     .choice = scene_bath_words,
+     .offset = IN_SCENE(model.solvent.bath)},
     {.name = "acceleration",
      .type = KEY_VECTOR,
      .fallback = "[0, 0, 0]",

@@ -26,6 +26,7 @@ struct draft_place {
 extern const struct key_table scene_top_table;
 
 /* Words of the choices, in the order of their enums, ended by NULL. */
+extern const char *const scene_bath_words[];
 extern const char *const scene_order_words[], *const scene_thermostat_words[], *const scene_exclusion_words[],
                                                                                    *const scene_refusal_words[],
                                                                                        *const scene_frame_words[],

@@ -49,6 +49,7 @@ static void write_solvent(FILE *f, const struct model *m)
   write_line(f, "  collision_interval: ", model_collision_interval(m));
   write_line(f, "  rotation_angle: ", s->rotation_angle);
   fprintf(f, "  thermostat: %s\n  hydrodynamics: %s\n", scene_thermostat_words[s->thermostat], word(s->hydrodynamics));
+  fprintf(f, "  bath: %s\n", scene_bath_words[s->bath]);
   write_vector(f, "  acceleration: ", s->acceleration, "\n");
 }
 
@@ -77,7 +78,7 @@ static void write_physics(FILE *f, const struct scene *scene)
   write_line(f, "time_step: ", m->time_step);
   fprintf(f, "order: %s\n", scene_order_words[m->order]);
   write_vector(f, "flow: ", m->flow, "\n");
-  if (model_has_solvent(m))
+  if (model_collides(m))
     write_solvent(f, m);
   if (m->kinds > 0)
     fputs("fibers:\n", f);

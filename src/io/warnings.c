@@ -29,7 +29,7 @@ static void warn(struct teller *t, const char *format, ...)
 static void warn_solvent(struct teller *t, const struct model *m)
 {
   const struct solvent_model *s = &m->solvent;
-  if (model_collision_interval(m) > 0.1 * (1.0 + 1e-9))
+  if (model_has_solvent(m) && model_collision_interval(m) > 0.1 * (1.0 + 1e-9))
     warn(t, "collision_interval %.6g > 0.1 t0: the mean free path is no liquid's (paper, Sec. IV A)",
          model_collision_interval(m));
   if (s->rotation_angle < 90.0)
@@ -56,7 +56,7 @@ static void warn_force(struct teller *t, const struct model *m)
   for (uint32_t k = 0; k < m->kinds; k++)
     scale += (double)m->kind[k].count * m->kind[k].vertices * vec3_norm(m->kind[k].force);
   const struct vec3 net = theory_net_force(m);
-  if (vec3_norm(net) > 1e-12 * scale)
+  if (!model_has_phantoms(m) && vec3_norm(net) > 1e-12 * scale) /* a bath takes the momentum up */
     warn(t,
          "a net force of (%.6g, %.6g, %.6g) kT/a0 acts on a periodic system, which accelerates without end by %.3g "
          "a0/t0^2; balance it with solvent.acceleration",
@@ -82,7 +82,7 @@ static void warn_kind(struct teller *t, const struct scene *scene, const struct 
 {
   const struct model *m = &scene->model;
   const double gamma = m->solvent.per_cell, phase = theory_highest_frequency(k) * m->time_step;
-  if (model_has_solvent(m) && (k->mass > 2.0 * gamma || k->mass < 0.5 * gamma))
+  if (model_collides(m) && (k->mass > 2.0 * gamma || k->mass < 0.5 * gamma))
     warn(t, "fibers '%s': mass %.6g is far from gamma = %.6g, the mass of the solvent in a cell (paper, Sec. IV A)",
          k->name, k->mass, gamma);
   if (k->vertices < 2)
@@ -107,7 +107,7 @@ static void warn_kind(struct teller *t, const struct scene *scene, const struct 
 static void warn_heating(struct teller *t, const struct scene *scene)
 {
   const struct model *m = &scene->model;
-  if (!m->crossing.forbidden || m->solvent.thermostat != THERMOSTAT_NONE || m->bonds == 0)
+  if (!m->crossing.forbidden || m->solvent.thermostat != THERMOSTAT_NONE || model_has_phantoms(m) || m->bonds == 0)
     return;
   double phase = 0.0;
   for (uint32_t k = 0; k < m->kinds; k++)
@@ -146,7 +146,7 @@ int scene_warnings(const struct scene *scene, void (*tell)(void *context, const 
 {
   struct teller t = {tell, context, 0};
   const struct model *m = &scene->model;
-  if (model_has_solvent(m))
+  if (model_collides(m))
     warn_solvent(&t, m);
   warn_flow(&t, m);
   warn_force(&t, m);

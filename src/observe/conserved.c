@@ -82,6 +82,7 @@ bool motion_work(struct work *work, const struct model *model)
 {
   struct model fibers_only = *model; /* forces need no room for collisions */
   fibers_only.solvent.particles = 0;
+  fibers_only.solvent.bath = BATH_PARTICLES;
   return work_alloc(work, &fibers_only);
 }
 
@@ -126,8 +127,11 @@ static double vertex_temperature(const struct vertex_motion *v, double mass, dou
 struct temperatures motion_temperatures(const struct model *model, const struct motion *m)
 {
   const double n = model->solvent.particles, total = model->total_mass, vertices = total - n;
-  const struct vec3 u = vec3_scale(1.0 / total, vec3_add(m->solvent_sum, m->vertex.momentum));
-  const double solvent_freedom = n * (1.0 - 1.0 / total), vertex_freedom = 3.0 * (model->vertices - vertices / total);
+  /* A box by itself keeps its velocity, which takes three degrees of freedom; a bath of phantoms has the flow's. */
+  const bool kept = !model_has_phantoms(model);
+  const struct vec3 u = kept ? vec3_scale(1.0 / total, vec3_add(m->solvent_sum, m->vertex.momentum)) : model->flow;
+  const double solvent_freedom = n * (1.0 - 1.0 / total);
+  const double vertex_freedom = 3.0 * (model->vertices - (kept ? vertices / total : 0.0));
   const struct vec3 squares = {squares_about(m->solvent_squares.x, m->solvent_sum.x, n, u.x),
                                squares_about(m->solvent_squares.y, m->solvent_sum.y, n, u.y),
                                squares_about(m->solvent_squares.z, m->solvent_sum.z, n, u.z)};

@@ -36,7 +36,8 @@ struct motion motion_measure(const struct model *model, const struct state *stat
 
 /* Temperatures relative to the velocity of the centre of mass of everything, in kT. Where total momentum is fixed, a
  * particle of mass m has m <(v - v_cm)^2> = 3 kT (1 - m/M_total), not 3 kT: each sum is divided accordingly, so that
- * the mean is 1 at any system size. NaN where there is nothing to measure. */
+ * the mean is 1 at any system size. In a bath of phantoms they are relative to the flow, and nothing is fixed. NaN
+ * where there is nothing to measure. */
 struct temperatures {
   struct vec3 solvent;        /* by component */
   double vertex, vertex_half; /* mass-weighted over all vertices, with velocities of the step, and of the half step */

@@ -87,6 +87,8 @@ struct fiber_motion fiber_motion(const struct fiber_kind *kind, const struct poi
 
 struct vec3 dynamics_drift(const struct model *model, double from, double to)
 {
+  if (model_has_phantoms(model))
+    return vec3_scale(to - from, model->flow);
   struct vec3 force = vec3_scale(model->solvent.particles, model->solvent.acceleration);
   for (uint32_t k = 0; k < model->kinds; k++) {
     const struct fiber_kind *kind = &model->kind[k];

@@ -62,7 +62,7 @@ static uint64_t sum_cells(const struct state *state, const struct model *model, 
 {
   const struct solvent *s = &state->solvent;
   struct collision_work *c = &work->collision;
-  memset(c->sum, 0, (size_t)box_cell_count(&model->box) * sizeof *c->sum);
+  memset(c->sum, 0, (size_t)c->cells * sizeof *c->sum);
   uint64_t span = 0;
   for (uint32_t i = 0; i < s->n; i += MOMENTA)
     span |= sum_particles(s, c, i, s->n - i < MOMENTA ? s->n - i : MOMENTA);
@@ -105,16 +105,21 @@ static bool blame_fastest(const struct state *state, const struct model *model, 
   return work_fault(work, f.code, step, f.who, f.momentum, limit);
 }
 
+/* Cell number of a place in sum and turn. */
+static uint32_t cell_number(const struct collision_work *c, uint32_t place)
+{
+  return c->occupied ? c->occupied[place] : place;
+}
+
 /* The sums are right if members times the largest momentum fits in 63 bits, and members times the largest mass in
  * 40. */
 static bool check_range(const struct state *state, const struct model *model, struct work *work, uint64_t span,
                         uint64_t step)
 {
   const struct cell_sum *sum = work->collision.sum;
-  const int64_t cells = box_cell_count(&model->box);
-  uint32_t most = 0;
-  int64_t where = 0;
-  for (int64_t k = 0; k < cells; k++)
+  const uint32_t cells = work->collision.cells;
+  uint32_t most = 0, where = 0;
+  for (uint32_t k = 0; k < cells; k++)
     if (srd_members(&sum[k]) > most) {
       most = srd_members(&sum[k]);
       where = k;
@@ -125,23 +130,27 @@ static bool check_range(const struct state *state, const struct model *model, st
       return blame_fastest(state, model, work, limit, step);
   const double heaviest = 0x1p40 * SRD_MASS_UNIT;
   return most * model->max_mass < heaviest ||
-         work_fault(work, FAULT_CELL_MASS, step, where, most * model->max_mass, heaviest);
+         work_fault(work, FAULT_CELL_MASS, step, cell_number(&work->collision, where), most * model->max_mass,
+                    heaviest);
 }
 
-/* Axes of some cells at once. */
-static void draw_axes(const struct model *model, struct collision_work *c, uint64_t step, const uint32_t *cell,
+/* Axes of some cells at once, from their places in sum and turn. */
+static void draw_axes(const struct model *model, struct collision_work *c, uint64_t step, const uint32_t *place,
                       uint32_t n)
 {
   struct vec3 axis[RANDOM_AXES];
+  uint32_t cell[RANDOM_AXES];
+  for (uint32_t k = 0; k < n; k++)
+    cell[k] = cell_number(c, place[k]);
   random_axes(model->seed, RANDOM_ROTATION_AXIS, step, cell, n, axis);
   for (uint32_t k = 0; k < n; k++)
-    c->turn[cell[k]].axis = axis[k];
+    c->turn[place[k]].axis = axis[k];
 }
 
 void collide_solve(const struct model *model, struct work *work, uint64_t step)
 {
   struct collision_work *c = &work->collision;
-  const uint32_t cells = (uint32_t)box_cell_count(&model->box);
+  const uint32_t cells = c->cells;
   uint32_t active[RANDOM_AXES] = {0}, n = 0;
   for (uint32_t k = 0; k < cells; k++) {
     srd_solve(&c->sum[k], &c->turn[k]);

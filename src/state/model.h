@@ -18,6 +18,12 @@ enum order { ORDER_PAPER, ORDER_KICK_SPLIT, ORDER_DRIFT_SPLIT };
 
 enum thermostat { THERMOSTAT_NONE, THERMOSTAT_RESCALE, THERMOSTAT_MAXWELL_BOLTZMANN };
 
+/* What vertices collide with. */
+enum bath {
+  BATH_PARTICLES, /* the solvent's particles */
+  BATH_PHANTOMS   /* velocities drawn anew at each collision: a heat bath, see solvent/bath.h */
+};
+
 /* Which bonds a moving bond is not tested against. */
 enum exclusion {
   EXCLUSION_SHARED_VERTEX, /* those that share a vertex with it */
@@ -63,13 +69,14 @@ struct fiber_kind {
 #define MODEL_MASS_UNIT 0x1p-16 /* masses are multiples of this, so that a cell's mass is summed exactly */
 
 struct solvent_model {
-  uint32_t particles;      /* N_s = gamma x cells; 0: no solvent, and no collisions */
+  uint32_t particles;      /* N_s = gamma x cells; 0: none */
   double per_cell;         /* gamma */
   uint32_t interval_steps; /* dt_c / dt: a collision every so many steps */
   double rotation_angle;   /* alpha, in degrees */
   double cosine, sine;     /* of alpha; exactly 0 and 1 at 90 degrees */
   enum thermostat thermostat;
-  bool hydrodynamics;       /* false: the solvent's velocities are permuted after each collision */
+  enum bath bath;
+  bool hydrodynamics;       /* false: particles' velocities are permuted after each collision */
   struct vec3 acceleration; /* constant body force per mass, in a0/t0^2 */
 };
 
@@ -119,6 +126,17 @@ static inline bool model_has_solvent(const struct model *model)
 static inline struct vec3 model_frame_velocity(const struct model *model)
 {
   return model->crossing.frame == FRAME_FLOW ? model->flow : (struct vec3){0, 0, 0};
+}
+
+static inline bool model_has_phantoms(const struct model *model)
+{
+  return model->solvent.bath == BATH_PHANTOMS;
+}
+
+/* Without either there are no collisions. */
+static inline bool model_collides(const struct model *model)
+{
+  return model_has_solvent(model) || model_has_phantoms(model);
 }
 
 static inline double model_collision_interval(const struct model *model)

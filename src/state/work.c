@@ -11,14 +11,30 @@ struct need {
   size_t count, size;
 };
 
-enum { NEEDS = 14 };
+enum { NEEDS = 16 };
+
+/* Bits of a hash table that is at most half full. */
+static uint32_t table_bits(uint32_t entries)
+{
+  uint32_t bits = 1;
+  while (((uint64_t)1 << bits) < 2 * (uint64_t)entries)
+    bits++;
+  return bits;
+}
+
+/* Entries of the cells' sums. */
+static size_t count_cells(const struct model *m)
+{
+  return model_has_phantoms(m) ? m->vertices : model_has_solvent(m) ? (size_t)box_cell_count(&m->box) : 0;
+}
 
 /* The single place that says which scratch a model uses. */
 static void list_needs(struct work *w, const struct model *m, struct need need[NEEDS])
 {
-  size_t cells = model_has_solvent(m) ? (size_t)box_cell_count(&m->box) : 0;
+  size_t cells = count_cells(m);
   size_t particles = m->solvent.particles;
-  size_t colliding = model_has_solvent(m) ? m->vertices : 0;
+  size_t colliding = model_collides(m) ? m->vertices : 0;
+  size_t bathed = model_has_phantoms(m) ? m->vertices : 0;
   size_t thermostatted = m->solvent.thermostat != THERMOSTAT_NONE ? cells : 0;
   size_t swapped = m->solvent.hydrodynamics ? 0 : particles;
   size_t bent = m->bonds ? m->vertices : 0;
@@ -31,6 +47,8 @@ static void list_needs(struct work *w, const struct model *m, struct need need[N
       {(void **)&c->relative, thermostatted, sizeof *c->relative},
       {(void **)&c->solvent_cell, particles, sizeof *c->solvent_cell},
       {(void **)&c->vertex_cell, colliding, sizeof *c->vertex_cell},
+      {(void **)&c->occupied, bathed, sizeof *c->occupied},
+      {(void **)&c->table, bathed ? (size_t)1 << table_bits(m->vertices) : 0, sizeof *c->table},
       {(void **)&c->order, particles, sizeof *c->order},
       {(void **)&c->slot, swapped, sizeof *c->slot},
       {(void **)&c->column, particles, sizeof *c->column},
@@ -59,6 +77,8 @@ bool work_alloc(struct work *w, const struct model *m)
     }
     memset(*need[k].where, 0, need[k].count * need[k].size);
   }
+  w->collision.cells = (uint32_t)count_cells(m);
+  w->collision.table_bits = table_bits(m->vertices);
   if (w->fiber.direction)
     w->fiber.inverse_length = (double *)(w->fiber.direction + m->vertices);
   return true;

@@ -29,15 +29,19 @@ struct cell_turn {
 };
 
 struct collision_work {
+  uint32_t cells;         /* all cells of the box; in a bath of phantoms, those that hold a vertex */
   struct cell_sum *sum;   /* [cells] */
   struct cell_turn *turn; /* [cells] */
   int64_t *relative;      /* [cells] twice the kinetic energy relative to v_cm, 2^-32 kT; thermostat only, else NULL */
   uint32_t *solvent_cell; /* [particles] in memory order */
-  uint32_t *vertex_cell;  /* [vertices] */
-  uint32_t *order;        /* [particles] sorting and velocity swap */
-  uint32_t *slot;         /* [particles] velocity swap only, else NULL */
-  int64_t *column;        /* [particles] one column while it is permuted */
-  uint32_t since_sort;    /* collisions since particles were last sorted by cell */
+  uint32_t *vertex_cell;  /* [vertices] place in sum and turn */
+  uint32_t *occupied;     /* [vertices] numbers of the cells that hold a vertex; phantoms only, else NULL */
+  uint32_t *table;        /* [2^table_bits] hash table: 1 + place in occupied, or 0; phantoms only, else NULL */
+  uint32_t table_bits;
+  uint32_t *order;     /* [particles] sorting and velocity swap */
+  uint32_t *slot;      /* [particles] velocity swap only, else NULL */
+  int64_t *column;     /* [particles] one column while it is permuted */
+  uint32_t since_sort; /* collisions since particles were last sorted by cell */
 };
 
 /* --- fibers ------------------------------------------------------------------------------------------------------ */

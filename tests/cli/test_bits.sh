@@ -33,6 +33,7 @@ scene kick-split none true 90 true >"$dir/default.yaml"
 scene drift-split rescale true 130 true >"$dir/rescale-130.yaml"
 scene paper maxwell-boltzmann true 90 true >"$dir/paper-boltzmann.yaml"
 scene kick-split none false 90 false >"$dir/phantom-no-hydrodynamics.yaml"
+scene kick-split none 'false, bath: phantoms' 90 true >"$dir/bath.yaml"
 
 hashes() { # of all scenes, by this program
   for scene in "$dir"/*.yaml; do
@@ -69,11 +70,11 @@ for variant in "gcc x86-64" "clang native"; do
   folder=$build/bits-$compiler-$march
   MAKEFLAGS='' make -s -j2 -C "$top" CC="$compiler" MARCH="$march" BUILD="$folder" "$folder/uncross" >"$dir/log" 2>&1 || cat "$dir/log"
   [ "$(hashes "$folder/uncross")" = "$wanted" ]
-  ok $? "$compiler -march=$march: the same bits in four scenes"
+  ok $? "$compiler -march=$march: the same bits in five scenes"
   packs "$folder/uncross"
   ok $? "$compiler -march=$march: the same packs"
 done
-[ "$(echo "$wanted" | sort -u | wc -l)" = 4 ]
-ok $? "the four scenes differ"
+[ "$(echo "$wanted" | sort -u | wc -l)" = 5 ]
+ok $? "the five scenes differ"
 echo "1..$count"
 exit $((failures > 0))

@@ -84,6 +84,22 @@ for table in "$dir/observed"/*.csv; do
   ok $? "in three parts or in one: the same table ${table##*/}"
 done
 
+# The same without solvent particles.
+sed 's/^  collision_interval.*/&\n  hydrodynamics: false\n  bath: phantoms/' "$dir/plain.yaml" >"$dir/scene.yaml"
+run "$dir/bath-plain"
+same 0 "$code" "a bath of phantoms: a run ends with exit code 0"
+bath=$(hash_of "$dir/bath-plain")
+sed 's/^  collision_interval.*/&\n  hydrodynamics: false\n  bath: phantoms/' "$dir/observed.yaml" >"$dir/scene.yaml"
+run "$dir/bath-parts" --steps 137
+run "$dir/bath-parts" --resume --steps 263
+run "$dir/bath-parts" --resume
+same "$bath" "$(hash_of "$dir/bath-parts")" "a bath of phantoms: observed, in three parts, or neither: the same final state"
+"$uncross" analyze "$dir/bath-parts/trajectory.h5" --out "$dir/bath-analyzed" >/dev/null 2>"$dir/err"
+ok $? "a bath of phantoms: its trajectory is analyzed"
+cmp -s "$dir/bath-parts/dynamics-fiber.csv" "$dir/bath-analyzed/dynamics-fiber.csv"
+ok $? "a bath of phantoms: the same dynamics from its frames"
+cp "$dir/observed.yaml" "$dir/scene.yaml"
+
 # Interrupted by a signal, in the middle of the loop.
 "$uncross" run "$dir/scene.yaml" --out "$dir/killed" --steps 100000000 --quiet >/dev/null 2>"$dir/err" &
 sleep 1

@@ -397,6 +397,18 @@ class OracleTest(unittest.TestCase):
         self.assertEqual(run("dump", DATA / "dense.start.h5")[0], 2)
         self.assertEqual(run("--help")[0], 0)
 
+    def test_phantoms(self):
+        """A bath of phantoms is traced; packs hold none of its operators."""
+        scene, pack = self.dir / "bath.yaml", self.dir / "bath.h5"
+        scene.write_text("box: [4, 4, 4]\ntime_step: 0.02\nsteps: 4\n"
+                         "solvent: {per_cell: 5, collision_interval: 0.02, hydrodynamics: false, bath: phantoms}\n"
+                         "fibers: [{name: a, count: 2, vertices: 3, mass: 5, bond_length: 0.5, spring: 100}]\n")
+        status, said = run("emit", scene, "-o", pack)
+        self.assertEqual((status, pack.exists()), (2, False))
+        self.assertIn("solvent.bath: phantoms", said)
+        status, said = run("trace", scene)
+        self.assertEqual((status, said.count(",collide,")), (0, 4))
+
 
 if __name__ == "__main__":
     unittest.main()

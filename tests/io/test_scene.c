@@ -155,6 +155,11 @@ static const struct bad bad_scenes[] = {
     {17, "  - {name: a, count: 1, vertices: 1, mass: 1, bond_length: 0, spring: 1}", 17, 12, "'a' is the name of an"},
     {21, "  dynamics: {every: 10, longest_lag: 5}", 21, 38, "5 steps, sampled every 10; allowed: 0"},
     {18, "start: {snapshot: nowhere.h5}\ncrossing:", 18, 19, "cannot be read: No such file or directory; allowed"},
+    {9, "  bath: ghosts", 9, 9, "solvent.bath: 'ghosts' is no choice here; allowed: particles | phantoms"},
+    {9, "  bath: phantoms", 9, 9, "phantoms carry no hydrodynamic interactions; allowed with hydrodynamics: false"},
+    {9, "  hydrodynamics: false\n  bath: phantoms\n  thermostat: rescale", 10, 9, "phantoms are a thermostat; allowed"},
+    {9, "  hydrodynamics: false\n  bath: phantoms\n  acceleration: [0, 0, 1]", 10, 9, "phantoms are not accelerated"},
+    {7, "  per_cell: 1001\n  hydrodynamics: false\n  bath: phantoms", 9, 9, "allowed with a per_cell of at most 1000"},
     /* YAML itself */
     {4, "seed: &x 1", 4, 7, "anchors (&) are not read"},
     {4, "seed: *x", 4, 7, "aliases (*) are not read"},
@@ -436,6 +441,8 @@ static void fingerprints(void **unused)
       {9, "  rotation_angle: 91", false},
       {9, "  thermostat: rescale", false},
       {9, "  hydrodynamics: false", false},
+      {9, "  hydrodynamics: false\n  bath: particles", false},
+      {9, "  bath: particles", true},
       {9, "  acceleration: [1e-9, 0, 0]", false},
       {11, "  - name: b", false},
       {12, "    count: 3", false},
@@ -502,6 +509,7 @@ static void warnings(void **unused)
       {16, "    spring: 0.3\n    start: equilibrium", "are expected to reach half the shortest edge"},
       {21, "  dynamics: {every: 10, longest_lag: 50}", "more than a quarter of the run's 100 steps"},
       {21, "  dynamics: {every: 200}", "sampled every 200 steps, but the run has 100"},
+      {9, "  hydrodynamics: false\n  bath: phantoms", NULL},
       {19, "  forbidden: false\n# ", NULL},
       {21, "  collisions: {every: 10}\n# ", NULL},
   };
@@ -520,6 +528,14 @@ static void warnings(void **unused)
   balanced.model.solvent.acceleration.z = -16.0 / 20480.0;
   assert_int_equal(scene_warnings(&balanced, NULL, NULL), 0);
   scene_free(&balanced);
+  /* A bath takes momentum and heat, and has no mean free path. */
+  struct scene bath = read_with(8, "  collision_interval: 0.2\n  hydrodynamics: false\n  bath: phantoms");
+  bath.model.kind[0].force.z = 1.0;
+  bath.model.order = ORDER_PAPER;
+  char all[8192] = "";
+  scene_warnings(&bath, collect, all);
+  assert_string_equal(all, "");
+  scene_free(&bath);
 }
 
 /* Rejected moves heat: at cL^3 = 1000 by a quarter in 300 t0, at 100 by 1e-5 per t0 (DESIGN's prototype). */
@@ -625,6 +641,18 @@ static void report(void **unused)
   assert_non_null(strstr(text, "skipped bends"));
   assert_null(strstr(text, "nan"));
   assert_null(strstr(text, "inf"));
+  free(text);
+  scene_free(&s);
+
+  s = read_with(9, "  hydrodynamics: false\n  bath: phantoms");
+  assert_true(s.model.solvent.particles == 0 && model_has_phantoms(&s.model));
+  text = report_of(&s);
+  assert_non_null(strstr(text, "skipped streaming of the solvent"));
+  assert_non_null(strstr(text, "used    ... with phantoms for a solvent"));
+  assert_non_null(strstr(text, "skipped permuted velocities"));
+  assert_non_null(strstr(text, "vertex diffusion, without HI"));
+  assert_null(strstr(text, "viscosity"));
+  assert_null(strstr(text, "hydrodynamic radius"));
   free(text);
   scene_free(&s);
 }

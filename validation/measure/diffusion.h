@@ -39,9 +39,12 @@ static inline double diffusion_energy_given(double per_cell, double loading, dou
   return 4.0 / 3.0 * (1.0 - cosine) * average;
 }
 
-/* kT of a closed box at rest. It is set by the starting state, and scatters by sqrt(2/3N) from seed to seed. */
+/* kT of a closed box at rest. It is set by the starting state, and scatters by sqrt(2/3N) from seed to seed. A bath of
+ * phantoms has 1. */
 static inline double diffusion_temperature(const struct state *state, const struct model *model)
 {
+  if (model_has_phantoms(model))
+    return 1.0;
   const struct solvent *s = &state->solvent;
   double twice = 0.0;
   for (uint32_t i = 0; i < s->n; i++)
@@ -52,13 +55,14 @@ static inline double diffusion_temperature(const struct state *state, const stru
 }
 
 /* Molecular chaos: the Green-Kubo sum of a velocity that keeps c per collision, D_0 = (kT dt_c/M) [1/(1-c) - 1/2], at
- * kT = 1. The last factor: in a closed box at rest a velocity is measured against the rest of the box,
- * <v^2> = (kT/M)(1 - M/M_total). */
+ * kT = 1. The last factor: in a closed box at rest, which a bath of phantoms is not, a velocity is measured against the
+ * rest of the box, <v^2> = (kT/M)(1 - M/M_total). */
 static inline double diffusion_chaos(const struct model *model)
 {
   const double mass = model->mass[0], loading = model->vertices / box_volume(&model->box);
   const double c = diffusion_retention(model->solvent.per_cell, loading, mass, model->solvent.cosine);
-  return model_collision_interval(model) / mass * (1.0 / (1.0 - c) - 0.5) * (1.0 - mass / model->total_mass);
+  const double closed = model_has_phantoms(model) ? 1.0 : 1.0 - mass / model->total_mass;
+  return model_collision_interval(model) / mass * (1.0 / (1.0 - c) - 0.5) * closed;
 }
 
 /* D/kT from the growth of the mean square displacement between two lags, counted in looks that are `every` steps apart:
