@@ -36,18 +36,11 @@ static bool add(struct neighbor_row *row, struct neighbor n)
   return true;
 }
 
-/* Where n stands in a row; the length of the row if it does not. */
-static uint32_t find(const struct neighbor_row *row, const struct neighbor *n)
-{
-  uint32_t k = 0;
-  while (k < row->count && memcmp(&row->at[k], n, sizeof *n) != 0)
-    k++;
-  return k;
-}
-
 static void take_out(struct neighbor_row *row, struct neighbor n)
 {
-  const uint32_t k = find(row, &n);
+  uint32_t k = 0;
+  while (k < row->count && memcmp(&row->at[k], &n, sizeof n) != 0)
+    k++;
   if (k < row->count)
     row->at[k] = row->at[--row->count];
 }
@@ -69,27 +62,40 @@ static void leave_partners(struct neighbors *nb, uint32_t bond)
 
 /* --- grid -------------------------------------------------------------------------------------------------------- */
 
-/* A search cell: its number, and the image that an unwrapped coordinate is of it. */
+/* A search cell: its number, its unwrapped coordinates, and the image that these are of it. */
 struct grid_place {
   uint32_t cell;
+  int64_t at[3];
   int32_t image[3];
 };
 
-/* The search cells along one axis that an interval touches: the first, its image, and how many. */
+/* The search cells along one axis that an interval touches: the first, unwrapped and wrapped, its image, and how many.
+ */
 struct cell_span {
+  int64_t at;
   int32_t first, image, count;
 };
 
 static struct cell_span span_of(int64_t low, int64_t high, int64_t edge, int32_t cells)
 {
-  const int64_t first = lattice_image(low, edge), image = lattice_image(first, cells);
-  return (struct cell_span){(int32_t)(first - image * cells), (int32_t)image,
-                            (int32_t)(lattice_image(high, edge) - first) + 1};
+  const int64_t at = lattice_image(low, edge), image = lattice_image(at, cells);
+  return (struct cell_span){at, (int32_t)(at - image * cells), (int32_t)image,
+                            (int32_t)(lattice_image(high, edge) - at) + 1};
 }
 
-static struct cell_span axis_span(int64_t a, int64_t b, int64_t reach, int64_t edge, int32_t cells)
+/* The box around a bond's capsule, in lattice units. */
+struct capsule_box {
+  struct point low, high;
+};
+
+static struct capsule_box box_of(const struct neighbors *nb, const struct model *model, uint32_t bond)
 {
-  return span_of((a < b ? a : b) - reach, (a > b ? a : b) + reach, edge, cells);
+  const struct anchor *p = &nb->anchor[bond], *q = &nb->anchor[model->next[bond]];
+  const struct point a = p->at, b = q->at;
+  const int64_t reach = lattice_from_a0(capsule_most(p->reach, q->reach) + CAPSULE_SLACK);
+  return (struct capsule_box){
+      {(a.x < b.x ? a.x : b.x) - reach, (a.y < b.y ? a.y : b.y) - reach, (a.z < b.z ? a.z : b.z) - reach},
+      {(a.x > b.x ? a.x : b.x) + reach, (a.y > b.y ? a.y : b.y) + reach, (a.z > b.z ? a.z : b.z) + reach}};
 }
 
 /* Something done with a bond in one cell. */
@@ -99,16 +105,17 @@ typedef bool visit(struct neighbors *, const struct model *, uint32_t bond, cons
 /* All cells that the box around a bond's capsule touches. */
 static bool visit_cells(struct neighbors *nb, const struct model *model, uint32_t bond, visit *what)
 {
-  const struct anchor *a = &nb->anchor[bond], *b = &nb->anchor[model->next[bond]];
-  const struct capsule mine = capsule_of(nb, model, bond, a->at);
-  const int64_t reach = lattice_from_a0(mine.reach + CAPSULE_SLACK);
-  const struct cell_span x = axis_span(a->at.x, b->at.x, reach, nb->cell_edge[0], nb->cells[0]),
-                         y = axis_span(a->at.y, b->at.y, reach, nb->cell_edge[1], nb->cells[1]),
-                         z = axis_span(a->at.z, b->at.z, reach, nb->cell_edge[2], nb->cells[2]);
+  const struct capsule mine = capsule_of(nb, model, bond, nb->anchor[bond].at);
+  const struct capsule_box box = box_of(nb, model, bond);
+  const struct cell_span x = span_of(box.low.x, box.high.x, nb->cell_edge[0], nb->cells[0]),
+                         y = span_of(box.low.y, box.high.y, nb->cell_edge[1], nb->cells[1]),
+                         z = span_of(box.low.z, box.high.z, nb->cell_edge[2], nb->cells[2]);
   for (int32_t k = z.first, iz = z.image, nz = z.count; nz > 0; nz--) {
     for (int32_t j = y.first, iy = y.image, ny = y.count; ny > 0; ny--) {
       for (int32_t i = x.first, ix = x.image, nx = x.count; nx > 0; nx--) {
-        const struct grid_place place = {(uint32_t)((k * nb->cells[1] + j) * nb->cells[0] + i), {ix, iy, iz}};
+        const struct grid_place place = {(uint32_t)((k * nb->cells[1] + j) * nb->cells[0] + i),
+                                         {x.at + x.count - nx, y.at + y.count - ny, z.at + z.count - nz},
+                                         {ix, iy, iz}};
         if (!what(nb, model, bond, &mine, &place))
           return false;
         if (++i == nb->cells[0])
@@ -145,7 +152,17 @@ static bool share_vertex(const struct model *model, uint32_t a, uint32_t b)
   return a == b || model->next[a] == (int32_t)b || model->next[b] == (int32_t)a;
 }
 
-/* Adds to the lists all partners of a bond that are entered in this cell, each once: they may meet in several. */
+/* Is this the cell that holds the lower corner of the overlap of two boxes, the second in an image? */
+static bool corner_is_here(const struct neighbors *nb, const struct grid_place *place, struct point low,
+                           struct point other)
+{
+  return lattice_image(low.x > other.x ? low.x : other.x, nb->cell_edge[0]) == place->at[0] &&
+         lattice_image(low.y > other.y ? low.y : other.y, nb->cell_edge[1]) == place->at[1] &&
+         lattice_image(low.z > other.z ? low.z : other.z, nb->cell_edge[2]) == place->at[2];
+}
+
+/* Adds to the lists all partners of a bond that are entered in this cell. A pair that meets in several cells is taken
+ * in the one that holds the lower corner of the overlap of their boxes. */
 static bool search_cell(struct neighbors *nb, const struct model *model, uint32_t bond, const struct capsule *mine,
                         const struct grid_place *place)
 {
@@ -159,7 +176,9 @@ static bool search_cell(struct neighbors *nb, const struct model *model, uint32_
         e->bond, {place->image[0] - e->image[0], place->image[1] - e->image[1], place->image[2] - e->image[2]}};
     const int32_t back[3] = {-found.image[0], -found.image[1], -found.image[2]};
     const struct capsule its = capsule_of(nb, model, other, point_image(nb->anchor[bond].at, back, &model->box));
-    if (capsules_apart(mine, &its) || find(&nb->partners[bond], &found) < nb->partners[bond].count)
+    if (capsules_apart(mine, &its) ||
+        !corner_is_here(nb, place, box_of(nb, model, bond).low,
+                        point_image(box_of(nb, model, other).low, found.image, &model->box)))
       continue;
     if (!add(&nb->partners[bond], found) || !add(&nb->partners[other], mirrored(bond, found.image)))
       return false;
@@ -185,6 +204,17 @@ static bool short_of_memory(const struct state *state, struct work *work, uint32
   return work_fault(work, FAULT_NO_MEMORY, state->step + 1, bond, 0.0, 0.0);
 }
 
+/* Both ends of a move are within reach of its anchor, whether it is made or refused. */
+static struct anchor anchor_of_move(const struct neighbors *nb, struct point from, struct point to)
+{
+  const struct point d = {to.x - from.x, to.y - from.y, to.z - from.z}, moved = nb->moved;
+  const double length = vec3_norm(point_difference(to, from));
+  struct point at = {to.x - moved.x, to.y - moved.y, to.z - moved.z};
+  if (length > nb->margin) /* from its middle */
+    at = (struct point){at.x - d.x / 2, at.y - d.y / 2, at.z - d.z / 2};
+  return (struct anchor){at, fmax(nb->margin, 0.5 * length + LATTICE_UNIT)};
+}
+
 bool neighbors_renew(const struct state *state, const struct model *model, struct work *work, uint32_t vertex,
                      struct point to)
 {
@@ -194,10 +224,7 @@ bool neighbors_renew(const struct state *state, const struct model *model, struc
     leave(nb, model, (uint32_t)before);
   if (after >= 0)
     leave(nb, model, (uint32_t)after);
-  /* Both ends of the move are within reach, whether it is made or refused. */
-  const double move = vec3_norm(point_difference(to, state->position[vertex]));
-  const struct point at = {to.x - nb->moved.x, to.y - nb->moved.y, to.z - nb->moved.z};
-  nb->anchor[vertex] = (struct anchor){at, fmax(nb->margin, move)};
+  nb->anchor[vertex] = anchor_of_move(nb, state->position[vertex], to);
   nb->renewed++;
   return ((before < 0 || enter(nb, model, (uint32_t)before)) && (after < 0 || enter(nb, model, (uint32_t)after))) ||
          short_of_memory(state, work, vertex);

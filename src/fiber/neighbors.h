@@ -35,7 +35,7 @@ static inline bool neighbors_hold(const struct neighbors *nb, uint32_t vertex, s
 {
   const struct point at = nb->anchor[vertex].at, moved = nb->moved;
   const struct vec3 d = point_difference(p, (struct point){at.x + moved.x, at.y + moved.y, at.z + moved.z});
-  return vec3_dot(d, d) <= nb->margin * nb->margin;
+  return vec3_dot(d, d) <= nb->anchor[vertex].reach * nb->anchor[vertex].reach;
 }
 
 /* The image of a point, so many box edges away. */

@@ -206,8 +206,8 @@ static void lists_stay_complete_under_moves(void **unused)
   assert_true(renewed > 5000);
 }
 
-/* A vertex within the margin of its anchor is held; one lattice unit beyond, it is not. A new anchor stands where the
- * vertex goes, and reaches to where it was. */
+/* A vertex within the margin of its anchor is held; one lattice unit beyond, it is not. A new anchor reaches to where
+ * the vertex goes and to where it was. */
 static void anchors_hold_within_the_margin(void **unused)
 {
   (void)unused;
@@ -220,12 +220,19 @@ static void anchors_hold_within_the_margin(void **unused)
   const struct point within = {a.x + margin - 1, a.y, a.z}, beyond = {a.x, a.y, a.z - margin - 1};
   assert_true(neighbors_hold(nb, 1, within) && !neighbors_hold(nb, 1, beyond));
   assert_true(neighbors_renew(&r.state, &r.model, &r.work, 1, beyond));
-  assert_true(neighbors_hold(nb, 1, beyond) && !neighbors_hold(nb, 1, a));
-  assert_true(nb->renewed == 1 && nb->anchor[1].at.z == beyond.z);
+  /* a move of just more than the margin: from its middle, both ends are within the margin */
+  assert_true(neighbors_hold(nb, 1, beyond) && neighbors_hold(nb, 1, a));
+  assert_true(nb->renewed == 1 && llabs(nb->anchor[1].at.z - (a.z - margin / 2)) <= 1);
   assert_close(nb->anchor[1].reach, nb->margin, 1e-11);
-  const struct point far = {a.x, a.y + lattice_from_a0(2.0), a.z};
+  const struct point far = {a.x, a.y + lattice_from_a0(2.0), a.z}, further = {a.x, a.y + lattice_from_a0(2.001), a.z};
   assert_true(neighbors_renew(&r.state, &r.model, &r.work, 1, far));
-  assert_close(nb->anchor[1].reach, 2.0, 1e-11);
+  assert_close(nb->anchor[1].reach, 1.0, 1e-11);
+  assert_true(neighbors_hold(nb, 1, far) && neighbors_hold(nb, 1, a) && !neighbors_hold(nb, 1, further));
+  /* a short one: the anchor stands where the vertex goes */
+  const struct point near = {a.x + margin / 2, a.y, a.z};
+  assert_true(neighbors_renew(&r.state, &r.model, &r.work, 1, near));
+  assert_true(nb->anchor[1].at.x == near.x && nb->anchor[1].at.y == near.y && neighbors_hold(nb, 1, a));
+  assert_close(nb->anchor[1].reach, nb->margin, 1e-11);
   check_lists(&r, 3);
   test_end(&r);
 }
