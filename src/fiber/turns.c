@@ -7,7 +7,7 @@
 
 #define AHEAD 16 /* bonds */
 
-/* Padding 2009, Eq. (4), in the frame of the moves. */
+/* How far turns_trial goes. */
 static struct vec3 displacement(const struct state *state, const struct model *model, uint32_t i, double dt)
 {
   return vec3_scale(dt, vec3_sub(state->velocity[i], model_frame_velocity(model)));
