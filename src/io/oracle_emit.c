@@ -68,6 +68,10 @@ bool oracle_emit(const struct scene *scene, struct pack *pack, struct message *m
   if (model_has_phantoms(&model))
     return message_set(message, "%s: solvent.bath: phantoms; packs hold the operators of a solvent of particles only",
                        scene->path);
+  if (model.crossing.refusal != REFUSAL_STAY || model.crossing.frame != FRAME_LABORATORY)
+    return message_set(
+        message, "%s: crossing.refusal or crossing.frame; packs hold sweeps by the paper's rule: stay, laboratory",
+        scene->path);
   if (last == 0)
     return message_set(message, "%s: no collision within its %" PRIu64 " steps; a pack needs one", scene->path,
                        scene->steps);

@@ -409,6 +409,19 @@ class OracleTest(unittest.TestCase):
         status, said = run("trace", scene)
         self.assertEqual((status, said.count(",collide,")), (0, 4))
 
+    def test_other_rules_of_refusal(self):
+        """Packs hold the paper's sweeps only; traces hold any."""
+        for rule in ("refusal: bounce", "frame: flow"):
+            scene, pack = self.dir / "rule.yaml", self.dir / "rule.h5"
+            scene.write_text("box: [4, 4, 4]\ntime_step: 0.02\nsteps: 4\nsolvent: {per_cell: 5, collision_interval: 0.02}\n"
+                             "fibers: [{name: a, count: 2, vertices: 3, mass: 5, bond_length: 0.5, spring: 100}]\n"
+                             f"crossing: {{{rule}}}\n")
+            status, said = run("emit", scene, "-o", pack)
+            self.assertEqual((status, pack.exists()), (2, False))
+            self.assertIn("by the paper's rule", said)
+            status, said = run("trace", scene)
+            self.assertEqual((status, said.count(",collide,")), (0, 4))
+
 
 if __name__ == "__main__":
     unittest.main()
