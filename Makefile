@@ -221,7 +221,7 @@ sanitize:
 
 .PHONY: coverage
 coverage:
-	tools/install-dependencies run hard
+	tools/install-dependencies run hard port
 	$(MAKE) -j2 CC=gcc BUILD=build/coverage OPTIMIZE=-O0 CFLAGS='-g --coverage' exact
 	tools/coverage build/coverage $(EXACT_TESTS)
 

@@ -139,7 +139,7 @@ static void draw_axes(const struct model *model, struct collision_work *c, uint6
                       uint32_t n)
 {
   struct vec3 axis[RANDOM_AXES];
-  uint32_t cell[RANDOM_AXES];
+  uint32_t cell[RANDOM_AXES] = {0};
   for (uint32_t k = 0; k < n; k++)
     cell[k] = cell_number(c, place[k]);
   random_axes(model->seed, RANDOM_ROTATION_AXIS, step, cell, n, axis);
