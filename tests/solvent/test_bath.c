@@ -46,6 +46,7 @@ static void numbers_are_poisson(void **unused)
   }
   print_message("  chi^2 %.1f of %d degrees of freedom\n", chi2, CLASSES - 1);
   assert_true(gsl_cdf_chisq_Q(chi2, CLASSES - 1) > LEAST_CHANCE);
+  model_free(&m);
 }
 
 /* Means of any size, drawn in parts or not: mean and variance are gamma; sqrt(2/n) is the scatter of a variance. */
@@ -65,6 +66,7 @@ static void numbers_of_any_mean(void **unused)
     }
     assert_sigma(tally_mean(&n), sqrt(means[k] / DRAWS), means[k], 5.0);
     assert_sigma(tally_mean(&squares), sqrt((2.0 * means[k] * means[k] + means[k]) / DRAWS), means[k], 5.0);
+    model_free(&m);
   }
 }
 
@@ -96,6 +98,7 @@ static void velocities_are_maxwellian(void **unused)
     assert_true(kolmogorov(u[i], DRAWS) < KOLMOGOROV_LIMIT);
   for (int i = 0; i < 4; i++)
     assert_close(products[i], 0.0, 5.0);
+  model_free(&m);
 }
 
 /* --- collisions -----------------------------------------------------------------------------------------------------
