@@ -1,0 +1,77 @@
+"""What a claim hands back: verdicts, figures, and words (validation/README.md)."""
+import dataclasses
+import importlib.util
+import math
+import pathlib
+import sys
+
+CLAIMS = pathlib.Path(__file__).resolve().parent.parent / "claims"
+# The order of the report: the solvent first, then what swims in it, alone, then crowded.
+ORDER = ("solvent", "mobility", "chains", "rods", "galilean", "tube", "msd", "conservation", "cost", "peer")
+TIERS = ("quick", "campaign")
+
+
+@dataclasses.dataclass
+class Verdict:
+    """One number held against another. `error` and `expected_error` are standard errors; `tolerance` is what the two
+    may differ by; `detects` is the smallest wrong effect that would be seen. All in the same unit.
+
+    kind "gate": a disagreement is our bug. kind "paper": it is a finding, and `reason` says why, if known."""
+    id: str
+    statement: str
+    expected: float
+    source: str
+    tolerance: float
+    measured: float = None  # None: not there yet
+    error: float = 0.0
+    expected_error: float = 0.0
+    detects: float = None
+    kind: str = "gate"
+    reason: str = ""
+
+    @property
+    def verdict(self):
+        if self.measured is None or not math.isfinite(self.measured):
+            return "missing"
+        if abs(self.measured - self.expected) <= self.tolerance:
+            return "pass"
+        return "fail" if self.kind == "gate" else "not reproduced"
+
+    @property
+    def z(self):
+        """Difference in standard errors of both; None where there are none."""
+        error = math.hypot(self.error or 0.0, self.expected_error or 0.0)
+        if self.verdict == "missing" or not math.isfinite(error) or error == 0.0:
+            return None
+        return (self.measured - self.expected) / error
+
+
+@dataclasses.dataclass
+class Figure:
+    """draw() is called with nothing and returns a matplotlib Figure (lib/figures.py helps)."""
+    name: str
+    caption: str
+    draw: object
+
+
+@dataclasses.dataclass
+class Outcome:
+    verdicts: list
+    figures: list = dataclasses.field(default_factory=list)
+    prose: str = ""  # paragraphs, separated by empty lines; `code` and **bold** are kept
+
+
+def load(name):
+    """The module of a claim."""
+    path = CLAIMS / name / "claim.py"
+    spec = importlib.util.spec_from_file_location(f"claim_{name}", path)
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+def names():
+    """All claims that there are, in the order of the report."""
+    found = [path.parent.name for path in CLAIMS.glob("*/claim.py")]
+    return sorted(found, key=lambda name: (ORDER.index(name) if name in ORDER else len(ORDER), name))

@@ -1,0 +1,153 @@
+"""The report: report.html, report.json, report.xml, from what runs have left. The same data make the same bytes."""
+import html
+import json
+import math
+import pathlib
+import re
+import xml.etree.ElementTree as xml
+
+import jinja2
+
+from lib import claim as claims
+from lib import figures, runs
+
+TEMPLATE = pathlib.Path(__file__).resolve().parent / "report.html.jinja"
+
+
+def rounded(x, digits=10):
+    """Far more digits than any error bar, fewer than what another libm or BLAS changes."""
+    if x is None or not math.isfinite(x):
+        return None
+    return float(f"{x:.{digits}g}")
+
+
+def verdict_row(claim, verdict):
+    return {"id": verdict.id, "claim": claim, "statement": verdict.statement, "source": verdict.source,
+            "kind": verdict.kind, "verdict": verdict.verdict, "reason": verdict.reason,
+            **{key: rounded(getattr(verdict, key)) for key in
+               ("expected", "expected_error", "measured", "error", "tolerance", "detects", "z")}}
+
+
+def provenance_row(result):
+    """Which run of which code this was."""
+    session, record, run = result.session, result.record, result.run
+    version = re.fullmatch(r"\S+ (\S+) \(commit (\S+); (.*); (-std.*)\)", session.get("version", "")) or [""] * 5
+    return {"run": run.path, "what": " ".join(session.get("command", [])), "seed": run.seed if run.scene else None,
+            "steps": result.steps or None, "wanted": run.steps or None, "finished": result.finished,
+            "commit": record.get("commit", version[2]), "compiler": record.get("compiler", version[3]),
+            "fingerprint": record.get("scene_fingerprint"), "state_hash": record.get("state_hash"),
+            "cpu_seconds": result.cpu_seconds}
+
+
+def section(name, tier, every):
+    """What the report says of one claim. Runs that are not there yet are absent from what the claim is given."""
+    module = claims.load(name)
+    results = [result for result in every if result.run.claim == name]
+    present = {result.run.name: result for result in results if result.exists}
+    outcome = module.evaluate(present, tier)
+    with figures.styled():
+        drawn = [{"name": figure.name, "caption": figure.caption, "svg": figures.svg(figure.draw())}
+                 for figure in outcome.figures]
+    return {"id": name, "title": module.TITLE, "paper": module.PAPER, "prose": outcome.prose, "figures": drawn,
+            "verdicts": [verdict_row(name, verdict) for verdict in outcome.verdicts],
+            "runs": [provenance_row(result) for result in results if result.exists],
+            "absent": [result.run.path for result in results if not result.exists],
+            "unfinished": [result.run.path for result in results if result.exists and not result.finished],
+            "cpu_seconds": math.fsum(result.cpu_seconds for result in results),
+            "hours_estimated": math.fsum(result.run.hours for result in results)}
+
+
+def junit(sections):
+    """JUnit XML, a test case per verdict. What is a finding about the paper passes, and says so."""
+    suites = xml.Element("testsuites", name="validation")
+    for part in sections:
+        bad = [row for row in part["verdicts"] if row["verdict"] in ("fail", "missing")]
+        suite = xml.SubElement(suites, "testsuite", name=part["id"], tests=str(len(part["verdicts"])),
+                               failures=str(len(bad)), time=f"{part['cpu_seconds']:.1f}")
+        for row in part["verdicts"]:
+            case = xml.SubElement(suite, "testcase", classname=part["id"], name=row["id"])
+            text = (f"{row['statement']}: measured {row['measured']} +- {row['error']}, expected {row['expected']}, "
+                    f"tolerance {row['tolerance']} ({row['source']}). {row['reason']}")
+            if row in bad:
+                xml.SubElement(case, "failure", message=row["verdict"]).text = text
+            else:
+                xml.SubElement(case, "system-out").text = f"{row['verdict']}: {text}"
+    xml.indent(suites)
+    return xml.tostring(suites, encoding="unicode", xml_declaration=True) + "\n"
+
+
+def number(x, error=None):
+    """As many digits as the error carries, two of them; four significant ones without an error."""
+    if x is None:
+        return "–"
+    if error:
+        places = 1 - math.floor(math.log10(abs(error)))
+        scale = max(abs(x), abs(error))
+        if 1e-4 <= scale < 1e6:
+            return f"{x:.{max(places, 0)}f}"
+        power = math.floor(math.log10(scale))
+        return f"{x / 10**power:.{max(places + power, 0)}f}·10{superscript(power)}"
+    if x == 0 or 1e-3 <= abs(x) < 1e5:
+        return f"{x:.4g}"
+    power = math.floor(math.log10(abs(x)))
+    return f"{x / 10**power:.3g}·10{superscript(power)}"
+
+
+def superscript(power):
+    return str(power).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+
+
+def prose(text):
+    """Paragraphs with `code` and **bold** as HTML."""
+    marked = re.sub(r"`([^`]*)`", r"<code>\1</code>", html.escape(text.strip(), quote=False))
+    marked = re.sub(r"\*\*(.+?)\*\*", r"<b>\1</b>", marked)
+    return "".join(f"<p>{paragraph}</p>\n" for paragraph in re.split(r"\n\s*\n", marked) if paragraph.strip())
+
+
+def cpu(seconds):
+    return f"{seconds / 3600:.1f} h" if seconds >= 5400 else f"{seconds / 60:.1f} min" if seconds >= 90 else f"{seconds:.0f} s"
+
+
+def page(tier, sections):
+    environment = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True)
+    environment.filters.update(prose=prose, cpu=cpu, number=number)
+    return environment.from_string(TEMPLATE.read_text()).render(
+        tier=tier, sections=sections, total=math.fsum(part["cpu_seconds"] for part in sections),
+        count={word: sum(row["verdict"] == word for part in sections for row in part["verdicts"])
+               for word in ("pass", "fail", "not reproduced", "missing")})
+
+
+def summary(tier, sections):
+    """What report.json holds."""
+    keys = ("id", "title", "paper", "cpu_seconds", "hours_estimated", "absent", "unfinished")
+    return {"tier": tier, "claims": [row for part in sections for row in part["verdicts"]],
+            "sections": [{key: part[key] for key in keys} for part in sections],
+            "runs": [row for part in sections for row in part["runs"]]}
+
+
+def make(tier, all_runs, names, work, out):
+    """Writes the three files into `out`; 1 if a gate failed, or, in the quick tier, if something was not measured."""
+    results = runs.results_of(all_runs, work)
+    sections = [section(name, tier, results) for name in names]
+    out = pathlib.Path(out)
+    out.mkdir(parents=True, exist_ok=True)
+    (out / "report.json").write_text(json.dumps(summary(tier, sections), indent=1, ensure_ascii=False) + "\n")
+    (out / "report.xml").write_text(junit(sections))
+    (out / "report.html").write_text(page(tier, sections))
+    return tell(tier, sections, out)
+
+
+def tell(tier, sections, out):
+    rows = [row for part in sections for row in part["verdicts"]]
+    width = max((len(row["id"]) for row in rows), default=0)
+    for row in rows:
+        z = "" if row["z"] is None else f"  z {row['z']:+.1f}"
+        measured = number(row["measured"], row["error"])
+        print(f"{row['verdict']:<14} {row['id']:<{width}}  {measured} ± {number(row['error'])}, expected "
+              f"{number(row['expected'])} within {number(row['tolerance'])}{z}")
+    bad = [row for row in rows if row["verdict"] == "fail" or (row["verdict"] == "missing" and tier == "quick")]
+    for part in sections:
+        print(f"{part['id']}: {cpu(part['cpu_seconds'])} of CPU time, {len(part['runs'])} runs")
+    print(f"report: {out / 'report.html'}")
+    print(f"{len(rows) - len(bad)} passed, {len(bad)} failed")
+    return 1 if bad else 0

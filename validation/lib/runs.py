@@ -1,0 +1,250 @@
+"""Runs: how they are described, executed, resumed, and read again.
+
+A run has a folder <work>/<claim>/<run>/. A scene's folder is what `uncross run` leaves there (docs/files.md) and the
+scene.yaml that it was given; a program's holds output.txt. Either has session.json: CPU time, and whether it is done.
+"""
+import csv
+import dataclasses
+import hashlib
+import json
+import math
+import os
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+
+import numpy
+
+TREE = pathlib.Path(__file__).resolve().parent.parent.parent
+INTERRUPTED = 5  # exit code of `uncross run` after a signal, and of `validation/run one`
+CHECKPOINT_SECONDS = 120
+
+
+@dataclasses.dataclass
+class Run:
+    """Either a scene, which `uncross run` runs to `steps` (more steps later extend the same run), or a program of
+    validation/measure with its arguments. hours: CPU time on one core, estimated. priority: 0 comes first."""
+    name: str
+    scene: str = None
+    steps: int = 0
+    seed: int = 1
+    program: list = None
+    hours: float = 0.0
+    priority: int = 0
+    claim: str = None  # set by whoever lists the runs
+
+    def __post_init__(self):
+        if (self.scene is None) == (self.program is None):
+            raise ValueError(f"{self.name}: a run has either a scene or a program")
+        if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_.-]*", self.name):
+            raise ValueError(f"{self.name!r} is no name of a run")
+
+    @property
+    def path(self):
+        return f"{self.claim}/{self.name}"
+
+    @property
+    def scene_text(self):
+        """The scene with what is ours to say: steps, seed, and how often it is checkpointed."""
+        text = re.sub(r"^(steps|seed):.*\n?", "", self.scene, flags=re.M).rstrip("\n")
+        text += f"\nsteps: {self.steps}\nseed: {self.seed}\n"
+        if not re.search(r"^checkpoint:", text, re.M):
+            text += f"checkpoint: {{seconds: {CHECKPOINT_SECONDS}}}\n"
+        return text
+
+    @property
+    def identity(self):
+        """Changes when the run is another one; not with the number of steps."""
+        what = re.sub(r"^steps:.*\n", "", self.scene_text, flags=re.M) if self.scene else json.dumps(self.program)
+        return hashlib.sha256(what.encode()).hexdigest()[:16]
+
+
+class Result:
+    """What a run has left so far."""
+
+    def __init__(self, folder, run):
+        self.folder, self.run = pathlib.Path(folder), run
+        self.session = read_json(self.folder / "session.json")
+        self.record = read_json(self.folder / "run.json")
+        text = self.folder / "output.txt"
+        self.text = text.read_text() if text.exists() else ""
+
+    @property
+    def exists(self):
+        return bool(self.record or self.text)
+
+    @property
+    def finished(self):
+        return self.steps >= self.run.steps if self.run.scene else bool(self.text)
+
+    @property
+    def steps(self):
+        return self.record.get("steps", 0)
+
+    @property
+    def time(self):
+        """How far it came, in t0."""
+        return self.record.get("time", 0.0)
+
+    @property
+    def cpu_seconds(self):
+        return self.session.get("cpu_seconds", 0.0)
+
+    @property
+    def done_fraction(self):
+        if self.finished:
+            return 1.0
+        return self.steps / self.run.steps if self.run.steps else 0.0
+
+    def table(self, name):
+        """Columns of NAME.csv, as arrays. KeyError without the file."""
+        path = self.folder / f"{name}.csv"
+        if not path.exists():
+            raise KeyError(f"{self.run.path}: no table {name}")
+        return columns(path.read_text())
+
+    def tables(self):
+        return sorted(path.stem for path in self.folder.glob("*.csv"))
+
+    @property
+    def columns(self):
+        """What a program printed, if it is a table: comma-separated under a line of names; `#` begins a comment."""
+        return columns(self.text)
+
+
+def columns(text):
+    """Comma-separated values under a line of names as a dict of arrays, of floats where all are numbers."""
+    rows = list(csv.reader(line for line in text.splitlines() if line and not line.startswith("#")))
+    table = {}
+    for k, name in enumerate(rows[0] if rows else []):
+        values = [row[k] for row in rows[1:]]
+        try:
+            table[name] = numpy.array([float(x) for x in values])
+        except ValueError:
+            table[name] = numpy.array(values)
+    return table
+
+
+def read_json(path):
+    try:
+        return json.loads(path.read_text())
+    except FileNotFoundError:
+        return {}
+
+
+def write_json(path, data):
+    aside = path.with_name(path.name + ".part")
+    aside.write_text(json.dumps(data, indent=2, sort_keys=True) + "\n")
+    aside.replace(path)
+
+
+# --- execution --------------------------------------------------------------------------------------------------------
+
+class Refused(Exception):
+    """A run that cannot be made as asked."""
+
+
+def program_hash(path):
+    return hashlib.sha256(pathlib.Path(path).read_bytes()).hexdigest()[:16]
+
+
+def command_of(run, folder, build):
+    """What to execute in `folder`, the first word being a program of this build."""
+    if run.program:
+        return [str(build / "validation/measure" / run.program[0]), *map(str, run.program[1:])]
+    command = [str(build / "uncross"), "run", str(folder / "scene.yaml"), "--out", str(folder), "--steps",
+               str(run.steps), "--quiet"]
+    return command + (["--resume"] if (folder / "checkpoint.h5").exists() else [])
+
+
+def prepare(run, folder, build, fresh):
+    """Makes the folder fit for the run. fresh: results of another scene or another program are thrown away (quick
+    tier); otherwise they are somebody's days, and it is an error."""
+    session = read_json(folder / "session.json")
+    program = program_hash(command_of(run, folder, build)[0])
+    other = session and (session["identity"] != run.identity or (fresh and session["program"] != program))
+    if other and not fresh:
+        raise Refused(f"{folder}: holds another run ({run.path} has changed since); remove it to begin anew")
+    if other:
+        shutil.rmtree(folder)
+        session = {}
+    folder.mkdir(parents=True, exist_ok=True)
+    if run.scene:
+        if not (folder / "checkpoint.h5").exists():
+            for left in [*folder.glob("*.csv"), *folder.glob("*.h5*")]:  # killed before its first checkpoint
+                left.unlink()
+        (folder / "scene.yaml").write_text(run.scene_text)
+    version = subprocess.run([str(build / "uncross"), "--version"], capture_output=True, text=True, check=True).stdout
+    session.update(identity=run.identity, program=program, version=version.strip(), command=[
+        run.program[0], *map(str, run.program[1:])] if run.program else ["uncross", "run"])
+    session.setdefault("cpu_seconds", 0.0)
+    return session
+
+
+def execute(run, folder, build, fresh=False):
+    """Runs to the end, or resumes; 0 when finished, INTERRUPTED after SIGTERM or SIGINT, else what went wrong.
+
+    The signal is passed on: `uncross run` writes its checkpoint, a program begins anew next time."""
+    folder, build = pathlib.Path(folder), pathlib.Path(build)
+    session = prepare(run, folder, build, fresh)
+    if Result(folder, run).finished and session.get("finished"):
+        return 0
+    write_json(folder / "session.json", dict(session, finished=False))
+    with open(folder / "output.part", "wb") as output:
+        code, seconds, caught = call(command_of(run, folder, build), output)
+    session["cpu_seconds"] = round(session["cpu_seconds"] + seconds, 2)
+    session["finished"] = code == 0
+    if run.program and code == 0:
+        (folder / "output.part").replace(folder / "output.txt")
+    else:
+        (folder / "output.part").unlink()
+    write_json(folder / "session.json", session)
+    return INTERRUPTED if caught and code != 0 else code
+
+
+def call(command, output):
+    """(exit code, CPU seconds, whether a signal came) of a command that gets SIGTERM when we do."""
+    caught, children = [], []
+
+    def pass_on(number, _frame):
+        caught.append(number)
+        for child in children:
+            child.send_signal(signal.SIGTERM)
+    before = {number: signal.signal(number, pass_on) for number in (signal.SIGTERM, signal.SIGINT)}
+    children.append(subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=output))
+    if caught:  # in between
+        children[0].send_signal(signal.SIGTERM)
+    _, status, usage = os.wait4(children[0].pid, 0)
+    children[0].returncode = os.waitstatus_to_exitcode(status)
+    for number, handler in before.items():
+        signal.signal(number, handler)
+    return children[0].returncode, usage.ru_utime + usage.ru_stime, bool(caught)
+
+
+# --- many of them -----------------------------------------------------------------------------------------------------
+
+def results_of(runs, work):
+    """The results of these runs, in their order, whether there is anything yet or not."""
+    return [Result(pathlib.Path(work) / run.claim / run.name, run) for run in runs]
+
+
+def hours_left(results):
+    """CPU hours that the runs still take, as estimated."""
+    return math.fsum(result.run.hours * (1.0 - result.done_fraction) for result in results)
+
+
+HARVESTED = ("scene.yaml", "run.json", "session.json", "output.txt", "*.csv")
+
+
+def harvest(run, work, kept):
+    """Copies what counts into `kept`, finished or not. True if there was anything."""
+    source, target = pathlib.Path(work) / run.claim / run.name, pathlib.Path(kept) / run.claim / run.name
+    if not Result(source, run).exists:
+        return False
+    target.mkdir(parents=True, exist_ok=True)
+    for pattern in HARVESTED:
+        for path in source.glob(pattern):
+            shutil.copyfile(path, target / path.name)
+    return True

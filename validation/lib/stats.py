@@ -1,0 +1,84 @@
+"""Means, fits and their standard errors. What is handed in as independent must be: blocks longer than any correlation, or
+separate runs. tests/validation/test_stats.py holds each against exact numbers."""
+import dataclasses
+import math
+
+import numpy
+from scipy import stats
+
+
+def mean(values):
+    """(mean, standard error) of independent values; the error of fewer than two is nan."""
+    values = numpy.asarray(values, float)
+    error = values.std(ddof=1) / math.sqrt(len(values)) if len(values) > 1 else math.nan
+    return values.mean(), error
+
+
+def weighted_mean(values, errors):
+    """(mean, standard error, p): of values with known errors; p is the chance of a scatter as large as theirs."""
+    f = fit([numpy.ones(len(values))], values, errors)
+    return f.value[0], f.error[0], f.p
+
+
+def blocked_mean(series, least=16):
+    """(mean, standard error) of a correlated series: Flyvbjerg and Petersen, J. Chem. Phys. 91, 461 (1989). Blocks of 1,
+    2, 4, ... values; the largest error among levels of at least `least` blocks. nan if there are fewer values."""
+    series = numpy.asarray(series, float)
+    level, error = series, math.nan
+    while len(level) >= least:
+        error = numpy.fmax(error, level.std(ddof=1) / math.sqrt(len(level)))
+        level = level[:len(level) // 2 * 2].reshape(-1, 2).mean(axis=1)
+    return series.mean(), float(error)
+
+
+@dataclasses.dataclass
+class Fit:
+    value: numpy.ndarray  # of each coefficient
+    error: numpy.ndarray
+    covariance: numpy.ndarray
+    chi2: float
+    freedom: int
+
+    @property
+    def p(self):
+        """Chance of a chi^2 as large as this, if the model is right; 1 where nothing is left to scatter."""
+        return float(stats.chi2.sf(self.chi2, self.freedom)) if self.freedom > 0 else 1.0
+
+
+def fit(basis, y, errors):
+    """y = sum of coefficients times basis functions (a list of arrays over the points), by weighted least squares. Errors
+    are taken as they are, not scaled by chi^2."""
+    errors, y = numpy.asarray(errors, float), numpy.asarray(y, float)
+    if len(y) < len(basis):
+        raise ValueError(f"{len(y)} points for {len(basis)} coefficients")
+    a = numpy.array([numpy.asarray(f, float) for f in basis]).T / errors[:, None]
+    covariance = numpy.linalg.inv(a.T @ a)
+    value = covariance @ a.T @ (y / errors)
+    residual = y / errors - a @ value
+    return Fit(value, numpy.sqrt(covariance.diagonal()), covariance, float(residual @ residual), len(y) - len(basis))
+
+
+def line(x, y, errors):
+    """y = value[0] + value[1] x."""
+    x = numpy.asarray(x, float)
+    return fit([numpy.ones_like(x), x], y, errors)
+
+
+def power(x, y, errors):
+    """ln y = value[0] + value[1] ln x: exponent value[1], prefactor exp(value[0]). Right for small relative errors."""
+    y = numpy.asarray(y, float)
+    return line(numpy.log(numpy.asarray(x, float)), numpy.log(y), numpy.asarray(errors, float) / y)
+
+
+def sigmas(false_alarms, tests=1):
+    """How many standard errors one of `tests` normal values exceeds, either way, at this rate for all of them together."""
+    return float(stats.norm.isf(-math.expm1(math.log1p(-false_alarms) / tests) / 2.0))
+
+
+# A verdict of the quick tier: at most 100 of them, and one false alarm in a thousand new sets of seeds.
+SIGMAS = sigmas(1e-3, 100)
+
+
+def tolerance(error, expected_error=0.0, systematic=0.0, z=SIGMAS):
+    """z standard errors of both numbers, and a stated bound on what is systematic."""
+    return z * math.hypot(error, expected_error) + systematic
