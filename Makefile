@@ -49,6 +49,7 @@ help:
 	@echo 'make bench           speed, scaling, run time against error: build/bench/bench.json; BENCH=speed,... chooses sections'
 	@echo 'make bench-docs      the same, and its tables and figures into docs/'
 	@echo 'make bench-peers     against Debian'\''s LAMMPS, in turn: build/bench/peers.json'
+	@echo 'make peer            the solvent'\''s memory and diffusion beside LAMMPS (a quarter of an hour): reference-data/campaign/peer'
 	@echo 'make sanitize        the exact tests and short runs with address and undefined-behavior sanitizers'
 	@echo 'make coverage        which lines and branches of src/ the exact tests reach: build/coverage/index.html'
 	@echo 'make fuzz            the fuzzer of scenes, checkpoints and trajectories, for SECONDS=60'
@@ -143,6 +144,27 @@ bench-peers:
 	tools/install-dependencies run bench peers
 	$(MAKE) -j2 $(BUILD)/uncross
 	validation/bench/peers --build $(BUILD)
+
+# The solvent beside another program: claim `peer`. Not in CI, which has no LAMMPS.
+PEER         := validation/claims/peer
+PEER_MEASURE := $(addprefix $(BUILD)/validation/measure/,solvent_vacf solvent_vacf_box_axes solvent_lammps)
+.PHONY: peer
+peer:
+	tools/install-dependencies run bench peers
+	$(MAKE) -j2 $(BUILD)/uncross $(PEER_MEASURE)
+	validation/run makefile peer --tier campaign --build $(BUILD) >$(BUILD)/peer.mk
+	$(MAKE) -f $(BUILD)/peer.mk all
+	validation/run harvest peer --tier campaign --build $(BUILD)
+
+$(BUILD)/validation/measure/solvent_vacf_box_axes: validation/measure/solvent_vacf.c \
+   $(BUILD)/$(PEER)/box_axes.o $(LIBRARY)
+	@mkdir -p $(@D)
+	@echo '  CC $<'
+	@$(CC) $(ALL_CFLAGS) -Itests -MMD -MP $< $(BUILD)/$(PEER)/box_axes.o -Wl,--wrap=random_axes $(LIBRARY) $(LIBS) -o $@
+
+$(BUILD)/validation/measure/solvent_lammps: $(PEER)/solvent_lammps $(PEER)/solvent.lammps
+	@mkdir -p $(@D)
+	@cp $^ $(@D)
 
 .PHONY: bench-programs
 bench-programs: $(BUILD)/uncross $(BENCH_PROGRAMS)
