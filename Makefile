@@ -50,6 +50,9 @@ help:
 	@echo 'make bench-docs      the same, and its tables and figures into docs/'
 	@echo 'make bench-peers     against Debian'\''s LAMMPS, in turn: build/bench/peers.json'
 	@echo 'make peer            the solvent'\''s memory and diffusion beside LAMMPS (a quarter of an hour): reference-data/campaign/peer'
+	@echo 'make validate        the paper'\''s claims on reduced systems (ten minutes): build/validate/report.html'
+	@echo 'make -j2 campaign    the same on the paper'\''s own systems, for hours or days; resumes; reference-data/campaign/'
+	@echo 'make validate-planted   bugs of the physics planted in a copy: each turns a claim red'
 	@echo 'make sanitize        the exact tests and short runs with address and undefined-behavior sanitizers'
 	@echo 'make coverage        which lines and branches of src/ the exact tests reach: build/coverage/index.html'
 	@echo 'make fuzz            the fuzzer of scenes, checkpoints and trajectories, for SECONDS=60'
@@ -165,6 +168,35 @@ $(BUILD)/validation/measure/solvent_vacf_box_axes: validation/measure/solvent_va
 $(BUILD)/validation/measure/solvent_lammps: $(PEER)/solvent_lammps $(PEER)/solvent.lammps
 	@mkdir -p $(@D)
 	@cp $^ $(@D)
+
+# The paper's claims (validation/README.md). Runs are targets of a fragment of make: what is finished is not run again,
+# what was interrupted goes on. A run that fails is a claim that the report calls missing.
+.PHONY: validate
+validate:
+	tools/install-dependencies run validate
+	$(MAKE) -j2 validation-programs
+	@mkdir -p $(BUILD)/validate
+	validation/run makefile --build $(BUILD) >$(BUILD)/validate/runs.mk
+	$(MAKE) -s -k -j2 -f $(BUILD)/validate/runs.mk || true
+	validation/run report --build $(BUILD)
+
+.PHONY: campaign
+campaign:
+	tools/install-dependencies run validate
+	$(MAKE) validation-programs
+	@mkdir -p $(BUILD)/campaign
+	validation/run makefile --tier campaign --build $(BUILD) >$(BUILD)/campaign/runs.mk
+	+$(MAKE) -s -k -f $(BUILD)/campaign/runs.mk || true
+	validation/run harvest --tier campaign --build $(BUILD)
+	validation/run report --tier campaign --build $(BUILD)
+
+.PHONY: validate-planted
+validate-planted:
+	tools/install-dependencies run validate
+	validation/planted/run --build $(BUILD)/planted
+
+.PHONY: validation-programs
+validation-programs: $(BUILD)/uncross $(MEASURE_PROGRAMS)
 
 .PHONY: bench-programs
 bench-programs: $(BUILD)/uncross $(BENCH_PROGRAMS)
