@@ -44,6 +44,8 @@ def section(name, tier, every):
     module = claims.load(name)
     results = [result for result in every if result.run.claim == name]
     present = {result.run.name: result for result in results if result.exists}
+    present.update({result.run.path: result for result in every
+                    if result.exists and result.run.claim in getattr(module, "USES", ())})
     outcome = module.evaluate(present, tier)
     with figures.styled():
         drawn = [{"name": figure.name, "caption": figure.caption, "svg": figures.svg(figure.draw())}

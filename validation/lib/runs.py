@@ -5,6 +5,7 @@ scene.yaml that it was given; a program's holds output.txt. Either has session.j
 """
 import csv
 import dataclasses
+import fcntl
 import hashlib
 import json
 import math
@@ -33,7 +34,9 @@ class Run:
     program: list = None
     hours: float = 0.0
     priority: int = 0
+    goals: tuple = ()  # (steps, priority), ...: stops on the way to `steps`, so that every figure is coarse before one is fine
     claim: str = None  # set by whoever lists the runs
+    stage: bool = False  # a stop on the way, not the whole run
 
     def __post_init__(self):
         if (self.scene is None) == (self.program is None):
@@ -43,7 +46,17 @@ class Run:
 
     @property
     def path(self):
-        return f"{self.claim}/{self.name}"
+        return f"{self.claim}/{self.name}" + (f"@{self.steps}" if self.stage else "")
+
+    def stages(self):
+        """The run to each of its goals, then to its end; hours are those since the goal before."""
+        found, before = [], 0
+        for steps, priority in (*self.goals, (self.steps, self.priority)):
+            hours = self.hours * (steps - before) / self.steps if self.steps else self.hours
+            found.append(dataclasses.replace(self, steps=steps, priority=priority, hours=hours, goals=(),
+                                             stage=steps < self.steps))
+            before = steps
+        return found
 
     @property
     def scene_text(self):
@@ -188,8 +201,15 @@ def execute(run, folder, build, fresh=False):
 
     The signal is passed on: `uncross run` writes its checkpoint, a program begins anew next time."""
     folder, build = pathlib.Path(folder), pathlib.Path(build)
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with open(folder.with_name(folder.name + ".lock"), "w", encoding="ascii") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)  # two stages of one run take turns
+        return execute_locked(run, folder, build, fresh)
+
+
+def execute_locked(run, folder, build, fresh):
     session = prepare(run, folder, build, fresh)
-    if Result(folder, run).finished and session.get("finished"):
+    if Result(folder, run).finished and (session.get("finished") or run.stage):
         return 0
     write_json(folder / "session.json", dict(session, finished=False))
     with open(folder / "output.part", "wb") as output:
