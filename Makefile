@@ -53,6 +53,7 @@ help:
 	@echo 'make validate        the paper'\''s claims on reduced systems (ten minutes): build/validate/report.html'
 	@echo 'make -j2 campaign    the same on the paper'\''s own systems, for hours or days; resumes; reference-data/campaign/'
 	@echo 'make validate-planted   bugs of the physics planted in a copy: each turns a claim red'
+	@echo 'make slurm-test      the campaign as a job array, on a Slurm that the test starts and stops (three minutes)'
 	@echo 'make sanitize        the exact tests and short runs with address and undefined-behavior sanitizers'
 	@echo 'make coverage        which lines and branches of src/ the exact tests reach: build/coverage/index.html'
 	@echo 'make fuzz            the fuzzer of scenes, checkpoints and trajectories, for SECONDS=60'
@@ -147,6 +148,13 @@ bench-peers:
 	tools/install-dependencies run bench peers
 	$(MAKE) -j2 $(BUILD)/uncross
 	validation/bench/peers --build $(BUILD)
+
+# Not in CI: it installs Slurm, and starts one of its own.
+.PHONY: slurm-test
+slurm-test:
+	tools/install-dependencies run slurm
+	$(MAKE) -j2 $(BUILD)/uncross
+	validation/slurm/test --build $(BUILD)
 
 # The solvent beside another program: claim `peer`. Not in CI, which has no LAMMPS.
 PEER         := validation/claims/peer
