@@ -250,9 +250,24 @@ def results_of(runs, work):
     return [Result(pathlib.Path(work) / run.claim / run.name, run) for run in runs]
 
 
-def hours_left(results):
-    """CPU hours that the runs still take, as estimated."""
-    return math.fsum(result.run.hours * (1.0 - result.done_fraction) for result in results)
+def write_plan(runs, work):
+    """All that is to be run, for `progress`."""
+    work.mkdir(parents=True, exist_ok=True)
+    write_json(work / "plan.json", [dataclasses.asdict(run) for run in runs])
+
+
+def progress(work):
+    """How far the plan of this folder has come, in words; nothing without a plan."""
+    if not (work / "plan.json").exists():
+        return ""
+    results = results_of([Run(**run) for run in read_json(work / "plan.json")], work)
+    left = math.fsum(result.run.hours * (1.0 - result.done_fraction) for result in results)
+    return (f"{sum(result.finished for result in results)} of {len(results)} runs finished, about {duration(3600.0 * left)} of "
+            "CPU time left")
+
+
+def duration(seconds):
+    return f"{seconds / 3600:.1f} h" if seconds >= 5400 else f"{seconds / 60:.0f} min" if seconds >= 90 else f"{seconds:.0f} s"
 
 
 HARVESTED = ("scene.yaml", "run.json", "session.json", "output.txt", "*.csv")

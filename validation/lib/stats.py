@@ -82,3 +82,12 @@ SIGMAS = sigmas(1e-3, 100)
 def tolerance(error, expected_error=0.0, systematic=0.0, z=SIGMAS):
     """z standard errors of both numbers, and a stated bound on what is systematic."""
     return z * math.hypot(error, expected_error) + systematic
+
+
+def jackknife(blocks, estimate):
+    """(value, standard error) of what `estimate` makes of the mean over independent blocks (rows); may be an array."""
+    blocks = numpy.asarray(blocks, float)
+    n, total = len(blocks), blocks.sum(axis=0)
+    without = numpy.array([estimate((total - block) / (n - 1.0)) for block in blocks])
+    error = numpy.sqrt((n - 1.0) / n * ((without - without.mean(axis=0))**2).sum(axis=0))
+    return numpy.asarray(estimate(total / n)), error

@@ -1,6 +1,8 @@
 """Formulas that claims are held against and that no C code has, each once. Units a0 = kT = m = 1."""
 import math
 
+import numpy
+
 
 def occupancy(gamma):
     """gamma - 1 + exp(-gamma): mean of (n - 1) over cells with n >= 1 Poisson members."""
@@ -31,3 +33,36 @@ def retention(gamma=5.0, alpha=90.0):
 # Lattice sum of a point force in a periodic cube: D falls by PERIODIC kT/(6 pi eta L) to leading order (Hasimoto 1959).
 PERIODIC = 2.837297
 SOUND_SPEED = math.sqrt(5.0 / 3.0)
+
+
+def shear_modes(cells, largest=40):
+    """(k^2, how many) of the waves of a periodic cube with this edge, all but k = 0, up to `largest` per direction."""
+    n = numpy.arange(-largest, largest + 1)
+    squares = (n[:, None, None]**2 + n[:, None]**2 + n**2).ravel()
+    values, counts = numpy.unique(squares[(squares > 0) & (squares <= largest**2)], return_counts=True)
+    return (2.0 * math.pi / cells)**2 * values, counts
+
+
+def long_time_tail(t, cells, gamma, spread):
+    """Velocity autocorrelation of a particle, per component and in units of kT/m, as shear waves carry it (Ernst, Hauge,
+    van Leeuwen, Phys. Rev. Lett. 25, 1254 (1970)), summed over the waves of the box: (2/3N) sum_k exp(-spread k^2 t), with
+    spread = nu + D. In an infinite box (2/3 gamma)(4 pi spread t)^(-3/2). For t long after the first collisions."""
+    line = numpy.exp(-spread * numpy.outer(t, (2.0 * math.pi / cells * numpy.arange(-60, 61))**2)).sum(axis=1)
+    return 2.0 / (3.0 * gamma * cells**3) * (line**3 - 1.0)
+
+
+def long_time_tail_unbounded(t, gamma, spread):
+    return 2.0 / (3.0 * gamma) * (4.0 * math.pi * spread * numpy.asarray(t))**-1.5
+
+
+def diffusion_still_to_come(t, cells, gamma, spread):
+    """By how much <r^2>/6t falls short of its limit in this box, after a time t: the same waves' (1/t) times integral of
+    min(s, t) C(s) ds, (2/3N) sum_k (1 - exp(-L t))/(L^2 t), L = spread k^2."""
+    k2, count = shear_modes(cells)
+    rate = spread * k2
+    return 2.0 / (3.0 * gamma * cells**3) * (count * -numpy.expm1(-rate * t) / (rate**2 * t)).sum()
+
+
+def image_correction(viscosity, cells):
+    """What D gains when the box grows to infinity, to leading order: 2.837297 kT/(6 pi eta L)."""
+    return PERIODIC / (6.0 * math.pi * viscosity * cells)

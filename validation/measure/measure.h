@@ -34,6 +34,18 @@ static inline struct model standard_model(int lx, int ly, int lz, double per_cel
   return m;
 }
 
+/* The same solvent, rotated by `angle` degrees, with a collision in every step. */
+static inline struct model turned_model(int lx, int ly, int lz, double per_cell, double dt, double angle)
+{
+  struct model m = standard_model(lx, ly, lz, per_cell, dt, 1);
+  m.solvent.rotation_angle = angle;
+  if (angle != 90.0) {
+    m.solvent.cosine = cos(angle * 3.141592653589793 / 180.0);
+    m.solvent.sine = sin(angle * 3.141592653589793 / 180.0);
+  }
+  return m;
+}
+
 /* Adds a kind of the paper's fibers: M = 5, k = 100, l0 = 0.5, kappa = 64, in equilibrium. */
 static inline struct fiber_kind *add_kind(struct model *m, uint32_t count, uint32_t vertices)
 {

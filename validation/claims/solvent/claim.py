@@ -1,0 +1,376 @@
+"""The solvent against molecular chaos and hydrodynamics: viscosity, diffusion, sound, waves against k, long-time tail."""
+import collections
+
+import numpy
+from scipy import optimize
+
+from lib import figures, stats, theory
+from lib.claim import Figure, Outcome, Verdict
+from lib.runs import Run
+
+TITLE = "The solvent: viscosity, diffusion, sound, and the long-time tail"
+PAPER = "Sec. IV A, Eqs. (30), (31)"
+
+Point = collections.namedtuple("Point", "gamma dt_c alpha")
+PAPERS = Point(5, 0.02, 90)  # the paper's
+TAILS = Point(5, 0.1, 90)  # a longer tail, and sound that lives longer
+STRONG = Point(10, 0.1, 130)
+DILUTE = Point(5, 1.0, 90)  # a mean free path of a whole cell
+GRID = [Point(5, dt_c, 90) for dt_c in (0.02, 0.05, 0.1, 0.2, 0.5, 1.0)] + \
+       [Point(gamma, 0.02, 90) for gamma in (3, 10, 20)] + \
+       [Point(5, 0.02, alpha) for alpha in (30, 60, 120, 150)] + [STRONG]
+POINTS = {"quick": [PAPERS, TAILS, STRONG, DILUTE], "campaign": GRID}
+PLENTY = {"quick": 1, "campaign": 16}  # times as many pairs of runs, or windows
+TAIL_SEEDS = {"quick": 8, "campaign": 12}
+
+# Boxes of the shear waves: 8 x EDGE x 8. The finest are 8 cells long: shorter waves die before correlations build up.
+EDGES, FINE_EDGES = (32, 16), (32, 24, 16, 12, 8)
+DIFFUSION_BOX = 16
+TAIL_BOX = 32
+SOUND_EDGE = 32
+# Where molecular chaos is known to be off by a few per cent, nobody can say in advance by how many: a gate of 6 %.
+CHAOS = 0.06
+
+
+def label(point):
+    return f"g{point.gamma}-dt{point.dt_c:g}-a{point.alpha}"
+
+
+def amplitude(point):
+    """Of the shear wave. Its energy becomes heat, and a kinetic viscosity grows with the temperature: small where the
+    collisional part does not outweigh it."""
+    kinetic, collisional = theory.viscosity(*point)
+    return 0.6 if kinetic < 0.02 * collisional else 0.25 if kinetic < 0.3 * collisional else 0.12
+
+
+def skip(point):
+    """Collisions until what particles remember of each other has built up: 0.5 t0 at the paper's point."""
+    return max(8, int(25 * min(1.0, 0.06 / point.dt_c)))
+
+
+def shear_run(point, tier):
+    edges = FINE_EDGES if point == PAPERS else EDGES
+    pairs = PLENTY[tier] * (12 if point == PAPERS else 8 if point.dt_c < 0.2 else 24)
+    arguments = [point.gamma, point.dt_c, point.alpha, amplitude(point), skip(point), pairs, 11, *edges]
+    return Run("shear-" + label(point), program=["shear_decay", *arguments], hours=pairs * 0.0004)
+
+
+def diffusion_run(point, tier):
+    windows = 6 * PLENTY[tier]
+    return Run("diffusion-" + label(point), hours=windows * 3e-5 * point.gamma, program=[
+        "solvent_vacf", DIFFUSION_BOX, point.gamma, point.dt_c, point.alpha, 250, windows, 21])
+
+
+def tail_runs(point, tier, length, windows):
+    return [Run(f"tail-{label(point)}-{seed}", hours=windows * length * 1.5e-6, program=[
+        "solvent_vacf", TAIL_BOX, point.gamma, point.dt_c, point.alpha, length, windows, 30 + seed])
+        for seed in range(1, TAIL_SEEDS[tier] + 1)]
+
+
+def runs(tier):
+    found = [make(point, tier) for point in POINTS[tier] for make in (shear_run, diffusion_run)]
+    found += tail_runs(TAILS, tier, 125, 8 if tier == "quick" else 40)
+    if tier == "campaign":
+        found += tail_runs(PAPERS, tier, 250, 20)
+    pairs = 16 * PLENTY[tier]
+    found.append(Run("sound-" + label(TAILS), hours=pairs * 0.0002, program=[
+        "sound_decay", SOUND_EDGE, *TAILS, 0.03, 2, pairs, 41]))
+    return found
+
+
+# --- what runs say ----------------------------------------------------------------------------------------------------
+
+def viscosity(results, point):
+    """(nu, error) for k -> 0: from both boxes, linear in k^2."""
+    table = results["shear-" + label(point)].columns
+    fit = stats.line(table["k"]**2, table["nu"], table["nu_error"])
+    return fit.value[0], fit.error[0]
+
+
+def diffusion(results, point):
+    """(D, error) of a solvent particle at kT = 1, for long times and a large box: what shear waves still add after the
+    last lag, and what periodic images take away, is made up for."""
+    table = results["diffusion-" + label(point)].columns
+    nu = viscosity(results, point)[0]
+    spread = nu + table["D"][-1]
+    late = theory.diffusion_still_to_come(table["time"][-1], DIFFUSION_BOX, point.gamma, spread)
+    images = theory.image_correction(point.gamma * spread, DIFFUSION_BOX)
+    return table["D"][-1] + late + images, table["D_error"][-1]
+
+
+def has_point(results, point):
+    return f"shear-{label(point)}" in results and f"diffusion-{label(point)}" in results
+
+
+def tail_tables(results, point):
+    names = [name for name in results if name.startswith(f"tail-{label(point)}-")]
+    return [results[name].columns for name in sorted(names)]
+
+
+def tail(results, point, first, last):
+    """(amplitude, error): of C(t) between two times, in units of theory; the scatter of seeds."""
+    tables = tail_tables(results, point)
+    time = tables[0]["time"]
+    inside = (time >= first) & (time <= last)
+    expected = theory.long_time_tail(time[inside], TAIL_BOX, point.gamma, spread_of(results, point))
+    return stats.mean([(table["vacf"][inside] @ expected) / (expected @ expected) for table in tables])
+
+
+def spread_of(results, point):
+    return viscosity(results, point)[0] + diffusion(results, point)[0]
+
+
+def wave(parameters, time):
+    cosine, sine, rate, frequency = parameters
+    return numpy.exp(-rate * time) * (cosine * numpy.cos(frequency * time) + sine * numpy.sin(frequency * time))
+
+
+def sound(results):
+    """(fit, errors, time, mean amplitude): fit is (cosine, sine, rate, frequency)."""
+    table = dict(results["sound-" + label(TAILS)].columns)
+    time = table.pop("time")
+    k = 2.0 * numpy.pi / SOUND_EDGE
+
+    def estimate(mean):
+        start = (1.0, 0.0, 0.35 * k * k, theory.SOUND_SPEED * k)
+        return optimize.least_squares(lambda p: wave(p, time) - mean, start, x_scale=(1.0, 1.0, 0.01, 0.1)).x
+    blocks = numpy.array(list(table.values()))
+    return (*stats.jackknife(blocks, estimate), time, blocks)
+
+
+# --- verdicts ---------------------------------------------------------------------------------------------------------
+
+NAMES = {PAPERS: "paper", TAILS: "dt0.1", STRONG: "strong", DILUTE: "dt1"}
+
+
+def words(point):
+    return f"γ {point.gamma}, dt_c {point.dt_c:g}, {point.alpha}°"
+
+
+def retention_verdict(results, point):
+    expected = theory.retention(point.gamma, point.alpha)
+    verdict = Verdict(f"solvent.retention.{NAMES[point]}", f"velocity kept in one collision, {words(point)}", expected,
+                      "exact: 1 − (2/3)(1 − cos α)(γ − 1 + exp(−γ))/γ", tolerance=0.004, detects=0.008)
+    if has_point(results, point):
+        table = results["diffusion-" + label(point)].columns
+        verdict.measured, verdict.error = table["vacf"][1], table["vacf_error"][1]
+        verdict.tolerance = stats.tolerance(verdict.error)
+        verdict.detects = 2.0 * verdict.tolerance
+    return verdict
+
+
+def viscosity_verdict(results, point):
+    expected = theory.kinematic_viscosity(*point)
+    verdict = Verdict(f"solvent.viscosity.{NAMES[point]}", f"kinematic viscosity for k → 0, {words(point)}", expected,
+                      "Eqs. (30), (31), molecular chaos, known to 6 %", tolerance=CHAOS * expected)
+    if has_point(results, point):
+        verdict.measured, verdict.error = viscosity(results, point)
+        verdict.tolerance = stats.tolerance(verdict.error, systematic=CHAOS * expected)
+    verdict.detects = 2.0 * verdict.tolerance
+    return verdict
+
+
+def paper_verdicts(results):
+    """What the paper computes with, to its letter: molecular chaos at a mean free path of 0.02 a0."""
+    nu, d = theory.kinematic_viscosity(*PAPERS), theory.self_diffusion(*PAPERS)
+    again = "At a mean free path of 0.02 a0 the same particles meet again, "
+    eta = Verdict("solvent.viscosity.equation", "Eqs. (30), (31) within error bars at the paper's point", nu,
+                  "Eqs. (30), (31)", 0.0, kind="paper", reason=again + "which molecular chaos leaves out.")
+    schmidt = Verdict("solvent.schmidt", "Schmidt number ν/D at the paper's point", nu / d, "Eqs. (30), (31) and D of molecular "
+                      "chaos", 0.0, kind="paper", reason=again + "and backflow carries them on: D is a third higher, ν 4 % lower.")
+    if has_point(results, PAPERS):
+        eta.measured, eta.error = viscosity(results, PAPERS)
+        measured, error = diffusion(results, PAPERS)
+        schmidt.measured = eta.measured / measured
+        schmidt.error = schmidt.measured * numpy.hypot(error / measured, eta.error / eta.measured)
+    for verdict in (eta, schmidt):
+        verdict.tolerance = stats.tolerance(verdict.error)
+        verdict.detects = 2.0 * verdict.tolerance
+    return [eta, schmidt]
+
+
+def slope_verdict(results):
+    share = theory.viscosity(*PAPERS)[1] / sum(theory.viscosity(*PAPERS))
+    verdict = Verdict("solvent.viscosity.k", "d(ν(k)/ν)/dk², paper's point", -share / 30.0,
+                      "collisional flux between neighboring cells: 1 − k²/30", 0.05)
+    if has_point(results, PAPERS):
+        table = results["shear-" + label(PAPERS)].columns
+        fit = stats.line(table["k"]**2, table["nu"], table["nu_error"])
+        verdict.measured = fit.value[1] / fit.value[0]
+        verdict.error = fit.error[1] / fit.value[0]
+        verdict.tolerance = stats.tolerance(verdict.error)
+    verdict.detects = 2.0 * verdict.tolerance
+    return verdict
+
+
+def diffusion_verdict(results):
+    expected = theory.self_diffusion(*DILUTE)
+    verdict = Verdict("solvent.diffusion.dt1", f"self-diffusion, {words(DILUTE)}", expected,
+                      "molecular chaos, which a mean free path of a cell makes right to 2 %", 0.02 * expected)
+    if has_point(results, DILUTE):
+        verdict.measured, verdict.error = diffusion(results, DILUTE)
+        verdict.tolerance = stats.tolerance(verdict.error, systematic=0.02 * expected)
+    verdict.detects = 2.0 * verdict.tolerance
+    return verdict
+
+
+def sound_verdict(results):
+    """The frequency is c k up to a share (rate/frequency)^2 of it, viscosity's and heat's."""
+    verdict = Verdict("solvent.sound", f"speed of sound, {words(TAILS)}", theory.SOUND_SPEED,
+                      "√(5/3): energy is conserved", 0.02)
+    if "sound-" + label(TAILS) in results:
+        fit, error, *_ = sound(results)
+        k = 2.0 * numpy.pi / SOUND_EDGE
+        verdict.measured, verdict.error = fit[3] / k, error[3] / k
+        verdict.tolerance = stats.tolerance(verdict.error, systematic=(fit[2] / fit[3])**2 * theory.SOUND_SPEED)
+    verdict.detects = 2.0 * verdict.tolerance
+    return verdict
+
+
+TAIL_TIMES = {TAILS: (2.0, 12.4), PAPERS: (0.6, 4.9)}
+
+
+def tail_verdict(results, point):
+    first, last = TAIL_TIMES[point]
+    verdict = Verdict(f"solvent.tail.{NAMES[point]}", f"long-time tail of C(t), {first:g} to {last:g} t0, over theory, "
+                      f"{words(point)}", 1.0, "shear waves of the box, (2/3N) Σ exp(−(ν + D)k²t); leading order, to 10 %", 0.1)
+    if has_point(results, point) and len(tail_tables(results, point)) > 1:
+        verdict.measured, verdict.error = tail(results, point, first, last)
+        verdict.tolerance = stats.tolerance(verdict.error, systematic=0.1)
+    verdict.detects = 2.0 * verdict.tolerance
+    return verdict
+
+
+# --- figures ----------------------------------------------------------------------------------------------------------
+
+def lines_of(results, known):
+    """Points along dt_c, gamma, alpha through the paper's point: (name of the axis, index, points)."""
+    for index, name in ((1, "collision interval $\\Delta t_c$ ($t_0$)"), (0, "particles per cell $\\gamma$"),
+                        (2, "rotation angle $\\alpha$ (degrees)")):
+        others = [k for k in range(3) if k != index]
+        yield name, index, sorted(point for point in known if all(point[k] == PAPERS[k] for k in others))
+
+
+def draw_chaos(results, known):
+    figure, tops, belows = figures.with_residuals(width=9.5, height=5.2, columns=3, share=0.75)
+    quantities = (("viscosity $\\nu$", viscosity, theory.kinematic_viscosity), ("self-diffusion $D$", diffusion, theory.self_diffusion))
+    ends = {1: (0.015, 1.3), 0: (2.5, 25.0), 2: (20.0, 160.0)}
+    for (name, index, points), top, below in zip(lines_of(results, known), tops, belows):
+        for number, (what, measure, expected) in enumerate(quantities):
+            x = numpy.geomspace(*ends[index], 100)
+            figures.theory(top, x, [expected(*PAPERS._replace(**{Point._fields[index]: value})) for value in x],
+                           color=figures.COLORS[number])
+            values = numpy.array([measure(results, point) for point in points])
+            chaos = numpy.array([expected(*point) for point in points])
+            at = [point[index] for point in points]
+            figures.points(top, at, values[:, 0], values[:, 1], number=number, label=what)
+            figures.points(below, at, 100.0 * (values[:, 0] / chaos - 1.0), 100.0 * values[:, 1] / chaos, number=number)
+        top.set_yscale("log")
+        if index < 2:
+            below.set_xscale("log")
+            below.set_xticks([0.02, 0.1, 0.5] if index == 1 else [3, 5, 10, 20])
+            below.xaxis.set_major_formatter("{x:g}")
+            below.minorticks_off()
+        below.set_xlabel(name)
+    tops[0].set_ylabel("$a_0^2/t_0$")
+    tops[0].legend()
+    belows[0].set_ylabel("over molecular chaos (%)")
+    return figure
+
+
+def draw_waves(results):
+    table = results["shear-" + label(PAPERS)].columns
+    fit = stats.line(table["k"]**2, table["nu"], table["nu_error"])
+    share = theory.viscosity(*PAPERS)[1] / sum(theory.viscosity(*PAPERS))
+    figure, top, below = figures.with_residuals()
+    k2 = numpy.linspace(0.0, 0.66, 50)
+    figures.theory(top, k2, 1.0 - share * k2 / 30.0, label="$1 - k^2/30$")
+    figures.points(top, table["k"]**2, table["nu"] / fit.value[0], table["nu_error"] / fit.value[0],
+                   label="decay of shear waves")
+    figures.points(below, table["k"]**2, table["nu"] / fit.value[0] - 1.0 + share * table["k"]**2 / 30.0,
+                   table["nu_error"] / fit.value[0])
+    top.set_ylabel("$\\nu(k)/\\nu(0)$")
+    below.set_ylabel("difference")
+    below.set_xlabel("$k^2$ ($a_0^{-2}$)")
+    top.legend()
+    return figure
+
+
+def draw_sound(results):
+    fit, _, time, blocks = sound(results)
+    mean, error = blocks.mean(axis=0), blocks.std(axis=0, ddof=1) / numpy.sqrt(len(blocks))
+    figure, top, below = figures.with_residuals()
+    figures.theory(top, time, wave(fit, time), label="damped wave, fitted")
+    step = slice(None, None, 3)
+    figures.points(top, time[step], mean[step], error[step], label="$v_y(k,t)/v_y(k,0)$")
+    figures.points(below, time[step], (mean - wave(fit, time))[step], error[step])
+    top.set_ylabel("amplitude of the wave")
+    below.set_ylabel("difference")
+    below.set_xlabel("time ($t_0$)")
+    top.legend()
+    return figure
+
+
+def draw_tail(results, points):
+    figure, top, below = figures.with_residuals(share=0.45)
+    for number, point in enumerate(points):
+        tables = tail_tables(results, point)
+        time, vacf = tables[0]["time"], numpy.array([table["vacf"] for table in tables])
+        edges = numpy.unique(numpy.round(numpy.geomspace(1, len(time), 26)).astype(int))
+        spread = spread_of(results, point)
+        bins = [(time[a:b].mean(), *stats.mean(vacf[:, a:b].mean(axis=1)), a, b) for a, b in zip(edges, edges[1:])]
+        t = numpy.array([entry[0] for entry in bins])
+        mean, error = numpy.array([entry[1:3] for entry in bins]).T
+        expected = numpy.array([theory.long_time_tail(time[a:b], TAIL_BOX, point.gamma, spread).mean() for *_, a, b in bins])
+        figures.points(top, t, mean, error, number=number, label=words(point))
+        fine = numpy.geomspace(5 * point.dt_c, time[-1], 60)
+        figures.theory(top, fine, theory.long_time_tail(fine, TAIL_BOX, point.gamma, spread), color=figures.COLORS[number],
+                       linestyle="--")
+        early = numpy.arange(1, 9) * point.dt_c
+        figures.theory(top, early, theory.retention(point.gamma, point.alpha)**numpy.arange(1, 9), color=figures.COLORS[number],
+                       linewidth=0.8)
+        late = t > TAIL_TIMES[point][0]
+        figures.points(below, t[late], mean[late] / expected[late] - 1.0, error[late] / expected[late], number=number)
+    top.set(xscale="log", yscale="log", ylim=(5e-5, 1.0), ylabel="$C(t)/C(0)$")
+    below.set(ylabel="over the tail, $-1$", ylim=(-1.2, 1.2), xlabel="time ($t_0$)")
+    top.legend()
+    return figure
+
+
+def evaluate(results, tier):
+    points = POINTS[tier]
+    verdicts = [retention_verdict(results, PAPERS), retention_verdict(results, STRONG)]
+    verdicts += [viscosity_verdict(results, point) for point in (PAPERS, TAILS, STRONG, DILUTE)]
+    verdicts += [slope_verdict(results), diffusion_verdict(results), sound_verdict(results), tail_verdict(results, TAILS)]
+    if tier == "campaign":
+        verdicts.append(tail_verdict(results, PAPERS))
+    verdicts += paper_verdicts(results)
+
+    known = [point for point in points if has_point(results, point)]
+    drawn = []
+    if PAPERS in known:
+        drawn.append(Figure("chaos", "Viscosity and self-diffusion through the paper's point (γ 5, dt_c 0.02, 90°). Lines: molecular "
+                            "chaos, Eqs. (30), (31). Below: by how much it fails.", lambda: draw_chaos(results, known)))
+        drawn.append(Figure("waves", "Decay of transverse modes against k at the paper's point. The line is what the width of a cell "
+                            "does to collisional momentum flux.", lambda: draw_waves(results)))
+    if "sound-" + label(TAILS) in results:
+        drawn.append(Figure("sound", f"A standing sound wave of k = 2π/32, {words(TAILS)}.", lambda: draw_sound(results)))
+    tails = [point for point in TAIL_TIMES if point in known and len(tail_tables(results, point)) > 1]
+    if tails:
+        drawn.append(Figure("tail", "Velocity autocorrelation of solvent particles. Thin: molecular chaos, cⁿ after n collisions. Dashed: "
+                            "the tail that shear waves carry, summed over the waves of the box, without fitted numbers.",
+                            lambda: draw_tail(results, tails)))
+    return Outcome(verdicts, drawn, prose(results))
+
+
+def prose(results):
+    if not has_point(results, PAPERS):
+        return "No run at the paper's point yet."
+    nu, d = viscosity(results, PAPERS)[0], diffusion(results, PAPERS)[0]
+    over = [100.0 * (nu / theory.kinematic_viscosity(*PAPERS) - 1.0), 100.0 * (d / theory.self_diffusion(*PAPERS) - 1.0)]
+    return (f"At the paper's point ν is {nu:.3f} ({over[0]:+.1f} % of Eqs. (30), (31)) and a solvent particle diffuses with "
+            f"D = {d:.4f} ({over[1]:+.0f} % of molecular chaos). **Both fail for one reason:** with a mean free path of 0.02 a0 the same "
+            "particles share a cell for many collisions. One collision alone does exactly what it should. The Schmidt number is "
+            f"{nu / d:.0f}, not {theory.kinematic_viscosity(*PAPERS) / theory.self_diffusion(*PAPERS):.0f}. With a mean free path of a cell "
+            "molecular chaos holds.\n\nWhat chaos leaves out is hydrodynamics: the velocity autocorrelation follows (ν + D)t to the "
+            "power −3/2 with no number fitted, once the waves of the periodic box are counted one by one.")
