@@ -1,0 +1,275 @@
+"""One solute in a periodic box: how its mean square displacement grows, and what box, neighbors and images do to it.
+
+Units a0 = kT = m = t0 = 1. THEORY's sections: Green-Kubo for a fluid of decaying transverse modes (2.2), images (2.6),
+Kirkwood (2.7), Rouse (2.7).
+"""
+import dataclasses
+import math
+
+import numpy
+
+from lib import stats, theory
+
+MASS, PER_CELL, INTERVAL = 5.0, 5.0, 0.02  # of a vertex; of the solvent, per cell; between collisions
+NU, NU_ERROR = 2.148, 0.008  # kinematic viscosity at the paper's point, from shear waves: docs/accuracy.md
+ETA = PER_CELL * NU
+D_VERTEX, D_VERTEX_ERROR = 0.0181, 0.0002  # of one vertex in an infinite box, from the claim `mobility`
+DAMPING = 1.2  # of sound, Gamma in exp(-Gamma k^2 t): [nu + (2/3) D_T]/2
+SHORTEST_WAVE = 2.0  # k a0; waves shorter than 3 cells have left their mark within 0.2 t0
+
+
+# Seconds of one core, estimated: per solvent particle and collision, growing with the box out of the cache, and per vertex
+# and step; a velocity swap costs as much again as the solvent, phantoms cost by the vertex.
+BOXES, PARTICLE_SECONDS = (20, 40, 60), (9e-9, 12e-9, 17e-9)
+VERTEX_SECONDS, PHANTOM_SECONDS = 1e-7, 2e-7
+
+
+def hours(box, vertices, time, bath="hydrodynamics", time_step=INTERVAL):
+    """CPU hours, estimated, of `time` t0."""
+    if bath == "phantoms":
+        return round(time / INTERVAL * vertices * PHANTOM_SECONDS / 3600.0, 4)
+    collision = (2.0 if bath == "swap" else 1.0) * PER_CELL * box ** 3 * numpy.interp(box, BOXES, PARTICLE_SECONDS)
+    return round((time / INTERVAL * collision + time / time_step * vertices * VERTEX_SECONDS) / 3600.0, 4)
+
+
+# --- hydrodynamics ----------------------------------------------------------------------------------------------------
+
+def stokes(length, eta=ETA):
+    """kT/(6 pi eta length)."""
+    return 1.0 / (6.0 * math.pi * eta * length)
+
+
+def image_shift(box, gyration2=0.0, eta=ETA):
+    """What the periodic images take from D: kT/(6 pi eta L) [2.837297 - (4 pi/3) R_g^2/L^2]."""
+    return stokes(box, eta) * (theory.PERIODIC - 4.0 * math.pi / 3.0 * gyration2 / box ** 2)
+
+
+def closed_box(solutes, mass, box):
+    """The factor by which a closed box slows the diffusion of one of its n solutes: the momentum that they exchange
+    with the fluid moves all of it the other way, 1 - (1 - (M_solvent/M_total)^2)/n; `mass` of each solute."""
+    solvent = PER_CELL * box ** 3
+    return 1.0 - (1.0 - (solvent / (solvent + solutes * mass)) ** 2) / solutes
+
+
+def gaussian_form(vertices, bond2=1.0):
+    """P(k) of a Gaussian chain."""
+    distance = numpy.arange(1, vertices)
+    weight = 2.0 * (vertices - distance)
+
+    def form(k):
+        x = numpy.multiply.outer(numpy.atleast_1d(k) ** 2, distance * bond2 / 6.0)
+        return (vertices + (weight * numpy.exp(-x)).sum(axis=-1)) / vertices ** 2
+    return form
+
+
+def rod_form(vertices, spacing):
+    """P(k) of a straight row of points."""
+    distance = numpy.arange(1, vertices)
+    weight = 2.0 * (vertices - distance)
+
+    def form(k):
+        x = numpy.multiply.outer(numpy.atleast_1d(k), distance * spacing)
+        return (vertices + (weight * numpy.sinc(x / math.pi)).sum(axis=-1)) / vertices ** 2
+    return form
+
+
+def point_form(k):
+    """P(k) of a point."""
+    return numpy.ones_like(numpy.atleast_1d(k))
+
+
+def waves(box):
+    """Wave numbers of a cubic box up to SHORTEST_WAVE, and how many wave vectors have each."""
+    reach = int(SHORTEST_WAVE * box / (2.0 * math.pi))
+    n = numpy.arange(-reach, reach + 1)
+    square = (n[:, None, None] ** 2 + n[None, :, None] ** 2 + n[None, None, :] ** 2).ravel()
+    count = numpy.bincount(square)[:reach ** 2 + 1]
+    found = numpy.flatnonzero(count)
+    found = found[found > 0]
+    return 2.0 * math.pi / box * numpy.sqrt(found), count[found]
+
+
+def memory(times, box, nu=NU, form=point_form, sound=theory.SOUND_SPEED, damping=DAMPING):
+    """How far D(t) = g_cm/6t is from its limit, at lags `times`, through the box's long waves.
+
+    A solute is carried by the thermal waves of the fluid. Transverse ones decay as exp(-nu k^2 t), two for each k; sound
+    is a damped oscillation, whose share in the displacement does not grow: with amplitudes kT P(k)/3 rho V per component
+
+        D - g/6t = (1/3 rho V t) sum_k P(k) { 2 [1 - exp(-nu k^2 t)]/(nu k^2)^2 - [1 - phi(t)]/(c k)^2 }
+
+    phi: exp(-Gamma k^2 t) [cos wt + (Gamma k^2/w) sin wt], w^2 = (c k)^2 - (Gamma k^2)^2.
+    """
+    k, count = waves(box)
+    t = numpy.atleast_1d(times)[:, None]
+    rate, slow = nu * k ** 2, damping * k ** 2
+    omega = numpy.sqrt((sound * k) ** 2 - slow ** 2 + 0j)
+    phi = (numpy.exp((-slow + 1j * omega) * t) * (1.0 - 1j * slow / omega)
+           + numpy.exp((-slow - 1j * omega) * t) * (1.0 + 1j * slow / omega)).real / 2.0
+    each = 2.0 * (1.0 - numpy.exp(-rate * t)) / rate ** 2 - (1.0 - phi) / (sound * k) ** 2
+    return (count * form(k) * each).sum(axis=1) / (3.0 * PER_CELL * box ** 3 * t[:, 0])
+
+
+def monomer_pair(distance, radius):
+    """(1/3) Tr of the mobility of two spheres, times 6 pi eta: 1/r, and Rotne-Prager-Yamakawa's where they overlap."""
+    r = numpy.asarray(distance, dtype=float)
+    return numpy.where(r >= 2.0 * radius, 1.0 / numpy.maximum(r, 1e-9), (1.0 - r / (4.0 * radius)) / radius)
+
+
+def kirkwood_chain(vertices, radius, bond2=1.0):
+    """Short-time D of a Gaussian chain of spheres in an infinite box, Kirkwood's double sum."""
+    x = numpy.linspace(0.0, 8.0, 4001)[1:]  # distance over its standard deviation per component
+    chi = math.sqrt(2.0 / math.pi) * x ** 2 * numpy.exp(-x ** 2 / 2.0)
+    total = vertices / radius
+    for distance in range(1, vertices):
+        pair = monomer_pair(x * math.sqrt(distance * bond2 / 3.0), radius)
+        total += 2.0 * (vertices - distance) * numpy.trapz(chi * pair, x)
+    return stokes(1.0) * total / vertices ** 2
+
+
+def kirkwood_rod(vertices, spacing, radius):
+    """The same of a straight rod."""
+    distance = numpy.arange(1, vertices)
+    total = vertices / radius + (2.0 * (vertices - distance) * monomer_pair(spacing * distance, radius)).sum()
+    return stokes(1.0) * total / vertices ** 2
+
+
+# --- without hydrodynamics ----------------------------------------------------------------------------------------
+
+def retention(vertices=1):
+    """What the common velocity of vertices alone in a cell with Poisson solvent keeps per collision, at 90 degrees:
+    1 - (2/3) <n/(l M + n)>."""
+    n = numpy.arange(0, 60)
+    weight = numpy.exp(n * math.log(PER_CELL) - PER_CELL - numpy.array([math.lgamma(k + 1.0) for k in n]))
+    return 1.0 - 2.0 / 3.0 * float((weight * n / (vertices * MASS + n)).sum())
+
+
+def vertex_diffusion():
+    """D_0 of a lone vertex, molecular chaos: (kT dt_c/M) [1/(1 - c) - 1/2]."""
+    return INTERVAL / MASS * (1.0 / (1.0 - retention()) - 0.5)
+
+
+def gaussian_shape(vertices, bond2, random):
+    """Positions of a Gaussian chain."""
+    return numpy.cumsum(random.normal(0.0, math.sqrt(bond2 / 3.0), (vertices, 3)), axis=0)
+
+
+def rod_shape(vertices, spacing, random):
+    """Positions along a straight line of random direction."""
+    direction = random.normal(size=3)
+    return numpy.outer(numpy.arange(vertices) * spacing, direction / numpy.linalg.norm(direction))
+
+
+def sharing_diffusion(shape, shapes=40, shifts=200, seed=1):
+    """D of a fiber's center of mass without hydrodynamics, where vertices share cells: (mean, error) over shapes.
+
+    Collisions turn V into C V, with C_ij = c_1 d_ij + (1 - c_1) <M/(l M + n); i and j in one cell of l vertices>, the
+    average over grid shifts and the Poisson n; c_1 = 1/3. Molecular chaos, and a shape that does not change meanwhile:
+    D = (kT dt_c/M N^2) sum_ij [(1 - C)^-1 - 1/2]_ij. With no shared cell it is D_0/N. shape: function of a generator."""
+    random = numpy.random.Generator(numpy.random.PCG64(seed))
+    n = numpy.arange(0, 60)
+    poisson = numpy.exp(n * math.log(PER_CELL) - PER_CELL - numpy.array([math.lgamma(k + 1.0) for k in n]))
+    found = []
+    for _ in range(shapes):
+        points = shape(random)
+        size = len(points)
+        share = numpy.array([0.0] + [float((poisson * MASS / (l * MASS + n)).sum()) for l in range(1, size + 1)])
+        matrix = numpy.zeros((size, size))
+        for shift in random.uniform(size=(shifts, 3)):
+            cell = numpy.floor(points + shift).astype(int)
+            same = (cell[:, None, :] == cell[None, :, :]).all(axis=2)
+            matrix += same * share[same.sum(axis=1)][:, None]
+        matrix = numpy.eye(size) / 3.0 + 2.0 / 3.0 * matrix / shifts
+        sums = numpy.linalg.solve(numpy.eye(size) - matrix, numpy.ones(size)).sum() - size / 2.0
+        found.append(INTERVAL / MASS * sums / size ** 2)
+    return float(numpy.mean(found)), float(numpy.std(found, ddof=1) / math.sqrt(shapes))
+
+
+def rouse(times, vertices, spring, friction):
+    """<R(t).R(0)>/<R^2> of a discrete Rouse chain: odd modes, tau_p = zeta/(4 k sin^2(p pi/2N))."""
+    p = numpy.arange(1, vertices, 2)
+    angle = p * math.pi / (2.0 * vertices)
+    weight = 2.0 / (vertices * (vertices - 1.0)) / numpy.tan(angle) ** 2
+    tau = friction / (4.0 * spring * numpy.sin(angle) ** 2)
+    return (weight * numpy.exp(-numpy.atleast_1d(times)[:, None] / tau)).sum(axis=1)
+
+
+# --- estimates --------------------------------------------------------------------------------------------------------
+
+def merged(results, kind):
+    """One dynamics table of several runs of one system: times, D/kT and end_to_end with errors, weighted with the number
+    of intervals. None without runs. kT: the run's own, set by its start."""
+    tables = []
+    for result in results:
+        try:
+            table, heat = result.table(f"dynamics-{kind}"), result.table("temperature")
+        except KeyError:
+            continue
+        if len(table.get("time", ())) == 0:
+            continue
+        phantoms = "bath: phantoms" in result.run.scene
+        tables.append((table, 1.0 if phantoms else float(heat["solvent"].mean())))
+    if not tables:
+        return None
+    times = max((table["time"] for table, _ in tables), key=len)
+    merge = {"time": times, "runs": len(tables)}
+    for name, power in (("D", 1), ("end_to_end", 0)):
+        total, value, variance = (numpy.zeros(len(times)) for _ in range(3))
+        for table, kt in tables:
+            m, weight = len(table["time"]), table["intervals"]
+            total[:m] += weight
+            value[:m] += weight * table[name] / kt ** power
+            variance[:m] += (weight * table[name + "_error"] / kt ** power) ** 2
+        merge[name], merge[name + "_error"] = value / total, numpy.sqrt(variance) / total
+    merge["intervals"] = total
+    return merge
+
+
+def nested(times, first, last):
+    """Indices of lags first 2^k up to `last`: each one's intervals are made of pairs of the one before."""
+    chosen, wanted = [], None
+    for i, t in enumerate(times):
+        if t > last * 1.000001:
+            break
+        if t >= first * 0.999999 and (wanted is None or abs(t / wanted - 1.0) < 1e-6):
+            chosen.append(i)
+            wanted = 2.0 * t
+    return numpy.array(chosen, dtype=int)
+
+
+@dataclasses.dataclass
+class Limit:
+    """Long-time diffusion coefficients of several systems, with their covariance, the local memory c, and the fit's p."""
+    value: numpy.ndarray
+    covariance: numpy.ndarray
+    local: float
+    p: float
+
+    @property
+    def error(self):
+        return numpy.sqrt(self.covariance.diagonal())
+
+
+def long_time(systems, first, last):
+    """D of systems (table, correction) that share one local memory: D(t) + correction(t) = D - c/t, by least squares over
+    lags from `first` to `last` (one for each system).
+
+    c stands for what has decayed before `first`: the memory of the velocity, and waves shorter than SHORTEST_WAVE.
+    Intervals of lag 2t are pairs of those of lag t. For independent increments D(2t) is D(t) plus independent noise, so
+    the covariance of two lags is the variance of the shorter, and the differences of D between lags are independent.
+    """
+    rows, values = [], []
+    for i, (table, correction) in enumerate(systems):
+        chosen = nested(table["time"], first, last[i])
+        good = numpy.isfinite(table["D_error"][chosen]) & (table["D_error"][chosen] > 0.0)
+        t, y, error = (table[name][chosen][good] for name in ("time", "D", "D_error"))
+        variance = numpy.maximum.accumulate(error ** 2)
+        noise = numpy.sqrt(numpy.maximum(numpy.diff(variance, prepend=0.0), 0.05 * variance))
+        basis = numpy.zeros((len(t), len(systems) + 1))
+        basis[:, i], basis[:, -1] = 1.0, -1.0 / t
+        rows.append(numpy.diff(basis, axis=0, prepend=numpy.zeros((1, basis.shape[1]))) / noise[:, None])
+        values.append(numpy.diff(y + correction(t), prepend=0.0) / noise)
+    design, value = numpy.concatenate(rows), numpy.concatenate(values)
+    if len(value) < len(systems) + 1:
+        return None
+    f = stats.fit(list(design.T), value, numpy.ones(len(value)))
+    return Limit(f.value[:-1], f.covariance[:-1, :-1], float(f.value[-1]), f.p)
