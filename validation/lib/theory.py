@@ -43,12 +43,18 @@ def shear_modes(cells, largest=40):
     return (2.0 * math.pi / cells)**2 * values, counts
 
 
-def long_time_tail(t, cells, gamma, spread):
-    """Velocity autocorrelation of a particle, per component and in units of kT/m, as shear waves carry it (Ernst, Hauge,
-    van Leeuwen, Phys. Rev. Lett. 25, 1254 (1970)), summed over the waves of the box: (2/3N) sum_k exp(-spread k^2 t), with
-    spread = nu + D. In an infinite box (2/3 gamma)(4 pi spread t)^(-3/2). For t long after the first collisions."""
-    line = numpy.exp(-spread * numpy.outer(t, (2.0 * math.pi / cells * numpy.arange(-60, 61))**2)).sum(axis=1)
-    return 2.0 / (3.0 * gamma * cells**3) * (line**3 - 1.0)
+def long_time_tail(t, cells, gamma, spread, damping):
+    """Velocity autocorrelation of a particle, per component and in units of kT/m, as the waves of the box carry it (Ernst,
+    Hauge, van Leeuwen, Phys. Rev. Lett. 25, 1254 (1970), before the limit of long times):
+
+        (1/3N) sum_k [ 2 exp(-spread k^2 t) + cos(c k t) exp(-damping k^2 t) ]
+
+    spread = nu + D of the shear waves, damping = Gamma + D of sound. For t long after the first collisions. In an infinite
+    box sound is soon gone, and the rest is (2/3 gamma)(4 pi spread t)^(-3/2)."""
+    k2, count = shear_modes(cells)
+    t = numpy.asarray(t, float)[..., None]
+    sound = numpy.cos(SOUND_SPEED * numpy.sqrt(k2) * t) * numpy.exp(-damping * k2 * t)
+    return ((2.0 * numpy.exp(-spread * k2 * t) + sound) * count).sum(axis=-1) / (3.0 * gamma * cells**3)
 
 
 def long_time_tail_unbounded(t, gamma, spread):

@@ -21,6 +21,7 @@ GRID = [Point(5, dt_c, 90) for dt_c in (0.02, 0.05, 0.1, 0.2, 0.5, 1.0)] + \
        [Point(5, 0.02, alpha) for alpha in (30, 60, 120, 150)] + [STRONG]
 POINTS = {"quick": [PAPERS, TAILS, STRONG, DILUTE], "campaign": GRID}
 PLENTY = {"quick": 1, "campaign": 16}  # times as many pairs of runs, or windows
+TAIL_POINTS = {"quick": [TAILS], "campaign": [TAILS, PAPERS]}
 TAIL_SEEDS = {"quick": 8, "campaign": 12}
 
 # Boxes of the shear waves: 8 x EDGE x 8. The finest are 8 cells long: shorter waves die before correlations build up.
@@ -28,6 +29,7 @@ EDGES, FINE_EDGES = (32, 16), (32, 24, 16, 12, 8)
 DIFFUSION_BOX = 16
 TAIL_BOX = 32
 SOUND_EDGE = 32
+SOUND_K = 2.0 * numpy.pi / SOUND_EDGE
 # Where molecular chaos is known to be off by a few per cent, nobody can say in advance by how many: a gate of 6 %.
 CHAOS = 0.06
 
@@ -50,14 +52,14 @@ def skip(point):
 
 def shear_run(point, tier):
     edges = FINE_EDGES if point == PAPERS else EDGES
-    pairs = PLENTY[tier] * (12 if point == PAPERS else 8 if point.dt_c < 0.2 else 24)
+    pairs = PLENTY[tier] * (12 if point == PAPERS else 30 if point.dt_c < 0.2 else 90)
     arguments = [point.gamma, point.dt_c, point.alpha, amplitude(point), skip(point), pairs, 11, *edges]
-    return Run("shear-" + label(point), program=["shear_decay", *arguments], hours=pairs * 0.0004)
+    return Run("shear-" + label(point), program=["shear_decay", *arguments], hours=pairs * (1.6e-4 if point == PAPERS else 8e-5))
 
 
 def diffusion_run(point, tier):
-    windows = 6 * PLENTY[tier]
-    return Run("diffusion-" + label(point), hours=windows * 3e-5 * point.gamma, program=[
+    windows = 24 * PLENTY[tier]
+    return Run("diffusion-" + label(point), hours=windows * 4.5e-6 * point.gamma, program=[
         "solvent_vacf", DIFFUSION_BOX, point.gamma, point.dt_c, point.alpha, 250, windows, 21])
 
 
@@ -70,12 +72,15 @@ def tail_runs(point, tier, length, windows):
 def runs(tier):
     found = [make(point, tier) for point in POINTS[tier] for make in (shear_run, diffusion_run)]
     found += tail_runs(TAILS, tier, 125, 8 if tier == "quick" else 40)
-    if tier == "campaign":
+    if PAPERS in TAIL_POINTS[tier]:
         found += tail_runs(PAPERS, tier, 250, 20)
-    pairs = 16 * PLENTY[tier]
-    found.append(Run("sound-" + label(TAILS), hours=pairs * 0.0002, program=[
-        "sound_decay", SOUND_EDGE, *TAILS, 0.03, 2, pairs, 41]))
-    return found
+    return found + [sound_run(point, tier) for point in TAIL_POINTS[tier]]
+
+
+def sound_run(point, tier):
+    pairs = PLENTY[tier] * (16 if point == TAILS else 4)
+    return Run("sound-" + label(point), hours=pairs * 2.4e-4 * 0.1 / point.dt_c, program=[
+        "sound_decay", SOUND_EDGE, *point, 0.03, round(0.2 / point.dt_c), pairs, 41])
 
 
 # --- what runs say ----------------------------------------------------------------------------------------------------
@@ -107,17 +112,24 @@ def tail_tables(results, point):
     return [results[name].columns for name in sorted(names)]
 
 
+def has_tail(results, point):
+    return has_point(results, point) and "sound-" + label(point) in results and len(tail_tables(results, point)) > 1
+
+
 def tail(results, point, first, last):
     """(amplitude, error): of C(t) between two times, in units of theory; the scatter of seeds."""
     tables = tail_tables(results, point)
     time = tables[0]["time"]
     inside = (time >= first) & (time <= last)
-    expected = theory.long_time_tail(time[inside], TAIL_BOX, point.gamma, spread_of(results, point))
+    expected = tail_theory(results, point, time[inside])
     return stats.mean([(table["vacf"][inside] @ expected) / (expected @ expected) for table in tables])
 
 
-def spread_of(results, point):
-    return viscosity(results, point)[0] + diffusion(results, point)[0]
+def tail_theory(results, point, time):
+    """Of the measured nu, D and damping of sound: nothing is fitted."""
+    d = diffusion(results, point)[0]
+    damping = sound(results, point)[0][2] / SOUND_K**2
+    return theory.long_time_tail(time, TAIL_BOX, point.gamma, viscosity(results, point)[0] + d, damping + d)
 
 
 def wave(parameters, time):
@@ -125,14 +137,13 @@ def wave(parameters, time):
     return numpy.exp(-rate * time) * (cosine * numpy.cos(frequency * time) + sine * numpy.sin(frequency * time))
 
 
-def sound(results):
-    """(fit, errors, time, mean amplitude): fit is (cosine, sine, rate, frequency)."""
-    table = dict(results["sound-" + label(TAILS)].columns)
+def sound(results, point):
+    """(fit, errors, time, amplitude of each block): fit is (cosine, sine, rate, frequency)."""
+    table = dict(results["sound-" + label(point)].columns)
     time = table.pop("time")
-    k = 2.0 * numpy.pi / SOUND_EDGE
 
     def estimate(mean):
-        start = (1.0, 0.0, 0.35 * k * k, theory.SOUND_SPEED * k)
+        start = (1.0, 0.0, 0.7 * theory.kinematic_viscosity(*point) * SOUND_K**2, theory.SOUND_SPEED * SOUND_K)
         return optimize.least_squares(lambda p: wave(p, time) - mean, start, x_scale=(1.0, 1.0, 0.01, 0.1)).x
     blocks = numpy.array(list(table.values()))
     return (*stats.jackknife(blocks, estimate), time, blocks)
@@ -219,9 +230,8 @@ def sound_verdict(results):
     verdict = Verdict("solvent.sound", f"speed of sound, {words(TAILS)}", theory.SOUND_SPEED,
                       "√(5/3): energy is conserved", 0.02)
     if "sound-" + label(TAILS) in results:
-        fit, error, *_ = sound(results)
-        k = 2.0 * numpy.pi / SOUND_EDGE
-        verdict.measured, verdict.error = fit[3] / k, error[3] / k
+        fit, error, *_ = sound(results, TAILS)
+        verdict.measured, verdict.error = fit[3] / SOUND_K, error[3] / SOUND_K
         verdict.tolerance = stats.tolerance(verdict.error, systematic=(fit[2] / fit[3])**2 * theory.SOUND_SPEED)
     verdict.detects = 2.0 * verdict.tolerance
     return verdict
@@ -233,8 +243,8 @@ TAIL_TIMES = {TAILS: (2.0, 12.4), PAPERS: (0.6, 4.9)}
 def tail_verdict(results, point):
     first, last = TAIL_TIMES[point]
     verdict = Verdict(f"solvent.tail.{NAMES[point]}", f"long-time tail of C(t), {first:g} to {last:g} t0, over theory, "
-                      f"{words(point)}", 1.0, "shear waves of the box, (2/3N) Σ exp(−(ν + D)k²t); leading order, to 10 %", 0.1)
-    if has_point(results, point) and len(tail_tables(results, point)) > 1:
+                      f"{words(point)}", 1.0, "shear and sound waves of the box with the measured ν, D, Γ; leading order, to 10 %", 0.1)
+    if has_tail(results, point):
         verdict.measured, verdict.error = tail(results, point, first, last)
         verdict.tolerance = stats.tolerance(verdict.error, systematic=0.1)
     verdict.detects = 2.0 * verdict.tolerance
@@ -297,7 +307,7 @@ def draw_waves(results):
 
 
 def draw_sound(results):
-    fit, _, time, blocks = sound(results)
+    fit, _, time, blocks = sound(results, TAILS)
     mean, error = blocks.mean(axis=0), blocks.std(axis=0, ddof=1) / numpy.sqrt(len(blocks))
     figure, top, below = figures.with_residuals()
     figures.theory(top, time, wave(fit, time), label="damped wave, fitted")
@@ -317,15 +327,13 @@ def draw_tail(results, points):
         tables = tail_tables(results, point)
         time, vacf = tables[0]["time"], numpy.array([table["vacf"] for table in tables])
         edges = numpy.unique(numpy.round(numpy.geomspace(1, len(time), 26)).astype(int))
-        spread = spread_of(results, point)
+        model = tail_theory(results, point, time[1:])
         bins = [(time[a:b].mean(), *stats.mean(vacf[:, a:b].mean(axis=1)), a, b) for a, b in zip(edges, edges[1:])]
         t = numpy.array([entry[0] for entry in bins])
         mean, error = numpy.array([entry[1:3] for entry in bins]).T
-        expected = numpy.array([theory.long_time_tail(time[a:b], TAIL_BOX, point.gamma, spread).mean() for *_, a, b in bins])
+        expected = numpy.array([model[a - 1:b - 1].mean() for *_, a, b in bins])
         figures.points(top, t, mean, error, number=number, label=words(point))
-        fine = numpy.geomspace(5 * point.dt_c, time[-1], 60)
-        figures.theory(top, fine, theory.long_time_tail(fine, TAIL_BOX, point.gamma, spread), color=figures.COLORS[number],
-                       linestyle="--")
+        figures.theory(top, time[10:], model[9:], color=figures.COLORS[number], linestyle="--")
         early = numpy.arange(1, 9) * point.dt_c
         figures.theory(top, early, theory.retention(point.gamma, point.alpha)**numpy.arange(1, 9), color=figures.COLORS[number],
                        linewidth=0.8)
@@ -341,9 +349,7 @@ def evaluate(results, tier):
     points = POINTS[tier]
     verdicts = [retention_verdict(results, PAPERS), retention_verdict(results, STRONG)]
     verdicts += [viscosity_verdict(results, point) for point in (PAPERS, TAILS, STRONG, DILUTE)]
-    verdicts += [slope_verdict(results), diffusion_verdict(results), sound_verdict(results), tail_verdict(results, TAILS)]
-    if tier == "campaign":
-        verdicts.append(tail_verdict(results, PAPERS))
+    verdicts += [slope_verdict(results), diffusion_verdict(results), sound_verdict(results), *(tail_verdict(results, point) for point in TAIL_POINTS[tier])]
     verdicts += paper_verdicts(results)
 
     known = [point for point in points if has_point(results, point)]
@@ -355,10 +361,10 @@ def evaluate(results, tier):
                             "does to collisional momentum flux.", lambda: draw_waves(results)))
     if "sound-" + label(TAILS) in results:
         drawn.append(Figure("sound", f"A standing sound wave of k = 2π/32, {words(TAILS)}.", lambda: draw_sound(results)))
-    tails = [point for point in TAIL_TIMES if point in known and len(tail_tables(results, point)) > 1]
+    tails = [point for point in TAIL_POINTS[tier] if has_tail(results, point)]
     if tails:
         drawn.append(Figure("tail", "Velocity autocorrelation of solvent particles. Thin: molecular chaos, cⁿ after n collisions. Dashed: "
-                            "the tail that shear waves carry, summed over the waves of the box, without fitted numbers.",
+                            "the tail that shear and sound waves carry, summed over the waves of the box, without a fitted number.",
                             lambda: draw_tail(results, tails)))
     return Outcome(verdicts, drawn, prose(results))
 
@@ -373,4 +379,5 @@ def prose(results):
             "particles share a cell for many collisions. One collision alone does exactly what it should. The Schmidt number is "
             f"{nu / d:.0f}, not {theory.kinematic_viscosity(*PAPERS) / theory.self_diffusion(*PAPERS):.0f}. With a mean free path of a cell "
             "molecular chaos holds.\n\nWhat chaos leaves out is hydrodynamics: the velocity autocorrelation follows (ν + D)t to the "
-            "power −3/2 with no number fitted, once the waves of the periodic box are counted one by one.")
+            "power −3/2 with no number fitted, once the waves of the periodic box are counted one by one, those of sound too: they take a third "
+            "away at 2 t0 and are gone at 10.")
