@@ -1,0 +1,139 @@
+"""What the claims about many fibers share: their scenes, and the formulas that they are held against.
+
+Units a0 = kT = m = 1, time in t0. The paper's fiber: 64 vertices of mass 5, k = 100, l0 = 0.5, kappa = 64, so that
+L = l_p = 32 by the paper's count (vertices times l0); its mean contour is 63 x 0.5385 = 33.92."""
+import math
+import pathlib
+import string
+
+import numpy
+from scipy import special
+
+BOND = (0.5**3 + 3 * 0.5 * 0.01) / (0.5**2 + 0.01)  # <l> of k = 100, l0 = 0.5: THEORY 2.8, 0.538462
+BOND2 = (0.5**4 + 6 * 0.5**2 * 0.01 + 3 * 0.01**2) / (0.5**2 + 0.01)  # <l^2>, 0.299231
+MASS = 5.0
+PERSISTENCE = -BOND / math.log(1.0 / math.tanh(64.0) - 1.0 / 64.0)  # -<l>/ln<cos>, 34.19
+VERTEX_DIFFUSION = 0.010662  # molecular chaos: what a vertex has without hydrodynamics (src/solvent, docs/accuracy.md)
+DENSITIES = (30, 100, 300, 1000)  # c L^3 of Fig. 5, which is the number of fibers in a box of edge L
+PAPER_ROTATION_TIME = 8.3e4  # tau_r with hydrodynamics, Sec. IV D
+
+
+TEMPLATE = pathlib.Path(__file__).resolve().parent / "fibers.yaml"
+SOLVENT = "thermostat: rescale"  # with hydrodynamics: see validation/claims/tube/README.md for why
+FREE_SOLVENT = "thermostat: none"
+BATH = "hydrodynamics: false\n  bath: phantoms"  # without
+STANDARD = {"box": 32, "dt": 0.01, "flow": 0, "solvent": SOLVENT, "vertices": 64, "forbidden": "true", "refusal": "stay",
+            "frame": "laboratory", "series": 10000, "every": 50, "longest_lag": 3276800}
+
+
+def scene(**values):
+    """Text of fibers.yaml filled in; `count` must be given, for what else is not, see STANDARD."""
+    values = {**STANDARD, **values}
+    values.setdefault("persistence", values["vertices"] / 2)
+    return string.Template(TEMPLATE.read_text()).substitute(values)
+
+
+def mesh_size(count, length, box):
+    """Eq. (34): xi = sqrt(3/(c L))."""
+    return math.sqrt(3.0 * box**3 / (count * length))
+
+
+def tube_width(xi, length, persistence):
+    """Eq. (35): L_perp, root mean square of one transverse component."""
+    x, p = xi / length, persistence / length
+    return length * (0.31 * x**1.2 / p**0.2 + 0.56 * x**2)
+
+
+def bending_law(t, friction, persistence=PERSISTENCE):
+    """Two transverse components of an interior point's mean square displacement, before an end or a tube matters, for a
+    friction per length: 2 x 2 Gamma(1/4)/(3 pi) (kT l_p t/zeta)^(3/4)/l_p."""
+    return 4.0 * special.gamma(0.25) / (3.0 * math.pi) * (persistence * numpy.asarray(t) / friction)**0.75 / persistence
+
+
+def friction_without_hydrodynamics():
+    """Per length of the contour."""
+    return 1.0 / (VERTEX_DIFFUSION * BOND)
+
+
+def rod_rotation_time(length, diameter, viscosity, volume=math.inf):
+    """1/(2 D_r), D_r by Tirado and Garcia de la Torre; in a periodic box less 1/(6 eta V)."""
+    p = length / diameter
+    rotation = 3.0 / (math.pi * viscosity * length**3) * (math.log(p) - 0.662 + 0.917 / p - 0.050 / p**2)
+    return 1.0 / (2.0 * (rotation - 1.0 / (6.0 * viscosity * volume)))
+
+
+# int ds ds' sqrt((1-s)^2 + s^2 + (1-s')^2 + s'^2) over the unit square.
+LEVERS = 1.151155
+
+
+def collision_rate(bonds, volume):
+    """Bond collisions per volume and t0 of isotropic bonds with Maxwell velocities, all moving at once."""
+    density = bonds / volume
+    return math.pi / 8.0 * density**2 * BOND**2 * math.sqrt(2.0 / (math.pi * MASS)) * LEVERS
+
+
+def table(result, name="dynamics-fiber", least=1):
+    """The dynamics of a run as arrays, lags with at least so many intervals; None if there are none yet."""
+    try:
+        columns = result.table(name)
+    except (AttributeError, KeyError):
+        return None
+    keep = columns["intervals"] >= least
+    return {key: values[keep] for key, values in columns.items()} if keep.any() else None
+
+
+def joined(*tables):
+    """Tables of the same system with short lags first: of each later one, only lags longer than those before."""
+    found, longest = [], 0.0
+    for one in tables:
+        if one is None:
+            continue
+        keep = one["time"] > longest * 1.001
+        found.append({key: values[keep] for key, values in one.items()})
+        longest = max(longest, one["time"].max())
+    return {key: numpy.concatenate([one[key] for one in found]) for key in found[0]} if found else None
+
+
+def at(columns, name, time):
+    """(value, error) of a column at a lag; None where it is not."""
+    if columns is None:
+        return None
+    k = numpy.flatnonzero(numpy.abs(columns["time"] - time) < 1e-6 * time)
+    return (float(columns[name][k[0]]), float(columns[name + "_error"][k[0]])) if len(k) else None
+
+
+def slopes(t, y):
+    """(t, d ln y/d ln t) between successive points."""
+    return numpy.sqrt(t[1:] * t[:-1]), numpy.diff(numpy.log(y)) / numpy.diff(numpy.log(t))
+
+
+def plateau(columns, name="d2_contour", flattest=0.35, width=3):
+    """Where a curve is flattest: (value, error, lag, exponent) of the middle of `width` + 1 points; None if its exponent
+    stays above `flattest` (no plateau). The error holds the change over the points."""
+    if columns is None or len(columns["time"]) < width + 4:
+        return None
+    t, y, error = columns["time"], columns[name], columns[name + "_error"]
+    best = None
+    for k in range(len(t) - width):
+        piece = slice(k, k + width + 1)
+        exponent = numpy.polyfit(numpy.log(t[piece]), numpy.log(y[piece]), 1)[0]
+        if best is None or exponent < best[3]:
+            change = abs(y[k + width] - y[k]) / math.sqrt(12.0)
+            best = (float(y[piece].mean()), math.hypot(float(error[piece].max()), change), float(t[piece].mean()),
+                    float(exponent))
+    return best if best and best[3] < flattest else None
+
+
+def rotation_time(columns, shortest, longest, least=4):
+    """(tau_r, error, intercept) from <u(0).u(t)> = A exp(-t/tau_r), lags shortest to longest: bends tilt the end-to-end
+    vector by a fixed angle soon (A), rotation goes on. tau_r = 1/(2 D_r). Lags count as independent."""
+    from lib import stats
+    if columns is None:
+        return None
+    t, c, error = columns["time"], columns["end_to_end_unit"], columns["end_to_end_unit_error"]
+    keep = (t >= shortest) & (t <= longest) & (c > 0.1) & numpy.isfinite(error) & (error > 0)
+    if keep.sum() < least:
+        return None
+    fit = stats.line(t[keep], numpy.log(c[keep]), error[keep] / c[keep])
+    rate = -fit.value[1]
+    return (1.0 / rate, fit.error[1] / rate**2, math.exp(fit.value[0])) if rate > 0 else None
