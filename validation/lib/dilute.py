@@ -184,12 +184,17 @@ def sharing_diffusion(shape, shapes=40, shifts=200, seed=1):
     return float(numpy.mean(found)), float(numpy.std(found, ddof=1) / math.sqrt(shapes))
 
 
+def rouse_time(vertices, spring, friction, p=1):
+    """tau_p of a discrete Rouse chain: zeta/(4 k sin^2(p pi/2N))."""
+    return friction / (4.0 * spring * numpy.sin(p * math.pi / (2.0 * vertices)) ** 2)
+
+
 def rouse(times, vertices, spring, friction):
-    """<R(t).R(0)>/<R^2> of a discrete Rouse chain: odd modes, tau_p = zeta/(4 k sin^2(p pi/2N))."""
+    """<R(t).R(0)>/<R^2> of a discrete Rouse chain: its odd modes."""
     p = numpy.arange(1, vertices, 2)
     angle = p * math.pi / (2.0 * vertices)
     weight = 2.0 / (vertices * (vertices - 1.0)) / numpy.tan(angle) ** 2
-    tau = friction / (4.0 * spring * numpy.sin(angle) ** 2)
+    tau = rouse_time(vertices, spring, friction, p)
     return (weight * numpy.exp(-numpy.atleast_1d(times)[:, None] / tau)).sum(axis=1)
 
 
