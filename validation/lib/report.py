@@ -11,6 +11,7 @@ import jinja2
 from lib import claim as claims
 from lib import figures, runs
 
+TITLES = {"quick": "Reduced systems (make validate)", "campaign": "The paper's own systems (make campaign)"}
 TEMPLATE = pathlib.Path(__file__).resolve().parent / "report.html.jinja"
 
 
@@ -78,21 +79,35 @@ def junit(sections):
     return xml.tostring(suites, encoding="unicode", xml_declaration=True) + "\n"
 
 
-def number(x, error=None):
-    """As many digits as the error carries, two of them; four significant ones without an error."""
+def digits_of(x, error):
+    """(digits after the point, power of ten to take out): two digits of the error, at most six of the number."""
+    scale = max(abs(x), abs(error))
+    power = math.floor(math.log10(scale)) if scale > 0 and not 1e-3 <= scale < 1e5 else 0
+    digits = 1 - math.floor(math.log10(error)) if error > 0 else 3 - math.floor(math.log10(scale)) if scale > 0 else 0
+    most = 5 - math.floor(math.log10(scale)) if scale > 0 else 0
+    return max(0, min(digits, most) + power), power
+
+
+def plusminus(x, error):
+    """12.34 ± 0.56, both to the same digit; without an error, four significant digits."""
     if x is None:
         return "–"
+    digits, power = digits_of(x, error or 0.0)
+    text = f"{x / 10.0**power:.{digits}f}"
     if error:
-        places = 1 - math.floor(math.log10(abs(error)))
-        scale = max(abs(x), abs(error))
-        if 1e-4 <= scale < 1e6:
-            return f"{x:.{max(places, 0)}f}"
-        power = math.floor(math.log10(scale))
-        return f"{x / 10**power:.{max(places + power, 0)}f}·10{superscript(power)}"
+        text += f" ± {error / 10.0**power:.{digits}f}"
+    text = text.replace("-", "−")
+    return f"({text})·10{superscript(power)}" if power and error else f"{text}·10{superscript(power)}" if power else text
+
+
+def number(x):
+    """Three significant digits: of what nobody reads closer."""
+    if x is None:
+        return "–"
     if x == 0 or 1e-3 <= abs(x) < 1e5:
-        return f"{x:.4g}"
+        return f"{x:.3g}".replace("-", "−")
     power = math.floor(math.log10(abs(x)))
-    return f"{x / 10**power:.3g}·10{superscript(power)}"
+    return f"{x / 10.0**power:.3g}·10{superscript(power)}".replace("-", "−")
 
 
 def superscript(power):
@@ -106,15 +121,11 @@ def prose(text):
     return "".join(f"<p>{paragraph}</p>\n" for paragraph in re.split(r"\n\s*\n", marked) if paragraph.strip())
 
 
-def cpu(seconds):
-    return f"{seconds / 3600:.1f} h" if seconds >= 5400 else f"{seconds / 60:.1f} min" if seconds >= 90 else f"{seconds:.0f} s"
-
-
 def page(tier, sections):
     environment = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True)
-    environment.filters.update(prose=prose, cpu=cpu, number=number)
+    environment.filters.update(prose=prose, cpu=runs.duration, number=number, plusminus=plusminus)
     return environment.from_string(TEMPLATE.read_text()).render(
-        tier=tier, sections=sections, total=math.fsum(part["cpu_seconds"] for part in sections),
+        tier=tier, titles=TITLES, sections=sections, total=math.fsum(part["cpu_seconds"] for part in sections),
         count={word: sum(row["verdict"] == word for part in sections for row in part["verdicts"])
                for word in ("pass", "fail", "not reproduced", "missing")})
 
@@ -144,12 +155,11 @@ def tell(tier, sections, out):
     width = max((len(row["id"]) for row in rows), default=0)
     for row in rows:
         z = "" if row["z"] is None else f"  z {row['z']:+.1f}"
-        measured = number(row["measured"], row["error"])
-        print(f"{row['verdict']:<14} {row['id']:<{width}}  {measured} ± {number(row['error'])}, expected "
-              f"{number(row['expected'])} within {number(row['tolerance'])}{z}")
+        print(f"{row['verdict']:<14} {row['id']:<{width}}  {plusminus(row['measured'], row['error'])}, expected "
+              f"{plusminus(row['expected'], row['expected_error'])} within {number(row['tolerance'])}{z}")
     bad = [row for row in rows if row["verdict"] == "fail" or (row["verdict"] == "missing" and tier == "quick")]
     for part in sections:
-        print(f"{part['id']}: {cpu(part['cpu_seconds'])} of CPU time, {len(part['runs'])} runs")
+        print(f"{part['id']}: {runs.duration(part['cpu_seconds'])} of CPU time, {len(part['runs'])} runs")
     print(f"report: {out / 'report.html'}")
     print(f"{len(rows) - len(bad)} passed, {len(bad)} failed")
     return 1 if bad else 0
