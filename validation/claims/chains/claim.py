@@ -38,15 +38,15 @@ SYSTEMS = {
     (160, 50): (8, 800, 1, 6, 12), (10, 12): (2, 20000, 0, 2, 4), (10, 16): (4, 10000, 0, 2, 4), (10, 36): (48, 1500, 0, 2, 4),
     (40, 25): (3, 6000, 0, 2, 4), (160, 71): (16, 600, 0, 0, 3)}
 CROWDED = {4: 10000, 64: 2500}  # chains of 10 vertices in 25^3 cells, where 16 are
-ROUSE = {5: (64, 2000), 10: (32, 6400), 20: (24, 12800), 40: (16, 8000), 80: (8, 10000), 160: (4, 12000)}  # phantoms
-LOOSE_ROUSE = {5: (64, 40000, 0), 10: (32, 100000, 1), 20: (16, 200000, 2)}  # and priority
+ROUSE = {5: (64, 3300), 10: (32, 6400), 20: (24, 12800), 40: (16, 8000), 80: (8, 10000), 160: (4, 12000)}  # phantoms
+LOOSE_ROUSE = {5: (64, 40000, 6553.6, 0), 10: (32, 110000, 26214.4, 1), 20: (16, 420000, 104857.6, 2)}  # lag, priority
 
 
 def without_hydrodynamics():
     found = [chains(f"rouse-N{n}", n, 64, count, time, bath="phantoms", lag=819.2)
              for n, (count, time) in ROUSE.items()]
-    found += [chains(f"loose-N{n}", n, 128, count, time, bath="phantoms", spring=LOOSE, every=6.4, lag=26214.4,
-                     priority=priority) for n, (count, time, priority) in LOOSE_ROUSE.items()]
+    found += [chains(f"loose-N{n}", n, 128, count, time, bath="phantoms", spring=LOOSE, every=6.4, lag=lag,
+                     priority=priority) for n, (count, time, lag, priority) in LOOSE_ROUSE.items()]
     return found + [chains("swap-N5", 5, 18, 10, 3000, bath="swap", priority=1),
                     chains("swap-N10", 10, 25, 16, 3500, bath="swap", priority=1)]
 
@@ -67,7 +67,7 @@ def quick():
             chains("rouse-N5", 5, 64, 32, 500, bath="phantoms", lag=204.8),
             chains("rouse-N10", 10, 64, 32, 500, bath="phantoms", lag=204.8),
             chains("rouse-N20", 20, 64, 16, 500, bath="phantoms", lag=204.8),
-            chains("loose-N5", 5, 128, 64, 5000, bath="phantoms", spring=LOOSE, every=6.4, lag=1638.4)]
+            chains("loose-N5", 5, 128, 64, 5000, bath="phantoms", spring=LOOSE, every=6.4, lag=3276.8)]
 
 
 def runs(tier):
