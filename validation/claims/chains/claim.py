@@ -56,7 +56,7 @@ def campaign():
     for (n, box), (count, time, *limits) in SYSTEMS.items():
         for seed in range(1, limits[-1] + 1):
             priority = next(p for p, limit in enumerate(limits) if seed <= limit)
-            found.append(chains(f"N{n}-L{box}-s{seed}", n, box, count, time, seed=1000 * n + seed, priority=priority))
+            found.append(chains(f"N{n}-L{box}-s{seed}", n, box, count, time, seed=100000 * n + 100 * box + seed, priority=priority))
     found += [chains(f"crowd-{count}", 10, 25, count, time, seed=count, priority=1) for count, time in CROWDED.items()]
     return found + [chains("crossing-N20", 20, 35, 20, 6000, seed=77, priority=2, crossing="forbidden")]
 

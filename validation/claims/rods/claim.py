@@ -41,7 +41,7 @@ def campaign():
     for (n, box), (count, time, *limits) in SYSTEMS.items():
         for seed in range(1, limits[-1] + 1):
             priority = next(p for p, limit in enumerate(limits) if seed <= limit)
-            found.append(rods(f"N{n}-L{box}-s{seed}", n, box, count, time, seed=1000 * n + seed, priority=priority))
+            found.append(rods(f"N{n}-L{box}-s{seed}", n, box, count, time, seed=100000 * n + 100 * box + seed, priority=priority))
     return found
 
 
