@@ -52,8 +52,9 @@ def fit(basis, y, errors):
     if len(y) < len(basis):
         raise ValueError(f"{len(y)} points for {len(basis)} coefficients")
     a = numpy.array([numpy.asarray(f, float) for f in basis]).T / errors[:, None]
-    covariance = numpy.linalg.inv(a.T @ a)
-    value = covariance @ a.T @ (y / errors)
+    q, r = numpy.linalg.qr(a)
+    back = numpy.linalg.inv(r)
+    value, covariance = back @ (q.T @ (y / errors)), back @ back.T
     residual = y / errors - a @ value
     return Fit(value, numpy.sqrt(covariance.diagonal()), covariance, float(residual @ residual), len(y) - len(basis))
 

@@ -1,0 +1,136 @@
+"""validation/lib: statistics and formulas against numbers worked out by hand, with the recipe beside each."""
+import math
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import unittest
+
+sys.dont_write_bytecode = True
+TREE = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(TREE / "validation"))
+
+import numpy
+
+from lib import stats, theory
+
+UNCROSS = os.environ.get("UNCROSS", "build/uncross")
+
+
+class Means(unittest.TestCase):
+    def test_mean(self):
+        """1, 2, 3, 4: squares about 2.5 sum to 5; 5/3/4 = 0.41667, its root 0.645497."""
+        value, error = stats.mean([1, 2, 3, 4])
+        self.assertEqual(value, 2.5)
+        self.assertAlmostEqual(error, 0.6454972243679028, 14)
+
+    def test_one_value_has_no_error(self):
+        self.assertTrue(math.isnan(stats.mean([3.0])[1]))
+
+    def test_weighted_mean(self):
+        """1 +- 1 and 4 +- 2: weights 1 and 1/4, mean 2/1.25 = 1.6, error 1/sqrt(1.25); chi^2 = 0.36 + 1.44 = 1.8, of one
+        degree of freedom: p = erfc(sqrt(0.9))."""
+        value, error, p = stats.weighted_mean([1, 4], [1, 2])
+        self.assertAlmostEqual(value, 1.6, 13)
+        self.assertAlmostEqual(error, math.sqrt(0.8), 13)
+        self.assertAlmostEqual(p, math.erfc(math.sqrt(0.9)), 12)
+
+    def test_blocked_mean(self):
+        """16 zeros, then 16 ones. As they are: sqrt((8/31)/32) = 0.0898; in pairs, 16 blocks: sqrt((4/15)/16) = 0.129099;
+        the next level has 8 blocks, too few."""
+        value, error = stats.blocked_mean([0.0] * 16 + [1.0] * 16)
+        self.assertEqual(value, 0.5)
+        self.assertAlmostEqual(error, math.sqrt(4 / 15 / 16), 14)
+
+    def test_jackknife_of_a_mean_is_its_standard_error(self):
+        value, error = stats.jackknife([[1, 10], [2, 10], [3, 10], [4, 10]], lambda mean: mean)
+        self.assertEqual(list(value), [2.5, 10.0])
+        self.assertAlmostEqual(error[0], 0.6454972243679028, 14)
+        self.assertEqual(error[1], 0.0)
+
+    def test_jackknife_of_a_ratio(self):
+        """x = 1, 3 and y = 1, 1: without one, 3 and 1; sqrt((1/2)(1 + 1)) = 1; the ratio of means is 2."""
+        value, error = stats.jackknife([[1, 1], [3, 1]], lambda mean: mean[0] / mean[1])
+        self.assertEqual(float(value), 2.0)
+        self.assertAlmostEqual(float(error), 1.0, 14)
+
+
+class Fits(unittest.TestCase):
+    def test_line(self):
+        """x = 0, 1, 2, errors 1: normal matrix [[3, 3], [3, 5]], inverse [[5, -3], [-3, 3]]/6. y = 0, 0, 1: -1/6 + x/2,
+        residuals 1/6, -1/3, 1/6, chi^2 = 1/6."""
+        fit = stats.line([0, 1, 2], [0, 0, 1], [1, 1, 1])
+        numpy.testing.assert_allclose(fit.value, [-1 / 6, 1 / 2], atol=1e-14)
+        numpy.testing.assert_allclose(fit.covariance, numpy.array([[5, -3], [-3, 3]]) / 6, atol=1e-14)
+        numpy.testing.assert_allclose(fit.error, [math.sqrt(5 / 6), math.sqrt(1 / 2)], atol=1e-14)
+        self.assertAlmostEqual(fit.chi2, 1 / 6, 13)
+        self.assertEqual(fit.freedom, 1)
+        self.assertAlmostEqual(fit.p, math.erfc(math.sqrt(1 / 12)), 12)
+
+    def test_errors_weigh(self):
+        """A point with a tiny error pulls the line through itself."""
+        fit = stats.line([0, 1, 2], [0, 0, 1], [1, 1, 1e-6])
+        self.assertAlmostEqual(fit.value[0] + 2 * fit.value[1], 1.0, 10)
+
+    def test_power(self):
+        """y = 2/sqrt(x) exactly; relative errors of 1 % at x = 1, e, e^2 are the line's 0.01 at 0, 1, 2."""
+        x = numpy.exp([0.0, 1.0, 2.0])
+        fit = stats.power(x, 2.0 / numpy.sqrt(x), 0.02 / numpy.sqrt(x))
+        self.assertAlmostEqual(fit.value[1], -0.5, 13)
+        self.assertAlmostEqual(math.exp(fit.value[0]), 2.0, 13)
+        self.assertAlmostEqual(fit.error[1], 0.01 / math.sqrt(2), 13)
+
+    def test_too_few_points(self):
+        with self.assertRaises(ValueError):
+            stats.line([1.0], [1.0], [1.0])
+
+
+class Tolerances(unittest.TestCase):
+    def test_one_test(self):
+        self.assertAlmostEqual(stats.sigmas(0.05), 1.959963984540054, 12)
+
+    def test_many_tests(self):
+        """That none of 100 normal values exceeds z has the chance erf(z/sqrt 2)^100."""
+        self.assertAlmostEqual(math.erf(stats.sigmas(1e-3, 100) / math.sqrt(2))**100, 0.999, 12)
+
+    def test_tolerance(self):
+        self.assertAlmostEqual(stats.tolerance(0.3, 0.4, systematic=0.1, z=2.0), 1.1, 14)
+
+
+class Theory(unittest.TestCase):
+    def test_against_the_program(self):
+        """The program's own formulas were written apart from these; it prints six digits at most."""
+        said = subprocess.run([UNCROSS, "check", str(TREE / "scenes/solvent.yaml")], capture_output=True, text=True, check=True)
+        kinetic, collisional = theory.viscosity()
+        for symbol, value in (("eta", kinetic + collisional), ("nu", theory.kinematic_viscosity()),
+                              ("D_s", theory.self_diffusion()), ("c_s", theory.SOUND_SPEED)):
+            found = re.search(rf"\s{symbol}\s+([0-9.e+-]+)(?:\s|$)", said.stdout)
+            self.assertIsNotNone(found, symbol)
+            self.assertAlmostEqual(float(found[1]) / value, 1.0, 4, symbol)
+
+    def test_angles(self):
+        """Retention at 130 degrees, gamma 5: 1 - (2/3)(1.6427876)(4.0067379)/5 = 0.122371; viscosity at gamma 10, dt_c 0.1:
+        kinetic 50/(9.0000454*(4 + 1.2855752 + 0.3472964)) - 0.5 = 0.4862692, collisional
+        1.6427876*9.0000454/1.8 = 8.2139794; together 8.7002486."""
+        self.assertAlmostEqual(theory.retention(5, 130), 0.122371, 6)
+        self.assertAlmostEqual(sum(theory.viscosity(10, 0.1, 130)), 8.7002486, 6)
+
+    def test_tail_of_a_large_box_is_that_of_an_infinite_one(self):
+        """In 160^3 cells at t = 40, spread 1: what is missing is the k = 0 wave, 2/(3 gamma 160^3) = 1.1 % of the tail. Strongly
+        damped sound, rate c^2/2damping at long waves, is left out by a large damping."""
+        t, gamma = numpy.array([40.0]), 5
+        tail = theory.long_time_tail(t, 160, gamma, 1.0, 1e9)[0] + 2.0 / (3.0 * gamma * 160**3)
+        self.assertAlmostEqual(tail / theory.long_time_tail_unbounded(40.0, gamma, 1.0), 1.0, 6)
+
+    def test_diffusion_still_to_come_is_an_integral_of_the_tail(self):
+        """<r^2>/6t = (1/t) int_0^t (t - s) C(s) ds, so what is to come is (1/t) int min(s, t) C(s) ds: by the trapezoidal rule,
+        with sound damped away."""
+        s = numpy.geomspace(1e-5, 200.0, 4001)
+        c = theory.long_time_tail(s, 16, 5, 2.2, 1e9)
+        expected = numpy.trapz(numpy.minimum(s, 3.0) * c, s) / 3.0
+        self.assertAlmostEqual(theory.diffusion_still_to_come(3.0, 16, 5, 2.2) / expected, 1.0, 4)
+
+
+if __name__ == "__main__":
+    unittest.main()
