@@ -20,7 +20,7 @@ GRID = [Point(5, dt_c, 90) for dt_c in (0.02, 0.05, 0.1, 0.2, 0.5, 1.0)] + \
        [Point(gamma, 0.02, 90) for gamma in (3, 10, 20)] + \
        [Point(5, 0.02, alpha) for alpha in (30, 60, 120, 150)] + [STRONG]
 POINTS = {"quick": [PAPERS, TAILS, STRONG, DILUTE], "campaign": GRID}
-PLENTY = {"quick": 1, "campaign": 16}  # times as many pairs of runs, or windows
+PLENTY = {"quick": 1, "campaign": 8}  # times as many pairs of runs, or windows
 TAIL_POINTS = {"quick": [TAILS], "campaign": [TAILS, PAPERS]}
 TAIL_SEEDS = {"quick": 8, "campaign": 12}
 
