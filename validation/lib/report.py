@@ -4,6 +4,7 @@ import json
 import math
 import pathlib
 import re
+import traceback
 import xml.etree.ElementTree as xml
 
 import jinja2
@@ -40,6 +41,20 @@ def provenance_row(result):
             "cpu_seconds": result.cpu_seconds}
 
 
+def evaluate(module, name, results, tier):
+    """(verdicts, figures, prose) of a claim. One that cannot say is a failed one, and the others are told all the same."""
+    try:
+        outcome = module.evaluate(results, tier)
+        with figures.styled():
+            drawn = [{"name": figure.name, "caption": figure.caption, "svg": figures.svg(figure.draw())}
+                     for figure in outcome.figures]
+        return [verdict_row(name, verdict) for verdict in outcome.verdicts], drawn, outcome.prose
+    except Exception as error:  # whatever it is: results may be nan, or not there
+        traceback.print_exc()
+        return [verdict_row(name, claims.Verdict(f"{name}.evaluate", "the claim can be evaluated", 1.0, "", 0.0, measured=0.0,
+                                                 reason=f"{type(error).__name__}: {error}"))], [], ""
+
+
 def section(name, tier, every):
     """What the report says of one claim. Runs that are not there yet are absent from what the claim is given."""
     module = claims.load(name)
@@ -47,12 +62,9 @@ def section(name, tier, every):
     present = {result.run.name: result for result in results if result.exists}
     present.update({result.run.path: result for result in every
                     if result.exists and result.run.claim in getattr(module, "USES", ())})
-    outcome = module.evaluate(present, tier)
-    with figures.styled():
-        drawn = [{"name": figure.name, "caption": figure.caption, "svg": figures.svg(figure.draw())}
-                 for figure in outcome.figures]
-    return {"id": name, "title": module.TITLE, "paper": module.PAPER, "prose": outcome.prose, "figures": drawn,
-            "verdicts": [verdict_row(name, verdict) for verdict in outcome.verdicts],
+    verdicts, drawn, prose_text = evaluate(module, name, present, tier)
+    return {"id": name, "title": module.TITLE, "paper": module.PAPER, "prose": prose_text, "figures": drawn,
+            "verdicts": verdicts,
             "runs": [provenance_row(result) for result in results if result.exists],
             "absent": [result.run.path for result in results if not result.exists],
             "unfinished": [result.run.path for result in results if result.exists and not result.finished],
