@@ -125,9 +125,9 @@ class Equations(Tree):
         status, output = self.call("check-equations")
         self.assertEqual(status, 0, output)
         page = (self.root / "docs/equations.md").read_text()
-        self.assertIn("| (20) | meaning | code | `src/solvent/flow.c: flow` |", page)
-        self.assertIn("| (21) | meaning | code | `src/fiber/bend.h: bend` |", page)
-        self.assertIn("| (24) | meaning | code | `src/fiber/bend.c: twist` |", page)
+        self.assertIn("| (20) | meaning | code | [`src/solvent/flow.c: flow`](../src/solvent/flow.c) |", page)
+        self.assertIn("| (21) | meaning | code | [`src/fiber/bend.h: bend`](../src/fiber/bend.h) |", page)
+        self.assertIn("| (24) | meaning | code | [`src/fiber/bend.c: twist`](../src/fiber/bend.c) |", page)
 
     def test_code_without_home(self):
         self.replace("src/fiber/bend.h", "Padding 2009, Eq. (21)", "Eq. (21)")
@@ -168,6 +168,14 @@ class Equations(Tree):
     def test_test_that_is_not_there(self):
         self.replace("docs/equations.tsv", "src/step.c", "tests/none.c")
         self.complain("Eq. (1) names tests/none.c, which is not there")
+
+    def test_claim(self):
+        (self.root / "validation/claims/tube").mkdir(parents=True)
+        self.replace("docs/equations.tsv", "1\tcode\tmeaning\tsrc/step.c\t-", "1\tcode\tmeaning\tsrc/step.c\tvalidation/claims/tube")
+        self.complain("Eq. (1) names a claim without a page, docs/claims/tube.md")
+        self.put("docs/claims/tube.md", "")
+        self.assertEqual(self.call("check-equations", "--write")[0], 0)
+        self.assertIn("| [tube](claims/tube.md) |", (self.root / "docs/equations.md").read_text())
 
     def test_stale_page(self):
         self.replace("docs/equations.tsv", "meaning", "another meaning")
