@@ -1,0 +1,162 @@
+"""The report: its verdicts, its determinism; and the committed one follows from the committed results of runs."""
+import contextlib
+import io
+import json
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree as xml
+
+sys.dont_write_bytecode = True
+TREE = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(TREE / "validation"))
+
+from lib import claim as claims
+from lib import report
+
+CAMPAIGN = TREE / "reference-data/campaign"
+CLAIM = '''
+from lib import figures
+from lib.claim import Figure, Outcome, Verdict
+from lib.runs import Run
+
+TITLE, PAPER = "Made up & so on", "Fig. 0"
+
+
+def runs(tier):
+    return [Run("there", program=["made-up"]), Run("absent", program=["made-up"])]
+
+
+def draw():
+    figure, axes = figures.plain()
+    figures.points(axes, [1, 2], [3, 4], [1, 1])
+    return figure
+
+
+def evaluate(results, tier):
+    x = results["there"].columns["x"][0]
+    return Outcome([Verdict("a.b", "x < 2 & more", 1.0, "nowhere", 0.5, measured=x, error=0.25)],
+                   [Figure("f", "caption", draw)], "Some `code`.")
+'''
+
+
+def differences(a, b, where=""):
+    """Where two reports differ by more than what another processor's arithmetic may change."""
+    if isinstance(a, dict) and isinstance(b, dict):
+        return [d for key in sorted({*a, *b}) for d in differences(a.get(key), b.get(key), f"{where}.{key}")]
+    if isinstance(a, list) and isinstance(b, list) and len(a) == len(b):
+        return [d for k, (x, y) in enumerate(zip(a, b)) for d in differences(x, y, f"{where}[{k}]")]
+    if isinstance(a, float) and isinstance(b, float):
+        return [] if math.isclose(a, b, rel_tol=1e-6, abs_tol=1e-12) else [f"{where}: {a} {b}"]
+    return [] if a == b else [f"{where}: {a!r} {b!r}"]
+
+
+class Verdicts(unittest.TestCase):
+    def verdict(self, measured, kind="gate"):
+        return claims.Verdict("a.b", "", 1.0, "", 0.5, measured=measured, error=0.3, expected_error=0.4, kind=kind)
+
+    def test_words(self):
+        self.assertEqual(self.verdict(1.5).verdict, "pass")
+        self.assertEqual(self.verdict(0.4).verdict, "fail")
+        self.assertEqual(self.verdict(0.4, "paper").verdict, "not reproduced")
+        self.assertEqual(self.verdict(None).verdict, "missing")
+        self.assertEqual(self.verdict(math.nan).verdict, "missing")
+
+    def test_z(self):
+        self.assertAlmostEqual(self.verdict(2.0).z, 2.0, 14)
+        self.assertIsNone(self.verdict(None).z)
+
+    def test_digits(self):
+        self.assertEqual(report.plusminus(2.13917, 0.01172), "2.139 ± 0.012")
+        self.assertEqual(report.plusminus(1234.5, 60.0), "1234 ± 60")
+        self.assertEqual(report.plusminus(1.5e-6, 2.5e-7), "(1.50 ± 0.25)·10⁻⁶")
+        self.assertEqual(report.plusminus(1.0, 1e-16), "1.00000 ± 0.00000")
+        self.assertEqual(report.number(-0.000123), "−1.23·10⁻⁴")
+
+
+class MadeUp(unittest.TestCase):
+    """A claim of one verdict, from one run of two."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        (self.folder / "claims/made").mkdir(parents=True)
+        (self.folder / "claims/made/claim.py").write_text(CLAIM)
+        self.addCleanup(setattr, claims, "CLAIMS", claims.CLAIMS)
+        claims.CLAIMS = self.folder / "claims"
+
+    def report(self, x, tier="quick"):
+        """(exit code, report.json) where the run said x."""
+        there = self.folder / "work/made/there"
+        there.mkdir(parents=True, exist_ok=True)
+        (there / "output.txt").write_text(f"n,x\n1,{x}\n")
+        (there / "session.json").write_text('{"cpu_seconds": 3.0}')
+        every = claims.load("made").runs(tier)
+        for run in every:
+            run.claim = "made"
+        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+            code = report.make(tier, every, ["made"], self.folder / "work", self.folder / "out")
+        return code, json.loads((self.folder / "out/report.json").read_text())
+
+    def test_pass(self):
+        code, said = self.report(1.25)
+        self.assertEqual(code, 0)
+        self.assertEqual([row["verdict"] for row in said["claims"]], ["pass"])
+        self.assertEqual(said["claims"][0]["z"], 1.0)
+        self.assertEqual(said["sections"][0]["absent"], ["made/absent"])
+        self.assertEqual(said["sections"][0]["cpu_seconds"], 3.0)
+
+    def test_fail(self):
+        code, said = self.report(1.75)
+        self.assertEqual((code, said["claims"][0]["verdict"]), (1, "fail"))
+        suite = xml.parse(self.folder / "out/report.xml").getroot().find("testsuite")
+        self.assertEqual(suite.get("failures"), "1")
+        self.assertIn("1.75", suite.find("testcase/failure").text)
+
+    def test_missing_fails_only_where_all_is_run(self):
+        self.assertEqual(self.report("nan")[0], 1)
+        self.assertEqual(self.report("nan", "campaign")[0], 0)
+
+    def test_a_claim_that_cannot_say_fails(self):
+        (self.folder / "claims/made/claim.py").write_text(CLAIM.replace('["there"]', '["absent"]'))
+        code, said = self.report(1.0)
+        self.assertEqual((code, said["claims"][0]["id"], said["claims"][0]["verdict"]), (1, "made.evaluate", "fail"))
+
+    def test_same_bytes(self):
+        self.report(1.25)
+        first = [(self.folder / "out" / name).read_bytes() for name in ("report.html", "report.json", "report.xml")]
+        self.report(1.25)
+        self.assertEqual(first, [(self.folder / "out" / name).read_bytes() for name in ("report.html", "report.json", "report.xml")])
+
+    def test_self_contained(self):
+        self.report(1.25)
+        page = (self.folder / "out/report.html").read_text()
+        self.assertIn("<svg", page)
+        self.assertIn("Made up &amp; so on", page)
+        self.assertIn("<code>code</code>", page)
+        self.assertNotRegex(page, r'(src|href)="(http|/)')
+
+
+class Campaign(unittest.TestCase):
+    def test_differences_are_seen(self):
+        self.assertEqual(differences({"a": [1.0, 2.0]}, {"a": [1.0, 2.0 + 1e-9]}), [])
+        self.assertEqual(len(differences({"a": [1.0, 2.0]}, {"a": [1.0, 2.001]})), 1)
+        self.assertEqual(len(differences({"a": 1}, {"b": 1})), 2)
+
+    @unittest.skipUnless((CAMPAIGN / "report.json").exists(), "no campaign yet")
+    def test_the_committed_report_follows_from_the_committed_results(self):
+        """What was edited by hand, or not made anew after new results: `validation/run report --tier campaign`."""
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([str(TREE / "validation/run"), "report", "--tier", "campaign", "--out", folder], check=False,
+                           capture_output=True)
+            again = json.loads((pathlib.Path(folder) / "report.json").read_text())
+        committed = json.loads((CAMPAIGN / "report.json").read_text())
+        self.assertEqual(differences(committed, again), [])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,134 @@
+"""Runs are resumed where a signal stopped them, extended by more steps, and never mixed up with others."""
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "validation"))
+
+from lib import runs
+
+UNCROSS = pathlib.Path(os.environ.get("UNCROSS", "build/uncross")).resolve()
+SCENE = """box: [6, 6, 6]
+time_step: 0.02
+solvent: {per_cell: 5, collision_interval: 0.02}
+observe: {conserved: {every: 100}}
+"""
+# Executes a run in a process of its own, so that signals can be sent to it.
+CHILD = """import sys, json
+sys.path.insert(0, sys.argv[1])
+from lib import runs
+sys.exit(runs.execute(runs.Run(**json.loads(sys.argv[2])), sys.argv[3], sys.argv[4]))
+"""
+
+
+class Runs(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.work, self.build = pathlib.Path(folder.name) / "work", pathlib.Path(folder.name) / "build"
+        (self.build / "validation/measure").mkdir(parents=True)
+        (self.build / "uncross").symlink_to(UNCROSS)
+
+    def program(self, text):
+        path = self.build / "validation/measure/made-up"
+        path.write_text("#!/bin/sh\n" + text)
+        path.chmod(0o755)
+
+    def scene(self, steps, text=SCENE):
+        return runs.Run("a", scene=text, steps=steps, seed=3, claim="made-up")
+
+    def execute(self, run, name="a", **options):
+        return runs.execute(run, self.work / name, self.build, **options)
+
+    def interrupt(self, run, file):
+        """Exit code of a run that got SIGTERM once its folder held this file."""
+        child = subprocess.Popen([sys.executable, "-c", CHILD, str(pathlib.Path(runs.__file__).parents[1]), json.dumps(
+            {"name": run.name, "scene": run.scene, "steps": run.steps, "seed": run.seed, "program": run.program}),
+            str(self.work / "a"), str(self.build)])
+        deadline = time.monotonic() + 60
+        while not (self.work / "a" / file).exists() and time.monotonic() < deadline:
+            time.sleep(0.01)
+        time.sleep(0.3)
+        child.send_signal(signal.SIGTERM)
+        return child.wait(60)
+
+    def state_hash(self, name):
+        return runs.read_json(self.work / name / "run.json")["state_hash"]
+
+    def test_interrupted_resumed_extended(self):
+        """The state is that of a run in one go."""
+        self.assertEqual(self.interrupt(self.scene(10**7), "conserved.csv"), runs.INTERRUPTED)
+        stopped = runs.Result(self.work / "a", self.scene(10**7))
+        self.assertFalse(stopped.finished)
+        self.assertGreater(stopped.steps, 0)
+        more = stopped.steps + 200
+        self.assertEqual(self.execute(self.scene(more)), 0)
+        self.assertEqual(self.execute(self.scene(more + 100)), 0)
+        self.assertEqual(self.execute(self.scene(more + 100), "b"), 0)
+        self.assertEqual(self.state_hash("a"), self.state_hash("b"))
+        result = runs.Result(self.work / "a", self.scene(more + 100))
+        self.assertTrue(result.finished)
+        self.assertAlmostEqual(result.time, 0.02 * (more + 100), 9)
+        self.assertGreater(len(result.table("conserved")["total"]), 2)
+
+    def test_finished_is_not_run_again(self):
+        self.assertEqual(self.execute(self.scene(100)), 0)
+        before = (self.work / "a/run.json").stat().st_mtime_ns
+        self.assertEqual(self.execute(self.scene(100)), 0)
+        self.assertEqual(self.execute(self.scene(50)), 0)
+        self.assertEqual((self.work / "a/run.json").stat().st_mtime_ns, before)
+
+    def test_another_scene(self):
+        """Days of work are not thrown away for it, seconds are."""
+        self.assertEqual(self.execute(self.scene(100)), 0)
+        other = self.scene(100, SCENE.replace("per_cell: 5", "per_cell: 4"))
+        with self.assertRaises(runs.Refused):
+            self.execute(other)
+        self.assertEqual(self.execute(other, fresh=True), 0)
+        self.assertIn("per_cell: 4", (self.work / "a/scene.yaml").read_text())
+
+    def test_killed_before_its_first_checkpoint(self):
+        self.assertEqual(self.execute(self.scene(100), "b"), 0)
+        (self.work / "a").mkdir(parents=True)
+        (self.work / "a/conserved.csv").write_text("time\n")
+        (self.work / "a/trajectory.h5").write_text("half a file")
+        self.assertEqual(self.execute(self.scene(100)), 0)
+        self.assertEqual((self.work / "a/conserved.csv").read_text(), (self.work / "b/conserved.csv").read_text())
+
+    def test_program(self):
+        self.program("echo n,x; echo 1,$1")
+        run = runs.Run("a", program=["made-up", 7], claim="made-up")
+        self.assertEqual(self.execute(run), 0)
+        result = runs.Result(self.work / "a", run)
+        self.assertTrue(result.finished)
+        self.assertEqual(result.columns["x"][0], 7.0)
+
+    def test_program_that_fails_has_no_result(self):
+        self.program("echo n,x; exit 3")
+        run = runs.Run("a", program=["made-up"], claim="made-up")
+        self.assertEqual(self.execute(run), 3)
+        self.assertFalse(runs.Result(self.work / "a", run).exists)
+
+    def test_program_that_is_interrupted(self):
+        self.program("echo n,x; exec sleep 60")
+        run = runs.Run("a", program=["made-up"], claim="made-up")
+        self.assertEqual(self.interrupt(run, "output.part"), runs.INTERRUPTED)
+        self.assertFalse(runs.Result(self.work / "a", run).exists)
+
+    def test_harvest(self):
+        """Keeps what counts, not checkpoints."""
+        self.assertEqual(self.execute(self.scene(100), "made-up/a"), 0)
+        self.assertTrue(runs.harvest(self.scene(100), self.work, self.work / "kept"))
+        kept = sorted(path.name for path in (self.work / "kept/made-up/a").iterdir())
+        self.assertEqual(kept, ["conserved.csv", "run.json", "scene.yaml", "session.json"])
+
+
+if __name__ == "__main__":
+    unittest.main()
