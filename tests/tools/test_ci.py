@@ -56,7 +56,7 @@ class Ci(unittest.TestCase):
     def test_unknown_stage(self):
         status, line = self.ends("checks")
         self.assertEqual(status, 2)
-        self.assertIn("there are install check lint sanitize coverage mutants counts port fuzz", line)
+        self.assertIn("there are install check validate lint sanitize coverage mutants counts port fuzz", line)
 
 
 if __name__ == "__main__":
