@@ -52,7 +52,7 @@ def skip(point):
 
 def shear_run(point, tier):
     edges = FINE_EDGES if point == PAPERS else EDGES
-    pairs = PLENTY[tier] * (12 if point == PAPERS else 30 if point.dt_c < 0.2 else 90)
+    pairs = PLENTY[tier] * (12 if point == PAPERS else 30 if point.dt_c < 0.2 else 60)
     arguments = [point.gamma, point.dt_c, point.alpha, amplitude(point), skip(point), pairs, 11, *edges]
     return Run("shear-" + label(point), program=["shear_decay", *arguments], hours=pairs * (1.6e-4 if point == PAPERS else 8e-5))
 
@@ -71,6 +71,8 @@ def tail_runs(point, tier, length, windows):
 
 def runs(tier):
     found = [make(point, tier) for point in POINTS[tier] for make in (shear_run, diffusion_run)]
+    for run in found:  # coarse: the points that verdicts are about; then the lines through them
+        run.priority = 0 if any(run.name.endswith("-" + label(point)) for point in POINTS["quick"]) else 1
     found += tail_runs(TAILS, tier, 125, 8 if tier == "quick" else 40)
     if PAPERS in TAIL_POINTS[tier]:
         found += tail_runs(PAPERS, tier, 250, 20)
