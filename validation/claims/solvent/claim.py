@@ -145,7 +145,8 @@ def sound(results, point):
     time = table.pop("time")
 
     def estimate(mean):
-        start = (1.0, 0.0, 0.7 * theory.kinematic_viscosity(*point) * SOUND_K**2, theory.SOUND_SPEED * SOUND_K)
+        rate = 0.7 * theory.kinematic_viscosity(*point) * SOUND_K**2
+        start = (1.0, 0.0, rate, theory.SOUND_SPEED * SOUND_K)
         return optimize.least_squares(lambda p: wave(p, time) - mean, start, x_scale=(1.0, 1.0, 0.01, 0.1)).x
     blocks = numpy.array(list(table.values()))
     return (*stats.jackknife(blocks, estimate), time, blocks)
@@ -189,8 +190,9 @@ def paper_verdicts(results):
     again = "At a mean free path of 0.02 a0 the same particles meet again, "
     eta = Verdict("solvent.viscosity.equation", "Eqs. (30), (31) within error bars at the paper's point", nu,
                   "Eqs. (30), (31)", 0.0, kind="paper", reason=again + "which molecular chaos leaves out.")
-    schmidt = Verdict("solvent.schmidt", "Schmidt number ν/D at the paper's point", nu / d, "Eqs. (30), (31) and D of molecular "
-                      "chaos", 0.0, kind="paper", reason=again + "and backflow carries them on: D is a third higher, ν 4 % lower.")
+    schmidt = Verdict("solvent.schmidt", "Schmidt number ν/D at the paper's point", nu / d,
+                      "Eqs. (30), (31) and D of molecular chaos", 0.0, kind="paper",
+                      reason=again + "and backflow carries them on: D is a third higher, ν 4 % lower.")
     if has_point(results, PAPERS):
         eta.measured, eta.error = viscosity(results, PAPERS)
         measured, error = diffusion(results, PAPERS)
@@ -244,8 +246,9 @@ TAIL_TIMES = {TAILS: (2.0, 12.4), PAPERS: (0.6, 4.9)}
 
 def tail_verdict(results, point):
     first, last = TAIL_TIMES[point]
-    verdict = Verdict(f"solvent.tail.{NAMES[point]}", f"long-time tail of C(t), {first:g} to {last:g} t0, over theory, "
-                      f"{words(point)}", 1.0, "shear and sound waves of the box with the measured ν, D, Γ; leading order, to 10 %", 0.1)
+    verdict = Verdict(f"solvent.tail.{NAMES[point]}",
+                      f"long-time tail of C(t), {first:g} to {last:g} t0, over theory, {words(point)}", 1.0,
+                      "shear and sound waves of the box with the measured ν, D, Γ; leading order, to 10 %", 0.1)
     if has_tail(results, point):
         verdict.measured, verdict.error = tail(results, point, first, last)
         verdict.tolerance = stats.tolerance(verdict.error, systematic=0.1)
@@ -265,7 +268,8 @@ def lines_of(results, known):
 
 def draw_chaos(results, known):
     figure, tops, belows = figures.with_residuals(width=9.5, height=5.2, columns=3, share=0.75)
-    quantities = (("viscosity $\\nu$", viscosity, theory.kinematic_viscosity), ("self-diffusion $D$", diffusion, theory.self_diffusion))
+    quantities = (("viscosity $\\nu$", viscosity, theory.kinematic_viscosity),
+                  ("self-diffusion $D$", diffusion, theory.self_diffusion))
     ends = {1: (0.015, 1.3), 0: (2.5, 25.0), 2: (20.0, 160.0)}
     for (name, index, points), top, below in zip(lines_of(results, known), tops, belows):
         for number, (what, measure, expected) in enumerate(quantities):
@@ -348,38 +352,44 @@ def draw_tail(results, points):
 
 
 def evaluate(results, tier):
-    points = POINTS[tier]
     verdicts = [retention_verdict(results, PAPERS), retention_verdict(results, STRONG)]
-    verdicts += [viscosity_verdict(results, point) for point in (PAPERS, TAILS, STRONG, DILUTE)]
-    verdicts += [slope_verdict(results), diffusion_verdict(results), sound_verdict(results), *(tail_verdict(results, point) for point in TAIL_POINTS[tier])]
-    verdicts += paper_verdicts(results)
+    verdicts += [viscosity_verdict(results, point) for point in POINTS["quick"]]
+    verdicts += [slope_verdict(results), diffusion_verdict(results), sound_verdict(results)]
+    verdicts += [tail_verdict(results, point) for point in TAIL_POINTS[tier]] + paper_verdicts(results)
+    return Outcome(verdicts, figures_of(results, tier), prose(results))
 
-    known = [point for point in points if has_point(results, point)]
-    drawn = []
-    if PAPERS in known:
-        drawn.append(Figure("chaos", "Viscosity and self-diffusion through the paper's point (γ 5, dt_c 0.02, 90°). Lines: molecular "
-                            "chaos, Eqs. (30), (31). Below: by how much it fails.", lambda: draw_chaos(results, known)))
-        drawn.append(Figure("waves", "Decay of transverse modes against k at the paper's point. The line is what the width of a cell "
-                            "does to collisional momentum flux.", lambda: draw_waves(results)))
-    if "sound-" + label(TAILS) in results:
-        drawn.append(Figure("sound", f"A standing sound wave of k = 2π/32, {words(TAILS)}.", lambda: draw_sound(results)))
+
+def figures_of(results, tier):
+    known = [point for point in POINTS[tier] if has_point(results, point)]
     tails = [point for point in TAIL_POINTS[tier] if has_tail(results, point)]
+    found = []
+    if PAPERS in known:
+        found.append(Figure(
+            "chaos", "Viscosity and self-diffusion through the paper's point (γ 5, dt_c 0.02, 90°). Lines: molecular chaos, "
+            "Eqs. (30), (31). Below: by how much it fails.", lambda: draw_chaos(results, known)))
+        found.append(Figure(
+            "waves", "Decay of transverse modes against k at the paper's point. The line is what the width of a cell does to "
+            "the collisional flux of momentum.", lambda: draw_waves(results)))
+    if "sound-" + label(TAILS) in results:
+        found.append(Figure("sound", f"A standing sound wave of k = 2π/32, {words(TAILS)}.", lambda: draw_sound(results)))
     if tails:
-        drawn.append(Figure("tail", "Velocity autocorrelation of solvent particles. Thin: molecular chaos, cⁿ after n collisions. Dashed: "
-                            "the tail that shear and sound waves carry, summed over the waves of the box, without a fitted number.",
-                            lambda: draw_tail(results, tails)))
-    return Outcome(verdicts, drawn, prose(results))
+        found.append(Figure(
+            "tail", "Velocity autocorrelation of solvent particles. Thin: molecular chaos, cⁿ after n collisions. Dashed: the tail "
+            "that shear and sound waves carry, summed over the waves of the box, without a fitted number.",
+            lambda: draw_tail(results, tails)))
+    return found
 
 
 def prose(results):
     if not has_point(results, PAPERS):
         return "No run at the paper's point yet."
     nu, d = viscosity(results, PAPERS)[0], diffusion(results, PAPERS)[0]
-    over = [100.0 * (nu / theory.kinematic_viscosity(*PAPERS) - 1.0), 100.0 * (d / theory.self_diffusion(*PAPERS) - 1.0)]
-    return (f"At the paper's point ν is {nu:.3f} ({over[0]:+.1f} % of Eqs. (30), (31)) and a solvent particle diffuses with "
-            f"D = {d:.4f} ({over[1]:+.0f} % of molecular chaos). **Both fail for one reason:** with a mean free path of 0.02 a0 the same "
-            "particles share a cell for many collisions. One collision alone does exactly what it should. The Schmidt number is "
-            f"{nu / d:.0f}, not {theory.kinematic_viscosity(*PAPERS) / theory.self_diffusion(*PAPERS):.0f}. With a mean free path of a cell "
-            "molecular chaos holds.\n\nWhat chaos leaves out is hydrodynamics: the velocity autocorrelation follows (ν + D)t to the "
-            "power −3/2 with no number fitted, once the waves of the periodic box are counted one by one, those of sound too: they take a third "
-            "away at 2 t0 and are gone at 10.")
+    chaos_nu, chaos_d = theory.kinematic_viscosity(*PAPERS), theory.self_diffusion(*PAPERS)
+    return (
+        f"At the paper's point ν is {nu:.3f} ({100.0 * (nu / chaos_nu - 1.0):+.1f} % of Eqs. (30), (31)), and a solvent particle "
+        f"diffuses with D = {d:.4f} ({100.0 * (d / chaos_d - 1.0):+.0f} % of molecular chaos). **Both fail for one reason:** with a "
+        "mean free path of 0.02 a0 the same particles share a cell for many collisions. One collision alone does exactly what it "
+        f"should. The Schmidt number is {nu / d:.0f}, not {chaos_nu / chaos_d:.0f}. With a mean free path of a cell molecular chaos "
+        "holds.\n\nWhat chaos leaves out is hydrodynamics: the velocity autocorrelation follows ((ν + D)t)^(−3/2) with no number "
+        "fitted, once the waves of the periodic box are counted one by one. Those of sound count, too: they take a third away at 2 t0 "
+        "and are gone at 10.")
