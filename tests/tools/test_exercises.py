@@ -1,0 +1,45 @@
+#!/usr/bin/python3
+"""Each exercise of docs/course.md has its scene and its line, and the program takes the scene with and without the change."""
+import importlib.machinery
+import importlib.util
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.dont_write_bytecode = True
+TOP = pathlib.Path(__file__).resolve().parents[2]
+UNCROSS = pathlib.Path(os.environ.get("UNCROSS", TOP / "build/uncross")).resolve()
+
+
+def load(path):
+    loader = importlib.machinery.SourceFileLoader(path.name, str(path))
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader(path.name, loader))
+    loader.exec_module(module)
+    return module
+
+
+class Exercises(unittest.TestCase):
+    def test_scenes(self):
+        for name, (scene, _, old, choices) in load(TOP / "docs/exercises/measure").EXERCISES.items():
+            text = scene.read_text(encoding="utf-8")
+            self.assertIn(old, text, name)
+            for new in choices:
+                with self.subTest(exercise=name, line=new), tempfile.TemporaryDirectory() as folder:
+                    path = pathlib.Path(folder) / "scene.yaml"
+                    path.write_text(text.replace(old, new, 1), encoding="utf-8")
+                    done = subprocess.run([UNCROSS, "check", path], capture_output=True, text=True, check=False)
+                    self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_lines_stand_in_the_course(self):
+        course = (TOP / "docs/course.md").read_text(encoding="utf-8")
+        for name, (scene, _, old, _) in load(TOP / "docs/exercises/measure").EXERCISES.items():
+            self.assertIn(scene.name, course)
+            line = old.splitlines()[0] if old and old != "observe:" else "seed: 1" if not old else "forbidden: false"
+            self.assertIn(line, course, name)
+
+
+if __name__ == "__main__":
+    unittest.main()
