@@ -1,6 +1,11 @@
 """Fig. 5: d^2(t) against density."""
+import math
+
+import numpy
+
+from lib import figures, stats
 from lib import semidilute as sd
-from lib.claim import Outcome
+from lib.claim import Figure, Outcome, Verdict
 from lib.runs import Run
 
 TITLE = "Fibers hindered by fibers: density"
@@ -24,12 +29,12 @@ def campaign():
 
 
 def quick():
-    found = [Run("off-c100", steps=6000, seed=530, hours=0.001,
-                 scene=sd.scene(count=100, solvent=sd.BATH, forbidden="false", every=2, longest_lag=2048)),
-             Run("c100", steps=8000, seed=531, hours=0.002, scene=sd.scene(box=24, count=42, every=2, longest_lag=2048))]
-    # Fibers of 24 vertices at three densities; c L^3 = 400 is tube's.
-    found += [Run(f"small{count}", steps=8000, seed=540 + count, hours=0.002,
-                  scene=sd.scene(box=12, vertices=24, count=count, every=5, longest_lag=2560)) for count in SMALL]
+    found = [Run("off-c100", steps=20000, seed=530, hours=0.001,
+                 scene=sd.scene(count=100, solvent=sd.BATH, forbidden="false", every=4, longest_lag=4096, series=500)),
+             Run("c100", steps=20000, seed=531, hours=0.002, scene=sd.scene(box=24, count=42, every=4, longest_lag=4096, series=500))]
+    # Fibers of 24 vertices at three densities; c L^3 = 399 is tube's.
+    found += [Run(f"small{count}", steps=24576, seed=540 + count, hours=0.003,
+                  scene=sd.scene(box=12, vertices=24, count=count, every=10, longest_lag=12288, series=1000)) for count in SMALL]
     return found
 
 
@@ -37,5 +42,243 @@ def runs(tier):
     return quick() if tier == "quick" else campaign()
 
 
+
+# --- what runs say ----------------------------------------------------------------------------------------------------
+
+# c L^3 -> (name of the run, L, box, fibers); lags (t0) between which t^(3/4) is fitted, without and with hydrodynamics.
+SYSTEMS = {"quick": {50: ("small50", 12.0, 12, 50), 100: ("c100", 32.0, 24, 42), 200: ("small200", 12.0, 12, 200),
+                     399: ("tube/hi-entangled", 12.0, 10, 231)},
+           "campaign": {30: ("c30", 32.0, 32, 30), 100: ("c100", 32.0, 32, 100), 300: ("c300", 32.0, 32, 300),
+                        1000: ("tube/hi-entangled", 32.0, 32, 1000)}}
+LAW = {"quick": {"off": (2.5, 26.0), "hi": (2.5, 26.0), "dilute": "c100"},
+       "campaign": {"off": (2.5, 300.0), "hi": (2.5, 300.0), "dilute": "c30"}}
+FLOOR_LAG = {"quick": 5.0, "campaign": 100.0}
+
+
+def curve(results, name):
+    return sd.joined(sd.table(results.get(name + "-short"), least=4), sd.table(results.get(name)))
+
+
+def tau(length):
+    """Of the figure's time axis: a rigid rod of b = 0.6 a0 in water as thick as the solvent."""
+    return sd.PAPER_ROTATION_TIME if length == 32.0 else sd.rod_rotation_time((2 * length - 1) * sd.BOND, 0.6, 11.184)
+
+
+def width(length, box, count):
+    return sd.tube_width(sd.mesh_size(count, length, box), length, length)
+
+
+def law(columns, window, name="d2_contour"):
+    """(exponent, error, prefactor at 1 t0, error) of a power fitted to lags in a window, one in two, so that neighbors
+    share few intervals; None without enough of them."""
+    if columns is None:
+        return None
+    keep = (columns["time"] >= window[0]) & (columns["time"] <= window[1])
+    t, y, error = (columns[key][keep][::2] for key in ("time", name, name + "_error"))
+    if len(t) < 3:
+        return None
+    middle = math.exp(numpy.log(t).mean())  # there, slope and height are told apart
+    fit = stats.power(t / middle, y, error)
+    height = math.exp(fit.value[0])
+    return fit.value[1], fit.error[1], height, height * fit.error[0], middle
+
+
+def measured(verdict, pair, systematic=0.0):
+    """Fills in (value, error) and the tolerance that follows."""
+    if pair is not None:
+        verdict.measured, verdict.error = pair[:2]
+        verdict.tolerance = stats.tolerance(verdict.error, verdict.expected_error, systematic)
+    verdict.detects = 2.0 * verdict.tolerance
+    return verdict
+
+
+# --- verdicts ---------------------------------------------------------------------------------------------------------
+
+def law_verdicts(curves, tier):
+    """Without hydrodynamics the law has no free number. With them, friction falls with the logarithm of the length that
+    relaxes, so the exponent is a little above 3/4."""
+    off, hi = law(curves["off"], LAW[tier]["off"]), law(curves["dilute"], LAW[tier]["hi"])
+    exponent = Verdict("msd.exponent.off", "exponent of d²(t) (contour), no hydrodynamics, crossing free", 0.75,
+                       "wormlike chain", 0.05)
+    height = Verdict("msd.prefactor.off", "d² over the wormlike chain's in the middle of the window, nothing fitted", 1.0,
+                     "[4 Γ(1/4)/3π] (kT l_p t/ζ)^(3/4)/l_p, for vertices; ζ of vertices that share cells, known to 5 %; shorter "
+                     "waves share less: 10 % in all", 0.1)
+    friction = Verdict("msd.friction.off", "vertices × D of the centre of mass over D of a loose vertex, no hydrodynamics",
+                       sd.shared_diffusion() / sd.VERTEX_DIFFUSION, "momentum that a bath takes from the vertices of a cell together, "
+                       "straight fibers; 6 % for other fibers in the cell, and bends", 0.08)
+    with_hi = Verdict("msd.exponent.hi", "exponent of d²(t) (contour) of the most dilute fibers, hydrodynamics on", 0.75,
+                      "paper, Fig. 5; up to 0.1 more by the logarithm in the friction", 0.1, kind="paper",
+                      reason="Friction depends on the length that relaxes, by a logarithm.")
+    measured(exponent, off, 0.04)
+    measured(with_hi, hi, 0.1)
+    if off:
+        expected = float(sd.bending_of_vertices(off[4], sd.shared_diffusion())[0])
+        measured(height, (off[2] / expected, off[3] / expected), 0.1)
+        k = int(numpy.argmin(abs(curves["off"]["time"] - 5.12)))
+        unit = 64.0 / sd.VERTEX_DIFFUSION
+        measured(friction, (unit * curves["off"]["D"][k], unit * curves["off"]["D_error"][k]), 0.08)
+    height.detects, friction.detects = 2.0 * height.tolerance, 2.0 * friction.tolerance
+    return [exponent, height, friction, with_hi]
+
+
+def floor_verdict(curves, tier):
+    """A point beside the contour is nearest to a vertex by at most half a bond: <l^3>/12<l> further, squared."""
+    cubed = sd.BOND * (sd.BOND**2 + 3.0 * (sd.BOND2 - sd.BOND**2))
+    expected = cubed / (12.0 * sd.BOND)
+    verdict = Verdict("msd.floor", f"d² less d² (contour) at {FLOOR_LAG[tier]:g} t0, most dilute fibers", expected,
+                      "⟨l³⟩/12⟨l⟩ once the vertex has left its own place along the contour", 0.2 * expected)
+    columns = curves["dilute"]
+    if columns is not None:
+        k = int(numpy.argmin(abs(columns["time"] - FLOOR_LAG[tier])))
+        error = columns["d2_contour_error"][k] / columns["d2_contour"][k] * expected
+        measured(verdict, (columns["d2"][k] - columns["d2_contour"][k], error), 0.2 * expected)
+    return verdict
+
+
+def plateaus(curves, tier):
+    """c L^3 -> (L_perp measured, error, L_perp of Eq. (35), xi)."""
+    found = {}
+    for density, (_, length, box, count) in SYSTEMS[tier].items():
+        flat = sd.plateau(curves[density])
+        if flat:
+            found[density] = (math.sqrt(flat[0] / 2.0), 0.25 * flat[1] * math.sqrt(2.0 / flat[0]), width(length, box, count),
+                              sd.mesh_size(count, length, box), length)
+    return found
+
+
+def plateau_verdicts(flat, tier):
+    """Every density that is flat somewhere; which these are is a matter of how long the runs are."""
+    found = []
+    for density in SYSTEMS[tier]:
+        if density not in flat:
+            continue
+        seen, error, expected = flat[density][:3]
+        found.append(measured(Verdict(f"msd.tube.c{density}", f"L⊥ from the plateau over Eq. (35), c L³ = {density}", 1.0,
+                                      "Eq. (35), for tightly entangled fibers", 0.3, kind="paper",
+                                      reason="The plateau counts both positions' fluctuations (see tube), and at low density "
+                                      "is a shoulder, not a plateau."), (seen / expected, error / expected), 0.3))
+    return found
+
+
+def mesh_verdict(flat):
+    verdict = Verdict("msd.mesh", "exponent of L⊥ against ξ", 1.2, "L⊥ ∝ ξ^(6/5), Eq. (35)'s first term; its second raises it",
+                      0.3, kind="paper", reason="Densities that just begin to show a plateau weigh most.")
+    same = {key: row for key, row in flat.items() if row[4] == max(r[4] for r in flat.values())} if flat else {}
+    if len(same) >= 2:
+        rows = list(same.values())
+        expected = stats.power([r[3] for r in rows], [r[2] for r in rows], [r[2] for r in rows]).value[1]
+        verdict.expected, verdict.source = float(expected), "slope of Eq. (35) over the same densities (6/5 for ξ → 0)"
+        fit = stats.power([r[3] for r in rows], [r[0] for r in rows], [r[1] for r in rows])
+        measured(verdict, (fit.value[1], fit.error[1]), 0.2)
+    verdict.detects = 2.0 * verdict.tolerance
+    return verdict
+
+
+def order_verdict(curves, tier):
+    """Denser is slower: number of neighboring pairs of equal fibers out of order at the longest common lag."""
+    pairs, wrong = 0, 0
+    rows = list(SYSTEMS[tier].items())
+    for k, (density, one) in enumerate(rows):
+        for denser, other in rows[k + 1:]:
+            a, b = curves[density], curves[denser]
+            if one[1] != other[1] or a is None or b is None:
+                continue
+            lags = [t for t in a["time"] if sd.at(b, "d2_contour", t)]
+            x, y = sd.at(a, "d2_contour", lags[-1]), sd.at(b, "d2_contour", lags[-1])
+            pairs += 1
+            wrong += x[0] - y[0] < -2.0 * math.hypot(x[1], y[1])
+    return Verdict("msd.order", "pairs of densities where the denser moves further, longest common lag", 0.0,
+                   "paper, Fig. 5", 0.0, measured=float(wrong) if pairs else None, detects=1.0)
+
+
+# --- figures ----------------------------------------------------------------------------------------------------------
+
+def draw_curves(curves, tier, column):
+    figure, above, below = figures.with_residuals(height=6.0)
+    for number, (density, (_, length, box, count)) in enumerate(SYSTEMS[tier].items()):
+        columns = curves[density]
+        if columns is None:
+            continue
+        t, scale = columns["time"] / tau(length), length**2
+        figures.points(above, t, columns[column] / scale, columns[column + "_error"] / scale, number, markersize=3.2,
+                       linestyle="-", linewidth=0.8, label=f"c L³ = {density}" + ("" if tier == "campaign" else f", L = {length:g}"))
+        tube = 2.0 * width(length, box, count)**2 / scale
+        above.plot([t[-1] / 30, t[-1]], [tube, tube], color=figures.COLORS[number], linestyle="-.", linewidth=1)
+        x, slope = sd.slopes(columns["time"], columns[column])
+        below.plot(x / tau(length), slope, color=figures.COLORS[number], linewidth=1.0)
+    hi, dilute = law(curves["dilute"], LAW[tier]["hi"], column), LAW[tier]["dilute"]
+    length = next(row[1] for row in SYSTEMS[tier].values() if row[0] == dilute)
+    if hi:
+        t = numpy.geomspace(LAW[tier]["hi"][0] / 5, LAW[tier]["hi"][1] * 20, 30)
+        figures.theory(above, t / tau(length), hi[2] * (t / hi[4])**0.75 / length**2, linestyle="--",
+                       label="t^(3/4) through the most dilute")
+    above.set(xscale="log", yscale="log", ylabel="⟨d²⟩/L²" + (", contour" if "contour" in column else ""))
+    below.set(xscale="log", xlabel="t/τ_r", ylabel="local exponent", ylim=(0, 1.1))
+    below.axhline(0.75, color="#222222", linestyle="--", linewidth=1)
+    above.legend(loc="upper left")
+    return figure
+
+
+def draw_law(curves, tier):
+    figure, above, below = figures.with_residuals()
+    columns = curves["off"]
+    if columns is not None:
+        t = columns["time"]
+        expected = sd.bending_of_vertices(t, sd.shared_diffusion())
+        figures.theory(above, t, expected, label="wormlike chain of vertices, nothing fitted")
+        figures.theory(above, t, sd.bending_law(t, 1.0 / (sd.VERTEX_DIFFUSION * sd.BOND)), linestyle=":",
+                       label="t^(3/4), vertices that rub alone")
+        for number, column in enumerate(("d2_contour", "d2")):
+            figures.points(above, t, columns[column], columns[column + "_error"], number,
+                           label="nearest point of the contour" if number == 0 else "nearest vertex (the paper's)")
+            figures.points(below, t, columns[column] / expected - 1.0, columns[column + "_error"] / expected, number)
+        window = LAW[tier]["off"]
+        below.axvspan(*window, color="#0b5394", alpha=0.08)
+    above.set(xscale="log", yscale="log", ylabel="⟨d²⟩, a0²")
+    below.set(xscale="log", xlabel="t, t0", ylabel="over law − 1", ylim=(-0.8, 0.8))
+    above.legend(loc="upper left")
+    return figure
+
+
+def draw_mesh(flat):
+    figure, above, below = figures.with_residuals(height=4.4)
+    xi = numpy.geomspace(1.0, 11.0, 50)
+    figures.theory(above, xi, [sd.tube_width(x, 32.0, 32.0) for x in xi], label="Eq. (35), L = 32 a0")
+    figures.theory(above, xi, 32.0 * 0.31 * (xi / 32.0)**1.2, linestyle="--", label="its first term, ξ^(6/5)")
+    for density, (seen, error, expected, mesh, length) in flat.items():
+        figures.points(above, [mesh], [seen], [error], 0 if length == 32.0 else 1)
+        above.annotate(f"{density}", (mesh, seen), textcoords="offset points", xytext=(6, -10), fontsize=8)
+        figures.points(below, [mesh], [seen / expected], [error / expected], 0 if length == 32.0 else 1)
+    above.set(xscale="log", yscale="log", ylabel="L⊥, a0")
+    below.set(xscale="log", xlabel="ξ, a0", ylabel="over Eq. (35)")
+    below.axhline(1.0, color="#444444", linewidth=0.8)
+    above.legend(loc="upper left")
+    return figure
+
+
 def evaluate(results, tier):
-    return Outcome([])
+    curves = {density: curve(results, row[0]) for density, row in SYSTEMS[tier].items()}
+    curves["off"], curves["dilute"] = curve(results, "off-c100"), curve(results, LAW[tier]["dilute"])
+    flat = plateaus(curves, tier)
+    verdicts = law_verdicts(curves, tier) + [floor_verdict(curves, tier), order_verdict(curves, tier)]
+    verdicts += plateau_verdicts(flat, tier) + ([mesh_verdict(flat)] if tier == "campaign" else [])
+    lines = "Dash-dotted: 2 L⊥² of Eq. (35). Below: local exponent. "
+    axis = "Time in units of the paper's τ_r, 8.3·10⁴ t0" + (" (L = 12: a rigid rod's)." if tier == "quick" else ".")
+    found = [Figure("fig5-d2", "The paper's d²(t), to the nearest vertex. " + lines + axis,
+                    lambda: draw_curves(curves, tier, "d2")),
+             Figure("fig5-d2_contour", "The same to the nearest point of the contour. " + lines + axis,
+                    lambda: draw_curves(curves, tier, "d2_contour")),
+             Figure("law", "Without hydrodynamics and free to cross: the t^(3/4) law has no free number. Shaded: where it is fitted.",
+                    lambda: draw_law(curves, tier)),
+             Figure("mesh", "Width of the tube from the plateau, √(d²/2), against mesh size; numbers are c L³.",
+                    lambda: draw_mesh(flat))]
+    return Outcome(verdicts, found, PROSE)
+
+
+PROSE = """The denser, the earlier d² leaves the t^(3/4) law of a lone fiber's bending. d² to the nearest **vertex**, the paper's, holds a
+floor of ⟨l³⟩/12⟨l⟩ = 0.026 a0²: a fiber that slides along its own contour comes to lie between its old vertices. It bends the
+curve over where d² is a few times as large, below some 10 t0, and lets the local exponent look smaller than it is; d² to the nearest point of
+the **contour** has no floor. Without hydrodynamics the law has no free number.
+
+A plateau is the flattest stretch of a curve whose local exponent falls below 0.35. L⊥ is then √(d²/2), as the paper draws its
+line; since two positions in the tube are compared, the plateau may be up to twice as high."""
