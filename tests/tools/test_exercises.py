@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Each exercise of docs/course.md has its scene and its line, and the program takes the scene with and without the change."""
+"""Each exercise of docs/course.md has its scene and its line, and the program takes the scene with and without the
+change."""
 import importlib.machinery
 import importlib.util
 import os

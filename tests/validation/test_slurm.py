@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""The campaign as a job array, without Slurm: what submit hands to sbatch, and what a task does when it is told that its time is
-up. sbatch and scontrol are stand-ins that write down their words; `make slurm-test` asks the real ones."""
+"""The campaign as a job array, without Slurm: what submit hands to sbatch, and what a task does when it is told that its
+time is up. sbatch and scontrol are stand-ins that write down their words; `make slurm-test` asks the real ones."""
 import importlib.machinery
 import importlib.util
 import json
@@ -49,16 +49,16 @@ class SlurmTest(unittest.TestCase):
         self.environment = dict(os.environ, PATH=f"{self.dir}/bin:{os.environ['PATH']}", SAID=str(self.said))
 
     def submit(self, *words):
-        done = subprocess.run([self.tree / "validation/slurm/submit", "--build", self.build, *words], env=self.environment,
-                              capture_output=True, text=True, check=False)
+        done = subprocess.run([self.tree / "validation/slurm/submit", "--build", self.build, *words],
+                              env=self.environment, capture_output=True, text=True, check=False)
         return done.returncode, done.stdout + done.stderr
 
     def task(self, index):
         """A task of the array that was handed over, started."""
         handed = dict(line.split("=", 1) for line in self.said.with_suffix(".environment").read_text().splitlines())
         numbers = {"SLURM_ARRAY_TASK_ID": str(index), "SLURM_ARRAY_JOB_ID": "7"}
-        return subprocess.Popen([self.tree / "validation/slurm/campaign.sbatch"], env={**self.environment, **handed, **numbers},
-                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        return subprocess.Popen([self.tree / "validation/slurm/campaign.sbatch"], stdout=subprocess.PIPE,
+                                stderr=subprocess.STDOUT, text=True, env={**self.environment, **handed, **numbers})
 
     def heard(self):
         return self.said.read_text().splitlines() if self.said.exists() else []
