@@ -49,7 +49,7 @@ class PeerTest(unittest.TestCase):
         self.assertAlmostEqual(PEER.chaos_diffusion(10**6, kept), theory.self_diffusion(), 7)
 
     def test_tail(self):
-        self.assertAlmostEqual(PEER.long_time_tail(1.0), 8.8e-4, 5)  # THEORY 2.2
+        self.assertAlmostEqual(PEER.long_time_tail(1.0), 8.8e-4, 5)  # 2/15 (4 pi (2.2368 + 0.0274))^(-3/2)
 
     def test_alike(self):
         self.assertEqual(set(words(made()).values()), {"pass"})
