@@ -8,8 +8,9 @@ import pathlib
 import string
 
 import numpy
-import scipy.stats
 from scipy import special
+
+from lib import dilute, stats
 
 BOND = (0.5**3 + 3 * 0.5 * 0.01) / (0.5**2 + 0.01)  # <l> of k = 100, l0 = 0.5: THEORY 2.8, 0.538462
 BOND2 = (0.5**4 + 6 * 0.5**2 * 0.01 + 3 * 0.01**2) / (0.5**2 + 0.01)  # <l^2>, 0.299231
@@ -53,22 +54,13 @@ def bending_law(t, friction, persistence=PERSISTENCE):
 
 
 @functools.lru_cache
-def shared_diffusion(per_cell=5.0, dt_c=0.02, samples=200000):
-    """kT over the friction of a vertex that moves along with its whole fiber, without hydrodynamics, 90 degrees.
+def shared_diffusion():
+    """kT over the friction of a vertex that moves along with its whole fiber, without hydrodynamics, straight fibers.
 
-    Bonds are half a cell long, so a collision cell holds 1.8 vertices of a fiber. The bath takes momentum from them
-    together: a cell with n of them loses the share (2/3) N/(N + n M/m) of it, N Poisson(per_cell), less per vertex than
-    of a vertex alone. Straight fibers, random orientation and shift of the grid (fixed seed; 0.1 %)."""
-    draw = numpy.random.default_rng(1)
-    along = draw.normal(size=(samples, 3))
-    along *= BOND / numpy.linalg.norm(along, axis=1)[:, None]
-    place, together = draw.random((samples, 3)), numpy.ones(samples, int)
-    for k in (-3, -2, -1, 1, 2, 3):
-        together += ((place + k * along >= 0.0) & (place + k * along < 1.0)).all(axis=1)
-    bath = numpy.arange(60)
-    chance = scipy.stats.poisson.pmf(bath, per_cell)
-    lost = [2.0 / 3.0 * float(chance @ (bath / (bath + n * MASS))) for n in range(1, 8)]
-    return dt_c / MASS * (1.0 / numpy.mean([lost[n - 1] for n in together]) - 0.5)
+    Bonds are half a cell long, so a collision cell holds 1.8 vertices of a fiber, and the bath brakes them together:
+    less than each alone."""
+    vertices = 64
+    return vertices * dilute.sharing_diffusion(lambda draw: dilute.rod_shape(vertices, BOND, draw))[0]
 
 
 def bending_of_vertices(t, diffusion):
@@ -152,7 +144,6 @@ def plateau(columns, name="d2_contour", flattest=0.35, width=3):
 def rotation_time(columns, shortest, longest, least=4):
     """(tau_r, error, intercept) from <u(0).u(t)> = A exp(-t/tau_r), lags shortest to longest: bends tilt the end-to-end
     vector by a fixed angle soon (A), rotation goes on. tau_r = 1/(2 D_r). Lags count as independent."""
-    from lib import stats
     if columns is None:
         return None
     t, c, error = columns["time"], columns["end_to_end_unit"], columns["end_to_end_unit_error"]

@@ -129,6 +129,21 @@ def momentum_verdict(results):
                    "kinetic energy, t0/a0", 0.0, "conserved; 10⁻⁹ for rounding", 1e-9, measured=worst, detects=2e-9)
 
 
+# kT per refused move at dt 0.01, measured once for good (docs/accuracy.md, "What a refused move costs": in the frame of a
+# flow, which is at rest).
+HEAT = {"stay": (0.0462, 0.0011), "bounce": (0.0375, 0.0013)}
+
+
+def size_verdicts(results):
+    found = []
+    for rule, (expected, error) in HEAT.items():
+        verdict = Verdict(f"conservation.heat.size.{rule}", f"heat per refused move, kT, dt 0.01, `{rule}`", expected,
+                          "docs/accuracy.md: other runs of this code, in a frame that moves", 0.1 * expected, expected_error=error)
+        row = next((row for row in rows(results, "heat-c1000") if row["rule"] == rule and row["dt"] == 0.01), None)
+        found.append(measured(verdict, row and (row["heat"], row["heat_error"]), 0.1 * expected))
+    return found
+
+
 def heat_verdicts(results, tier):
     found = []
     for rule in ("stay", "bounce"):
@@ -140,6 +155,7 @@ def heat_verdicts(results, tier):
             measured(verdict, (fit.value[1], fit.error[1]), 0.35)
         verdict.detects = 2.0 * verdict.tolerance
         found.append(verdict)
+    found += size_verdicts(results)
     for row in rows(results, "heat-c1000"):
         if row["rule"] == "stay" and row["dt"] == 0.01:
             freedoms = 3.0 * (5 * row["cells"]**3 + row["fibers"] * row["vertices"])

@@ -1,0 +1,120 @@
+"""validation/lib/semidilute.py, and goals of runs. Expected numbers by other ways, with the recipe beside each."""
+import math
+import pathlib
+import sys
+import unittest
+
+sys.dont_write_bytecode = True
+TREE = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(TREE / "validation"))
+
+import numpy
+from scipy import integrate, stats
+import yaml
+
+from lib import runs
+from lib import semidilute as sd
+
+
+class Formulas(unittest.TestCase):
+    def test_bonds(self):
+        """<l>, <l^2> by quadrature of l^2 exp(-50 (l - 1/2)^2); l_p from <cos> of exp(64 cos)."""
+        weight = [integrate.quad(lambda x: x**n * math.exp(-50 * (x - 0.5)**2), 0, 2)[0] for n in (2, 3, 4)]
+        self.assertAlmostEqual(sd.BOND, weight[1] / weight[0], 5)
+        self.assertAlmostEqual(sd.BOND2, weight[2] / weight[0], 5)
+        cosine = [integrate.quad(lambda x: x**n * math.exp(64 * (x - 1)), -1, 1)[0] for n in (0, 1)]
+        self.assertAlmostEqual(sd.PERSISTENCE, -sd.BOND / math.log(cosine[1] / cosine[0]), 4)
+
+    def test_tube(self):
+        """Eqs. (34), (35) at c L^3 = 1000: xi/L = sqrt(0.003) = 0.0547723, so 0.31 x 0.003^0.6 (0.0306389) + 0.56 x 0.003."""
+        self.assertAlmostEqual(sd.mesh_size(1000, 32, 32) / 32, 0.0547723, 7)
+        self.assertAlmostEqual(sd.tube_width(sd.mesh_size(1000, 32, 32), 32, 32) / 32, 0.31 * 0.0306389 + 0.00168, 6)
+
+    def test_bending(self):
+        """Modes of a long straight chain that lies on a line, one direction after the other: per component
+        int dq/pi kT/(kappa q^4) (1 - exp(-kappa q^4 t/zeta)), kappa = l_p kT; two components."""
+        t, zeta = 20.0, 100.0
+        one = integrate.quad(lambda q: -math.expm1(-sd.PERSISTENCE * q**4 * t / zeta) / (sd.PERSISTENCE * q**4), 0, 60,
+                             limit=400)[0] * 2 / math.pi
+        self.assertAlmostEqual(float(sd.bending_law(t, zeta)) / (2 * one), 1.0, 3)
+
+    def test_vertices_tend_to_the_line(self):
+        diffusion = 0.01
+        for t, bound in ((2.0, 0.1), (50.0, 0.04), (2000.0, 0.02)):
+            ratio = sd.bending_of_vertices(t, diffusion)[0] / float(sd.bending_law(t, 1.0 / (diffusion * sd.BOND)))
+            self.assertLess(abs(ratio - 1.0), bound)
+
+    def test_shared_diffusion(self):
+        """Momentum that the vertices of a cell lose together, without their memory of each other: a cell with n of them loses
+        the share (2/3) N/(N + 5 n). Within 2 %, D then is (0.02/5)(1/share - 1/2)."""
+        draw = numpy.random.default_rng(1)
+        along = draw.normal(size=(100000, 3))
+        along *= sd.BOND / numpy.linalg.norm(along, axis=1)[:, None]
+        place, together = draw.random((100000, 3)), numpy.ones(100000, int)
+        for k in (-3, -2, -1, 1, 2, 3):
+            together += ((place + k * along >= 0.0) & (place + k * along < 1.0)).all(axis=1)
+        bath = numpy.arange(60)
+        chance = stats.poisson.pmf(bath, 5.0)
+        lost = [2.0 / 3.0 * float(chance @ (bath / (bath + 5.0 * n))) for n in range(1, 8)]
+        share = numpy.mean([lost[n - 1] for n in together])
+        self.assertAlmostEqual(sd.shared_diffusion() / (0.004 * (1.0 / share - 0.5)), 1.0, delta=0.02)
+
+    def test_collision_rate(self):
+        """THEORY 2.11: 0.180 per bond and t0 at c L^3 = 1000, each collision counted for both its bonds."""
+        self.assertAlmostEqual(2.0 * sd.collision_rate(63000, 32**3) * 32**3 / 63000, 0.180, 3)
+        u = numpy.linspace(0.0005, 0.9995, 1000)
+        levers = numpy.sqrt(((1 - u)**2 + u**2)[:, None] + ((1 - u)**2 + u**2)[None, :]).mean()
+        self.assertAlmostEqual(sd.LEVERS, levers, 4)
+
+    def test_rod(self):
+        """1/(2 D_r) of L = 32, b = 0.6: D_r = 3/(pi 11.184 32768) (3.97656 - 0.662 + 0.017194 - 0.000018) = 8.68e-6."""
+        self.assertAlmostEqual(0.5 / sd.rod_rotation_time(32.0, 0.6, 11.184) / 8.68e-6, 1.0, 2)
+
+
+class Curves(unittest.TestCase):
+    @staticmethod
+    def table(t, **columns):
+        made = {"time": t, "intervals": numpy.full(len(t), 9.0)}
+        for name, values in columns.items():
+            made[name], made[name + "_error"] = values, 0.01 * numpy.abs(values)
+        return made
+
+    def test_plateau(self):
+        """A curve that levels off at 2, and then creeps; a power law has none."""
+        t = 2.0**numpy.arange(16)
+        level = sd.plateau(self.table(t, d2_contour=2.0 * (1 - numpy.exp(-t / 8)) + 1e-6 * t))
+        self.assertAlmostEqual(level[0], 2.0, 1)
+        self.assertIsNone(sd.plateau(self.table(t, d2_contour=t**0.75)))
+
+    def test_rotation(self):
+        t = numpy.array([100.0, 200.0, 400.0, 800.0, 1600.0, 3200.0])
+        made = self.table(t, end_to_end_unit=0.98 * numpy.exp(-t / 5e4))
+        tau, _, height = sd.rotation_time(made, 150.0, 4000.0)
+        self.assertAlmostEqual(tau, 5e4, 3)
+        self.assertAlmostEqual(height, 0.98, 9)
+        self.assertIsNone(sd.rotation_time(made, 150.0, 500.0))
+
+    def test_joined(self):
+        short = self.table(numpy.array([1.0, 2.0, 4.0]), g=numpy.array([1.0, 2.0, 3.0]))
+        long = self.table(numpy.array([4.0, 8.0]), g=numpy.array([9.0, 5.0]))
+        self.assertEqual(list(sd.joined(short, None, long)["g"]), [1.0, 2.0, 3.0, 5.0])
+        self.assertIsNone(sd.joined(None))
+
+
+class Goals(unittest.TestCase):
+    def test_scene_is_whole(self):
+        scene = yaml.safe_load(sd.scene(count=7, vertices=24))
+        self.assertEqual(scene["fibers"][0]["persistence_length"], 12.0)
+        self.assertEqual(scene["fibers"][0]["count"], 7)
+
+    def test_stages(self):
+        run = runs.Run("a", scene="box: [6, 6, 6]\n", steps=1000, hours=5.0, priority=2, goals=((100, 0), (600, 1)), claim="c")
+        stages = run.stages()
+        self.assertEqual([stage.path for stage in stages], ["c/a@100", "c/a@600", "c/a"])
+        self.assertEqual([stage.priority for stage in stages], [0, 1, 2])
+        numpy.testing.assert_allclose([stage.hours for stage in stages], [0.5, 2.5, 2.0])
+        self.assertEqual({stage.identity for stage in stages}, {run.identity})
+
+
+if __name__ == "__main__":
+    unittest.main()
