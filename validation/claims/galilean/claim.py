@@ -216,7 +216,7 @@ def draw_energy(results):
         mass = 2.0 * float(table["vertex_kinetic"][0] + table["solvent_kinetic"][0]) / 3.0
         axes[1].plot(table["time"], numpy.abs(table["px"] - table["px"][0]) / mass + 1e-17, color=figures.COLORS[number])
     axes[0].set(xlabel="t, t0", ylabel="change of total energy, %")
-    axes[1].set(xlabel="t, t0", ylabel="|change of momentum| over 2/3 of the kinetic energy", yscale="log")
+    axes[1].set(xlabel="t, t0", ylabel="|Δp| over ⅔ kinetic energy", yscale="log")
     axes[0].legend()
     return figure
 
@@ -234,7 +234,7 @@ def draw_lag(results):
             figures.points(below, dt, [row["lag"] / row["rate"] / row["dt"] - 1 for row in mine],
                            [row["lag_error"] / row["rate"] / row["dt"] for row in mine], number)
     above.set(ylabel="lag over flow, 10⁻³")
-    below.set(xlabel="dt, t0", ylabel="over share − 1", ylim=(-0.2, 0.3))
+    below.set(xlabel="dt, t0", ylabel="over share\n− 1", ylim=(-0.2, 0.3), xlim=(0.0, 0.024))
     above.legend()
     return figure
 
