@@ -153,3 +153,12 @@ def rotation_time(columns, shortest, longest, least=4):
     fit = stats.line(t[keep], numpy.log(c[keep]), error[keep] / c[keep])
     rate = -fit.value[1]
     return (1.0 / rate, fit.error[1] / rate**2, math.exp(fit.value[0])) if rate > 0 else None
+
+
+def measured(verdict, pair, systematic=0.0):
+    """Fills in (value, error) and the tolerance that follows."""
+    if pair is not None:
+        verdict.measured, verdict.error = pair[:2]
+        verdict.tolerance = stats.tolerance(verdict.error, verdict.expected_error, systematic)
+    verdict.detects = 2.0 * verdict.tolerance
+    return verdict

@@ -62,15 +62,6 @@ def heats(results, density, rule):
     return [numpy.array([row[key] for row in mine]) for key in ("dt", "heat", "heat_error")]
 
 
-def measured(verdict, pair, systematic=0.0):
-    """Fills in (value, error) and the tolerance that follows."""
-    if pair is not None:
-        verdict.measured, verdict.error = pair[:2]
-        verdict.tolerance = stats.tolerance(verdict.error, verdict.expected_error, systematic)
-    verdict.detects = 2.0 * verdict.tolerance
-    return verdict
-
-
 def kinetic_rate(row):
     """Executed collisions per vertex and t0 by kinetic theory: straight bonds at random, all moving at once."""
     volume = row["cells"]**3
@@ -140,7 +131,7 @@ def size_verdicts(results):
         verdict = Verdict(f"conservation.heat.size.{rule}", f"heat per refused move, kT, dt 0.01, `{rule}`", expected,
                           "docs/accuracy.md: other runs of this code, in a frame that moves", 0.1 * expected, expected_error=error)
         row = next((row for row in rows(results, "heat-c1000") if row["rule"] == rule and row["dt"] == 0.01), None)
-        found.append(measured(verdict, row and (row["heat"], row["heat_error"]), 0.1 * expected))
+        found.append(sd.measured(verdict, row and (row["heat"], row["heat_error"]), 0.1 * expected))
     return found
 
 
@@ -152,14 +143,14 @@ def heat_verdicts(results, tier):
                           "an exchange between a drift and its kick: second order; 0.35 for higher orders at dt 0.02", 0.35)
         if len(dt) >= 3:
             fit = stats.power(dt, heat, error)
-            measured(verdict, (fit.value[1], fit.error[1]), 0.35)
+            sd.measured(verdict, (fit.value[1], fit.error[1]), 0.35)
         verdict.detects = 2.0 * verdict.tolerance
         found.append(verdict)
     found += size_verdicts(results)
     for row in rows(results, "heat-c1000"):
         if row["rule"] == "stay" and row["dt"] == 0.01:
             freedoms = 3.0 * (5 * row["cells"]**3 + row["fibers"] * row["vertices"])
-            found.append(measured(Verdict(
+            found.append(sd.measured(Verdict(
                 "conservation.energy.constant", "energy gained at dt 0.01 and the highest density, kT per t0 and degree of freedom", 0.0,
                 "paper, Sec. V B 1: “exactly constant”", 0.0, kind="paper",
                 reason="A collision conserves energy exactly, but it falls between a drift and its kick, and the leap-frog no "
@@ -172,7 +163,7 @@ def heat_verdicts(results, tier):
                           reason="Collisions at velocities of half a step ago heat whatever has springs (docs/accuracy.md).")
         if order:
             freedoms = 3.0 * (5 * order[0]["cells"]**3 + order[0]["fibers"] * order[0]["vertices"])
-            measured(verdict, (order[0]["drift"] / freedoms, order[0]["drift_error"] / freedoms))
+            sd.measured(verdict, (order[0]["drift"] / freedoms, order[0]["drift_error"] / freedoms))
         found.append(verdict)
     return found
 
@@ -187,7 +178,7 @@ def rate_verdicts(results):
     if table:
         finest = min(table, key=lambda row: row["dt"])
         value, error = real_rate(finest)
-        measured(rate, (value / kinetic_rate(finest), error / kinetic_rate(finest)), 0.08)
+        sd.measured(rate, (value / kinetic_rate(finest), error / kinetic_rate(finest)), 0.08)
         at = next((row for row in table if row["dt"] == 0.01), None)
         ratio.measured = 1.0 - at["executed"] / at["possible"] if at else None
     rate.detects = 2.0 * rate.tolerance
@@ -207,7 +198,7 @@ def density_verdicts(results, tier):
             row = {"cells": 32, "fibers": density, "vertices": 64, "rate": seen[2], "rate_error": 0.0, "executed": 1.0,
                    "negative": seen[1]}
             value, error = real_rate(row)
-            measured(verdict, (value / kinetic_rate(row), error / kinetic_rate(row)), 0.15)
+            sd.measured(verdict, (value / kinetic_rate(row), error / kinetic_rate(row)), 0.15)
         verdict.detects = 2.0 * verdict.tolerance
         found.append(verdict)
     return found

@@ -32,7 +32,8 @@ def campaign():
 
 def quick():
     # As many vertices per volume, in an eighth of the box.
-    common = {"box": 16, "vertices": 38, "count": 208, "longest_lag": 2560, "every": 10, "series": 50}
+    common = {"box": 16, "vertices": 38, "count": 208, "longest_lag": 2560, "every": 10, "series": 50,
+              "persistence": 32}
     found = [Run(name, scene=sd.scene(**common, **values), steps=6000, hours=0.004, seed=340 + k)
              for k, (name, values) in enumerate(QUICK.items())]
     found.append(Run("isolated54", steps=3000, hours=0.001, seed=350,
@@ -79,15 +80,6 @@ def refused_share(result):
     return table["executed"][-1] / table["moves"][-1] if table["moves"][-1] else math.nan
 
 
-def measured(verdict, pair, systematic=0.0):
-    """Fills in (value, error) and the tolerance that follows."""
-    if pair is not None:
-        verdict.measured, verdict.error = pair[:2]
-        verdict.tolerance = stats.tolerance(verdict.error, verdict.expected_error, systematic)
-    verdict.detects = 2.0 * verdict.tolerance
-    return verdict
-
-
 # --- verdicts ---------------------------------------------------------------------------------------------------------
 
 def lag_verdicts(results):
@@ -98,10 +90,10 @@ def lag_verdicts(results):
                   "exact", 0.0)
     if paper:
         share = paper["rate"] * paper["dt"]
-        measured(one, (paper["lag"] / share, math.hypot(paper["lag_error"], paper["lag"] * paper["rate_error"] / paper["rate"])
+        sd.measured(one, (paper["lag"] / share, math.hypot(paper["lag_error"], paper["lag"] * paper["rate_error"] / paper["rate"])
                        / share), LAG_BIAS)
     if comoving:
-        measured(two, (comoving["lag"], comoving["lag_error"]))
+        sd.measured(two, (comoving["lag"], comoving["lag_error"]))
     one.detects, two.detects = 2.0 * LAG_BIAS, two.detects or 1e-4
     return [one, two]
 
@@ -122,7 +114,7 @@ def displacement_verdicts(results, system):
                 share = refused_share(results[name]) if name.startswith("flow") else 0.0
                 verdict.expected = 1.0 + (share * flow * lag)**2 / b[0]
                 ratio = a[0] / b[0]
-                measured(verdict, (ratio, ratio * math.hypot(a[1] / a[0], b[1] / b[0])), 0.01)
+                sd.measured(verdict, (ratio, ratio * math.hypot(a[1] / a[0], b[1] / b[0])), 0.01)
             found.append(verdict)
     return found
 
@@ -159,7 +151,7 @@ def energy_verdicts(results):
                           reason="The exchange of momentum acts between a drift and its kick, which no longer fit each other: "
                           "every refused move heats, by about 0.05 to 0.07 kT at dt 0.01 (claim conservation).")
         start = float(table["total"][0])
-        found.append(measured(verdict, (line[0] / start, error / start)))
+        found.append(sd.measured(verdict, (line[0] / start, error / start)))
         row = lag_row(results, "stay")
         if name == "isolated54" and row:
             gained = line[0] * (table["time"][-1] - table["time"][0])
@@ -168,7 +160,7 @@ def energy_verdicts(results):
             heat = Verdict("galilean.heat", "kT gained per refused move in a flow of 0.54, dt 0.01", row["heat"],
                            "the same by another program, energies written apart from the observables; 15 % for another size "
                            "and for heating meanwhile", 0.0, expected_error=row["heat_error"])
-            found.append(measured(heat, (gained / executed, error * (table["time"][-1]) / executed), 0.15 * row["heat"]))
+            found.append(sd.measured(heat, (gained / executed, error * (table["time"][-1]) / executed), 0.15 * row["heat"]))
     return found
 
 

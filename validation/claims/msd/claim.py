@@ -60,7 +60,7 @@ def curve(results, name):
 
 
 def tau(length):
-    """Of the figure's time axis: a rigid rod of b = 0.6 a0 in water as thick as the solvent."""
+    """Of the figure's time axis: a rigid rod of b = 0.6 a0 in a fluid as viscous as the solvent."""
     return sd.PAPER_ROTATION_TIME if length == 32.0 else sd.rod_rotation_time((2 * length - 1) * sd.BOND, 0.6, 11.184)
 
 
@@ -83,15 +83,6 @@ def law(columns, window, name="d2_contour"):
     return fit.value[1], fit.error[1], height, height * fit.error[0], middle
 
 
-def measured(verdict, pair, systematic=0.0):
-    """Fills in (value, error) and the tolerance that follows."""
-    if pair is not None:
-        verdict.measured, verdict.error = pair[:2]
-        verdict.tolerance = stats.tolerance(verdict.error, verdict.expected_error, systematic)
-    verdict.detects = 2.0 * verdict.tolerance
-    return verdict
-
-
 # --- verdicts ---------------------------------------------------------------------------------------------------------
 
 def law_verdicts(curves, tier):
@@ -109,14 +100,14 @@ def law_verdicts(curves, tier):
     with_hi = Verdict("msd.exponent.hi", "exponent of d²(t) (contour) of the most dilute fibers, hydrodynamics on", 0.75,
                       "paper, Fig. 5; up to 0.1 more by the logarithm in the friction", 0.1, kind="paper",
                       reason="Friction depends on the length that relaxes, by a logarithm.")
-    measured(exponent, off, 0.04)
-    measured(with_hi, hi, 0.1)
+    sd.measured(exponent, off, 0.04)
+    sd.measured(with_hi, hi, 0.1)
     if off:
         expected = float(sd.bending_of_vertices(off[4], sd.shared_diffusion())[0])
-        measured(height, (off[2] / expected, off[3] / expected), 0.1)
+        sd.measured(height, (off[2] / expected, off[3] / expected), 0.1)
         k = int(numpy.argmin(abs(curves["off"]["time"] - 5.12)))
         unit = 64.0 / sd.VERTEX_DIFFUSION
-        measured(friction, (unit * curves["off"]["D"][k], unit * curves["off"]["D_error"][k]), 0.08)
+        sd.measured(friction, (unit * curves["off"]["D"][k], unit * curves["off"]["D_error"][k]), 0.08)
     height.detects, friction.detects = 2.0 * height.tolerance, 2.0 * friction.tolerance
     return [exponent, height, friction, with_hi]
 
@@ -131,7 +122,7 @@ def floor_verdict(curves, tier):
     if columns is not None:
         k = int(numpy.argmin(abs(columns["time"] - FLOOR_LAG[tier])))
         error = columns["d2_contour_error"][k] / columns["d2_contour"][k] * expected
-        measured(verdict, (columns["d2"][k] - columns["d2_contour"][k], error), 0.2 * expected)
+        sd.measured(verdict, (columns["d2"][k] - columns["d2_contour"][k], error), 0.2 * expected)
     return verdict
 
 
@@ -153,7 +144,7 @@ def plateau_verdicts(flat, tier):
         if density not in flat:
             continue
         seen, error, expected = flat[density][:3]
-        found.append(measured(Verdict(f"msd.tube.c{density}", f"L⊥ from the plateau over Eq. (35), c L³ = {density}", 1.0,
+        found.append(sd.measured(Verdict(f"msd.tube.c{density}", f"L⊥ from the plateau over Eq. (35), c L³ = {density}", 1.0,
                                       "Eq. (35), for tightly entangled fibers", 0.3, kind="paper",
                                       reason="The plateau counts both positions' fluctuations (see tube), and at low density "
                                       "is a shoulder, not a plateau."), (seen / expected, error / expected), 0.3))
@@ -169,7 +160,7 @@ def mesh_verdict(flat):
         expected = stats.power([r[3] for r in rows], [r[2] for r in rows], [r[2] for r in rows]).value[1]
         verdict.expected, verdict.source = float(expected), "slope of Eq. (35) over the same densities (6/5 for ξ → 0)"
         fit = stats.power([r[3] for r in rows], [r[0] for r in rows], [r[1] for r in rows])
-        measured(verdict, (fit.value[1], fit.error[1]), 0.2)
+        sd.measured(verdict, (fit.value[1], fit.error[1]), 0.2)
     verdict.detects = 2.0 * verdict.tolerance
     return verdict
 
@@ -269,9 +260,10 @@ def evaluate(results, tier):
              Figure("fig5-d2_contour", "The same to the nearest point of the contour. " + lines + axis,
                     lambda: draw_curves(curves, tier, "d2_contour")),
              Figure("law", "Without hydrodynamics and free to cross: the t^(3/4) law has no free number. Shaded: where it is fitted.",
-                    lambda: draw_law(curves, tier)),
-             Figure("mesh", "Width of the tube from the plateau, √(d²/2), against mesh size; numbers are c L³.",
-                    lambda: draw_mesh(flat))]
+                    lambda: draw_law(curves, tier))]
+    if flat:
+        found.append(Figure("mesh", "Width of the tube from the plateau, √(d²/2), against mesh size; numbers are c L³.",
+                            lambda: draw_mesh(flat)))
     return Outcome(verdicts, found, PROSE)
 
 

@@ -72,8 +72,8 @@ SYSTEMS = {"quick": {"length": 12.0, "contour": 23 * sd.BOND, "box": 10, "count"
                      "choice": 3.2, "choices": ("none", "bounce"), "hindered": 0.85},
            "campaign": {"length": 32.0, "contour": 63 * sd.BOND, "box": 32, "count": 1000, "early": 0.04, "fast": 5.12,
                         "choice": 5.12, "choices": tuple(CHOICES), "hindered": 0.6}}
-LABELS = {"hi-entangled": "hydrodynamics, uncrossable", "hi-free": "hydrodynamics, crossing free",
-          "off-entangled": "none, uncrossable", "off-free": "none, crossing free"}
+LABELS = {"hi-entangled": "hydrodynamics on, uncrossable", "hi-free": "on, crossing free",
+          "off-entangled": "off, uncrossable", "off-free": "off, crossing free"}
 ROTATION_LAGS = {"hi": (800.0, 5000.0), "off": (3000.0, 16000.0)}
 
 
@@ -109,15 +109,6 @@ def ratio(one, other, name, time):
     return a[0] / b[0], a[0] / b[0] * math.hypot(a[1] / a[0], b[1] / b[0])
 
 
-def measured(verdict, pair, systematic=0.0):
-    """Fills in (value, error) and the tolerance that follows."""
-    if pair is not None:
-        verdict.measured, verdict.error = pair[:2]
-        verdict.tolerance = stats.tolerance(verdict.error, verdict.expected_error, systematic)
-    verdict.detects = 2.0 * verdict.tolerance
-    return verdict
-
-
 # --- verdicts ---------------------------------------------------------------------------------------------------------
 
 def early_verdicts(curves, system):
@@ -125,7 +116,7 @@ def early_verdicts(curves, system):
     vertices have been refused a move by then; nobody's displacement changes by more."""
     bonds = (round(system["contour"] / sd.BOND)) * system["count"]
     met = 4.0 * sd.collision_rate(bonds, system["box"]**3) * system["box"]**3 / bonds * system["early"]
-    return [measured(Verdict(f"tube.early.{which}", f"d² uncrossable / crossing free at {system['early']} t0, "
+    return [sd.measured(Verdict(f"tube.early.{which}", f"d² uncrossable / crossing free at {system['early']} t0, "
                              + ("hydrodynamics on" if which == "hi" else "off"), 1.0,
                              "the same dynamics until fibers meet (paper, Fig. 4)", met),
                      ratio(curves[f"{which}-entangled"], curves[f"{which}-free"], "d2", system["early"]), met)
@@ -152,7 +143,7 @@ def plateau_verdicts(curves, system):
                           "in each of two directions about its axis: 4 L⊥² once they forget each other, 2 L⊥² if one of them "
                           "were the axis.")
         flat = sd.plateau(curves[f"{which}-entangled"])
-        found.append(measured(verdict, flat and (flat[0] / (2 * width**2), flat[1] / (2 * width**2)), 0.4))
+        found.append(sd.measured(verdict, flat and (flat[0] / (2 * width**2), flat[1] / (2 * width**2)), 0.4))
     return found
 
 
@@ -189,7 +180,7 @@ def normalized_verdict(curves, times):
 def choice_verdicts(results, curves, system):
     words = {"none": "no thermostat", "maxwell-boltzmann": "canonical thermostat", "bounce": "refused vertices bounce",
              "dt5": "half the time step"}
-    return [measured(Verdict(f"tube.choice.{name}", f"d² of `{name}` ({words[name]}) over that of the run, "
+    return [sd.measured(Verdict(f"tube.choice.{name}", f"d² of `{name}` ({words[name]}) over that of the run, "
                              f"{system['choice']} t0", 1.0, "choices of method do not move the result", 0.0),
                      ratio(sd.table(results.get("choice-" + name), least=2), curves["hi-entangled"], "d2_contour",
                            system["choice"]), 0.01)
@@ -197,14 +188,14 @@ def choice_verdicts(results, curves, system):
 
 
 def rotation_verdicts(results, system):
-    found = [measured(Verdict("tube.rotation.paper", "τ_r with hydrodynamics, t0", sd.PAPER_ROTATION_TIME,
+    found = [sd.measured(Verdict("tube.rotation.paper", "τ_r with hydrodynamics, t0", sd.PAPER_ROTATION_TIME,
                               "Sec. IV D, without an error bar: 15 %", 0.15 * sd.PAPER_ROTATION_TIME, kind="paper",
                               reason="Ours is from lags of a tenth of it, by an exponential after bends have relaxed."),
                       rotation(results, "hi"), 0.15 * sd.PAPER_ROTATION_TIME)]
     for which, source in (("hi", "rigid rod (Tirado), b = 0.6 a0, in a periodic box: 20 % for bends"),
                           ("off", "friction of the vertices at the radius of gyration: 20 % for bends")):
         expected = expected_rotation(which, system)
-        found.append(measured(Verdict(f"tube.rotation.{which}", f"τ_r, hydrodynamics {'on' if which == 'hi' else 'off'}, t0",
+        found.append(sd.measured(Verdict(f"tube.rotation.{which}", f"τ_r, hydrodynamics {'on' if which == 'hi' else 'off'}, t0",
                                       expected, source, 0.2 * expected), rotation(results, which), 0.2 * expected))
     return found
 
@@ -226,7 +217,7 @@ def draw(curves, system, times, column):
     times_off = numpy.geomspace(0.02, 0.01 * times["off"], 40)
     figures.theory(above, times_off / times["off"],
                    sd.bending_of_vertices(times_off, sd.shared_diffusion()) / scale, linestyle="--",
-                   label="bending of a lone fiber, none")
+                   label="bending of a lone fiber, off")
     for number, which in enumerate(("hi", "off")):
         a, b = curves[which + "-entangled"], curves[which + "-free"]
         if a is None or b is None:
