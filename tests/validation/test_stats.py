@@ -94,6 +94,12 @@ class Tolerances(unittest.TestCase):
         """That none of 100 normal values exceeds z has the chance erf(z/sqrt 2)^100."""
         self.assertAlmostEqual(math.erf(stats.sigmas(1e-3, 100) / math.sqrt(2))**100, 0.999, 12)
 
+    def test_few_values(self):
+        """Student's t of 2 degrees of freedom has the tail P(|t| > x) = 1 - x/sqrt(2 + x^2)."""
+        z = stats.sigmas(0.01, freedom=2)
+        self.assertAlmostEqual(1.0 - z / math.sqrt(2.0 + z * z), 0.01, 12)
+        self.assertGreater(stats.tolerance(1.0, values=8), 2.0 * stats.tolerance(1.0))
+
     def test_tolerance(self):
         self.assertAlmostEqual(stats.tolerance(0.3, 0.4, systematic=0.1, z=2.0), 1.1, 14)
 

@@ -154,6 +154,7 @@ def make(tier, all_runs, names, work, out):
     """Writes the three files into `out`; 1 if a gate failed, or, in the quick tier, if something was not measured."""
     results = runs.results_of(all_runs, work)
     sections = [section(name, tier, results) for name in names]
+    sections = [part for part in sections if part["verdicts"] or part["runs"]]
     out = pathlib.Path(out)
     out.mkdir(parents=True, exist_ok=True)
     (out / "report.json").write_text(json.dumps(summary(tier, sections), indent=1, ensure_ascii=False) + "\n")

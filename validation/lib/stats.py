@@ -71,17 +71,22 @@ def power(x, y, errors):
     return line(numpy.log(numpy.asarray(x, float)), numpy.log(y), numpy.asarray(errors, float) / y)
 
 
-def sigmas(false_alarms, tests=1):
-    """How many standard errors one of `tests` normal values exceeds, either way, at this rate for all of them together."""
-    return float(stats.norm.isf(-math.expm1(math.log1p(-false_alarms) / tests) / 2.0))
+def sigmas(false_alarms, tests=1, freedom=math.inf):
+    """How many standard errors one of `tests` normal values exceeds, either way, at this rate for all of them together;
+    freedom: of the errors, if they come from few values themselves (Student's t)."""
+    return float(stats.t.isf(-math.expm1(math.log1p(-false_alarms) / tests) / 2.0, freedom))
 
 
 # A verdict of the quick tier: at most 100 of them, and one false alarm in a thousand new sets of seeds.
-SIGMAS = sigmas(1e-3, 100)
+RATE, VERDICTS = 1e-3, 100
+SIGMAS = sigmas(RATE, VERDICTS)  # 4.4
 
 
-def tolerance(error, expected_error=0.0, systematic=0.0, z=SIGMAS):
-    """z standard errors of both numbers, and a stated bound on what is systematic."""
+def tolerance(error, expected_error=0.0, systematic=0.0, z=SIGMAS, values=None):
+    """z standard errors of both numbers, and a stated bound on what is systematic. values: how many independent values
+    the error comes from, if so few that z must be larger."""
+    if values is not None:
+        z = sigmas(RATE, VERDICTS, values - 1)
     return z * math.hypot(error, expected_error) + systematic
 
 

@@ -11,7 +11,7 @@
 #include "measure.h"
 
 #define WIDTH 8
-#define BLOCKS 8
+#define BLOCKS 24
 #define LOOKS 160
 
 struct question {

@@ -22,13 +22,13 @@ GRID = [Point(5, dt_c, 90) for dt_c in (0.02, 0.05, 0.1, 0.2, 0.5, 1.0)] + \
 POINTS = {"quick": [PAPERS, TAILS, STRONG, DILUTE], "campaign": GRID}
 PLENTY = {"quick": 1, "campaign": 8}  # times as many pairs of runs, or windows
 TAIL_POINTS = {"quick": [TAILS], "campaign": [TAILS, PAPERS]}
-TAIL_SEEDS = {"quick": 8, "campaign": 12}
+TAIL_SEEDS = {"quick": 16, "campaign": 16}  # as many: Student's t of fewer is wide
 
 # Boxes of the shear waves: 8 x EDGE x 8. The finest are 8 cells long: shorter waves die before correlations build up.
 EDGES, FINE_EDGES = (32, 16), (32, 24, 16, 12, 8)
-DIFFUSION_BOX = 16
+DIFFUSION_BOX, WINDOWS = 16, 24
 TAIL_BOX = 32
-SOUND_EDGE = 32
+SOUND_EDGE, SOUND_BLOCKS = 32, 24
 SOUND_K = 2.0 * numpy.pi / SOUND_EDGE
 # Where molecular chaos is known to be off by a few per cent, nobody can say in advance by how many: a gate of 6 %.
 CHAOS = 0.06
@@ -58,13 +58,13 @@ def shear_run(point, tier):
 
 
 def diffusion_run(point, tier):
-    windows = 24 * PLENTY[tier]
+    windows = WINDOWS * PLENTY[tier]
     return Run("diffusion-" + label(point), hours=windows * 4.5e-6 * point.gamma, program=[
         "solvent_vacf", DIFFUSION_BOX, point.gamma, point.dt_c, point.alpha, 250, windows, 21])
 
 
 def tail_runs(point, tier, length, windows):
-    return [Run(f"tail-{label(point)}-{seed}", hours=windows * length * 1.5e-6, program=[
+    return [Run(f"tail-{label(point)}-{seed}", hours=(windows * length + 200) * 1.5e-6, program=[
         "solvent_vacf", TAIL_BOX, point.gamma, point.dt_c, point.alpha, length, windows, 30 + seed])
         for seed in range(1, TAIL_SEEDS[tier] + 1)]
 
@@ -73,15 +73,15 @@ def runs(tier):
     found = [make(point, tier) for point in POINTS[tier] for make in (shear_run, diffusion_run)]
     for run in found:  # coarse: the points that verdicts are about; then the lines through them
         run.priority = 0 if any(run.name.endswith("-" + label(point)) for point in POINTS["quick"]) else 1
-    found += tail_runs(TAILS, tier, 125, 8 if tier == "quick" else 40)
+    found += tail_runs(TAILS, tier, 125, 4 if tier == "quick" else 30)
     if PAPERS in TAIL_POINTS[tier]:
-        found += tail_runs(PAPERS, tier, 250, 20)
+        found += tail_runs(PAPERS, tier, 250, 15)
     return found + [sound_run(point, tier) for point in TAIL_POINTS[tier]]
 
 
 def sound_run(point, tier):
-    pairs = PLENTY[tier] * (16 if point == TAILS else 4)
-    return Run("sound-" + label(point), hours=pairs * 2.4e-4 * 0.1 / point.dt_c, program=[
+    pairs = PLENTY[tier] * (6 if point == TAILS else 2)
+    return Run("sound-" + label(point), hours=pairs * 7e-4 * 0.1 / point.dt_c, program=[
         "sound_decay", SOUND_EDGE, *point, 0.03, round(0.2 / point.dt_c), pairs, 41])
 
 
@@ -168,7 +168,7 @@ def retention_verdict(results, point):
     if has_point(results, point):
         table = results["diffusion-" + label(point)].columns
         verdict.measured, verdict.error = table["vacf"][1], table["vacf_error"][1]
-        verdict.tolerance = stats.tolerance(verdict.error)
+        verdict.tolerance = stats.tolerance(verdict.error, values=WINDOWS)
         verdict.detects = 2.0 * verdict.tolerance
     return verdict
 
@@ -224,7 +224,7 @@ def diffusion_verdict(results):
                       "molecular chaos, which a mean free path of a cell makes right to 2 %", 0.02 * expected)
     if has_point(results, DILUTE):
         verdict.measured, verdict.error = diffusion(results, DILUTE)
-        verdict.tolerance = stats.tolerance(verdict.error, systematic=0.02 * expected)
+        verdict.tolerance = stats.tolerance(verdict.error, systematic=0.02 * expected, values=WINDOWS)
     verdict.detects = 2.0 * verdict.tolerance
     return verdict
 
@@ -236,7 +236,8 @@ def sound_verdict(results):
     if "sound-" + label(TAILS) in results:
         fit, error, *_ = sound(results, TAILS)
         verdict.measured, verdict.error = fit[3] / SOUND_K, error[3] / SOUND_K
-        verdict.tolerance = stats.tolerance(verdict.error, systematic=(fit[2] / fit[3])**2 * theory.SOUND_SPEED)
+        bound = (fit[2] / fit[3])**2 * theory.SOUND_SPEED
+        verdict.tolerance = stats.tolerance(verdict.error, systematic=bound, values=SOUND_BLOCKS)
     verdict.detects = 2.0 * verdict.tolerance
     return verdict
 
@@ -251,7 +252,7 @@ def tail_verdict(results, point):
                       "shear and sound waves of the box with the measured ν, D, Γ; leading order, to 10 %", 0.1)
     if has_tail(results, point):
         verdict.measured, verdict.error = tail(results, point, first, last)
-        verdict.tolerance = stats.tolerance(verdict.error, systematic=0.1)
+        verdict.tolerance = stats.tolerance(verdict.error, systematic=0.1, values=len(tail_tables(results, point)))
     verdict.detects = 2.0 * verdict.tolerance
     return verdict
 
