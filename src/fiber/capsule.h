@@ -38,11 +38,11 @@ static inline bool capsules_apart(const struct capsule *c, const struct capsule 
   const double reach = c->reach + d->reach + CAPSULE_SLACK;
   const double x = capsule_gap(c->a.x, c->b.x, d->a.x, d->b.x), y = capsule_gap(c->a.y, c->b.y, d->a.y, d->b.y),
                z = capsule_gap(c->a.z, c->b.z, d->a.z, d->b.z);
-  if (capsule_most(capsule_most(x, y), z) > reach)
-    return true;
   const struct vec3 p = vec3_sub(c->b, c->a), q = vec3_sub(d->b, d->a), n = vec3_cross(p, q);
   const double across = vec3_dot(n, vec3_sub(d->a, c->a)), nn = vec3_dot(n, n);
-  return nn > 1e-12 * vec3_dot(p, p) * vec3_dot(q, q) && across * across > reach * reach * nn;
+  const bool beside = capsule_most(capsule_most(x, y), z) > reach;
+  const bool above = nn > 1e-12 * vec3_dot(p, p) * vec3_dot(q, q);
+  return beside | (above & (across * across > reach * reach * nn)); /* no branch, so that loops vectorise */
 }
 
 #endif

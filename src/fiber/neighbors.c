@@ -7,7 +7,6 @@
 
 #define MARGIN_A0 0.10     /* measured: see docs/accuracy.md; results do not depend on it */
 #define SEARCH_CELL_A0 1.0 /* least edge of a search cell */
-#define FIRST_ROOM 4       /* of a row */
 
 /* --- capsules ---------------------------------------------------------------------------------------------------- */
 
@@ -22,21 +21,42 @@ static inline struct capsule capsule_of(const struct neighbors *nb, const struct
 
 /* --- lists ------------------------------------------------------------------------------------------------------- */
 
-static bool add(struct neighbor_row *row, struct neighbor n)
+/* Room for more in a row of `first` entries in a slab, or of more of its own; NULL if memory is short. */
+static void *grow(void *at, uint32_t *room, uint32_t first, size_t size)
+{
+  void *bigger = *room == first ? malloc(2 * first * size) : realloc(at, 2 * *room * size);
+  if (bigger && *room == first)
+    memcpy(bigger, at, first * size);
+  if (bigger)
+    *room *= 2;
+  return bigger;
+}
+
+static bool add_partner(struct neighbor_row *row, struct neighbor n)
 {
   if (row->count == row->room) {
-    const uint32_t room = row->room ? 2 * row->room : FIRST_ROOM;
-    struct neighbor *bigger = realloc(row->at, room * sizeof *bigger);
+    struct neighbor *bigger = grow(row->at, &row->room, NEIGHBORS_FIRST_PARTNERS, sizeof *bigger);
     if (!bigger)
       return false;
     row->at = bigger;
-    row->room = room;
   }
   row->at[row->count++] = n;
   return true;
 }
 
-static void take_out(struct neighbor_row *row, struct neighbor n)
+static bool add_entry(struct grid_row *row, const struct grid_entry *e)
+{
+  if (row->count == row->room) {
+    struct grid_entry *bigger = grow(row->at, &row->room, NEIGHBORS_FIRST_ENTRIES, sizeof *bigger);
+    if (!bigger)
+      return false;
+    row->at = bigger;
+  }
+  row->at[row->count++] = *e;
+  return true;
+}
+
+static void take_partner_out(struct neighbor_row *row, struct neighbor n)
 {
   uint32_t k = 0;
   while (k < row->count && memcmp(&row->at[k], &n, sizeof n) != 0)
@@ -56,32 +76,11 @@ static void leave_partners(struct neighbors *nb, uint32_t bond)
   struct neighbor_row *row = &nb->partners[bond];
   while (row->count > 0) {
     const struct neighbor last = row->at[--row->count];
-    take_out(&nb->partners[last.bond], mirrored(bond, last.image));
+    take_partner_out(&nb->partners[last.bond], mirrored(bond, last.image));
   }
 }
 
 /* --- grid -------------------------------------------------------------------------------------------------------- */
-
-/* A search cell: its number, its unwrapped coordinates, and the image that these are of it. */
-struct grid_place {
-  uint32_t cell;
-  int64_t at[3];
-  int32_t image[3];
-};
-
-/* The search cells along one axis that an interval touches: the first, unwrapped and wrapped, its image, and how many.
- */
-struct cell_span {
-  int64_t at;
-  int32_t first, image, count;
-};
-
-static struct cell_span span_of(int64_t low, int64_t high, int64_t edge, int32_t cells)
-{
-  const int64_t at = lattice_image(low, edge), image = lattice_image(at, cells);
-  return (struct cell_span){at, (int32_t)(at - image * cells), (int32_t)image,
-                            (int32_t)(lattice_image(high, edge) - at) + 1};
-}
 
 /* The box around a bond's capsule, in lattice units. */
 struct capsule_box {
@@ -98,52 +97,93 @@ static struct capsule_box box_of(const struct neighbors *nb, const struct model 
       {(a.x > b.x ? a.x : b.x) + reach, (a.y > b.y ? a.y : b.y) + reach, (a.z > b.z ? a.z : b.z) + reach}};
 }
 
-/* Something done with a bond in one cell. */
-typedef bool visit(struct neighbors *, const struct model *, uint32_t bond, const struct capsule *,
-                   const struct grid_place *);
+/* The image of the box in which a point lies. */
+struct image {
+  int32_t k[3];
+};
 
-/* All cells that the box around a bond's capsule touches. */
-static bool visit_cells(struct neighbors *nb, const struct model *model, uint32_t bond, visit *what)
+static struct image image_of(struct point p, const struct box *box)
 {
-  const struct capsule mine = capsule_of(nb, model, bond, nb->anchor[bond].at);
-  const struct capsule_box box = box_of(nb, model, bond);
-  const struct cell_span x = span_of(box.low.x, box.high.x, nb->cell_edge[0], nb->cells[0]),
-                         y = span_of(box.low.y, box.high.y, nb->cell_edge[1], nb->cells[1]),
-                         z = span_of(box.low.z, box.high.z, nb->cell_edge[2], nb->cells[2]);
-  for (int32_t k = z.first, iz = z.image, nz = z.count; nz > 0; nz--) {
-    for (int32_t j = y.first, iy = y.image, ny = y.count; ny > 0; ny--) {
-      for (int32_t i = x.first, ix = x.image, nx = x.count; nx > 0; nx--) {
-        const struct grid_place place = {(uint32_t)((k * nb->cells[1] + j) * nb->cells[0] + i),
-                                         {x.at + x.count - nx, y.at + y.count - ny, z.at + z.count - nz},
-                                         {ix, iy, iz}};
-        if (!what(nb, model, bond, &mine, &place))
-          return false;
-        if (++i == nb->cells[0])
-          i = 0, ix++;
-      }
-      if (++j == nb->cells[1])
-        j = 0, iy++;
-    }
-    if (++k == nb->cells[2])
-      k = 0, iz++;
-  }
+  return (struct image){{(int32_t)lattice_image(p.x, box->edge[0]), (int32_t)lattice_image(p.y, box->edge[1]),
+                         (int32_t)lattice_image(p.z, box->edge[2])}};
+}
+
+/* A walk along one axis through the search cells that an interval touches. */
+struct walk {
+  int64_t low, high;   /* the interval, from the lower side of the cell at hand */
+  int32_t cell, image; /* the cell at hand, wrapped */
+};
+
+/* The image is counted from `home` on. */
+static struct walk walk_from(int64_t low, int64_t high, const struct neighbors *nb, int axis, int32_t home)
+{
+  const int64_t edge = nb->cell_edge[axis], at = lattice_image(low, edge), image = lattice_image(at, nb->cells[axis]);
+  return (struct walk){low - at * edge, high - at * edge, (int32_t)(at - image * nb->cells[axis]),
+                       (int32_t)image - home};
+}
+
+/* To the next cell; false if the interval ends before it. */
+static bool walk_on(struct walk *w, const struct neighbors *nb, int axis)
+{
+  if (w->high < nb->cell_edge[axis])
+    return false;
+  w->low -= nb->cell_edge[axis];
+  w->high -= nb->cell_edge[axis];
+  if (++w->cell == nb->cells[axis])
+    w->cell = 0, w->image++;
   return true;
 }
 
-static bool enter_cell(struct neighbors *nb, const struct model *model, uint32_t bond, const struct capsule *mine,
-                       const struct grid_place *place)
+/* What an entry says of one axis: the part of the interval that lies in the cell, in some 256ths of it, rounded down:
+ * intervals that overlap in the cell overlap there too. */
+static void note_axis(struct grid_entry *e, const struct walk *w, const struct neighbors *nb, int axis)
 {
-  (void)model, (void)mine;
-  return add(&nb->entries[place->cell],
-             (struct neighbor){(int32_t)bond, {place->image[0], place->image[1], place->image[2]}});
+  e->image[axis] = (int8_t)w->image;
+  e->low[axis] = w->low < 0 ? 0 : (uint8_t)(w->low >> nb->cell_shift[axis]);
+  e->high[axis] = w->high < nb->cell_edge[axis] ? (uint8_t)(w->high >> nb->cell_shift[axis]) : UINT8_MAX;
+  e->starts = (uint8_t)((e->starts & ~(1 << axis)) | (w->low >= 0) << axis);
 }
 
-static bool leave_cell(struct neighbors *nb, const struct model *model, uint32_t bond, const struct capsule *mine,
-                       const struct grid_place *place)
+/* Something done with the entry that a bond has, or is to have, in one cell. */
+typedef bool visit(struct neighbors *, const struct model *, uint32_t cell, const struct grid_entry *,
+                   const struct capsule *);
+
+/* All cells that the box around a bond's capsule touches. */
+static inline bool visit_cells(struct neighbors *nb, const struct model *model, uint32_t bond, visit *what)
+{
+  const struct capsule mine = capsule_of(nb, model, bond, nb->anchor[bond].at);
+  const struct capsule_box box = box_of(nb, model, bond);
+  struct grid_entry e = {.bond = (int32_t)bond};
+  const struct image home = image_of(nb->anchor[bond].at, &model->box);
+  struct walk z = walk_from(box.low.z, box.high.z, nb, 2, home.k[2]);
+  const struct walk y_start = walk_from(box.low.y, box.high.y, nb, 1, home.k[1]),
+                    x_start = walk_from(box.low.x, box.high.x, nb, 0, home.k[0]);
+  do {
+    struct walk y = y_start;
+    note_axis(&e, &z, nb, 2);
+    do {
+      struct walk x = x_start;
+      note_axis(&e, &y, nb, 1);
+      do {
+        note_axis(&e, &x, nb, 0);
+        if (!what(nb, model, (uint32_t)((z.cell * nb->cells[1] + y.cell) * nb->cells[0] + x.cell), &e, &mine))
+          return false;
+      } while (walk_on(&x, nb, 0));
+    } while (walk_on(&y, nb, 1));
+  } while (walk_on(&z, nb, 2));
+  return true;
+}
+
+static bool leave_cell(struct neighbors *nb, const struct model *model, uint32_t cell, const struct grid_entry *e,
+                       const struct capsule *mine)
 {
   (void)model, (void)mine;
-  take_out(&nb->entries[place->cell],
-           (struct neighbor){(int32_t)bond, {place->image[0], place->image[1], place->image[2]}});
+  struct grid_row *row = &nb->entries[cell];
+  uint32_t k = 0;
+  while (k < row->count && !(row->at[k].bond == e->bond && memcmp(row->at[k].image, e->image, sizeof e->image) == 0))
+    k++;
+  if (k < row->count)
+    row->at[k] = row->at[--row->count];
   return true;
 }
 
@@ -152,43 +192,52 @@ static bool share_vertex(const struct model *model, uint32_t a, uint32_t b)
   return a == b || model->next[a] == (int32_t)b || model->next[b] == (int32_t)a;
 }
 
-/* Is this the cell that holds the lower corner of the overlap of two boxes, the second in an image? */
-static bool corner_is_here(const struct neighbors *nb, const struct grid_place *place, struct point low,
-                           struct point other)
+/* Do the boxes of two entries of one cell overlap there? */
+static inline bool overlap(const struct grid_entry *a, const struct grid_entry *b)
 {
-  return lattice_image(low.x > other.x ? low.x : other.x, nb->cell_edge[0]) == place->at[0] &&
-         lattice_image(low.y > other.y ? low.y : other.y, nb->cell_edge[1]) == place->at[1] &&
-         lattice_image(low.z > other.z ? low.z : other.z, nb->cell_edge[2]) == place->at[2];
+  return (a->low[0] <= b->high[0]) & (b->low[0] <= a->high[0]) & (a->low[1] <= b->high[1]) & (b->low[1] <= a->high[1]) &
+         (a->low[2] <= b->high[2]) & (b->low[2] <= a->high[2]);
 }
 
-/* Adds to the lists all partners of a bond that are entered in this cell. A pair that meets in several cells is taken
- * in the one that holds the lower corner of the overlap of their boxes. */
-static bool search_cell(struct neighbors *nb, const struct model *model, uint32_t bond, const struct capsule *mine,
-                        const struct grid_place *place)
+/* The bond of entry e, in the image that has it in the cell together with mine. */
+static struct neighbor found_in_cell(const struct neighbors *nb, const struct model *model,
+                                     const struct grid_entry *mine, const struct grid_entry *e)
 {
-  const struct neighbor_row *row = &nb->entries[place->cell];
+  const struct image home = image_of(nb->anchor[mine->bond].at, &model->box),
+                     its = image_of(nb->anchor[e->bond].at, &model->box);
+  struct neighbor found = {.bond = e->bond};
+  for (int k = 0; k < 3; k++)
+    found.image[k] = home.k[k] + mine->image[k] - its.k[k] - e->image[k];
+  return found;
+}
+
+/* Adds to the lists all partners of a bond that are entered in this cell, and enters the bond. A pair that meets in
+ * several cells is taken in the one that holds the lower corner of the overlap of their boxes: there, along every axis,
+ * one of the two starts. */
+static bool enter_cell(struct neighbors *nb, const struct model *model, uint32_t cell, const struct grid_entry *mine,
+                       const struct capsule *capsule)
+{
+  const struct grid_row *row = &nb->entries[cell];
+  const uint32_t bond = (uint32_t)mine->bond;
   for (uint32_t k = 0; k < row->count; k++) {
-    const struct neighbor *e = &row->at[k];
+    const struct grid_entry *e = &row->at[k];
     const uint32_t other = (uint32_t)e->bond;
-    if (share_vertex(model, bond, other))
+    if (!overlap(mine, e) || (mine->starts | e->starts) != 7 || share_vertex(model, bond, other))
       continue;
-    const struct neighbor found = {
-        e->bond, {place->image[0] - e->image[0], place->image[1] - e->image[1], place->image[2] - e->image[2]}};
+    const struct neighbor found = found_in_cell(nb, model, mine, e);
     const int32_t back[3] = {-found.image[0], -found.image[1], -found.image[2]};
     const struct capsule its = capsule_of(nb, model, other, point_image(nb->anchor[bond].at, back, &model->box));
-    if (capsules_apart(mine, &its) ||
-        !corner_is_here(nb, place, box_of(nb, model, bond).low,
-                        point_image(box_of(nb, model, other).low, found.image, &model->box)))
+    if (capsules_apart(capsule, &its))
       continue;
-    if (!add(&nb->partners[bond], found) || !add(&nb->partners[other], mirrored(bond, found.image)))
+    if (!add_partner(&nb->partners[bond], found) || !add_partner(&nb->partners[other], mirrored(bond, found.image)))
       return false;
   }
-  return true;
+  return add_entry(&nb->entries[cell], mine);
 }
 
 static bool enter(struct neighbors *nb, const struct model *model, uint32_t bond)
 {
-  return visit_cells(nb, model, bond, search_cell) && visit_cells(nb, model, bond, enter_cell);
+  return visit_cells(nb, model, bond, enter_cell);
 }
 
 static void leave(struct neighbors *nb, const struct model *model, uint32_t bond)
@@ -215,19 +264,63 @@ static struct anchor anchor_of_move(const struct neighbors *nb, struct point fro
   return (struct anchor){at, fmax(nb->margin, 0.5 * length + LATTICE_UNIT)};
 }
 
-bool neighbors_renew(const struct state *state, const struct model *model, struct work *work, uint32_t vertex,
-                     struct point to)
+/* Asks the memory for a row of the grid. */
+static bool fetch_cell(struct neighbors *nb, const struct model *model, uint32_t cell, const struct grid_entry *e,
+                       const struct capsule *mine)
+{
+  (void)model, (void)e, (void)mine;
+  const char *row = (const char *)&nb->entries[cell];
+  for (size_t line = 0; line < sizeof nb->entries[cell]; line += 64)
+    __builtin_prefetch(row + line, 1);
+  return true;
+}
+
+/* Asks the memory for what leaving and entering will look at: without that, most of their time goes in waiting. */
+static void fetch(struct neighbors *nb, const struct model *model, uint32_t bonds, const uint32_t *bond)
+{
+  for (uint32_t k = 0; k < bonds; k++) {
+    visit_cells(nb, model, bond[k], fetch_cell);
+    for (uint32_t n = 0; n < nb->partners[bond[k]].count; n++) {
+      const size_t partner = (size_t)nb->partners[bond[k]].at[n].bond;
+      __builtin_prefetch(&nb->partners[partner], 1);
+      __builtin_prefetch(&nb->first_partners[partner * NEIGHBORS_FIRST_PARTNERS], 1);
+    }
+  }
+}
+
+/* The bonds of some vertices, each once. */
+static uint32_t bonds_of(const struct model *model, uint32_t n, const uint32_t *vertex, uint32_t *bond)
+{
+  uint32_t count = 0;
+  for (uint32_t k = 0; k < n; k++) {
+    const int32_t both[2] = {model->prev[vertex[k]], model->next[vertex[k]] >= 0 ? (int32_t)vertex[k] : -1};
+    for (int b = 0; b < 2; b++) {
+      uint32_t known = 0;
+      while (known < count && bond[known] != (uint32_t)both[b])
+        known++;
+      if (both[b] >= 0 && known == count)
+        bond[count++] = (uint32_t)both[b];
+    }
+  }
+  return count;
+}
+
+bool neighbors_renew(const struct state *state, const struct model *model, struct work *work, uint32_t n,
+                     const uint32_t *vertex, const struct point *to)
 {
   struct neighbors *nb = &work->fiber.neighbors;
-  const int32_t before = model->prev[vertex], after = model->next[vertex] >= 0 ? (int32_t)vertex : -1;
-  if (before >= 0)
-    leave(nb, model, (uint32_t)before);
-  if (after >= 0)
-    leave(nb, model, (uint32_t)after);
-  nb->anchor[vertex] = anchor_of_move(nb, state->position[vertex], to);
-  nb->renewed++;
-  return ((before < 0 || enter(nb, model, (uint32_t)before)) && (after < 0 || enter(nb, model, (uint32_t)after))) ||
-         short_of_memory(state, work, vertex);
+  uint32_t bond[2 * NEIGHBORS_AT_ONCE];
+  const uint32_t bonds = bonds_of(model, n, vertex, bond);
+  fetch(nb, model, bonds, bond);
+  for (uint32_t k = 0; k < bonds; k++)
+    leave(nb, model, bond[k]);
+  for (uint32_t k = 0; k < n; k++)
+    nb->anchor[vertex[k]] = anchor_of_move(nb, state->position[vertex[k]], to[k]);
+  nb->renewed += n;
+  for (uint32_t k = 0; k < bonds; k++)
+    if (!enter(nb, model, bond[k]))
+      return short_of_memory(state, work, bond[k]);
+  return true;
 }
 
 /* Search cells divide the box edges exactly; there are no more than bonds to put in, or so. */
@@ -240,8 +333,15 @@ static void choose_grid(const struct model *model, struct neighbors *nb)
       cells--;
     nb->cells[k] = cells;
     nb->cell_edge[k] = model->box.edge[k] / cells;
+    while ((nb->cell_edge[k] - 1) >> nb->cell_shift[k] > UINT8_MAX)
+      nb->cell_shift[k]++;
   }
   nb->cell_count = (uint32_t)(nb->cells[0] * nb->cells[1] * nb->cells[2]);
+}
+
+static void *aligned(size_t bytes)
+{
+  return aligned_alloc(64, (bytes + 63) / 64 * 64);
 }
 
 static bool allocate(const struct model *model, struct neighbors *nb)
@@ -251,10 +351,23 @@ static bool allocate(const struct model *model, struct neighbors *nb)
   choose_grid(model, nb);
   nb->margin = MARGIN_A0;
   nb->bonds = model->vertices;
-  nb->anchor = aligned_alloc(64, (model->vertices * sizeof *nb->anchor + 63) / 64 * 64);
+  nb->anchor = aligned(nb->bonds * sizeof *nb->anchor);
   nb->partners = calloc(nb->bonds, sizeof *nb->partners);
-  nb->entries = calloc(nb->cell_count, sizeof *nb->entries);
-  return nb->anchor && nb->partners && nb->entries;
+  nb->entries = aligned(nb->cell_count * sizeof *nb->entries);
+  nb->first_partners = aligned((size_t)nb->bonds * NEIGHBORS_FIRST_PARTNERS * sizeof *nb->first_partners);
+  if (!nb->anchor || !nb->partners || !nb->entries || !nb->first_partners) {
+    free(nb->entries); /* nothing in it says yet which rows have moved out */
+    nb->entries = NULL;
+    return false;
+  }
+  for (uint32_t j = 0; j < nb->bonds; j++)
+    nb->partners[j] =
+        (struct neighbor_row){&nb->first_partners[(size_t)j * NEIGHBORS_FIRST_PARTNERS], 0, NEIGHBORS_FIRST_PARTNERS};
+  for (uint32_t c = 0; c < nb->cell_count; c++) {
+    struct grid_row *row = &nb->entries[c];
+    row->at = row->first, row->count = 0, row->room = NEIGHBORS_FIRST_ENTRIES;
+  }
+  return true;
 }
 
 bool neighbors_build(const struct state *state, const struct model *model, struct work *work)

@@ -25,10 +25,12 @@
 /* Anchors, grid and lists of all bonds from scratch. False, with the fault recorded, if memory is short. */
 bool neighbors_build(const struct state *state, const struct model *model, struct work *work);
 
-/* A new anchor for a vertex that moves, or tries to move, to `to`, and new lists for its bonds. False, with the fault
- * recorded, if memory is short. */
-bool neighbors_renew(const struct state *state, const struct model *model, struct work *work, uint32_t vertex,
-                     struct point to);
+#define NEIGHBORS_AT_ONCE 16
+
+/* New anchors for n <= NEIGHBORS_AT_ONCE vertices that move, or try to move, to `to`, and new lists for their bonds.
+ * False, with the fault recorded, if memory is short. */
+bool neighbors_renew(const struct state *state, const struct model *model, struct work *work, uint32_t n,
+                     const uint32_t *vertex, const struct point *to);
 
 /* Is a vertex at p still where its anchor's lists are good for? */
 static inline bool neighbors_hold(const struct neighbors *nb, uint32_t vertex, struct point p)

@@ -114,7 +114,7 @@ static bool find_hits(struct state *state, const struct model *model, struct wor
   const uint32_t i = t->vertex;
   const int32_t before = model->prev[i];
   if (!neighbors_hold(nb, i, t->to)) {
-    if (!neighbors_renew(state, model, work, i, t->to))
+    if (!neighbors_renew(state, model, work, 1, &i, &t->to))
       return false;
     turns_reconsider(state, model, work, i, t->dt, work->fiber.rank[i]);
   }
@@ -200,21 +200,13 @@ static bool sweep_noncrossing(struct state *state, const struct model *model, st
   return true;
 }
 
-static bool sweep_phantom(struct state *state, const struct model *model, struct work *work, double dt)
-{
-  for (uint32_t i = 0; i < state->vertices; i++)
-    if (!turns_trial(state, model, work, i, dt, &state->position[i]))
-      return false;
-  return true;
-}
-
 bool fiber_sweep(struct state *state, const struct model *model, struct work *work, double fraction, uint64_t step,
                  uint32_t sweep, const struct sweep_log *log)
 {
   const double dt = fraction * model->time_step;
   const bool noncrossing = model->crossing.forbidden && model->bonds > 1;
   if (!(noncrossing ? sweep_noncrossing(state, model, work, dt, step, sweep, log)
-                    : sweep_phantom(state, model, work, dt)))
+                    : turns_phantom(state, model, work, dt)))
     return false;
   follow_frame(state, model, &work->fiber.neighbors, dt);
   return true;

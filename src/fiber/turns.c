@@ -5,7 +5,7 @@
 #include "fiber/capsule.h"
 #include "fiber/neighbors.h"
 
-#define AHEAD 16 /* bonds */
+enum { BLOCK = 64, AHEAD = 16 }; /* vertices, or pairs, whose columns are worked on at a time; bonds */
 
 /* How far turns_trial goes. */
 static struct vec3 displacement(const struct state *state, const struct model *model, uint32_t i, double dt)
@@ -45,36 +45,173 @@ static bool may_meet(const struct state *state, const struct model *model, const
   return !capsules_apart(&mine, &its);
 }
 
+/* Displacements of vertices first .. first + n - 1, as turns_trial has them. */
+static bool displacements(const struct state *state, const struct model *model, struct work *work, double dt,
+                          uint32_t first, uint32_t n, struct vec3 *restrict d)
+{
+  const struct vec3 *restrict v = &state->velocity[first], frame = model_frame_velocity(model);
+  const double limit = 0.5 * box_shortest_edge(&model->box);
+  int64_t beyond = 0;
+  for (uint32_t k = 0; k < n; k++) {
+    d[k] = vec3_scale(dt, vec3_sub(v[k], frame));
+    beyond |= !(fabs(d[k].x) < limit) | !(fabs(d[k].y) < limit) | !(fabs(d[k].z) < limit);
+  }
+  struct point to;
+  for (uint32_t k = 0; beyond && k < n; k++)
+    if (!turns_trial(state, model, work, first + k, dt, &to))
+      return false;
+  return true;
+}
+
+bool turns_phantom(struct state *state, const struct model *model, struct work *work, double dt)
+{
+  struct vec3 d[BLOCK];
+  for (uint32_t first = 0; first < state->vertices; first += BLOCK) {
+    const uint32_t n = state->vertices - first < BLOCK ? state->vertices - first : BLOCK;
+    if (!displacements(state, model, work, dt, first, n, d))
+      return false;
+    struct point *restrict p = &state->position[first];
+    for (uint32_t k = 0; k < n; k++)
+      p[k] = point_move(p[k], d[k]);
+  }
+  return true;
+}
+
+/* late[k]: vertex first + k is about to leave its anchor, as neighbors_hold has it. */
+static void find_late(const struct state *state, const struct neighbors *nb, uint32_t first, uint32_t n,
+                      const struct vec3 *restrict d, int64_t *restrict late)
+{
+  const struct point *restrict p = &state->position[first], moved = nb->moved;
+  const struct anchor *restrict anchor = &nb->anchor[first];
+  for (uint32_t k = 0; k < n; k++) {
+    const struct point at = anchor[k].at, to = point_move(p[k], d[k]);
+    const struct vec3 off = point_difference(to, (struct point){at.x + moved.x, at.y + moved.y, at.z + moved.z});
+    late[k] = !(vec3_dot(off, off) <= anchor[k].reach * anchor[k].reach);
+  }
+}
+
+/* Ranges of all vertices, and new anchors for those that are about to leave theirs. */
+static bool prepare(const struct state *state, const struct model *model, struct work *work, double dt)
+{
+  struct vec3 d[BLOCK];
+  int64_t late[BLOCK];
+  uint32_t vertex[NEIGHBORS_AT_ONCE], count = 0;
+  struct point to[NEIGHBORS_AT_ONCE];
+  for (uint32_t first = 0; first < state->vertices; first += BLOCK) {
+    const uint32_t n = state->vertices - first < BLOCK ? state->vertices - first : BLOCK;
+    if (!displacements(state, model, work, dt, first, n, d))
+      return false;
+    double *restrict range = &work->fiber.range[first];
+    for (uint32_t k = 0; k < n; k++)
+      range[k] = vec3_norm(d[k]);
+    find_late(state, &work->fiber.neighbors, first, n, d, late);
+    for (uint32_t k = 0; k < n; k++) {
+      if (!late[k])
+        continue;
+      vertex[count] = first + k;
+      to[count++] = point_move(state->position[first + k], d[k]);
+      if (count == NEIGHBORS_AT_ONCE) {
+        if (!neighbors_renew(state, model, work, count, vertex, to))
+          return false;
+        count = 0;
+      }
+    }
+  }
+  return neighbors_renew(state, model, work, count, vertex, to);
+}
+
+/* Pairs of bonds. Their columns, in a0: both bond vectors, from the first end of the one to that of the other, and how
+ * far both may go. */
+struct pairs {
+  uint32_t count;
+  uint32_t bond[BLOCK];
+  const struct neighbor *partner[BLOCK];
+  double p[3][BLOCK], q[3][BLOCK], w[3][BLOCK], mine[BLOCK], its[BLOCK];
+};
+
+static void fill_column(const struct state *state, const struct model *model, const struct fiber_work *f,
+                        struct pairs *s, uint32_t k)
+{
+  const struct neighbor *n = s->partner[k];
+  const uint32_t i = s->bond[k], j = (uint32_t)model->next[i], l = (uint32_t)n->bond, m = (uint32_t)model->next[l];
+  const struct point *at = state->position;
+  const struct vec3 p = point_difference(at[j], at[i]), q = point_difference(at[m], at[l]),
+                    w = point_difference(point_image(at[l], n->image, &model->box), at[i]);
+  s->p[0][k] = p.x, s->p[1][k] = p.y, s->p[2][k] = p.z;
+  s->q[0][k] = q.x, s->q[1][k] = q.y, s->q[2][k] = q.z;
+  s->w[0][k] = w.x, s->w[1][k] = w.y, s->w[2][k] = w.z;
+  s->mine[k] = capsule_most(f->range[i], f->range[j]);
+  s->its[k] = capsule_most(f->range[l], f->range[m]);
+}
+
+/* As may_meet. */
+static void test_columns(const struct pairs *restrict s, int64_t *restrict meet)
+{
+  for (uint32_t k = 0; k < s->count; k++) {
+    const struct vec3 p = {s->p[0][k], s->p[1][k], s->p[2][k]}, w = {s->w[0][k], s->w[1][k], s->w[2][k]},
+                      q = {s->q[0][k], s->q[1][k], s->q[2][k]};
+    const struct capsule mine = {{0, 0, 0}, p, s->mine[k]}, its = {w, vec3_add(w, q), s->its[k]};
+    meet[k] = !capsules_apart(&mine, &its);
+  }
+}
+
+static void settle_pairs(const struct state *state, const struct model *model, struct fiber_work *f, struct pairs *s)
+{
+  int64_t meet[BLOCK];
+  for (uint32_t k = 0; k < s->count; k++)
+    fill_column(state, model, f, s, k);
+  test_columns(s, meet);
+  for (uint32_t k = 0; k < s->count; k++) {
+    const uint32_t i = s->bond[k], l = (uint32_t)s->partner[k]->bond;
+    if (meet[k])
+      f->waits[i] = f->waits[model->next[i]] = f->waits[l] = f->waits[model->next[l]] = 1;
+  }
+  s->count = 0;
+}
+
 static void find_meetings(const struct state *state, const struct model *model, struct fiber_work *f)
 {
   const struct neighbor_row *partners = f->neighbors.partners;
+  struct pairs s = {.count = 0};
   for (uint32_t j = 0; j < state->vertices; j++) {
-    if (j + AHEAD < state->vertices)
-      __builtin_prefetch(partners[j + AHEAD].at); /* rows lie all over memory */
+    if (j + AHEAD < state->vertices && partners[j + AHEAD].count > 0)
+      __builtin_prefetch(partners[j + AHEAD].at);
     for (uint32_t k = 0; k < partners[j].count; k++) {
       const struct neighbor *n = &partners[j].at[k];
-      if (n->bond > (int32_t)j && may_meet(state, model, f, j, n))
-        f->waits[j] = f->waits[model->next[j]] = f->waits[n->bond] = f->waits[model->next[n->bond]] = 1;
+      if (n->bond < (int32_t)j)
+        continue; /* in the other's list, too */
+      __builtin_prefetch(&state->position[n->bond]);
+      __builtin_prefetch(&state->position[n->bond + 1].z);
+      __builtin_prefetch(&f->range[n->bond]);
+      __builtin_prefetch(&model->next[n->bond]);
+      s.bond[s.count] = j;
+      s.partner[s.count++] = n;
+      if (s.count == BLOCK)
+        settle_pairs(state, model, f, &s);
     }
+  }
+  settle_pairs(state, model, f, &s);
+}
+
+/* Everybody who need not wait. */
+static void move_others(struct state *state, const struct model *model, const struct fiber_work *f, double dt)
+{
+  const struct vec3 *restrict v = state->velocity, frame = model_frame_velocity(model);
+  struct point *restrict p = state->position;
+  for (uint32_t i = 0; i < state->vertices; i++) {
+    const double time = f->waits[i] ? 0.0 : dt;
+    p[i] = point_move(p[i], vec3_scale(time, vec3_sub(v[i], frame)));
   }
 }
 
 bool turns_plan(struct state *state, const struct model *model, struct work *work, double dt)
 {
   struct fiber_work *f = &work->fiber;
-  for (uint32_t i = 0; i < state->vertices; i++) {
-    struct point to = state->position[i];
-    if (!turns_trial(state, model, work, i, dt, &to))
-      return false;
-    f->range[i] = vec3_norm(displacement(state, model, i, dt));
-    if (!neighbors_hold(&f->neighbors, i, to) && !neighbors_renew(state, model, work, i, to))
-      return false;
-  }
+  if (!prepare(state, model, work, dt))
+    return false;
   memset(f->waits, 0, state->vertices);
   find_meetings(state, model, f);
-  for (uint32_t i = 0; i < state->vertices; i++)
-    if (!f->waits[i])
-      state->position[i] = point_move(state->position[i], displacement(state, model, i, dt));
+  move_others(state, model, f, dt);
   return true;
 }
 

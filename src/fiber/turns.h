@@ -22,6 +22,9 @@
 bool turns_trial(const struct state *state, const struct model *model, struct work *work, uint32_t i, double dt,
                  struct point *to);
 
+/* All vertices to where they want to go, as if nothing were in their way. False as turns_trial. */
+bool turns_phantom(struct state *state, const struct model *model, struct work *work, double dt);
+
 /* Before a sweep in the order work->fiber.order: anchors for all that need new ones, work->fiber.waits for all vertices
  * (1: waits for its turn), and all others moved. False, with the fault recorded, as turns_trial and neighbors_renew. */
 bool turns_plan(struct state *state, const struct model *model, struct work *work, double dt);

@@ -84,11 +84,18 @@ bool work_alloc(struct work *w, const struct model *m)
   return true;
 }
 
-static void free_rows(struct neighbor_row *row, uint32_t count)
+static void free_neighbors(struct neighbors *nb)
 {
-  for (uint32_t k = 0; row && k < count; k++)
-    free(row[k].at);
-  free(row);
+  for (uint32_t j = 0; nb->partners && j < nb->bonds; j++)
+    if (nb->partners[j].room > NEIGHBORS_FIRST_PARTNERS)
+      free(nb->partners[j].at);
+  for (uint32_t c = 0; nb->entries && c < nb->cell_count; c++)
+    if (nb->entries[c].room > NEIGHBORS_FIRST_ENTRIES)
+      free(nb->entries[c].at);
+  free(nb->anchor);
+  free(nb->partners);
+  free(nb->entries);
+  free(nb->first_partners);
 }
 
 void work_free(struct work *w)
@@ -98,9 +105,7 @@ void work_free(struct work *w)
   list_needs(w, &nothing, need);
   for (int k = 0; k < NEEDS; k++)
     free(*need[k].where);
-  free(w->fiber.neighbors.anchor);
-  free_rows(w->fiber.neighbors.partners, w->fiber.neighbors.bonds);
-  free_rows(w->fiber.neighbors.entries, w->fiber.neighbors.cell_count);
+  free_neighbors(&w->fiber.neighbors);
   memset(w, 0, sizeof *w);
 }
 
@@ -114,8 +119,8 @@ uint64_t work_bytes(const struct model *m)
   for (int k = 0; k < NEEDS; k++)
     bytes += need[k].count * need[k].size;
   if (m->crossing.forbidden)
-    bytes +=
-        (uint64_t)m->bonds * (sizeof(struct anchor) + 2 * sizeof(struct neighbor_row) + 16 * sizeof(struct neighbor));
+    bytes += (uint64_t)m->bonds * (sizeof(struct anchor) + sizeof(struct neighbor_row) +
+                                   NEIGHBORS_FIRST_PARTNERS * sizeof(struct neighbor) + sizeof(struct grid_row));
   return bytes;
 }
 

@@ -58,24 +58,44 @@ struct anchor {
   double reach;    /* a0: how far the vertex may be from there */
 };
 
-/* A list that grows. */
+/* Rows start in a slab, one after the other, and move out when they have grown. */
+enum { NEIGHBORS_FIRST_PARTNERS = 4, NEIGHBORS_FIRST_ENTRIES = 11 };
+
+/* Partners of a bond. */
 struct neighbor_row {
   struct neighbor *at;
   uint32_t count, room;
 };
 
+/* A bond that touches a search cell. */
+struct grid_entry {
+  int32_t bond;
+  int8_t image[3];         /* that puts it there, counted from the one in which the anchor of its first end lies */
+  uint8_t starts;          /* bit k: the box around it does not reach back beyond the cell along axis k */
+  uint8_t low[3], high[3]; /* that box, in 2^cell_shift lattice units from the lower corner of the cell */
+};
+
+/* Bonds that touch a search cell; the first few in the row itself, three cache lines in all. */
+struct grid_row {
+  _Alignas(64) struct grid_entry *at;
+  uint32_t count, room;
+  struct grid_entry first[NEIGHBORS_FIRST_ENTRIES];
+};
+
 struct neighbors {
   bool built;
-  double margin;                 /* a0: a vertex further than this from its anchor takes a new one */
-  uint32_t bonds;                /* one for each vertex, used or not */
-  struct anchor *anchor;         /* [vertices] */
-  struct neighbor_row *partners; /* [bonds] */
-  int32_t cells[3];              /* of the search grid */
-  int64_t cell_edge[3];          /* lattice units */
+  double margin;                   /* a0: a vertex further than this from its anchor takes a new one */
+  uint32_t bonds;                  /* one for each vertex, used or not */
+  struct anchor *anchor;           /* [vertices] */
+  struct neighbor_row *partners;   /* [bonds] */
+  struct neighbor *first_partners; /* [bonds][NEIGHBORS_FIRST_PARTNERS] */
+  int32_t cells[3];                /* of the search grid */
+  int64_t cell_edge[3];            /* lattice units */
+  int cell_shift[3];               /* 2^cell_shift: about a 256th of that */
   uint32_t cell_count;
-  struct neighbor_row *entries; /* [cell_count] bonds, with the image that puts them there */
-  struct point moved;           /* how far everything has moved as one since anchors were first taken */
-  uint64_t renewed;             /* anchors taken so far, for benchmarks */
+  struct grid_row *entries; /* [cell_count] */
+  struct point moved;       /* how far everything has moved as one since anchors were first taken */
+  uint64_t renewed;         /* anchors taken so far, for benchmarks */
 };
 
 struct fiber_work {

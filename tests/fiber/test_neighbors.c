@@ -133,6 +133,11 @@ static struct test_run random_bonds(int lx, int ly, int lz, uint32_t count, stru
   return r;
 }
 
+static bool renew(struct test_run *r, uint32_t vertex, struct point to)
+{
+  return neighbors_renew(&r->state, &r->model, &r->work, 1, &vertex, &to);
+}
+
 /* Moves a random vertex by up to `size`, as a sweep does: a new anchor if need be, then go (or, every third time,
  * stay). Moves that would make a bond longer than half the box are left out. */
 static void random_move(struct test_run *r, struct dice *d, double size)
@@ -145,7 +150,7 @@ static void random_move(struct test_run *r, struct dice *d, double size)
     if (pivot[k] >= 0 && vec3_norm(point_difference(to, r->state.position[pivot[k]])) >= half)
       return;
   if (!neighbors_hold(&r->work.fiber.neighbors, v, to))
-    assert_true(neighbors_renew(&r->state, &r->model, &r->work, v, to));
+    assert_true(renew(r, v, to));
   assert_true(neighbors_hold(&r->work.fiber.neighbors, v, to));
   if (dice_integer(d, 0, 2))
     r->state.position[v] = to;
@@ -219,18 +224,18 @@ static void anchors_hold_within_the_margin(void **unused)
   const int64_t margin = lattice_from_a0(nb->margin);
   const struct point within = {a.x + margin - 1, a.y, a.z}, beyond = {a.x, a.y, a.z - margin - 1};
   assert_true(neighbors_hold(nb, 1, within) && !neighbors_hold(nb, 1, beyond));
-  assert_true(neighbors_renew(&r.state, &r.model, &r.work, 1, beyond));
+  assert_true(renew(&r, 1, beyond));
   /* a move of just more than the margin: from its middle, both ends are within the margin */
   assert_true(neighbors_hold(nb, 1, beyond) && neighbors_hold(nb, 1, a));
   assert_true(nb->renewed == 1 && llabs(nb->anchor[1].at.z - (a.z - margin / 2)) <= 1);
   assert_close(nb->anchor[1].reach, nb->margin, 1e-11);
   const struct point far = {a.x, a.y + lattice_from_a0(2.0), a.z}, further = {a.x, a.y + lattice_from_a0(2.001), a.z};
-  assert_true(neighbors_renew(&r.state, &r.model, &r.work, 1, far));
+  assert_true(renew(&r, 1, far));
   assert_close(nb->anchor[1].reach, 1.0, 1e-11);
   assert_true(neighbors_hold(nb, 1, far) && neighbors_hold(nb, 1, a) && !neighbors_hold(nb, 1, further));
   /* a short one: the anchor stands where the vertex goes */
   const struct point near = {a.x + margin / 2, a.y, a.z};
-  assert_true(neighbors_renew(&r.state, &r.model, &r.work, 1, near));
+  assert_true(renew(&r, 1, near));
   assert_true(nb->anchor[1].at.x == near.x && nb->anchor[1].at.y == near.y && neighbors_hold(nb, 1, a));
   assert_close(nb->anchor[1].reach, nb->margin, 1e-11);
   check_lists(&r, 3);
