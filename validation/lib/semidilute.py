@@ -79,6 +79,8 @@ def rod_rotation_time(length, diameter, viscosity, volume=math.inf):
     return 1.0 / (2.0 * (rotation - 1.0 / (6.0 * viscosity * volume)))
 
 
+PARTS = 24  # of a run, from which refused_moves has its errors (validation/measure/refusal.h)
+
 # int ds ds' sqrt((1-s)^2 + s^2 + (1-s')^2 + s'^2) over the unit square.
 LEVERS = 1.151155
 
@@ -155,10 +157,10 @@ def rotation_time(columns, shortest, longest, least=4):
     return (1.0 / rate, fit.error[1] / rate**2, math.exp(fit.value[0])) if rate > 0 else None
 
 
-def measured(verdict, pair, systematic=0.0):
-    """Fills in (value, error) and the tolerance that follows."""
+def measured(verdict, pair, systematic=0.0, values=None):
+    """Fills in (value, error) and the tolerance that follows; values: see stats.tolerance."""
     if pair is not None:
         verdict.measured, verdict.error = pair[:2]
-        verdict.tolerance = stats.tolerance(verdict.error, verdict.expected_error, systematic)
+        verdict.tolerance = stats.tolerance(verdict.error, verdict.expected_error, systematic, values=values)
     verdict.detects = 2.0 * verdict.tolerance
     return verdict

@@ -2,7 +2,7 @@
  * `refused_moves` (validation/claims/conservation, galilean).
  *
  * heat      total energy gained per executed collision, kT: slope of a straight line through the energies on step
- *           (energy.h), its error from eight parts of the run
+ *           (energy.h), its error from 24 parts of the run
  * drift     the same per t0
  * lag       1 - how far the vertices went, of how far their velocities would have taken them, along the flow
  * executed  per vertex and t0;   negative: share of them with dP < 0 */
@@ -13,7 +13,7 @@
 #include "energy.h"
 #include "measure.h"
 
-enum { REFUSAL_PARTS = 8 };
+enum { REFUSAL_PARTS = 24 };
 
 struct refusal_rule {
   const char *name;

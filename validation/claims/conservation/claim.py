@@ -131,7 +131,7 @@ def size_verdicts(results):
         verdict = Verdict(f"conservation.heat.size.{rule}", f"heat per refused move, kT, dt 0.01, `{rule}`", expected,
                           "docs/accuracy.md: other runs of this code, in a frame that moves", 0.1 * expected, expected_error=error)
         row = next((row for row in rows(results, "heat-c1000") if row["rule"] == rule and row["dt"] == 0.01), None)
-        found.append(sd.measured(verdict, row and (row["heat"], row["heat_error"]), 0.1 * expected))
+        found.append(sd.measured(verdict, row and (row["heat"], row["heat_error"]), 0.1 * expected, sd.PARTS))
     return found
 
 
@@ -143,7 +143,7 @@ def heat_verdicts(results, tier):
                           "an exchange between a drift and its kick: second order; 0.35 for higher orders at dt 0.02", 0.35)
         if len(dt) >= 3:
             fit = stats.power(dt, heat, error)
-            sd.measured(verdict, (fit.value[1], fit.error[1]), 0.35)
+            sd.measured(verdict, (fit.value[1], fit.error[1]), 0.35, sd.PARTS)
         verdict.detects = 2.0 * verdict.tolerance
         found.append(verdict)
     found += size_verdicts(results)
@@ -155,7 +155,7 @@ def heat_verdicts(results, tier):
                 "paper, Sec. V B 1: “exactly constant”", 0.0, kind="paper",
                 reason="A collision conserves energy exactly, but it falls between a drift and its kick, and the leap-frog no "
                 "longer conserves its own energy: every refused move heats. It falls as dt²."),
-                (row["drift"] / freedoms, row["drift_error"] / freedoms)))
+                (row["drift"] / freedoms, row["drift_error"] / freedoms), values=sd.PARTS))
     order = [row for row in rows(results, "heat-paper-order") if row["dt"] == 0.01]
     if tier == "campaign":
         verdict = Verdict("conservation.energy.order", "the same with the paper's order of collision and kick, to the letter", 0.0,
@@ -163,7 +163,7 @@ def heat_verdicts(results, tier):
                           reason="Collisions at velocities of half a step ago heat whatever has springs (docs/accuracy.md).")
         if order:
             freedoms = 3.0 * (5 * order[0]["cells"]**3 + order[0]["fibers"] * order[0]["vertices"])
-            sd.measured(verdict, (order[0]["drift"] / freedoms, order[0]["drift_error"] / freedoms))
+            sd.measured(verdict, (order[0]["drift"] / freedoms, order[0]["drift_error"] / freedoms), values=sd.PARTS)
         found.append(verdict)
     return found
 

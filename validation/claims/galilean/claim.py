@@ -91,9 +91,9 @@ def lag_verdicts(results):
     if paper:
         share = paper["rate"] * paper["dt"]
         sd.measured(one, (paper["lag"] / share, math.hypot(paper["lag_error"], paper["lag"] * paper["rate_error"] / paper["rate"])
-                       / share), LAG_BIAS)
+                       / share), LAG_BIAS, sd.PARTS)
     if comoving:
-        sd.measured(two, (comoving["lag"], comoving["lag_error"]))
+        sd.measured(two, (comoving["lag"], comoving["lag_error"]), values=sd.PARTS)
     one.detects, two.detects = 2.0 * LAG_BIAS, two.detects or 1e-4
     return [one, two]
 
@@ -160,7 +160,7 @@ def energy_verdicts(results):
             heat = Verdict("galilean.heat", "kT gained per refused move in a flow of 0.54, dt 0.01", row["heat"],
                            "the same by another program, energies written apart from the observables; 15 % for another size "
                            "and for heating meanwhile", 0.0, expected_error=row["heat_error"])
-            found.append(sd.measured(heat, (gained / executed, error * (table["time"][-1]) / executed), 0.15 * row["heat"]))
+            found.append(sd.measured(heat, (gained / executed, error * (table["time"][-1]) / executed), 0.15 * row["heat"], sd.PARTS))
     return found
 
 
