@@ -89,10 +89,14 @@ class Curves(unittest.TestCase):
     def test_rotation(self):
         t = numpy.array([100.0, 200.0, 400.0, 800.0, 1600.0, 3200.0])
         made = self.table(t, end_to_end_unit=0.98 * numpy.exp(-t / 5e4))
-        tau, _, height = sd.rotation_time(made, 150.0, 4000.0)
+        tau, _, height = sd.rotation_time(made, 150.0, 4000.0, 4)
         self.assertAlmostEqual(tau, 5e4, 3)
         self.assertAlmostEqual(height, 0.98, 9)
-        self.assertIsNone(sd.rotation_time(made, 150.0, 500.0))
+        made["end_to_end_unit_error"][:] = numpy.nan  # a table of few intervals
+        again, error, _ = sd.rotation_time(made, 150.0, 4000.0, 4)
+        self.assertAlmostEqual(again, 5e4, 3)
+        self.assertGreater(error, 0.0)
+        self.assertIsNone(sd.rotation_time(made, 150.0, 500.0, 4))
 
     def test_joined(self):
         short = self.table(numpy.array([1.0, 2.0, 4.0]), g=numpy.array([1.0, 2.0, 3.0]))

@@ -143,13 +143,15 @@ def plateau(columns, name="d2_contour", flattest=0.35, width=3):
     return best if best and best[3] < flattest else None
 
 
-def rotation_time(columns, shortest, longest, least=4):
+def rotation_time(columns, shortest, longest, fibers, least=4):
     """(tau_r, error, intercept) from <u(0).u(t)> = A exp(-t/tau_r), lags shortest to longest: bends tilt the end-to-end
-    vector by a fixed angle soon (A), rotation goes on. tau_r = 1/(2 D_r). Lags count as independent."""
+    vector by a fixed angle soon (A), rotation goes on. tau_r = 1/(2 D_r). Lags count as independent. Few intervals of few
+    fibers have no error in the table; then 1 - cos, a sum of two squares, has the relative error of as many of them."""
     if columns is None:
         return None
     t, c, error = columns["time"], columns["end_to_end_unit"], columns["end_to_end_unit_error"]
-    keep = (t >= shortest) & (t <= longest) & (c > 0.1) & numpy.isfinite(error) & (error > 0)
+    error = numpy.where(error > 0.0, error, (1.0 - c) / numpy.sqrt(columns["intervals"] * fibers))
+    keep = (t >= shortest) & (t <= longest) & (c > 0.1)
     if keep.sum() < least:
         return None
     fit = stats.line(t[keep], numpy.log(c[keep]), error[keep] / c[keep])

@@ -74,7 +74,8 @@ SYSTEMS = {"quick": {"length": 12.0, "contour": 23 * sd.BOND, "box": 10, "count"
                         "choice": 5.12, "choices": tuple(CHOICES), "hindered": 0.6}}
 LABELS = {"hi-entangled": "hydrodynamics on, uncrossable", "hi-free": "on, crossing free",
           "off-entangled": "off, uncrossable", "off-free": "off, crossing free"}
-ROTATION_LAGS = {"hi": (800.0, 5000.0), "off": (3000.0, 16000.0)}
+# Lags (t0) after bends and before few intervals are left; fibers.
+ROTATION = {"hi": (800.0, 5000.0, 4), "off": (3000.0, 16000.0, 40)}
 
 
 def curve(results, name):
@@ -98,7 +99,7 @@ def expected_rotation(which, system):
 
 def rotation(results, which):
     """(tau_r, error, intercept), or None."""
-    return sd.rotation_time(sd.table(results.get("rotation-" + which), least=2), *ROTATION_LAGS[which])
+    return sd.rotation_time(sd.table(results.get("rotation-" + which), least=2), *ROTATION[which])
 
 
 def ratio(one, other, name, time):
