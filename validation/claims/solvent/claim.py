@@ -165,7 +165,7 @@ def retention_verdict(results, point):
     expected = theory.retention(point.gamma, point.alpha)
     verdict = Verdict(f"solvent.retention.{NAMES[point]}", f"velocity kept in one collision, {words(point)}", expected,
                       "exact: 1 − (2/3)(1 − cos α)(γ − 1 + exp(−γ))/γ", tolerance=0.004, detects=0.008)
-    if has_point(results, point):
+    if "diffusion-" + label(point) in results:
         table = results["diffusion-" + label(point)].columns
         verdict.measured, verdict.error = table["vacf"][1], table["vacf_error"][1]
         verdict.tolerance = stats.tolerance(verdict.error, values=WINDOWS)
