@@ -127,17 +127,18 @@ def slopes(t, y):
 
 
 def plateau(columns, name="d2_contour", flattest=0.35, width=3):
-    """Where a curve is flattest: (value, error, lag, exponent) of the middle of `width` + 1 points; None if its exponent
-    stays above `flattest` (no plateau). The error holds the change over the points."""
+    """Where a curve is flattest: (value, error, lag, exponent) of `width` + 1 points; None if its exponent, two errors
+    added, stays above `flattest` (no plateau). The error holds the change over the points."""
     if columns is None or len(columns["time"]) < width + 4:
         return None
     t, y, error = columns["time"], columns[name], columns[name + "_error"]
     best = None
     for k in range(len(t) - width):
-        piece = slice(k, k + width + 1)
+        piece, last = slice(k, k + width + 1), k + width
         exponent = numpy.polyfit(numpy.log(t[piece]), numpy.log(y[piece]), 1)[0]
+        exponent += 2.0 * math.hypot(error[k] / y[k], error[last] / y[last]) / math.log(t[last] / t[k])
         if best is None or exponent < best[3]:
-            change = abs(y[k + width] - y[k]) / math.sqrt(12.0)
+            change = abs(y[last] - y[k]) / math.sqrt(12.0)
             best = (float(y[piece].mean()), math.hypot(float(error[piece].max()), change), float(t[piece].mean()),
                     float(exponent))
     return best if best and best[3] < flattest else None
