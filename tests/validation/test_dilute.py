@@ -116,7 +116,8 @@ class Estimates(unittest.TestCase):
     def test_common_local_memory(self):
         """D(t) = D_i - 0.1/t without noise gives back D_i and 0.1."""
         t = numpy.array([1.0, 2.0, 4.0, 8.0])
-        tables = [({"time": t, "D": d - 0.1 / t, "D_error": 0.01 * numpy.sqrt(t)}, numpy.zeros_like) for d in (1.0, 2.0)]
+        tables = [({"time": t, "D": d - 0.1 / t, "D_error": 0.01 * numpy.sqrt(t)}, numpy.zeros_like) for d in (1.0,
+                                                                                                               2.0)]
         limit = dilute.long_time(tables, 1.0, [8.0, 8.0])
         numpy.testing.assert_allclose(limit.value, [1.0, 2.0], rtol=1e-12)
         self.assertAlmostEqual(limit.local, 0.1, 12)

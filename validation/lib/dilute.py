@@ -9,17 +9,18 @@ import math
 import numpy
 
 from lib import stats, theory
+from lib.claim import Verdict
 
 MASS, PER_CELL, INTERVAL = 5.0, 5.0, 0.02  # of a vertex; of the solvent, per cell; between collisions
 NU, NU_ERROR = 2.148, 0.008  # kinematic viscosity at the paper's point, from shear waves: docs/accuracy.md
 ETA = PER_CELL * NU
-D_VERTEX, D_VERTEX_ERROR = 0.0181, 0.0002  # of one vertex in an infinite box, from the claim `mobility`
+D_VERTEX, D_VERTEX_ERROR = 0.0180, 0.0002  # of one vertex in an infinite box, from the claim `mobility`
 DAMPING = 1.2  # of sound, Gamma in exp(-Gamma k^2 t): [nu + (2/3) D_T]/2
 SHORTEST_WAVE = 2.0  # k a0; waves shorter than 3 cells have left their mark within 0.2 t0
 
 
-# Seconds of one core, estimated: per solvent particle and collision, growing with the box out of the cache, and per vertex
-# and step; a velocity swap costs as much again as the solvent, phantoms cost by the vertex.
+# Seconds of one core, estimated: per solvent particle and collision, growing with the box out of the cache, and per
+# vertex and step; a velocity swap costs as much again as the solvent, phantoms cost by the vertex.
 BOXES, PARTICLE_SECONDS = (20, 40, 60), (9e-9, 12e-9, 17e-9)
 VERTEX_SECONDS, PHANTOM_SECONDS = 1e-7, 2e-7
 
@@ -92,8 +93,9 @@ def waves(box):
 def memory(times, box, nu=NU, form=point_form, sound=theory.SOUND_SPEED, damping=DAMPING):
     """How far D(t) = g_cm/6t is from its limit, at lags `times`, through the box's long waves.
 
-    A solute is carried by the thermal waves of the fluid. Transverse ones decay as exp(-nu k^2 t), two for each k; sound
-    is a damped oscillation, whose share in the displacement does not grow: with amplitudes kT P(k)/3 rho V per component
+    A solute is carried by the thermal waves of the fluid. Transverse ones decay as exp(-nu k^2 t), two for each k;
+    sound is a damped oscillation, whose share in the displacement does not grow: with amplitudes kT P(k)/3 rho V per
+    component
 
         D - g/6t = (1/3 rho V t) sum_k P(k) { 2 [1 - exp(-nu k^2 t)]/(nu k^2)^2 - [1 - phi(t)]/(c k)^2 }
 
@@ -164,7 +166,8 @@ def sharing_diffusion(shape, shapes=40, shifts=200, seed=1):
 
     Collisions turn V into C V, with C_ij = c_1 d_ij + (1 - c_1) <M/(l M + n); i and j in one cell of l vertices>, the
     average over grid shifts and the Poisson n; c_1 = 1/3. Molecular chaos, and a shape that does not change meanwhile:
-    D = (kT dt_c/M N^2) sum_ij [(1 - C)^-1 - 1/2]_ij. With no shared cell it is D_0/N. shape: function of a generator."""
+    D = (kT dt_c/M N^2) sum_ij [(1 - C)^-1 - 1/2]_ij. With no shared cell it is D_0/N. shape: function of a
+    generator."""
     random = numpy.random.Generator(numpy.random.PCG64(seed))
     n = numpy.arange(0, 60)
     poisson = numpy.exp(n * math.log(PER_CELL) - PER_CELL - numpy.array([math.lgamma(k + 1.0) for k in n]))
@@ -201,8 +204,8 @@ def rouse(times, vertices, spring, friction):
 # --- estimates --------------------------------------------------------------------------------------------------------
 
 def merged(results, kind):
-    """One dynamics table of several runs of one system: times, D/kT and end_to_end with errors, weighted with the number
-    of intervals. None without runs. kT: the run's own, set by its start."""
+    """One dynamics table of several runs of one system: times, D/kT and end_to_end with errors, weighted with the
+    number of intervals. None without runs. kT: the run's own, set by its start."""
     tables = []
     for result in results:
         try:
@@ -243,7 +246,7 @@ def nested(times, first, last):
 
 @dataclasses.dataclass
 class Limit:
-    """Long-time diffusion coefficients of several systems, with their covariance, the local memory c, and the fit's p."""
+    """Long-time diffusion coefficients of several systems, their covariance, the local memory c, and the fit's p."""
     value: numpy.ndarray
     covariance: numpy.ndarray
     local: float
@@ -255,8 +258,8 @@ class Limit:
 
 
 def long_time(systems, first, last):
-    """D of systems (table, correction) that share one local memory: D(t) + correction(t) = D - c/t, by least squares over
-    lags from `first` to `last` (one for each system).
+    """D of systems (table, correction) that share one local memory: D(t) + correction(t) = D - c/t, by least squares
+    over lags from `first` to `last` (one for each system).
 
     c stands for what has decayed before `first`: the memory of the velocity, and waves shorter than SHORTEST_WAVE.
     Intervals of lag 2t are pairs of those of lag t. For independent increments D(2t) is D(t) plus independent noise, so
@@ -278,3 +281,30 @@ def long_time(systems, first, last):
         return None
     f = stats.fit(list(design.T), value, numpy.ones(len(value)))
     return Limit(f.value[:-1], f.covariance[:-1, :-1], float(f.value[-1]), f.p)
+
+
+def held(name, statement, expected, source, pair, systematic, known=0.0, **options):
+    """A verdict on pair, (value, error) or None: its tolerance is that of both errors and a systematic bound, and so is
+    the smallest wrong effect that it sees."""
+    value, error = pair or (None, math.nan)
+    bound = stats.tolerance(error, known, systematic)
+    return Verdict(name, statement, expected, source, bound, value, error, known, detects=bound, **options)
+
+
+def mean_ratio(pairs, expected):
+    """(value, error): weighted mean of measured (value, error) over expected values; None without any."""
+    if not pairs:
+        return None
+    return stats.weighted_mean([d / e for (d, *_), e in zip(pairs, expected)],
+                               [error / e for (_, error, *_), e in zip(pairs, expected)])[:2]
+
+
+def over(a, b):
+    """(value, error) of the ratio of two independent (value, error)."""
+    return a[0] / b[0], a[0] / b[0] * math.hypot(a[1] / a[0], b[1] / b[0])
+
+
+def listed(far, model):
+    """Lengths, limits and their share of a model's, as words."""
+    return "; ".join(f"N = {n}: {1e3 * d:.3f} ± {1e3 * error:.3f} ({d / model(n):.3f} of Kirkwood)"
+                     for n, (d, error, _) in far.items())

@@ -9,7 +9,7 @@ import string
 import numpy
 
 from lib import dilute, figures, stats, theory
-from lib.claim import Figure, Outcome, Verdict
+from lib.claim import Figure, Outcome
 from lib.runs import Run
 
 TITLE = "Chains: diffusion against length (Zimm), and Rouse without hydrodynamics"
@@ -33,9 +33,10 @@ def chains(name, vertices, box, count, time, bath="hydrodynamics", seed=1, prior
 # With hydrodynamics. N, box: chains, time of one run in t0, and seeds up to which priorities 0, 1, 2 go.
 PAPER_BOXES = {5: 18, 10: 25, 20: 35, 40: 50, 80: 71, 160: 100}  # 25 sqrt(N/10), rounded
 SYSTEMS = {
-    (5, 18): (10, 3000, 1, 4, 8), (10, 25): (16, 3500, 1, 4, 8), (20, 24): (6, 4000, 1, 2, 6), (20, 35): (20, 2000, 0, 3, 6),
-    (40, 36): (9, 2500, 1, 3, 6), (40, 50): (24, 1200, 0, 2, 6), (80, 36): (6, 4000, 1, 4, 8), (80, 71): (32, 500, 0, 2, 8),
-    (160, 50): (8, 800, 1, 6, 12), (10, 12): (2, 20000, 0, 2, 4), (10, 16): (4, 10000, 0, 2, 4), (10, 36): (48, 1500, 0, 2, 4),
+    (5, 18): (10, 3000, 1, 4, 8), (10, 25): (16, 3500, 1, 4, 8), (20, 24): (6, 4000, 1, 2, 6),
+    (20, 35): (20, 2000, 0, 3, 6), (40, 36): (9, 2500, 1, 3, 6), (40, 50): (24, 1200, 0, 2, 6),
+    (80, 36): (6, 4000, 1, 4, 8), (80, 71): (32, 500, 0, 2, 8), (160, 50): (8, 800, 1, 6, 12),
+    (10, 12): (2, 20000, 0, 2, 4), (10, 16): (4, 10000, 0, 2, 4), (10, 36): (48, 1500, 0, 2, 4),
     (40, 25): (3, 6000, 0, 2, 4), (160, 71): (16, 600, 0, 0, 3)}
 CROWDED = {4: 10000, 64: 2500}  # chains of 10 vertices in 25^3 cells, where 16 are
 ROUSE = {5: (64, 3300), 10: (32, 6400), 20: (24, 12800), 40: (16, 8000), 80: (8, 10000), 160: (4, 12000)}  # phantoms
@@ -56,7 +57,8 @@ def campaign():
     for (n, box), (count, time, *limits) in SYSTEMS.items():
         for seed in range(1, limits[-1] + 1):
             priority = next(p for p, limit in enumerate(limits) if seed <= limit)
-            found.append(chains(f"N{n}-L{box}-s{seed}", n, box, count, time, seed=100000 * n + 100 * box + seed, priority=priority))
+            found.append(chains(f"N{n}-L{box}-s{seed}", n, box, count, time, seed=100000 * n + 100 * box + seed,
+                                priority=priority))
     found += [chains(f"crowd-{count}", 10, 25, count, time, seed=count, priority=1) for count, time in CROWDED.items()]
     return found + [chains("crossing-N20", 20, 35, 20, 6000, seed=77, priority=2, crossing="forbidden")]
 
@@ -217,135 +219,102 @@ def exponent(sizes, values, errors):
     return f.value[1], f.error[1]
 
 
-def kirkwood_exponent(sizes, errors):
-    """The exponent that Kirkwood's D would have, fitted to the same lengths with the same weights."""
-    values = numpy.array([kirkwood(n) for n in sizes])
-    return exponent(sizes, values, values * errors)[0]
+def paper_values(far):
+    """(lengths, D, error) in the paper's boxes, from D in an infinite one."""
+    sizes = sorted(far)
+    shift = [dilute.image_shift(paper_box(n), gyration2(n)) for n in sizes]
+    return numpy.array(sizes), numpy.array([far[n][0] for n in sizes]) - shift, numpy.array([far[n][1] for n in sizes])
+
+
+def fitted_exponents(far, model):
+    """((exponent, error), exponent of a model's values at the same N with the same relative errors); None, -0.5."""
+    sizes = sorted(far)
+    if len(sizes) < 2:
+        return None, -0.5
+    values, errors = (numpy.array([far[n][k] for n in sizes]) for k in (0, 1))
+    expected = numpy.array([model(n) for n in sizes])
+    return exponent(sizes, values, errors), exponent(sizes, expected, expected * errors / values)[0]
 
 
 def verdicts_with(points, far):
-    gate, sizes = stats.tolerance, sorted(far)
-    slope = slope_error = ratio = prefactor = None
-    ratio_error = prefactor_error = math.nan
-    expected = -0.5
-    slope_error = math.nan
-    if len(sizes) > 1:
-        values, errors = (numpy.array([far[n][k] for n in sizes]) for k in (0, 1))
-        slope, slope_error = exponent(sizes, values, errors)
-        expected = kirkwood_exponent(sizes, errors / values)
-    if sizes:
-        values, errors = (numpy.array([far[n][k] for n in sizes]) for k in (0, 1))
-        theory_values = numpy.array([kirkwood(n) for n in sizes])
-        ratio, ratio_error, _ = stats.weighted_mean(values / theory_values, errors / theory_values)
-        scale = PAPER_ETA * numpy.sqrt(sizes)
-        in_box = values - [dilute.image_shift(paper_box(n), gyration2(n)) for n in sizes]
-        prefactor, prefactor_error, _ = stats.weighted_mean(in_box * scale, errors * scale)
-    known = math.hypot(dilute.D_VERTEX_ERROR / dilute.D_VERTEX * 0.25, dilute.NU_ERROR / dilute.NU)  # of Kirkwood's D
-    found = [
-        Verdict("chains.exponent", "Exponent of D against N in an infinite box, against that of Kirkwood's sum at the same N",
-                expected, "THEORY 2.7, with a_h of the claim mobility", gate(slope_error, 0.0, 0.02), slope, slope_error,
-                detects=gate(slope_error, 0.0, 0.02)),
-        Verdict("chains.exponent-paper", "The same, against Zimm's N^-1/2", -0.5, "Eq. (39), Fig. 2",
-                gate(slope_error, 0.0, 0.02), slope, slope_error, detects=gate(slope_error, 0.0, 0.02), kind="paper",
-                reason="short chains diffuse more slowly than N^-1/2 would have it where a_h > l/4, and faster where a_h < l/4"),
-        Verdict("chains.kirkwood", "D in an infinite box over Kirkwood's sum, mean over lengths", 1.0 - BIAS / 2.0,
-                "THEORY 2.7; long times take 1 or 2 % off", gate(ratio_error, known, BIAS), ratio, ratio_error, known,
-                detects=gate(ratio_error, known, BIAS)),
-        Verdict("chains.prefactor", "D eta sqrt(N)/kT in the paper's boxes, with the paper's eta = 11.18; mean over lengths",
-                0.17, "Fig. 2 (the paper's digits allow 0.005)", gate(prefactor_error, 0.0, 0.005), prefactor, prefactor_error,
-                detects=gate(prefactor_error, 0.0, 0.005), kind="paper",
-                reason="the paper divides by the analytic viscosity, which is 4 % above the fluid's own")]
-    return found + [same_in_boxes(points), crowding(points)]
+    slope, expected = fitted_exponents(far, kirkwood)
+    ratio = dilute.mean_ratio(list(far.values()), [kirkwood(n) for n in far])
+    sizes, values, errors = paper_values(far)
+    prefactor = dilute.mean_ratio(list(zip(values, errors)), 1.0 / (PAPER_ETA * numpy.sqrt(sizes))) if far else None
+    known = math.hypot(0.25 * dilute.D_VERTEX_ERROR / dilute.D_VERTEX, dilute.NU_ERROR / dilute.NU)  # of Kirkwood's D
+    return [
+        dilute.held("chains.exponent", "Exponent of D against N in an infinite box, and Kirkwood's at the same N", expected,
+                    "THEORY 2.7, with a_h of the claim mobility", slope, 0.02),
+        dilute.held("chains.exponent-paper", "The same, against Zimm's N^-1/2", -0.5, "Eq. (39), Fig. 2", slope, 0.02,
+                    kind="paper", reason="N^-1/2 is the limit of long chains; short ones still feel single vertices"),
+        dilute.held("chains.kirkwood", "D in an infinite box over Kirkwood's sum, mean over lengths", 1.0 - BIAS / 2.0,
+                    "THEORY 2.7; long times take 1 or 2 % off", ratio, BIAS, known),
+        dilute.held("chains.prefactor", "D eta sqrt(N)/kT in the paper's boxes, eta = 11.18; mean over lengths", 0.17,
+                    "Fig. 2 (the paper's digits allow 0.005)", prefactor, 0.005, kind="paper",
+                    reason="the paper scales with the analytic viscosity, which is 4 % above the fluid's own"),
+        same_in_boxes(points), crowding(points)]
 
 
 def same_in_boxes(points):
     """Small boxes with the image correction against the paper's, where both ran: the mean ratio."""
-    ratios, errors = [], []
+    ratios = []
     for n in SIZES:
         same = [p for name, p in points.items() if p.vertices == n and name.startswith("N")]
-        big = [p for p in same if p.box >= PAPER_BOXES[n]]
-        small = [p for p in same if p.box < PAPER_BOXES[n]]
+        big, small = [p for p in same if p.box >= PAPER_BOXES[n]], [p for p in same if p.box < PAPER_BOXES[n]]
         if big and small:
-            (a, da, _), (b, db, _) = (stats.weighted_mean([p.infinite for p in each], [p.error for p in each])
-                                      for each in (small, big))
-            ratios.append(a / b)
-            errors.append(a / b * math.hypot(da / a, db / b))
-    ratio, error = stats.weighted_mean(ratios, errors)[:2] if ratios else (None, math.nan)
-    return Verdict("chains.boxes", "Small boxes, corrected for images, over the paper's, corrected too; mean over lengths", 1.0,
-                   "THEORY 2.6", stats.tolerance(error, 0.0, 0.01), ratio, error, detects=stats.tolerance(error, 0.0, 0.01))
+            means = [stats.weighted_mean([p.infinite for p in each], [p.error for p in each]) for each in (small, big)]
+            ratios.append(dilute.over(*means))
+    return dilute.held("chains.boxes", "Small boxes over the paper's, both corrected for images; mean over lengths", 1.0,
+                       "THEORY 2.6", dilute.mean_ratio(ratios, numpy.ones(len(ratios))), 0.01)
 
 
 def crowding(points):
-    """D with four times as many chains in the box over that with a quarter as many."""
-    ratio, error = None, math.nan
+    pair = None
     if "crowd-4" in points and "N10-L25" in points:
-        a, b = points["N10-L25"], points["crowd-4"]
-        ratio, error = a.value / b.value, a.value / b.value * math.hypot(a.error / a.value, b.error / b.value)
-    return Verdict("chains.dilute", "D with 16 chains of 10 vertices in 25³ cells over D with 4: are they dilute?", 1.0,
-                   "a dilute solution has none", stats.tolerance(error, 0.0, 0.02), ratio, error,
-                   detects=stats.tolerance(error, 0.0, 0.02))
+        pair = dilute.over(*((points[name].value, points[name].error) for name in ("N10-L25", "crowd-4")))
+    return dilute.held("chains.dilute", "D with 16 chains of 10 vertices in 25³ cells over D with 4: are they dilute?", 1.0,
+                       "a dilute solution has no neighbors", pair, 0.02)
 
 
 def verdicts_without(results):
-    gate, chaos = stats.tolerance, dilute.vertex_diffusion()
+    chaos = dilute.vertex_diffusion()
     measured = {n: free(results, f"rouse-N{n}") for n in SIZES}
-    measured = {n: pair for n, pair in measured.items() if pair}
-    sizes = sorted(measured)
-    slope = ratio = None
-    slope_error = ratio_error = expected_error = math.nan
-    shared = -1.0
-    if len(sizes) > 1:
-        values, errors = (numpy.array([measured[n][k] for n in sizes]) for k in (0, 1))
-        slope, slope_error = exponent(sizes, values, errors)
-        model = numpy.array([sharing(n)[0] for n in sizes])
-        shared = exponent(sizes, model, model * errors / values)[0]
-    if sizes:
-        expected = [sharing(n) for n in sizes]
-        ratio, ratio_error, _ = stats.weighted_mean([measured[n][0] / e[0] for n, e in zip(sizes, expected)],
-                                                    [measured[n][1] / e[0] for n, e in zip(sizes, expected)])
-        expected_error = max(e[1] / e[0] for e in expected) / math.sqrt(len(sizes))
+    measured = {int(n): pair for n, pair in measured.items() if pair}
+    slope, shared = fitted_exponents(measured, lambda n: sharing(n)[0])
+    ratio = dilute.mean_ratio(list(measured.values()), [sharing(n)[0] for n in measured])
+    known = max((sharing(n)[1] / sharing(n)[0] for n in measured), default=0.0) / math.sqrt(max(len(measured), 1))
     found = [
-        Verdict("chains.free-exponent", "Without hydrodynamics: exponent of D against N, chains whose vertices share cells", shared,
-                "lib/dilute.py: sharing_diffusion, the same N", gate(slope_error, 0.0, 0.01), slope, slope_error,
-                detects=gate(slope_error, 0.0, 0.01)),
-        Verdict("chains.free-exponent-paper", "The same, against the paper's line N^-1", -1.0, "Fig. 2",
-                gate(slope_error, 0.0, 0.01), slope, slope_error, detects=gate(slope_error, 0.0, 0.01), kind="paper",
-                reason="short chains share fewer cells than long ones; N^-1 holds between long chains"),
-        Verdict("chains.free-D", "Without hydrodynamics: D over molecular chaos of chains whose vertices share cells", 1.0,
-                "lib/dilute.py: sharing_diffusion", gate(ratio_error, expected_error, 0.03), ratio, ratio_error, expected_error,
-                detects=gate(ratio_error, expected_error, 0.03))]
-    loose = {n: results[f"loose-N{n}"] for n in LOOSE_ROUSE if f"loose-N{n}" in results}
-    for n, result in sorted(loose.items()):
-        pair, zeta = free(results, f"loose-N{n}"), friction(result)
-        drag = (zeta[0] * chaos, zeta[1] * chaos) if zeta else (None, math.nan)
-        found.append(Verdict(f"chains.rouse-times-N{n}", f"Loose chains of {n} (bonds of 5.5 a0), no hydrodynamics: Rouse times "
-                             "from the turning of the end-to-end vector, over exact ones", 1.0, "tau_p = zeta/(4 k sin^2(p pi/2N))",
-                             gate(drag[1], 0.0, 0.01), *drag, detects=gate(drag[1], 0.0, 0.01)))
-        scaled = (pair[0] * n / chaos, pair[1] * n / chaos) if pair else (None, math.nan)
-        found.append(Verdict(f"chains.rouse-D-N{n}", f"The same chains: D N/D_0", 1.0, "D = D_0/N", gate(scaled[1], 0.0, 0.01),
-                             *scaled, detects=gate(scaled[1], 0.0, 0.01)))
-    if "swap-N5" in results or "swap-N10" in results:
-        pairs = [(free(results, f"swap-N{n}"), free(results, f"rouse-N{n}"), n) for n in (5, 10)]
-        found += [swap_verdict(n, swap, phantom) for swap, phantom, n in pairs if swap and phantom]
-    return found
+        dilute.held("chains.free-exponent", "Without hydrodynamics: exponent of D against N, and of the same theory",
+                    shared, "lib/dilute.py: sharing_diffusion", slope, 0.01),
+        dilute.held("chains.free-exponent-paper", "The same, against the paper's line N^-1", -1.0, "Fig. 2", slope, 0.01,
+                    kind="paper", reason="short chains share fewer cells than long ones; N^-1 holds between long ones"),
+        dilute.held("chains.free-D", "Without hydrodynamics: D over molecular chaos of chains that share cells", 1.0,
+                    "lib/dilute.py: sharing_diffusion", ratio, 0.03, known)]
+    for n in LOOSE_ROUSE:
+        if f"loose-N{n}" in results:
+            pair, zeta = free(results, f"loose-N{n}"), friction(results[f"loose-N{n}"])
+            found += [
+                dilute.held(f"chains.rouse-times-N{n}", f"Loose chains (bonds of 5.5 a0) of {n}: Rouse times from the "
+                            "turning of the end-to-end vector, over exact ones", 1.0, "tau_p = zeta/(4 k sin^2(p pi/2N))",
+                            dilute.over(zeta, (1.0 / chaos, 0.0)) if zeta else None, 0.01),
+                dilute.held(f"chains.rouse-D-N{n}", "The same chains: D N/D_0", 1.0, "D = D_0/N",
+                            dilute.over(pair, (chaos / n, 0.0)) if pair else None, 0.01)]
+    return found + [swap_verdict(results, n) for n in (5, 10) if f"swap-N{n}" in results]
 
 
-def swap_verdict(n, swap, phantom):
-    _, count, box = n, SYSTEMS[n, PAPER_BOXES[n]][0], PAPER_BOXES[n]
-    ratio = swap[0] / dilute.closed_box(count, n * dilute.MASS, box) / phantom[0]
-    error = ratio * math.hypot(swap[1] / swap[0], phantom[1] / phantom[0])
-    tolerance = stats.tolerance(error, 0.0, 0.03)
-    return Verdict(f"chains.swap-N{n}", f"Without hydrodynamics, N = {n}: D with the paper's swap over D with phantoms", 1.0,
-                   "docs/accuracy.md: 0.996 ± 0.007, closed box taken out", tolerance, ratio, error, detects=tolerance)
+def swap_verdict(results, n):
+    swap, phantoms = free(results, f"swap-N{n}"), free(results, f"rouse-N{n}")
+    share = dilute.closed_box(SYSTEMS[n, PAPER_BOXES[n]][0], n * dilute.MASS, PAPER_BOXES[n])
+    pair = dilute.over((swap[0] / share, swap[1] / share), phantoms) if swap and phantoms else None
+    return dilute.held(f"chains.swap-N{n}", f"No hydrodynamics, N = {n}: D with the paper's swap over D with phantoms", 1.0,
+                       "docs/accuracy.md: 0.996 ± 0.007, closed box taken out", pair, 0.03)
 
 
 def size_verdict(results):
     sizes = [size(result) for name, result in results.items() if re.match(r"N\d+-L|rouse|loose", name)]
     sizes = [pair for pair in sizes if pair]
-    value, error = stats.weighted_mean(*zip(*sizes))[:2] if sizes else (None, math.nan)
-    tolerance = stats.tolerance(error, 0.0, 0.003)
-    return Verdict("chains.size", "<R^2> over (N - 1) l^2, mean over all runs", 1.0, "THEORY 2.8, exact", tolerance, value, error,
-                   detects=tolerance)
+    return dilute.held("chains.size", "<R^2> over (N - 1) l^2, mean over all runs", 1.0, "THEORY 2.8, exact",
+                       dilute.mean_ratio(sizes, numpy.ones(len(sizes))), 0.003)
 
 
 # --- figures ----------------------------------------------------------------------------------------------------------
@@ -428,26 +397,22 @@ def draw_rouse(results):
 def words(results, points, far):
     parts = []
     if far:
-        rows = "; ".join(f"N = {n}: {1e3 * d:.3f} ± {1e3 * e:.3f} ({d / kirkwood(n):.3f} of Kirkwood)" for n, (d, e, _) in far.items())
-        parts.append(f"**D in an infinite box**, 10⁻³ a0²/t0: {rows}. The mean of several sizes of box, each with the images' share "
-                     "added and the recoil of the closed box taken out; errors are statistical.")
-        if len(far) > 1:
-            sizes = sorted(far)
-            slope = exponent(sizes, *(numpy.array([far[n][k] for n in sizes]) for k in (0, 1)))
-            parts.append(f"The exponent is {slope[0]:.3f} ± {slope[1]:.3f}. **What the images do**: in boxes that grow with R_e they take "
-                         "the same share of D at every length, so they change the prefactor and not the exponent, as the paper says. "
-                         "The paper's 0.17 is Zimm's 0.1955 less the images and less what finite N takes, scaled with a viscosity "
-                         "that is 4 % too large.")
+        parts.append(f"""**D in an infinite box**, 10⁻³ a0²/t0: {dilute.listed(far, kirkwood)}. Each is the mean of several sizes
+of box, with the images' share added and the recoil of the closed box taken out; errors are statistical.""")
+    slope, expected = fitted_exponents(far, kirkwood)
+    if slope:
+        parts.append(f"""The exponent is {slope[0]:.3f} ± {slope[1]:.3f} (Kirkwood: {expected:.3f}). **What the images do**: in boxes
+that grow with R_e they take the same share of D at every length. They change the prefactor and not the exponent, as the
+paper says: its 0.17 is Zimm's 0.1955 less the images and less what finite N takes, scaled with a viscosity that is 4 % too
+large.""")
     if "rouse-N10" in results:
-        parts.append("**Without hydrodynamics** D falls as 1/N, but is not D_0/N: vertices of a Gaussian chain with bonds of 1 a0 share "
-                     "cells, keep their common momentum there, and the chain diffuses 20 to 40 % faster. Molecular chaos with "
-                     "shared cells says by how much. Chains with bonds of 5.5 a0 share none; they are Rouse's to within errors.")
-    for name in ("crossing-N20", "crowd-64"):
-        base = {"crossing-N20": "N20-L35", "crowd-64": "N10-L25"}[name]
+        parts.append("""**Without hydrodynamics** D falls nearly as 1/N, but is not D_0/N: vertices of a Gaussian chain with bonds
+of 1 a0 share cells, keep their common momentum there, and the chain diffuses 20 to 40 % faster. Molecular chaos with shared
+cells says by how much. Chains with bonds of 5.5 a0 share none, and are Rouse's.""")
+    for name, base in (("crossing-N20", "N20-L35"), ("crowd-64", "N10-L25")):
         if name in points and base in points:
-            a, b = points[name], points[base]
-            parts.append(f"{name} over {base}: {a.value / b.value:.3f} ± "
-                         f"{a.value / b.value * math.hypot(a.error / a.value, b.error / b.value):.3f}.")
+            ratio = dilute.over(*((points[key].value, points[key].error) for key in (name, base)))
+            parts.append(f"D of `{name}` over `{base}`: {ratio[0]:.3f} ± {ratio[1]:.3f}.")
     return "\n\n".join(parts)
 
 
@@ -458,10 +423,11 @@ def evaluate(results, tier):
     if tier == "quick":  # one box for each length, and no other density
         found = [v for v in found if v.id not in ("chains.boxes", "chains.dilute")]
     pictures = [
-        Figure("lengths", "Fig. 2, chains: diffusion against length, with and without hydrodynamics; below, over Kirkwood's sum, "
-               "and over molecular chaos of chains that share cells.", lambda: draw_lengths(results, points, far)),
-        Figure("boxes", "What the box does: the same chains in several boxes. Lines: one limit for each length, less the "
-               "images' share.", lambda: draw_boxes(points)),
-        Figure("rouse", "How the end-to-end vector turns without hydrodynamics, and Rouse's line with the friction of a lone vertex, "
-               "nothing fitted.", lambda: draw_rouse(results))]
+        Figure("lengths", "Fig. 2, chains: diffusion against length, with and without hydrodynamics; below, over "
+               "Kirkwood's sum, and over molecular chaos of chains that share cells.",
+               lambda: draw_lengths(results, points, far)),
+        Figure("boxes", "What the box does: the same chains in several boxes. Lines: one limit for each length, less "
+               "the images' share.", lambda: draw_boxes(points)),
+        Figure("rouse", "How the end-to-end vector turns without hydrodynamics, and Rouse's line with the friction of "
+               "a lone vertex, nothing fitted.", lambda: draw_rouse(results))]
     return Outcome(found, pictures, words(results, points, far))

@@ -9,7 +9,7 @@ import string
 import numpy
 
 from lib import dilute, figures, stats, theory
-from lib.claim import Figure, Outcome, Verdict
+from lib.claim import Figure, Outcome
 from lib.runs import Run
 
 TITLE = "Rods: diffusion against length, diameter and prefactor, and the images' share"
@@ -29,9 +29,10 @@ def rods(name, vertices, box, count, time, bath="hydrodynamics", seed=1, priorit
 # With hydrodynamics. N, box: rods, time of one run in t0, and seeds up to which priorities 0, 1, 2 go.
 PAPER_BOXES = {10: 18, 15: 27, 30: 54, 45: 81, 60: 108}  # 1.8 N
 SYSTEMS = {
-    (10, 9): (1, 40000, 0, 1, 3), (10, 12): (2, 20000, 0, 2, 4), (10, 18): (6, 6000, 1, 4, 8), (10, 27): (20, 2500, 0, 3, 6),
-    (10, 36): (48, 1600, 0, 3, 6), (15, 18): (3, 8000, 0, 1, 3), (15, 27): (10, 2500, 1, 3, 6), (30, 36): (7, 1500, 1, 4, 8),
-    (30, 54): (24, 700, 0, 2, 6), (45, 45): (5, 1000, 1, 5, 9), (45, 81): (24, 500, 0, 0, 4), (60, 54): (5, 700, 1, 5, 10),
+    (10, 9): (1, 40000, 0, 1, 3), (10, 12): (2, 20000, 0, 2, 4), (10, 18): (6, 6000, 1, 4, 8),
+    (10, 27): (20, 2500, 0, 3, 6), (10, 36): (48, 1600, 0, 3, 6), (15, 18): (3, 8000, 0, 1, 3),
+    (15, 27): (10, 2500, 1, 3, 6), (30, 36): (7, 1500, 1, 4, 8), (30, 54): (24, 700, 0, 2, 6),
+    (45, 45): (5, 1000, 1, 5, 9), (45, 81): (24, 500, 0, 0, 4), (60, 54): (5, 700, 1, 5, 10),
     (60, 72): (10, 1000, 0, 0, 3)}
 FREE = {10: (32, 1500), 15: (24, 1500), 30: (16, 1500), 45: (12, 1500), 60: (8, 2000)}  # without hydrodynamics
 
@@ -41,7 +42,8 @@ def campaign():
     for (n, box), (count, time, *limits) in SYSTEMS.items():
         for seed in range(1, limits[-1] + 1):
             priority = next(p for p, limit in enumerate(limits) if seed <= limit)
-            found.append(rods(f"N{n}-L{box}-s{seed}", n, box, count, time, seed=100000 * n + 100 * box + seed, priority=priority))
+            found.append(rods(f"N{n}-L{box}-s{seed}", n, box, count, time, seed=100000 * n + 100 * box + seed,
+                              priority=priority))
     return found
 
 
@@ -177,25 +179,18 @@ def fits(far):
 
 
 def image_slope(points):
-    """(slope, error) of D against the images' share, at N = 10; theory has 1 (with the sign turned)."""
+    """(slope, error) of D against the images' share, at N = 10, its sign turned: theory has 1. None with one box."""
     scan = [p for p in points if p.vertices == 10]
     if len(scan) < 2:
-        return None, math.nan
+        return None
     shift = [p.infinite - p.value for p in scan]
     f = stats.line(shift, [p.value for p in scan], [p.error for p in scan])
     return -f.value[1], f.error[1]
 
 
-def slope_verdict(points):
-    slope, error = image_slope(points)
-    tolerance = stats.tolerance(error, 0.0, 0.1)
-    return Verdict("rods.images", "Slope of D against the images' share kT/(6 pi eta L) (2.837297 - ...), N = 10", 1.0, "THEORY 2.6",
-                   tolerance, slope, error, detects=tolerance)
-
-
 def size_verdict(results):
     ratios = []
-    for name, result in results.items():
+    for result in results.values():
         try:
             table = result.table("statics-rod")
         except KeyError:
@@ -203,52 +198,43 @@ def size_verdict(results):
         exact = moments(int(re.search(r"vertices: (\d+)", result.run.scene)[1]))[0]
         if table["Ree2_error"][0] > 0.0:
             ratios.append((table["Ree2"][0] / exact, table["Ree2_error"][0] / exact))
-    value, error = stats.weighted_mean(*zip(*ratios))[:2] if ratios else (None, math.nan)
-    tolerance = stats.tolerance(error, 0.0, 0.002)
-    return Verdict("rods.size", "<R^2> of the rods over its exact value, mean over all runs", 1.0, "THEORY 2.8", tolerance, value,
-                   error, detects=tolerance)
+    return dilute.held("rods.size", "<R^2> of the rods over its exact value, mean over all runs", 1.0, "THEORY 2.8",
+                       dilute.mean_ratio(ratios, numpy.ones(len(ratios))), 0.002)
 
 
 def free_verdict(results):
-    pairs = [(free(results, n), sharing(n)) for n in FREE if f"phantoms-N{n}" in results]
-    pairs = [(pair, expected) for pair, expected in pairs if pair]
-    value, error = (stats.weighted_mean([d / e for (d, _), (e, _) in pairs], [s / e for (_, s), (e, _) in pairs])[:2]
-                    if pairs else (None, math.nan))
-    known = max((e[1] / e[0] for _, e in pairs), default=0.0)
-    tolerance = stats.tolerance(error, known, 0.03)
-    return Verdict("rods.free-D", "Without hydrodynamics: D over molecular chaos of rods whose vertices share cells", 1.0,
-                   "lib/dilute.py: sharing_diffusion", tolerance, value, error, known, detects=tolerance)
+    pairs = {n: free(results, n) for n in FREE}
+    pairs = {n: pair for n, pair in pairs.items() if pair}
+    known = max((sharing(n)[1] / sharing(n)[0] for n in pairs), default=0.0)
+    return dilute.held("rods.free-D", "Without hydrodynamics: D over molecular chaos of rods that share cells", 1.0,
+                       "lib/dilute.py: sharing_diffusion",
+                       dilute.mean_ratio(list(pairs.values()), [sharing(n)[0] for n in pairs]), 0.03, known)
 
 
 def kirkwood_verdict(far):
-    sizes = sorted(far)
-    expected = numpy.array([kirkwood(n) for n in sizes])
-    ratio, error = (stats.weighted_mean([far[n][0] for n in sizes] / expected, [far[n][1] for n in sizes] / expected)[:2]
-                    if sizes else (None, math.nan))
-    known = math.hypot(dilute.D_VERTEX_ERROR / dilute.D_VERTEX * 0.15, dilute.NU_ERROR / dilute.NU)
-    tolerance = stats.tolerance(error, known, BIAS)
-    return Verdict("rods.kirkwood", "D in an infinite box over Kirkwood's sum for a straight row of beads, mean over lengths", 1.0,
-                   "THEORY 2.7, with a_h of the claim mobility", tolerance, ratio, error, known, detects=tolerance)
+    known = math.hypot(0.15 * dilute.D_VERTEX_ERROR / dilute.D_VERTEX, dilute.NU_ERROR / dilute.NU)
+    return dilute.held("rods.kirkwood", "D in an infinite box over Kirkwood's sum for a straight row of beads, mean", 1.0,
+                       "THEORY 2.7, with a_h of the claim mobility",
+                       dilute.mean_ratio(list(far.values()), [kirkwood(n) for n in far]), BIAS, known)
 
 
-def fit_verdicts(far):
-    free_rule, box_rule, alone = fits(far)
-    a, da = (free_rule.prefactor, free_rule.prefactor_error) if free_rule else (None, math.nan)
-    box_a, box_da, box_b, box_db = ((box_rule.prefactor, box_rule.prefactor_error, box_rule.diameter, box_rule.diameter_error)
-                                    if box_rule else (None, math.nan, None, math.nan))
-    b, db = alone or (None, math.nan)
-    gate = stats.tolerance
+def campaign_verdicts(points, far):
+    """What the quick tier's errors cannot tell."""
+    rule, box_rule, alone = fits(far)
+    twice = 2.0 * dilute.stokes(dilute.D_VERTEX)
     return [
-        Verdict("rods.prefactor", "Prefactor of the joint fit in an infinite box, measured eta", PREFACTOR, "Eq. (40): 1/(3 pi)",
-                gate(da, 0.0, 0.006), a, da, detects=gate(da, 0.0, 0.006)),
-        Verdict("rods.diameter", "Hydrodynamic diameter in an infinite box with the prefactor 1/(3 pi), over 2 a_h of a vertex", 1.0,
-                "a row of beads that touch", gate(db, 0.0, 0.15) / 0.546, b and b / (2.0 * dilute.stokes(dilute.D_VERTEX)),
-                db / (2.0 * dilute.stokes(dilute.D_VERTEX)), detects=gate(db, 0.0, 0.15) / 0.546),
-        Verdict("rods.prefactor-paper", "Prefactor of the joint fit in the paper's boxes, with the paper's eta = 11.18", 0.094,
-                "Sec. V A", gate(box_da, 0.0, 0.0005), box_a, box_da, detects=gate(box_da, 0.0, 0.0005), kind="paper",
-                reason="images change b, not the prefactor, in boxes that grow with the rod"),
-        Verdict("rods.diameter-paper", "Diameter b of the same fit", 0.6, "Sec. V A", gate(box_db, 0.0, 0.05), box_b, box_db,
-                detects=gate(box_db, 0.0, 0.05), kind="paper", reason="it goes up and down with the prefactor of the same fit")]
+        dilute.held("rods.images", "Slope of D against the images' share kT/(6 pi eta L) (2.837297 - ...), N = 10", 1.0,
+                    "THEORY 2.6", image_slope(points), 0.1),
+        dilute.held("rods.prefactor", "Prefactor of the joint fit in an infinite box, measured eta", PREFACTOR,
+                    "Eq. (40): 1/(3 pi)", (rule.prefactor, rule.prefactor_error) if rule else None, 0.006),
+        dilute.held("rods.diameter", "Diameter in an infinite box with the prefactor 1/(3 pi), over 2 a_h of a vertex", 1.0,
+                    "a row of beads that touch", dilute.over(alone, (twice, 0.0)) if alone else None, 0.25),
+        dilute.held("rods.prefactor-paper", "Prefactor of the joint fit in the paper's boxes, eta = 11.18", 0.094,
+                    "Sec. V A", (box_rule.prefactor, box_rule.prefactor_error) if box_rule else None, 0.0005, kind="paper",
+                    reason="images change b, not the prefactor, in boxes that grow with the rod"),
+        dilute.held("rods.diameter-paper", "Diameter b of the same fit", 0.6, "Sec. V A",
+                    (box_rule.diameter, box_rule.diameter_error) if box_rule else None, 0.05, kind="paper",
+                    reason="it goes up and down with the prefactor of the same fit")]
 
 
 # --- figures ----------------------------------------------------------------------------------------------------------
@@ -261,7 +247,8 @@ def draw_lengths(results, points, far):
     figures.theory(axes, n, Rule(PREFACTOR, 0, 2.0 * dilute.stokes(dilute.D_VERTEX), 0)(n, dilute.ETA), linestyle="--",
                    label="Eq. (40), 1/(3$\\pi$), b = 2$a_h$")
     whole = numpy.unique(n.round().astype(int))
-    figures.theory(axes, whole, [kirkwood(int(k)) for k in whole], color=figures.COLORS[0], linewidth=0.9, label="Kirkwood")
+    figures.theory(axes, whole, [kirkwood(int(k)) for k in whole], color=figures.COLORS[0], linewidth=0.9,
+                   label="Kirkwood")
     figures.theory(axes, n, chaos / n, linestyle="-.", label="$D_0/N$")
     figures.theory(axes, list(FREE), [sharing(k)[0] for k in FREE], color=figures.COLORS[2], linewidth=0.9,
                    label="vertices that share cells")
@@ -308,21 +295,19 @@ def draw_images(points):
 
 def words(points, far):
     parts = []
-    slope, error = image_slope(points)
-    if slope is not None:
-        parts.append(f"**What the images do**, at N = 10: D against their share has the slope {slope:.2f} ± {error:.2f}, theory 1. In boxes "
-                     "that grow with the rod they take a constant times kT/(eta L): a larger b, and the same prefactor.")
+    slope = image_slope(points)
+    if slope:
+        parts.append(f"""**What the images do**, at N = 10: D against their share has the slope {slope[0]:.2f} ± {slope[1]:.2f},
+theory 1. In boxes that grow with the rod they take a constant times kT/(eta L): a larger b, and the same prefactor.""")
     if far:
-        rows = "; ".join(f"N = {n}: {1e3 * d:.3f} ± {1e3 * e:.3f} ({d / kirkwood(n):.3f} of Kirkwood)" for n, (d, e, _) in far.items())
-        parts.append(f"**D in an infinite box**, 10⁻³ a0²/t0: {rows}.")
-    free_rule, box_rule, alone = fits(far)
-    if free_rule:
-        parts.append(f"Joint fits of Eq. (40) with L = N/2: prefactor {free_rule.prefactor:.4f} ± {free_rule.prefactor_error:.4f}, b = "
-                     f"{free_rule.diameter:.2f} ± {free_rule.diameter_error:.2f} in an infinite box with the measured viscosity; "
-                     f"{box_rule.prefactor:.4f} ± {box_rule.prefactor_error:.4f}, b = {box_rule.diameter:.2f} ± "
-                     f"{box_rule.diameter_error:.2f} in the paper's boxes with the paper's viscosity (the paper: 0.094 and 0.6). With the "
-                     f"prefactor 1/(3 pi) held, b = {alone[0]:.3f} ± {alone[1]:.3f} in an infinite box. Prefactor and ln b of one fit "
-                     "are correlated almost fully.")
+        parts.append(f"**D in an infinite box**, 10⁻³ a0²/t0: {dilute.listed(far, kirkwood)}.")
+    rule, box_rule, alone = fits(far)
+    if rule:
+        parts.append(f"""Joint fits of Eq. (40) with L = N/2: prefactor {rule.prefactor:.4f} ± {rule.prefactor_error:.4f}, b =
+{rule.diameter:.2f} ± {rule.diameter_error:.2f} in an infinite box with the measured viscosity; {box_rule.prefactor:.4f} ±
+{box_rule.prefactor_error:.4f}, b = {box_rule.diameter:.2f} ± {box_rule.diameter_error:.2f} in the paper's boxes with the paper's
+viscosity (the paper: 0.094 and 0.6). With the prefactor 1/(3 pi) held, b = {alone[0]:.3f} ± {alone[1]:.3f} in an infinite
+box. Prefactor and ln b of one fit are correlated almost fully.""")
     return "\n\n".join(parts)
 
 
@@ -330,12 +315,12 @@ def evaluate(results, tier):
     points = with_hydrodynamics(results)
     far = infinite(points)
     found = [kirkwood_verdict(far), free_verdict(results), size_verdict(results)]
-    if tier == "campaign":  # what the quick tier's errors cannot tell
-        found = [slope_verdict(points), *found, *fit_verdicts(far)]
+    if tier == "campaign":
+        found += campaign_verdicts(points, far)
     pictures = [
-        Figure("lengths", "Fig. 2, rods: diffusion against length. Below: infinite box over Kirkwood's sum (blue), the paper's boxes over "
-               "the paper's line (red), no hydrodynamics over molecular chaos with shared cells (green).",
-               lambda: draw_lengths(results, points, far)),
-        Figure("images", "What the box does: the same rods in several boxes. Lines: one limit for each length, less the images' "
-               "share.", lambda: draw_images(points))]
+        Figure("lengths", "Fig. 2, rods: diffusion against length. Below: infinite box over Kirkwood's sum (blue), the "
+               "paper's boxes over the paper's line (red), no hydrodynamics over molecular chaos with shared cells "
+               "(green).", lambda: draw_lengths(results, points, far)),
+        Figure("images", "What the box does: the same rods in several boxes. Lines: one limit for each length, less the "
+               "images' share.", lambda: draw_images(points))]
     return Outcome(found, pictures, words(points, far))
