@@ -42,14 +42,9 @@ static const struct stage with_collision[][6] = {
     [ORDER_DRIFT_SPLIT] = {{DRIFT, 0.5}, {COLLIDE, 0}, {DRIFT, 0.5}, {FORCE, 0}, {KICK, 1.0}, {END, 0}},
 };
 
-static bool collide_with_particles(struct state *state, const struct model *model, struct work *work, uint64_t step)
-{
-  return solvent_stream(state, model, work) && solvent_collide(state, model, work, step);
-}
-
 typedef bool collision(struct state *, const struct model *, struct work *, uint64_t step);
 
-static collision *const collide[] = {[BATH_PARTICLES] = collide_with_particles, [BATH_PHANTOMS] = bath_collide};
+static collision *const collide[] = {[BATH_PARTICLES] = solvent_collide, [BATH_PHANTOMS] = bath_collide};
 
 static const char *const action_names[] = {
     [END] = "end", [DRIFT] = "drift", [COLLIDE] = "collide", [FORCE] = "force", [KICK] = "kick"};

@@ -56,11 +56,13 @@ static inline double box_volume(const struct box *box)
   return (double)box_cell_count(box);
 }
 
-/* The integer nearest to x (ties to even), for |x| < 2^51. Adding 1.5 * 2^52 leaves the integer in the low bits of the
- * sum; unlike llrint this form vectorises on every x86-64. */
+/* 1.5 * 2^52: adding it to x leaves the integer nearest to x in the low bits of the sum. */
+#define LATTICE_ROUND_MAGIC 0x1.8p52
+
+/* The integer nearest to x (ties to even), for |x| < 2^51. Unlike llrint this form vectorises on every x86-64. */
 static inline int64_t lattice_round(double x)
 {
-  const double magic = 0x1.8p52;
+  const double magic = LATTICE_ROUND_MAGIC;
   uint64_t bits, base;
   double sum = x + magic;
   memcpy(&bits, &sum, sizeof bits);

@@ -9,13 +9,27 @@ void random_normal_pair(struct random_words r, double out[2])
   out[1] = radius * sin(angle);
 }
 
+/* Philox 4x32-10 once more (random_at has Random123's): with its words in 64 bits each, compilers make vector code of
+ * it, which they do not of the library's. Two of the counter's words are multiplied in each round; the high halves meet
+ * the other two and the key, the low halves take their places. */
 void random_columns(uint64_t seed, enum random_purpose purpose, uint32_t draw, uint64_t step, const uint32_t *entity,
                     uint32_t n, uint32_t *restrict column[4])
 {
-  uint32_t *restrict a = column[0], *restrict b = column[1], *restrict c = column[2], *restrict d = column[3];
+  uint32_t *restrict w0 = column[0], *restrict w1 = column[1], *restrict w2 = column[2], *restrict w3 = column[3];
+  const uint64_t low = 0xffffffffu;
   for (uint32_t k = 0; k < n; k++) {
-    const struct random_words r = random_at(seed, purpose, draw, step, entity[k]);
-    a[k] = r.w[0], b[k] = r.w[1], c[k] = r.w[2], d[k] = r.w[3];
+    uint64_t a = entity[k], b = (uint32_t)purpose + 256 * draw, c = step & low, d = step >> 32;
+    uint32_t key0 = (uint32_t)seed, key1 = (uint32_t)(seed >> 32);
+    for (int round = 0; round < PHILOX4x32_DEFAULT_ROUNDS; round++) {
+      const uint64_t p = PHILOX_M4x32_0 * (a & low), q = PHILOX_M4x32_1 * (c & low);
+      a = (q >> 32) ^ b ^ key0;
+      b = q & low;
+      c = (p >> 32) ^ d ^ key1;
+      d = p & low;
+      key0 += PHILOX_W32_0;
+      key1 += PHILOX_W32_1;
+    }
+    w0[k] = (uint32_t)a, w1[k] = (uint32_t)b, w2[k] = (uint32_t)c, w3[k] = (uint32_t)d;
   }
 }
 
@@ -45,7 +59,7 @@ void random_axes(uint64_t seed, enum random_purpose purpose, uint64_t step, cons
   random_columns(seed, purpose, 0, step, entity, n, columns);
   axes_from_words(w[0], w[1], w[2], w[3], n, x, y, z);
   for (uint32_t k = 0; k < n; k++)
-    axis[k] = z[k] > -1.0 ? (struct vec3){x[k], y[k], z[k]} : random_axis(seed, purpose, step, entity[k]);
+    axis[k] = z[k] > -1.0 ? (struct vec3){x[k], y[k], z[k]} : random_axis_from(seed, purpose, 1, step, entity[k]);
 }
 
 /* floor(r n / 2^64) */

@@ -80,15 +80,22 @@ static inline int random_axis_from_words(struct random_words r, int k, struct ve
   return 1;
 }
 
-/* Uniform unit vector at an address: words 0, 1 of draw 0, else words 2, 3, else the same of draw 1, 2, ... */
-static inline struct vec3 random_axis(uint64_t seed, enum random_purpose purpose, uint64_t step, uint32_t entity)
+/* Uniform unit vector at an address: words 0, 1 of the first draw, else words 2, 3, else the same of the next one. */
+static inline struct vec3 random_axis_from(uint64_t seed, enum random_purpose purpose, uint32_t draw, uint64_t step,
+                                           uint32_t entity)
 {
   struct vec3 n;
-  for (uint32_t draw = 0;; draw++) {
+  for (;; draw++) {
     struct random_words r = random_at(seed, purpose, draw, step, entity);
     if (random_axis_from_words(r, 0, &n) || random_axis_from_words(r, 1, &n))
       return n;
   }
+}
+
+/* The same from draw 0 on. */
+static inline struct vec3 random_axis(uint64_t seed, enum random_purpose purpose, uint64_t step, uint32_t entity)
+{
+  return random_axis_from(seed, purpose, 0, step, entity);
 }
 
 /* The unit vectors of n entities, n <= RANDOM_AXES. The same as random_axis, in a form that vectorises. */

@@ -25,16 +25,26 @@ uint32_t solvent_cell_of(const struct box *box, struct point p, struct point shi
   return (z * ly + y) * lx + x;
 }
 
-void solvent_bin(const struct state *state, const struct model *model, struct work *work, struct point shift)
+void solvent_bin_some(const struct state *state, const struct model *model, struct work *work, struct point shift,
+                      uint32_t first, uint32_t n)
 {
   const struct solvent *s = &state->solvent;
   const struct box *box = &model->box;
   const uint32_t lx = (uint32_t)box->cells[0], ly = (uint32_t)box->cells[1], lz = (uint32_t)box->cells[2];
-  const int64_t *restrict x = s->x, *restrict y = s->y, *restrict z = s->z;
-  uint32_t *restrict cell = work->collision.solvent_cell;
-  const uint32_t n = s->n;
+  const int64_t *restrict x = &s->x[first], *restrict y = &s->y[first], *restrict z = &s->z[first];
+  uint32_t *restrict cell = &work->collision.solvent_cell[first];
   for (uint32_t i = 0; i < n; i++)
     cell[i] = (cell_index(z[i], shift.z, lz) * ly + cell_index(y[i], shift.y, ly)) * lx + cell_index(x[i], shift.x, lx);
+}
+
+void solvent_bin_vertices(const struct state *state, const struct model *model, struct work *work, struct point shift)
+{
   for (uint32_t v = 0; v < state->vertices; v++)
-    work->collision.vertex_cell[v] = solvent_cell_of(box, state->position[v], shift);
+    work->collision.vertex_cell[v] = solvent_cell_of(&model->box, state->position[v], shift);
+}
+
+void solvent_bin(const struct state *state, const struct model *model, struct work *work, struct point shift)
+{
+  solvent_bin_some(state, model, work, shift, 0, state->solvent.n);
+  solvent_bin_vertices(state, model, work, shift);
 }

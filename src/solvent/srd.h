@@ -39,21 +39,16 @@ static inline double srd_mass(const struct cell_sum *sum)
   return (double)(sum->load & (SRD_MEMBER - 1)) * SRD_MASS_UNIT;
 }
 
-static inline void srd_add_momentum(struct cell_sum *sum, uint64_t load, int64_t px, int64_t py, int64_t pz)
-{
-  sum->px = (int64_t)((uint64_t)sum->px + (uint64_t)px); /* wraps, where signed addition may not: see check_range */
-  sum->py = (int64_t)((uint64_t)sum->py + (uint64_t)py);
-  sum->pz = (int64_t)((uint64_t)sum->pz + (uint64_t)pz);
-  sum->load += load;
-}
-
 /* Adds a member. Returns a number that is at least the size of each momentum component, in momentum units; it is
  * 2^63 - 1 if a component was out of range or not a number (llrint gives INT64_MIN then). */
 static inline uint64_t srd_add(struct cell_sum *sum, double mass, uint64_t load, struct vec3 v)
 {
   const double scale = mass * SRD_MOMENTUM_SCALE;
   int64_t px = llrint(scale * v.x), py = llrint(scale * v.y), pz = llrint(scale * v.z);
-  srd_add_momentum(sum, load, px, py, pz);
+  sum->px = (int64_t)((uint64_t)sum->px + (uint64_t)px); /* wraps, where signed addition may not: see check_range */
+  sum->py = (int64_t)((uint64_t)sum->py + (uint64_t)py);
+  sum->pz = (int64_t)((uint64_t)sum->pz + (uint64_t)pz);
+  sum->load += load;
   return (uint64_t)(px ^ (px >> 63)) | (uint64_t)(py ^ (py >> 63)) | (uint64_t)(pz ^ (pz >> 63));
 }
 
