@@ -83,7 +83,8 @@ class WithoutHydrodynamics(unittest.TestCase):
         self.assertAlmostEqual(value, 0.02 / 10.0 * (1.5 / mean - 0.5), 12)
 
     def test_rouse(self):
-        """5 vertices, by the eigenvectors of the chain's matrix: <R(t).R> = 3 sum_p (v_p(5) - v_p(1))^2 exp(-k a_p t/zeta)/(k a_p)."""
+        """5 vertices, by the eigenvectors of the chain's matrix:
+        <R(t).R> = 3 sum_p (v_p(5) - v_p(1))^2 exp(-k a_p t/zeta)/(k a_p)."""
         k, zeta, t = 3.0, 94.0, numpy.array([0.0, 10.0, 50.0])
         matrix = numpy.diag([1.0, 2.0, 2.0, 2.0, 1.0]) - numpy.eye(5, k=1) - numpy.eye(5, k=-1)
         a, v = numpy.linalg.eigh(matrix)
@@ -99,8 +100,8 @@ class Estimates(unittest.TestCase):
         self.assertEqual(list(dilute.nested(times, 0.8, 6.4)), [1, 3, 5, 7])
 
     def test_errors_of_random_walks(self):
-        """600 sets of 20 walkers, 256 steps with D = 1/2, lags of 1, 2, 4, 8, 16 without overlap. The estimate is unbiased,
-        and its error is right: (value - 1/2)/error scatters by 1 (600 sets tell it to 0.03)."""
+        """600 sets of 20 walkers, 256 steps with D = 1/2, lags of 1, 2, 4, 8, 16 without overlap. The estimate is
+        unbiased, and its error is right: (value - 1/2)/error scatters by 1 (600 sets tell it to 0.03)."""
         random = numpy.random.Generator(numpy.random.PCG64(5))
         lags, pulls = numpy.array([1.0, 2.0, 4.0, 8.0, 16.0]), []
         for _ in range(600):

@@ -162,8 +162,8 @@ def scene_of(result):
 
 def size(result):
     """(<R^2> over its exact value, its error); None without the table. The error is theory's: R^2 of a Gaussian vector
-    scatters by sqrt(2/3) of its mean; every chain starts with a shape of its own and has another after Rouse's time. (Short
-    runs of few chains cannot know their error, and small values would come with small errors.)"""
+    scatters by sqrt(2/3) of its mean; every chain starts with a shape of its own and has another after Rouse's time.
+    (Short runs of few chains cannot know their error, and small values would come with small errors.)"""
     try:
         table = result.table("statics-chain")
     except KeyError:
@@ -184,8 +184,8 @@ def turning(result):
 
 
 def friction(result):
-    """(zeta, error): friction of a vertex from the first turning of the end-to-end vector, up to 0.3 of Rouse's time; least
-    squares. Neighboring lags share their noise, so the error is that of the best lag alone."""
+    """(zeta, error): friction of a vertex from the first turning of the end-to-end vector, up to 0.3 of Rouse's time;
+    least squares. Neighboring lags share their noise, so the error is that of the best lag alone."""
     found = turning(result)
     if found is None:
         return None
@@ -243,8 +243,8 @@ def verdicts_with(points, far):
     prefactor = dilute.mean_ratio(list(zip(values, errors)), 1.0 / (PAPER_ETA * numpy.sqrt(sizes))) if far else None
     known = math.hypot(0.25 * dilute.D_VERTEX_ERROR / dilute.D_VERTEX, dilute.NU_ERROR / dilute.NU)  # of Kirkwood's D
     return [
-        dilute.held("chains.exponent", "Exponent of D against N in an infinite box, and Kirkwood's at the same N", expected,
-                    "THEORY 2.7, with a_h of the claim mobility", slope, 0.02),
+        dilute.held("chains.exponent", "Exponent of D against N in an infinite box, and Kirkwood's at the same N",
+                    expected, "THEORY 2.7, with a_h of the claim mobility", slope, 0.02),
         dilute.held("chains.exponent-paper", "The same, against Zimm's N^-1/2", -0.5, "Eq. (39), Fig. 2", slope, 0.02,
                     kind="paper", reason="N^-1/2 is the limit of long chains; short ones still feel single vertices"),
         dilute.held("chains.kirkwood", "D in an infinite box over Kirkwood's sum, mean over lengths", 1.0 - BIAS / 2.0,
@@ -264,16 +264,16 @@ def same_in_boxes(points):
         if big and small:
             means = [stats.weighted_mean([p.infinite for p in each], [p.error for p in each]) for each in (small, big)]
             ratios.append(dilute.over(*means))
-    return dilute.held("chains.boxes", "Small boxes over the paper's, both corrected for images; mean over lengths", 1.0,
-                       "THEORY 2.6", dilute.mean_ratio(ratios, numpy.ones(len(ratios))), 0.01)
+    return dilute.held("chains.boxes", "Small boxes over the paper's, both corrected for images; mean over lengths",
+                       1.0, "THEORY 2.6", dilute.mean_ratio(ratios, numpy.ones(len(ratios))), 0.01)
 
 
 def crowding(points):
     pair = None
     if "crowd-4" in points and "N10-L25" in points:
         pair = dilute.over(*((points[name].value, points[name].error) for name in ("N10-L25", "crowd-4")))
-    return dilute.held("chains.dilute", "D with 16 chains of 10 vertices in 25³ cells over D with 4: are they dilute?", 1.0,
-                       "a dilute solution has no neighbors", pair, 0.02)
+    return dilute.held("chains.dilute", "D with 16 chains of 10 vertices in 25³ cells over D with 4: are they dilute?",
+                       1.0, "a dilute solution has no neighbors", pair, 0.02)
 
 
 def verdicts_without(results):
@@ -286,8 +286,8 @@ def verdicts_without(results):
     found = [
         dilute.held("chains.free-exponent", "Without hydrodynamics: exponent of D against N, and of the same theory",
                     shared, "lib/dilute.py: sharing_diffusion", slope, 0.01),
-        dilute.held("chains.free-exponent-paper", "The same, against the paper's line N^-1", -1.0, "Fig. 2", slope, 0.01,
-                    kind="paper", reason="short chains share fewer cells than long ones; N^-1 holds between long ones"),
+        dilute.held("chains.free-exponent-paper", "The same, against the paper's line N^-1", -1.0, "Fig. 2", slope,
+                    0.01, kind="paper", reason="short chains share fewer cells than long ones"),
         dilute.held("chains.free-D", "Without hydrodynamics: D over molecular chaos of chains that share cells", 1.0,
                     "lib/dilute.py: sharing_diffusion", ratio, 0.03, known)]
     for n in LOOSE_ROUSE:
@@ -295,7 +295,8 @@ def verdicts_without(results):
             pair, zeta = free(results, f"loose-N{n}"), friction(results[f"loose-N{n}"])
             found += [
                 dilute.held(f"chains.rouse-times-N{n}", f"Loose chains (bonds of 5.5 a0) of {n}: Rouse times from the "
-                            "turning of the end-to-end vector, over exact ones", 1.0, "tau_p = zeta/(4 k sin^2(p pi/2N))",
+                            "turning of the end-to-end vector, over exact ones", 1.0,
+                            "tau_p = zeta/(4 k sin^2(p pi/2N))",
                             dilute.over(zeta, (1.0 / chaos, 0.0)) if zeta else None, 0.01),
                 dilute.held(f"chains.rouse-D-N{n}", "The same chains: D N/D_0", 1.0, "D = D_0/N",
                             dilute.over(pair, (chaos / n, 0.0)) if pair else None, 0.01)]
@@ -306,8 +307,8 @@ def swap_verdict(results, n):
     swap, phantoms = free(results, f"swap-N{n}"), free(results, f"rouse-N{n}")
     share = dilute.closed_box(SYSTEMS[n, PAPER_BOXES[n]][0], n * dilute.MASS, PAPER_BOXES[n])
     pair = dilute.over((swap[0] / share, swap[1] / share), phantoms) if swap and phantoms else None
-    return dilute.held(f"chains.swap-N{n}", f"No hydrodynamics, N = {n}: D with the paper's swap over D with phantoms", 1.0,
-                       "docs/accuracy.md: 0.996 ± 0.007, closed box taken out", pair, 0.03)
+    return dilute.held(f"chains.swap-N{n}", f"No hydrodynamics, N = {n}: D with the paper's swap over D with phantoms",
+                       1.0, "docs/accuracy.md: 0.996 ± 0.007, closed box taken out", pair, 0.03)
 
 
 def size_verdict(results):
@@ -397,18 +398,19 @@ def draw_rouse(results):
 def words(results, points, far):
     parts = []
     if far:
-        parts.append(f"""**D in an infinite box**, 10⁻³ a0²/t0: {dilute.listed(far, kirkwood)}. Each is the mean of several sizes
-of box, with the images' share added and the recoil of the closed box taken out; errors are statistical.""")
+        parts.append(f"""**D in an infinite box**, 10⁻³ a0²/t0:
+{dilute.listed(far, kirkwood)}. Each is the mean over sizes of
+box, with the images' share added and the recoil of the closed box taken out; errors are statistical.""")
     slope, expected = fitted_exponents(far, kirkwood)
     if slope:
-        parts.append(f"""The exponent is {slope[0]:.3f} ± {slope[1]:.3f} (Kirkwood: {expected:.3f}). **What the images do**: in boxes
-that grow with R_e they take the same share of D at every length. They change the prefactor and not the exponent, as the
-paper says: its 0.17 is Zimm's 0.1955 less the images and less what finite N takes, scaled with a viscosity that is 4 % too
-large.""")
+        parts.append(f"""The exponent is {slope[0]:.3f} ± {slope[1]:.3f} (Kirkwood: {expected:.3f}).
+**What the images do**: in boxes that grow with R_e they take the same share of D at every length. They change the
+prefactor and not the exponent, as the paper says: its 0.17 is Zimm's 0.1955 less the images and less what finite N
+takes, scaled with a viscosity that is 4 % too large.""")
     if "rouse-N10" in results:
-        parts.append("""**Without hydrodynamics** D falls nearly as 1/N, but is not D_0/N: vertices of a Gaussian chain with bonds
-of 1 a0 share cells, keep their common momentum there, and the chain diffuses 20 to 40 % faster. Molecular chaos with shared
-cells says by how much. Chains with bonds of 5.5 a0 share none, and are Rouse's.""")
+        parts.append("""**Without hydrodynamics** D falls nearly as 1/N, but is not D_0/N: vertices of a Gaussian chain
+with bonds of 1 a0 share cells, keep their common momentum there, and the chain diffuses 20 to 40 % faster. Molecular
+chaos with shared cells says by how much. Chains with bonds of 5.5 a0 share none, and are Rouse's.""")
     for name, base in (("crossing-N20", "N20-L35"), ("crowd-64", "N10-L25")):
         if name in points and base in points:
             ratio = dilute.over(*((points[key].value, points[key].error) for key in (name, base)))

@@ -140,7 +140,8 @@ def verdicts(measured, off, swap):
             best, covariance = measured.line()
             slope = best[1], math.sqrt(covariance[1, 1])
     return [
-        dilute.held("mobility.chaos", "Without hydrodynamics (phantoms): D of a lone vertex over molecular chaos's", 1.0,
+        dilute.held("mobility.chaos", "Without hydrodynamics (phantoms): D of a lone vertex over molecular chaos's",
+                    1.0,
                     "THEORY 2.1: D_0 = (kT dt_c/M) [1/(1 - c) - 1/2] = 0.010662",
                     dilute.over(off, (chaos, 0.0)) if off else None, 0.003),
         dilute.held("mobility.swap", "The same with the paper's swap of velocities: who is near is remembered", 1.02,
@@ -148,13 +149,13 @@ def verdicts(measured, off, swap):
                     known=0.003),
         dilute.held("mobility.images", "Slope of D against the images' share 2.837297 kT/(6 pi eta L)", 1.0,
                     "THEORY 2.6, eta = 10.74 from shear waves", slope, 0.15),
-        dilute.held("mobility.D", "D of a vertex in an infinite box", 0.0179, "docs/accuracy.md, another estimator", limit,
-                    LAG_BIAS * 0.0179 + 0.0002, known=0.0001),
+        dilute.held("mobility.D", "D of a vertex in an infinite box", 0.0179, "docs/accuracy.md, another estimator",
+                    limit, LAG_BIAS * 0.0179 + 0.0002, known=0.0001),
         dilute.held("mobility.radius", "a_h = kT/(6 pi eta D), measured eta, against the paper's 'about 0.3'", 0.30,
                     "Sec. III D", radius, 0.05, kind="paper"),
         dilute.held("mobility.radius-table", "a_h against the 0.25 that the aspect ratio of Table II stands for", 0.25,
                     "Table II, p = L/2a_h = 64", radius, LAG_BIAS * 0.27, kind="paper",
-                    reason="Table II sets 2a_h to the bond length, 0.5. With the measured radius the aspect ratio is 59.")]
+                    reason="Table II sets 2a_h to the bond length, 0.5; with the measured radius p is 59")]
 
 
 def draw_boxes(measured, off, swap):
@@ -205,22 +206,22 @@ def words(measured):
     if not measured:
         return ""
     limit, error = measured.limit()
-    text = f"""In an infinite box D = {limit:.5f} ± {error:.5f} (statistical), and up to {100 * LAG_BIAS:.1f} % for the choice
-of lags: a hydrodynamic radius of {dilute.stokes(limit):.3f} a0, and {limit / dilute.vertex_diffusion():.2f} times the D of
-molecular chaos. The paper's 'about 0.3' is confirmed; the 0.25 behind its aspect ratio of 64 is not the radius of a vertex
-but half a bond.
+    text = f"""In an infinite box D = {limit:.5f} ± {error:.5f} (statistical), and up to {100 * LAG_BIAS:.1f} % for the
+choice of lags: a hydrodynamic radius of {dilute.stokes(limit):.3f} a0, {limit / dilute.vertex_diffusion():.2f} times
+the D of molecular chaos. The paper's 'about 0.3' is confirmed; the 0.25 behind its aspect ratio of 64 is not the radius
+of a vertex but half a bond.
 
-D(t) = g/6t comes near its limit slowly, as 1/t: transverse waves of the box still carry the vertex (D is yet too small),
-sound has carried it and will take it back (D is too large). In large boxes the two nearly cancel, so that D(t) looks
-settled long before it is; the estimate takes both out."""
+D(t) = g/6t comes near its limit slowly, as 1/t: transverse waves of the box still carry the vertex (D is yet too
+small), sound has carried it and will take it back (D is too large). In large boxes the two nearly cancel, so that D(t)
+looks settled long before it is; the estimate takes both out."""
     crowded = [i for i in range(len(measured.keys)) if i not in measured.dilute()]
     same = [i for i in measured.dilute() if measured.keys[i][0] == 16]
     if crowded and same:
         lone = measured.value[same[0]]
         parts = [f"{measured.keys[i][1]} vertices: {measured.value[i] / lone:.3f} ± {measured.error[i] / lone:.3f}"
                  for i in crowded]
-        text += f"""\n\nCrowding (16³ cells, over the D of the most dilute): {'; '.join(parts)}. Vertices are heavy, and what
-they add to the mass of the fluid adds to its viscosity."""
+        text += f"""\n\nCrowding (16³ cells, over the D of the most dilute): {'; '.join(parts)}. Vertices are heavy, and
+what they add to the mass of the fluid adds to its viscosity."""
     return text
 
 
@@ -228,8 +229,8 @@ def evaluate(results, tier):
     off, swap = without(results, "phantoms-L64", 256, 64), without(results, "swap-L8", 4, 8)
     found, measured = boxes(results)
     pictures = [
-        Figure("boxes", "Diffusion of a vertex against the size of the box. The line has the slope of the images and the "
-               "measured viscosity; only its height is fitted.", lambda: draw_boxes(measured, off, swap))]
+        Figure("boxes", "Diffusion of a vertex against the size of the box. The line has the slope of the images and "
+               "the measured viscosity; only its height is fitted.", lambda: draw_boxes(measured, off, swap))]
     if measured:
         pictures.append(
             Figure("lags", "The running estimate g(t)/6t of a vertex in three boxes. Lines: the fitted limit less the "

@@ -213,8 +213,8 @@ def free_verdict(results):
 
 def kirkwood_verdict(far):
     known = math.hypot(0.15 * dilute.D_VERTEX_ERROR / dilute.D_VERTEX, dilute.NU_ERROR / dilute.NU)
-    return dilute.held("rods.kirkwood", "D in an infinite box over Kirkwood's sum for a straight row of beads, mean", 1.0,
-                       "THEORY 2.7, with a_h of the claim mobility",
+    return dilute.held("rods.kirkwood", "D in an infinite box over Kirkwood's sum for a straight row of beads, mean",
+                       1.0, "THEORY 2.7, with a_h of the claim mobility",
                        dilute.mean_ratio(list(far.values()), [kirkwood(n) for n in far]), BIAS, known)
 
 
@@ -227,11 +227,11 @@ def campaign_verdicts(points, far):
                     "THEORY 2.6", image_slope(points), 0.1),
         dilute.held("rods.prefactor", "Prefactor of the joint fit in an infinite box, measured eta", PREFACTOR,
                     "Eq. (40): 1/(3 pi)", (rule.prefactor, rule.prefactor_error) if rule else None, 0.006),
-        dilute.held("rods.diameter", "Diameter in an infinite box with the prefactor 1/(3 pi), over 2 a_h of a vertex", 1.0,
-                    "a row of beads that touch", dilute.over(alone, (twice, 0.0)) if alone else None, 0.25),
+        dilute.held("rods.diameter", "Diameter in an infinite box with the prefactor 1/(3 pi), over 2 a_h of a vertex",
+                    1.0, "a row of beads that touch", dilute.over(alone, (twice, 0.0)) if alone else None, 0.25),
         dilute.held("rods.prefactor-paper", "Prefactor of the joint fit in the paper's boxes, eta = 11.18", 0.094,
-                    "Sec. V A", (box_rule.prefactor, box_rule.prefactor_error) if box_rule else None, 0.0005, kind="paper",
-                    reason="images change b, not the prefactor, in boxes that grow with the rod"),
+                    "Sec. V A", (box_rule.prefactor, box_rule.prefactor_error) if box_rule else None, 0.0005,
+                    kind="paper", reason="images change b, not the prefactor, in boxes that grow with the rod"),
         dilute.held("rods.diameter-paper", "Diameter b of the same fit", 0.6, "Sec. V A",
                     (box_rule.diameter, box_rule.diameter_error) if box_rule else None, 0.05, kind="paper",
                     reason="it goes up and down with the prefactor of the same fit")]
@@ -297,17 +297,18 @@ def words(points, far):
     parts = []
     slope = image_slope(points)
     if slope:
-        parts.append(f"""**What the images do**, at N = 10: D against their share has the slope {slope[0]:.2f} ± {slope[1]:.2f},
-theory 1. In boxes that grow with the rod they take a constant times kT/(eta L): a larger b, and the same prefactor.""")
+        parts.append(f"""**What the images do**, at N = 10: D against their share has the slope {slope[0]:.2f} ±
+{slope[1]:.2f}, theory 1. In boxes that grow with the rod they take a constant times kT/(eta L): a larger b, and the
+same prefactor.""")
     if far:
         parts.append(f"**D in an infinite box**, 10⁻³ a0²/t0: {dilute.listed(far, kirkwood)}.")
     rule, box_rule, alone = fits(far)
     if rule:
-        parts.append(f"""Joint fits of Eq. (40) with L = N/2: prefactor {rule.prefactor:.4f} ± {rule.prefactor_error:.4f}, b =
-{rule.diameter:.2f} ± {rule.diameter_error:.2f} in an infinite box with the measured viscosity; {box_rule.prefactor:.4f} ±
-{box_rule.prefactor_error:.4f}, b = {box_rule.diameter:.2f} ± {box_rule.diameter_error:.2f} in the paper's boxes with the paper's
-viscosity (the paper: 0.094 and 0.6). With the prefactor 1/(3 pi) held, b = {alone[0]:.3f} ± {alone[1]:.3f} in an infinite
-box. Prefactor and ln b of one fit are correlated almost fully.""")
+        parts.append(f"""Joint fits of Eq. (40) with L = N/2:
+prefactor {rule.prefactor:.4f} ± {rule.prefactor_error:.4f}, b = {rule.diameter:.2f} ± {rule.diameter_error:.2f} in an infinite box with the measured viscosity;
+{box_rule.prefactor:.4f} ± {box_rule.prefactor_error:.4f}, b = {box_rule.diameter:.2f} ± {box_rule.diameter_error:.2f}
+in the paper's boxes with the paper's viscosity (the paper: 0.094 and 0.6). With the prefactor 1/(3 pi) held,
+b = {alone[0]:.3f} ± {alone[1]:.3f} in an infinite box. Prefactor and ln b of one fit are correlated almost fully.""")
     return "\n\n".join(parts)
 
 
@@ -321,6 +322,6 @@ def evaluate(results, tier):
         Figure("lengths", "Fig. 2, rods: diffusion against length. Below: infinite box over Kirkwood's sum (blue), the "
                "paper's boxes over the paper's line (red), no hydrodynamics over molecular chaos with shared cells "
                "(green).", lambda: draw_lengths(results, points, far)),
-        Figure("images", "What the box does: the same rods in several boxes. Lines: one limit for each length, less the "
-               "images' share.", lambda: draw_images(points))]
+        Figure("images", "What the box does: the same rods in several boxes. Lines: one limit for each length, less "
+               "the images' share.", lambda: draw_images(points))]
     return Outcome(found, pictures, words(points, far))
