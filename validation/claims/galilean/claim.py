@@ -100,23 +100,21 @@ def lag_verdicts(results):
 
 def displacement_verdicts(results, system):
     """g and g_cm of a moving system over those of the one at rest, less what the lag adds: (lag v t)^2."""
-    rest, found = sd.table(results.get("flow00")), []
-    for name, flow in system["names"].items():
-        if name == "flow00" or (flow not in (0.54,)):
-            continue
-        moving = sd.table(results.get(name))
-        for column in ("g", "g_cm"):
-            lag = system["lags"][0]
-            verdict = Verdict(f"galilean.{column}.{name}", f"{column} at {flow} a0/t0 over at rest, {lag:g} t0", 1.0,
-                              "Galilean invariance, and the lag", 0.0)
-            a, b = sd.at(moving, column, lag), sd.at(rest, column, lag)
-            if a and b:
-                share = refused_share(results[name]) if name.startswith("flow") else 0.0
-                verdict.expected = 1.0 + (share * flow * lag)**2 / b[0]
-                ratio = a[0] / b[0]
-                sd.measured(verdict, (ratio, ratio * math.hypot(a[1] / a[0], b[1] / b[0])), 0.01)
-            found.append(verdict)
-    return found
+    rest = sd.table(results.get("flow00"))
+    return [displacement_verdict(results.get(name), rest, name, flow, column, lag)
+            for name, flow in system["names"].items() if flow > 0.0 for column in ("g", "g_cm") for lag in system["lags"]]
+
+
+def displacement_verdict(result, rest, name, flow, column, lag):
+    verdict = Verdict(f"galilean.{column}.{name}.{lag:g}", f"{column} at {flow} a0/t0 over at rest, {lag:g} t0", 1.0,
+                      "Galilean invariance, and the lag", 0.0)
+    a, b = sd.at(sd.table(result), column, lag), sd.at(rest, column, lag)
+    if a is None or b is None:
+        return verdict
+    share = refused_share(result) if name.startswith("flow") else 0.0
+    verdict.expected = 1.0 + (share * flow * lag)**2 / b[0]
+    ratio = a[0] / b[0]
+    return sd.measured(verdict, (ratio, ratio * math.hypot(a[1] / a[0], b[1] / b[0])), 0.01)
 
 
 def momentum_verdict(results):
@@ -126,6 +124,8 @@ def momentum_verdict(results):
         try:
             table = result.table("conserved")
         except KeyError:
+            continue
+        if len(table["time"]) < 2:
             continue
         change = max(float(numpy.abs(table[key] - table[key][0]).max()) for key in ("px", "py", "pz"))
         mass = max(1.0, 2.0 * float(table["vertex_kinetic"][0] + table["solvent_kinetic"][0]) / 3.0)
