@@ -206,7 +206,8 @@ def friction(result):
 @functools.lru_cache(maxsize=None)
 def sharing(n):
     """D without hydrodynamics of a chain whose vertices share cells."""
-    return dilute.sharing_diffusion(lambda random: dilute.gaussian_shape(n, 1.0, random), shapes=80)
+    shapes = 80 if n <= 40 else 20
+    return dilute.sharing_diffusion(lambda random: dilute.gaussian_shape(n, 1.0, random), shapes=shapes)
 
 
 @functools.lru_cache(maxsize=None)
