@@ -163,6 +163,9 @@ PEER_MEASURE := $(addprefix $(BUILD)/validation/measure/,solvent_vacf solvent_va
 peer:
 	tools/install-dependencies run bench peers
 	$(MAKE) -j2 $(BUILD)/uncross $(PEER_MEASURE)
+	@test "$$($(BUILD)/validation/measure/solvent_vacf 4 5 0.02 90 3 2 1 | tail -n 1)" != \
+	   "$$($(BUILD)/validation/measure/solvent_vacf_box_axes 4 5 0.02 90 3 2 1 | tail -n 1)" || \
+	   { echo 'peer: collisions no longer draw their axes with random_axes, which box_axes.c stands in for'; exit 1; }
 	validation/run makefile peer --tier campaign --build $(BUILD) >$(BUILD)/peer.mk
 	$(MAKE) -f $(BUILD)/peer.mk all
 	validation/run harvest peer --tier campaign --build $(BUILD)
