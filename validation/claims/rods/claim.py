@@ -171,8 +171,9 @@ def diameter_alone(sizes, values, errors, eta):
 
 @dataclasses.dataclass
 class Fits:
-    """Eq. (40) fitted to D in an infinite box (measured eta), in the paper's boxes (the paper's eta), and to Kirkwood's D
-    at the same lengths with the same weights; b alone with the prefactor 1/(3 pi), (value, error), ours and Kirkwood's."""
+    """Eq. (40) fitted to D in an infinite box (measured eta), in the paper's boxes (the paper's eta), and to Kirkwood's
+    D at the same lengths with the same weights; b alone with the prefactor 1/(3 pi), (value, error), ours and
+    Kirkwood's."""
     infinite: Rule
     in_box: Rule
     model: Rule
@@ -243,7 +244,7 @@ def campaign_verdicts(points, far):
     return [
         dilute.held("rods.images", "Slope of D against the images' share kT/(6 pi eta L) (2.837297 - ...), N = 10", 1.0,
                     "THEORY 2.6", image_slope(points), 0.1),
-        dilute.held("rods.prefactor", "Prefactor of the joint fit in an infinite box, L = N/2, and Kirkwood's so fitted",
+        dilute.held("rods.prefactor", "Prefactor of the joint fit in an infinite box, L = N/2; and of Kirkwood's D",
                     rules.model.prefactor if rules else 0.096, "THEORY 2.7, the same lengths and weights", prefactor,
                     0.004),
         dilute.held("rods.diameter", "b with the prefactor 1/(3 pi) in an infinite box, over that of Kirkwood's D", 1.0,
@@ -254,8 +255,8 @@ def campaign_verdicts(points, far):
         dilute.held("rods.prefactor-paper", "Prefactor of the joint fit in the paper's boxes, eta = 11.18", 0.094,
                     "Sec. V A", box_prefactor, 0.0005, kind="paper",
                     reason="images change b, not the prefactor; the paper's errors are not stated"),
-        dilute.held("rods.diameter-paper", "Diameter b of the same fit", 0.6, "Sec. V A", box_diameter, 0.05, kind="paper",
-                    reason="it goes up and down with the prefactor of the same fit")]
+        dilute.held("rods.diameter-paper", "Diameter b of the same fit", 0.6, "Sec. V A", box_diameter, 0.05,
+                    kind="paper", reason="it goes up and down with the prefactor of the same fit")]
 
 
 # --- figures ----------------------------------------------------------------------------------------------------------
@@ -329,9 +330,9 @@ same prefactor.""")
                          f"{rule.diameter_error:.2f}" for name, rule in (
                              ("infinite box, measured viscosity:", rules.infinite),
                              ("the paper's boxes, the paper's viscosity:", rules.in_box)))
-        parts.append(f"""Joint fits of Eq. (40) with L = N/2, prefactor and b (the paper: 0.094 and 0.6): {rows}. Kirkwood's D
-for these rods, without any images, gives {rules.model.prefactor:.4f} and {rules.model.diameter:.2f}. With 1/(3 pi) held,
-b = {rules.alone[0]:.3f} ± {rules.alone[1]:.3f}. Prefactor and ln b of one fit are correlated almost fully.""")
+        parts.append(f"""Joint fits of Eq. (40) with L = N/2, prefactor and b (the paper: 0.094 and 0.6): {rows}.
+Kirkwood's D for these rods, without any images, gives {rules.model.prefactor:.4f} and {rules.model.diameter:.2f}. With
+1/(3 pi) held, b = {rules.alone[0]:.3f} ± {rules.alone[1]:.3f}. Prefactor and ln b of one fit are correlated almost fully.""")
         parts.append(f"**Why the prefactor is below 1/(3 pi)**: {CONTOUR}.")
     return "\n\n".join(parts)
 
