@@ -26,7 +26,8 @@ class Formulas(unittest.TestCase):
         self.assertAlmostEqual(sd.PERSISTENCE, -sd.BOND / math.log(cosine[1] / cosine[0]), 4)
 
     def test_tube(self):
-        """Eqs. (34), (35) at c L^3 = 1000: xi/L = sqrt(0.003) = 0.0547723, so 0.31 x 0.003^0.6 (0.0306389) + 0.56 x 0.003."""
+        """Eqs. (34), (35) at c L^3 = 1000: xi/L = sqrt(0.003) = 0.0547723, so 0.31 x 0.003^0.6 (0.0306389) + 0.56 x "
+          "0.003."""
         self.assertAlmostEqual(sd.mesh_size(1000, 32, 32) / 32, 0.0547723, 7)
         self.assertAlmostEqual(sd.tube_width(sd.mesh_size(1000, 32, 32), 32, 32) / 32, 0.31 * 0.0306389 + 0.00168, 6)
 
@@ -45,7 +46,8 @@ class Formulas(unittest.TestCase):
             self.assertLess(abs(ratio - 1.0), bound)
 
     def test_shared_diffusion(self):
-        """Momentum that the vertices of a cell lose together, without their memory of each other: a cell with n of them loses
+        """Momentum that the vertices of a cell lose together, without their memory of each other: a cell with n of "
+          "them loses
         the share (2/3) N/(N + 5 n). Within 2 %, D then is (0.02/5)(1/share - 1/2)."""
         draw = numpy.random.default_rng(1)
         along = draw.normal(size=(100000, 3))
@@ -112,7 +114,8 @@ class Goals(unittest.TestCase):
         self.assertEqual(scene["fibers"][0]["count"], 7)
 
     def test_stages(self):
-        run = runs.Run("a", scene="box: [6, 6, 6]\n", steps=1000, hours=5.0, priority=2, goals=((100, 0), (600, 1)), claim="c")
+        run = runs.Run("a", scene="box: [6, 6, 6]\n", steps=1000, hours=5.0, priority=2, goals=((100, 0), (600, 1)),
+                       claim="c")
         stages = run.stages()
         self.assertEqual([stage.path for stage in stages], ["c/a@100", "c/a@600", "c/a"])
         self.assertEqual([stage.priority for stage in stages], [0, 1, 2])

@@ -25,7 +25,8 @@ TEMPLATE = pathlib.Path(__file__).resolve().parent / "fibers.yaml"
 SOLVENT = "thermostat: rescale"  # with hydrodynamics: see validation/claims/tube/README.md for why
 FREE_SOLVENT = "thermostat: none"
 BATH = "hydrodynamics: false\n  bath: phantoms"  # without
-STANDARD = {"box": 32, "dt": 0.01, "flow": 0, "solvent": SOLVENT, "vertices": 64, "forbidden": "true", "refusal": "stay",
+STANDARD = {"box": 32, "dt": 0.01, "flow": 0, "solvent": SOLVENT, "vertices": 64, "forbidden": "true",
+            "refusal": "stay",
             "frame": "laboratory", "series": 10000, "every": 50, "longest_lag": 3276800}
 
 
@@ -64,7 +65,8 @@ def shared_diffusion():
 
 
 def bending_of_vertices(t, diffusion):
-    """The same for vertices and bonds instead of a smooth line, an infinite chain: from K(q) = (kappa/<l>^2)(2 - 2 cos q)^2
+    """The same for vertices and bonds instead of a smooth line, an infinite chain: from K(q) = (kappa/<l>^2)(2 - 2 "
+      "cos q)^2
     per vertex. Tends to bending_law, from 10 % above at 0.5 t0, 2 % at 15 t0."""
     q = numpy.linspace(1e-4, math.pi, 20001)
     stiffness = 64.0 / BOND2 * (2.0 - 2.0 * numpy.cos(q))**2
@@ -146,8 +148,8 @@ def plateau(columns, name="d2_contour", flattest=0.35, width=3):
 
 def rotation_time(columns, shortest, longest, fibers, least=4):
     """(tau_r, error, intercept) from <u(0).u(t)> = A exp(-t/tau_r), lags shortest to longest: bends tilt the end-to-end
-    vector by a fixed angle soon (A), rotation goes on. tau_r = 1/(2 D_r). Lags count as independent. Few intervals of few
-    fibers have no error in the table; then 1 - cos, a sum of two squares, has the relative error of as many of them."""
+    vector by a fixed angle soon (A), rotation goes on. tau_r = 1/(2 D_r). Lags count as independent. Few intervals of
+    few fibers have no error in the table; then 1 - cos, a sum of two squares, has the relative error of so many."""
     if columns is None:
         return None
     t, c, error = columns["time"], columns["end_to_end_unit"], columns["end_to_end_unit_error"]

@@ -77,7 +77,8 @@ def real_rate(row):
     share = 1.0 - 2.0 * row["negative"] / row["executed"]
     bonds, volume = row["fibers"] * (row["vertices"] - 1), row["cells"]**3
     contacts = math.pi / 4.0 * (bonds / volume * sd.BOND)**2 * 0.1 * volume
-    return row["rate"] * share, row["rate"] * share * math.hypot(row["rate_error"] / row["rate"], 1.0 / math.sqrt(contacts))
+    return row["rate"] * share, row["rate"] * share * math.hypot(row["rate_error"] / row["rate"],
+                                                                 1.0 / math.sqrt(contacts))
 
 
 def counts(result):
@@ -119,12 +120,13 @@ def momentum_verdict(results):
         change = max(float(numpy.abs(table[key] - table[key][0]).max()) for key in ("px", "py", "pz"))
         energy = 2.0 * float(table["vertex_kinetic"][0] + table["solvent_kinetic"][0]) / 3.0
         worst = max(worst or 0.0, change / energy)
-    return Verdict("conservation.momentum.runs", "largest change of total momentum in any run of tube, msd and galilean, over 2/3 of the "
+    return Verdict("conservation.momentum.runs", "largest change of total momentum in any run of tube, msd and "
+                                                 "galilean, over 2/3 of the "
                    "kinetic energy, t0/a0", 0.0, "conserved; 10⁻⁹ for rounding", 1e-9, measured=worst, detects=2e-9)
 
 
-# kT per refused move at dt 0.01, measured once for good (docs/accuracy.md, "What a refused move costs": in the frame of a
-# flow, which is at rest).
+# kT per refused move at dt 0.01, measured once for good (docs/accuracy.md, "What a refused move costs": in the frame
+# of a flow, which is at rest).
 HEAT = {"stay": (0.0462, 0.0011), "bounce": (0.0375, 0.0013)}
 
 
@@ -132,7 +134,8 @@ def size_verdicts(results):
     found = []
     for rule, (expected, error) in HEAT.items():
         verdict = Verdict(f"conservation.heat.size.{rule}", f"heat per refused move, kT, dt 0.01, `{rule}`", expected,
-                          "docs/accuracy.md: other runs of this code, in a frame that moves", 0.1 * expected, expected_error=error)
+                          "docs/accuracy.md: other runs of this code, in a frame that moves", 0.1 * expected,
+                          expected_error=error)
         row = next((row for row in rows(results, "heat-c1000") if row["rule"] == rule and row["dt"] == 0.01), None)
         found.append(sd.measured(verdict, row and (row["heat"], row["heat_error"]), 0.1 * expected, sd.PARTS))
     return found
@@ -143,7 +146,8 @@ def heat_verdicts(results, tier):
     for rule in ("stay", "bounce"):
         dt, heat, error = heats(results, 1000, rule)
         verdict = Verdict(f"conservation.heat.{rule}", f"exponent of heat per refused move against dt, `{rule}`", 2.0,
-                          "an exchange between a drift and its kick: second order; 0.35 for higher orders at dt 0.02", 0.35)
+                          "an exchange between a drift and its kick: second order; 0.35 for higher orders at dt "
+                          "0.02", 0.35)
         if len(dt) >= 3:
             fit = stats.power(dt, heat, error)
             sd.measured(verdict, (fit.value[1], fit.error[1]), 0.35, sd.PARTS)
@@ -154,16 +158,20 @@ def heat_verdicts(results, tier):
         if row["rule"] == "stay" and row["dt"] == 0.01:
             freedoms = 3.0 * (5 * row["cells"]**3 + row["fibers"] * row["vertices"])
             found.append(sd.measured(Verdict(
-                "conservation.energy.constant", "energy gained at dt 0.01 and the highest density, kT per t0 and degree of freedom", 0.0,
+                "conservation.energy.constant", "energy gained at dt 0.01 and the highest density, kT per t0 and "
+                                                "degree of freedom", 0.0,
                 "paper, Sec. V B 1: “exactly constant”", 0.0, kind="paper",
-                reason="A collision conserves energy exactly, but it falls between a drift and its kick, and the leap-frog no "
+                reason="A collision conserves energy exactly, but it falls between a drift and its kick, and the "
+                       "leap-frog no "
                 "longer conserves its own energy: every refused move heats. It falls as dt²."),
                 (row["drift"] / freedoms, row["drift_error"] / freedoms), values=sd.PARTS))
     order = [row for row in rows(results, "heat-paper-order") if row["dt"] == 0.01]
     if tier == "campaign":
-        verdict = Verdict("conservation.energy.order", "the same with the paper's order of collision and kick, to the letter", 0.0,
+        verdict = Verdict("conservation.energy.order", "the same with the paper's order of collision and kick, to the "
+                                                       "letter", 0.0,
                           "paper, Sec. V B 1: “exactly constant”", 0.0, kind="paper",
-                          reason="Collisions at velocities of half a step ago heat whatever has springs (docs/accuracy.md).")
+                          reason="Collisions at velocities of half a step ago heat whatever has springs "
+                                 "(docs/accuracy.md).")
         if order:
             freedoms = 3.0 * (5 * order[0]["cells"]**3 + order[0]["fibers"] * order[0]["vertices"])
             sd.measured(verdict, (order[0]["drift"] / freedoms, order[0]["drift_error"] / freedoms), values=sd.PARTS)
@@ -174,9 +182,11 @@ def heat_verdicts(results, tier):
 def rate_verdicts(results):
     """At the smallest step of the densest, over all placements that there are."""
     table = [row for row in rows(results, "heat-c1000") if row["rule"] == "stay"]
-    rate = Verdict("conservation.rate", "executed less twice negative collisions, over kinetic theory, densest, smallest dt", 1.0,
+    rate = Verdict("conservation.rate", "executed less twice negative collisions, over kinetic theory, densest, "
+                                        "smallest dt", 1.0,
                    "(π/8) c_b² ⟨l⟩² √(2kT/πM) 1.151 per volume; 8 % for bonds of one fiber being placed together", 0.2)
-    ratio = Verdict("conservation.possible", "share of possible collisions that are not executed, densest, dt 0.01, the paper's rule",
+    ratio = Verdict("conservation.possible", "share of possible collisions that are not executed, densest, dt 0.01, "
+                                             "the paper's rule",
                     0.0, "paper: “the ratio should be close to one”: within 1 %", 0.01, detects=0.01)
     if table:
         finest = [min(table, key=lambda row: row["dt"])]
@@ -193,7 +203,8 @@ def density_verdicts(results, tier):
     """The long runs of Fig. 5."""
     found = []
     for name, density in SUSPENSIONS[tier].items():
-        verdict = Verdict(f"conservation.rate.c{density}", f"executed less twice negative collisions over kinetic theory, c L³ = {density}",
+        verdict = Verdict(f"conservation.rate.c{density}", f"executed less twice negative collisions over kinetic "
+                                                           f"theory, c L³ = {density}",
                           1.0, "kinetic theory of bonds at random; dt 0.01: 15 % for moves one by one", 0.15)
         seen = counts(results[name]) if name in results else None
         if seen:
@@ -225,7 +236,8 @@ def draw_heat(results):
             number += 1
     drift = [row for row in rows(results, "heat-drift-split") if row["rule"] == "stay"]
     if drift:
-        figures.points(above, [row["dt"] for row in drift], [row["heat"] for row in drift], [row["heat_error"] for row in drift],
+        figures.points(above, [row["dt"] for row in drift], [row["heat"] for row in drift],
+                       [row["heat_error"] for row in drift],
                        number, label="c L³ = 1000, stay, drift-split")
     above.set(xscale="log", yscale="log", ylabel="heat per refused move, kT")
     below.set(xscale="log", xlabel="dt, t0", ylabel="over dt² of the\nsmallest step", ylim=(0, 2.5))
@@ -243,16 +255,20 @@ def draw_refused(results, tier):
         dt = [row["dt"] for row in table]
         missed = [max(row["possible"] - row["executed"], 0.3) for row in table]
         figures.points(axes[0], dt, [m / row["possible"] for m, row in zip(missed, table)],
-                       [math.sqrt(m) / row["possible"] for m, row in zip(missed, table)], number, label=f"c L³ = {density}")
+                       [math.sqrt(m) / row["possible"] for m, row in zip(missed, table)], number,
+                       label=f"c L³ = {density}")
         theory = kinetic_rate(table[0])
-        figures.points(axes[1], dt, [row["rate"] / theory for row in table], [row["rate_error"] / theory for row in table], number)
+        figures.points(axes[1], dt, [row["rate"] / theory for row in table],
+                       [row["rate_error"] / theory for row in table], number)
         pairs = [real_rate(row) for row in table]
-        figures.points(axes[1], [1.04 * x for x in dt], [pair[0] / theory for pair in pairs], [pair[1] / theory for pair in pairs],
+        figures.points(axes[1], [1.04 * x for x in dt], [pair[0] / theory for pair in pairs],
+                       [pair[1] / theory for pair in pairs],
                        number, markerfacecolor="white")
     for number, (name, density) in enumerate(SUSPENSIONS[tier].items()):
         seen = counts(results[name]) if name in results else None
         if seen and seen[0] < 1.0:
-            figures.points(axes[0], [0.0108], [1.0 - seen[0]], None, len(COUNTS) + number, label=f"32³ cells, {density}")
+            figures.points(axes[0], [0.0108], [1.0 - seen[0]], None, len(COUNTS) + number,
+                           label=f"32³ cells, {density}")
     axes[0].set(xscale="log", yscale="log", xlabel="dt, t0", ylabel="1 − executed/possible")
     axes[1].set(xscale="log", xlabel="dt, t0", ylabel="rate over kinetic theory")
     axes[1].axhline(1.0, color="#222222", linewidth=1)
@@ -261,18 +277,21 @@ def draw_refused(results, tier):
 
 
 def evaluate(results, tier):
-    verdicts = sweep_verdicts(results) + [momentum_verdict(results)] + rate_verdicts(results) + density_verdicts(results, tier)
+    verdicts = sweep_verdicts(results) + [momentum_verdict(results)] + rate_verdicts(results)
+    verdicts += density_verdicts(results, tier)
     found = [Figure("heat", "Heat per refused move against the time step. No thermostat.", lambda: draw_heat(results)),
-             Figure("refused", "Left: share of possible collisions that are not executed (the first of several is). Right: collisions "
+             Figure("refused", "Left: share of possible collisions that are not executed (the first of several is). "
+                               "Right: collisions "
                     "executed (filled), and less twice those of negative ΔP (open), over kinetic theory.",
                     lambda: draw_refused(results, tier))]
     return Outcome(verdicts + heat_verdicts(results, tier), found, PROSE)
 
 
-PROSE = """A collision of bonds conserves energy and momentum to rounding, whatever the rule. The **whole** conserves momentum, not energy:
-an exchange falls between a drift and the kick that belongs to it. The paper saw an energy “exactly constant”; with its own
-rule, dt and density it rises by 6·10⁻⁴ of itself per t0, and by percents with its own order of steps. The heat per refused move falls as dt²;
-letting the refused vertex finish its step with the new velocity (`bounce`) saves a fifth, half the time step three quarters.
+PROSE = """A collision of bonds conserves energy and momentum to rounding, whatever the rule. The **whole** conserves
+momentum, not energy: an exchange falls between a drift and the kick that belongs to it. The paper saw an energy
+“exactly constant”; with its own rule, dt and density it rises by 6·10⁻⁴ of itself per t0, and by percents with its own
+order of steps. The heat per refused move falls as dt²; letting the refused vertex finish its step with the new velocity
+(`bounce`) saves a fifth, half the time step three quarters.
 
-Executed over possible collisions is within 0.1 % of one at every density and time step of use. Of those executed, some 10 % are
-artefacts of moving one vertex at a time, and come in pairs: one with negative ΔP, one more with positive."""
+Executed over possible collisions is within 0.1 % of one at every density and time step of use. Of those executed, some
+10 % are artefacts of moving one vertex at a time, and come in pairs: one with negative ΔP, one more with positive."""

@@ -70,32 +70,42 @@ def short_rotation_time():
 def evaluate(results, tier):
     table = rows(results)
     volume = Verdict("cost.volume", "exponent of CPU time per step against volume, c L³ = 100", 1.0,
-                     "every stage is a loop over particles or cells; 0.3: larger boxes outgrow caches", 0.3, detects=0.6)
-    density = Verdict("cost.density", "exponent of the fibers' share of CPU time against c L³, upper half of the densities", 1.0,
-                      "paper: rate “scales approximately inversely linear with … c L³”; tests of pairs grow faster: 1 to 2", 0.5,
+                     "every stage is a loop over particles or cells; 0.3: larger boxes outgrow caches", 0.3,
+                     detects=0.6)
+    density = Verdict("cost.density", "exponent of the fibers' share of CPU time against c L³, upper half of the "
+                                      "densities", 1.0,
+                      "paper: rate “scales approximately inversely linear with … c L³”; tests of pairs grow faster: 1 "
+                      "to 2", 0.5,
                       kind="paper", detects=1.0,
-                      reason="The number of pairs of bonds that come near each other grows as the square of the density.")
+                      reason="The number of pairs of bonds that come near each other grows as the square of the "
+                             "density.")
     prose = PROSE
     if len(by_volume(table)) >= 3:
         chosen = by_volume(table)
-        volume.measured, volume.error = exponent([row["cells"]**3 for row in chosen], [row["milliseconds"] for row in chosen])
+        volume.measured, volume.error = exponent([row["cells"]**3 for row in chosen],
+                                                 [row["milliseconds"] for row in chosen])
     chosen = by_density(table)
     if len(chosen) >= 3:
         bare = min(row["milliseconds"] for row in chosen)
         upper = sorted((row for row in chosen if row["fibers"] > 0), key=lambda row: row["cL3"])[-3:]
-        density.measured, density.error = exponent([row["cL3"] for row in upper], [row["milliseconds"] - bare for row in upper])
+        density.measured, density.error = exponent([row["cL3"] for row in upper],
+                                                   [row["milliseconds"] - bare for row in upper])
     standard = next((row for row in table if row["cells"] == 32 and row["fibers"] == 100), None)
     if standard:
         ms = standard["milliseconds"]
-        prose += (f"\n\nAt c L³ = 100 a step takes {ms:.2f} ms here, {1000 / ms:.0f} steps per second, the paper's 30. One τ_r of 8.3·10⁴ t0 at "
-                  f"dt 0.01: **{hours(ms, sd.PAPER_ROTATION_TIME):.1f} h, the paper's 75 h**. Fibers cut in two, at the same mesh size, are as "
+        prose += (f"\n\nAt c L³ = 100 a step takes {ms:.2f} ms here, {1000 / ms:.0f} steps per second, the paper's "
+                  f"30. One τ_r of 8.3·10⁴ t0 at "
+                  f"dt 0.01: **{hours(ms, sd.PAPER_ROTATION_TIME):.1f} h, the paper's 75 h**. Fibers cut in two, at "
+                  f"the same mesh size, are as "
                   f"many vertices and take as long per step; their τ_r is {short_rotation_time():.3g} t0: "
                   f"**{hours(ms, short_rotation_time()):.1f} h, the paper's 11 h**.")
     for row in table:
         if row["cells"] == 32 and row["fibers"] in (30, 300, 1000):
             prose += f" c L³ = {row['fibers']:.0f}: {hours(row['milliseconds'], sd.PAPER_ROTATION_TIME):.1f} h."
-    return Outcome([volume, density], [Figure("cost", "Least CPU time of a step, systems in turn. Left: growing boxes at c L³ = 100. "
-                                              "Right: growing density; without the solvent's share, the box without fibers.",
+    return Outcome([volume, density], [Figure("cost", "Least CPU time of a step, systems in turn. Left: growing boxes "
+                                                      "at c L³ = 100. "
+                                              "Right: growing density; without the solvent's share, the box without "
+                                              "fibers.",
                                               lambda: draw(table))], prose)
 
 
@@ -125,5 +135,6 @@ def draw(table):
     return figure
 
 
-PROSE = """Run time is linear in the volume, and a little more where boxes outgrow the caches. It is linear in c L³ while the solvent and the forces of the fibers take most of it; the
-search for crossings adds a part that grows as its square. Times are of one core of whatever machine this ran on, and no gate; exponents are."""
+PROSE = """Run time is linear in the volume, and a little more where boxes outgrow the caches. It is linear in c L³
+while the solvent and the forces of the fibers take most of it; the search for crossings adds a part that grows as its
+square. Times are of one core of whatever machine this ran on, and no gate; exponents are."""

@@ -17,7 +17,8 @@ QUICK = {"flow00": {}, "flow54": {"flow": 0.54}, "comoving54": {"flow": 0.54, "r
 def campaign():
     hours = {0: 0.28, 0.09: 0.29, 0.18: 0.31, 0.36: 0.36, 0.54: 0.42}
     common = {"count": 1000, "longest_lag": 100000, "series": 1000}
-    found = [Run(f"flow{round(100 * v):02d}", scene=sd.scene(flow=v, **common), steps=100000, hours=hours[v], seed=300 + k)
+    found = [Run(f"flow{round(100 * v):02d}", scene=sd.scene(flow=v, **common), steps=100000, hours=hours[v],
+                 seed=300 + k)
              for k, v in enumerate(FLOWS)]
     found.append(Run("comoving54", steps=100000, hours=0.28, seed=310,
                      scene=sd.scene(flow=0.54, refusal="bounce", frame="flow", **common)))
@@ -38,7 +39,8 @@ def quick():
              for k, (name, values) in enumerate(QUICK.items())]
     found.append(Run("isolated54", steps=3000, hours=0.001, seed=350,
                      scene=sd.scene(flow=0.54, solvent=sd.FREE_SOLVENT, **common)))
-    found.append(Run("lag", hours=0.014, program=["refused_moves", 16, 208, 38, 0.54, 192, 351, "kick-split", 0.01, "--",
+    found.append(Run("lag", hours=0.014, program=["refused_moves", 16, 208, 38, 0.54, 192, 351, "kick-split", 0.01,
+                                                  "--",
                                                   "stay", "bounce-flow"]))
     return found
 
@@ -86,11 +88,13 @@ def lag_verdicts(results):
     paper, comoving = lag_row(results, "stay"), lag_row(results, "bounce-flow")
     one = Verdict("galilean.lag.paper", "lag behind the flow over the share of refused moves, the paper's rule", 1.0,
                   "a refused vertex stands still for one step; 10 %: fast ones are refused more often", LAG_BIAS)
-    two = Verdict("galilean.lag.comoving", "lag behind the flow over the flow, moves made in the frame of the flow", 0.0,
+    two = Verdict("galilean.lag.comoving", "lag behind the flow over the flow, moves made in the frame of the flow",
+                  0.0,
                   "exact", 0.0)
     if paper:
         share = paper["rate"] * paper["dt"]
-        sd.measured(one, (paper["lag"] / share, math.hypot(paper["lag_error"], paper["lag"] * paper["rate_error"] / paper["rate"])
+        sd.measured(one, (paper["lag"] / share, math.hypot(paper["lag_error"],
+                                                           paper["lag"] * paper["rate_error"] / paper["rate"])
                        / share), LAG_BIAS, sd.PARTS)
     if comoving:
         sd.measured(two, (comoving["lag"], comoving["lag_error"]), values=sd.PARTS)
@@ -102,7 +106,8 @@ def displacement_verdicts(results, system):
     """g and g_cm of a moving system over those of the one at rest, less what the lag adds: (lag v t)^2."""
     rest = sd.table(results.get("flow00"))
     return [displacement_verdict(results.get(name), rest, name, flow, column, lag)
-            for name, flow in system["names"].items() if flow > 0.0 for column in ("g", "g_cm") for lag in system["lags"]]
+            for name, flow in system["names"].items() if flow > 0.0 for column in ("g",
+                                                                                   "g_cm") for lag in system["lags"]]
 
 
 def displacement_verdict(result, rest, name, flow, column, lag):
@@ -146,9 +151,11 @@ def energy_verdicts(results):
         line = numpy.polyfit(table["time"], table["total"], 1)
         scatter = float(numpy.std(table["total"] - numpy.polyval(line, table["time"])))
         error = scatter * math.sqrt(12.0 / len(table["time"])) / (table["time"][-1] - table["time"][0])
-        verdict = Verdict(f"galilean.energy.{name}", "energy gained per t0 over the energy, no thermostat, the paper's rule",
+        verdict = Verdict(f"galilean.energy.{name}", "energy gained per t0 over the energy, no thermostat, the "
+                                                     "paper's rule",
                           0.0, "paper, Sec. V B 1: “exactly constant”", 0.0, kind="paper",
-                          reason="The exchange of momentum acts between a drift and its kick, which no longer fit each other: "
+                          reason="The exchange of momentum acts between a drift and its kick, which no longer fit "
+                                 "each other: "
                           "every refused move heats, by about 0.05 to 0.07 kT at dt 0.01 (claim conservation).")
         start = float(table["total"][0])
         found.append(sd.measured(verdict, (line[0] / start, error / start)))
@@ -158,9 +165,11 @@ def energy_verdicts(results):
             executed = counts["executed"][-1] - counts["executed"][0]
             # It heats up meanwhile, and heat per collision is in units of the kT of now.
             heat = Verdict("galilean.heat", "kT gained per refused move in a flow of 0.54, dt 0.01", row["heat"],
-                           "the same by another program, energies written apart from the observables; 15 % for another size "
+                           "the same by another program, energies written apart from the observables; 15 % for "
+                           "another size "
                            "and for heating meanwhile", 0.0, expected_error=row["heat_error"])
-            found.append(sd.measured(heat, (gained / executed, error * (table["time"][-1]) / executed), 0.15 * row["heat"], sd.PARTS))
+            found.append(sd.measured(heat, (gained / executed, error * (table["time"][-1]) / executed),
+                                     0.15 * row["heat"], sd.PARTS))
     return found
 
 
@@ -176,14 +185,16 @@ def draw_displacements(results, system):
             continue
         label = f"v = {flow:g}" + (", in its frame" if name.startswith("co") else "")
         for column, fill in (("g", None), ("g_cm", "white")):
-            figures.points(above, columns["time"] / tau, columns[column] / scale, columns[column + "_error"] / scale, number,
+            figures.points(above, columns["time"] / tau, columns[column] / scale, columns[column + "_error"] / scale,
+                           number,
                            label=label if column == "g" else None, markersize=3.2, markerfacecolor=fill)
         if rest is None or name == "flow00":
             continue
         lags = [t for t in columns["time"] if sd.at(rest, "g", t)]
         pairs = [(sd.at(columns, "g", t), sd.at(rest, "g", t)) for t in lags]
         figures.points(below, numpy.array(lags) / tau, [100 * (a[0] / b[0] - 1) for a, b in pairs],
-                       [100 * a[0] / b[0] * math.hypot(a[1] / a[0], b[1] / b[0]) for a, b in pairs], number, markersize=3)
+                       [100 * a[0] / b[0] * math.hypot(a[1] / a[0], b[1] / b[0]) for a, b in pairs], number,
+                       markersize=3)
         if flow == 0.54 and name.startswith("flow"):
             share = refused_share(results[name])
             figures.theory(below, numpy.array(lags) / tau,
@@ -203,10 +214,13 @@ def draw_energy(results):
             table = results[name].table("conserved")
         except KeyError:
             continue
-        label = {"isolated00": "at rest, isolated", "isolated54": "v = 0.54, isolated", "flow54": "v = 0.54, thermostat"}[name]
-        axes[0].plot(table["time"], 100 * (table["total"] / table["total"][0] - 1), color=figures.COLORS[number], label=label)
+        label = {"isolated00": "at rest, isolated", "isolated54": "v = 0.54, isolated",
+                 "flow54": "v = 0.54, thermostat"}[name]
+        axes[0].plot(table["time"], 100 * (table["total"] / table["total"][0] - 1), color=figures.COLORS[number],
+                     label=label)
         mass = 2.0 * float(table["vertex_kinetic"][0] + table["solvent_kinetic"][0]) / 3.0
-        axes[1].plot(table["time"], numpy.abs(table["px"] - table["px"][0]) / mass + 1e-17, color=figures.COLORS[number])
+        axes[1].plot(table["time"], numpy.abs(table["px"] - table["px"][0]) / mass + 1e-17,
+                     color=figures.COLORS[number])
     axes[0].set(xlabel="t, t0", ylabel="change of total energy, %")
     axes[1].set(xlabel="t, t0", ylabel="|Δp| over ⅔ kinetic energy", yscale="log")
     axes[0].legend()
@@ -219,7 +233,8 @@ def draw_lag(results):
     for number, rule in enumerate(dict.fromkeys(row["rule"] for row in rows)):
         mine = [row for row in rows if row["rule"] == rule]
         dt = [row["dt"] * 1.02**number for row in mine]
-        figures.points(above, dt, [1e3 * row["lag"] for row in mine], [1e3 * row["lag_error"] for row in mine], number, label=rule)
+        figures.points(above, dt, [1e3 * row["lag"] for row in mine], [1e3 * row["lag_error"] for row in mine],
+                       number, label=rule)
         if rule == "stay":
             above.plot([row["dt"] for row in mine], [1e3 * row["rate"] * row["dt"] for row in mine], color="#222222",
                        linestyle="--", marker="_", label="share of refused moves")
@@ -234,18 +249,21 @@ def draw_lag(results):
 def evaluate(results, tier):
     system = SYSTEMS[tier]
     verdicts = lag_verdicts(results) + displacement_verdicts(results, system) + [momentum_verdict(results)]
-    found = [Figure("fig3", "Mean square displacements of vertices (filled) and of centres of mass (open), background flow taken out. "
+    found = [Figure("fig3", "Mean square displacements of vertices (filled) and of centres of mass (open), background "
+                            "flow taken out. "
                     "Below: g of the moving over g of the resting system; dashed: what the lag of the fastest adds.",
                     lambda: draw_displacements(results, system)),
-             Figure("lag", "How far vertices fall behind a flow of 0.54 a0/t0, for each rule of refusal.", lambda: draw_lag(results)),
+             Figure("lag", "How far vertices fall behind a flow of 0.54 a0/t0, for each rule of refusal.",
+                    lambda: draw_lag(results)),
              Figure("energy", "Energy and momentum. Isolated: no thermostat.", lambda: draw_energy(results))]
     return Outcome(verdicts + energy_verdicts(results), found, PROSE)
 
 
-PROSE = """A uniform flow changes nothing that g and g_cm see, beyond one small thing: a vertex whose move is refused stands still for a
-step while the fluid goes on. So many of all moves are refused, by so much the fibers fall behind: 1.05·10⁻³ of the flow with the
-paper's rule at its densest. That is 0.57 a0 after 1000 t0 at the fastest flow, and adds (lag v t)² to every mean square displacement.
-With moves made in the frame of the flow the lag is gone.
+PROSE = """A uniform flow changes nothing that g and g_cm see, beyond one small thing: a vertex whose move is refused
+stands still for a step while the fluid goes on. So many of all moves are refused, by so much the fibers fall behind:
+1.05·10⁻³ of the flow with the paper's rule at its densest. That is 0.57 a0 after 1000 t0 at the fastest flow, and adds
+(lag v t)² to every mean square displacement. With moves made in the frame of the flow the lag is gone.
 
-Momentum is constant to rounding. The energy is **not**, unless a thermostat holds it: see `conservation`. The runs of the figure
-have a thermostat, or they would end 60 % (at rest) to 90 % (at 0.54) hotter than they began, and their g would differ for that reason."""
+Momentum is constant to rounding. The energy is **not**, unless a thermostat holds it: see `conservation`. The runs of
+the figure have a thermostat, or they would end 60 % (at rest) to 90 % (at 0.54) hotter than they began, and their g
+would differ for that reason."""

@@ -31,10 +31,12 @@ def campaign():
 def quick():
     found = [Run("off-c100", steps=20000, seed=530, hours=0.001,
                  scene=sd.scene(count=100, solvent=sd.BATH, forbidden="false", every=4, longest_lag=4096, series=500)),
-             Run("c100", steps=20000, seed=531, hours=0.002, scene=sd.scene(box=24, count=42, every=4, longest_lag=4096, series=500))]
+             Run("c100", steps=20000, seed=531, hours=0.002, scene=sd.scene(box=24, count=42, every=4,
+                                                                            longest_lag=4096, series=500))]
     # Fibers of 24 vertices at three densities; c L^3 = 399 is tube's.
     found += [Run(f"small{count}", steps=24576, seed=540 + count, hours=0.003,
-                  scene=sd.scene(box=12, vertices=24, count=count, every=10, longest_lag=12288, series=1000)) for count in SMALL]
+                  scene=sd.scene(box=12, vertices=24, count=count, every=10, longest_lag=12288,
+                                 series=1000)) for count in SMALL]
     return found
 
 
@@ -91,13 +93,18 @@ def law_verdicts(curves, tier):
     off, hi = law(curves["off"], LAW[tier]["off"]), law(curves["dilute"], LAW[tier]["hi"])
     exponent = Verdict("msd.exponent.off", "exponent of d²(t) (contour), no hydrodynamics, crossing free", 0.75,
                        "wormlike chain", 0.05)
-    height = Verdict("msd.prefactor.off", "d² over the wormlike chain's in the middle of the window, nothing fitted", 1.0,
-                     "[4 Γ(1/4)/3π] (kT l_p t/ζ)^(3/4)/l_p, for vertices; ζ of vertices that share cells, known to 5 %; shorter "
+    height = Verdict("msd.prefactor.off", "d² over the wormlike chain's in the middle of the window, nothing fitted",
+                     1.0,
+                     "[4 Γ(1/4)/3π] (kT l_p t/ζ)^(3/4)/l_p, for vertices; ζ of vertices that share cells, known to 5 "
+                     "%; shorter "
                      "waves share less: 10 % in all", 0.1)
-    friction = Verdict("msd.friction.off", "vertices × D of the centre of mass over D of a loose vertex, no hydrodynamics",
-                       sd.shared_diffusion() / sd.VERTEX_DIFFUSION, "momentum that a bath takes from the vertices of a cell together, "
+    friction = Verdict("msd.friction.off", "vertices × D of the centre of mass over D of a loose vertex, no "
+                                           "hydrodynamics",
+                       sd.shared_diffusion() / sd.VERTEX_DIFFUSION, "momentum that a bath takes from the vertices of "
+                                                                    "a cell together, "
                        "straight fibers; 6 % for other fibers in the cell, and bends", 0.08)
-    with_hi = Verdict("msd.exponent.hi", "exponent of d²(t) (contour) of the most dilute fibers, hydrodynamics on", 0.75,
+    with_hi = Verdict("msd.exponent.hi", "exponent of d²(t) (contour) of the most dilute fibers, hydrodynamics on",
+                      0.75,
                       "paper, Fig. 5; up to 0.1 more by the logarithm in the friction", 0.1, kind="paper",
                       reason="Friction depends on the length that relaxes, by a logarithm.")
     sd.measured(exponent, off, 0.04)
@@ -132,7 +139,8 @@ def plateaus(curves, tier):
     for density, (_, length, box, count) in SYSTEMS[tier].items():
         flat = sd.plateau(curves[density])
         if flat:
-            found[density] = (math.sqrt(flat[0] / 2.0), 0.25 * flat[1] * math.sqrt(2.0 / flat[0]), width(length, box, count),
+            found[density] = (math.sqrt(flat[0] / 2.0), 0.25 * flat[1] * math.sqrt(2.0 / flat[0]), width(length, box,
+                                                                                                         count),
                               sd.mesh_size(count, length, box), length)
     return found
 
@@ -144,15 +152,18 @@ def plateau_verdicts(flat, tier):
         if density not in flat:
             continue
         seen, error, expected = flat[density][:3]
-        found.append(sd.measured(Verdict(f"msd.tube.c{density}", f"L⊥ from the plateau over Eq. (35), c L³ = {density}", 1.0,
+        found.append(sd.measured(Verdict(f"msd.tube.c{density}", f"L⊥ from the plateau over Eq. (35), c L³ = "
+                                                                 f"{density}", 1.0,
                                       "Eq. (35), for tightly entangled fibers", 0.3, kind="paper",
-                                      reason="The plateau counts both positions' fluctuations (see tube), and at low density "
+                                      reason="The plateau counts both positions' fluctuations (see tube), and at low "
+                                             "density "
                                       "is a shoulder, not a plateau."), (seen / expected, error / expected), 0.3))
     return found
 
 
 def mesh_verdict(flat):
-    verdict = Verdict("msd.mesh", "exponent of L⊥ against ξ", 1.2, "L⊥ ∝ ξ^(6/5), Eq. (35)'s first term; its second raises it",
+    verdict = Verdict("msd.mesh", "exponent of L⊥ against ξ", 1.2, "L⊥ ∝ ξ^(6/5), Eq. (35)'s first term; its second "
+                                                                   "raises it",
                       0.3, kind="paper", reason="Densities that just begin to show a plateau weigh most.")
     same = {key: row for key, row in flat.items() if row[4] == max(r[4] for r in flat.values())} if flat else {}
     if len(same) >= 2:
@@ -192,7 +203,8 @@ def draw_curves(curves, tier, column):
             continue
         t, scale = columns["time"] / tau(length), length**2
         figures.points(above, t, columns[column] / scale, columns[column + "_error"] / scale, number, markersize=3.2,
-                       linestyle="-", linewidth=0.8, label=f"c L³ = {density}" + ("" if tier == "campaign" else f", L = {length:g}"))
+                       linestyle="-", linewidth=0.8,
+                       label=f"c L³ = {density}" + ("" if tier == "campaign" else f", L = {length:g}"))
         tube = 2.0 * width(length, box, count)**2 / scale
         above.plot([t[-1] / 30, t[-1]], [tube, tube], color=figures.COLORS[number], linestyle="-.", linewidth=1)
         x, slope = sd.slopes(columns["time"], columns[column])
@@ -259,7 +271,8 @@ def evaluate(results, tier):
                     lambda: draw_curves(curves, tier, "d2")),
              Figure("fig5-d2_contour", "The same to the nearest point of the contour. " + lines + axis,
                     lambda: draw_curves(curves, tier, "d2_contour")),
-             Figure("law", "Without hydrodynamics and free to cross: the t^(3/4) law has no free number. Shaded: where it is fitted.",
+             Figure("law", "Without hydrodynamics and free to cross: the t^(3/4) law has no free number. Shaded: "
+                           "where it is fitted.",
                     lambda: draw_law(curves, tier))]
     if flat:
         found.append(Figure("mesh", "Width of the tube from the plateau, √(d²/2), against mesh size; numbers are c L³.",
@@ -267,10 +280,11 @@ def evaluate(results, tier):
     return Outcome(verdicts, found, PROSE)
 
 
-PROSE = """The denser, the earlier d² leaves the t^(3/4) law of a lone fiber's bending. d² to the nearest **vertex**, the paper's, holds a
-floor of ⟨l³⟩/12⟨l⟩ = 0.026 a0²: a fiber that slides along its own contour comes to lie between its old vertices. It bends the
-curve over where d² is a few times as large, below some 10 t0, and lets the local exponent look smaller than it is; d² to the nearest point of
-the **contour** has no floor. Without hydrodynamics the law has no free number.
+PROSE = """The denser, the earlier d² leaves the t^(3/4) law of a lone fiber's bending. d² to the nearest **vertex**,
+the paper's, holds a floor of ⟨l³⟩/12⟨l⟩ = 0.026 a0²: a fiber that slides along its own contour comes to lie between its
+old vertices. It bends the curve over where d² is a few times as large, below some 10 t0, and lets the local exponent
+look smaller than it is; d² to the nearest point of the **contour** has no floor. Without hydrodynamics the law has no
+free number.
 
-A plateau is the flattest stretch of a curve whose local exponent falls below 0.35. L⊥ is then √(d²/2), as the paper draws its
-line; since two positions in the tube are compared, the plateau may be up to twice as high."""
+A plateau is the flattest stretch of a curve whose local exponent falls below 0.35. L⊥ is then √(d²/2), as the paper
+draws its line; since two positions in the tube are compared, the plateau may be up to twice as high."""

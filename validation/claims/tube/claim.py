@@ -30,7 +30,8 @@ def campaign():
     found = []
     for number, (name, (solvent, forbidden)) in enumerate(CASES.items()):
         steps, hours, goals = long[name]
-        found.append(Run(name, scene=sd.scene(count=1000, solvent=solvent, forbidden=forbidden), steps=steps, hours=hours,
+        found.append(Run(name, scene=sd.scene(count=1000, solvent=solvent, forbidden=forbidden), steps=steps,
+                         hours=hours,
                          seed=400 + number, priority=2, goals=goals))
         found.append(Run(name + "-short", steps=4000, hours=0.012, seed=410 + number,
                          scene=sd.scene(count=1000, solvent=solvent, forbidden=forbidden, every=1, longest_lag=1024,
@@ -54,7 +55,8 @@ def quick():
     found = [Run(name, scene=sd.scene(solvent=solvent, forbidden=forbidden, **small), steps=24576, seed=440 + number,
                  hours=0.007 if forbidden == "true" else 0.002)
              for number, (name, (solvent, forbidden)) in enumerate(CASES.items())]
-    found += [Run("choice-" + name, scene=sd.scene(**{**small, **CHOICES[name]}), steps=6000, seed=450 + number, hours=0.002)
+    found += [Run("choice-" + name, scene=sd.scene(**{**small, **CHOICES[name]}), steps=6000, seed=450 + number,
+                  hours=0.002)
               for number, name in enumerate(SYSTEMS["quick"]["choices"])]
     return found
 
@@ -125,8 +127,10 @@ def early_verdicts(curves, system):
 
 
 def friction_verdict(curves, system):
-    """The paper: "systematically below", more so at short times. A bound, below 0.95: a theory for dilute fibers would say
-    0.3 to 0.75, but here the fibers outweigh the solvent, and vertices that share a cell push each other without it, too."""
+    """The paper: "systematically below", more so at short times. A bound, below 0.95: a theory for dilute fibers "
+                                       "would say
+    0.3 to 0.75, but here the fibers outweigh the solvent, and vertices that share a cell push each other without it,
+    too."""
     verdict = Verdict("tube.hydrodynamics", f"d² without hydrodynamics / with, crossing free, {system['fast']} t0", 0.5,
                       "paper, Fig. 4: below 1; we ask for 0.95 at most", 0.45, detects=0.05)
     pair = ratio(curves["off-free"], curves["hi-free"], "d2_contour", system["fast"])
@@ -135,13 +139,17 @@ def friction_verdict(curves, system):
 
 
 def plateau_verdicts(curves, system):
-    width = sd.tube_width(sd.mesh_size(system["count"], system["length"], system["box"]), system["length"], system["length"])
+    width = sd.tube_width(sd.mesh_size(system["count"], system["length"], system["box"]), system["length"],
+                          system["length"])
     found = []
     for which in ("hi", "off"):
         verdict = Verdict(f"tube.plateau.{which}", "plateau of d² (contour) over 2 L⊥², hydrodynamics "
-                          + ("on" if which == "hi" else "off"), 1.0, "Eq. (35); a theory of the tube's width to some 40 %",
-                          0.4, kind="paper", reason="d² compares two positions in the tube, each of which fluctuates by L⊥² "
-                          "in each of two directions about its axis: 4 L⊥² once they forget each other, 2 L⊥² if one of them "
+                          + ("on" if which == "hi" else "off"), 1.0, "Eq. (35); a theory of the tube's width to some "
+                                                                     "40 %",
+                          0.4, kind="paper", reason="d² compares two positions in the tube, each of which fluctuates "
+                                                    "by L⊥² "
+                          "in each of two directions about its axis: 4 L⊥² once they forget each other, 2 L⊥² if one "
+                          "of them "
                           "were the axis.")
         flat = sd.plateau(curves[f"{which}-entangled"])
         found.append(sd.measured(verdict, flat and (flat[0] / (2 * width**2), flat[1] / (2 * width**2)), 0.4))
@@ -149,10 +157,13 @@ def plateau_verdicts(curves, system):
 
 
 def hindered_verdict(curves, system):
-    """At the end of the shorter curve: d^2 with the constraint over d^2 without. A broken constraint gives 1. A bound."""
+    """At the end of the shorter curve: d^2 with the constraint over d^2 without. A broken constraint gives 1. A "
+      "bound."""
     bound = system["hindered"]
-    verdict = Verdict("tube.hindered", "d² uncrossable / crossing free at the longest common lag, hydrodynamics on", 0.0,
-                      f"a tube holds the middle of a fiber: below {bound}; without a tube 1", bound, detects=1.0 - bound)
+    verdict = Verdict("tube.hindered", "d² uncrossable / crossing free at the longest common lag, hydrodynamics on",
+                      0.0,
+                      f"a tube holds the middle of a fiber: below {bound}; without a tube 1", bound,
+                      detects=1.0 - bound)
     a, b = curves["hi-entangled"], curves["hi-free"]
     common = [t for t in a["time"] if sd.at(b, "d2", t)] if a is not None else []
     if common and common[-1] >= system["late"]:
@@ -165,8 +176,10 @@ def normalized_verdict(curves, times):
     at = 3e-4
     verdict = Verdict("tube.below", f"d² without hydrodynamics / with, crossing free, at t/τ_r = {at:g} each", 0.5,
                       "paper, Fig. 4: “systematically below”, that is, below 1", 0.5, kind="paper", detects=0.1,
-                      reason="Without hydrodynamics friction is the same at all lengths. With them it is lower for long waves than for "
-                      "short ones, and lowest for the turning of the whole: in units of τ_r short waves are slower. At equal time "
+                      reason="Without hydrodynamics friction is the same at all lengths. With them it is lower for "
+                             "long waves than for "
+                      "short ones, and lowest for the turning of the whole: in units of τ_r short waves are slower. "
+                      "At equal time "
                       "(tube.hydrodynamics) the curve without is below.")
     values = []
     for which in ("off", "hi"):
@@ -197,7 +210,8 @@ def rotation_verdicts(results, system):
     for which, source in (("hi", "rigid rod (Tirado), b = 0.6 a0, in a periodic box: 20 % for bends"),
                           ("off", "friction of the vertices at the radius of gyration: 20 % for bends")):
         expected = expected_rotation(which, system)
-        found.append(sd.measured(Verdict(f"tube.rotation.{which}", f"τ_r, hydrodynamics {'on' if which == 'hi' else 'off'}, t0",
+        found.append(sd.measured(Verdict(f"tube.rotation.{which}", f"τ_r, hydrodynamics "
+                                                                   f"{'on' if which == 'hi' else 'off'}, t0",
                                       expected, source, 0.2 * expected), rotation(results, which), 0.2 * expected))
     return found
 
@@ -211,10 +225,12 @@ def draw(curves, system, times, column):
         if columns is None:
             continue
         tau = times[name.split("-")[0]]
-        figures.points(above, columns["time"] / tau, columns[column] / scale, columns[column + "_error"] / scale, number,
+        figures.points(above, columns["time"] / tau, columns[column] / scale, columns[column + "_error"] / scale,
+                       number,
                        label=LABELS[name], linestyle="-" if "entangled" in name else ":", markersize=3.2,
                        markerfacecolor=None if "entangled" in name else "white")
-    width = sd.tube_width(sd.mesh_size(system["count"], system["length"], system["box"]), system["length"], system["length"])
+    width = sd.tube_width(sd.mesh_size(system["count"], system["length"], system["box"]), system["length"],
+                          system["length"])
     above.axhline(2 * width**2 / scale, color="#222222", linestyle="-.", linewidth=1.1, label="tube, 2 L⊥², Eq. (35)")
     times_off = numpy.geomspace(0.02, 0.01 * times["off"], 40)
     figures.theory(above, times_off / times["off"],
@@ -241,9 +257,12 @@ def evaluate(results, tier):
     verdicts = early_verdicts(curves, system) + [friction_verdict(curves, system), hindered_verdict(curves, system)]
     verdicts += choice_verdicts(results, curves, system)
     if tier == "campaign":  # fibers of the quick tier are too short for a plateau, and nobody measures their tau_r
-        verdicts += plateau_verdicts(curves, system) + rotation_verdicts(results, system) + [normalized_verdict(curves, times)]
-    caption = (f"c L³ = {system['count']}, L = l_p = {system['length']:g} a0. Filled: uncrossable; open: free. Time in units of "
-               f"the rotation time of a lone fiber: {times['hi']:.3g} t0 with hydrodynamics, {times['off']:.3g} t0 without"
+        verdicts += plateau_verdicts(curves, system) + rotation_verdicts(results, system)
+        verdicts.append(normalized_verdict(curves, times))
+    caption = (f"c L³ = {system['count']}, L = l_p = {system['length']:g} a0. Filled: uncrossable; open: free. Time "
+               f"in units of "
+               f"the rotation time of a lone fiber: {times['hi']:.3g} t0 with hydrodynamics, {times['off']:.3g} t0 "
+               f"without"
                + (" (both estimated, not measured, in this tier)." if tier == "quick" else ".")
                + " Below: uncrossable over free at the same lag.")
     found = [Figure(f"fig4-{column}", what + caption, lambda column=column: draw(curves, system, times, column))
@@ -252,16 +271,16 @@ def evaluate(results, tier):
     return Outcome(verdicts, found, PROSE)
 
 
-PROSE = """Crossing is forbidden or not, hydrodynamics are on or off (a bath of phantoms); all four curves are of the same
-fibers. They agree until fibers meet; then those that may not cross fall behind, and level off in their tube. Without
-hydrodynamics each vertex rubs on its own, and d² is lower at equal time. Over τ_r, each its own, that is no longer so: with
-hydrodynamics long waves rub less than short ones, the turning of the whole least.
+PROSE = """Crossing is forbidden or not, hydrodynamics are on or off (a bath of phantoms); all four curves are of the
+same fibers. They agree until fibers meet; then those that may not cross fall behind, and level off in their tube.
+Without hydrodynamics each vertex rubs on its own, and d² is lower at equal time. Over τ_r, each its own, that is no
+longer so: with hydrodynamics long waves rub less than short ones, the turning of the whole least.
 
-The runs have a thermostat (one factor for all velocities), since refused moves heat: without one this system gains 6·10⁻⁴ of its
-energy per t0. `choice` runs show that neither this, nor the canonical thermostat, nor `refusal: bounce`, nor half the time step
-moves d². τ_r is from rotational diffusion at lags of some hundredths to a tenth of it, with the quick tilt by bends left out; that
-needs a tenth of the time in which the end-to-end vector forgets itself. Four fibers that may cross share the box: their concentration
-raises the viscosity by some 4 %, and each turn counts four times.
+The runs have a thermostat (one factor for all velocities), since refused moves heat: without one this system gains
+6·10⁻⁴ of its energy per t0. `choice` runs show that neither this, nor the canonical thermostat, nor `refusal: bounce`,
+nor half the time step moves d². τ_r is from rotational diffusion at lags of some hundredths to a tenth of it, with the
+quick tilt by bends left out; that needs a tenth of the time in which the end-to-end vector forgets itself. Four fibers
+that may cross share the box: their concentration raises the viscosity by some 4 %, and each turn counts four times.
 
-“Off” is not quite off in so dense a suspension: vertices that share a collision cell, two of each fiber and others, are braked together,
-with the bath of phantoms as with the paper's swap of velocities."""
+“Off” is not quite off in so dense a suspension: vertices that share a collision cell, two of each fiber and others, are
+braked together, with the bath of phantoms as with the paper's swap of velocities."""
