@@ -5,7 +5,8 @@
 
 #include "fiber/capsule.h"
 
-#define MARGIN_A0 0.10     /* measured: see docs/accuracy.md; results do not depend on it */
+#define MARGIN_A0 0.12     /* measured: see docs/accuracy.md; results do not depend on it */
+#define CANDIDATES 256     /* looked at together */
 #define SEARCH_CELL_A0 1.0 /* least edge of a search cell */
 
 /* --- capsules ---------------------------------------------------------------------------------------------------- */
@@ -144,14 +145,22 @@ static void note_axis(struct grid_entry *e, const struct walk *w, const struct n
   e->starts = (uint8_t)((e->starts & ~(1 << axis)) | (w->low >= 0) << axis);
 }
 
+/* Pairs of bonds whose boxes overlap, before a closer look; `image`: of the other one, counted as in grid_entry. */
+struct search {
+  uint32_t count;
+  struct candidate {
+    uint32_t bond, other;
+    int32_t image[3];
+  } at[CANDIDATES];
+};
+
 /* Something done with the entry that a bond has, or is to have, in one cell. */
-typedef bool visit(struct neighbors *, const struct model *, uint32_t cell, const struct grid_entry *,
-                   const struct capsule *);
+typedef bool visit(struct neighbors *, const struct model *, uint32_t cell, const struct grid_entry *, struct search *);
 
 /* All cells that the box around a bond's capsule touches. */
-static inline bool visit_cells(struct neighbors *nb, const struct model *model, uint32_t bond, visit *what)
+static inline bool visit_cells(struct neighbors *nb, const struct model *model, uint32_t bond, visit *what,
+                               struct search *found)
 {
-  const struct capsule mine = capsule_of(nb, model, bond, nb->anchor[bond].at);
   const struct capsule_box box = box_of(nb, model, bond);
   struct grid_entry e = {.bond = (int32_t)bond};
   const struct image home = image_of(nb->anchor[bond].at, &model->box);
@@ -166,7 +175,7 @@ static inline bool visit_cells(struct neighbors *nb, const struct model *model, 
       note_axis(&e, &y, nb, 1);
       do {
         note_axis(&e, &x, nb, 0);
-        if (!what(nb, model, (uint32_t)((z.cell * nb->cells[1] + y.cell) * nb->cells[0] + x.cell), &e, &mine))
+        if (!what(nb, model, (uint32_t)((z.cell * nb->cells[1] + y.cell) * nb->cells[0] + x.cell), &e, found))
           return false;
       } while (walk_on(&x, nb, 0));
     } while (walk_on(&y, nb, 1));
@@ -175,9 +184,9 @@ static inline bool visit_cells(struct neighbors *nb, const struct model *model, 
 }
 
 static bool leave_cell(struct neighbors *nb, const struct model *model, uint32_t cell, const struct grid_entry *e,
-                       const struct capsule *mine)
+                       struct search *found)
 {
-  (void)model, (void)mine;
+  (void)model, (void)found;
   struct grid_row *row = &nb->entries[cell];
   uint32_t k = 0;
   while (k < row->count && !(row->at[k].bond == e->bond && memcmp(row->at[k].image, e->image, sizeof e->image) == 0))
@@ -199,51 +208,57 @@ static inline bool overlap(const struct grid_entry *a, const struct grid_entry *
          (a->low[2] <= b->high[2]) & (b->low[2] <= a->high[2]);
 }
 
-/* The bond of entry e, in the image that has it in the cell together with mine. */
-static struct neighbor found_in_cell(const struct neighbors *nb, const struct model *model,
-                                     const struct grid_entry *mine, const struct grid_entry *e)
+/* Candidates that may touch become partners of each other. */
+static bool settle(struct neighbors *nb, const struct model *model, struct search *found)
 {
-  const struct image home = image_of(nb->anchor[mine->bond].at, &model->box),
-                     its = image_of(nb->anchor[e->bond].at, &model->box);
-  struct neighbor found = {.bond = e->bond};
-  for (int k = 0; k < 3; k++)
-    found.image[k] = home.k[k] + mine->image[k] - its.k[k] - e->image[k];
-  return found;
-}
-
-/* Adds to the lists all partners of a bond that are entered in this cell, and enters the bond. A pair that meets in
- * several cells is taken in the one that holds the lower corner of the overlap of their boxes: there, along every axis,
- * one of the two starts. */
-static bool enter_cell(struct neighbors *nb, const struct model *model, uint32_t cell, const struct grid_entry *mine,
-                       const struct capsule *capsule)
-{
-  const struct grid_row *row = &nb->entries[cell];
-  const uint32_t bond = (uint32_t)mine->bond;
-  for (uint32_t k = 0; k < row->count; k++) {
-    const struct grid_entry *e = &row->at[k];
-    const uint32_t other = (uint32_t)e->bond;
-    if (!overlap(mine, e) || (mine->starts | e->starts) != 7 || share_vertex(model, bond, other))
+  for (uint32_t k = 0; k < found->count; k++) {
+    const struct candidate *c = &found->at[k];
+    if (share_vertex(model, c->bond, c->other))
       continue;
-    const struct neighbor found = found_in_cell(nb, model, mine, e);
-    const int32_t back[3] = {-found.image[0], -found.image[1], -found.image[2]};
-    const struct capsule its = capsule_of(nb, model, other, point_image(nb->anchor[bond].at, back, &model->box));
-    if (capsules_apart(capsule, &its))
+    const struct point mine_at = nb->anchor[c->bond].at;
+    const struct image home = image_of(mine_at, &model->box), its_home = image_of(nb->anchor[c->other].at, &model->box);
+    struct neighbor n = {.bond = (int32_t)c->other};
+    for (int axis = 0; axis < 3; axis++)
+      n.image[axis] = home.k[axis] - its_home.k[axis] + c->image[axis];
+    const struct neighbor back = mirrored(c->bond, n.image);
+    const struct capsule mine = capsule_of(nb, model, c->bond, mine_at),
+                         its = capsule_of(nb, model, c->other, point_image(mine_at, back.image, &model->box));
+    if (capsules_apart(&mine, &its))
       continue;
-    if (!add_partner(&nb->partners[bond], found) || !add_partner(&nb->partners[other], mirrored(bond, found.image)))
+    if (!add_partner(&nb->partners[c->bond], n) || !add_partner(&nb->partners[c->other], back))
       return false;
   }
-  return add_entry(&nb->entries[cell], mine);
+  found->count = 0;
+  return true;
 }
 
-static bool enter(struct neighbors *nb, const struct model *model, uint32_t bond)
+/* Enters a bond in a cell; those that are there and may touch it are candidates. A pair that meets in several cells is
+ * taken in the one that holds the lower corner of the overlap of their boxes: there, along every axis, one of the two
+ * starts. */
+static bool enter_cell(struct neighbors *nb, const struct model *model, uint32_t cell, const struct grid_entry *mine,
+                       struct search *found)
 {
-  return visit_cells(nb, model, bond, enter_cell);
+  const struct grid_row *row = &nb->entries[cell];
+  for (uint32_t k = 0; k < row->count; k++) {
+    const struct grid_entry *e = &row->at[k];
+    if (!overlap(mine, e) || (mine->starts | e->starts) != 7)
+      continue;
+    if (found->count == CANDIDATES && !settle(nb, model, found))
+      return false;
+    __builtin_prefetch(&nb->anchor[e->bond]);
+    __builtin_prefetch(&model->next[e->bond]);
+    found->at[found->count++] =
+        (struct candidate){(uint32_t)mine->bond,
+                           (uint32_t)e->bond,
+                           {mine->image[0] - e->image[0], mine->image[1] - e->image[1], mine->image[2] - e->image[2]}};
+  }
+  return add_entry(&nb->entries[cell], mine);
 }
 
 static void leave(struct neighbors *nb, const struct model *model, uint32_t bond)
 {
   leave_partners(nb, bond);
-  visit_cells(nb, model, bond, leave_cell);
+  visit_cells(nb, model, bond, leave_cell, NULL);
 }
 
 /* --- the two entrances ------------------------------------------------------------------------------------------- */
@@ -264,11 +279,22 @@ static struct anchor anchor_of_move(const struct neighbors *nb, struct point fro
   return (struct anchor){at, fmax(nb->margin, 0.5 * length + LATTICE_UNIT)};
 }
 
+/* New partners for bonds that have left theirs. */
+static bool enter(struct neighbors *nb, const struct model *model, uint32_t bonds, const uint32_t *bond)
+{
+  struct search found;
+  found.count = 0;
+  for (uint32_t k = 0; k < bonds; k++)
+    if (!visit_cells(nb, model, bond[k], enter_cell, &found))
+      return false;
+  return settle(nb, model, &found);
+}
+
 /* Asks the memory for a row of the grid. */
 static bool fetch_cell(struct neighbors *nb, const struct model *model, uint32_t cell, const struct grid_entry *e,
-                       const struct capsule *mine)
+                       struct search *found)
 {
-  (void)model, (void)e, (void)mine;
+  (void)model, (void)e, (void)found;
   const char *row = (const char *)&nb->entries[cell];
   for (size_t line = 0; line < sizeof nb->entries[cell]; line += 64)
     __builtin_prefetch(row + line, 1);
@@ -279,7 +305,7 @@ static bool fetch_cell(struct neighbors *nb, const struct model *model, uint32_t
 static void fetch(struct neighbors *nb, const struct model *model, uint32_t bonds, const uint32_t *bond)
 {
   for (uint32_t k = 0; k < bonds; k++) {
-    visit_cells(nb, model, bond[k], fetch_cell);
+    visit_cells(nb, model, bond[k], fetch_cell, NULL);
     for (uint32_t n = 0; n < nb->partners[bond[k]].count; n++) {
       const size_t partner = (size_t)nb->partners[bond[k]].at[n].bond;
       __builtin_prefetch(&nb->partners[partner], 1);
@@ -309,7 +335,7 @@ bool neighbors_renew(const struct state *state, const struct model *model, struc
                      const uint32_t *vertex, const struct point *to)
 {
   struct neighbors *nb = &work->fiber.neighbors;
-  uint32_t bond[2 * NEIGHBORS_AT_ONCE];
+  uint32_t bond[2 * NEIGHBORS_AT_ONCE] = {0};
   const uint32_t bonds = bonds_of(model, n, vertex, bond);
   fetch(nb, model, bonds, bond);
   for (uint32_t k = 0; k < bonds; k++)
@@ -317,10 +343,7 @@ bool neighbors_renew(const struct state *state, const struct model *model, struc
   for (uint32_t k = 0; k < n; k++)
     nb->anchor[vertex[k]] = anchor_of_move(nb, state->position[vertex[k]], to[k]);
   nb->renewed += n;
-  for (uint32_t k = 0; k < bonds; k++)
-    if (!enter(nb, model, bond[k]))
-      return short_of_memory(state, work, bond[k]);
-  return true;
+  return enter(nb, model, bonds, bond) || short_of_memory(state, work, vertex[0]);
 }
 
 /* Search cells divide the box edges exactly; there are no more than bonds to put in, or so. */
@@ -382,7 +405,7 @@ bool neighbors_build(const struct state *state, const struct model *model, struc
   for (uint32_t j = 0; j < model->vertices; j++)
     nb->anchor[j] = (struct anchor){state->position[j], nb->margin};
   for (uint32_t j = 0; j < model->vertices; j++)
-    if (model->next[j] >= 0 && !enter(nb, model, j))
+    if (model->next[j] >= 0 && !enter(nb, model, 1, &j))
       return short_of_memory(state, work, j);
   nb->moved = (struct point){0, 0, 0};
   nb->built = true;

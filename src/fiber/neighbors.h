@@ -12,8 +12,10 @@
  * plane spares most of the partners that boxes alone would give.
  *
  * Partners are found in a grid whose cells list every bond whose capsule's box touches them, each with the image that
- * puts it there. That holds for bonds of any length, in boxes of any size down to one cell. Bonds that share a vertex
- * with this one, or an image of it, are never partners: no bond reaches half a box edge, so they cannot cross.
+ * puts it there and, roughly, the part of the box that lies in the cell: most bonds of a cell are passed over without a
+ * look at where they are. That holds for bonds of any length, in boxes of any size down to one cell. What a new anchor
+ * costs is waiting for memory, so anchors are taken several at a time, and memory is asked ahead. Bonds that share a
+ * vertex with this one, or an image of it, are never partners: no bond reaches half a box edge, so they cannot cross.
  */
 #ifndef UNCROSS_NEIGHBORS_H
 #define UNCROSS_NEIGHBORS_H
@@ -27,10 +29,20 @@ bool neighbors_build(const struct state *state, const struct model *model, struc
 
 #define NEIGHBORS_AT_ONCE 16
 
-/* New anchors for n <= NEIGHBORS_AT_ONCE vertices that move, or try to move, to `to`, and new lists for their bonds.
- * False, with the fault recorded, if memory is short. */
+/* New anchors for n vertices, 0 < n <= NEIGHBORS_AT_ONCE, that move, or try to move, to `to`, and new lists for their
+ * bonds. False, with the fault recorded, if memory is short. */
 bool neighbors_renew(const struct state *state, const struct model *model, struct work *work, uint32_t n,
                      const uint32_t *vertex, const struct point *to);
+
+/* Asks the memory for the lists of a vertex's bonds, which are soon needed. */
+static inline void neighbors_fetch(const struct neighbors *nb, uint32_t vertex)
+{
+  const uint32_t before = vertex > 0 ? vertex - 1 : 0; /* of a ring's first vertex it is another: then it comes late */
+  __builtin_prefetch(&nb->partners[before], 1);
+  __builtin_prefetch(&nb->partners[vertex], 1);
+  __builtin_prefetch(&nb->first_partners[(size_t)before * NEIGHBORS_FIRST_PARTNERS], 1);
+  __builtin_prefetch(&nb->first_partners[(size_t)vertex * NEIGHBORS_FIRST_PARTNERS], 1);
+}
 
 /* Is a vertex at p still where its anchor's lists are good for? */
 static inline bool neighbors_hold(const struct neighbors *nb, uint32_t vertex, struct point p)

@@ -5,6 +5,8 @@
 #include "fiber/neighbors.h"
 #include "fiber/turns.h"
 
+enum { AHEAD = 6 }; /* turns that memory is asked to be ahead */
+
 /* One trial move: vertex i from its place to `to`. */
 struct trial {
   uint32_t vertex;
@@ -179,6 +181,29 @@ static void follow_frame(struct state *state, const struct model *model, struct 
   nb->moved = (struct point){nb->moved.x + shift.x, nb->moved.y + shift.y, nb->moved.z + shift.z};
 }
 
+/* Asks the memory for what a trial move will look at: turns come in random order. */
+static void fetch_vertex(const struct state *state, const struct model *model, const struct fiber_work *f, uint32_t i)
+{
+  __builtin_prefetch(&state->position[i > 0 ? i - 1 : 0], 1);
+  __builtin_prefetch(&state->position[i + 1].z, 1);
+  __builtin_prefetch(&state->velocity[i]);
+  __builtin_prefetch(&f->neighbors.anchor[i]);
+  __builtin_prefetch(&model->prev[i]);
+  __builtin_prefetch(&model->next[i]);
+  neighbors_fetch(&f->neighbors, i);
+}
+
+static void fetch_partners(const struct state *state, const struct model *model, const struct fiber_work *f, uint32_t i)
+{
+  for (uint32_t bond = i > 0 ? i - 1 : 0; bond <= i; bond++)
+    for (uint32_t k = 0; k < f->neighbors.partners[bond].count; k++) {
+      const int32_t other = f->neighbors.partners[bond].at[k].bond;
+      __builtin_prefetch(&state->position[other]);
+      __builtin_prefetch(&state->position[other + 1].z);
+      __builtin_prefetch(&model->next[other]);
+    }
+}
+
 static bool sweep_noncrossing(struct state *state, const struct model *model, struct work *work, double dt,
                               uint64_t step, uint32_t sweep, const struct sweep_log *log)
 {
@@ -188,14 +213,16 @@ static bool sweep_noncrossing(struct state *state, const struct model *model, st
   draw_order(state, model, f, step, sweep);
   if (!turns_plan(state, model, work, dt))
     return false;
-  for (uint32_t k = 0; k < state->vertices; k++) {
-    if (!f->waits[f->order[k]])
-      continue;
-    f->waited++;
-    struct trial t = {.vertex = f->order[k], .dt = dt, .log = log};
+  for (uint32_t k = 0; k < f->queued; k++) {
+    if (k + 2 * AHEAD < f->queued)
+      fetch_vertex(state, model, f, f->queue[k + 2 * AHEAD]);
+    if (k + AHEAD < f->queued)
+      fetch_partners(state, model, f, f->queue[k + AHEAD]);
+    struct trial t = {.vertex = f->queue[k], .dt = dt, .log = log};
     if (!turns_trial(state, model, work, t.vertex, dt, &t.to) || !try_move(state, model, work, &t))
       return false;
   }
+  f->waited += f->queued;
   state->counts.moves += state->vertices;
   return true;
 }

@@ -108,6 +108,7 @@ static bool prepare(const struct state *state, const struct model *model, struct
     for (uint32_t k = 0; k < n; k++) {
       if (!late[k])
         continue;
+      neighbors_fetch(&work->fiber.neighbors, first + k);
       vertex[count] = first + k;
       to[count++] = point_move(state->position[first + k], d[k]);
       if (count == NEIGHBORS_AT_ONCE) {
@@ -117,7 +118,7 @@ static bool prepare(const struct state *state, const struct model *model, struct
       }
     }
   }
-  return neighbors_renew(state, model, work, count, vertex, to);
+  return count == 0 || neighbors_renew(state, model, work, count, vertex, to);
 }
 
 /* Pairs of bonds. Their columns, in a0: both bond vectors, from the first end of the one to that of the other, and how
@@ -169,28 +170,61 @@ static void settle_pairs(const struct state *state, const struct model *model, s
   s->count = 0;
 }
 
+/* Bonds that have partners, into `some`; how many. No branch: there is no telling which do. */
+static uint32_t list_bonds(const struct neighbors *nb, uint32_t *some)
+{
+  uint32_t n = 0;
+  for (uint32_t j = 0; j < nb->bonds; j++) {
+    some[n] = j;
+    n += nb->partners[j].count > 0;
+  }
+  return n;
+}
+
 static void find_meetings(const struct state *state, const struct model *model, struct fiber_work *f)
 {
-  const struct neighbor_row *partners = f->neighbors.partners;
+  uint32_t *some = f->queue; /* not yet used */
+  const uint32_t bonds = list_bonds(&f->neighbors, some);
   struct pairs s = {.count = 0};
-  for (uint32_t j = 0; j < state->vertices; j++) {
-    if (j + AHEAD < state->vertices && partners[j + AHEAD].count > 0)
-      __builtin_prefetch(partners[j + AHEAD].at);
-    for (uint32_t k = 0; k < partners[j].count; k++) {
-      const struct neighbor *n = &partners[j].at[k];
-      if (n->bond < (int32_t)j)
-        continue; /* in the other's list, too */
-      __builtin_prefetch(&state->position[n->bond]);
-      __builtin_prefetch(&state->position[n->bond + 1].z);
-      __builtin_prefetch(&f->range[n->bond]);
-      __builtin_prefetch(&model->next[n->bond]);
-      s.bond[s.count] = j;
-      s.partner[s.count++] = n;
+  for (uint32_t j = 0; j < bonds; j++) {
+    const struct neighbor_row *row = &f->neighbors.partners[some[j]];
+    if (j + AHEAD < bonds)
+      __builtin_prefetch(f->neighbors.partners[some[j + AHEAD]].at);
+    for (uint32_t k = 0; k < row->count; k++) {
+      const uint32_t other = (uint32_t)row->at[k].bond;
+      __builtin_prefetch(&state->position[other]);
+      __builtin_prefetch(&state->position[other + 1].z);
+      __builtin_prefetch(&f->range[other]);
+      __builtin_prefetch(&model->next[other]);
+      s.bond[s.count] = some[j];
+      s.partner[s.count] = &row->at[k];
+      s.count += other > some[j]; /* else it is in the other's list, too */
       if (s.count == BLOCK)
         settle_pairs(state, model, f, &s);
     }
   }
   settle_pairs(state, model, f, &s);
+}
+
+/* The vertices that wait, in the order of their turns. */
+static void queue_up(const struct state *state, struct fiber_work *f)
+{
+  uint32_t n = 0;
+  for (uint32_t k = 0; k < state->vertices; k++) {
+    const uint32_t i = f->order[k];
+    f->queue[n] = i;
+    n += f->waits[i];
+  }
+  f->queued = n;
+}
+
+/* Vertex i has its turn later than the one at hand. */
+static void join_queue(struct fiber_work *f, uint32_t i)
+{
+  uint32_t k = f->queued++;
+  for (; f->rank[f->queue[k - 1]] > f->rank[i]; k--)
+    f->queue[k] = f->queue[k - 1];
+  f->queue[k] = i;
 }
 
 /* Everybody who need not wait. */
@@ -211,6 +245,7 @@ bool turns_plan(struct state *state, const struct model *model, struct work *wor
     return false;
   memset(f->waits, 0, state->vertices);
   find_meetings(state, model, f);
+  queue_up(state, f);
   move_others(state, model, f, dt);
   return true;
 }
@@ -223,6 +258,7 @@ static void call_back(struct state *state, const struct model *model, struct fib
     return;
   state->position[i] = point_move(state->position[i], displacement(state, model, i, -dt));
   f->waits[i] = 1;
+  join_queue(f, i);
   f->called_back++;
 }
 

@@ -26,7 +26,8 @@ bool turns_trial(const struct state *state, const struct model *model, struct wo
 bool turns_phantom(struct state *state, const struct model *model, struct work *work, double dt);
 
 /* Before a sweep in the order work->fiber.order: anchors for all that need new ones, work->fiber.waits for all vertices
- * (1: waits for its turn), and all others moved. False, with the fault recorded, as turns_trial and neighbors_renew. */
+ * (1: waits for its turn), those in work->fiber.queue, and all others moved. False, with the fault recorded, as
+ * turns_trial and neighbors_renew. */
 bool turns_plan(struct state *state, const struct model *model, struct work *work, double dt);
 
 /* Vertex i, whose turn comes after `now`, has got another velocity, or its bonds new partners. */

@@ -11,7 +11,7 @@ struct need {
   size_t count, size;
 };
 
-enum { NEEDS = 16 };
+enum { NEEDS = 17 };
 
 /* Bits of a hash table that is at most half full. */
 static uint32_t table_bits(uint32_t entries)
@@ -28,6 +28,14 @@ static size_t count_cells(const struct model *m)
   return model_has_phantoms(m) ? m->vertices : model_has_solvent(m) ? (size_t)box_cell_count(&m->box) : 0;
 }
 
+static size_t longest_fiber(const struct model *m)
+{
+  size_t vertices = 0;
+  for (uint32_t k = 0; m->bonds && k < m->kinds; k++)
+    vertices = m->kind[k].count && m->kind[k].vertices > vertices ? m->kind[k].vertices : vertices;
+  return vertices;
+}
+
 /* The single place that says which scratch a model uses. */
 static void list_needs(struct work *w, const struct model *m, struct need need[NEEDS])
 {
@@ -37,7 +45,7 @@ static void list_needs(struct work *w, const struct model *m, struct need need[N
   size_t bathed = model_has_phantoms(m) ? m->vertices : 0;
   size_t thermostatted = m->solvent.thermostat != THERMOSTAT_NONE ? cells : 0;
   size_t swapped = m->solvent.hydrodynamics ? 0 : particles;
-  size_t bent = m->bonds ? m->vertices : 0;
+  size_t bent = longest_fiber(m);
   size_t noncrossing = m->crossing.forbidden ? m->vertices : 0;
   struct collision_work *c = &w->collision;
   struct fiber_work *f = &w->fiber;
@@ -55,6 +63,7 @@ static void list_needs(struct work *w, const struct model *m, struct need need[N
       {(void **)&f->order, m->vertices, sizeof *f->order},
       {(void **)&f->rank, noncrossing, sizeof *f->rank},
       {(void **)&f->range, noncrossing, sizeof *f->range},
+      {(void **)&f->queue, noncrossing, sizeof *f->queue},
       {(void **)&f->waits, noncrossing, sizeof *f->waits},
       {(void **)&f->force, m->vertices, sizeof *f->force},
       {(void **)&f->direction, bent, sizeof *f->direction + sizeof *f->inverse_length},
@@ -80,7 +89,7 @@ bool work_alloc(struct work *w, const struct model *m)
   w->collision.cells = (uint32_t)count_cells(m);
   w->collision.table_bits = table_bits(m->vertices);
   if (w->fiber.direction)
-    w->fiber.inverse_length = (double *)(w->fiber.direction + m->vertices);
+    w->fiber.inverse_length = (double *)(w->fiber.direction + longest_fiber(m));
   return true;
 }
 

@@ -59,7 +59,7 @@ struct anchor {
 };
 
 /* Rows start in a slab, one after the other, and move out when they have grown. */
-enum { NEIGHBORS_FIRST_PARTNERS = 4, NEIGHBORS_FIRST_ENTRIES = 11 };
+enum { NEIGHBORS_FIRST_PARTNERS = 4, NEIGHBORS_FIRST_ENTRIES = 15 };
 
 /* Partners of a bond. */
 struct neighbor_row {
@@ -75,7 +75,7 @@ struct grid_entry {
   uint8_t low[3], high[3]; /* that box, in 2^cell_shift lattice units from the lower corner of the cell */
 };
 
-/* Bonds that touch a search cell; the first few in the row itself, three cache lines in all. */
+/* Bonds that touch a search cell; the first few in the row itself, four cache lines in all. */
 struct grid_row {
   _Alignas(64) struct grid_entry *at;
   uint32_t count, room;
@@ -99,13 +99,15 @@ struct neighbors {
 };
 
 struct fiber_work {
-  uint32_t *order;        /* [vertices] of the sweep */
-  uint32_t *rank;         /* [vertices] order[rank[i]] = i; this and the next two for noncrossing fibers only */
-  double *range;          /* [vertices] a0: how far at most from where it is a vertex may go in this sweep */
+  uint32_t *order; /* [vertices] of the sweep */
+  uint32_t *rank;  /* [vertices] order[rank[i]] = i; this and the next three for noncrossing fibers only */
+  double *range;   /* [vertices] a0: how far at most from where it is a vertex may go in this sweep */
+  uint32_t *queue; /* [vertices] those that wait for their turns, in order: the first `queued` */
+  uint32_t queued;
   uint8_t *waits;         /* [vertices] 1: moves when its turn comes, 0: at once */
   struct vec3 *force;     /* [vertices] kT/a0 */
-  struct vec3 *direction; /* [vertices] unit vector of bond j; longest fiber suffices, kept per vertex for simplicity */
-  double *inverse_length; /* [vertices] of bond j */
+  struct vec3 *direction; /* [vertices of the longest fiber] unit vectors of the bonds of one fiber */
+  double *inverse_length; /* likewise */
   struct neighbors neighbors;
   uint64_t waited, called_back; /* moves so far that waited for their turn; of these, called back: for benchmarks */
 };
