@@ -95,6 +95,12 @@ class WithoutHydrodynamics(unittest.TestCase):
 
 
 class Estimates(unittest.TestCase):
+    def test_fair_mean(self):
+        """9 and 11 with 10 % each: weights alike, mean 10, error 10 % of it over sqrt 2. As they are, 9.8."""
+        value, error, _ = dilute.fair_mean([9.0, 11.0], [0.9, 1.1])
+        self.assertAlmostEqual(value, 10.0, 13)
+        self.assertAlmostEqual(error, math.sqrt(0.5), 13)
+
     def test_nested(self):
         times = numpy.array([1, 2, 3, 4, 6, 8, 12, 16, 24, 32]) * 0.4
         self.assertEqual(list(dilute.nested(times, 0.8, 6.4)), [1, 3, 5, 7])

@@ -291,12 +291,19 @@ def held(name, statement, expected, source, pair, systematic, known=0.0, **optio
     return Verdict(name, statement, expected, source, bound, value, error, known, detects=bound, **options)
 
 
+def fair_mean(values, errors):
+    """(mean, error, p), weighted with the relative errors: those of diffusion coefficients grow with the values, and
+    weights from errors as they are would favor small ones."""
+    values, errors = numpy.asarray(values, float), numpy.asarray(errors, float)
+    return stats.weighted_mean(values, errors / values * values.mean())
+
+
 def mean_ratio(pairs, expected):
     """(value, error): weighted mean of measured (value, error) over expected values; None without any."""
     if not pairs:
         return None
-    return stats.weighted_mean([d / e for (d, *_), e in zip(pairs, expected)],
-                               [error / e for (_, error, *_), e in zip(pairs, expected)])[:2]
+    return fair_mean([d / e for (d, *_), e in zip(pairs, expected)],
+                     [error / e for (_, error, *_), e in zip(pairs, expected)])[:2]
 
 
 def over(a, b):

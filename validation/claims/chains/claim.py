@@ -141,7 +141,7 @@ def infinite(points):
     found = {}
     for n in sorted({p.vertices for name, p in points.items() if name.startswith("N")}):
         same = [p for name, p in points.items() if p.vertices == n and name.startswith("N")]
-        found[n] = stats.weighted_mean([p.infinite for p in same], [p.error for p in same])
+        found[n] = dilute.fair_mean([p.infinite for p in same], [p.error for p in same])
     return found
 
 
@@ -263,7 +263,7 @@ def same_in_boxes(points):
         same = [p for name, p in points.items() if p.vertices == n and name.startswith("N")]
         big, small = [p for p in same if p.box >= PAPER_BOXES[n]], [p for p in same if p.box < PAPER_BOXES[n]]
         if big and small:
-            means = [stats.weighted_mean([p.infinite for p in each], [p.error for p in each]) for each in (small, big)]
+            means = [dilute.fair_mean([p.infinite for p in each], [p.error for p in each]) for each in (small, big)]
             ratios.append(dilute.over(*means))
     return dilute.held("chains.boxes", "Small boxes over the paper's, both corrected for images; mean over lengths",
                        1.0, "THEORY 2.6", dilute.mean_ratio(ratios, numpy.ones(len(ratios))), 0.01)
@@ -316,7 +316,7 @@ def size_verdict(results):
     sizes = [size(result) for name, result in results.items() if re.match(r"N\d+-L|rouse|loose", name)]
     sizes = [pair for pair in sizes if pair]
     return dilute.held("chains.size", "<R^2> over (N - 1) l^2, mean over all runs", 1.0, "THEORY 2.8, exact",
-                       dilute.mean_ratio(sizes, numpy.ones(len(sizes))), 0.003)
+                       stats.weighted_mean(*zip(*sizes))[:2] if sizes else None, 0.003)
 
 
 # --- figures ----------------------------------------------------------------------------------------------------------
@@ -358,7 +358,7 @@ def draw_boxes(points):
         same = [p for name, p in points.items() if p.vertices == n and name.startswith("N")]
         if not same:
             continue
-        mean = stats.weighted_mean([p.infinite for p in same], [p.error for p in same])[0]
+        mean = dilute.fair_mean([p.infinite for p in same], [p.error for p in same])[0]
         scale, end = dilute.ETA * math.sqrt(n), math.sqrt(n)
         line = mean - numpy.array([dilute.image_shift(end / v, gyration2(n)) if v else 0.0 for v in x])
         figures.theory(axes, x, line * scale, color=figures.COLORS[number], linewidth=0.8)
