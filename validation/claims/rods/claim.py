@@ -357,7 +357,8 @@ same prefactor.""")
                              ("the paper's boxes, the paper's viscosity:", rules.in_box)))
         parts.append(f"""Joint fits of Eq. (40) with L = N/2, prefactor and b (the paper: 0.094 and 0.6): {rows}.
 Kirkwood's D for these rods, without any images, gives {rules.model.prefactor:.4f} and {rules.model.diameter:.2f}. With
-1/(3 pi) held, b = {rules.alone[0]:.3f} ± {rules.alone[1]:.3f}. Prefactor and ln b of one fit are correlated almost fully.""")
+1/(3 pi) held, b = {rules.alone[0]:.3f} ± {rules.alone[1]:.3f}. Prefactor and ln b of one fit are
+correlated almost fully.""")
         parts.append(f"**Why the prefactor is below 1/(3 pi)**: {CONTOUR}.")
     return "\n\n".join(parts)
 
