@@ -10,7 +10,7 @@ from lib.runs import Run
 
 TITLE = "Refused moves: conservation, heat, rates"
 PAPER = "Sec. III C, V B 1"
-USES = ("tube", "msd", "galilean")
+USES = ("tube", "msd", "galilean", "mobility", "chains", "rods")
 
 # Fibers of 38 vertices in 16^3 cells, as many vertices per volume as c L^3 of the paper's have in 32^3.
 COUNTS = {1000: 208, 300: 62, 100: 21}
@@ -123,6 +123,28 @@ def momentum_verdict(results):
     return Verdict("conservation.momentum.runs", "largest change of total momentum in any run of tube, msd and "
                                                  "galilean, over 2/3 of the "
                    "kinetic energy, t0/a0", 0.0, "conserved; 10⁻⁹ for rounding", 1e-9, measured=worst, detects=2e-9)
+
+
+def temperature_verdict(results):
+    """Of every run of mobility, chains and rods with a solvent of particles: nothing is refused there, so nothing heats.
+    The last quarter of the run over the first; springs and bends take and give some 10⁻⁴ of it."""
+    worst = None
+    for name, result in results.items():
+        scene = result.run.scene or ""
+        if name.partition("/")[0] not in ("mobility", "chains", "rods") or "phantoms" in scene:
+            continue
+        try:
+            kt = result.table("temperature")["solvent"]
+        except KeyError:
+            continue
+        if len(kt) < 40:
+            continue
+        quarter = len(kt) // 4
+        worst = max(worst or 0.0, abs(float(kt[-quarter:].mean() / kt[:quarter].mean()) - 1.0))
+    return Verdict("conservation.temperature.runs", "largest change of temperature, first to last quarter, in any run of "
+                   "mobility, chains and rods, where no move is refused", 0.0,
+                   "conserved; 10⁻³ for the energy that springs and bends take and give", 1e-3, measured=worst,
+                   detects=2e-3)
 
 
 # kT per refused move at dt 0.01, measured once for good (docs/accuracy.md, "What a refused move costs": in the frame
@@ -277,7 +299,7 @@ def draw_refused(results, tier):
 
 
 def evaluate(results, tier):
-    verdicts = sweep_verdicts(results) + [momentum_verdict(results)] + rate_verdicts(results)
+    verdicts = sweep_verdicts(results) + [momentum_verdict(results), temperature_verdict(results)] + rate_verdicts(results)
     verdicts += density_verdicts(results, tier)
     found = [Figure("heat", "Heat per refused move against the time step. No thermostat.", lambda: draw_heat(results)),
              Figure("refused", "Left: share of possible collisions that are not executed (the first of several is). "
