@@ -22,15 +22,15 @@ static inline struct capsule capsule_of(const struct neighbors *nb, const struct
 
 /* --- lists ------------------------------------------------------------------------------------------------------- */
 
-/* Room for more in a row of `first` entries in a slab, or of more of its own; NULL if memory is short. */
+/* Twice the room for a row: at first somewhere else than where it began. NULL if memory is short. */
 static void *grow(void *at, uint32_t *room, uint32_t first, size_t size)
 {
-  void *bigger = *room == first ? malloc(2 * first * size) : realloc(at, 2 * *room * size);
-  if (bigger && *room == first)
-    memcpy(bigger, at, first * size);
-  if (bigger)
-    *room *= 2;
-  return bigger;
+  const bool began_here = *room == first;
+  void *bigger = began_here ? malloc(2 * first * size) : realloc(at, 2 * *room * size);
+  if (!bigger)
+    return NULL;
+  *room *= 2;
+  return began_here ? memcpy(bigger, at, first * size) : bigger;
 }
 
 static bool add_partner(struct neighbor_row *row, struct neighbor n)
