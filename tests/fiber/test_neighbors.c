@@ -199,7 +199,7 @@ static void lists_stay_complete_under_moves(void **unused)
     struct dice d = {seed};
     struct test_run r = random_bonds(places[p].lx, places[p].ly, places[p].lz, places[p].count, &d);
     assert_true(neighbors_build(&r.state, &r.model, &r.work));
-    for (int k = 0; k < 4000; k++) {
+    for (int k = 0; k < 6000; k++) {
       random_move(&r, &d, k % 100 ? 0.1 : 0.45 * box_shortest_edge(&r.model.box));
       if (k % 250 == 249)
         check_lists(&r, seed);
