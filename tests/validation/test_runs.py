@@ -89,6 +89,8 @@ class Runs(unittest.TestCase):
         """Days of work are not thrown away for it, seconds are."""
         self.assertEqual(self.execute(self.scene(100)), 0)
         other = self.scene(100, SCENE.replace("per_cell: 5", "per_cell: 4"))
+        self.assertTrue(runs.Result(self.work / "a", self.scene(100)).exists)
+        self.assertFalse(runs.Result(self.work / "a", other).exists)
         with self.assertRaises(runs.Refused):
             self.execute(other)
         self.assertEqual(self.execute(other, fresh=True), 0)

@@ -75,11 +75,14 @@ class Run:
 
 
 class Result:
-    """What a run has left so far."""
+    """What a run has left so far: nothing, if what is there is of another scene or of other arguments."""
 
     def __init__(self, folder, run):
         self.folder, self.run = pathlib.Path(folder), run
-        self.session = read_json(self.folder / "session.json")
+        self.session, self.record, self.text = read_json(self.folder / "session.json"), {}, ""
+        if self.session.get("identity", run.identity) != run.identity:
+            self.session = {}
+            return
         self.record = read_json(self.folder / "run.json")
         text = self.folder / "output.txt"
         self.text = text.read_text() if text.exists() else ""
