@@ -38,7 +38,7 @@ def provenance_row(result):
             "steps": result.steps or None, "wanted": run.steps or None, "finished": result.finished,
             "commit": record.get("commit", version[2]), "compiler": record.get("compiler", version[3]),
             "fingerprint": record.get("scene_fingerprint"), "state_hash": record.get("state_hash"),
-            "cpu_seconds": result.cpu_seconds}
+            "digest": result.digest, "cpu_seconds": result.cpu_seconds}
 
 
 def evaluate(module, name, results, tier):

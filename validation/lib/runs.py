@@ -88,6 +88,14 @@ class Result:
         self.text = text.read_text() if text.exists() else ""
 
     @property
+    def digest(self):
+        """Of everything that is kept of the run: a number that somebody changed shows, whether a claim uses it or not."""
+        total = hashlib.sha256()
+        for path in sorted(path for pattern in HARVESTED for path in self.folder.glob(pattern)):
+            total.update(path.name.encode() + b"\0" + path.read_bytes())
+        return total.hexdigest()[:16]
+
+    @property
     def exists(self):
         return bool(self.record or self.text)
 
