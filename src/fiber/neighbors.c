@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "fiber/capsule.h"
 
 #define MARGIN_A0 0.12     /* measured: see docs/accuracy.md; results do not depend on it */
@@ -362,11 +363,6 @@ static void choose_grid(const struct model *model, struct neighbors *nb)
   nb->cell_count = (uint32_t)(nb->cells[0] * nb->cells[1] * nb->cells[2]);
 }
 
-static void *aligned(size_t bytes)
-{
-  return aligned_alloc(64, (bytes + 63) / 64 * 64);
-}
-
 static bool allocate(const struct model *model, struct neighbors *nb)
 {
   if (nb->anchor)
@@ -374,10 +370,10 @@ static bool allocate(const struct model *model, struct neighbors *nb)
   choose_grid(model, nb);
   nb->margin = MARGIN_A0;
   nb->bonds = model->vertices;
-  nb->anchor = aligned(nb->bonds * sizeof *nb->anchor);
-  nb->partners = calloc(nb->bonds, sizeof *nb->partners);
-  nb->entries = aligned(nb->cell_count * sizeof *nb->entries);
-  nb->first_partners = aligned((size_t)nb->bonds * NEIGHBORS_FIRST_PARTNERS * sizeof *nb->first_partners);
+  nb->anchor = memory_alloc(nb->bonds, sizeof *nb->anchor);
+  nb->partners = memory_alloc(nb->bonds, sizeof *nb->partners);
+  nb->entries = memory_alloc(nb->cell_count, sizeof *nb->entries);
+  nb->first_partners = memory_alloc((size_t)nb->bonds * NEIGHBORS_FIRST_PARTNERS, sizeof *nb->first_partners);
   if (!nb->anchor || !nb->partners || !nb->entries || !nb->first_partners) {
     free(nb->entries); /* nothing in it says yet which rows have moved out */
     nb->entries = NULL;

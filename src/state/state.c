@@ -4,6 +4,8 @@
 #include <string.h>
 #include <xxhash.h>
 
+#include "base/memory.h"
+
 bool state_alloc(struct state *s, const struct model *model)
 {
   memset(s, 0, sizeof *s);
@@ -14,12 +16,12 @@ bool state_alloc(struct state *s, const struct model *model)
   double **real[] = {&s->solvent.vx, &s->solvent.vy, &s->solvent.vz};
   bool ok = true;
   for (int k = 0; k < 3; k++) {
-    ok &= (*lattice[k] = calloc(n, sizeof **lattice[k])) != NULL;
-    ok &= (*real[k] = calloc(n, sizeof **real[k])) != NULL;
+    ok &= (*lattice[k] = memory_alloc(n, sizeof **lattice[k])) != NULL;
+    ok &= (*real[k] = memory_alloc(n, sizeof **real[k])) != NULL;
   }
-  ok &= (s->solvent.id = calloc(n, sizeof *s->solvent.id)) != NULL;
-  ok &= (s->position = calloc(v, sizeof *s->position)) != NULL;
-  ok &= (s->velocity = calloc(v, sizeof *s->velocity)) != NULL;
+  ok &= (s->solvent.id = memory_alloc(n, sizeof *s->solvent.id)) != NULL;
+  ok &= (s->position = memory_alloc(v, sizeof *s->position)) != NULL;
+  ok &= (s->velocity = memory_alloc(v, sizeof *s->velocity)) != NULL;
   if (!ok) {
     state_free(s);
     return false;

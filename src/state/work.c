@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "state/state.h"
 
 /* One array of the work: where its pointer stands, and how many bytes this model needs of it. */
@@ -79,12 +80,11 @@ bool work_alloc(struct work *w, const struct model *m)
   for (int k = 0; k < NEEDS; k++) {
     if (need[k].count == 0)
       continue;
-    *need[k].where = aligned_alloc(64, (need[k].count * need[k].size + 63) / 64 * 64);
+    *need[k].where = memory_alloc(need[k].count, need[k].size);
     if (!*need[k].where) {
       work_free(w);
       return false;
     }
-    memset(*need[k].where, 0, need[k].count * need[k].size);
   }
   w->collision.cells = (uint32_t)count_cells(m);
   w->collision.table_bits = table_bits(m->vertices);

@@ -1,0 +1,28 @@
+#define _DEFAULT_SOURCE /* madvise */
+#include "base/memory.h"
+
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+
+#define CACHE_LINE ((size_t)64)
+#define LARGE_PAGE ((size_t)2 << 20)
+#define LARGE_ARRAY (8 * LARGE_PAGE) /* so that what a last page wastes is little */
+
+void *memory_alloc(size_t count, size_t size)
+{
+  if (size > 0 && count > (SIZE_MAX - LARGE_PAGE) / size)
+    return NULL;
+  const size_t needed = count * size > 0 ? count * size : 1;
+  const size_t edge = needed < LARGE_ARRAY ? CACHE_LINE : LARGE_PAGE, room = (needed + edge - 1) / edge * edge;
+  void *memory = aligned_alloc(edge, room);
+  if (!memory)
+    return NULL;
+#ifdef MADV_HUGEPAGE
+  if (edge == LARGE_PAGE)
+    (void)madvise(memory, room, MADV_HUGEPAGE); /* a wish: where it is not granted, nothing changes */
+#endif
+  memset(memory, 0, needed);
+  return memory;
+}

@@ -1,0 +1,40 @@
+/* Arrays begin with a cache line and are zero, whatever stood there before; what cannot be had is not half given. */
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "support.h"
+
+static void zero_and_aligned(void **unused)
+{
+  (void)unused;
+  const size_t sizes[] = {0, 1, 63, 64, 65, 4096, 100000, (size_t)16 << 20, ((size_t)16 << 20) + 1, (size_t)40 << 20};
+  for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++)
+    for (int again = 0; again < 2; again++) { /* the second time in what the first left behind */
+      unsigned char *p = memory_alloc(sizes[k], 1);
+      assert_non_null(p);
+      assert_true((uintptr_t)p % 64 == 0);
+      for (size_t i = 0; i < sizes[k]; i++)
+        assert_true(p[i] == 0);
+      memset(p, 0xff, sizes[k]);
+      free(p);
+    }
+}
+
+static void too_much_is_nothing(void **unused)
+{
+  (void)unused;
+  assert_null(memory_alloc(SIZE_MAX / 2, 3));    /* the product wraps to something small */
+  assert_null(memory_alloc(SIZE_MAX - 63, 1));   /* rounded up, it would wrap */
+  assert_null(memory_alloc((size_t)1 << 60, 8)); /* fits a number, but no machine */
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(zero_and_aligned),
+      cmocka_unit_test(too_much_is_nothing),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
