@@ -1,4 +1,4 @@
-#define _DEFAULT_SOURCE /* madvise */
+#define _DEFAULT_SOURCE /* madvise. NOLINT(bugprone-reserved-identifier) */
 #include "base/memory.h"
 
 #include <stdint.h>
