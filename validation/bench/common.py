@@ -64,6 +64,7 @@ class Store:
 
 def write_json(path, content):
     path = pathlib.Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
     aside = path.with_suffix(".new")
     aside.write_text(json.dumps(content, indent=1) + "\n")
     aside.replace(path)
