@@ -35,6 +35,9 @@ def statics(store, effort):
     found = measure(store, f"{FIBERS},thermostat=1", max(200, round(2000 * effort)), every_case())
     rows = []
     for (order, dt), q in found.items():
+        if "fault" in q:
+            rows.append(common.row(f"precision/fault, statics, {order}, dt {dt}", "t0", value=q["fault"][0]))
+            continue
         for name in ("stiffest", "bend"):
             rows.append(common.row(f"precision/{name}, {order}, dt {dt}", "over exact", value=q[name][0],
                                    error=q[name][1]))
@@ -43,7 +46,7 @@ def statics(store, effort):
     reference = sum(w * value for w, (value, _) in zip(weights, best)) / sum(weights)
     rows.append(common.row("precision/g(10 t0), reference", "a0^2", value=reference, error=sum(weights) ** -0.5))
     for (order, dt), q in found.items():
-        if dt <= 0.02:
+        if dt <= 0.02 and "fault" not in q:
             value, error = (x / reference for x in q["msd"])
             rows.append(common.row(f"precision/g(10 t0), {order}, dt {dt}", "over reference", value=value, error=error))
     return rows + prices(found, costs(store, effort))

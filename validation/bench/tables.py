@@ -122,7 +122,7 @@ def precision(rows):
             cells = [with_error(rows.get(f"precision/{name}, {case}"))
                      for name in ("stiffest", "bend", "g(10 t0)", "drift, free", "drift, refused", "cost, cL^3 = 100",
                                   "cost, cL^3 = 1000")]
-            for k, name in ((3, "free"), (4, "refused")):
+            for k, name in ((0, "statics"), (3, "free"), (4, "refused")):
                 fault = rows.get(f"precision/fault, {name}, {case}")
                 cells[k] = f"stops at {fault['value']:.0f} t0" if fault else cells[k]
             lines.append([f"`{order}`", f"{dt:g}", *cells])
