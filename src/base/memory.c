@@ -8,7 +8,7 @@
 
 #define CACHE_LINE ((size_t)64)
 #define LARGE_PAGE ((size_t)2 << 20)
-#define LARGE_ARRAY (8 * LARGE_PAGE) /* so that what a last page wastes is little */
+#define LARGE_ARRAY (2 * LARGE_PAGE)
 
 void *memory_alloc(size_t count, size_t size)
 {
@@ -21,7 +21,7 @@ void *memory_alloc(size_t count, size_t size)
     return NULL;
 #ifdef MADV_HUGEPAGE
   if (edge == LARGE_PAGE)
-    (void)madvise(memory, room, MADV_HUGEPAGE); /* a wish: where it is not granted, nothing changes */
+    (void)madvise(memory, needed / LARGE_PAGE * LARGE_PAGE, MADV_HUGEPAGE); /* a wish; the rest is in small pages */
 #endif
   memset(memory, 0, needed);
   return memory;

@@ -57,7 +57,7 @@ static void add_slow_particles(uint32_t n, const double *restrict vx, const doub
  * with 100^3 cells; with 32^3 it costs 7 %. */
 static bool out_of_cache(const struct collision_work *c)
 {
-  return c->cells > 1 << 17;
+  return c->cells > 1 << 16;
 }
 
 /* The sums of n particles from number `first` on. Returns the union of their momentum spans. */
