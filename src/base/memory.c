@@ -26,3 +26,11 @@ void *memory_alloc(size_t count, size_t size)
   memset(memory, 0, needed);
   return memory;
 }
+
+bool memory_grow(void **list, size_t count, size_t size)
+{
+  void *bigger = count > SIZE_MAX / size ? NULL : realloc(*list, count * size);
+  if (bigger)
+    *list = bigger;
+  return bigger;
+}

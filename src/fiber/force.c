@@ -29,131 +29,169 @@ static bool bond_fits(struct work *work, const struct model *model, uint64_t ste
   return squared < limit * limit || work_fault(work, FAULT_BOND_TOO_LONG, step, j, sqrt(squared), limit);
 }
 
-static void add_pair(struct vec3 *force, uint32_t j, uint32_t next, struct vec3 f)
-{
-  force[j] = vec3_add(force[j], f);
-  force[next] = vec3_sub(force[next], f);
-}
+enum { BLOCK = 125, ROOM = BLOCK + 3 }; /* vertices worked on at a time; bonds that they have to do with */
 
-enum { BLOCK = 64 }; /* bonds or bends worked on at a time, in loops that vectorise */
-
-/* Consecutive bonds first .. first + n - 1, n <= BLOCK; next: the other end of the first; number: of the first in its
- * fiber. */
-struct bonds {
-  uint32_t first, next, number, n;
+/* A stretch of a fiber in columns, so that loops vectorise: entry c is bond or bend number first + c; bend number i
+ * lies between bonds i - 1 and i. A bond that there is not has no length, and does nothing. */
+struct stretch {
+  int64_t first;
+  uint32_t n;                          /* bonds */
+  double x[ROOM], y[ROOM], z[ROOM];    /* bond vectors, then the force of each bond's spring on its first vertex */
+  double ux[ROOM], uy[ROOM], uz[ROOM]; /* unit vectors */
+  double inverse[ROOM];                /* of lengths */
+  double bx[ROOM], by[ROOM], bz[ROOM]; /* force of each bend on the vertex before its own */
+  double ax[ROOM], ay[ROOM], az[ROOM]; /* and after it */
 };
 
-/* Bond vectors; false, with the fault recorded, if one is too long. */
-static bool measure_bonds(const struct state *state, const struct model *model, struct work *work, uint64_t step,
-                          struct bonds b, struct vec3 *restrict r)
+/* Bond vectors of consecutive bonds; from, to: vertices of the first of them. True if one is too long. */
+static bool measure_bonds(const struct state *state, double limit, uint32_t from, uint32_t to, uint32_t n,
+                          struct stretch *restrict s, uint32_t c)
 {
-  const struct point *restrict from = &state->position[b.first], *restrict to = &state->position[b.next];
-  const double limit = longest_bond(model);
+  const struct point *restrict p = &state->position[from], *restrict q = &state->position[to];
   int64_t beyond = 0;
-  for (uint32_t k = 0; k < b.n; k++) {
-    r[k] = point_difference(to[k], from[k]);
-    beyond |= !(vec3_dot(r[k], r[k]) < limit * limit);
+  for (uint32_t k = 0; k < n; k++) {
+    const struct vec3 r = point_difference(q[k], p[k]);
+    s->x[c + k] = r.x, s->y[c + k] = r.y, s->z[c + k] = r.z;
+    beyond |= !(vec3_dot(r, r) < limit * limit);
+  }
+  return beyond;
+}
+
+/* All bond vectors of the stretch; false, with the fault recorded, if one is too long. */
+static bool measure(const struct state *state, const struct model *model, struct work *work, uint64_t step,
+                    const struct fiber_kind *kind, uint32_t fiber, struct stretch *s)
+{
+  const int64_t last = kind->vertices - 1;
+  const double limit = longest_bond(model);
+  bool beyond = false;
+  for (uint32_t c = 0; c < s->n;) {
+    const int64_t j = s->first + c;
+    uint32_t n = 1;
+    if (j >= 0 && j < last) {
+      n = (uint32_t)(last - j) < s->n - c ? (uint32_t)(last - j) : s->n - c;
+      beyond |= measure_bonds(state, limit, fiber + (uint32_t)j, fiber + (uint32_t)j + 1, n, s, c);
+    } else if (kind->ring) {
+      const uint32_t from = (uint32_t)((j + last + 1) % (last + 1)), to = (uint32_t)((j + last + 2) % (last + 1));
+      beyond |= measure_bonds(state, limit, fiber + from, fiber + to, 1, s, c);
+    } else
+      s->x[c] = s->y[c] = s->z[c] = 0.0;
+    c += n;
   }
   bool ok = true;
-  for (uint32_t k = 0; beyond && k < b.n; k++)
-    ok = ok && bond_fits(work, model, step, b.first + k, vec3_dot(r[k], r[k]));
+  for (uint32_t c = 0; beyond && c < s->n; c++) {
+    const struct vec3 r = {s->x[c], s->y[c], s->z[c]};
+    const uint32_t j = (uint32_t)((s->first + c + last + 1) % (last + 1));
+    ok = ok && bond_fits(work, model, step, fiber + j, vec3_dot(r, r));
+  }
   return ok;
 }
 
 /* Springs without a rest length pull along the bond vector itself: no square root. */
-static void pull_of_zero_length(struct fiber_work *f, const struct fiber_kind *kind, struct bonds b,
-                                struct vec3 *restrict r)
+static void pull_of_zero_length(const struct fiber_kind *kind, struct stretch *restrict s)
 {
-  (void)f;
-  for (uint32_t k = 0; k < b.n; k++)
-    r[k] = vec3_scale(kind->spring, r[k]);
-}
-
-static void pull(struct fiber_work *f, const struct fiber_kind *kind, struct bonds b, struct vec3 *restrict r)
-{
-  struct vec3 *restrict direction = &f->direction[b.number];
-  double *restrict inverse_length = &f->inverse_length[b.number];
-  for (uint32_t k = 0; k < b.n; k++) {
-    const double length = sqrt(vec3_dot(r[k], r[k])), inverse = length > 0.0 ? 1.0 / length : 0.0;
-    inverse_length[k] = inverse;
-    direction[k] = vec3_scale(inverse, r[k]);
-    r[k] = vec3_scale(bond_tension(kind, length), vec3_scale(inverse, r[k]));
+  for (uint32_t c = 0; c < s->n; c++) {
+    const struct vec3 f = vec3_scale(kind->spring, (struct vec3){s->x[c], s->y[c], s->z[c]});
+    s->x[c] = f.x, s->y[c] = f.y, s->z[c] = f.z;
   }
 }
 
-static bool springs_of(const struct state *state, const struct model *model, struct work *work, uint64_t step,
-                       const struct fiber_kind *kind, struct bonds b)
+static void pull(const struct fiber_kind *kind, struct stretch *restrict s)
 {
-  const bool plain = kind->bond_length == 0.0 && kind->bending == 0.0;
-  struct vec3 r[BLOCK];
-  const bool ok = measure_bonds(state, model, work, step, b, r);
-  (plain ? pull_of_zero_length : pull)(&work->fiber, kind, b, r);
-  for (uint32_t k = 0; k < b.n; k++)
-    add_pair(work->fiber.force, b.first + k, b.next + k, r[k]);
-  return ok;
+  for (uint32_t c = 0; c < s->n; c++) {
+    const struct vec3 r = {s->x[c], s->y[c], s->z[c]};
+    const double length = sqrt(vec3_dot(r, r)), inverse = length > 0.0 ? 1.0 / length : 0.0;
+    const struct vec3 u = vec3_scale(inverse, r), f = vec3_scale(bond_tension(kind, length), u);
+    s->inverse[c] = inverse;
+    s->ux[c] = u.x, s->uy[c] = u.y, s->uz[c] = u.z;
+    s->x[c] = f.x, s->y[c] = f.y, s->z[c] = f.z;
+  }
 }
 
-static uint32_t at_most(uint32_t n)
+static void bend(const struct fiber_kind *kind, struct stretch *restrict s)
 {
-  return n < BLOCK ? n : BLOCK;
+  for (uint32_t c = 1; c < s->n; c++) {
+    const struct vec3 u0 = {s->ux[c - 1], s->uy[c - 1], s->uz[c - 1]}, u1 = {s->ux[c], s->uy[c], s->uz[c]};
+    const double cosine = vec3_dot(u0, u1);
+    const struct vec3 b = vec3_scale(-kind->bending * s->inverse[c - 1], vec3_add_scaled(u1, -cosine, u0)),
+                      a = vec3_scale(kind->bending * s->inverse[c], vec3_add_scaled(u0, -cosine, u1));
+    s->bx[c] = b.x, s->by[c] = b.y, s->bz[c] = b.z;
+    s->ax[c] = a.x, s->ay[c] = a.y, s->az[c] = a.z;
+  }
 }
 
-static bool springs(const struct state *state, const struct model *model, struct work *work, uint64_t step,
-                    const struct fiber_kind *kind, uint32_t first)
+/* Forces on n vertices, the first of them number first + 2. */
+static void add_pulls(const struct fiber_kind *kind, const struct stretch *restrict s, uint32_t n,
+                      struct vec3 *restrict force)
 {
-  const uint32_t last = first + kind->vertices - 1;
-  bool ok = true;
-  for (uint32_t j = first; j < last; j += BLOCK)
-    ok &= springs_of(state, model, work, step, kind, (struct bonds){j, j + 1, j - first, at_most(last - j)});
-  if (kind->ring)
-    ok &= springs_of(state, model, work, step, kind, (struct bonds){last, first, last - first, 1});
-  return ok;
-}
-
-/* Bends at n <= BLOCK vertices of the fiber whose forces these are, from number i on, between bonds `before` and i, and
- * so on; `after`: the end of bond i. */
-static void bends_at(const struct fiber_work *f, struct vec3 *force, const struct fiber_kind *kind, uint32_t before,
-                     uint32_t i, uint32_t after, uint32_t n)
-{
-  const struct vec3 *restrict u0 = &f->direction[before], *restrict u1 = &f->direction[i];
-  const double *restrict inverse0 = &f->inverse_length[before], *restrict inverse1 = &f->inverse_length[i];
-  struct vec3 on_before[BLOCK], on_after[BLOCK];
   for (uint32_t k = 0; k < n; k++) {
-    const double cosine = vec3_dot(u0[k], u1[k]);
-    on_before[k] = vec3_scale(-kind->bending * inverse0[k], vec3_add_scaled(u1[k], -cosine, u0[k]));
-    on_after[k] = vec3_scale(kind->bending * inverse1[k], vec3_add_scaled(u0[k], -cosine, u1[k]));
-  }
-  for (uint32_t k = 0; k < n; k++) {
-    force[before + k] = vec3_add(force[before + k], on_before[k]);
-    force[after + k] = vec3_add(force[after + k], on_after[k]);
-    force[i + k] = vec3_sub(force[i + k], vec3_add(on_before[k], on_after[k]));
+    const uint32_t c = k + 2;
+    const struct vec3 before = {s->x[c - 1], s->y[c - 1], s->z[c - 1]}, after = {s->x[c], s->y[c], s->z[c]};
+    force[k] = vec3_add(vec3_sub(kind->force, before), after);
   }
 }
 
-static void bends(const struct fiber_work *f, struct vec3 *force, const struct fiber_kind *kind)
+static void add_bends(const struct stretch *restrict s, uint32_t n, struct vec3 *restrict force)
 {
+  for (uint32_t k = 0; k < n; k++) {
+    const uint32_t c = k + 2;
+    const struct vec3 of_before = {s->ax[c - 1], s->ay[c - 1], s->az[c - 1]},
+                      own = {s->bx[c] + s->ax[c], s->by[c] + s->ay[c], s->bz[c] + s->az[c]},
+                      of_after = {s->bx[c + 1], s->by[c + 1], s->bz[c + 1]};
+    force[k] = vec3_add(vec3_sub(vec3_add(force[k], of_before), own), of_after);
+  }
+}
+
+/* The same for the first or last vertex of a ring, entry c. Terms are added in the order of bonds, then of bends; those
+ * that close the ring have the numbers of its last and first vertex. */
+static struct vec3 force_where_ring_closes(const struct fiber_kind *kind, const struct stretch *s, uint32_t c,
+                                           bool is_first)
+{
+  const struct vec3 before = {s->x[c - 1], s->y[c - 1], s->z[c - 1]}, after = {s->x[c], s->y[c], s->z[c]};
+  const struct vec3 pulled =
+      is_first ? vec3_sub(vec3_add(kind->force, after), before) : vec3_add(vec3_sub(kind->force, before), after);
+  if (kind->bending == 0.0)
+    return pulled;
+  const struct vec3 of_before = {s->ax[c - 1], s->ay[c - 1], s->az[c - 1]},
+                    own = {s->bx[c] + s->ax[c], s->by[c] + s->ay[c], s->bz[c] + s->az[c]},
+                    of_after = {s->bx[c + 1], s->by[c + 1], s->bz[c + 1]};
+  return is_first ? vec3_add(vec3_add(vec3_sub(pulled, own), of_after), of_before)
+                  : vec3_sub(vec3_add(vec3_add(pulled, of_after), of_before), own);
+}
+
+/* Forces on vertices number v .. v + n - 1 of a fiber. */
+static bool forces_on(const struct state *state, const struct model *model, struct work *work, uint64_t step,
+                      const struct fiber_kind *kind, uint32_t fiber, uint32_t v, uint32_t n)
+{
+  struct vec3 *force = &work->fiber.force[fiber + v];
+  struct stretch s;
+  s.first = (int64_t)v - 2, s.n = n + 3;
+  const bool ok = measure(state, model, work, step, kind, fiber, &s), bent = kind->bending != 0.0;
+  if (kind->bond_length == 0.0 && !bent)
+    pull_of_zero_length(kind, &s);
+  else
+    pull(kind, &s);
+  add_pulls(kind, &s, n, force);
+  if (bent) {
+    bend(kind, &s);
+    add_bends(&s, n, force);
+  }
   const uint32_t last = kind->vertices - 1;
-  if (kind->ring)
-    bends_at(f, force, kind, last, 0, 1, 1);
-  for (uint32_t i = 1; i < last; i += BLOCK)
-    bends_at(f, force, kind, i - 1, i, i + 1, at_most(last - i));
-  if (kind->ring)
-    bends_at(f, force, kind, last - 1, last, 0, 1);
+  if (kind->ring && v == 0)
+    force[0] = force_where_ring_closes(kind, &s, 2, true);
+  if (kind->ring && v + n > last)
+    force[last - v] = force_where_ring_closes(kind, &s, last - v + 2, false);
+  return ok;
 }
 
 bool fiber_forces(const struct state *state, const struct model *model, struct work *work, uint64_t step)
 {
   bool ok = true;
-  for (uint32_t n = 0; n < model->fibers; n++) {
-    const struct fiber_kind *kind = &model->kind[model->fiber_kind_of[n]];
-    const uint32_t first = model->fiber_first[n];
-    for (uint32_t v = first; v < first + kind->vertices; v++)
-      work->fiber.force[v] = kind->force;
-    if (kind->vertices < 2)
-      continue;
-    ok &= springs(state, model, work, step, kind, first);
-    if (kind->bending != 0.0)
-      bends(&work->fiber, &work->fiber.force[first], kind);
+  for (uint32_t f = 0; f < model->fibers; f++) {
+    const struct fiber_kind *kind = &model->kind[model->fiber_kind_of[f]];
+    for (uint32_t v = 0; v < kind->vertices; v += BLOCK) {
+      const uint32_t left = kind->vertices - v;
+      ok &= forces_on(state, model, work, step, kind, model->fiber_first[f], v, left < BLOCK ? left : BLOCK);
+    }
   }
   return ok;
 }

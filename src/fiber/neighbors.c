@@ -6,15 +6,17 @@
 #include "base/memory.h"
 #include "fiber/capsule.h"
 
-#define MARGIN_A0 0.12     /* measured: see docs/accuracy.md; results do not depend on it */
-#define CANDIDATES 256     /* looked at together */
+#define MARGIN_A0 0.17   /* measured: see docs/accuracy.md; results do not depend on it */
+#define CANDIDATES 256   /* looked at together */
+#define FIRST_PAIRS 4096 /* room at first */
+#define FIRST_NEAR 64
 #define SEARCH_CELL_A0 1.0 /* least edge of a search cell */
 
 /* --- capsules ---------------------------------------------------------------------------------------------------- */
 
 /* Where a bond may be before an end of it takes a new anchor. */
-static inline struct capsule capsule_of(const struct neighbors *nb, const struct model *model, uint32_t bond,
-                                        struct point origin)
+static struct capsule capsule_of(const struct neighbors *nb, const struct model *model, uint32_t bond,
+                                 struct point origin)
 {
   const struct anchor *a = &nb->anchor[bond], *b = &nb->anchor[model->next[bond]];
   return (struct capsule){point_difference(a->at, origin), point_difference(b->at, origin),
@@ -34,18 +36,6 @@ static void *grow(void *at, uint32_t *room, uint32_t first, size_t size)
   return began_here ? memcpy(bigger, at, first * size) : bigger;
 }
 
-static bool add_partner(struct neighbor_row *row, struct neighbor n)
-{
-  if (row->count == row->room) {
-    struct neighbor *bigger = grow(row->at, &row->room, NEIGHBORS_FIRST_PARTNERS, sizeof *bigger);
-    if (!bigger)
-      return false;
-    row->at = bigger;
-  }
-  row->at[row->count++] = n;
-  return true;
-}
-
 static bool add_entry(struct grid_row *row, const struct grid_entry *e)
 {
   if (row->count == row->room) {
@@ -58,52 +48,79 @@ static bool add_entry(struct grid_row *row, const struct grid_entry *e)
   return true;
 }
 
-static void take_partner_out(struct neighbor_row *row, struct neighbor n)
+static bool grow_pairs(struct pair_list *p)
 {
-  uint32_t k = 0;
-  while (k < row->count && memcmp(&row->at[k], &n, sizeof n) != 0)
-    k++;
-  if (k < row->count)
-    row->at[k] = row->at[--row->count];
+  const uint32_t room = p->room ? 2 * p->room : FIRST_PAIRS;
+  const bool grown = memory_grow((void **)&p->bond, room, sizeof *p->bond) &&
+                     memory_grow((void **)&p->other, room, sizeof *p->other) &&
+                     memory_grow((void **)&p->limit, room, sizeof *p->limit) &&
+                     memory_grow((void **)&p->generation, room, sizeof *p->generation) &&
+                     memory_grow((void **)&p->image, room, sizeof *p->image);
+  p->room = grown ? room : p->room;
+  return grown;
 }
 
-static struct neighbor mirrored(uint32_t bond, const int32_t image[3])
+/* A pair that has just been found: nothing is known of when it may meet. */
+static bool add_pair(struct neighbors *nb, uint32_t bond, struct neighbor n)
 {
-  return (struct neighbor){(int32_t)bond, {-image[0], -image[1], -image[2]}};
+  struct pair_list *p = &nb->pairs;
+  if (p->count == p->room && !grow_pairs(p))
+    return false;
+  const struct bond_clock *mine = &nb->clock[bond], *its = &nb->clock[n.bond];
+  const uint32_t k = p->count++;
+  p->bond[k] = bond;
+  p->other[k] = (uint32_t)n.bond;
+  p->limit[k] = mine->path + its->path - 1;
+  p->generation[k] = mine->generation + its->generation;
+  p->image[k] = (struct image){{n.image[0], n.image[1], n.image[2]}};
+  return true;
 }
 
-/* Empties the list of a bond, and takes it off the lists of its partners. */
-static void leave_partners(struct neighbors *nb, uint32_t bond)
+void neighbors_drop_pair(struct neighbors *nb, uint32_t k)
 {
-  struct neighbor_row *row = &nb->partners[bond];
-  while (row->count > 0) {
-    const struct neighbor last = row->at[--row->count];
-    take_partner_out(&nb->partners[last.bond], mirrored(bond, last.image));
+  struct pair_list *p = &nb->pairs;
+  const uint32_t last = --p->count;
+  p->bond[k] = p->bond[last];
+  p->other[k] = p->other[last];
+  p->limit[k] = p->limit[last];
+  p->generation[k] = p->generation[last];
+  p->image[k] = p->image[last];
+}
+
+static bool add_near(struct neighbor_list *list, struct neighbor n)
+{
+  if (list->count == list->room) {
+    const uint32_t room = list->room ? 2 * list->room : FIRST_NEAR;
+    if (!memory_grow((void **)&list->at, room, sizeof *list->at))
+      return false;
+    list->room = room;
   }
+  list->at[list->count++] = n;
+  return true;
 }
 
 /* --- grid -------------------------------------------------------------------------------------------------------- */
 
-/* The box around a bond's capsule, in lattice units. */
+/* The box around a capsule, in lattice units. */
 struct capsule_box {
   struct point low, high;
 };
 
-static struct capsule_box box_of(const struct neighbors *nb, const struct model *model, uint32_t bond)
+static inline struct capsule_box box_around(struct point a, struct point b, double reach_a0)
 {
-  const struct anchor *p = &nb->anchor[bond], *q = &nb->anchor[model->next[bond]];
-  const struct point a = p->at, b = q->at;
-  const int64_t reach = lattice_from_a0(capsule_most(p->reach, q->reach) + CAPSULE_SLACK);
+  const int64_t reach = lattice_from_a0(reach_a0 + CAPSULE_SLACK);
   return (struct capsule_box){
       {(a.x < b.x ? a.x : b.x) - reach, (a.y < b.y ? a.y : b.y) - reach, (a.z < b.z ? a.z : b.z) - reach},
       {(a.x > b.x ? a.x : b.x) + reach, (a.y > b.y ? a.y : b.y) + reach, (a.z > b.z ? a.z : b.z) + reach}};
 }
 
-/* The image of the box in which a point lies. */
-struct image {
-  int32_t k[3];
-};
+static struct capsule_box box_of(const struct neighbors *nb, const struct model *model, uint32_t bond)
+{
+  const struct anchor *p = &nb->anchor[bond], *q = &nb->anchor[model->next[bond]];
+  return box_around(p->at, q->at, capsule_most(p->reach, q->reach));
+}
 
+/* The image of the box in which a point lies. */
 static struct image image_of(struct point p, const struct box *box)
 {
   return (struct image){{(int32_t)lattice_image(p.x, box->edge[0]), (int32_t)lattice_image(p.y, box->edge[1]),
@@ -146,8 +163,10 @@ static void note_axis(struct grid_entry *e, const struct walk *w, const struct n
   e->starts = (uint8_t)((e->starts & ~(1 << axis)) | (w->low >= 0) << axis);
 }
 
-/* Pairs of bonds whose boxes overlap, before a closer look; `image`: of the other one, counted as in grid_entry. */
+/* Pairs of bonds whose boxes overlap, before a closer look; `image`: of the other one, counted as in grid_entry. With a
+ * place to put them, they go there; else those that may touch are paired. */
 struct search {
+  struct neighbor_list *near;
   uint32_t count;
   struct candidate {
     uint32_t bond, other;
@@ -158,11 +177,10 @@ struct search {
 /* Something done with the entry that a bond has, or is to have, in one cell. */
 typedef bool visit(struct neighbors *, const struct model *, uint32_t cell, const struct grid_entry *, struct search *);
 
-/* All cells that the box around a bond's capsule touches. */
-static inline bool visit_cells(struct neighbors *nb, const struct model *model, uint32_t bond, visit *what,
-                               struct search *found)
+/* All cells that a box around a bond touches. */
+static inline bool visit_cells(struct neighbors *nb, const struct model *model, uint32_t bond, struct capsule_box box,
+                               visit *what, struct search *found)
 {
-  const struct capsule_box box = box_of(nb, model, bond);
   struct grid_entry e = {.bond = (int32_t)bond};
   const struct image home = image_of(nb->anchor[bond].at, &model->box);
   struct walk z = walk_from(box.low.z, box.high.z, nb, 2, home.k[2]);
@@ -209,7 +227,7 @@ static inline bool overlap(const struct grid_entry *a, const struct grid_entry *
          (a->low[2] <= b->high[2]) & (b->low[2] <= a->high[2]);
 }
 
-/* Candidates that may touch become partners of each other. */
+/* What becomes of candidates: struct search. */
 static bool settle(struct neighbors *nb, const struct model *model, struct search *found)
 {
   for (uint32_t k = 0; k < found->count; k++) {
@@ -221,23 +239,25 @@ static bool settle(struct neighbors *nb, const struct model *model, struct searc
     struct neighbor n = {.bond = (int32_t)c->other};
     for (int axis = 0; axis < 3; axis++)
       n.image[axis] = home.k[axis] - its_home.k[axis] + c->image[axis];
-    const struct neighbor back = mirrored(c->bond, n.image);
-    const struct capsule mine = capsule_of(nb, model, c->bond, mine_at),
-                         its = capsule_of(nb, model, c->other, point_image(mine_at, back.image, &model->box));
-    if (capsules_apart(&mine, &its))
+    if (found->near) {
+      if (!add_near(found->near, n))
+        return false;
       continue;
-    if (!add_partner(&nb->partners[c->bond], n) || !add_partner(&nb->partners[c->other], back))
+    }
+    const int32_t back[3] = {-n.image[0], -n.image[1], -n.image[2]};
+    const struct capsule mine = capsule_of(nb, model, c->bond, mine_at),
+                         its = capsule_of(nb, model, c->other, point_image(mine_at, back, &model->box));
+    if (!capsules_apart(&mine, &its) && !add_pair(nb, c->bond, n))
       return false;
   }
   found->count = 0;
   return true;
 }
 
-/* Enters a bond in a cell; those that are there and may touch it are candidates. A pair that meets in several cells is
- * taken in the one that holds the lower corner of the overlap of their boxes: there, along every axis, one of the two
- * starts. */
-static bool enter_cell(struct neighbors *nb, const struct model *model, uint32_t cell, const struct grid_entry *mine,
-                       struct search *found)
+/* The bonds of a cell that may touch this one are candidates. A pair that meets in several cells is taken in the one
+ * that holds the lower corner of the overlap of their boxes: there, along every axis, one of the two starts. */
+static bool look_into_cell(struct neighbors *nb, const struct model *model, uint32_t cell,
+                           const struct grid_entry *mine, struct search *found)
 {
   const struct grid_row *row = &nb->entries[cell];
   for (uint32_t k = 0; k < row->count; k++) {
@@ -253,16 +273,16 @@ static bool enter_cell(struct neighbors *nb, const struct model *model, uint32_t
                            (uint32_t)e->bond,
                            {mine->image[0] - e->image[0], mine->image[1] - e->image[1], mine->image[2] - e->image[2]}};
   }
-  return add_entry(&nb->entries[cell], mine);
+  return true;
 }
 
-static void leave(struct neighbors *nb, const struct model *model, uint32_t bond)
+static bool enter_cell(struct neighbors *nb, const struct model *model, uint32_t cell, const struct grid_entry *mine,
+                       struct search *found)
 {
-  leave_partners(nb, bond);
-  visit_cells(nb, model, bond, leave_cell, NULL);
+  return look_into_cell(nb, model, cell, mine, found) && add_entry(&nb->entries[cell], mine);
 }
 
-/* --- the two entrances ------------------------------------------------------------------------------------------- */
+/* --- the entrances ----------------------------------------------------------------------------------------------- */
 
 static bool short_of_memory(const struct state *state, struct work *work, uint32_t bond)
 {
@@ -280,13 +300,13 @@ static struct anchor anchor_of_move(const struct neighbors *nb, struct point fro
   return (struct anchor){at, fmax(nb->margin, 0.5 * length + LATTICE_UNIT)};
 }
 
-/* New partners for bonds that have left theirs. */
+/* New pairs for bonds whose anchors are new. */
 static bool enter(struct neighbors *nb, const struct model *model, uint32_t bonds, const uint32_t *bond)
 {
   struct search found;
-  found.count = 0;
+  found.near = NULL, found.count = 0;
   for (uint32_t k = 0; k < bonds; k++)
-    if (!visit_cells(nb, model, bond[k], enter_cell, &found))
+    if (!visit_cells(nb, model, bond[k], box_of(nb, model, bond[k]), enter_cell, &found))
       return false;
   return settle(nb, model, &found);
 }
@@ -300,19 +320,6 @@ static bool fetch_cell(struct neighbors *nb, const struct model *model, uint32_t
   for (size_t line = 0; line < sizeof nb->entries[cell]; line += 64)
     __builtin_prefetch(row + line, 1);
   return true;
-}
-
-/* Asks the memory for what leaving and entering will look at: without that, most of their time goes in waiting. */
-static void fetch(struct neighbors *nb, const struct model *model, uint32_t bonds, const uint32_t *bond)
-{
-  for (uint32_t k = 0; k < bonds; k++) {
-    visit_cells(nb, model, bond[k], fetch_cell, NULL);
-    for (uint32_t n = 0; n < nb->partners[bond[k]].count; n++) {
-      const size_t partner = (size_t)nb->partners[bond[k]].at[n].bond;
-      __builtin_prefetch(&nb->partners[partner], 1);
-      __builtin_prefetch(&nb->first_partners[partner * NEIGHBORS_FIRST_PARTNERS], 1);
-    }
-  }
 }
 
 /* The bonds of some vertices, each once. */
@@ -338,13 +345,31 @@ bool neighbors_renew(const struct state *state, const struct model *model, struc
   struct neighbors *nb = &work->fiber.neighbors;
   uint32_t bond[2 * NEIGHBORS_AT_ONCE] = {0};
   const uint32_t bonds = bonds_of(model, n, vertex, bond);
-  fetch(nb, model, bonds, bond);
+  /* Without asking ahead, most of the time of what follows goes in waiting for memory. */
   for (uint32_t k = 0; k < bonds; k++)
-    leave(nb, model, bond[k]);
+    visit_cells(nb, model, bond[k], box_of(nb, model, bond[k]), fetch_cell, NULL);
+  for (uint32_t k = 0; k < bonds; k++) {
+    visit_cells(nb, model, bond[k], box_of(nb, model, bond[k]), leave_cell, NULL);
+    nb->clock[bond[k]].generation++;
+  }
   for (uint32_t k = 0; k < n; k++)
     nb->anchor[vertex[k]] = anchor_of_move(nb, state->position[vertex[k]], to[k]);
   nb->renewed += n;
   return enter(nb, model, bonds, bond) || short_of_memory(state, work, vertex[0]);
+}
+
+bool neighbors_near(const struct state *state, const struct model *model, struct work *work, uint32_t bond,
+                    double range, struct neighbor_list *near)
+{
+  struct neighbors *nb = &work->fiber.neighbors;
+  const struct point a = state->position[bond], b = state->position[model->next[bond]], m = nb->moved;
+  const struct capsule_box box = box_around((struct point){a.x - m.x, a.y - m.y, a.z - m.z},
+                                            (struct point){b.x - m.x, b.y - m.y, b.z - m.z}, range);
+  struct search found;
+  found.near = near, found.count = 0;
+  near->count = 0;
+  return (visit_cells(nb, model, bond, box, look_into_cell, &found) && settle(nb, model, &found)) ||
+         short_of_memory(state, work, bond);
 }
 
 /* Search cells divide the box edges exactly; there are no more than bonds to put in, or so. */
@@ -371,17 +396,13 @@ static bool allocate(const struct model *model, struct neighbors *nb)
   nb->margin = MARGIN_A0;
   nb->bonds = model->vertices;
   nb->anchor = memory_alloc(nb->bonds, sizeof *nb->anchor);
-  nb->partners = memory_alloc(nb->bonds, sizeof *nb->partners);
+  nb->clock = memory_alloc(nb->bonds, sizeof *nb->clock);
   nb->entries = memory_alloc(nb->cell_count, sizeof *nb->entries);
-  nb->first_partners = memory_alloc((size_t)nb->bonds * NEIGHBORS_FIRST_PARTNERS, sizeof *nb->first_partners);
-  if (!nb->anchor || !nb->partners || !nb->entries || !nb->first_partners) {
+  if (!nb->anchor || !nb->clock || !nb->entries) {
     free(nb->entries); /* nothing in it says yet which rows have moved out */
     nb->entries = NULL;
     return false;
   }
-  for (uint32_t j = 0; j < nb->bonds; j++)
-    nb->partners[j] =
-        (struct neighbor_row){&nb->first_partners[(size_t)j * NEIGHBORS_FIRST_PARTNERS], 0, NEIGHBORS_FIRST_PARTNERS};
   for (uint32_t c = 0; c < nb->cell_count; c++) {
     struct grid_row *row = &nb->entries[c];
     row->at = row->first, row->count = 0, row->room = NEIGHBORS_FIRST_ENTRIES;
@@ -394,8 +415,7 @@ bool neighbors_build(const struct state *state, const struct model *model, struc
   struct neighbors *nb = &work->fiber.neighbors;
   if (!allocate(model, nb))
     return short_of_memory(state, work, 0);
-  for (uint32_t j = 0; j < nb->bonds; j++)
-    nb->partners[j].count = 0;
+  nb->pairs.count = 0;
   for (uint32_t c = 0; c < nb->cell_count; c++)
     nb->entries[c].count = 0;
   for (uint32_t j = 0; j < model->vertices; j++)

@@ -3,13 +3,18 @@
  *
  * Every vertex has an anchor: the place where it stood when its bonds last looked for partners. While it stays within a
  * margin of its anchor, its bonds stay in capsules around the lines between anchors, and bonds whose capsules are apart
- * cannot touch. So the partners of a bond are the bonds (and the images of bonds) whose capsules are not shown to be
- * apart, and a vertex that is about to leave its anchor takes a new one, with new lists for its one or two bonds, told
- * to their old and new partners: one fast vertex costs two bonds' work, not everybody's.
+ * cannot touch. All pairs of bonds (and images of bonds) whose capsules are not shown to be apart are in one list. A
+ * vertex that is about to leave its anchor takes a new one, and its one or two bonds look for partners again; what the
+ * list said of them before is out of date by their generation, and dropped when it is next read. One fast vertex costs
+ * two bonds' work, not everybody's.
+ *
+ * Most pairs in the list cannot touch for a while either: two bonds some distance apart have to come that much closer.
+ * So every bond counts how far it may have gone, its path, and a pair that has been looked at says how long the two
+ * paths may get until it has to be looked at again (fiber/turns.c).
  *
  * Capsules are apart if a plane with a margin on either side goes between them: perpendicular to an edge of the box, or
  * to both bonds. Bonds that pass each other at right angles have wide boxes and a clear distance; the second kind of
- * plane spares most of the partners that boxes alone would give.
+ * plane spares most of the pairs that boxes alone would give.
  *
  * Partners are found in a grid whose cells list every bond whose capsule's box touches them, each with the image that
  * puts it there and, roughly, the part of the box that lies in the cell: most bonds of a cell are passed over without a
@@ -24,27 +29,32 @@
 #include "state/state.h"
 #include "state/work.h"
 
-/* Anchors, grid and lists of all bonds from scratch. False, with the fault recorded, if memory is short. */
+/* Anchors, grid and pairs of all bonds from scratch. False, with the fault recorded, if memory is short. */
 bool neighbors_build(const struct state *state, const struct model *model, struct work *work);
 
-#define NEIGHBORS_AT_ONCE 16
+#define NEIGHBORS_AT_ONCE 8
 
-/* New anchors for n vertices, 0 < n <= NEIGHBORS_AT_ONCE, that move, or try to move, to `to`, and new lists for their
+/* New anchors for n vertices, 0 < n <= NEIGHBORS_AT_ONCE, that move, or try to move, to `to`, and new pairs for their
  * bonds. False, with the fault recorded, if memory is short. */
 bool neighbors_renew(const struct state *state, const struct model *model, struct work *work, uint32_t n,
                      const uint32_t *vertex, const struct point *to);
 
-/* Asks the memory for the lists of a vertex's bonds, which are soon needed. */
-static inline void neighbors_fetch(const struct neighbors *nb, uint32_t vertex)
+/* All bonds that a bond may touch whose ends go no further than `range` (a0) from where they are, and some more. False,
+ * with the fault recorded, if memory is short. */
+bool neighbors_near(const struct state *state, const struct model *model, struct work *work, uint32_t bond,
+                    double range, struct neighbor_list *near);
+
+/* Was pair k found before one of its bonds last looked for partners? Then the list has it anew, or they are apart. */
+static inline bool neighbors_out_of_date(const struct neighbors *nb, uint32_t k)
 {
-  const uint32_t before = vertex > 0 ? vertex - 1 : 0; /* of a ring's first vertex it is another: then it comes late */
-  __builtin_prefetch(&nb->partners[before], 1);
-  __builtin_prefetch(&nb->partners[vertex], 1);
-  __builtin_prefetch(&nb->first_partners[(size_t)before * NEIGHBORS_FIRST_PARTNERS], 1);
-  __builtin_prefetch(&nb->first_partners[(size_t)vertex * NEIGHBORS_FIRST_PARTNERS], 1);
+  const struct pair_list *p = &nb->pairs;
+  return p->generation[k] != nb->clock[p->bond[k]].generation + nb->clock[p->other[k]].generation;
 }
 
-/* Is a vertex at p still where its anchor's lists are good for? */
+/* Pair k goes, and the last one takes its place. */
+void neighbors_drop_pair(struct neighbors *nb, uint32_t k);
+
+/* Is a vertex at p still where its anchor's pairs are good for? */
 static inline bool neighbors_hold(const struct neighbors *nb, uint32_t vertex, struct point p)
 {
   const struct point at = nb->anchor[vertex].at, moved = nb->moved;

@@ -59,18 +59,17 @@ static bool linked_to_moving(const struct model *model, uint32_t vertex, const s
 }
 
 /* All hits of one of the two bonds of the moving vertex. */
-static void test_bond(const struct state *state, const struct model *model, const struct neighbors *nb, uint32_t bond,
-                      struct trial *t)
+static void test_bond(const struct state *state, const struct model *model, const struct meeting_list *meetings,
+                      uint32_t bond, struct trial *t)
 {
-  const struct neighbor_row *partners = &nb->partners[bond];
   const bool is_first = bond == t->vertex;
   struct crossing_query q = {.from = state->position[t->vertex],
                              .to = t->to,
                              .pivot = state->position[is_first ? (uint32_t)model->next[bond] : bond],
                              .flip = is_first};
   const struct vec3 before = point_difference(q.from, q.pivot), after = point_difference(q.to, q.pivot);
-  for (uint32_t k = 0; k < partners->count; k++) {
-    const struct neighbor *n = &partners->at[k];
+  for (uint32_t m = meetings->first[bond]; m; m = meetings->at[m - 1].next) {
+    const struct neighbor *n = &meetings->at[m - 1].with;
     const struct point b = state->position[model->next[n->bond]];
     q.a = point_image(state->position[n->bond], n->image, &model->box);
     if (crossing_far(point_difference(b, state->position[n->bond]), point_difference(q.pivot, q.a), before, after))
@@ -90,8 +89,9 @@ static struct exchange_end end_of(struct state *state, const struct model *model
   return (struct exchange_end){&state->velocity[vertex], model->inverse_mass[vertex]};
 }
 
-/* The first hit takes the place of the move: momentum is exchanged, and the vertex stays. */
-static void execute(struct state *state, const struct model *model, struct work *work, struct trial *t)
+/* The first hit takes the place of the move: momentum is exchanged, and the vertex stays. False, with the fault
+ * recorded, if memory is short. */
+static bool execute(struct state *state, const struct model *model, struct work *work, struct trial *t)
 {
   struct sweep_event *e = &t->first;
   uint32_t pivot = e->moving_bond == t->vertex ? (uint32_t)model->next[t->vertex] : e->moving_bond;
@@ -101,29 +101,29 @@ static void execute(struct state *state, const struct model *model, struct work 
   e->momentum = exchange_momentum(moving, standing, e->hit.s, e->hit.s_standing, e->hit.normal);
   const uint32_t changed[3] = {pivot, e->standing_bond, (uint32_t)model->next[e->standing_bond]};
   for (int k = 0; k < 3; k++)
-    turns_reconsider(state, model, work, changed[k], t->dt, work->fiber.rank[t->vertex]);
+    if (!turns_reconsider(state, model, work, changed[k], t->dt, work->fiber.rank[t->vertex]))
+      return false;
   e->executed = true;
   record(t->log, e);
   state->counts.possible += t->hits;
   state->counts.executed++;
   state->counts.negative += e->momentum < 0.0;
+  return true;
 }
 
-/* Both bonds against their partners, at the vertex's turn. False, with the fault recorded, if memory is short. */
+/* Both bonds against those that they may meet, at the vertex's turn. False, with the fault recorded, if memory is
+ * short. */
 static bool find_hits(struct state *state, const struct model *model, struct work *work, struct trial *t)
 {
-  const struct neighbors *nb = &work->fiber.neighbors;
+  const struct fiber_work *f = &work->fiber;
   const uint32_t i = t->vertex;
   const int32_t before = model->prev[i];
-  if (!neighbors_hold(nb, i, t->to)) {
-    if (!neighbors_renew(state, model, work, 1, &i, &t->to))
-      return false;
-    turns_reconsider(state, model, work, i, t->dt, work->fiber.rank[i]);
-  }
+  if (!neighbors_hold(&f->neighbors, i, t->to) && !neighbors_renew(state, model, work, 1, &i, &t->to))
+    return false;
   if (before >= 0)
-    test_bond(state, model, nb, (uint32_t)before, t);
+    test_bond(state, model, &f->meetings, (uint32_t)before, t);
   if (model->next[i] >= 0)
-    test_bond(state, model, nb, i, t);
+    test_bond(state, model, &f->meetings, i, t);
   return true;
 }
 
@@ -138,9 +138,8 @@ static bool bounce(struct state *state, const struct model *model, struct work *
   const struct vec3 after = vec3_sub(state->velocity[i], model_frame_velocity(model));
   const struct vec3 d = vec3_add_scaled(vec3_scale(time * t.dt, vec3_sub(before, model_frame_velocity(model))),
                                         (1.0 - time) * t.dt, after);
-  turns_reconsider(state, model, work, i, t.dt, work->fiber.rank[i]);
   t.to = point_move(state->position[i], d);
-  if (!find_hits(state, model, work, &t))
+  if (!turns_reconsider(state, model, work, i, t.dt, work->fiber.rank[i]) || !find_hits(state, model, work, &t))
     return false;
   if (t.hits == 0)
     state->position[i] = t.to;
@@ -156,8 +155,8 @@ static bool try_move(struct state *state, const struct model *model, struct work
     state->position[t->vertex] = t->to;
     return true;
   }
-  execute(state, model, work, t);
-  return model->crossing.refusal == REFUSAL_STAY || bounce(state, model, work, t, before);
+  return execute(state, model, work, t) &&
+         (model->crossing.refusal == REFUSAL_STAY || bounce(state, model, work, t, before));
 }
 
 static void draw_order(const struct state *state, const struct model *model, struct fiber_work *f, uint64_t step,
@@ -190,14 +189,14 @@ static void fetch_vertex(const struct state *state, const struct model *model, c
   __builtin_prefetch(&f->neighbors.anchor[i]);
   __builtin_prefetch(&model->prev[i]);
   __builtin_prefetch(&model->next[i]);
-  neighbors_fetch(&f->neighbors, i);
+  __builtin_prefetch(&f->meetings.first[i]);
 }
 
-static void fetch_partners(const struct state *state, const struct model *model, const struct fiber_work *f, uint32_t i)
+static void fetch_meetings(const struct state *state, const struct model *model, const struct fiber_work *f, uint32_t i)
 {
   for (uint32_t bond = i > 0 ? i - 1 : 0; bond <= i; bond++)
-    for (uint32_t k = 0; k < f->neighbors.partners[bond].count; k++) {
-      const int32_t other = f->neighbors.partners[bond].at[k].bond;
+    for (uint32_t m = f->meetings.first[bond]; m; m = f->meetings.at[m - 1].next) {
+      const int32_t other = f->meetings.at[m - 1].with.bond;
       __builtin_prefetch(&state->position[other]);
       __builtin_prefetch(&state->position[other + 1].z);
       __builtin_prefetch(&model->next[other]);
@@ -217,7 +216,7 @@ static bool sweep_noncrossing(struct state *state, const struct model *model, st
     if (k + 2 * AHEAD < f->queued)
       fetch_vertex(state, model, f, f->queue[k + 2 * AHEAD]);
     if (k + AHEAD < f->queued)
-      fetch_partners(state, model, f, f->queue[k + AHEAD]);
+      fetch_meetings(state, model, f, f->queue[k + AHEAD]);
     struct trial t = {.vertex = f->queue[k], .dt = dt, .log = log};
     if (!turns_trial(state, model, work, t.vertex, dt, &t.to) || !try_move(state, model, work, &t))
       return false;

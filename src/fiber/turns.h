@@ -5,10 +5,10 @@
  * not. But hardly any vertex comes near another bond in one time step. If the two bonds of a pair cannot touch however
  * far their ends go in this sweep, the pair does not care who goes first; a vertex none of whose bonds may touch
  * anything makes the same move at any time. Such vertices move at once, in the order of memory, without a test; the
- * others wait for their turn.
+ * others wait for their turn, and are tested against the bonds that theirs may meet.
  *
- * An exchange of momentum changes what its vertices will do when their turn comes. Who gets faster looks at its
- * partners again, and calls back those that moved before their turn, if that is still to come.
+ * An exchange of momentum changes what its vertices will do when their turn comes. Who gets faster looks around again,
+ * and calls back those that moved before their turn, if that is still to come.
  */
 #ifndef UNCROSS_TURNS_H
 #define UNCROSS_TURNS_H
@@ -25,13 +25,14 @@ bool turns_trial(const struct state *state, const struct model *model, struct wo
 /* All vertices to where they want to go, as if nothing were in their way. False as turns_trial. */
 bool turns_phantom(struct state *state, const struct model *model, struct work *work, double dt);
 
-/* Before a sweep in the order work->fiber.order: anchors for all that need new ones, work->fiber.waits for all vertices
- * (1: waits for its turn), those in work->fiber.queue, and all others moved. False, with the fault recorded, as
- * turns_trial and neighbors_renew. */
+/* Before a sweep in the order work->fiber.order: anchors for all that need new ones, work->fiber.meetings: all pairs
+ * of bonds that may touch, work->fiber.waits for all vertices (1: waits for its turn), those in work->fiber.queue, and
+ * all others moved. False, with the fault recorded, as turns_trial and neighbors_renew. */
 bool turns_plan(struct state *state, const struct model *model, struct work *work, double dt);
 
-/* Vertex i, whose turn comes after `now`, has got another velocity, or its bonds new partners. */
-void turns_reconsider(struct state *state, const struct model *model, struct work *work, uint32_t i, double dt,
+/* Vertex i has got another velocity during the turn of rank `now`: a new anchor, if its move leaves the old one; if it
+ * is faster than it was, new meetings. False, with the fault recorded, if memory is short. */
+bool turns_reconsider(struct state *state, const struct model *model, struct work *work, uint32_t i, double dt,
                       uint32_t now);
 
 #endif

@@ -29,14 +29,6 @@ static size_t count_cells(const struct model *m)
   return model_has_phantoms(m) ? m->vertices : model_has_solvent(m) ? (size_t)box_cell_count(&m->box) : 0;
 }
 
-static size_t longest_fiber(const struct model *m)
-{
-  size_t vertices = 0;
-  for (uint32_t k = 0; m->bonds && k < m->kinds; k++)
-    vertices = m->kind[k].count && m->kind[k].vertices > vertices ? m->kind[k].vertices : vertices;
-  return vertices;
-}
-
 /* The single place that says which scratch a model uses. */
 static void list_needs(struct work *w, const struct model *m, struct need need[NEEDS])
 {
@@ -46,7 +38,6 @@ static void list_needs(struct work *w, const struct model *m, struct need need[N
   size_t bathed = model_has_phantoms(m) ? m->vertices : 0;
   size_t thermostatted = m->solvent.thermostat != THERMOSTAT_NONE ? cells : 0;
   size_t swapped = m->solvent.hydrodynamics ? 0 : particles;
-  size_t bent = longest_fiber(m);
   size_t noncrossing = m->crossing.forbidden ? m->vertices : 0;
   struct collision_work *c = &w->collision;
   struct fiber_work *f = &w->fiber;
@@ -66,8 +57,8 @@ static void list_needs(struct work *w, const struct model *m, struct need need[N
       {(void **)&f->range, noncrossing, sizeof *f->range},
       {(void **)&f->queue, noncrossing, sizeof *f->queue},
       {(void **)&f->waits, noncrossing, sizeof *f->waits},
+      {(void **)&f->meetings.first, noncrossing, sizeof *f->meetings.first},
       {(void **)&f->force, m->vertices, sizeof *f->force},
-      {(void **)&f->direction, bent, sizeof *f->direction + sizeof *f->inverse_length},
   };
   memcpy(need, all, sizeof all);
 }
@@ -88,23 +79,22 @@ bool work_alloc(struct work *w, const struct model *m)
   }
   w->collision.cells = (uint32_t)count_cells(m);
   w->collision.table_bits = table_bits(m->vertices);
-  if (w->fiber.direction)
-    w->fiber.inverse_length = (double *)(w->fiber.direction + longest_fiber(m));
   return true;
 }
 
 static void free_neighbors(struct neighbors *nb)
 {
-  for (uint32_t j = 0; nb->partners && j < nb->bonds; j++)
-    if (nb->partners[j].room > NEIGHBORS_FIRST_PARTNERS)
-      free(nb->partners[j].at);
   for (uint32_t c = 0; nb->entries && c < nb->cell_count; c++)
     if (nb->entries[c].room > NEIGHBORS_FIRST_ENTRIES)
       free(nb->entries[c].at);
-  free(nb->anchor);
-  free(nb->partners);
   free(nb->entries);
-  free(nb->first_partners);
+  free(nb->anchor);
+  free(nb->clock);
+  free(nb->pairs.bond);
+  free(nb->pairs.other);
+  free(nb->pairs.limit);
+  free(nb->pairs.generation);
+  free(nb->pairs.image);
 }
 
 void work_free(struct work *w)
@@ -114,6 +104,8 @@ void work_free(struct work *w)
   list_needs(w, &nothing, need);
   for (int k = 0; k < NEEDS; k++)
     free(*need[k].where);
+  free(w->fiber.meetings.at);
+  free(w->fiber.near.at);
   free_neighbors(&w->fiber.neighbors);
   memset(w, 0, sizeof *w);
 }
@@ -128,8 +120,7 @@ uint64_t work_bytes(const struct model *m)
   for (int k = 0; k < NEEDS; k++)
     bytes += need[k].count * need[k].size;
   if (m->crossing.forbidden)
-    bytes += (uint64_t)m->bonds * (sizeof(struct anchor) + sizeof(struct neighbor_row) +
-                                   NEIGHBORS_FIRST_PARTNERS * sizeof(struct neighbor) + sizeof(struct grid_row));
+    bytes += (uint64_t)m->bonds * (sizeof(struct anchor) + sizeof(struct bond_clock) + sizeof(struct grid_row));
   return bytes;
 }
 

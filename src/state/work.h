@@ -46,10 +46,28 @@ struct collision_work {
 
 /* --- fibers ------------------------------------------------------------------------------------------------------ */
 
-/* A partner bond that may be touched: bond number, and the image of it, in box edges. */
+/* Another bond that may be touched: bond number, and the image of it, in box edges. */
 struct neighbor {
   int32_t bond;
   int32_t image[3];
+};
+
+struct neighbor_list {
+  uint32_t count, room;
+  struct neighbor *at;
+};
+
+/* Two bonds that may touch in this sweep, as one of them has it. */
+struct meeting {
+  uint32_t bond;
+  struct neighbor with;
+  uint32_t next; /* 1 + the number of the bond's next meeting, or 0 */
+};
+
+struct meeting_list {
+  uint32_t count, room;
+  struct meeting *at;
+  uint32_t *first; /* [bonds] as `next` */
 };
 
 /* Where a vertex stood when its bonds last looked for partners. */
@@ -58,14 +76,25 @@ struct anchor {
   double reach;    /* a0: how far the vertex may be from there */
 };
 
-/* Rows start in a slab, one after the other, and move out when they have grown. */
-enum { NEIGHBORS_FIRST_PARTNERS = 4, NEIGHBORS_FIRST_ENTRIES = 15 };
-
-/* Partners of a bond. */
-struct neighbor_row {
-  struct neighbor *at;
+/* Pairs of bonds that may touch before an end of either takes a new anchor, and for how long they cannot: while their
+ * paths together are not longer than `limit`. */
+struct pair_list {
   uint32_t count, room;
+  uint32_t *bond, *other;
+  uint32_t *limit;      /* as path, below, modulo 2^32 */
+  uint32_t *generation; /* both bonds', added up, when the pair was found; if it is more now, the pair is out of date */
+  struct image {
+    int32_t k[3];
+  } * image; /* of the other one, in box edges */
 };
+
+struct bond_clock {
+  uint32_t path;       /* how far the ends have gone at most, in units of 2^-20 a0, modulo 2^32 */
+  uint32_t generation; /* how many times it has looked for partners */
+};
+
+/* Rows start in the grid itself, and move out when they have grown. */
+enum { NEIGHBORS_FIRST_ENTRIES = 15 };
 
 /* A bond that touches a search cell. */
 struct grid_entry {
@@ -84,14 +113,14 @@ struct grid_row {
 
 struct neighbors {
   bool built;
-  double margin;                   /* a0: a vertex further than this from its anchor takes a new one */
-  uint32_t bonds;                  /* one for each vertex, used or not */
-  struct anchor *anchor;           /* [vertices] */
-  struct neighbor_row *partners;   /* [bonds] */
-  struct neighbor *first_partners; /* [bonds][NEIGHBORS_FIRST_PARTNERS] */
-  int32_t cells[3];                /* of the search grid */
-  int64_t cell_edge[3];            /* lattice units */
-  int cell_shift[3];               /* 2^cell_shift: about a 256th of that */
+  double margin;            /* a0: a vertex further than this from its anchor takes a new one */
+  uint32_t bonds;           /* one for each vertex, used or not */
+  struct anchor *anchor;    /* [vertices] */
+  struct bond_clock *clock; /* [bonds] */
+  struct pair_list pairs;
+  int32_t cells[3];     /* of the search grid */
+  int64_t cell_edge[3]; /* lattice units */
+  int cell_shift[3];    /* 2^cell_shift: about a 256th of that */
   uint32_t cell_count;
   struct grid_row *entries; /* [cell_count] */
   struct point moved;       /* how far everything has moved as one since anchors were first taken */
@@ -100,14 +129,14 @@ struct neighbors {
 
 struct fiber_work {
   uint32_t *order; /* [vertices] of the sweep */
-  uint32_t *rank;  /* [vertices] order[rank[i]] = i; this and the next three for noncrossing fibers only */
+  uint32_t *rank;  /* [vertices] order[rank[i]] = i; this and all up to meetings.first for noncrossing fibers only */
   double *range;   /* [vertices] a0: how far at most from where it is a vertex may go in this sweep */
   uint32_t *queue; /* [vertices] those that wait for their turns, in order: the first `queued` */
   uint32_t queued;
-  uint8_t *waits;         /* [vertices] 1: moves when its turn comes, 0: at once */
-  struct vec3 *force;     /* [vertices] kT/a0 */
-  struct vec3 *direction; /* [vertices of the longest fiber] unit vectors of the bonds of one fiber */
-  double *inverse_length; /* likewise */
+  uint8_t *waits; /* [vertices] 1: moves when its turn comes, 0: at once */
+  struct meeting_list meetings;
+  struct neighbor_list near; /* scratch */
+  struct vec3 *force;        /* [vertices] kT/a0 */
   struct neighbors neighbors;
   uint64_t waited, called_back; /* moves so far that waited for their turn; of these, called back: for benchmarks */
 };
