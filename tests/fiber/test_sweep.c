@@ -151,40 +151,36 @@ static void limits_of_pairs_hold(void **unused)
   assert_true(executed > 200 && 2 * waiting > listed);
 }
 
-/* A heavy bond F hits a light one S, which then flies further than any list looked ahead, into C; and C has moved
- * before its turn, since it met nobody. Where its turn is after S's, it must be where it was: all orders of the turns.
- */
-struct collision_of_three {
-  enum refusal refusal;
-  double speed, height, fall, above; /* of F, S, S and C, C */
-  bool one_end;                      /* of S falls, the other one stands still */
+struct thrown_bond {
+  double mass;
+  struct vec3 end[2], velocity[2];
 };
 
-static uint64_t heavy_light_and_early(struct collision_of_three c)
+struct orders {
+  uint64_t hits, called_back;
+};
+
+/* One step of some dumbbells in 400 orders of their turns. */
+static struct orders all_orders(enum refusal refusal, uint32_t n, const struct thrown_bond *bond)
 {
   struct model m = test_model(8, 8, 8, 0, 0.01, 2);
-  m.crossing.refusal = c.refusal;
-  test_add_kind(&m, 1, 2)->mass = 50.0;
-  test_add_kind(&m, 1, 2)->mass = 1.25;
-  test_add_kind(&m, 1, 2)->mass = 5.0;
+  m.crossing.refusal = refusal;
+  for (uint32_t k = 0; k < n; k++)
+    test_add_kind(&m, 1, 2)->mass = bond[k].mass;
   struct dice d = {dice_seed(1105)};
   struct test_run r = dice_run(m, &d);
-  const struct vec3 place[6] = {{3.6, 4, 3.9},      {4.5, 4, 3.9},       {4, 3.6, c.height},
-                                {4, 4.5, c.height}, {3.5, 4.1, c.above}, {4.6, 4.1, c.above}};
-  const struct vec3 velocity[6] = {{0, 0, c.speed}, {0, 0, c.speed}, {0, 0, -c.fall}, {0, 0, c.one_end ? 0 : -c.fall},
-                                   {0, 1, -c.fall}, {0, 1, -c.fall}};
   struct events *told = calloc(1, sizeof *told);
   struct reference ref = {.model = &r.model, .told = told, .seed = 1105};
-  ref.position = malloc(6 * sizeof *ref.position);
-  ref.velocity = malloc(6 * sizeof *ref.velocity);
+  ref.position = malloc(2 * n * sizeof *ref.position);
+  ref.velocity = malloc(2 * n * sizeof *ref.velocity);
   exact_open(&ref.exact);
   told->run = &r;
   const struct sweep_log log = {collect, told};
   for (uint64_t step = 1; step <= 400; step++) {
     told->n = told->read = 0;
-    for (int v = 0; v < 6; v++) {
-      r.state.position[v] = point_move((struct point){0, 0, 0}, place[v]);
-      r.state.velocity[v] = velocity[v];
+    for (uint32_t v = 0; v < 2 * n; v++) {
+      r.state.position[v] = point_move((struct point){0, 0, 0}, bond[v / 2].end[v % 2]);
+      r.state.velocity[v] = bond[v / 2].velocity[v % 2];
     }
     r.work.fiber.neighbors.built = false; /* they were moved by hand */
     copy_state(&ref, &r.state);
@@ -193,28 +189,65 @@ static uint64_t heavy_light_and_early(struct collision_of_three c)
     assert_int_equal(told->read, told->n);
     compare_states(&ref, &r.state);
   }
-  const uint64_t called_back = r.work.fiber.called_back;
-  print_message("  %lu hits in 400 orders, %lu called back\n", (unsigned long)ref.counts.executed,
-                (unsigned long)called_back);
-  assert_true(ref.counts.executed >= 400);
+  const struct orders done = {ref.counts.executed, r.work.fiber.called_back};
   exact_close(&ref.exact);
   free(ref.position);
   free(ref.velocity);
   free(told);
   test_end(&r);
-  return called_back;
+  return done;
 }
 
-/* With the paper's rule F hits S; with the other one S, falling slowly, may also hit F and bounce off into C. */
-static void lists_made_on_the_way_call_back(void **unused)
+/* A heavy bond F hits a light one S, which then flies further than any list looked ahead, into C; and C has moved
+ * before its turn, since it met nobody. Where its turn is after S's, it must be where it was. With the paper's rule F
+ * hits S; with the other one S, falling slowly, may also hit F and bounce off into C. */
+static void who_is_hit_hits_others(void **unused)
 {
   (void)unused;
-  assert_true(heavy_light_and_early((struct collision_of_three){REFUSAL_STAY, 30.0, 4.0, 0.0, 4.5, false}) > 50);
-  assert_true(heavy_light_and_early((struct collision_of_three){REFUSAL_BOUNCE, 30.0, 4.0, 0.0, 4.5, false}) > 50);
-  for (int k = 0; k < 12; k++) /* C falls on S, wherever that is by then */
-    for (int one_end = 0; one_end < 2; one_end++)
-      heavy_light_and_early(
-          (struct collision_of_three){REFUSAL_BOUNCE, 4.0, 3.902, 0.5, 3.925 + 0.005 * k, one_end != 0});
+  struct thrown_bond bond[3] = {{50.0, {{3.6, 4, 3.9}, {4.5, 4, 3.9}}, {{0, 0, 30}, {0, 0, 30}}},
+                                {1.25, {{4, 3.6, 4}, {4, 4.5, 4}}, {{0, 0, 0}, {0, 0, 0}}},
+                                {5.0, {{3.5, 4.1, 4.5}, {4.6, 4.1, 4.5}}, {{0, 1, 0}, {0, 1, 0}}}};
+  for (int rule = 0; rule < 2; rule++) {
+    const struct orders fast = all_orders(rule ? REFUSAL_BOUNCE : REFUSAL_STAY, 3, bond);
+    assert_true(fast.hits >= 400 && fast.called_back > 50);
+  }
+  for (int k = 0; k < 12; k++) { /* C falls on S, wherever that is by then */
+    for (int end = 0; end < 2; end++) {
+      bond[0].velocity[end] = (struct vec3){0, 0, 4};
+      bond[1].end[end].z = 3.902, bond[1].velocity[end] = (struct vec3){0, 0, -0.5};
+      bond[2].end[end].z = 3.925 + 0.005 * k, bond[2].velocity[end] = (struct vec3){0, 1, -0.5};
+    }
+    assert_true(all_orders(REFUSAL_BOUNCE, 3, bond).hits >= 400);
+  }
+}
+
+/* S falls on F with one end, after the other end had its turn; it bounces further than it fell, into C, which lies
+ * where nobody looked: nothing has changed for the end that had its turn, and C does not move. */
+static void who_bounces_looks_around(void **unused)
+{
+  (void)unused;
+  for (int k = 0; k < 12; k++) {
+    const double above = 3.907 + 0.0005 * k;
+    const struct thrown_bond bond[3] = {{50.0, {{3.6, 4, 3.9}, {4.5, 4, 3.9}}, {{0, 0, 4}, {0, 0, 4}}},
+                                        {1.25, {{4, 3.6, 3.902}, {4, 4.5, 3.902}}, {{0, 0, -0.5}, {0, 0, 0}}},
+                                        {5.0, {{3.5, 4.1, above}, {4.6, 4.1, above}}, {{0, 0, 0}, {0, 0, 0}}}};
+    assert_true(all_orders(REFUSAL_BOUNCE, 3, bond).hits > 400);
+  }
+}
+
+/* Two heavy bonds drive two light ones towards each other, each so fast that it leaves its anchor and so far from the
+ * other that they meet only since both are fast: who looks around last has to see where the first one will be. */
+static void both_are_hit_and_meet(void **unused)
+{
+  (void)unused;
+  for (int k = 0; k < 8; k++) {
+    const double z = 4.7 + 0.05 * k;
+    const struct thrown_bond bond[4] = {{50.0, {{4.1, 3.6, 3.9}, {4.1, 4.5, 3.9}}, {{0, 0, 30}, {0, 0, 30}}},
+                                        {1.25, {{3.6, 4, 4}, {4.5, 4, 4}}, {{0, 0, 0}, {0, 0, 0}}},
+                                        {1.25, {{4, 3.6, z}, {4, 4.5, z}}, {{0, 0, 0}, {0, 0, 0}}},
+                                        {50.0, {{3.6, 4.1, z + 0.1}, {4.5, 4.1, z + 0.1}}, {{0, 0, -30}, {0, 0, -30}}}};
+    assert_true(all_orders(REFUSAL_STAY, 4, bond).hits > 800);
+  }
 }
 
 /* Boxes of one to three cells: bonds meet their own fiber's images, and one bond several images of another. */
@@ -469,7 +502,8 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(dense_suspensions),          cmocka_unit_test(bouncing_suspensions),
       cmocka_unit_test(sweeps_in_a_moving_frame),   cmocka_unit_test(calm_suspensions_with_fast_vertices),
-      cmocka_unit_test(limits_of_pairs_hold),       cmocka_unit_test(lists_made_on_the_way_call_back),
+      cmocka_unit_test(limits_of_pairs_hold),       cmocka_unit_test(who_is_hit_hits_others),
+      cmocka_unit_test(who_bounces_looks_around),   cmocka_unit_test(both_are_hit_and_meet),
       cmocka_unit_test(boxes_of_few_cells),         cmocka_unit_test(one_fiber_meets_itself),
       cmocka_unit_test(first_of_several),           cmocka_unit_test(exclusion_is_of_bonds_not_of_images),
       cmocka_unit_test(impossible_moves_are_found), cmocka_unit_test(phantom_fibers_just_move),
