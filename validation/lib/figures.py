@@ -51,6 +51,12 @@ def theory(axes, x, y, **options):
     return axes.plot(x, y, **{"color": "#222222", "linestyle": "-", "linewidth": 1.1, "zorder": 1, **options})
 
 
+def legend(axes, **options):
+    """A legend, where there is something to name: runs may be missing."""
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(**options)
+
+
 def svg(figure):
     """The figure as SVG text without date, version or XML prologue; closes it."""
     out = io.StringIO()

@@ -345,8 +345,8 @@ def draw_lengths(results, points, far):
             figures.points(axes, k, *pair, number=2, label="no hydrodynamics" if i == 0 else None)
             figures.points(below, k, pair[0] / sharing(k)[0] - 1.0, pair[1] / sharing(k)[0], 2)
     axes.set(xscale="log", yscale="log", ylabel="D, $a_0^2/t_0$", xlim=(4, 200))
-    axes.legend(ncols=2, loc="lower left", fontsize=7.5)
-    below.set(xlabel="N", ylabel="over theory, $-1$", ylim=(-0.12, 0.12))
+    figures.legend(axes, ncols=2, loc="lower left", fontsize=7.5)
+    below.set(xlabel="N", ylabel="over theory, $-1$", ylim=(-0.2, 0.12))
     return figure
 
 
@@ -367,7 +367,7 @@ def draw_boxes(points):
         figures.points(axes, share, value * scale, error * scale, number, label=f"N = {n}")
         figures.points(below, share, [p.infinite / mean - 1.0 for p in same], error / mean, number)
     axes.set(ylabel="D $\\eta R_e$/kT, measured $\\eta$", xlim=(0.0, 0.32))
-    axes.legend(ncols=3)
+    figures.legend(axes, ncols=3)
     below.set(xlabel="$R_e/L_b$", ylabel="over line, $-1$", ylim=(-0.12, 0.12))
     return figure
 
@@ -391,7 +391,7 @@ def draw_rouse(results):
         figures.points(below, t / tau, value / expected - 1.0, error / expected, number, **options)
     axes.set(xscale="log", yscale="log", ylabel="$\\langle|R(t)-R(0)|^2\\rangle/2\\langle R^2\\rangle$")
     if axes.get_legend_handles_labels()[0]:
-        axes.legend(title="no hydrodynamics; lines: Rouse")
+        figures.legend(axes, title="no hydrodynamics; lines: Rouse")
     below.set(xlabel="$t/\\tau_1$", ylabel="over Rouse, $-1$", ylim=(-0.2, 0.2))
     return figure
 

@@ -131,7 +131,7 @@ def draw(table):
     for panel, residual, label in zip(above, below, ("volume, a0³", "c L³")):
         panel.set(xscale="log", yscale="log", ylabel="CPU ms per step")
         residual.set(xscale="log", xlabel=label, ylabel="over line − 1")
-        panel.legend()
+        figures.legend(panel)
     return figure
 
 

@@ -201,7 +201,7 @@ def draw_displacements(results, system):
                            [100 * (share * flow * t)**2 / b[0] for t, (_, b) in zip(lags, pairs)], linestyle="--")
     above.set(xscale="log", yscale="log", ylabel="g/L² (filled), g_cm/L² (open)")
     below.set(xscale="log", xlabel="t/τ_r", ylabel="g over rest, %", ylim=(-12, 20))
-    above.legend(loc="upper left")
+    figures.legend(above, loc="upper left")
     return figure
 
 
@@ -223,7 +223,7 @@ def draw_energy(results):
                      color=figures.COLORS[number])
     axes[0].set(xlabel="t, t0", ylabel="change of total energy, %")
     axes[1].set(xlabel="t, t0", ylabel="|Δp| over ⅔ kinetic energy", yscale="log")
-    axes[0].legend()
+    figures.legend(axes[0])
     return figure
 
 
@@ -242,7 +242,7 @@ def draw_lag(results):
                            [row["lag_error"] / row["rate"] / row["dt"] for row in mine], number)
     above.set(ylabel="lag over flow, 10⁻³")
     below.set(xlabel="dt, t0", ylabel="over share\n− 1", ylim=(-0.2, 0.3), xlim=(0.0, 0.024))
-    above.legend()
+    figures.legend(above)
     return figure
 
 

@@ -179,7 +179,7 @@ def draw_boxes(measured, off, swap):
         if pair:
             figures.points(axes, 1.0 / box, *pair, number=number, label=f"without, {name}")
     axes.set(ylabel="D of a vertex, $a_0^2/t_0$", ylim=(0.009, 0.0195))
-    axes.legend(loc="center left", bbox_to_anchor=(0.0, 0.42))
+    figures.legend(axes, loc="center left", bbox_to_anchor=(0.0, 0.42))
     below.set(xlabel="1/L, $1/a_0$", ylabel="over line, $-1$", ylim=(-0.03, 0.03), xlim=(-0.002, 0.132))
     return figure
 
@@ -197,7 +197,7 @@ def draw_lags(found, measured):
         figures.points(axes, t, table["D"], table["D_error"], number, label=f"L = {key[0]}")
         figures.points(below, t[late], (table["D"] / model - 1.0)[late], (table["D_error"] / model)[late], number)
     axes.set(xscale="log", ylabel="g(t)/6t, $a_0^2/t_0$", ylim=(0.005, 0.019))
-    axes.legend(title="with hydrodynamics; lines: D less its memory")
+    figures.legend(axes, title="with hydrodynamics; lines: D less its memory")
     below.set(xlabel="lag t, $t_0$", ylabel="over model, $-1$", ylim=(-0.05, 0.05))
     return figure
 

@@ -218,7 +218,8 @@ def draw_curves(curves, tier, column):
     above.set(xscale="log", yscale="log", ylabel="⟨d²⟩/L²" + (", contour" if "contour" in column else ""))
     below.set(xscale="log", xlabel="t/τ_r", ylabel="local exponent", ylim=(0, 1.1))
     below.axhline(0.75, color="#222222", linestyle="--", linewidth=1)
-    above.legend(loc="upper left")
+    above.set_ylim(top=30.0 * above.get_ylim()[1])  # room for the legend
+    figures.legend(above, loc="upper left")
     return figure
 
 
@@ -239,7 +240,7 @@ def draw_law(curves, tier):
         below.axvspan(*window, color="#0b5394", alpha=0.08)
     above.set(xscale="log", yscale="log", ylabel="⟨d²⟩, a0²")
     below.set(xscale="log", xlabel="t, t0", ylabel="over law − 1", ylim=(-0.8, 0.8))
-    above.legend(loc="upper left")
+    figures.legend(above, loc="upper left")
     return figure
 
 
@@ -255,7 +256,7 @@ def draw_mesh(flat):
     above.set(xscale="log", yscale="log", ylabel="L⊥, a0")
     below.set(xscale="log", xlabel="ξ, a0", ylabel="over Eq. (35)")
     below.axhline(1.0, color="#444444", linewidth=0.8)
-    above.legend(loc="upper left")
+    figures.legend(above, loc="upper left")
     return figure
 
 

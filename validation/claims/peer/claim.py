@@ -125,8 +125,8 @@ def draw(vacf, diffusion):
     right.set(xscale="log", ylabel=r"$\langle r^2(t)\rangle / 6\,t\,kT$   [$a_0^2/t_0$]")
     left_rest.set(xlabel=r"$t$ [$t_0$]", ylabel="less LAMMPS\n" + r"[$10^{-3}$]")
     right_rest.set(xlabel=r"$t$ [$t_0$]", ylabel="less LAMMPS\n[%]")
-    left.legend()
-    right.legend(loc="lower right")
+    figures.legend(left)
+    figures.legend(right, loc="lower right")
     return figure
 
 

@@ -315,7 +315,7 @@ def draw_lengths(results, points, far):
         figures.points(axes, k, *pair, number=2, label="no hydrodynamics" if i == 0 else None)
         figures.points(below, k / 1.03, pair[0] / sharing(k)[0] - 1.0, pair[1] / sharing(k)[0], 2)
     axes.set(xscale="log", yscale="log", ylabel="D, $a_0^2/t_0$", xlim=(8, 75))
-    axes.legend(ncols=2, loc="lower left", fontsize=7.5)
+    figures.legend(axes, ncols=2, loc="lower left", fontsize=7.5)
     below.set(xlabel="N", ylabel="over theory, $-1$", ylim=(-0.15, 0.15), xticks=[10, 15, 20, 30, 45, 60],
               xticklabels=["10", "15", "20", "30", "45", "60"])
     below.minorticks_off()
@@ -335,7 +335,7 @@ def draw_images(points):
         figures.points(axes, share, [p.value for p in same], [p.error for p in same], number, label=f"N = {n}")
         figures.points(below, share, [p.infinite / mean - 1.0 for p in same], [p.error / mean for p in same], number)
     axes.set(ylabel="D, $a_0^2/t_0$", xlim=(0.0, 0.118), ylim=(0.0, 0.0062))
-    axes.legend(ncols=3)
+    figures.legend(axes, ncols=3)
     below.set(xlabel="1/L, $1/a_0$", ylabel="over line, $-1$", ylim=(-0.12, 0.12))
     return figure
 

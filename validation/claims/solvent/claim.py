@@ -290,7 +290,7 @@ def draw_chaos(results, known):
             below.minorticks_off()
         below.set_xlabel(name)
     tops[0].set_ylabel("$a_0^2/t_0$")
-    tops[0].legend()
+    figures.legend(tops[0])
     belows[0].set_ylabel("over molecular chaos (%)")
     return figure
 
@@ -309,7 +309,7 @@ def draw_waves(results):
     top.set_ylabel("$\\nu(k)/\\nu(0)$")
     below.set_ylabel("difference")
     below.set_xlabel("$k^2$ ($a_0^{-2}$)")
-    top.legend()
+    figures.legend(top)
     return figure
 
 
@@ -324,7 +324,7 @@ def draw_sound(results):
     top.set_ylabel("amplitude of the wave")
     below.set_ylabel("difference")
     below.set_xlabel("time ($t_0$)")
-    top.legend()
+    figures.legend(top)
     return figure
 
 
@@ -348,7 +348,7 @@ def draw_tail(results, points):
         figures.points(below, t[late], mean[late] / expected[late] - 1.0, error[late] / expected[late], number=number)
     top.set(xscale="log", yscale="log", ylim=(5e-5, 1.0), ylabel="$C(t)/C(0)$")
     below.set(ylabel="over the tail, $-1$", ylim=(-1.2, 1.2), xlabel="time ($t_0$)")
-    top.legend()
+    figures.legend(top)
     return figure
 
 

@@ -246,7 +246,7 @@ def draw(curves, system, times, column):
     above.set(xscale="log", yscale="log", ylabel="⟨d²⟩/L²" + (", contour" if "contour" in column else ""))
     below.set(xscale="log", xlabel="t/τ_r", ylabel="uncrossable\n/ free", ylim=(0, 1.2))
     below.axhline(1.0, color="#444444", linewidth=0.8)
-    above.legend(ncols=2, loc="upper left")
+    figures.legend(above, ncols=2, loc="upper left")
     return figure
 
 
