@@ -12,6 +12,8 @@ import unittest
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "validation"))
 
+import numpy
+
 from lib import runs
 
 UNCROSS = pathlib.Path(os.environ.get("UNCROSS", "build/uncross")).resolve()
@@ -130,6 +132,18 @@ class Runs(unittest.TestCase):
         self.assertTrue(runs.harvest(self.scene(100), self.work, self.work / "kept"))
         kept = sorted(path.name for path in (self.work / "kept/made-up/a").iterdir())
         self.assertEqual(kept, ["conserved.csv", "run.json", "scene.yaml", "session.json"])
+
+    def test_harvest_of_a_run_that_goes_on(self):
+        """Half a row on the disk is no row."""
+        self.assertEqual(self.execute(self.scene(100), "made-up/a"), 0)
+        table = self.work / "made-up/a/conserved.csv"
+        rows = table.read_text()
+        with table.open("a") as more:
+            more.write(rows.splitlines()[-1][:20])
+        whole = runs.columns(rows)["time"]
+        self.assertTrue(numpy.array_equal(runs.columns(table.read_text())["time"], whole))
+        self.assertTrue(runs.harvest(self.scene(100), self.work, self.work / "kept"))
+        self.assertEqual((self.work / "kept/made-up/a/conserved.csv").read_text(), rows)
 
 
 if __name__ == "__main__":

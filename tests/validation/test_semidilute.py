@@ -16,6 +16,29 @@ from lib import runs
 from lib import semidilute as sd
 
 
+class Told:
+    """A result with one table, or none."""
+
+    def __init__(self, **columns):
+        self.columns = {name: numpy.array(values, float) for name, values in columns.items()}
+
+    def table(self, name):
+        if not self.columns:
+            raise KeyError(name)
+        return self.columns
+
+
+class Momentum(unittest.TestCase):
+    def test_largest_change(self):
+        """By hand: py goes from 1 to -3, kinetic energy 2 + 4 = 6 at the start: 4 / (2/3 x 6) = 1; px by 1: 1/4."""
+        steady = Told(time=[0, 1], px=[5, 5], py=[1, 1], pz=[0, 0], vertex_kinetic=[2, 9], solvent_kinetic=[4, 9])
+        moved = Told(time=[0, 1, 2], px=[0, 1, 0], py=[1, -3, 1], pz=[0, 0, 0], vertex_kinetic=[2, 9, 9],
+                     solvent_kinetic=[4, 9, 9])
+        self.assertEqual(sd.momentum_change([steady]), 0.0)
+        self.assertEqual(sd.momentum_change([Told(), moved, steady]), 1.0)
+        self.assertIsNone(sd.momentum_change([Told()]))
+
+
 class Formulas(unittest.TestCase):
     def test_bonds(self):
         """<l>, <l^2> by quadrature of l^2 exp(-50 (l - 1/2)^2); l_p from <cos> of exp(64 cos)."""

@@ -139,8 +139,10 @@ class Result:
 
 
 def columns(text):
-    """Comma-separated values under a line of names as a dict of arrays, of floats where all are numbers."""
-    rows = list(csv.reader(line for line in text.splitlines() if line and not line.startswith("#")))
+    """Comma-separated values under a line of names as a dict of arrays, of floats where all are numbers. A last line
+    without its end is yet being written."""
+    whole = text[:text.rfind("\n") + 1]
+    rows = list(csv.reader(line for line in whole.splitlines() if line and not line.startswith("#")))
     table = {}
     for k, name in enumerate(rows[0] if rows else []):
         values = [row[k] for row in rows[1:]]
@@ -293,4 +295,7 @@ def harvest(run, work, kept):
     for pattern in HARVESTED:
         for path in source.glob(pattern):
             shutil.copyfile(path, target / path.name)
+    for path in target.glob("*.csv"):  # of a run that goes on: whole lines
+        rows = path.read_bytes()
+        path.write_bytes(rows[:rows.rfind(b"\n") + 1])
     return True

@@ -162,6 +162,22 @@ def rotation_time(columns, shortest, longest, fibers, least=4):
     return (1.0 / rate, fit.error[1] / rate**2, math.exp(fit.value[0])) if rate > 0 else None
 
 
+def momentum_change(results):
+    """Largest change of the total momentum of any run over 2/3 of its kinetic energy; None without tables."""
+    worst = None
+    for result in results:
+        try:
+            table = result.table("conserved")
+        except KeyError:
+            continue
+        if len(table["time"]) < 2:
+            continue
+        change = max(float(numpy.abs(table[key] - table[key][0]).max()) for key in ("px", "py", "pz"))
+        kinetic = float(table["vertex_kinetic"][0] + table["solvent_kinetic"][0])
+        worst = max(worst or 0.0, 1.5 * change / kinetic)
+    return worst
+
+
 def measured(verdict, pair, systematic=0.0, values=None):
     """Fills in (value, error) and the tolerance that follows; values: see stats.tolerance."""
     if pair is not None:

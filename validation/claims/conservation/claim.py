@@ -106,23 +106,12 @@ def sweep_verdicts(results):
 
 
 def momentum_verdict(results):
-    """Over every run with a solvent of particles, of this claim's neighbors, too."""
-    worst = None
-    for name, result in results.items():
-        if "/" not in name or "phantoms" in (result.run.scene or ""):  # a bath takes up momentum
-            continue
-        try:
-            table = result.table("conserved")
-        except KeyError:
-            continue
-        if len(table["time"]) < 2:
-            continue
-        change = max(float(numpy.abs(table[key] - table[key][0]).max()) for key in ("px", "py", "pz"))
-        energy = 2.0 * float(table["vertex_kinetic"][0] + table["solvent_kinetic"][0]) / 3.0
-        worst = max(worst or 0.0, change / energy)
+    """Over every run with a solvent of particles, of this claim's neighbors, too; a bath takes up momentum."""
+    others = [result for name, result in results.items()
+              if "/" in name and "phantoms" not in (result.run.scene or "")]
     return Verdict("conservation.momentum.runs", "largest change of total momentum in any run of another claim "
                    "with a solvent of particles, over 2/3 of the kinetic energy, t0/a0", 0.0,
-                   "conserved; 10⁻⁹ for rounding", 1e-9, measured=worst, detects=2e-9)
+                   "conserved; 10⁻⁹ for rounding", 1e-9, measured=sd.momentum_change(others), detects=2e-9)
 
 
 def temperature_verdict(results):
