@@ -118,7 +118,8 @@ static bool find_hits(struct state *state, const struct model *model, struct wor
   const struct fiber_work *f = &work->fiber;
   const uint32_t i = t->vertex;
   const int32_t before = model->prev[i];
-  if (!neighbors_hold(&f->neighbors, i, t->to) && !neighbors_renew(state, model, work, 1, &i, &t->to))
+  if (!neighbors_hold(&f->neighbors, i, t->to) && (!neighbors_renew(state, model, work, 1, &i, &t->to) ||
+                                                   !turns_look_around(state, model, work, i, t->dt, f->rank[i])))
     return false;
   if (before >= 0)
     test_bond(state, model, &f->meetings, (uint32_t)before, t);

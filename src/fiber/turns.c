@@ -14,17 +14,12 @@ static struct vec3 displacement(const struct state *state, const struct model *m
   return vec3_scale(dt, vec3_sub(state->velocity[i], model_frame_velocity(model)));
 }
 
-static bool fits_box(struct vec3 d, double limit)
-{
-  return fabs(d.x) < limit && fabs(d.y) < limit && fabs(d.z) < limit;
-}
-
 bool turns_trial(const struct state *state, const struct model *model, struct work *work, uint32_t i, double dt,
                  struct point *to)
 {
   const struct vec3 d = displacement(state, model, i, dt);
   const double limit = 0.5 * box_shortest_edge(&model->box);
-  if (!fits_box(d, limit)) {
+  if (!(fabs(d.x) < limit && fabs(d.y) < limit && fabs(d.z) < limit)) {
     const double far = fmax(fabs(d.x), fmax(fabs(d.y), fabs(d.z)));
     return work_fault(work, FAULT_VERTEX_MOVE, state->step + 1, i, far, limit);
   }
@@ -378,8 +373,8 @@ static void call_back(struct state *state, const struct model *model, struct fib
 }
 
 /* Who bond `bond` may meet now, and did not: none of the ends may have moved before its turn. */
-static bool look_around(struct state *state, const struct model *model, struct work *work, uint32_t bond, double dt,
-                        uint32_t now)
+static bool look_around_bond(struct state *state, const struct model *model, struct work *work, uint32_t bond,
+                             double dt, uint32_t now)
 {
   struct fiber_work *f = &work->fiber;
   struct neighbor_list *near = &f->near;
@@ -398,28 +393,19 @@ static bool look_around(struct state *state, const struct model *model, struct w
   return true;
 }
 
-/* The grid has to show where the vertex may be from now on: others may look around. One that is too fast for any move
- * will stop the run at its turn, unless it is slower by then. */
-static bool keep_anchor(const struct state *state, const struct model *model, struct work *work, uint32_t i, double dt)
+bool turns_look_around(struct state *state, const struct model *model, struct work *work, uint32_t i, double dt,
+                       uint32_t now)
 {
-  const struct vec3 d = displacement(state, model, i, dt);
-  if (!fits_box(d, 0.5 * box_shortest_edge(&model->box)))
-    return true;
-  const struct point to = point_move(state->position[i], d);
-  return neighbors_hold(&work->fiber.neighbors, i, to) || neighbors_renew(state, model, work, 1, &i, &to);
+  const int32_t bonds[2] = {model->prev[i], model->next[i] >= 0 ? (int32_t)i : -1};
+  for (int b = 0; b < 2; b++)
+    if (bonds[b] >= 0 && !look_around_bond(state, model, work, (uint32_t)bonds[b], dt, now))
+      return false;
+  return true;
 }
 
-bool turns_reconsider(struct state *state, const struct model *model, struct work *work, uint32_t i, double dt,
-                      uint32_t now)
+/* Vertex i goes further than was planned, and so do its bonds' paths. */
+static void widen_range(const struct model *model, struct fiber_work *f, uint32_t i, double range)
 {
-  struct fiber_work *f = &work->fiber;
-  if (f->rank[i] < now)
-    return true;
-  if (!keep_anchor(state, model, work, i, dt))
-    return false;
-  const double range = vec3_norm(displacement(state, model, i, dt));
-  if (range <= f->range[i])
-    return true;
   const int32_t bonds[2] = {model->prev[i], model->next[i] >= 0 ? (int32_t)i : -1};
   for (int b = 0; b < 2; b++)
     if (bonds[b] >= 0)
@@ -428,8 +414,15 @@ bool turns_reconsider(struct state *state, const struct model *model, struct wor
   for (int b = 0; b < 2; b++)
     if (bonds[b] >= 0)
       f->neighbors.clock[bonds[b]].path += path_units(bond_range(model, f, (uint32_t)bonds[b]));
-  for (int b = 0; b < 2; b++)
-    if (bonds[b] >= 0 && !look_around(state, model, work, (uint32_t)bonds[b], dt, now))
-      return false;
-  return true;
+}
+
+bool turns_reconsider(struct state *state, const struct model *model, struct work *work, uint32_t i, double dt,
+                      uint32_t now)
+{
+  struct fiber_work *f = &work->fiber;
+  const double range = vec3_norm(displacement(state, model, i, dt));
+  if (f->rank[i] < now || range <= f->range[i])
+    return true;
+  widen_range(model, f, i, range);
+  return turns_look_around(state, model, work, i, dt, now);
 }

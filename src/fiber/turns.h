@@ -30,9 +30,14 @@ bool turns_phantom(struct state *state, const struct model *model, struct work *
  * all others moved. False, with the fault recorded, as turns_trial and neighbors_renew. */
 bool turns_plan(struct state *state, const struct model *model, struct work *work, double dt);
 
-/* Vertex i has got another velocity during the turn of rank `now`: a new anchor, if its move leaves the old one; if it
- * is faster than it was, new meetings. False, with the fault recorded, if memory is short. */
+/* Vertex i has got another velocity during the turn of rank `now`: if it goes further than it would have, new meetings.
+ * False, with the fault recorded, if memory is short. */
 bool turns_reconsider(struct state *state, const struct model *model, struct work *work, uint32_t i, double dt,
                       uint32_t now);
+
+/* Vertex i, whose turn is now, has a new anchor: among the pairs that the plan looked at there was none beyond the old
+ * one, and it may go there although it is no faster. False as turns_reconsider. */
+bool turns_look_around(struct state *state, const struct model *model, struct work *work, uint32_t i, double dt,
+                       uint32_t now);
 
 #endif
