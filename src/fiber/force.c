@@ -188,6 +188,10 @@ bool fiber_forces(const struct state *state, const struct model *model, struct w
   bool ok = true;
   for (uint32_t f = 0; f < model->fibers; f++) {
     const struct fiber_kind *kind = &model->kind[model->fiber_kind_of[f]];
+    if (kind->vertices == 1) {
+      work->fiber.force[model->fiber_first[f]] = kind->force;
+      continue;
+    }
     for (uint32_t v = 0; v < kind->vertices; v += BLOCK) {
       const uint32_t left = kind->vertices - v;
       ok &= forces_on(state, model, work, step, kind, model->fiber_first[f], v, left < BLOCK ? left : BLOCK);
