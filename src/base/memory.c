@@ -34,3 +34,12 @@ bool memory_grow(void **list, size_t count, size_t size)
     *list = bigger;
   return bigger;
 }
+
+bool memory_double(void **list, uint32_t *room, uint32_t first, size_t size)
+{
+  const uint32_t twice = *room > 0 ? 2 * *room : first;
+  if (twice <= *room || !memory_grow(list, twice, size))
+    return false;
+  *room = twice;
+  return true;
+}

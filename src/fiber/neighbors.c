@@ -89,12 +89,8 @@ void neighbors_drop_pair(struct neighbors *nb, uint32_t k)
 
 static bool add_near(struct neighbor_list *list, struct neighbor n)
 {
-  if (list->count == list->room) {
-    const uint32_t room = list->room ? 2 * list->room : FIRST_NEAR;
-    if (!memory_grow((void **)&list->at, room, sizeof *list->at))
-      return false;
-    list->room = room;
-  }
+  if (list->count == list->room && !memory_double((void **)&list->at, &list->room, FIRST_NEAR, sizeof *list->at))
+    return false;
   list->at[list->count++] = n;
   return true;
 }
@@ -327,13 +323,14 @@ static uint32_t bonds_of(const struct model *model, uint32_t n, const uint32_t *
 {
   uint32_t count = 0;
   for (uint32_t k = 0; k < n; k++) {
-    const int32_t both[2] = {model->prev[vertex[k]], model->next[vertex[k]] >= 0 ? (int32_t)vertex[k] : -1};
-    for (int b = 0; b < 2; b++) {
+    uint32_t both[2];
+    const int its = model_bonds_of(model, vertex[k], both);
+    for (int b = 0; b < its; b++) {
       uint32_t known = 0;
-      while (known < count && bond[known] != (uint32_t)both[b])
+      while (known < count && bond[known] != both[b])
         known++;
-      if (both[b] >= 0 && known == count)
-        bond[count++] = (uint32_t)both[b];
+      if (known == count)
+        bond[count++] = both[b];
     }
   }
   return count;

@@ -8,9 +8,7 @@
  * list said of them before is out of date by their generation, and dropped when it is next read. One fast vertex costs
  * two bonds' work, not everybody's.
  *
- * Most pairs in the list cannot touch for a while either: two bonds some distance apart have to come that much closer.
- * So every bond counts how far it may have gone, its path, and a pair that has been looked at says how long the two
- * paths may get until it has to be looked at again (fiber/turns.c).
+ * Most pairs in the list cannot touch for a while either: fiber/meetings.h has those that may.
  *
  * Capsules are apart if a plane with a margin on either side goes between them: perpendicular to an edge of the box, or
  * to both bonds. Bonds that pass each other at right angles have wide boxes and a clear distance; the second kind of

@@ -117,6 +117,17 @@ bool model_finish(struct model *model);
 /* Frees the derived part, the kinds and their places. */
 void model_free(struct model *model);
 
+/* The one or two bonds that end at a vertex of a fiber, or none; how many. */
+static inline int model_bonds_of(const struct model *model, uint32_t vertex, uint32_t bond[2])
+{
+  int bonds = 0;
+  if (model->prev[vertex] >= 0)
+    bond[bonds++] = (uint32_t)model->prev[vertex];
+  if (model->next[vertex] >= 0)
+    bond[bonds++] = vertex;
+  return bonds;
+}
+
 static inline bool model_has_solvent(const struct model *model)
 {
   return model->solvent.particles > 0;

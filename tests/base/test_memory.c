@@ -30,11 +30,37 @@ static void too_much_is_nothing(void **unused)
   assert_null(memory_alloc((size_t)1 << 60, 8)); /* fits a number, but no machine */
 }
 
+static void lists_double_and_keep(void **unused)
+{
+  (void)unused;
+  void *list = NULL;
+  uint32_t room = 0;
+  assert_true(memory_double(&list, &room, 3, sizeof(uint32_t)));
+  assert_int_equal(room, 3);
+  uint32_t *at = list;
+  for (uint32_t k = 0; k < 3; k++)
+    at[k] = 70 + k;
+  assert_true(memory_double(&list, &room, 3, sizeof(uint32_t)));
+  assert_int_equal(room, 6);
+  at = list;
+  for (uint32_t k = 0; k < 3; k++)
+    assert_int_equal(at[k], 70 + k);
+  uint32_t full = UINT32_C(1) << 31; /* twice that is no number of 32 bits */
+  assert_false(memory_double(&list, &full, 3, 1));
+  assert_ptr_equal(list, at);
+  assert_int_equal(full, UINT32_C(1) << 31);
+  assert_false(memory_double(&list, &room, 3, SIZE_MAX / 4)); /* the product wraps */
+  assert_ptr_equal(list, at);
+  assert_int_equal(room, 6);
+  free(list);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(zero_and_aligned),
       cmocka_unit_test(too_much_is_nothing),
+      cmocka_unit_test(lists_double_and_keep),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
