@@ -49,8 +49,8 @@ class Formulas(unittest.TestCase):
         self.assertAlmostEqual(sd.PERSISTENCE, -sd.BOND / math.log(cosine[1] / cosine[0]), 4)
 
     def test_tube(self):
-        """Eqs. (34), (35) at c L^3 = 1000: xi/L = sqrt(0.003) = 0.0547723, so 0.31 x 0.003^0.6 (0.0306389) + 0.56 x "
-          "0.003."""
+        """Eqs. (34), (35) at c L^3 = 1000: xi/L = sqrt(0.003) = 0.0547723, so 0.31 x 0.003^0.6 (0.0306389) + 0.56 x
+        0.003."""
         self.assertAlmostEqual(sd.mesh_size(1000, 32, 32) / 32, 0.0547723, 7)
         self.assertAlmostEqual(sd.tube_width(sd.mesh_size(1000, 32, 32), 32, 32) / 32, 0.31 * 0.0306389 + 0.00168, 6)
 
@@ -62,16 +62,16 @@ class Formulas(unittest.TestCase):
                              limit=400)[0] * 2 / math.pi
         self.assertAlmostEqual(float(sd.bending_law(t, zeta)) / (2 * one), 1.0, 3)
 
-    def test_vertices_tend_to_the_line(self):
-        diffusion = 0.01
-        for t, bound in ((2.0, 0.1), (50.0, 0.04), (2000.0, 0.02)):
-            ratio = sd.bending_of_vertices(t, diffusion)[0] / float(sd.bending_law(t, 1.0 / (diffusion * sd.BOND)))
-            self.assertLess(abs(ratio - 1.0), bound)
+    def test_free_fiber(self):
+        """Others in its cells slow a fiber without hydrodynamics as its own friction falls: d^2 ~ D^(3/4)."""
+        alone, among = (float(sd.free_fiber([20.0], 64, count, 32, False)[0]) for count in (1, 100))
+        power = (sd.shared_diffusion(100) / sd.shared_diffusion())**0.75
+        self.assertLess(power, 0.95)
+        self.assertAlmostEqual(among / alone / power, 1.0, delta=0.01)
 
     def test_shared_diffusion(self):
-        """Momentum that the vertices of a cell lose together, without their memory of each other: a cell with n of "
-          "them loses
-        the share (2/3) N/(N + 5 n). Within 2 %, D then is (0.02/5)(1/share - 1/2)."""
+        """Momentum that the vertices of a cell lose together, without their memory of each other: a cell with n of them
+        loses the share (2/3) N/(N + 5 n). Within 2 %, D then is (0.02/5)(1/share - 1/2)."""
         draw = numpy.random.default_rng(1)
         along = draw.normal(size=(100000, 3))
         along *= sd.BOND / numpy.linalg.norm(along, axis=1)[:, None]

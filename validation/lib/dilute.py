@@ -168,11 +168,16 @@ def cells_rod(vertices, spacing, apart):
 
 # --- without hydrodynamics ----------------------------------------------------------------------------------------
 
+def poisson(mean, most=60):
+    """Numbers below `most`, and how probable each is."""
+    n = numpy.arange(most)
+    return n, numpy.exp(special.xlogy(n, mean) - mean - special.gammaln(n + 1.0))
+
+
 def retention(vertices=1):
     """What the common velocity of vertices alone in a cell with Poisson solvent keeps per collision, at 90 degrees:
     1 - (2/3) <n/(l M + n)>."""
-    n = numpy.arange(0, 60)
-    weight = numpy.exp(n * math.log(PER_CELL) - PER_CELL - numpy.array([math.lgamma(k + 1.0) for k in n]))
+    n, weight = poisson(PER_CELL)
     return 1.0 - 2.0 / 3.0 * float((weight * n / (vertices * MASS + n)).sum())
 
 
@@ -192,30 +197,40 @@ def rod_shape(vertices, spacing, random):
     return numpy.outer(numpy.arange(vertices) * spacing, direction / numpy.linalg.norm(direction))
 
 
-def sharing_diffusion(shape, shapes=40, shifts=200, seed=1):
-    """D of a fiber's center of mass without hydrodynamics, where vertices share cells: (mean, error) over shapes.
+def sharing_matrices(shape, shapes, shifts, seed, crowd=0.0):
+    """Mobilities of a fiber's vertices without hydrodynamics, where vertices share cells: one matrix for each of so many
+    shapes.
 
     Collisions turn V into C V, with C_ij = c_1 d_ij + (1 - c_1) <M/(l M + n); i and j in one cell of l vertices>, the
     average over grid shifts and the Poisson n; c_1 = 1/3. Molecular chaos, and a shape that does not change meanwhile:
-    D = (kT dt_c/M N^2) sum_ij [(1 - C)^-1 - 1/2]_ij. With no shared cell it is D_0/N. shape: function of a
-    generator."""
+    H = (dt_c/M) [(1 - C)^-1 - 1/2]. shape: function of a generator. crowd: vertices of others per cell, which come and
+    go like heavier solvent, Poisson."""
     random = numpy.random.Generator(numpy.random.PCG64(seed))
-    n = numpy.arange(0, 60)
-    poisson = numpy.exp(n * math.log(PER_CELL) - PER_CELL - numpy.array([math.lgamma(k + 1.0) for k in n]))
-    found = []
+    (n, solvent), (others, crowded) = poisson(PER_CELL), poisson(crowd, 40 if crowd > 0.0 else 1)
     for _ in range(shapes):
         points = shape(random)
         size = len(points)
-        share = numpy.array([0.0] + [float((poisson * MASS / (l * MASS + n)).sum()) for l in range(1, size + 1)])
+        share = numpy.array([0.0] + [float(MASS * crowded @ (1.0 / ((l + others[:, None]) * MASS + n)) @ solvent)
+                                     for l in range(1, size + 1)])
         matrix = numpy.zeros((size, size))
         for shift in random.uniform(size=(shifts, 3)):
             cell = numpy.floor(points + shift).astype(int)
             same = (cell[:, None, :] == cell[None, :, :]).all(axis=2)
             matrix += same * share[same.sum(axis=1)][:, None]
         matrix = numpy.eye(size) / 3.0 + 2.0 / 3.0 * matrix / shifts
-        sums = numpy.linalg.solve(numpy.eye(size) - matrix, numpy.ones(size)).sum() - size / 2.0
-        found.append(INTERVAL / MASS * sums / size ** 2)
+        yield INTERVAL / MASS * (numpy.linalg.inv(numpy.eye(size) - matrix) - 0.5 * numpy.eye(size))
+
+
+def sharing_diffusion(shape, shapes=40, shifts=200, seed=1, crowd=0.0):
+    """D of a fiber's center of mass without hydrodynamics: (mean, error) over shapes. With no shared cell it is D_0/N."""
+    found = [float(matrix.mean()) for matrix in sharing_matrices(shape, shapes, shifts, seed, crowd)]
     return float(numpy.mean(found)), float(numpy.std(found, ddof=1) / math.sqrt(shapes))
+
+
+def sharing_matrix(shape, shapes=40, shifts=200, seed=1, crowd=0.0):
+    """Their mean."""
+    total = sum(sharing_matrices(shape, shapes, shifts, seed, crowd)) / shapes
+    return 0.5 * (total + total.T)
 
 
 def rouse_time(vertices, spring, friction, p=1):

@@ -10,7 +10,7 @@ import string
 import numpy
 from scipy import special
 
-from lib import dilute, stats
+from lib import bending, dilute, stats
 
 BOND = (0.5**3 + 3 * 0.5 * 0.01) / (0.5**2 + 0.01)  # <l> of k = 100, l0 = 0.5: THEORY 2.8, 0.538462
 BOND2 = (0.5**4 + 6 * 0.5**2 * 0.01 + 3 * 0.01**2) / (0.5**2 + 0.01)  # <l^2>, 0.299231
@@ -54,24 +54,28 @@ def bending_law(t, friction, persistence=PERSISTENCE):
     return 4.0 * special.gamma(0.25) / (3.0 * math.pi) * (persistence * numpy.asarray(t) / friction)**0.75 / persistence
 
 
+def crowd(vertices, count, box):
+    """Vertices of other fibers per collision cell, for one of `count` fibers."""
+    return (count - 1) * vertices / box**3
+
+
 @functools.lru_cache
-def shared_diffusion():
-    """kT over the friction of a vertex that moves along with its whole fiber, without hydrodynamics, straight fibers.
+def shared_diffusion(count=1, box=32, vertices=64):
+    """kT over the friction of a vertex that moves along with its whole fiber, one of `count`, without hydrodynamics,
+    straight fibers.
 
     Bonds are half a cell long, so a collision cell holds 1.8 vertices of a fiber, and the bath brakes them together:
     less than each alone."""
-    vertices = 64
-    return vertices * dilute.sharing_diffusion(lambda draw: dilute.rod_shape(vertices, BOND, draw))[0]
+    return vertices * dilute.sharing_diffusion(lambda draw: dilute.rod_shape(vertices, BOND, draw),
+                                               crowd=crowd(vertices, count, box))[0]
 
 
-def bending_of_vertices(t, diffusion):
-    """The same for vertices and bonds instead of a smooth line, an infinite chain: from K(q) = (kappa/<l>^2)(2 - 2 "
-      "cos q)^2
-    per vertex. Tends to bending_law, from 10 % above at 0.5 t0, 2 % at 15 t0."""
-    q = numpy.linspace(1e-4, math.pi, 20001)
-    stiffness = 64.0 / BOND2 * (2.0 - 2.0 * numpy.cos(q))**2
-    return numpy.array([4.0 / math.pi * numpy.trapz(-numpy.expm1(-stiffness * x * diffusion) / stiffness, q)
-                        for x in numpy.atleast_1d(t)])
+def free_fiber(times, vertices, count, box, hydrodynamics):
+    """d^2 at lags `times` of a straight fiber that crosses others freely, l_p = L, nothing fitted (lib/bending.py). With
+    hydrodynamics as if it were alone in the fluid: what others do to the flow is not in it."""
+    stiffness = vertices  # kappa = l_p/l0, l_p = vertices x l0
+    return bending.lone(tuple(float(t) for t in times), box, vertices, BOND, stiffness, BOND2, hydrodynamics,
+                        crowd(vertices, count, box))
 
 
 def rod_rotation_time(length, diameter, viscosity, volume=math.inf):
@@ -121,6 +125,11 @@ def at(columns, name, time):
         return None
     k = numpy.flatnonzero(numpy.abs(columns["time"] - time) < 1e-6 * time)
     return (float(columns[name][k[0]]), float(columns[name + "_error"][k[0]])) if len(k) else None
+
+
+def over(pair, expected):
+    """(value, error) of a measured pair over an exact number; None without it."""
+    return pair and (pair[0] / expected, pair[1] / expected)
 
 
 def slopes(t, y):
