@@ -1,0 +1,27 @@
+/* Each operator of a time step: what goes into it and what comes out is put into the stage's pack, and the stage's
+ * state is advanced by it. False, with work->fault or pack->failed saying why. docs/porting.md says what is in each
+ * table. */
+#ifndef UNCROSS_IO_ORACLE_STAGES_H
+#define UNCROSS_IO_ORACLE_STAGES_H
+
+#include "io/oracle_operators.h"
+
+bool oracle_run_order(struct oracle_stage *stage);
+bool oracle_run_long_sweep(struct oracle_stage *stage);
+bool oracle_run_sweep(struct oracle_stage *stage);
+bool oracle_run_bond_force(struct oracle_stage *stage);
+bool oracle_run_bend_force(struct oracle_stage *stage);
+bool oracle_run_force(struct oracle_stage *stage);
+bool oracle_run_kick(struct oracle_stage *stage);
+
+bool oracle_run_stream(struct oracle_stage *stage);
+bool oracle_run_shift(struct oracle_stage *stage);
+bool oracle_run_bin(struct oracle_stage *stage);
+bool oracle_run_sum(struct oracle_stage *stage);
+bool oracle_run_solve(struct oracle_stage *stage);
+bool oracle_run_rescale(struct oracle_stage *stage);
+bool oracle_run_maxwell_boltzmann(struct oracle_stage *stage);
+bool oracle_run_rotate(struct oracle_stage *stage);
+bool oracle_run_swap(struct oracle_stage *stage);
+
+#endif
