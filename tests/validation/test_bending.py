@@ -82,6 +82,17 @@ class Modes(unittest.TestCase):
 
 
 class Crowd(unittest.TestCase):
+    def test_clumps(self):
+        """Against clumps that are drawn: 0.9 vertices per cell, half of which come alone and half by threes, so Poisson
+        numbers of 0.45 single ones and of 0.15 threes."""
+        draw = numpy.random.default_rng(4)
+        number = draw.poisson(0.45, 10**6) + 3 * draw.poisson(0.15, 10**6)
+        found = dilute.crowded(0.9, numpy.array([0.0, 0.5, 0.0, 0.5]))
+        self.assertAlmostEqual(found.sum(), 1.0, 12)
+        self.assertAlmostEqual(found @ numpy.arange(60), 0.9, 12)
+        for n in range(6):
+            self.assertAlmostEqual(found[n], (number == n).mean(), delta=0.002)
+
     def test_lone_vertex_among_others(self):
         """It keeps 1 - (2/3) <1 - M/(M + M o + n)> per collision, o and n Poisson: drawn."""
         draw = numpy.random.default_rng(9)

@@ -197,26 +197,43 @@ def rod_shape(vertices, spacing, random):
     return numpy.outer(numpy.arange(vertices) * spacing, direction / numpy.linalg.norm(direction))
 
 
+def crowded(crowd, together, most=60):
+    """How probable it is to find 0, 1, ... vertices of other fibers in a cell, of `crowd` on average. They come in
+    clumps; together[j]: share of all vertices that have j vertices of their fiber in their cell, themselves included.
+    Clumps of j are Poisson with mean crowd together[j]/j, so p_n = (crowd/n) sum_j together[j] p_(n-j)."""
+    sizes = numpy.arange(1, len(together))
+    found = numpy.zeros(most)
+    found[0] = math.exp(-crowd * (together[1:] / sizes).sum())
+    for n in range(1, most):
+        reach = min(n, len(sizes))
+        found[n] = crowd / n * (together[1:reach + 1] * found[n - reach:n][::-1]).sum()
+    return found
+
+
+CELL_NUMBER = numpy.array([1.0, 2.0**16, 2.0**32])  # makes one number of a cell's three, exactly
+
+
 def sharing_matrices(shape, shapes, shifts, seed, crowd=0.0):
     """Mobilities of a fiber's vertices without hydrodynamics, where vertices share cells: one matrix for each of so many
     shapes.
 
     Collisions turn V into C V, with C_ij = c_1 d_ij + (1 - c_1) <M/(l M + n); i and j in one cell of l vertices>, the
     average over grid shifts and the Poisson n; c_1 = 1/3. Molecular chaos, and a shape that does not change meanwhile:
-    H = (dt_c/M) [(1 - C)^-1 - 1/2]. shape: function of a generator. crowd: vertices of others per cell, which come and
-    go like heavier solvent, Poisson."""
+    H = (dt_c/M) [(1 - C)^-1 - 1/2]. shape: function of a generator. crowd: vertices of other fibers like this one per
+    cell, which come and go like heavier solvent."""
     random = numpy.random.Generator(numpy.random.PCG64(seed))
-    (n, solvent), (others, crowded) = poisson(PER_CELL), poisson(crowd, 40 if crowd > 0.0 else 1)
+    n, solvent = poisson(PER_CELL)
     for _ in range(shapes):
         points = shape(random)
         size = len(points)
-        share = numpy.array([0.0] + [float(MASS * crowded @ (1.0 / ((l + others[:, None]) * MASS + n)) @ solvent)
-                                     for l in range(1, size + 1)])
-        matrix = numpy.zeros((size, size))
-        for shift in random.uniform(size=(shifts, 3)):
-            cell = numpy.floor(points + shift).astype(int)
-            same = (cell[:, None, :] == cell[None, :, :]).all(axis=2)
-            matrix += same * share[same.sum(axis=1)][:, None]
+        cells = [numpy.floor(points + shift) @ CELL_NUMBER for shift in random.uniform(size=(shifts, 3))]
+        same = [cell[:, None] == cell for cell in cells]
+        count = [one.sum(axis=1) for one in same]
+        together = numpy.bincount(numpy.concatenate(count), minlength=size + 1) / (size * shifts)
+        others = crowded(crowd, together) if crowd > 0.0 else numpy.ones(1)
+        mass = MASS * numpy.arange(len(others))[:, None] + n
+        share = numpy.array([0.0] + [float(others @ (MASS / (l * MASS + mass)) @ solvent) for l in range(1, size + 1)])
+        matrix = sum(one * share[number][:, None] for one, number in zip(same, count))
         matrix = numpy.eye(size) / 3.0 + 2.0 / 3.0 * matrix / shifts
         yield INTERVAL / MASS * (numpy.linalg.inv(numpy.eye(size) - matrix) - 0.5 * numpy.eye(size))
 
