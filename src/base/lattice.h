@@ -97,7 +97,24 @@ static inline struct vec3 point_difference(struct point a, struct point b)
                        (double)(a.z - b.z) * LATTICE_UNIT};
 }
 
-/* a + d with d in a0, rounded to the lattice. */
+/* a + b and a - b, exact. */
+static inline struct point point_plus(struct point a, struct point b)
+{
+  return (struct point){a.x + b.x, a.y + b.y, a.z + b.z};
+}
+
+static inline struct point point_minus(struct point a, struct point b)
+{
+  return (struct point){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+/* The image of a point, so many box edges away. */
+static inline struct point point_image(struct point p, const int32_t image[3], const struct box *box)
+{
+  return (struct point){p.x + image[0] * box->edge[0], p.y + image[1] * box->edge[1], p.z + image[2] * box->edge[2]};
+}
+
+/* a + d with d in a0, rounded to the lattice; a step and the same step back end where they began. */
 static inline struct point point_move(struct point a, struct vec3 d)
 {
   return (struct point){a.x + lattice_from_a0(d.x), a.y + lattice_from_a0(d.y), a.z + lattice_from_a0(d.z)};

@@ -10,8 +10,8 @@ enum { PAIRS = 256, FIRST_MEETINGS = 1024 }; /* pairs worked on at a time; room 
 
 /* --- paths ------------------------------------------------------------------------------------------------------- */
 
-/* A way in units of a path, rounded up. What is beyond 64 a0 does not matter: no pair waits for more than 32, and no
- * two paths grow by half of 2^32 units, 4096 a0, before they are looked at. */
+/* A way in units of a path, rounded up. What is beyond 64 a0 does not matter, for no pair waits for more than 32; so
+ * between two sweeps two paths grow by less than 2^31 units, 2048 a0, where the sign of a difference would turn. */
 static inline uint32_t path_units(double way)
 {
   return (uint32_t)(int32_t)(capsule_least(way, 64.0) * 0x1p20) + 1;
@@ -43,6 +43,8 @@ void meetings_widen(const struct model *model, struct fiber_work *f, uint32_t i,
 /* Pairs first .. first + n - 1 whose paths are longer than their limits; how many. */
 static uint32_t list_due(const struct neighbors *nb, uint32_t first, uint32_t n, uint32_t *restrict due)
 {
+  if (n == 0) /* there may be no list yet */
+    return 0;
   const uint32_t *restrict bond = &nb->pairs.bond[first], *restrict other = &nb->pairs.other[first],
                            *restrict limit = &nb->pairs.limit[first];
   const struct bond_clock *restrict clock = nb->clock;
@@ -83,7 +85,8 @@ static void fill_column(const struct state *state, const struct model *model, co
   s->w[0][k] = w.x, s->w[1][k] = w.y, s->w[2][k] = w.z;
 }
 
-/* How long the two paths of each pair may get until the bonds touch: their distance longer than before this sweep. */
+/* How long the two paths of each pair may get until the bonds touch: what they were before this sweep, and the distance
+ * of the bonds. */
 static void limit_columns(const struct columns *restrict s, uint32_t *restrict limit)
 {
   for (uint32_t k = 0; k < s->count; k++) {
@@ -100,7 +103,7 @@ static bool add_meeting(const struct state *state, struct work *work, uint32_t b
 {
   struct meeting_list *list = &work->fiber.meetings;
   if (list->count == list->room && !memory_double((void **)&list->at, &list->room, FIRST_MEETINGS, sizeof *list->at))
-    return work_fault(work, FAULT_NO_MEMORY, state->step + 1, bond, 0.0, 0.0);
+    return work_no_memory(work, state->step + 1);
   list->at[list->count] = (struct meeting){bond, n, list->first[bond]};
   list->first[bond] = ++list->count;
   return true;
@@ -129,25 +132,6 @@ static void forget_meetings(struct meeting_list *list)
 }
 
 /* --- who may meet whom ------------------------------------------------------------------------------------------- */
-
-/* Places where a bond may be in what is left of this sweep. */
-static struct capsule capsule_now(const struct state *state, const struct model *model, const struct fiber_work *f,
-                                  uint32_t bond, struct point origin)
-{
-  const uint32_t end = (uint32_t)model->next[bond];
-  return (struct capsule){point_difference(state->position[bond], origin),
-                          point_difference(state->position[end], origin), meetings_range(model, f, bond)};
-}
-
-bool meetings_possible(const struct state *state, const struct model *model, const struct fiber_work *f, uint32_t bond,
-                       const struct neighbor *n)
-{
-  const struct point origin = state->position[bond];
-  const int32_t back[3] = {-n->image[0], -n->image[1], -n->image[2]};
-  const struct capsule mine = capsule_now(state, model, f, bond, origin),
-                       its = capsule_now(state, model, f, (uint32_t)n->bond, point_image(origin, back, &model->box));
-  return !capsules_apart(&mine, &its);
-}
 
 /* Pairs that may touch in this sweep meet; the others say when they are next due. */
 static bool settle_columns(const struct state *state, const struct model *model, struct work *work,
@@ -183,7 +167,8 @@ static void fetch_due(const struct state *state, const struct model *model, cons
   __builtin_prefetch(&f->neighbors.pairs.image[pair]);
 }
 
-/* One of the pairs that are due, or what has come to its place. */
+/* One of the pairs that are due. One that is out of date goes, and what takes its place is looked at now, due or not:
+ * under its old number, which is then beyond the end, a list made before passes it over. */
 static void look_at_pair(const struct state *state, const struct model *model, struct fiber_work *f, uint32_t pair,
                          struct columns *s)
 {

@@ -4,7 +4,8 @@
  * Of all pairs of bonds that are near each other (fiber/neighbors.h) hardly any can touch in one time step. Each bond
  * counts how far its ends may have gone, its path; a pair that has been looked at says how long the two paths may get,
  * together, until the bonds touch, and is passed over while they are shorter. Pairs whose paths are long enough, and
- * whose distance is within what both may go in this sweep, are its meetings; a sweep tests no others.
+ * whose distance is within what both may go in this sweep, are its meetings; a sweep tests no
+ * others but those that look-arounds add (fiber/turns.h).
  */
 #ifndef UNCROSS_MEETINGS_H
 #define UNCROSS_MEETINGS_H
@@ -19,12 +20,7 @@
  * memory is short. */
 bool meetings_find(const struct state *state, const struct model *model, struct work *work);
 
-/* May the two touch in what is left of this sweep? */
-bool meetings_possible(const struct state *state, const struct model *model, const struct fiber_work *f, uint32_t bond,
-                       const struct neighbor *n);
-
-/* Bond `bond` and the image of another one meet, as both have it; nothing, if they do already. False as
- * meetings_find. */
+/* Bond `bond` and the image of another one meet from now on, if they did not: both have it. False as meetings_find. */
 bool meetings_add(const struct state *state, struct work *work, uint32_t bond, const struct neighbor *n);
 
 /* Vertex i may go as far as `range`, a0, further than was known, and so may its bonds. */

@@ -29,6 +29,8 @@ static struct capsule capsule_of(const struct neighbors *nb, const struct model 
 static void *grow(void *at, uint32_t *room, uint32_t first, size_t size)
 {
   const bool began_here = *room == first;
+  if (*room > UINT32_MAX / 2)
+    return NULL;
   void *bigger = began_here ? malloc(2 * first * size) : realloc(at, 2 * *room * size);
   if (!bigger)
     return NULL;
@@ -51,7 +53,7 @@ static bool add_entry(struct grid_row *row, const struct grid_entry *e)
 static bool grow_pairs(struct pair_list *p)
 {
   const uint32_t room = p->room ? 2 * p->room : FIRST_PAIRS;
-  const bool grown = memory_grow((void **)&p->bond, room, sizeof *p->bond) &&
+  const bool grown = room > p->room && memory_grow((void **)&p->bond, room, sizeof *p->bond) &&
                      memory_grow((void **)&p->other, room, sizeof *p->other) &&
                      memory_grow((void **)&p->limit, room, sizeof *p->limit) &&
                      memory_grow((void **)&p->generation, room, sizeof *p->generation) &&
@@ -70,7 +72,7 @@ static bool add_pair(struct neighbors *nb, uint32_t bond, struct neighbor n)
   const uint32_t k = p->count++;
   p->bond[k] = bond;
   p->other[k] = (uint32_t)n.bond;
-  p->limit[k] = mine->path + its->path - 1;
+  p->limit[k] = mine->path + its->path; /* due in the next sweep: that makes paths longer */
   p->generation[k] = mine->generation + its->generation;
   p->image[k] = (struct image){{n.image[0], n.image[1], n.image[2]}};
   return true;
@@ -280,17 +282,12 @@ static bool enter_cell(struct neighbors *nb, const struct model *model, uint32_t
 
 /* --- the entrances ----------------------------------------------------------------------------------------------- */
 
-static bool short_of_memory(const struct state *state, struct work *work, uint32_t bond)
-{
-  return work_fault(work, FAULT_NO_MEMORY, state->step + 1, bond, 0.0, 0.0);
-}
-
 /* Both ends of a move are within reach of its anchor, whether it is made or refused. */
 static struct anchor anchor_of_move(const struct neighbors *nb, struct point from, struct point to)
 {
-  const struct point d = {to.x - from.x, to.y - from.y, to.z - from.z}, moved = nb->moved;
+  const struct point d = point_minus(to, from);
   const double length = vec3_norm(point_difference(to, from));
-  struct point at = {to.x - moved.x, to.y - moved.y, to.z - moved.z};
+  struct point at = point_minus(to, nb->moved);
   if (length > nb->margin) /* from its middle */
     at = (struct point){at.x - d.x / 2, at.y - d.y / 2, at.z - d.z / 2};
   return (struct anchor){at, fmax(nb->margin, 0.5 * length + LATTICE_UNIT)};
@@ -352,30 +349,29 @@ bool neighbors_renew(const struct state *state, const struct model *model, struc
   for (uint32_t k = 0; k < n; k++)
     nb->anchor[vertex[k]] = anchor_of_move(nb, state->position[vertex[k]], to[k]);
   nb->renewed += n;
-  return enter(nb, model, bonds, bond) || short_of_memory(state, work, vertex[0]);
+  return enter(nb, model, bonds, bond) || work_no_memory(work, state->step + 1);
 }
 
 bool neighbors_near(const struct state *state, const struct model *model, struct work *work, uint32_t bond,
-                    double range, struct neighbor_list *near)
+                    const struct point end[2], double range, struct neighbor_list *near)
 {
   struct neighbors *nb = &work->fiber.neighbors;
-  const struct point a = state->position[bond], b = state->position[model->next[bond]], m = nb->moved;
-  const struct capsule_box box = box_around((struct point){a.x - m.x, a.y - m.y, a.z - m.z},
-                                            (struct point){b.x - m.x, b.y - m.y, b.z - m.z}, range);
+  const struct capsule_box box = box_around(point_minus(end[0], nb->moved), point_minus(end[1], nb->moved), range);
   struct search found;
   found.near = near, found.count = 0;
   near->count = 0;
   return (visit_cells(nb, model, bond, box, look_into_cell, &found) && settle(nb, model, &found)) ||
-         short_of_memory(state, work, bond);
+         work_no_memory(work, state->step + 1);
 }
 
-/* Search cells divide the box edges exactly; there are no more than bonds to put in, or so. */
+/* Search cells divide the box edges, 2^40 lattice units per a0, exactly; there are no more than bonds to put in, or so.
+ */
 static void choose_grid(const struct model *model, struct neighbors *nb)
 {
   const double edge = fmax(SEARCH_CELL_A0, cbrt(box_volume(&model->box) / (double)model->bonds));
   for (int k = 0; k < 3; k++) {
     int cells = (int)fmax(1.0, model->box.cells[k] / edge);
-    while (model->box.cells[k] % cells != 0)
+    while (model->box.edge[k] % cells != 0)
       cells--;
     nb->cells[k] = cells;
     nb->cell_edge[k] = model->box.edge[k] / cells;
@@ -387,7 +383,7 @@ static void choose_grid(const struct model *model, struct neighbors *nb)
 
 static bool allocate(const struct model *model, struct neighbors *nb)
 {
-  if (nb->anchor)
+  if (nb->entries)
     return true;
   choose_grid(model, nb);
   nb->margin = MARGIN_A0;
@@ -395,11 +391,8 @@ static bool allocate(const struct model *model, struct neighbors *nb)
   nb->anchor = memory_alloc(nb->bonds, sizeof *nb->anchor);
   nb->clock = memory_alloc(nb->bonds, sizeof *nb->clock);
   nb->entries = memory_alloc(nb->cell_count, sizeof *nb->entries);
-  if (!nb->anchor || !nb->clock || !nb->entries) {
-    free(nb->entries); /* nothing in it says yet which rows have moved out */
-    nb->entries = NULL;
+  if (!nb->anchor || !nb->clock || !nb->entries)
     return false;
-  }
   for (uint32_t c = 0; c < nb->cell_count; c++) {
     struct grid_row *row = &nb->entries[c];
     row->at = row->first, row->count = 0, row->room = NEIGHBORS_FIRST_ENTRIES;
@@ -411,7 +404,7 @@ bool neighbors_build(const struct state *state, const struct model *model, struc
 {
   struct neighbors *nb = &work->fiber.neighbors;
   if (!allocate(model, nb))
-    return short_of_memory(state, work, 0);
+    return work_no_memory(work, state->step + 1);
   nb->pairs.count = 0;
   for (uint32_t c = 0; c < nb->cell_count; c++)
     nb->entries[c].count = 0;
@@ -419,7 +412,7 @@ bool neighbors_build(const struct state *state, const struct model *model, struc
     nb->anchor[j] = (struct anchor){state->position[j], nb->margin};
   for (uint32_t j = 0; j < model->vertices; j++)
     if (model->next[j] >= 0 && !enter(nb, model, 1, &j))
-      return short_of_memory(state, work, j);
+      return work_no_memory(work, state->step + 1);
   nb->moved = (struct point){0, 0, 0};
   nb->built = true;
   return true;

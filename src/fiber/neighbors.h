@@ -19,6 +19,7 @@
  * look at where they are. That holds for bonds of any length, in boxes of any size down to one cell. What a new anchor
  * costs is waiting for memory, so anchors are taken several at a time, and memory is asked ahead. Bonds that share a
  * vertex with this one, or an image of it, are never partners: no bond reaches half a box edge, so they cannot cross.
+ * (A bond that does within a step, but not where forces are next computed, is not noticed.)
  */
 #ifndef UNCROSS_NEIGHBORS_H
 #define UNCROSS_NEIGHBORS_H
@@ -37,10 +38,10 @@ bool neighbors_build(const struct state *state, const struct model *model, struc
 bool neighbors_renew(const struct state *state, const struct model *model, struct work *work, uint32_t n,
                      const uint32_t *vertex, const struct point *to);
 
-/* All bonds that a bond may touch whose ends go no further than `range` (a0) from where they are, and some more. False,
- * with the fault recorded, if memory is short. */
+/* All bonds that bond `bond` may touch, wherever these are within reach of their anchors, if its ends go no further
+ * than `range` (a0) from end[0] and end[1]; and some more. False, with the fault recorded, if memory is short. */
 bool neighbors_near(const struct state *state, const struct model *model, struct work *work, uint32_t bond,
-                    double range, struct neighbor_list *near);
+                    const struct point end[2], double range, struct neighbor_list *near);
 
 /* Was pair k found before one of its bonds last looked for partners? Then the list has it anew, or they are apart. */
 static inline bool neighbors_out_of_date(const struct neighbors *nb, uint32_t k)
@@ -55,15 +56,8 @@ void neighbors_drop_pair(struct neighbors *nb, uint32_t k);
 /* Is a vertex at p still where its anchor's pairs are good for? */
 static inline bool neighbors_hold(const struct neighbors *nb, uint32_t vertex, struct point p)
 {
-  const struct point at = nb->anchor[vertex].at, moved = nb->moved;
-  const struct vec3 d = point_difference(p, (struct point){at.x + moved.x, at.y + moved.y, at.z + moved.z});
+  const struct vec3 d = point_difference(p, point_plus(nb->anchor[vertex].at, nb->moved));
   return vec3_dot(d, d) <= nb->anchor[vertex].reach * nb->anchor[vertex].reach;
-}
-
-/* The image of a point, so many box edges away. */
-static inline struct point point_image(struct point p, const int32_t image[3], const struct box *box)
-{
-  return (struct point){p.x + image[0] * box->edge[0], p.y + image[1] * box->edge[1], p.z + image[2] * box->edge[2]};
 }
 
 #endif

@@ -140,7 +140,8 @@ static bool bounce(struct state *state, const struct model *model, struct work *
   const struct vec3 d = vec3_add_scaled(vec3_scale(time * t.dt, vec3_sub(before, model_frame_velocity(model))),
                                         (1.0 - time) * t.dt, after);
   t.to = point_move(state->position[i], d);
-  if (!turns_reconsider(state, model, work, i, t.dt, work->fiber.rank[i]) || !find_hits(state, model, work, &t))
+  if (!turns_legal(state, model, work, i, d) || !turns_reconsider(state, model, work, i, t.dt, work->fiber.rank[i]) ||
+      !find_hits(state, model, work, &t))
     return false;
   if (t.hits == 0)
     state->position[i] = t.to;
@@ -174,11 +175,9 @@ static void follow_frame(struct state *state, const struct model *model, struct 
   const struct point origin = {0, 0, 0}, shift = point_move(origin, vec3_scale(dt, model_frame_velocity(model)));
   if (shift.x == 0 && shift.y == 0 && shift.z == 0)
     return;
-  for (uint32_t i = 0; i < state->vertices; i++) {
-    struct point *p = &state->position[i];
-    *p = (struct point){p->x + shift.x, p->y + shift.y, p->z + shift.z};
-  }
-  nb->moved = (struct point){nb->moved.x + shift.x, nb->moved.y + shift.y, nb->moved.z + shift.z};
+  for (uint32_t i = 0; i < state->vertices; i++)
+    state->position[i] = point_plus(state->position[i], shift);
+  nb->moved = point_plus(nb->moved, shift);
 }
 
 /* Asks the memory for what a trial move will look at: turns come in random order. */

@@ -8,7 +8,8 @@
  * others wait for their turn, and are tested against the bonds that theirs may meet.
  *
  * An exchange of momentum changes what its vertices will do when their turn comes. Who gets faster looks around again,
- * and calls back those that moved before their turn, if that is still to come.
+ * and calls back those that moved before their turn, if that is still to come. Until then, who has moved early counts
+ * as standing where it was: called back and hit by another, it may still go anywhere within its range of there.
  */
 #ifndef UNCROSS_TURNS_H
 #define UNCROSS_TURNS_H
@@ -17,8 +18,11 @@
 #include "state/state.h"
 #include "state/work.h"
 
-/* Padding 2009, Eq. (4): where vertex i wants to go in a time dt, in the frame of the moves. False, with the fault
- * recorded, if that is further than half the shortest edge, or not a number. */
+/* May vertex i move by d in one go? False, with the fault recorded, if that is half the shortest edge or more along an
+ * axis, or not a number. */
+bool turns_legal(const struct state *state, const struct model *model, struct work *work, uint32_t i, struct vec3 d);
+
+/* Padding 2009, Eq. (4): where vertex i wants to go in a time dt, in the frame of the moves. False as turns_legal. */
 bool turns_trial(const struct state *state, const struct model *model, struct work *work, uint32_t i, double dt,
                  struct point *to);
 

@@ -13,14 +13,17 @@ static const struct {
     [FAULT_CELL_MASS] = {"collision cell", "holds more mass than its sum can:", "m"},
     [FAULT_VERTEX_MOVE] = {"vertex", "moves too far in one time step:", "a0"},
     [FAULT_BOND_TOO_LONG] = {"bond", "is longer than half the shortest box edge:", "a0"},
-    [FAULT_NO_MEMORY] = {"bond", "has more neighbor bonds than memory holds:", "entries"},
+    [FAULT_NO_MEMORY] = {"", "", ""},
 };
 
 void fault_describe(const struct fault *fault, char *text, size_t size)
 {
-  const char *hint = fault->code == FAULT_NO_MEMORY || fault->code == FAULT_NONE
-                         ? ""
-                         : " (a time step that is too large, or a heated system, is the usual cause)";
+  if (fault->code == FAULT_NO_MEMORY) {
+    snprintf(text, size, "step %" PRIu64 ": memory is short for the lists of bonds that may touch", fault->step);
+    return;
+  }
+  const char *hint =
+      fault->code == FAULT_NONE ? "" : " (a time step that is too large, or a heated system, is the usual cause)";
   snprintf(text, size, "step %" PRIu64 ": %s %" PRId64 " %s %g %s; at most %g is allowed%s", fault->step,
            wording[fault->code].entity, fault->entity, wording[fault->code].what, fault->value,
            wording[fault->code].unit, fault->limit, hint);

@@ -130,3 +130,8 @@ bool work_fault(struct work *w, enum fault_code code, uint64_t step, int64_t ent
     w->fault = (struct fault){code, step, entity, value, limit};
   return false;
 }
+
+bool work_no_memory(struct work *w, uint64_t step)
+{
+  return work_fault(w, FAULT_NO_MEMORY, step, 0, 0.0, 0.0);
+}

@@ -76,6 +76,10 @@ struct anchor {
   double reach;    /* a0: how far the vertex may be from there */
 };
 
+struct image {
+  int32_t k[3]; /* in box edges */
+};
+
 /* Pairs of bonds that may touch before an end of either takes a new anchor, and for how long they cannot: while their
  * paths together are not longer than `limit`. */
 struct pair_list {
@@ -83,9 +87,7 @@ struct pair_list {
   uint32_t *bond, *other;
   uint32_t *limit;      /* as path, below, modulo 2^32 */
   uint32_t *generation; /* both bonds', added up, when the pair was found; if it is more now, the pair is out of date */
-  struct image {
-    int32_t k[3];
-  } * image; /* of the other one, in box edges */
+  struct image *image;  /* of the other one */
 };
 
 struct bond_clock {
@@ -113,7 +115,7 @@ struct grid_row {
 
 struct neighbors {
   bool built;
-  double margin;            /* a0: a vertex further than this from its anchor takes a new one */
+  double margin;            /* a0: reach of an anchor, if the move for which it is taken is no longer */
   uint32_t bonds;           /* one for each vertex, used or not */
   struct anchor *anchor;    /* [vertices] */
   struct bond_clock *clock; /* [bonds] */
@@ -130,7 +132,7 @@ struct neighbors {
 struct fiber_work {
   uint32_t *order; /* [vertices] of the sweep */
   uint32_t *rank;  /* [vertices] order[rank[i]] = i; this and all up to meetings.first for noncrossing fibers only */
-  double *range;   /* [vertices] a0: how far at most from where it is a vertex may go in this sweep */
+  double *range; /* [vertices] a0: how far at most a vertex may go in this sweep, from where it was at its beginning */
   uint32_t *queue; /* [vertices] those that wait for their turns, in order: the first `queued` */
   uint32_t queued;
   uint8_t *waits; /* [vertices] 1: moves when its turn comes, 0: at once */
@@ -156,5 +158,8 @@ uint64_t work_bytes(const struct model *model);
 
 /* Records the first fault of a run; later ones are consequences. Returns false, for `return work_fault(...)`. */
 bool work_fault(struct work *work, enum fault_code code, uint64_t step, int64_t entity, double value, double limit);
+
+/* FAULT_NO_MEMORY, likewise. */
+bool work_no_memory(struct work *work, uint64_t step);
 
 #endif

@@ -13,7 +13,7 @@ static const struct {
     {{FAULT_CELL_MASS, 7, 99, 3e6, 1e5}, {"step 7:", "cell 99 ", "3e+06 m;", "100000 is allowed"}},
     {{FAULT_VERTEX_MOVE, 5, 6, 8.25, 4.0}, {"step 5:", "vertex 6 ", "8.25 a0", "4 is allowed (a time step"}},
     {{FAULT_BOND_TOO_LONG, UINT64_MAX, 41, 4.5, 4.0}, {"step 18446744073709551615:", "bond 41 ", "4.5 a0", "4 is"}},
-    {{FAULT_NO_MEMORY, 3, -1, 9.0, 8.0}, {"step 3:", "memory", "9 entries", "8 is allowed"}},
+    {{FAULT_NO_MEMORY, 3, 0, 0.0, 0.0}, {"step 3:", "memory is short"}},
 };
 
 static void test_each_fault_is_told_with_its_numbers(void **unused)
