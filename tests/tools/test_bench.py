@@ -137,12 +137,21 @@ class Tables(unittest.TestCase):
             (root / "docs").mkdir()
             for document in ("docs/speed.md", "docs/accuracy.md"):
                 marks = [f"<!-- bench: {n} -->\nold {n}\n<!-- end of {n} -->\n"
-                         for n, (d, _) in tables.TABLES.items() if d == document]
+                         for n, (d, *_) in tables.TABLES.items() if d == document]
                 (root / document).write_text("before\n" + "between\n".join(marks) + "after\n")
             tables.write({name: row for name, row in rows.items() if not name.startswith("scaling/")}, root)
             speed_page, accuracy_page = ((root / page).read_text() for page in ("docs/speed.md", "docs/accuracy.md"))
         self.assertIn("| cL³ = 100 over its solvent alone | 1.5 | 1.3 | 1.39 |", speed_page)  # 1 + 6400 100/(10 163840)
         self.assertIn("old scaling", speed_page)
+        with tempfile.TemporaryDirectory() as name:  # a section that was not measured leaves its tables as they were
+            root = pathlib.Path(name)
+            (root / "docs").mkdir()
+            for document in ("docs/speed.md", "docs/accuracy.md"):
+                (root / document).write_text("".join(f"<!-- bench: {n} -->\nold {n}\n<!-- end of {n} -->\n" for n, (
+                    d, *_) in tables.TABLES.items() if d == document))
+            tables.write(dict(rows_of(speed)), root)
+            for table in ("precision", "answer", "efficiency"):
+                self.assertIn(f"old {table}\n", (root / "docs/accuracy.md").read_text())
         self.assertNotIn("old speed", speed_page)
         self.assertIn("| `paper` | 0.02 |", accuracy_page)
         self.assertIn("stops at 7 t0", accuracy_page)

@@ -64,6 +64,12 @@ class Verdicts(unittest.TestCase):
         self.assertEqual(self.verdict(0.4, "paper").verdict, "not reproduced")
         self.assertEqual(self.verdict(None).verdict, "missing")
         self.assertEqual(self.verdict(math.nan).verdict, "missing")
+        self.assertAlmostEqual(self.verdict(1.5).seen, 1.0, 14)
+
+    def test_what_cannot_tell_from_nothing_does_not_pass(self):
+        for expected, tolerance, word in ((1.0, 1.01, "missing"), (1.0, 1.0, "pass"), (-1.0, 1.01, "missing"), (0.0, 0.1, "pass")):
+            self.assertEqual(claims.Verdict("a.b", "", expected, "", tolerance, measured=expected).verdict, word)
+        self.assertEqual(claims.Verdict("a.b", "", 1.0, "", 1.2, measured=3.0).verdict, "fail")
 
     def test_z(self):
         self.assertAlmostEqual(self.verdict(2.0).z, 2.0, 14)

@@ -14,7 +14,8 @@ TIERS = ("quick", "campaign")
 @dataclasses.dataclass
 class Verdict:
     """One number held against another. `error` and `expected_error` are standard errors; `tolerance` is what the two
-    may differ by; `detects` is the smallest wrong effect that would be seen. All in the same unit.
+    may differ by; `detects` is the smallest wrong effect that would be seen every time: twice that, if nothing else is
+    said. All in the same unit.
 
     kind "gate": a disagreement is our bug. kind "paper": it is a finding, and `reason` says why, if known."""
     id: str
@@ -34,8 +35,16 @@ class Verdict:
         if self.measured is None or not math.isfinite(self.measured):
             return "missing"
         if abs(self.measured - self.expected) <= self.tolerance:
-            return "pass"
+            blind = self.expected != 0.0 and self.tolerance > abs(self.expected)  # 0 would do as well
+            return "missing" if blind else "pass"
         return "fail" if self.kind == "gate" else "not reproduced"
+
+    @property
+    def seen(self):
+        """The smallest wrong effect that would be seen every time; None as long as the tolerance is not known either."""
+        if self.detects is not None:
+            return self.detects
+        return 2.0 * self.tolerance if self.verdict != "missing" or self.tolerance else None
 
     @property
     def z(self):

@@ -1,7 +1,7 @@
 """One solute in a periodic box: how its mean square displacement grows, and what box, neighbors and images do to it.
 
-Units a0 = kT = m = t0 = 1. THEORY's sections: Green-Kubo for a fluid of decaying transverse modes (2.2), images (2.6),
-Kirkwood (2.7), Rouse (2.7).
+Units a0 = kT = m = t0 = 1. In it: Green-Kubo for a fluid of decaying transverse modes, images, Kirkwood, Rouse, and vertices
+that share collision cells.
 """
 import dataclasses
 import math
@@ -347,11 +347,10 @@ def long_time(systems, first, last):
 
 
 def held(name, statement, expected, source, pair, systematic, known=0.0, **options):
-    """A verdict on pair, (value, error) or None: its tolerance is that of both errors and a systematic bound, and so is
-    the smallest wrong effect that it sees."""
+    """A verdict on pair, (value, error) or None: its tolerance is that of both errors and a systematic bound."""
     value, error = pair or (None, math.nan)
     bound = stats.tolerance(error, known, systematic)
-    return Verdict(name, statement, expected, source, bound, value, error, known, detects=bound, **options)
+    return Verdict(name, statement, expected, source, bound, value, error, known, **options)
 
 
 def fair_mean(values, errors):

@@ -27,7 +27,7 @@ def verdict_row(claim, verdict):
     return {"id": verdict.id, "claim": claim, "statement": verdict.statement, "source": verdict.source,
             "kind": verdict.kind, "verdict": verdict.verdict, "reason": verdict.reason,
             **{key: rounded(getattr(verdict, key)) for key in
-               ("expected", "expected_error", "measured", "error", "tolerance", "detects", "z")}}
+               ("expected", "expected_error", "measured", "error", "tolerance", "z")}, "detects": rounded(verdict.seen)}
 
 
 def provenance_row(result):

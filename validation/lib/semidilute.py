@@ -12,7 +12,7 @@ from scipy import special
 
 from lib import bending, dilute, stats
 
-BOND = (0.5**3 + 3 * 0.5 * 0.01) / (0.5**2 + 0.01)  # <l> of k = 100, l0 = 0.5: THEORY 2.8, 0.538462
+BOND = (0.5**3 + 3 * 0.5 * 0.01) / (0.5**2 + 0.01)  # <l> of k = 100, l0 = 0.5: r^2 exp(-k (r - l0)^2/2) in closed form, 0.538462
 BOND2 = (0.5**4 + 6 * 0.5**2 * 0.01 + 3 * 0.01**2) / (0.5**2 + 0.01)  # <l^2>, 0.299231
 MASS = 5.0
 PERSISTENCE = -BOND / math.log(1.0 / math.tanh(64.0) - 1.0 / 64.0)  # -<l>/ln<cos>, 34.19
@@ -192,5 +192,4 @@ def measured(verdict, pair, systematic=0.0, values=None):
     if pair is not None:
         verdict.measured, verdict.error = pair[:2]
         verdict.tolerance = stats.tolerance(verdict.error, verdict.expected_error, systematic, values=values)
-    verdict.detects = 2.0 * verdict.tolerance
     return verdict

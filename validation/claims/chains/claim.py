@@ -253,7 +253,7 @@ def verdicts_with(points, far):
     known = math.hypot(0.25 * dilute.D_VERTEX_ERROR / dilute.D_VERTEX, dilute.NU_ERROR / dilute.NU)  # of Kirkwood's D
     return [
         dilute.held("chains.exponent", "Exponent of D against N in an infinite box, and Kirkwood's at the same N",
-                    expected, "THEORY 2.7, with a_h of the claim mobility", slope, 0.02),
+                    expected, "Kirkwood's sum, with a_h of the claim mobility", slope, 0.02),
         dilute.held("chains.exponent-paper", "The same, against Zimm's N^-1/2", -0.5, "Eq. (39), Fig. 2", slope, 0.02,
                     kind="paper", reason="N^-1/2 is the limit of long chains; short ones still feel single vertices"),
         dilute.held("chains.cells", "D in an infinite box over vertices in Oseen's field smeared over the cells, nothing "
@@ -262,7 +262,7 @@ def verdicts_with(points, far):
                     dilute.mean_ratio(list(far.values()), [cells(n) for n in far]), BIAS / 2.0 + dilute.CELLS,
                     dilute.NU_ERROR / dilute.NU),
         dilute.held("chains.kirkwood", "D in an infinite box over Kirkwood's sum, mean over lengths", 1.0 - BIAS / 2.0,
-                    "THEORY 2.7; long times take 1 or 2 % off", ratio, BIAS, known, kind="paper",
+                    "Kirkwood's sum; long times take 1 or 2 % off", ratio, BIAS, known, kind="paper",
                     reason="Kirkwood's vertices are spheres in Oseen's field; here that field is smeared over the "
                            "collision cells, as wide as a bond is long: see chains.cells"),
         dilute.held("chains.prefactor", "D eta sqrt(N)/kT in the paper's boxes, eta = 11.18; mean over lengths", 0.17,
@@ -281,7 +281,7 @@ def same_in_boxes(points):
             means = [dilute.fair_mean([p.infinite for p in each], [p.error for p in each]) for each in (small, big)]
             ratios.append(dilute.over(*means))
     return dilute.held("chains.boxes", "Small boxes over the paper's, both corrected for images; mean over lengths",
-                       1.0, "THEORY 2.6", dilute.mean_ratio(ratios, numpy.ones(len(ratios))), 0.01)
+                       1.0, "images of a periodic box (Hasimoto 1959)", dilute.mean_ratio(ratios, numpy.ones(len(ratios))), 0.01)
 
 
 def crowding(points):
@@ -330,7 +330,7 @@ def swap_verdict(results, n):
 def size_verdict(results):
     sizes = [size(result) for name, result in results.items() if re.match(r"N\d+-L|rouse|loose", name)]
     sizes = [pair for pair in sizes if pair]
-    return dilute.held("chains.size", "<R^2> over (N - 1) l^2, mean over all runs", 1.0, "THEORY 2.8, exact",
+    return dilute.held("chains.size", "<R^2> over (N - 1) l^2, mean over all runs", 1.0, "exact: independent bonds",
                        stats.weighted_mean(*zip(*sizes))[:2] if sizes else None, 0.003)
 
 
@@ -428,7 +428,7 @@ prefactor and not the exponent, as the paper says: its 0.17 is Zimm's 0.1955 les
 takes, scaled with a viscosity that is 4 % too large.""")
     if "rouse-N10" in results:
         parts.append("""**Without hydrodynamics** D falls nearly as 1/N, but is not D_0/N: vertices of a Gaussian chain
-with bonds of 1 a0 share cells, keep their common momentum there, and the chain diffuses 20 to 40 % faster. Molecular
+with bonds of 1 a0 share cells, keep their common momentum there, and the chain diffuses 19 to 47 % faster. Molecular
 chaos with shared cells says by how much. Chains with bonds of 5.5 a0 share none, and are Rouse's.""")
     for name, base in (("crossing-N20", "N20-L35"), ("crowd-64", "N10-L25")):
         if name in points and base in points:

@@ -13,7 +13,7 @@ from lib.claim import Figure, Outcome
 from lib.runs import Run
 
 TITLE = "A vertex: diffusion, hydrodynamic radius, and what the box does"
-PAPER = "Sec. III D, Table II"
+PAPER = "Sec. IV A, Table II"
 SCENE = string.Template((pathlib.Path(__file__).parent / "vertices.yaml").read_text())
 
 
@@ -142,17 +142,17 @@ def verdicts(measured, off, swap):
     return [
         dilute.held("mobility.chaos", "Without hydrodynamics (phantoms): D of a lone vertex over molecular chaos's",
                     1.0,
-                    "THEORY 2.1: D_0 = (kT dt_c/M) [1/(1 - c) - 1/2] = 0.010662",
+                    "molecular chaos: D_0 = (kT dt_c/M) [1/(1 - c) - 1/2] = 0.010662",
                     dilute.over(off, (chaos, 0.0)) if off else None, 0.003),
         dilute.held("mobility.swap", "The same with the paper's swap of velocities: who is near is remembered", 1.02,
                     "docs/accuracy.md, hydrodynamics off", dilute.over(swap, (chaos, 0.0)) if swap else None, 0.01,
                     known=0.003),
         dilute.held("mobility.images", "Slope of D against the images' share 2.837297 kT/(6 pi eta L)", 1.0,
-                    "THEORY 2.6, eta = 10.74 from shear waves", slope, 0.15),
+                    "images of a periodic box (Hasimoto 1959), eta = 10.74 from shear waves", slope, 0.15),
         dilute.held("mobility.D", "D of a vertex in an infinite box", 0.0179, "docs/accuracy.md, another estimator",
                     limit, LAG_BIAS * 0.0179 + 0.0002, known=0.0001),
         dilute.held("mobility.radius", "a_h = kT/(6 pi eta D), measured eta, against the paper's 'about 0.3'", 0.30,
-                    "Sec. III D", radius, 0.05, kind="paper"),
+                    "Sec. IV A", radius, 0.05, kind="paper"),
         dilute.held("mobility.radius-table", "a_h against the 0.25 that the aspect ratio of Table II stands for", 0.25,
                     "Table II, p = L/2a_h = 64", radius, LAG_BIAS * 0.27, kind="paper",
                     reason="Table II sets 2a_h to the bond length, 0.5; with the measured radius p is 59")]

@@ -64,7 +64,7 @@ PAPER_ETA = sum(theory.viscosity())  # the paper scales with the analytic viscos
 PREFACTOR = 1.0 / (3.0 * math.pi)
 CONTOUR = ("the length is counted as N/2, but bonds are 0.538 long on average; the contour, 0.538 (N - 1), is shorter "
            "than N/2 at N = 10 and 6 % longer at N = 60, and the fit makes up for it by a smaller prefactor")
-BOND = (0.5 ** 3 + 3.0 * 0.5 / 100.0) / (0.5 ** 2 + 1.0 / 100.0)  # mean length of a bond, THEORY 2.8
+BOND = (0.5 ** 3 + 3.0 * 0.5 / 100.0) / (0.5 ** 2 + 1.0 / 100.0)  # mean length of a bond: r^2 exp(-k (r - l0)^2/2) in closed form
 BOND2 = (0.5 ** 4 + 6.0 * 0.5 ** 2 / 100.0 + 3.0 / 100.0 ** 2) / (0.5 ** 2 + 1.0 / 100.0)
 
 
@@ -248,7 +248,7 @@ def size(result):
 
 def size_verdict(results):
     ratios = [pair for pair in map(size, results.values()) if pair]
-    return dilute.held("rods.size", "<R^2> of the rods over its exact value, mean over all runs", 1.0, "THEORY 2.8",
+    return dilute.held("rods.size", "<R^2> of the rods over its exact value, mean over all runs", 1.0, "exact: a Markov chain of bonds",
                        stats.weighted_mean(*zip(*ratios))[:2] if ratios else None, 0.002)
 
 
@@ -264,7 +264,7 @@ def free_verdict(results):
 def kirkwood_verdict(far):
     known = math.hypot(0.15 * dilute.D_VERTEX_ERROR / dilute.D_VERTEX, dilute.NU_ERROR / dilute.NU)
     return dilute.held("rods.kirkwood", "D in an infinite box over Kirkwood's sum for a straight row of beads, mean",
-                       1.0, "THEORY 2.7, with a_h of the claim mobility",
+                       1.0, "Kirkwood's sum, with a_h of the claim mobility",
                        dilute.mean_ratio(list(far.values()), [kirkwood(n) for n in far]), BIAS, known)
 
 
@@ -283,12 +283,12 @@ def campaign_verdicts(points, far):
     box_diameter = (rules.in_box.diameter, rules.in_box.diameter_error) if rules else None
     return [
         dilute.held("rods.images", "Slope of D against the images' share kT/(6 pi eta L) (2.837297 - ...), N = 10", 1.0,
-                    "THEORY 2.6", image_slope(points), 0.1),
+                    "images of a periodic box (Hasimoto 1959)", image_slope(points), 0.1),
         dilute.held("rods.prefactor", "Prefactor of the joint fit in an infinite box, L = N/2; and of Kirkwood's D",
-                    rules.model.prefactor if rules else 0.096, "THEORY 2.7, the same lengths and weights", prefactor,
+                    rules.model.prefactor if rules else 0.096, "Kirkwood's sum, the same lengths and weights", prefactor,
                     0.004),
         dilute.held("rods.diameter", "b with the prefactor 1/(3 pi) in an infinite box, over that of Kirkwood's D", 1.0,
-                    "THEORY 2.7; 4 % of D are 15 % of b",
+                    "Kirkwood's sum; 4 % of D are 15 % of b",
                     dilute.over(rules.alone, (rules.model_alone[0], 0.0)) if rules else None, 0.15),
         dilute.held("rods.prefactor-theory", "The joint prefactor in an infinite box, against 1/(3 pi)", PREFACTOR,
                     "Eq. (40)", prefactor, 0.002, kind="paper", reason=CONTOUR),

@@ -164,12 +164,11 @@ def words(point):
 def retention_verdict(results, point):
     expected = theory.retention(point.gamma, point.alpha)
     verdict = Verdict(f"solvent.retention.{NAMES[point]}", f"velocity kept in one collision, {words(point)}", expected,
-                      "exact: 1 − (2/3)(1 − cos α)(γ − 1 + exp(−γ))/γ", tolerance=0.004, detects=0.008)
+                      "exact: 1 − (2/3)(1 − cos α)(γ − 1 + exp(−γ))/γ", tolerance=0.004)
     if "diffusion-" + label(point) in results:
         table = results["diffusion-" + label(point)].columns
         verdict.measured, verdict.error = table["vacf"][1], table["vacf_error"][1]
         verdict.tolerance = stats.tolerance(verdict.error, values=WINDOWS)
-        verdict.detects = 2.0 * verdict.tolerance
     return verdict
 
 
@@ -180,7 +179,6 @@ def viscosity_verdict(results, point):
     if has_point(results, point):
         verdict.measured, verdict.error = viscosity(results, point)
         verdict.tolerance = stats.tolerance(verdict.error, systematic=CHAOS * expected)
-    verdict.detects = 2.0 * verdict.tolerance
     return verdict
 
 
@@ -200,7 +198,6 @@ def paper_verdicts(results):
         schmidt.error = schmidt.measured * numpy.hypot(error / measured, eta.error / eta.measured)
     for verdict in (eta, schmidt):
         verdict.tolerance = stats.tolerance(verdict.error)
-        verdict.detects = 2.0 * verdict.tolerance
     return [eta, schmidt]
 
 
@@ -214,7 +211,6 @@ def slope_verdict(results):
         verdict.measured = fit.value[1] / fit.value[0]
         verdict.error = fit.error[1] / fit.value[0]
         verdict.tolerance = stats.tolerance(verdict.error)
-    verdict.detects = 2.0 * verdict.tolerance
     return verdict
 
 
@@ -225,7 +221,6 @@ def diffusion_verdict(results):
     if has_point(results, DILUTE):
         verdict.measured, verdict.error = diffusion(results, DILUTE)
         verdict.tolerance = stats.tolerance(verdict.error, systematic=0.02 * expected, values=WINDOWS)
-    verdict.detects = 2.0 * verdict.tolerance
     return verdict
 
 
@@ -238,7 +233,6 @@ def sound_verdict(results):
         verdict.measured, verdict.error = fit[3] / SOUND_K, error[3] / SOUND_K
         bound = (fit[2] / fit[3])**2 * theory.SOUND_SPEED
         verdict.tolerance = stats.tolerance(verdict.error, systematic=bound, values=SOUND_BLOCKS)
-    verdict.detects = 2.0 * verdict.tolerance
     return verdict
 
 
@@ -253,7 +247,6 @@ def tail_verdict(results, point):
     if has_tail(results, point):
         verdict.measured, verdict.error = tail(results, point, first, last)
         verdict.tolerance = stats.tolerance(verdict.error, systematic=0.1, values=len(tail_tables(results, point)))
-    verdict.detects = 2.0 * verdict.tolerance
     return verdict
 
 

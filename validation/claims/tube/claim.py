@@ -95,7 +95,7 @@ def expected_rotation(which, system):
     if which == "hi":
         return sd.rod_rotation_time(system["contour"], 0.6, viscosity(), system["box"]**3)
     vertices = round(system["contour"] / sd.BOND) + 1
-    gyration = 82.036 if vertices == 64 else system["contour"]**2 / 12.0  # THEORY 2.8: exact for 64 vertices
+    gyration = 82.036 if vertices == 64 else system["contour"]**2 / 12.0  # exact: sum of <R^2> of all pairs of 64 vertices
     return vertices * gyration / (2.0 * sd.shared_diffusion(ROTATION["off"][2], system["box"], vertices))
 
 
@@ -261,7 +261,10 @@ def draw(curves, system, times, column):
 def evaluate(results, tier):
     system = SYSTEMS[tier]
     curves = {name: curve(results, name) for name in CASES}
-    times = {which: (rotation(results, which) or (expected_rotation(which, system),))[0] for which in ("hi", "off")}
+    measured = {which: rotation(results, which) for which in ("hi", "off")}
+    times = {which: measured[which][0] if measured[which] else expected_rotation(which, system) for which in measured}
+    words = {which: f"({1e-5 * pair[0]:.2f} ± {1e-5 * pair[1]:.2f})·10⁵ t0" if pair else f"{1e-5 * times[which]:.2f}·10⁵ t0 (estimated)"
+             for which, pair in measured.items()}
     verdicts = early_verdicts(curves, system) + friction_verdicts(curves, system)
     verdicts.append(hindered_verdict(curves, system))
     verdicts += choice_verdicts(results, curves, system)
@@ -269,10 +272,8 @@ def evaluate(results, tier):
         verdicts += plateau_verdicts(curves, system) + rotation_verdicts(results, system)
         verdicts.append(normalized_verdict(curves, times))
     caption = (f"c L³ = {system['count']}, L = l_p = {system['length']:g} a0. Filled: uncrossable; open: free. Time in "
-               f"units of the rotation time of a lone fiber: {times['hi']:.3g} t0 with hydrodynamics, {times['off']:.3g} "
-               "t0 without"
-               + (" (both estimated, not measured, in this tier)." if tier == "quick" else ".")
-               + " Below: uncrossable over free at the same lag.")
+               f"units of the rotation time of a lone fiber: {words['hi']} with hydrodynamics, {words['off']} without. Below: "
+               "uncrossable over free at the same lag.")
     found = [Figure(f"fig4-{column}", what + caption, lambda column=column: draw(curves, system, times, column))
              for column, what in (("d2", "The paper's d²(t), to the nearest vertex. "),
                                   ("d2_contour", "The same to the nearest point of the contour. "))]
