@@ -162,6 +162,8 @@ class Campaign(unittest.TestCase):
             again = json.loads((pathlib.Path(folder) / "report.json").read_text())
         committed = json.loads((CAMPAIGN / "report.json").read_text())
         self.assertEqual(differences(committed, again), [])
+        page = (TREE / "docs/claims/README.md").read_text()
+        self.assertEqual(report.standing(committed), page, "make it anew: docs/claims/figures")
 
 
 if __name__ == "__main__":

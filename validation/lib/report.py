@@ -150,6 +150,52 @@ def summary(tier, sections):
             "runs": [row for part in sections for row in part["runs"]]}
 
 
+STANDING = """# Where the campaign stands
+
+<!-- written by docs/claims/figures from reference-data/campaign/report.json -->
+
+{hours:.1f} core-hours of {planned:.0f}. `validation/run report --tier campaign` makes the whole report,
+`reference-data/campaign/report.html`, from what is kept beside it.
+
+| claim | | pass | not reproduced | wait for runs | core-hours |
+| --- | --- | --- | --- | --- | --- |
+{claims}
+
+## Not reproduced
+
+What the paper says, or a formula that it uses, and what was measured.
+
+| | measured | expected | why |
+| --- | --- | --- | --- |
+{findings}
+
+## What waits
+
+{waiting}
+"""
+
+
+def standing(summed):
+    """docs/claims/README.md, from what report.json holds."""
+    def rows(claim, word):
+        return [row for row in summed["claims"] if row["claim"] == claim and row["verdict"] == word]
+
+    def cell(text):
+        return " ".join(text.split()).replace("|", "\\|")
+    claims, findings, waiting = [], [], []
+    for part in summed["sections"]:
+        name, counts = part["id"], [len(rows(part["id"], word)) for word in ("pass", "not reproduced", "missing")]
+        claims.append(f"| [{name}]({name}.md) | {cell(part['title'])} | {' | '.join(map(str, counts))} | "
+                      f"{part['cpu_seconds'] / 3600.0:.1f} |")
+        findings += [f"| `{row['id']}`: {cell(row['statement'])} | {plusminus(row['measured'], row['error'])} | "
+                     f"{plusminus(row['expected'], row['expected_error'])} ({cell(row['source'])}) | {cell(row['reason'])} |"
+                     for row in rows(name, "not reproduced")]
+        waiting += [f"`{row['id']}`" for row in rows(name, "missing")]
+    return STANDING.format(hours=math.fsum(part["cpu_seconds"] for part in summed["sections"]) / 3600.0,
+                           planned=math.fsum(part["hours_estimated"] for part in summed["sections"]),
+                           claims="\n".join(claims), findings="\n".join(findings), waiting=", ".join(waiting) or "Nothing.")
+
+
 def make(tier, all_runs, names, work, out):
     """Writes the three files into `out`; 1 if a gate failed, or, in the quick tier, if something was not measured."""
     results = runs.results_of(all_runs, work)
