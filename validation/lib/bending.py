@@ -10,7 +10,7 @@ import math
 
 import numpy
 
-from lib import dilute, theory
+from lib import dilute
 
 DIRECTIONS = 24  # of the fiber, over which mobilities are averaged
 SHORTEST = 6.0  # k a0: smearing leaves 0.0025 of such a wave
@@ -70,18 +70,6 @@ def middle(t, mobility, kappa, bond2):
     return 4.0 * float(((root @ mode)[vertices // 2]**2 * -numpy.expm1(-rate * t) / rate).sum())
 
 
-def heavy_fluid(crowd):
-    """(eta, nu) of a solvent with so many vertices per cell, Poisson, that go with it: collisions hand on momentum in
-    proportion to <m_cell - sum m^2/m_cell>, Eq. (31) with the members' masses; n - 1 + exp(-n) if all are alike."""
-    n, solvent = dilute.poisson(dilute.PER_CELL)
-    others, vertices = dilute.poisson(crowd, 40)
-    mass = dilute.MASS * others[:, None] + n
-    squares = dilute.MASS**2 * others[:, None] + n
-    passed_on = vertices @ (mass - squares / numpy.maximum(mass, 1.0)) @ solvent
-    eta = dilute.ETA * float(passed_on) / theory.occupancy(dilute.PER_CELL)
-    return eta, eta / (dilute.PER_CELL + dilute.MASS * crowd)
-
-
 @functools.lru_cache
 def lone(times, box, vertices, spacing, kappa, bond2, hydrodynamics, crowd):
     """d^2 at lags `times` (a tuple). crowd: vertices of other fibers per cell, which are braked with this fiber's and make
@@ -90,5 +78,5 @@ def lone(times, box, vertices, spacing, kappa, bond2, hydrodynamics, crowd):
     if not hydrodynamics:
         return numpy.array([middle(t, apart, kappa, bond2) for t in times])
     distance = numpy.abs(numpy.subtract.outer(numpy.arange(vertices), numpy.arange(vertices)))
-    fields = field(times, box, vertices, spacing, *heavy_fluid(crowd))
+    fields = field(times, box, vertices, spacing, *dilute.heavy_fluid(crowd))
     return numpy.array([middle(t, apart + one[distance], kappa, bond2) for t, one in zip(times, fields)])

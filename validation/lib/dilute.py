@@ -166,6 +166,18 @@ def cells_rod(vertices, spacing, apart):
     return apart + stokes(1.0) * (count * smeared_pair(spacing * distance)).sum() / vertices ** 2
 
 
+def heavy_fluid(crowd):
+    """(eta, nu) of a solvent with so many vertices per cell, Poisson, that go with it: collisions hand on momentum in
+    proportion to <m_cell - sum m^2/m_cell>, Eq. (31) with the members' masses; n - 1 + exp(-n) if all are alike."""
+    n, solvent = poisson(PER_CELL)
+    others, vertices = poisson(crowd, 40)
+    mass = MASS * others[:, None] + n
+    squares = MASS**2 * others[:, None] + n
+    passed_on = vertices @ (mass - squares / numpy.maximum(mass, 1.0)) @ solvent
+    eta = ETA * float(passed_on) / theory.occupancy(PER_CELL)
+    return eta, eta / (PER_CELL + MASS * crowd)
+
+
 # --- without hydrodynamics ----------------------------------------------------------------------------------------
 
 def poisson(mean, most=60):

@@ -1,6 +1,7 @@
 /*
  * Decay of transverse modes against their wave number, at one point of the solvent: see shear_wave.h, and viscosity.c
- * for points in a table. A box of 8 x EDGE x 8 cells has its wave of k = 2 pi/EDGE.
+ * for points in a table. A box of 8 x EDGE x 8 cells has its wave of k = 2 pi/EDGE. With vertices, loose ones of the
+ * paper's mass, 5, go along with the fluid and make it heavier and more viscous.
  *
  * Output: comma-separated, a row per box; nu(k) = rate/k^2. Theory: Padding 2009, Eqs. (30), (31), for k -> 0.
  */
@@ -12,6 +13,7 @@
 
 struct question {
   double per_cell, interval, angle;
+  double vertices;    /* per cell */
   double amplitude;   /* A, a0/t0 */
   uint32_t skip;      /* collisions left out while correlations build up */
   uint32_t pairs;     /* of runs in the longest box; shorter ones have more, in proportion to 1/EDGE^2 */
@@ -23,10 +25,12 @@ struct question {
 static struct question read_question(int argc, const char **argv)
 {
   if (argc < 9) {
-    fprintf(stderr, "usage: %s PER_CELL DT_C ANGLE AMPLITUDE SKIP PAIRS SEED EDGE ...\n", argv[0]);
+    fprintf(stderr, "usage: %s PER_CELL[:VERTICES] DT_C ANGLE AMPLITUDE SKIP PAIRS SEED EDGE ...\n", argv[0]);
     exit(2);
   }
+  const char *vertices = strchr(argv[1], ':');
   return (struct question){.per_cell = atof(argv[1]),
+                           .vertices = vertices ? atof(vertices + 1) : 0.0,
                            .interval = atof(argv[2]),
                            .angle = atof(argv[3]),
                            .amplitude = atof(argv[4]),
@@ -40,7 +44,10 @@ static struct question read_question(int argc, const char **argv)
 static void measure_box(const struct question *q, int edge, uint32_t pairs)
 {
   struct run run;
-  run_start(&run, turned_model(WIDTH, edge, WIDTH, q->per_cell, q->interval, q->angle), q->seed);
+  struct model model = turned_model(WIDTH, edge, WIDTH, q->per_cell, q->interval, q->angle);
+  if (q->vertices > 0.0)
+    add_kind(&model, (uint32_t)(q->vertices * WIDTH * edge * WIDTH), 1);
+  run_start(&run, model, q->seed);
   const double k = shear_wave_number(&run.model);
   const double theory = theory_viscosity(q->per_cell, run.model.solvent.cosine, q->interval) / q->per_cell;
   const double life = 1.0 / (theory * k * k * q->interval); /* collisions to 1/e */

@@ -39,7 +39,7 @@ static inline double shear_wave_number(const struct model *model)
   return 6.283185307179586477 / model->box.cells[1];
 }
 
-/* Adds the wave, with this sign, to every solvent particle. */
+/* Adds the wave, with this sign, to every solvent particle and loose vertex. */
 static inline void shear_wave_add(struct state *state, double k, double amplitude)
 {
   struct solvent *s = &state->solvent;
@@ -48,10 +48,15 @@ static inline void shear_wave_add(struct state *state, double k, double amplitud
     s->vx[i] += amplitude * cos(phase);
     s->vz[i] += amplitude * sin(phase);
   }
+  for (uint32_t i = 0; i < state->vertices; i++) {
+    double phase = k * (double)state->position[i].y * LATTICE_UNIT;
+    state->velocity[i].x += amplitude * cos(phase);
+    state->velocity[i].z += amplitude * sin(phase);
+  }
 }
 
-/* Amplitude of the wave, right after a collision (the solvent then does not lag). */
-static inline double shear_wave_amplitude(const struct state *state, double k)
+/* Amplitude of the wave of momentum over mass, right after a collision (the solvent then does not lag). */
+static inline double shear_wave_amplitude(const struct model *model, const struct state *state, double k)
 {
   const struct solvent *s = &state->solvent;
   double sum = 0.0;
@@ -59,7 +64,12 @@ static inline double shear_wave_amplitude(const struct state *state, double k)
     double phase = k * (double)s->y[i] * LATTICE_UNIT;
     sum += s->vx[i] * cos(phase) + s->vz[i] * sin(phase);
   }
-  return sum / s->n;
+  for (uint32_t i = 0; i < state->vertices; i++) {
+    const struct vec3 v = state->velocity[i];
+    double phase = k * (double)state->position[i].y * LATTICE_UNIT;
+    sum += model->mass[i] * (v.x * cos(phase) + v.z * sin(phase));
+  }
+  return sum / model->total_mass;
 }
 
 /* One run from the equilibrium state of model->seed; adds factor * a_n to amplitude[n], n = 0 .. last. */
@@ -71,7 +81,7 @@ static inline bool shear_wave_run(const struct model *model, struct state *state
     return false;
   shear_wave_add(state, k, sign * wave->amplitude);
   for (uint32_t n = 0;; n++) {
-    amplitude[n] += 0.5 * sign * shear_wave_amplitude(state, k);
+    amplitude[n] += 0.5 * sign * shear_wave_amplitude(model, state, k);
     if (n == wave->last)
       return true;
     for (uint32_t step = 0; step < wave->every * model->solvent.interval_steps; step++)
