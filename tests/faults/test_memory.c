@@ -3,6 +3,7 @@
 #include "io/files.h"
 
 #include "faults/inject.h"
+#include "fiber/sweep.h"
 #include "io/scene.h"
 
 static const char text[] =
@@ -14,7 +15,7 @@ static const char text[] =
 
 /* What a function under test works with, made without failures. */
 struct bench {
-  struct test_run run;
+  struct test_run run, crowd;
   struct scene scene;
   char folder[64];
 };
@@ -70,6 +71,40 @@ static bool try_start(struct bench *b)
   work_free(&w);
   state_free(&s);
   return ok;
+}
+
+/* Fibers so fast and dense that lists grow in the middle of a sweep, and in every part of it. */
+static bool try_crowd(struct bench *b)
+{
+  const struct state *from = &b->crowd.state;
+  struct state s;
+  struct work w;
+  if (!state_alloc(&s, &b->crowd.model))
+    return false;
+  if (!work_alloc(&w, &b->crowd.model)) {
+    state_free(&s);
+    return false;
+  }
+  memcpy(s.position, from->position, s.vertices * sizeof *s.position);
+  for (uint32_t i = 0; i < s.vertices; i++)
+    s.velocity[i] = vec3_scale(i % 5 ? 2.0 : 40.0, from->velocity[i]);
+  bool ok = true;
+  for (uint64_t step = 1; step <= 3; step++)
+    ok = ok && fiber_sweep(&s, &b->crowd.model, &w, 1.0, step, 0, NULL);
+  assert_true(ok || w.fault.code == FAULT_NO_MEMORY);
+  assert_true(!ok || s.counts.executed > 100);
+  work_free(&w);
+  state_free(&s);
+  return ok;
+}
+
+static struct test_run crowd(void)
+{
+  struct model m = test_model(2, 2, 2, 0, 0.01, 2);
+  m.crossing.refusal = REFUSAL_BOUNCE;
+  struct fiber_kind *k = test_add_kind(&m, 60, 8);
+  k->spring = 100.0, k->bond_length = 0.5;
+  return test_start(m);
 }
 
 static bool try_observers(struct bench *b)
@@ -150,6 +185,7 @@ static const struct {
     {"state_alloc", try_state, 9},
     {"work_alloc", try_work, 8},
     {"step_start, step_advance", try_start, 3},
+    {"fiber_sweep", try_crowd, 25},
     {"observers_create", try_observers, 10},
     {"scene_read", try_scene, 10},
     {"checkpoint_write", try_checkpoint_write, 5},
@@ -160,7 +196,7 @@ static const struct {
 static void test_memory_runs_out_at_every_call(void **unused)
 {
   (void)unused;
-  struct bench b = {.run = small_run(3)};
+  struct bench b = {.run = small_run(3), .crowd = crowd()};
   struct message m;
   make_folder(b.folder);
   assert_true(scene_read_text("t.yaml", text, strlen(text), &b.scene, &m));
@@ -185,6 +221,7 @@ static void test_memory_runs_out_at_every_call(void **unused)
   }
   scene_free(&b.scene);
   test_end(&b.run);
+  test_end(&b.crowd);
   remove_folder(b.folder);
 }
 
