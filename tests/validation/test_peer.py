@@ -22,7 +22,8 @@ class Made:
 
 
 def made(change=1.0, names=("uncross", "box-axes", "lammps")):
-    """C = c^n and D of molecular chaos, with noise of 0.1 % of D and 0.0005 of C; uncross has `change` times that D."""
+    """C = c^n, and 0.01 later on; D of molecular chaos; with noise of 0.1 % of D and 0.0005 of C; uncross has `change`
+    times that D."""
     random = numpy.random.Generator(numpy.random.PCG64(1))
     n = numpy.arange(PEER.LENGTH)
     kept = theory.retention()
@@ -31,7 +32,7 @@ def made(change=1.0, names=("uncross", "box-axes", "lammps")):
     for name in names:
         for seed in PEER.SEEDS:
             factor = change if name == "uncross" else 1.0
-            results[f"{name}-{seed}"] = Made({"vacf": kept**n + 5e-4 * random.normal(size=len(n)),
+            results[f"{name}-{seed}"] = Made({"vacf": kept**n + 0.01 * (n > 3) + 5e-4 * random.normal(size=len(n)),
                                               "D": factor * diffusion * (1.0 + 1e-3 * random.normal(size=len(n)))})
     return results
 

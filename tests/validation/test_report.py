@@ -163,7 +163,7 @@ class Campaign(unittest.TestCase):
         committed = json.loads((CAMPAIGN / "report.json").read_text())
         self.assertEqual(differences(committed, again), [])
         page = (TREE / "docs/claims/README.md").read_text()
-        self.assertEqual(report.standing(committed), page, "make it anew: docs/claims/figures")
+        self.assertEqual(report.standing(committed), page, "make it anew: validation/run report --tier campaign")
 
 
 if __name__ == "__main__":

@@ -152,7 +152,7 @@ def summary(tier, sections):
 
 STANDING = """# Where the campaign stands
 
-<!-- written by docs/claims/figures from reference-data/campaign/report.json -->
+<!-- written by `validation/run report --tier campaign` -->
 
 {hours:.1f} core-hours of {planned:.0f}. `validation/run report --tier campaign` makes the whole report,
 `reference-data/campaign/report.html`, from what is kept beside it.
@@ -194,6 +194,10 @@ def standing(summed):
     return STANDING.format(hours=math.fsum(part["cpu_seconds"] for part in summed["sections"]) / 3600.0,
                            planned=math.fsum(part["hours_estimated"] for part in summed["sections"]),
                            claims="\n".join(claims), findings="\n".join(findings), waiting=", ".join(waiting) or "Nothing.")
+
+
+def write_standing(summed, page):
+    page.write_text(standing(json.loads(summed.read_text())))
 
 
 def make(tier, all_runs, names, work, out):
