@@ -145,20 +145,19 @@ def friction_verdicts(curves, system):
 
 
 def plateau_verdicts(curves, system):
+    """Against the paper's line, and against what two positions in a tube of Eq. (35) are apart."""
     width = sd.tube_width(sd.mesh_size(system["count"], system["length"], system["box"]), system["length"],
                           system["length"])
     found = []
-    for which in ("hi", "off"):
-        verdict = Verdict(f"tube.plateau.{which}", "plateau of d² (contour) over 2 L⊥², hydrodynamics "
-                          + ("on" if which == "hi" else "off"), 1.0, "Eq. (35); a theory of the tube's width to some "
-                                                                     "40 %",
-                          0.4, kind="paper", reason="d² compares two positions in the tube, each of which fluctuates "
-                                                    "by L⊥² "
-                          "in each of two directions about its axis: 4 L⊥² once they forget each other, 2 L⊥² if one "
-                          "of them "
-                          "were the axis.")
+    for which, on in (("hi", "on"), ("off", "off")):
         flat = sd.plateau(curves[f"{which}-entangled"])
-        found.append(sd.measured(verdict, flat and (flat[0] / (2 * width**2), flat[1] / (2 * width**2)), 0.4))
+        line = Verdict(f"tube.plateau.{which}", f"plateau of d² (contour) over 2 L⊥², hydrodynamics {on}", 1.0,
+                       "the paper's line; Eq. (35) is a theory of the tube's width to some 40 %", 0.4, kind="paper",
+                       reason="d² compares two positions in the tube, each of which fluctuates by L⊥² in each of two "
+                              "directions about its axis: 4 L⊥² once they forget each other, 2 L⊥² if one of them were the axis.")
+        both = Verdict(f"tube.plateau.both.{which}", f"plateau of d² (contour) over 4 L⊥², hydrodynamics {on}", 1.0,
+                       "two positions in the tube of Eq. (35); to some 40 %", 0.4)
+        found += [sd.measured(verdict, sd.over(flat, scale * width**2), 0.4) for verdict, scale in ((line, 2.0), (both, 4.0))]
     return found
 
 
@@ -238,6 +237,7 @@ def draw(curves, system, times, column):
     width = sd.tube_width(sd.mesh_size(system["count"], system["length"], system["box"]), system["length"],
                           system["length"])
     above.axhline(2 * width**2 / scale, color="#222222", linestyle="-.", linewidth=1.1, label="tube, 2 L⊥², Eq. (35)")
+    above.axhline(4 * width**2 / scale, color="#222222", linestyle=(0, (1, 3)), linewidth=1.1, label="4 L⊥²")
     for which, line in (("hi", "-"), ("off", "--")):
         lags = numpy.geomspace(0.5, 0.003 * times[which], 24)
         alone = sd.free_fiber(lags, round(system["contour"] / sd.BOND) + 1, system["count"], system["box"], which == "hi")
