@@ -228,4 +228,77 @@ static inline void audit_sweeps(uint64_t seed, uint64_t suspensions)
   }
 }
 
+/* --- brawls --------------------------------------------------------------------------------------------------------
+ */
+
+/* A fiber across the z axis, in rows one way and the other, all of it at one speed or nearly. */
+static inline void lay(struct test_run *r, struct dice *d, uint32_t fiber, double z, double speed)
+{
+  const uint32_t first = r->model.fiber_first[fiber], n = r->model.fiber_first[fiber + 1] - first;
+  const double turn = (fiber % 2 ? 1.5707963 : 0.0) + dice_between(d, -0.2, 0.2), half = 0.5 * (n - 1.0);
+  const struct vec3 middle = {4.0 + dice_between(d, -0.2, 0.2), 4.0 + dice_between(d, -0.2, 0.2), z};
+  for (uint32_t v = 0; v < n; v++) {
+    const struct vec3 along = {(v - half) * 0.9 * cos(turn), (v - half) * 0.9 * sin(turn), 0.0};
+    r->state.position[first + v] = point_move((struct point){0, 0, 0}, vec3_add(middle, along));
+    r->state.velocity[first + v] = vec3_add((struct vec3){0, 0, speed}, dice_vector(d, 0.1));
+  }
+}
+
+/* Light fibers at rest, each with a heavy one that is about to hit it from below or above, and others that fly by
+ * between them, at the distances that they go in a step or two: who is hit hits others, and calls back who had moved
+ * before its turn. Heavy, light and flying ones are the model's fibers in turn. */
+static inline void throw_stack(struct test_run *r, struct dice *d)
+{
+  double z = 4.0;
+  for (uint32_t f = 0; f < r->model.fibers; f += 3) {
+    const double way = dice_u64(d) & 1 ? 1.0 : -1.0, gap = dice_between(d, 0.001, 0.02);
+    lay(r, d, f, z, way * dice_between(d, 4.0, 12.0));
+    lay(r, d, f + 1, z + way * gap, 0.0);
+    z += dice_between(d, 0.03, 0.25);
+    lay(r, d, f + 2, z, (dice_u64(d) & 1 ? 1.0 : -1.0) * dice_between(d, 2.0, 12.0));
+    z += dice_between(d, 0.03, 0.25);
+  }
+  r->work.fiber.neighbors.built = false; /* they were moved by hand */
+}
+
+/* So many stacks, each in an order of its own, against brute force; masses are the same in 50. */
+static inline void audit_brawls(uint64_t seed, uint64_t stacks)
+{
+  struct events *told = calloc(1, sizeof *told);
+  const struct sweep_log log = {collect, told};
+  uint64_t hits = 0, called_back = 0;
+  for (uint64_t k = 0; k < stacks; k += 50) {
+    struct dice d = {seed + k};
+    struct model m = test_model(8, 8, 8, 0, 0.01, 2);
+    m.crossing.refusal = dice_u64(&d) & 1 ? REFUSAL_BOUNCE : REFUSAL_STAY;
+    for (uint32_t f = 0; f < 9; f++)
+      test_add_kind(&m, 1, 2 + (uint32_t)(dice_u64(&d) % 4 == 0))->mass =
+          (const double[]){50.0, 1.25, 1.25}[f % 3] * dice_between(&d, 1.0, f % 3 == 2 ? 5.0 : 1.5);
+    struct test_run r = dice_run(m, &d);
+    struct reference ref = {.model = &r.model, .told = told, .seed = seed + k};
+    ref.position = malloc(r.state.vertices * sizeof *ref.position);
+    ref.velocity = malloc(r.state.vertices * sizeof *ref.velocity);
+    exact_open(&ref.exact);
+    for (uint64_t step = 1; step <= 50; step++) {
+      throw_stack(&r, &d);
+      told->n = told->read = 0;
+      copy_state(&ref, &r.state);
+      assert_true(fiber_sweep(&r.state, &r.model, &r.work, 1.0, step, 0, &log));
+      sweep_by_hand(&ref, r.model.time_step, step, 0);
+      assert_int_equal(told->read, told->n);
+      compare_states(&ref, &r.state);
+    }
+    hits += ref.counts.executed;
+    called_back += r.work.fiber.called_back;
+    exact_close(&ref.exact);
+    free(ref.position);
+    free(ref.velocity);
+    test_end(&r);
+  }
+  free(told);
+  print_message("  %lu stacks, %lu hits executed, %lu vertices called back\n", (unsigned long)stacks,
+                (unsigned long)hits, (unsigned long)called_back);
+  assert_true(hits > stacks && called_back > stacks / 20);
+}
+
 #endif

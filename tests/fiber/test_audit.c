@@ -14,11 +14,18 @@ static void dense_sweeps(void **unused)
   audit_sweeps(dice_seed(1502), 12);
 }
 
+static void brawls(void **unused)
+{
+  (void)unused;
+  audit_brawls(dice_seed(1503), 10000);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(adversarial_moves),
       cmocka_unit_test(dense_sweeps),
+      cmocka_unit_test(brawls),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
