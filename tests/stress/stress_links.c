@@ -27,6 +27,7 @@ static void follow(const struct scene *scene, uint64_t *steps)
     struct model m = scene->make(scene->per_cell, scene->dt);
     m.seed = dice_seed(2602) + 100 * run;
     m.crossing.exclusion = run % 2 ? EXCLUSION_PAPER : EXCLUSION_SHARED_VERTEX;
+    m.crossing.refusal = (run + (uint64_t)(scene - scenes)) % 3 == 2 ? REFUSAL_BOUNCE : REFUSAL_STAY;
     struct test_run r = test_start(m);
     const struct followed f = follow_links(&r, each);
     if (f.changed > 0)
