@@ -3,7 +3,7 @@ import math
 
 import numpy
 
-from lib import figures, stats, theory
+from lib import dilute, figures
 from lib import semidilute as sd
 from lib.claim import Figure, Outcome, Verdict
 from lib.runs import Run
@@ -85,18 +85,27 @@ def curve(results, name):
     return sd.joined(sd.table(results.get(name + "-short"), least=4), sd.table(results.get(name)))
 
 
-def viscosity():
-    return sum(theory.viscosity())
+def size(system):
+    """(vertices of a fiber, fibers, edge of the box)"""
+    return round(system["contour"] / sd.BOND) + 1, system["count"], system["box"]
+
+
+def width(system):
+    """L_perp of Eq. (35)."""
+    mesh = sd.mesh_size(system["count"], system["length"], system["box"])
+    return sd.tube_width(mesh, system["length"], system["length"])
 
 
 def expected_rotation(which, system):
-    """tau_r of one fiber, 1/(2 D_r): with hydrodynamics a rigid rod of b = 0.6 a0 in this box; without, vertices whose
-    friction acts at the radius of gyration, less than that of vertices alone, and with others in the cell (sd.shared_diffusion)."""
+    """tau_r of a fiber, 1/(2 D_r), among as many as the run has: with hydrodynamics a rigid rod of b = 0.6 a0 in this
+    box; without, vertices whose friction acts at the radius of gyration, less than that of vertices alone
+    (sd.shared_diffusion)."""
+    vertices, _, box = size(system)
     if which == "hi":
-        return sd.rod_rotation_time(system["contour"], 0.6, viscosity(), system["box"]**3)
-    vertices = round(system["contour"] / sd.BOND) + 1
+        eta, _ = dilute.heavy_fluid(sd.crowd(vertices, ROTATION["hi"][2], box))
+        return sd.rod_rotation_time(system["contour"], 0.6, eta, box**3)
     gyration = 82.036 if vertices == 64 else system["contour"]**2 / 12.0  # exact: sum of <R^2> of all pairs of 64 vertices
-    return vertices * gyration / (2.0 * sd.shared_diffusion(ROTATION["off"][2], system["box"], vertices))
+    return vertices * gyration / (2.0 * sd.shared_diffusion(ROTATION["off"][2], box, vertices))
 
 
 def rotation(results, which):
@@ -117,7 +126,7 @@ def ratio(one, other, name, time):
 def early_verdicts(curves, system):
     """Fibers that have not met yet do not know whether they may cross. By collision theory so many per cent of the
     vertices have been refused a move by then; nobody's displacement changes by more."""
-    bonds = (round(system["contour"] / sd.BOND)) * system["count"]
+    bonds = (size(system)[0] - 1) * system["count"]
     met = 4.0 * sd.collision_rate(bonds, system["box"]**3) * system["box"]**3 / bonds * system["early"]
     return [sd.measured(Verdict(f"tube.early.{which}", f"d² uncrossable / crossing free at {system['early']} t0, "
                              + ("hydrodynamics on" if which == "hi" else "off"), 1.0,
@@ -129,8 +138,8 @@ def early_verdicts(curves, system):
 def friction_verdicts(curves, system):
     """Fibers that cross freely have nothing that is left to fit, with hydrodynamics or without, as long as the others'
     stiffness does not resist the flow (lib/bending.py)."""
-    fast, size = system["fast"], (round(system["contour"] / sd.BOND) + 1, system["count"], system["box"])
-    expected = {which: sd.free_fiber([fast], *size, which == "hi")[0] for which in ("hi", "off")}
+    fast = system["fast"]
+    expected = {which: sd.free_fiber([fast], *size(system), which == "hi")[0] for which in ("hi", "off")}
     words = {"hi": ("on", "Oseen's field in a fluid that vertices make heavier and more viscous"),
              "off": ("off", "vertices that share cells; others as heavier solvent, which forgets them though they stay")}
     found = [sd.measured(Verdict(f"tube.friction.{which}", f"d² over that of a straight fiber, nothing fitted, "
@@ -146,8 +155,6 @@ def friction_verdicts(curves, system):
 
 def plateau_verdicts(curves, system):
     """Against the paper's line, and against what two positions in a tube of Eq. (35) are apart."""
-    width = sd.tube_width(sd.mesh_size(system["count"], system["length"], system["box"]), system["length"],
-                          system["length"])
     found = []
     for which, on in (("hi", "on"), ("off", "off")):
         flat = sd.plateau(curves[f"{which}-entangled"])
@@ -157,18 +164,15 @@ def plateau_verdicts(curves, system):
                               "directions about its axis: 4 L⊥² once they forget each other, 2 L⊥² if one of them were the axis.")
         both = Verdict(f"tube.plateau.both.{which}", f"plateau of d² (contour) over 4 L⊥², hydrodynamics {on}", 1.0,
                        "two positions in the tube of Eq. (35); to some 40 %", 0.4)
-        found += [sd.measured(verdict, sd.over(flat, scale * width**2), 0.4) for verdict, scale in ((line, 2.0), (both, 4.0))]
+        found += [sd.measured(verdict, sd.over(flat, scale * width(system)**2), 0.4) for verdict, scale in ((line, 2.0), (both, 4.0))]
     return found
 
 
 def hindered_verdict(curves, system):
-    """At the end of the shorter curve: d^2 with the constraint over d^2 without. A broken constraint gives 1. A
-    bound."""
+    """At the end of the shorter curve: d^2 with the constraint over d^2 without. A broken constraint gives 1."""
     bound = system["hindered"]
     verdict = Verdict("tube.hindered", "d² uncrossable / crossing free at the longest common lag, hydrodynamics on",
-                      0.0,
-                      f"a tube holds the middle of a fiber: below {bound}; without a tube 1", bound,
-                      detects=1.0 - bound)
+                      0.0, f"a tube holds the middle of a fiber: below {bound}; without a tube 1", bound, detects=1.0 - bound)
     a, b = curves["hi-entangled"], curves["hi-free"]
     common = [t for t in a["time"] if sd.at(b, "d2", t)] if a is not None else []
     if common and common[-1] >= system["late"]:
@@ -181,11 +185,9 @@ def normalized_verdict(curves, times):
     at = 3e-4
     verdict = Verdict("tube.below", f"d² without hydrodynamics / with, crossing free, at t/τ_r = {at:g} each", 0.5,
                       "paper, Fig. 4: “systematically below”, that is, below 1", 0.5, kind="paper", detects=0.1,
-                      reason="Without hydrodynamics friction is the same at all lengths. With them it is lower for "
-                             "long waves than for "
-                      "short ones, and lowest for the turning of the whole: in units of τ_r short waves are slower. "
-                      "At equal time "
-                      "(tube.hydrodynamics) the curve without is below.")
+                      reason="Without hydrodynamics friction is the same at all lengths. With them it is lower for long "
+                             "waves than for short ones, and lowest for the turning of the whole: in units of τ_r short "
+                             "waves are slower. At equal time (tube.hydrodynamics) the curve without is below.")
     values = []
     for which in ("off", "hi"):
         columns = curves[which + "-free"]
@@ -215,9 +217,9 @@ def rotation_verdicts(results, system):
     for which, source in (("hi", "rigid rod (Tirado), b = 0.6 a0, in a periodic box: 20 % for bends"),
                           ("off", "friction of the vertices at the radius of gyration: 20 % for bends")):
         expected = expected_rotation(which, system)
-        found.append(sd.measured(Verdict(f"tube.rotation.{which}", f"τ_r, hydrodynamics "
-                                                                   f"{'on' if which == 'hi' else 'off'}, t0",
-                                      expected, source, 0.2 * expected), rotation(results, which), 0.2 * expected))
+        on = "on" if which == "hi" else "off"
+        found.append(sd.measured(Verdict(f"tube.rotation.{which}", f"τ_r, hydrodynamics {on}, t0", expected, source,
+                                         0.2 * expected), rotation(results, which), 0.2 * expected))
     return found
 
 
@@ -234,13 +236,12 @@ def draw(curves, system, times, column):
                        number,
                        label=LABELS[name], linestyle="-" if "entangled" in name else ":", markersize=3.2,
                        markerfacecolor=None if "entangled" in name else "white")
-    width = sd.tube_width(sd.mesh_size(system["count"], system["length"], system["box"]), system["length"],
-                          system["length"])
-    above.axhline(2 * width**2 / scale, color="#222222", linestyle="-.", linewidth=1.1, label="tube, 2 L⊥², Eq. (35)")
-    above.axhline(4 * width**2 / scale, color="#222222", linestyle=(0, (1, 3)), linewidth=1.1, label="4 L⊥²")
+    square = width(system)**2 / scale
+    above.axhline(2 * square, color="#222222", linestyle="-.", linewidth=1.1, label="tube, 2 L⊥², Eq. (35)")
+    above.axhline(4 * square, color="#222222", linestyle=(0, (1, 3)), linewidth=1.1, label="4 L⊥²")
     for which, line in (("hi", "-"), ("off", "--")):
         lags = numpy.geomspace(0.5, 0.003 * times[which], 24)
-        alone = sd.free_fiber(lags, round(system["contour"] / sd.BOND) + 1, system["count"], system["box"], which == "hi")
+        alone = sd.free_fiber(lags, *size(system), which == "hi")
         figures.theory(above, lags / times[which], alone / scale, linestyle=line,
                        label=f"straight fiber, nothing fitted, {'on' if which == 'hi' else 'off'}")
     for number, which in enumerate(("hi", "off")):
@@ -263,8 +264,8 @@ def evaluate(results, tier):
     curves = {name: curve(results, name) for name in CASES}
     measured = {which: rotation(results, which) for which in ("hi", "off")}
     times = {which: measured[which][0] if measured[which] else expected_rotation(which, system) for which in measured}
-    words = {which: f"({1e-5 * pair[0]:.2f} ± {1e-5 * pair[1]:.2f})·10⁵ t0" if pair else f"{1e-5 * times[which]:.2f}·10⁵ t0 (estimated)"
-             for which, pair in measured.items()}
+    words = {which: f"({1e-5 * pair[0]:.2f} ± {1e-5 * pair[1]:.2f})·10⁵ t0" if pair else
+             f"{1e-5 * times[which]:.2f}·10⁵ t0 (estimated)" for which, pair in measured.items()}
     verdicts = early_verdicts(curves, system) + friction_verdicts(curves, system)
     verdicts.append(hindered_verdict(curves, system))
     verdicts += choice_verdicts(results, curves, system)
