@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "fiber/capsule.h"
 #include "fiber/neighbors.h"
+#include "fiber/pairs.h"
 
 enum { PAIRS = 256, FIRST_MEETINGS = 1024 }; /* pairs worked on at a time; room at first */
 
@@ -173,8 +174,8 @@ static void look_at_pair(const struct state *state, const struct model *model, s
                          struct columns *s)
 {
   struct neighbors *nb = &f->neighbors;
-  while (pair < nb->pairs.count && neighbors_out_of_date(nb, pair))
-    neighbors_drop_pair(nb, pair);
+  while (pair < nb->pairs.count && pairs_out_of_date(nb, pair))
+    pairs_drop(nb, pair);
   if (pair < nb->pairs.count)
     fill_column(state, model, f, pair, s);
 }

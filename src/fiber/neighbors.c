@@ -5,10 +5,10 @@
 
 #include "base/memory.h"
 #include "fiber/capsule.h"
+#include "fiber/pairs.h"
 
-#define MARGIN_A0 0.17   /* measured: see docs/accuracy.md; results do not depend on it */
-#define CANDIDATES 256   /* looked at together */
-#define FIRST_PAIRS 4096 /* room at first */
+#define MARGIN_A0 0.17 /* measured: see docs/accuracy.md; results do not depend on it */
+#define CANDIDATES 256 /* looked at together */
 #define FIRST_NEAR 64
 #define SEARCH_CELL_A0 1.0 /* least edge of a search cell */
 
@@ -48,45 +48,6 @@ static bool add_entry(struct grid_row *row, const struct grid_entry *e)
   }
   row->at[row->count++] = *e;
   return true;
-}
-
-static bool grow_pairs(struct pair_list *p)
-{
-  const uint32_t room = p->room ? 2 * p->room : FIRST_PAIRS;
-  const bool grown = room > p->room && memory_grow((void **)&p->bond, room, sizeof *p->bond) &&
-                     memory_grow((void **)&p->other, room, sizeof *p->other) &&
-                     memory_grow((void **)&p->limit, room, sizeof *p->limit) &&
-                     memory_grow((void **)&p->generation, room, sizeof *p->generation) &&
-                     memory_grow((void **)&p->image, room, sizeof *p->image);
-  p->room = grown ? room : p->room;
-  return grown;
-}
-
-/* A pair that has just been found: nothing is known of when it may meet. */
-static bool add_pair(struct neighbors *nb, uint32_t bond, struct neighbor n)
-{
-  struct pair_list *p = &nb->pairs;
-  if (p->count == p->room && !grow_pairs(p))
-    return false;
-  const struct bond_clock *mine = &nb->clock[bond], *its = &nb->clock[n.bond];
-  const uint32_t k = p->count++;
-  p->bond[k] = bond;
-  p->other[k] = (uint32_t)n.bond;
-  p->limit[k] = mine->path + its->path; /* due in the next sweep: that makes paths longer */
-  p->generation[k] = mine->generation + its->generation;
-  p->image[k] = (struct image){{n.image[0], n.image[1], n.image[2]}};
-  return true;
-}
-
-void neighbors_drop_pair(struct neighbors *nb, uint32_t k)
-{
-  struct pair_list *p = &nb->pairs;
-  const uint32_t last = --p->count;
-  p->bond[k] = p->bond[last];
-  p->other[k] = p->other[last];
-  p->limit[k] = p->limit[last];
-  p->generation[k] = p->generation[last];
-  p->image[k] = p->image[last];
 }
 
 static bool add_near(struct neighbor_list *list, struct neighbor n)
@@ -245,7 +206,7 @@ static bool settle(struct neighbors *nb, const struct model *model, struct searc
     const int32_t back[3] = {-n.image[0], -n.image[1], -n.image[2]};
     const struct capsule mine = capsule_of(nb, model, c->bond, mine_at),
                          its = capsule_of(nb, model, c->other, point_image(mine_at, back, &model->box));
-    if (!capsules_apart(&mine, &its) && !add_pair(nb, c->bond, n))
+    if (!capsules_apart(&mine, &its) && !pairs_add(nb, c->bond, n))
       return false;
   }
   found->count = 0;

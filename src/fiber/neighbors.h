@@ -43,16 +43,6 @@ bool neighbors_renew(const struct state *state, const struct model *model, struc
 bool neighbors_near(const struct state *state, const struct model *model, struct work *work, uint32_t bond,
                     const struct point end[2], double range, struct neighbor_list *near);
 
-/* Was pair k found before one of its bonds last looked for partners? Then the list has it anew, or they are apart. */
-static inline bool neighbors_out_of_date(const struct neighbors *nb, uint32_t k)
-{
-  const struct pair_list *p = &nb->pairs;
-  return p->generation[k] != nb->clock[p->bond[k]].generation + nb->clock[p->other[k]].generation;
-}
-
-/* Pair k goes, and the last one takes its place. */
-void neighbors_drop_pair(struct neighbors *nb, uint32_t k);
-
 /* Is a vertex at p still where its anchor's pairs are good for? */
 static inline bool neighbors_hold(const struct neighbors *nb, uint32_t vertex, struct point p)
 {

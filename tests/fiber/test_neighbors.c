@@ -2,6 +2,7 @@
 #include "exact.h"
 #include "fiber/capsule.h"
 #include "fiber/neighbors.h"
+#include "fiber/pairs.h"
 
 /* The images k for which [low2, high2] + k edge meets [low, high]: by floor divisions. */
 static void image_range(int64_t low, int64_t high, int64_t low2, int64_t high2, int64_t edge, int64_t range[2])
@@ -27,7 +28,7 @@ static uint32_t times_listed(const struct neighbors *nb, uint32_t bond, uint32_t
     const int64_t sign = a == bond ? 1 : -1;
     const int32_t *image = nb->pairs.image[n].k;
     const bool same = sign * image[0] == i && sign * image[1] == j && sign * image[2] == k;
-    times += same && !neighbors_out_of_date(nb, n);
+    times += same && !pairs_out_of_date(nb, n);
   }
   return times;
 }
@@ -112,7 +113,7 @@ static struct totals check_lists(const struct test_run *r, uint64_t seed)
         check_pair(r, a, b, seed, &sum);
   }
   for (uint32_t n = 0; n < nb->pairs.count; n++)
-    listed_in_all += !neighbors_out_of_date(nb, n);
+    listed_in_all += !pairs_out_of_date(nb, n);
   assert_true(listed_in_all == sum.partners); /* nothing else is in the list */
   return sum;
 }
