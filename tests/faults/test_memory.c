@@ -56,16 +56,22 @@ static bool try_work(struct bench *b)
   return true;
 }
 
+static bool alloc_both(struct state *s, struct work *w, const struct model *m)
+{
+  if (!state_alloc(s, m))
+    return false;
+  if (work_alloc(w, m))
+    return true;
+  state_free(s);
+  return false;
+}
+
 static bool try_start(struct bench *b)
 {
   struct state s;
   struct work w;
-  if (!state_alloc(&s, &b->run.model))
+  if (!alloc_both(&s, &w, &b->run.model))
     return false;
-  if (!work_alloc(&w, &b->run.model)) {
-    state_free(&s);
-    return false;
-  }
   bool ok = step_start(&s, &b->run.model, &w) && step_advance(&s, &b->run.model, &w, NULL);
   assert_true(ok || w.fault.code == FAULT_NO_MEMORY);
   work_free(&w);
@@ -79,12 +85,8 @@ static bool try_crowd(struct bench *b)
   const struct state *from = &b->crowd.state;
   struct state s;
   struct work w;
-  if (!state_alloc(&s, &b->crowd.model))
+  if (!alloc_both(&s, &w, &b->crowd.model))
     return false;
-  if (!work_alloc(&w, &b->crowd.model)) {
-    state_free(&s);
-    return false;
-  }
   memcpy(s.position, from->position, s.vertices * sizeof *s.position);
   for (uint32_t i = 0; i < s.vertices; i++)
     s.velocity[i] = vec3_scale(i % 5 ? 2.0 : 40.0, from->velocity[i]);
