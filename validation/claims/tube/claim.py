@@ -180,7 +180,7 @@ def hindered_verdict(curves, system):
     return verdict
 
 
-def normalized_verdict(curves, times):
+def normalized_verdict(curves, times, measured):
     """At equal t/tau_r, each its own, as the paper's figure has it."""
     at = 3e-4
     verdict = Verdict("tube.below", f"d² without hydrodynamics / with, crossing free, at t/τ_r = {at:g} each", 0.5,
@@ -188,15 +188,17 @@ def normalized_verdict(curves, times):
                       reason="Without hydrodynamics friction is the same at all lengths. With them it is lower for long "
                              "waves than for short ones, and lowest for the turning of the whole: in units of τ_r short "
                              "waves are slower. At equal time (tube.hydrodynamics) the curve without is below.")
-    values = []
+    values, errors = [], []
     for which in ("off", "hi"):
         columns = curves[which + "-free"]
         t = at * times[which]
         if columns is None or not columns["time"][0] <= t <= columns["time"][-1]:
             return verdict
         values.append(math.exp(numpy.interp(math.log(t), numpy.log(columns["time"]), numpy.log(columns["d2"]))))
-    verdict.measured = values[0] / values[1]
-    return verdict
+        if measured[which]:  # d^2 grows as t^(1/2) or so there, and t is as good as tau_r
+            errors.append(0.5 * measured[which][1] / measured[which][0])
+    share = values[0] / values[1]
+    return sd.measured(verdict, (share, share * math.hypot(*errors)), 0.5)
 
 
 def choice_verdicts(results, curves, system):
@@ -271,7 +273,7 @@ def evaluate(results, tier):
     verdicts += choice_verdicts(results, curves, system)
     if tier == "campaign":  # fibers of the quick tier are too short for a plateau, and nobody measures their tau_r
         verdicts += plateau_verdicts(curves, system) + rotation_verdicts(results, system)
-        verdicts.append(normalized_verdict(curves, times))
+        verdicts.append(normalized_verdict(curves, times, measured))
     caption = (f"c L³ = {system['count']}, L = l_p = {system['length']:g} a0. Filled: uncrossable; open: free. Time in "
                f"units of the rotation time of a lone fiber: {words['hi']} with hydrodynamics, {words['off']} without. Below: "
                "uncrossable over free at the same lag.")
