@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "io/oracle.h"
-#include "io/oracle_judge.h"
+#include "oracle/judge.h"
+#include "oracle/oracle.h"
 
 static const char help[] =
     "uncross oracle: what other implementations are held against (docs/porting.md)\n"

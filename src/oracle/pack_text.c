@@ -1,4 +1,5 @@
-#include "io/pack_text.h"
+#include "oracle/pack_text.h"
+#include "oracle/pack.h"
 
 #include <errno.h>
 #include <inttypes.h>

@@ -4,8 +4,8 @@
  *   HDF5   group `operator.step`, dataset `in.name` or `out.name` [rows][columns], attribute `components`
  *   text   lines `operator step row in.name.component value`
  */
-#ifndef UNCROSS_IO_PACK_H
-#define UNCROSS_IO_PACK_H
+#ifndef UNCROSS_ORACLE_PACK_H
+#define UNCROSS_ORACLE_PACK_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,9 +1,9 @@
 /* Inside the oracle: patterns of differences. Each is a guess of a bug that is tried on the numbers of the packs. */
-#ifndef UNCROSS_IO_ORACLE_PATTERNS_H
-#define UNCROSS_IO_ORACLE_PATTERNS_H
+#ifndef UNCROSS_ORACLE_PATTERNS_H
+#define UNCROSS_ORACLE_PATTERNS_H
 
 #include "base/lattice.h"
-#include "io/oracle_compare.h"
+#include "oracle/pair.h"
 
 struct oracle_pattern {
   const char *operator_name, *table; /* NULL: any; sweep: long_sweep too */

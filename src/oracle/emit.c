@@ -4,9 +4,9 @@
 #include <string.h>
 
 #include "fiber/force.h"
-#include "io/oracle.h"
-#include "io/oracle_operators.h"
 #include "io/snapshot.h"
+#include "oracle/operators.h"
+#include "oracle/oracle.h"
 #include "step.h"
 
 static bool say_fault(const struct work *work, struct message *message)

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "io/oracle_compare.h"
-#include "io/oracle_patterns.h"
+#include "oracle/pair.h"
+#include "oracle/patterns.h"
 
 bool oracle_guessed(const struct oracle_pair *p, uint32_t row, uint32_t column, double guess)
 {

@@ -1,8 +1,9 @@
-/* Inside the oracle: differences, tolerances, and what their patterns mean. */
-#ifndef UNCROSS_IO_ORACLE_COMPARE_H
-#define UNCROSS_IO_ORACLE_COMPARE_H
+/* Inside the oracle: what two packs have at one place, how much it may differ, and what a pattern of differences means.
+ */
+#ifndef UNCROSS_ORACLE_PAIR_H
+#define UNCROSS_ORACLE_PAIR_H
 
-#include "io/pack.h"
+#include "oracle/pack.h"
 
 /* One output table of one operator, ours and theirs, same shape. */
 struct oracle_pair {

@@ -1,6 +1,6 @@
 #include "base/random.h"
-#include "io/oracle_columns.h"
-#include "io/oracle_stages.h"
+#include "oracle/columns.h"
+#include "oracle/stages.h"
 #include "solvent/collide.h"
 #include "solvent/solvent.h"
 

@@ -4,7 +4,7 @@
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
 
-#include "io/oracle_judge.h"
+#include "oracle/judge.h"
 #include "support.h"
 
 static struct observable_mean row(const char *name, double value, double error, double blocks)

@@ -1,9 +1,9 @@
 /* Tables of a pack from what a state and its work hold, for the operators. Solvent goes by id: stage->slot is up to
  * date. Components are words with blanks between; see pack.h for what comes back. */
-#ifndef UNCROSS_IO_ORACLE_COLUMNS_H
-#define UNCROSS_IO_ORACLE_COLUMNS_H
+#ifndef UNCROSS_ORACLE_COLUMNS_H
+#define UNCROSS_ORACLE_COLUMNS_H
 
-#include "io/oracle_operators.h"
+#include "oracle/operators.h"
 
 int64_t *oracle_put_integers(struct oracle_stage *g, const char *name, const char *components, uint32_t rows);
 double *oracle_put_reals(struct oracle_stage *g, const char *name, const char *components, uint32_t rows);

@@ -1,8 +1,8 @@
 /* The text form of packs, for ports without HDF5: docs/porting.md. */
-#ifndef UNCROSS_IO_PACK_TEXT_H
-#define UNCROSS_IO_PACK_TEXT_H
+#ifndef UNCROSS_ORACLE_PACK_TEXT_H
+#define UNCROSS_ORACLE_PACK_TEXT_H
 
-#include "io/pack.h"
+#include "oracle/pack.h"
 
 /* Reads lines `operator step row table.component value` to the end; `path` serves messages only. */
 bool pack_read_text(FILE *in, const char *path, struct pack *pack, struct message *message);

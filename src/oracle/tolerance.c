@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/lattice.h"
-#include "io/oracle_compare.h"
+#include "oracle/pair.h"
 #include "solvent/srd.h"
 
 /* Largest size in columns from .. to-1 of a table; 0 if there is none. */
@@ -92,17 +92,17 @@ static double hit(const struct oracle_pair *p, uint32_t row, uint32_t column)
   return 64.0 * condition * scale * p->rounding;
 }
 
-static double swept_velocity(const struct oracle_pair *p, uint32_t row, uint32_t column)
+static double sweep_velocity(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
   (void)row, (void)column;
   const double exchange = 64.0 * size_of(p, "bound.hit") * 8.0 * heaviest(p) / lightest(p);
   return (8.0 + exchange) * size_of(p, "in.velocity") * p->rounding;
 }
 
-static double swept_position(const struct oracle_pair *p, uint32_t row, uint32_t column)
+static double sweep_position(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
   const double time = size_of(p, "in.time");
-  return 1.0 + LATTICE_PER_A0 * time * (4.0 * size_of(p, "in.velocity") * p->rounding + swept_velocity(p, row, column));
+  return 1.0 + LATTICE_PER_A0 * time * (4.0 * size_of(p, "in.velocity") * p->rounding + sweep_velocity(p, row, column));
 }
 
 /* Longest and shortest bond of the positions that went in. */
@@ -219,8 +219,8 @@ static const struct {
     {"random", "out.normal", normal_pair},
     {"random", "out.axis", axis},
     {"sweep", "out.hit", hit},
-    {"sweep", "out.position", swept_position},
-    {"sweep", "out.velocity", swept_velocity},
+    {"sweep", "out.position", sweep_position},
+    {"sweep", "out.velocity", sweep_velocity},
     {"bond_force", "out.force", bond_force},
     {"bend_force", "out.force", bend_force},
     {"force", "out.force", force},

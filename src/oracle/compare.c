@@ -1,10 +1,10 @@
-#include "io/oracle_compare.h"
+#include "oracle/pair.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
-#include "io/oracle.h"
+#include "oracle/oracle.h"
 
 /* Doubles in the order of their values, as integers: neighbors differ by one, -0 and +0 by none. */
 static int64_t rank_of(double x)

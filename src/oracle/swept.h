@@ -2,10 +2,10 @@
  * Inside the oracle: a sweep, replayed. Of what came before an event, our tables tell everything: a vertex whose turn
  * is over stands where it ended, the others where they began, and the exchanges so far have made the velocities.
  */
-#ifndef UNCROSS_IO_ORACLE_SWEPT_H
-#define UNCROSS_IO_ORACLE_SWEPT_H
+#ifndef UNCROSS_ORACLE_SWEPT_H
+#define UNCROSS_ORACLE_SWEPT_H
 
-#include "io/oracle_patterns.h"
+#include "oracle/patterns.h"
 
 enum event_column { VERTEX, MOVING, STANDING, IMAGE_X, IMAGE_Y, IMAGE_Z, EXECUTED, EVENT_COLUMNS };
 enum hit_column { TIME, S, S_STANDING, NORMAL_X, NORMAL_Y, NORMAL_Z, MOMENTUM, HIT_COLUMNS };

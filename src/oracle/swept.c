@@ -1,5 +1,5 @@
 /* A sweep as it was: replayed from the events of our tables. */
-#include "io/oracle_swept.h"
+#include "oracle/swept.h"
 
 #include <math.h>
 #include <string.h>

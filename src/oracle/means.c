@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "io/oracle_judge.h"
+#include "oracle/judge.h"
 
 enum column { NAME, VALUE, ERROR, BLOCKS, THEORY, RESOLVE, COLUMNS };
 

@@ -2,8 +2,8 @@
  * Statistical verdicts on codes whose bits are not ours: tables of observables, each a mean with its standard error
  * from independent blocks. docs/judging.md defines the observables, the files and the rate of false alarms.
  */
-#ifndef UNCROSS_IO_ORACLE_JUDGE_H
-#define UNCROSS_IO_ORACLE_JUDGE_H
+#ifndef UNCROSS_ORACLE_JUDGE_H
+#define UNCROSS_ORACLE_JUDGE_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,10 +1,10 @@
 /* Each operator of a time step: what goes into it and what comes out is put into the stage's pack, and the stage's
  * state is advanced by it. False, with work->fault or pack->failed saying why. docs/porting.md says what is in each
  * table. */
-#ifndef UNCROSS_IO_ORACLE_STAGES_H
-#define UNCROSS_IO_ORACLE_STAGES_H
+#ifndef UNCROSS_ORACLE_STAGES_H
+#define UNCROSS_ORACLE_STAGES_H
 
-#include "io/oracle_operators.h"
+#include "oracle/operators.h"
 
 bool oracle_run_order(struct oracle_stage *stage);
 bool oracle_run_long_sweep(struct oracle_stage *stage);

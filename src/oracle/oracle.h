@@ -3,15 +3,15 @@
  * that nothing chaotic lies between; a trace holds hashes of the state after every stage of a short run, for ports that
  * promise the same bits. docs/porting.md is the contract.
  */
-#ifndef UNCROSS_IO_ORACLE_H
-#define UNCROSS_IO_ORACLE_H
+#ifndef UNCROSS_ORACLE_ORACLE_H
+#define UNCROSS_ORACLE_ORACLE_H
 
 #include <stdbool.h>
 #include <stdio.h>
 
 #include "io/message.h"
-#include "io/pack.h"
 #include "io/scene.h"
+#include "oracle/pack.h"
 #include "state/state.h"
 #include "state/work.h"
 

@@ -1,4 +1,4 @@
-#include "io/pack.h"
+#include "oracle/pack.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "io/oracle_judge.h"
+#include "oracle/judge.h"
 
 #include <math.h>
 #include <string.h>

@@ -4,8 +4,8 @@
 #include "base/random.h"
 #include "fiber/force.h"
 #include "fiber/sweep.h"
-#include "io/oracle_columns.h"
-#include "io/oracle_stages.h"
+#include "oracle/columns.h"
+#include "oracle/stages.h"
 
 #define LONG_SWEEP 32.0 /* dt, or 16, 8, ... if no more fits into the box */
 

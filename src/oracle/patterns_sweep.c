@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "io/oracle_patterns.h"
-#include "io/oracle_swept.h"
+#include "oracle/patterns.h"
+#include "oracle/swept.h"
 
 /* --- zeros, and hits that only they have ------------------------------------------------------------------------- */
 

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "base/random.h"
-#include "io/oracle_patterns.h"
+#include "oracle/patterns.h"
 #include "solvent/solvent.h"
 #include "solvent/srd.h"
 

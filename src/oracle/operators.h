@@ -1,8 +1,8 @@
 /* The operators of a time step, each alone: what goes in and what comes out is put into a pack. */
-#ifndef UNCROSS_IO_ORACLE_OPERATORS_H
-#define UNCROSS_IO_ORACLE_OPERATORS_H
+#ifndef UNCROSS_ORACLE_OPERATORS_H
+#define UNCROSS_ORACLE_OPERATORS_H
 
-#include "io/pack.h"
+#include "oracle/pack.h"
 #include "state/model.h"
 #include "state/state.h"
 #include "state/work.h"

@@ -1,10 +1,10 @@
-#include "io/oracle_operators.h"
+#include "oracle/operators.h"
 
 #include <string.h>
 
 #include "base/random.h"
-#include "io/oracle_columns.h"
-#include "io/oracle_stages.h"
+#include "oracle/columns.h"
+#include "oracle/stages.h"
 
 /* --- random numbers ---------------------------------------------------------------------------------------------- */
 

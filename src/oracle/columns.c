@@ -1,4 +1,4 @@
-#include "io/oracle_columns.h"
+#include "oracle/columns.h"
 
 #include "solvent/srd.h"
 

@@ -4,7 +4,8 @@
 #include <string.h>
 
 #include "io/hdf5.h"
-#include "io/pack_text.h"
+#include "oracle/pack.h"
+#include "oracle/pack_text.h"
 
 /* --- writing ----------------------------------------------------------------------------------------------------- */
 

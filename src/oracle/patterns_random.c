@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/random.h"
-#include "io/oracle_patterns.h"
+#include "oracle/patterns.h"
 
 static uint64_t seed_of(const struct oracle_pair *p)
 {
