@@ -67,9 +67,15 @@ class Verdicts(unittest.TestCase):
         self.assertAlmostEqual(self.verdict(1.5).seen, 1.0, 14)
 
     def test_what_cannot_tell_from_nothing_does_not_pass(self):
-        for expected, tolerance, word in ((1.0, 1.01, "missing"), (1.0, 1.0, "pass"), (-1.0, 1.01, "missing"), (0.0, 0.1, "pass")):
+        for expected, tolerance, word in ((1.0, 0.51, "missing"), (1.0, 0.5, "pass"), (-1.0, 0.51, "missing"), (0.0, 0.1, "pass")):
             self.assertEqual(claims.Verdict("a.b", "", expected, "", tolerance, measured=expected).verdict, word)
+        self.assertEqual(claims.Verdict("a.b", "", 1.0, "", 1.2, measured=1.0, detects=0.1).verdict, "missing")
         self.assertEqual(claims.Verdict("a.b", "", 1.0, "", 1.2, measured=3.0).verdict, "fail")
+
+    def test_what_cannot_tell_from_a_rival_does_not_pass(self):
+        for measured, word in ((1.0, "pass"), (1.04, "missing"), (1.2, "not reproduced")):
+            verdict = claims.Verdict("a.b", "", 1.0, "", 0.08, measured=measured, kind="paper", rival=1.1)
+            self.assertEqual(verdict.verdict, word)
 
     def test_z(self):
         self.assertAlmostEqual(self.verdict(2.0).z, 2.0, 14)

@@ -104,12 +104,45 @@ class Curves(unittest.TestCase):
             made[name], made[name + "_error"] = values, 0.01 * numpy.abs(values)
         return made
 
-    def test_plateau(self):
-        """A curve that levels off at 2, and then creeps; a power law has none."""
+    def test_exponents(self):
+        """Of a power law, at the lags of a run: two to an octave. The error: 1 % of either end."""
+        t = numpy.sort(numpy.concatenate([2.0**numpy.arange(12), 1.5 * 2.0**numpy.arange(12)]))
+        at, found, error = sd.exponents(self.table(t, d2_contour=3.0 * t**0.6))
+        self.assertEqual(len(at), len(t) - 4)
+        self.assertAlmostEqual(float(abs(found - 0.6).max()), 0.0, 12)
+        self.assertAlmostEqual(float(error[0]), 0.01 * math.sqrt(2.0) / math.log(4.0), 12)
+        self.assertAlmostEqual(at[0], 2.0, 12)
+
+    def test_flattest(self):
+        """A curve that levels off, and then goes on; what is rougher than 0.03 does not count."""
         t = 2.0**numpy.arange(16)
-        level = sd.plateau(self.table(t, d2_contour=2.0 * (1 - numpy.exp(-t / 8)) + 1e-6 * t))
-        self.assertAlmostEqual(level[0], 2.0, 1)
-        self.assertIsNone(sd.plateau(self.table(t, d2_contour=t**0.75)))
+        made = self.table(t, d2_contour=2.0 * (1 - numpy.exp(-t / 8)) + 1e-4 * t)
+        value, error, lag = sd.flattest(made)
+        self.assertLess(abs(value), 0.02)
+        self.assertTrue(50.0 < lag < 500.0)
+        made["d2_contour_error"] *= 10.0
+        self.assertIsNone(sd.flattest(made))
+
+    def test_bend(self):
+        """From 3/4 to 0 at a height of 2: a straight power has none; the height of the bend is in proportion."""
+        t = 2.0**numpy.arange(20)
+        curve = 2.0 / (1.0 + (100.0 / t)**0.75)
+        height, error, lag = sd.bend(self.table(t, d2_contour=curve))
+        self.assertAlmostEqual(height, 1.0, 1)  # d ln y/d ln t = 3/8 where both terms are alike
+        self.assertAlmostEqual(math.log(lag / 100.0), 0.0, 1)
+        self.assertTrue(0.0 < error < 0.2)
+        self.assertAlmostEqual(sd.bend(self.table(t, d2_contour=7.0 * curve))[0] / height, 7.0, 9)
+        self.assertIsNone(sd.bend(self.table(t, d2_contour=t**0.75)))
+
+    def test_first_rate(self):
+        """A rate that falls off steadily is 3 at the start, not 2; its error is that of many draws."""
+        t = numpy.linspace(10.0, 20.0, 101)
+        self.assertAlmostEqual(sd.first_rate(t, 3.0 * (t - 10.0) - 0.1 * (t - 10.0)**2)[0], 3.0, 9)
+        random = numpy.random.Generator(numpy.random.PCG64(1))
+        drawn = [sd.first_rate(t, numpy.concatenate([[0.0], numpy.cumsum(random.normal(0.3, 0.05, 100))])) for _ in range(400)]
+        rates, errors = numpy.array(drawn).T
+        self.assertAlmostEqual(rates.mean() / 3.0, 1.0, 1)
+        self.assertAlmostEqual(rates.std() / errors.mean(), 1.0, delta=5.0 / math.sqrt(800.0))
 
     def test_rotation(self):
         t = numpy.array([100.0, 200.0, 400.0, 800.0, 1600.0, 3200.0])

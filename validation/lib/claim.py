@@ -17,7 +17,10 @@ class Verdict:
     may differ by; `detects` is the smallest wrong effect that would be seen every time: twice that, if nothing else is
     said. All in the same unit.
 
-    kind "gate": a disagreement is our bug. kind "paper": it is a finding, and `reason` says why, if known."""
+    kind "gate": a disagreement is our bug. kind "paper": it is a finding, and `reason` says why, if known.
+
+    A number that agrees says something only if it could have disagreed: if what would be seen is less than all of it, and
+    less than the way to `rival`, another value that it is to be told from. Until then it is "missing"."""
     id: str
     statement: str
     expected: float
@@ -29,14 +32,14 @@ class Verdict:
     detects: float = None
     kind: str = "gate"
     reason: str = ""
+    rival: float = None
 
     @property
     def verdict(self):
         if self.measured is None or not math.isfinite(self.measured):
             return "missing"
         if abs(self.measured - self.expected) <= self.tolerance:
-            blind = self.expected != 0.0 and self.tolerance > abs(self.expected)  # 0 would do as well
-            return "missing" if blind else "pass"
+            return "missing" if self.blind else "pass"
         return "fail" if self.kind == "gate" else "not reproduced"
 
     @property
@@ -44,7 +47,14 @@ class Verdict:
         """The smallest wrong effect that would be seen every time; None as long as the tolerance is not known either."""
         if self.detects is not None:
             return self.detects
-        return 2.0 * self.tolerance if self.verdict != "missing" or self.tolerance else None
+        return 2.0 * self.tolerance if self.measured is not None or self.tolerance else None
+
+    @property
+    def blind(self):
+        """Would it agree with nothing at all, or with the rival, too?"""
+        if self.rival is not None and abs(self.measured - self.rival) <= self.tolerance:
+            return True
+        return self.expected != 0.0 and max(self.seen, self.tolerance) > abs(self.expected)
 
     @property
     def z(self):

@@ -157,8 +157,8 @@ STANDING = """# Where the campaign stands
 {hours:.1f} core-hours of {planned:.0f}. `validation/run report --tier campaign` makes the whole report,
 `reference-data/campaign/report.html`, from what is kept beside it.
 
-| claim | | pass | not reproduced | wait for runs | core-hours |
-| --- | --- | --- | --- | --- | --- |
+| claim | | pass | not reproduced | wait | runs, of all | core-hours |
+| --- | --- | --- | --- | --- | --- | --- |
 {claims}
 
 ## Not reproduced
@@ -171,6 +171,10 @@ What the paper says, or a formula that it uses, and what was measured.
 
 ## What waits
 
+Not measured yet, or so roughly that it could not disagree.
+
+| | so far | expected |
+| --- | --- | --- |
 {waiting}
 """
 
@@ -185,15 +189,17 @@ def standing(summed):
     claims, findings, waiting = [], [], []
     for part in summed["sections"]:
         name, counts = part["id"], [len(rows(part["id"], word)) for word in ("pass", "not reproduced", "missing")]
+        have = sum(row["run"].startswith(name + "/") for row in summed["runs"])
         claims.append(f"| [{name}]({name}.md) | {cell(part['title'])} | {' | '.join(map(str, counts))} | "
-                      f"{part['cpu_seconds'] / 3600.0:.1f} |")
+                      f"{have} of {have + len(part['absent'])} | {part['cpu_seconds'] / 3600.0:.1f} |")
         findings += [f"| `{row['id']}`: {cell(row['statement'])} | {plusminus(row['measured'], row['error'])} | "
                      f"{plusminus(row['expected'], row['expected_error'])} ({cell(row['source'])}) | {cell(row['reason'])} |"
                      for row in rows(name, "not reproduced")]
-        waiting += [f"`{row['id']}`" for row in rows(name, "missing")]
+        waiting += [f"| `{row['id']}`: {cell(row['statement'])} | {plusminus(row['measured'], row['error'])} | "
+                    f"{plusminus(row['expected'], row['expected_error'])} |" for row in rows(name, "missing")]
     return STANDING.format(hours=math.fsum(part["cpu_seconds"] for part in summed["sections"]) / 3600.0,
                            planned=math.fsum(part["hours_estimated"] for part in summed["sections"]),
-                           claims="\n".join(claims), findings="\n".join(findings), waiting=", ".join(waiting) or "Nothing.")
+                           claims="\n".join(claims), findings="\n".join(findings), waiting="\n".join(waiting) or "| nothing | | |")
 
 
 def write_standing(summed, page):

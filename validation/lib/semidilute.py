@@ -132,33 +132,49 @@ def over(pair, expected):
     return pair and (pair[0] / expected, pair[1] / expected)
 
 
-def slopes(t, y):
-    """(t, d ln y/d ln t) between successive points."""
-    return numpy.sqrt(t[1:] * t[:-1]), numpy.diff(numpy.log(y)) / numpy.diff(numpy.log(t))
+def exponents(columns, name="d2_contour", span=4.0):
+    """(t, d ln y/d ln t, error) from lags that are a factor `span` apart, t in their middle."""
+    t, y, error = columns["time"], columns[name], columns[name + "_error"] / columns[name]
+    pairs = [(i, j) for i in range(len(t)) for j in range(i + 1, len(t)) if abs(t[j] / t[i] / span - 1.0) < 1e-6]
+    i, j = (numpy.array(column, dtype=int) for column in zip(*pairs)) if pairs else (numpy.zeros(0, dtype=int),) * 2
+    found = numpy.log(y[j] / y[i]) / math.log(span)
+    return numpy.sqrt(t[i] * t[j]), found, numpy.hypot(error[i], error[j]) / math.log(span)
 
 
-def plateau(columns, name="d2_contour", flattest=0.35, width=3):
-    """Where a curve is flattest: (value, error, lag, exponent) of `width` + 1 points; None if its exponent, two errors
-    added, stays above `flattest` (no plateau). The error holds the change over the points."""
-    if columns is None or len(columns["time"]) < width + 4:
+def flattest(columns, name="d2_contour", error=0.03):
+    """(smallest local exponent, error, lag) among those known so well; None without."""
+    if columns is None:
         return None
-    t, y, error = columns["time"], columns[name], columns[name + "_error"]
-    best = None
-    for k in range(len(t) - width):
-        piece, last = slice(k, k + width + 1), k + width
-        exponent = numpy.polyfit(numpy.log(t[piece]), numpy.log(y[piece]), 1)[0]
-        exponent += 2.0 * math.hypot(error[k] / y[k], error[last] / y[last]) / math.log(t[last] / t[k])
-        if best is None or exponent < best[3]:
-            change = abs(y[last] - y[k]) / math.sqrt(12.0)
-            best = (float(y[piece].mean()), math.hypot(float(error[piece].max()), change), float(t[piece].mean()),
-                    float(exponent))
-    return best if best and best[3] < flattest else None
+    t, found, errors = exponents(columns, name)
+    good = numpy.flatnonzero(errors < error)
+    k = good[numpy.argmin(found[good])] if len(good) else None
+    return None if k is None else (float(found[k]), float(errors[k]), float(t[k]))
+
+
+def bend(columns, name="d2_contour", half=0.375):
+    """(height, error, lag) where the local exponent falls to half of 3/4: the size of a tube, up to a factor that is the
+    same at all densities. None if it does not, or not by twice its error at the end."""
+    if columns is None:
+        return None
+    t, found, errors = exponents(columns, name)
+    below = numpy.flatnonzero(found + 2.0 * errors < half)
+    above = numpy.flatnonzero(found[:below[0]] >= half) if len(below) else ()
+    if len(above) == 0:
+        return None
+    near = slice(max(above[-1] - 2, 0), above[-1] + 4)  # a line through the points about the crossing
+    fit = stats.line(numpy.log(t[near]), found[near], numpy.maximum(errors[near], 1e-9))
+    at = (half - fit.value[0]) / fit.value[1]
+    spread = fit.covariance[0, 0] + 2.0 * at * fit.covariance[0, 1] + at**2 * fit.covariance[1, 1]  # of the line, there
+    apart = math.sqrt(spread) / abs(fit.value[1])
+    height = math.exp(numpy.interp(at, numpy.log(columns["time"]), numpy.log(columns[name])))
+    return height, half * apart * height, math.exp(at)
 
 
 def rotation_time(columns, shortest, longest, fibers, least=4):
     """(tau_r, error, intercept) from <u(0).u(t)> = A exp(-t/tau_r), lags shortest to longest: bends tilt the end-to-end
-    vector by a fixed angle soon (A), rotation goes on. tau_r = 1/(2 D_r). Lags count as independent. Few intervals of
-    few fibers have no error in the table; then 1 - cos, a sum of two squares, has the relative error of so many."""
+    vector by a fixed angle soon (A), rotation goes on. tau_r = 1/(2 D_r). Few intervals of few fibers have no error in the
+    table; then 1 - cos, a sum of two squares, has the relative error of so many. Lags count as independent, and the error
+    is raised by a fifth for it: rotors that turn at random, taken at these lags, scatter by so much more."""
     if columns is None:
         return None
     t, c, error = columns["time"], columns["end_to_end_unit"], columns["end_to_end_unit_error"]
@@ -168,7 +184,17 @@ def rotation_time(columns, shortest, longest, fibers, least=4):
         return None
     fit = stats.line(t[keep], numpy.log(c[keep]), error[keep] / c[keep])
     rate = -fit.value[1]
-    return (1.0 / rate, fit.error[1] / rate**2, math.exp(fit.value[0])) if rate > 0 else None
+    return (1.0 / rate, 1.2 * fit.error[1] / rate**2, math.exp(fit.value[0])) if rate > 0 else None
+
+
+def first_rate(t, y):
+    """(dy/dt at the start, error) of something that grows by small independent amounts, at a rate that itself changes
+    steadily: a line through the increments. (Not through y: what deviates from a line there goes on deviating.)"""
+    t, rates = numpy.asarray(t, float), numpy.diff(y) / numpy.diff(t)
+    middle = 0.5 * (t[1:] + t[:-1]) - t[0]
+    rough = stats.line(middle, rates, numpy.ones_like(rates))
+    scatter = math.sqrt(rough.chi2 / rough.freedom)
+    return float(rough.value[0]), float(rough.error[0] * scatter)
 
 
 def momentum_change(results):

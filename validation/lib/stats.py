@@ -77,6 +77,11 @@ def sigmas(false_alarms, tests=1, freedom=math.inf):
     return float(stats.t.isf(-math.expm1(math.log1p(-false_alarms) / tests) / 2.0, freedom))
 
 
+def normal(p):
+    """The normal value, in standard errors, that is exceeded with chance p."""
+    return float(stats.norm.isf(max(p, 1e-300)))
+
+
 # A verdict of the quick tier: at most 100 of them, and one false alarm in a thousand new sets of seeds.
 RATE, VERDICTS = 1e-3, 100
 SIGMAS = sigmas(RATE, VERDICTS)  # 4.4
