@@ -145,6 +145,26 @@ class Estimates(unittest.TestCase):
         self.assertLess(abs(numpy.mean(pulls)), 4.0 / math.sqrt(600))
         self.assertLess(abs(numpy.std(pulls) - 1.0), 0.12)
 
+    def test_lags(self):
+        """Three octaves at least; in a box of 71 a0 twice the time of its longest wave, L^2/(4 pi^2 nu) = 59.4 t0."""
+        self.assertAlmostEqual(dilute.last_lag(16), 25.6, 12)
+        self.assertAlmostEqual(dilute.last_lag(71), 2.0 * 59.44, 1)
+
+    def test_scatter(self):
+        """A chi^2 with a chance of 2.28 % is two standard errors off; one with 84.13 % is one below."""
+        for p, normal in ((0.022750132, 2.0), (0.841344746, -1.0)):
+            self.assertAlmostEqual(dilute.scatter("a.b", "", p).measured, normal, 6)
+        self.assertEqual(dilute.scatter("a.b", "", 1e-6).verdict, "fail")
+        self.assertEqual(dilute.scatter("a.b", "", None).verdict, "missing")
+
+    def test_in_pure_solvent(self):
+        """One vertex in 100 cells, to first order: a cell with n others passes on 5 + n - (25 + n)/(5 + n) instead of n - 1."""
+        n, weight = dilute.poisson(5.0)
+        gain = float(weight @ (5.0 + n - (25.0 + n) / (5.0 + n))) - float(weight @ numpy.maximum(n - 1.0, 0.0))
+        expected = 0.002 + 0.008 * (1.0 + 0.01 * gain / (4.0 + math.exp(-5.0)))
+        self.assertAlmostEqual(dilute.in_pure_solvent(0.010, 0.002, 0.01), expected, 6)
+        self.assertAlmostEqual(dilute.in_pure_solvent(0.010, 0.002, 0.0), 0.010, 9)
+
     def test_common_local_memory(self):
         """D(t) = D_i - 0.1/t without noise gives back D_i and 0.1."""
         t = numpy.array([1.0, 2.0, 4.0, 8.0])
