@@ -149,7 +149,7 @@ def kirkwood_rod(vertices, spacing, radius):
 # one takes what it takes, later, from the same kind of cell around itself. Oseen's field is smeared by both, nearly a
 # Gaussian. Members of one cell that are braked together at once, the rest, is what they have without hydrodynamics.
 CELL_SPREAD = 1.0 / 3.0
-CELLS = 0.04  # a lone vertex so taken has 0.0175 a0^2/t0, and 0.0179 is measured; rods and chains are off by as much and more
+CELLS = 0.06  # a lone vertex so taken has 0.0173 a0^2/t0, and 0.0179 is measured; chains and rods are off by as much, or 2 % more
 
 
 def smeared_pair(distance):
@@ -158,20 +158,21 @@ def smeared_pair(distance):
     return special.erf(r / math.sqrt(2.0 * CELL_SPREAD)) / r
 
 
-def cells_chain(vertices, apart, bond2=1.0):
-    """D of a Gaussian chain in an infinite box: `apart`, what it has without hydrodynamics, and the smeared field. The
-    distance of two vertices and what smears are both Gaussian, so <1/r> is sqrt(2/pi) over their common width."""
+def cells_chain(vertices, apart, bond2=1.0, heavier=0.0):
+    """D of a Gaussian chain in an infinite box: `apart`, what it has without hydrodynamics, and the smeared field, less
+    what its own vertices take by making the fluid heavier (lib/own_fluid.py). The distance of two vertices and what smears
+    are both Gaussian, so <1/r> is sqrt(2/pi) over their common width."""
     distance = numpy.arange(vertices)
     count = numpy.where(distance == 0, vertices, 2.0 * (vertices - distance))
     inverse = numpy.sqrt(2.0 / math.pi / (distance * bond2 / 3.0 + CELL_SPREAD))
-    return apart + stokes(1.0) * (count * inverse).sum() / vertices ** 2
+    return apart + (1.0 - heavier) * stokes(1.0) * (count * inverse).sum() / vertices ** 2
 
 
-def cells_rod(vertices, spacing, apart):
+def cells_rod(vertices, spacing, apart, heavier=0.0):
     """The same of a straight rod."""
     distance = numpy.arange(vertices)
     count = numpy.where(distance == 0, vertices, 2.0 * (vertices - distance))
-    return apart + stokes(1.0) * (count * smeared_pair(spacing * distance)).sum() / vertices ** 2
+    return apart + (1.0 - heavier) * stokes(1.0) * (count * smeared_pair(spacing * distance)).sum() / vertices ** 2
 
 
 def heavy_fluid(crowd):

@@ -3,6 +3,7 @@ import io
 import re
 
 import matplotlib
+import numpy
 matplotlib.use("svg")
 from matplotlib import pyplot  # noqa: E402
 
@@ -43,7 +44,8 @@ def points(axes, x, y, errors=None, number=0, **options):
     """Measured points with error bars, in the number-th colour and marker."""
     style = {"color": COLORS[number % len(COLORS)], "marker": MARKERS[number % len(MARKERS)], "linestyle": "none",
              "elinewidth": 1.0}
-    return axes.errorbar(x, y, yerr=errors, **{**style, **options})
+    bars = None if errors is None else numpy.abs(errors)  # relative to something that came out negative, they may be, too
+    return axes.errorbar(x, y, yerr=bars, **{**style, **options})
 
 
 def theory(axes, x, y, **options):
