@@ -229,6 +229,9 @@ static void print_frame(FILE *out, const struct source *s, const struct export_o
 static bool print_frames(struct source *s, const struct export_options *options, FILE *out, struct message *message)
 {
   const uint64_t stride = options->stride ? options->stride : 1;
+  if (options->first > options->last)
+    return message_set(message, "%s: no frames: the first asked for is %" PRIu64 ", the last %" PRIu64, s->path,
+                       options->first, options->last);
   if (options->first >= s->frames)
     return message_set(message,
                        "%s: first frame %" PRIu64 " asked for; it has frames 0 to %" PRIu64 " (%" PRIu64 " in all)",
