@@ -423,37 +423,6 @@ void scene_free(struct scene *scene)
 
 /* --- files ------------------------------------------------------------------------------------------------------- */
 
-enum { SCENE_MAX_BYTES = 1 << 26 }; /* a scene is written by a person or a small script */
-
-/* The whole file, to be freed; NULL, with a message, on failure. */
-static char *read_whole_file(const char *path, size_t *size, struct message *message)
-{
-  FILE *file = fopen(path, "rb");
-  char *text = NULL;
-  size_t room = 1 << 14;
-  *size = 0;
-  bool ok = file && (text = malloc(room)) != NULL;
-  while (ok && !feof(file)) {
-    *size += fread(text + *size, 1, room - *size, file);
-    if (ferror(file) || *size > SCENE_MAX_BYTES) {
-      ok = false;
-    } else if (*size == room) {
-      char *more = realloc(text, room *= 2);
-      ok = more != NULL;
-      text = more ? more : text;
-    }
-  }
-  if (!ok) {
-    message_set(message, "%s: cannot be read: %s; a scene is a YAML file of at most 64 MiB", path,
-                *size > SCENE_MAX_BYTES ? "too large" : strerror(errno));
-    free(text);
-    text = NULL;
-  }
-  if (file)
-    fclose(file);
-  return text;
-}
-
 char *scene_snapshot_path(const struct scene *scene)
 {
   return scene->snapshot ? beside(scene->path, scene->snapshot) : NULL;
@@ -462,7 +431,7 @@ char *scene_snapshot_path(const struct scene *scene)
 bool scene_read(const char *path, struct scene *scene, struct message *message)
 {
   size_t size;
-  char *text = read_whole_file(path, &size, message);
+  char *text = yaml_read_file(path, &size, message);
   if (!text)
     return false;
   bool ok = read_scene(path, text, size, true, scene, message);

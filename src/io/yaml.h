@@ -21,6 +21,9 @@ struct yaml_file {
   yaml_document_t document;
 };
 
+/* The whole text of a file of at most 64 MiB, to be freed; NULL, with a message, on failure. */
+char *yaml_read_file(const char *path, size_t *size, struct message *message);
+
 /* Parses `size` bytes of text. On failure leaves a message `path:line:col: ...`, and nothing to close. */
 bool yaml_file_open(struct yaml_file *file, const char *path, const char *text, size_t size, struct message *message);
 void yaml_file_close(struct yaml_file *file);
