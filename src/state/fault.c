@@ -3,13 +3,19 @@
 #include <inttypes.h>
 #include <stdio.h>
 
+static const char momentum_beyond[] = "has a momentum beyond the range of its cell's sums:",
+                  energy_beyond[] =
+                      "moves in its cell with a mass times velocity squared beyond the range of their sum:";
+
 static const struct {
   const char *entity, *what, *unit;
 } wording[] = {
     [FAULT_NONE] = {"", "nothing wrong", ""},
     [FAULT_SOLVENT_MOVE] = {"solvent particle", "moves too far in one collision interval:", "a0"},
-    [FAULT_SOLVENT_SPEED] = {"solvent particle", "has a momentum beyond the range of its cell's sums:", "m a0/t0"},
-    [FAULT_VERTEX_SPEED] = {"vertex", "has a momentum beyond the range of its cell's sums:", "m a0/t0"},
+    [FAULT_SOLVENT_SPEED] = {"solvent particle", momentum_beyond, "m a0/t0"},
+    [FAULT_VERTEX_SPEED] = {"vertex", momentum_beyond, "m a0/t0"},
+    [FAULT_SOLVENT_ENERGY] = {"solvent particle", energy_beyond, "m a0^2/t0^2"},
+    [FAULT_VERTEX_ENERGY] = {"vertex", energy_beyond, "m a0^2/t0^2"},
     [FAULT_CELL_MASS] = {"collision cell", "holds more mass than its sum can:", "m"},
     [FAULT_VERTEX_MOVE] = {"vertex", "moves too far in one time step:", "a0"},
     [FAULT_BOND_TOO_LONG] = {"bond", "is longer than half the shortest box edge:", "a0"},
