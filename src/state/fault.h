@@ -14,6 +14,7 @@ enum fault_code {
   FAULT_VERTEX_ENERGY,  /* the same of a vertex */
   FAULT_CELL_MASS,      /* the members of a cell outweigh the range of its sum */
   FAULT_VERTEX_MOVE,    /* a vertex moves further than half the shortest edge in one step, or not a number */
+  FAULT_VERTEX_PLACE,   /* a vertex is further from the origin than LATTICE_REACH, unwrapped */
   FAULT_BOND_TOO_LONG,  /* a bond is longer than half the shortest edge */
   FAULT_NO_MEMORY       /* a list of neighbor bonds could not grow */
 };

@@ -45,6 +45,14 @@ void state_free(struct state *s)
   memset(s, 0, sizeof *s);
 }
 
+uint32_t state_lost_vertex(const struct state *s)
+{
+  uint32_t v = 0;
+  while (v < s->vertices && point_within_reach(s->position[v]))
+    v++;
+  return v;
+}
+
 void state_solvent_slots(const struct state *s, uint32_t *slot)
 {
   for (uint32_t i = 0; i < s->solvent.n; i++)

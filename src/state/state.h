@@ -44,6 +44,9 @@ struct state {
 bool state_alloc(struct state *state, const struct model *model);
 void state_free(struct state *state);
 
+/* The first vertex that is beyond LATTICE_REACH; `vertices` if none is. */
+uint32_t state_lost_vertex(const struct state *state);
+
 /* slot[id] = index of solvent particle id in memory. slot: [solvent.n]. */
 void state_solvent_slots(const struct state *state, uint32_t *slot);
 

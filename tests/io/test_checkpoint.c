@@ -326,6 +326,12 @@ static void foreign_files_are_refused(void **unused)
   struct test_run r = small_run(1);
   assert_true(write_some(path, &r, &message));
 
+  const struct point here = r.state.position[5];
+  r.state.position[5].y = -LATTICE_REACH - 1;
+  assert_true(write_some(other, &r, &message));
+  expect_refusal(other, &r.model, &r.state, "vertex 5 is more than");
+  r.state.position[5] = here;
+
   expect_refusal(in_folder(folder, "nothing"), &r.model, &r.state, strerror(ENOENT));
   expect_refusal(folder, &r.model, &r.state, "folder");
   spill(other, "", 0);
