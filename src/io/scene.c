@@ -147,7 +147,11 @@ static bool settle_bending(const struct settling *s, uint32_t k)
         "fibers.persistence_length: bending = persistence_length/bond_length needs a bond_length above 0; "
         "allowed: give bending instead");
   d->kind.bending = d->persistence_length / d->kind.bond_length;
-  return true;
+  return d->kind.bending <= SCENE_MOST_BENDING ||
+         yaml_refuse(
+             s->file, persistence, s->message,
+             "fibers.persistence_length: bending = persistence_length/bond_length is %.6g kT; allowed: at most %g",
+             d->kind.bending, SCENE_MOST_BENDING);
 }
 
 static bool settle_shape(const struct settling *s, uint32_t k)
@@ -309,6 +313,15 @@ static char *beside(const char *path, const char *name)
   return joined;
 }
 
+static bool settle_trajectory(const struct settling *s)
+{
+  const struct scene *scene = &s->draft->scene;
+  if (scene->trajectory_every == 0 || s->draft->fibers.count > 0 || scene->trajectory_solvent)
+    return true;
+  return yaml_refuse(s->file, place_of(s, yaml_value_of(s->file, s->root, "trajectory"), "solvent"), s->message,
+                     "trajectory.solvent: without fibers, frames of nothing; allowed: true");
+}
+
 static bool settle_snapshot(const struct settling *s)
 {
   const char *snapshot = s->draft->scene.snapshot;
@@ -328,7 +341,7 @@ static bool settle(const struct settling *s)
 {
   struct model *m = &s->draft->scene.model;
   m->box = box_of_cells(m->box.cells[0], m->box.cells[1], m->box.cells[2]);
-  if (!settle_solvent(s) || !settle_fibers(s) || !settle_observables(s) || !settle_snapshot(s))
+  if (!settle_solvent(s) || !settle_fibers(s) || !settle_observables(s) || !settle_trajectory(s) || !settle_snapshot(s))
     return false;
   if (m->solvent.particles == 0 && s->draft->fibers.count == 0)
     return yaml_refuse(s->file, s->root, s->message,
@@ -376,16 +389,6 @@ static bool set_fingerprint(struct scene *scene)
   return ok;
 }
 
-static char *copy_bytes(const char *text, size_t size)
-{
-  char *copy = malloc(size + 1);
-  if (copy) {
-    memcpy(copy, text, size);
-    copy[size] = '\0';
-  }
-  return copy;
-}
-
 static bool read_scene(const char *path, const char *text, size_t size, bool look_for_files, struct scene *scene,
                        struct message *message)
 {
@@ -398,8 +401,8 @@ static bool read_scene(const char *path, const char *text, size_t size, bool loo
   yaml_file_close(&file);
   *scene = draft.scene;
   if (ok) {
-    scene->path = copy_bytes(path, strlen(path));
-    scene->text = copy_bytes(text, size);
+    scene->path = strdup(path);
+    scene->text = strndup(text, size);
     ok = (scene->path && scene->text && set_fingerprint(scene)) || message_set(message, "%s: out of memory", path);
   }
   if (!ok)

@@ -220,9 +220,10 @@ static const char *plain_text(const yaml_node_t *node)
   return text && node->data.scalar.style == YAML_PLAIN_SCALAR_STYLE ? text : NULL;
 }
 
-bool yaml_text_whole(const char *text, uint64_t *value)
+bool yaml_whole(const yaml_node_t *node, uint64_t *value)
 {
-  size_t digits = strspn(text, "0123456789");
+  const char *text = plain_text(node);
+  size_t digits = text ? strspn(text, "0123456789") : 0;
   if (digits == 0 || text[digits] != '\0' || (digits > 1 && text[0] == '0'))
     return false;
   errno = 0;
@@ -233,8 +234,11 @@ bool yaml_text_whole(const char *text, uint64_t *value)
   return true;
 }
 
-bool yaml_text_number(const char *text, double *value)
+bool yaml_number(const yaml_node_t *node, double *value)
 {
+  const char *text = plain_text(node);
+  if (!text)
+    return false;
   const char *digits = text + (*text == '-' || *text == '+');
   if (strspn(digits, "0123456789.") == 0 || digits[strspn(digits, "0123456789.+-eE")] != '\0')
     return false;
@@ -245,18 +249,6 @@ bool yaml_text_number(const char *text, double *value)
     return false;
   *value = x == 0.0 ? 0.0 : x; /* no negative zero: it would be another scene's fingerprint */
   return true;
-}
-
-bool yaml_whole(const yaml_node_t *node, uint64_t *value)
-{
-  const char *text = plain_text(node);
-  return text && yaml_text_whole(text, value);
-}
-
-bool yaml_number(const yaml_node_t *node, double *value)
-{
-  const char *text = plain_text(node);
-  return text && yaml_text_number(text, value);
 }
 
 bool yaml_switch(const yaml_node_t *node, bool *value)

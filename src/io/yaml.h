@@ -55,10 +55,6 @@ bool yaml_number(const yaml_node_t *node, double *value);
 /* true or false, not quoted. */
 bool yaml_switch(const yaml_node_t *node, bool *value);
 
-/* The same conversions of a piece of text, for defaults. */
-bool yaml_text_whole(const char *text, uint64_t *value);
-bool yaml_text_number(const char *text, double *value);
-
 /* Leaves the message `path:line:col: ...` about this node. Always returns false, for `return yaml_refuse(...)`. */
 bool yaml_refuse(const struct yaml_file *file, const yaml_node_t *node, struct message *message, const char *format,
                  ...) __attribute__((format(printf, 4, 5)));
