@@ -95,6 +95,17 @@ uint64_t state_hash(const struct state *s)
   return digest;
 }
 
+struct vec3 state_solvent_gain(const struct state *s, const struct model *model)
+{
+  return vec3_scale(0.5 * s->solvent_lag * model->time_step, model->solvent.acceleration);
+}
+
+struct vec3 state_solvent_velocity(const struct state *s, const struct model *model, uint32_t i)
+{
+  const struct solvent *p = &s->solvent;
+  return vec3_add((struct vec3){p->vx[i], p->vy[i], p->vz[i]}, state_solvent_gain(s, model));
+}
+
 struct point state_solvent_position(const struct state *s, const struct model *model, uint32_t i)
 {
   const struct solvent *p = &s->solvent;
