@@ -409,16 +409,3 @@ bool checkpoint_read(const char *path, const struct model *model, struct checkpo
   *head = summary.head;
   return ok;
 }
-
-char *checkpoint_scene_text(const char *path, struct message *message)
-{
-  struct checkpoint_summary summary;
-  hid_t file = checkpoint_open(path, &summary, message);
-  if (file < 0)
-    return NULL;
-  char *text = h5_text_read(file, "scene");
-  if (!text)
-    message_set(message, "%s: damaged checkpoint: its scene cannot be read", path);
-  h5_close(file);
-  return text;
-}

@@ -132,7 +132,7 @@ static void make_paths_long(struct test_run *r)
 {
   struct neighbors *nb = &r->work.fiber.neighbors;
   assert_true(neighbors_build(&r->state, &r->model, &r->work));
-  for (uint32_t j = 0; j < nb->bonds; j++)
+  for (uint32_t j = 0; j < r->state.vertices; j++)
     nb->clock[j].path = UINT32_MAX - 40000 * (j % 7);
   assert_true(neighbors_build(&r->state, &r->model, &r->work));
 }
