@@ -250,8 +250,11 @@ static bool sum_relative_energy(const struct state *state, const struct model *m
     largest = energy > largest ? energy : largest;
     add_energy(&c->relative[c->vertex_cell[v]], energy);
   }
-  const double limit = 0x1p63 / RELATIVE_SCALE / srd_members(&c->sum[fullest_cell(c)]);
-  return largest + 1.0 / RELATIVE_SCALE < limit || blame(work, find_hottest(state, model, c), limit, step);
+  const double range = 0x1p63 / RELATIVE_SCALE, rounded = largest + 1.0 / RELATIVE_SCALE;
+  if (rounded * ((double)state->solvent.n + state->vertices) < range) /* even if all were in one cell */
+    return true;
+  const double limit = range / srd_members(&c->sum[fullest_cell(c)]);
+  return rounded < limit || blame(work, find_hottest(state, model, c), limit, step);
 }
 
 /* New velocities of some particles, a column for each component. They are not written where the old ones stand, but
