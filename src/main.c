@@ -177,14 +177,16 @@ static enum exit_code command_export(struct arguments *a)
     return why == EEXIST ? EXIT_BAD_INPUT : EXIT_NOT_WRITTEN;
   }
   bool ok = trajectory_export(a->file, &a->export, out, &message);
+  enum exit_code code = ok ? EXIT_DONE : ferror(out) ? EXIT_NOT_WRITTEN : EXIT_BAD_INPUT;
   if (!ok)
     fprintf(stderr, "uncross: %s\n", message.text);
-  bool written = !ferror(out) && (out == stdout ? fflush(out) : fclose(out)) == 0;
-  if (!ok && a->output)
-    remove(a->output);
-  if (ok && !written)
+  if ((out == stdout ? fflush(out) : fclose(out)) != 0 && ok) {
     fprintf(stderr, "uncross: %s: cannot write: %s\n", a->output ? a->output : "standard output", strerror(errno));
-  return !ok ? EXIT_BAD_INPUT : written ? EXIT_DONE : EXIT_NOT_WRITTEN;
+    code = EXIT_NOT_WRITTEN;
+  }
+  if (code != EXIT_DONE && a->output)
+    remove(a->output);
+  return code;
 }
 
 static enum exit_code command_analyze(struct arguments *a)

@@ -24,6 +24,7 @@ static const char help[] =
     "      --only OBSERVABLE[,OBSERVABLE ...]    these observables only\n"
     "      --false-alarm P                       chance that equal codes are found different (1e-9 .. 0.5; default "
     "1e-3)\n"
+    "What -o names must not exist.\n"
     "\n"
     "exit codes of compare:              of judge:\n"
     "  0  the same, every bit              0  consistent\n"
@@ -48,24 +49,29 @@ static enum exit_code complain(const struct message *message, enum exit_code cod
 }
 
 /* The file asked for, which must not exist, or standard output. */
-static FILE *open_output(const char *path, struct message *message)
+static enum exit_code open_output(const char *path, FILE **out)
 {
-  FILE *out = path ? fopen(path, "wx") : stdout;
-  if (!out)
-    message_set(message, "%s: cannot create: %s", path, strerror(errno));
-  return out;
+  struct message message;
+  *out = path ? fopen(path, "wx") : stdout;
+  if (*out)
+    return EXIT_DONE;
+  const int why = errno;
+  message_set(&message, "%s: cannot create: %s", path, strerror(why));
+  return complain(&message, why == EEXIST ? EXIT_BAD_INPUT : EXIT_NOT_WRITTEN);
 }
 
-static enum exit_code close_output(FILE *out, bool ok, const char *path, struct message *message)
+/* `code`: how it went so far, with a message if not well. */
+static enum exit_code close_output(FILE *out, enum exit_code code, const char *path, struct message *message)
 {
   bool written = !ferror(out);
   written = (out == stdout ? fflush(out) : fclose(out)) == 0 && written;
-  if (!(ok && written) && path)
+  if (code == EXIT_DONE && !written) {
+    message_set(message, "%s: cannot write", path ? path : "standard output");
+    code = EXIT_NOT_WRITTEN;
+  }
+  if (code != EXIT_DONE && path)
     remove(path);
-  if (!ok)
-    return complain(message, EXIT_BAD_INPUT);
-  message_set(message, "%s: cannot write", path ? path : "standard output");
-  return written ? EXIT_DONE : complain(message, EXIT_NOT_WRITTEN);
+  return code == EXIT_DONE ? code : complain(message, code);
 }
 
 /* The code of a verdict that was printed, if it was. */
@@ -88,10 +94,15 @@ static enum exit_code emit(const struct words *w)
   }
   if (!scene_read(w->file[0], &scene, &message))
     return complain(&message, EXIT_BAD_INPUT);
-  enum exit_code code = oracle_emit(&scene, &pack, &message) ? EXIT_DONE : complain(&message, EXIT_BAD_INPUT);
-  if (code == EXIT_DONE && !pack_write(&pack, w->output, &message))
-    code = complain(&message, EXIT_NOT_WRITTEN);
-  pack_free(&pack);
+  FILE *out;
+  enum exit_code code = open_output(w->output, &out);
+  if (code == EXIT_DONE) {
+    code = !oracle_emit(&scene, &pack, &message)          ? EXIT_BAD_INPUT
+           : !pack_write(&pack, out, w->output, &message) ? EXIT_NOT_WRITTEN
+                                                          : EXIT_DONE;
+    code = close_output(out, code, w->output, &message);
+    pack_free(&pack);
+  }
   scene_free(&scene);
   return code;
 }
@@ -102,12 +113,10 @@ static enum exit_code trace(const struct words *w)
   struct scene scene;
   if (!scene_read(w->file[0], &scene, &message))
     return complain(&message, EXIT_BAD_INPUT);
-  FILE *out = open_output(w->output, &message);
-  enum exit_code code = EXIT_NOT_WRITTEN;
-  if (out)
-    code = close_output(out, oracle_trace(&scene, out, &message), w->output, &message);
-  else
-    complain(&message, code);
+  FILE *out;
+  enum exit_code code = open_output(w->output, &out);
+  if (code == EXIT_DONE)
+    code = close_output(out, oracle_trace(&scene, out, &message) ? EXIT_DONE : EXIT_BAD_INPUT, w->output, &message);
   scene_free(&scene);
   return code;
 }
@@ -119,13 +128,11 @@ static enum exit_code dump(const struct words *w)
   if (!pack_read(w->file[0], &pack, &message))
     return complain(&message, EXIT_BAD_INPUT);
   oracle_sort(&pack);
-  FILE *out = open_output(w->output, &message);
-  enum exit_code code = EXIT_NOT_WRITTEN;
-  if (out) {
+  FILE *out;
+  enum exit_code code = open_output(w->output, &out);
+  if (code == EXIT_DONE) {
     pack_dump(&pack, out);
-    code = close_output(out, true, w->output, &message);
-  } else {
-    complain(&message, code);
+    code = close_output(out, code, w->output, &message);
   }
   pack_free(&pack);
   return code;

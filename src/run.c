@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "fiber/force.h"
 #include "io/folder.h"
 #include "io/output.h"
 #include "io/progress.h"
@@ -92,31 +91,11 @@ static void apply_options(struct run *run)
     run->scene.model.seed = run->options->seed;
 }
 
-/* The scene's snapshot; forces are only asked whether its bonds fit the box. */
-static enum exit_code start_from_snapshot(struct run *run)
-{
-  char *path = scene_snapshot_path(&run->scene);
-  message_set(&run->message, "no memory for the path of the snapshot");
-  bool ok = path && snapshot_read_start(path, &run->scene.model, &run->state, &run->message);
-  free(path);
-  if (!ok)
-    return complain(run, EXIT_BAD_INPUT);
-  ok = fiber_forces(&run->state, &run->scene.model, &run->work, 0);
-  return ok ? EXIT_DONE : complain_fault(run, EXIT_BAD_INPUT);
-}
-
-static enum exit_code start_as_model_says(struct run *run)
-{
-  bool ok = step_start(&run->state, &run->scene.model, &run->work);
-  return ok ? EXIT_DONE : complain_fault(run, EXIT_BAD_INPUT);
-}
-
 static enum exit_code start_anew(struct run *run)
 {
   const struct scene *scene = &run->scene;
-  enum exit_code code = scene->snapshot ? start_from_snapshot(run) : start_as_model_says(run);
-  if (code != EXIT_DONE)
-    return code;
+  if (!scene_start(scene, &run->state, &run->work, &run->message))
+    return complain(run, EXIT_BAD_INPUT);
   const struct conserved start = observe_conserved(&scene->model, &run->state);
   run->head = (struct checkpoint_head){.fingerprint = scene->fingerprint,
                                        .seed = scene->model.seed,

@@ -11,6 +11,7 @@
 #ifndef UNCROSS_LATTICE_H
 #define UNCROSS_LATTICE_H
 
+#include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -22,6 +23,10 @@
 #define LATTICE_CELL ((int64_t)1 << LATTICE_BITS) /* edge of a collision cell, in lattice units */
 #define LATTICE_MAX_EDGE 1024                     /* cells */
 #define LATTICE_MAX_MOVE 2047.0                   /* a0; lattice_round is right below this */
+
+/* Lattice units, 2.1 million a0: how far from the origin, along any axis, vertices may come. The difference of any two
+ * places less than 1.9 times as far fits in 64 bits. */
+#define LATTICE_REACH ((int64_t)1 << 61)
 
 /* A point in lattice units. Vertices are unwrapped: a fiber keeps its shape when it leaves the box. */
 struct point {
@@ -106,6 +111,12 @@ static inline struct point point_plus(struct point a, struct point b)
 static inline struct point point_minus(struct point a, struct point b)
 {
   return (struct point){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+static inline bool point_within_reach(struct point p)
+{
+  return p.x >= -LATTICE_REACH && p.x <= LATTICE_REACH && p.y >= -LATTICE_REACH && p.y <= LATTICE_REACH &&
+         p.z >= -LATTICE_REACH && p.z <= LATTICE_REACH;
 }
 
 /* The image of a point, so many box edges away. */

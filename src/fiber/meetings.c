@@ -24,7 +24,7 @@ static void lengthen_paths(const struct model *model, struct fiber_work *f)
   const double *restrict range = f->range;
   const int32_t *restrict next = model->next;
   struct bond_clock *restrict clock = f->neighbors.clock;
-  for (uint32_t j = 0; j < f->neighbors.bonds; j++)
+  for (uint32_t j = 0; j < model->vertices; j++)
     clock[j].path += path_units(capsule_most(range[j], range[next[j] < 0 ? (int32_t)j : next[j]]));
 }
 

@@ -7,7 +7,6 @@
 #include "fiber/capsule.h"
 #include "fiber/pairs.h"
 
-#define MARGIN_A0 0.17 /* measured: see docs/accuracy.md; results do not depend on it */
 #define CANDIDATES 256 /* looked at together */
 #define FIRST_NEAR 64
 #define SEARCH_CELL_A0 1.0 /* least edge of a search cell */
@@ -249,9 +248,9 @@ static struct anchor anchor_of_move(const struct neighbors *nb, struct point fro
   const struct point d = point_minus(to, from);
   const double length = vec3_norm(point_difference(to, from));
   struct point at = point_minus(to, nb->moved);
-  if (length > nb->margin) /* from its middle */
+  if (length > NEIGHBORS_MARGIN) /* from its middle */
     at = (struct point){at.x - d.x / 2, at.y - d.y / 2, at.z - d.z / 2};
-  return (struct anchor){at, fmax(nb->margin, 0.5 * length + LATTICE_UNIT)};
+  return (struct anchor){at, fmax(NEIGHBORS_MARGIN, 0.5 * length + LATTICE_UNIT)};
 }
 
 /* New pairs for bonds whose anchors are new. */
@@ -347,10 +346,8 @@ static bool allocate(const struct model *model, struct neighbors *nb)
   if (nb->entries)
     return true;
   choose_grid(model, nb);
-  nb->margin = MARGIN_A0;
-  nb->bonds = model->vertices;
-  nb->anchor = memory_alloc(nb->bonds, sizeof *nb->anchor);
-  nb->clock = memory_alloc(nb->bonds, sizeof *nb->clock);
+  nb->anchor = memory_alloc(model->vertices, sizeof *nb->anchor);
+  nb->clock = memory_alloc(model->vertices, sizeof *nb->clock);
   nb->entries = memory_alloc(nb->cell_count, sizeof *nb->entries);
   if (!nb->anchor || !nb->clock || !nb->entries)
     return false;
@@ -370,7 +367,7 @@ bool neighbors_build(const struct state *state, const struct model *model, struc
   for (uint32_t c = 0; c < nb->cell_count; c++)
     nb->entries[c].count = 0;
   for (uint32_t j = 0; j < model->vertices; j++)
-    nb->anchor[j] = (struct anchor){state->position[j], nb->margin};
+    nb->anchor[j] = (struct anchor){state->position[j], NEIGHBORS_MARGIN};
   for (uint32_t j = 0; j < model->vertices; j++)
     if (model->next[j] >= 0 && !enter(nb, model, 1, &j))
       return work_no_memory(work, state->step + 1);

@@ -28,6 +28,10 @@
 #include "state/state.h"
 #include "state/work.h"
 
+/* a0: reach of an anchor, if the move for which it is taken is no longer. Measured: see docs/accuracy.md; results do
+ * not depend on it. */
+#define NEIGHBORS_MARGIN 0.17
+
 /* Anchors, grid and pairs of all bonds from scratch. False, with the fault recorded, if memory is short. */
 bool neighbors_build(const struct state *state, const struct model *model, struct work *work);
 

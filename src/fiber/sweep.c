@@ -226,11 +226,31 @@ static bool sweep_noncrossing(struct state *state, const struct model *model, st
   return true;
 }
 
+/* In a step vertices come less than 2 (512 + 100) a0 further: two drifts of half an edge, and as far as the frame. So
+ * that between two looks they stay below 1.6 LATTICE_REACH. */
+#define STEPS_PER_LOOK 1024
+
+/* Nobody may come so far that differences of places overflow. The frame may, but not its part in the anchors. */
+static bool look_how_far(const struct state *state, struct work *work, uint64_t step)
+{
+  struct neighbors *nb = &work->fiber.neighbors;
+  const uint32_t lost = state_lost_vertex(state);
+  if (!point_within_reach(nb->moved))
+    nb->built = false;
+  if (lost == state->vertices)
+    return true;
+  const struct vec3 r = point_in_a0(state->position[lost]);
+  return work_fault(work, FAULT_VERTEX_PLACE, step, lost, fmax(fabs(r.x), fmax(fabs(r.y), fabs(r.z))),
+                    (double)LATTICE_REACH * LATTICE_UNIT);
+}
+
 bool fiber_sweep(struct state *state, const struct model *model, struct work *work, double fraction, uint64_t step,
                  uint32_t sweep, const struct sweep_log *log)
 {
   const double dt = fraction * model->time_step;
   const bool noncrossing = model->crossing.forbidden && model->bonds > 1;
+  if (step % STEPS_PER_LOOK == 0 && !look_how_far(state, work, step))
+    return false;
   if (!(noncrossing ? sweep_noncrossing(state, model, work, dt, step, sweep, log)
                     : turns_phantom(state, model, work, dt)))
     return false;

@@ -26,7 +26,7 @@ struct sweep_log {
 
 /* Moves all vertices by fraction * dt, in the order drawn for (step, sweep), sweep = 0 or 1. Without the crossing
  * constraint they simply move. False, with the fault recorded, if a vertex would move further than half the shortest
- * edge, or memory is short. */
+ * edge, one is beyond LATTICE_REACH (which is looked for now and then only), or memory is short. */
 bool fiber_sweep(struct state *state, const struct model *model, struct work *work, double fraction, uint64_t step,
                  uint32_t sweep, const struct sweep_log *log);
 

@@ -355,12 +355,20 @@ static bool fits_model(hid_t file, const char *path, const struct checkpoint_sum
   return true;
 }
 
+static bool within_reach(const struct state *state, const char *path, struct message *message)
+{
+  const uint32_t lost = state_lost_vertex(state);
+  return lost == state->vertices || message_set(message, "%s: vertex %u is more than %g a0 from the origin, unwrapped",
+                                                path, lost, (double)LATTICE_REACH * LATTICE_UNIT);
+}
+
 hid_t checkpoint_open_for(const char *path, const struct model *model, struct checkpoint_summary *summary,
                           struct state *state, struct message *message)
 {
   hid_t file = checkpoint_open(path, summary, message);
-  if (file >= 0 && !(fits_model(file, path, summary, model, message) &&
-                     checkpoint_read_state(file, path, summary, state, message))) {
+  if (file >= 0 &&
+      !(fits_model(file, path, summary, model, message) && checkpoint_read_state(file, path, summary, state, message) &&
+        within_reach(state, path, message))) {
     h5_close(file);
     return -1;
   }
@@ -400,17 +408,4 @@ bool checkpoint_read(const char *path, const struct model *model, struct checkpo
   h5_close(file);
   *head = summary.head;
   return ok;
-}
-
-char *checkpoint_scene_text(const char *path, struct message *message)
-{
-  struct checkpoint_summary summary;
-  hid_t file = checkpoint_open(path, &summary, message);
-  if (file < 0)
-    return NULL;
-  char *text = h5_text_read(file, "scene");
-  if (!text)
-    message_set(message, "%s: damaged checkpoint: its scene cannot be read", path);
-  h5_close(file);
-  return text;
 }

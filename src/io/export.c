@@ -108,25 +108,6 @@ static void source_close(struct source *s)
   free(s->picture.velocity);
 }
 
-/* Vertices, then solvent particles moved on to where they are now. */
-static void picture_of_state(struct picture *p, const struct state *state, const struct model *model)
-{
-  const struct solvent *s = &state->solvent;
-  const struct vec3 gain = vec3_scale(0.5 * state->solvent_lag * model->time_step, model->solvent.acceleration);
-  size_t row = 0;
-  for (uint32_t v = 0; v < state->vertices; v++, row += 3) {
-    struct vec3 r = point_in_a0(state->position[v]);
-    memcpy(&p->position[row], &r, sizeof r);
-    memcpy(&p->velocity[row], &state->velocity[v], sizeof r);
-  }
-  for (uint32_t i = 0; i < s->n; i++, row += 3) {
-    struct vec3 r = point_in_a0(state_solvent_position(state, model, i));
-    struct vec3 v = {s->vx[i] + gain.x, s->vy[i] + gain.y, s->vz[i] + gain.z};
-    memcpy(&p->position[row], &r, sizeof r);
-    memcpy(&p->velocity[row], &v, sizeof v);
-  }
-}
-
 static bool load_checkpoint(struct source *s, struct message *message)
 {
   const struct checkpoint_summary *summary = &s->summary;
@@ -139,8 +120,10 @@ static bool load_checkpoint(struct source *s, struct message *message)
   if (!state_alloc(&state, &model))
     return message_set(message, "%s: out of memory", s->path);
   bool ok = checkpoint_read_state(s->file, s->path, summary, &state, message);
-  if (ok)
-    picture_of_state(&s->picture, &state, &model);
+  if (ok) { /* which has particles in the order of their ids */
+    frame_positions(&state, &model, state.solvent.id, s->picture.position);
+    frame_velocities(&state, &model, state.solvent.id, s->picture.velocity);
+  }
   state_free(&state);
   for (int k = 0; k < 3; k++)
     s->picture.edge[k] = cells[k];
@@ -229,6 +212,9 @@ static void print_frame(FILE *out, const struct source *s, const struct export_o
 static bool print_frames(struct source *s, const struct export_options *options, FILE *out, struct message *message)
 {
   const uint64_t stride = options->stride ? options->stride : 1;
+  if (options->first > options->last)
+    return message_set(message, "%s: no frames: the first asked for is %" PRIu64 ", the last %" PRIu64, s->path,
+                       options->first, options->last);
   if (options->first >= s->frames)
     return message_set(message,
                        "%s: first frame %" PRIu64 " asked for; it has frames 0 to %" PRIu64 " (%" PRIu64 " in all)",

@@ -271,6 +271,8 @@ int h5_shape(hid_t dataset, int most, hsize_t *dims)
 
 int h5_look(hid_t parent, const char *name)
 {
+  if (H5Iget_type(parent) == H5I_DATASET)
+    return 0;
   int found = H5Lexists(parent, name, H5P_DEFAULT);
   return found > 0 ? H5Oexists_by_name(parent, name, H5P_DEFAULT) : found;
 }

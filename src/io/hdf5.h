@@ -76,7 +76,8 @@ char *h5_text_read(hid_t parent, const char *name);
  * cannot be read. */
 int h5_shape(hid_t dataset, int most, hsize_t *dims);
 
-/* 1 if the link `name` (no path) is there and what it points to too, 0 if not, below 0 if that cannot be found out. */
+/* 1 if the link `name` (no path) is there and what it points to too, 0 if not (in a dataset there is nothing), below 0
+ * if that cannot be found out. */
 int h5_look(hid_t parent, const char *name);
 
 /* True if h5_look is 1. */

@@ -9,6 +9,7 @@
 #include "io/checkpoint.h"
 #include "io/structure.h"
 #include "io/trajectory.h"
+#include "io/yaml.h"
 
 #define HEAD_BYTES 4096
 #define MOST_KEYS 64
@@ -123,9 +124,12 @@ static bool tell_hdf5(const struct look *look, struct message *message)
 
 /* --- JSON -------------------------------------------------------------------------------------------------------- */
 
+/* By its name, or since it can be read as JSON: a scene in braces cannot, or is both. */
 static bool is_json(const struct look *look)
 {
-  return look->head[strspn(look->head, " \t\r\n")] == '{';
+  json_t *root = ends_with(look->path, ".json") ? NULL : json_load_file(look->path, 0, NULL);
+  json_decref(root);
+  return root || ends_with(look->path, ".json");
 }
 
 static void tell_value(const char *key, const json_t *value)
@@ -201,44 +205,42 @@ static bool tell_table(const struct look *look, struct message *message)
   return true;
 }
 
-/* Length of the key if the line begins with `key:` in its first column, else 0. */
-static size_t key_length(const char *line)
+static bool tell_neither(const struct look *look, struct message *message)
 {
-  size_t n = strspn(line, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-");
-  return n > 0 && line[n] == ':' && strchr(" \r\n", line[n + 1]) ? n : 0;
+  return message_set(message, "%s: neither a scene, checkpoint, trajectory, record of a run, table nor extended XYZ",
+                     look->path);
 }
 
-static bool is_scene(const struct look *look)
+static void tell_sections(const struct yaml_file *file, const yaml_node_t *root)
 {
-  if (!is_text(look))
-    return false;
-  const char *line = look->head;
-  while (key_length(line) == 0) {
-    const char *end = strchr(line, '\n');
-    if (!end)
-      return false;
-    line = end + 1;
+  const char *between = "";
+  printf("%s: YAML, perhaps a scene; its sections: ", file->path);
+  for (size_t i = 0; i < yaml_pairs(root) && i < MOST_KEYS; i++) {
+    const yaml_node_t *value;
+    const char *key = yaml_text(yaml_pair(file, root, i, &value));
+    printf("%s%.100s", between, key ? key : "?");
+    between = ", ";
   }
-  return true;
+  printf("\n  `uncross check %s` says what it means\n", file->path);
 }
 
+/* Any text may be one; libyaml knows. */
 static bool tell_scene(const struct look *look, struct message *message)
 {
-  FILE *file = fopen(look->path, "r");
-  if (!file)
-    return message_set(message, "%s: cannot be read: %s", look->path, strerror(errno));
-  char line[1024];
-  const char *between = "";
-  printf("%s: YAML, perhaps a scene; its sections: ", look->path);
-  for (int keys = 0; keys < MOST_KEYS && fgets(line, sizeof line, file);)
-    if (key_length(line) > 0) {
-      printf("%s%.*s", between, (int)key_length(line), line);
-      between = ", ";
-      keys++;
-    }
-  printf("\n  `uncross check %s` says what it means\n", look->path);
-  fclose(file);
-  return true;
+  size_t size;
+  struct yaml_file file;
+  char *text = yaml_read_file(look->path, &size, message);
+  if (!text || !yaml_file_open(&file, look->path, text, size, message)) {
+    free(text);
+    return false;
+  }
+  const yaml_node_t *root = yaml_file_root(&file);
+  bool mapping = root && root->type == YAML_MAPPING_NODE;
+  if (mapping)
+    tell_sections(&file, root);
+  yaml_file_close(&file);
+  free(text);
+  return mapping || tell_neither(look, message);
 }
 
 /* --- all --------------------------------------------------------------------------------------------------------- */
@@ -247,10 +249,10 @@ static const struct sort {
   bool (*is)(const struct look *look);
   bool (*tell)(const struct look *look, struct message *message);
 } sorts[] = {{is_hdf5, tell_hdf5},
-             {is_json, tell_json},
              {is_extended_xyz, tell_extended_xyz},
              {is_table, tell_table},
-             {is_scene, tell_scene}};
+             {is_json, tell_json},
+             {is_text, tell_scene}};
 
 static bool look_at(const char *path, struct look *look, struct message *message)
 {
@@ -274,6 +276,5 @@ bool file_info(const char *path, struct message *message)
   for (size_t k = 0; k < sizeof sorts / sizeof *sorts; k++)
     if (sorts[k].is(&look))
       return sorts[k].tell(&look, message);
-  return message_set(message, "%s: neither a scene, checkpoint, trajectory, record of a run, table nor extended XYZ",
-                     path);
+  return tell_neither(&look, message);
 }

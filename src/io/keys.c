@@ -241,11 +241,9 @@ static bool read_text(const struct reading *r)
   const char *text = yaml_text(r->node);
   if (!text || !*text)
     return refuse_value(r, r->node, "is not a text");
-  char *copy = malloc(strlen(text) + 1);
-  if (!copy)
-    return message_set(r->message, "%s: out of memory", r->file->path);
-  *(char **)r->to = strcpy(copy, text);
-  return true;
+  char *copy = strdup(text);
+  *(char **)r->to = copy;
+  return copy || message_set(r->message, "%s: out of memory", r->file->path);
 }
 
 static bool read_section(const struct reading *r)
@@ -284,34 +282,18 @@ static bool (*const readers[])(const struct reading *) = {
 
 /* --- mappings ---------------------------------------------------------------------------------------------------- */
 
-/* What is stored where a key is absent. Zero is there already: vectors, lists, and "as long as ..." defaults. */
-static void store_default(const struct key *key, void *to)
+/* The value of a key that is absent, as a scene would say it. */
+static bool read_default(const struct reading *r)
 {
-  if (!key->fallback)
-    return;
-  uint64_t whole = 0;
-  switch (key->type) {
-  case KEY_WHOLE64:
-    yaml_text_whole(key->fallback, to);
-    break;
-  case KEY_WHOLE32:
-    yaml_text_whole(key->fallback, &whole);
-    *(uint32_t *)to = (uint32_t)whole;
-    break;
-  case KEY_NUMBER:
-    yaml_text_number(key->fallback, to);
-    break;
-  case KEY_SWITCH:
-    *(bool *)to = strcmp(key->fallback, "true") == 0;
-    break;
-  case KEY_CHOICE: {
-    enum any value = (enum any)choice_number(key, key->fallback);
-    memcpy(to, &value, sizeof value);
-    break;
-  }
-  default:
-    break;
-  }
+  struct yaml_file file;
+  if (!yaml_file_open(&file, r->file->path, r->key->fallback, strlen(r->key->fallback), r->message))
+    return false;
+  struct reading own = *r;
+  own.file = &file;
+  own.node = yaml_file_root(&file);
+  bool ok = readers[r->key->type](&own);
+  yaml_file_close(&file);
+  return ok;
 }
 
 static bool refuse_key(const struct yaml_file *file, const yaml_node_t *node, const char *name,
@@ -377,7 +359,8 @@ bool keys_read(const struct yaml_file *file, const yaml_node_t *mapping, const s
       return yaml_refuse(file, mapping, message, "%s%skey '%s' is missing; allowed: %s", table->path,
                          *table->path ? ": " : "", key->name, allowed);
     }
-    store_default(key, to);
+    if (key->fallback && !read_default(&reading))
+      return false;
     if (key->type == KEY_SECTION && !keys_read(file, NULL, key->keys, to, message))
       return false;
   }

@@ -147,7 +147,11 @@ static bool settle_bending(const struct settling *s, uint32_t k)
         "fibers.persistence_length: bending = persistence_length/bond_length needs a bond_length above 0; "
         "allowed: give bending instead");
   d->kind.bending = d->persistence_length / d->kind.bond_length;
-  return true;
+  return d->kind.bending <= SCENE_MOST_BENDING ||
+         yaml_refuse(
+             s->file, persistence, s->message,
+             "fibers.persistence_length: bending = persistence_length/bond_length is %.6g kT; allowed: at most %g",
+             d->kind.bending, SCENE_MOST_BENDING);
 }
 
 static bool settle_shape(const struct settling *s, uint32_t k)
@@ -309,6 +313,15 @@ static char *beside(const char *path, const char *name)
   return joined;
 }
 
+static bool settle_trajectory(const struct settling *s)
+{
+  const struct scene *scene = &s->draft->scene;
+  if (scene->trajectory_every == 0 || s->draft->fibers.count > 0 || scene->trajectory_solvent)
+    return true;
+  return yaml_refuse(s->file, place_of(s, yaml_value_of(s->file, s->root, "trajectory"), "solvent"), s->message,
+                     "trajectory.solvent: without fibers, frames of nothing; allowed: true");
+}
+
 static bool settle_snapshot(const struct settling *s)
 {
   const char *snapshot = s->draft->scene.snapshot;
@@ -328,7 +341,7 @@ static bool settle(const struct settling *s)
 {
   struct model *m = &s->draft->scene.model;
   m->box = box_of_cells(m->box.cells[0], m->box.cells[1], m->box.cells[2]);
-  if (!settle_solvent(s) || !settle_fibers(s) || !settle_observables(s) || !settle_snapshot(s))
+  if (!settle_solvent(s) || !settle_fibers(s) || !settle_observables(s) || !settle_trajectory(s) || !settle_snapshot(s))
     return false;
   if (m->solvent.particles == 0 && s->draft->fibers.count == 0)
     return yaml_refuse(s->file, s->root, s->message,
@@ -376,16 +389,6 @@ static bool set_fingerprint(struct scene *scene)
   return ok;
 }
 
-static char *copy_bytes(const char *text, size_t size)
-{
-  char *copy = malloc(size + 1);
-  if (copy) {
-    memcpy(copy, text, size);
-    copy[size] = '\0';
-  }
-  return copy;
-}
-
 static bool read_scene(const char *path, const char *text, size_t size, bool look_for_files, struct scene *scene,
                        struct message *message)
 {
@@ -398,8 +401,8 @@ static bool read_scene(const char *path, const char *text, size_t size, bool loo
   yaml_file_close(&file);
   *scene = draft.scene;
   if (ok) {
-    scene->path = copy_bytes(path, strlen(path));
-    scene->text = copy_bytes(text, size);
+    scene->path = strdup(path);
+    scene->text = strndup(text, size);
     ok = (scene->path && scene->text && set_fingerprint(scene)) || message_set(message, "%s: out of memory", path);
   }
   if (!ok)
@@ -423,37 +426,6 @@ void scene_free(struct scene *scene)
 
 /* --- files ------------------------------------------------------------------------------------------------------- */
 
-enum { SCENE_MAX_BYTES = 1 << 26 }; /* a scene is written by a person or a small script */
-
-/* The whole file, to be freed; NULL, with a message, on failure. */
-static char *read_whole_file(const char *path, size_t *size, struct message *message)
-{
-  FILE *file = fopen(path, "rb");
-  char *text = NULL;
-  size_t room = 1 << 14;
-  *size = 0;
-  bool ok = file && (text = malloc(room)) != NULL;
-  while (ok && !feof(file)) {
-    *size += fread(text + *size, 1, room - *size, file);
-    if (ferror(file) || *size > SCENE_MAX_BYTES) {
-      ok = false;
-    } else if (*size == room) {
-      char *more = realloc(text, room *= 2);
-      ok = more != NULL;
-      text = more ? more : text;
-    }
-  }
-  if (!ok) {
-    message_set(message, "%s: cannot be read: %s; a scene is a YAML file of at most 64 MiB", path,
-                *size > SCENE_MAX_BYTES ? "too large" : strerror(errno));
-    free(text);
-    text = NULL;
-  }
-  if (file)
-    fclose(file);
-  return text;
-}
-
 char *scene_snapshot_path(const struct scene *scene)
 {
   return scene->snapshot ? beside(scene->path, scene->snapshot) : NULL;
@@ -462,7 +434,7 @@ char *scene_snapshot_path(const struct scene *scene)
 bool scene_read(const char *path, struct scene *scene, struct message *message)
 {
   size_t size;
-  char *text = read_whole_file(path, &size, message);
+  char *text = yaml_read_file(path, &size, message);
   if (!text)
     return false;
   bool ok = read_scene(path, text, size, true, scene, message);

@@ -11,6 +11,8 @@
 #include "io/message.h"
 #include "observe/observe.h"
 #include "state/model.h"
+#include "state/state.h"
+#include "state/work.h"
 
 struct scene {
   struct model model; /* finished (model_finish) */
@@ -40,6 +42,10 @@ bool scene_read_text(const char *path, const char *text, size_t size, struct sce
 /* Where the snapshot file is, seen from the working folder: to be freed; NULL if the scene has none, or memory is
  * short. */
 char *scene_snapshot_path(const struct scene *scene);
+
+/* The state in which a run of the scene begins, drawn or its snapshot: a file whose bonds fit the box, and whose center
+ * of mass moves with the scene's flow. state and work are allocated for scene->model. */
+bool scene_start(const struct scene *scene, struct state *state, struct work *work, struct message *message);
 
 /* Writes the effective scene, every default filled in, as YAML that reads back to the same scene. physics_only leaves
  * out seed, steps, observables, trajectory and checkpoints: the text whose hash is the fingerprint. */

@@ -121,7 +121,7 @@ static const struct key fiber_keys[] = {
      .type = KEY_NUMBER,
      .fallback = "0",
      .low = 0,
-     .high = 1e9,
+     .high = SCENE_MOST_BENDING,
      .offset = IN_KIND(kind.bending),
      .unit = "kT",
      .symbol = "kT l_p/l0"},
@@ -176,38 +176,9 @@ static const struct key start_keys[] = {
 };
 static const struct key_table start_table = {"start", COUNT(start_keys), start_keys};
 
-/* One table per observable, all alike but for where the cadence goes; dynamics has one key more. */
-static const struct key conserved_keys[] = {
-    {.name = "every",
-     .type = KEY_WHOLE64,
-     .least = 1,
-     .most = INT64_MAX,
-     .offset = IN_SCENE(observe.every[OBSERVE_CONSERVED]),
-     .unit = "steps"},
-};
-static const struct key temperature_keys[] = {
-    {.name = "every",
-     .type = KEY_WHOLE64,
-     .least = 1,
-     .most = INT64_MAX,
-     .offset = IN_SCENE(observe.every[OBSERVE_TEMPERATURE]),
-     .unit = "steps"},
-};
-static const struct key statics_keys[] = {
-    {.name = "every",
-     .type = KEY_WHOLE64,
-     .least = 1,
-     .most = INT64_MAX,
-     .offset = IN_SCENE(observe.every[OBSERVE_STATICS]),
-     .unit = "steps"},
-};
-static const struct key collisions_keys[] = {
-    {.name = "every",
-     .type = KEY_WHOLE64,
-     .least = 1,
-     .most = INT64_MAX,
-     .offset = IN_SCENE(observe.every[OBSERVE_COLLISIONS]),
-     .unit = "steps"},
+/* Of most observables; where the cadence goes is the section's own. Dynamics has one key more. */
+static const struct key every_keys[] = {
+    {.name = "every", .type = KEY_WHOLE64, .least = 1, .most = INT64_MAX, .unit = "steps"},
 };
 static const struct key dynamics_keys[] = {
     {.name = "every",
@@ -224,18 +195,34 @@ static const struct key dynamics_keys[] = {
      .unit = "steps",
      .symbol = "t"},
 };
-static const struct key_table conserved_table = {"observe.conserved", COUNT(conserved_keys), conserved_keys};
-static const struct key_table temperature_table = {"observe.temperature", COUNT(temperature_keys), temperature_keys};
-static const struct key_table statics_table = {"observe.statics", COUNT(statics_keys), statics_keys};
+static const struct key_table conserved_table = {"observe.conserved", COUNT(every_keys), every_keys};
+static const struct key_table temperature_table = {"observe.temperature", COUNT(every_keys), every_keys};
+static const struct key_table statics_table = {"observe.statics", COUNT(every_keys), every_keys};
 static const struct key_table dynamics_table = {"observe.dynamics", COUNT(dynamics_keys), dynamics_keys};
-static const struct key_table collisions_table = {"observe.collisions", COUNT(collisions_keys), collisions_keys};
+static const struct key_table collisions_table = {"observe.collisions", COUNT(every_keys), every_keys};
 
 static const struct key observe_keys[] = {
-    {.name = "conserved", .type = KEY_SECTION, .optional = true, .keys = &conserved_table},
-    {.name = "temperature", .type = KEY_SECTION, .optional = true, .keys = &temperature_table},
-    {.name = "statics", .type = KEY_SECTION, .optional = true, .keys = &statics_table},
+    {.name = "conserved",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &conserved_table,
+     .offset = IN_SCENE(observe.every[OBSERVE_CONSERVED])},
+    {.name = "temperature",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &temperature_table,
+     .offset = IN_SCENE(observe.every[OBSERVE_TEMPERATURE])},
+    {.name = "statics",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &statics_table,
+     .offset = IN_SCENE(observe.every[OBSERVE_STATICS])},
     {.name = "dynamics", .type = KEY_SECTION, .optional = true, .keys = &dynamics_table},
-    {.name = "collisions", .type = KEY_SECTION, .optional = true, .keys = &collisions_table},
+    {.name = "collisions",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &collisions_table,
+     .offset = IN_SCENE(observe.every[OBSERVE_COLLISIONS])},
 };
 static const struct key_table observe_table = {"observe", COUNT(observe_keys), observe_keys};
 

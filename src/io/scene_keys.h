@@ -5,6 +5,8 @@
 #include "io/keys.h"
 #include "io/scene.h"
 
+#define SCENE_MOST_BENDING 1e9 /* kT, given or derived */
+
 /* A scene as it is read: the scene itself, and what is turned into something else once all is read. */
 struct draft {
   struct scene scene;

@@ -9,12 +9,11 @@
 static void make_up_lag(struct state *state, const struct model *model)
 {
   struct solvent *p = &state->solvent;
-  const double t = 0.5 * state->solvent_lag * model->time_step;
-  const struct vec3 gain = vec3_scale(t, model->solvent.acceleration);
   for (uint32_t i = 0; state->solvent_lag > 0 && i < p->n; i++) {
-    struct point now = state_solvent_position(state, model, i);
-    p->x[i] = now.x, p->y[i] = now.y, p->z[i] = now.z;
-    p->vx[i] += gain.x, p->vy[i] += gain.y, p->vz[i] += gain.z;
+    const struct point r = state_solvent_position(state, model, i);
+    const struct vec3 v = state_solvent_velocity(state, model, i);
+    p->x[i] = r.x, p->y[i] = r.y, p->z[i] = r.z;
+    p->vx[i] = v.x, p->vy[i] = v.y, p->vz[i] = v.z;
   }
 }
 

@@ -40,9 +40,6 @@ bool checkpoint_write(const char *path, const struct checkpoint_head *head, cons
 bool checkpoint_read(const char *path, const struct model *model, struct checkpoint_head *head, struct state *state,
                      const struct observe_block *blocks, size_t block_count, struct message *message);
 
-/* The scene text of a checkpoint, to be freed; NULL, with a message, if it cannot be read. */
-char *checkpoint_scene_text(const char *path, struct message *message);
-
 /* A start from somebody's state: a checkpoint, or the last frame of an H5MD file with vertices (and solvent, if the
  * model has one) with velocities. Sets step 0, lag 0 and no crossings so far: solvent that lags in a checkpoint is
  * streamed to where it is. Velocities of vertices are taken to be of the half step ahead, as uncross writes them. Box,

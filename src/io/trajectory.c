@@ -13,12 +13,11 @@ struct trajectory *trajectory_allocate(const char *path)
   if (!t)
     return NULL;
   t->file = t->group = t->position = t->velocity = t->edges = t->step = t->time = -1;
-  t->path = malloc(strlen(path) + 1);
+  t->path = strdup(path);
   if (!t->path) {
     free(t);
     return NULL;
   }
-  memcpy(t->path, path, strlen(path) + 1);
   return t;
 }
 
@@ -149,6 +148,30 @@ struct trajectory *trajectory_open_existing(const char *path, bool writable, enu
     return trajectory_give_up(t);
   }
   return t;
+}
+
+/* --- rows of a frame --------------------------------------------------------------------------------------------- */
+
+void frame_positions(const struct state *state, const struct model *model, const uint32_t *slot, double *row)
+{
+  for (uint32_t v = 0; v < state->vertices; v++, row += 3) {
+    const struct vec3 r = point_in_a0(state->position[v]);
+    memcpy(row, &r, sizeof r);
+  }
+  for (uint32_t id = 0; slot && id < state->solvent.n; id++, row += 3) {
+    const struct vec3 r = point_in_a0(state_solvent_position(state, model, slot[id]));
+    memcpy(row, &r, sizeof r);
+  }
+}
+
+void frame_velocities(const struct state *state, const struct model *model, const uint32_t *slot, double *row)
+{
+  memcpy(row, state->velocity, state->vertices * sizeof *state->velocity);
+  row += 3 * (size_t)state->vertices;
+  for (uint32_t id = 0; slot && id < state->solvent.n; id++, row += 3) {
+    const struct vec3 v = state_solvent_velocity(state, model, slot[id]);
+    memcpy(row, &v, sizeof v);
+  }
 }
 
 /* --- reading ----------------------------------------------------------------------------------------------------- */

@@ -35,6 +35,11 @@ struct trajectory *trajectory_give_up(struct trajectory *trajectory);
 struct trajectory *trajectory_open_existing(const char *path, bool writable, enum h5_trouble *trouble,
                                             struct message *message);
 
+/* What a frame shows of a state, in a0 and a0/t0: the vertices, unwrapped, then, if slot[id] is given, the solvent
+ * where it is now. row: [3 (vertices + particles)]. */
+void frame_positions(const struct state *state, const struct model *model, const uint32_t *slot, double *row);
+void frame_velocities(const struct state *state, const struct model *model, const uint32_t *slot, double *row);
+
 /* One frame of positions or velocities, in a0 or a0/t0: rows [3 particles]. */
 bool trajectory_rows(const struct trajectory *trajectory, hid_t dataset, uint64_t frame, double *rows);
 

@@ -296,36 +296,16 @@ static bool append_block(hid_t dataset, uint64_t frame, int rank, const hsize_t 
   return ok;
 }
 
-static bool fill_positions(struct trajectory *t, const struct model *model, const struct state *state,
-                           struct message *message)
+/* Frames hold every lattice point within the limit. */
+static bool within_limit(const struct trajectory *t, const struct state *state, struct message *message)
 {
-  double *row = t->row;
-  for (uint32_t v = 0; v < state->vertices; v++, row += 3) {
-    struct vec3 r = point_in_a0(state->position[v]);
-    if (!(fabs(r.x) < TRAJECTORY_LIMIT && fabs(r.y) < TRAJECTORY_LIMIT && fabs(r.z) < TRAJECTORY_LIMIT))
+  for (uint32_t v = 0; v < state->vertices; v++) {
+    const double *r = &t->row[3 * (size_t)v];
+    if (!(fabs(r[0]) < TRAJECTORY_LIMIT && fabs(r[1]) < TRAJECTORY_LIMIT && fabs(r[2]) < TRAJECTORY_LIMIT))
       return message_set(message, "%s: step %llu: vertex %u is at (%.6g, %.6g, %.6g), unwrapped; frames hold %g a0",
-                         t->path, (unsigned long long)state->step, v, r.x, r.y, r.z, TRAJECTORY_LIMIT);
-    row[0] = r.x, row[1] = r.y, row[2] = r.z;
-  }
-  for (uint32_t id = 0; t->slot && id < state->solvent.n; id++, row += 3) {
-    struct vec3 r = point_in_a0(state_solvent_position(state, model, t->slot[id]));
-    row[0] = r.x, row[1] = r.y, row[2] = r.z;
+                         t->path, (unsigned long long)state->step, v, r[0], r[1], r[2], TRAJECTORY_LIMIT);
   }
   return true;
-}
-
-/* Solvent velocities at the time of the frame, as its positions are: the body force's share of the lag is added. */
-static void fill_velocities(struct trajectory *t, const struct model *model, const struct state *state)
-{
-  double *row = t->row;
-  const struct solvent *p = &state->solvent;
-  const struct vec3 gain = vec3_scale(0.5 * state->solvent_lag * model->time_step, model->solvent.acceleration);
-  memcpy(row, state->velocity, (size_t)state->vertices * sizeof *state->velocity);
-  row += 3 * (size_t)state->vertices;
-  for (uint32_t id = 0; t->slot && id < p->n; id++, row += 3) {
-    uint32_t i = t->slot[id];
-    row[0] = p->vx[i] + gain.x, row[1] = p->vy[i] + gain.y, row[2] = p->vz[i] + gain.z;
-  }
 }
 
 /* The step comes last: a frame without it does not count. */
@@ -338,7 +318,7 @@ static bool write_frame(struct trajectory *t, const struct model *model, const s
   const int64_t step = (int64_t)state->step;
   bool ok = append_block(t->position, t->frames, 3, rows, H5T_NATIVE_DOUBLE, t->row);
   if (ok && t->velocity >= 0) {
-    fill_velocities(t, model, state);
+    frame_velocities(state, model, t->slot, t->row);
     ok = append_block(t->velocity, t->frames, 3, rows, H5T_NATIVE_DOUBLE, t->row);
   }
   return ok && append_block(t->edges, t->frames, 3, matrix, H5T_NATIVE_DOUBLE, edges) &&
@@ -365,7 +345,8 @@ bool trajectory_append(struct trajectory *t, const struct model *model, const st
                        (unsigned long long)state->step, (unsigned long long)t->last_step);
   if (t->slot)
     state_solvent_slots(state, t->slot);
-  if (!fill_positions(t, model, state, message) || !reserve(t->file, t->path, frame_bytes(t), message))
+  frame_positions(state, model, t->slot, t->row);
+  if (!within_limit(t, state, message) || !reserve(t->file, t->path, frame_bytes(t), message))
     return false;
   bool ok = write_frame(t, model, state);
   h5_trim(t->file);

@@ -88,6 +88,36 @@ static bool check_plain(const char *path, const char *text, size_t size, struct 
   return ok;
 }
 
+enum { MOST_BYTES = 1 << 26 }; /* a scene is written by a person or a small script */
+
+char *yaml_read_file(const char *path, size_t *size, struct message *message)
+{
+  FILE *file = fopen(path, "rb");
+  char *text = NULL;
+  size_t room = 1 << 14;
+  *size = 0;
+  bool ok = file && (text = malloc(room)) != NULL;
+  while (ok && !feof(file)) {
+    *size += fread(text + *size, 1, room - *size, file);
+    if (ferror(file) || *size > MOST_BYTES) {
+      ok = false;
+    } else if (*size == room) {
+      char *more = realloc(text, room *= 2);
+      ok = more != NULL;
+      text = more ? more : text;
+    }
+  }
+  if (!ok) {
+    message_set(message, "%s: cannot be read: %s; a scene is a YAML file of at most 64 MiB", path,
+                *size > MOST_BYTES ? "too large" : strerror(errno));
+    free(text);
+    text = NULL;
+  }
+  if (file)
+    fclose(file);
+  return text;
+}
+
 bool yaml_file_open(struct yaml_file *file, const char *path, const char *text, size_t size, struct message *message)
 {
   const char *zero = memchr(text, 0, size);
@@ -190,9 +220,10 @@ static const char *plain_text(const yaml_node_t *node)
   return text && node->data.scalar.style == YAML_PLAIN_SCALAR_STYLE ? text : NULL;
 }
 
-bool yaml_text_whole(const char *text, uint64_t *value)
+bool yaml_whole(const yaml_node_t *node, uint64_t *value)
 {
-  size_t digits = strspn(text, "0123456789");
+  const char *text = plain_text(node);
+  size_t digits = text ? strspn(text, "0123456789") : 0;
   if (digits == 0 || text[digits] != '\0' || (digits > 1 && text[0] == '0'))
     return false;
   errno = 0;
@@ -203,8 +234,11 @@ bool yaml_text_whole(const char *text, uint64_t *value)
   return true;
 }
 
-bool yaml_text_number(const char *text, double *value)
+bool yaml_number(const yaml_node_t *node, double *value)
 {
+  const char *text = plain_text(node);
+  if (!text)
+    return false;
   const char *digits = text + (*text == '-' || *text == '+');
   if (strspn(digits, "0123456789.") == 0 || digits[strspn(digits, "0123456789.+-eE")] != '\0')
     return false;
@@ -215,18 +249,6 @@ bool yaml_text_number(const char *text, double *value)
     return false;
   *value = x == 0.0 ? 0.0 : x; /* no negative zero: it would be another scene's fingerprint */
   return true;
-}
-
-bool yaml_whole(const yaml_node_t *node, uint64_t *value)
-{
-  const char *text = plain_text(node);
-  return text && yaml_text_whole(text, value);
-}
-
-bool yaml_number(const yaml_node_t *node, double *value)
-{
-  const char *text = plain_text(node);
-  return text && yaml_text_number(text, value);
 }
 
 bool yaml_switch(const yaml_node_t *node, bool *value)

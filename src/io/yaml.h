@@ -21,6 +21,9 @@ struct yaml_file {
   yaml_document_t document;
 };
 
+/* The whole text of a file of at most 64 MiB, to be freed; NULL, with a message, on failure. */
+char *yaml_read_file(const char *path, size_t *size, struct message *message);
+
 /* Parses `size` bytes of text. On failure leaves a message `path:line:col: ...`, and nothing to close. */
 bool yaml_file_open(struct yaml_file *file, const char *path, const char *text, size_t size, struct message *message);
 void yaml_file_close(struct yaml_file *file);
@@ -51,10 +54,6 @@ bool yaml_number(const yaml_node_t *node, double *value);
 
 /* true or false, not quoted. */
 bool yaml_switch(const yaml_node_t *node, bool *value);
-
-/* The same conversions of a piece of text, for defaults. */
-bool yaml_text_whole(const char *text, uint64_t *value);
-bool yaml_text_number(const char *text, double *value);
 
 /* Leaves the message `path:line:col: ...` about this node. Always returns false, for `return yaml_refuse(...)`. */
 bool yaml_refuse(const struct yaml_file *file, const yaml_node_t *node, struct message *message, const char *format,

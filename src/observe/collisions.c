@@ -39,7 +39,6 @@ static const char *const columns[] = {
     "time", "moves", "possible", "executed", "negative", "executed_per_possible", "rate_per_vertex"};
 
 const struct observer_type collisions_observer = {
-    .name = "collisions",
     .column = columns,
     .columns = sizeof columns / sizeof *columns,
     .size = size_collisions,

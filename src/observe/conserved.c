@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "fiber/force.h"
 #include "observe/observer.h"
 
@@ -50,8 +51,7 @@ static void solvent_component(const struct state *state, const double *velocity,
 
 static void measure_solvent(const struct model *model, const struct state *state, struct motion *m)
 {
-  const double lag = 0.5 * state->solvent_lag * model->time_step;
-  const struct vec3 gain = vec3_scale(lag, model->solvent.acceleration);
+  const struct vec3 gain = state_solvent_gain(state, model);
   solvent_component(state, state->solvent.vx, gain.x, &m->solvent_sum.x, &m->solvent_squares.x);
   solvent_component(state, state->solvent.vy, gain.y, &m->solvent_sum.y, &m->solvent_squares.y);
   solvent_component(state, state->solvent.vz, gain.z, &m->solvent_sum.z, &m->solvent_squares.z);
@@ -80,10 +80,9 @@ static void measure_vertices(const struct model *model, const struct state *stat
 
 bool motion_work(struct work *work, const struct model *model)
 {
-  struct model fibers_only = *model; /* forces need no room for collisions */
-  fibers_only.solvent.particles = 0;
-  fibers_only.solvent.bath = BATH_PARTICLES;
-  return work_alloc(work, &fibers_only);
+  memset(work, 0, sizeof *work);
+  work->fiber.force = memory_alloc(model->vertices, sizeof *work->fiber.force); /* all that forces need */
+  return work->fiber.force;
 }
 
 struct motion motion_measure(const struct model *model, const struct state *state, struct work *work)
@@ -163,7 +162,6 @@ static const char *const conserved_columns[] = {
     "time", "solvent_kinetic", "vertex_kinetic", "bond", "bend", "total", "px", "py", "pz"};
 
 const struct observer_type conserved_observer = {
-    .name = "conserved",
     .column = conserved_columns,
     .columns = sizeof conserved_columns / sizeof *conserved_columns,
     .row = conserved_row,
@@ -182,7 +180,6 @@ static const char *const temperature_columns[] = {"time",      "solvent", "solve
                                                   "solvent_z", "vertex",  "vertex_half_step"};
 
 const struct observer_type temperature_observer = {
-    .name = "temperature",
     .column = temperature_columns,
     .columns = sizeof temperature_columns / sizeof *temperature_columns,
     .row = temperature_row,

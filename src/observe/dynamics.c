@@ -6,6 +6,7 @@
 
 #include "observe/observer.h"
 #include "observe/tally.h"
+#include "observe/theory.h"
 
 /* --- one fiber, two times ---------------------------------------------------------------------------------------- */
 
@@ -89,13 +90,8 @@ struct vec3 dynamics_drift(const struct model *model, double from, double to)
 {
   if (model_has_phantoms(model))
     return vec3_scale(to - from, model->flow);
-  struct vec3 force = vec3_scale(model->solvent.particles, model->solvent.acceleration);
-  for (uint32_t k = 0; k < model->kinds; k++) {
-    const struct fiber_kind *kind = &model->kind[k];
-    force = vec3_add_scaled(force, (double)kind->count * kind->vertices, kind->force);
-  }
   const double half_squares = 0.5 * (to - from) * (to + from) / model->total_mass;
-  return vec3_add_scaled(vec3_scale(to - from, model->flow), half_squares, force);
+  return vec3_add_scaled(vec3_scale(to - from, model->flow), half_squares, theory_net_force(model));
 }
 
 /* --- all lags ---------------------------------------------------------------------------------------------------- */
@@ -334,7 +330,6 @@ static bool summarise_dynamics(const struct observer *observer, const struct mod
 }
 
 const struct observer_type dynamics_observer = {
-    .name = "dynamics",
     .size = size_dynamics,
     .add = add_dynamics,
     .summarise = summarise_dynamics,

@@ -44,7 +44,6 @@ struct observer_take {
 };
 
 struct observer_type {
-  const char *name;
   /* Adds what it needs beyond integer[0]; NULL if nothing. */
   void (*size)(const struct observer *observer, const struct model *model, struct observer_size *size);
 

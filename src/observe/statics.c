@@ -185,7 +185,6 @@ static bool summarise_statics(const struct observer *observer, const struct mode
 }
 
 const struct observer_type statics_observer = {
-    .name = "statics",
     .size = size_statics,
     .add = add_statics,
     .summarise = summarise_statics,

@@ -57,11 +57,22 @@ bool oracle_box(const struct oracle_pair *p, struct box *box)
   return true;
 }
 
-const struct pack_table *oracle_before(const struct oracle_pair *p)
+uint64_t oracle_seed(const struct oracle_pair *p)
+{
+  return (uint64_t)oracle_model_integer(p, "in.numbers", 0, 0) | (uint64_t)oracle_model_integer(p, "in.numbers", 0, 1)
+                                                                     << 32;
+}
+
+const struct pack_table *oracle_input(const struct oracle_pair *p)
 {
   char name[PACK_WORD];
   snprintf(name, sizeof name, "in.%.27s", p->ours->name + strlen("out."));
-  const struct pack_table *t = oracle_sibling(p, name);
+  return oracle_sibling(p, name);
+}
+
+const struct pack_table *oracle_before(const struct oracle_pair *p)
+{
+  const struct pack_table *t = oracle_input(p);
   return t && t->rows == p->ours->rows && t->columns == p->ours->columns ? t : NULL;
 }
 
@@ -69,12 +80,13 @@ const struct pack_table *oracle_before(const struct oracle_pair *p)
 
 static double unchanged(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
-  return pack_value(oracle_before(p), row, column);
+  const struct pack_table *in = oracle_before(p);
+  return in ? pack_value(in, row, column) : NAN;
 }
 
 static double changed_by(const struct oracle_pair *p, uint32_t row, uint32_t column, double part)
 {
-  const double in = pack_value(oracle_before(p), row, column);
+  const double in = unchanged(p, row, column);
   return in + part * (pack_value(p->ours, row, column) - in);
 }
 
@@ -96,31 +108,6 @@ static double backwards(const struct oracle_pair *p, uint32_t row, uint32_t colu
 static double negated(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
   return -pack_value(p->ours, row, column);
-}
-
-static bool is_unchanged(const struct oracle_pair *p)
-{
-  return oracle_before(p) && oracle_explains(p, unchanged);
-}
-
-static bool is_half(const struct oracle_pair *p)
-{
-  return oracle_before(p) && oracle_explains(p, half);
-}
-
-static bool is_twice(const struct oracle_pair *p)
-{
-  return oracle_before(p) && oracle_explains(p, twice);
-}
-
-static bool is_backwards(const struct oracle_pair *p)
-{
-  return oracle_before(p) && oracle_explains(p, backwards);
-}
-
-static bool is_negated(const struct oracle_pair *p)
-{
-  return oracle_explains(p, negated);
 }
 
 /* The rounding of numbers of 24 bits has either sign: the sum of n errors is within 4 sqrt(n) of their size. An error
@@ -156,20 +143,15 @@ static double without_mass(const struct oracle_pair *p, uint32_t row, uint32_t c
   return time && force ? unchanged(p, row, column) + pack_value(time, 0, 0) * pack_value(force, row, column) : NAN;
 }
 
-static bool mass_left_out(const struct oracle_pair *p)
-{
-  return oracle_before(p) && oracle_explains(p, without_mass);
-}
-
 const struct oracle_pattern oracle_patterns_any[] = {
-    {"kick", "out.velocity", mass_left_out, "kick without the mass: v + t F for v + t F/M"},
-    {NULL, NULL, is_single, "single precision somewhere: right to 5 to 8 digits (--single has its tolerances)"},
-    {NULL, NULL, is_negated, "sign: the negative of what is wanted"},
-    {NULL, NULL, is_unchanged, "nothing done: what came out is what went in"},
-    {NULL, NULL, is_half, "half a step: changed by half of what is wanted"},
-    {NULL, NULL, is_twice, "a step instead of half a step: changed by twice what is wanted"},
-    {NULL, NULL, is_backwards, "sign: changed by the negative of what is wanted"},
-    {NULL, NULL, NULL, NULL},
+    {"kick", "out.velocity", "kick without the mass: v + t F for v + t F/M", .guess = without_mass},
+    {NULL, NULL, "single precision somewhere: right to 5 to 8 digits (--single has its tolerances)", .fits = is_single},
+    {NULL, NULL, "sign: the negative of what is wanted", .guess = negated},
+    {NULL, NULL, "nothing done: what came out is what went in", .guess = unchanged},
+    {NULL, NULL, "half a step: changed by half of what is wanted", .guess = half},
+    {NULL, NULL, "a step instead of half a step: changed by twice what is wanted", .guess = twice},
+    {NULL, NULL, "sign: changed by the negative of what is wanted", .guess = backwards},
+    {.meaning = NULL},
 };
 
 /* --- the search -------------------------------------------------------------------------------------------------- */
@@ -178,7 +160,8 @@ static const char *search(const struct oracle_pattern *pattern, const struct ora
 {
   for (; pattern->meaning; pattern++)
     if ((!pattern->operator_name || strcmp(pattern->operator_name, operator_name) == 0) &&
-        (!pattern->table || strcmp(pattern->table, p->ours->name) == 0) && pattern->fits(p))
+        (!pattern->table || strcmp(pattern->table, p->ours->name) == 0) &&
+        (pattern->guess ? oracle_explains(p, pattern->guess) : pattern->fits(p)))
       return pattern->meaning;
   return NULL;
 }

@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "fiber/force.h"
-#include "io/snapshot.h"
 #include "oracle/operators.h"
 #include "oracle/oracle.h"
 #include "step.h"
@@ -14,16 +13,6 @@ static bool say_fault(const struct work *work, struct message *message)
   char text[512];
   fault_describe(&work->fault, text, sizeof text);
   return message_set(message, "%s", text);
-}
-
-bool oracle_start(const struct scene *scene, struct state *state, struct work *work, struct message *message)
-{
-  if (!scene->snapshot)
-    return step_start(state, &scene->model, work) || say_fault(work, message);
-  char *path = scene_snapshot_path(scene);
-  bool ok = path && snapshot_read_start(path, &scene->model, state, message);
-  free(path);
-  return ok && (fiber_forces(state, &scene->model, work, 0) || say_fault(work, message));
 }
 
 /* --- packs ------------------------------------------------------------------------------------------------------- */
@@ -50,7 +39,7 @@ static bool emit_step(const struct scene *scene, struct model *model, uint64_t s
   message_set(message, "no memory for this scene");
   if (ok) {
     struct oracle_stage g = {model, &state, &work, pack, {"", 0}, slot};
-    ok = oracle_start(scene, &state, &work, message) && advance_to(&g, step - 1, message) &&
+    ok = scene_start(scene, &state, &work, message) && advance_to(&g, step - 1, message) &&
          (oracle_run_operators(&g) || pack->failed || say_fault(&work, message));
   }
   work_free(&work);
@@ -154,7 +143,7 @@ bool oracle_trace(const struct scene *scene, FILE *out, struct message *message)
   t.slot = malloc(((size_t)scene->model.solvent.particles + 1) * sizeof *t.slot);
   bool ok = t.slot && state_alloc(&state, &scene->model) && work_alloc(&work, &scene->model);
   message_set(message, "no memory for this scene");
-  ok = ok && oracle_start(scene, &state, &work, message) && trace_steps(scene, &state, &work, &t, message);
+  ok = ok && scene_start(scene, &state, &work, message) && trace_steps(scene, &state, &work, &t, message);
   work_free(&work);
   state_free(&state);
   free(t.slot);

@@ -60,8 +60,8 @@ double pack_value(const struct pack_table *table, uint32_t row, uint32_t column)
 
 void pack_free(struct pack *pack);
 
-/* Writes a pack as HDF5, byte for byte the same for equal packs. */
-bool pack_write(const struct pack *pack, const char *path, struct message *message);
+/* Writes a pack as HDF5 to a new file, byte for byte the same for equal packs; `path` serves messages only. */
+bool pack_write(const struct pack *pack, FILE *out, const char *path, struct message *message);
 
 /* Reads a pack of either form. False, with a message (for text `file:line:col: ...`), if it is neither, or damaged. */
 bool pack_read(const char *path, struct pack *pack, struct message *message);

@@ -50,22 +50,14 @@ static void *image_of(const struct pack *pack, size_t *bytes)
   return image;
 }
 
-bool pack_write(const struct pack *pack, const char *path, struct message *message)
+bool pack_write(const struct pack *pack, FILE *out, const char *path, struct message *message)
 {
   size_t bytes = 0;
   void *image = image_of(pack, &bytes);
   if (!image)
     return h5_fail(message, path, "cannot make the pack");
-  FILE *out = fopen(path, "wbx");
-  if (!out) {
-    free(image);
-    return message_set(message, "%s: cannot create; the file must not exist, its folder must", path);
-  }
   bool ok = fwrite(image, 1, bytes, out) == bytes;
-  ok = fclose(out) == 0 && ok;
   free(image);
-  if (!ok)
-    remove(path);
   return ok || message_set(message, "%s: cannot write", path);
 }
 

@@ -34,6 +34,7 @@ bool pack_dump(const struct pack *pack, FILE *out)
 struct line {
   struct pack_place place;
   uint32_t row;
+  size_t column; /* where the name begins, counted from 1 */
   char table[PACK_WORD], component[PACK_WORD];
   bool real;
   int64_t integer;
@@ -43,8 +44,11 @@ struct line {
 /* What is known of a table while its lines come in, in any order of rows; columns in the order first met. */
 struct draft {
   size_t values, room; /* lines so far; rows that fit */
-  double *number;      /* [room * PACK_COLUMNS] */
-  int64_t *integer;
+  struct draft_value {
+    double number;
+    int64_t integer;
+    bool given;
+  } * value; /* [room * PACK_COLUMNS] */
 };
 
 static bool parse_value(const char *text, struct line *line)
@@ -110,6 +114,8 @@ static size_t parse_line(char *text, struct line *line)
     const size_t length = strcspn(text + at, " "), next = at + length + strspn(text + at + length, " ");
     const bool last = text[next] == '\0';
     text[at + length] = '\0';
+    if (k == NAME)
+      line->column = at + 1;
     if (!parse_word(text + at, (enum word)k, line))
       return at + 1;
     if (last != (k == WORDS - 1))
@@ -130,6 +136,7 @@ static int column_of(struct pack_table *t, const char *component)
   return (int)t->columns++;
 }
 
+/* Large memory that nobody has touched costs nothing, so that a row of a large number may well come first. */
 static bool make_room(struct draft *d, uint32_t row)
 {
   size_t room = d->room ? d->room : 64;
@@ -137,12 +144,15 @@ static bool make_room(struct draft *d, uint32_t row)
     room *= 2;
   if (room == d->room)
     return true;
-  double *number = realloc(d->number, room * PACK_COLUMNS * sizeof *number);
-  d->number = number ? number : d->number;
-  int64_t *integer = realloc(d->integer, room * PACK_COLUMNS * sizeof *integer);
-  d->integer = integer ? integer : d->integer;
-  d->room = number && integer ? room : d->room;
-  return number && integer;
+  struct draft_value *bigger = calloc(room * PACK_COLUMNS, sizeof *bigger);
+  if (!bigger)
+    return false;
+  if (d->value)
+    memcpy(bigger, d->value, d->room * PACK_COLUMNS * sizeof *bigger);
+  free(d->value);
+  d->value = bigger;
+  d->room = room;
+  return true;
 }
 
 /* Consecutive lines mostly belong to one table, so the last one is looked at first. */
@@ -169,16 +179,17 @@ static const char *take(struct pack *pack, struct draft drafts[MOST_TABLES], con
     return "more than 16 components in one table";
   if (!make_room(d, line->row))
     return "memory is short";
-  const size_t at = (size_t)line->row * PACK_COLUMNS + (size_t)column;
-  d->number[at] = line->number;
-  d->integer[at] = line->integer;
+  struct draft_value *value = &d->value[(size_t)line->row * PACK_COLUMNS + (size_t)column];
+  if (value->given)
+    return "given before; each value is given once";
+  *value = (struct draft_value){line->number, line->integer, true};
   d->values++;
   t->real |= line->real;
   t->rows = line->row >= t->rows ? line->row + 1 : t->rows;
   return NULL;
 }
 
-/* Puts the draft's numbers where they belong, if each was given once. */
+/* Puts the draft's numbers where they belong, if none is missing. */
 static bool finish(struct pack_table *t, const struct draft *d, const char *path, struct message *message)
 {
   if (d->values != (size_t)t->rows * t->columns)
@@ -192,33 +203,41 @@ static bool finish(struct pack_table *t, const struct draft *d, const char *path
   free(t->value.data);
   t->value.integer = data;
   for (size_t k = 0; k < d->values; k++) {
-    const size_t at = k / t->columns * PACK_COLUMNS + k % t->columns;
+    const struct draft_value *value = &d->value[k / t->columns * PACK_COLUMNS + k % t->columns];
     if (t->real)
-      t->value.number[k] = d->number[at];
+      t->value.number[k] = value->number;
     else
-      data[k] = d->integer[at];
+      data[k] = value->integer;
   }
   return true;
+}
+
+/* Takes line number `number` in, comments and empty lines aside. */
+static bool read_line(char *text, const char *path, size_t number, struct pack *pack, struct draft drafts[MOST_TABLES],
+                      struct message *message)
+{
+  struct line line;
+  text[strcspn(text, "\r\n")] = '\0';
+  if (text[0] == '#' || text[0] == '\0')
+    return true;
+  const size_t column = parse_line(text, &line);
+  if (column > 0)
+    return message_at(message, path, number, column,
+                      "not understood; a line is `operator step row table.component value`");
+  const char *wrong = take(pack, drafts, &line);
+  return !wrong || message_at(message, path, number, line.column, "%s", wrong);
 }
 
 static bool read_lines(FILE *in, const char *path, struct pack *pack, struct draft drafts[MOST_TABLES],
                        struct message *message)
 {
-  char text[512];
-  for (size_t number = 1; fgets(text, sizeof text, in); number++) {
-    struct line line;
-    text[strcspn(text, "\r\n")] = '\0';
-    if (text[0] == '#' || text[0] == '\0')
-      continue;
-    size_t column = parse_line(text, &line);
-    if (column > 0)
-      return message_at(message, path, number, column,
-                        "not understood; a line is `operator step row table.component value`");
-    const char *wrong = take(pack, drafts, &line);
-    if (wrong)
-      return message_at(message, path, number, 1, "%s", wrong);
-  }
-  return !ferror(in) || message_set(message, "%s: cannot be read", path);
+  char *text = NULL;
+  size_t room = 0;
+  bool ok = true;
+  for (size_t number = 1; ok && getline(&text, &room, in) >= 0; number++)
+    ok = read_line(text, path, number, pack, drafts, message);
+  free(text);
+  return ok && (feof(in) || message_set(message, "%s: cannot be read", path));
 }
 
 bool pack_read_text(FILE *in, const char *path, struct pack *pack, struct message *message)
@@ -229,8 +248,7 @@ bool pack_read_text(FILE *in, const char *path, struct pack *pack, struct messag
   bool ok = read_lines(in, path, pack, drafts, message);
   for (size_t n = 0; n < pack->count; n++) {
     ok = ok && finish(&pack->table[n], &drafts[n], path, message);
-    free(drafts[n].number);
-    free(drafts[n].integer);
+    free(drafts[n].value);
   }
   free(drafts);
   return ok && (pack->count > 0 || message_set(message, "%s: holds no values; a pack is HDF5 or lines of text", path));

@@ -5,18 +5,19 @@
 #include "base/lattice.h"
 #include "oracle/pair.h"
 
+/* What a value would be with a certain bug; NaN if the packs do not say. */
+typedef double oracle_guess(const struct oracle_pair *pair, uint32_t row, uint32_t column);
+
 struct oracle_pattern {
   const char *operator_name, *table; /* NULL: any; sweep: long_sweep too */
-  bool (*fits)(const struct oracle_pair *);
   const char *meaning;
+  oracle_guess *guess; /* fits if this guess explains all that differs; or else */
+  bool (*fits)(const struct oracle_pair *);
 };
 
 /* Each list ends with one without a meaning; the first pattern that fits is told. */
 extern const struct oracle_pattern oracle_patterns_random[], oracle_patterns_solvent[], oracle_patterns_sweep[],
     oracle_patterns_any[];
-
-/* What a value would be with a certain bug. */
-typedef double oracle_guess(const struct oracle_pair *pair, uint32_t row, uint32_t column);
 
 /* True if a guess is right wherever ours is not, and ours is wrong somewhere. */
 bool oracle_explains(const struct oracle_pair *pair, oracle_guess *guess);
@@ -30,12 +31,17 @@ bool oracle_agrees(const struct oracle_pair *pair, uint32_t row, uint32_t column
 /* True if the first rows are right to 5 to 8 digits, not better, and the errors scatter about 0. */
 bool oracle_is_single(const struct oracle_pair *pair, uint32_t rows);
 
-/* The input of which an output is the changed form; NULL if there is none of its shape. */
+/* The input in.name of an output out.name, NULL if there is none; and NULL also if it is not of the output's shape, so
+ * that the output is its changed form. */
+const struct pack_table *oracle_input(const struct oracle_pair *pair);
 const struct pack_table *oracle_before(const struct oracle_pair *pair);
 
 /* Tables of the model, and integers in them; 0 for what is not there. */
 const struct pack_table *oracle_model(const struct oracle_pair *pair, const char *table);
 int64_t oracle_model_integer(const struct oracle_pair *pair, const char *table, uint32_t row, uint32_t column);
+
+/* Key of all random numbers. */
+uint64_t oracle_seed(const struct oracle_pair *pair);
 
 /* The model's box. False if it is none. */
 bool oracle_box(const struct oracle_pair *pair, struct box *box);

@@ -6,12 +6,6 @@
 #include "base/random.h"
 #include "oracle/patterns.h"
 
-static uint64_t seed_of(const struct oracle_pair *p)
-{
-  return (uint64_t)oracle_model_integer(p, "in.numbers", 0, 0) | (uint64_t)oracle_model_integer(p, "in.numbers", 0, 1)
-                                                                     << 32;
-}
-
 /* --- words ------------------------------------------------------------------------------------------------------- */
 
 enum { PURPOSE, DRAW, STEP, ENTITY, ADDRESS_COLUMNS };
@@ -26,7 +20,7 @@ static bool words_are(const struct oracle_pair *p, struct recipe r)
 {
   const struct pack_table *in = oracle_sibling(p, "in.address"), *ours = oracle_sibling(p, "out.word"),
                           *theirs = oracle_sibling_of_theirs(p, "out.word");
-  const uint64_t seed = seed_of(p);
+  const uint64_t seed = oracle_seed(p);
   const uint32_t low = (uint32_t)seed, high = (uint32_t)(seed >> 32);
   const philox4x32_key_t key = {{r.key_exchanged ? high : low, r.key_exchanged ? low : high}};
   if (!in || in->real || in->columns != ADDRESS_COLUMNS || !ours || !theirs || theirs->rows != in->rows)
@@ -102,7 +96,7 @@ static bool half_missing(const struct oracle_pair *p)
 
 static bool shift_is_of(const struct oracle_pair *p, uint64_t step)
 {
-  struct random_words r = random_at(seed_of(p), RANDOM_GRID_SHIFT, 0, step, 0);
+  struct random_words r = random_at(oracle_seed(p), RANDOM_GRID_SHIFT, 0, step, 0);
   for (uint32_t k = 0; k < 3; k++)
     if (pack_value(p->theirs, 0, k) != (double)((uint64_t)r.w[k] << (LATTICE_BITS - 32)))
       return false;
@@ -135,7 +129,7 @@ static bool is_shuffled(const struct oracle_pair *p, struct shuffle s)
     order[k] = k;
   for (uint32_t k = n - 1; order && k > 0; k--) {
     const struct random_words r =
-        random_at(seed_of(p), purpose, s.draw, p->ours->place.step + (uint64_t)s.later, k / 2);
+        random_at(oracle_seed(p), purpose, s.draw, p->ours->place.step + (uint64_t)s.later, k / 2);
     const uint64_t deviate = s.last_zero && k == n - 1 && n % 2 == 1 ? 0 : random_u64(r, (int)(k % 2));
     const uint64_t range = s.short_range ? k : (uint64_t)k + 1;
     const uint64_t low = (deviate & UINT32_MAX) * range, high = (deviate >> 32) * range; /* of range * deviate */
@@ -180,29 +174,14 @@ static double inverse_of(const struct oracle_pair *p, uint32_t row, uint32_t col
   return -1.0;
 }
 
-static bool is_inverse(const struct oracle_pair *p)
-{
-  return oracle_explains(p, inverse_of);
-}
-
 /* Velocity of the particle that has ours, instead of whose ours has. */
 static double from_other_side(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
-  const struct pack_table *in = oracle_sibling(p, "in.velocity");
+  const struct pack_table *in = oracle_before(p);
   struct oracle_pair order = *p;
   order.ours = oracle_sibling(p, "out.order");
-  return in && order.ours ? pack_value(in, (uint32_t)inverse_of(&order, row, 0), column) : NAN;
-}
-
-static bool swapped_back(const struct oracle_pair *p)
-{
-  const struct pack_table *in = oracle_sibling(p, "in.velocity"), *order = oracle_sibling(p, "out.order");
-  if (!in || !order || order->rows != p->ours->rows || in->rows != p->ours->rows || in->columns != p->ours->columns)
-    return false;
-  for (uint32_t row = 0; row < order->rows; row++)
-    if (!(pack_value(order, row, 0) >= 0.0 && pack_value(order, row, 0) < order->rows))
-      return false;
-  return oracle_explains(p, from_other_side);
+  const double from = in && order.ours ? inverse_of(&order, row, 0) : -1.0;
+  return from >= 0.0 ? pack_value(in, (uint32_t)from, column) : NAN;
 }
 
 static bool is_permutation(const struct oracle_pair *p)
@@ -225,20 +204,21 @@ static bool is_no_permutation(const struct oracle_pair *p)
 }
 
 const struct oracle_pattern oracle_patterns_random[] = {
-    {"random", NULL, rounds_wrong, "Philox with another number of rounds than 10"},
-    {"random", NULL, key_exchanged, "the key's words exchanged: the low one of the seed comes first"},
-    {"random", NULL, entity_short, "entities cut to 16 bits"},
-    {"random", NULL, step_short, "steps cut to 32 bits: the high word is the counter's last"},
-    {"random", NULL, words_unlike, "hardly a word is right: counter, key or rounds of Philox"},
-    {"random", "out.uniform", half_missing, "uniforms without their half: multiples of 2^-52, and 0 among them"},
-    {"shift", "out.shift", shift_of_other_step, "random address: the shift of the step before or after"},
-    {NULL, "out.order", is_inverse, "the inverse permutation: applied from the other side"},
-    {"order", "out.order", other_sweep, "random address: the order of the other sweep of the step"},
-    {NULL, "out.order", other_step, "random address: the permutation of the step before or after"},
-    {NULL, "out.order", short_range, "permutation: entry k changes places with one of k, not of k + 1"},
-    {NULL, "out.order", odd_last, "permutation of an odd number: the last entry's random number is left out"},
-    {NULL, "out.order", is_no_permutation, "no permutation: a number is missing"},
-    {NULL, "out.order", is_permutation, "a permutation, but of other random numbers or exchanges"},
-    {"swap", "out.velocity", swapped_back, "the permutation is right, but applied from the other side"},
-    {NULL, NULL, NULL, NULL},
+    {"random", NULL, "Philox with another number of rounds than 10", .fits = rounds_wrong},
+    {"random", NULL, "the key's words exchanged: the low one of the seed comes first", .fits = key_exchanged},
+    {"random", NULL, "entities cut to 16 bits", .fits = entity_short},
+    {"random", NULL, "steps cut to 32 bits: the high word is the counter's last", .fits = step_short},
+    {"random", NULL, "hardly a word is right: counter, key or rounds of Philox", .fits = words_unlike},
+    {"random", "out.uniform", "uniforms without their half: multiples of 2^-52, and 0 among them",
+     .fits = half_missing},
+    {"shift", "out.shift", "random address: the shift of the step before or after", .fits = shift_of_other_step},
+    {NULL, "out.order", "the inverse permutation: applied from the other side", .guess = inverse_of},
+    {"order", "out.order", "random address: the order of the other sweep of the step", .fits = other_sweep},
+    {NULL, "out.order", "random address: the permutation of the step before or after", .fits = other_step},
+    {NULL, "out.order", "permutation: entry k changes places with one of k, not of k + 1", .fits = short_range},
+    {NULL, "out.order", "permutation of an odd number: the last entry's random number is left out", .fits = odd_last},
+    {NULL, "out.order", "no permutation: a number is missing", .fits = is_no_permutation},
+    {NULL, "out.order", "a permutation, but of other random numbers or exchanges", .fits = is_permutation},
+    {"swap", "out.velocity", "the permutation is right, but applied from the other side", .guess = from_other_side},
+    {.meaning = NULL},
 };

@@ -45,26 +45,6 @@ static double force_without_flight(const struct oracle_pair *p, uint32_t row, ui
   return flown(p, row, column, 1.0, 0.0);
 }
 
-static bool flies_half(const struct oracle_pair *p)
-{
-  return oracle_explains(p, half_flight);
-}
-
-static bool flies_twice(const struct oracle_pair *p)
-{
-  return oracle_explains(p, double_flight);
-}
-
-static bool falls_twice(const struct oracle_pair *p)
-{
-  return oracle_explains(p, force_without_half);
-}
-
-static bool falls_not(const struct oracle_pair *p)
-{
-  return oracle_explains(p, force_without_flight);
-}
-
 /* Differ by whole box edges. */
 static bool not_wrapped(const struct oracle_pair *p)
 {
@@ -83,9 +63,7 @@ static bool not_wrapped(const struct oracle_pair *p)
 /* Position plus so many shifts; false if the pack has none. */
 static bool shifted(const struct oracle_pair *p, uint32_t row, int64_t sign, struct box *box, struct point *at)
 {
-  char name[PACK_WORD];
-  snprintf(name, sizeof name, "in.%.27s", p->ours->name + strlen("out."));
-  const struct pack_table *r = oracle_sibling(p, name), *shift = oracle_sibling(p, "in.shift");
+  const struct pack_table *r = oracle_input(p), *shift = oracle_sibling(p, "in.shift");
   const int64_t reach = (int64_t)1 << 61;
   if (!oracle_is_vectors(r, false, row) || !oracle_is_vectors(shift, false, 0) || !oracle_box(p, box))
     return false;
@@ -129,21 +107,6 @@ static double x_slowest(const struct oracle_pair *p, uint32_t row, uint32_t colu
   const int64_t x = cell % lx, y = cell / lx % ly, z = cell / (lx * ly);
   const int64_t number = (x * ly + y) * lz + z;
   return (double)number;
-}
-
-static bool shift_subtracted(const struct oracle_pair *p)
-{
-  return oracle_explains(p, subtracted);
-}
-
-static bool shift_missing(const struct oracle_pair *p)
-{
-  return oracle_explains(p, unshifted);
-}
-
-static bool cells_transposed(const struct oracle_pair *p)
-{
-  return oracle_explains(p, x_slowest);
 }
 
 /* True if cells are wrong nowhere but at such places, and somewhere. */
@@ -213,22 +176,10 @@ static double by_number(const struct oracle_pair *p, uint32_t row, uint32_t colu
              : NAN;
 }
 
-static bool mass_left_out(const struct oracle_pair *p)
-{
-  return oracle_explains(p, massless);
-}
-
-static bool divided_by_number(const struct oracle_pair *p)
-{
-  return oracle_explains(p, by_number);
-}
-
 /* Axis of a cell, another entity or step in its address. */
 static double axis_at(const struct oracle_pair *p, uint64_t step, uint32_t entity, uint32_t column)
 {
-  const uint64_t seed = (uint64_t)oracle_model_integer(p, "in.numbers", 0, 0) |
-                        (uint64_t)oracle_model_integer(p, "in.numbers", 0, 1) << 32;
-  return oracle_component(random_axis(seed, RANDOM_ROTATION_AXIS, step, entity), column);
+  return oracle_component(random_axis(oracle_seed(p), RANDOM_ROTATION_AXIS, step, entity), column);
 }
 
 static double step_before(const struct oracle_pair *p, uint32_t row, uint32_t column)
@@ -248,16 +199,6 @@ static double by_rank(const struct oracle_pair *p, uint32_t row, uint32_t column
   for (uint32_t k = 0; load && k < row && k < load->rows; k++)
     rank += pack_value(load, k, 0) >= 2.0;
   return axis_at(p, p->ours->place.step, rank, column);
-}
-
-static bool axes_of_other_step(const struct oracle_pair *p)
-{
-  return oracle_explains(p, step_before) || oracle_explains(p, step_after);
-}
-
-static bool axes_by_rank(const struct oracle_pair *p)
-{
-  return oracle_explains(p, by_rank);
 }
 
 /* --- rotation ---------------------------------------------------------------------------------------------------- */
@@ -309,45 +250,27 @@ static double not_returned(const struct oracle_pair *p, uint32_t row, uint32_t c
   return rotated(p, row, column, (struct rotation){1.0, true, true, false});
 }
 
-static bool rotation_transposed(const struct oracle_pair *p)
-{
-  return oracle_explains(p, transposed);
-}
-
-static bool factor_missing(const struct oracle_pair *p)
-{
-  return oracle_explains(p, without_factor);
-}
-
-static bool frame_at_rest(const struct oracle_pair *p)
-{
-  return oracle_explains(p, at_rest);
-}
-
-static bool center_not_added(const struct oracle_pair *p)
-{
-  return oracle_explains(p, not_returned);
-}
-
 const struct oracle_pattern oracle_patterns_solvent[] = {
-    {"stream", "out.position", not_wrapped, "positions are not wrapped into the box"},
-    {"stream", "out.position", flies_half, "half step: particles fly for half the time"},
-    {"stream", "out.position", flies_twice, "particles fly for twice the time"},
-    {"stream", "out.position", falls_twice, "body force without its half: a t^2 for (a/2) t^2"},
-    {"stream", "out.position", falls_not, "body force left out of the flight: (a/2) t^2 is missing"},
-    {"bin", NULL, shift_subtracted, "grid shift sign: the shift is subtracted from positions, not added"},
-    {"bin", "out.vertex", shift_missing, "grid shift applied to the solvent only"},
-    {"bin", NULL, shift_missing, "no grid shift"},
-    {"bin", NULL, cells_transposed, "cell numbers with x slowest instead of fastest"},
-    {"bin", NULL, faces_wrong, "cells are half-open: what lies on a face belongs to the cell above it"},
-    {"bin", NULL, wrapped_once, "wrapped by one edge at most: unwrapped vertices may be further away"},
-    {"sum", "out.momentum", mass_left_out, "momentum without the mass: vertices count as solvent"},
-    {"solve", "out.center", divided_by_number, "center by the number of members: it is momentum by mass"},
-    {"solve", "out.axis", axes_of_other_step, "random address: axes of the step before or after"},
-    {"solve", "out.axis", axes_by_rank, "random address: axes by the rank of the active cell, not by its number"},
-    {"rotate", NULL, rotation_transposed, "rotation transposed: turned by -alpha"},
-    {"rotate", NULL, factor_missing, "the thermostat's factor is left out"},
-    {"rotate", NULL, frame_at_rest, "turned in the frame at rest: the center is not subtracted and added again"},
-    {"rotate", NULL, center_not_added, "the center is not added again after the turn"},
-    {NULL, NULL, NULL, NULL},
+    {"stream", "out.position", "positions are not wrapped into the box", .fits = not_wrapped},
+    {"stream", "out.position", "half step: particles fly for half the time", .guess = half_flight},
+    {"stream", "out.position", "particles fly for twice the time", .guess = double_flight},
+    {"stream", "out.position", "body force without its half: a t^2 for (a/2) t^2", .guess = force_without_half},
+    {"stream", "out.position", "body force left out of the flight: (a/2) t^2 is missing",
+     .guess = force_without_flight},
+    {"bin", NULL, "grid shift sign: the shift is subtracted from positions, not added", .guess = subtracted},
+    {"bin", "out.vertex", "grid shift applied to the solvent only", .guess = unshifted},
+    {"bin", NULL, "no grid shift", .guess = unshifted},
+    {"bin", NULL, "cell numbers with x slowest instead of fastest", .guess = x_slowest},
+    {"bin", NULL, "cells are half-open: what lies on a face belongs to the cell above it", .fits = faces_wrong},
+    {"bin", NULL, "wrapped by one edge at most: unwrapped vertices may be further away", .fits = wrapped_once},
+    {"sum", "out.momentum", "momentum without the mass: vertices count as solvent", .guess = massless},
+    {"solve", "out.center", "center by the number of members: it is momentum by mass", .guess = by_number},
+    {"solve", "out.axis", "random address: axes of the step before or after", .guess = step_before},
+    {"solve", "out.axis", "random address: axes of the step before or after", .guess = step_after},
+    {"solve", "out.axis", "random address: axes by the rank of the active cell, not by its number", .guess = by_rank},
+    {"rotate", NULL, "rotation transposed: turned by -alpha", .guess = transposed},
+    {"rotate", NULL, "the thermostat's factor is left out", .guess = without_factor},
+    {"rotate", NULL, "turned in the frame at rest: the center is not subtracted and added again", .guess = at_rest},
+    {"rotate", NULL, "the center is not added again after the turn", .guess = not_returned},
+    {.meaning = NULL},
 };

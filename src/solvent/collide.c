@@ -107,31 +107,30 @@ static double largest_component(struct vec3 v)
   return isnan(v.x + v.y + v.z) ? INFINITY : largest;
 }
 
-struct fastest {
-  double momentum; /* the largest component */
+/* Who has the most of something, and what it is to be blamed for. */
+struct culprit {
+  double value;
   enum fault_code code;
   int64_t who;
 };
 
-/* Who has the largest momentum of all. */
-static struct fastest find_fastest(const struct state *state, const struct model *model)
+/* Of all components of momentum. */
+static struct culprit find_fastest(const struct state *state, const struct model *model)
 {
   const struct solvent *s = &state->solvent;
-  struct fastest f = {0.0, FAULT_SOLVENT_SPEED, -1};
+  struct culprit f = {0.0, FAULT_SOLVENT_SPEED, -1};
   for (uint32_t i = 0; i < s->n; i++)
-    if (largest_component(solvent_velocity(s, i)) > f.momentum)
-      f = (struct fastest){largest_component(solvent_velocity(s, i)), FAULT_SOLVENT_SPEED, s->id[i]};
+    if (largest_component(solvent_velocity(s, i)) > f.value)
+      f = (struct culprit){largest_component(solvent_velocity(s, i)), FAULT_SOLVENT_SPEED, s->id[i]};
   for (uint32_t v = 0; v < state->vertices; v++)
-    if (model->mass[v] * largest_component(state->velocity[v]) > f.momentum)
-      f = (struct fastest){model->mass[v] * largest_component(state->velocity[v]), FAULT_VERTEX_SPEED, v};
+    if (model->mass[v] * largest_component(state->velocity[v]) > f.value)
+      f = (struct culprit){model->mass[v] * largest_component(state->velocity[v]), FAULT_VERTEX_SPEED, v};
   return f;
 }
 
-static bool blame_fastest(const struct state *state, const struct model *model, struct work *work, double limit,
-                          uint64_t step)
+static bool blame(struct work *work, struct culprit c, double limit, uint64_t step)
 {
-  const struct fastest f = find_fastest(state, model);
-  return work_fault(work, f.code, step, f.who, f.momentum, limit);
+  return work_fault(work, c.code, step, c.who, c.value, limit);
 }
 
 /* Cell number of a place in sum and turn. */
@@ -140,23 +139,30 @@ static uint32_t cell_number(const struct collision_work *c, uint32_t place)
   return c->occupied ? c->occupied[place] : place;
 }
 
+/* The fullest cell, as its place in sum and turn. */
+static uint32_t fullest_cell(const struct collision_work *c)
+{
+  uint32_t most = 0, where = 0;
+  for (uint32_t k = 0; k < c->cells; k++)
+    if (srd_members(&c->sum[k]) > most) {
+      most = srd_members(&c->sum[k]);
+      where = k;
+    }
+  return where;
+}
+
 /* The sums are right if members times the largest momentum fits in 63 bits, and members times the largest mass in
  * 40. */
 static bool check_range(const struct state *state, const struct model *model, struct work *work, uint64_t span,
                         uint64_t step)
 {
-  const struct cell_sum *sum = work->collision.sum;
-  const uint32_t cells = work->collision.cells;
-  uint32_t most = 0, where = 0;
-  for (uint32_t k = 0; k < cells; k++)
-    if (srd_members(&sum[k]) > most) {
-      most = srd_members(&sum[k]);
-      where = k;
-    }
+  const uint32_t where = fullest_cell(&work->collision), most = srd_members(&work->collision.sum[where]);
   double limit = 0x1p63 * SRD_MOMENTUM_UNIT / most;
-  if (!(((double)span + 1.0) * SRD_MOMENTUM_UNIT < limit)) /* the span may be up to twice the largest momentum */
-    if (!(find_fastest(state, model).momentum + SRD_MOMENTUM_UNIT < limit))
-      return blame_fastest(state, model, work, limit, step);
+  if (!(((double)span + 1.0) * SRD_MOMENTUM_UNIT < limit)) { /* the span may be up to twice the largest momentum */
+    const struct culprit fastest = find_fastest(state, model);
+    if (!(fastest.value + SRD_MOMENTUM_UNIT < limit))
+      return blame(work, fastest, limit, step);
+  }
   const double heaviest = 0x1p40 * SRD_MASS_UNIT;
   return most * model->max_mass < heaviest ||
          work_fault(work, FAULT_CELL_MASS, step, cell_number(&work->collision, where), most * model->max_mass,
@@ -199,25 +205,56 @@ static void add_energy(int64_t *sum, double energy)
   *sum = (int64_t)((uint64_t)*sum + (uint64_t)llrint(RELATIVE_SCALE * energy));
 }
 
-/* Twice the kinetic energy of each cell's members relative to its v_cm, summed in integers as the momenta are. */
+/* Twice the kinetic energy of a member relative to the v_cm of its cell. */
+static inline double solvent_energy(const struct state *state, const struct collision_work *c, uint32_t i)
+{
+  const struct vec3 w = vec3_sub(solvent_velocity(&state->solvent, i), c->turn[c->solvent_cell[i]].center);
+  return vec3_dot(w, w);
+}
+
+/* None if it is alone: it is its own center. (Solvent too, but nobody asks: its mass is small.) */
+static inline double vertex_energy(const struct state *state, const struct model *model, const struct collision_work *c,
+                                   uint32_t v)
+{
+  const struct cell_turn *t = &c->turn[c->vertex_cell[v]];
+  const struct vec3 w = vec3_sub(state->velocity[v], t->center);
+  return t->active * model->mass[v] * vec3_dot(w, w);
+}
+
+static struct culprit find_hottest(const struct state *state, const struct model *model, const struct collision_work *c)
+{
+  struct culprit f = {0.0, FAULT_SOLVENT_ENERGY, -1};
+  for (uint32_t i = 0; i < state->solvent.n; i++)
+    if (solvent_energy(state, c, i) > f.value)
+      f = (struct culprit){solvent_energy(state, c, i), FAULT_SOLVENT_ENERGY, state->solvent.id[i]};
+  for (uint32_t v = 0; v < state->vertices; v++)
+    if (vertex_energy(state, model, c, v) > f.value)
+      f = (struct culprit){vertex_energy(state, model, c, v), FAULT_VERTEX_ENERGY, v};
+  return f;
+}
+
+/* Energies of all members, summed cell by cell in integers as the momenta are. A sum is right if members times the
+ * largest energy fits in 63 bits. (Momenta are in range by now, so all energies are numbers.) */
 static bool sum_relative_energy(const struct state *state, const struct model *model, struct work *work, uint64_t step)
 {
-  const struct solvent *s = &state->solvent;
   struct collision_work *c = &work->collision;
   memset(c->relative, 0, (size_t)box_cell_count(&model->box) * sizeof *c->relative);
-  double total = 0.0;
-  for (uint32_t i = 0; i < s->n; i++) {
-    struct vec3 w = vec3_sub(solvent_velocity(s, i), c->turn[c->solvent_cell[i]].center);
-    total += vec3_dot(w, w);
-    add_energy(&c->relative[c->solvent_cell[i]], vec3_dot(w, w));
+  double largest = 0.0;
+  for (uint32_t i = 0; i < state->solvent.n; i++) {
+    const double energy = solvent_energy(state, c, i);
+    largest = energy > largest ? energy : largest;
+    add_energy(&c->relative[c->solvent_cell[i]], energy);
   }
   for (uint32_t v = 0; v < state->vertices; v++) {
-    struct vec3 w = vec3_sub(state->velocity[v], c->turn[c->vertex_cell[v]].center);
-    total += model->mass[v] * vec3_dot(w, w);
-    add_energy(&c->relative[c->vertex_cell[v]], model->mass[v] * vec3_dot(w, w));
+    const double energy = vertex_energy(state, model, c, v);
+    largest = energy > largest ? energy : largest;
+    add_energy(&c->relative[c->vertex_cell[v]], energy);
   }
-  const double limit = 0x1p62 / RELATIVE_SCALE; /* if all of them fit, so does each cell */
-  return total < limit || blame_fastest(state, model, work, sqrt(limit), step);
+  const double range = 0x1p63 / RELATIVE_SCALE, rounded = largest + 1.0 / RELATIVE_SCALE;
+  if (rounded * ((double)state->solvent.n + state->vertices) < range) /* even if all were in one cell */
+    return true;
+  const double limit = range / srd_members(&c->sum[fullest_cell(c)]);
+  return rounded < limit || blame(work, find_hottest(state, model, c), limit, step);
 }
 
 /* New velocities of some particles, a column for each component. They are not written where the old ones stand, but

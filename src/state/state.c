@@ -45,6 +45,14 @@ void state_free(struct state *s)
   memset(s, 0, sizeof *s);
 }
 
+uint32_t state_lost_vertex(const struct state *s)
+{
+  uint32_t v = 0;
+  while (v < s->vertices && point_within_reach(s->position[v]))
+    v++;
+  return v;
+}
+
 void state_solvent_slots(const struct state *s, uint32_t *slot)
 {
   for (uint32_t i = 0; i < s->solvent.n; i++)
@@ -85,6 +93,17 @@ uint64_t state_hash(const struct state *s)
   XXH64_freeState(hash);
   free(slot);
   return digest;
+}
+
+struct vec3 state_solvent_gain(const struct state *s, const struct model *model)
+{
+  return vec3_scale(0.5 * s->solvent_lag * model->time_step, model->solvent.acceleration);
+}
+
+struct vec3 state_solvent_velocity(const struct state *s, const struct model *model, uint32_t i)
+{
+  const struct solvent *p = &s->solvent;
+  return vec3_add((struct vec3){p->vx[i], p->vy[i], p->vz[i]}, state_solvent_gain(s, model));
 }
 
 struct point state_solvent_position(const struct state *s, const struct model *model, uint32_t i)

@@ -44,6 +44,9 @@ struct state {
 bool state_alloc(struct state *state, const struct model *model);
 void state_free(struct state *state);
 
+/* The first vertex that is beyond LATTICE_REACH; `vertices` if none is. */
+uint32_t state_lost_vertex(const struct state *state);
+
 /* slot[id] = index of solvent particle id in memory. slot: [solvent.n]. */
 void state_solvent_slots(const struct state *state, uint32_t *slot);
 
@@ -57,7 +60,12 @@ static inline int64_t state_flight(double v, double a, double t)
   return lattice_from_a0(v * t + 0.5 * a * t * t);
 }
 
-/* Where solvent particle number i (in memory order) is now, its lag made up for: lattice units, within the box. */
+/* What the body force has given each solvent particle since it was last streamed: so much more is its velocity now. */
+struct vec3 state_solvent_gain(const struct state *state, const struct model *model);
+
+/* Where solvent particle number i (in memory order) is now, its lag made up for: lattice units, within the box. And its
+ * velocity now. */
 struct point state_solvent_position(const struct state *state, const struct model *model, uint32_t i);
+struct vec3 state_solvent_velocity(const struct state *state, const struct model *model, uint32_t i);
 
 #endif

@@ -115,10 +115,8 @@ struct grid_row {
 
 struct neighbors {
   bool built;
-  double margin;            /* a0: reach of an anchor, if the move for which it is taken is no longer */
-  uint32_t bonds;           /* one for each vertex, used or not */
   struct anchor *anchor;    /* [vertices] */
-  struct bond_clock *clock; /* [bonds] */
+  struct bond_clock *clock; /* [vertices] of their bonds, used or not */
   struct pair_list pairs;
   int32_t cells[3];     /* of the search grid */
   int64_t cell_edge[3]; /* lattice units */

@@ -192,6 +192,25 @@ fi
 run "$dir/second" --steps 10
 same 0 "$code" "a checkpoint serves as the start of another run"
 
+# A snapshot is given no velocity: it must flow as the scene says.
+{ cat "$dir/plain.yaml"; echo "flow: [0.5, -0.25, 0]"; } >"$dir/scene.yaml"
+run "$dir/flowing" --steps 20
+{ cat "$dir/plain.yaml"; echo "flow: [0.5, -0.25, 0]"; echo "start: {snapshot: flowing/checkpoint.h5}"; } >"$dir/scene.yaml"
+run "$dir/flows-on" --steps 10
+same 0 "$code" "a snapshot that flows as the scene says"
+flow=$(($(wc -l <"$dir/plain.yaml") + 1))
+sed -i 's/flowing/plain/' "$dir/scene.yaml"
+refused "a flow, and a snapshot at rest" "scene.yaml:$flow:7: flow: the center of mass of 'plain/checkpoint.h5' moves at"
+{ cat "$dir/plain.yaml"; echo "flow: [0.01, 0, 0]"; echo "start: {snapshot: plain/checkpoint.h5}"; } >"$dir/scene.yaml"
+refused "a flow slower than heat, and a snapshot at rest" "scene.yaml:$flow:7: flow: "
+{ cat "$dir/plain.yaml"; echo "start: {snapshot: flowing/checkpoint.h5}"; } >"$dir/scene.yaml"
+refused "a snapshot that flows, and no flow" "scene.yaml:$flow:19: flow: .* moves at \[0\.[45]"
+bath="hydrodynamics: false, bath: phantoms"
+sed "s/^  collision_interval.*/&\n  ${bath//, /\\n  }/" "$dir/plain.yaml" >"$dir/scene.yaml"
+{ echo "flow: [0.5, 0, 0]"; echo "start: {snapshot: bath-plain/checkpoint.h5}"; } >>"$dir/scene.yaml"
+run "$dir/taken-along" --steps 10
+same 0 "$code" "a bath of phantoms takes any snapshot along"
+
 # Every example scene is accepted.
 for example in "$top"/scenes/*.yaml; do
   "$uncross" check "$example" >"$dir/out" 2>"$dir/err"

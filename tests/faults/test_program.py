@@ -170,6 +170,7 @@ class Faults(unittest.TestCase):
     def test_info(self):
         for file in "checkpoint.h5", "conserved.csv":
             self.same_output(["info", "run/" + file])
+        self.same_output(["info", "scene.yaml"])
         self.same_output(["info", "run/run.json"], lambda text: len(text.splitlines()))
 
     def test_info_of_a_trajectory(self):

@@ -206,7 +206,7 @@ static void lists_stay_complete_under_moves(void **unused)
     struct test_run r = random_bonds(places[p].lx, places[p].ly, places[p].lz, places[p].count, &d);
     assert_true(neighbors_build(&r.state, &r.model, &r.work));
     for (int k = 0; k < 6000; k++) {
-      random_move(&r, &d, k % 100 ? r.work.fiber.neighbors.margin : 0.45 * box_shortest_edge(&r.model.box));
+      random_move(&r, &d, k % 100 ? NEIGHBORS_MARGIN : 0.45 * box_shortest_edge(&r.model.box));
       if (k % 250 == 249)
         check_lists(&r, seed);
     }
@@ -227,14 +227,14 @@ static void anchors_hold_within_the_margin(void **unused)
   struct neighbors *nb = &r.work.fiber.neighbors;
   assert_true(neighbors_build(&r.state, &r.model, &r.work));
   const struct point a = r.state.position[1];
-  const int64_t margin = lattice_from_a0(nb->margin);
+  const int64_t margin = lattice_from_a0(NEIGHBORS_MARGIN);
   const struct point within = {a.x + margin - 1, a.y, a.z}, beyond = {a.x, a.y, a.z - margin - 1};
   assert_true(neighbors_hold(nb, 1, within) && !neighbors_hold(nb, 1, beyond));
   assert_true(renew(&r, 1, beyond));
   /* a move of just more than the margin: from its middle, both ends are within the margin */
   assert_true(neighbors_hold(nb, 1, beyond) && neighbors_hold(nb, 1, a));
   assert_true(nb->renewed == 1 && llabs(nb->anchor[1].at.z - (a.z - margin / 2)) <= 1);
-  assert_close(nb->anchor[1].reach, nb->margin, 1e-11);
+  assert_close(nb->anchor[1].reach, NEIGHBORS_MARGIN, 1e-11);
   const struct point far = {a.x, a.y + lattice_from_a0(2.0), a.z}, further = {a.x, a.y + lattice_from_a0(2.001), a.z};
   assert_true(renew(&r, 1, far));
   assert_close(nb->anchor[1].reach, 1.0, 1e-11);
@@ -243,7 +243,7 @@ static void anchors_hold_within_the_margin(void **unused)
   const struct point near = {a.x + margin / 2, a.y, a.z};
   assert_true(renew(&r, 1, near));
   assert_true(nb->anchor[1].at.x == near.x && nb->anchor[1].at.y == near.y && neighbors_hold(nb, 1, a));
-  assert_close(nb->anchor[1].reach, nb->margin, 1e-11);
+  assert_close(nb->anchor[1].reach, NEIGHBORS_MARGIN, 1e-11);
   check_lists(&r, 3);
   test_end(&r);
 }

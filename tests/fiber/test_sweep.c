@@ -132,7 +132,7 @@ static void make_paths_long(struct test_run *r)
 {
   struct neighbors *nb = &r->work.fiber.neighbors;
   assert_true(neighbors_build(&r->state, &r->model, &r->work));
-  for (uint32_t j = 0; j < nb->bonds; j++)
+  for (uint32_t j = 0; j < r->state.vertices; j++)
     nb->clock[j].path = UINT32_MAX - 40000 * (j % 7);
   assert_true(neighbors_build(&r->state, &r->model, &r->work));
 }
@@ -634,6 +634,60 @@ static void phantom_links_are_lost(void **unused)
   test_end(&r);
 }
 
+/* So many boxes of 5 x 4 x 4 along x, and all that is within work with them: the frame has gone there. */
+static void send_off(struct test_run *r, int64_t a0)
+{
+  const int64_t far = a0 / 5 * r->model.box.edge[0];
+  for (uint32_t v = 0; v < r->state.vertices; v++)
+    r->state.position[v].x += far;
+  r->work.fiber.neighbors.moved.x += far;
+}
+
+/* Who comes too far for differences of places stops the run, noncrossing or phantom, at a step that looks. */
+static void lost_vertices_are_found(void **unused)
+{
+  (void)unused;
+  for (int k = 0; k < 4; k++) {
+    struct dice d = {17};
+    struct test_run r = dense(5, 4, 4, 4, 8, 0.54, &d);
+    r.model.crossing.forbidden = k % 2;
+    r.state.position[0].x = k < 2 ? LATTICE_REACH : -LATTICE_REACH;
+    for (uint32_t v = 1; v < 8; v++)
+      r.state.position[v] = point_move(r.state.position[v - 1], (struct vec3){k < 2 ? 0.54 : -0.54, 0, 0});
+    assert_true(fiber_sweep(&r.state, &r.model, &r.work, 1.0, 1023, 0, NULL));
+    assert_false(fiber_sweep(&r.state, &r.model, &r.work, 1.0, 1024, 0, NULL));
+    assert_int_equal(r.work.fault.code, FAULT_VERTEX_PLACE);
+    assert_true(r.work.fault.entity < 8 && r.work.fault.value > r.work.fault.limit);
+    test_end(&r);
+  }
+}
+
+/* A frame that has gone as far is forgotten, and nothing else: the sweep is that of the same suspension near by. */
+static void far_frames_are_forgotten(void **unused)
+{
+  (void)unused;
+  struct dice d[2] = {{18}, {18}};
+  struct test_run r[2] = {dense(5, 4, 4, 40, 8, 0.54, &d[0]), dense(5, 4, 4, 40, 8, 0.54, &d[1])};
+  send_off(&r[1], -1500000);
+  for (int n = 0; n < 2; n++) {
+    assert_true(neighbors_build(&r[n].state, &r[n].model, &r[n].work));
+    r[n].model.crossing.frame = FRAME_FLOW;
+    r[n].model.flow.x = 3.0;
+    r[n].model.time_step = 0.05;
+  }
+  send_off(&r[1], 3000000);
+  for (int n = 0; n < 2; n++)
+    for (uint64_t step = 1015; step < 1035; step++)
+      assert_true(fiber_sweep(&r[n].state, &r[n].model, &r[n].work, 1.0, step, 0, NULL));
+  assert_true(point_within_reach(r[1].work.fiber.neighbors.moved));
+  assert_true(r[0].state.counts.executed > 10 && r[0].state.counts.executed == r[1].state.counts.executed);
+  for (uint32_t v = 0; v < r[0].state.vertices; v++)
+    r[1].state.position[v].x -= 1500000 / 5 * r[1].model.box.edge[0];
+  assert_memory_equal(r[0].state.position, r[1].state.position, r[0].state.vertices * sizeof *r[0].state.position);
+  test_end(&r[0]);
+  test_end(&r[1]);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -655,6 +709,8 @@ int main(void)
       cmocka_unit_test(impossible_moves_are_found),
       cmocka_unit_test(bounces_have_the_same_limit),
       cmocka_unit_test(phantom_fibers_just_move),
+      cmocka_unit_test(lost_vertices_are_found),
+      cmocka_unit_test(far_frames_are_forgotten),
       cmocka_unit_test(links_of_a_chain),
       cmocka_unit_test(links_are_kept),
       cmocka_unit_test(phantom_links_are_lost),

@@ -153,7 +153,6 @@ static void read_checkpoint(void)
     require(state_hash(&all.state) == all.hash, "a changed checkpoint was taken for good");
   else
     require(message.text[0] != '\0', "a checkpoint was refused without a word");
-  free(checkpoint_scene_text(all.checkpoint.path, &message));
 }
 
 static void read_trajectory(void)

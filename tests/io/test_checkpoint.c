@@ -4,6 +4,7 @@
 #include <errno.h>
 
 #include "base/random.h"
+#include "io/hdf5.h"
 
 struct memory {
   double sums[3];
@@ -44,6 +45,15 @@ static bool read_state(const char *path, const struct model *model, struct state
   return checkpoint_read(path, model, &head, state, NULL, 0, message);
 }
 
+/* To be freed; NULL if it cannot be read. */
+static char *scene_text(const char *path)
+{
+  hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  char *text = file < 0 ? NULL : h5_text_read(file, "scene");
+  h5_close(file);
+  return text;
+}
+
 static void everything_comes_back(void **unused)
 {
   (void)unused;
@@ -73,7 +83,7 @@ static void everything_comes_back(void **unused)
   assert_true(head.state_hash == state_hash(&r.state));
   assert_true(head.wall_seconds == 12.5 && head.start_energy == -3.25 && head.start_momentum.z == 0x1p-1074);
   assert_string_equal(head.version, "0.1.0");
-  char *scene = checkpoint_scene_text(path, &message);
+  char *scene = scene_text(path);
   assert_string_equal(scene, some_scene);
   free(scene);
 
@@ -297,7 +307,7 @@ static void flipped_memory_is_found(void **unused)
     read++; /* the bit was in unused bytes */
     assert_memory_equal(&memory, &some_memory, sizeof memory);
     assert_true(head.seed == UINT64_MAX && head.wall_seconds == 12.5 && head.start_momentum.y == -2.0);
-    char *scene = checkpoint_scene_text(path, &message);
+    char *scene = scene_text(path);
     if (scene)
       assert_string_equal(scene, some_scene);
     free(scene);
@@ -325,6 +335,12 @@ static void foreign_files_are_refused(void **unused)
   struct message message;
   struct test_run r = small_run(1);
   assert_true(write_some(path, &r, &message));
+
+  const struct point here = r.state.position[5];
+  r.state.position[5].y = -LATTICE_REACH - 1;
+  assert_true(write_some(other, &r, &message));
+  expect_refusal(other, &r.model, &r.state, "vertex 5 is more than");
+  r.state.position[5] = here;
 
   expect_refusal(in_folder(folder, "nothing"), &r.model, &r.state, strerror(ENOENT));
   expect_refusal(folder, &r.model, &r.state, "folder");

@@ -185,7 +185,12 @@ static void info_knows_files(void **unused)
   assert_non_null(strstr(text, "checkpoint of uncross 0.1.0"));
   assert_non_null(strstr(text, "step 5, time 0.05 t0"));
 
-  static const struct {
+  char comment[6000] = "box: [4, 4, 4]\nsteps: 10\n"; /* behind more than 4096 bytes of comment */
+  const size_t scene = strlen(comment), leading = sizeof comment - scene - 1;
+  memmove(comment + leading, comment, scene);
+  memset(comment, '#', leading);
+  comment[leading - 1] = '\n';
+  const struct {
     const char *name, *content, *word; /* word: NULL if it must be refused */
   } files[] = {
       {"run.json", "{\"state_hash\": \"0123\", \"steps\": 12, \"nested\": {\"a\": 1}}", "steps: 12"},
@@ -193,6 +198,11 @@ static void info_knows_files(void **unused)
       {"energy.csv", "step,time,total\n1,0.01,2\n2,0.02,3\n", "3 columns and 2 rows"},
       {"scene.yaml", "# a scene\nbox: [8, 8, 8]\nsteps: 10\n", "box, steps"},
       {"a.xyz", "1\nLattice=\"1 0 0 0 1 0 0 0 1\" Properties=species:S:1:pos:R:3\nC 0 0 0\n", "extended XYZ, 1 "},
+      {"braces", "{\"steps\": 12}", "steps: 12"},
+      {"flow.yaml", "{box: [4, 4, 4], steps: 10}\n", "box, steps"},
+      {"long.yaml", comment, "box, steps"},
+      {"anchor.yaml", "box: &b [4, 4, 4]\n", NULL},
+      {"list.yaml", "- box\n", NULL},
       {"empty", "", NULL},
       {"prose", "Once upon a time\n", NULL},
   };

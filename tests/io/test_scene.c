@@ -137,6 +137,7 @@ static const struct bad bad_scenes[] = {
     {17, "    bending: 20000", 2, 12, "time_step: 0.01 is unstable"},
     {17, "    bending: 10\n    persistence_length: 5", 18, 25, "bending is given too; allowed: one of the two"},
     {15, "    bond_length: 0\n    persistence_length: 5\n#", 16, 25, "bending is given too"},
+    {17, "    persistence_length: 1e9", 17, 25, "persistence_length/bond_length is 2e+09 kT; allowed: at most 1e+09"},
     {15, "    bond_length: 8", 15, 18, "the mean length of a bond is 8.0025 a0; allowed: below half the shortest edge"},
     {1, "box: [16, 16, 1]", 15, 18, "allowed: below half the shortest edge of the box, 0.5 a0"},
     {13, "    vertices: 2\n    ring: true", 13, 15, "a ring of 2; allowed: 3 or more"},
@@ -223,6 +224,17 @@ static void whole_files_are_refused(void **unused)
   assert_true(refused("- a\n", 4, 1, 1, "not a mapping"));
   assert_true(refused("box: [4, 4, 4]\ntime_step: 0.1\nsteps: 1\n", 39, 1, 1, "there is nothing to simulate"));
   assert_true(refused("box: 1\0\n", 8, 1, 7, "a NUL byte"));
+  static const char bare[] = "box: [4, 4, 4]\ntime_step: 0.1\nsteps: 1\n"
+                             "solvent: {per_cell: 3, collision_interval: 0.1}\ntrajectory: {every: 1}\n",
+                    said[] =
+                        "box: [4, 4, 4]\ntime_step: 0.1\nsteps: 1\n"
+                        "solvent: {per_cell: 3, collision_interval: 0.1}\ntrajectory: {every: 1, solvent: false}\n";
+  assert_true(
+      refused(bare, strlen(bare), 5, 13, "trajectory.solvent: without fibers, frames of nothing; allowed: true"));
+  assert_true(refused(said, strlen(said), 5, 33, "allowed: true"));
+  static const char stiff[] = "box: [4, 4, 4]\ntime_step: 0.1\nsteps: 1\nfibers: [{name: a, count: 1, vertices: 2, "
+                              "mass: 1, spring: 1,\n bond_length: 1e-300, persistence_length: 1e9}]\n";
+  assert_true(refused(stiff, strlen(stiff), 5, 43, "persistence_length/bond_length is inf kT; allowed: at most"));
   struct scene scene;
   struct message message;
   assert_false(scene_read("no-such-folder/scene.yaml", &scene, &message));

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 
 #include "base/random.h"
+#include "io/hdf5.h"
 
 static const struct trajectory_options everything = {true, true, 42, "somebody"};
 static const struct trajectory_options fibers_only = {false, false, 42, NULL};
@@ -433,6 +434,39 @@ static void both_files_start_alike(void **unused)
   remove_folder(folder);
 }
 
+/* Other programs store a box that does not change once, as a vector or a matrix in the place of a group of frames. */
+static void fixed_boxes_are_read(void **unused)
+{
+  (void)unused;
+  char folder[64];
+  make_folder(folder);
+  const char *frames = in_folder(folder, "trajectory.h5");
+  struct message message;
+  struct test_run r = small_run(0);
+  struct trajectory *t = open_or_fail(frames, &r.model, &everything, false, 0);
+  append_or_fail(t, &r);
+  close_or_fail(t);
+  struct state start;
+  assert_true(state_alloc(&start, &r.model));
+  const double edges[9] = {6, 0, 0, 0, 5, 0, 0, 0, 7}, *vector = (const double[]){6, 5, 7};
+  for (int rank = 1; rank <= 2; rank++) {
+    const char *where = "particles/trajectory/box/edges";
+    const hsize_t three[2] = {3, 3};
+    hid_t file = H5Fopen(frames, H5F_ACC_RDWR, H5P_DEFAULT);
+    assert_true(H5Ldelete(file, where, H5P_DEFAULT) >= 0);
+    assert_true(h5_array_write(file, where, H5T_NATIVE_DOUBLE, rank, three, rank == 1 ? vector : edges));
+    h5_close(file);
+    memset(start.position, 0, start.vertices * sizeof *start.position);
+    if (!snapshot_read_start(frames, &r.model, &start, &message))
+      fail_msg("%s", message.text);
+    assert_shows(&start, &r, true);
+  }
+  state_free(&start);
+  test_end(&r);
+  assert_all_closed();
+  remove_folder(folder);
+}
+
 /* --- files for test_h5md.py --------------------------------------------------------------------------------------- */
 
 /* What the last frame and the checkpoint must hold: lattice points and the bits of velocities, as text. */
@@ -476,11 +510,16 @@ int main(int argc, char **argv)
 {
   if (argc == 3 && strcmp(argv[1], "sample") == 0)
     return write_sample(argv[2]);
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(frames_come_back),       cmocka_unit_test(far_vertices_are_refused),
-      cmocka_unit_test(steps_must_increase),    cmocka_unit_test(resume_drops_later_frames),
-      cmocka_unit_test(damage_is_set_aside),    cmocka_unit_test(sound_files_are_not_set_aside),
-      cmocka_unit_test(damage_never_crashes),   cmocka_unit_test(full_disks_are_reported),
-      cmocka_unit_test(both_files_start_alike), cmocka_unit_test(killed_runs_leave_their_frames)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(frames_come_back),
+                                     cmocka_unit_test(far_vertices_are_refused),
+                                     cmocka_unit_test(steps_must_increase),
+                                     cmocka_unit_test(resume_drops_later_frames),
+                                     cmocka_unit_test(damage_is_set_aside),
+                                     cmocka_unit_test(sound_files_are_not_set_aside),
+                                     cmocka_unit_test(damage_never_crashes),
+                                     cmocka_unit_test(full_disks_are_reported),
+                                     cmocka_unit_test(both_files_start_alike),
+                                     cmocka_unit_test(fixed_boxes_are_read),
+                                     cmocka_unit_test(killed_runs_leave_their_frames)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -384,18 +384,38 @@ class OracleTest(unittest.TestCase):
     def test_bad_text(self):
         for text, where in (("kick 2 0 out.velocity.x\n", ":1:"), ("# fine\nkick two 0 out.v.x 1\n", ":2:6:"),
                             ("kick 2 0 velocity 1\n", ":1:10:"), ("kick 2 0 out.v.x 1y\n", ":1:18:"),
-                            ("kick 2 1 out.v.x 1\n", "1 values for 2 rows"), ("", "holds no values")):
+                            ("kick 2 1 out.v.x 1\n", "1 values for 2 rows"), ("", "holds no values"),
+                            ("kick 2 0 out.v.x 1\n# x is missing in row 1\nkick 2  0 out.v.x 1\nkick 2 0 out.v.y 1\n"
+                             "kick 2 1 out.v.y 1\n", ":3:11: given before"),
+                            ("kick 2 9 out.v.x 1\nkick 2 0 out.v.x 1\nkick 2 9 out.v.x 1\n", ":3:10: given before")):
             status, said = self.compare(text)
             self.assertEqual(status, 2, said)
             self.assertIn(where, said)
+
+    def test_comments_of_any_length(self):
+        comment = "# " + "as long as it takes, " * 1000 + "\n"
+        self.assertEqual(self.compare(comment + self.dumps["dense"] + comment)[0], 0)
 
     def test_bad_words(self):
         self.assertEqual(run("emit", DATA / "dense.yaml")[0], 2)
         self.assertEqual(run("compare", DATA / "dense.pack.h5")[0], 2)
         self.assertEqual(run("compare", DATA / "dense.pack.h5", DATA / "dense.pack.h5", "--only", "kic")[0], 2)
-        self.assertEqual(run("emit", DATA / "dense.yaml", "-o", DATA / "dense.pack.h5")[0], 4)
         self.assertEqual(run("dump", DATA / "dense.start.h5")[0], 2)
         self.assertEqual(run("--help")[0], 0)
+
+    def test_nothing_is_written_over(self):
+        """Nor is a step made in vain: these are many, and in the end a bond is too long for so small a box."""
+        scene = self.dir / "long.yaml"
+        scene.write_text((DATA / "dense.yaml").read_text().replace("steps: 20", "steps: 1000000000")
+                         .replace("dense.start.h5", str(DATA / "dense.start.h5")))
+        there = self.dir / "there"
+        there.write_text("mine")
+        for action in "emit", "trace":
+            status, said = run(action, scene, "-o", there)
+            self.assertEqual((status, there.read_text()), (2, "mine"), said)
+            self.assertIn("there: cannot create: File exists", said)
+            self.assertEqual(run(action, scene, "-o", self.dir / "nowhere" / "out")[0], 4)
+        self.assertEqual(run("dump", DATA / "dense.pack.h5", "-o", there)[0], 2)
 
     def test_phantoms(self):
         """A bath of phantoms is traced; packs hold none of its operators."""

@@ -203,10 +203,46 @@ static void energy_range_faults(void **unused)
     struct test_run r = thermostatted(THERMOSTAT_RESCALE, 90, 0.05, 1.0, &d);
     r.state.solvent.vy[0] = bad[k];
     assert_false(solvent_collide(&r.state, &r.model, &r.work, 4));
-    assert_int_equal(r.work.fault.code, FAULT_SOLVENT_SPEED);
+    assert_int_equal(r.work.fault.code, k == 0 ? FAULT_SOLVENT_ENERGY : FAULT_SOLVENT_SPEED);
     assert_true(r.work.fault.entity == r.state.solvent.id[0]);
+    assert_true(r.work.fault.value > r.work.fault.limit);
+    if (k == 0)
+      assert_close(r.work.fault.value / (bad[k] * bad[k]), 1.0, 1e-3);
     test_end(&r);
   }
+  struct dice d = {7};
+  struct test_run r = thermostatted(THERMOSTAT_RESCALE, 90, 5, 1.0, &d);
+  r.model.mass[3] = r.model.inverse_mass[3] = 1.0;
+  r.state.velocity[3].x = 30000.0;
+  assert_false(solvent_collide(&r.state, &r.model, &r.work, 4));
+  assert_int_equal(r.work.fault.code, FAULT_VERTEX_ENERGY);
+  assert_true(r.work.fault.entity == 3 && r.work.fault.value > r.work.fault.limit);
+  test_end(&r);
+}
+
+/* Each cell has a range of its own: what all members have together may be more than one sum holds. */
+static void hot_boxes_are_cooled(void **unused)
+{
+  (void)unused;
+  struct dice d = {dice_seed(505)};
+  struct test_run r = thermostatted(THERMOSTAT_RESCALE, 90, 5, 1e6, &d);
+  const int64_t cells = box_cell_count(&r.model.box);
+  double sum = 0.0, freedoms = 0.0, before = 0.0;
+  struct cell_state *cell = cell_states(&r, 3);
+  for (int64_t c = 0; c < cells; c++)
+    before += cell[c].relative;
+  free(cell);
+  assert_true(before > 0x1p31);
+  assert_true(solvent_collide(&r.state, &r.model, &r.work, 3));
+  cell = cell_states(&r, 3);
+  for (int64_t c = 0; c < cells; c++)
+    if (cell[c].n > 1) {
+      freedoms += 3.0 * (cell[c].n - 1);
+      sum += cell[c].relative;
+    }
+  free(cell);
+  assert_close(sum / freedoms, 1.0, 1e-9);
+  test_end(&r);
 }
 
 /* A hot start comes to T = 1 and Maxwell velocities under either thermostat: kurtosis 3, equipartition between masses.
@@ -247,13 +283,10 @@ static void equilibrium_is_maxwellian(void **unused)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(rescale_sets_the_sum),
-      cmocka_unit_test(canonical_energies_are_gamma),
-      cmocka_unit_test(gamma_deviates),
-      cmocka_unit_test(gamma_deviates_have_addresses),
-      cmocka_unit_test(cold_cells_stay_finite),
-      cmocka_unit_test(energy_range_faults),
-      cmocka_unit_test(equilibrium_is_maxwellian),
+      cmocka_unit_test(rescale_sets_the_sum),   cmocka_unit_test(canonical_energies_are_gamma),
+      cmocka_unit_test(gamma_deviates),         cmocka_unit_test(gamma_deviates_have_addresses),
+      cmocka_unit_test(cold_cells_stay_finite), cmocka_unit_test(energy_range_faults),
+      cmocka_unit_test(hot_boxes_are_cooled),   cmocka_unit_test(equilibrium_is_maxwellian),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

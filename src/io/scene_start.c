@@ -1,0 +1,62 @@
+/* The state in which a run of a scene begins. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "fiber/force.h"
+#include "io/scene.h"
+#include "io/snapshot.h"
+#include "observe/conserved.h"
+#include "step.h"
+
+static bool say_fault(const struct work *work, struct message *message)
+{
+  fault_describe(&work->fault, message->text, sizeof message->text);
+  return false;
+}
+
+/* Where the scene says what flows, or else from what it starts. */
+static bool refuse_flow(const struct scene *scene, struct vec3 found, struct message *message)
+{
+  struct yaml_file file;
+  if (!yaml_file_open(&file, scene->path, scene->text, strlen(scene->text), message))
+    return false;
+  const yaml_node_t *root = yaml_file_root(&file), *flow = yaml_value_of(&file, root, "flow");
+  yaml_refuse(&file, flow ? flow : yaml_value_of(&file, yaml_value_of(&file, root, "start"), "snapshot"), message,
+              "flow: the center of mass of '%s' moves at [%.9g, %.9g, %.9g] a0/t0, and a snapshot is given no other "
+              "velocity; allowed: that one",
+              scene->snapshot, found.x, found.y, found.z);
+  yaml_file_close(&file);
+  return false;
+}
+
+#define FLOW_ROUNDING 1e-6 /* a0/t0 */
+#define FLOW_HEAT 6.0      /* standard deviations of the velocity of a center of mass that nobody has stopped */
+
+/* A snapshot's displacements are counted from the scene's flow, and its moves may be made in that frame: so it must
+ * flow like that. A bath, in which momentum is not kept, takes any snapshot along. */
+static bool flows_as_said(const struct scene *scene, const struct state *state, struct work *work,
+                          struct message *message)
+{
+  const struct model *m = &scene->model;
+  if (model_has_phantoms(m))
+    return true;
+  const struct motion motion = motion_measure(m, state, work);
+  const struct vec3 found = vec3_scale(1.0 / m->total_mass, vec3_add(motion.solvent_sum, motion.vertex.momentum));
+  const struct vec3 off = vec3_sub(found, m->flow);
+  const double most = vec3_norm(m->flow) > 0.0 ? FLOW_ROUNDING : FLOW_HEAT / sqrt(m->total_mass);
+  return (fabs(off.x) <= most && fabs(off.y) <= most && fabs(off.z) <= most) || refuse_flow(scene, found, message);
+}
+
+bool scene_start(const struct scene *scene, struct state *state, struct work *work, struct message *message)
+{
+  const struct model *m = &scene->model;
+  if (!scene->snapshot)
+    return step_start(state, m, work) || say_fault(work, message);
+  char *path = scene_snapshot_path(scene);
+  message_set(message, "no memory for the path of the snapshot");
+  bool ok = path && snapshot_read_start(path, m, state, message);
+  free(path);
+  /* forces are only asked whether its bonds fit the box */
+  return ok && (fiber_forces(state, m, work, 0) || say_fault(work, message)) &&
+         flows_as_said(scene, state, work, message);
+}
