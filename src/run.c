@@ -4,9 +4,7 @@
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "fiber/force.h"
 #include "io/folder.h"
 #include "io/output.h"
 #include "io/progress.h"
@@ -55,12 +53,6 @@ static enum exit_code complain(const struct run *run, enum exit_code code)
   return code;
 }
 
-static enum exit_code complain_fault(struct run *run, enum exit_code code)
-{
-  fault_describe(&run->work.fault, run->message.text, sizeof run->message.text);
-  return complain(run, code);
-}
-
 /* --- how it starts ----------------------------------------------------------------------------------------------- */
 
 static void checkpoint_path(const struct run *run, char *path, size_t size)
@@ -92,31 +84,11 @@ static void apply_options(struct run *run)
     run->scene.model.seed = run->options->seed;
 }
 
-/* The scene's snapshot; forces are only asked whether its bonds fit the box. */
-static enum exit_code start_from_snapshot(struct run *run)
-{
-  char *path = scene_snapshot_path(&run->scene);
-  message_set(&run->message, "no memory for the path of the snapshot");
-  bool ok = path && snapshot_read_start(path, &run->scene.model, &run->state, &run->message);
-  free(path);
-  if (!ok)
-    return complain(run, EXIT_BAD_INPUT);
-  ok = fiber_forces(&run->state, &run->scene.model, &run->work, 0);
-  return ok ? EXIT_DONE : complain_fault(run, EXIT_BAD_INPUT);
-}
-
-static enum exit_code start_as_model_says(struct run *run)
-{
-  bool ok = step_start(&run->state, &run->scene.model, &run->work);
-  return ok ? EXIT_DONE : complain_fault(run, EXIT_BAD_INPUT);
-}
-
 static enum exit_code start_anew(struct run *run)
 {
   const struct scene *scene = &run->scene;
-  enum exit_code code = scene->snapshot ? start_from_snapshot(run) : start_as_model_says(run);
-  if (code != EXIT_DONE)
-    return code;
+  if (!scene_start(scene, &run->state, &run->work, &run->message))
+    return complain(run, EXIT_BAD_INPUT);
   const struct conserved start = observe_conserved(&scene->model, &run->state);
   run->head = (struct checkpoint_head){.fingerprint = scene->fingerprint,
                                        .seed = scene->model.seed,
@@ -157,28 +129,29 @@ static double wall_seconds(const struct run *run)
 }
 
 /* Tables, checkpoint and run.json of this moment. */
-static bool save(struct run *run, const char *status, const char *reason)
+static bool save(struct run *run, const char *status)
 {
   const struct observe_block *blocks;
   size_t count = observers_blocks(run->observers, &blocks);
   char path[4096];
   checkpoint_path(run, path, sizeof path);
   run->head.wall_seconds = wall_seconds(run);
-  run->head.state_hash = state_hash(&run->state);
-  const struct record record = {status,
-                                reason,
-                                run->head.wall_seconds,
-                                progress_rate(&run->progress, run->state.step),
-                                run->head.start_energy,
-                                run->head.start_momentum};
   run->last_checkpoint = clock_seconds();
-  if (run->head.state_hash == 0)
-    return message_set(&run->message, "no memory for the hash of the state");
-  return output_flush(&run->output, &run->message) &&
-         checkpoint_write(path, &run->head, &run->scene.model, &run->state, blocks, count, run->scene.text,
-                          &run->message) &&
-         output_summaries(&run->output, run->observers, &run->scene.model, &run->message) &&
-         record_write(run->options->folder, &run->scene, &run->state, &record, &run->message);
+  if (!(output_flush(&run->output, &run->message) &&
+        checkpoint_write(path, &run->head, &run->scene.model, &run->state, blocks, count, run->scene.text,
+                         &run->message) &&
+        output_summaries(&run->output, run->observers, &run->scene.model, &run->message)))
+    return false;
+  const struct record record = {.status = status,
+                                .step = run->state.step,
+                                .counts = run->state.counts,
+                                .wall_seconds = run->head.wall_seconds,
+                                .steps_per_second = progress_rate(&run->progress, run->state.step),
+                                .start_energy = run->head.start_energy,
+                                .start_momentum = run->head.start_momentum,
+                                .now = observe_conserved(&run->scene.model, &run->state),
+                                .state_hash = run->head.state_hash};
+  return record_write(run->options->folder, &run->scene, &record, &run->message);
 }
 
 /* What the run's folder gets of this step. */
@@ -200,14 +173,15 @@ static enum exit_code loop(struct run *run)
   while (written && run->state.step < run->scene.steps && !interrupted) {
     if (!step_advance(&run->state, &run->scene.model, &run->work, NULL)) {
       progress_end(&run->progress);
-      return complain_fault(run, EXIT_STOPPED);
+      message_fault(&run->message, &run->work.fault);
+      return complain(run, EXIT_STOPPED);
     }
-    written = show(run) && (!checkpoint_due(run) || save(run, "running", NULL));
+    written = show(run) && (!checkpoint_due(run) || save(run, "running"));
     progress_tell(&run->progress, run->state.step);
   }
   progress_end(&run->progress);
   bool done = run->state.step >= run->scene.steps;
-  if (!written || !save(run, done ? "finished" : "interrupted", NULL))
+  if (!written || !save(run, done ? "finished" : "interrupted"))
     return complain(run, EXIT_NOT_WRITTEN);
   return done ? EXIT_DONE : EXIT_INTERRUPTED;
 }

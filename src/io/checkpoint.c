@@ -1,15 +1,11 @@
 #include "io/checkpoint.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
+#include "io/folder.h"
 #include "io/structure.h"
-
-#define PATH_SIZE 4096
 
 /* --- the numbers, listed once for writing and reading ------------------------------------------------------------ */
 
@@ -168,12 +164,11 @@ static struct checkpoint_summary summary_of(const struct checkpoint_head *head, 
                                  .vertices = state->vertices,
                                  .counts = state->counts};
   s.head.version[sizeof s.head.version - 1] = '\0';
-  s.head.state_hash = state_hash(state);
   memcpy(s.cells, model->box.cells, sizeof s.cells);
   return s;
 }
 
-/* The whole file as bytes: it is made in memory, so that every error of the disk is met in write_through. */
+/* The whole file as bytes: it is made in memory, so that every error of the disk is met in file_replace. */
 static void *make_image(struct contents *c, size_t *bytes, const char *path, struct message *message)
 {
   size_t estimate = ((size_t)c->state->solvent.n + c->state->vertices) * 64;
@@ -187,68 +182,17 @@ static void *make_image(struct contents *c, size_t *bytes, const char *path, str
   return image;
 }
 
-/* Writes all and waits until it is on the disk; false with errno set. */
-static bool write_through(const char *path, const char *data, size_t bytes)
-{
-  int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
-  if (fd < 0)
-    return false;
-  size_t done = 0;
-  while (done < bytes) {
-    ssize_t n = write(fd, data + done, bytes - done);
-    if (n < 0 && errno == EINTR)
-      continue;
-    if (n <= 0)
-      break;
-    done += (size_t)n;
-  }
-  bool ok = done == bytes && fsync(fd) == 0;
-  int error = errno;
-  ok &= close(fd) == 0;
-  if (done < bytes)
-    errno = error ? error : ENOSPC;
-  return ok;
-}
-
-/* Makes the rename last. The new checkpoint is in place by now, whatever a file system makes of syncing a folder. */
-static void sync_folder_of(const char *path)
-{
-  char folder[PATH_SIZE];
-  const char *slash = strrchr(path, '/');
-  snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path) + 1 : 1, slash ? path : ".");
-  int fd = open(folder, O_RDONLY);
-  if (fd < 0)
-    return;
-  fsync(fd);
-  close(fd);
-}
-
-static bool put_in_place(const char *path, const void *image, size_t bytes, struct message *message)
-{
-  char part[PATH_SIZE];
-  if ((size_t)snprintf(part, sizeof part, "%s.part", path) >= sizeof part)
-    return message_set(message, "%.200s...: path too long", path);
-  errno = 0;
-  if (!write_through(part, image, bytes) || rename(part, path) != 0) {
-    message_set(message, "%s: checkpoint not written (%zu bytes): %s; an earlier one is untouched", path, bytes,
-                strerror(errno));
-    unlink(part);
-    return false;
-  }
-  sync_folder_of(path);
-  return true;
-}
-
-bool checkpoint_write(const char *path, const struct checkpoint_head *head, const struct model *model,
+bool checkpoint_write(const char *path, struct checkpoint_head *head, const struct model *model,
                       const struct state *state, const struct observe_block *blocks, size_t block_count,
                       const char *scene_text, struct message *message)
 {
+  head->state_hash = state_hash(state);
   struct contents contents = {summary_of(head, model, state), model, state, blocks, block_count, scene_text};
   size_t bytes;
-  if (contents.summary.head.state_hash == 0)
+  if (head->state_hash == 0)
     return message_set(message, "%s: checkpoint not written: no memory; an earlier one is untouched", path);
   void *image = make_image(&contents, &bytes, path, message);
-  bool ok = image && put_in_place(path, image, bytes, message);
+  bool ok = image && file_replace(path, image, bytes, message);
   free(image);
   return ok;
 }

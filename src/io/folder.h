@@ -1,8 +1,9 @@
-/* Folders that runs write into. */
+/* Folders that runs write into, and files put in place as a whole. */
 #ifndef UNCROSS_FOLDER_H
 #define UNCROSS_FOLDER_H
 
 #include <stdbool.h>
+#include <stddef.h>
 
 #include "io/message.h"
 
@@ -11,5 +12,9 @@ bool folder_make(const char *folder, struct message *message);
 
 /* True if the folder holds a file of this name. */
 bool folder_has(const char *folder, const char *name);
+
+/* Writes path.part, syncs it, and renames it to path: path is at every moment either the old file or the new one.
+ * False, with a message, on any failure; path is then untouched, and path.part gone. */
+bool file_replace(const char *path, const void *data, size_t bytes, struct message *message);
 
 #endif

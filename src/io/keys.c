@@ -241,11 +241,9 @@ static bool read_text(const struct reading *r)
   const char *text = yaml_text(r->node);
   if (!text || !*text)
     return refuse_value(r, r->node, "is not a text");
-  char *copy = malloc(strlen(text) + 1);
-  if (!copy)
-    return message_set(r->message, "%s: out of memory", r->file->path);
-  *(char **)r->to = strcpy(copy, text);
-  return true;
+  char *copy = strdup(text);
+  *(char **)r->to = copy;
+  return copy || message_set(r->message, "%s: out of memory", r->file->path);
 }
 
 static bool read_section(const struct reading *r)

@@ -25,10 +25,8 @@ bool output_open(struct output *o, const struct scene *scene, const char *folder
     return true;
   char path[4096];
   snprintf(path, sizeof path, "%s/trajectory.h5", folder);
-  const struct trajectory_options options = {.solvent = scene->trajectory_solvent,
-                                             .velocities = scene->trajectory_velocities,
-                                             .seed = scene->model.seed,
-                                             .author = "uncross"};
+  const struct trajectory_options options = {
+      .solvent = scene->trajectory_solvent, .velocities = scene->trajectory_velocities, .seed = scene->model.seed};
   o->trajectory = trajectory_open(path, &scene->model, &options, resume, step, scene->text, message);
   return o->trajectory != NULL;
 }

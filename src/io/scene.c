@@ -376,16 +376,6 @@ static bool set_fingerprint(struct scene *scene)
   return ok;
 }
 
-static char *copy_bytes(const char *text, size_t size)
-{
-  char *copy = malloc(size + 1);
-  if (copy) {
-    memcpy(copy, text, size);
-    copy[size] = '\0';
-  }
-  return copy;
-}
-
 static bool read_scene(const char *path, const char *text, size_t size, bool look_for_files, struct scene *scene,
                        struct message *message)
 {
@@ -398,8 +388,8 @@ static bool read_scene(const char *path, const char *text, size_t size, bool loo
   yaml_file_close(&file);
   *scene = draft.scene;
   if (ok) {
-    scene->path = copy_bytes(path, strlen(path));
-    scene->text = copy_bytes(text, size);
+    scene->path = strdup(path);
+    scene->text = strndup(text, size);
     ok = (scene->path && scene->text && set_fingerprint(scene)) || message_set(message, "%s: out of memory", path);
   }
   if (!ok)

@@ -1,9 +1,14 @@
-/* Starts from somebody's state. */
+/* How scenes start, from somebody's state or from one that is drawn. */
 #include "io/snapshot.h"
 
+#include <stdlib.h>
+
+#include "fiber/force.h"
 #include "io/checkpoint.h"
+#include "io/scene.h"
 #include "io/structure.h"
 #include "io/trajectory.h"
+#include "step.h"
 
 /* Streams the solvent to where it is now. */
 static void make_up_lag(struct state *state, const struct model *model)
@@ -86,4 +91,16 @@ bool snapshot_read_start(const char *path, const struct model *model, struct sta
   state->solvent_lag = 0;
   state->counts = (struct collision_counts){0};
   return true;
+}
+
+/* Of a snapshot, forces are only asked whether its bonds fit the box. */
+bool scene_start(const struct scene *scene, struct state *state, struct work *work, struct message *message)
+{
+  if (!scene->snapshot)
+    return step_start(state, &scene->model, work) || message_fault(message, &work->fault);
+  char *path = scene_snapshot_path(scene);
+  message_set(message, "no memory for the path of the snapshot");
+  bool ok = path && snapshot_read_start(path, &scene->model, state, message);
+  free(path);
+  return ok && (fiber_forces(state, &scene->model, work, 0) || message_fault(message, &work->fault));
 }

@@ -13,6 +13,7 @@
 #include "observe/observe.h"
 #include "state/model.h"
 #include "state/state.h"
+#include "state/work.h"
 
 /* What a checkpoint says about the run it is of, besides the state. */
 struct checkpoint_head {
@@ -25,10 +26,10 @@ struct checkpoint_head {
   char version[64];
 };
 
-/* Writes path.part, syncs it, and renames it to path: path is at every moment either the old or the new checkpoint.
- * blocks: the observers' memory. head->state_hash is not read: the hash of the state is taken here. False, with a
- * message, on any failure; path is then untouched, and path.part gone. */
-bool checkpoint_write(const char *path, const struct checkpoint_head *head, const struct model *model,
+/* Writes a checkpoint as file_replace does (folder.h): path is at every moment either the old or the new one. blocks:
+ * the observers' memory. The hash of the state is taken here and put into the head. False, with a message, on any
+ * failure; path is then untouched. */
+bool checkpoint_write(const char *path, struct checkpoint_head *head, const struct model *model,
                       const struct state *state, const struct observe_block *blocks, size_t block_count,
                       const char *scene_text, struct message *message);
 
@@ -49,6 +50,10 @@ char *checkpoint_scene_text(const char *path, struct message *message);
  * numbers and bonds must be the model's; whether bonds fit the box is for the caller to check. */
 bool snapshot_read_start(const char *path, const struct model *model, struct state *state, struct message *message);
 
+/* The starting state of a scene, be it drawn or a snapshot. state and work are allocated for scene->model. */
+struct scene;
+bool scene_start(const struct scene *scene, struct state *state, struct work *work, struct message *message);
+
 /* --- trajectory -------------------------------------------------------------------------------------------------- */
 
 struct trajectory; /* an open H5MD file */
@@ -57,7 +62,6 @@ struct trajectory_options {
   bool solvent; /* frames hold the solvent, else only the vertices */
   bool velocities;
   uint64_t seed;
-  const char *author; /* creator fields of H5MD are filled from version.h */
 };
 
 /* Creates a trajectory, or opens the one that is there and drops frames after `keep_to_step` (a resume; keep_to_step is

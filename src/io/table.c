@@ -6,6 +6,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "io/folder.h"
+
 static bool failed(struct message *message, const char *path, const char *what)
 {
   return message_set(message, "%s: cannot %s: %s", path, what, strerror(errno));
@@ -88,20 +90,16 @@ bool series_close(struct series *s, struct message *message)
 
 bool table_write(const char *folder, const struct observe_table *table, struct message *message)
 {
-  char path[4096], aside[4160];
+  char path[4096], *text = NULL;
+  size_t bytes;
   snprintf(path, sizeof path, "%s/%s.csv", folder, table->name);
-  snprintf(aside, sizeof aside, "%s.part", path);
-  FILE *file = fopen(aside, "w");
-  if (!file)
-    return failed(message, aside, "create");
-  write_header(file, NULL, table->columns, table->column);
-  for (size_t r = 0; r < table->rows; r++)
-    write_values(file, "", table->columns, &table->value[r * table->columns]);
-  bool ok = !ferror(file);
-  ok = fclose(file) == 0 && ok;
-  if (ok && rename(aside, path) == 0)
-    return true;
-  failed(message, path, "write");
-  remove(aside);
-  return false;
+  FILE *file = open_memstream(&text, &bytes);
+  if (file) {
+    write_header(file, NULL, table->columns, table->column);
+    for (size_t r = 0; r < table->rows; r++)
+      write_values(file, "", table->columns, &table->value[r * table->columns]);
+  }
+  bool ok = file && fclose(file) == 0 ? file_replace(path, text, bytes, message) : failed(message, path, "write");
+  free(text);
+  return ok;
 }

@@ -23,7 +23,7 @@ bool series_row(struct series *series, uint64_t step, size_t columns, const doub
 bool series_flush(struct series *series, struct message *message);
 bool series_close(struct series *series, struct message *message);
 
-/* Writes a summary as folder/name.csv, aside first, then renamed. */
+/* Writes a summary as folder/name.csv, in place of an earlier one. */
 bool table_write(const char *folder, const struct observe_table *table, struct message *message);
 
 #endif

@@ -13,12 +13,11 @@ struct trajectory *trajectory_allocate(const char *path)
   if (!t)
     return NULL;
   t->file = t->group = t->position = t->velocity = t->edges = t->step = t->time = -1;
-  t->path = malloc(strlen(path) + 1);
+  t->path = strdup(path);
   if (!t->path) {
     free(t);
     return NULL;
   }
-  memcpy(t->path, path, strlen(path) + 1);
   return t;
 }
 

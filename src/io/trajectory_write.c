@@ -17,13 +17,12 @@
 
 /* --- creating ---------------------------------------------------------------------------------------------------- */
 
-static bool write_h5md(hid_t file, const char *author)
+static bool write_h5md(hid_t file)
 {
   const int32_t version[2] = {1, 1};
   hid_t root = h5_group(file, "h5md"), by = h5_group(root, "author"), creator = h5_group(root, "creator");
-  bool ok = h5_put(root, "version", H5T_NATIVE_INT32, 2, version) &&
-            h5_put_text(by, "name", author ? author : "unknown") && h5_put_text(creator, "name", "uncross") &&
-            h5_put_text(creator, "version", UNCROSS_VERSION);
+  bool ok = h5_put(root, "version", H5T_NATIVE_INT32, 2, version) && h5_put_text(by, "name", "uncross") &&
+            h5_put_text(creator, "name", "uncross") && h5_put_text(creator, "version", UNCROSS_VERSION);
   h5_close(by);
   h5_close(creator);
   h5_close(root);
@@ -113,7 +112,7 @@ static bool create_contents(struct trajectory *t, const struct model *model, con
   if (options->velocities && t->position >= 0)
     t->velocity = add_element(t, t->group, "velocity", 3, dims);
   return t->position >= 0 && (t->velocity >= 0 || !options->velocities) && add_box(t) &&
-         structure_write_particles(t->group, model, t->solvent) && write_h5md(t->file, options->author) &&
+         structure_write_particles(t->group, model, t->solvent) && write_h5md(t->file) &&
          write_parameters(t->file, model, options, scene_text) && write_connectivity(t->file, model) &&
          H5Fflush(t->file, H5F_SCOPE_GLOBAL) >= 0;
 }

@@ -9,30 +9,13 @@
 #include "oracle/oracle.h"
 #include "step.h"
 
-static bool say_fault(const struct work *work, struct message *message)
-{
-  char text[512];
-  fault_describe(&work->fault, text, sizeof text);
-  return message_set(message, "%s", text);
-}
-
-bool oracle_start(const struct scene *scene, struct state *state, struct work *work, struct message *message)
-{
-  if (!scene->snapshot)
-    return step_start(state, &scene->model, work) || say_fault(work, message);
-  char *path = scene_snapshot_path(scene);
-  bool ok = path && snapshot_read_start(path, &scene->model, state, message);
-  free(path);
-  return ok && (fiber_forces(state, &scene->model, work, 0) || say_fault(work, message));
-}
-
 /* --- packs ------------------------------------------------------------------------------------------------------- */
 
 static bool advance_to(struct oracle_stage *g, uint64_t step, struct message *message)
 {
   while (g->state->step < step)
     if (!step_advance(g->state, g->model, g->work, NULL))
-      return say_fault(g->work, message);
+      return message_fault(message, &g->work->fault);
   return true;
 }
 
@@ -50,8 +33,8 @@ static bool emit_step(const struct scene *scene, struct model *model, uint64_t s
   message_set(message, "no memory for this scene");
   if (ok) {
     struct oracle_stage g = {model, &state, &work, pack, {"", 0}, slot};
-    ok = oracle_start(scene, &state, &work, message) && advance_to(&g, step - 1, message) &&
-         (oracle_run_operators(&g) || pack->failed || say_fault(&work, message));
+    ok = scene_start(scene, &state, &work, message) && advance_to(&g, step - 1, message) &&
+         (oracle_run_operators(&g) || pack->failed || message_fault(message, &work.fault));
   }
   work_free(&work);
   state_free(&state);
@@ -140,7 +123,7 @@ static bool trace_steps(const struct scene *scene, struct state *state, struct w
   while (state->step < scene->steps) {
     t->step = state->step + 1;
     if (!step_advance_watched(state, &scene->model, work, NULL, &watch))
-      return say_fault(work, message);
+      return message_fault(message, &work->fault);
     trace_row(t, "end", state);
   }
   return !t->short_of_memory || message_set(message, "no memory for the hash of the state");
@@ -154,7 +137,7 @@ bool oracle_trace(const struct scene *scene, FILE *out, struct message *message)
   t.slot = malloc(((size_t)scene->model.solvent.particles + 1) * sizeof *t.slot);
   bool ok = t.slot && state_alloc(&state, &scene->model) && work_alloc(&work, &scene->model);
   message_set(message, "no memory for this scene");
-  ok = ok && oracle_start(scene, &state, &work, message) && trace_steps(scene, &state, &work, &t, message);
+  ok = ok && scene_start(scene, &state, &work, message) && trace_steps(scene, &state, &work, &t, message);
   work_free(&work);
   state_free(&state);
   free(t.slot);

@@ -15,9 +15,6 @@
 #include "state/state.h"
 #include "state/work.h"
 
-/* The starting state of a scene, be it drawn or a snapshot. state and work are allocated for scene->model. */
-bool oracle_start(const struct scene *scene, struct state *state, struct work *work, struct message *message);
-
 /* Fills a pack with the scene's numbers and every operator's input and output, at the first step that has a collision
  * and at the last one of the scene. The pack needs freeing in any case. */
 bool oracle_emit(const struct scene *scene, struct pack *pack, struct message *message);

@@ -33,8 +33,9 @@ static bool write_some(const char *path, const struct test_run *r, struct messag
 {
   struct memory memory = some_memory;
   struct observe_block blocks[3];
+  struct checkpoint_head head = some_head;
   list_blocks(&memory, blocks);
-  return checkpoint_write(path, &some_head, &r->model, &r->state, blocks, 3, some_scene, message);
+  return checkpoint_write(path, &head, &r->model, &r->state, blocks, 3, some_scene, message);
 }
 
 static bool read_state(const char *path, const struct model *model, struct state *state, struct message *message)
@@ -103,7 +104,8 @@ static void parts_may_be_missing(void **unused)
     if (k == 0)
       test_add_kind(&m, 2, 5);
     struct test_run r = test_start(m);
-    if (!checkpoint_write(path, &some_head, &r.model, &r.state, NULL, 0, NULL, &message))
+    struct checkpoint_head head = some_head;
+    if (!checkpoint_write(path, &head, &r.model, &r.state, NULL, 0, NULL, &message))
       fail_msg("%s", message.text);
     uint64_t hash = state_hash(&r.state);
     r.state.step = 99;
