@@ -43,7 +43,7 @@ static bool sample_frames(struct scene *scene, struct trajectory *frames, const 
 {
   struct output output;
   scene->trajectory_every = 0; /* tables only */
-  bool ok = output_open(&output, scene, folder, false, 0, message);
+  bool ok = output_open(&output, scene, observers, folder, false, 0, message);
   for (uint64_t k = 0; ok && k < trajectory_frames(frames); k++)
     ok = trajectory_read(frames, &scene->model, k, state, message) &&
          output_sample(&output, observers, &scene->model, state, message);

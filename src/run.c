@@ -116,6 +116,8 @@ static enum exit_code start_from_checkpoint(struct run *run)
     message_set(&run->message, "%s: was run with seed %" PRIu64 "; a resumed run keeps its seed", path, run->head.seed);
     return complain(run, EXIT_BAD_INPUT);
   }
+  if (!output_whole(&run->scene, run->observers, run->options->folder, run->head.frames_end, &run->message))
+    return complain(run, EXIT_BAD_INPUT);
   run->scene.model.seed = run->head.seed;
   run->earlier_seconds = run->head.wall_seconds;
   return EXIT_DONE;
@@ -136,8 +138,9 @@ static bool save(struct run *run, const char *status)
   char path[4096];
   checkpoint_path(run, path, sizeof path);
   run->head.wall_seconds = wall_seconds(run);
+  run->head.frames_end = trajectory_end(run->output.trajectory);
   run->last_checkpoint = clock_seconds();
-  if (!(output_flush(&run->output, &run->message) &&
+  if (!(output_sync(&run->output, &run->message) &&
         checkpoint_write(path, &run->head, &run->scene.model, &run->state, blocks, count, run->scene.text,
                          &run->message) &&
         output_summaries(&run->output, run->observers, &run->scene.model, &run->message)))
@@ -208,8 +211,8 @@ static enum exit_code run_in_folder(struct run *run)
     return code;
   if (!folder_make(run->options->folder, &run->message))
     return complain(run, EXIT_BAD_INPUT);
-  message_set(&run->message, "%s", "");
-  if (!output_open(&run->output, &run->scene, run->options->folder, resume, run->state.step, &run->message)) {
+  if (!output_open(&run->output, &run->scene, run->observers, run->options->folder, resume, run->state.step,
+                   &run->message)) {
     struct message ignored;
     output_close(&run->output, &ignored);
     return complain(run, EXIT_NOT_WRITTEN);

@@ -1,5 +1,6 @@
 #include "io/checkpoint.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -142,6 +143,7 @@ static bool write_contents(hid_t file, struct contents *c)
   bool ok = h5_put_text(file, "format", CHECKPOINT_FORMAT) &&
             h5_put(file, "format_version", H5T_NATIVE_INT32, 0, &version) &&
             h5_put_text(head, "version", c->summary.head.version) && each_field(file, &c->summary, true) &&
+            h5_put(head, "frames_end", H5T_NATIVE_UINT64, 0, &c->summary.head.frames_end) &&
             structure_write_particles(structure, c->model, false) && structure_write_bonds(structure, c->model) &&
             write_state(state, c->state) && write_blocks(observers, c->blocks, c->block_count) &&
             h5_text_write(file, "scene", c->scene_text ? c->scene_text : "");
@@ -220,6 +222,8 @@ static bool read_summary(hid_t file, const char *path, struct checkpoint_summary
   hid_t head = h5_open_group(file, "head");
   bool ok = head >= 0 && h5_get_text(head, "version", summary->head.version, sizeof summary->head.version) &&
             each_field(file, summary, false);
+  if (ok) /* else 0: earlier checkpoints do not know it */
+    h5_get(head, "frames_end", H5T_NATIVE_UINT64, 0, &summary->head.frames_end);
   h5_close(head);
   if (!ok)
     h5_fail(message, path, "damaged or incomplete checkpoint");
@@ -311,6 +315,22 @@ hid_t checkpoint_open_for(const char *path, const struct model *model, struct ch
   return file;
 }
 
+/* Earlier checkpoints hold no settings; they are taken to be the scene's. */
+static bool same_setting(hid_t group, const char *name, const char *path, const struct observe_block *block,
+                         struct message *message)
+{
+  const hsize_t dims[1] = {1};
+  const int64_t wanted = *(const int64_t *)block->data;
+  int64_t stored = wanted;
+  if (group >= 0 && h5_has(group, name) && !h5_array_read(group, name, H5T_NATIVE_INT64, 1, dims, &stored))
+    return message_set(message, "%s: damaged checkpoint: '%s' cannot be read", path, name);
+  return stored == wanted ||
+         message_set(message,
+                     "observe.%s: %" PRId64 " in the scene, but %" PRId64 " in the run so far (%s), whose averages go "
+                     "on; a resumed run keeps it",
+                     name, wanted, stored, path);
+}
+
 static bool read_blocks(hid_t file, const char *path, const struct observe_block *blocks, size_t count,
                         struct message *message)
 {
@@ -321,13 +341,18 @@ static bool read_blocks(hid_t file, const char *path, const struct observe_block
     int64_t nothing;
     const hsize_t dims[1] = {blocks[b].count};
     block_name(&blocks[b], name, sizeof name);
+    if (blocks[b].setting) {
+      ok = same_setting(group, name, path, &blocks[b], message);
+      continue;
+    }
     ok = group >= 0 && h5_has(group, name) &&
          h5_array_read(group, name, block_type(&blocks[b]), 1, dims, blocks[b].data ? blocks[b].data : &nothing);
     if (!ok)
-      message_set(message,
-                  "%s: no memory of the observable '%s' in this size (damaged, or the scene asks for other observables "
-                  "than the interrupted run did)",
-                  path, blocks[b].name);
+      message_set(
+          message,
+          "%s: no memory of the observable '%s' in this size (damaged, or not sampled by this run so far: resume "
+          "without it, or begin a run from this checkpoint with start.snapshot)",
+          path, blocks[b].name);
   }
   h5_close(group);
   return ok;

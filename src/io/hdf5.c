@@ -200,6 +200,11 @@ int h5_reserve(hid_t file, size_t bytes)
   return error;
 }
 
+int h5_sync(hid_t file)
+{
+  return fsync(descriptor_of(file)) == 0 ? 0 : errno;
+}
+
 void h5_trim(hid_t file)
 {
   hsize_t size;
