@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -34,6 +35,20 @@ bool folder_has(const char *folder, const char *name)
   char path[4096];
   snprintf(path, sizeof path, "%s/%s", folder, name);
   return access(path, F_OK) == 0;
+}
+
+/* Locks of folders stay on one machine. A file system that knows none at all is no reason not to run. */
+int folder_lock(const char *folder, struct message *message)
+{
+  int fd = open(folder, O_RDONLY | O_CLOEXEC);
+  if (fd < 0) {
+    message_set(message, "%s: cannot open this folder: %s", folder, strerror(errno));
+  } else if (flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    message_set(message, "%s: in use by another process, which writes into this folder", folder);
+    close(fd);
+    fd = -1;
+  }
+  return fd;
 }
 
 /* --- files put in place ------------------------------------------------------------------------------------------ */

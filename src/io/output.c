@@ -13,6 +13,32 @@ static size_t wanted_columns(const struct observe_plan *plan, int which, const c
 
 /* --- what is there already --------------------------------------------------------------------------------------- */
 
+struct search {
+  const char *folder;
+  struct message *name;
+};
+
+static bool is_absent(const struct search *s, const char *table)
+{
+  message_set(s->name, "%s.csv", table);
+  return !folder_has(s->folder, s->name->text);
+}
+
+static bool take_absent(void *context, const struct observe_table *table)
+{
+  return is_absent(context, table->name);
+}
+
+bool output_left(const struct scene *scene, const struct observers *observers, const char *folder, struct message *name)
+{
+  struct search search = {folder, name};
+  const char *const *names;
+  for (int k = 0; k < OBSERVABLES; k++)
+    if (wanted_columns(&scene->observe, k, &names) > 0 && !is_absent(&search, observable_names[k]))
+      return true;
+  return !observers_summaries(observers, &scene->model, take_absent, &search);
+}
+
 /* Ends are 1 + a step, 0 before the first. */
 static bool same_end(const char *folder, const char *file, uint64_t found, uint64_t end, const char *otherwise,
                      struct message *message)

@@ -16,6 +16,10 @@ struct output {
   struct series series[OBSERVABLES]; /* not open where not asked for, or not a series */
 };
 
+/* Whether a table that the scene would make is in the folder already; the message is then its name. */
+bool output_left(const struct scene *scene, const struct observers *observers, const char *folder,
+                 struct message *name);
+
 /* Whether tables and trajectory go as far as a checkpoint says, whose memory the observers have; frames_end: its
  * head's. Rows and frames that the folder has lost would be missing for good. Changes nothing. */
 bool output_whole(const struct scene *scene, const struct observers *observers, const char *folder, uint64_t frames_end,

@@ -1,10 +1,13 @@
-"""What a resume finds in the folder of a run is what the run left there, or it says so."""
+"""A run's folder has one writer, loses nothing, and says what became of the run."""
 import fcntl
+import json
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import tempfile
+import time
 import unittest
 
 import h5py
@@ -22,6 +25,7 @@ observe:
   dynamics: {every: 1, longest_lag: 20}
 """
 FRAMES = "trajectory: {every: 10}\n"
+FOR_EVER = ("--steps", 10**9)
 
 
 class RunFolder(unittest.TestCase):
@@ -45,6 +49,18 @@ class RunFolder(unittest.TestCase):
     def run_scene(self, text, *words, folder=None, **expected):
         return self.uncross("run", self.scene(text), "--out", folder or self.run_folder, *words, **expected)
 
+    def start(self, text, wait_for, *words):
+        """A run in a process of its own, once this file is there."""
+        process = subprocess.Popen([UNCROSS, "run", self.scene(text, "own.yaml"), "--out", self.run_folder,
+                                    *map(str, words)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        deadline = time.monotonic() + 60
+        while not (self.run_folder / wait_for).exists() and time.monotonic() < deadline:
+            time.sleep(0.01)
+        self.assertIsNone(process.poll())
+        return process
+
     def contents(self):
         return {path.name: path.read_bytes() for path in self.run_folder.iterdir()}
 
@@ -54,6 +70,37 @@ class RunFolder(unittest.TestCase):
         told = self.run_scene(text, *words, code=code, said=said)
         self.assertEqual(self.contents(), before, told)
         return told
+
+    def record(self):
+        return json.loads((self.run_folder / "run.json").read_text())
+
+    # --- one writer
+
+    def test_a_second_process_is_kept_out(self):
+        """Else a resume cuts tables that the run goes on to write."""
+        text = SCENE + FRAMES
+        first = self.start(text + "checkpoint: {seconds: 0.1}\n", "checkpoint.h5", *FOR_EVER)
+        for words in ("--resume", *FOR_EVER), FOR_EVER:
+            self.run_scene(text, *words, code=4, said=f"{self.run_folder}: in use by another process")
+        first.send_signal(signal.SIGTERM)
+        self.assertEqual(first.wait(60), 5)
+        steps = [int(row.split(",")[0]) for row in (self.run_folder / "conserved.csv").read_text().splitlines()[1:]]
+        self.assertEqual(steps, list(range(0, self.record()["steps"] + 1, 2)))
+
+    def test_two_new_runs_in_one_folder(self):
+        """Without a trajectory nothing else told one of the other before the first checkpoint."""
+        first = self.start(SCENE, "conserved.csv", *FOR_EVER)
+        self.run_scene(SCENE, *FOR_EVER, code=4, said="in use by another process")
+        self.run_scene(SCENE, "--resume", *FOR_EVER, code=4, said="in use by another process")
+        first.send_signal(signal.SIGTERM)
+        self.assertEqual(first.wait(60), 5)
+        self.run_scene(SCENE, "--resume", "--steps", self.record()["steps"] + 10)
+
+    def test_analyze_is_kept_out_too(self):
+        self.run_scene(SCENE + FRAMES, folder=self.dir / "other")
+        self.start("\n".join(SCENE.split("\n")[:6]) + "\n", ".", *FOR_EVER)
+        time.sleep(0.5)
+        self.uncross("analyze", self.dir / "other/trajectory.h5", "--out", self.run_folder, code=4, said="in use by")
 
     # --- what is resumed is what was
 
@@ -124,6 +171,56 @@ class RunFolder(unittest.TestCase):
             fcntl.flock(reader, fcntl.LOCK_SH)
             self.refused(text, "trajectory.h5: in use by another process", "--resume", code=4)
         self.run_scene(text, "--resume")
+
+    # --- nothing is written over
+
+    def test_tables_are_not_written_over(self):
+        self.run_scene(SCENE + FRAMES)
+        before = self.contents()
+        self.uncross("analyze", self.run_folder / "trajectory.h5", "--out", self.run_folder, code=2,
+                     said=f"{self.run_folder}/statics-a.csv: is there already")
+        self.assertEqual(self.contents(), before)
+        for name in "conserved.csv", "dynamics-a.csv", "statics-a.csv":
+            other = self.dir / f"with-{name}"
+            other.mkdir()
+            (other / name).write_text("mine\n")
+            self.run_scene(SCENE, folder=other, code=2, said=f"{other}: holds {name} but no checkpoint")
+            self.assertEqual([path.name for path in other.iterdir()], [name])
+            self.assertEqual((other / name).read_text(), "mine\n")
+
+    # --- how a run ends
+
+    def test_killed_before_the_first_checkpoint(self):
+        first = self.start(SCENE, "conserved.csv", *FOR_EVER)
+        first.kill()
+        first.wait()
+        for words in (), ("--resume",):
+            told = self.refused(SCENE, "conserved.csv but no checkpoint: a run that ended before its first", *words)
+            self.assertIn("remove the folder", told)
+            self.assertNotIn("--resume", told)
+
+    def test_a_fault_is_recorded(self):
+        """With the numbers of the last checkpoint, or of the start."""
+        text = SCENE.replace("bending: 4}", "bending: 4, force: [3000, 0, 0]}").replace("steps: 40", "steps: 1000")
+        told = self.run_scene(text, "--quiet", code=3)
+        record = self.record()
+        self.assertEqual((record["status"], record["steps"], record["steps_wanted"]), ("stopped", 0, 1000))
+        self.assertEqual(told, f"uncross: {record['reason']}\n")
+        self.assertEqual(record["end"], record["start"])
+        self.assertEqual(sorted(self.contents()), ["conserved.csv", "run.json"])
+        self.refused(text, "run.json but no checkpoint", "--resume")
+
+        other = self.run_folder = self.dir / "later"
+        self.run_scene(text, "--steps", 3)
+        before = self.record()
+        told = self.run_scene(text, "--resume", "--quiet", code=3)
+        record = self.record()
+        self.assertEqual(told, f"uncross: {record['reason']}\n")
+        self.assertRegex(record["reason"], r"^step \d+: \w+ \d+ ")
+        self.assertEqual(record["status"], "stopped")
+        for key in "steps", "state_hash", "end", "time":
+            self.assertEqual(record[key], before[key])
+        self.uncross("info", other / "checkpoint.h5", said=f"state hash {record['state_hash']}")
 
 
 if __name__ == "__main__":

@@ -195,6 +195,27 @@ static void test_folders_are_made_with_those_above(void **unused)
   remove_folder(folder);
 }
 
+/* One lock per folder, whoever asks: another descriptor of the same process stands for another process. */
+static void test_a_folder_has_one_writer(void **unused)
+{
+  (void)unused;
+  char folder[64];
+  make_folder(folder);
+  struct message m;
+  const int lock = folder_lock(folder, &m);
+  assert_true(lock >= 0);
+  assert_true(folder_lock(folder, &m) < 0);
+  assert_non_null(strstr(m.text, folder));
+  assert_non_null(strstr(m.text, "in use by another process"));
+  close(lock);
+  const int again = folder_lock(folder, &m);
+  assert_true(again >= 0);
+  close(again);
+  assert_true(folder_lock(in_folder(folder, "none"), &m) < 0);
+  assert_non_null(strstr(m.text, "none: cannot open"));
+  remove_folder(folder);
+}
+
 /* --- progress ----------------------------------------------------------------------------------------------------- */
 
 static void test_durations_as_people_say_them(void **unused)
@@ -281,6 +302,7 @@ int main(void)
       cmocka_unit_test(test_a_full_disk_is_noticed),
       cmocka_unit_test(test_an_earlier_summary_survives_a_failure),
       cmocka_unit_test(test_folders_are_made_with_those_above),
+      cmocka_unit_test(test_a_folder_has_one_writer),
       cmocka_unit_test(test_durations_as_people_say_them),
       cmocka_unit_test(test_progress_is_told_now_and_then),
       cmocka_unit_test(test_the_rate_counts_this_session),
