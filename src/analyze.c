@@ -39,6 +39,16 @@ static void fit_plan(struct scene *scene, const struct trajectory *frames)
   }
 }
 
+/* Each frame, given to nobody: so that a frame that cannot be used is met before anything is written. */
+static bool check_frames(const struct scene *scene, struct trajectory *frames, struct state *state,
+                         struct message *message)
+{
+  bool ok = true;
+  for (uint64_t k = 0; ok && k < trajectory_frames(frames); k++)
+    ok = trajectory_read(frames, &scene->model, k, state, message);
+  return ok;
+}
+
 static bool sample_frames(const struct scene *scene, struct trajectory *frames, const char *folder, struct state *state,
                           struct observers *observers, struct message *message)
 {
@@ -79,8 +89,9 @@ static enum exit_code analyze(struct scene *scene, struct trajectory *frames, co
   enum exit_code code = EXIT_TROUBLE;
   message_set(message, "no memory for this trajectory");
   if (observers && state_alloc(&state, &scene->model)) {
-    code =
-        folder_make(folder, message) ? write_tables(scene, frames, folder, &state, observers, message) : EXIT_BAD_INPUT;
+    code = check_frames(scene, frames, &state, message) && folder_make(folder, message)
+               ? write_tables(scene, frames, folder, &state, observers, message)
+               : EXIT_BAD_INPUT;
     state_free(&state);
   }
   observers_free(observers);

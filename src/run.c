@@ -24,12 +24,14 @@ static void on_signal(int number)
   interrupted = 1;
 }
 
+/* That nobody reads its words any more (SIGPIPE) is no reason for a run to end. */
 static void watch_signals(void)
 {
-  struct sigaction action = {.sa_handler = on_signal};
+  struct sigaction action = {.sa_handler = on_signal}, ignore = {.sa_handler = SIG_IGN};
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);
+  sigaction(SIGPIPE, &ignore, NULL);
 }
 
 /* Everything that a run holds. */
@@ -261,9 +263,20 @@ static void tell_end(const struct run *run, enum exit_code code)
     printf("go on with --resume\n");
 }
 
+/* A run that is past the steps asked for stays as it is. */
+static enum exit_code leave_alone(const struct run *run)
+{
+  if (!run->options->quiet)
+    printf("at step %" PRIu64 " already, past the %" PRIu64 " asked for: nothing to do\n", run->state.step,
+           run->scene.steps);
+  return EXIT_DONE;
+}
+
 static enum exit_code run_to_end(struct run *run)
 {
   const bool resume = run->options->resume;
+  if (run->state.step > run->scene.steps)
+    return leave_alone(run);
   watch_signals();
   if (!output_open(&run->output, &run->scene, run->observers, run->options->folder, resume, run->state.step,
                    &run->message)) {

@@ -11,6 +11,7 @@ import time
 import unittest
 
 import h5py
+import numpy
 
 UNCROSS = os.environ.get("UNCROSS", "build/uncross")
 SCENE = """box: [4, 4, 4]
@@ -190,6 +191,29 @@ class RunFolder(unittest.TestCase):
 
     # --- how a run ends
 
+    def test_nobody_listens(self):
+        for words in (), ("--resume", "--steps", "50"):
+            ours, theirs = os.pipe()
+            os.close(ours)
+            done = subprocess.run([UNCROSS, "run", self.scene(SCENE + FRAMES), "--out", self.run_folder, *words],
+                                  stdout=theirs, stderr=theirs, check=False)
+            os.close(theirs)
+            self.assertEqual(done.returncode, 0)
+            (self.run_folder / "trajectory.h5").write_text("damaged, which is told")
+        self.assertEqual(self.record()["steps"], 50)
+
+    def test_closed_streams(self):
+        """What is said must not go to the files that would get their numbers."""
+        text, path = SCENE + FRAMES, self.run_folder / "trajectory.h5"
+        self.run_scene(SCENE)
+        subprocess.run(["sh", "-c", 'exec "$@" >&- 2>&-', "sh", UNCROSS, "run", self.scene(text), "--out", self.run_folder,
+                        "--resume", "--steps", "60"], check=True)
+        with h5py.File(path) as file:
+            self.assertEqual(list(file["particles/trajectory/position/step"]), [50, 60])
+        closed = subprocess.run(["sh", "-c", 'exec "$@" >&-', "sh", UNCROSS, "check", self.scene(text)], check=False,
+                                stderr=subprocess.DEVNULL)
+        self.assertEqual(closed.returncode, 4)
+
     def test_killed_before_the_first_checkpoint(self):
         first = self.start(SCENE, "conserved.csv", *FOR_EVER)
         first.kill()
@@ -221,6 +245,42 @@ class RunFolder(unittest.TestCase):
         for key in "steps", "state_hash", "end", "time":
             self.assertEqual(record[key], before[key])
         self.uncross("info", other / "checkpoint.h5", said=f"state hash {record['state_hash']}")
+
+    def test_steps_that_were_made_already(self):
+        self.run_scene(SCENE)
+        before = self.contents()
+        self.run_scene(SCENE, "--resume", "--steps", 3, said="at step 40 already, past the 3 asked for")
+        self.assertEqual(self.contents(), before)
+        self.run_scene(SCENE, "--resume", "--steps", 40, said="finished at step 40 of 40")
+
+    def test_the_most_steps(self):
+        self.run_scene(SCENE, "--steps", 2**64 - 1, code=2, said="--steps 18446744073709551615: not a whole number "
+                       "from 0 to 9223372036854775807")
+        first = self.start(SCENE, "conserved.csv", "--steps", 2**63 - 1)
+        first.send_signal(signal.SIGINT)
+        self.assertEqual(first.wait(60), 5)
+        self.assertEqual(self.record()["steps_wanted"], 2**63 - 1)
+
+    # --- exit codes
+
+    def test_a_frame_that_cannot_be_used(self):
+        self.run_scene(SCENE + FRAMES)
+        with h5py.File(self.run_folder / "trajectory.h5", "a") as file:
+            file["particles/trajectory/position/value"][3, 1, 2] = numpy.nan
+        self.uncross("analyze", self.run_folder / "trajectory.h5", "--out", self.dir / "new/tables", code=2,
+                     said="frame 3: a position of particle 1 is nan")
+        self.assertFalse((self.dir / "new").exists())
+
+    @unittest.skipUnless(os.access("/dev/full", os.W_OK), "no full device here")
+    def test_words_that_do_not_arrive(self):
+        self.run_scene(SCENE)
+        for words in (["check", self.dir / "scene.yaml"], ["info", self.run_folder / "run.json"], ["--help"],
+                      ["--version"], ["oracle", "trace", self.dir / "scene.yaml"]):
+            with open("/dev/full", "w", encoding="ascii") as full:
+                done = subprocess.run([UNCROSS, *map(str, words)], stdout=full, stderr=subprocess.PIPE, text=True,
+                                      check=False)
+            self.assertEqual(done.returncode, 4, words)
+            self.assertRegex(done.stderr, "^uncross: standard output: cannot write.*\n$")
 
 
 if __name__ == "__main__":
