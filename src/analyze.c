@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "io/folder.h"
 #include "io/output.h"
@@ -38,12 +39,21 @@ static void fit_plan(struct scene *scene, const struct trajectory *frames)
   }
 }
 
-static bool sample_frames(struct scene *scene, struct trajectory *frames, const char *folder, struct state *state,
+/* Each frame, given to nobody: so that a frame that cannot be used is met before anything is written. */
+static bool check_frames(const struct scene *scene, struct trajectory *frames, struct state *state,
+                         struct message *message)
+{
+  bool ok = true;
+  for (uint64_t k = 0; ok && k < trajectory_frames(frames); k++)
+    ok = trajectory_read(frames, &scene->model, k, state, message);
+  return ok;
+}
+
+static bool sample_frames(const struct scene *scene, struct trajectory *frames, const char *folder, struct state *state,
                           struct observers *observers, struct message *message)
 {
   struct output output;
-  scene->trajectory_every = 0; /* tables only */
-  bool ok = output_open(&output, scene, folder, false, 0, message);
+  bool ok = output_open(&output, scene, observers, folder, false, 0, message);
   for (uint64_t k = 0; ok && k < trajectory_frames(frames); k++)
     ok = trajectory_read(frames, &scene->model, k, state, message) &&
          output_sample(&output, observers, &scene->model, state, message);
@@ -51,18 +61,37 @@ static bool sample_frames(struct scene *scene, struct trajectory *frames, const 
   return output_close(&output, message) && ok;
 }
 
+/* Into a folder that nobody else writes to, and that holds none of the tables. */
+static enum exit_code write_tables(const struct scene *scene, struct trajectory *frames, const char *folder,
+                                   struct state *state, struct observers *observers, struct message *message)
+{
+  struct message name;
+  enum exit_code code = EXIT_BAD_INPUT;
+  const int lock = folder_lock(folder, message);
+  if (lock < 0)
+    return EXIT_NOT_WRITTEN;
+  if (output_left(scene, observers, folder, &name))
+    message_set(message, "%s/%s: is there already, and nothing is written over; name another folder", folder,
+                name.text);
+  else
+    code = sample_frames(scene, frames, folder, state, observers, message) ? EXIT_DONE : EXIT_NOT_WRITTEN;
+  close(lock);
+  return code;
+}
+
 static enum exit_code analyze(struct scene *scene, struct trajectory *frames, const char *folder,
                               struct message *message)
 {
   struct state state;
   fit_plan(scene, frames);
-  if (!folder_make(folder, message))
-    return EXIT_BAD_INPUT;
+  scene->trajectory_every = 0; /* tables only */
   struct observers *observers = observers_create(&scene->observe, &scene->model);
   enum exit_code code = EXIT_TROUBLE;
   message_set(message, "no memory for this trajectory");
   if (observers && state_alloc(&state, &scene->model)) {
-    code = sample_frames(scene, frames, folder, &state, observers, message) ? EXIT_DONE : EXIT_NOT_WRITTEN;
+    code = check_frames(scene, frames, &state, message) && folder_make(folder, message)
+               ? write_tables(scene, frames, folder, &state, observers, message)
+               : EXIT_BAD_INPUT;
     state_free(&state);
   }
   observers_free(observers);

@@ -1,9 +1,12 @@
 /* The command line: one table of commands, one of options each. */
 #include <errno.h>
+#include <fcntl.h>
 #include <getopt.h>
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "io/build_info.h"
 #include "io/scene.h"
@@ -20,7 +23,7 @@ static const char help[] =
     "usage:\n"
     "  uncross check SCENE                    what a scene says, all its derived numbers, memory, time, warnings\n"
     "  uncross run SCENE --out DIR [options]  runs it; DIR gets checkpoint.h5, run.json, tables, trajectory.h5\n"
-    "      --steps N       run to step N instead of the scene's `steps` (with --resume: extend a run)\n"
+    "      --steps N       run to step N (0 .. 2^63-1) instead of the scene's `steps`; with --resume: extend a run\n"
     "      --seed S        use this seed instead of the scene's (0 .. 2^64-1)\n"
     "      --resume        go on from DIR/checkpoint.h5\n"
     "      --quiet         no progress, no closing words\n"
@@ -30,7 +33,7 @@ static const char help[] =
     "      --solvent       with the solvent particles, if the file has them\n"
     "      --wrapped       vertices folded into the box\n"
     "      --first N, --last N, --stride N   these frames only (numbered from 0)\n"
-    "  uncross analyze TRAJECTORY --out DIR   recomputes the observables of its scene from its frames, as tables\n"
+    "  uncross analyze TRAJECTORY --out DIR   recomputes the observables of its scene from its frames, as new tables\n"
     "  uncross oracle ACTION ...              what to hold other implementations against: `uncross oracle "
     "--help`\n"
     "  uncross --help, uncross --version\n"
@@ -39,8 +42,9 @@ static const char help[] =
     "  0  done\n"
     "  1  no memory, or an internal error\n"
     "  2  bad input (options, scene, snapshot): nothing was written\n"
-    "  3  the run had to stop (a bond too long, a velocity out of range, ...); the last checkpoint stays\n"
-    "  4  a file could not be written; the last checkpoint stays\n"
+    "  3  the run had to stop (a bond too long, a velocity out of range, ...): run.json says why; the last checkpoint "
+    "stays\n"
+    "  4  a file could not be written, or another process writes into DIR; the last checkpoint stays\n"
     "  5  interrupted by SIGINT or SIGTERM; a checkpoint was written, --resume goes on\n"
     "  6  oracle compare: different, but within the derived tolerances\n"
     "  7  oracle compare: different beyond them; oracle judge: different\n"
@@ -87,11 +91,11 @@ static bool parse_number(const char *text, uint64_t *value)
   return errno == 0 && *end == '\0';
 }
 
-static enum exit_code take_number(const char *name, const char *text, uint64_t *value)
+static enum exit_code take_number(const char *name, const char *text, uint64_t most, uint64_t *value)
 {
-  if (parse_number(text, value))
+  if (parse_number(text, value) && *value <= most)
     return EXIT_DONE;
-  fprintf(stderr, "uncross: --%s %s: not a whole number from 0 to 18446744073709551615\n", name, text);
+  fprintf(stderr, "uncross: --%s %s: not a whole number from 0 to %" PRIu64 "\n", name, text, most);
   return EXIT_BAD_INPUT;
 }
 
@@ -103,10 +107,10 @@ static enum exit_code take_option(struct arguments *a, int code)
     return EXIT_DONE;
   case OPTION_STEPS:
     a->run.has_steps = true;
-    return take_number("steps", optarg, &a->run.steps);
+    return take_number("steps", optarg, INT64_MAX, &a->run.steps);
   case OPTION_SEED:
     a->run.has_seed = true;
-    return take_number("seed", optarg, &a->run.seed);
+    return take_number("seed", optarg, UINT64_MAX, &a->run.seed);
   case OPTION_RESUME:
     a->run.resume = true;
     return EXIT_DONE;
@@ -123,14 +127,24 @@ static enum exit_code take_option(struct arguments *a, int code)
     a->export.wrapped = true;
     return EXIT_DONE;
   case OPTION_FIRST:
-    return take_number("first", optarg, &a->export.first);
+    return take_number("first", optarg, UINT64_MAX, &a->export.first);
   case OPTION_LAST:
-    return take_number("last", optarg, &a->export.last);
+    return take_number("last", optarg, UINT64_MAX, &a->export.last);
   case OPTION_STRIDE:
-    return take_number("stride", optarg, &a->export.stride);
+    return take_number("stride", optarg, UINT64_MAX, &a->export.stride);
   default:
     return usage_error("wrong options", ""); /* getopt_long has said which */
   }
+}
+
+/* What was to be printed must have arrived where it went. Who says a failure has said it all. */
+static enum exit_code told(enum exit_code code)
+{
+  const bool failure = code != EXIT_DONE && code < EXIT_CLOSE;
+  if (failure || (fflush(stdout) == 0 && !ferror(stdout)))
+    return code;
+  fprintf(stderr, "uncross: standard output: cannot write: %s\n", strerror(errno));
+  return EXIT_NOT_WRITTEN;
 }
 
 /* --- commands ---------------------------------------------------------------------------------------------------- */
@@ -145,7 +159,7 @@ static enum exit_code command_check(struct arguments *a)
   }
   scene_report(&scene);
   scene_free(&scene);
-  return EXIT_DONE;
+  return told(EXIT_DONE);
 }
 
 static enum exit_code command_run(struct arguments *a)
@@ -160,7 +174,7 @@ static enum exit_code command_info(struct arguments *a)
 {
   struct message message;
   if (file_info(a->file, &message))
-    return EXIT_DONE;
+    return told(EXIT_DONE);
   fprintf(stderr, "uncross: %s\n", message.text);
   return EXIT_BAD_INPUT;
 }
@@ -241,25 +255,38 @@ static enum exit_code dispatch(const struct command *command, int count, char **
   return command->act(&a);
 }
 
+/* A standard stream that the caller closed is given to nobody: the next file that is opened would get its number, and
+ * all that is said would go there. */
+static void keep_streams(void)
+{
+  int fd;
+  do
+    fd = open("/dev/null", O_RDONLY);
+  while (fd >= 0 && fd <= STDERR_FILENO);
+  if (fd >= 0)
+    close(fd);
+}
+
 int main(int count, char **words)
 {
+  keep_streams();
   if (count < 2) {
     fputs(help, stderr);
     return EXIT_BAD_INPUT;
   }
   if (strcmp(words[1], "--help") == 0 || strcmp(words[1], "-h") == 0 || strcmp(words[1], "help") == 0) {
     fputs(help, stdout);
-    return EXIT_DONE;
+    return told(EXIT_DONE);
   }
   if (strcmp(words[1], "--version") == 0) {
     printf("uncross %s (commit %s; %s; %s)\n", UNCROSS_VERSION, build_info.commit, build_info.compiler,
            build_info.flags);
-    return EXIT_DONE;
+    return told(EXIT_DONE);
   }
   for (size_t k = 0; k < sizeof commands / sizeof *commands; k++)
     if (strcmp(words[1], commands[k].name) == 0)
       return dispatch(&commands[k], count - 1, words + 1);
   if (strcmp(words[1], "oracle") == 0)
-    return oracle_command(count - 1, words + 1);
+    return told(oracle_command(count - 1, words + 1));
   return usage_error("unknown command ", words[1]);
 }

@@ -74,15 +74,6 @@ static enum exit_code close_output(FILE *out, enum exit_code code, const char *p
   return code == EXIT_DONE ? code : complain(message, code);
 }
 
-/* The code of a verdict that was printed, if it was. */
-static enum exit_code told(enum exit_code code)
-{
-  struct message message;
-  const bool printed = fflush(stdout) == 0 && !ferror(stdout);
-  message_set(&message, "standard output: cannot write");
-  return printed ? code : complain(&message, EXIT_NOT_WRITTEN);
-}
-
 static enum exit_code emit(const struct words *w)
 {
   struct message message;
@@ -155,7 +146,7 @@ static enum exit_code compare(const struct words *w)
   bool ok = oracle_compare(&ours, &theirs, &w->options, stdout, &verdict, &message);
   pack_free(&ours);
   pack_free(&theirs);
-  return ok ? told(codes[verdict]) : complain(&message, EXIT_BAD_INPUT);
+  return ok ? codes[verdict] : complain(&message, EXIT_BAD_INPUT);
 }
 
 static enum exit_code judge(const struct words *w)
@@ -169,7 +160,7 @@ static enum exit_code judge(const struct words *w)
   const bool ok = observable_means_read(w->file[0], NULL, &ours, &message) &&
                   observable_means_read(w->file[1], &ours, &theirs, &message) &&
                   oracle_judge(&ours, &theirs, &how, stdout, &verdict, &message);
-  return ok ? told(codes[verdict]) : complain(&message, EXIT_BAD_INPUT);
+  return ok ? codes[verdict] : complain(&message, EXIT_BAD_INPUT);
 }
 
 static const struct {

@@ -4,7 +4,7 @@
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
+#include <unistd.h>
 
 #include "io/folder.h"
 #include "io/output.h"
@@ -24,12 +24,14 @@ static void on_signal(int number)
   interrupted = 1;
 }
 
+/* That nobody reads its words any more (SIGPIPE) is no reason for a run to end. */
 static void watch_signals(void)
 {
-  struct sigaction action = {.sa_handler = on_signal};
+  struct sigaction action = {.sa_handler = on_signal}, ignore = {.sa_handler = SIG_IGN};
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);
+  sigaction(SIGPIPE, &ignore, NULL);
 }
 
 /* Everything that a run holds. */
@@ -41,6 +43,8 @@ struct run {
   struct observers *observers;
   struct output output;
   struct checkpoint_head head;
+  struct record record;   /* as in run.json, or as it would be there */
+  int lock;               /* of the folder */
   double session_started; /* clock_seconds */
   double last_checkpoint; /* clock_seconds */
   double earlier_seconds; /* spent in earlier sessions */
@@ -54,12 +58,6 @@ static enum exit_code complain(const struct run *run, enum exit_code code)
   return code;
 }
 
-static enum exit_code complain_fault(struct run *run, enum exit_code code)
-{
-  fault_describe(&run->work.fault, run->message.text, sizeof run->message.text);
-  return complain(run, code);
-}
-
 /* --- how it starts ----------------------------------------------------------------------------------------------- */
 
 static void checkpoint_path(const struct run *run, char *path, size_t size)
@@ -67,19 +65,51 @@ static void checkpoint_path(const struct run *run, char *path, size_t size)
   snprintf(path, size, "%s/checkpoint.h5", run->options->folder);
 }
 
-/* The folder must be new to a new run, and known to a resumed one: nothing is written over. */
-static bool check_folder(const struct run_options *o, struct message *message)
+/* Whether a run left something in the folder; the message is then its name. */
+static bool find_left(const struct run *run, struct message *name)
 {
-  static const char *const ours[] = {"checkpoint.h5", "run.json", "trajectory.h5"};
-  if (o->resume)
-    return folder_has(o->folder, "checkpoint.h5") ||
-           message_set(message, "%s: nothing to resume, there is no checkpoint.h5; leave out --resume to start",
-                       o->folder);
-  for (size_t k = 0; k < sizeof ours / sizeof *ours; k++)
-    if (folder_has(o->folder, ours[k]))
-      return message_set(message, "%s: holds a run already (%s); continue it with --resume, or name another folder",
-                         o->folder, ours[k]);
-  return true;
+  static const char *const ours[] = {"run.json", "trajectory.h5"};
+  for (size_t k = 0; k < sizeof ours / sizeof *ours; k++) {
+    message_set(name, "%s", ours[k]);
+    if (folder_has(run->options->folder, name->text))
+      return true;
+  }
+  return output_left(&run->scene, run->observers, run->options->folder, name);
+}
+
+/* The folder must be new to a new run, and known to a resumed one: nothing is written over. */
+static enum exit_code check_folder(struct run *run)
+{
+  const char *folder = run->options->folder;
+  struct message name;
+  if (folder_has(folder, "checkpoint.h5")) {
+    if (run->options->resume)
+      return EXIT_DONE;
+    message_set(&run->message,
+                "%s: holds a run already (checkpoint.h5); continue it with --resume, or name another folder", folder);
+  } else if (find_left(run, &name)) {
+    message_set(&run->message,
+                "%s: holds %s but no checkpoint: a run that ended before its first one, or something else that is not "
+                "written over; remove the folder, or name another one",
+                folder, name.text);
+  } else if (run->options->resume) {
+    message_set(&run->message, "%s: nothing to resume, there is no checkpoint.h5; leave out --resume to start", folder);
+  } else {
+    return EXIT_DONE;
+  }
+  return complain(run, EXIT_BAD_INPUT);
+}
+
+/* Makes the folder, if it is not there, and keeps everybody else out of it. */
+static enum exit_code take_folder(struct run *run)
+{
+  const char *folder = run->options->folder;
+  if (!folder_make(folder, &run->message))
+    return complain(run, EXIT_BAD_INPUT);
+  run->lock = folder_lock(folder, &run->message);
+  if (run->lock < 0)
+    return complain(run, EXIT_NOT_WRITTEN);
+  return check_folder(run);
 }
 
 /* What the options say instead of the scene. A resumed run keeps its seed. */
@@ -99,6 +129,7 @@ static enum exit_code start_anew(struct run *run)
   const struct conserved start = observe_conserved(&scene->model, &run->state);
   run->head = (struct checkpoint_head){.fingerprint = scene->fingerprint,
                                        .seed = scene->model.seed,
+                                       .state_hash = state_hash(&run->state),
                                        .start_energy = start.total,
                                        .start_momentum = start.momentum,
                                        .version = UNCROSS_VERSION};
@@ -123,6 +154,8 @@ static enum exit_code start_from_checkpoint(struct run *run)
     message_set(&run->message, "%s: was run with seed %" PRIu64 "; a resumed run keeps its seed", path, run->head.seed);
     return complain(run, EXIT_BAD_INPUT);
   }
+  if (!output_whole(&run->scene, run->observers, run->options->folder, run->head.frames_end, &run->message))
+    return complain(run, EXIT_BAD_INPUT);
   run->scene.model.seed = run->head.seed;
   run->earlier_seconds = run->head.wall_seconds;
   return EXIT_DONE;
@@ -135,29 +168,51 @@ static double wall_seconds(const struct run *run)
   return run->earlier_seconds + clock_seconds() - run->session_started;
 }
 
+static void take_record(struct run *run, const char *status)
+{
+  run->record = (struct record){.status = status,
+                                .step = run->state.step,
+                                .counts = run->state.counts,
+                                .wall_seconds = run->head.wall_seconds,
+                                .steps_per_second = progress_rate(&run->progress, run->state.step),
+                                .start_energy = run->head.start_energy,
+                                .start_momentum = run->head.start_momentum,
+                                .now = observe_conserved(&run->scene.model, &run->state),
+                                .state_hash = run->head.state_hash};
+}
+
+static bool write_record(const struct run *run, struct message *message)
+{
+  return record_write(run->options->folder, &run->scene, &run->record, message);
+}
+
 /* Tables, checkpoint and run.json of this moment. */
-static bool save(struct run *run, const char *status, const char *reason)
+static bool save(struct run *run, const char *status)
 {
   const struct observe_block *blocks;
   size_t count = observers_blocks(run->observers, &blocks);
   char path[4096];
   checkpoint_path(run, path, sizeof path);
   run->head.wall_seconds = wall_seconds(run);
-  run->head.state_hash = state_hash(&run->state);
-  const struct record record = {status,
-                                reason,
-                                run->head.wall_seconds,
-                                progress_rate(&run->progress, run->state.step),
-                                run->head.start_energy,
-                                run->head.start_momentum};
+  run->head.frames_end = trajectory_end(run->output.trajectory);
   run->last_checkpoint = clock_seconds();
-  if (run->head.state_hash == 0)
-    return message_set(&run->message, "no memory for the hash of the state");
-  return output_flush(&run->output, &run->message) &&
-         checkpoint_write(path, &run->head, &run->scene.model, &run->state, blocks, count, run->scene.text,
-                          &run->message) &&
-         output_summaries(&run->output, run->observers, &run->scene.model, &run->message) &&
-         record_write(run->options->folder, &run->scene, &run->state, &record, &run->message);
+  if (!(output_sync(&run->output, &run->message) &&
+        checkpoint_write(path, &run->head, &run->scene.model, &run->state, blocks, count, run->scene.text,
+                         &run->message) &&
+        output_summaries(&run->output, run->observers, &run->scene.model, &run->message)))
+    return false;
+  take_record(run, status);
+  return write_record(run, &run->message);
+}
+
+/* Says why the run cannot go on, here and in run.json, whose numbers stay those of the last checkpoint. */
+static enum exit_code stop(struct run *run, enum exit_code code)
+{
+  struct message ignored;
+  run->record.status = "stopped";
+  run->record.reason = run->message.text;
+  write_record(run, &ignored);
+  return complain(run, code);
 }
 
 /* What the run's folder gets of this step. */
@@ -175,19 +230,23 @@ static bool checkpoint_due(const struct run *run)
 static enum exit_code loop(struct run *run)
 {
   progress_begin(&run->progress, run->state.step, run->scene.steps, run->options->quiet);
-  bool written = run->state.step > 0 || show(run);
+  take_record(run, "running");
+  bool stepped = true, written = run->state.step > 0 || show(run);
   while (written && run->state.step < run->scene.steps && !interrupted) {
-    if (!step_advance(&run->state, &run->scene.model, &run->work, NULL)) {
-      progress_end(&run->progress);
-      return complain_fault(run, EXIT_STOPPED);
-    }
-    written = show(run) && (!checkpoint_due(run) || save(run, "running", NULL));
+    stepped = step_advance(&run->state, &run->scene.model, &run->work, NULL);
+    if (!stepped)
+      break;
+    written = show(run) && (!checkpoint_due(run) || save(run, "running"));
     progress_tell(&run->progress, run->state.step);
   }
   progress_end(&run->progress);
+  if (!stepped) {
+    message_fault(&run->message, &run->work.fault);
+    return stop(run, EXIT_STOPPED);
+  }
   bool done = run->state.step >= run->scene.steps;
-  if (!written || !save(run, done ? "finished" : "interrupted", NULL))
-    return complain(run, EXIT_NOT_WRITTEN);
+  if (!written || !save(run, done ? "finished" : "interrupted"))
+    return stop(run, EXIT_NOT_WRITTEN);
   return done ? EXIT_DONE : EXIT_INTERRUPTED;
 }
 
@@ -204,29 +263,48 @@ static void tell_end(const struct run *run, enum exit_code code)
     printf("go on with --resume\n");
 }
 
-static enum exit_code run_in_folder(struct run *run)
+/* A run that is past the steps asked for stays as it is. */
+static enum exit_code leave_alone(const struct run *run)
+{
+  if (!run->options->quiet)
+    printf("at step %" PRIu64 " already, past the %" PRIu64 " asked for: nothing to do\n", run->state.step,
+           run->scene.steps);
+  return EXIT_DONE;
+}
+
+static enum exit_code run_to_end(struct run *run)
 {
   const bool resume = run->options->resume;
-  run->session_started = run->last_checkpoint = clock_seconds();
-  enum exit_code code = resume ? start_from_checkpoint(run) : start_anew(run);
-  if (code != EXIT_DONE)
-    return code;
-  if (!folder_make(run->options->folder, &run->message))
-    return complain(run, EXIT_BAD_INPUT);
-  message_set(&run->message, "%s", "");
-  if (!output_open(&run->output, &run->scene, run->options->folder, resume, run->state.step, &run->message)) {
+  if (run->state.step > run->scene.steps)
+    return leave_alone(run);
+  watch_signals();
+  if (!output_open(&run->output, &run->scene, run->observers, run->options->folder, resume, run->state.step,
+                   &run->message)) {
     struct message ignored;
     output_close(&run->output, &ignored);
     return complain(run, EXIT_NOT_WRITTEN);
   }
   if (run->message.text[0] != '\0') /* opened all the same, with something to say */
     complain(run, EXIT_DONE);
-  watch_signals();
-  code = loop(run);
+  enum exit_code code = loop(run);
   if (!output_close(&run->output, &run->message) && code == EXIT_DONE)
     code = complain(run, EXIT_NOT_WRITTEN);
   tell_end(run, code);
   return code;
+}
+
+/* A folder that is there is taken before anything in it is believed; one that is not, only when there is a state to
+ * begin with: bad input leaves no folder. */
+static enum exit_code run_in_folder(struct run *run)
+{
+  const bool there = folder_has(run->options->folder, ".");
+  run->session_started = run->last_checkpoint = clock_seconds();
+  enum exit_code code = there ? take_folder(run) : check_folder(run);
+  if (code == EXIT_DONE)
+    code = run->options->resume ? start_from_checkpoint(run) : start_anew(run);
+  if (code == EXIT_DONE && !there)
+    code = take_folder(run);
+  return code == EXIT_DONE ? run_to_end(run) : code;
 }
 
 enum exit_code run_scene(const struct run_options *options)
@@ -237,8 +315,9 @@ enum exit_code run_scene(const struct run_options *options)
     return EXIT_TROUBLE;
   }
   run->options = options;
+  run->lock = -1;
   enum exit_code code = EXIT_TROUBLE;
-  if (!scene_read(options->scene, &run->scene, &run->message) || !check_folder(options, &run->message)) {
+  if (!scene_read(options->scene, &run->scene, &run->message)) {
     code = complain(run, EXIT_BAD_INPUT);
   } else {
     apply_options(run);
@@ -253,6 +332,8 @@ enum exit_code run_scene(const struct run_options *options)
     state_free(&run->state);
     observers_free(run->observers);
   }
+  if (run->lock >= 0)
+    close(run->lock);
   scene_free(&run->scene);
   free(run);
   return code;

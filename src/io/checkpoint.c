@@ -1,15 +1,12 @@
 #include "io/checkpoint.h"
 
-#include <errno.h>
-#include <fcntl.h>
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
+#include "io/folder.h"
 #include "io/structure.h"
-
-#define PATH_SIZE 4096
 
 /* --- the numbers, listed once for writing and reading ------------------------------------------------------------ */
 
@@ -146,6 +143,7 @@ static bool write_contents(hid_t file, struct contents *c)
   bool ok = h5_put_text(file, "format", CHECKPOINT_FORMAT) &&
             h5_put(file, "format_version", H5T_NATIVE_INT32, 0, &version) &&
             h5_put_text(head, "version", c->summary.head.version) && each_field(file, &c->summary, true) &&
+            h5_put(head, "frames_end", H5T_NATIVE_UINT64, 0, &c->summary.head.frames_end) &&
             structure_write_particles(structure, c->model, false) && structure_write_bonds(structure, c->model) &&
             write_state(state, c->state) && write_blocks(observers, c->blocks, c->block_count) &&
             h5_text_write(file, "scene", c->scene_text ? c->scene_text : "");
@@ -168,12 +166,11 @@ static struct checkpoint_summary summary_of(const struct checkpoint_head *head, 
                                  .vertices = state->vertices,
                                  .counts = state->counts};
   s.head.version[sizeof s.head.version - 1] = '\0';
-  s.head.state_hash = state_hash(state);
   memcpy(s.cells, model->box.cells, sizeof s.cells);
   return s;
 }
 
-/* The whole file as bytes: it is made in memory, so that every error of the disk is met in write_through. */
+/* The whole file as bytes: it is made in memory, so that every error of the disk is met in file_replace. */
 static void *make_image(struct contents *c, size_t *bytes, const char *path, struct message *message)
 {
   size_t estimate = ((size_t)c->state->solvent.n + c->state->vertices) * 64;
@@ -187,68 +184,17 @@ static void *make_image(struct contents *c, size_t *bytes, const char *path, str
   return image;
 }
 
-/* Writes all and waits until it is on the disk; false with errno set. */
-static bool write_through(const char *path, const char *data, size_t bytes)
-{
-  int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
-  if (fd < 0)
-    return false;
-  size_t done = 0;
-  while (done < bytes) {
-    ssize_t n = write(fd, data + done, bytes - done);
-    if (n < 0 && errno == EINTR)
-      continue;
-    if (n <= 0)
-      break;
-    done += (size_t)n;
-  }
-  bool ok = done == bytes && fsync(fd) == 0;
-  int error = errno;
-  ok &= close(fd) == 0;
-  if (done < bytes)
-    errno = error ? error : ENOSPC;
-  return ok;
-}
-
-/* Makes the rename last. The new checkpoint is in place by now, whatever a file system makes of syncing a folder. */
-static void sync_folder_of(const char *path)
-{
-  char folder[PATH_SIZE];
-  const char *slash = strrchr(path, '/');
-  snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path) + 1 : 1, slash ? path : ".");
-  int fd = open(folder, O_RDONLY);
-  if (fd < 0)
-    return;
-  fsync(fd);
-  close(fd);
-}
-
-static bool put_in_place(const char *path, const void *image, size_t bytes, struct message *message)
-{
-  char part[PATH_SIZE];
-  if ((size_t)snprintf(part, sizeof part, "%s.part", path) >= sizeof part)
-    return message_set(message, "%.200s...: path too long", path);
-  errno = 0;
-  if (!write_through(part, image, bytes) || rename(part, path) != 0) {
-    message_set(message, "%s: checkpoint not written (%zu bytes): %s; an earlier one is untouched", path, bytes,
-                strerror(errno));
-    unlink(part);
-    return false;
-  }
-  sync_folder_of(path);
-  return true;
-}
-
-bool checkpoint_write(const char *path, const struct checkpoint_head *head, const struct model *model,
+bool checkpoint_write(const char *path, struct checkpoint_head *head, const struct model *model,
                       const struct state *state, const struct observe_block *blocks, size_t block_count,
                       const char *scene_text, struct message *message)
 {
+  head->state_hash = state_hash(state);
   struct contents contents = {summary_of(head, model, state), model, state, blocks, block_count, scene_text};
   size_t bytes;
-  if (contents.summary.head.state_hash == 0)
+  if (head->state_hash == 0)
     return message_set(message, "%s: checkpoint not written: no memory; an earlier one is untouched", path);
   void *image = make_image(&contents, &bytes, path, message);
-  bool ok = image && put_in_place(path, image, bytes, message);
+  bool ok = image && file_replace(path, image, bytes, message);
   free(image);
   return ok;
 }
@@ -276,6 +222,8 @@ static bool read_summary(hid_t file, const char *path, struct checkpoint_summary
   hid_t head = h5_open_group(file, "head");
   bool ok = head >= 0 && h5_get_text(head, "version", summary->head.version, sizeof summary->head.version) &&
             each_field(file, summary, false);
+  if (ok) /* else 0: earlier checkpoints do not know it */
+    h5_get(head, "frames_end", H5T_NATIVE_UINT64, 0, &summary->head.frames_end);
   h5_close(head);
   if (!ok)
     h5_fail(message, path, "damaged or incomplete checkpoint");
@@ -375,6 +323,22 @@ hid_t checkpoint_open_for(const char *path, const struct model *model, struct ch
   return file;
 }
 
+/* Earlier checkpoints hold no settings; they are taken to be the scene's. */
+static bool same_setting(hid_t group, const char *name, const char *path, const struct observe_block *block,
+                         struct message *message)
+{
+  const hsize_t dims[1] = {1};
+  const int64_t wanted = *(const int64_t *)block->data;
+  int64_t stored = wanted;
+  if (group >= 0 && h5_has(group, name) && !h5_array_read(group, name, H5T_NATIVE_INT64, 1, dims, &stored))
+    return message_set(message, "%s: damaged checkpoint: '%s' cannot be read", path, name);
+  return stored == wanted ||
+         message_set(message,
+                     "observe.%s: %" PRId64 " in the scene, but %" PRId64 " in the run so far (%s), whose averages go "
+                     "on; a resumed run keeps it",
+                     name, wanted, stored, path);
+}
+
 static bool read_blocks(hid_t file, const char *path, const struct observe_block *blocks, size_t count,
                         struct message *message)
 {
@@ -385,13 +349,18 @@ static bool read_blocks(hid_t file, const char *path, const struct observe_block
     int64_t nothing;
     const hsize_t dims[1] = {blocks[b].count};
     block_name(&blocks[b], name, sizeof name);
+    if (blocks[b].setting) {
+      ok = same_setting(group, name, path, &blocks[b], message);
+      continue;
+    }
     ok = group >= 0 && h5_has(group, name) &&
          h5_array_read(group, name, block_type(&blocks[b]), 1, dims, blocks[b].data ? blocks[b].data : &nothing);
     if (!ok)
-      message_set(message,
-                  "%s: no memory of the observable '%s' in this size (damaged, or the scene asks for other observables "
-                  "than the interrupted run did)",
-                  path, blocks[b].name);
+      message_set(
+          message,
+          "%s: no memory of the observable '%s' in this size (damaged, or not sampled by this run so far: resume "
+          "without it, or begin a run from this checkpoint with start.snapshot)",
+          path, blocks[b].name);
   }
   h5_close(group);
   return ok;

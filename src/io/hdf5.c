@@ -194,10 +194,18 @@ int h5_reserve(hid_t file, size_t bytes)
   int fd = descriptor_of(file);
   if (fd < 0 || H5Fget_filesize(file, &size) < 0)
     return EIO;
-  int error = posix_fallocate(fd, (off_t)size, (off_t)bytes);
+  int error;
+  do
+    error = posix_fallocate(fd, (off_t)size, (off_t)bytes);
+  while (error == EINTR); /* a signal came, which the run looks at after its step */
   if (error)
     h5_trim(file);
   return error;
+}
+
+int h5_sync(hid_t file)
+{
+  return fsync(descriptor_of(file)) == 0 ? 0 : errno;
 }
 
 void h5_trim(hid_t file)

@@ -43,6 +43,9 @@ void *h5_image(hid_t file, size_t *bytes);
 int h5_reserve(hid_t file, size_t bytes);
 void h5_trim(hid_t file);
 
+/* Waits until what was flushed is on the disk; returns 0, or errno's number. */
+int h5_sync(hid_t file);
+
 /* Creates the group `name` (no path). */
 hid_t h5_group(hid_t parent, const char *name);
 

@@ -23,3 +23,9 @@ int message_at(struct message *message, const char *file, size_t line, size_t co
   va_end(arguments);
   return 0;
 }
+
+int message_fault(struct message *message, const struct fault *fault)
+{
+  fault_describe(fault, message->text, sizeof message->text);
+  return 0;
+}

@@ -1,36 +1,115 @@
 #include "io/output.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 
-static bool open_series(struct output *o, const struct observe_plan *plan, bool resume, uint64_t step,
+#include "io/folder.h"
+
+/* Columns of the time series that the plan asks for, 0 if it does not or this is none. */
+static size_t wanted_columns(const struct observe_plan *plan, int which, const char *const **names)
+{
+  return plan->every[which] > 0 ? observe_series_columns((enum observable)which, names) : 0;
+}
+
+/* --- what is there already --------------------------------------------------------------------------------------- */
+
+struct search {
+  const char *folder;
+  struct message *name;
+};
+
+static bool is_absent(const struct search *s, const char *table)
+{
+  message_set(s->name, "%s.csv", table);
+  return !folder_has(s->folder, s->name->text);
+}
+
+static bool take_absent(void *context, const struct observe_table *table)
+{
+  return is_absent(context, table->name);
+}
+
+bool output_left(const struct scene *scene, const struct observers *observers, const char *folder, struct message *name)
+{
+  struct search search = {folder, name};
+  const char *const *names;
+  for (int k = 0; k < OBSERVABLES; k++)
+    if (wanted_columns(&scene->observe, k, &names) > 0 && !is_absent(&search, observable_names[k]))
+      return true;
+  return !observers_summaries(observers, &scene->model, take_absent, &search);
+}
+
+/* Ends are 1 + a step, 0 before the first. */
+static bool same_end(const char *folder, const char *file, uint64_t found, uint64_t end, const char *otherwise,
+                     struct message *message)
+{
+  char where[64] = "is missing or empty";
+  if (found > 0)
+    snprintf(where, sizeof where, "ends at step %" PRIu64, found - 1);
+  return found == end || message_set(message,
+                                     "%s/%s: %s, but went to step %" PRIu64
+                                     " when the checkpoint was written (changed, or lost with the "
+                                     "machine); put the whole file back, or %s",
+                                     folder, file, where, end - 1, otherwise);
+}
+
+bool output_whole(const struct scene *scene, const struct observers *observers, const char *folder, uint64_t frames_end,
+                  struct message *message)
+{
+  const char *const *names;
+  uint64_t found;
+  for (int k = 0; k < OBSERVABLES; k++) {
+    const uint64_t end = observers_end(observers, (enum observable)k);
+    char file[64];
+    snprintf(file, sizeof file, "%s.csv", observable_names[k]);
+    if (wanted_columns(&scene->observe, k, &names) > 0 &&
+        !(series_find_end(folder, observable_names[k], end, &found, message) &&
+          same_end(folder, file, found, end, "resume without this table in the scene's `observe`", message)))
+      return false;
+  }
+  char path[4096];
+  snprintf(path, sizeof path, "%s/trajectory.h5", folder);
+  return scene->trajectory_every == 0 || frames_end == 0 || !trajectory_find_end(path, frames_end - 1, &found) ||
+         same_end(folder, "trajectory.h5", found, frames_end, "move it away to begin another", message);
+}
+
+/* --- what a run writes ------------------------------------------------------------------------------------------- */
+
+static bool open_series(struct output *o, const struct observe_plan *plan, const struct observers *observers,
                         struct message *message)
 {
   for (int k = 0; k < OBSERVABLES; k++) {
     const char *const *names;
-    size_t columns = observe_series_columns((enum observable)k, &names);
-    if (plan->every[k] > 0 && columns > 0 &&
-        !series_open(&o->series[k], o->folder, observable_names[k], columns, names, resume, step, message))
+    size_t columns = wanted_columns(plan, k, &names);
+    if (columns > 0 && !series_open(&o->series[k], o->folder, observable_names[k], columns, names,
+                                    observers_end(observers, (enum observable)k), message))
       return false;
   }
   return true;
 }
 
-bool output_open(struct output *o, const struct scene *scene, const char *folder, bool resume, uint64_t step,
-                 struct message *message)
+static bool open_trajectory(struct output *o, const struct scene *scene, bool resume, uint64_t step,
+                            struct message *message)
+{
+  char path[4096];
+  snprintf(path, sizeof path, "%s/trajectory.h5", o->folder);
+  const bool late = resume && !folder_has(o->folder, "trajectory.h5");
+  const struct trajectory_options options = {
+      .solvent = scene->trajectory_solvent, .velocities = scene->trajectory_velocities, .seed = scene->model.seed};
+  o->trajectory = trajectory_open(path, &scene->model, &options, resume, step, scene->text, message);
+  if (o->trajectory && late)
+    message_set(message, "%s: there was none; its frames begin after step %" PRIu64, path, step);
+  return o->trajectory != NULL;
+}
+
+/* The trajectory comes first: if another program has it open, no table is touched. */
+bool output_open(struct output *o, const struct scene *scene, const struct observers *observers, const char *folder,
+                 bool resume, uint64_t step, struct message *message)
 {
   *o = (struct output){.folder = folder, .trajectory_every = scene->trajectory_every};
-  if (!open_series(o, &scene->observe, resume, step, message))
-    return false;
-  if (o->trajectory_every == 0)
-    return true;
-  char path[4096];
-  snprintf(path, sizeof path, "%s/trajectory.h5", folder);
-  const struct trajectory_options options = {.solvent = scene->trajectory_solvent,
-                                             .velocities = scene->trajectory_velocities,
-                                             .seed = scene->model.seed,
-                                             .author = "uncross"};
-  o->trajectory = trajectory_open(path, &scene->model, &options, resume, step, scene->text, message);
-  return o->trajectory != NULL;
+  message_set(message, "%s", "");
+  return (o->trajectory_every == 0 || open_trajectory(o, scene, resume, step, message)) &&
+         open_series(o, &scene->observe, observers, message);
 }
 
 struct row_context {
@@ -59,12 +138,12 @@ bool output_sample(struct output *o, struct observers *observers, const struct m
          trajectory_append(o->trajectory, model, state, message);
 }
 
-bool output_flush(struct output *o, struct message *message)
+bool output_sync(struct output *o, struct message *message)
 {
   for (int k = 0; k < OBSERVABLES; k++)
-    if (!series_flush(&o->series[k], message))
+    if (!series_sync(&o->series[k], message))
       return false;
-  return true;
+  return !o->trajectory || trajectory_sync(o->trajectory, message);
 }
 
 struct table_context {

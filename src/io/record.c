@@ -1,12 +1,13 @@
 #include "io/record.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <jansson.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "io/build_info.h"
+#include "io/folder.h"
 #include "version.h"
 
 /* JSON knows no NaN: null. */
@@ -41,32 +42,22 @@ static json_t *seed(uint64_t x)
   return json_string(text);
 }
 
-bool record_write(const char *folder, const struct scene *scene, const struct state *state, const struct record *r,
-                  struct message *message)
+bool record_write(const char *folder, const struct scene *scene, const struct record *r, struct message *message)
 {
-  const struct conserved now = observe_conserved(&scene->model, state);
-  const uint64_t hash = state_hash(state);
-  if (hash == 0)
-    return message_set(message, "%s/run.json: no memory for the hash of the state", folder);
   json_t *root = json_pack(
       "{s:s, s:s?, s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:I, s:I, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:s}", "status",
       r->status, "reason", r->reason, "program", "uncross", "version", UNCROSS_VERSION, "commit", build_info.commit,
       "compiler", build_info.compiler, "flags", build_info.flags, "seed", seed(scene->model.seed), "scene_fingerprint",
-      hexadecimal(scene->fingerprint), "steps", (json_int_t)state->step, "steps_wanted", (json_int_t)scene->steps,
-      "time", (double)state->step * scene->model.time_step, "wall_seconds", r->wall_seconds, "steps_per_second",
-      r->steps_per_second, "collisions", counts(&state->counts), "start", conserved(r->start_energy, r->start_momentum),
-      "end", conserved(now.total, now.momentum), "state_hash", hexadecimal(hash), "scene", scene->text);
-  if (!root)
-    return message_set(message, "%s/run.json: no memory, or a scene that is not UTF-8", folder);
-
-  char path[4096], aside[4160];
+      hexadecimal(scene->fingerprint), "steps", (json_int_t)r->step, "steps_wanted", (json_int_t)scene->steps, "time",
+      (double)r->step * scene->model.time_step, "wall_seconds", r->wall_seconds, "steps_per_second",
+      r->steps_per_second, "collisions", counts(&r->counts), "start", conserved(r->start_energy, r->start_momentum),
+      "end", conserved(r->now.total, r->now.momentum), "state_hash", hexadecimal(r->state_hash), "scene", scene->text);
+  char *text = root ? json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) : NULL;
+  char path[4096];
   snprintf(path, sizeof path, "%s/run.json", folder);
-  snprintf(aside, sizeof aside, "%s.part", path);
-  bool ok = json_dump_file(root, aside, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) == 0 && rename(aside, path) == 0;
+  message_set(message, "%s: no memory, or a scene that is not UTF-8", path);
+  bool ok = text && file_replace(path, text, strlen(text), message);
+  free(text);
   json_decref(root);
-  if (!ok) {
-    message_set(message, "%s: cannot write: %s", path, strerror(errno));
-    remove(aside);
-  }
   return ok;
 }

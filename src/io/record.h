@@ -8,16 +8,19 @@
 #include "state/state.h"
 
 struct record {
-  const char *status;      /* "finished", "interrupted", "stopped", "running" */
-  const char *reason;      /* why it stopped; NULL if it did not */
+  const char *status; /* "finished", "interrupted", "stopped", "running" */
+  const char *reason; /* why it stopped; NULL if it did not */
+  uint64_t step;      /* of the last checkpoint, as what follows */
+  struct collision_counts counts;
   double wall_seconds;     /* over all sessions */
   double steps_per_second; /* of this session, everything included */
   double start_energy;     /* kT */
   struct vec3 start_momentum;
+  struct conserved now;
+  uint64_t state_hash;
 };
 
-/* Writes folder/run.json, aside first, then renamed. */
-bool record_write(const char *folder, const struct scene *scene, const struct state *state, const struct record *record,
-                  struct message *message);
+/* Writes folder/run.json, in place of an earlier one. */
+bool record_write(const char *folder, const struct scene *scene, const struct record *record, struct message *message);
 
 #endif

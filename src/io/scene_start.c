@@ -8,12 +8,6 @@
 #include "observe/conserved.h"
 #include "step.h"
 
-static bool say_fault(const struct work *work, struct message *message)
-{
-  fault_describe(&work->fault, message->text, sizeof message->text);
-  return false;
-}
-
 /* Where the scene says what flows, or else from what it starts. */
 static bool refuse_flow(const struct scene *scene, struct vec3 found, struct message *message)
 {
@@ -51,12 +45,12 @@ bool scene_start(const struct scene *scene, struct state *state, struct work *wo
 {
   const struct model *m = &scene->model;
   if (!scene->snapshot)
-    return step_start(state, m, work) || say_fault(work, message);
+    return step_start(state, m, work) || message_fault(message, &work->fault);
   char *path = scene_snapshot_path(scene);
   message_set(message, "no memory for the path of the snapshot");
   bool ok = path && snapshot_read_start(path, m, state, message);
   free(path);
   /* forces are only asked whether its bonds fit the box */
-  return ok && (fiber_forces(state, m, work, 0) || say_fault(work, message)) &&
+  return ok && (fiber_forces(state, m, work, 0) || message_fault(message, &work->fault)) &&
          flows_as_said(scene, state, work, message);
 }

@@ -1,5 +1,7 @@
-/* Starts from somebody's state. */
+/* How scenes start, from somebody's state or from one that is drawn. */
 #include "io/snapshot.h"
+
+#include <stdlib.h>
 
 #include "io/checkpoint.h"
 #include "io/structure.h"

@@ -19,22 +19,24 @@ struct checkpoint_head {
   uint64_t fingerprint; /* of the scene: scene.h */
   uint64_t seed;
   uint64_t state_hash; /* of the state as written; checked when read */
+  uint64_t frames_end; /* 1 + the step of the trajectory's last frame; 0: none, or not known */
   double wall_seconds; /* spent so far, over all sessions */
   double start_energy; /* kT, at step 0, for run.json of a resumed run */
   struct vec3 start_momentum;
   char version[64];
 };
 
-/* Writes path.part, syncs it, and renames it to path: path is at every moment either the old or the new checkpoint.
- * blocks: the observers' memory. head->state_hash is not read: the hash of the state is taken here. False, with a
- * message, on any failure; path is then untouched, and path.part gone. */
-bool checkpoint_write(const char *path, const struct checkpoint_head *head, const struct model *model,
+/* Writes a checkpoint as file_replace does (folder.h): path is at every moment either the old or the new one. blocks:
+ * the observers' memory. The hash of the state is taken here and put into the head. False, with a message, on any
+ * failure; path is then untouched. */
+bool checkpoint_write(const char *path, struct checkpoint_head *head, const struct model *model,
                       const struct state *state, const struct observe_block *blocks, size_t block_count,
                       const char *scene_text, struct message *message);
 
 /* Reads a checkpoint into a state allocated for this model. Checks that it is one, is whole, has this model's numbers
  * of particles and vertices, its box and its bonds, and that the state hash is right. Particles come back in id order.
- * blocks: filled where given (block_count may be 0); one that the file does not hold, or in another size, is a failure.
+ * blocks: filled where given (block_count may be 0); one that the file does not hold, or in another size, is a failure,
+ * and so is a setting of another value (one that the file does not hold is none).
  * False, with a message that names the file and what is wrong, on any failure; the state is then not to be used. The
  * fingerprint is handed back in head, for the caller to compare. */
 bool checkpoint_read(const char *path, const struct model *model, struct checkpoint_head *head, struct state *state,
@@ -54,7 +56,6 @@ struct trajectory_options {
   bool solvent; /* frames hold the solvent, else only the vertices */
   bool velocities;
   uint64_t seed;
-  const char *author; /* creator fields of H5MD are filled from version.h */
 };
 
 /* Creates a trajectory, or opens the one that is there and drops frames after `keep_to_step` (a resume; keep_to_step is
@@ -71,6 +72,12 @@ struct trajectory *trajectory_open(const char *path, const struct model *model,
  * point. */
 bool trajectory_append(struct trajectory *trajectory, const struct model *model, const struct state *state,
                        struct message *message);
+/* Waits until all frames are on the disk. */
+bool trajectory_sync(struct trajectory *trajectory, struct message *message);
+/* 1 + the step of the last frame of a trajectory that is being written; 0 if there is none, or for NULL. */
+uint64_t trajectory_end(const struct trajectory *trajectory);
+/* The same of a file, counting frames up to a step only; false if it is not there, is damaged, or is in use. */
+bool trajectory_find_end(const char *path, uint64_t keep_to_step, uint64_t *end);
 /* Closes it, NULL too; the handle is freed in any case. False, with a message, if data could not be written. */
 bool trajectory_close(struct trajectory *trajectory, struct message *message);
 

@@ -6,6 +6,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "io/folder.h"
+
 static bool failed(struct message *message, const char *path, const char *what)
 {
   return message_set(message, "%s: cannot %s: %s", path, what, strerror(errno));
@@ -30,41 +32,66 @@ static void write_values(FILE *file, const char *between, size_t columns, const 
   fputc('\n', file);
 }
 
-/* Length in bytes of the header and of all whole rows up to and including this step; -1 if they cannot be read. */
-static long kept_length(FILE *file, uint64_t keep_to_step)
+/* What is kept of a series: so many bytes, and 1 + the step of the last row in them. */
+struct kept {
+  long bytes;
+  uint64_t end;
+};
+
+/* The header and the rows before step `end`, whole lines of increasing steps. False if they cannot be read. */
+static bool find_kept(FILE *file, uint64_t end, struct kept *kept)
 {
   char *line = NULL;
   size_t room = 0;
-  long kept = 0;
   ssize_t length;
+  *kept = (struct kept){0, 0};
   for (bool header = true; (length = getline(&line, &room, file)) > 0; header = false) {
-    if (line[length - 1] != '\n' || (!header && strtoull(line, NULL, 10) > keep_to_step))
+    char *rest = line;
+    const uint64_t step = header ? 0 : strtoull(line, &rest, 10);
+    if (line[length - 1] != '\n' || (!header && (*rest != ',' || step < kept->end || step >= end)))
       break;
-    kept += length;
+    kept->bytes += length;
+    kept->end = header ? 0 : step + 1;
   }
   bool read = length > 0 || feof(file);
   free(line);
-  return read ? kept : -1;
+  return read;
+}
+
+static void set_path(char path[4096], const char *folder, const char *name)
+{
+  snprintf(path, 4096, "%s/%s.csv", folder, name);
 }
 
 bool series_open(struct series *s, const char *folder, const char *name, size_t columns, const char *const *names,
-                 bool resume, uint64_t keep_to_step, struct message *message)
+                 uint64_t end, struct message *message)
 {
-  snprintf(s->path, sizeof s->path, "%s/%s.csv", folder, name);
-  s->file = resume ? fopen(s->path, "r+") : NULL;
-  if (resume && !s->file && errno != ENOENT)
-    return failed(message, s->path, "open");
-  if (s->file) {
-    long kept = kept_length(s->file, keep_to_step);
-    if (kept < 0 || ftruncate(fileno(s->file), kept) != 0 || fseek(s->file, kept, SEEK_SET) != 0)
-      return failed(message, s->path, "cut to the checkpoint");
-    if (kept > 0)
-      return true;
-  } else if (!(s->file = fopen(s->path, "w"))) {
-    return failed(message, s->path, "create");
-  }
-  write_header(s->file, "step", columns, names);
+  struct kept kept;
+  set_path(s->path, folder, name);
+  s->file = fopen(s->path, end > 0 ? "r+" : "wx");
+  if (!s->file)
+    return failed(message, s->path, end > 0 ? "open" : "create");
+  if (end == 0)
+    write_header(s->file, "step", columns, names);
+  else if (!find_kept(s->file, end, &kept) || ftruncate(fileno(s->file), kept.bytes) != 0 ||
+           fseek(s->file, kept.bytes, SEEK_SET) != 0)
+    return failed(message, s->path, "cut to the checkpoint");
   return true;
+}
+
+bool series_find_end(const char *folder, const char *name, uint64_t end, uint64_t *found, struct message *message)
+{
+  char path[4096];
+  struct kept kept = {0, 0};
+  set_path(path, folder, name);
+  FILE *file = fopen(path, "r");
+  if (!file && errno != ENOENT)
+    return failed(message, path, "open");
+  bool read = !file || find_kept(file, end, &kept) || failed(message, path, "read");
+  if (file)
+    fclose(file);
+  *found = kept.end;
+  return read;
 }
 
 bool series_row(struct series *s, uint64_t step, size_t columns, const double *values, struct message *message)
@@ -74,9 +101,9 @@ bool series_row(struct series *s, uint64_t step, size_t columns, const double *v
   return !ferror(s->file) || failed(message, s->path, "write");
 }
 
-bool series_flush(struct series *s, struct message *message)
+bool series_sync(struct series *s, struct message *message)
 {
-  return !s->file || fflush(s->file) == 0 || failed(message, s->path, "write");
+  return !s->file || (fflush(s->file) == 0 && fsync(fileno(s->file)) == 0) || failed(message, s->path, "write");
 }
 
 bool series_close(struct series *s, struct message *message)
@@ -88,20 +115,16 @@ bool series_close(struct series *s, struct message *message)
 
 bool table_write(const char *folder, const struct observe_table *table, struct message *message)
 {
-  char path[4096], aside[4160];
-  snprintf(path, sizeof path, "%s/%s.csv", folder, table->name);
-  snprintf(aside, sizeof aside, "%s.part", path);
-  FILE *file = fopen(aside, "w");
-  if (!file)
-    return failed(message, aside, "create");
-  write_header(file, NULL, table->columns, table->column);
-  for (size_t r = 0; r < table->rows; r++)
-    write_values(file, "", table->columns, &table->value[r * table->columns]);
-  bool ok = !ferror(file);
-  ok = fclose(file) == 0 && ok;
-  if (ok && rename(aside, path) == 0)
-    return true;
-  failed(message, path, "write");
-  remove(aside);
-  return false;
+  char path[4096], *text = NULL;
+  size_t bytes;
+  set_path(path, folder, table->name);
+  FILE *file = open_memstream(&text, &bytes);
+  if (file) {
+    write_header(file, NULL, table->columns, table->column);
+    for (size_t r = 0; r < table->rows; r++)
+      write_values(file, "", table->columns, &table->value[r * table->columns]);
+  }
+  bool ok = file && fclose(file) == 0 ? file_replace(path, text, bytes, message) : failed(message, path, "write");
+  free(text);
+  return ok;
 }

@@ -15,15 +15,19 @@ struct series {
   char path[4096];
 };
 
-/* Creates the file with its header line. If `resume`, keeps what is there up to and including row `keep_to_step` (a run
- * that was interrupted may have written rows after its last checkpoint). */
+/* Creates folder/name.csv with its header line, where there must be none (end = 0); or opens the one that is there and
+ * keeps its rows up to that of step end - 1 (a run that was interrupted may have written more after its last
+ * checkpoint). */
 bool series_open(struct series *series, const char *folder, const char *name, size_t columns, const char *const *names,
-                 bool resume, uint64_t keep_to_step, struct message *message);
+                 uint64_t end, struct message *message);
+/* How far folder/name.csv goes: 1 + the step of the last sound row before `end`; 0 if it has none or is missing. */
+bool series_find_end(const char *folder, const char *name, uint64_t end, uint64_t *found, struct message *message);
 bool series_row(struct series *series, uint64_t step, size_t columns, const double *values, struct message *message);
-bool series_flush(struct series *series, struct message *message);
+/* Waits until all rows are on the disk. */
+bool series_sync(struct series *series, struct message *message);
 bool series_close(struct series *series, struct message *message);
 
-/* Writes a summary as folder/name.csv, aside first, then renamed. */
+/* Writes a summary as folder/name.csv, in place of an earlier one. */
 bool table_write(const char *folder, const struct observe_table *table, struct message *message);
 
 #endif

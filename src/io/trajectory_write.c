@@ -17,13 +17,12 @@
 
 /* --- creating ---------------------------------------------------------------------------------------------------- */
 
-static bool write_h5md(hid_t file, const char *author)
+static bool write_h5md(hid_t file)
 {
   const int32_t version[2] = {1, 1};
   hid_t root = h5_group(file, "h5md"), by = h5_group(root, "author"), creator = h5_group(root, "creator");
-  bool ok = h5_put(root, "version", H5T_NATIVE_INT32, 2, version) &&
-            h5_put_text(by, "name", author ? author : "unknown") && h5_put_text(creator, "name", "uncross") &&
-            h5_put_text(creator, "version", UNCROSS_VERSION);
+  bool ok = h5_put(root, "version", H5T_NATIVE_INT32, 2, version) && h5_put_text(by, "name", "uncross") &&
+            h5_put_text(creator, "name", "uncross") && h5_put_text(creator, "version", UNCROSS_VERSION);
   h5_close(by);
   h5_close(creator);
   h5_close(root);
@@ -113,7 +112,7 @@ static bool create_contents(struct trajectory *t, const struct model *model, con
   if (options->velocities && t->position >= 0)
     t->velocity = add_element(t, t->group, "velocity", 3, dims);
   return t->position >= 0 && (t->velocity >= 0 || !options->velocities) && add_box(t) &&
-         structure_write_particles(t->group, model, t->solvent) && write_h5md(t->file, options->author) &&
+         structure_write_particles(t->group, model, t->solvent) && write_h5md(t->file) &&
          write_parameters(t->file, model, options, scene_text) && write_connectivity(t->file, model) &&
          H5Fflush(t->file, H5F_SCOPE_GLOBAL) >= 0;
 }
@@ -173,21 +172,40 @@ static bool set_frames(struct trajectory *t, uint64_t frames)
   return ok;
 }
 
-/* Drops frames after a step. False if the steps cannot be read or do not increase: the file is damaged. */
-static bool drop_after(struct trajectory *t, uint64_t keep_to_step)
+/* How many frames are of steps up to this one. False if steps cannot be read or do not increase: the file is damaged.
+ */
+static bool find_kept(struct trajectory *t, uint64_t keep_to_step, uint64_t *keep)
 {
   hsize_t stored;
   if (t->step < 0 || t->time < 0 || t->edges < 0 || h5_shape(t->step, 1, &stored) != 1)
     return false;
   int64_t *steps = malloc(((size_t)stored + 1) * sizeof *steps);
   bool ok = steps && H5Dread(t->step, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, steps) >= 0;
-  uint64_t keep = 0;
-  for (; ok && keep < t->frames && steps[keep] >= 0 && (uint64_t)steps[keep] <= keep_to_step; keep++) {
-    ok = keep == 0 || steps[keep] > steps[keep - 1];
-    t->last_step = (uint64_t)steps[keep];
+  for (*keep = 0; ok && *keep < t->frames && steps[*keep] >= 0 && (uint64_t)steps[*keep] <= keep_to_step; ++*keep) {
+    ok = *keep == 0 || steps[*keep] > steps[*keep - 1];
+    t->last_step = (uint64_t)steps[*keep];
   }
   free(steps);
-  return ok && set_frames(t, keep) && H5Fflush(t->file, H5F_SCOPE_GLOBAL) >= 0;
+  return ok;
+}
+
+static bool drop_after(struct trajectory *t, uint64_t keep_to_step)
+{
+  uint64_t keep;
+  return find_kept(t, keep_to_step, &keep) && set_frames(t, keep) && H5Fflush(t->file, H5F_SCOPE_GLOBAL) >= 0;
+}
+
+bool trajectory_find_end(const char *path, uint64_t keep_to_step, uint64_t *end)
+{
+  enum h5_trouble trouble;
+  struct message ignored;
+  uint64_t keep;
+  struct trajectory *t = trajectory_open_existing(path, false, &trouble, &ignored);
+  const bool ok = t && find_kept(t, keep_to_step, &keep);
+  if (ok)
+    *end = keep > 0 ? t->last_step + 1 : 0;
+  trajectory_give_up(t);
+  return ok;
 }
 
 /* The file must be of the same particles, or the frames to come would not fit. */
@@ -357,4 +375,15 @@ bool trajectory_append(struct trajectory *t, const struct model *model, const st
   t->frames++;
   t->last_step = state->step;
   return true;
+}
+
+bool trajectory_sync(struct trajectory *t, struct message *message)
+{
+  const int error = h5_sync(t->file);
+  return error == 0 || message_set(message, "%s: not synced: %s", t->path, strerror(error));
+}
+
+uint64_t trajectory_end(const struct trajectory *t)
+{
+  return t && t->frames > 0 ? t->last_step + 1 : 0;
 }

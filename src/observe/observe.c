@@ -17,7 +17,7 @@ const char *const observable_names[OBSERVABLES] = {
     [OBSERVE_DYNAMICS] = "dynamics",   [OBSERVE_COLLISIONS] = "collisions",
 };
 
-enum { MAX_BLOCKS = 2 * OBSERVABLES };
+enum { MAX_BLOCKS = 4 * OBSERVABLES };
 
 struct observers {
   struct observer observer[OBSERVABLES]; /* every = 0: not asked for */
@@ -34,7 +34,17 @@ static void add_block(struct observers *observers, const char *name, const char 
     return;
   char *label = observers->block_name[observers->blocks];
   snprintf(label, OBSERVER_NAME_SIZE, "%s-%s", name, suffix);
-  observers->block[observers->blocks++] = (struct observe_block){label, integer, count, data};
+  observers->block[observers->blocks++] =
+      (struct observe_block){.name = label, .integer = integer, .count = count, .data = data};
+}
+
+/* A 64-bit number, under the name of its key in scenes. */
+static void add_setting(struct observers *observers, const char *name, const char *key, void *value)
+{
+  char *label = observers->block_name[observers->blocks];
+  snprintf(label, OBSERVER_NAME_SIZE, "%s.%s", name, key);
+  observers->block[observers->blocks++] =
+      (struct observe_block){.name = label, .integer = true, .count = 1, .data = value, .setting = true};
 }
 
 /* calloc that gives something for nothing. */
@@ -56,6 +66,10 @@ static bool create(struct observers *observers, enum observable which, const str
   o->real = zeroed(o->size.reals, sizeof *o->real);
   o->integer = zeroed(o->size.integers, sizeof *o->integer);
   o->scratch = zeroed(o->size.scratch, sizeof *o->scratch);
+  if (o->type->add) /* averages are over samples, lags are counted in them; a row of a series stands alone */
+    add_setting(observers, observable_names[which], "every", &o->every);
+  if (which == OBSERVE_DYNAMICS)
+    add_setting(observers, observable_names[which], "longest_lag", &o->longest_lag);
   add_block(observers, observable_names[which], "reals", false, o->size.reals, o->real);
   add_block(observers, observable_names[which], "integers", true, o->size.integers, o->integer);
   return o->real && o->integer && o->scratch;
@@ -151,4 +165,10 @@ size_t observers_blocks(struct observers *observers, const struct observe_block 
 {
   *blocks = observers->block;
   return observers->blocks;
+}
+
+uint64_t observers_end(const struct observers *observers, enum observable which)
+{
+  const struct observer *o = &observers->observer[which];
+  return o->every > 0 ? (uint64_t)o->integer[0] : 0;
 }

@@ -73,9 +73,13 @@ struct observe_block {
   const char *name;
   bool integer;
   size_t count;
-  void *data; /* double or int64_t [count] */
+  void *data;   /* double or int64_t [count] */
+  bool setting; /* no memory, but a key of the scene on which memory depends: a resume must find it unchanged */
 };
 size_t observers_blocks(struct observers *observers, const struct observe_block **blocks);
+
+/* 1 + the last step that this observer was shown, 0 if none; memory, as the blocks. A time series has a row of it. */
+uint64_t observers_end(const struct observers *observers, enum observable which);
 
 /* Energy and momentum of a state, at the time of the step (conserved.h); independent of memory order. NaN if memory is
  * short. */

@@ -8,20 +8,13 @@
 #include "oracle/oracle.h"
 #include "step.h"
 
-static bool say_fault(const struct work *work, struct message *message)
-{
-  char text[512];
-  fault_describe(&work->fault, text, sizeof text);
-  return message_set(message, "%s", text);
-}
-
 /* --- packs ------------------------------------------------------------------------------------------------------- */
 
 static bool advance_to(struct oracle_stage *g, uint64_t step, struct message *message)
 {
   while (g->state->step < step)
     if (!step_advance(g->state, g->model, g->work, NULL))
-      return say_fault(g->work, message);
+      return message_fault(message, &g->work->fault);
   return true;
 }
 
@@ -40,7 +33,7 @@ static bool emit_step(const struct scene *scene, struct model *model, uint64_t s
   if (ok) {
     struct oracle_stage g = {model, &state, &work, pack, {"", 0}, slot};
     ok = scene_start(scene, &state, &work, message) && advance_to(&g, step - 1, message) &&
-         (oracle_run_operators(&g) || pack->failed || say_fault(&work, message));
+         (oracle_run_operators(&g) || pack->failed || message_fault(message, &work.fault));
   }
   work_free(&work);
   state_free(&state);
@@ -129,7 +122,7 @@ static bool trace_steps(const struct scene *scene, struct state *state, struct w
   while (state->step < scene->steps) {
     t->step = state->step + 1;
     if (!step_advance_watched(state, &scene->model, work, NULL, &watch))
-      return say_fault(work, message);
+      return message_fault(message, &work->fault);
     trace_row(t, "end", state);
   }
   return !t->short_of_memory || message_set(message, "no memory for the hash of the state");

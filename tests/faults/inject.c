@@ -14,7 +14,7 @@
 #include <xxhash.h>
 #include <yaml.h>
 
-static const char *const kind_names[INJECT_KINDS] = {"memory", "file", "hdf5"};
+static const char *const kind_names[INJECT_KINDS] = {"memory", "file", "hdf5", "signal"};
 
 static struct {
   uint64_t calls[INJECT_KINDS];
@@ -45,7 +45,8 @@ static bool fails(enum inject_kind kind)
   if (kind != plan.kind || plan.n == 0 || call < plan.n || (call > plan.n && !plan.on))
     return false;
   plan.hit = true;
-  errno = kind == INJECT_MEMORY ? ENOMEM : ENOSPC;
+  static const int number[INJECT_KINDS] = {ENOMEM, ENOSPC, ENOSPC, EINTR};
+  errno = number[kind];
   return true;
 }
 
@@ -121,7 +122,6 @@ json_t *__wrap_json_pack(const char *format, ...)
 /* --- files ------------------------------------------------------------------------------------------------------- */
 
 INSTEAD(INJECT_FILE, FILE *, NULL, fopen, (const char *path, const char *mode), (path, mode))
-INSTEAD(INJECT_FILE, ssize_t, -1, write, (int fd, const void *data, size_t n), (fd, data, n))
 INSTEAD(INJECT_FILE, int, -1, fsync, (int fd), (fd))
 INSTEAD(INJECT_FILE, int, -1, rename, (const char *from, const char *to), (from, to))
 INSTEAD(INJECT_FILE, int, -1, mkdir, (const char *path, mode_t mode), (path, mode))
@@ -129,10 +129,23 @@ INSTEAD(INJECT_FILE, int, -1, stat, (const char *path, struct stat *status), (pa
 INSTEAD(INJECT_FILE, int, -1, fstat, (int fd, struct stat *status), (fd, status))
 INSTEAD(INJECT_FILE, int, -1, ftruncate, (int fd, off_t n), (fd, n))
 INSTEAD(INJECT_FILE, int, -1, fseek, (FILE * f, long n, int from), (f, n, from))
-INSTEAD(INJECT_FILE, int, ENOSPC, posix_fallocate, (int fd, off_t at, off_t n), (fd, at, n))
-INSTEAD(INJECT_FILE, int, -1, json_dump_file, (const json_t *j, const char *path, size_t flags), (j, path, flags))
 AFTER(INJECT_FILE, int, EOF, fflush, (FILE * f), (f))
 AFTER(INJECT_FILE, int, -1, close, (int fd), (fd))
+
+/* Those that a signal may interrupt. */
+ssize_t __real_write(int fd, const void *data, size_t n);
+ssize_t __wrap_write(int fd, const void *data, size_t n);
+ssize_t __wrap_write(int fd, const void *data, size_t n)
+{
+  return fails(INJECT_SIGNAL) || fails(INJECT_FILE) ? -1 : __real_write(fd, data, n);
+}
+
+int __real_posix_fallocate(int fd, off_t at, off_t n);
+int __wrap_posix_fallocate(int fd, off_t at, off_t n);
+int __wrap_posix_fallocate(int fd, off_t at, off_t n)
+{
+  return fails(INJECT_SIGNAL) || fails(INJECT_FILE) ? errno : __real_posix_fallocate(fd, at, n);
+}
 
 /* A file with an error keeps it until it is closed. */
 int __real_ferror(FILE *f);

@@ -23,7 +23,7 @@ struct bench {
 static void write_checkpoint(const struct bench *b, const char *path)
 {
   struct message m;
-  const struct checkpoint_head head = {.seed = 1, .version = "test"};
+  struct checkpoint_head head = {.seed = 1, .version = "test"};
   assert_true(checkpoint_write(path, &head, &b->run.model, &b->run.state, NULL, 0, text, &m));
 }
 
@@ -133,7 +133,7 @@ static bool try_scene(struct bench *b)
 /* The checkpoint that is there stays, byte for byte, and no part of a new one. */
 static bool try_checkpoint_write(struct bench *b)
 {
-  const struct checkpoint_head head = {.seed = 2, .version = "new"};
+  struct checkpoint_head head = {.seed = 2, .version = "new"};
   const char *path = in_folder(b->folder, "c.h5");
   struct message m = {""};
   size_t before, after;

@@ -103,6 +103,7 @@ class Faults(unittest.TestCase):
             self.assertEqual(right.returncode, right_code, right.stderr)
             look(folder, right, "none")
             calls = dict(line.split() for line in (folder / "calls").read_text().splitlines())
+        del calls["signal"]  # no failures: test_a_signal_interrupts_a_call
         wishes = []
         for kind, count in calls.items():
             stride = -(-int(count) // (MOST if kind == "hdf5" else 5 * MOST)) or 1
@@ -157,6 +158,21 @@ class Faults(unittest.TestCase):
                 self.assertFalse((folder / "new/run").exists() and any((folder / "new/run").iterdir()), wish)
 
         self.all_of(words, look)
+
+    def test_a_signal_interrupts_a_call(self):
+        """It is made again, and nothing is lost."""
+        words = ["run", "scene.yaml", "--out", "run", "--quiet", "--resume"]
+        for n in range(1, 30):
+            with tempfile.TemporaryDirectory(dir=self.folder) as place:
+                folder = pathlib.Path(place) / "f"
+                shutil.copytree(self.start, folder)
+                done = run("uncross-faults", words, folder, UNCROSS_FAIL=f"signal:{n}", UNCROSS_CALLS="calls")
+                self.assertEqual(done.returncode, 0, (n, done.stderr))
+                self.assertEqual(state_hash(folder / "run/checkpoint.h5"), self.whole)
+                calls = int(re.search(r"^signal (\d+)$", (folder / "calls").read_text(), re.M)[1])
+            if n >= calls:
+                break
+        self.assertGreater(calls, 3)
 
     def test_start_from_checkpoint(self):
         self.all_of(["run", "from.yaml", "--out", "new", "--quiet", "--steps", "1"])

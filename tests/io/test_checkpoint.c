@@ -16,9 +16,9 @@ static const struct memory some_memory = {{-0.0, 0x1.fffffffffffffp-1000, INFINI
 
 static void list_blocks(struct memory *memory, struct observe_block blocks[3])
 {
-  blocks[0] = (struct observe_block){"dynamics/kind1/sums", false, 3, memory->sums};
-  blocks[1] = (struct observe_block){"dynamics/kind1/counts", true, 2, memory->counts};
-  blocks[2] = (struct observe_block){"nothing yet", false, 0, NULL};
+  blocks[0] = (struct observe_block){"dynamics/kind1/sums", false, 3, memory->sums, false};
+  blocks[1] = (struct observe_block){"dynamics/kind1/counts", true, 2, memory->counts, false};
+  blocks[2] = (struct observe_block){"nothing yet", false, 0, NULL, false};
 }
 
 static const struct checkpoint_head some_head = {.fingerprint = 0xfedcba9876543210u,
@@ -34,8 +34,9 @@ static bool write_some(const char *path, const struct test_run *r, struct messag
 {
   struct memory memory = some_memory;
   struct observe_block blocks[3];
+  struct checkpoint_head head = some_head;
   list_blocks(&memory, blocks);
-  return checkpoint_write(path, &some_head, &r->model, &r->state, blocks, 3, some_scene, message);
+  return checkpoint_write(path, &head, &r->model, &r->state, blocks, 3, some_scene, message);
 }
 
 static bool read_state(const char *path, const struct model *model, struct state *state, struct message *message)
@@ -113,7 +114,8 @@ static void parts_may_be_missing(void **unused)
     if (k == 0)
       test_add_kind(&m, 2, 5);
     struct test_run r = test_start(m);
-    if (!checkpoint_write(path, &some_head, &r.model, &r.state, NULL, 0, NULL, &message))
+    struct checkpoint_head head = some_head;
+    if (!checkpoint_write(path, &head, &r.model, &r.state, NULL, 0, NULL, &message))
       fail_msg("%s", message.text);
     uint64_t hash = state_hash(&r.state);
     r.state.step = 99;

@@ -3,7 +3,7 @@
 
 #include <fcntl.h>
 
-static const struct trajectory_options everything = {true, true, 42, "somebody"};
+static const struct trajectory_options everything = {true, true, 42};
 
 /* A trajectory of `frames` frames, two steps apart, and a checkpoint of the last. */
 static void write_both(const char *frames_path, const char *checkpoint_path, struct test_run *r, int frames)

@@ -45,7 +45,7 @@ class Files(unittest.TestCase):
             h5md = file["h5md"]
             self.assertEqual(list(h5md.attrs["version"]), [1, 1])
             self.assertTrue(numpy.issubdtype(h5md.attrs["version"].dtype, numpy.integer))
-            self.assertEqual(h5md["author"].attrs["name"], b"somebody")
+            self.assertEqual(h5md["author"].attrs["name"], b"uncross")
             self.assertEqual(h5md["creator"].attrs["name"], b"uncross")
             self.assertTrue(h5md["creator"].attrs["version"])
             self.assertLessEqual(set(file), {"h5md", "particles", "connectivity", "parameters"})

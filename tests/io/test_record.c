@@ -76,9 +76,17 @@ static void everything_reads_back(void **unused)
   scene.fingerprint = 0x12ab;
   r.state.counts = (struct collision_counts){9007199254740993u, 30, 20, 10}; /* 2^53 + 1: no double holds it */
   const struct conserved now = observe_conserved(&r.model, &r.state);
-  const struct record record = {"finished", NULL, 1.0 / 3.0, 5e-324, -1e300, {0.1, -0.2, 0.3}};
+  const struct record record = {.status = "finished",
+                                .step = r.state.step,
+                                .counts = r.state.counts,
+                                .wall_seconds = 1.0 / 3.0,
+                                .steps_per_second = 5e-324,
+                                .start_energy = -1e300,
+                                .start_momentum = {0.1, -0.2, 0.3},
+                                .now = now,
+                                .state_hash = state_hash(&r.state)};
   struct message message;
-  if (!record_write(folder, &scene, &r.state, &record, &message))
+  if (!record_write(folder, &scene, &record, &message))
     fail_msg("%s", message.text);
   snprintf(hash, sizeof hash, "%016" PRIx64, state_hash(&r.state));
 
@@ -119,9 +127,10 @@ static void what_json_cannot_hold_is_null(void **unused)
   make_folder(folder);
   struct scene scene;
   struct test_run r = read_and_start(&scene);
-  const struct record record = {"stopped", "too hot", 1.0, 2.0, NAN, {INFINITY, 0.0, -INFINITY}};
+  const struct record record = {
+      .status = "stopped", .reason = "too hot", .start_energy = NAN, .start_momentum = {INFINITY, 0.0, -INFINITY}};
   struct message message;
-  assert_true(record_write(folder, &scene, &r.state, &record, &message));
+  assert_true(record_write(folder, &scene, &record, &message));
   json_t *root = load(folder);
   const json_t *start = json_object_get(root, "start"), *momentum = json_object_get(start, "momentum");
   assert_text(root, "reason", "too hot");
@@ -141,22 +150,22 @@ static void the_old_record_stays(void **unused)
   make_folder(folder);
   struct scene scene;
   struct test_run r = read_and_start(&scene);
-  struct record record = {"running", NULL, 1.0, 2.0, 3.0, {0.0, 0.0, 0.0}};
+  struct record record = {.status = "running"};
   struct message message;
-  assert_true(record_write(folder, &scene, &r.state, &record, &message));
+  assert_true(record_write(folder, &scene, &record, &message));
   size_t bytes, again;
   char *before = slurp(in_folder(folder, "run.json"), &bytes);
 
   record.status = "finished";
   limit_files(100);
-  const bool written = record_write(folder, &scene, &r.state, &record, &message);
+  const bool written = record_write(folder, &scene, &record, &message);
   limit_files(RLIM_INFINITY);
   assert_false(written);
-  assert_non_null(strstr(message.text, "/run.json: cannot write: "));
+  assert_non_null(strstr(message.text, "/run.json: cannot write"));
   record.status = "\xff"; /* not UTF-8 */
-  assert_false(record_write(folder, &scene, &r.state, &record, &message));
+  assert_false(record_write(folder, &scene, &record, &message));
   assert_non_null(strstr(message.text, "not UTF-8"));
-  assert_false(record_write(in_folder(folder, "none"), &scene, &r.state, &record, &message));
+  assert_false(record_write(in_folder(folder, "none"), &scene, &record, &message));
 
   char *after = slurp(in_folder(folder, "run.json"), &again);
   assert_int_equal(again, bytes);
@@ -167,7 +176,7 @@ static void the_old_record_stays(void **unused)
   remove(in_folder(folder, "run.json"));
   assert_int_equal(mkdir(in_folder(folder, "run.json"), 0700), 0); /* nothing can be renamed to it */
   record.status = "running";
-  assert_false(record_write(folder, &scene, &r.state, &record, &message));
+  assert_false(record_write(folder, &scene, &record, &message));
   assert_false(is_there(in_folder(folder, "run.json.part")));
   forget(&scene, &r);
   remove_folder(folder);

@@ -8,8 +8,8 @@
 #include "base/random.h"
 #include "io/hdf5.h"
 
-static const struct trajectory_options everything = {true, true, 42, "somebody"};
-static const struct trajectory_options fibers_only = {false, false, 42, NULL};
+static const struct trajectory_options everything = {true, true, 42};
+static const struct trajectory_options fibers_only = {false, false, 42};
 
 static struct trajectory *open_or_fail(const char *path, const struct model *model,
                                        const struct trajectory_options *options, bool resume, uint64_t keep)
@@ -486,7 +486,7 @@ static int write_sample(const char *folder)
 {
   struct message message = {""};
   struct test_run r = small_run(0);
-  const struct trajectory_options half = {false, true, 42, "somebody"};
+  const struct trajectory_options half = {false, true, 42};
   struct trajectory *all =
       trajectory_open(in_folder(folder, "all.h5"), &r.model, &everything, false, 0, "a: 1\n", &message);
   struct trajectory *few =

@@ -103,6 +103,7 @@ class Runs(unittest.TestCase):
         (self.work / "a").mkdir(parents=True)
         (self.work / "a/conserved.csv").write_text("time\n")
         (self.work / "a/trajectory.h5").write_text("half a file")
+        (self.work / "a/run.json").write_text('{"status": "stopped", "steps": 0}')
         self.assertEqual(self.execute(self.scene(100)), 0)
         self.assertEqual((self.work / "a/conserved.csv").read_text(), (self.work / "b/conserved.csv").read_text())
 

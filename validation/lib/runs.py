@@ -199,8 +199,8 @@ def prepare(run, folder, build, fresh):
     folder.mkdir(parents=True, exist_ok=True)
     if run.scene:
         if not (folder / "checkpoint.h5").exists():
-            for left in [*folder.glob("*.csv"), *folder.glob("*.h5*")]:  # killed before its first checkpoint
-                left.unlink()
+            for left in [*folder.glob("*.csv"), *folder.glob("*.h5*"), *folder.glob("run.json")]:
+                left.unlink()  # ended before its first checkpoint
         (folder / "scene.yaml").write_text(run.scene_text)
     version = subprocess.run([str(build / "uncross"), "--version"], capture_output=True, text=True, check=True).stdout
     session.update(identity=run.identity, program=program, version=version.strip(), command=[
