@@ -153,15 +153,15 @@ def flattest(columns, name="d2_contour", error=0.03):
 
 def bend(columns, name="d2_contour", half=0.375):
     """(height, error, lag) where the local exponent falls to half of 3/4: the size of a tube, up to a factor that is the
-    same at all densities. None if it does not, or not by twice its error at the end."""
+    same at all densities: by a line through the exponents within a factor of 4 of where they are first below. None if
+    none is below by twice its error."""
     if columns is None:
         return None
     t, found, errors = exponents(columns, name)
-    below = numpy.flatnonzero(found + 2.0 * errors < half)
-    above = numpy.flatnonzero(found[:below[0]] >= half) if len(below) else ()
-    if len(above) == 0:
+    if not (found + 2.0 * errors < half).any():
         return None
-    near = slice(max(above[-1] - 2, 0), above[-1] + 4)  # a line through the points about the crossing
+    first = numpy.flatnonzero(found < half)[0]
+    near = abs(numpy.log(t / t[first])) < math.log(4.001)
     fit = stats.line(numpy.log(t[near]), found[near], numpy.maximum(errors[near], 1e-9))
     at = (half - fit.value[0]) / fit.value[1]
     spread = fit.covariance[0, 0] + 2.0 * at * fit.covariance[0, 1] + at**2 * fit.covariance[1, 1]  # of the line, there
