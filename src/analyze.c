@@ -53,7 +53,7 @@ static bool sample_frames(const struct scene *scene, struct trajectory *frames, 
                           struct observers *observers, struct message *message)
 {
   struct output output;
-  bool ok = output_open(&output, scene, observers, folder, false, 0, message);
+  bool ok = output_open(&output, scene, observers, folder, false, 0, 0, message);
   for (uint64_t k = 0; ok && k < trajectory_frames(frames); k++)
     ok = trajectory_read(frames, &scene->model, k, state, message) &&
          output_sample(&output, observers, &scene->model, state, message);

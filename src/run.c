@@ -24,14 +24,21 @@ static void on_signal(int number)
   interrupted = 1;
 }
 
-/* That nobody reads its words any more (SIGPIPE) is no reason for a run to end. */
 static void watch_signals(void)
 {
-  struct sigaction action = {.sa_handler = on_signal}, ignore = {.sa_handler = SIG_IGN};
+  struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_RESTART};
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);
+}
+
+/* That nobody reads its words any more (SIGPIPE) is no reason for a run to end; a file that may not grow (SIGXFSZ) is
+ * told as any other that cannot be written. */
+static void ignore_signals(void)
+{
+  struct sigaction ignore = {.sa_handler = SIG_IGN};
   sigaction(SIGPIPE, &ignore, NULL);
+  sigaction(SIGXFSZ, &ignore, NULL);
 }
 
 /* Everything that a run holds. */
@@ -194,15 +201,15 @@ static bool save(struct run *run, const char *status)
   char path[4096];
   checkpoint_path(run, path, sizeof path);
   run->head.wall_seconds = wall_seconds(run);
-  run->head.frames_end = trajectory_end(run->output.trajectory);
+  if (run->output.trajectory) /* else where it went to stays known */
+    run->head.frames_end = trajectory_end(run->output.trajectory);
   run->last_checkpoint = clock_seconds();
-  if (!(output_sync(&run->output, &run->message) &&
-        checkpoint_write(path, &run->head, &run->scene.model, &run->state, blocks, count, run->scene.text,
-                         &run->message) &&
-        output_summaries(&run->output, run->observers, &run->scene.model, &run->message)))
+  if (!output_sync(&run->output, &run->message) || !checkpoint_write(path, &run->head, &run->scene.model, &run->state,
+                                                                     blocks, count, run->scene.text, &run->message))
     return false;
   take_record(run, status);
-  return write_record(run, &run->message);
+  return output_summaries(&run->output, run->observers, &run->scene.model, &run->message) &&
+         write_record(run, &run->message);
 }
 
 /* Says why the run cannot go on, here and in run.json, whose numbers stay those of the last checkpoint. */
@@ -231,7 +238,7 @@ static enum exit_code loop(struct run *run)
 {
   progress_begin(&run->progress, run->state.step, run->scene.steps, run->options->quiet);
   take_record(run, "running");
-  bool stepped = true, written = run->state.step > 0 || show(run);
+  bool stepped = true, written = run->options->resume ? write_record(run, &run->message) : show(run);
   while (written && run->state.step < run->scene.steps && !interrupted) {
     stepped = step_advance(&run->state, &run->scene.model, &run->work, NULL);
     if (!stepped)
@@ -278,8 +285,8 @@ static enum exit_code run_to_end(struct run *run)
   if (run->state.step > run->scene.steps)
     return leave_alone(run);
   watch_signals();
-  if (!output_open(&run->output, &run->scene, run->observers, run->options->folder, resume, run->state.step,
-                   &run->message)) {
+  if (!output_open(&run->output, &run->scene, run->observers, run->options->folder, resume, run->head.frames_end,
+                   run->state.step, &run->message)) {
     struct message ignored;
     output_close(&run->output, &ignored);
     return complain(run, EXIT_NOT_WRITTEN);
@@ -287,8 +294,8 @@ static enum exit_code run_to_end(struct run *run)
   if (run->message.text[0] != '\0') /* opened all the same, with something to say */
     complain(run, EXIT_DONE);
   enum exit_code code = loop(run);
-  if (!output_close(&run->output, &run->message) && code == EXIT_DONE)
-    code = complain(run, EXIT_NOT_WRITTEN);
+  if (!output_close(&run->output, &run->message) && (code == EXIT_DONE || code == EXIT_INTERRUPTED))
+    code = stop(run, EXIT_NOT_WRITTEN);
   tell_end(run, code);
   return code;
 }
@@ -314,6 +321,7 @@ enum exit_code run_scene(const struct run_options *options)
     fprintf(stderr, "uncross: no memory to begin with\n");
     return EXIT_TROUBLE;
   }
+  ignore_signals();
   run->options = options;
   run->lock = -1;
   enum exit_code code = EXIT_TROUBLE;

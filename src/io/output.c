@@ -88,27 +88,40 @@ static bool open_series(struct output *o, const struct observe_plan *plan, const
   return true;
 }
 
-static bool open_trajectory(struct output *o, const struct scene *scene, bool resume, uint64_t step,
-                            struct message *message)
+/* What a resumed run has to say of frames that are missing before step `step`; frames_end as in checkpoint_head. */
+static void tell_gap(const struct output *o, const char *path, bool there, uint64_t frames_end, uint64_t step,
+                     struct message *message)
+{
+  if (!there && frames_end == 0)
+    message_set(message, "%s: there was none; its frames begin after step %" PRIu64, path, step);
+  else if (!there)
+    message_set(message, "%s: is gone, it went to step %" PRIu64 "; the frames of a new one begin after step %" PRIu64,
+                path, frames_end - 1, step);
+  else if (frames_end > 0 && step - (frames_end - 1) > o->trajectory_every)
+    message_set(message, "%s: without frames from step %" PRIu64 " to %" PRIu64, path, frames_end - 1, step);
+}
+
+static bool open_trajectory(struct output *o, const struct scene *scene, bool resume, uint64_t frames_end,
+                            uint64_t step, struct message *message)
 {
   char path[4096];
   snprintf(path, sizeof path, "%s/trajectory.h5", o->folder);
-  const bool late = resume && !folder_has(o->folder, "trajectory.h5");
+  const bool there = folder_has(o->folder, "trajectory.h5");
   const struct trajectory_options options = {
       .solvent = scene->trajectory_solvent, .velocities = scene->trajectory_velocities, .seed = scene->model.seed};
   o->trajectory = trajectory_open(path, &scene->model, &options, resume, step, scene->text, message);
-  if (o->trajectory && late)
-    message_set(message, "%s: there was none; its frames begin after step %" PRIu64, path, step);
+  if (o->trajectory && resume && message->text[0] == '\0')
+    tell_gap(o, path, there, frames_end, step, message);
   return o->trajectory != NULL;
 }
 
 /* The trajectory comes first: if another program has it open, no table is touched. */
 bool output_open(struct output *o, const struct scene *scene, const struct observers *observers, const char *folder,
-                 bool resume, uint64_t step, struct message *message)
+                 bool resume, uint64_t frames_end, uint64_t step, struct message *message)
 {
   *o = (struct output){.folder = folder, .trajectory_every = scene->trajectory_every};
   message_set(message, "%s", "");
-  return (o->trajectory_every == 0 || open_trajectory(o, scene, resume, step, message)) &&
+  return (o->trajectory_every == 0 || open_trajectory(o, scene, resume, frames_end, step, message)) &&
          open_series(o, &scene->observe, observers, message);
 }
 

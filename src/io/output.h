@@ -26,9 +26,10 @@ bool output_whole(const struct scene *scene, const struct observers *observers, 
                   struct message *message);
 
 /* Opens what the scene asks for. On a resume, which observers that remember their samples make of it, cuts everything
- * back to what it was at step `step`; the message is then a note for the user, or empty. */
+ * back to what it was at step `step`; the message is then a note for the user, or empty. frames_end: the checkpoint
+ * head's. */
 bool output_open(struct output *output, const struct scene *scene, const struct observers *observers,
-                 const char *folder, bool resume, uint64_t step, struct message *message);
+                 const char *folder, bool resume, uint64_t frames_end, uint64_t step, struct message *message);
 
 /* Writes what is due of this state: samples of observables, a frame. */
 bool output_sample(struct output *output, struct observers *observers, const struct model *model,

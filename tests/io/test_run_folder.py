@@ -153,13 +153,26 @@ class RunFolder(unittest.TestCase):
         shutil.copytree(self.run_folder, self.dir / "old")
         path.unlink()
         told = self.run_scene(text, "--resume", "--steps", 45)
-        self.assertIn("trajectory.h5: there was none; its frames begin after step 40", told)
+        self.assertIn("trajectory.h5: is gone, it went to step 40; the frames of a new one begin after step 40", told)
         self.run_scene(text, "--resume", "--steps", 55)
         with h5py.File(path) as file:
             self.assertEqual(list(file["particles/trajectory/position/step"]), [50])
         with h5py.File(self.dir / "old/checkpoint.h5", "a") as file:  # as it was before
             del file["head"].attrs["frames_end"]
         self.run_scene(text, "--resume", "--steps", 55, folder=self.dir / "old")
+
+    def test_a_trajectory_that_pauses(self):
+        """Where it went to is not forgotten meanwhile, and what it lacks is said."""
+        text, path = SCENE + FRAMES, self.run_folder / "trajectory.h5"
+        self.run_scene(text, "--steps", 20)
+        earlier = path.read_bytes()
+        self.run_scene(text, "--resume")
+        self.run_scene(SCENE, "--resume", "--steps", 65)
+        whole = path.read_bytes()
+        path.write_bytes(earlier)
+        self.refused(text, "trajectory.h5: ends at step 20, but went to step 40", "--resume", "--steps", 80)
+        path.write_bytes(whole)
+        self.run_scene(text, "--resume", "--steps", 80, said="trajectory.h5: without frames from step 40 to 65")
 
     def test_tables_wait_for_the_trajectory(self):
         """They are not cut before it is known that the run can go on."""
@@ -245,6 +258,33 @@ class RunFolder(unittest.TestCase):
         for key in "steps", "state_hash", "end", "time":
             self.assertEqual(record[key], before[key])
         self.uncross("info", other / "checkpoint.h5", said=f"state hash {record['state_hash']}")
+
+    def test_the_record_is_of_the_checkpoint(self):
+        """If a summary cannot be written after the checkpoint, and while a resumed run goes on."""
+        self.run_scene(SCENE, "--steps", 20)
+        (self.run_folder / "statics-a.csv.part").mkdir()
+        self.run_scene(SCENE, "--resume", code=4, said="statics-a.csv")
+        record = self.record()
+        self.assertEqual((record["status"], record["steps"]), ("stopped", 40))
+        self.uncross("info", self.run_folder / "checkpoint.h5", said=f"state hash {record['state_hash']}")
+        (self.run_folder / "statics-a.csv.part").rmdir()
+        going = subprocess.Popen([UNCROSS, "run", self.scene(SCENE), "--out", self.run_folder, "--resume", *map(str, FOR_EVER)],
+                                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        deadline = time.monotonic() + 60
+        while self.record()["status"] == "stopped" and time.monotonic() < deadline:
+            time.sleep(0.01)
+        going.kill()
+        going.wait()
+        self.assertEqual((self.record()["status"], self.record()["steps"]), ("running", 40))
+
+    def test_a_file_that_may_not_grow(self):
+        """`ulimit -f` is told as a full disk is."""
+        done = subprocess.run(["bash", "-c", 'ulimit -f 8; exec "$@"', "limited", UNCROSS, "run",
+                               self.scene(SCENE.replace("steps: 40", "steps: 100000")), "--out", self.run_folder, "--quiet"],
+                              capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 4)
+        self.assertIn("File too large", done.stderr)
+        self.assertEqual(self.record()["status"], "stopped")
 
     def test_steps_that_were_made_already(self):
         self.run_scene(SCENE)

@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import unittest
 
@@ -106,6 +107,24 @@ class Runs(unittest.TestCase):
         (self.work / "a/run.json").write_text('{"status": "stopped", "steps": 0}')
         self.assertEqual(self.execute(self.scene(100)), 0)
         self.assertEqual((self.work / "a/conserved.csv").read_text(), (self.work / "b/conserved.csv").read_text())
+
+    def test_killed_while_its_child_goes_on(self):
+        """Nothing of the child's is taken from it; who comes next waits, and goes on from its checkpoint."""
+        run = self.scene(10**9)
+        child = subprocess.Popen([sys.executable, "-c", CHILD, str(pathlib.Path(runs.__file__).parents[1]), json.dumps(
+            {"name": run.name, "scene": run.scene, "steps": run.steps, "seed": run.seed, "program": run.program}),
+            str(self.work / "a"), str(self.build)])
+        table, deadline = self.work / "a/conserved.csv", time.monotonic() + 60
+        while not table.exists() and time.monotonic() < deadline:
+            time.sleep(0.01)
+        orphan = int(subprocess.run(["pgrep", "-P", str(child.pid)], capture_output=True, text=True, check=True).stdout)
+        child.kill()
+        child.wait()
+        inode = table.stat().st_ino
+        later = threading.Timer(1.0, lambda: os.kill(orphan, signal.SIGTERM))
+        later.start()
+        self.assertEqual(self.interrupt(run, "checkpoint.h5"), runs.INTERRUPTED)
+        self.assertEqual(table.stat().st_ino, inode)
 
     def test_program(self):
         self.program("echo n,x; echo 1,$1")

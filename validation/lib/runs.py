@@ -212,21 +212,22 @@ def prepare(run, folder, build, fresh):
 def execute(run, folder, build, fresh=False):
     """Runs to the end, or resumes; 0 when finished, INTERRUPTED after SIGTERM or SIGINT, else what went wrong.
 
-    The signal is passed on: `uncross run` writes its checkpoint, a program begins anew next time."""
+    The signal is passed on: `uncross run` writes its checkpoint, a program begins anew next time. The lock is handed on, too:
+    should this process be killed, its child still keeps others out until it ends."""
     folder, build = pathlib.Path(folder), pathlib.Path(build)
     folder.parent.mkdir(parents=True, exist_ok=True)
     with open(folder.with_name(folder.name + ".lock"), "w", encoding="ascii") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)  # two stages of one run take turns
-        return execute_locked(run, folder, build, fresh)
+        return execute_locked(run, folder, build, fresh, lock.fileno())
 
 
-def execute_locked(run, folder, build, fresh):
+def execute_locked(run, folder, build, fresh, lock):
     session = prepare(run, folder, build, fresh)
     if Result(folder, run).finished and (session.get("finished") or run.stage):
         return 0
     write_json(folder / "session.json", dict(session, finished=False))
     with open(folder / "output.part", "wb") as output:
-        code, seconds, caught = call(command_of(run, folder, build), output)
+        code, seconds, caught = call(command_of(run, folder, build), output, lock)
     session["cpu_seconds"] = round(session["cpu_seconds"] + seconds, 2)
     session["finished"] = code == 0
     if run.program and code == 0:
@@ -237,8 +238,8 @@ def execute_locked(run, folder, build, fresh):
     return INTERRUPTED if caught and code != 0 else code
 
 
-def call(command, output):
-    """(exit code, CPU seconds, whether a signal came) of a command that gets SIGTERM when we do."""
+def call(command, output, lock):
+    """(exit code, CPU seconds, whether a signal came) of a command that gets SIGTERM when we do, and the open file `lock`."""
     caught, children = [], []
 
     def pass_on(number, _frame):
@@ -246,7 +247,7 @@ def call(command, output):
         for child in children:
             child.send_signal(signal.SIGTERM)
     before = {number: signal.signal(number, pass_on) for number in (signal.SIGTERM, signal.SIGINT)}
-    children.append(subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=output))
+    children.append(subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=output, pass_fds=[lock]))
     if caught:  # in between
         children[0].send_signal(signal.SIGTERM)
     _, status, usage = os.wait4(children[0].pid, 0)
