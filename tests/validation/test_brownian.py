@@ -67,6 +67,12 @@ class Slowing(unittest.TestCase):
         slope = lost[1] / times[1] * kirkwood
         self.assertAlmostEqual(slope / square.mean(), 1.0, delta=5.0 * error[1] / lost[1] + 0.03)
 
+    def test_memory_fades(self):
+        """What is lost by 10 t0 is less than 0.7 of what would be if nothing were forgotten after 1 t0, and more than then."""
+        times, lost, _, _ = brownian.slowing(8, 100, 20.0, 0.01, ETA, SPREAD)
+        one, ten = (lost[round(t / times[1])] for t in (1.0, 9.75))
+        self.assertTrue(1.1 * one < ten < 0.7 * 9.75 * one)
+
     def test_keeps_its_size(self):
         """Force and noise belong together: <R^2> stays, within five errors of 1000 Gaussian vectors."""
         size = brownian.slowing(4, 1000, 30.0, 0.01, ETA, SPREAD)[3]

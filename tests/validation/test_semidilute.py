@@ -113,15 +113,16 @@ class Curves(unittest.TestCase):
         self.assertAlmostEqual(float(error[0]), 0.01 * math.sqrt(2.0) / math.log(4.0), 12)
         self.assertAlmostEqual(at[0], 2.0, 12)
 
-    def test_flattest(self):
-        """A curve that levels off, and then goes on; what is rougher than 0.03 does not count."""
-        t = 2.0**numpy.arange(16)
-        made = self.table(t, d2_contour=2.0 * (1 - numpy.exp(-t / 8)) + 1e-4 * t)
-        value, error, lag = sd.flattest(made)
-        self.assertLess(abs(value), 0.02)
-        self.assertTrue(50.0 < lag < 500.0)
-        made["d2_contour_error"] *= 10.0
-        self.assertIsNone(sd.flattest(made))
+    def test_last_exponent(self):
+        """0.2 where it counts, after 3/4 before; a last lag that was seen once does not count."""
+        t = numpy.sort(numpy.concatenate([2.0**numpy.arange(12), 1.5 * 2.0**numpy.arange(12)]))
+        made = self.table(t, d2_contour=numpy.where(t < 100.0, t**0.75, 100.0**0.55 * t**0.2))
+        made["d2_contour"][-1] *= 3.0
+        made["intervals"][-1] = 1
+        value, error, lag = sd.last_exponent(made)
+        self.assertAlmostEqual(value, 0.2, 9)
+        self.assertTrue(0.0 < error < 0.01 and 256.0 < lag < 2048.0)
+        self.assertIsNone(sd.last_exponent({key: column[:4] for key, column in made.items()}))
 
     def test_bend(self):
         """From 3/4 to 0 at a height of 2: a straight power has none; the height of the bend is in proportion."""

@@ -19,12 +19,13 @@ D_VERTEX, D_VERTEX_ERROR = 0.0179, 0.0001  # of one vertex in an infinite box: d
 DAMPING = 1.2  # of sound, Gamma in exp(-Gamma k^2 t): [nu + (2/3) D_T]/2
 SHORTEST_WAVE = 2.0  # k a0; waves shorter than 3 cells have left their mark within 0.2 t0
 # Lags from here on, t0: the first octave from which one local memory, c/t, describes vertices in all boxes. From 3.2 t0 on it
-# does not (p = 8e-5), and D comes out 1.2 % larger; from 12.8 t0 on it does as well, and D is 0.4(5) % larger.
+# does not (p = 8e-5), and D comes out 1.2 % larger; from 12.8 t0 on it does as well, and D is 0.4(5) % larger. (Chosen with
+# the campaign's first runs at hand: their own p says little. Later ones', and chains' and rods', do.)
 FIRST_LAG = 6.4
 
 
 def last_lag(box):
-    """And up to here: what a box remembers longest, 2/nu k^2 of its longest wave, but three octaves of lags at least."""
+    """And up to here: what a box remembers longest, 2/nu k^2 of its longest wave, but two octaves of lags at least."""
     return max(4.0 * FIRST_LAG, 2.0 * box ** 2 / (4.0 * math.pi ** 2 * NU))
 
 

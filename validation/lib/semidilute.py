@@ -141,14 +141,18 @@ def exponents(columns, name="d2_contour", span=4.0):
     return numpy.sqrt(t[i] * t[j]), found, numpy.hypot(error[i], error[j]) / math.log(span)
 
 
-def flattest(columns, name="d2_contour", error=0.03):
-    """(smallest local exponent, error, lag) among those known so well; None without."""
+def last_exponent(columns, name="d2_contour", span=8.0):
+    """(exponent, error, lag) of a power law through the last lags, a factor `span` of them, that were seen twice; None
+    without enough. Errors are enlarged by as much as points scatter about the law more than they should."""
     if columns is None:
         return None
-    t, found, errors = exponents(columns, name)
-    good = numpy.flatnonzero(errors < error)
-    k = good[numpy.argmin(found[good])] if len(good) else None
-    return None if k is None else (float(found[k]), float(errors[k]), float(t[k]))
+    known = columns["intervals"] >= 2
+    t, y, error = (columns[key][known] for key in ("time", name, name + "_error"))
+    last = t >= t[-1] / (1.001 * span) if len(t) else known
+    if last.sum() < 5:
+        return None
+    fit = stats.power(t[last], y[last], error[last])
+    return float(fit.value[1]), float(fit.error[1] * math.sqrt(max(1.0, fit.chi2 / fit.freedom))), float(t[last].mean())
 
 
 def bend(columns, name="d2_contour", half=0.375):

@@ -109,6 +109,7 @@ class Point:
     value: float
     error: float
     infinite: float
+    p: float  # of the fit over lags
 
 
 def long_time(results, vertices, box, count):
@@ -123,8 +124,8 @@ def long_time(results, vertices, box, count):
         return None
     share = dilute.closed_box(count, vertices * dilute.MASS, box)
     value, error = limit.value[0] / share, limit.error[0] / share
-    pure = dilute.in_pure_solvent(value, sharing(vertices)[0], count * vertices / box ** 3)
-    return Point(vertices, box, count, value, error, pure + dilute.image_shift(box, gyration2(vertices)))
+    pure = dilute.in_pure_solvent(value, sharing(vertices)[0], (count - 1) * vertices / box ** 3)
+    return Point(vertices, box, count, value, error, pure + dilute.image_shift(box, gyration2(vertices)), limit.p)
 
 
 def with_hydrodynamics(results):
@@ -255,13 +256,24 @@ def fitted_exponents(far, model):
     return exponent(sizes, values, errors), exponent(sizes, expected, expected * errors / values)[0]
 
 
-def trend(far):
-    """(slope, error) of D over cells() against ln N; None with fewer than three lengths."""
+def trend(far, model):
+    """(slope, error) of D over a model against ln N, the errors of OWN and LOST in it; None with fewer than three lengths."""
     if len(far) < 3:
         return None
-    ratio, error = (numpy.array([far[n][k] / cells(n) for n in far]) for k in (0, 1))
+    ratio = numpy.array([far[n][0] / model(n) for n in far])
+    error = [math.hypot(far[n][1] / model(n), OWN[n][1], LOST[n][1]) for n in far]
     f = stats.line([math.log(n) for n in far], ratio, error)
     return f.value[1], f.error[1]
+
+
+def plain(n):
+    """cells(n) of a rigid chain that weighs nothing."""
+    return dilute.cells_chain(n, sharing(n)[0])
+
+
+def worst_scatter(points):
+    """Chance of a fit over lags that is as bad as the worst, of as many; None without any."""
+    return min(1.0, len(points) * min(p.p for p in points.values())) if points else None
 
 
 def verdicts_with(points, far):
@@ -277,12 +289,15 @@ def verdicts_with(points, far):
                     kind="paper", reason="N^-1/2 is the limit of long chains; short ones still feel single vertices"),
         dilute.held("chains.cells", "D in an infinite box over vertices in Oseen's field smeared over the cells, nothing "
                     "fitted; mean over lengths", 1.0,
-                    "lib/dilute.py: cells_chain, to 6 %, as good as it is for a lone vertex and for rods; lib/brownian.py for what the "
+                    "lib/dilute.py: cells_chain, to 6 % (chosen with the rods at hand); lib/brownian.py for what the "
                     "change of shape takes, lib/own_fluid.py for what the coil's own mass does",
                     dilute.mean_ratio(list(far.values()), [cells(n) for n in far]), BIAS + dilute.CELLS,
                     dilute.NU_ERROR / dilute.NU),
         dilute.held("chains.trend", "The same: slope against ln N", 0.0, "a theory that is off by a factor is off at all "
-                    "lengths alike", trend(far), 0.0),
+                    "lengths alike; without what the coil's mass and the change of shape take, another", trend(far, cells), 0.0,
+                    rival=(trend(far, plain) or (None,))[0]),
+        dilute.scatter("chains.lags", "Scatter of D(t) over lags about a local memory, the worst system, in standard errors",
+                       worst_scatter(points)),
         dilute.held("chains.kirkwood", "D in an infinite box over Kirkwood's sum, mean over lengths", 1.0,
                     "Kirkwood's sum, less what the change of shape takes (lib/brownian.py)", ratio, BIAS, known, kind="paper",
                     reason="Kirkwood's vertices are spheres in Oseen's field; here that field is smeared over the "
@@ -290,7 +305,7 @@ def verdicts_with(points, far):
                            "there heavier (chains.cells)"),
         dilute.held("chains.prefactor", "D eta sqrt(N)/kT in the paper's boxes, eta = 11.18, most of them inferred from "
                     "smaller ones; mean over lengths", 0.17, "Fig. 2 (the paper's digits allow 0.005)", prefactor, 0.005,
-                    kind="paper", reason="not known: the paper states no errors"),
+                    kind="paper", reason="chains are slower than Zimm's: see chains.cells; the paper states no errors"),
         same_in_boxes(points), crowding(points)]
 
 

@@ -265,7 +265,7 @@ def evaluate(results, tier):
 PROSE = """A uniform flow changes nothing that g and g_cm see, beyond one small thing: a vertex whose move is refused
 stands still for a step while the fluid goes on. So many of all moves are refused, by so much the fibers fall behind:
 1.05·10⁻³ of the flow with the paper's rule at its densest. That is 0.57 a0 after 1000 t0 at the fastest flow, and adds
-(lag v t)² to every mean square displacement: nothing that is seen up to some 250 t0, but a third of the small g_cm by
+(lag v t)² to every mean square displacement: nothing that is seen up to some 100 t0, but a third of the small g_cm by
 768 t0. With moves made in the frame of the flow the lag is gone.
 
 Momentum is constant to rounding. The energy is **not**, unless a thermostat holds it: see `conservation`. The runs of

@@ -334,7 +334,7 @@ old vertices. It bends the curve over where d² is a few times as large, below s
 look smaller than it is; d² to the nearest point of the **contour** has no floor. Without hydrodynamics the law has no
 free number. With them it has none either: straight fibers in the periodic box, whose flow takes momentum's time to
 build up, in a fluid that the vertices of the others make heavier and more viscous (2.9 times at c L³ = 1000). That
-theory is good to some 5 % between 1 and 5 t0, at all densities. Later it is too large: by 8 % at 20 t0 and 13 % at 160 t0
+theory is good to 9 % between 1 and 5 t0, at all densities. Later it is too large: by 4 % at 20 t0 and 8 % at 100 t0
 for four fibers that cross, which nobody hinders, so that much is its own fault; the rest, the more the denser, is the
 others'.
 
