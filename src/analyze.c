@@ -61,12 +61,15 @@ static bool sample_frames(const struct scene *scene, struct trajectory *frames, 
   return output_close(&output, message) && ok;
 }
 
-/* Into a folder that nobody else writes to, and that holds none of the tables. */
+/* Into a folder that is made, that nobody else writes to, and that holds none of the tables. */
 static enum exit_code write_tables(const struct scene *scene, struct trajectory *frames, const char *folder,
                                    struct state *state, struct observers *observers, struct message *message)
 {
   struct message name;
   enum exit_code code = EXIT_BAD_INPUT;
+  const enum folder_trouble trouble = folder_prepare(folder, message);
+  if (trouble != FOLDER_FINE)
+    return trouble == FOLDER_IS_NONE ? EXIT_BAD_INPUT : EXIT_NOT_WRITTEN;
   const int lock = folder_lock(folder, message);
   if (lock < 0)
     return EXIT_NOT_WRITTEN;
@@ -89,7 +92,7 @@ static enum exit_code analyze(struct scene *scene, struct trajectory *frames, co
   enum exit_code code = EXIT_TROUBLE;
   message_set(message, "no memory for this trajectory");
   if (observers && state_alloc(&state, &scene->model)) {
-    code = check_frames(scene, frames, &state, message) && folder_make(folder, message)
+    code = check_frames(scene, frames, &state, message)
                ? write_tables(scene, frames, folder, &state, observers, message)
                : EXIT_BAD_INPUT;
     state_free(&state);

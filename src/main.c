@@ -44,7 +44,7 @@ static const char help[] =
     "  2  bad input (options, scene, snapshot): nothing was written\n"
     "  3  the run had to stop (a bond too long, a velocity out of range, ...): run.json says why; the last checkpoint "
     "stays\n"
-    "  4  a file could not be written, or another process writes into DIR; the last checkpoint stays\n"
+    "  4  a file or DIR could not be written, or another process writes into DIR; the last checkpoint stays\n"
     "  5  interrupted by SIGINT or SIGTERM; a checkpoint was written, --resume goes on\n"
     "  6  oracle compare: different, but within the derived tolerances\n"
     "  7  oracle compare: different beyond them; oracle judge: different\n"

@@ -11,7 +11,8 @@ enum exit_code {
   EXIT_TROUBLE = 1,     /* no memory, or a bug */
   EXIT_BAD_INPUT = 2,   /* options, scene, snapshot: nothing was written */
   EXIT_STOPPED = 3,     /* the physics could not go on; the last checkpoint stays */
-  EXIT_NOT_WRITTEN = 4, /* a file could not be written; the last checkpoint stays */
+  EXIT_NOT_WRITTEN = 4, /* a file or the folder could not be written, or the folder is another process's (its lock);
+                           the last checkpoint stays */
   EXIT_INTERRUPTED = 5, /* SIGINT or SIGTERM; a checkpoint was written, --resume goes on */
   EXIT_CLOSE = 6,       /* oracle compare: different within tolerance */
   EXIT_DIFFERS = 7,     /* oracle compare: different beyond it; oracle judge: different */

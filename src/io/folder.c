@@ -8,33 +8,66 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-bool folder_make(const char *folder, struct message *message)
+static enum folder_trouble trouble_is(enum folder_trouble trouble, struct message *message, const char *path,
+                                      const char *what)
+{
+  if (trouble == FOLDER_REFUSED)
+    message_set(message, "%s: %s: %s", path, what, strerror(errno));
+  else
+    message_set(message, "%s: %s", path, what);
+  return trouble;
+}
+
+enum folder_trouble folder_prepare(const char *folder, struct message *message)
 {
   char path[4096];
-  if (snprintf(path, sizeof path, "%s", folder) >= (int)sizeof path || path[0] == '\0')
-    return message_set(message, "'%s': not the name of a folder", folder);
+  if (snprintf(path, sizeof path, "%s", folder) >= (int)sizeof path || path[0] == '\0') {
+    message_set(message, "'%s': not the name of a folder", folder);
+    return FOLDER_IS_NONE;
+  }
   for (char *p = path + 1;; p++) {
     if (*p != '/' && *p != '\0')
       continue;
     char rest = *p;
     *p = '\0';
     if (mkdir(path, 0777) != 0 && errno != EEXIST)
-      return message_set(message, "%s: cannot make this folder: %s", path, strerror(errno));
+      return trouble_is(FOLDER_REFUSED, message, path, "cannot make this folder");
     if (rest == '\0')
       break;
     *p = rest;
   }
   struct stat status;
-  if (stat(folder, &status) != 0 || !S_ISDIR(status.st_mode))
-    return message_set(message, "%s: is not a folder", folder);
-  return access(folder, W_OK | X_OK) == 0 || message_set(message, "%s: cannot write here: %s", folder, strerror(errno));
+  if (stat(folder, &status) != 0)
+    return trouble_is(FOLDER_REFUSED, message, folder, "cannot find out what this is");
+  if (!S_ISDIR(status.st_mode))
+    return trouble_is(FOLDER_IS_NONE, message, folder, "is not a folder");
+  if (access(folder, W_OK | X_OK) != 0)
+    return trouble_is(FOLDER_REFUSED, message, folder, "cannot write here");
+  return FOLDER_FINE;
+}
+
+bool folder_make(const char *folder, struct message *message)
+{
+  return folder_prepare(folder, message) == FOLDER_FINE;
+}
+
+enum folder_answer folder_find(const char *folder, const char *name, struct message *message)
+{
+  char path[4096];
+  const bool fits = snprintf(path, sizeof path, "%s/%s", folder, name) < (int)sizeof path;
+  if (fits && access(path, F_OK) == 0)
+    return FOLDER_HAS;
+  if (fits && (errno == ENOENT || errno == ENOTDIR))
+    return FOLDER_HAS_NOT;
+  message_set(message, "%s/%s: cannot find out whether it is there: %s", folder, name,
+              fits ? strerror(errno) : "path too long");
+  return FOLDER_UNKNOWN;
 }
 
 bool folder_has(const char *folder, const char *name)
 {
-  char path[4096];
-  snprintf(path, sizeof path, "%s/%s", folder, name);
-  return access(path, F_OK) == 0;
+  struct message ignored;
+  return folder_find(folder, name, &ignored) != FOLDER_HAS_NOT;
 }
 
 /* Locks of folders stay on one machine. A file system that knows none at all is no reason not to run. */

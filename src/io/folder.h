@@ -7,10 +7,29 @@
 
 #include "io/message.h"
 
-/* Makes the folder and those above it, if they are not there, and checks that it may be written into. */
+enum folder_trouble {
+  FOLDER_FINE,
+  FOLDER_IS_NONE, /* what was named is no folder, and cannot be one: bad input */
+  FOLDER_REFUSED  /* by the system: no permission, no room, ... */
+};
+
+/* Makes the folder and those above it, if they are not there, and checks that it may be written into. With a message if
+ * it is not fine. */
+enum folder_trouble folder_prepare(const char *folder, struct message *message);
+
+/* The same for those to whom all trouble is one. */
 bool folder_make(const char *folder, struct message *message);
 
-/* True if the folder holds a file of this name. */
+enum folder_answer {
+  FOLDER_HAS_NOT,
+  FOLDER_HAS,
+  FOLDER_UNKNOWN /* it may not be looked into, and may hold anything */
+};
+
+/* Whether the folder holds a file of this name; with a message if that is unknown. */
+enum folder_answer folder_find(const char *folder, const char *name, struct message *message);
+
+/* The same, true if unknown: what may be there is neither passed over nor written over. */
 bool folder_has(const char *folder, const char *name);
 
 /* Keeps other processes that ask for this lock out of the folder, as long as the descriptor that is handed back stays

@@ -109,12 +109,12 @@ hid_t h5_open(const char *path, bool writable, enum h5_trouble *trouble, struct 
   return file;
 }
 
-static hid_t create(const char *path, hid_t access)
+static hid_t create(const char *path, unsigned how, hid_t access)
 {
   silence();
   hid_t creation = H5Pcreate(H5P_FILE_CREATE);
   H5Pset_obj_track_times(creation, false);
-  hid_t file = H5Fcreate(path, H5F_ACC_TRUNC, creation, access);
+  hid_t file = H5Fcreate(path, how, creation, access);
   h5_close(creation);
   h5_close(access);
   return file;
@@ -122,14 +122,17 @@ static hid_t create(const char *path, hid_t access)
 
 hid_t h5_create(const char *path)
 {
-  return create(path, new_format());
+  hid_t file = create(path, H5F_ACC_EXCL, new_format());
+  if (file < 0 && access(path, F_OK) == 0)
+    errno = EEXIST; /* HDF5 looks for itself, and leaves no errno */
+  return file;
 }
 
 hid_t h5_create_in_memory(size_t bytes)
 {
   hid_t access = new_format();
   H5Pset_fapl_core(access, bytes + 65536, false);
-  return create("memory", access);
+  return create("memory", H5F_ACC_TRUNC, access);
 }
 
 /* H5Fget_file_image says how many bytes are in use (the memory is a multiple of the increment), but its copy is not

@@ -30,7 +30,7 @@ enum h5_trouble {
 };
 hid_t h5_open(const char *path, bool writable, enum h5_trouble *trouble, struct message *message);
 
-/* Creates a file on disk, in place of one that may be there. */
+/* Creates a file on disk; below 0, with errno, if it cannot be, or if there is one already. */
 hid_t h5_create(const char *path);
 
 /* Creates a file in memory, with room for about so many bytes; h5_image gives its bytes, to be freed. */

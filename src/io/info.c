@@ -224,15 +224,18 @@ static void tell_sections(const struct yaml_file *file, const yaml_node_t *root)
   printf("\n  `uncross check %s` says what it means\n", file->path);
 }
 
-/* Any text may be one; libyaml knows. */
+/* Any text may be one; libyaml knows. Where it errs is of use if the text is meant as YAML, which its name says. */
 static bool tell_scene(const struct look *look, struct message *message)
 {
+  const bool meant = ends_with(look->path, ".yaml") || ends_with(look->path, ".yml");
   size_t size;
   struct yaml_file file;
   char *text = yaml_read_file(look->path, &size, message);
-  if (!text || !yaml_file_open(&file, look->path, text, size, message)) {
+  if (!text)
+    return size > YAML_MOST_BYTES && !meant && tell_neither(look, message);
+  if (!yaml_file_open(&file, look->path, text, size, message)) {
     free(text);
-    return false;
+    return !meant && tell_neither(look, message);
   }
   const yaml_node_t *root = yaml_file_root(&file);
   bool mapping = root && root->type == YAML_MAPPING_NODE;

@@ -6,6 +6,7 @@
 #include "io/scene.h"
 
 #define SCENE_MOST_BENDING 1e9 /* kT, given or derived */
+#define SCENE_MOST_FLOW 100.0  /* a0/t0, each component */
 
 /* A scene as it is read: the scene itself, and what is turned into something else once all is read. */
 struct draft {

@@ -4,9 +4,16 @@
 
 #include "fiber/force.h"
 #include "io/scene.h"
+#include "io/scene_keys.h"
 #include "io/snapshot.h"
 #include "observe/conserved.h"
 #include "step.h"
+
+/* Whether a scene may say this flow. */
+static bool may_be_said(struct vec3 flow)
+{
+  return fmax(fabs(flow.x), fmax(fabs(flow.y), fabs(flow.z))) <= SCENE_MOST_FLOW;
+}
 
 /* Where the scene says what flows, or else from what it starts. */
 static bool refuse_flow(const struct scene *scene, struct vec3 found, struct message *message)
@@ -17,8 +24,9 @@ static bool refuse_flow(const struct scene *scene, struct vec3 found, struct mes
   const yaml_node_t *root = yaml_file_root(&file), *flow = yaml_value_of(&file, root, "flow");
   yaml_refuse(&file, flow ? flow : yaml_value_of(&file, yaml_value_of(&file, root, "start"), "snapshot"), message,
               "flow: the center of mass of '%s' moves at [%.9g, %.9g, %.9g] a0/t0, and a snapshot is given no other "
-              "velocity; allowed: that one",
-              scene->snapshot, found.x, found.y, found.z);
+              "velocity; %s (a flow is at most %g along each axis)",
+              scene->snapshot, found.x, found.y, found.z,
+              may_be_said(found) ? "allowed: that one" : "no scene starts from it", SCENE_MOST_FLOW);
   yaml_file_close(&file);
   return false;
 }

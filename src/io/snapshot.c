@@ -1,7 +1,5 @@
-/* How scenes start, from somebody's state or from one that is drawn. */
+/* States that scenes start from: checkpoints, and last frames of trajectories. */
 #include "io/snapshot.h"
-
-#include <stdlib.h>
 
 #include "io/checkpoint.h"
 #include "io/structure.h"

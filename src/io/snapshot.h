@@ -62,8 +62,8 @@ struct trajectory_options {
  * UINT64_MAX to keep all). scene_text is stored in the file, so that `uncross analyze` needs nothing else.
  * A resume that finds no file starts one; one that finds a file which cannot be read (a crash or a full disk broke it)
  * renames that to NAME.damaged.1.h5 (or .2, ...) and starts a new one. After a success message->text is empty, or such
- * a note for the user. NULL, with a message, on any failure; a readable file of other particles than asked for is one.
- */
+ * a note for the user. NULL, with a message, on any failure; a readable file of other particles than asked for is one,
+ * and so is any file where one is to be created: nothing is written over. */
 struct trajectory *trajectory_open(const char *path, const struct model *model,
                                    const struct trajectory_options *options, bool resume, uint64_t keep_to_step,
                                    const char *scene_text, struct message *message);

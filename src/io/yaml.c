@@ -88,8 +88,6 @@ static bool check_plain(const char *path, const char *text, size_t size, struct 
   return ok;
 }
 
-enum { MOST_BYTES = 1 << 26 }; /* a scene is written by a person or a small script */
-
 char *yaml_read_file(const char *path, size_t *size, struct message *message)
 {
   FILE *file = fopen(path, "rb");
@@ -99,7 +97,7 @@ char *yaml_read_file(const char *path, size_t *size, struct message *message)
   bool ok = file && (text = malloc(room)) != NULL;
   while (ok && !feof(file)) {
     *size += fread(text + *size, 1, room - *size, file);
-    if (ferror(file) || *size > MOST_BYTES) {
+    if (ferror(file) || *size > YAML_MOST_BYTES) {
       ok = false;
     } else if (*size == room) {
       char *more = realloc(text, room *= 2);
@@ -109,7 +107,7 @@ char *yaml_read_file(const char *path, size_t *size, struct message *message)
   }
   if (!ok) {
     message_set(message, "%s: cannot be read: %s; a scene is a YAML file of at most 64 MiB", path,
-                *size > MOST_BYTES ? "too large" : strerror(errno));
+                *size > YAML_MOST_BYTES ? "too large" : strerror(errno));
     free(text);
     text = NULL;
   }

@@ -21,7 +21,10 @@ struct yaml_file {
   yaml_document_t document;
 };
 
-/* The whole text of a file of at most 64 MiB, to be freed; NULL, with a message, on failure. */
+#define YAML_MOST_BYTES ((size_t)1 << 26) /* a scene is written by a person or a small script */
+
+/* The whole text of a file of at most 64 MiB, to be freed; NULL, with a message, on failure: with a size of more than
+ * that if the file is larger. */
 char *yaml_read_file(const char *path, size_t *size, struct message *message);
 
 /* Parses `size` bytes of text. On failure leaves a message `path:line:col: ...`, and nothing to close. */

@@ -44,12 +44,11 @@ struct line {
 /* What is known of a table while its lines come in, in any order of rows; columns in the order first met. */
 struct draft {
   size_t values, room; /* lines so far; rows that fit */
-  struct draft_value {
-    double number;
-    int64_t integer;
-    bool given;
-  } * value; /* [room * PACK_COLUMNS] */
+  double *number;      /* [room * PACK_COLUMNS] */
+  int64_t *integer;    /* [room * PACK_COLUMNS] */
+  uint16_t *given;     /* [room], a bit for each column */
 };
+_Static_assert(PACK_COLUMNS == 16, "a bit of `given` for each column");
 
 static bool parse_value(const char *text, struct line *line)
 {
@@ -136,7 +135,8 @@ static int column_of(struct pack_table *t, const char *component)
   return (int)t->columns++;
 }
 
-/* Large memory that nobody has touched costs nothing, so that a row of a large number may well come first. */
+/* Numbers stay unset until their lines come, and realloc moves large memory without a look at it: so a row of a large
+ * number may well come first, and costs two bytes for each row before it. */
 static bool make_room(struct draft *d, uint32_t row)
 {
   size_t room = d->room ? d->room : 64;
@@ -144,15 +144,24 @@ static bool make_room(struct draft *d, uint32_t row)
     room *= 2;
   if (room == d->room)
     return true;
-  struct draft_value *bigger = calloc(room * PACK_COLUMNS, sizeof *bigger);
-  if (!bigger)
+  double *number = realloc(d->number, room * PACK_COLUMNS * sizeof *number);
+  d->number = number ? number : d->number;
+  int64_t *integer = realloc(d->integer, room * PACK_COLUMNS * sizeof *integer);
+  d->integer = integer ? integer : d->integer;
+  uint16_t *given = number && integer ? realloc(d->given, room * sizeof *given) : NULL;
+  if (!given)
     return false;
-  if (d->value)
-    memcpy(bigger, d->value, d->room * PACK_COLUMNS * sizeof *bigger);
-  free(d->value);
-  d->value = bigger;
+  memset(given + d->room, 0, (room - d->room) * sizeof *given);
+  d->given = given;
   d->room = room;
   return true;
+}
+
+static void draft_free(struct draft *d)
+{
+  free(d->number);
+  free(d->integer);
+  free(d->given);
 }
 
 /* Consecutive lines mostly belong to one table, so the last one is looked at first. */
@@ -179,10 +188,13 @@ static const char *take(struct pack *pack, struct draft drafts[MOST_TABLES], con
     return "more than 16 components in one table";
   if (!make_room(d, line->row))
     return "memory is short";
-  struct draft_value *value = &d->value[(size_t)line->row * PACK_COLUMNS + (size_t)column];
-  if (value->given)
+  const unsigned bit = 1u << column;
+  if (d->given[line->row] & bit)
     return "given before; each value is given once";
-  *value = (struct draft_value){line->number, line->integer, true};
+  d->given[line->row] = (uint16_t)(d->given[line->row] | bit);
+  const size_t at = (size_t)line->row * PACK_COLUMNS + (size_t)column;
+  d->number[at] = line->number;
+  d->integer[at] = line->integer;
   d->values++;
   t->real |= line->real;
   t->rows = line->row >= t->rows ? line->row + 1 : t->rows;
@@ -203,11 +215,11 @@ static bool finish(struct pack_table *t, const struct draft *d, const char *path
   free(t->value.data);
   t->value.integer = data;
   for (size_t k = 0; k < d->values; k++) {
-    const struct draft_value *value = &d->value[k / t->columns * PACK_COLUMNS + k % t->columns];
+    const size_t at = k / t->columns * PACK_COLUMNS + k % t->columns;
     if (t->real)
-      t->value.number[k] = value->number;
+      t->value.number[k] = d->number[at];
     else
-      data[k] = value->integer;
+      data[k] = d->integer[at];
   }
   return true;
 }
@@ -234,8 +246,13 @@ static bool read_lines(FILE *in, const char *path, struct pack *pack, struct dra
   char *text = NULL;
   size_t room = 0;
   bool ok = true;
-  for (size_t number = 1; ok && getline(&text, &room, in) >= 0; number++)
-    ok = read_line(text, path, number, pack, drafts, message);
+  ssize_t length;
+  for (size_t number = 1; ok && (length = getline(&text, &room, in)) >= 0; number++) {
+    const size_t zero = strlen(text);
+    ok = zero == (size_t)length
+             ? read_line(text, path, number, pack, drafts, message)
+             : message_at(message, path, number, zero + 1, "a NUL byte; a pack is HDF5 or lines of text");
+  }
   free(text);
   return ok && (feof(in) || message_set(message, "%s: cannot be read", path));
 }
@@ -248,7 +265,7 @@ bool pack_read_text(FILE *in, const char *path, struct pack *pack, struct messag
   bool ok = read_lines(in, path, pack, drafts, message);
   for (size_t n = 0; n < pack->count; n++) {
     ok = ok && finish(&pack->table[n], &drafts[n], path, message);
-    free(drafts[n].value);
+    draft_free(&drafts[n]);
   }
   free(drafts);
   return ok && (pack->count > 0 || message_set(message, "%s: holds no values; a pack is HDF5 or lines of text", path));

@@ -205,14 +205,15 @@ static void add_energy(int64_t *sum, double energy)
   *sum = (int64_t)((uint64_t)*sum + (uint64_t)llrint(RELATIVE_SCALE * energy));
 }
 
-/* Twice the kinetic energy of a member relative to the v_cm of its cell. */
+/* Twice the kinetic energy of a member relative to the v_cm of its cell. 0 if it is alone: srd_solve sets no center
+ * then, and what stands there is that of an earlier collision. */
 static inline double solvent_energy(const struct state *state, const struct collision_work *c, uint32_t i)
 {
-  const struct vec3 w = vec3_sub(solvent_velocity(&state->solvent, i), c->turn[c->solvent_cell[i]].center);
-  return vec3_dot(w, w);
+  const struct cell_turn *t = &c->turn[c->solvent_cell[i]];
+  const struct vec3 w = vec3_sub(solvent_velocity(&state->solvent, i), t->center);
+  return t->active * vec3_dot(w, w);
 }
 
-/* None if it is alone: it is its own center. (Solvent too, but nobody asks: its mass is small.) */
 static inline double vertex_energy(const struct state *state, const struct model *model, const struct collision_work *c,
                                    uint32_t v)
 {

@@ -68,6 +68,11 @@ gives 2 'no frames: the first asked for is 2, the last 1' export "$dir/frames.h5
 [ ! -e "$dir/out.xyz" ]
 ok $? "an export that fails leaves no file"
 gives 2 'is not a folder' analyze "$dir/frames.h5" --out "$scene"
+ln -s loop "$dir/loop"
+gives 4 'loop: cannot find out what this is: ' analyze "$dir/frames.h5" --out "$dir/loop"
+"$uncross" run "$scene" --out "$dir/loop" --resume 2>"$dir/err"
+grep -q 'loop: cannot find out what this is: ' "$dir/err"
+ok $? "a folder that cannot be looked into is not told to hold nothing to resume"
 gives 0 'cannot be had from this trajectory' analyze "$dir/frames.h5" --out "$dir/tables"
 if [ -w /dev/full ]; then
   "$uncross" export "$dir/frames.h5" >/dev/full 2>"$dir/err"
@@ -105,7 +110,7 @@ ok $? "SIGINT: exit code 5, and what to do next"
 mkdir "$dir/fixed"
 if chattr +i "$dir/fixed" 2>/dev/null; then
   gives 2 'cannot' run "$scene" --out "$dir/fixed/run"
-  gives 2 'cannot' analyze "$dir/frames.h5" --out "$dir/fixed"
+  gives 4 'cannot write here' analyze "$dir/frames.h5" --out "$dir/fixed"
   chattr -i "$dir/fixed"
 else
   echo "# no folder can be made immutable here: skipped"

@@ -65,6 +65,7 @@ static void make_files(void)
   struct checkpoint_head head = {.fingerprint = all.scene.fingerprint, .seed = 1, .version = "fuzz"};
   const struct trajectory_options options = {.solvent = true, .velocities = true, .seed = 1};
   require(checkpoint_write(all.checkpoint.path, &head, model, &all.state, NULL, 0, scene_text, &message), message.text);
+  remove(all.trajectory.path); /* of a process that crashed, and had this number */
   struct trajectory *t = trajectory_open(all.trajectory.path, model, &options, false, 0, scene_text, &message);
   require(t && trajectory_append(t, model, &all.state, &message) && trajectory_close(t, &message), message.text);
   take_file(&all.checkpoint);

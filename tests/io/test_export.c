@@ -3,6 +3,8 @@
 
 #include <fcntl.h>
 
+#include "io/yaml.h"
+
 static const struct trajectory_options everything = {true, true, 42};
 
 /* A trajectory of `frames` frames, two steps apart, and a checkpoint of the last. */
@@ -219,9 +221,41 @@ static void info_knows_files(void **unused)
   remove_folder(folder);
 }
 
+/* Where the YAML is wrong is of use only if the text is meant as YAML. */
+static void info_of_text_that_is_no_yaml(void **unused)
+{
+  (void)unused;
+  char folder[64], text[4096], prose[4097];
+  make_folder(folder);
+  memset(prose, 'a', sizeof prose - 1);
+  prose[sizeof prose - 1] = '\0';
+  const struct {
+    const char *name, *content, *why;
+    off_t size; /* of a file that is longer than its content */
+  } files[] = {
+      {"Makefile", "all:\n\techo it\n", "neither a scene, ", 0},
+      {"run.log", "12:30: begins: here\n", "neither a scene, ", 0},
+      {"anchor", "box: &b [4, 4, 4]\n", "neither a scene, ", 0},
+      {"large.txt", prose, "neither a scene, ", (off_t)YAML_MOST_BYTES + 1},
+      {"tab.yaml", "box:\n\t4\n", "tab.yaml:2:1: ", 0},
+      {"tab.yml", "box:\n\t4\n", "tab.yml:2:1: ", 0},
+      {"large.yaml", prose, "at most 64 MiB", (off_t)YAML_MOST_BYTES + 1},
+  };
+  for (size_t k = 0; k < sizeof files / sizeof *files; k++) {
+    const char *path = in_folder(folder, files[k].name);
+    spill(path, files[k].content, strlen(files[k].content));
+    if (files[k].size > 0)
+      assert_int_equal(truncate(path, files[k].size), 0);
+    if (told(folder, path, text) || !strstr(text, files[k].why))
+      fail_msg("%s: %s", files[k].name, text);
+  }
+  remove_folder(folder);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(numbers_survive), cmocka_unit_test(frames_are_chosen),
-                                     cmocka_unit_test(info_knows_files)};
+                                     cmocka_unit_test(info_knows_files),
+                                     cmocka_unit_test(info_of_text_that_is_no_yaml)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,8 @@
 /* Tables: numbers that read back exactly, rows cut at a resume, disks that are full, folders and records of runs. */
 #include "io/files.h"
 
+#include <errno.h>
+
 #include "io/folder.h"
 #include "io/progress.h"
 #include "io/table.h"
@@ -195,6 +197,40 @@ static void test_folders_are_made_with_those_above(void **unused)
   remove_folder(folder);
 }
 
+static void test_a_wrong_name_is_not_a_closed_folder(void **unused)
+{
+  (void)unused;
+  char folder[64], long_name[301];
+  make_folder(folder);
+  struct message m;
+  memset(long_name, 'a', 300);
+  long_name[300] = '\0';
+  char longer[400];
+  snprintf(longer, sizeof longer, "%s/%s", folder, long_name);
+  spill(in_folder(folder, "file"), "x", 1);
+  assert_int_equal(symlink("loop", in_folder(folder, "loop")), 0);
+  assert_int_equal(folder_prepare(folder, &m), FOLDER_FINE);
+  assert_int_equal(folder_prepare("", &m), FOLDER_IS_NONE);
+  assert_int_equal(folder_prepare(in_folder(folder, "file"), &m), FOLDER_IS_NONE);
+  assert_int_equal(folder_prepare(longer, &m), FOLDER_REFUSED);
+  assert_non_null(strstr(m.text, strerror(ENAMETOOLONG)));
+  assert_int_equal(folder_prepare(in_folder(folder, "loop"), &m), FOLDER_REFUSED);
+  assert_non_null(strstr(m.text, strerror(ELOOP)));
+  assert_int_equal(folder_find(folder, "file", &m), FOLDER_HAS);
+  assert_int_equal(folder_find(folder, "none", &m), FOLDER_HAS_NOT);
+  assert_int_equal(folder_find(in_folder(folder, "file"), "below", &m), FOLDER_HAS_NOT);
+  assert_int_equal(folder_find(in_folder(folder, "none"), "below", &m), FOLDER_HAS_NOT);
+  assert_int_equal(folder_find(in_folder(folder, "loop"), "below", &m), FOLDER_UNKNOWN);
+  assert_non_null(strstr(m.text, "loop/below: cannot find out whether it is there: "));
+  assert_true(folder_has(in_folder(folder, "loop"), "below"));
+  if (geteuid() != 0) { /* whom no permission stops */
+    assert_int_equal(mkdir(in_folder(folder, "closed"), 0600), 0);
+    assert_int_equal(folder_find(in_folder(folder, "closed"), "below", &m), FOLDER_UNKNOWN);
+    assert_int_equal(folder_prepare(in_folder(folder, "closed"), &m), FOLDER_REFUSED);
+  }
+  remove_folder(folder);
+}
+
 /* One lock per folder, whoever asks: another descriptor of the same process stands for another process. */
 static void test_a_folder_has_one_writer(void **unused)
 {
@@ -302,6 +338,7 @@ int main(void)
       cmocka_unit_test(test_a_full_disk_is_noticed),
       cmocka_unit_test(test_an_earlier_summary_survives_a_failure),
       cmocka_unit_test(test_folders_are_made_with_those_above),
+      cmocka_unit_test(test_a_wrong_name_is_not_a_closed_folder),
       cmocka_unit_test(test_a_folder_has_one_writer),
       cmocka_unit_test(test_durations_as_people_say_them),
       cmocka_unit_test(test_progress_is_told_now_and_then),

@@ -45,6 +45,33 @@ static void close_or_fail(struct trajectory *t)
     fail_msg("%s", message.text);
 }
 
+/* Whoever made it, and whatever it is. */
+static void a_file_that_is_there_stays(void **unused)
+{
+  (void)unused;
+  char folder[64];
+  make_folder(folder);
+  struct test_run r = small_run(1);
+  struct message message;
+  const char *own = in_folder(folder, "own.h5"), *other = in_folder(folder, "other.h5");
+  close_or_fail(open_or_fail(own, &r.model, &everything, false, 0));
+  spill(other, "somebody else's", 15);
+  for (const char *const *path = (const char *const[]){own, other, NULL}; *path; path++) {
+    size_t before, after;
+    char *was = slurp(*path, &before);
+    assert_null(trajectory_open(*path, &r.model, &everything, false, 0, "", &message));
+    assert_non_null(strstr(message.text, *path));
+    assert_non_null(strstr(message.text, strerror(EEXIST)));
+    char *is = slurp(*path, &after);
+    assert_true(before == after && memcmp(was, is, before) == 0);
+    free(was);
+    free(is);
+  }
+  test_end(&r);
+  assert_all_closed();
+  remove_folder(folder);
+}
+
 /* The state as a frame shows it: the solvent where it is now, in id order. */
 static void assert_shows(const struct state *frame, const struct test_run *r, bool solvent)
 {
@@ -117,6 +144,7 @@ static void frames_come_back(void **unused)
     close_or_fail(t);
     state_free(&back);
     test_end(&r);
+    remove(path);
   }
   assert_all_closed();
   remove_folder(folder);
@@ -270,6 +298,7 @@ static void damage_is_set_aside(void **unused)
     assert_int_equal(bytes2, k == 0 ? bytes / 2 : 10);
     free(kept);
     free(data);
+    remove(path);
   }
   test_end(&r);
   assert_all_closed();
@@ -417,6 +446,7 @@ static void both_files_start_alike(void **unused)
   r.state.step = a.step;
   assert_shows(&a, &r, true);
 
+  remove(frames);
   close_or_fail(open_or_fail(frames, &r.model, &fibers_only, false, 0));
   assert_false(snapshot_read_start(frames, &r.model, &a, &message));
   assert_non_null(strstr(message.text, "without frames"));
@@ -512,6 +542,7 @@ int main(int argc, char **argv)
     return write_sample(argv[2]);
   const struct CMUnitTest tests[] = {cmocka_unit_test(frames_come_back),
                                      cmocka_unit_test(far_vertices_are_refused),
+                                     cmocka_unit_test(a_file_that_is_there_stays),
                                      cmocka_unit_test(steps_must_increase),
                                      cmocka_unit_test(resume_drops_later_frames),
                                      cmocka_unit_test(damage_is_set_aside),

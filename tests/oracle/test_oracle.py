@@ -387,10 +387,39 @@ class OracleTest(unittest.TestCase):
                             ("kick 2 1 out.v.x 1\n", "1 values for 2 rows"), ("", "holds no values"),
                             ("kick 2 0 out.v.x 1\n# x is missing in row 1\nkick 2  0 out.v.x 1\nkick 2 0 out.v.y 1\n"
                              "kick 2 1 out.v.y 1\n", ":3:11: given before"),
+                            ("kick 2 0 out.v.x 1\0 7 nonsense\n", ":1:19: a NUL byte"),
+                            ("kick 2 0 out.v.x 1\n\0\n", ":2:1: a NUL byte"),
                             ("kick 2 9 out.v.x 1\nkick 2 0 out.v.x 1\nkick 2 9 out.v.x 1\n", ":3:10: given before")):
             status, said = self.compare(text)
             self.assertEqual(status, 2, said)
             self.assertIn(where, said)
+
+    @unittest.skipIf("ASAN_OPTIONS" in os.environ, "the sanitizer's realloc copies what nobody has touched")
+    def test_memory_is_of_what_is_given(self):
+        """A row of a large number, where the room for rows grows by a factor, and what is there is moved."""
+        path, most = self.dir / "far.txt", 100  # MB
+        path.write_text("op 1 1048574 in.a.x 1\nop 1 1048576 in.a.x 2\n")
+        dumped = subprocess.Popen([UNCROSS, "oracle", "dump", path], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                                  text=True)
+        with dumped.stderr:
+            said = dumped.stderr.read()
+        _, status, usage = os.wait4(dumped.pid, 0)
+        dumped.returncode = os.waitstatus_to_exitcode(status)
+        self.assertEqual(dumped.returncode, 2, said)
+        self.assertIn("2 values for 1048577 rows", said)
+        self.assertLess(usage.ru_maxrss, most * 1024)  # KiB
+
+    def test_values_of_any_order(self):
+        """All columns of a table, and rows from the last to the first: each number where it belongs."""
+        names = "abcdefghijklmnop"
+        lines = [f"op 1 {row} in.a.{name} {100 * row + k}" for row in range(200) for k, name in enumerate(names)]
+        path = self.dir / "order.txt"
+        path.write_text("\n".join(lines[:16] + lines[:15:-1]) + "\n")
+        self.assertEqual(run("dump", path), (0, self.dumps["dense"].splitlines()[0] + "\n" + "\n".join(lines) + "\n"))
+        path.write_text("\n".join(lines) + "\nop 1 7 in.a.p 1\n")
+        status, said = run("dump", path)
+        self.assertEqual(status, 2)
+        self.assertIn(":3201:8: given before", said)
 
     def test_comments_of_any_length(self):
         comment = "# " + "as long as it takes, " * 1000 + "\n"

@@ -1,5 +1,6 @@
 /* Thermostats: what the sums must be exactly, and the distribution that the canonical one draws from. */
 #include "exact.h"
+#include "solvent/collide.h"
 #include "solvent/solvent.h"
 #include "solvent/srd.h"
 #include "solvent/thermostat.h"
@@ -201,13 +202,20 @@ static void energy_range_faults(void **unused)
   for (int k = 0; k < 2; k++) {
     struct dice d = {6};
     struct test_run r = thermostatted(THERMOSTAT_RESCALE, 90, 0.05, 1.0, &d);
-    r.state.solvent.vy[0] = bad[k];
+    struct solvent *s = &r.state.solvent;
+    for (uint32_t i = 1; i <= 2; i++) /* company, and slower than it: its own energy is the largest */
+      s->x[i] = s->x[0], s->y[i] = s->y[0], s->z[i] = s->z[0];
+    struct cell_state *cell = cell_states(&r, 4);
+    const struct point shift = solvent_grid_shift(&r.model, 4), place = {s->x[0], s->y[0], s->z[0]};
+    const double share = 1.0 - 1.0 / cell[cell_by_floor(&r.model.box, place, shift)].mass; /* of v, relative to v_cm */
+    free(cell);
+    s->vy[0] = bad[k];
     assert_false(solvent_collide(&r.state, &r.model, &r.work, 4));
     assert_int_equal(r.work.fault.code, k == 0 ? FAULT_SOLVENT_ENERGY : FAULT_SOLVENT_SPEED);
     assert_true(r.work.fault.entity == r.state.solvent.id[0]);
     assert_true(r.work.fault.value > r.work.fault.limit);
     if (k == 0)
-      assert_close(r.work.fault.value / (bad[k] * bad[k]), 1.0, 1e-3);
+      assert_close(r.work.fault.value / (share * share * bad[k] * bad[k]), 1.0, 1e-3);
     test_end(&r);
   }
   struct dice d = {7};
@@ -217,6 +225,30 @@ static void energy_range_faults(void **unused)
   assert_false(solvent_collide(&r.state, &r.model, &r.work, 4));
   assert_int_equal(r.work.fault.code, FAULT_VERTEX_ENERGY);
   assert_true(r.work.fault.entity == 3 && r.work.fault.value > r.work.fault.limit);
+  test_end(&r);
+}
+
+/* Who is alone in a cell has no energy there: not relative to a center that an earlier collision left behind, which a
+ * resumed run would not have. */
+static void lone_members_have_no_energy(void **unused)
+{
+  (void)unused;
+  struct dice d = {8};
+  struct test_run r = thermostatted(THERMOSTAT_RESCALE, 90, 0.5, 1.0, &d);
+  struct collision_work *c = &r.work.collision;
+  for (uint32_t k = 0; k < c->cells; k++)
+    c->turn[k].center = (struct vec3){1e6, 0, 0};
+  solvent_bin(&r.state, &r.model, &r.work, solvent_grid_shift(&r.model, 4));
+  assert_true(collide_sum(&r.state, &r.model, &r.work, 4));
+  collide_solve(&r.model, &r.work, 4);
+  assert_true(collide_thermostat(&r.state, &r.model, &r.work, 4));
+  uint32_t alone = 0;
+  for (uint32_t k = 0; k < c->cells; k++)
+    if (srd_members(&c->sum[k]) == 1) {
+      assert_true(c->relative[k] == 0);
+      alone++;
+    }
+  assert_true(alone > 30);
   test_end(&r);
 }
 
@@ -283,10 +315,15 @@ static void equilibrium_is_maxwellian(void **unused)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(rescale_sets_the_sum),   cmocka_unit_test(canonical_energies_are_gamma),
-      cmocka_unit_test(gamma_deviates),         cmocka_unit_test(gamma_deviates_have_addresses),
-      cmocka_unit_test(cold_cells_stay_finite), cmocka_unit_test(energy_range_faults),
-      cmocka_unit_test(hot_boxes_are_cooled),   cmocka_unit_test(equilibrium_is_maxwellian),
+      cmocka_unit_test(rescale_sets_the_sum),
+      cmocka_unit_test(canonical_energies_are_gamma),
+      cmocka_unit_test(gamma_deviates),
+      cmocka_unit_test(gamma_deviates_have_addresses),
+      cmocka_unit_test(cold_cells_stay_finite),
+      cmocka_unit_test(energy_range_faults),
+      cmocka_unit_test(lone_members_have_no_energy),
+      cmocka_unit_test(hot_boxes_are_cooled),
+      cmocka_unit_test(equilibrium_is_maxwellian),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
