@@ -111,8 +111,9 @@ static enum exit_code check_folder(struct run *run)
 static enum exit_code take_folder(struct run *run)
 {
   const char *folder = run->options->folder;
-  if (!folder_make(folder, &run->message))
-    return complain(run, EXIT_BAD_INPUT);
+  const enum folder_trouble trouble = folder_prepare(folder, &run->message);
+  if (trouble != FOLDER_FINE)
+    return complain(run, trouble == FOLDER_IS_NONE ? EXIT_BAD_INPUT : EXIT_NOT_WRITTEN);
   run->lock = folder_lock(folder, &run->message);
   if (run->lock < 0)
     return complain(run, EXIT_NOT_WRITTEN);

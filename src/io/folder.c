@@ -31,7 +31,8 @@ enum folder_trouble folder_prepare(const char *folder, struct message *message)
     char rest = *p;
     *p = '\0';
     if (mkdir(path, 0777) != 0 && errno != EEXIST)
-      return trouble_is(FOLDER_REFUSED, message, path, "cannot make this folder");
+      return errno == ENOTDIR ? trouble_is(FOLDER_IS_NONE, message, path, "what is above it is not a folder")
+                              : trouble_is(FOLDER_REFUSED, message, path, "cannot make this folder");
     if (rest == '\0')
       break;
     *p = rest;
@@ -44,11 +45,6 @@ enum folder_trouble folder_prepare(const char *folder, struct message *message)
   if (access(folder, W_OK | X_OK) != 0)
     return trouble_is(FOLDER_REFUSED, message, folder, "cannot write here");
   return FOLDER_FINE;
-}
-
-bool folder_make(const char *folder, struct message *message)
-{
-  return folder_prepare(folder, message) == FOLDER_FINE;
 }
 
 enum folder_answer folder_find(const char *folder, const char *name, struct message *message)

@@ -17,9 +17,6 @@ enum folder_trouble {
  * it is not fine. */
 enum folder_trouble folder_prepare(const char *folder, struct message *message);
 
-/* The same for those to whom all trouble is one. */
-bool folder_make(const char *folder, struct message *message);
-
 enum folder_answer {
   FOLDER_HAS_NOT,
   FOLDER_HAS,

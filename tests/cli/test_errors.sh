@@ -109,7 +109,7 @@ ok $? "SIGINT: exit code 5, and what to do next"
 # Nothing can be written: root may write anywhere, but not where no file can change.
 mkdir "$dir/fixed"
 if chattr +i "$dir/fixed" 2>/dev/null; then
-  gives 2 'cannot' run "$scene" --out "$dir/fixed/run"
+  gives 4 'cannot' run "$scene" --out "$dir/fixed/run"
   gives 4 'cannot write here' analyze "$dir/frames.h5" --out "$dir/fixed"
   chattr -i "$dir/fixed"
 else
@@ -119,7 +119,7 @@ if mkdir "$dir/mounted" && mount -t tmpfs -o size=4m none "$dir/mounted" 2>/dev/
   "$uncross" run "$scene" --out "$dir/mounted/run" --quiet --steps 5
   before=$(cksum <"$dir/mounted/run/checkpoint.h5")
   mount -o remount,ro "$dir/mounted"
-  gives 2 'Read-only' run "$scene" --out "$dir/mounted/run" --resume
+  gives 4 'Read-only' run "$scene" --out "$dir/mounted/run" --resume
   [ "$before" = "$(cksum <"$dir/mounted/run/checkpoint.h5")" ]
   ok $? "a file system that became read-only: the checkpoint stays"
   umount "$dir/mounted"
