@@ -9,7 +9,7 @@ import numpy
 from scipy import integrate
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "validation"))
-from lib import brownian, dilute, own_fluid  # noqa: E402
+from lib import brownian, claim, dilute, own_fluid  # noqa: E402
 
 SPREAD = 1.0 / 6.0
 
@@ -74,6 +74,13 @@ class OwnFluid(unittest.TestCase):
         one, two = losses(row, 0.7), losses(row[:, [2, 0, 1]], 0.7)
         for axis in range(3):
             self.assertAlmostEqual(one[axis] / two[(axis + 1) % 3], 1.0, 5)
+
+    def test_table(self):
+        """A row of the claim's table, made again from one rod: three axes of one shape are all."""
+        rods = claim.load("rods")
+        value, _ = own_fluid.share(lambda random: dilute.rod_shape(10, rods.BOND, random), 1.55, 1, SPREAD)
+        whole = dilute.cells_rod(10, rods.BOND, 0.0)
+        self.assertAlmostEqual(value / dilute.ETA / whole, rods.OWN[10][0], delta=rods.OWN[10][1])
 
     def test_gain(self):
         """Vertices far apart: (<m - sum m^2/m> with one, less without) over <n - 1 + exp(-n)>, 2.8887/4.0067. All in one cell
