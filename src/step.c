@@ -93,7 +93,7 @@ static void set_total_momentum(struct state *state, const struct model *model)
   struct solvent *s = &state->solvent;
   struct vec3 p = {0, 0, 0};
   for (uint32_t i = 0; i < s->n; i++)
-    p = vec3_add(p, (struct vec3){s->vx[i], s->vy[i], s->vz[i]});
+    p = vec3_add(p, solvent_velocity(s, i));
   for (uint32_t v = 0; v < state->vertices; v++)
     p = vec3_add_scaled(p, model->mass[v], state->velocity[v]);
 

@@ -100,7 +100,7 @@ static void trace_row(void *context, const char *stage, const struct state *stat
   state_solvent_slots(state, t->slot);
   for (uint32_t id = 0; id < s->n; id++) {
     const uint32_t i = t->slot[id];
-    const struct vec3 v = {s->vx[i], s->vy[i], s->vz[i]};
+    const struct vec3 v = solvent_velocity(s, i);
     momentum = vec3_add(momentum, v);
     solvent += 0.5 * vec3_dot(v, v);
   }

@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "solvent/range.h"
 #include "solvent/solvent.h"
 #include "solvent/srd.h"
 #include "solvent/thermostat.h"
@@ -9,13 +10,6 @@
 /* Particles are sorted by cell again after this many collisions: at the paper's mean free path of 0.02 a0 most
  * neighbors in memory are then still neighbors in space. */
 #define COLLISIONS_PER_SORT 50
-
-#define RELATIVE_SCALE 0x1p32
-
-static struct vec3 solvent_velocity(const struct solvent *s, uint32_t i)
-{
-  return (struct vec3){s->vx[i], s->vy[i], s->vz[i]};
-}
 
 /* The union of the spans of these velocities in momentum units, as srd_add has it; or all ones if one is beyond what
  * lattice_round can hold, or not a number. */
@@ -100,75 +94,6 @@ static uint64_t sum_vertices(const struct state *state, const struct model *mode
   return span;
 }
 
-/* The size of a velocity's largest component; infinite if one is not a number. */
-static double largest_component(struct vec3 v)
-{
-  double largest = fmax(fabs(v.x), fmax(fabs(v.y), fabs(v.z)));
-  return isnan(v.x + v.y + v.z) ? INFINITY : largest;
-}
-
-/* Who has the most of something, and what it is to be blamed for. */
-struct culprit {
-  double value;
-  enum fault_code code;
-  int64_t who;
-};
-
-/* Of all components of momentum. */
-static struct culprit find_fastest(const struct state *state, const struct model *model)
-{
-  const struct solvent *s = &state->solvent;
-  struct culprit f = {0.0, FAULT_SOLVENT_SPEED, -1};
-  for (uint32_t i = 0; i < s->n; i++)
-    if (largest_component(solvent_velocity(s, i)) > f.value)
-      f = (struct culprit){largest_component(solvent_velocity(s, i)), FAULT_SOLVENT_SPEED, s->id[i]};
-  for (uint32_t v = 0; v < state->vertices; v++)
-    if (model->mass[v] * largest_component(state->velocity[v]) > f.value)
-      f = (struct culprit){model->mass[v] * largest_component(state->velocity[v]), FAULT_VERTEX_SPEED, v};
-  return f;
-}
-
-static bool blame(struct work *work, struct culprit c, double limit, uint64_t step)
-{
-  return work_fault(work, c.code, step, c.who, c.value, limit);
-}
-
-/* Cell number of a place in sum and turn. */
-static uint32_t cell_number(const struct collision_work *c, uint32_t place)
-{
-  return c->occupied ? c->occupied[place] : place;
-}
-
-/* The fullest cell, as its place in sum and turn. */
-static uint32_t fullest_cell(const struct collision_work *c)
-{
-  uint32_t most = 0, where = 0;
-  for (uint32_t k = 0; k < c->cells; k++)
-    if (srd_members(&c->sum[k]) > most) {
-      most = srd_members(&c->sum[k]);
-      where = k;
-    }
-  return where;
-}
-
-/* The sums are right if members times the largest momentum fits in 63 bits, and members times the largest mass in
- * 40. */
-static bool check_range(const struct state *state, const struct model *model, struct work *work, uint64_t span,
-                        uint64_t step)
-{
-  const uint32_t where = fullest_cell(&work->collision), most = srd_members(&work->collision.sum[where]);
-  double limit = 0x1p63 * SRD_MOMENTUM_UNIT / most;
-  if (!(((double)span + 1.0) * SRD_MOMENTUM_UNIT < limit)) { /* the span may be up to twice the largest momentum */
-    const struct culprit fastest = find_fastest(state, model);
-    if (!(fastest.value + SRD_MOMENTUM_UNIT < limit))
-      return blame(work, fastest, limit, step);
-  }
-  const double heaviest = 0x1p40 * SRD_MASS_UNIT;
-  return most * model->max_mass < heaviest ||
-         work_fault(work, FAULT_CELL_MASS, step, cell_number(&work->collision, where), most * model->max_mass,
-                    heaviest);
-}
-
 /* Axes of some cells at once, from their places in sum and turn. */
 static void draw_axes(const struct model *model, struct collision_work *c, uint64_t step, const uint32_t *place,
                       uint32_t n)
@@ -176,7 +101,7 @@ static void draw_axes(const struct model *model, struct collision_work *c, uint6
   struct vec3 axis[RANDOM_AXES];
   uint32_t cell[RANDOM_AXES] = {0};
   for (uint32_t k = 0; k < n; k++)
-    cell[k] = cell_number(c, place[k]);
+    cell[k] = collision_cell(c, place[k]);
   random_axes(model->seed, RANDOM_ROTATION_AXIS, step, cell, n, axis);
   for (uint32_t k = 0; k < n; k++)
     c->turn[place[k]].axis = axis[k];
@@ -202,60 +127,27 @@ void collide_solve(const struct model *model, struct work *work, uint64_t step)
 /* Wraps where a sum of int64 may not; whether it has is seen afterwards. */
 static void add_energy(int64_t *sum, double energy)
 {
-  *sum = (int64_t)((uint64_t)*sum + (uint64_t)llrint(RELATIVE_SCALE * energy));
+  *sum = (int64_t)((uint64_t)*sum + (uint64_t)llrint(SRD_ENERGY_SCALE * energy));
 }
 
-/* Twice the kinetic energy of a member relative to the v_cm of its cell. 0 if it is alone: srd_solve sets no center
- * then, and what stands there is that of an earlier collision. */
-static inline double solvent_energy(const struct state *state, const struct collision_work *c, uint32_t i)
-{
-  const struct cell_turn *t = &c->turn[c->solvent_cell[i]];
-  const struct vec3 w = vec3_sub(solvent_velocity(&state->solvent, i), t->center);
-  return t->active * vec3_dot(w, w);
-}
-
-static inline double vertex_energy(const struct state *state, const struct model *model, const struct collision_work *c,
-                                   uint32_t v)
-{
-  const struct cell_turn *t = &c->turn[c->vertex_cell[v]];
-  const struct vec3 w = vec3_sub(state->velocity[v], t->center);
-  return t->active * model->mass[v] * vec3_dot(w, w);
-}
-
-static struct culprit find_hottest(const struct state *state, const struct model *model, const struct collision_work *c)
-{
-  struct culprit f = {0.0, FAULT_SOLVENT_ENERGY, -1};
-  for (uint32_t i = 0; i < state->solvent.n; i++)
-    if (solvent_energy(state, c, i) > f.value)
-      f = (struct culprit){solvent_energy(state, c, i), FAULT_SOLVENT_ENERGY, state->solvent.id[i]};
-  for (uint32_t v = 0; v < state->vertices; v++)
-    if (vertex_energy(state, model, c, v) > f.value)
-      f = (struct culprit){vertex_energy(state, model, c, v), FAULT_VERTEX_ENERGY, v};
-  return f;
-}
-
-/* Energies of all members, summed cell by cell in integers as the momenta are. A sum is right if members times the
- * largest energy fits in 63 bits. (Momenta are in range by now, so all energies are numbers.) */
+/* Energies of all members, summed cell by cell in integers as the momenta are. (Momenta are in range by now, so all
+ * energies are numbers.) */
 static bool sum_relative_energy(const struct state *state, const struct model *model, struct work *work, uint64_t step)
 {
   struct collision_work *c = &work->collision;
   memset(c->relative, 0, (size_t)box_cell_count(&model->box) * sizeof *c->relative);
   double largest = 0.0;
   for (uint32_t i = 0; i < state->solvent.n; i++) {
-    const double energy = solvent_energy(state, c, i);
+    const double energy = srd_energy(&c->turn[c->solvent_cell[i]], 1.0, solvent_velocity(&state->solvent, i));
     largest = energy > largest ? energy : largest;
     add_energy(&c->relative[c->solvent_cell[i]], energy);
   }
   for (uint32_t v = 0; v < state->vertices; v++) {
-    const double energy = vertex_energy(state, model, c, v);
+    const double energy = srd_energy(&c->turn[c->vertex_cell[v]], model->mass[v], state->velocity[v]);
     largest = energy > largest ? energy : largest;
     add_energy(&c->relative[c->vertex_cell[v]], energy);
   }
-  const double range = 0x1p63 / RELATIVE_SCALE, rounded = largest + 1.0 / RELATIVE_SCALE;
-  if (rounded * ((double)state->solvent.n + state->vertices) < range) /* even if all were in one cell */
-    return true;
-  const double limit = range / srd_members(&c->sum[fullest_cell(c)]);
-  return rounded < limit || blame(work, find_hottest(state, model, c), limit, step);
+  return range_of_energies(state, model, work, largest, step);
 }
 
 /* New velocities of some particles, a column for each component. They are not written where the old ones stand, but
@@ -365,7 +257,7 @@ bool collide_sum(const struct state *state, const struct model *model, struct wo
   for (uint32_t i = 0; i < s->n; i += BLOCK)
     span |= sum_particles(s, &work->collision, i, block_size(s->n, i, BLOCK));
   span |= sum_vertices(state, model, &work->collision);
-  return check_range(state, model, work, span, step);
+  return range_of_momenta(state, model, work, span, step);
 }
 
 /* solvent_stream, solvent_bin and collide_sum, block by block. */
@@ -385,7 +277,7 @@ static bool gather(struct state *state, const struct model *model, struct work *
   state->solvent_lag = 0;
   solvent_bin_vertices(state, model, work, shift);
   span |= sum_vertices(state, model, &work->collision);
-  return check_range(state, model, work, span, step);
+  return range_of_momenta(state, model, work, span, step);
 }
 
 bool collide_thermostat(const struct state *state, const struct model *model, struct work *work, uint64_t step)

@@ -4,6 +4,7 @@
  *
  *   srd_add    what a member adds to its cell's sums
  *   srd_solve  the cell's transform, from its sums
+ *   srd_energy the member's energy that a thermostat scales
  *   srd_apply  the transform of one member's velocity
  *
  * Momentum is summed in integers (2^-44 m a0/t0), so the sums do not depend on the order of the members. The price is
@@ -22,6 +23,8 @@
 #define SRD_MEMBER ((uint64_t)1 << 40) /* one member, in cell_sum.load */
 #define SRD_MASS_SCALE 0x1p16          /* mass units per m, in cell_sum.load */
 #define SRD_MASS_UNIT 0x1p-16
+#define SRD_ENERGY_SCALE 0x1p32 /* energy units per kT */
+#define SRD_ENERGY_UNIT 0x1p-32
 
 /* load of a member of this mass; exact for multiples of MODEL_MASS_UNIT */
 static inline uint64_t srd_load(double mass)
@@ -45,7 +48,7 @@ static inline uint64_t srd_add(struct cell_sum *sum, double mass, uint64_t load,
 {
   const double scale = mass * SRD_MOMENTUM_SCALE;
   int64_t px = llrint(scale * v.x), py = llrint(scale * v.y), pz = llrint(scale * v.z);
-  sum->px = (int64_t)((uint64_t)sum->px + (uint64_t)px); /* wraps, where signed addition may not: see check_range */
+  sum->px = (int64_t)((uint64_t)sum->px + (uint64_t)px); /* wraps, where signed addition may not: see range.h */
   sum->py = (int64_t)((uint64_t)sum->py + (uint64_t)py);
   sum->pz = (int64_t)((uint64_t)sum->pz + (uint64_t)pz);
   sum->load += load;
@@ -66,6 +69,14 @@ static inline void srd_solve(const struct cell_sum *sum, struct cell_turn *turn)
   turn->factor = 1.0;
   if (turn->active != 0.0)
     turn->center = srd_center(sum);
+}
+
+/* Twice a member's kinetic energy relative to its cell's v_cm. 0 if it is alone: srd_solve sets no center then, and
+ * what stands there is that of an earlier collision. */
+static inline double srd_energy(const struct cell_turn *turn, double mass, struct vec3 v)
+{
+  struct vec3 w = vec3_sub(v, turn->center);
+  return turn->active * mass * vec3_dot(w, w);
 }
 
 /* w turned about n by 90 degrees: R w = n (n.w) + n x w. */

@@ -2,8 +2,6 @@
 
 #include "solvent/srd.h"
 
-#define RELATIVE_UNIT 0x1p-32
-
 double thermostat_gamma(uint64_t seed, uint64_t step, uint32_t cell, double shape)
 {
   const double d = shape - 1.0 / 3.0, c = 1.0 / sqrt(9.0 * d);
@@ -29,7 +27,7 @@ static void rescale(struct work *work, const struct model *model, uint64_t step)
     if (c->turn[k].active == 0.0)
       continue;
     freedoms += 3.0 * (srd_members(&c->sum[k]) - 1);
-    energy += (double)c->relative[k] * RELATIVE_UNIT;
+    energy += (double)c->relative[k] * SRD_ENERGY_UNIT;
   }
   double factor = energy > 0.0 ? sqrt(freedoms / energy) : 1.0;
   for (int64_t k = 0; k < cells; k++)
@@ -45,7 +43,7 @@ static void maxwell_boltzmann(struct work *work, const struct model *model, uint
   for (int64_t k = 0; k < cells; k++) {
     if (c->turn[k].active == 0.0)
       continue;
-    double energy = 0.5 * (double)c->relative[k] * RELATIVE_UNIT;
+    double energy = 0.5 * (double)c->relative[k] * SRD_ENERGY_UNIT;
     double wanted = thermostat_gamma(model->seed, step, (uint32_t)k, 1.5 * (srd_members(&c->sum[k]) - 1));
     c->turn[k].factor = energy > 0.0 ? sqrt(wanted / energy) : 1.0;
   }

@@ -102,8 +102,7 @@ struct vec3 state_solvent_gain(const struct state *s, const struct model *model)
 
 struct vec3 state_solvent_velocity(const struct state *s, const struct model *model, uint32_t i)
 {
-  const struct solvent *p = &s->solvent;
-  return vec3_add((struct vec3){p->vx[i], p->vy[i], p->vz[i]}, state_solvent_gain(s, model));
+  return vec3_add(solvent_velocity(&s->solvent, i), state_solvent_gain(s, model));
 }
 
 struct point state_solvent_position(const struct state *s, const struct model *model, uint32_t i)

@@ -22,6 +22,12 @@ struct solvent {
   uint32_t *id;         /* 0 .. n-1, each once */
 };
 
+/* As it stands in memory: of particle number i when it was last streamed. */
+static inline struct vec3 solvent_velocity(const struct solvent *s, uint32_t i)
+{
+  return (struct vec3){s->vx[i], s->vy[i], s->vz[i]};
+}
+
 /* Crossings since the start (Padding 2009, Sec. III A). */
 struct collision_counts {
   uint64_t moves;    /* trial moves of vertices */

@@ -44,6 +44,12 @@ struct collision_work {
   uint32_t since_sort; /* collisions since particles were last sorted by cell */
 };
 
+/* Number of the cell at this place in sum and turn. */
+static inline uint32_t collision_cell(const struct collision_work *c, uint32_t place)
+{
+  return c->occupied ? c->occupied[place] : place;
+}
+
 /* --- fibers ------------------------------------------------------------------------------------------------------ */
 
 /* Another bond that may be touched: bond number, and the image of it, in box edges. */
