@@ -252,7 +252,7 @@ bool fiber_sweep(struct state *state, const struct model *model, struct work *wo
   if (step % STEPS_PER_LOOK == 0 && !look_how_far(state, work, step))
     return false;
   if (!(noncrossing ? sweep_noncrossing(state, model, work, dt, step, sweep, log)
-                    : turns_phantom(state, model, work, dt)))
+                    : turns_crossable(state, model, work, dt)))
     return false;
   follow_frame(state, model, &work->fiber.neighbors, dt);
   return true;

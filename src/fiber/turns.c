@@ -50,7 +50,7 @@ static bool displacements(const struct state *state, const struct model *model, 
   return true;
 }
 
-bool turns_phantom(struct state *state, const struct model *model, struct work *work, double dt)
+bool turns_crossable(struct state *state, const struct model *model, struct work *work, double dt)
 {
   struct vec3 d[BLOCK];
   for (uint32_t first = 0; first < state->vertices; first += BLOCK) {

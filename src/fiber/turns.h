@@ -27,7 +27,7 @@ bool turns_trial(const struct state *state, const struct model *model, struct wo
                  struct point *to);
 
 /* All vertices to where they want to go, as if nothing were in their way. False as turns_trial. */
-bool turns_phantom(struct state *state, const struct model *model, struct work *work, double dt);
+bool turns_crossable(struct state *state, const struct model *model, struct work *work, double dt);
 
 /* Before a sweep in the order work->fiber.order: anchors for all that need new ones, work->fiber.meetings: all pairs
  * of bonds that may touch, work->fiber.waits for all vertices (1: waits for its turn), those in work->fiber.queue, and

@@ -258,7 +258,7 @@ static void report_parts(const struct scene *scene)
 /* Rates measured on one core of an x86-64 of the 2020s, in ns: good for a guess within a factor of 2. */
 static const double solvent_rate = 15.0;           /* per particle and collision */
 static const double phantom_rate = 170.0;          /* per vertex and collision, phantoms for a solvent */
-static const double vertex_rate = 25.0;            /* per vertex and step, phantom fibers */
+static const double vertex_rate = 25.0;            /* per vertex and step, crossable fibers */
 static const double crossing_rate = 140.0;         /* per vertex and step, with the search for crossings ... */
 static const double crossing_density_rate = 135.0; /* ... and more for each unit of fiber length per volume */
 

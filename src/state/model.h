@@ -81,7 +81,7 @@ struct solvent_model {
 };
 
 struct crossing_model {
-  bool forbidden; /* false: phantom fibers */
+  bool forbidden; /* false: crossable fibers */
   enum exclusion exclusion;
   enum refusal refusal;
   enum frame frame;

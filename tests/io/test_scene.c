@@ -407,7 +407,7 @@ static char *written(const struct scene *scene)
   return text;
 }
 
-static const char *const shipped[] = {"scenes/semidilute.yaml", "scenes/dense.yaml", "scenes/dense-phantom.yaml",
+static const char *const shipped[] = {"scenes/semidilute.yaml", "scenes/dense.yaml", "scenes/dense-crossable.yaml",
                                       "scenes/chains.yaml",     "scenes/rings.yaml", "scenes/solvent.yaml"};
 
 /* What is written reads back to the same scene. */

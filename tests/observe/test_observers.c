@@ -58,7 +58,7 @@ static void energy_by_hand(void **unused)
   model_free(&m);
 }
 
-/* Largest departure of the energy of phantom fibers without solvent from its mean, over 2 t0. */
+/* Largest departure of the energy of crossable fibers without solvent from its mean, over 2 t0. */
 static double energy_swing(double dt)
 {
   struct model m = test_model(32, 32, 32, 0, dt, 1);

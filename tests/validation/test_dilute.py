@@ -155,7 +155,7 @@ class Estimates(unittest.TestCase):
         for p, normal in ((0.022750132, 2.0), (0.841344746, -1.0)):
             self.assertAlmostEqual(dilute.scatter("a.b", "", p).measured, normal, 6)
         self.assertEqual(dilute.scatter("a.b", "", 1e-6).verdict, "fail")
-        self.assertEqual(dilute.scatter("a.b", "", None).verdict, "missing")
+        self.assertEqual(dilute.scatter("a.b", "", None).verdict, "undecided")
 
     def test_in_pure_solvent(self):
         """One vertex in 100 cells, to first order: a cell with n others passes on 5 + n - (25 + n)/(5 + n) instead of n - 1."""

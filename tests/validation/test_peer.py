@@ -64,8 +64,8 @@ class PeerTest(unittest.TestCase):
         found = words(made(names=("uncross", "box-axes")))
         self.assertEqual(found["peer.first.uncross"], "pass")
         self.assertEqual(found["peer.axes"], "pass")
-        self.assertEqual(sum(word == "missing" for word in found.values()), 9)
-        self.assertEqual(set(words({}).values()), {"missing"})
+        self.assertEqual(sum(word == "undecided" for word in found.values()), 9)
+        self.assertEqual(set(words({}).values()), {"undecided"})
 
     def test_quick_tier_needs_no_lammps(self):
         self.assertEqual(PEER.runs("quick"), [])

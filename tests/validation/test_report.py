@@ -62,18 +62,18 @@ class Verdicts(unittest.TestCase):
         self.assertEqual(self.verdict(1.5).verdict, "pass")
         self.assertEqual(self.verdict(0.4).verdict, "fail")
         self.assertEqual(self.verdict(0.4, "paper").verdict, "not reproduced")
-        self.assertEqual(self.verdict(None).verdict, "missing")
-        self.assertEqual(self.verdict(math.nan).verdict, "missing")
+        self.assertEqual(self.verdict(None).verdict, "undecided")
+        self.assertEqual(self.verdict(math.nan).verdict, "undecided")
         self.assertAlmostEqual(self.verdict(1.5).seen, 1.0, 14)
 
     def test_what_cannot_tell_from_nothing_does_not_pass(self):
-        for expected, tolerance, word in ((1.0, 0.51, "missing"), (1.0, 0.5, "pass"), (-1.0, 0.51, "missing"), (0.0, 0.1, "pass")):
+        for expected, tolerance, word in ((1.0, 0.51, "undecided"), (1.0, 0.5, "pass"), (-1.0, 0.51, "undecided"), (0.0, 0.1, "pass")):
             self.assertEqual(claims.Verdict("a.b", "", expected, "", tolerance, measured=expected).verdict, word)
-        self.assertEqual(claims.Verdict("a.b", "", 1.0, "", 1.2, measured=1.0, detects=0.1).verdict, "missing")
+        self.assertEqual(claims.Verdict("a.b", "", 1.0, "", 1.2, measured=1.0, detects=0.1).verdict, "undecided")
         self.assertEqual(claims.Verdict("a.b", "", 1.0, "", 1.2, measured=3.0).verdict, "fail")
 
     def test_what_cannot_tell_from_a_rival_does_not_pass(self):
-        for measured, word in ((1.0, "pass"), (1.04, "missing"), (1.2, "not reproduced")):
+        for measured, word in ((1.0, "pass"), (1.04, "undecided"), (1.2, "not reproduced")):
             verdict = claims.Verdict("a.b", "", 1.0, "", 0.08, measured=measured, kind="paper", rival=1.1)
             self.assertEqual(verdict.verdict, word)
 

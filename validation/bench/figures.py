@@ -7,6 +7,7 @@ matplotlib.use("Agg")
 matplotlib.rcParams.update({"svg.hashsalt": "uncross", "svg.fonttype": "none", "font.size": 9, "axes.grid": True,
                             "grid.alpha": 0.3, "legend.frameon": False, "font.family": "sans-serif"})
 import matplotlib.pyplot as plt
+from matplotlib import ticker
 
 COLORS = {"paper": "#b5482a", "kick-split": "#2a6fb5", "drift-split": "#3a8f4d"}
 BLACK, RED, BLUE, GRAY = "black", "#b5482a", "#2a6fb5", "gray"
@@ -33,6 +34,16 @@ def logarithmic_x(axes, ticks):
     axes.minorticks_off()
 
 
+def logarithmic_y(axes):
+    """Over less than two decades with 1, 2 and 5 named of each; else a scale is left with one number or none."""
+    axes.set_yscale("log")
+    low, high = axes.get_ylim()
+    if high < 100.0 * low:
+        axes.yaxis.set_major_locator(ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
+        axes.yaxis.set_major_formatter(ticker.FuncFormatter(lambda y, _: f"{y:g}"))
+        axes.yaxis.set_minor_formatter(ticker.NullFormatter())
+
+
 def save(figure, out, name):
     figure.tight_layout()
     figure.savefig(out / name, metadata={"Date": None})
@@ -50,7 +61,8 @@ def speed(rows, out):
     left.legend(fontsize=7)
     points(middle, select(rows, r"speed/cL\^3 = (\d+) over solvent"), color=BLACK)
     middle.plot((100, 1000), (1.5, 8), "v", color=GRAY, label="wanted at most")
-    middle.set(xlabel="cL³", ylabel="time over the solvent's", yscale="log", title="fibers of 64 vertices, dt 0.01")
+    middle.set(xlabel="cL³", ylabel="time over the solvent's", title="fibers of 64 vertices, dt 0.01")
+    logarithmic_y(middle)
     logarithmic_x(middle, (30, 100, 300, 1000))
     middle.legend()
     points(right, select(rows, r"detection/cL\^3 = (\d+) in 32\^3"), color=BLACK, label="density, in 32³ cells")
@@ -71,12 +83,14 @@ def scaling(rows, out):
     for panel, (name, label, title, ticks) in zip(axes, panels):
         points(panel, select(rows, f"scaling/{re.escape(name)} (\\d+)"), color=BLACK)
         power = rows[f"scaling/exponent, {name}"]["value"]
-        panel.set(yscale="log", xlabel=label, ylabel="ms per step", title=f"{title}: exponent {power:.2f}")
+        panel.set(xlabel=label, ylabel="ms per step", title=f"{title}: exponent {power:.2f}")
         logarithmic_x(panel, ticks)
     points(axes[0], select(rows, r"scaling/cL\^3 = 300, box (\d+)"), color=RED, label="cL³ = 300")
     axes[0].legend()
     low, high = axes[2].get_ylim()
     axes[2].set_ylim(0.3 * low, 3 * high)
+    for panel in axes:
+        logarithmic_y(panel)
     save(figure, out, "bench-scaling.svg")
 
 

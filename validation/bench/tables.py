@@ -110,8 +110,16 @@ def scaling(rows):
               f"fibers alone in 32³ cells, cL³ = {FIBERS[0]} to {FIBERS[-1]}, against the density", "1 to 2"),
              ("6400 vertices alone, fiber length", f"6400 vertices alone, in fibers of {LENGTHS[0]} to {LENGTHS[-1]}",
               "0"))
-    return table(["time of a step", "exponent", "expected of a perfect memory"],
-                 [[text, with_error(rows[f"scaling/exponent, {name}"]), power] for name, text, power in names])
+    return table(["time of a step", "exponent, all points", "between the first two, the last two", "of a perfect memory"],
+                 [[text, with_error(rows[f"scaling/exponent, {name}"]), local(rows, name), power]
+                  for name, text, power in names])
+
+
+def local(rows, name):
+    """A series need not be a power law: its exponents at both ends."""
+    x, times = zip(*sorted((int(match.group(1)), row["value"]) for key, row in rows.items()
+                           if (match := re.fullmatch(f"scaling/{re.escape(name)} (\\d+)", key))))
+    return f"{exponent(x[:2], times[:2]):.2f}, {exponent(x[-2:], times[-2:]):.2f}".replace("-", "−")
 
 
 def precision(rows):

@@ -20,7 +20,7 @@ class Verdict:
     kind "gate": a disagreement is our bug. kind "paper": it is a finding, and `reason` says why, if known.
 
     A number that agrees says something only if it could have disagreed: if what would be seen is less than all of it, and
-    less than the way to `rival`, another value that it is to be told from. Until then it is "missing"."""
+    less than the way to `rival`, another value that it is to be told from. Until then it is "undecided"."""
     id: str
     statement: str
     expected: float
@@ -37,9 +37,9 @@ class Verdict:
     @property
     def verdict(self):
         if self.measured is None or not math.isfinite(self.measured):
-            return "missing"
+            return "undecided"
         if abs(self.measured - self.expected) <= self.tolerance:
-            return "missing" if self.blind else "pass"
+            return "undecided" if self.blind else "pass"
         return "fail" if self.kind == "gate" else "not reproduced"
 
     @property
@@ -60,7 +60,7 @@ class Verdict:
     def z(self):
         """Difference in standard errors of both; None where there are none."""
         error = math.hypot(self.error or 0.0, self.expected_error or 0.0)
-        if self.verdict == "missing" or not math.isfinite(error) or error == 0.0:
+        if self.verdict == "undecided" or not math.isfinite(error) or error == 0.0:
             return None
         return (self.measured - self.expected) / error
 

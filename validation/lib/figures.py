@@ -5,7 +5,7 @@ import re
 import matplotlib
 import numpy
 matplotlib.use("svg")
-from matplotlib import pyplot  # noqa: E402
+from matplotlib import pyplot, ticker  # noqa: E402
 
 # Distinguishable without colours, too, if each has its marker.
 COLORS = ("#0b5394", "#c0392b", "#2e7d32", "#8e5ea2", "#b26a00", "#00838f", "#6d4c41", "#444444")
@@ -53,6 +53,15 @@ def theory(axes, x, y, **options):
     return axes.plot(x, y, **{"color": "#222222", "linestyle": "-", "linewidth": 1.1, "zorder": 1, **options})
 
 
+def readable(axis):
+    """A logarithmic scale of less than two decades names 1, 2 and 5 of each; else it is left with one number or none."""
+    low, high = axis.get_view_interval()
+    if axis.get_scale() == "log" and isinstance(axis.get_major_locator(), ticker.LogLocator) and high < 100.0 * low:
+        axis.set_major_locator(ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.set_major_formatter(ticker.FuncFormatter(lambda x, _: f"{x:g}"))
+        axis.set_minor_formatter(ticker.NullFormatter())
+
+
 def legend(axes, **options):
     """A legend, where there is something to name: runs may be missing."""
     if axes.get_legend_handles_labels()[0]:
@@ -61,6 +70,9 @@ def legend(axes, **options):
 
 def svg(figure):
     """The figure as SVG text without date, version or XML prologue; closes it."""
+    for axes in figure.axes:
+        readable(axes.xaxis)
+        readable(axes.yaxis)
     out = io.StringIO()
     figure.savefig(out, format="svg", metadata={"Date": None, "Creator": None})
     pyplot.close(figure)

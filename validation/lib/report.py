@@ -72,19 +72,24 @@ def section(name, tier, every):
             "hours_estimated": math.fsum(result.run.hours for result in results)}
 
 
-def junit(sections):
-    """JUnit XML, a test case per verdict. What is a finding about the paper passes, and says so."""
+def junit(tier, sections):
+    """JUnit XML, a test case per verdict. What is a finding about the paper passes, and says so; what is undecided fails in the
+    quick tier, and is skipped in the campaign."""
     suites = xml.Element("testsuites", name="validation")
     for part in sections:
-        bad = [row for row in part["verdicts"] if row["verdict"] in ("fail", "missing")]
+        undecided = [row for row in part["verdicts"] if row["verdict"] == "undecided"]
+        bad = [row for row in part["verdicts"] if row["verdict"] == "fail"] + (undecided if tier == "quick" else [])
+        skipped = undecided if tier != "quick" else []
         suite = xml.SubElement(suites, "testsuite", name=part["id"], tests=str(len(part["verdicts"])),
-                               failures=str(len(bad)), time=f"{part['cpu_seconds']:.1f}")
+                               failures=str(len(bad)), skipped=str(len(skipped)), time=f"{part['cpu_seconds']:.1f}")
         for row in part["verdicts"]:
             case = xml.SubElement(suite, "testcase", classname=part["id"], name=row["id"])
             text = (f"{row['statement']}: measured {row['measured']} +- {row['error']}, expected {row['expected']}, "
                     f"tolerance {row['tolerance']} ({row['source']}). {row['reason']}")
             if row in bad:
                 xml.SubElement(case, "failure", message=row["verdict"]).text = text
+            elif row in skipped:
+                xml.SubElement(case, "skipped", message=text)
             else:
                 xml.SubElement(case, "system-out").text = f"{row['verdict']}: {text}"
     xml.indent(suites)
@@ -139,7 +144,7 @@ def page(tier, sections):
     return environment.from_string(TEMPLATE.read_text()).render(
         tier=tier, titles=TITLES, sections=sections, total=math.fsum(part["cpu_seconds"] for part in sections),
         count={word: sum(row["verdict"] == word for part in sections for row in part["verdicts"])
-               for word in ("pass", "fail", "not reproduced", "missing")})
+               for word in ("pass", "fail", "not reproduced", "undecided")})
 
 
 def summary(tier, sections):
@@ -157,7 +162,7 @@ STANDING = """# Where the campaign stands
 {hours:.1f} core-hours of {planned:.0f}. `validation/run report --tier campaign` makes the whole report,
 `reference-data/campaign/report.html`, from what is kept beside it.
 
-| claim | | pass | not reproduced | wait | runs, of all | core-hours |
+| claim | | pass | not reproduced | undecided | runs: finished, begun, all | core-hours |
 | --- | --- | --- | --- | --- | --- | --- |
 {claims}
 
@@ -169,13 +174,13 @@ What the paper says, or a formula that it uses, and what was measured.
 | --- | --- | --- | --- |
 {findings}
 
-## What waits
+## Undecided
 
 Not measured yet, or so roughly that it could not disagree.
 
 | | so far | expected |
 | --- | --- | --- |
-{waiting}
+{undecided}
 """
 
 
@@ -186,20 +191,20 @@ def standing(summed):
 
     def cell(text):
         return " ".join(text.split()).replace("|", "\\|")
-    claims, findings, waiting = [], [], []
+    claims, findings, undecided = [], [], []
     for part in summed["sections"]:
-        name, counts = part["id"], [len(rows(part["id"], word)) for word in ("pass", "not reproduced", "missing")]
+        name, counts = part["id"], [len(rows(part["id"], word)) for word in ("pass", "not reproduced", "undecided")]
         have = sum(row["run"].startswith(name + "/") for row in summed["runs"])
         claims.append(f"| [{name}]({name}.md) | {cell(part['title'])} | {' | '.join(map(str, counts))} | "
-                      f"{have} of {have + len(part['absent'])} | {part['cpu_seconds'] / 3600.0:.1f} |")
+                      f"{have - len(part['unfinished'])}, {have}, {have + len(part['absent'])} | {part['cpu_seconds'] / 3600.0:.1f} |")
         findings += [f"| `{row['id']}`: {cell(row['statement'])} | {plusminus(row['measured'], row['error'])} | "
                      f"{plusminus(row['expected'], row['expected_error'])} ({cell(row['source'])}) | {cell(row['reason'])} |"
                      for row in rows(name, "not reproduced")]
-        waiting += [f"| `{row['id']}`: {cell(row['statement'])} | {plusminus(row['measured'], row['error'])} | "
-                    f"{plusminus(row['expected'], row['expected_error'])} |" for row in rows(name, "missing")]
+        undecided += [f"| `{row['id']}`: {cell(row['statement'])} | {plusminus(row['measured'], row['error'])} | "
+                      f"{plusminus(row['expected'], row['expected_error'])} |" for row in rows(name, "undecided")]
     return STANDING.format(hours=math.fsum(part["cpu_seconds"] for part in summed["sections"]) / 3600.0,
                            planned=math.fsum(part["hours_estimated"] for part in summed["sections"]),
-                           claims="\n".join(claims), findings="\n".join(findings), waiting="\n".join(waiting) or "| nothing | | |")
+                           claims="\n".join(claims), findings="\n".join(findings), undecided="\n".join(undecided) or "| nothing | | |")
 
 
 def write_standing(summed, page):
@@ -214,7 +219,7 @@ def make(tier, all_runs, names, work, out):
     out = pathlib.Path(out)
     out.mkdir(parents=True, exist_ok=True)
     (out / "report.json").write_text(json.dumps(summary(tier, sections), indent=1, ensure_ascii=False) + "\n")
-    (out / "report.xml").write_text(junit(sections))
+    (out / "report.xml").write_text(junit(tier, sections))
     (out / "report.html").write_text(page(tier, sections))
     return tell(tier, sections, out)
 
@@ -226,12 +231,12 @@ def tell(tier, sections, out):
         z = "" if row["z"] is None else f"  z {row['z']:+.1f}"
         print(f"{row['verdict']:<14} {row['id']:<{width}}  {plusminus(row['measured'], row['error'])}, expected "
               f"{plusminus(row['expected'], row['expected_error'])} within {number(row['tolerance'])}{z}")
-    missing = [row for row in rows if row["verdict"] == "missing"]
-    bad = [row for row in rows if row["verdict"] == "fail"] + (missing if tier == "quick" else [])
+    undecided = [row for row in rows if row["verdict"] == "undecided"]
+    bad = [row for row in rows if row["verdict"] == "fail"] + (undecided if tier == "quick" else [])
     for part in sections:
         print(f"{part['id']}: {runs.duration(part['cpu_seconds'])} of CPU time, {len(part['runs'])} runs")
     print(f"report: {out / 'report.html'}")
-    if tier != "quick" and missing:
-        print(f"{len(missing)} verdicts wait for their runs")
+    if tier != "quick" and undecided:
+        print(f"{len(undecided)} verdicts are undecided: their runs are to come, or too short")
     print(f"{sum(row['verdict'] in ('pass', 'not reproduced') for row in rows)} passed, {len(bad)} failed")
     return 1 if bad else 0

@@ -282,7 +282,7 @@ def draw_refused(results, tier):
         seen = counts(results[name]) if name in results else None
         if seen and seen[0] < 1.0:
             figures.points(axes[0], [0.0108], [1.0 - seen[0]], [(1.0 - seen[0]) / math.sqrt((1.0 - seen[0]) * seen[3])],
-                           len(COUNTS) + number, label=f"32³ cells, {density}")
+                           len(COUNTS) + number, label=f"c L³ = {density}, in 32³ cells")
     axes[0].set(xscale="log", yscale="log", xlabel="dt, t0", ylabel="1 − executed/possible")
     axes[1].set(xscale="log", xlabel="dt, t0", ylabel="rate over kinetic theory")
     axes[1].axhline(1.0, color="#222222", linewidth=1)
@@ -300,8 +300,8 @@ def evaluate(results, tier):
     found = [Figure("heat", "Heat per refused move against the time step. No thermostat.", lambda: draw_heat(results)),
              Figure("refused", "Left: share of possible collisions that are not executed (the first of several is); arrows: "
                                "none seen, so fewer than that. "
-                               "Right: collisions "
-                    "executed (filled), and less twice those of negative ΔP (open), over kinetic theory.",
+                               "Right, without the runs in 32³ cells: collisions "
+                               "executed (filled), and less twice those of negative ΔP (open), over kinetic theory.",
                     lambda: draw_refused(results, tier))]
     return Outcome(verdicts + heat_verdicts(results, tier), found, PROSE)
 

@@ -181,7 +181,7 @@ def draw_displacements(results, system):
         columns = sd.table(results.get(name))
         if columns is None:
             continue
-        label = f"v = {flow:g}" + (", in its frame" if name.startswith("co") else "")
+        label = f"v = {flow:g} $a_0/t_0$" + (", in its frame, bouncing" if name.startswith("co") else "")
         for column, fill in (("g", None), ("g_cm", "white")):
             figures.points(above, columns["time"] / tau, columns[column] / scale, columns[column + "_error"] / scale,
                            number,
@@ -221,7 +221,7 @@ def draw_energy(results):
         axes[1].plot(table["time"], numpy.abs(table["px"] - table["px"][0]) / mass + 1e-17,
                      color=figures.COLORS[number])
     axes[0].set(xlabel="t, t0", ylabel="change of total energy, %")
-    axes[1].set(xlabel="t, t0", ylabel="|Δp| over ⅔ kinetic energy", yscale="log")
+    axes[1].set(xlabel="t, t0", ylabel="|Δp| over mass, a0/t0", yscale="log")
     figures.legend(axes[0])
     return figure
 
@@ -240,7 +240,7 @@ def draw_lag(results):
             figures.points(below, dt, [row["lag"] / row["rate"] / row["dt"] - 1 for row in mine],
                            [row["lag_error"] / row["rate"] / row["dt"] for row in mine], number)
     above.set(ylabel="lag over flow, 10⁻³")
-    below.set(xlabel="dt, t0", ylabel="over share\n− 1", ylim=(-0.2, 0.3), xlim=(0.0, 0.024))
+    below.set(xlabel="dt, t0", ylabel="over share\n− 1", ylim=(-0.15, 0.3), xlim=(0.0, 0.024))
     figures.legend(above)
     return figure
 
@@ -251,12 +251,13 @@ def evaluate(results, tier):
     if tier == "campaign":
         verdicts.append(paper_verdict(results, system))
     found = [Figure("fig3", "Mean square displacements of vertices (filled) and of centres of mass (open), background "
-                            "flow taken out. "
+                            "flow taken out; time in units of τ_r, " + f"{system['tau']:.0f} t0. "
                     "Below: over those of the resting system; what the lag of the fastest adds to g (dashed) and to g_cm (dotted).",
                     lambda: draw_displacements(results, system)),
              Figure("lag", "How far vertices fall behind a flow of 0.54 a0/t0, for each rule of refusal.",
                     lambda: draw_lag(results)),
-             Figure("energy", "Energy and momentum. Isolated: no thermostat.", lambda: draw_energy(results))]
+             Figure("energy", "Energy and momentum of the densest suspension at dt 0.01, by the paper's rule. Isolated: no thermostat. Right: "
+                    "of all, per unit of mass.", lambda: draw_energy(results))]
     if not any(name in results for name in system["names"]):
         found = found[1:]  # nothing to draw yet
     return Outcome(verdicts + energy_verdicts(results), found, PROSE)

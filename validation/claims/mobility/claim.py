@@ -136,8 +136,10 @@ def verdicts(measured, off, swap):
     chaos = dilute.vertex_diffusion()
     limit = measured.limit() if measured else None
     slope = radius = None
+    reason = ""
     if measured:
         radius = dilute.stokes(limit[0]), dilute.stokes(limit[0]) * limit[1] / limit[0]
+        reason = f"Table II sets 2a_h to the bond length, 0.5; with the measured radius p is {32.0 / (2.0 * radius[0]):.0f}"
         if len({measured.keys[i][0] for i in measured.dilute()}) > 1:
             best, covariance = measured.line()
             slope = best[1], math.sqrt(covariance[1, 1])
@@ -160,7 +162,7 @@ def verdicts(measured, off, swap):
                     "Sec. IV A", radius, 0.05, kind="paper"),
         dilute.held("mobility.radius-table", "a_h against the 0.25 that the aspect ratio of Table II stands for", 0.25,
                     "Table II, p = L/2a_h = 64", radius, LAG_BIAS * 0.27, kind="paper",
-                    reason="Table II sets 2a_h to the bond length, 0.5; with the measured radius p is 59")]
+                    reason=reason)]
 
 
 def draw_boxes(measured, off, swap):
@@ -185,7 +187,7 @@ def draw_boxes(measured, off, swap):
             figures.points(axes, 1.0 / box, *pair, number=number, label=f"without, {name}")
     axes.set(ylabel="D of a vertex, $a_0^2/t_0$", ylim=(0.009, 0.0195))
     figures.legend(axes, loc="center left", bbox_to_anchor=(0.0, 0.42))
-    below.set(xlabel="1/L, $1/a_0$", ylabel="over line, $-1$", ylim=(-0.03, 0.03), xlim=(-0.002, 0.132))
+    below.set(xlabel="$1/L_b$, $1/a_0$", ylabel="over line, $-1$", ylim=(-0.03, 0.03), xlim=(-0.002, 0.132))
     return figure
 
 
@@ -242,7 +244,7 @@ def evaluate(results, tier):
     if measured:
         pictures.append(
             Figure("lags", "The running estimate g(t)/6t of a vertex in three boxes. Lines: the fitted limit less the "
-                   "memory of transverse waves and of sound, and less c/t, c common to all boxes; fitted to the filled points.",
+                   "memory of transverse waves and of sound, and less c/t, c common to all boxes; fitted to the filled points of the lower panel.",
                    lambda: draw_lags(systems_found, measured)))
     found = verdicts(measured, off, swap)
     if tier == "quick":  # three boxes cannot tell this slope from none

@@ -109,7 +109,7 @@ def draw(vacf, diffusion):
     kept = theory.retention()
     early = n[1:13]
     figures.theory(left, time[early], kept ** early, label="molecular chaos, $c^n$")
-    figures.theory(left, time[15:], long_time_tail(time[15:]), linestyle="--", label=r"hydrodynamic tail, $t^{-3/2}$")
+    figures.theory(left, time[15:], long_time_tail(time[15:]), linestyle="--", label=r"shear waves, $t^{-3/2}$")
     figures.theory(right, time[1:], [chaos_diffusion(k, kept) for k in n[1:]], label="molecular chaos")
     for number, name in enumerate(vacf):
         label = PROGRAMS[name][2]
@@ -151,6 +151,7 @@ def evaluate(results, tier):
         return Outcome([], prose="Not in this tier: needs LAMMPS (`make peer`).")
     vacf, diffusion = collect(results, "vacf"), collect(results, "D")
     drawn = [Figure("peer", "Velocity autocorrelation (left) and mean square displacement over 6t (right) of solvent "
-                    "particles in uncross and LAMMPS, 32³ cells. Errors from 8 seeds of each. Below: less LAMMPS.",
+                    "particles in uncross and LAMMPS, 32³ cells. Errors from 8 seeds of each. Dashed: the tail of shear waves alone, from which sound takes "
+                    "its share. Below: less LAMMPS.",
                     lambda: draw(vacf, diffusion))] if vacf else []
     return Outcome(verdicts(vacf, diffusion), drawn, prose(vacf, diffusion))

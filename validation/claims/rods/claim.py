@@ -362,7 +362,7 @@ def draw_images(points):
         figures.points(below, share, [p.infinite / mean - 1.0 for p in same], [p.error / mean for p in same], number)
     axes.set(ylabel="D, $a_0^2/t_0$", xlim=(0.0, 0.118), ylim=(0.0, 0.0062))
     figures.legend(axes, ncols=3)
-    below.set(xlabel="1/L, $1/a_0$", ylabel="over line, $-1$", ylim=(-0.12, 0.12))
+    below.set(xlabel="$1/L_b$, $1/a_0$", ylabel="over line, $-1$", ylim=(-0.12, 0.12))
     return figure
 
 
@@ -402,5 +402,5 @@ def evaluate(results, tier):
                "(green).", lambda: draw_lengths(results, points, far))]
     if len({(p.vertices, p.box) for p in points}) > len({p.vertices for p in points}):
         pictures.append(Figure("images", "What the box does: the same rods in several boxes. Lines: one limit for each "
-                               "length, less the images' share.", lambda: draw_images(points)))
+                               "length measured in several, less the images' share; L_b is the box.", lambda: draw_images(points)))
     return Outcome(found, pictures, words(points, far))

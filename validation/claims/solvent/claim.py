@@ -375,6 +375,11 @@ def evaluate(results, tier):
     return Outcome(verdicts, figures_of(results, tier), prose(results))
 
 
+def still_to_come(tier, known):
+    count = len(POINTS[tier]) - len(known)
+    return f" {count} other points are still to run." if count else ""
+
+
 def figures_of(results, tier):
     known = [point for point in POINTS[tier] if has_point(results, point)]
     tails = [point for point in TAIL_POINTS[tier] if has_tail(results, point)]
@@ -382,7 +387,7 @@ def figures_of(results, tier):
     if PAPERS in known:
         found.append(Figure(
             "chaos", "Viscosity and self-diffusion through the paper's point (γ 5, dt_c 0.02, 90°). Lines: molecular chaos, "
-            "Eqs. (30), (31). Below: by how much it fails.", lambda: draw_chaos(results, known)))
+            "Eqs. (30), (31). Below: by how much it fails." + still_to_come(tier, known), lambda: draw_chaos(results, known)))
         found.append(Figure(
             "waves", "Decay of transverse modes against k at the paper's point. The line is what the width of a cell does to "
             "the collisional flux of momentum.", lambda: draw_waves(results)))

@@ -306,7 +306,7 @@ def evaluate(results, tier):
         verdicts.append(normalized_verdict(curves, times, measured))
     caption = (f"c L³ = {system['count']}, L = l_p = {system['length']:g} a0. Filled: uncrossable; open: free. Time in "
                f"units of the rotation time of a lone fiber: {words['hi']} with hydrodynamics, {words['off']} without. Below: "
-               "uncrossable over free at the same lag.")
+               "uncrossable over free at the same lag. Bars: by how much either pair may slide sideways.")
     errors = {which: pair[1] / pair[0] if pair else None for which, pair in measured.items()}
     found = [Figure(f"fig4-{column}", what + caption, lambda column=column: draw(curves, system, times, errors, column))
              for column, what in (("d2", "The paper's d²(t), to the nearest vertex. "),
