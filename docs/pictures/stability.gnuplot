@@ -10,15 +10,15 @@ set xlabel "k, kT/a0^2"
 set ylabel "time step dt, t0"
 set palette defined (0 "#1b9e77", 0.5 "#e6c229", 1 "#d1495b")
 set cbrange [0:100]
-set cblabel "energy off by, %"
+set cbtics ("0" 0, "25" 25, "50" 50, "75" 75, "≥ 100" 100)
 set key above
-set title "springs (dumbbells, M = 5)"
+set title "springs (dumbbells, M = 5): their energy off by, %"
 set xrange [5:200000]
 off(ratio) = abs(ratio - 1.0) * 100.0
 plot "stability.tsv" index 0 using 2:3:(off($6)) with points pt 7 ps 1.5 palette notitle, \
      "" index 0 using 2:(stringcolumn(9) eq "fault" ? $3 : NaN) with points pt 2 ps 1.1 lc rgb "black" title "fault", \
      2.0 / sqrt(2.0 * x / 5.0) with lines lw 2 lc rgb "#222222" title "omega dt = 2: refused above"
-set title "bends (8 vertices, k = 100, l0 = 0.5, M = 5)"
+set title "bends (8 vertices, k = 100, M = 5): off by, %"
 set xlabel "bending, kT"
 set xrange [0.5:20000]
 plot "stability.tsv" index 1 using 2:3:(off($6)) with points pt 7 ps 1.5 palette notitle, \
