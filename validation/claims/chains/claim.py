@@ -38,7 +38,7 @@ SYSTEMS = {
     (80, 36): (6, 4000, 1, 4, 8), (80, 71): (32, 500, 0, 2, 8), (160, 50): (8, 800, 1, 6, 12),
     (10, 12): (2, 20000, 0, 2, 4), (10, 16): (4, 10000, 0, 2, 4), (10, 36): (48, 1500, 0, 2, 4),
     (40, 25): (3, 6000, 0, 2, 4), (160, 71): (16, 600, 0, 0, 3)}
-CROWDED = {4: 10000, 64: 2500}  # chains of 10 vertices in 25^3 cells, where 16 are
+CROWDED = {4: (10000, 3), 64: (2500, 1)}  # chains of 10 vertices in 25^3 cells, where 16 are: time, seeds
 ROUSE = {5: (64, 3300), 10: (32, 6400), 20: (24, 12800), 40: (16, 8000), 80: (8, 10000), 160: (4, 12000)}  # phantoms
 LOOSE_ROUSE = {5: (64, 40000, 6553.6, 0), 10: (32, 110000, 26214.4, 1), 20: (16, 420000, 104857.6, 2)}  # lag, priority
 
@@ -59,7 +59,9 @@ def campaign():
             priority = next(p for p, limit in enumerate(limits) if seed <= limit)
             found.append(chains(f"N{n}-L{box}-s{seed}", n, box, count, time, seed=100000 * n + 100 * box + seed,
                                 priority=priority))
-    found += [chains(f"crowd-{count}", 10, 25, count, time, seed=count, priority=1) for count, time in CROWDED.items()]
+    for count, (time, seeds) in CROWDED.items():
+        found += [chains(f"crowd-{count}" + (f"-s{k}" if k > 1 else ""), 10, 25, count, time, seed=count + 1000 * (k - 1),
+                         priority=1) for k in range(1, seeds + 1)]
     return found + [chains("crossing-N20", 20, 35, 20, 6000, seed=77, priority=2, crossing="forbidden")]
 
 
@@ -132,9 +134,9 @@ def with_hydrodynamics(results):
     """Points of all systems that have run, by name without the seed."""
     groups = {}
     for name, result in results.items():
-        found = re.fullmatch(r"(N(\d+)-L(\d+))-s\d+|crowd-\d+|crossing-N(\d+)", name)
+        found = re.fullmatch(r"(N\d+-L\d+|crowd-\d+|crossing-N\d+)(?:-s\d+)?", name)
         if found:
-            groups.setdefault(found[1] or name, []).append(result)
+            groups.setdefault(found[1], []).append(result)
     points = {}
     for name, members in groups.items():
         scene = members[0].run.scene
