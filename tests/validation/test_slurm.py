@@ -101,6 +101,12 @@ class SlurmTest(unittest.TestCase):
         self.interrupted(signal.SIGTERM)
         self.assertFalse([words for words in self.heard() if words.startswith("scontrol")])
 
+    def test_hours_of_the_page(self):
+        """The table of validation/slurm/README.md is that of the runs as they are planned now."""
+        hours = subprocess.run([VALIDATION / "slurm/hours"], capture_output=True, text=True, check=True).stdout
+        page = (VALIDATION / "slurm/README.md").read_text(encoding="utf-8")
+        self.assertEqual(page.split("<!-- hours -->\n")[1].split("<!-- end of hours -->")[0], hours)
+
 
 if __name__ == "__main__":
     unittest.main()
