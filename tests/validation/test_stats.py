@@ -12,6 +12,7 @@ TREE = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(TREE / "validation"))
 
 import numpy
+from scipy import linalg
 
 from lib import stats, theory
 
@@ -123,19 +124,31 @@ class Theory(unittest.TestCase):
         self.assertAlmostEqual(sum(theory.viscosity(10, 0.1, 130)), 8.7002486, 6)
 
     def test_tail_of_a_large_box_is_that_of_an_infinite_one(self):
-        """In 160^3 cells at t = 40, spread 1: what is missing is the k = 0 wave, 2/(3 gamma 160^3) = 1.1 % of the tail. Strongly
-        damped sound, rate c^2/2damping at long waves, is left out by a large damping."""
+        """In 160^3 cells at t = 40, spread 1: what is missing is the k = 0 wave, 2/(3 gamma 160^3) = 1.1 % of the tail."""
         t, gamma = numpy.array([40.0]), 5
-        tail = theory.long_time_tail(t, 160, gamma, 1.0, 1e9)[0] + 2.0 / (3.0 * gamma * 160**3)
+        tail = theory.long_time_tail(t, 160, gamma, 1.0, None)[0] + 2.0 / (3.0 * gamma * 160**3)
         self.assertAlmostEqual(tail / theory.long_time_tail_unbounded(40.0, gamma, 1.0), 1.0, 6)
 
     def test_diffusion_still_to_come_is_an_integral_of_the_tail(self):
         """<r^2>/6t = (1/t) int_0^t (t - s) C(s) ds, so what is to come is (1/t) int min(s, t) C(s) ds: by the trapezoidal rule,
-        with sound damped away."""
+        without sound."""
         s = numpy.geomspace(1e-5, 200.0, 4001)
-        c = theory.long_time_tail(s, 16, 5, 2.2, 1e9)
+        c = theory.long_time_tail(s, 16, 5, 2.2, None)
         expected = numpy.trapz(numpy.minimum(s, 3.0) * c, s) / 3.0
         self.assertAlmostEqual(theory.diffusion_still_to_come(3.0, 16, 5, 2.2) / expected, 1.0, 4)
+
+    def test_a_wave_of_sound_is_what_the_equations_make_of_it(self):
+        """d rho/dt = -i k u, du/dt = -i k c^2 rho - 2 Gamma k^2 u, as the exponential of a matrix; under- and overdamped."""
+        for k, damping in ((0.2, 1.1), (0.9, 1.1), (1.5, 1.1), (2.5, 0.36)):
+            matrix = numpy.array([[0.0, -1j * k], [-1j * k * theory.SOUND_SPEED**2, -2.0 * damping * k**2]])
+            for t in (0.3, 1.0, 4.0):
+                self.assertAlmostEqual(theory.sound_mode(t, k**2, damping), linalg.expm(matrix * t)[1, 1].real, 12)
+
+    def test_sound_takes_as_much_as_it_brings(self):
+        """In an infinite fluid the sound of a pulse leaves: int_0^inf of its share is 0 for each wave, so a particle's D is that
+        of shear waves, two thirds of all."""
+        t = numpy.linspace(0.0, 400.0, 400001)
+        self.assertAlmostEqual(numpy.trapz(theory.sound_mode(t, 0.25, 0.8), t), 0.0, 6)
 
 
 if __name__ == "__main__":

@@ -43,18 +43,33 @@ def shear_modes(cells, largest=40):
     return (2.0 * math.pi / cells)**2 * values, counts
 
 
-def long_time_tail(t, cells, gamma, spread, damping):
+CELL = 1.0 / 6.0  # a0^2: half the mean square distance, per axis, that velocity is handed on twice within a cell
+
+
+def sound_mode(t, k2, damping):
+    """What becomes of a longitudinal wave of velocity, by the linear equations of continuity and of Navier and Stokes:
+
+        exp(-g t) [cos wt - (g/w) sin wt],  g = damping k^2,  w^2 = (c k)^2 - g^2
+
+    which beyond g = c k is two decays."""
+    g = damping * k2
+    w = numpy.sqrt(SOUND_SPEED**2 * k2 - g**2 + 0j)
+    return (0.5 * (numpy.exp((1j * w - g) * t) * (1.0 + 1j * g / w) + numpy.exp((-1j * w - g) * t) * (1.0 - 1j * g / w))).real
+
+
+def long_time_tail(t, cells, gamma, shear, sound, diffusion=0.0, smear=0.0):
     """Velocity autocorrelation of a particle, per component and in units of kT/m, as the waves of the box carry it (Ernst,
     Hauge, van Leeuwen, Phys. Rev. Lett. 25, 1254 (1970), before the limit of long times):
 
-        (1/3N) sum_k [ 2 exp(-spread k^2 t) + cos(c k t) exp(-damping k^2 t) ]
+        (1/3N) sum_k exp(-(D t + smear) k^2) [ 2 exp(-shear k^2 t) + sound_mode(t) ]
 
-    spread = nu + D of the shear waves, damping = Gamma + D of sound. For t long after the first collisions. In an infinite
-    box sound is soon gone, and the rest is (2/3 gamma)(4 pi spread t)^(-3/2)."""
+    shear: nu; sound: damping Gamma of sound, None: without sound. smear: CELL, if velocity goes to members of a cell at random
+    and comes from them. For t long after the first collisions. In an infinite box sound is gone after some 4 Gamma/c^2, and the
+    rest is (2/3 gamma)(4 pi (nu + D) t)^(-3/2)."""
     k2, count = shear_modes(cells)
     t = numpy.asarray(t, float)[..., None]
-    sound = numpy.cos(SOUND_SPEED * numpy.sqrt(k2) * t) * numpy.exp(-damping * k2 * t)
-    return ((2.0 * numpy.exp(-spread * k2 * t) + sound) * count).sum(axis=-1) / (3.0 * gamma * cells**3)
+    waves = 2.0 * numpy.exp(-shear * k2 * t) + (0.0 if sound is None else sound_mode(t, k2, sound))
+    return (numpy.exp(-(diffusion * t + smear) * k2) * waves * count).sum(axis=-1) / (3.0 * gamma * cells**3)
 
 
 def long_time_tail_unbounded(t, gamma, spread):

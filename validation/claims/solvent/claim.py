@@ -80,7 +80,7 @@ def runs(tier):
     found = [make(point, tier) for point in POINTS[tier] for make in (shear_run, diffusion_run)]
     for run in found:  # coarse: the points that verdicts are about; then the lines through them
         run.priority = 0 if any(run.name.endswith("-" + label(point)) for point in POINTS["quick"]) else 1
-    found += tail_runs(TAILS, tier, 125, 4 if tier == "quick" else 30)
+    found += tail_runs(TAILS, tier, 125, 10 if tier == "quick" else 30)
     if PAPERS in TAIL_POINTS[tier]:
         found += tail_runs(PAPERS, tier, 250, 15)
     return found + [heavy_run(tier)] + [sound_run(point, tier) for point in TAIL_POINTS[tier]]
@@ -126,19 +126,30 @@ def has_tail(results, point):
 
 
 def tail(results, point, first, last):
-    """(amplitude, error): of C(t) between two times, in units of theory; the scatter of seeds."""
+    """((amplitude, error), theory's, what theory leaves open) of C(t) between two times, in units of what shear waves alone
+    would leave; the error from the scatter of seeds. Theory is of leading order in k: whether its point particle is as wide as a
+    cell or not is of the next one."""
     tables = tail_tables(results, point)
     time = tables[0]["time"]
     inside = (time >= first) & (time <= last)
-    expected = tail_theory(results, point, time[inside])
-    return stats.mean([(table["vacf"][inside] @ expected) / (expected @ expected) for table in tables])
+    shear = shear_tail(results, point, time[inside])
+
+    def amplitude(vacf):
+        return (vacf @ shear) / (shear @ shear)
+    low, high = sorted(amplitude(tail_theory(results, point, time[inside], smear)) for smear in (0.0, theory.CELL))
+    return stats.mean([amplitude(table["vacf"][inside]) for table in tables]), 0.5 * (low + high), 0.5 * (high - low)
 
 
-def tail_theory(results, point, time):
+def tail_theory(results, point, time, smear=0.0):
     """Of the measured nu, D and damping of sound: nothing is fitted."""
-    d = diffusion(results, point)[0]
     damping = sound(results, point)[0][2] / SOUND_K**2
-    return theory.long_time_tail(time, TAIL_BOX, point.gamma, viscosity(results, point)[0] + d, damping + d)
+    return theory.long_time_tail(time, TAIL_BOX, point.gamma, viscosity(results, point)[0], damping, diffusion(results, point)[0],
+                                 smear)
+
+
+def shear_tail(results, point, time):
+    """The same without sound."""
+    return theory.long_time_tail(time, TAIL_BOX, point.gamma, viscosity(results, point)[0], None, diffusion(results, point)[0])
 
 
 def wave(parameters, time):
@@ -257,17 +268,21 @@ def sound_verdict(results):
     return verdict
 
 
-TAIL_TIMES = {TAILS: (2.0, 12.4), PAPERS: (0.6, 4.9)}
+# At the paper's point from where on the width of a particle makes less than shear waves do. (0.6 t0 was set before there was a run
+# there, with a theory that left out the sine of `sound_mode`: it is small for the other point, whose sound is damped less.)
+TAIL_TIMES = {TAILS: (2.0, 12.4), PAPERS: (2.5, 4.9)}
+TAIL_RIVALS = {TAILS: 0.0, PAPERS: 1.0}  # no tail at all; no sound
 
 
 def tail_verdict(results, point):
     first, last = TAIL_TIMES[point]
     verdict = Verdict(f"solvent.tail.{NAMES[point]}",
-                      f"long-time tail of C(t), {first:g} to {last:g} t0, over theory, {words(point)}", 1.0,
-                      "shear and sound waves of the box with the measured ν, D, Γ; leading order, to 10 %", 0.1)
+                      f"long-time tail of C(t), {first:g} to {last:g} t0, over that of shear waves alone, {words(point)}", 0.0,
+                      "shear and sound waves of the box with the measured ν, D, Γ, to leading order: between particles of no "
+                      "width and as wide as a cell", 0.0, rival=TAIL_RIVALS[point])
     if has_tail(results, point):
-        verdict.measured, verdict.error = tail(results, point, first, last)
-        verdict.tolerance = stats.tolerance(verdict.error, systematic=0.1, values=len(tail_tables(results, point)))
+        (verdict.measured, verdict.error), verdict.expected, open_ = tail(results, point, first, last)
+        verdict.tolerance = stats.tolerance(verdict.error, systematic=open_ + 0.05, values=len(tail_tables(results, point)))
     return verdict
 
 
@@ -348,20 +363,22 @@ def draw_tail(results, points):
         tables = tail_tables(results, point)
         time, vacf = tables[0]["time"], numpy.array([table["vacf"] for table in tables])
         edges = numpy.unique(numpy.round(numpy.geomspace(1, len(time), 26)).astype(int))
-        model = tail_theory(results, point, time[1:])
         bins = [(time[a:b].mean(), *stats.mean(vacf[:, a:b].mean(axis=1)), a, b) for a, b in zip(edges, edges[1:])]
         t = numpy.array([entry[0] for entry in bins])
         mean, error = numpy.array([entry[1:3] for entry in bins]).T
-        expected = numpy.array([model[a - 1:b - 1].mean() for *_, a, b in bins])
         figures.points(top, t, mean, error, number=number, label=words(point))
-        figures.theory(top, time[10:], model[9:], color=figures.COLORS[number], linestyle="--")
         early = numpy.arange(1, 9) * point.dt_c
         figures.theory(top, early, theory.retention(point.gamma, point.alpha)**numpy.arange(1, 9), color=figures.COLORS[number],
                        linewidth=0.8)
-        late = t > TAIL_TIMES[point][0]
-        figures.points(below, t[late], mean[late] / expected[late] - 1.0, error[late] / expected[late], number=number)
+        late, lines = t > 0.25 * TAIL_TIMES[point][0], time[time > 0.25 * TAIL_TIMES[point][0]]
+        shear = shear_tail(results, point, lines)
+        figures.theory(top, lines, shear, color=figures.COLORS[number], linestyle="--")
+        bounds = [tail_theory(results, point, lines, smear) / shear for smear in (0.0, theory.CELL)]
+        below.fill_between(lines, *bounds, color=figures.COLORS[number], alpha=0.2, linewidth=0)
+        over = shear_tail(results, point, t[late])
+        figures.points(below, t[late], mean[late] / over, error[late] / over, number=number)
     top.set(xscale="log", yscale="log", ylim=(5e-5, 1.0), ylabel="$C(t)/C(0)$")
-    below.set(ylabel="over the tail, $-1$", ylim=(-1.2, 1.2), xlabel="time ($t_0$)")
+    below.set(ylabel="over shear waves'", ylim=(-3.0, 3.0), xlabel="time ($t_0$)")
     figures.legend(top)
     return figure
 
@@ -396,7 +413,8 @@ def figures_of(results, tier):
     if tails:
         found.append(Figure(
             "tail", "Velocity autocorrelation of solvent particles. Thin: molecular chaos, cⁿ after n collisions. Dashed: the tail "
-            "that shear and sound waves carry, summed over the waves of the box, without a fitted number.",
+            "that shear waves carry, summed over the waves of the box. Below, over that: shaded, shear and sound, of particles between "
+            "no width and a cell's. Nothing is fitted.",
             lambda: draw_tail(results, tails)))
     return found
 
@@ -412,6 +430,7 @@ def prose(results):
         "mean free path of 0.02 a0 the same particles share a cell for many collisions. One collision alone does exactly what it "
         f"should. The Schmidt number is {nu / d:.0f}, not {chaos_nu / chaos_d:.0f}. With a mean free path of a cell molecular chaos "
         "holds.\n\nWhat chaos leaves out is hydrodynamics: the velocity autocorrelation follows ((ν + D)t)^(−3/2) with no number "
-        "fitted, once the waves of the periodic box are counted one by one. Those of sound count, too: they take a third away at 2 t0 "
-        "and are gone at 10.\n\nVertices of mass 5 that go along make another fluid of it: with two to a cell, as at cL³ = 1000, "
+        "fitted, once the waves of the periodic box are counted one by one. Those of sound count, too. At dt_c 0.1 they take a third "
+        "away at 2 t0 and are gone at 10; at the paper's point, whose fluid is four times as viscous, they take more than shear "
+        "waves leave, and C is negative from 1.5 to 5 t0.\n\nVertices of mass 5 that go along make another fluid of it: with two to a cell, as at cL³ = 1000, "
         "collisions hand on almost three times as much momentum. ν hardly changes, since the mass is three times as large; η does.")
