@@ -4,7 +4,7 @@
  *
  *   srd_add    what a member adds to its cell's sums
  *   srd_solve  the cell's transform, from its sums
- *   srd_energy the member's energy that a thermostat scales
+ *   srd_energy twice the member's energy that a thermostat scales
  *   srd_apply  the transform of one member's velocity
  *
  * Momentum is summed in integers (2^-44 m a0/t0), so the sums do not depend on the order of the members. The price is

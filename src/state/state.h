@@ -22,7 +22,7 @@ struct solvent {
   uint32_t *id;         /* 0 .. n-1, each once */
 };
 
-/* As it stands in memory: of particle number i when it was last streamed. */
+/* Of the particle in place i of memory, as of its last streaming. */
 static inline struct vec3 solvent_velocity(const struct solvent *s, uint32_t i)
 {
   return (struct vec3){s->vx[i], s->vy[i], s->vz[i]};

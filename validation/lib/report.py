@@ -162,8 +162,8 @@ STANDING = """# Where the campaign stands
 {hours:.1f} core-hours of {planned:.0f}. `validation/run report --tier campaign` makes the whole report,
 `reference-data/campaign/report.html`, from what is kept beside it.
 
-| claim | | pass | not reproduced | undecided | runs: finished, begun, all | core-hours |
-| --- | --- | --- | --- | --- | --- | --- |
+| claim | | pass | fail | not reproduced | undecided | runs: finished, begun, all | core-hours |
+| --- | --- | --- | --- | --- | --- | --- | --- |
 {claims}
 
 ## Not reproduced
@@ -193,7 +193,7 @@ def standing(summed):
         return " ".join(text.split()).replace("|", "\\|")
     claims, findings, undecided = [], [], []
     for part in summed["sections"]:
-        name, counts = part["id"], [len(rows(part["id"], word)) for word in ("pass", "not reproduced", "undecided")]
+        name, counts = part["id"], [len(rows(part["id"], word)) for word in ("pass", "fail", "not reproduced", "undecided")]
         have = sum(row["run"].startswith(name + "/") for row in summed["runs"])
         claims.append(f"| [{name}]({name}.md) | {cell(part['title'])} | {' | '.join(map(str, counts))} | "
                       f"{have - len(part['unfinished'])}, {have}, {have + len(part['absent'])} | {part['cpu_seconds'] / 3600.0:.1f} |")

@@ -43,18 +43,25 @@ def shear_modes(cells, largest=40):
     return (2.0 * math.pi / cells)**2 * values, counts
 
 
-CELL = 1.0 / 6.0  # a0^2: half the mean square distance, per axis, that velocity is handed on twice within a cell
+# a0^2: half the mean square distance, per axis, by which velocity is handed on in two collisions, by members anywhere in their
+# cells. At most so much: what a cell hands on is in the viscosity already, in part.
+CELL = 1.0 / 6.0
 
 
-def sound_mode(t, k2, damping):
-    """What becomes of a longitudinal wave of velocity, by the linear equations of continuity and of Navier and Stokes:
+def sound_decays(k2, damping):
+    """[(amplitude, rate)] of the two decays that a longitudinal wave of velocity is made of, by the linear equations of
+    continuity and of Navier and Stokes (heat is not followed by itself; a measured damping has its share):
 
         exp(-g t) [cos wt - (g/w) sin wt],  g = damping k^2,  w^2 = (c k)^2 - g^2
 
-    which beyond g = c k is two decays."""
+    complex below g = c k, real beyond."""
     g = damping * k2
     w = numpy.sqrt(SOUND_SPEED**2 * k2 - g**2 + 0j)
-    return (0.5 * (numpy.exp((1j * w - g) * t) * (1.0 + 1j * g / w) + numpy.exp((-1j * w - g) * t) * (1.0 - 1j * g / w))).real
+    return [(0.5 * (1.0 + 1j * g / w), g - 1j * w), (0.5 * (1.0 - 1j * g / w), g + 1j * w)]
+
+
+def sound_mode(t, k2, damping):
+    return sum(amplitude * numpy.exp(-rate * t) for amplitude, rate in sound_decays(k2, damping)).real
 
 
 def long_time_tail(t, cells, gamma, shear, sound, diffusion=0.0, smear=0.0):
@@ -63,9 +70,8 @@ def long_time_tail(t, cells, gamma, shear, sound, diffusion=0.0, smear=0.0):
 
         (1/3N) sum_k exp(-(D t + smear) k^2) [ 2 exp(-shear k^2 t) + sound_mode(t) ]
 
-    shear: nu; sound: damping Gamma of sound, None: without sound. smear: CELL, if velocity goes to members of a cell at random
-    and comes from them. For t long after the first collisions. In an infinite box sound is gone after some 4 Gamma/c^2, and the
-    rest is (2/3 gamma)(4 pi (nu + D) t)^(-3/2)."""
+    shear: nu; sound: damping Gamma of sound, None: without sound. smear: CELL at most. For t long after the first collisions. In
+    an infinite box sound dies as exp(-c^2 t/4 Gamma), and the rest is (2/3 gamma)(4 pi (nu + D) t)^(-3/2)."""
     k2, count = shear_modes(cells)
     t = numpy.asarray(t, float)[..., None]
     waves = 2.0 * numpy.exp(-shear * k2 * t) + (0.0 if sound is None else sound_mode(t, k2, sound))
@@ -76,12 +82,13 @@ def long_time_tail_unbounded(t, gamma, spread):
     return 2.0 / (3.0 * gamma) * (4.0 * math.pi * spread * numpy.asarray(t))**-1.5
 
 
-def diffusion_still_to_come(t, cells, gamma, spread):
-    """By how much <r^2>/6t falls short of its limit in this box, after a time t: the same waves' (1/t) times integral of
-    min(s, t) C(s) ds, (2/3N) sum_k (1 - exp(-L t))/(L^2 t), L = spread k^2."""
+def diffusion_still_to_come(t, cells, gamma, shear, sound, diffusion=0.0, smear=0.0):
+    """By how much <r^2>/6t falls short of its limit in this box, after a time t: (1/t) times the integral of min(s, t) C(s) ds
+    of the waves of long_time_tail, which for a decay exp(-rate s) is (1 - exp(-rate t))/(rate^2 t)."""
     k2, count = shear_modes(cells)
-    rate = spread * k2
-    return 2.0 / (3.0 * gamma * cells**3) * (count * -numpy.expm1(-rate * t) / (rate**2 * t)).sum()
+    decays = [(2.0, shear * k2)] + ([] if sound is None else sound_decays(k2, sound))
+    each = sum(amplitude * -numpy.expm1(-(rate + diffusion * k2) * t) / (rate + diffusion * k2)**2 for amplitude, rate in decays)
+    return (count * numpy.exp(-smear * k2) * each.real).sum() / (3.0 * gamma * cells**3 * t)
 
 
 def image_correction(viscosity, cells):

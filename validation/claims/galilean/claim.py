@@ -270,5 +270,5 @@ stands still for a step while the fluid goes on. So many of all moves are refuse
 768 t0. With moves made in the frame of the flow the lag is gone.
 
 Momentum is constant to rounding. The energy is **not**, unless a thermostat holds it: see `conservation`. The runs of
-the figure have a thermostat, or they would end 60 % (at rest) to 90 % (at 0.54) hotter than they began, and their g
+the figure have a thermostat, or they would end some 70 % (at rest) or 100 % (at 0.54) hotter than they began, and their g
 would differ for that reason."""

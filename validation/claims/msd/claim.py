@@ -340,6 +340,6 @@ others'.
 
 With hydrodynamics no single power holds: the local exponent is above 3/4 while the flow builds up, and below it later.
 
-No curve has a plateau. What can be compared between densities all the same is where they bend: d² where the local
+No curve has a plateau yet. What can be compared between densities all the same is where they bend: d² where the local
 exponent falls to half of 3/4 is the square of a tube's width, up to a factor that is the same for all. The figure of the
 tube (claim `tube`) shows how it stands to L⊥."""
