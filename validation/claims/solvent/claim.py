@@ -216,7 +216,7 @@ def paper_verdicts(results):
                   "Eqs. (30), (31)", 0.0, kind="paper", reason=again + "which molecular chaos leaves out.")
     schmidt = Verdict("solvent.schmidt", "Schmidt number ν/D at the paper's point", nu / d,
                       "Eqs. (30), (31) and D of molecular chaos", 0.0, kind="paper",
-                      reason=again + "and backflow carries them on: D is 27 % higher, ν 4 % lower.")
+                      reason=again + "and backflow carries them on: D is a quarter higher, ν 4 % lower.")
     if has_point(results, PAPERS):
         eta.measured, eta.error = viscosity(results, PAPERS)
         measured, error = diffusion(results, PAPERS)
