@@ -129,9 +129,12 @@ class MadeUp(unittest.TestCase):
         self.assertEqual(suite.get("failures"), "1")
         self.assertIn("1.75", suite.find("testcase/failure").text)
 
-    def test_missing_fails_only_where_all_is_run(self):
-        self.assertEqual(self.report("nan")[0], 1)
-        self.assertEqual(self.report("nan", "campaign")[0], 0)
+    def test_undecided_fails_only_where_all_is_run(self):
+        for tier, code, failures, skipped in (("quick", 1, "1", "0"), ("campaign", 0, "0", "1")):
+            self.assertEqual(self.report("nan", tier)[0], code)
+            suite = xml.parse(self.folder / "out/report.xml").getroot().find("testsuite")
+            self.assertEqual((suite.get("failures"), suite.get("skipped")), (failures, skipped))
+            self.assertEqual(len(suite.findall("testcase/skipped")), int(skipped))
 
     def test_a_claim_that_cannot_say_fails(self):
         (self.folder / "claims/made/claim.py").write_text(CLAIM.replace('["there"]', '["absent"]'))

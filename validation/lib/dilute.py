@@ -109,15 +109,13 @@ def memory(times, box, nu=NU, form=point_form, sound=theory.SOUND_SPEED, damping
 
         D - g/6t = (1/3 rho V t) sum_k P(k) { 2 [1 - exp(-nu k^2 t)]/(nu k^2)^2 - [1 - phi(t)]/(c k)^2 }
 
-    phi: exp(-Gamma k^2 t) [cos wt + (Gamma k^2/w) sin wt], w^2 = (c k)^2 - (Gamma k^2)^2.
+    phi: exp(-Gamma k^2 t) [cos wt + (Gamma k^2/w) sin wt], w^2 = (c k)^2 - (Gamma k^2)^2; -[1 - phi]/(c k)^2 is what the two decays
+    of theory.sound_decays add up to.
     """
     k, count = waves(box)
     t = numpy.atleast_1d(times)[:, None]
-    rate, slow = nu * k ** 2, damping * k ** 2
-    omega = numpy.sqrt((sound * k) ** 2 - slow ** 2 + 0j)
-    phi = (numpy.exp((-slow + 1j * omega) * t) * (1.0 - 1j * slow / omega)
-           + numpy.exp((-slow - 1j * omega) * t) * (1.0 + 1j * slow / omega)).real / 2.0
-    each = 2.0 * (1.0 - numpy.exp(-rate * t)) / rate ** 2 - (1.0 - phi) / (sound * k) ** 2
+    decays = [(2.0, nu * k ** 2)] + theory.sound_decays(k ** 2, damping, sound)
+    each = sum(amplitude * -numpy.expm1(-rate * t) / rate ** 2 for amplitude, rate in decays).real
     return (count * form(k) * each).sum(axis=1) / (3.0 * PER_CELL * box ** 3 * t[:, 0])
 
 

@@ -48,7 +48,7 @@ def shear_modes(cells, largest=40):
 CELL = 1.0 / 6.0
 
 
-def sound_decays(k2, damping):
+def sound_decays(k2, damping, speed=SOUND_SPEED):
     """[(amplitude, rate)] of the two decays that a longitudinal wave of velocity is made of, by the linear equations of
     continuity and of Navier and Stokes (heat is not followed by itself; a measured damping has its share):
 
@@ -56,7 +56,7 @@ def sound_decays(k2, damping):
 
     complex below g = c k, real beyond."""
     g = damping * k2
-    w = numpy.sqrt(SOUND_SPEED**2 * k2 - g**2 + 0j)
+    w = numpy.sqrt(speed**2 * k2 - g**2 + 0j)
     return [(0.5 * (1.0 + 1j * g / w), g - 1j * w), (0.5 * (1.0 - 1j * g / w), g + 1j * w)]
 
 
