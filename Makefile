@@ -12,15 +12,15 @@ BUILD   ?= build
 STRICT   := -std=c11 -ffp-contract=off -fno-math-errno -fno-trapping-math -D_POSIX_C_SOURCE=200809L
 OPTIMIZE ?= -O3 -march=$(MARCH)
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Werror
-INCLUDES  = -Isrc $(patsubst -I%,-isystem %,$(shell pkg-config --cflags-only-I hdf5))
+INCLUDES  = -Isrc -Iinclude $(patsubst -I%,-isystem %,$(shell pkg-config --cflags-only-I hdf5))
 CFLAGS   ?= -g
 ALL_CFLAGS = $(STRICT) $(OPTIMIZE) $(WARNINGS) $(INCLUDES) $(CFLAGS)
 LIBS      = $(shell pkg-config --libs hdf5 yaml-0.1 jansson libxxhash) -lm
-TEST_LIBS = -lcmocka -lgsl -lgslcblas -lgmp
+TEST_LIBS = -lcmocka -lgsl -lgslcblas -lmpfr -lgmp
 
 SOURCES := $(sort $(shell find src -name '*.c'))
 OBJECTS := $(SOURCES:%.c=$(BUILD)/%.o)
-LIBRARY := $(BUILD)/libuncross.a
+LIBRARY := $(BUILD)/everything.a
 TESTS   := $(sort $(shell find tests -name 'test_*.c'))
 TEST_PROGRAMS    := $(TESTS:%.c=$(BUILD)/%)
 STRESS           := $(sort $(wildcard tests/stress/stress_*.c))
@@ -41,10 +41,10 @@ help:
 	@echo 'make mutants         plants bugs in a copy of the sources, one at a time, and runs the tests that should see them'
 	@echo 'make counts          instructions of each stage against a table; nothing is done that a scene does not need'
 	@echo 'make counts-baseline writes that table anew (tests/counts/baseline.txt), and the one of docs/speed.md'
-	@echo 'make judge-power     what `uncross oracle judge` makes of codes with planted bugs (ten minutes)'
+	@echo 'make judge-power     what `uncross oracle judge` makes of codes with planted bugs (twelve minutes)'
 	@echo 'make stress          long runs: exact audit, linking numbers, 10^7 steps (some minutes)'
 	@echo 'make lint            formatting, warnings of gcc and clang, static checks, include floors, equation table'
-	@echo 'make port            the port to NumPy against packs and traces, and with bugs planted in it (ports/numpy)'
+	@echo 'make port            the port to NumPy: oracle check, fresh packs and traces, bugs planted in it (ports/numpy)'
 	@echo 'make measure         builds the programs behind docs/accuracy.md'
 	@echo 'make bench           speed, scaling, run time against error: build/bench/bench.json; BENCH=speed,... chooses sections'
 	@echo 'make bench-docs      the same, and its tables and figures into docs/'
@@ -56,19 +56,21 @@ help:
 	@echo 'make slurm-test      the campaign as a job array, on a Slurm that the test starts and stops (three minutes)'
 	@echo 'make sanitize        the exact tests and short runs with address and undefined-behavior sanitizers'
 	@echo 'make coverage        which lines and branches of src/ the exact tests reach: build/coverage/index.html'
-	@echo 'make fuzz            the fuzzer of scenes, checkpoints and trajectories, for SECONDS=60'
-	@echo 'make install         PREFIX=$(PREFIX) DESTDIR=$(DESTDIR)'
+	@echo 'make fuzz            the fuzzer of scenes, checkpoints, trajectories, packs and tables, for SECONDS=60'
+	@echo 'make libraries       libuncross.so, libuncross.a, libuncross-core.a in $(BUILD)/lib (docs/library.md)'
+	@echo 'make install         PREFIX=$(PREFIX) DESTDIR=$(DESTDIR); make uninstall removes it'
 	@echo 'make clean           removes $(BUILD)'
 	@echo 'variables            CC=gcc|clang  MARCH=native|x86-64|...  BUILD=folder'
 
 # --- program and library ----------------------------------------------------------------------------------------------
 
-TOP := $(addprefix $(BUILD)/src/,main.o run.o analyze.o oracle.o)
+TOP := $(BUILD)/src/cli/main.o
 
 $(BUILD)/uncross: $(TOP) $(LIBRARY)
 	@echo '  LD $@'
 	@$(CC) $(ALL_CFLAGS) $^ $(LIBS) -o $@
 
+# All rooms, with everything visible: for the program and the tests.
 $(LIBRARY): $(filter-out $(TOP),$(OBJECTS))
 	@rm -f $@
 	@ar rcs $@ $^
@@ -78,6 +80,48 @@ $(BUILD)/%.o: %.c Makefile
 	@echo '  CC $<'
 	@$(CC) $(ALL_CFLAGS) -MMD -MP -c $< -o $@
 
+# --- libraries to link (docs/library.md) ------------------------------------------------------------------------------
+
+INTERFACE := $(shell sed -n 's/^.define UNCROSS_INTERFACE \([0-9]*\)$$/\1/p' include/uncross.h 2>/dev/null)
+VERSION   := $(shell sed -n 's/^.define UNCROSS_VERSION "\(.*\)"$$/\1/p' src/version.h)
+SONAME    := libuncross.so.$(INTERFACE)
+LIBRARIES := $(addprefix $(BUILD)/lib/,libuncross.so libuncross.a libuncross-core.a)
+
+# Rooms without files: they need the C library and xxHash only.
+CORE_ROOMS   := base system mpc fluid wall bath fiber contact theory observe
+CORE_SOURCES := $(filter src/step.c src/work.c $(CORE_ROOMS:%=src/%/%),$(SOURCES))
+CORE_HEADERS := $(filter src/step.h src/work.h $(CORE_ROOMS:%=src/%/%),$(sort $(shell find src -name '*.h')))
+
+# Objects that fit into programs at any address, and show what UNCROSS_API marks only. What prints stays outside.
+LINKED_OBJECTS := $(patsubst %.c,$(BUILD)/lib/%.o,$(filter-out src/cli/% src/oracle/% src/files/info.c,$(SOURCES)))
+
+.PHONY: libraries
+libraries: $(LIBRARIES)
+
+$(BUILD)/lib/src/%.o: src/%.c Makefile
+	@mkdir -p $(@D)
+	@echo '  CC $< (library)'
+	@$(CC) $(ALL_CFLAGS) -fPIC -fvisibility=hidden -MMD -MP -c $< -o $@
+
+$(BUILD)/lib/$(SONAME): $(LINKED_OBJECTS)
+	@echo '  LD $@'
+	@$(CC) $(ALL_CFLAGS) -shared -Wl,-soname,$(SONAME) $^ $(LIBS) -o $@
+
+$(BUILD)/lib/libuncross.so: $(BUILD)/lib/$(SONAME)
+	@ln -sf $(SONAME) $@
+
+# One object whose other names are local, so that they cannot meet those of a program.
+$(BUILD)/lib/libuncross.a: $(LINKED_OBJECTS)
+	@echo '  LD $@'
+	@$(CC) -r -nostdlib $^ -o $(BUILD)/lib/uncross.o
+	@objcopy --localize-hidden $(BUILD)/lib/uncross.o
+	@rm -f $@
+	@ar rcs $@ $(BUILD)/lib/uncross.o
+
+$(BUILD)/lib/libuncross-core.a: $(CORE_SOURCES:%.c=$(BUILD)/%.o)
+	@rm -f $@
+	@ar rcs $@ $^
+
 # Written anew only when it says something new, so that nothing is rebuilt for nothing.
 $(BUILD)/build-info.inc: force
 	@mkdir -p $(@D)
@@ -85,17 +129,65 @@ $(BUILD)/build-info.inc: force
 	   echo '#define BUILD_COMPILER "$(shell $(CC) --version | head -n 1)"'; \
 	   echo '#define BUILD_FLAGS "$(STRICT) $(OPTIMIZE)"'; } > $@.new
 	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
-$(BUILD)/src/io/build_info.o: $(BUILD)/build-info.inc
-$(BUILD)/src/io/build_info.o: INCLUDES += -I$(BUILD)
+BUILD_INFO := $(BUILD)/src/files/build_info.o $(BUILD)/lib/src/files/build_info.o
+$(BUILD_INFO): $(BUILD)/build-info.inc
+$(BUILD_INFO): INCLUDES += -I$(BUILD)
 
 .PHONY: force
 force:
 
+# What is installed, one line each: mode, where it comes from, where it goes below $(PREFIX).
+DOCUMENTS := $(shell find docs scenes examples -type f -not -path '*/.*' -not -name '*.pyc' 2>/dev/null)
+# What `uncross oracle check` holds a port against.
+REFERENCE := $(wildcard $(foreach n,pack.h5 pack.txt.gz start.h5 start.txt.gz trace.csv yaml,reference-data/*.$(n)))
+define INSTALLED
+755 $(BUILD)/uncross bin/uncross
+644 include/uncross.h include/uncross.h
+755 $(BUILD)/lib/$(SONAME) lib/$(SONAME)
+644 $(BUILD)/lib/libuncross.a lib/libuncross.a
+644 $(BUILD)/lib/libuncross-core.a lib/libuncross-core.a
+$(foreach h,$(CORE_HEADERS),644 $(h) include/uncross-core/$(h:src/%=%)
+)
+644 $(BUILD)/install/uncross.pc lib/pkgconfig/uncross.pc
+644 $(BUILD)/install/uncross-core.pc lib/pkgconfig/uncross-core.pc
+644 $(BUILD)/install/uncross.1 share/man/man1/uncross.1
+644 $(BUILD)/install/completion share/bash-completion/completions/uncross
+644 include/uncross.h lib/python3/dist-packages/uncross/uncross.h
+$(foreach f,$(wildcard python/uncross/*.py),644 $(f) lib/python3/dist-packages/$(f:python/%=%)
+)
+$(foreach f,$(DOCUMENTS) $(REFERENCE),644 $(f) share/uncross/$(f)
+)
+endef
+export INSTALLED
+INSTALL_FILES = $(addprefix $(BUILD)/install/,uncross.pc uncross-core.pc uncross.1 completion)
+DEVELOPMENT   = lib/libuncross.so
+
 .PHONY: install
-install: $(BUILD)/uncross
-	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/share/uncross
-	install $(BUILD)/uncross $(DESTDIR)$(PREFIX)/bin/uncross
-	cp -r scenes docs $(DESTDIR)$(PREFIX)/share/uncross/
+install: $(BUILD)/uncross $(LIBRARIES) $(INSTALL_FILES)
+	@echo "$$INSTALLED" | while read -r mode from to; do \
+	   [ -z "$$to" ] || install -D -m $$mode "$$from" "$(DESTDIR)$(PREFIX)/$$to" || exit 1; done
+	@ln -sf $(SONAME) $(DESTDIR)$(PREFIX)/$(DEVELOPMENT)
+	@echo 'installed in $(DESTDIR)$(PREFIX)'
+
+# Removes what install put there, and the folders that are empty then.
+.PHONY: uninstall
+uninstall:
+	@rm -f $(DESTDIR)$(PREFIX)/$(DEVELOPMENT)
+	@echo "$$INSTALLED" | while read -r mode from to; do [ -z "$$to" ] || { rm -f "$(DESTDIR)$(PREFIX)/$$to"; \
+	   rmdir -p --ignore-fail-on-non-empty "$$(dirname "$(DESTDIR)$(PREFIX)/$$to")" 2>/dev/null; }; done; true
+
+$(BUILD)/install/uncross.1: $(BUILD)/uncross
+	@mkdir -p $(@D)
+	@$< help --man >$@
+
+$(BUILD)/install/completion: $(BUILD)/uncross
+	@mkdir -p $(@D)
+	@$< help --completion >$@
+
+# The prefix may be another one at every install.
+$(BUILD)/install/%.pc: tools/%.pc.in force
+	@mkdir -p $(@D)
+	@sed 's|@PREFIX@|$(PREFIX)|; s|@VERSION@|$(VERSION)|' $< >$@
 
 # --- tests, checks, demo ----------------------------------------------------------------------------------------------
 
@@ -103,6 +195,19 @@ $(BUILD)/tests/%: tests/%.c $(LIBRARY) Makefile
 	@mkdir -p $(@D)
 	@echo '  CC $<'
 	@$(CC) $(ALL_CFLAGS) -Itests -MMD -MP $< $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
+
+# Tests of the public interface see nothing else: they are linked with the shared library.
+$(BUILD)/tests/api/test_%: tests/api/test_%.c $(BUILD)/lib/libuncross.so Makefile
+	@mkdir -p $(@D)
+	@echo '  CC $<'
+	@$(CC) $(filter-out -Isrc,$(ALL_CFLAGS)) -Itests -MMD -MP $< -L$(BUILD)/lib -Wl,-rpath,'$$ORIGIN/../../lib' -luncross -lcmocka -lm -o $@
+
+# No file of the core needs HDF5, YAML or jansson: all of them are linked, whether used or not.
+$(BUILD)/tests/api/test_core: tests/api/test_core.c $(BUILD)/lib/libuncross-core.a Makefile
+	@mkdir -p $(@D)
+	@echo '  CC $<'
+	@$(CC) $(ALL_CFLAGS) -MMD -MP $< -Wl,--whole-archive $(BUILD)/lib/libuncross-core.a -Wl,--no-whole-archive \
+	   -lcmocka -lxxhash -lm -o $@
 
 # Memory, files and HDF5 that fail on demand (tests/faults/inject.h): the program, and the tests of tests/faults.
 INJECTOR := $(BUILD)/tests/faults/inject.o
@@ -124,7 +229,7 @@ $(BUILD)/validation/%: validation/%.c $(LIBRARY) Makefile
 	@$(CC) $(ALL_CFLAGS) -Itests -MMD -MP $< $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
 
 .PHONY: tests
-tests: $(BUILD)/uncross $(BUILD)/uncross-faults $(TEST_PROGRAMS) $(BENCH_PROGRAMS)
+tests: $(BUILD)/uncross $(BUILD)/uncross-faults $(LIBRARIES) $(TEST_PROGRAMS) $(BENCH_PROGRAMS)
 
 .PHONY: measure
 measure: $(MEASURE_PROGRAMS)
@@ -263,6 +368,7 @@ judge-power:
 port:
 	tools/install-dependencies run port
 	$(MAKE) -j2 $(BUILD)/uncross
+	ports/numpy/check-elementary
 	ports/numpy/check $(BUILD)/uncross
 
 .PHONY: demo
@@ -272,10 +378,11 @@ demo:
 	tools/demo $(BUILD)/uncross $(BUILD)/demo
 
 # The exact tests under other flags, in folders of their own. Physics tests are long and add nothing here.
-EXACT_TESTS := $(filter-out tests/physics/% tests/stress/% tests/mutants/% tests/tools/% tests/cli/test_bits.sh, \
+EXACT_TESTS := $(filter-out tests/physics/% tests/stress/% tests/mutants/% tests/tools/% tests/cli/test_bits.sh \
+   tests/api/%.py, \
    $(sort $(shell find tests -name 'test_*.c' -o -name 'test_*.py' -o -name 'test_*.sh')))
 .PHONY: exact
-exact: $(BUILD)/uncross $(BUILD)/uncross-faults $(patsubst %.c,$(BUILD)/%,$(filter %.c,$(EXACT_TESTS)))
+exact: $(BUILD)/uncross $(BUILD)/uncross-faults $(LIBRARIES) $(patsubst %.c,$(BUILD)/%,$(filter %.c,$(EXACT_TESTS)))
 
 .PHONY: sanitize
 sanitize:
@@ -287,11 +394,17 @@ sanitize:
 .PHONY: coverage
 coverage:
 	tools/install-dependencies run hard port
-	$(MAKE) -j2 CC=gcc BUILD=build/coverage OPTIMIZE=-O0 CFLAGS='-g --coverage' exact
+	mkdir -p build/coverage
+	gcc -O1 -c tests/faults/child_coverage.c -o build/coverage/child.o
+	$(MAKE) -j2 CC=gcc BUILD=build/coverage OPTIMIZE=-O0 CFLAGS='-g --coverage' \
+	   LIBS='$(LIBS) $(CURDIR)/build/coverage/child.o -Wl,--wrap=_exit' exact
 	tools/coverage build/coverage $(EXACT_TESTS)
 
 # Inputs that find something new go to build/fuzz/corpus; what was found is a file crash-* there, which FUZZ=file runs again.
 SECONDS ?= 60
+# A scene may ask for any amount of memory: what it gets here is none above 64 MB, and it must bear that.
+FUZZ_LIMITS := ASAN_OPTIONS=max_allocation_size_mb=64:allocator_may_return_null=1 \
+   LSAN_OPTIONS=suppressions=tests/fuzz/leaks:print_suppressions=0
 FUZZ    ?= -max_total_time=$(SECONDS) build/fuzz/corpus tests/fuzz/corpus
 .PHONY: fuzz
 fuzz:
@@ -299,7 +412,8 @@ fuzz:
 	$(MAKE) -j2 CC=clang BUILD=build/fuzz OPTIMIZE=-O1 CFLAGS='-g -fsanitize=fuzzer-no-link,address,undefined \
 	   -fno-sanitize-recover=all' build/fuzz/readers
 	mkdir -p build/fuzz/corpus
-	TMPDIR=build/fuzz LSAN_OPTIONS=suppressions=tests/fuzz/leaks:print_suppressions=0 build/fuzz/readers -artifact_prefix=build/fuzz/ -max_len=4096 -timeout=10 -print_final_stats=1 $(FUZZ)
+	TMPDIR=build/fuzz $(FUZZ_LIMITS) build/fuzz/readers -artifact_prefix=build/fuzz/ -max_len=4096 -timeout=60 \
+	   -rss_limit_mb=3000 -print_final_stats=1 $(FUZZ)
 
 $(BUILD)/readers: $(BUILD)/tests/fuzz/fuzz_readers.o $(LIBRARY)
 	@echo '  LD $@'
@@ -309,4 +423,4 @@ $(BUILD)/readers: $(BUILD)/tests/fuzz/fuzz_readers.o $(LIBRARY)
 clean:
 	rm -rf $(BUILD)
 
--include $(OBJECTS:.o=.d) $(TEST_PROGRAMS:=.d) $(STRESS_PROGRAMS:=.d) $(MEASURE_PROGRAMS:=.d) $(BENCH_PROGRAMS:=.d)
+-include $(OBJECTS:.o=.d) $(LINKED_OBJECTS:.o=.d) $(TEST_PROGRAMS:=.d) $(STRESS_PROGRAMS:=.d) $(MEASURE_PROGRAMS:=.d) $(BENCH_PROGRAMS:=.d)

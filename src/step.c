@@ -1,93 +1,113 @@
 /*
  * START HERE. The algorithm of Padding 2009, Sec. III, as the paper lists it:
  *
- *   1  coordinates and velocities                       step_start, or a snapshot (io/)
- *   2  stream the solvent                 Eq. (3)       solvent/stream.c
- *   3  move the vertices, one by one      Eq. (4)       fiber/sweep.c; crossings: crossing.c, exchange.h
- *   4  SRD collision                      Eqs. (5, 6)   solvent/collide.c, srd.h
+ *   1  coordinates and velocities                       step_start, or a snapshot (files/)
+ *   2  stream the solvent                 Eq. (3)       fluid/points.c
+ *   3  move the vertices, one by one      Eq. (4)       contact/sequential.c; crossings: line.c, impulse.h
+ *   4  SRD collision                      Eqs. (5, 6)   mpc/collide.c, rules/srd.h
  *   5  forces                             Eqs. (1, 2)   fiber/force.c
  *   6  kick                               Eqs. (7, 8)   fiber/force.c
- *   7  again                                            whoever calls step_advance
- *   8  save                                             io/
+ *   7  again                                            the caller of step_advance
+ *   8  save                                             files/
  *
- * A step is a short list of stages. On most steps it is the leap-frog's: drift, force, kick. On a step with a
- * collision, the collision stands where the scene's `order` puts it (docs/accuracy.md measures what the choice costs):
+ * A step is a short list of actions. On most steps it is the leap-frog's: drift, force, kick. On a step with a
+ * collision, the collision stands where the scene's scheme (its key `order`) puts it; docs/accuracy.md measures what
+ * the choice costs:
  *
  *   paper        after the drift, before the kick: velocities of half a step ago collide at positions of now
  *   kick-split   between two half kicks: velocities and positions of the same time
  *   drift-split  between two half drifts: the same, half a step earlier
  *
- * Solvent particles fly freely between collisions, so they are streamed when a collision needs them, over the whole
- * interval at once; until then a drift only adds to their lag. A bath of phantoms has no particles to stream.
+ * Each action becomes stages: each room that has a part in it (fiber/, contact/, mpc/) appends its own. The list of
+ * stages is the plan (system/plan.h). It is made once for a run, and holds only what the scene needs.
+ *
+ * Solvent particles fly freely between collisions. So they are streamed when a collision needs them, over the whole
+ * interval at once. Until then a drift only adds to their lag. A random solvent (bath: phantoms) has no particles to
+ * stream.
  */
 #include "step.h"
 
-#include "fiber/force.h"
+#include <stddef.h>
+
 #include "fiber/start.h"
-#include "solvent/bath.h"
-#include "solvent/solvent.h"
+#include "fluid/fluid.h"
+#include "mpc/plan.h"
 
 enum action { END, DRIFT, COLLIDE, FORCE, KICK };
 
-struct stage {
+struct part {
   enum action action;
   double fraction; /* of dt, for DRIFT and KICK */
 };
 
-static const struct stage without_collision[] = {{DRIFT, 1.0}, {FORCE, 0}, {KICK, 1.0}, {END, 0}};
+static const struct part without_collision[] = {{DRIFT, 1.0}, {FORCE, 0}, {KICK, 1.0}, {END, 0}};
 
-static const struct stage with_collision[][6] = {
-    [ORDER_PAPER] = {{DRIFT, 1.0}, {COLLIDE, 0}, {FORCE, 0}, {KICK, 1.0}, {END, 0}},
-    [ORDER_KICK_SPLIT] = {{DRIFT, 1.0}, {FORCE, 0}, {KICK, 0.5}, {COLLIDE, 0}, {KICK, 0.5}, {END, 0}},
-    [ORDER_DRIFT_SPLIT] = {{DRIFT, 0.5}, {COLLIDE, 0}, {DRIFT, 0.5}, {FORCE, 0}, {KICK, 1.0}, {END, 0}},
+static const struct part with_collision[SCHEMES][6] = {
+    [SCHEME_PAPER] = {{DRIFT, 1.0}, {COLLIDE, 0}, {FORCE, 0}, {KICK, 1.0}, {END, 0}},
+    [SCHEME_KICK_SPLIT] = {{DRIFT, 1.0}, {FORCE, 0}, {KICK, 0.5}, {COLLIDE, 0}, {KICK, 0.5}, {END, 0}},
+    [SCHEME_DRIFT_SPLIT] = {{DRIFT, 0.5}, {COLLIDE, 0}, {DRIFT, 0.5}, {FORCE, 0}, {KICK, 1.0}, {END, 0}},
 };
 
-typedef bool collision(struct state *, const struct model *, struct work *, uint64_t step);
-
-static collision *const collide[] = {[BATH_PARTICLES] = solvent_collide, [BATH_PHANTOMS] = bath_collide};
-
-static const char *const action_names[] = {
-    [END] = "end", [DRIFT] = "drift", [COLLIDE] = "collide", [FORCE] = "force", [KICK] = "kick"};
-
-bool step_advance_watched(struct state *state, const struct model *model, struct work *work,
-                          const struct sweep_log *log, const struct step_watch *watch)
+/* The solvent's part in a drift: its lag grows, by one half step or two. */
+static bool act_lag(void *room, const struct moment *now, const struct stage *stage)
 {
-  const uint64_t step = state->step + 1;
-  const struct stage *stage = step_collides(model, step) ? with_collision[model->order] : without_collision;
-  uint32_t sweep = 0;
-  bool ok = true;
-  for (; ok && stage->action != END; stage++) {
-    switch (stage->action) {
+  (void)room;
+  now->state->solvent_lag += stage->fraction == 0.5 ? 1 : 2;
+  return true;
+}
+
+static void plan_actions(struct plan *plan, const struct part *part, const struct model *m)
+{
+  uint32_t drift = 0;
+  for (plan->stages = 0; part->action != END; part++) {
+    switch (part->action) {
     case DRIFT:
-      ok = fiber_sweep(state, model, work, stage->fraction, step, sweep++, log);
-      state->solvent_lag += stage->fraction == 0.5 ? 1 : 2;
+      contact_plan_drift(plan, m, offsetof(struct work, contact), part->fraction, drift++);
+      plan_append(plan, (struct stage){.name = "drift", .act = act_lag, .fraction = part->fraction});
       break;
     case COLLIDE:
-      ok = collide[model->solvent.bath](state, model, work, step);
+      mpc_plan_collision(plan, m, offsetof(struct work, mpc), "collide");
       break;
     case FORCE:
-      ok = fiber_forces(state, model, work, step);
+      fiber_plan_forces(plan, m, offsetof(struct work, fiber), "force");
       break;
     case KICK:
-      fiber_kick(state, model, work, stage->fraction);
+      fiber_plan_kick(plan, m, offsetof(struct work, fiber), part->fraction, "kick");
       break;
     case END:
       break;
     }
-    if (watch)
-      watch->look(watch->context, action_names[stage->action], state);
   }
-  state->step = step;
+}
+
+void step_plan(struct work *work, const struct model *model)
+{
+  plan_actions(&work->plan[false], without_collision, model);
+  plan_actions(&work->plan[true], with_collision[model->scheme], model);
+}
+
+bool step_advance_watched(struct state *state, const struct model *model, struct work *work,
+                          const struct contact_log *log, const struct step_watch *watch)
+{
+  const struct moment now = {state, model, &work->fault, log, state->step + 1};
+  const struct plan *plan = &work->plan[step_collides(model, now.step)];
+  bool ok = true;
+  for (const struct stage *stage = plan->stage; ok && stage < plan->stage + plan->stages; stage++) {
+    ok = stage->act((char *)work + stage->room, &now, stage);
+    if (watch && stage->name)
+      watch->look(watch->context, stage->name, state);
+  }
+  state->step = now.step;
   return ok;
 }
 
-bool step_advance(struct state *state, const struct model *model, struct work *work, const struct sweep_log *log)
+bool step_advance(struct state *state, const struct model *model, struct work *work, const struct contact_log *log)
 {
   return step_advance_watched(state, model, work, log, NULL);
 }
 
-/* Takes the total momentum out of the state and gives it the flow's: the same change of velocity for everybody. A bath
- * exchanges momentum with the fibers, so there it is no constant, and left as it was drawn. */
+/* Replaces the total momentum of the state by that of the flow: all velocities change by the same amount. With a random
+ * solvent the momentum of the fibers is not conserved; there it stays as it was drawn. */
 static void set_total_momentum(struct state *state, const struct model *model)
 {
   struct solvent *s = &state->solvent;
@@ -112,11 +132,11 @@ bool step_start(struct state *state, const struct model *model, struct work *wor
 {
   state->step = 0;
   state->solvent_lag = 0;
-  solvent_start(state, model);
+  fluid_of(model)->start(state, model);
   fiber_start(state, model);
   set_total_momentum(state, model);
-  if (!fiber_forces(state, model, work, 0))
+  if (!fiber_forces(state, model, work->fiber.force, 0, &work->fault))
     return false;
-  fiber_kick(state, model, work, 0.5);
+  fiber_kick(state, model, work->fiber.force, 0.5);
   return true;
 }

@@ -2,25 +2,22 @@
 #ifndef UNCROSS_STEP_H
 #define UNCROSS_STEP_H
 
-#include "fiber/sweep.h"
-#include "state/model.h"
-#include "state/state.h"
-#include "state/work.h"
+#include "work.h"
 
-/* Advances the state by one time step dt. log: told of every hit of the crossing test, or NULL.
- * False, with work->fault saying why, if the step cannot be made; the state is then not to be used any more. */
-bool step_advance(struct state *state, const struct model *model, struct work *work, const struct sweep_log *log);
+/* Advances the state by one time step dt. log: receives every contact; or NULL.
+ * False, with the reason in work->fault, if the step cannot be made; the state must not be used any more then. */
+bool step_advance(struct state *state, const struct model *model, struct work *work, const struct contact_log *log);
 
-/* Who looks at the state after each stage of a step (drift, collide, force, kick), while state->step is still the one
- * before; NULL in runs. */
+/* A function that is called after each action of a step (drift, collide, force, kick). state->step is still the number
+ * of the step before. NULL in runs. */
 struct step_watch {
   void (*look)(void *context, const char *stage, const struct state *state);
   void *context;
 };
 
-/* The same step, watched. */
+/* The same step; `watch` is called after each action. NULL: as step_advance. */
 bool step_advance_watched(struct state *state, const struct model *model, struct work *work,
-                          const struct sweep_log *log, const struct step_watch *watch);
+                          const struct contact_log *log, const struct step_watch *watch);
 
 /* True if a collision belongs to step number `step` (the first step is number 1). */
 static inline bool step_collides(const struct model *model, uint64_t step)
@@ -28,9 +25,12 @@ static inline bool step_collides(const struct model *model, uint64_t step)
   return model_collides(model) && step % model->solvent.interval_steps == 0;
 }
 
-/* The starting state (Padding 2009, Sec. III, step 1): solvent, fibers, no total momentum but the flow's (in a bath of
- * phantoms, a thermal one), and velocities half a step ahead. False, with the fault recorded, if a bond does not fit
- * the box. */
+/* Makes the plans of this model's steps in its work; work_alloc calls it. */
+void step_plan(struct work *work, const struct model *model);
+
+/* The starting state (Padding 2009, Sec. III, step 1): solvent and fibers, with velocities of vertices half a step
+ * ahead. The total momentum is that of the flow; in a bath of phantoms it is thermal. False, with the fault recorded,
+ * if a bond does not fit the box. */
 bool step_start(struct state *state, const struct model *model, struct work *work);
 
 #endif

@@ -9,8 +9,7 @@
 
 #include "support.h"
 
-/* --- dice: splitmix64 (Steele, Lea and Flood 2014), not Philox ------------------------------------------------------
- */
+/* --- dice: splitmix64 (Steele, Lea and Flood 2014), not Philox ---------------------------------------------------- */
 
 struct dice {
   uint64_t state;
@@ -92,8 +91,7 @@ static inline void dice_shuffle(struct dice *d, uint32_t *order, uint32_t n)
   }
 }
 
-/* --- integers -------------------------------------------------------------------------------------------------------
- */
+/* --- integers ----------------------------------------------------------------------------------------------------- */
 
 /* floor(x / edge); test_lattice.c holds it to GMP. */
 static inline int64_t floor_divide(int64_t x, int64_t edge)
@@ -101,8 +99,7 @@ static inline int64_t floor_divide(int64_t x, int64_t edge)
   return x / edge - (x % edge < 0);
 }
 
-/* --- goodness of fit ------------------------------------------------------------------------------------------------
- */
+/* --- goodness of fit ---------------------------------------------------------------------------------------------- */
 
 /* Chance of a chi^2 at least this large if all `kinds` outcomes are equally likely. */
 static inline double equal_chances(const uint64_t *count, size_t kinds)
@@ -159,14 +156,13 @@ static inline double tally_error(const struct tally *t)
   return sqrt(fmax(0.0, t->squares / t->n - mean * mean) / (t->n - 1.0));
 }
 
-/* --- states by dice -------------------------------------------------------------------------------------------------
- */
+/* --- states by dice ----------------------------------------------------------------------------------------------- */
 
 /* A run whose solvent and vertices are thrown uniformly (vertices up to three boxes away) with Maxwell velocities. */
 static inline struct test_run dice_run(struct model model, struct dice *d)
 {
   struct test_run r = {.model = model};
-  assert_true(model_finish(&r.model));
+  test_finish(&r.model);
   assert_true(state_alloc(&r.state, &r.model));
   assert_true(work_alloc(&r.work, &r.model));
   const int64_t *edge = r.model.box.edge;
@@ -232,8 +228,7 @@ static inline uint32_t cell_by_floor(const struct box *box, struct point p, stru
   return (uint32_t)((c[2] * box->cells[1] + c[1]) * box->cells[0] + c[0]);
 }
 
-/* --- does a segment pierce a triangle? ------------------------------------------------------------------------------
- */
+/* --- does a segment pierce a triangle? ---------------------------------------------------------------------------- */
 
 /* The segment (a, b) meets the plane of the triangle (pivot, from, to) where
  *

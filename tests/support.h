@@ -14,10 +14,9 @@
 
 #include <math.h>
 
-#include "state/model.h"
-#include "state/state.h"
-#include "state/work.h"
 #include "step.h"
+#include "system/model.h"
+#include "system/state.h"
 
 /* |actual - expected| <= tolerance, and neither is NaN. (CMocka's own assert_float_equal casts to float and passes
  * NaN.) */
@@ -46,19 +45,30 @@ static inline struct model test_model(int lx, int ly, int lz, double per_cell, d
   m.box = box_of_cells(lx, ly, lz);
   m.seed = 1;
   m.time_step = dt;
-  m.order = ORDER_KICK_SPLIT;
-  m.solvent.particles = (uint32_t)(per_cell * lx * ly * lz + 0.5);
+  m.scheme = SCHEME_KICK_SPLIT;
   m.solvent.per_cell = per_cell;
-  m.solvent.interval_steps = interval;
+  m.solvent.collision_interval = interval * dt;
   m.solvent.rotation_angle = 90.0;
-  m.solvent.cosine = 0.0;
-  m.solvent.sine = 1.0;
   m.solvent.hydrodynamics = true;
   m.crossing.forbidden = true;
   return m;
 }
 
-/* Adds a kind of the paper's fibers (M = 5, k = 100, l0 = 0.5, kappa = 64), equilibrium start; change it before
+/* So many solvent particles, whatever the box. */
+static inline void test_particles(struct model *m, uint32_t particles)
+{
+  m->solvent.per_cell = particles / box_volume(&m->box);
+}
+
+/* Finishes the model, or ends the test. */
+static inline void test_finish(struct model *m)
+{
+  struct model_error error;
+  if (!model_finish(m, &error))
+    fail_msg("%s: %s", error.path, error.text);
+}
+
+/* Adds a kind of the paper's fibers (M = 5, k = 100, l0 = 0.5, kappa = 64), started by its shape; change it before
  * model_finish. */
 static inline struct fiber_kind *test_add_kind(struct model *m, uint32_t count, uint32_t vertices)
 {
@@ -72,7 +82,6 @@ static inline struct fiber_kind *test_add_kind(struct model *m, uint32_t count, 
   k->bond_length = 0.5;
   k->spring = 100.0;
   k->bending = 64.0;
-  k->start = START_EQUILIBRIUM;
   return k;
 }
 
@@ -86,7 +95,7 @@ struct test_run {
 static inline struct test_run test_start(struct model model)
 {
   struct test_run r = {.model = model};
-  assert_true(model_finish(&r.model));
+  test_finish(&r.model);
   assert_true(state_alloc(&r.state, &r.model));
   assert_true(work_alloc(&r.work, &r.model));
   assert_true(step_start(&r.state, &r.model, &r.work));

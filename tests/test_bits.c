@@ -1,18 +1,19 @@
 /* The same bits whatever happens between steps to what is not state: memory order, scratch, sorting, restarts. */
 #include "exact.h"
-#include "solvent/solvent.h"
+#include "mpc/grid.h"
+#include "mpc/sort.h"
 
 enum { STEPS = 120, VARIANTS = 8 };
 
 static struct model variant(int k)
 {
   struct model m = test_model(5, 4, 6, 5, 0.02, 2);
-  m.order = (enum order)(k % 3);
-  m.solvent.thermostat = (enum thermostat)(k / 2 % 3);
+  m.scheme = (enum scheme)(k % 3);
+  m.solvent.thermostat = (enum thermostat_kind)(k / 2 % 3);
   m.solvent.hydrodynamics = k % 4 != 1;
   m.crossing.exclusion = k % 2 ? EXCLUSION_PAPER : EXCLUSION_SHARED_VERTEX;
   if (k >= 4) {
-    m.solvent.cosine = cos(2.25), m.solvent.sine = sin(2.25);
+    m.solvent.rotation_angle = 129.0;
     m.solvent.acceleration = (struct vec3){0.05, 0, -0.02};
   }
   test_add_kind(&m, 50, 8)->bending = 8.0;
@@ -42,8 +43,8 @@ static void rebuild_work(struct test_run *r, struct dice *d, uint64_t step)
 static void sort_solvent(struct test_run *r, struct dice *d, uint64_t step)
 {
   (void)d;
-  solvent_sort(&r->state, &r->model, &r->work);
-  r->work.collision.since_sort = (uint32_t)step * 7; /* and its own sorting comes at other times */
+  mpc_sort(&r->state, &r->model, &r->work.mpc);
+  r->work.mpc.since_sort = (uint32_t)step * 7; /* and its own sorting comes at other times */
 }
 
 static void shuffle_at_start(struct test_run *r, struct dice *d, uint64_t step)
@@ -61,7 +62,7 @@ static void shuffle_always(struct test_run *r, struct dice *d, uint64_t step)
 static void forget_neighbors(struct test_run *r, struct dice *d, uint64_t step)
 {
   if (dice_integer(d, 0, 9) == 0 || step == 0)
-    r->work.fiber.neighbors.built = false;
+    r->work.contact.neighbors.built = false;
 }
 
 /* The state alone is carried over to new memory, as by a checkpoint. */

@@ -2,13 +2,13 @@
  * fault that says why. A table of scenes, and the box filled in ways no scene would. */
 #include "exact.h"
 #include "fiber/force.h"
-#include "io/scene.h"
-#include "observe/theory.h"
+#include "scene/scene.h"
+#include "system/fiber_kind.h"
+#include "theory/theory.h"
 
 #include "../validation/measure/energy.h"
 
-/* --- what a run must keep ------------------------------------------------------------------------------------------
- */
+/* --- what a run must keep ----------------------------------------------------------------------------------------- */
 
 static struct vec3 total_momentum(const struct test_run *r, double *scale)
 {
@@ -46,8 +46,7 @@ static void assert_sane(const char *name, const struct test_run *r, struct vec3 
     assert_true(isfinite(vec3_norm(r->state.velocity[v])));
 }
 
-/* --- scenes ---------------------------------------------------------------------------------------------------------
- */
+/* --- scenes ------------------------------------------------------------------------------------------------------- */
 
 enum outcome { RUNS, REFUSED, FAULTS };
 
@@ -214,8 +213,7 @@ static void scenes_run_or_say_why_not(void **unused)
     judge_scene(&extremes[k]);
 }
 
-/* --- cells ---------------------------------------------------------------------------------------------------------
- */
+/* --- cells -------------------------------------------------------------------------------------------------------- */
 
 static double kinetic_energy(const struct state *s)
 {
@@ -273,7 +271,8 @@ static void constants_over_six_decades(void **unused)
     kind->spring = spring;
     kind->bending = bending;
     kind->bond_length = spring > 10.0 ? 0.5 : 0.0;
-    m.time_step = 0.05 / theory_highest_frequency(kind);
+    m.time_step = 0.05 / fiber_highest_frequency(kind);
+    m.solvent.collision_interval = 2 * m.time_step;
     struct test_run r = test_start(m);
     double least = INFINITY, most = -INFINITY;
     for (int n = 0; n < 100; n++) {

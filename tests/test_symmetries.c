@@ -1,13 +1,12 @@
 /* What must not matter, over whole steps of random small suspensions: where the box is, who moves with it, which way it
  * is turned, in what order particles lie in memory, in which direction time runs, from which end fibers are counted. A
  * failing scene names its seed. */
+#include "contact/contact.h"
 #include "exact.h"
 #include "fiber/force.h"
-#include "fiber/sweep.h"
-#include "solvent/solvent.h"
+#include "mpc/grid.h"
 
-/* --- random suspensions ---------------------------------------------------------------------------------------------
- */
+/* --- random suspensions ------------------------------------------------------------------------------------------- */
 
 static void add_random_kind(struct model *m, struct dice *d)
 {
@@ -29,10 +28,10 @@ static struct model random_model(struct dice *d, bool solvent, bool forbidden)
   struct model m = test_model(edge[0], edge[1], edge[2], solvent ? dice_between(d, 0.5, 8.0) : 0.0,
                               dice_between(d, 0.002, 0.01), (uint32_t)dice_integer(d, 1, 4));
   m.seed = dice_u64(d);
-  m.order = (enum order)dice_integer(d, 0, 2);
+  m.scheme = (enum scheme)dice_integer(d, 0, 2);
   m.crossing.forbidden = forbidden;
   m.crossing.exclusion = (enum exclusion)dice_integer(d, 0, 1);
-  m.solvent.thermostat = (enum thermostat)dice_integer(d, 0, 2);
+  m.solvent.thermostat = (enum thermostat_kind)dice_integer(d, 0, 2);
   m.solvent.hydrodynamics = dice_u64(d) & 1;
   m.solvent.acceleration = dice_vector(d, 0.1);
   const int64_t kinds = dice_integer(d, 1, 3);
@@ -88,8 +87,7 @@ static void assert_off_by(const struct twins *t, point_map *map, const void *con
 
 enum { SCENES = 80 };
 
-/* --- places ---------------------------------------------------------------------------------------------------------
- */
+/* --- places ------------------------------------------------------------------------------------------------------- */
 
 static struct point moved(const void *context, uint32_t vertex, struct point p)
 {
@@ -148,13 +146,12 @@ static void cells_move_with_the_grid(void **unused)
       const struct point shift = {dice_integer(&d, 0, LATTICE_CELL - 1), dice_integer(&d, 0, LATTICE_CELL - 1), 0};
       const struct point left = {dice_integer(&d, 0, shift.x), dice_integer(&d, 0, shift.y), 0};
       const struct point q = {p.x + shift.x - left.x, p.y + shift.y - left.y, p.z};
-      assert_true(solvent_cell_of(&box, p, shift) == solvent_cell_of(&box, q, left));
+      assert_true(grid_cell_of(&box, p, shift) == grid_cell_of(&box, q, left));
     }
   }
 }
 
-/* --- memory ---------------------------------------------------------------------------------------------------------
- */
+/* --- memory ------------------------------------------------------------------------------------------------------- */
 
 static void order_in_memory_does_not_matter(void **unused)
 {
@@ -172,8 +169,7 @@ static void order_in_memory_does_not_matter(void **unused)
   }
 }
 
-/* --- frames ---------------------------------------------------------------------------------------------------------
- */
+/* --- frames ------------------------------------------------------------------------------------------------------- */
 
 static void boost(struct test_run *r, struct vec3 u)
 {
@@ -215,10 +211,10 @@ static void suspensions_in_a_frame_of_whole_boxes(void **unused)
     for (int i = 0; i < 2; i++) {
       struct model m = random_model(i ? &again : &d, true, false);
       m.box = box_of_cells(4, 4, 4);
-      m.solvent.particles = 64 * 3;
+      test_particles(&m, 64 * 3);
       m.time_step = 0x1p-8;
-      m.solvent.interval_steps = 4;
-      m.order = k & 1 ? ORDER_PAPER : ORDER_KICK_SPLIT;
+      m.solvent.collision_interval = 0x1p-6;
+      m.scheme = k & 1 ? SCHEME_PAPER : SCHEME_KICK_SPLIT;
       *(i ? &t.other : &t.one) = test_start(m);
     }
     const struct vec3 u = {256.0, k % 3 ? 0.0 : -256.0, 0.0}; /* 1 a0 per step, a box per collision */
@@ -259,8 +255,7 @@ static void crossings_lag_in_a_moving_frame(void **unused)
   assert_true(steps > 100 && hits[1] > hits[0]);
 }
 
-/* --- time -----------------------------------------------------------------------------------------------------------
- */
+/* --- time --------------------------------------------------------------------------------------------------------- */
 
 /* The leap-frog runs backwards through the places it came from: x(n+1) - v(n+1/2) dt is rounded as x(n) + v(n+1/2) dt
  * was. The kicks leave an ulp in the velocities, which now and then tips a rounding: a unit, no more. */
@@ -272,8 +267,8 @@ static void time_runs_backwards(void **unused)
     struct twins t = make_twins(dice_seed(1707) + k, false, false);
     struct test_run *r = &t.other;
     test_steps(r, 40);
-    assert_true(fiber_forces(&r->state, &r->model, &r->work, r->state.step));
-    fiber_kick(&r->state, &r->model, &r->work, -1.0);
+    assert_true(fiber_forces(&r->state, &r->model, r->work.fiber.force, r->state.step, &r->work.fault));
+    fiber_kick(&r->state, &r->model, r->work.fiber.force, -1.0);
     for (uint32_t v = 0; v < r->state.vertices; v++)
       r->state.velocity[v] = vec3_scale(-1.0, r->state.velocity[v]);
     test_steps(r, 40);
@@ -287,8 +282,7 @@ static void time_runs_backwards(void **unused)
   assert_true((double)exact > 0.9 * (double)all);
 }
 
-/* --- directions -----------------------------------------------------------------------------------------------------
- */
+/* --- directions --------------------------------------------------------------------------------------------------- */
 
 static struct point mirrored(const void *context, uint32_t vertex, struct point p)
 {
@@ -364,12 +358,11 @@ static void turned_suspensions(void **unused)
   assert_true(executed > 20);
 }
 
-/* --- the other end --------------------------------------------------------------------------------------------------
- */
+/* --- the other end ------------------------------------------------------------------------------------------------ */
 
-static void keep_first(void *context, const struct sweep_event *event)
+static void keep_first(void *context, const struct contact_event *event)
 {
-  struct sweep_event *first = context;
+  struct contact_event *first = context;
   if (event->executed && first->hit.time < 0.0)
     *first = *event;
 }
@@ -397,10 +390,11 @@ static void counted_from_the_other_end(void **unused)
       t.other.state.position[from_the_end(m, v)] = t.one.state.position[v];
       t.other.state.velocity[from_the_end(m, v)] = t.one.state.velocity[v];
     }
-    struct sweep_event first = {.hit = {.time = -1.0}}, second = first;
-    const struct sweep_log log = {keep_first, &first}, log2 = {keep_first, &second};
-    assert_true(fiber_sweep(&t.one.state, m, &t.one.work, 1.0, 1, 0, &log));
-    assert_true(fiber_sweep(&t.other.state, &t.other.model, &t.other.work, 1.0, 1, 0, &log2));
+    struct contact_event first = {.hit = {.time = -1.0}}, second = first;
+    const struct contact_log log = {keep_first, &first}, log2 = {keep_first, &second};
+    assert_true(contact_drift(&t.one.state, m, &t.one.work.contact, 1.0, 1, 0, &log, &t.one.work.fault));
+    assert_true(
+        contact_drift(&t.other.state, &t.other.model, &t.other.work.contact, 1.0, 1, 0, &log2, &t.other.work.fault));
     if ((first.hit.time < 0.0) != (second.hit.time < 0.0))
       fail_msg("seed %lu: hit %g from one end, %g from the other", (unsigned long)t.seed, first.hit.time,
                second.hit.time);
@@ -411,7 +405,7 @@ static void counted_from_the_other_end(void **unused)
       assert_close(second.hit.time, first.hit.time, 1e-9);
       assert_close(second.hit.s, first.hit.s, 1e-9);
       assert_close(second.hit.s_standing, 1.0 - first.hit.s_standing, 1e-9);
-      assert_close(second.momentum, first.momentum, 1e-9 * (1.0 + fabs(first.momentum)));
+      assert_close(second.impulse, first.impulse, 1e-9 * (1.0 + fabs(first.impulse)));
     }
     end_twins(&t);
   }

@@ -7,7 +7,9 @@ the same time. The solvent is at rest, so that it stays on the faces of the firs
 usage: coarse.py CHECKPOINT PACK SEED        PACK: of the scene that starts from this checkpoint, as it was before
 """
 
+import struct
 import sys
+from pathlib import Path
 
 import h5py
 import numpy as np
@@ -19,8 +21,19 @@ from uncross_port.operators import model_of
 GRID = lattice.CELL // 4
 
 
+SEAL = b"uncross seal v1\n"
+
+
+def set_seal(path):
+    """Writes the seal of docs/files.md behind the data, in the place of the old one if that is still there."""
+    data = path.read_bytes()
+    if data[-32:-16] == SEAL:
+        data = data[:-32]
+    path.write_bytes(data + SEAL + struct.pack("<QQ", len(data), xxhash.xxh64(data).intdigest()))
+
+
 def set_state(path, **tables):
-    """Writes tables of a checkpoint anew, with the checksums that docs/files.md asks for."""
+    """Writes tables of a checkpoint anew, with the checksums and the seal that docs/files.md asks for."""
     with h5py.File(path, "r+") as file:
         state = file["state"]
         for name, values in tables.items():
@@ -31,6 +44,7 @@ def set_state(path, **tables):
         system.vertex, system.vertex_velocity = state["vertex_position"][:], state["vertex_velocity"][:]
         system.finished, system.lag = int(state.attrs["step"]), int(state.attrs["solvent_lag"])
         file["head"].attrs.modify("state_hash", np.uint64(int(system.state_hash(), 16)))
+    set_seal(Path(path))
 
 
 def on_faces(fresh, draw):

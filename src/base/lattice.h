@@ -3,13 +3,13 @@
  *
  * A position is a whole number of lattice units, so every difference of two positions and every shift by a box edge is
  * exact: no point moves by an ulp between two looks at it, a trajectory may be run backwards, and the side on which a
- * point lies of a plane can be decided without rounding (fiber/crossing.c). One lattice unit, 9.1e-13 a0, is far below
+ * point lies of a plane can be decided without rounding (contact/line.c). One lattice unit, 9.1e-13 a0, is far below
  * anything physical: rounding a displacement to it adds a random walk of about 1e-6 a0 in 10^12 steps.
  *
  * A difference below 2^53 units (8192 a0) is exact as a double. Boxes have edges of at most LATTICE_MAX_EDGE cells.
  */
-#ifndef UNCROSS_LATTICE_H
-#define UNCROSS_LATTICE_H
+#ifndef UNCROSS_BASE_LATTICE_H
+#define UNCROSS_BASE_LATTICE_H
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -33,15 +33,19 @@ struct point {
   int64_t x, y, z;
 };
 
-/* The periodic box: whole collision cells along each edge. */
+/* What is beyond the faces of the box along one axis (fluid/boundary.h). */
+enum boundary_kind { BOUNDARY_PERIODIC, BOUNDARIES };
+
+/* The box: whole collision cells along each edge. */
 struct box {
-  int cells[3];    /* edge lengths in cells, that is in a0 */
-  int64_t edge[3]; /* the same in lattice units */
+  int cells[3];                   /* edge lengths in cells, that is in a0 */
+  int64_t edge[3];                /* the same in lattice units */
+  enum boundary_kind boundary[3]; /* along each axis */
 };
 
 static inline struct box box_of_cells(int lx, int ly, int lz)
 {
-  return (struct box){{lx, ly, lz}, {lx * LATTICE_CELL, ly * LATTICE_CELL, lz * LATTICE_CELL}};
+  return (struct box){.cells = {lx, ly, lz}, .edge = {lx * LATTICE_CELL, ly * LATTICE_CELL, lz * LATTICE_CELL}};
 }
 
 static inline int box_shortest_edge(const struct box *box)

@@ -43,3 +43,31 @@ bool memory_double(void **list, uint32_t *room, uint32_t first, size_t size)
   *room = twice;
   return true;
 }
+
+bool memory_take(const struct memory_need *need, size_t needs)
+{
+  bool ok = true;
+  for (size_t k = 0; k < needs; k++) {
+    *need[k].where = ok && need[k].count > 0 ? memory_alloc(need[k].count, need[k].size) : NULL;
+    ok = ok && (need[k].count == 0 || *need[k].where);
+  }
+  if (!ok)
+    memory_release(need, needs);
+  return ok;
+}
+
+void memory_release(const struct memory_need *need, size_t needs)
+{
+  for (size_t k = 0; k < needs; k++) {
+    free(*need[k].where);
+    *need[k].where = NULL;
+  }
+}
+
+uint64_t memory_bytes(const struct memory_need *need, size_t needs)
+{
+  uint64_t bytes = 0;
+  for (size_t k = 0; k < needs; k++)
+    bytes += (uint64_t)need[k].count * need[k].size;
+  return bytes;
+}

@@ -1,21 +1,37 @@
 /* Memory of the large arrays. */
-#ifndef UNCROSS_MEMORY_H
-#define UNCROSS_MEMORY_H
+#ifndef UNCROSS_BASE_MEMORY_H
+#define UNCROSS_BASE_MEMORY_H
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-/* Room for `count` things of so many bytes, zeroed, beginning with a cache line. Large arrays ask for large pages: with
- * 100^3 cells a collision then takes 12 % less time, since memory is read ahead only as far as a page goes. Freed with
- * free. NULL if memory is short. */
+/* Allocates `count` elements of `size` bytes, zeroed, aligned to a cache line. Large arrays ask for large pages: with
+ * 100^3 cells a collision then takes 12 % less time, since the processor reads ahead only within a page. To be freed
+ * with free. NULL if memory is short. */
 void *memory_alloc(size_t count, size_t size);
 
-/* More room for a list that grows, what is in it kept; *list is freed with free. False, with *list as it was, if memory
- * is short. */
+/* Enlarges a list to `count` elements and keeps its content; *list is to be freed with free. False, with *list as it
+ * was, if memory is short. */
 bool memory_grow(void **list, size_t count, size_t size);
 
-/* Twice the room that a list had, or `first` if it had none; as memory_grow. */
+/* Doubles the capacity *room of a list, or makes it `first` if it was 0. Otherwise as memory_grow. */
 bool memory_double(void **list, uint32_t *room, uint32_t first, size_t size);
+
+/* An array of scratch: address of its pointer, number of entries, bytes of an entry. */
+struct memory_need {
+  void **where;
+  size_t count, size;
+};
+
+/* Allocates all of them as memory_alloc; the pointer of an array without entries is NULL. False, with all of them NULL,
+ * if memory is short. */
+bool memory_take(const struct memory_need *need, size_t needs);
+
+/* Frees all of them, and sets them to NULL. */
+void memory_release(const struct memory_need *need, size_t needs);
+
+/* Bytes of all of them. */
+uint64_t memory_bytes(const struct memory_need *need, size_t needs);
 
 #endif

@@ -1,14 +1,5 @@
 #include "base/random.h"
 
-void random_normal_pair(struct random_words r, double out[2])
-{
-  const double two_pi = 6.283185307179586477;
-  double radius = sqrt(-2.0 * log(random_uniform(r, 0)));
-  double angle = two_pi * random_uniform(r, 1);
-  out[0] = radius * cos(angle);
-  out[1] = radius * sin(angle);
-}
-
 /* Philox 4x32-10 once more (random_at has Random123's): with its words in 64 bits each, compilers make vector code of
  * it, which they do not of the library's. Two of the counter's words are multiplied in each round; the high halves meet
  * the other two and the key, the low halves take their places. */

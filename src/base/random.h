@@ -1,12 +1,13 @@
 /*
- * Random numbers that are addressed, not drawn in sequence: Philox 4x32-10 (Salmon et al., SC11; Random123) of
+ * Random numbers with addresses, not drawn in sequence: Philox 4x32-10 (Salmon et al., SC11; Random123) of
  *
  *   counter = { entity, purpose + 256 draw, step (low 32 bits), step (high 32 bits) },   key = seed (low, high)
  *
- * so whoever knows the address has the number, in any order, on any machine. docs/conventions.md is the address book.
+ * The address alone determines the number, in any order of calls, on any machine. docs/conventions.md lists the
+ * addresses.
  */
-#ifndef UNCROSS_RANDOM_H
-#define UNCROSS_RANDOM_H
+#ifndef UNCROSS_BASE_RANDOM_H
+#define UNCROSS_BASE_RANDOM_H
 
 #include <Random123/philox.h>
 #include <stddef.h>
@@ -17,11 +18,14 @@
 enum random_purpose {
   RANDOM_GRID_SHIFT = 1,        /* entity 0: words 0, 1, 2 shift x, y, z */
   RANDOM_ROTATION_AXIS = 2,     /* entity = cell */
-  RANDOM_VERTEX_ORDER = 3,      /* permutation; draw = 0 or 1: the sweep within the step */
+  RANDOM_VERTEX_ORDER = 3,      /* permutation; draw = 0 or 1: the drift within the step */
   RANDOM_VELOCITY_SWAP = 4,     /* permutation of the solvent's velocities */
   RANDOM_THERMOSTAT = 5,        /* entity = cell; draw = attempt */
   RANDOM_PHANTOM_NUMBER = 6,    /* entity = cell; draw = part/2 */
   RANDOM_PHANTOM_VELOCITY = 7,  /* entity = cell; draw = 0 or 1 */
+  RANDOM_ANDERSEN_PARTICLE = 8, /* entity = particle id; draw = 0 or 1 */
+  RANDOM_ANDERSEN_VERTEX = 9,   /* entity = vertex; draw = 0 or 1 */
+  RANDOM_ANDERSEN_PHANTOM = 10, /* entity = cell; draw = 0 or 1 */
   RANDOM_SOLVENT_POSITION = 16, /* entity = particle id; step 0 from here on: starting states */
   RANDOM_SOLVENT_VELOCITY = 17, /* entity = particle id */
   RANDOM_VERTEX_VELOCITY = 18,  /* entity = vertex */
@@ -60,10 +64,6 @@ static inline double random_uniform(struct random_words r, int k)
 {
   return ((double)(random_u64(r, k) >> 12) + 0.5) * 0x1p-52;
 }
-
-/* Two independent normal deviates of unit variance (Box and Muller 1958). Uses log, cos, sin: its last bits depend on
- * the C library. */
-void random_normal_pair(struct random_words r, double out[2]);
 
 /* Words 2k, 2k+1 as a point (u,v) in the square (-1,1)^2, then as a unit vector n uniform on the sphere (Marsaglia,
  * Ann. Math. Stat. 43, 645 (1972)): needs only a square root. Returns 0 where the point is outside the unit disk

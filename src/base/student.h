@@ -1,6 +1,6 @@
 /* Student's t distribution, for means whose errors were estimated from few blocks. */
-#ifndef UNCROSS_STUDENT_H
-#define UNCROSS_STUDENT_H
+#ifndef UNCROSS_BASE_STUDENT_H
+#define UNCROSS_BASE_STUDENT_H
 
 /* P(|T| > t) for this many degrees of freedom, at least 1; t >= 0. Its own error is below 1e-14, so smaller results
  * mean no more than "less than that"; 0 is possible. From 10^4 degrees of freedom on it is that of 10^4. */

@@ -1,6 +1,6 @@
 /* Three doubles, and the few operations on them that the physics needs. */
-#ifndef UNCROSS_VEC3_H
-#define UNCROSS_VEC3_H
+#ifndef UNCROSS_BASE_VEC3_H
+#define UNCROSS_BASE_VEC3_H
 
 #include <math.h>
 

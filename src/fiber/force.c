@@ -18,21 +18,16 @@ static inline double bend_energy(const struct fiber_kind *k, double cosine)
   return k->bending * (1.0 - cosine);
 }
 
-static double longest_bond(const struct model *model)
+static bool bond_fits(const struct model *model, uint64_t step, uint32_t j, double squared, struct fault *fault)
 {
-  return 0.5 * box_shortest_edge(&model->box);
+  const double limit = model_longest_bond(model);
+  return squared < limit * limit || fault_record(fault, FAULT_BOND_TOO_LONG, step, j, sqrt(squared), limit);
 }
 
-static bool bond_fits(struct work *work, const struct model *model, uint64_t step, uint32_t j, double squared)
-{
-  const double limit = longest_bond(model);
-  return squared < limit * limit || work_fault(work, FAULT_BOND_TOO_LONG, step, j, sqrt(squared), limit);
-}
+enum { BLOCK = 125, ROOM = BLOCK + 3 }; /* vertices per block; bonds that act on them, directly or through bends */
 
-enum { BLOCK = 125, ROOM = BLOCK + 3 }; /* vertices worked on at a time; bonds that they have to do with */
-
-/* A stretch of a fiber in columns, so that loops vectorise: entry c is bond or bend number first + c; bend number i
- * lies between bonds i - 1 and i. A bond that there is not has no length, and does nothing. */
+/* A stretch of a fiber in columns, so that loops vectorise. Entry c is bond or bend number first + c; bend number i
+ * lies between bonds i - 1 and i. Beyond the ends of an open fiber an entry has length 0 and exerts no force. */
 struct stretch {
   int64_t first;
   uint32_t n;                          /* bonds */
@@ -57,12 +52,12 @@ static bool measure_bonds(const struct state *state, double limit, uint32_t from
   return beyond;
 }
 
-/* All bond vectors of the stretch; false, with the fault recorded, if one is too long. */
-static bool measure(const struct state *state, const struct model *model, struct work *work, uint64_t step,
-                    const struct fiber_kind *kind, uint32_t fiber, struct stretch *s)
+/* Fills all bond vectors of the stretch. False, with the fault recorded, if one is too long. */
+static bool measure(const struct state *state, const struct model *model, uint64_t step, const struct fiber_kind *kind,
+                    uint32_t fiber, struct stretch *s, struct fault *fault)
 {
   const int64_t last = kind->vertices - 1;
-  const double limit = longest_bond(model);
+  const double limit = model_longest_bond(model);
   bool beyond = false;
   for (uint32_t c = 0; c < s->n;) {
     const int64_t j = s->first + c;
@@ -81,7 +76,7 @@ static bool measure(const struct state *state, const struct model *model, struct
   for (uint32_t c = 0; beyond && c < s->n; c++) {
     const struct vec3 r = {s->x[c], s->y[c], s->z[c]};
     const uint32_t j = (uint32_t)((s->first + c + last + 1) % (last + 1));
-    ok = ok && bond_fits(work, model, step, fiber + j, vec3_dot(r, r));
+    ok = ok && bond_fits(model, step, fiber + j, vec3_dot(r, r), fault);
   }
   return ok;
 }
@@ -107,15 +102,27 @@ static void pull(const struct fiber_kind *kind, struct stretch *restrict s)
   }
 }
 
+/* Forces of a bend on the vertices before and after its own, which gets the opposite of both. */
+struct bend_force {
+  struct vec3 before, after;
+};
+
+/* u0, u1: unit vectors of the bonds before and after; their inverse lengths. The formula: force.h. */
+static inline struct bend_force bend_of_bonds(const struct fiber_kind *kind, struct vec3 u0, double inverse0,
+                                              struct vec3 u1, double inverse1)
+{
+  const double cosine = vec3_dot(u0, u1);
+  return (struct bend_force){vec3_scale(-kind->bending * inverse0, vec3_add_scaled(u1, -cosine, u0)),
+                             vec3_scale(kind->bending * inverse1, vec3_add_scaled(u0, -cosine, u1))};
+}
+
 static void bend(const struct fiber_kind *kind, struct stretch *restrict s)
 {
   for (uint32_t c = 1; c < s->n; c++) {
     const struct vec3 u0 = {s->ux[c - 1], s->uy[c - 1], s->uz[c - 1]}, u1 = {s->ux[c], s->uy[c], s->uz[c]};
-    const double cosine = vec3_dot(u0, u1);
-    const struct vec3 b = vec3_scale(-kind->bending * s->inverse[c - 1], vec3_add_scaled(u1, -cosine, u0)),
-                      a = vec3_scale(kind->bending * s->inverse[c], vec3_add_scaled(u0, -cosine, u1));
-    s->bx[c] = b.x, s->by[c] = b.y, s->bz[c] = b.z;
-    s->ax[c] = a.x, s->ay[c] = a.y, s->az[c] = a.z;
+    const struct bend_force f = bend_of_bonds(kind, u0, s->inverse[c - 1], u1, s->inverse[c]);
+    s->bx[c] = f.before.x, s->by[c] = f.before.y, s->bz[c] = f.before.z;
+    s->ax[c] = f.after.x, s->ay[c] = f.after.y, s->az[c] = f.after.z;
   }
 }
 
@@ -159,13 +166,13 @@ static struct vec3 force_where_ring_closes(const struct fiber_kind *kind, const 
 }
 
 /* Forces on vertices number v .. v + n - 1 of a fiber. */
-static bool forces_on(const struct state *state, const struct model *model, struct work *work, uint64_t step,
-                      const struct fiber_kind *kind, uint32_t fiber, uint32_t v, uint32_t n)
+static bool forces_on(const struct state *state, const struct model *model, uint64_t step,
+                      const struct fiber_kind *kind, uint32_t fiber, uint32_t v, uint32_t n, struct vec3 *force,
+                      struct fault *fault)
 {
-  struct vec3 *force = &work->fiber.force[fiber + v];
   struct stretch s;
   s.first = (int64_t)v - 2, s.n = n + 3;
-  const bool ok = measure(state, model, work, step, kind, fiber, &s), bent = kind->bending != 0.0;
+  const bool ok = measure(state, model, step, kind, fiber, &s, fault), bent = kind->bending != 0.0;
   if (kind->bond_length == 0.0 && !bent)
     pull_of_zero_length(kind, &s);
   else
@@ -183,29 +190,82 @@ static bool forces_on(const struct state *state, const struct model *model, stru
   return ok;
 }
 
-bool fiber_forces(const struct state *state, const struct model *model, struct work *work, uint64_t step)
+bool fiber_forces(const struct state *state, const struct model *model, struct vec3 *force, uint64_t step,
+                  struct fault *fault)
 {
   bool ok = true;
   for (uint32_t f = 0; f < model->fibers; f++) {
     const struct fiber_kind *kind = &model->kind[model->fiber_kind_of[f]];
     if (kind->vertices == 1) {
-      work->fiber.force[model->fiber_first[f]] = kind->force;
+      force[model->fiber_first[f]] = kind->force;
       continue;
     }
     for (uint32_t v = 0; v < kind->vertices; v += BLOCK) {
       const uint32_t left = kind->vertices - v;
-      ok &= forces_on(state, model, work, step, kind, model->fiber_first[f], v, left < BLOCK ? left : BLOCK);
+      ok &= forces_on(state, model, step, kind, model->fiber_first[f], v, left < BLOCK ? left : BLOCK,
+                      &force[model->fiber_first[f] + v], fault);
     }
   }
   return ok;
 }
 
+/* --- the force on one vertex -------------------------------------------------------------------------------------- */
+
+/* A bond near the vertex; absent beyond the end of an open fiber. */
+struct near_bond {
+  bool there;
+  struct vec3 unit, pull; /* pull: of its spring, on its first end */
+  double inverse;         /* of its length */
+};
+
+static struct near_bond near_bond(const struct fiber_kind *kind, int32_t from, int32_t to,
+                                  struct point (*place)(const void *context, uint32_t vertex), const void *context)
+{
+  struct near_bond b = {from >= 0 && to >= 0, {0, 0, 0}, {0, 0, 0}, 0.0};
+  if (!b.there)
+    return b;
+  const struct vec3 r = point_difference(place(context, (uint32_t)to), place(context, (uint32_t)from));
+  const double length = sqrt(vec3_dot(r, r));
+  b.inverse = length > 0.0 ? 1.0 / length : 0.0;
+  b.unit = vec3_scale(b.inverse, r);
+  b.pull = kind->bond_length == 0.0 ? vec3_scale(kind->spring, r) : vec3_scale(bond_tension(kind, length), b.unit);
+  return b;
+}
+
+struct vec3 fiber_force_at(const struct model *model, uint32_t vertex,
+                           struct point (*place)(const void *context, uint32_t vertex), const void *context)
+{
+  const struct fiber_kind *kind = &model->kind[model->fiber_kind_of[model->fiber_of[vertex]]];
+  const int32_t prev = model->prev[vertex], next = model->next[vertex];
+  const struct near_bond before = near_bond(kind, prev, (int32_t)vertex, place, context),
+                         after = near_bond(kind, (int32_t)vertex, next, place, context);
+  struct vec3 force = vec3_add(vec3_sub(kind->force, before.pull), after.pull);
+  if (kind->bending == 0.0)
+    return force;
+  struct bend_force bend;
+  if (before.there) {
+    const struct near_bond far = near_bond(kind, model->prev[prev], prev, place, context);
+    bend = bend_of_bonds(kind, far.unit, far.inverse, before.unit, before.inverse);
+    force = far.there ? vec3_add(force, bend.after) : force;
+  }
+  if (before.there && after.there) {
+    bend = bend_of_bonds(kind, before.unit, before.inverse, after.unit, after.inverse);
+    force = vec3_sub(force, vec3_add(bend.before, bend.after));
+  }
+  if (after.there) {
+    const struct near_bond far = near_bond(kind, next, model->next[next], place, context);
+    bend = bend_of_bonds(kind, after.unit, after.inverse, far.unit, far.inverse);
+    force = far.there ? vec3_add(force, bend.before) : force;
+  }
+  return force;
+}
+
 /* Padding 2009, Eq. (8). */
-void fiber_kick(struct state *state, const struct model *model, const struct work *work, double fraction)
+void fiber_kick(struct state *state, const struct model *model, const struct vec3 *force_on, double fraction)
 {
   const double dt = fraction * model->time_step;
   struct vec3 *restrict velocity = state->velocity;
-  const struct vec3 *restrict force = work->fiber.force;
+  const struct vec3 *restrict force = force_on;
   const double *restrict inverse_mass = model->inverse_mass;
   for (uint32_t v = 0; v < state->vertices; v++)
     velocity[v] = vec3_add_scaled(velocity[v], dt * inverse_mass[v], force[v]);

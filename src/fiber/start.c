@@ -1,18 +1,7 @@
 #include "fiber/start.h"
 
-#include "base/random.h"
-
-/* <l> for p(l) ~ l^2 exp(-k (l-l0)^2/2), l > 0. With z = l sqrt(k), c = l0 sqrt(k), and the half-line moments
- * I_n = int_0^inf z^n exp(-(z-c)^2/2) dz: I_{n+1} = c I_n + n I_{n-1} (+ exp(-c^2/2) for n = 0), <z> = I_3/I_2. */
-double fiber_mean_bond(const struct fiber_kind *kind)
-{
-  const double root = sqrt(kind->spring), c = kind->bond_length * root;
-  const double i0 = 1.2533141373155002512 * (1.0 + erf(c * 0.70710678118654752440));
-  const double i1 = c * i0 + exp(-0.5 * c * c);
-  const double i2 = c * i1 + i0;
-  const double i3 = c * i2 + 2.0 * i1;
-  return i3 / i2 / root;
-}
+#include "base/normal.h"
+#include "system/fiber_kind.h"
 
 /* A bond length in equilibrium. The tangent of the log at the mode m bounds 2 log(l) from above, so a Gaussian about m
  * of variance 1/k bounds the distribution: l from it is kept with probability exp(2 (log(l/m) - (l/m - 1))), l > 0. */
@@ -24,7 +13,7 @@ static double sample_bond_length(const struct model *model, const struct fiber_k
     random_normal_pair(random_at(model->seed, RANDOM_BOND_LENGTH, draw, 0, bond), normal);
     double x = 1.0 + normal[0] / (sqrt(kind->spring) * mode);
     double u = random_uniform(random_at(model->seed, RANDOM_BOND_LENGTH, draw + 1, 0, bond), 0);
-    if (x > 0.0 && log(u) < 2.0 * (log(x) - (x - 1.0)))
+    if (x > 0.0 && elementary_log(u) < 2.0 * (elementary_log(x) - (x - 1.0)))
       return x * mode;
   }
 }
@@ -35,7 +24,7 @@ static double sample_bend(const struct model *model, const struct fiber_kind *ki
   double u = random_uniform(random_at(model->seed, RANDOM_BEND, 0, 0, vertex), 0);
   if (kind->bending < 1e-8)
     return 2.0 * u - 1.0;
-  double c = 1.0 + log(u + (1.0 - u) * exp(-2.0 * kind->bending)) / kind->bending;
+  double c = 1.0 + elementary_log(u + (1.0 - u) * elementary_exp(-2.0 * kind->bending)) / kind->bending;
   return c < -1.0 ? -1.0 : c;
 }
 
@@ -92,7 +81,8 @@ static void lay_circle(struct point *position, const struct model *model, const 
                        const struct site *site)
 {
   (void)model;
-  const double turn = 6.283185307179586477 / kind->vertices, radius = 0.5 * fiber_mean_bond(kind) / sin(0.5 * turn);
+  const double vertices = kind->vertices;
+  const double radius = 0.5 * fiber_mean_bond(kind) / elementary_circle_turns(0.5 / vertices).sine;
   const struct vec3 n = site->direction;
   const struct vec3 e = fabs(n.x) < 0.6 ? (struct vec3){1, 0, 0} : (struct vec3){0, 1, 0};
   struct vec3 a = vec3_cross(n, e);
@@ -100,7 +90,8 @@ static void lay_circle(struct point *position, const struct model *model, const 
   const struct vec3 b = vec3_cross(n, a);
   const struct point middle = point_move((struct point){0, 0, 0}, site->center);
   for (uint32_t i = 0; i < kind->vertices; i++) {
-    struct vec3 r = vec3_add(vec3_scale(radius * cos(i * turn), a), vec3_scale(radius * sin(i * turn), b));
+    const struct circle_point p = elementary_circle_turns(i / vertices);
+    struct vec3 r = vec3_add(vec3_scale(radius * p.cosine, a), vec3_scale(radius * p.sine, b));
     position[site->first + i] = point_move(middle, r);
   }
 }
@@ -132,8 +123,8 @@ void fiber_start(struct state *state, const struct model *model)
     struct site site = {model->fiber_first[fiber], random_place(model, fiber),
                         random_axis(model->seed, RANDOM_FIBER_DIRECTION, 0, fiber)};
     if (within < kind->placed) {
-      site.center = kind->center[within];
-      site.direction = vec3_scale(1.0 / vec3_norm(kind->direction[within]), kind->direction[within]);
+      site.center = kind->place[within].center;
+      site.direction = vec3_scale(1.0 / vec3_norm(kind->place[within].direction), kind->place[within].direction);
     }
     layings[kind->start](state->position, model, kind, &site);
   }

@@ -1,11 +1,11 @@
-/* Where fibers are at the start, and how fast. */
+/* Starting positions and velocities of fibers. */
 #ifndef UNCROSS_FIBER_START_H
 #define UNCROSS_FIBER_START_H
 
-#include "state/model.h"
-#include "state/state.h"
+#include "system/model.h"
+#include "system/state.h"
 
-/* Positions by each kind's `start`, velocities from the Maxwell distribution (kT = 1).
+/* Sets positions by each kind's `start`, and velocities from the Maxwell distribution (kT = 1).
  *
  * - equilibrium: the first vertex uniform in the box, then bond by bond: lengths from p(l) ~ l^2 exp(-k (l-l0)^2 / 2),
  *   bends from p(cos) ~ exp(kappa cos), azimuths uniform. This is the exact equilibrium distribution of the open
@@ -15,8 +15,5 @@
  *
  * Straight fibers and circles without a place of their own get a uniform centre and a uniform direction. */
 void fiber_start(struct state *state, const struct model *model);
-
-/* Mean bond length of a bond of this kind in equilibrium, in a0. */
-double fiber_mean_bond(const struct fiber_kind *kind);
 
 #endif

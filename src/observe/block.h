@@ -1,6 +1,6 @@
 /*
- * Averages of correlated series, with honest error bars, online: the blocking hierarchy of Flyvbjerg and Petersen,
- * J. Chem. Phys. 91, 461 (1989).
+ * Averages of correlated series with error bars, computed during the run: the blocking hierarchy of Flyvbjerg and
+ * Petersen, J. Chem. Phys. 91, 461 (1989).
  *
  * Level 0 sees every value of a series, level 1 the means of two successive values, level 2 of four, and so on. On each
  * level the standard error of the mean is computed as if its blocks were independent; it grows from level to level
@@ -9,8 +9,8 @@
  * A value is a pair (x, y): so that errors of functions of two averages, a ratio say, are known by linearisation. The
  * memory is an array of levels, each eight doubles: flat, to be saved and restored as it is. Zeroed memory is empty.
  */
-#ifndef UNCROSS_BLOCK_H
-#define UNCROSS_BLOCK_H
+#ifndef UNCROSS_OBSERVE_BLOCK_H
+#define UNCROSS_OBSERVE_BLOCK_H
 
 #include <stddef.h>
 
@@ -23,7 +23,7 @@ struct block_level {
 
 enum {
   BLOCK_LEVEL_DOUBLES = sizeof(struct block_level) / sizeof(double),
-  BLOCK_LEAST = 16 /* a level with fewer blocks does not know its error well enough to be asked */
+  BLOCK_LEAST = 16 /* fewest blocks of a level whose error is used */
 };
 
 /* One more pair of the series. level: [levels]; blocks longer than 2^(levels-1) values are not made. */

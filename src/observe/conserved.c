@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/memory.h"
 #include "fiber/force.h"
+#include "fluid/fluid.h"
 #include "observe/observer.h"
 
 /* A sum that does not depend on the order of its terms: each is split into a multiple of 2^-16 and a multiple of 2^-50
@@ -51,7 +51,7 @@ static void solvent_component(const struct state *state, const double *velocity,
 
 static void measure_solvent(const struct model *model, const struct state *state, struct motion *m)
 {
-  const struct vec3 gain = state_solvent_gain(state, model);
+  const struct vec3 gain = fluid_gain(state, model);
   solvent_component(state, state->solvent.vx, gain.x, &m->solvent_sum.x, &m->solvent_squares.x);
   solvent_component(state, state->solvent.vy, gain.y, &m->solvent_sum.y, &m->solvent_squares.y);
   solvent_component(state, state->solvent.vz, gain.z, &m->solvent_sum.z, &m->solvent_squares.z);
@@ -63,33 +63,27 @@ static void vertex_add(struct vertex_motion *sum, double mass, struct vec3 v)
   sum->momentum = vec3_add_scaled(sum->momentum, mass, v);
 }
 
-static void measure_vertices(const struct model *model, const struct state *state, struct work *work, struct motion *m)
+static void measure_vertices(const struct model *model, const struct state *state, struct vec3 *force, struct motion *m)
 {
-  fiber_forces(state, model, work, state->step); /* a bond too long for the box stops the run, not its observers */
+  struct fault ignored = {FAULT_NONE, 0, 0, 0.0,
+                          0.0}; /* a bond too long for the box stops the run, not its observers */
+  fiber_forces(state, model, force, state->step, &ignored);
   const double half = 0.5 * model->time_step;
   for (uint32_t i = 0; i < state->vertices; i++) {
     const struct vec3 ahead = state->velocity[i];
     vertex_add(&m->vertex_half, model->mass[i], ahead);
-    vertex_add(&m->vertex, model->mass[i],
-               vec3_add_scaled(ahead, -half * model->inverse_mass[i], work->fiber.force[i]));
+    vertex_add(&m->vertex, model->mass[i], vec3_add_scaled(ahead, -half * model->inverse_mass[i], force[i]));
   }
   const struct fiber_energy energy = fiber_energies(state, model);
   m->bond = energy.bond;
   m->bend = energy.bend;
 }
 
-bool motion_work(struct work *work, const struct model *model)
-{
-  memset(work, 0, sizeof *work);
-  work->fiber.force = memory_alloc(model->vertices, sizeof *work->fiber.force); /* all that forces need */
-  return work->fiber.force;
-}
-
-struct motion motion_measure(const struct model *model, const struct state *state, struct work *work)
+struct motion motion_measure(const struct model *model, const struct state *state, struct vec3 *force)
 {
   struct motion m = {.bond = 0.0};
   measure_solvent(model, state, &m);
-  measure_vertices(model, state, work, &m);
+  measure_vertices(model, state, force, &m);
   return m;
 }
 
@@ -103,11 +97,11 @@ static struct conserved conserved_of(const struct motion *m)
 
 struct conserved observe_conserved(const struct model *model, const struct state *state)
 {
-  struct work work;
-  if (!motion_work(&work, model))
+  struct fiber scratch;
+  if (!fiber_alloc(&scratch, model))
     return (struct conserved){NAN, NAN, NAN, NAN, NAN, {NAN, NAN, NAN}};
-  const struct motion motion = motion_measure(model, state, &work);
-  work_free(&work);
+  const struct motion motion = motion_measure(model, state, scratch.force);
+  fiber_free(&scratch);
   return conserved_of(&motion);
 }
 
@@ -144,7 +138,7 @@ struct temperatures motion_temperatures(const struct model *model, const struct 
 const struct motion *view_motion(struct view *view)
 {
   if (!view->motion_known)
-    view->motion = motion_measure(view->model, view->state, view->work);
+    view->motion = motion_measure(view->model, view->state, view->force);
   view->motion_known = true;
   return &view->motion;
 }

@@ -9,11 +9,10 @@
  * Sums over the solvent are made in fixed point, exactly, so that they do not depend on the order in memory: a
  * checkpoint keeps particles in id order, a running state sorts them by cell.
  */
-#ifndef UNCROSS_CONSERVED_H
-#define UNCROSS_CONSERVED_H
+#ifndef UNCROSS_OBSERVE_CONSERVED_H
+#define UNCROSS_OBSERVE_CONSERVED_H
 
 #include "observe/observe.h"
-#include "state/work.h"
 
 /* Sums over vertices. */
 struct vertex_motion {
@@ -28,11 +27,9 @@ struct motion {
   double bond, bend;                        /* kT */
 };
 
-/* Scratch for motion_measure, freed by work_free. False if memory is short. */
-bool motion_work(struct work *work, const struct model *model);
-
-/* Measures a state. Numbers are NaN if a solvent velocity is not a number, or beyond 2^17 a0/t0. */
-struct motion motion_measure(const struct model *model, const struct state *state, struct work *work);
+/* Measures a state; force: scratch, [vertices]. Numbers are NaN if a solvent velocity is not a number, or beyond 2^17
+ * a0/t0. */
+struct motion motion_measure(const struct model *model, const struct state *state, struct vec3 *force);
 
 /* Temperatures relative to the velocity of the centre of mass of everything, in kT. Where total momentum is fixed, a
  * particle of mass m has m <(v - v_cm)^2> = 3 kT (1 - m/M_total), not 3 kT: each sum is divided accordingly, so that

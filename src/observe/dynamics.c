@@ -6,7 +6,7 @@
 
 #include "observe/observer.h"
 #include "observe/tally.h"
-#include "observe/theory.h"
+#include "theory/theory.h"
 
 /* --- one fiber, two times ---------------------------------------------------------------------------------------- */
 

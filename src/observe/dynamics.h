@@ -1,5 +1,5 @@
 /*
- * How fibers move: averages against lag time, per kind of fiber, one table "dynamics-<kind>" with a row per lag. Names
+ * Motion of fibers: averages against lag time, per kind of fiber, one table "dynamics-<kind>" with a row per lag. Names
  * and meanings of its columns are in docs/observables.md.
  *
  * Lags are 1, 2, 3, 4, 6, 8, 12, 16, 24, ... samples: 2^k and 3 2^(k-1). Each lag has an origin of its own, a copy of
@@ -7,14 +7,14 @@
  * Intervals of a lag thus follow each other without overlap, and all lags together cost less than 8/3 comparisons per
  * sample.
  *
- * Displacements are differences of lattice points, exact, less what everything moved together: see dynamics_drift.
+ * Displacements are exact differences of lattice points, minus the common displacement of everything (dynamics_drift).
  */
-#ifndef UNCROSS_DYNAMICS_H
-#define UNCROSS_DYNAMICS_H
+#ifndef UNCROSS_OBSERVE_DYNAMICS_H
+#define UNCROSS_OBSERVE_DYNAMICS_H
 
-#include "state/model.h"
+#include "system/model.h"
 
-/* What one fiber did between an origin and now; 0 where the kind has no such thing. */
+/* Motion of one fiber between an origin and now. A quantity that the kind does not have is 0. */
 struct fiber_motion {
   double vertices;           /* a0^2: squared displacement of its vertices, averaged */
   double center;             /* a0^2: of its centre of mass */
@@ -26,7 +26,8 @@ struct fiber_motion {
   double cosine; /* of the angle between R(0) and R(t) */
 };
 
-/* Compares a fiber with itself. origin, now: [vertices]; drift is what the frame moved, in a0; scratch: [vertices]. */
+/* Measures the motion of a fiber. origin, now: [vertices]; drift: displacement of the frame, a0; scratch: [vertices].
+ */
 struct fiber_motion fiber_motion(const struct fiber_kind *kind, const struct point *origin, const struct point *now,
                                  struct vec3 drift, struct vec3 *scratch);
 
@@ -37,8 +38,8 @@ static inline uint32_t dynamics_middle(const struct fiber_kind *kind)
   return (kind->vertices - 1) / 2;
 }
 
-/* What the centre of mass of everything moved between two times (t0), in a0: the flow of the start, and half the net
- * body force's acceleration times the difference of squared times. */
+/* Displacement of the center of mass of everything between two times (t0), in a0: the flow of the start, and half the
+ * net body force's acceleration times the difference of squared times. */
 struct vec3 dynamics_drift(const struct model *model, double from, double to);
 
 /* Lag number k = 0, 1, 2, ..., in samples. */

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "fiber/force.h"
 #include "observe/observer.h"
 
 static const struct observer_type *const types[OBSERVABLES] = {
@@ -21,7 +22,7 @@ enum { MAX_BLOCKS = 4 * OBSERVABLES };
 
 struct observers {
   struct observer observer[OBSERVABLES]; /* every = 0: not asked for */
-  struct work work;
+  struct fiber scratch;
   struct observe_block block[MAX_BLOCKS];
   char block_name[MAX_BLOCKS][OBSERVER_NAME_SIZE];
   size_t blocks;
@@ -80,7 +81,7 @@ struct observers *observers_create(const struct observe_plan *plan, const struct
   struct observers *observers = calloc(1, sizeof *observers);
   if (!observers)
     return NULL;
-  bool ok = motion_work(&observers->work, model);
+  bool ok = fiber_alloc(&observers->scratch, model);
   for (int k = 0; ok && k < OBSERVABLES; k++)
     ok = create(observers, (enum observable)k, plan, model);
   if (!ok) {
@@ -99,7 +100,7 @@ void observers_free(struct observers *observers)
     free(observers->observer[k].integer);
     free(observers->observer[k].scratch);
   }
-  work_free(&observers->work);
+  fiber_free(&observers->scratch);
   free(observers);
 }
 
@@ -134,7 +135,7 @@ static bool sample(struct observer *o, enum observable which, struct view *view,
 bool observers_sample(struct observers *observers, const struct model *model, const struct state *state,
                       const struct observe_sink *sink)
 {
-  struct view view = {.model = model, .state = state, .work = &observers->work};
+  struct view view = {.model = model, .state = state, .force = observers->scratch.force};
   bool ok = true;
   for (int k = 0; ok && k < OBSERVABLES; k++)
     if (due(&observers->observer[k], state->step))

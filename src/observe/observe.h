@@ -1,17 +1,17 @@
 /*
- * Observables: const state in, numbers out. What nobody asked for costs nothing; what is asked for is sampled at its
- * own cadence. An observer's memory is two flat blocks, so that a checkpoint can keep it and an interrupted run ends
- * with the tables of an uninterrupted one.
+ * Observables: const state in, numbers out. An observable that the scene does not ask for costs nothing; the others are
+ * sampled each at its own interval. An observer's memory is two flat blocks. A checkpoint stores them, so an
+ * interrupted run ends with the tables of an uninterrupted one.
  */
-#ifndef UNCROSS_OBSERVE_H
-#define UNCROSS_OBSERVE_H
+#ifndef UNCROSS_OBSERVE_OBSERVE_H
+#define UNCROSS_OBSERVE_OBSERVE_H
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-#include "state/model.h"
-#include "state/state.h"
+#include "system/model.h"
+#include "system/state.h"
 
 enum observable {
   OBSERVE_CONSERVED,   /* time series: energies, momentum */
@@ -22,7 +22,7 @@ enum observable {
   OBSERVABLES
 };
 
-/* What a scene asks for. */
+/* The observables that a scene asks for. */
 struct observe_plan {
   uint64_t every[OBSERVABLES]; /* steps between samples; 0: not asked for */
   uint64_t longest_lag;        /* of the dynamics, in steps; 0: 2^20 samples. Decides the size of its memory. */
@@ -41,7 +41,7 @@ struct observe_table {
 
 struct observers; /* all observers of a run */
 
-/* Where rows of time series go. */
+/* Receives the rows of time series. */
 struct observe_sink {
   bool (*row)(void *context, enum observable which, size_t columns, const double *values);
   void *context;
@@ -51,7 +51,7 @@ struct observe_sink {
 struct observers *observers_create(const struct observe_plan *plan, const struct model *model);
 void observers_free(struct observers *observers);
 
-/* True if some observer wants to see the state of this step. */
+/* True if an observer is due at this step. */
 bool observers_due(const struct observers *observers, uint64_t step);
 
 /* Shows the state to every observer that is due; rows of time series go to the sink, if it is not NULL. Call once per
@@ -74,11 +74,12 @@ struct observe_block {
   bool integer;
   size_t count;
   void *data;   /* double or int64_t [count] */
-  bool setting; /* no memory, but a key of the scene on which memory depends: a resume must find it unchanged */
+  bool setting; /* not memory, but a key of the scene that determines the memory: it must be unchanged in a resume */
 };
 size_t observers_blocks(struct observers *observers, const struct observe_block **blocks);
 
-/* 1 + the last step that this observer was shown, 0 if none; memory, as the blocks. A time series has a row of it. */
+/* 1 + the last step that this observer has sampled, 0 if none; part of its memory. A time series has a row for that
+ * step. */
 uint64_t observers_end(const struct observers *observers, enum observable which);
 
 /* Energy and momentum of a state, at the time of the step (conserved.h); independent of memory order. NaN if memory is

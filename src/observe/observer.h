@@ -1,9 +1,9 @@
 /*
- * One observer: what observe.c needs to know of each observable. The table of types is in observe.c; each type lives in
- * a file of its own. Only files of this folder include this header.
+ * The contract of an observer. The table of types is in observe.c; each type has a file of its own. Only files of this
+ * room include this header.
  */
-#ifndef UNCROSS_OBSERVER_H
-#define UNCROSS_OBSERVER_H
+#ifndef UNCROSS_OBSERVE_OBSERVER_H
+#define UNCROSS_OBSERVE_OBSERVER_H
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -23,19 +23,19 @@ struct observer {
   struct observer_size size;
   double *real;     /* [size.reals] zero at first */
   int64_t *integer; /* [size.integers] zero at first; [0] is 1 + the last step sampled, 0 if none */
-  double *scratch;  /* [size.scratch] means nothing between samples */
+  double *scratch;  /* [size.scratch] undefined between samples */
 };
 
-/* The state that is shown to the observers that are due, and what more than one of them wants to know of it. */
+/* The state that the observers sample, and quantities that several of them need. */
 struct view {
   const struct model *model;
   const struct state *state;
-  struct work *work; /* scratch for forces */
+  struct vec3 *force; /* [vertices] scratch */
   struct motion motion;
   bool motion_known;
 };
 
-/* The motion of the state on view: measured when first asked for. */
+/* The motion of the state. It is measured at the first call. */
 const struct motion *view_motion(struct view *view);
 
 struct observer_take {
@@ -44,15 +44,16 @@ struct observer_take {
 };
 
 struct observer_type {
-  /* Adds what it needs beyond integer[0]; NULL if nothing. */
+  /* Adds the memory that the type needs beyond integer[0]; NULL if none. */
   void (*size)(const struct observer *observer, const struct model *model, struct observer_size *size);
 
-  /* A time series: its columns, and what fills a row. */
+  /* A time series: its columns, and the function that fills a row. */
   const char *const *column;
   size_t columns;
   void (*row)(struct observer *observer, struct view *view, double *row);
 
-  /* A summary: what adds a sample, and what gives a table for each kind of fiber. NULL for time series. */
+  /* A summary: the function that adds a sample, and the one that makes a table for each kind of fiber. NULL for time
+   * series. */
   void (*add)(struct observer *observer, struct view *view);
   bool (*summarise)(const struct observer *observer, const struct model *model, const struct observer_take *to);
 };

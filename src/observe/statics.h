@@ -3,10 +3,10 @@
  * columns are in docs/observables.md. A quantity that a kind does not have (the end-to-end distance of a ring, the bend
  * of a dumbbell) is NaN. Errors: tally.h.
  */
-#ifndef UNCROSS_STATICS_H
-#define UNCROSS_STATICS_H
+#ifndef UNCROSS_OBSERVE_STATICS_H
+#define UNCROSS_OBSERVE_STATICS_H
 
-#include "state/model.h"
+#include "system/model.h"
 
 /* Means over one fiber. */
 struct fiber_shape {

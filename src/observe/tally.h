@@ -1,15 +1,16 @@
 /*
  * Averages over the fibers of a kind and over time, of several quantities at once, with error bars from two sources:
  *
- *   time    the blocking of the series of averages over all fibers (block.h): right if the run is many correlation
- * times fibers  the spread among groups of fibers, each averaged over all the time: right if there are many fibers that
- * move independently, however short the run
+ * - time: blocking of the series of averages over all fibers (block.h). Valid if the run is many correlation times
+ *   long.
+ * - fibers: the spread among groups of fibers, each averaged over all times. Valid if many fibers move independently,
+ *   for a run of any length.
  *
- * The error of a mean is the larger of the two that can be told: a run may be too short for the first, fibers too few
- * for the second. Each quantity is a pair (x, y), see block.h. Memory is flat and zeroed when empty.
+ * The error of a mean is the larger of the two. One of them may be unknown: a run may be too short for the first,
+ * fibers too few for the second. Each quantity is a pair (x, y), see block.h. Memory is flat and zeroed when empty.
  */
-#ifndef UNCROSS_TALLY_H
-#define UNCROSS_TALLY_H
+#ifndef UNCROSS_OBSERVE_TALLY_H
+#define UNCROSS_OBSERVE_TALLY_H
 
 #include <stddef.h>
 #include <stdint.h>
@@ -17,8 +18,8 @@
 #include "observe/block.h"
 
 enum {
-  TALLY_GROUPS = 64,     /* fibers are dealt into at most so many groups, first to last */
-  TALLY_LEAST_GROUPS = 8 /* fewer do not know their spread well enough to be asked */
+  TALLY_GROUPS = 64,     /* most groups into which fibers are divided */
+  TALLY_LEAST_GROUPS = 8 /* fewest groups whose spread gives an error */
 };
 
 struct tally_shape {
@@ -41,7 +42,7 @@ double tally_count(const struct tally_shape *shape, const double *memory);
 /* Mean of x (part 0) or y (part 1) of a quantity; NaN without samples. */
 double tally_mean(const struct tally_shape *shape, const double *memory, uint32_t quantity, int part);
 
-/* Standard error of the mean of a x + b y; NaN if neither time nor fibers can tell. */
+/* Standard error of the mean of a x + b y; NaN if both are unknown. */
 double tally_error(const struct tally_shape *shape, const double *memory, uint32_t quantity, double a, double b);
 
 #endif

@@ -1,6 +1,6 @@
 #include "oracle/columns.h"
 
-#include "solvent/srd.h"
+#include "mpc/rules/srd.h"
 
 int64_t *oracle_put_integers(struct oracle_stage *g, const char *name, const char *components, uint32_t rows)
 {
@@ -70,7 +70,7 @@ void oracle_put_velocities(struct oracle_stage *g, const char *solvent, const ch
 
 void oracle_put_cells(struct oracle_stage *g, const char *solvent, const char *vertex)
 {
-  const struct collision_work *c = &g->work->collision;
+  const struct mpc *c = &g->work->mpc;
   int64_t *to = oracle_put_integers(g, solvent, "cell", g->state->solvent.n);
   for (uint32_t id = 0; to && id < g->state->solvent.n; id++)
     to[id] = c->solvent_cell[g->slot[id]];
@@ -84,15 +84,15 @@ uint32_t oracle_cells(const struct oracle_stage *g)
 
 void oracle_put_sums(struct oracle_stage *g, const char *momentum, const char *load)
 {
-  const struct cell_sum *sum = g->work->collision.sum;
+  const struct cell_sum *sum = g->work->mpc.sum;
   const uint32_t cells = oracle_cells(g);
   int64_t *p = oracle_put_integers(g, momentum, "x y z", cells);
   for (uint32_t k = 0; p && k < cells; k++)
     p[3 * k] = sum[k].px, p[3 * k + 1] = sum[k].py, p[3 * k + 2] = sum[k].pz;
   int64_t *l = oracle_put_integers(g, load, "members mass", cells);
   for (uint32_t k = 0; l && k < cells; k++) {
-    l[2 * k] = srd_members(&sum[k]);
-    l[2 * k + 1] = (int64_t)(sum[k].load & (SRD_MEMBER - 1));
+    l[2 * k] = cell_members(&sum[k]);
+    l[2 * k + 1] = (int64_t)(sum[k].load & (CELL_MEMBER - 1));
   }
 }
 
@@ -101,7 +101,7 @@ void oracle_put_centers(struct oracle_stage *g, const char *name)
 {
   double *to = oracle_put_reals(g, name, "x y z", oracle_cells(g));
   for (uint32_t k = 0; to && k < oracle_cells(g); k++) {
-    const struct cell_turn *t = &g->work->collision.turn[k];
+    const struct cell_turn *t = &g->work->mpc.turn[k];
     if (t->active != 0.0)
       to[3 * k] = t->center.x, to[3 * k + 1] = t->center.y, to[3 * k + 2] = t->center.z;
   }
@@ -111,7 +111,7 @@ void oracle_put_axes(struct oracle_stage *g, const char *name)
 {
   double *to = oracle_put_reals(g, name, "x y z", oracle_cells(g));
   for (uint32_t k = 0; to && k < oracle_cells(g); k++) {
-    const struct cell_turn *t = &g->work->collision.turn[k];
+    const struct cell_turn *t = &g->work->mpc.turn[k];
     if (t->active != 0.0)
       to[3 * k] = t->axis.x, to[3 * k + 1] = t->axis.y, to[3 * k + 2] = t->axis.z;
   }
@@ -121,5 +121,5 @@ void oracle_put_active(struct oracle_stage *g, const char *name)
 {
   int64_t *to = oracle_put_integers(g, name, "active", oracle_cells(g));
   for (uint32_t k = 0; to && k < oracle_cells(g); k++)
-    to[k] = g->work->collision.turn[k].active != 0.0;
+    to[k] = g->work->mpc.turn[k].active != 0.0;
 }

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/text.h"
+#include "oracle/operators.h"
 #include "oracle/oracle.h"
 
 /* Doubles in the order of their values, as integers: neighbors differ by one, -0 and +0 by none. */
@@ -37,7 +39,10 @@ static double difference(const struct oracle_pair *p, uint32_t row, uint32_t col
 
 struct tally {
   uint64_t values, different, beyond, worst; /* worst: ulps */
-  bool found, found_beyond;                  /* a first one is known, and beyond tolerance if any is */
+  uint64_t nans;                             /* of theirs, where ours is a number */
+  double largest, largest_of_all;            /* difference over tolerance, where there is one; of the table, of all */
+  char first_words[256], meaning[ORACLE_TEXT];
+  bool found, found_beyond; /* a first one is known, and beyond tolerance if any is */
   struct oracle_pair first;
   uint32_t row, column;
   double tolerance;
@@ -51,10 +56,16 @@ static void tally_value(struct tally *t, const struct oracle_pair *p, uint32_t r
   if (ulps == 0 && size == 0.0)
     return;
   t->different++;
-  t->worst = ulps > t->worst ? ulps : t->worst;
+  if (isnan(size))
+    t->nans++;
+  else
+    t->worst = ulps > t->worst ? ulps : t->worst;
   const double tolerance = oracle_tolerance(p, row, column);
+  if (tolerance > 0.0 && isfinite(size))
+    t->largest = fmax(t->largest, size / tolerance);
   const bool beyond = !(size <= tolerance);
-  if ((beyond && !t->found_beyond) || !t->found) {
+  const bool earlier = t->found && beyond == t->found_beyond && oracle_flow(p->ours, t->first.ours) < 0;
+  if ((beyond && !t->found_beyond) || !t->found || earlier) {
     t->first = *p;
     t->row = row, t->column = column, t->tolerance = tolerance;
     t->found = true;
@@ -66,7 +77,9 @@ static void tally_value(struct tally *t, const struct oracle_pair *p, uint32_t r
 static void print_number(FILE *out, const struct pack_table *t, uint32_t row, uint32_t column)
 {
   const size_t k = (size_t)row * t->columns + column;
-  if (t->real)
+  if (t->real && isnan(t->value.number[k]))
+    fputs("NaN", out);
+  else if (t->real)
     fprintf(out, "%.17g", t->value.number[k]);
   else
     fprintf(out, "%" PRId64, t->value.integer[k]);
@@ -82,6 +95,9 @@ static const char *entity_of(const struct pack_table *t)
                                          {"solve", "", "cell"},
                                          {"rescale", "", "cell"},
                                          {"maxwell_boltzmann", "", "cell"},
+                                         {"crossing", "", "test"},
+                                         {"exchange", "", "exchange"},
+                                         {"permutation", "", "entry"},
                                          {"long_sweep", "out.event", "event"},
                                          {"long_sweep", "out.hit", "event"},
                                          {"sweep", "out.event", "event"},
@@ -94,20 +110,56 @@ static const char *entity_of(const struct pack_table *t)
   return "vertex";
 }
 
-static void print_first(const struct tally *t, FILE *out)
+/* Operator, step and table, at the beginning of a line. A pack may come from anywhere, and its names with it. */
+static void print_place(FILE *out, const struct pack_table *t)
+{
+  fprintf(out, "%-18s %6" PRIu64 "  %-14s", text_shown(t->place.operator_name), t->place.step, text_shown(t->name));
+}
+
+/* What the first difference usually means; names of the pack are in it. */
+static void diagnose(struct tally *t, bool beyond)
+{
+  char meaning[ORACLE_TEXT];
+  oracle_diagnose(&t->first, beyond, meaning);
+  text_escape(meaning, t->meaning, sizeof t->meaning);
+}
+
+static void print_first(struct tally *t, FILE *out)
 {
   const struct oracle_pair *p = &t->first;
   const uint64_t ulps = distance(p, (size_t)t->row * p->ours->columns + t->column);
-  fprintf(out, "first difference: %s, step %" PRIu64 ", %s %" PRIu32 ", %s.%s: ", p->ours->place.operator_name,
-          p->ours->place.step, entity_of(p->ours), t->row, p->ours->name, p->ours->component[t->column]);
+  const double size = difference(p, t->row, t->column);
+  snprintf(t->first_words, sizeof t->first_words, "%s, step %" PRIu64 ", %s %" PRIu32 ", %s.%s",
+           text_shown(p->ours->place.operator_name), p->ours->place.step, entity_of(p->ours), t->row,
+           text_shown(p->ours->name), text_shown(p->ours->component[t->column]));
+  fprintf(out, "first difference: %s: ", t->first_words);
   print_number(out, p->ours, t->row, t->column);
   fputs(" here, ", out);
   print_number(out, p->theirs, t->row, t->column);
-  fprintf(out, " there: %" PRIu64 " %s, tolerance %.3g\n", ulps, p->ours->real ? "ulps" : "units", t->tolerance);
-  const char *meaning = !(difference(p, t->row, t->column) <= t->tolerance)
-                            ? oracle_diagnose(p)
-                            : "order of operations, fused multiply-add, or library functions";
-  fprintf(out, "this pattern: %s\n", meaning ? meaning : "none of those known");
+  if (isnan(size))
+    fputs(" there: not a number\n", out);
+  else
+    fprintf(out, " there: %" PRIu64 " %s, tolerance %.3g\n", ulps, p->ours->real ? "ulps" : "units", t->tolerance);
+  diagnose(t, !(size <= t->tolerance));
+  fprintf(out, "this pattern: %s\n", t->meaning);
+}
+
+/* Names of our columns that they have not. */
+static void print_missing_columns(const struct oracle_pair *p, FILE *out)
+{
+  print_place(out, p->ours);
+  if (p->theirs->unnamed) {
+    fprintf(out, " %" PRIu32 " columns here, %" PRIu32 " without names there\n", p->ours->columns, p->theirs->columns);
+    return;
+  }
+  fputs(" columns that are not there:", out);
+  for (uint32_t k = 0; k < p->ours->columns; k++) {
+    bool there = false;
+    for (uint32_t j = 0; j < p->theirs->columns; j++)
+      there |= strcmp(p->ours->component[k], p->theirs->component[j]) == 0;
+    fprintf(out, "%s%s", there ? "" : " ", there ? "" : text_shown(p->ours->component[k]));
+  }
+  fputc('\n', out);
 }
 
 /* Tables of unlike shape are compared as far as both go; what is missing counts as beyond any tolerance. */
@@ -116,24 +168,29 @@ static void tally_table(struct tally *t, const struct oracle_pair *p, FILE *out)
   const struct tally before = *t;
   const uint32_t rows = p->ours->rows < p->theirs->rows ? p->ours->rows : p->theirs->rows;
   if (p->ours->columns != p->theirs->columns) {
-    fprintf(out, "%-18s %6" PRIu64 "  %-14s %" PRIu32 " columns here, %" PRIu32 " there\n",
-            p->ours->place.operator_name, p->ours->place.step, p->ours->name, p->ours->columns, p->theirs->columns);
+    print_missing_columns(p, out);
     t->beyond++;
     return;
   }
-  t->worst = 0;
+  t->worst = t->nans = 0;
+  t->largest = 0.0;
   for (uint32_t row = 0; row < rows; row++)
     for (uint32_t column = 0; column < p->ours->columns; column++)
       tally_value(t, p, row, column);
-  if (t->different > before.different)
-    fprintf(out,
-            "%-18s %6" PRIu64 "  %-14s of %" PRIu64 " values %" PRIu64 " differ, %" PRIu64
-            " beyond tolerance, by up to %" PRIu64 " %s\n",
-            p->ours->place.operator_name, p->ours->place.step, p->ours->name, t->values - before.values,
-            t->different - before.different, t->beyond - before.beyond, t->worst, p->ours->real ? "ulps" : "units");
+  if (t->different > before.different) {
+    print_place(out, p->ours);
+    fprintf(out, " of %" PRIu64 " values %" PRIu64 " differ, %" PRIu64 " beyond tolerance, by up to %" PRIu64 " %s%s",
+            t->values - before.values, t->different - before.different, t->beyond - before.beyond, t->worst,
+            p->ours->real ? "ulps" : "units", t->largest > 0.0 || t->nans ? "" : "\n");
+  }
+  if (t->largest > 0.0)
+    fprintf(out, ", %.2g of the tolerance%s", t->largest, t->nans ? "" : "\n");
+  if (t->nans)
+    fprintf(out, "; %" PRIu64 " are NaN\n", t->nans);
+  t->largest_of_all = fmax(t->largest_of_all, t->largest);
   if (p->ours->rows != p->theirs->rows) {
     fprintf(out, "  rows: %" PRIu32 " here, %" PRIu32 " there\n", p->ours->rows, p->theirs->rows);
-    if (!t->found_beyond) {
+    if (!t->found_beyond || oracle_flow(p->ours, t->first.ours) < 0) {
       t->found = t->found_beyond = true;
       t->first = *p;
       t->row = rows, t->column = 0, t->tolerance = 0.0;
@@ -151,6 +208,18 @@ static bool wanted(const char *only, const char *name)
   return !only;
 }
 
+/* Whole reals may stand as integers in a text. */
+static bool same_values(const struct pack_table *mine, const struct pack_table *its)
+{
+  if (mine->real == its->real)
+    return memcmp(mine->value.data, its->value.data, (size_t)mine->rows * mine->columns * 8) == 0;
+  for (uint32_t row = 0; row < mine->rows; row++)
+    for (uint32_t k = 0; k < mine->columns; k++)
+      if (pack_value(mine, row, k) != pack_value(its, row, k))
+        return false;
+  return true;
+}
+
 /* Inputs that they repeat must be ours, else the outputs are answers to another question. */
 static bool same_inputs(const struct pack *ours, const struct pack *theirs, const struct pack_place *place,
                         const char **other)
@@ -161,8 +230,7 @@ static bool same_inputs(const struct pack *ours, const struct pack *theirs, cons
     if (pack_find(ours, place, mine->name) != mine || strncmp(mine->name, "in.", 3) != 0 || !its)
       continue;
     *other = mine->name;
-    if (mine->rows != its->rows || mine->columns != its->columns || mine->real != its->real ||
-        memcmp(mine->value.data, its->value.data, (size_t)mine->rows * mine->columns * 8) != 0)
+    if (mine->rows != its->rows || mine->columns != its->columns || !same_values(mine, its))
       return false;
   }
   return true;
@@ -177,8 +245,12 @@ static void look_at(struct tally *t, const struct pack *ours, const struct pack 
   if (its && same_inputs(ours, theirs, &mine->place, &other)) {
     tally_table(t, &(struct oracle_pair){ours, theirs, mine, its, rounding}, out);
   } else if (its || mine->rows > 0) {
-    fprintf(out, "%-18s %6" PRIu64 "  %-14s not %s%s\n", mine->place.operator_name, mine->place.step, mine->name,
-            its ? "compared, for another input: " : "there", its ? other : "");
+    if (!t->first_words[0])
+      snprintf(t->first_words, sizeof t->first_words, "%s, step %" PRIu64 ", %s: not %s%s",
+               text_shown(mine->place.operator_name), mine->place.step, text_shown(mine->name),
+               its ? "compared, for another input: " : "there", its ? text_shown(other) : "");
+    print_place(out, mine);
+    fprintf(out, " not %s%s\n", its ? "compared, for another input: " : "there", its ? text_shown(other) : "");
     t->beyond++;
   }
 }
@@ -205,21 +277,22 @@ static void prefer_earlier_hit(struct tally *t)
     }
 }
 
-static void print_shape(const struct tally *t, FILE *out)
+static void print_shape(struct tally *t, FILE *out)
 {
   const struct oracle_pair *p = &t->first;
   if (t->found && t->row < p->theirs->rows && t->row < p->ours->rows) {
     print_first(t, out);
   } else if (t->found) {
-    const char *meaning = oracle_diagnose(p);
-    fprintf(out, "first difference: %s, step %" PRIu64 ", %s %" PRIu32 ": %s\nthis pattern: %s\n",
-            p->ours->place.operator_name, p->ours->place.step, entity_of(p->ours), t->row,
-            t->row < p->ours->rows ? "missing" : "not here", meaning ? meaning : "none of those known");
+    diagnose(t, true);
+    snprintf(t->first_words, sizeof t->first_words, "%s, step %" PRIu64 ", %s %" PRIu32 ": %s",
+             text_shown(p->ours->place.operator_name), p->ours->place.step, entity_of(p->ours), t->row,
+             t->row < p->ours->rows ? "missing" : "not here");
+    fprintf(out, "first difference: %s\nthis pattern: %s\n", t->first_words, t->meaning);
   }
 }
 
 bool oracle_compare(const struct pack *ours, const struct pack *theirs, const struct oracle_options *options, FILE *out,
-                    enum oracle_verdict *verdict, struct message *message)
+                    struct oracle_summary *summary, struct message *message)
 {
   struct tally t = {0};
   bool any = false;
@@ -234,14 +307,17 @@ bool oracle_compare(const struct pack *ours, const struct pack *theirs, const st
   }
   if (!any)
     return message_set(message, "nothing to compare; --only takes names of operators of the pack, commas between");
-  *verdict = t.beyond ? ORACLE_DIFFERS : t.different ? ORACLE_CLOSE : ORACLE_SAME;
+  const enum oracle_verdict verdict = t.beyond ? ORACLE_DIFFERS : t.different ? ORACLE_CLOSE : ORACLE_SAME;
   fprintf(out, "%" PRIu64 " values compared, %" PRIu64 " differ, %" PRIu64 " beyond tolerance\n", t.values, t.different,
           t.beyond);
   prefer_earlier_hit(&t);
   print_shape(&t, out);
   fprintf(out, "%s\n",
-          *verdict == ORACLE_SAME    ? "same: every bit"
-          : *verdict == ORACLE_CLOSE ? "close: all differences within tolerance"
-                                     : "differs");
+          verdict == ORACLE_SAME    ? "same: every bit"
+          : verdict == ORACLE_CLOSE ? "close: all differences within tolerance"
+                                    : "differs");
+  *summary = (struct oracle_summary){verdict, t.values, t.different, t.beyond, t.largest_of_all, "", ""};
+  memcpy(summary->first, t.first_words, sizeof summary->first);
+  snprintf(summary->meaning, sizeof summary->meaning, "%s", t.meaning);
   return true;
 }

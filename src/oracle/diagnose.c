@@ -1,10 +1,13 @@
-/* What patterns of differences usually mean: the search, what all patterns use, and patterns of any operator and of the
- * kick. */
+/* What differences usually mean: the search for a bug that makes them, else for a description of the rows that are
+ * wrong; and what all patterns use. */
 #include <math.h>
 #include <string.h>
 
 #include "oracle/pair.h"
 #include "oracle/patterns.h"
+#include "oracle/relations.h"
+#include "oracle/replay.h"
+#include "oracle/rows.h"
 
 bool oracle_guessed(const struct oracle_pair *p, uint32_t row, uint32_t column, double guess)
 {
@@ -16,20 +19,6 @@ bool oracle_agrees(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
   const double size = fabs(pack_value(p->theirs, row, column) - pack_value(p->ours, row, column));
   return size == 0.0 || size <= oracle_tolerance(p, row, column);
-}
-
-bool oracle_explains(const struct oracle_pair *p, oracle_guess *guess)
-{
-  bool any = false;
-  for (uint32_t row = 0; row < oracle_common_rows(p); row++)
-    for (uint32_t column = 0; column < p->ours->columns; column++) {
-      if (oracle_agrees(p, row, column))
-        continue;
-      any = true;
-      if (!oracle_guessed(p, row, column, guess(p, row, column)))
-        return false;
-    }
-  return any;
 }
 
 const struct pack_table *oracle_model(const struct oracle_pair *p, const char *table)
@@ -78,38 +67,6 @@ const struct pack_table *oracle_before(const struct oracle_pair *p)
 
 /* --- patterns of any operator ------------------------------------------------------------------------------------ */
 
-static double unchanged(const struct oracle_pair *p, uint32_t row, uint32_t column)
-{
-  const struct pack_table *in = oracle_before(p);
-  return in ? pack_value(in, row, column) : NAN;
-}
-
-static double changed_by(const struct oracle_pair *p, uint32_t row, uint32_t column, double part)
-{
-  const double in = unchanged(p, row, column);
-  return in + part * (pack_value(p->ours, row, column) - in);
-}
-
-static double half(const struct oracle_pair *p, uint32_t row, uint32_t column)
-{
-  return changed_by(p, row, column, 0.5);
-}
-
-static double twice(const struct oracle_pair *p, uint32_t row, uint32_t column)
-{
-  return changed_by(p, row, column, 2.0);
-}
-
-static double backwards(const struct oracle_pair *p, uint32_t row, uint32_t column)
-{
-  return changed_by(p, row, column, -1.0);
-}
-
-static double negated(const struct oracle_pair *p, uint32_t row, uint32_t column)
-{
-  return -pack_value(p->ours, row, column);
-}
-
 /* The rounding of numbers of 24 bits has either sign: the sum of n errors is within 4 sqrt(n) of their size. An error
  * that is the same everywhere is something else, and so are errors of a few ulps of doubles. */
 bool oracle_is_single(const struct oracle_pair *p, uint32_t rows)
@@ -137,43 +94,158 @@ static bool is_single(const struct oracle_pair *p)
   return oracle_is_single(p, oracle_common_rows(p));
 }
 
-static double without_mass(const struct oracle_pair *p, uint32_t row, uint32_t column)
-{
-  const struct pack_table *time = oracle_sibling(p, "in.time"), *force = oracle_sibling(p, "in.force");
-  return time && force ? unchanged(p, row, column) + pack_value(time, 0, 0) * pack_value(force, row, column) : NAN;
-}
-
 const struct oracle_pattern oracle_patterns_any[] = {
-    {"kick", "out.velocity", "kick without the mass: v + t F for v + t F/M", .guess = without_mass},
-    {NULL, NULL, "single precision somewhere: right to 5 to 8 digits (--single has its tolerances)", .fits = is_single},
-    {NULL, NULL, "sign: the negative of what is wanted", .guess = negated},
-    {NULL, NULL, "nothing done: what came out is what went in", .guess = unchanged},
-    {NULL, NULL, "half a step: changed by half of what is wanted", .guess = half},
-    {NULL, NULL, "a step instead of half a step: changed by twice what is wanted", .guess = twice},
-    {NULL, NULL, "sign: changed by the negative of what is wanted", .guess = backwards},
+    {NULL, NULL, "single precision somewhere: right to 5 to 8 digits (--single has its tolerances)", is_single},
     {.meaning = NULL},
 };
 
 /* --- the search -------------------------------------------------------------------------------------------------- */
 
-static const char *search(const struct oracle_pattern *pattern, const struct oracle_pair *p, const char *operator_name)
+static const char *name_of(const struct oracle_pair *p)
 {
-  for (; pattern->meaning; pattern++)
-    if ((!pattern->operator_name || strcmp(pattern->operator_name, operator_name) == 0) &&
-        (!pattern->table || strcmp(pattern->table, p->ours->name) == 0) &&
-        (pattern->guess ? oracle_explains(p, pattern->guess) : pattern->fits(p)))
-      return pattern->meaning;
-  return NULL;
+  const char *name = p->ours->place.operator_name;
+  return strcmp(name, "long_sweep") == 0 ? "sweep" : name;
 }
 
-const char *oracle_diagnose(const struct oracle_pair *p)
+static bool is_for(const char *operator_name, const char *table, const struct oracle_pair *p)
 {
-  /* Those of an operator first. */
-  static const struct oracle_pattern *const lists[] = {oracle_patterns_random, oracle_patterns_solvent,
-                                                       oracle_patterns_sweep, oracle_patterns_any, NULL};
-  const bool swept = strcmp(p->ours->place.operator_name, "long_sweep") == 0;
-  const char *meaning = NULL;
-  for (size_t k = 0; lists[k] && !meaning && p->ours->columns == p->theirs->columns; k++)
-    meaning = search(lists[k], p, swept ? "sweep" : p->ours->place.operator_name);
-  return meaning;
+  return (!operator_name || strcmp(operator_name, name_of(p)) == 0) && (!table || strcmp(table, p->ours->name) == 0);
+}
+
+static bool search_patterns(const struct oracle_pattern *pattern, const struct oracle_pair *p, char *text)
+{
+  while (pattern->meaning && !(is_for(pattern->operator_name, pattern->table, p) && pattern->fits(p)))
+    pattern++;
+  if (pattern->meaning)
+    snprintf(text, ORACLE_TEXT, "%s", pattern->meaning);
+  return pattern->meaning != NULL;
+}
+
+/* One more name for what was found: two bugs that make the same numbers cannot be told apart. */
+void oracle_name(char text[ORACLE_TEXT], bool *named, const char *name)
+{
+  const size_t used = *named ? strlen(text) : 0;
+  if (!*named || !strstr(text, name))
+    snprintf(text + used, ORACLE_TEXT - used, "%s%s", *named ? "; or: " : "", name);
+  *named = true;
+}
+
+/* All relations that are right everywhere, or the first if so wanted. Of those that are right wherever theirs is wrong,
+ * but not everywhere, the first is kept. */
+static bool search_relations(const struct relation *r, struct evidence *e, bool all, char *text,
+                             char partial[RELATION_TEXT])
+{
+  bool named = false;
+  for (; r->make; r++) {
+    char said[RELATION_TEXT];
+    if (!is_for(r->operator_name, r->table, &e->part[0].pair) || e->wrongs < r->least)
+      continue;
+    for (uint32_t k = 0; r->make(e, k, said) && (all || !named); k++) {
+      const enum evidence_fit fit = evidence_judge(e);
+      if (fit == FIT_WHOLE)
+        oracle_name(text, &named, said);
+      if (fit == FIT_WRONG && !*partial)
+        snprintf(partial, RELATION_TEXT, "%s", said);
+    }
+  }
+  return named;
+}
+
+static bool search_all_relations(struct evidence *e, char *text, char partial[RELATION_TEXT])
+{
+  static const struct relation *const lists[] = {oracle_relations_random, oracle_relations_contact,
+                                                 oracle_relations_fiber, oracle_relations_solvent};
+  bool found = false;
+  for (size_t k = 0; k < sizeof lists / sizeof lists[0] && !found; k++)
+    found = search_relations(lists[k], e, true, text, partial);
+  return found || search_relations(oracle_relations_any, e, false, text, partial);
+}
+
+/* Of an operator that has two tables of a kind, solvent and vertices, one may be right. */
+static void say_which_table(const struct oracle_pair *p, char text[ORACLE_TEXT])
+{
+  const char *other = strcmp(p->ours->name, "out.solvent") == 0  ? "out.vertex"
+                      : strcmp(p->ours->name, "out.vertex") == 0 ? "out.solvent"
+                                                                 : NULL;
+  struct oracle_pair pair = *p;
+  pair.ours = other ? oracle_sibling(p, other) : NULL;
+  pair.theirs = other ? oracle_sibling_of_theirs(p, other) : NULL;
+  if (!pair.ours || !pair.theirs || pair.theirs->rows != pair.ours->rows || pair.ours->rows == 0)
+    return;
+  for (uint32_t row = 0; row < pair.ours->rows; row++)
+    for (uint32_t k = 0; k < pair.ours->columns; k++)
+      if (!oracle_agrees(&pair, row, k))
+        return;
+  snprintf(text + strlen(text), ORACLE_TEXT - strlen(text), " (in %s only; %s is right)", p->ours->name, other);
+}
+
+/* Which rows are wrong, by an exact rule if there is one, and what their values are if a relation is right there. */
+static void describe(struct evidence *e, const char *partial, char *text)
+{
+  char rows[ROWS_TEXT], side[RELATION_TEXT] = "";
+  bool exact = oracle_describe_rows(e, rows);
+  if (!exact && e->differences > e->wrongs) {
+    char all[ROWS_TEXT];
+    evidence_count_all(e);
+    exact = oracle_describe_rows(e, all);
+    if (exact)
+      memcpy(rows, all, sizeof rows);
+  }
+  if (!*partial)
+    oracle_one_sided(e, side);
+  snprintf(text, ORACLE_TEXT, "%s%s%s", *partial ? partial : side, *partial || *side ? "; " : "", rows);
+}
+
+/* Of a hit, the first row that differs counts: what follows is consequence. */
+static void say_first_hit(const struct oracle_pair *p, char text[ORACLE_TEXT])
+{
+  bool wrong = false;
+  for (uint32_t row = 0; row < oracle_common_rows(p) && !wrong; row++)
+    for (uint32_t k = 0; k < p->ours->columns; k++) {
+      if (oracle_agrees(p, row, k))
+        continue;
+      const size_t used = wrong ? strlen(text) : 0;
+      snprintf(text + used, ORACLE_TEXT - used, "%s %s",
+               wrong ? "," : "no rule known; the first hit that differs is wrong in", p->ours->component[k]);
+      wrong = true;
+    }
+}
+
+/* True if nothing else need be tried. */
+static bool diagnose_sweep(const struct oracle_pair *p, bool beyond, char text[ORACLE_TEXT])
+{
+  const bool rows_follow = strcmp(p->ours->name, "out.event") == 0 || strcmp(p->ours->name, "out.hit") == 0;
+  if (oracle_replay(p, text))
+    return true;
+  if (!beyond || !rows_follow)
+    return search_patterns(oracle_patterns_sweep, p, text);
+  if (strcmp(p->ours->name, "out.hit") == 0)
+    say_first_hit(p, text);
+  return oracle_judge_moves(p, text) || search_patterns(oracle_patterns_sweep, p, text) || true;
+}
+
+void oracle_diagnose(const struct oracle_pair *p, bool beyond, char text[ORACLE_TEXT])
+{
+  struct evidence e = {0};
+  char partial[RELATION_TEXT] = "";
+  const char *const unknown =
+      beyond ? "none of those known" : "order of operations, fused multiply-add, or library functions";
+  snprintf(text, ORACLE_TEXT, "%s", unknown);
+  if (p->ours->columns != p->theirs->columns || (is_for("sweep", NULL, p) && diagnose_sweep(p, beyond, text)))
+    return;
+  if (evidence_take(p, &e)) {
+    if (search_all_relations(&e, text, partial) || search_patterns(oracle_patterns_contact, p, text) ||
+        search_patterns(oracle_patterns_random, p, text) || search_patterns(oracle_patterns_solvent, p, text) ||
+        search_patterns(oracle_patterns_any, p, text)) {
+      say_which_table(p, text);
+      evidence_free(&e);
+      return;
+    }
+    char side[RELATION_TEXT];
+    if (beyond)
+      describe(&e, partial, text);
+    else if (oracle_one_sided(&e, side))
+      snprintf(text, ORACLE_TEXT, "%s", side);
+  }
+  evidence_free(&e);
 }

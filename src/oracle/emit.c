@@ -3,7 +3,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "contact/rule.h"
 #include "fiber/force.h"
+#include "files/start.h"
+#include "oracle/columns.h"
+#include "oracle/edges.h"
 #include "oracle/operators.h"
 #include "oracle/oracle.h"
 #include "step.h"
@@ -18,22 +22,20 @@ static bool advance_to(struct oracle_stage *g, uint64_t step, struct message *me
   return true;
 }
 
-/* All operators of step number `step`, in a run of its own: what they leave behind is no state of the scene's run. */
-static bool emit_step(const struct scene *scene, struct model *model, uint64_t step, struct pack *pack,
-                      struct message *message)
+/* A scene's run of its own, for one part of a pack: what it leaves behind is no state of the scene's run. */
+typedef bool in_run(struct oracle_stage *stage, const struct scene *scene, uint64_t step, struct message *message);
+
+static bool with_run(const struct scene *scene, in_run *put, uint64_t step, struct pack *pack, struct message *message)
 {
-  struct model greedy = *model; /* work with all scratch, whatever the scene needs */
-  greedy.solvent.thermostat = THERMOSTAT_RESCALE;
-  greedy.solvent.hydrodynamics = false;
+  const struct model *model = &scene->model;
   struct state state = {0};
   struct work work = {0};
   uint32_t *slot = malloc(((size_t)model->solvent.particles + 1) * sizeof *slot);
-  bool ok = slot && state_alloc(&state, model) && work_alloc(&work, &greedy);
+  bool ok = slot && state_alloc(&state, model) && work_alloc(&work, model) && work_add_everything(&work, model);
   message_set(message, "no memory for this scene");
   if (ok) {
     struct oracle_stage g = {model, &state, &work, pack, {"", 0}, slot};
-    ok = scene_start(scene, &state, &work, message) && advance_to(&g, step - 1, message) &&
-         (oracle_run_operators(&g) || pack->failed || message_fault(message, &work.fault));
+    ok = scene_start(scene, &state, &work, message) && put(&g, scene, step, message);
   }
   work_free(&work);
   state_free(&state);
@@ -41,25 +43,86 @@ static bool emit_step(const struct scene *scene, struct model *model, uint64_t s
   return ok && !pack->failed;
 }
 
+/* All operators of step number `step`. */
+static bool put_step(struct oracle_stage *g, const struct scene *scene, uint64_t step, struct message *message)
+{
+  (void)scene;
+  return advance_to(g, step - 1, message) &&
+         (oracle_run_operators(g, false) || g->pack->failed || message_fault(message, &g->work->fault));
+}
+
 bool oracle_emit(const struct scene *scene, struct pack *pack, struct message *message)
 {
-  struct model model = scene->model;
-  const uint64_t interval = model_has_solvent(&model) ? model.solvent.interval_steps : 1;
+  const struct model *model = &scene->model;
+  const uint64_t interval = model_has_solvent(model) ? model->solvent.interval_steps : 1;
   const uint64_t last = scene->steps / interval * interval;
   memset(pack, 0, sizeof *pack);
-  if (model_has_phantoms(&model))
+  if (model_has_phantoms(model))
     return message_set(message, "%s: solvent.bath: phantoms; packs hold the operators of a solvent of particles only",
                        scene->path);
-  if (model.crossing.refusal != REFUSAL_STAY || model.crossing.frame != FRAME_LABORATORY)
+  if (model->solvent.rule != RULE_SRD)
+    return message_set(message, "%s: solvent.rule; packs hold the operators of the rule srd only", scene->path);
+  if (crossing_rule_of(model)->forbids && !crossing_rule_of(model)->in_turns)
+    return message_set(message, "%s: crossing.rule: event-driven; packs hold drifts by the rule sequential only",
+                       scene->path);
+  if (model->crossing.rejection != REJECTION_STAY || model->crossing.frame != FRAME_LABORATORY)
     return message_set(
-        message, "%s: crossing.refusal or crossing.frame; packs hold sweeps by the paper's rule: stay, laboratory",
+        message, "%s: crossing.refusal or crossing.frame; packs hold drifts by the paper's rule: stay, laboratory",
         scene->path);
   if (last == 0)
     return message_set(message, "%s: no collision within its %" PRIu64 " steps; a pack needs one", scene->path,
                        scene->steps);
-  oracle_put_model(pack, &model);
-  return emit_step(scene, &model, interval, pack, message) &&
-         (last == interval || emit_step(scene, &model, last, pack, message));
+  oracle_put_model(pack, model);
+  return with_run(scene, put_step, interval, pack, message) &&
+         (last == interval || with_run(scene, put_step, last, pack, message));
+}
+
+/* --- constructed inputs, and what a run starts from -------------------------------------------------------------- */
+
+static bool put_edges(struct oracle_stage *g, const struct scene *scene, uint64_t step, struct message *message)
+{
+  (void)scene, (void)step;
+  return oracle_run_operators(g, true) || g->pack->failed || message_fault(message, &g->work->fault);
+}
+
+bool oracle_edges(struct pack *pack, struct message *message)
+{
+  static const char *const settings[] = EDGES_SETTINGS;
+  struct scene scene;
+  memset(pack, 0, sizeof *pack);
+  if (!scene_make(&(struct scene_settings){sizeof settings / sizeof *settings, settings}, &scene, message))
+    return false;
+  oracle_put_model(pack, &scene.model);
+  const bool ok = with_run(&scene, put_edges, 1, pack, message);
+  scene_free(&scene);
+  return ok;
+}
+
+static bool put_start(struct oracle_stage *g, const struct scene *scene, uint64_t step, struct message *message)
+{
+  const struct model *m = &scene->model;
+  (void)message;
+  g->place = (struct pack_place){"start", step};
+  state_solvent_slots(g->state, g->slot);
+  const int64_t run[4] = {(int64_t)scene->steps, m->scheme, m->solvent.thermostat, m->solvent.hydrodynamics};
+  int64_t *to = oracle_put_integers(g, "in.run", "steps scheme thermostat hydrodynamics", 1);
+  if (to)
+    memcpy(to, run, sizeof run);
+  to = oracle_put_integers(g, "in.counters", "step lag", 1);
+  if (to)
+    to[0] = (int64_t)g->state->step, to[1] = g->state->solvent_lag;
+  oracle_put_solvent_positions(g, "in.solvent");
+  oracle_put_solvent_velocities(g, "in.solvent_velocity");
+  oracle_put_points(g, "in.vertex", g->state->position, g->state->vertices);
+  oracle_put_vectors(g, "in.vertex_velocity", g->state->velocity, g->state->vertices);
+  return true;
+}
+
+bool oracle_start(const struct scene *scene, struct pack *pack, struct message *message)
+{
+  memset(pack, 0, sizeof *pack);
+  oracle_put_model(pack, &scene->model);
+  return with_run(scene, put_start, 0, pack, message);
 }
 
 static int by_place(const void *left, const void *right)

@@ -7,11 +7,14 @@
 
 #include "oracle/judge.h"
 
-enum column { NAME, VALUE, ERROR, BLOCKS, THEORY, RESOLVE, COLUMNS };
+enum column { NAME, VALUE, ERROR, BLOCKS, TIME, THEORY, RESOLVE, BOUND, COLUMNS };
 
-static const char *const column_names[COLUMNS] = {"observable", "value", "error", "blocks", "theory", "resolve"};
+static const char *const column_names[COLUMNS] = {"observable", "value",  "error",   "blocks",
+                                                  "time",       "theory", "resolve", "bound"};
 static const char columns_allowed[] =
-    "observable, value, error, blocks; also theory, and resolve (which our table needs)";
+    "observable, value, error, blocks, time; also theory, bound, and resolve (which our table needs)";
+
+#define SAME_TIME 1e-6 /* relative: lengths of blocks that are the same but for their decimals */
 
 /* Where the reader is, and what the header said. */
 struct reader {
@@ -68,7 +71,7 @@ static bool take_header(struct reader *r, const struct cell *cell, size_t cells)
     r->at[k] = (enum column)c;
   }
   for (size_t c = 0; c < COLUMNS; c++)
-    if (!given[c] && c != THEORY && (c != RESOLVE || !r->reference))
+    if (!given[c] && c != THEORY && c != BOUND && (c != RESOLVE || !r->reference))
       return message_at(r->message, r->path, r->line, 1, "no column '%s'; columns are %s", column_names[c],
                         columns_allowed);
   r->cells = cells;
@@ -101,7 +104,9 @@ static bool in_range(enum column column, double x)
     return x >= 0.0;
   case BLOCKS:
     return x >= 2.0 && x == floor(x);
+  case TIME:
   case RESOLVE:
+  case BOUND:
     return x > 0.0;
   default:
     return true;
@@ -114,29 +119,58 @@ static bool take_cell(struct reader *r, const struct cell *cell, enum column col
       [VALUE] = "allowed is a finite number",
       [ERROR] = "allowed is one standard error, not negative; 0 only if all blocks are equal",
       [BLOCKS] = "allowed is a whole number, 2 or more",
+      [TIME] = "allowed is the length of a block in t0, above 0",
       [THEORY] = "allowed is a finite number, or nothing",
-      [RESOLVE] = "allowed is a number above 0"};
-  double *const place[COLUMNS] = {[VALUE] = &row->value,
-                                  [ERROR] = &row->error,
-                                  [BLOCKS] = &row->blocks,
-                                  [THEORY] = &row->theory,
-                                  [RESOLVE] = &row->resolve};
+      [RESOLVE] = "allowed is a number above 0, or nothing where there is a bound",
+      [BOUND] = "allowed is a number above 0, or nothing"};
+  double *const place[COLUMNS] = {
+      [VALUE] = &row->value,   [ERROR] = &row->error,     [BLOCKS] = &row->blocks, [TIME] = &row->time,
+      [THEORY] = &row->theory, [RESOLVE] = &row->resolve, [BOUND] = &row->bound};
   if (column == NAME)
     return take_name(r, cell, row);
-  if (column == THEORY && cell->text[0] == '\0')
+  if (column >= THEORY && cell->text[0] == '\0')
     return true;
   if (!parse_number(cell->text, place[column]))
     return complain(r, cell, "is not a number", allowed[column]);
-  const double x = *place[column];
-  if (!in_range(column, x))
-    return complain(r, cell, "is out of range", allowed[column]);
-  return r->reference || x != 0.0 || (column != VALUE && column != ERROR) ||
-         complain(r, cell, "is out of range", "values and errors of the reference table are not 0");
+  return in_range(column, *place[column]) || complain(r, cell, "is out of range", allowed[column]);
+}
+
+/* The cell of this column, which the table has. */
+static const struct cell *cell_of(const struct reader *r, const struct cell *cell, enum column column)
+{
+  size_t k = 0;
+  while (k + 1 < r->cells && r->at[k] != column)
+    k++;
+  return &cell[k];
+}
+
+/* A row of our table: what is compared has a scale, what is conserved keeps its own bound. */
+static bool check_ours(struct reader *r, const struct cell *cell, const struct observable_mean *row)
+{
+  if (isnan(row->resolve) == isnan(row->bound))
+    return complain(r, cell_of(r, cell, RESOLVE), "is not enough or too much",
+                    "a row of the reference table has `resolve` or `bound`, and not both");
+  if (!isnan(row->bound))
+    return observable_rms(row) <= row->bound ||
+           complain(r, cell_of(r, cell, VALUE), "is out of range", "the reference must keep its own bound");
+  if (row->value == 0.0 || row->error == 0.0)
+    return complain(r, cell_of(r, cell, row->value == 0.0 ? VALUE : ERROR), "is out of range",
+                    "values and errors of the reference table are not 0");
+  return true;
+}
+
+/* A row of theirs: averages over another time are another observable. */
+static bool check_theirs(struct reader *r, const struct cell *cell, const struct observable_mean *row)
+{
+  const double ours = observable_means_find(r->reference, row->name)->time;
+  char allowed[96];
+  snprintf(allowed, sizeof allowed, "blocks of this observable are %.10g t0 long (docs/judging.md)", ours);
+  return fabs(row->time - ours) <= SAME_TIME * ours || complain(r, cell_of(r, cell, TIME), "is another time", allowed);
 }
 
 static bool take_row(struct reader *r, const struct cell *cell, size_t cells)
 {
-  struct observable_mean row = {.theory = NAN, .resolve = NAN};
+  struct observable_mean row = {.theory = NAN, .resolve = NAN, .bound = NAN};
   if (cells != r->cells)
     return message_at(r->message, r->path, r->line, 1, "%s than the %zu columns of the header",
                       cells < r->cells ? "fewer" : "more", r->cells);
@@ -145,6 +179,8 @@ static bool take_row(struct reader *r, const struct cell *cell, size_t cells)
   for (size_t k = 0; k < cells; k++)
     if (!take_cell(r, &cell[k], r->at[k], &row))
       return false;
+  if (!(r->reference ? check_theirs(r, cell, &row) : check_ours(r, cell, &row)))
+    return false;
   r->means->row[r->means->count++] = row;
   return true;
 }
@@ -182,6 +218,11 @@ bool observable_means_read(const char *path, const struct observable_means *refe
   const bool ok = read_lines(&reader, in);
   fclose(in);
   return ok;
+}
+
+double observable_rms(const struct observable_mean *row)
+{
+  return hypot(row->value, sqrt(row->blocks - 1.0) * row->error);
 }
 
 const struct observable_mean *observable_means_find(const struct observable_means *means, const char *name)

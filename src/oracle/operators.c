@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "base/random.h"
+#include "base/normal.h"
 #include "oracle/columns.h"
 #include "oracle/stages.h"
 
@@ -76,36 +76,42 @@ static bool run_random(struct oracle_stage *g)
 
 static const struct operation {
   const char *name;
-  bool (*run)(struct oracle_stage *);
-  bool of_solvent; /* else of fibers */
+  bool (*run)(struct oracle_stage *);   /* of the scene's state; NULL: none */
+  bool (*edges)(struct oracle_stage *); /* of constructed inputs; NULL: none */
+  bool of_solvent;                      /* else of fibers */
 } operations[] = {
-    {"random", run_random, false},
-    {"order", oracle_run_order, false},
-    {"long_sweep", oracle_run_long_sweep, false},
-    {"sweep", oracle_run_sweep, false},
-    {"bond_force", oracle_run_bond_force, false},
-    {"bend_force", oracle_run_bend_force, false},
-    {"force", oracle_run_force, false},
-    {"kick", oracle_run_kick, false},
-    {"stream", oracle_run_stream, true},
-    {"shift", oracle_run_shift, true},
-    {"bin", oracle_run_bin, true},
-    {"sum", oracle_run_sum, true},
-    {"solve", oracle_run_solve, true},
-    {"rescale", oracle_run_rescale, true},
-    {"maxwell_boltzmann", oracle_run_maxwell_boltzmann, true},
-    {"rotate", oracle_run_rotate, true},
-    {"swap", oracle_run_swap, true},
+    {"random", run_random, NULL, false},
+    {"permutation", NULL, oracle_edges_permutation, false},
+    {"order", oracle_run_order, NULL, false},
+    {"crossing", oracle_run_crossing, oracle_edges_crossing, false},
+    {"exchange", oracle_run_exchange, oracle_edges_exchange, false},
+    {"long_sweep", oracle_run_long_sweep, NULL, false},
+    {"sweep", oracle_run_sweep, oracle_edges_sweep, false},
+    {"bond_force", oracle_run_bond_force, NULL, false},
+    {"bend_force", oracle_run_bend_force, NULL, false},
+    {"force", oracle_run_force, NULL, false},
+    {"kick", oracle_run_kick, NULL, false},
+    {"stream", oracle_run_stream, NULL, true},
+    {"shift", oracle_run_shift, NULL, true},
+    {"bin", oracle_run_bin, oracle_edges_bin, true},
+    {"sum", oracle_run_sum, NULL, true},
+    {"solve", oracle_run_solve, NULL, true},
+    {"rescale", oracle_run_rescale, NULL, true},
+    {"maxwell_boltzmann", oracle_run_maxwell_boltzmann, NULL, true},
+    {"rotate", oracle_run_rotate, NULL, true},
+    {"swap", oracle_run_swap, NULL, true},
 };
 
-bool oracle_run_operators(struct oracle_stage *g)
+bool oracle_run_operators(struct oracle_stage *g, bool edges)
 {
   bool ok = true;
   g->place.step = g->state->step + 1;
   for (size_t k = 0; ok && k < sizeof operations / sizeof *operations; k++) {
-    snprintf(g->place.operator_name, sizeof g->place.operator_name, "%s", operations[k].name);
-    if (!operations[k].of_solvent || model_has_solvent(g->model))
-      ok = operations[k].run(g);
+    const struct operation *o = &operations[k];
+    bool (*run)(struct oracle_stage *) = edges ? o->edges : o->run;
+    snprintf(g->place.operator_name, sizeof g->place.operator_name, "%s", o->name);
+    if (run && (!o->of_solvent || model_has_solvent(g->model)))
+      ok = run(g);
   }
   return ok && !g->pack->failed;
 }
@@ -116,6 +122,29 @@ int oracle_operator_rank(const char *name)
     if (strcmp(operations[k].name, name) == 0)
       return (int)k + 1;
   return 0;
+}
+
+/* Tables of one operator, each made of those before it; what is not here comes last. */
+static int table_rank(const char *name)
+{
+  static const char *const names[] = {"out.word",     "out.uniform",  "out.normal", "out.active",   "out.center",
+                                      "out.axis",     "out.crosses",  "out.event",  "out.hit",      "out.order",
+                                      "out.position", "out.momentum", "out.load",   "out.relative", "out.factor",
+                                      "out.solvent",  "out.vertex",   "out.force",  "out.velocity"};
+  int rank = 0;
+  while (rank < (int)(sizeof names / sizeof *names) && strcmp(names[rank], name) != 0)
+    rank++;
+  return rank;
+}
+
+int oracle_flow(const struct pack_table *a, const struct pack_table *b)
+{
+  const int operators = oracle_operator_rank(a->place.operator_name) - oracle_operator_rank(b->place.operator_name);
+  const int tables = table_rank(a->name) - table_rank(b->name);
+  return operators != 0                  ? operators
+         : tables != 0                   ? tables
+         : a->place.step < b->place.step ? -1
+                                         : a->place.step > b->place.step;
 }
 
 /* --- the model --------------------------------------------------------------------------------------------------- */

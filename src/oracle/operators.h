@@ -3,14 +3,14 @@
 #define UNCROSS_ORACLE_OPERATORS_H
 
 #include "oracle/pack.h"
-#include "state/model.h"
-#include "state/state.h"
-#include "state/work.h"
+#include "system/model.h"
+#include "system/state.h"
+#include "work.h"
 
 struct oracle_stage {
-  struct model *model; /* its thermostat is changed by operators, and put back */
+  const struct model *model;
   struct state *state; /* advanced by each operator in turn */
-  struct work *work;   /* allocated with a thermostat and without hydrodynamics, so that all scratch is there */
+  struct work *work;   /* with everything (work_add_everything) */
   struct pack *pack;
   struct pack_place place;
   uint32_t *slot; /* [particles] of ids in memory */
@@ -19,11 +19,14 @@ struct oracle_stage {
 /* Puts the model's numbers, which all operators share: place `model`, step 0. */
 void oracle_put_model(struct pack *pack, const struct model *model);
 
-/* Runs all operators, one after the other, for the step that follows the state's. False, with work->fault or
- * pack->failed saying why. */
-bool oracle_run_operators(struct oracle_stage *stage);
+/* Runs all operators, one after the other, for the step that follows the state's; edges: those with constructed inputs,
+ * on these. False, with work->fault or pack->failed saying why. */
+bool oracle_run_operators(struct oracle_stage *stage, bool edges);
 
 /* Where an operator stands among all of them; 0 for what is none, as `model`. */
 int oracle_operator_rank(const char *name);
+
+/* Negative if the data flow through table a before b: by operator, then by table within it, then by step. */
+int oracle_flow(const struct pack_table *a, const struct pack_table *b);
 
 #endif

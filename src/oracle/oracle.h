@@ -9,15 +9,21 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-#include "io/message.h"
-#include "io/scene.h"
+#include "base/message.h"
 #include "oracle/pack.h"
-#include "state/state.h"
-#include "state/work.h"
+#include "scene/scene.h"
+#include "system/state.h"
+#include "work.h"
 
 /* Fills a pack with the scene's numbers and every operator's input and output, at the first step that has a collision
  * and at the last one of the scene. The pack needs freeing in any case. */
 bool oracle_emit(const struct scene *scene, struct pack *pack, struct message *message);
+
+/* Fills a pack with operators' inputs that are constructed, not from a scene, and their outputs (docs/porting.md). */
+bool oracle_edges(struct pack *pack, struct message *message);
+
+/* Fills a pack with what a run of the scene starts from: the model, the state, the stages of its steps. */
+bool oracle_start(const struct scene *scene, struct pack *pack, struct message *message);
 
 /* Writes the trace of the whole scene as CSV: one row per stage of each step. */
 bool oracle_trace(const struct scene *scene, FILE *out, struct message *message);
@@ -38,9 +44,22 @@ struct oracle_options {
   const char *only; /* these operators, with commas between; NULL: all */
 };
 
-/* Prints how the outputs of `theirs` differ from those of `ours`, operator by operator, the first difference, and what
- * its pattern usually means. False, with a message, if memory is short or `only` names no operator. */
+/* What a comparison found. */
+struct oracle_summary {
+  enum oracle_verdict verdict;
+  uint64_t values, different, beyond; /* beyond: tolerance, or something is missing */
+  double largest;                     /* of difference over tolerance, where there is a tolerance */
+  char first[256], meaning[640];      /* the first difference, and what its pattern usually means; or empty */
+};
+
+/* Puts the columns of `theirs` into the order of ours, by their names. Columns without names (HDF5 without
+ * `components`) stay. False, with a message, if a column, or a table of an operator that ours has, is of no known name.
+ */
+bool oracle_align(const struct pack *ours, struct pack *theirs, struct message *message);
+
+/* Prints how the outputs of `theirs`, aligned, differ from those of `ours`, operator by operator, the first difference,
+ * and what its pattern usually means. False, with a message, if memory is short or `only` names no operator. */
 bool oracle_compare(const struct pack *ours, const struct pack *theirs, const struct oracle_options *options, FILE *out,
-                    enum oracle_verdict *verdict, struct message *message);
+                    struct oracle_summary *summary, struct message *message);
 
 #endif

@@ -12,10 +12,10 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#include "io/message.h"
+#include "base/message.h"
 
 #define PACK_FORMAT "uncross pack"
-#define PACK_VERSION 1
+#define PACK_VERSION 2 /* 1 had neither crossing, exchange nor permutation; it is read */
 #define PACK_WORD 32
 #define PACK_COLUMNS 16
 
@@ -30,6 +30,7 @@ struct pack_table {
   struct pack_place place;
   char name[PACK_WORD]; /* in.position, out.velocity, ... */
   bool real;
+  bool unnamed; /* its file does not name the columns: they are those of the contract, in order */
   uint32_t rows, columns;
   char component[PACK_COLUMNS][PACK_WORD];
   union {
@@ -66,7 +67,8 @@ bool pack_write(const struct pack *pack, FILE *out, const char *path, struct mes
 /* Reads a pack of either form. False, with a message (for text `file:line:col: ...`), if it is neither, or damaged. */
 bool pack_read(const char *path, struct pack *pack, struct message *message);
 
-/* The text form, reals as hexadecimal floating-point constants, exact. False if the stream cannot be written. */
-bool pack_dump(const struct pack *pack, FILE *out);
+/* The text form, reals exact: as hexadecimal floating-point constants, or in 17 decimal digits. False if the stream
+ * cannot be written. */
+bool pack_dump(const struct pack *pack, bool decimal, FILE *out);
 
 #endif

@@ -2,10 +2,15 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
-#include "io/hdf5.h"
+#include "files/apart.h"
+#include "files/hdf5.h"
 #include "oracle/pack.h"
 #include "oracle/pack_text.h"
+
+#define SEAL_NAME "seal"   /* attribute of files that end with one (seal.h) */
+#define MOST_TABLES 100000 /* of a file */
 
 /* --- writing ----------------------------------------------------------------------------------------------------- */
 
@@ -30,7 +35,8 @@ static bool write_table(hid_t group, const struct pack_table *t)
 static bool write_tables(hid_t file, const struct pack *pack)
 {
   const int version = PACK_VERSION;
-  bool ok = h5_put_text(file, "format", PACK_FORMAT) && h5_put(file, "version", H5T_NATIVE_INT, 0, &version);
+  bool ok = h5_put_text(file, "format", PACK_FORMAT) && h5_put(file, "version", H5T_NATIVE_INT, 0, &version) &&
+            h5_put_text(file, SEAL_NAME, "xxh64");
   for (size_t k = 0; ok && k < pack->count; k++) {
     char name[2 * PACK_WORD];
     group_name(&pack->table[k].place, name, sizeof name);
@@ -104,12 +110,14 @@ static bool read_components(hid_t dataset, hsize_t columns, char *words, size_t 
 
 static bool read_table(hid_t group, const struct pack_place *place, const char *name, struct pack *pack)
 {
-  hid_t dataset = H5Dopen2(group, name, H5P_DEFAULT);
+  hid_t dataset = h5_open_dataset(group, name);
   hsize_t dims[2] = {0, 1};
   char words[PACK_COLUMNS * PACK_WORD];
   int rank = h5_shape(dataset, 2, dims);
-  bool ok = (rank == 1 || rank == 2) && dims[0] < UINT32_MAX && dims[1] >= 1 && dims[1] <= PACK_COLUMNS;
+  bool ok = (rank == 1 || rank == 2) && dims[0] < UINT32_MAX && pack->count < MOST_TABLES && dims[1] >= 1 &&
+            dims[1] <= PACK_COLUMNS;
   const bool real = ok && is_real(dataset);
+  const bool unnamed = ok && H5Aexists(dataset, "components") == 0;
   ok = ok && read_components(dataset, dims[1], words, sizeof words);
   h5_close(dataset);
   if (!ok)
@@ -120,6 +128,7 @@ static bool read_table(hid_t group, const struct pack_place *place, const char *
   if (!t || t->columns < dims[1])
     return false;
   t->columns = (uint32_t)dims[1];
+  t->unnamed = unnamed;
   return h5_array_read(group, name, real ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64, rank, dims, data);
 }
 
@@ -142,30 +151,104 @@ static bool read_group(hid_t file, const char *name, struct pack *pack)
   return ok;
 }
 
-static bool read_hdf5(const char *path, struct pack *pack, struct message *message)
+static bool known_format(hid_t file, const char *path, bool sealed, struct message *message)
+{
+  char format[PACK_WORD] = "";
+  int version = 0;
+  if (!h5_get_text(file, "format", format, sizeof format) || strcmp(format, PACK_FORMAT) != 0 ||
+      !h5_get(file, "version", H5T_NATIVE_INT, 0, &version) || version < 1 || version > PACK_VERSION)
+    return message_set(message,
+                       "%s: not a pack of version 1 to %d; `uncross oracle emit` writes one, docs/porting.md says how",
+                       path, PACK_VERSION);
+  return sealed || H5Aexists(file, SEAL_NAME) == 0 ||
+         message_set(message, "%s: damaged: its end with the seal is missing or changed", path);
+}
+
+static bool read_file(const char *path, struct pack *pack, struct message *message)
 {
   enum h5_trouble trouble;
-  char format[PACK_WORD] = "", name[2 * PACK_WORD];
-  int version = 0;
-  hid_t file = h5_open(path, false, &trouble, message);
+  char name[2 * PACK_WORD];
+  bool sealed;
+  unsigned failures;
+  hid_t file = h5_open(path, false, &sealed, &trouble, message);
+  apart_shut();
+  h5_watch(&failures);
   if (file < 0)
     return false;
-  bool ok =
-      (h5_get_text(file, "format", format, sizeof format) && strcmp(format, PACK_FORMAT) == 0 &&
-       h5_get(file, "version", H5T_NATIVE_INT, 0, &version) && version == PACK_VERSION) ||
-      message_set(message, "%s: not a pack of version %d; `uncross oracle emit` writes one, docs/porting.md says how",
-                  path, PACK_VERSION);
+  bool ok = known_format(file, path, sealed, message);
   hsize_t count = 0;
   if (ok && !count_links(file, &count))
     ok = h5_fail(message, path, "cannot be read");
   for (hsize_t k = 0; ok && k < count; k++)
-    ok = link_name(file, k, name, sizeof name) &&
+    ok = (link_name(file, k, name, sizeof name) || h5_fail(message, path, "cannot be read")) &&
          (read_group(file, name, pack) ||
           message_set(message,
                       "%s: group %s: cannot be read; a group is `operator.step`, its datasets are [rows] or "
                       "[rows][at most %d columns] of integers or reals, undamaged",
                       path, name, PACK_COLUMNS));
   h5_close(file);
+  return ok && (failures == 0 || message_set(message, "%s: damaged: HDF5 cannot read some part of it", path));
+}
+
+/* --- the process that reads, and the one that wants the pack ----------------------------------------------------- */
+
+static size_t bytes_of(const struct pack_table *t)
+{
+  return (size_t)t->rows * t->columns * sizeof(int64_t);
+}
+
+static void serve(struct apart *link, void *context)
+{
+  const char *path = context;
+  struct pack pack = {0};
+  struct message message = {""};
+  const bool ok = read_file(path, &pack, &message);
+  const uint64_t count = pack.count;
+  apart_put_verdict(link, ok ? 0 : 1, &message);
+  if (!ok || !apart_put(link, &count, sizeof count))
+    return;
+  for (size_t k = 0; k < pack.count; k++)
+    if (!apart_put(link, &pack.table[k], sizeof pack.table[k]) ||
+        !apart_put(link, pack.table[k].value.data, bytes_of(&pack.table[k])))
+      return;
+}
+
+static bool get_table(struct apart *apart, struct pack_table *t)
+{
+  t->value.data = NULL;
+  if (!apart_get(apart, t, sizeof *t))
+    return false;
+  t->value.data = NULL; /* what was sent is an address over there */
+  if (t->columns < 1 || t->columns > PACK_COLUMNS)
+    return false;
+  t->place.operator_name[PACK_WORD - 1] = t->name[PACK_WORD - 1] = '\0';
+  for (int c = 0; c < PACK_COLUMNS; c++)
+    t->component[c][PACK_WORD - 1] = '\0';
+  t->value.data = malloc(bytes_of(t) + 1);
+  return t->value.data && apart_get(apart, t->value.data, bytes_of(t));
+}
+
+static bool get_tables(struct apart *apart, struct pack *pack)
+{
+  uint64_t count;
+  if (!apart_get(apart, &count, sizeof count) || count > MOST_TABLES)
+    return false;
+  pack->table = calloc((size_t)count + 1, sizeof *pack->table);
+  bool ok = pack->table;
+  while (ok && pack->count < count)
+    ok = get_table(apart, &pack->table[pack->count++]);
+  return ok;
+}
+
+static bool read_hdf5(const char *path, struct pack *pack, struct message *message)
+{
+  struct apart apart;
+  if (!apart_start(&apart, path, serve, (void *)(uintptr_t)path, message))
+    return false;
+  bool ok = apart_get_verdict(&apart, message) == 0;
+  if (ok && !get_tables(&apart, pack))
+    ok = apart.broken ? apart_lost(&apart, message) : message_set(message, "%s: out of memory", path);
+  apart_end(&apart);
   return ok;
 }
 
@@ -174,9 +257,14 @@ bool pack_read(const char *path, struct pack *pack, struct message *message)
   static const unsigned char signature[4] = {0x89, 'H', 'D', 'F'};
   unsigned char head[4] = {0};
   memset(pack, 0, sizeof *pack);
-  FILE *in = fopen(path, "rb");
+  const int fd = open_regular(path, message);
+  FILE *in = fd < 0 ? NULL : fdopen(fd, "rb");
+  if (!in && fd >= 0) {
+    close(fd);
+    message_set(message, "%s: out of memory", path);
+  }
   if (!in)
-    return message_set(message, "%s: cannot be opened; a pack is wanted, as HDF5 or text", path);
+    return false;
   bool hdf5 = fread(head, 1, sizeof head, in) == sizeof head && memcmp(head, signature, sizeof head) == 0;
   rewind(in);
   bool ok = hdf5 ? read_hdf5(path, pack, message) : pack_read_text(in, path, pack, message);

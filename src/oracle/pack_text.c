@@ -1,22 +1,40 @@
 #include "oracle/pack_text.h"
+#include "base/text.h"
 #include "oracle/pack.h"
 
 #include <errno.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
-bool pack_dump(const struct pack *pack, FILE *out)
+/* With a point or an exponent, so that it reads back as a real. */
+static void write_decimal(FILE *out, double value)
+{
+  char text[32];
+  snprintf(text, sizeof text, "%.17g", value);
+  fprintf(out, "%s%s\n", text, text[strcspn(text, ".en")] ? "" : ".0");
+}
+
+bool pack_dump(const struct pack *pack, bool decimal, FILE *out)
 {
   fprintf(out, "# %s %d: operator step row table.component value\n", PACK_FORMAT, PACK_VERSION);
   for (size_t n = 0; n < pack->count; n++) {
     const struct pack_table *t = &pack->table[n];
+    const char *name = text_shown(t->name), *operator_name = text_shown(t->place.operator_name);
+    char component[PACK_COLUMNS][4 * PACK_WORD];
+    for (uint32_t k = 0; k < t->columns; k++)
+      text_escape(t->component[k], component[k], sizeof component[k]);
     for (uint32_t row = 0; row < t->rows; row++)
       for (uint32_t k = 0; k < t->columns; k++) {
         const size_t at = (size_t)row * t->columns + k;
-        fprintf(out, "%s %" PRIu64 " %" PRIu32 " %s.%s ", t->place.operator_name, t->place.step, row, t->name,
-                t->component[k]);
-        if (t->real)
+        fprintf(out, "%s %" PRIu64 " %" PRIu32 " %s.%s ", operator_name, t->place.step, row, name, component[k]);
+        if (t->real && isnan(t->value.number[at]))
+          fputs("nan\n", out);
+        else if (t->real && decimal)
+          write_decimal(out, t->value.number[at]);
+        else if (t->real)
           fprintf(out, "%a\n", t->value.number[at]);
         else
           fprintf(out, "%" PRId64 "\n", t->value.integer[at]);
@@ -33,8 +51,8 @@ bool pack_dump(const struct pack *pack, FILE *out)
 /* One line. A value that is a whole number in decimal digits is kept exactly. */
 struct line {
   struct pack_place place;
-  uint32_t row;
-  size_t column; /* where the name begins, counted from 1 */
+  uint32_t row, most_row; /* allowed: each row needs a line of its own, so that no claimed number asks for memory */
+  size_t column;          /* where the name begins, counted from 1 */
   char table[PACK_WORD], component[PACK_WORD];
   bool real;
   int64_t integer;
@@ -58,7 +76,7 @@ static bool parse_value(const char *text, struct line *line)
   line->real = *end != '\0' || end == text;
   if (!line->real && errno != 0)
     return false;
-  line->number = line->real ? strtod(text, &end) : (double)line->integer;
+  line->number = strtod(text, &end); /* -0 keeps its sign */
   return end != text && *end == '\0';
 }
 
@@ -94,7 +112,7 @@ static bool parse_word(const char *text, enum word which, struct line *line)
   case STEP:
     return parse_whole(text, UINT64_MAX, &line->place.step);
   case ROW:
-    if (!parse_whole(text, MOST_ROWS, &row))
+    if (!parse_whole(text, line->most_row, &row))
       return false;
     line->row = (uint32_t)row;
     return true;
@@ -225,10 +243,10 @@ static bool finish(struct pack_table *t, const struct draft *d, const char *path
 }
 
 /* Takes line number `number` in, comments and empty lines aside. */
-static bool read_line(char *text, const char *path, size_t number, struct pack *pack, struct draft drafts[MOST_TABLES],
-                      struct message *message)
+static bool read_line(char *text, uint32_t most_row, const char *path, size_t number, struct pack *pack,
+                      struct draft drafts[MOST_TABLES], struct message *message)
 {
-  struct line line;
+  struct line line = {.most_row = most_row};
   text[strcspn(text, "\r\n")] = '\0';
   if (text[0] == '#' || text[0] == '\0')
     return true;
@@ -240,17 +258,30 @@ static bool read_line(char *text, const char *path, size_t number, struct pack *
   return !wrong || message_at(message, path, number, line.column, "%s", wrong);
 }
 
+#define LEAST_LINE 12        /* bytes of `o 0 0 t.x 1` and its end */
+#define FREE_ROWS (1u << 21) /* so many rows may be claimed for nothing: they cost two bytes each */
+
+/* The largest number of a row that a file of this size may have; one that leaves out rows is told what is missing. */
+static uint32_t most_row_of(FILE *in)
+{
+  struct stat status;
+  const uint64_t lines =
+      fstat(fileno(in), &status) == 0 ? (uint64_t)status.st_size / LEAST_LINE + FREE_ROWS : MOST_ROWS;
+  return lines < MOST_ROWS ? (uint32_t)lines : MOST_ROWS;
+}
+
 static bool read_lines(FILE *in, const char *path, struct pack *pack, struct draft drafts[MOST_TABLES],
                        struct message *message)
 {
   char *text = NULL;
   size_t room = 0;
+  const uint32_t most_row = most_row_of(in);
   bool ok = true;
   ssize_t length;
   for (size_t number = 1; ok && (length = getline(&text, &room, in)) >= 0; number++) {
     const size_t zero = strlen(text);
     ok = zero == (size_t)length
-             ? read_line(text, path, number, pack, drafts, message)
+             ? read_line(text, most_row, path, number, pack, drafts, message)
              : message_at(message, path, number, zero + 1, "a NUL byte; a pack is HDF5 or lines of text");
   }
   free(text);

@@ -1,26 +1,19 @@
-/* Inside the oracle: patterns of differences. Each is a guess of a bug that is tried on the numbers of the packs. */
+/* Inside the oracle: patterns of differences that are no table of guesses (relations.h), and what both use. */
 #ifndef UNCROSS_ORACLE_PATTERNS_H
 #define UNCROSS_ORACLE_PATTERNS_H
 
 #include "base/lattice.h"
 #include "oracle/pair.h"
 
-/* What a value would be with a certain bug; NaN if the packs do not say. */
-typedef double oracle_guess(const struct oracle_pair *pair, uint32_t row, uint32_t column);
-
 struct oracle_pattern {
   const char *operator_name, *table; /* NULL: any; sweep: long_sweep too */
   const char *meaning;
-  oracle_guess *guess; /* fits if this guess explains all that differs; or else */
   bool (*fits)(const struct oracle_pair *);
 };
 
 /* Each list ends with one without a meaning; the first pattern that fits is told. */
-extern const struct oracle_pattern oracle_patterns_random[], oracle_patterns_solvent[], oracle_patterns_sweep[],
-    oracle_patterns_any[];
-
-/* True if a guess is right wherever ours is not, and ours is wrong somewhere. */
-bool oracle_explains(const struct oracle_pair *pair, oracle_guess *guess);
+extern const struct oracle_pattern oracle_patterns_random[], oracle_patterns_solvent[], oracle_patterns_contact[],
+    oracle_patterns_sweep[], oracle_patterns_any[];
 
 /* True if theirs is this guess, within tolerance. */
 bool oracle_guessed(const struct oracle_pair *pair, uint32_t row, uint32_t column, double guess);

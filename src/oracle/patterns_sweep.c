@@ -1,55 +1,10 @@
-/* What went wrong in a sweep. A wrong exchange changes the moves that follow, so only the first row that differs is
- * judged. */
+/* What went wrong in a sweep that no replay makes. A wrong exchange changes the moves that follow, so only the first
+ * row that differs is judged. */
 #include <math.h>
 #include <string.h>
 
 #include "oracle/patterns.h"
 #include "oracle/swept.h"
-
-/* --- zeros, and hits that only they have ------------------------------------------------------------------------- */
-
-static bool has_zero(const struct swept_signs *d)
-{
-  return d->before == 0 || d->after == 0 || d->far_side == 0 || d->a == 0 || d->b == 0;
-}
-
-static bool zero_decides(const struct oracle_pair *p)
-{
-  struct swept w;
-  struct swept_signs d;
-  uint32_t row;
-  return oracle_swept_take(p, &w) &&
-         ((swept_missed(&w, &row) && swept_signs(&w, w.event.ours, row, &d) && has_zero(&d)) ||
-          (swept_invented(&w, &row) && swept_signs(&w, w.event.theirs, row, &d) && has_zero(&d)));
-}
-
-/* The first hit that only they have. */
-static bool invented_signs(const struct oracle_pair *p, struct swept_signs *d)
-{
-  struct swept w;
-  uint32_t row;
-  return oracle_swept_take(p, &w) && swept_invented(&w, &row) && swept_signs(&w, w.event.theirs, row, d);
-}
-
-static bool beyond_moving(const struct oracle_pair *p)
-{
-  struct swept_signs d;
-  return invented_signs(p, &d) && d.before * d.after < 0 && d.far_side == -d.before;
-}
-
-static bool beyond_standing(const struct oracle_pair *p)
-{
-  struct swept_signs d;
-  return invented_signs(p, &d) && d.before * d.after < 0 && d.far_side == d.before && d.a * d.b > 0;
-}
-
-static bool linked_tested(const struct oracle_pair *p)
-{
-  struct swept w;
-  uint32_t row, v[4];
-  return oracle_swept_take(p, &w) && swept_invented(&w, &row) && swept_vertices(&w, w.event.theirs, row, v) &&
-         (v[0] == v[2] || v[0] == v[3] || v[1] == v[2] || v[1] == v[3]);
-}
 
 /* --- hits that they have not ------------------------------------------------------------------------------------- */
 
@@ -70,33 +25,6 @@ static bool image_missing(const struct oracle_pair *p)
     if (boxes_away(w.event.theirs, k) >= boxes_away(w.event.ours, row))
       return false;
   return true;
-}
-
-static bool of_one_fiber(const struct swept *w, const struct pack_table *t, uint32_t row)
-{
-  uint32_t v[4];
-  return swept_vertices(w, t, row, v) &&
-         oracle_model_integer(w->pair, "in.chain", v[0], 2) == oracle_model_integer(w->pair, "in.chain", v[2], 2);
-}
-
-/* A hit within a fiber is missed, and nowhere do they find one. */
-static bool fiber_excluded(const struct oracle_pair *p)
-{
-  struct swept w;
-  uint32_t row;
-  if (!oracle_swept_take(p, &w) || !swept_missed(&w, &row) || !of_one_fiber(&w, w.event.ours, row))
-    return false;
-  for (uint32_t k = 0; k < w.event.theirs->rows; k++)
-    if (of_one_fiber(&w, w.event.theirs, k))
-      return false;
-  return true;
-}
-
-static bool crossing_missing(const struct oracle_pair *p)
-{
-  struct swept w;
-  uint32_t row;
-  return oracle_swept_take(p, &w) && swept_missed(&w, &row);
 }
 
 /* --- the same hits, another choice ------------------------------------------------------------------------------- */
@@ -332,16 +260,6 @@ const struct oracle_pattern oracle_patterns_sweep[] = {
     {"sweep", "out.event", "the hit closest to the moving vertex executed instead of first", .fits = nearest_executed},
     {"sweep", "out.event", "another hit executed instead of first in time (last, or closest?)", .fits = other_executed},
     {"sweep", "out.event", "missing image: a partner across the face of the box is not found", .fits = image_missing},
-    {"sweep", "out.event", "a determinant that is exactly zero: it counts as positive, but for `flip`",
-     .fits = zero_decides},
-    {"sweep", "out.event", "exclusion: a bond of the vertex' own fiber is left out", .fits = fiber_excluded},
-    {"sweep", "out.event", "a crossing is missed: stale neighbor list, or the exclusion of bonds",
-     .fits = crossing_missing},
-    {"sweep", "out.event", "exclusion: a bond that shares a vertex is tested", .fits = linked_tested},
-    {"sweep", "out.event", "a line that passes beyond the swept triangle counts as a hit (condition 2)",
-     .fits = beyond_moving},
-    {"sweep", "out.event", "a bond that ends beyond the triangle's plane counts as a hit (condition 3)",
-     .fits = beyond_standing},
     {"sweep", "out.hit", "dP clipped at 0: it is used with its sign (footnote 61)", .fits = momentum_clipped},
     {"sweep", "out.hit", "lever rule: s counts from the moving vertex, s' from the bond's first",
      .fits = lever_mirrored},

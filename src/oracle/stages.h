@@ -7,6 +7,8 @@
 #include "oracle/operators.h"
 
 bool oracle_run_order(struct oracle_stage *stage);
+bool oracle_run_crossing(struct oracle_stage *stage);
+bool oracle_run_exchange(struct oracle_stage *stage);
 bool oracle_run_long_sweep(struct oracle_stage *stage);
 bool oracle_run_sweep(struct oracle_stage *stage);
 bool oracle_run_bond_force(struct oracle_stage *stage);
@@ -23,5 +25,16 @@ bool oracle_run_rescale(struct oracle_stage *stage);
 bool oracle_run_maxwell_boltzmann(struct oracle_stage *stage);
 bool oracle_run_rotate(struct oracle_stage *stage);
 bool oracle_run_swap(struct oracle_stage *stage);
+
+/* The sweep of this number, for fraction * dt, of the state as it is. */
+bool oracle_sweep_for(struct oracle_stage *stage, double fraction, uint32_t sweep);
+
+/* Constructed inputs, where the state of no scene comes near (edges.c, edges_crossing.c): docs/porting.md. They change
+ * the state. */
+bool oracle_edges_permutation(struct oracle_stage *stage);
+bool oracle_edges_crossing(struct oracle_stage *stage);
+bool oracle_edges_exchange(struct oracle_stage *stage);
+bool oracle_edges_sweep(struct oracle_stage *stage);
+bool oracle_edges_bin(struct oracle_stage *stage);
 
 #endif

@@ -1,10 +1,7 @@
 /* A sweep as it was: replayed from the events of our tables. */
 #include "oracle/swept.h"
 
-#include <math.h>
 #include <string.h>
-
-#include "fiber/crossing.h"
 
 bool oracle_swept_take(const struct oracle_pair *p, struct swept *w)
 {
@@ -148,52 +145,4 @@ struct vec3 swept_velocity(const struct swept *w, uint32_t vertex, uint32_t rows
                             swept_normal(w, row));
   }
   return v;
-}
-
-static struct point position_at(const struct swept *w, uint32_t vertex, double mover)
-{
-  return oracle_point(turn_of(w, vertex) < turn_of(w, mover) ? w->to : w->from, vertex);
-}
-
-static bool within_reach(struct point p)
-{
-  const int64_t reach = (int64_t)1 << 52;
-  return p.x > -reach && p.x < reach && p.y > -reach && p.y < reach && p.z > -reach && p.z < reach;
-}
-
-/* --- the conditions of a crossing, for an event of either table -------------------------------------------------- */
-
-bool swept_signs(const struct swept *w, const struct pack_table *t, uint32_t row, struct swept_signs *d)
-{
-  uint32_t four[4];
-  struct box box;
-  int64_t image[3];
-  if (!swept_vertices(w, t, row, four) || !oracle_box(w->pair, &box))
-    return false;
-  for (uint32_t k = 0; k < 3; k++) {
-    const double i = pack_value(t, row, IMAGE_X + k);
-    if (!(fabs(i) < 1024.0))
-      return false;
-    image[k] = (int64_t)i;
-  }
-  struct point at[4];
-  for (int k = 0; k < 4; k++) {
-    at[k] = position_at(w, four[k], four[0]);
-    if (!within_reach(at[k]))
-      return false;
-  }
-  for (int k = 2; k < 4; k++) {
-    at[k].x += image[0] * box.edge[0], at[k].y += image[1] * box.edge[1], at[k].z += image[2] * box.edge[2];
-  }
-  const struct vec3 v = swept_velocity(w, four[0], swept_first_other(w), four[0]);
-  const double time = pack_value(oracle_sibling(w->pair, "in.time"), 0, 0);
-  if (!(fabs(time) * vec3_norm(v) < 1024.0))
-    return false;
-  const struct point from = at[0], pivot = at[1], a = at[2], b = at[3];
-  const struct point to = {from.x + lattice_from_a0(time * v.x), from.y + lattice_from_a0(time * v.y),
-                           from.z + lattice_from_a0(time * v.z)};
-  *d = (struct swept_signs){crossing_orientation(a, b, pivot, from), crossing_orientation(a, b, pivot, to),
-                            crossing_orientation(a, b, from, to), crossing_orientation(from, to, pivot, a),
-                            crossing_orientation(from, to, pivot, b)};
-  return true;
 }

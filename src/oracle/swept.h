@@ -17,11 +17,6 @@ struct swept {
   const struct pack_table *order, *from, *start, *to, *chain;
 };
 
-/* Signs of the determinants of a crossing, as docs/conventions.md orders them. */
-struct swept_signs {
-  int before, after, far_side, a, b;
-};
-
 /* The tables of the pair's sweep. False if one is missing, or is not of its shape. */
 bool oracle_swept_take(const struct oracle_pair *pair, struct swept *w);
 
@@ -49,8 +44,5 @@ double swept_mass(const struct swept *w, uint32_t vertex);
 
 /* Velocity (a0/t0) after our exchanges in the first `rows` events, those of `mover` left out. */
 struct vec3 swept_velocity(const struct swept *w, uint32_t vertex, uint32_t rows, double mover);
-
-/* Signs for an event of either table, in the state that the first move that differs found. False if it cannot be. */
-bool swept_signs(const struct swept *w, const struct pack_table *events, uint32_t row, struct swept_signs *d);
 
 #endif

@@ -4,11 +4,12 @@
  * sizes of the terms; all of it from the pack.
  */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/lattice.h"
+#include "mpc/rules/srd.h"
 #include "oracle/pair.h"
-#include "solvent/srd.h"
 
 /* Largest size in columns from .. to-1 of a table; 0 if there is none. */
 static double largest(const struct pack_table *t, uint32_t from, uint32_t to)
@@ -70,10 +71,31 @@ static double exact(const struct oracle_pair *p, uint32_t row, uint32_t column)
   return 0.0;
 }
 
-static double normal_pair(const struct oracle_pair *p, uint32_t row, uint32_t column)
+/* Ours is of doubles in any case, so in single precision only one side rounds to 24 bits, inputs included. */
+static bool single(const struct oracle_pair *p)
+{
+  return p->rounding > 0x1p-30;
+}
+
+/* What is exact in doubles is rounded once in single precision. */
+static double uniform(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
   (void)row, (void)column;
-  return 24.0 * 8.6 * p->rounding;
+  return single(p) ? p->rounding : 0.0;
+}
+
+static double copied_velocity(const struct oracle_pair *p, uint32_t row, uint32_t column)
+{
+  (void)row, (void)column;
+  return single(p) ? p->rounding * velocities(p) : 0.0;
+}
+
+/* Rounding the uniform u changes -2 ln u by 2u, and its root r by u/r, or sqrt(2u) where r is small. */
+static double normal_pair(const struct oracle_pair *p, uint32_t row, uint32_t column)
+{
+  const double r = hypot(pack_value(p->ours, row, 0), pack_value(p->ours, row, 1));
+  (void)column;
+  return 24.0 * 8.6 * p->rounding + (single(p) ? fmin(p->rounding / r, sqrt(2.0 * p->rounding)) : 0.0);
 }
 
 /* The root sqrt(1-q) = sqrt((1+z)/2) amplifies the rounding of q. */
@@ -84,18 +106,96 @@ static double axis(const struct oracle_pair *p, uint32_t row, uint32_t column)
   return 16.0 / root * p->rounding;
 }
 
-static double hit(const struct oracle_pair *p, uint32_t row, uint32_t column)
+static double condition(const struct oracle_pair *p, uint32_t row)
 {
   const struct pack_table *t = oracle_sibling(p, "bound.hit");
-  const double condition = t && row < t->rows ? pack_value(t, row, 0) : 1.0;
+  return t && row < t->rows ? pack_value(t, row, 0) : 1.0;
+}
+
+static double crossing_hit(const struct oracle_pair *p, uint32_t row, uint32_t column)
+{
+  (void)column;
+  return 64.0 * condition(p, row) * p->rounding;
+}
+
+/* --- what a sweep inherits from its own exchanges ---------------------------------------------------------------- */
+
+enum { MOST_INHERITING = 1 << 16 };
+
+/* Moving vertex, pivot, and the ends of the standing bond of an event. False if the pack has no such vertices. */
+static bool four_of(const struct oracle_pair *p, const struct pack_table *event, uint32_t row, uint32_t four[4])
+{
+  const struct pack_table *chain = of_model(p, "in.chain");
+  if (!chain || event->columns < 3)
+    return false;
+  const double vertex = pack_value(event, row, 0), moving = pack_value(event, row, 1),
+               standing = pack_value(event, row, 2);
+  if (!(vertex >= 0.0 && vertex < chain->rows && standing >= 0.0 && standing < chain->rows))
+    return false;
+  const double pivot = moving == vertex ? pack_value(chain, (uint32_t)vertex, 0) : moving;
+  const double end = pack_value(chain, (uint32_t)standing, 0);
+  if (!(pivot >= 0.0 && pivot < chain->rows && end >= 0.0 && end < chain->rows))
+    return false;
+  four[0] = (uint32_t)vertex, four[1] = (uint32_t)pivot, four[2] = (uint32_t)standing, four[3] = (uint32_t)end;
+  return true;
+}
+
+/* error[v]: bound on the relative error of the velocities of vertex v before event `until`, over u. An exchange takes
+ * the errors of its four vertices into its data, amplified by the condition number, and hands them on. */
+static bool inherit(const struct oracle_pair *p, uint32_t until, double error[MOST_INHERITING])
+{
+  const struct pack_table *event = oracle_sibling(p, "out.event"), *chain = of_model(p, "in.chain");
+  const double masses = 8.0 * heaviest(p) / lightest(p);
+  uint32_t four[4];
+  if (!event || event->columns < 7 || !chain || chain->rows > MOST_INHERITING)
+    return false;
+  memset(error, 0, chain->rows * sizeof *error);
+  for (uint32_t row = 0; row < event->rows && row < until; row++) {
+    if (pack_value(event, row, 6) == 0.0 || !four_of(p, event, row, four))
+      continue;
+    double most = 0.0;
+    for (int k = 0; k < 4; k++)
+      most = fmax(most, error[four[k]]);
+    for (int k = 0; k < 4; k++)
+      error[four[k]] = most + 8.0 + (64.0 + most) * condition(p, row) * masses;
+  }
+  return true;
+}
+
+/* The largest such error among the vertices of an event; of one vertex after all events. */
+static double inherited_by_event(const struct oracle_pair *p, uint32_t row)
+{
+  double *error = malloc(MOST_INHERITING * sizeof *error), most = 0.0;
+  const struct pack_table *event = oracle_sibling(p, "out.event");
+  uint32_t four[4];
+  if (error && event && inherit(p, row, error) && four_of(p, event, row, four))
+    for (int k = 0; k < 4; k++)
+      most = fmax(most, error[four[k]]);
+  free(error);
+  return most;
+}
+
+static double inherited_by_vertex(const struct oracle_pair *p, uint32_t vertex)
+{
+  double *error = malloc(MOST_INHERITING * sizeof *error), most = 0.0;
+  if (error && inherit(p, UINT32_MAX, error) && vertex < MOST_INHERITING)
+    most = error[vertex];
+  free(error);
+  return most;
+}
+
+static double hit(const struct oracle_pair *p, uint32_t row, uint32_t column)
+{
   const double scale = column == 6 ? 8.0 * heaviest(p) * size_of(p, "in.velocity") : 1.0;
-  return 64.0 * condition * scale * p->rounding;
+  const double inherited = single(p) ? inherited_by_event(p, row) : 0.0;
+  return (64.0 + inherited) * condition(p, row) * scale * p->rounding;
 }
 
 static double sweep_velocity(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
-  (void)row, (void)column;
-  const double exchange = 64.0 * size_of(p, "bound.hit") * 8.0 * heaviest(p) / lightest(p);
+  const double exchange =
+      single(p) ? inherited_by_vertex(p, row) : 64.0 * size_of(p, "bound.hit") * 8.0 * heaviest(p) / lightest(p);
+  (void)column;
   return (8.0 + exchange) * size_of(p, "in.velocity") * p->rounding;
 }
 
@@ -104,6 +204,58 @@ static double sweep_position(const struct oracle_pair *p, uint32_t row, uint32_t
   const double time = size_of(p, "in.time");
   return 1.0 + LATTICE_PER_A0 * time * (4.0 * size_of(p, "in.velocity") * p->rounding + sweep_velocity(p, row, column));
 }
+
+/* --- one exchange ------------------------------------------------------------------------------------------------ */
+
+struct exchange_sizes {
+  double approach, compliance, levers; /* 2 sum |V||n|, sum of lever^2/M, sum of |lever|/M */
+  double momentum;                     /* |dP| */
+};
+
+static const char *const exchange_ends[4] = {"in.moving", "in.pivot", "in.a", "in.b"};
+
+static bool take_sizes(const struct oracle_pair *p, uint32_t row, struct exchange_sizes *z)
+{
+  const struct pack_table *mass = oracle_sibling(p, "in.mass"), *contact = oracle_sibling(p, "in.contact"),
+                          *normal = oracle_sibling(p, "in.normal"), *momentum = oracle_sibling(p, "out.momentum");
+  if (!mass || !contact || !normal || !momentum)
+    return false;
+  const double s = pack_value(contact, row, 0), standing = pack_value(contact, row, 1);
+  const double lever[4] = {1.0 - s, s, 1.0 - standing, standing};
+  *z = (struct exchange_sizes){.momentum = fabs(pack_value(momentum, row, 0))};
+  for (uint32_t k = 0; k < 4; k++) {
+    const struct pack_table *v = oracle_sibling(p, exchange_ends[k]);
+    for (uint32_t c = 0; v && c < 3; c++)
+      z->approach += 2.0 * fabs(pack_value(v, row, c) * pack_value(normal, row, c));
+    z->compliance += lever[k] * lever[k] / pack_value(mass, row, k);
+    z->levers += fabs(lever[k]) / pack_value(mass, row, k);
+  }
+  return z->compliance > 0.0;
+}
+
+static double exchange_momentum(const struct oracle_pair *p, uint32_t row, uint32_t column)
+{
+  struct exchange_sizes z;
+  (void)column;
+  if (!take_sizes(p, row, &z))
+    return 0.0;
+  return (26.0 * z.approach + z.momentum * (8.0 * z.levers + 20.0 * z.compliance)) / z.compliance * p->rounding;
+}
+
+static double exchange_velocity(const struct oracle_pair *p, uint32_t row, uint32_t column)
+{
+  struct exchange_sizes z;
+  const struct pack_table *mass = oracle_sibling(p, "in.mass");
+  for (uint32_t k = 0; mass && take_sizes(p, row, &z) && k < 4; k++)
+    if (strcmp(exchange_ends[k] + strlen("in."), p->ours->name + strlen("out.")) == 0) {
+      const double m = pack_value(mass, row, k);
+      const double v = fabs(pack_value(oracle_sibling(p, exchange_ends[k]), row, column));
+      return exchange_momentum(p, row, column) / m + (18.0 * z.momentum / m + 4.0 * v) * p->rounding;
+    }
+  return 0.0;
+}
+
+/* --- fibers and solvent ------------------------------------------------------------------------------------------ */
 
 /* Longest and shortest bond of the positions that went in. */
 static void bonds(const struct oracle_pair *p, double *longest, double *shortest)
@@ -178,13 +330,13 @@ static double momentum(const struct oracle_pair *p, uint32_t row, uint32_t colum
 {
   const double n = members(p);
   (void)row, (void)column;
-  return 0.5 * n + 1.0 + SRD_MOMENTUM_SCALE * n * n * heaviest(p) * velocities(p) * p->rounding;
+  return 0.5 * n + 1.0 + CELL_MOMENTUM_SCALE * n * (n + 1.0) * heaviest(p) * velocities(p) * p->rounding;
 }
 
 static double center(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
   (void)row, (void)column;
-  return 6.0 * largest(p->ours, 0, 3) * p->rounding;
+  return 8.0 * largest(p->ours, 0, 3) * p->rounding;
 }
 
 static double relative(const struct oracle_pair *p, uint32_t row, uint32_t column)
@@ -216,8 +368,15 @@ static const struct {
   const char *operator_name, *table;
   rule *tolerance;
 } rules[] = {
+    {"random", "out.uniform", uniform},
     {"random", "out.normal", normal_pair},
     {"random", "out.axis", axis},
+    {"crossing", "out.hit", crossing_hit},
+    {"exchange", "out.momentum", exchange_momentum},
+    {"exchange", "out.moving", exchange_velocity},
+    {"exchange", "out.pivot", exchange_velocity},
+    {"exchange", "out.a", exchange_velocity},
+    {"exchange", "out.b", exchange_velocity},
     {"sweep", "out.hit", hit},
     {"sweep", "out.position", sweep_position},
     {"sweep", "out.velocity", sweep_velocity},
@@ -236,6 +395,7 @@ static const struct {
     {"maxwell_boltzmann", "out.factor", boltzmann},
     {"rotate", "out.solvent", rotate},
     {"rotate", "out.vertex", rotate},
+    {"swap", "out.velocity", copied_velocity},
 };
 
 double oracle_tolerance(const struct oracle_pair *p, uint32_t row, uint32_t column)

@@ -1,5 +1,5 @@
 /* Philox at its addresses, uniform and normal deviates, axes, permutations. */
-#include "base/random.h"
+#include "base/normal.h"
 #include "exact.h"
 
 /* Known answers of philox4x32 with 10 rounds, published with Random123 (Salmon et al., SC11; file kat_vectors), asked

@@ -42,29 +42,55 @@ ok $? "a run says how it ended"
 
 # words
 gives 2 'unknown command' fly "$scene"
-gives 2 'unrecognized option' run "$scene" --output "$run"
+gives 2 'unrecognized option' run "$scene" --folder "$run"
 gives 2 'requires an argument' run "$scene" --out
 gives 2 'a file is missing' check
 gives 2 'one file only' check "$scene" "$scene"
 gives 2 '--out DIR is missing' run "$scene"
 gives 2 '--out DIR is missing' analyze "$dir/frames.h5"
-gives 2 'stride must be at least 1' export "$dir/frames.h5" --stride 0
+gives 2 '--stride 0: not a whole number from 1 to' export "$dir/frames.h5" --stride 0
 for number in x 1x '' -1 1.5 18446744073709551616; do
   gives 2 "--first $number: not a whole number" export "$dir/frames.h5" --first "$number"
 done
 
 # files
 gives 2 'missing.yaml' check "$dir/missing.yaml"
+
+# `check` answers at once, in little memory, whatever the numbers in the scene: 5 s (they take 0.3 s) and 2 GiB.
+at_once() { # at_once CODE PATTERN SCENE: as gives, of `check`
+  local wanted=$1 pattern=$2
+  (ulimit -v 2097152 && exec timeout 5 "$uncross" check "$3") >"$dir/out" 2>&1
+  local code=$?
+  { [ "$code" = "$wanted" ] && grep -q -- "$pattern" "$dir/out"; }
+  ok $? "uncross check ${3#"$dir"/}, at once: $code"
+}
+kind='vertices: 1500, mass: 5, bond_length: 0.5, spring: 100, bending: 4'
+sed '/^fibers:/,$d' "$scene" >"$dir/many.yaml"
+cp "$dir/many.yaml" "$dir/kinds.yaml"
+echo "fibers: [{name: a, count: 1431655, $kind}]" >>"$dir/many.yaml"
+# With address sanitizers a limit of memory cannot be set.
+if (ulimit -v 2097152 && exec "$uncross" --version) >/dev/null 2>&1; then
+  at_once 0 ' vertices  *2.14748e+09' "$dir/many.yaml"
+fi
+echo 'fibers:' >>"$dir/kinds.yaml"
+for k in {1..4096}; do echo "  - {name: k$k, count: 1, mass: 5.$((10000 + k)), ${kind/mass: 5, /}}"; done >>"$dir/kinds.yaml"
+timeout 10 "$uncross" check "$dir/kinds.yaml" >"$dir/out" 2>&1 && grep -q '^Fibers .k4096.$' "$dir/out"
+ok $? "check of 4096 kinds, at once"
+echo "  - {name: last, count: 1, $kind}" >>"$dir/kinds.yaml"
+gives 2 'fibers: 4097 kinds; allowed: at most 4096' check "$dir/kinds.yaml"
+printf '[%.0s' {1..100000} >"$dir/deep.yaml"
+timeout 5 "$uncross" check "$dir/deep.yaml" 2>"$dir/err" || grep -q 'deep.yaml:1:33: nested too deeply; allowed: 32' "$dir/err"
+ok $? "a deep scene is refused at once"
 gives 2 'missing.h5' info "$dir/missing.h5"
 gives 2 'missing.h5' export "$dir/missing.h5"
 gives 2 'missing.h5' analyze "$dir/missing.h5" --out "$dir/new"
 gives 2 'not an HDF5 file' analyze "$scene" --out "$dir/new"
 gives 2 'not a file but' export "$dir"
 gives 2 'without an H5MD trajectory' analyze "$run/checkpoint.h5" --out "$dir/new"
-gives 2 'cannot create' export "$dir/frames.h5" --output "$scene"
-gives 4 'cannot create' export "$dir/frames.h5" --output "$dir/nowhere/out.xyz"
-gives 2 'first frame 3 asked for' export "$dir/frames.h5" --first 3 --output "$dir/out.xyz"
-gives 2 'no frames: the first asked for is 2, the last 1' export "$dir/frames.h5" --first 2 --last 1 --output "$dir/out.xyz"
+gives 2 'cannot create' export "$dir/frames.h5" --out "$scene"
+gives 4 'cannot create' export "$dir/frames.h5" --out "$dir/nowhere/out.xyz"
+gives 2 'first frame 3 asked for' export "$dir/frames.h5" --first 3 --out "$dir/out.xyz"
+gives 2 'no frames: the first asked for is 2, the last 1' export "$dir/frames.h5" --first 2 --last 1 --out "$dir/out.xyz"
 [ ! -e "$dir/out.xyz" ]
 ok $? "an export that fails leaves no file"
 gives 2 'is not a folder' analyze "$dir/frames.h5" --out "$scene"

@@ -15,8 +15,8 @@ ok() { # ok STATUS NAME
   count=$((count + 1))
   if [ "$1" = 0 ]; then echo "ok $count - $2"; else echo "not ok $count - $2"; failures=$((failures + 1)); fi
 }
-hash_of() { # of a checkpoint, which `info` reads: empty if it is not whole
-  "$uncross" info "$1/checkpoint.h5" 2>"$dir/err" | sed -n 's/.*state hash \([0-9a-f]*\).*/\1/p'
+hash_of() { # of a checkpoint: empty if it is not whole, to the last byte
+  "$uncross" verify "$1/checkpoint.h5" >"$dir/err" 2>&1 && "$uncross" info "$1/checkpoint.h5" 2>"$dir/err" | sed -n 's/.*state hash \([0-9a-f]*\).*/\1/p'
 }
 step_of() {
   "$uncross" info "$1/checkpoint.h5" 2>/dev/null | sed -n 's/^  step \([0-9]*\),.*/\1/p'
@@ -47,6 +47,13 @@ unwritten=0
 for ((k = 1; k <= kills; k++)); do
   before=$(step_of "$dir/run")
   "$uncross" run "$dir/scene.yaml" --out "$dir/run" --resume --quiet 2>"$dir/err.$k" &
+  began=$(stat -c %i "$dir/run/checkpoint.h5")
+  if [ $((k % 2)) = 0 ]; then # half of them once it goes on, however slow the machine; the others whenever it is
+    for ((waited = 0; waited < 1000; waited++)); do
+      [ "$(stat -c %i "$dir/run/checkpoint.h5")" = "$began" ] || break
+      sleep 0.01
+    done
+  fi
   sleep "0.$(printf '%03d' $((20 + RANDOM % 180)))"
   kill -9 $! 2>/dev/null || { ok 1 "run $k was no longer there: $(head -c 200 "$dir/err.$k")"; break; }
   wait $! 2>/dev/null
@@ -76,6 +83,8 @@ for table in "$dir/straight"/*.csv; do
   cmp -s "$table" "$dir/run/${table##*/}"
   ok $? "killed or not: the same table ${table##*/}"
 done
+"$uncross" verify "$dir/run" "$dir/straight" >"$dir/verified"
+ok $? "killed or not: all files of the run are whole"
 aside=$(find "$dir/run" -name 'trajectory.damaged.*.h5' | wc -l)
 echo "# $aside trajectories were caught between two writes and set aside"
 "$uncross" info "$dir/run/trajectory.h5" >/dev/null 2>"$dir/err"

@@ -1,3 +1,4 @@
+#define _DEFAULT_SOURCE /* MAP_ANONYMOUS */
 #include "faults/inject.h"
 
 #include <errno.h>
@@ -9,42 +10,52 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 #include <xxhash.h>
 #include <yaml.h>
 
 static const char *const kind_names[INJECT_KINDS] = {"memory", "file", "hdf5", "signal"};
 
-static struct {
+struct plan {
   uint64_t calls[INJECT_KINDS];
   enum inject_kind kind;
   uint64_t n; /* 0: none fails */
   bool on, hit;
-  FILE *bad; /* the file that has an error */
-} plan;
+};
+
+static struct plan *plan; /* shared with the processes that read files (files/apart.h) */
+static FILE *bad;         /* the file that has an error */
+static bool held;         /* of this process alone */
 
 void inject_arm(enum inject_kind kind, uint64_t n, bool on)
 {
-  memset(&plan, 0, sizeof plan);
-  plan.kind = kind;
-  plan.n = n;
-  plan.on = on;
+  bad = NULL;
+  *plan = (struct plan){.kind = kind, .n = n, .on = on};
 }
 
 bool inject_disarm(void)
 {
-  plan.n = 0;
-  return plan.hit;
+  plan->n = 0;
+  return plan->hit;
+}
+
+void inject_hold(bool wanted)
+{
+  held = wanted;
 }
 
 /* Whether this call is to fail. */
 static bool fails(enum inject_kind kind)
 {
-  uint64_t call = ++plan.calls[kind];
-  if (kind != plan.kind || plan.n == 0 || call < plan.n || (call > plan.n && !plan.on))
+  if (!plan || held)
     return false;
-  plan.hit = true;
+  uint64_t call = ++plan->calls[kind];
+  if (kind != plan->kind || plan->n == 0 || call < plan->n || (call > plan->n && !plan->on))
+    return false;
+  plan->hit = true;
   static const int number[INJECT_KINDS] = {ENOMEM, ENOSPC, ENOSPC, EINTR};
   errno = number[kind];
   return true;
@@ -52,6 +63,10 @@ static bool fails(enum inject_kind kind)
 
 __attribute__((constructor)) static void begin(void)
 {
+  void *shared = mmap(NULL, sizeof *plan, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  if (shared == MAP_FAILED)
+    abort();
+  plan = shared;
   const char *wish = getenv("UNCROSS_FAIL");
   for (int kind = 0; wish && kind < INJECT_KINDS; kind++) {
     size_t length = strlen(kind_names[kind]);
@@ -65,13 +80,13 @@ int __real_fclose(FILE *file);
 
 __attribute__((destructor)) static void end(void)
 {
-  plan.n = 0;
+  plan->n = 0;
   const char *path = getenv("UNCROSS_CALLS");
   FILE *file = path ? __real_fopen(path, "w") : NULL;
   if (!file)
     return;
   for (int kind = 0; kind < INJECT_KINDS; kind++)
-    fprintf(file, "%s %" PRIu64 "\n", kind_names[kind], plan.calls[kind]);
+    fprintf(file, "%s %" PRIu64 "\n", kind_names[kind], plan->calls[kind]);
   __real_fclose(file);
 }
 
@@ -122,8 +137,10 @@ json_t *__wrap_json_pack(const char *format, ...)
 /* --- files ------------------------------------------------------------------------------------------------------- */
 
 INSTEAD(INJECT_FILE, FILE *, NULL, fopen, (const char *path, const char *mode), (path, mode))
-INSTEAD(INJECT_FILE, int, -1, fsync, (int fd), (fd))
-INSTEAD(INJECT_FILE, int, -1, rename, (const char *from, const char *to), (from, to))
+INSTEAD(INJECT_FILE, FILE *, NULL, fdopen, (int fd, const char *mode), (fd, mode))
+INSTEAD(INJECT_FILE, int, -1, renameat, (int fd, const char *from, int there, const char *to), (fd, from, there, to))
+INSTEAD(INJECT_FILE, int, -1, fstatat, (int fd, const char *name, struct stat *status, int how),
+        (fd, name, status, how))
 INSTEAD(INJECT_FILE, int, -1, mkdir, (const char *path, mode_t mode), (path, mode))
 INSTEAD(INJECT_FILE, int, -1, stat, (const char *path, struct stat *status), (path, status))
 INSTEAD(INJECT_FILE, int, -1, fstat, (int fd, struct stat *status), (fd, status))
@@ -147,21 +164,44 @@ int __wrap_posix_fallocate(int fd, off_t at, off_t n)
   return fails(INJECT_SIGNAL) || fails(INJECT_FILE) ? errno : __real_posix_fallocate(fd, at, n);
 }
 
+/* A disk that does not answer, whatever signals come. */
+int __real_fsync(int fd);
+int __wrap_fsync(int fd);
+int __wrap_fsync(int fd)
+{
+  const char *slow = getenv("UNCROSS_SLOW");
+  struct timespec left = {slow ? atoi(slow) : 0, 0};
+  while (nanosleep(&left, &left) != 0)
+    ;
+  return fails(INJECT_FILE) ? -1 : __real_fsync(fd);
+}
+
+int __real_clock_gettime(clockid_t clock, struct timespec *t);
+int __wrap_clock_gettime(clockid_t clock, struct timespec *t);
+int __wrap_clock_gettime(clockid_t clock, struct timespec *t)
+{
+  const char *haste = getenv("UNCROSS_HASTE");
+  const int result = __real_clock_gettime(clock, t);
+  t->tv_sec *= haste ? atoi(haste) : 1;
+  t->tv_nsec *= haste ? atoi(haste) : 1; /* more than a second: nobody minds */
+  return result;
+}
+
 /* A file with an error keeps it until it is closed. */
 int __real_ferror(FILE *f);
 int __wrap_ferror(FILE *f);
 int __wrap_ferror(FILE *f)
 {
-  if (f != plan.bad && fails(INJECT_FILE))
-    plan.bad = f;
-  return f == plan.bad || __real_ferror(f);
+  if (f != bad && fails(INJECT_FILE))
+    bad = f;
+  return f == bad || __real_ferror(f);
 }
 
 int __wrap_fclose(FILE *f);
 int __wrap_fclose(FILE *f)
 {
-  if (f == plan.bad)
-    plan.bad = NULL;
+  if (f == bad)
+    bad = NULL;
   int result = __real_fclose(f);
   return fails(INJECT_FILE) ? EOF : result;
 }
@@ -175,6 +215,17 @@ int __wrap_open(const char *path, int flags, ...)
   mode_t mode = flags & O_CREAT ? va_arg(arguments, mode_t) : 0;
   va_end(arguments);
   return fails(INJECT_FILE) ? -1 : __real_open(path, flags, mode);
+}
+
+int __real_openat(int folder, const char *path, int flags, ...);
+int __wrap_openat(int folder, const char *path, int flags, ...);
+int __wrap_openat(int folder, const char *path, int flags, ...)
+{
+  va_list arguments;
+  va_start(arguments, flags);
+  mode_t mode = flags & O_CREAT ? va_arg(arguments, mode_t) : 0;
+  va_end(arguments);
+  return fails(INJECT_FILE) ? -1 : __real_openat(folder, path, flags, mode);
 }
 
 /* --- HDF5 -------------------------------------------------------------------------------------------------------- */

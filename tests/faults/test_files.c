@@ -1,9 +1,9 @@
 /* What must be on the disk is waited for: each call that could fail is made, and its failure is told. */
-#include "io/files.h"
+#include "files/files.h"
 
 #include "faults/inject.h"
-#include "io/folder.h"
-#include "io/table.h"
+#include "files/folder.h"
+#include "files/table.h"
 
 /* What is synced or put in place. */
 struct bench {
@@ -34,7 +34,7 @@ static bool try_replace(struct bench *b, uint64_t n)
   struct message m = {""};
   spill(b->path, "old", 3);
   inject_arm(INJECT_FILE, n, false);
-  const bool ok = file_replace(b->path, "new!", 4, &m);
+  const bool ok = file_replace(by_name(""), b->path, "new!", 4, &m);
   inject_disarm();
   size_t bytes;
   char *found = slurp(b->path, &bytes), part[160];
@@ -66,7 +66,7 @@ static void test_failures_are_told(void **unused)
   make_folder(folder);
   struct test_run run = small_run(1);
   struct bench b = {.path = in_folder(folder, "f")};
-  assert_true(series_open(&b.series, folder, "t", 1, names, 0, &m));
+  assert_true(series_open(&b.series, by_name(folder), "t", 1, names, 0, &m));
   b.trajectory = trajectory_open(in_folder(folder, "t.h5"), &run.model, &options, false, 0, "", &m);
   assert_non_null(b.trajectory);
   for (size_t k = 0; k < sizeof tries / sizeof *tries; k++) {

@@ -44,12 +44,12 @@ def run(program, words, folder, **settings):
 
 
 def state_hash(path):
-    """Of a checkpoint, as the program tells it: which reads and checks it; None if there is none."""
+    """Of a checkpoint, as `info` tells it, which verifies every byte; None if there is none."""
     if not path.exists():
         return None
     told = run("uncross", ["info", path], path.parent)
     found = re.search(rb"state hash ([0-9a-f]{16})", told.stdout)
-    assert told.returncode == 0 and found, (told.stdout, told.stderr)
+    assert told.returncode == 0 and found and b": whole: every byte" in told.stdout, (told.stdout, told.stderr)
     return found[1]
 
 
@@ -64,6 +64,8 @@ class Faults(unittest.TestCase):
         (cls.start / "frame.yaml").write_text(SCENE + "start: {snapshot: run/trajectory.h5}\n")
         words = ["run", "scene.yaml", "--out", "run", "--quiet"]
         assert run("uncross", words + ["--steps", "2"], cls.start).returncode == 0
+        assert run("uncross", ["run", "scene.yaml", "--out", "../first", "--quiet", "--steps", "0"], cls.start).returncode == 0
+        cls.first = state_hash(cls.folder / "first/checkpoint.h5")
         cls.half = state_hash(cls.start / "run/checkpoint.h5")
         whole = cls.folder / "whole"
         shutil.copytree(cls.start, whole)
@@ -146,16 +148,21 @@ class Faults(unittest.TestCase):
         self.all_of(words, look)
 
     def test_new_run(self):
+        """It leaves nothing, or what can be resumed."""
         words = ["run", "scene.yaml", "--out", "new/run", "--quiet"]
 
         def look(folder, done, wish):
             found = state_hash(folder / "new/run/checkpoint.h5")
-            self.assertIn(found, (None, self.whole), wish)
+            self.assertIn(found, (None, self.first, self.whole), wish)
             if done.returncode == 0:
                 self.assertEqual(found, self.whole, wish)
+            if found is None:
+                self.assertFalse((folder / "new").exists(), (wish, done.stderr))
+            else:
+                again = run("uncross", words + ["--resume"], folder)
+                self.assertEqual(again.returncode, 0, (wish, done.stderr, again.stderr))
+                self.assertEqual(state_hash(folder / "new/run/checkpoint.h5"), self.whole, wish)
                 self.assertEqual((folder / "new/run/conserved.csv").read_bytes(), self.series, wish)
-            if done.returncode == 2:
-                self.assertFalse((folder / "new/run").exists() and any((folder / "new/run").iterdir()), wish)
 
         self.all_of(words, look)
 
@@ -205,7 +212,7 @@ class Faults(unittest.TestCase):
             if done.returncode == 0:
                 self.assertEqual((folder / "out.xyz").read_bytes(), right, wish)
 
-        self.all_of(["export", "run/trajectory.h5", "--output", "out.xyz"], look)
+        self.all_of(["export", "run/trajectory.h5", "--out", "out.xyz"], look)
 
     def test_analyze(self):
         def look(folder, done, wish):

@@ -4,9 +4,9 @@
 #include "exact.h"
 #include "fiber/force.h"
 #include "fiber/start.h"
+#include "system/fiber_kind.h"
 
-/* --- p(l) ~ l^2 exp(-k (l-l0)^2 / 2), integrated numerically ---------------------------------------------------------
- */
+/* --- p(l) ~ l^2 exp(-k (l-l0)^2 / 2), integrated numerically ------------------------------------------------------ */
 
 struct weight {
   double k, l0;
@@ -58,7 +58,8 @@ static void mean_bond_lengths(void **unused)
 static struct test_run started(struct model m)
 {
   struct test_run r = {.model = m};
-  assert_true(model_finish(&r.model) && state_alloc(&r.state, &r.model) && work_alloc(&r.work, &r.model));
+  test_finish(&r.model);
+  assert_true(state_alloc(&r.state, &r.model) && work_alloc(&r.work, &r.model));
   fiber_start(&r.state, &r.model);
   return r;
 }
@@ -242,10 +243,8 @@ static void places_and_velocities(void **unused)
 static void place(struct fiber_kind *kind, struct vec3 center, struct vec3 direction)
 {
   kind->placed = 1;
-  kind->center = malloc(sizeof center);
-  kind->direction = malloc(sizeof direction);
-  *kind->center = center;
-  *kind->direction = direction;
+  kind->place = malloc(sizeof *kind->place);
+  *kind->place = (struct fiber_place){center, direction};
 }
 
 /* Straight: evenly spaced by the mean bond length, along the direction, about the centre. The second fiber of the kind

@@ -94,7 +94,7 @@ static void forces_are_slopes_of_energies(void **unused)
       struct dice d = {seed};
       struct test_run r = shaped(&shapes[k], &d);
       const struct fiber_kind *kind = &r.model.kind[1];
-      assert_true(fiber_forces(&r.state, &r.model, &r.work, 1));
+      assert_true(fiber_forces(&r.state, &r.model, r.work.fiber.force, 1, &r.work.fault));
       real total = 0;
       for (uint32_t f = 1; f < 3; f++) {
         const uint32_t first = r.model.fiber_first[f];
@@ -147,7 +147,7 @@ static void forces_by_hand(void **unused)
   r.state.position[0] = (struct point){far, 0, 0};
   r.state.position[1] = (struct point){far + a0, 0, 0};
   r.state.position[2] = (struct point){far + a0, 2 * a0, 0};
-  assert_true(fiber_forces(&r.state, &r.model, &r.work, 1));
+  assert_true(fiber_forces(&r.state, &r.model, r.work.fiber.force, 1, &r.work.fault));
   const double expected[3][3] = {{50, -64, 0}, {-50 - 32, 150 + 64, 0}, {32, -150, 0}};
   for (int v = 0; v < 3; v++) {
     assert_close(r.work.fiber.force[v].x, expected[v][0], 1e-12);
@@ -160,7 +160,7 @@ static void forces_by_hand(void **unused)
 
   /* Eq. (8): V += F fraction dt / M */
   r.state.velocity[2] = (struct vec3){1, 1, 1};
-  fiber_kick(&r.state, &r.model, &r.work, 0.5);
+  fiber_kick(&r.state, &r.model, r.work.fiber.force, 0.5);
   assert_close(r.state.velocity[2].x, 1 + 32 * 0.005 / 5, 1e-15);
   assert_close(r.state.velocity[2].y, 1 - 150 * 0.005 / 5, 1e-15);
   assert_close(r.state.velocity[2].z, 1, 0);
@@ -185,7 +185,7 @@ static void long_bonds_are_refused(void **unused)
     struct point *end = &r.state.position[7], *before = &r.state.position[6];
     *end = *before;
     *(k / 8 == 0 ? &end->x : k / 8 == 1 ? &end->y : &end->z) += k / 4 % 2 ? length : -length;
-    bool ok = fiber_forces(&r.state, &r.model, &r.work, 5);
+    bool ok = fiber_forces(&r.state, &r.model, r.work.fiber.force, 5, &r.work.fault);
     assert_true(ok == (length < 2 * LATTICE_CELL));
     if (!ok) {
       assert_int_equal(r.work.fault.code, FAULT_BOND_TOO_LONG);
@@ -210,7 +210,7 @@ static void coinciding_vertices_stay_finite(void **unused)
     struct test_run r = dice_run(m, &d);
     for (uint32_t v = 0; v < 4; v++)
       r.state.position[v] = (struct point){v < 2 ? 0 : (int64_t)v << 38, 0, 0};
-    assert_true(fiber_forces(&r.state, &r.model, &r.work, 5));
+    assert_true(fiber_forces(&r.state, &r.model, r.work.fiber.force, 5, &r.work.fault));
     for (uint32_t v = 0; v < 4; v++)
       assert_true(isfinite(r.work.fiber.force[v].x) && isfinite(r.work.fiber.force[v].y));
     const struct fiber_energy energy = fiber_energies(&r.state, &r.model);

@@ -1,14 +1,20 @@
 /*
  * libFuzzer over what reads files: `make fuzz SECONDS=60`. The first byte of an input chooses the reader:
- *   s  the rest is a scene, as text
- *   c  the rest are changes of a valid checkpoint, which is then read
- *   t  the same of a trajectory
+ *   s      the rest is a scene, as text
+ *   o      the rest is a pack, as text: it is compared with a whole one, and dumped
+ *   k, j   the rest is a table, or run.json: it is verified and described
+ *   c, t   the rest are changes of a valid checkpoint or trajectory, which is then read as a resume and `analyze` do
+ *   e, f   the same of a checkpoint or trajectory, which is exported and verified
+ *   p      the same of a pack, which is compared with the whole one, and dumped
+ *   C, E, P  as c, e, p, with the seal made anew, so that what is behind it is reached
+ * Another first byte stands for one of these. FUZZ_READERS=soj in the environment: these readers only.
  * A change is four bytes: position (three, modulo the length) and what is xor-ed there; at most 16 of them, and if
- * their number is odd the file also ends at the last position. HDF5 itself is not the target: changes are few and the
- * files small.
+ * their number is odd the file also ends at the last position. HDF5 itself is not the target: it runs in a process of
+ * its own, which may die, but not of our own code.
  *
- * What is asserted: a scene that is read is also written and read back with the same fingerprint; a checkpoint that is
- * read is the one that was written.
+ * What is asserted: a scene that is read is also written and read back with the same fingerprint; what is read of a
+ * changed checkpoint, or of a changed trajectory or pack with its checksums, is what was written; nothing is refused
+ * without a word.
  */
 #include <stdint.h>
 #include <stdio.h>
@@ -16,8 +22,12 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "io/scene.h"
-#include "io/snapshot.h"
+#include "files/seal.h"
+#include "files/snapshot.h"
+#include "files/verify.h"
+#include "oracle/oracle.h"
+#include "scene/scene.h"
+#include "scene/scene_keys.h"
 #include "step.h"
 
 int LLVMFuzzerInitialize(int *count, char ***words);
@@ -37,8 +47,12 @@ struct victim {
 static struct {
   struct scene scene;
   struct state state;
-  struct victim checkpoint, trajectory;
+  struct victim checkpoint, trajectory, pack;
+  struct pack whole;
   uint64_t hash;
+  char *frame, *dump; /* the export of the whole trajectory, and the text of the whole pack */
+  char text[64];      /* where tables and records are put */
+  const char *readers;
 } all;
 
 static void require(bool what, const char *name)
@@ -68,19 +82,79 @@ static void make_files(void)
   remove(all.trajectory.path); /* of a process that crashed, and had this number */
   struct trajectory *t = trajectory_open(all.trajectory.path, model, &options, false, 0, scene_text, &message);
   require(t && trajectory_append(t, model, &all.state, &message) && trajectory_close(t, &message), message.text);
+  FILE *out = fopen(all.pack.path, "wb");
+  require(out && oracle_emit(&all.scene, &all.whole, &message) && pack_write(&all.whole, out, "pack", &message),
+          "a pack");
+  fclose(out);
+  oracle_sort(&all.whole);
   take_file(&all.checkpoint);
   take_file(&all.trajectory);
+  take_file(&all.pack);
 }
 
 static void end(void)
 {
   remove(all.checkpoint.path);
   remove(all.trajectory.path);
+  remove(all.pack.path);
+  remove(all.text);
   free(all.checkpoint.data);
   free(all.trajectory.data);
+  free(all.pack.data);
+  free(all.frame);
+  free(all.dump);
+  pack_free(&all.whole);
   state_free(&all.state);
   scene_free(&all.scene);
   memset(&all, 0, sizeof all);
+}
+
+/* A word of the reader about a failure that is the file's, not one of our own code in the process that reads it. */
+static void require_reason(const struct message *message, const char *name)
+{
+  require(message->text[0] != '\0' && !strstr(message->text, "ended early"), name);
+}
+
+/* What goes to a stream, to be freed. */
+struct sink {
+  FILE *stream;
+  char *text;
+  size_t size;
+};
+
+static void sink_open(struct sink *sink)
+{
+  sink->text = NULL;
+  sink->stream = open_memstream(&sink->text, &sink->size);
+  require(sink->stream != NULL, "memory");
+}
+
+static char *sink_close(struct sink *sink)
+{
+  fclose(sink->stream);
+  return sink->text;
+}
+
+/* Text of a file's frames, to be freed; NULL with a message if it cannot be exported. */
+static char *exported(const char *path, struct message *message)
+{
+  const struct export_options options = {.solvent = true, .last = UINT64_MAX};
+  struct sink sink;
+  sink_open(&sink);
+  const bool ok = trajectory_export(path, &options, sink.stream, message);
+  char *text = sink_close(&sink);
+  if (ok)
+    return text;
+  free(text);
+  return NULL;
+}
+
+static char *dumped(const struct pack *pack)
+{
+  struct sink sink;
+  sink_open(&sink);
+  pack_dump(pack, false, sink.stream);
+  return sink_close(&sink);
 }
 
 int LLVMFuzzerInitialize(int *count, char ***words)
@@ -88,6 +162,8 @@ int LLVMFuzzerInitialize(int *count, char ***words)
   (void)count, (void)words;
   struct message message;
   struct work work;
+  const char *readers = getenv("FUZZ_READERS");
+  all.readers = readers && *readers ? readers : "sokjctefpCEP";
   require(scene_read_text("seed", scene_text, strlen(scene_text), &all.scene, &message), message.text);
   require(state_alloc(&all.state, &all.scene.model) && work_alloc(&work, &all.scene.model), "memory");
   require(step_start(&all.state, &all.scene.model, &work), "start");
@@ -96,7 +172,11 @@ int LLVMFuzzerInitialize(int *count, char ***words)
   const char *folder = getenv("TMPDIR") ? getenv("TMPDIR") : ".";
   snprintf(all.checkpoint.path, sizeof all.checkpoint.path, "%.40s/uncross-fuzz-%d-c.h5", folder, (int)getpid());
   snprintf(all.trajectory.path, sizeof all.trajectory.path, "%.40s/uncross-fuzz-%d-t.h5", folder, (int)getpid());
+  snprintf(all.pack.path, sizeof all.pack.path, "%.40s/uncross-fuzz-%d-p.h5", folder, (int)getpid());
   make_files();
+  all.frame = exported(all.trajectory.path, &message);
+  all.dump = dumped(&all.whole);
+  require(all.frame && all.dump, "a whole file cannot be read");
   atexit(end);
   return 0;
 }
@@ -111,38 +191,61 @@ static char *written(const struct scene *scene, size_t *size)
   return text;
 }
 
+/* As `check` reads it: a scene of 2^31 vertices is right, and takes no memory. */
+static bool read_numbers(const char *path, const char *text, size_t size, struct scene *scene, struct message *message)
+{
+  return scene_read_source(&(struct scene_source){.keys = &scene_keys,
+                                                  .path = path,
+                                                  .text = text,
+                                                  .size = size,
+                                                  .missing = MISSING_ABSENT,
+                                                  .numbers_only = true,
+                                                  .message = message},
+                           scene);
+}
+
 static void read_scene(const uint8_t *data, size_t size)
 {
   struct scene scene, again;
   struct message message = {""};
-  if (!scene_read_text("fuzz.yaml", (const char *)data, size, &scene, &message)) {
+  if (!read_numbers("fuzz.yaml", (const char *)data, size, &scene, &message)) {
     require(message.text[0] != '\0', "a scene was refused without a word");
     return;
   }
   size_t length;
   char *text = written(&scene, &length);
-  require(scene_read_text("again.yaml", text, length, &again, &message), message.text);
+  require(read_numbers("again.yaml", text, length, &again, &message), message.text);
   require(again.fingerprint == scene.fingerprint, "written and read back, a scene has another fingerprint");
   free(text);
   scene_free(&again);
   scene_free(&scene);
 }
 
+static void put(const char *path, const uint8_t *data, size_t size)
+{
+  FILE *file = fopen(path, "wb");
+  require(file && fwrite(data, 1, size, file) == size, "fwrite");
+  fclose(file);
+}
+
 /* Puts the changed file where it is read. */
-static void damage(const struct victim *victim, const uint8_t *data, size_t size)
+static void damage(const struct victim *victim, bool sealed, const uint8_t *data, size_t size)
 {
   uint8_t *copy = malloc(victim->size);
-  size_t changes = size / 4 < 16 ? size / 4 : 16, end = victim->size;
+  size_t changes = size / 4 < 16 ? size / 4 : 16, end = victim->size - (sealed ? SEAL_BYTES : 0);
+  const size_t room = end;
   memcpy(copy, victim->data, victim->size);
   for (size_t k = 0; k < changes; k++) {
     const uint8_t *c = data + 4 * k;
-    size_t at = ((size_t)c[0] << 16 | (size_t)c[1] << 8 | c[2]) % victim->size;
+    size_t at = ((size_t)c[0] << 16 | (size_t)c[1] << 8 | c[2]) % room;
     copy[at] ^= c[3];
-    end = changes % 2 ? at : victim->size;
+    end = changes % 2 && !sealed ? at : end;
   }
-  FILE *file = fopen(victim->path, "wb");
-  require(file && fwrite(copy, 1, end, file) == end, "fwrite");
-  fclose(file);
+  if (sealed) {
+    seal_make(copy, end, copy + end);
+    end += SEAL_BYTES;
+  }
+  put(victim->path, copy, end);
   free(copy);
 }
 
@@ -153,7 +256,7 @@ static void read_checkpoint(void)
   if (checkpoint_read(all.checkpoint.path, &all.scene.model, &head, &all.state, NULL, 0, &message))
     require(state_hash(&all.state) == all.hash, "a changed checkpoint was taken for good");
   else
-    require(message.text[0] != '\0', "a checkpoint was refused without a word");
+    require_reason(&message, "a checkpoint was refused without a word");
 }
 
 static void read_trajectory(void)
@@ -161,27 +264,129 @@ static void read_trajectory(void)
   struct message message = {""};
   struct trajectory *t = trajectory_open_read(all.trajectory.path, &message);
   if (!t) {
-    require(message.text[0] != '\0', "a trajectory was refused without a word");
+    require_reason(&message, "a trajectory was refused without a word");
     return;
   }
   free(trajectory_scene_text(t));
-  if (trajectory_frames(t) > 0)
-    trajectory_read(t, &all.scene.model, 0, &all.state, &message);
+  if (trajectory_frames(t) > 0 && !trajectory_read(t, &all.scene.model, 0, &all.state, &message))
+    require_reason(&message, "a frame was refused without a word");
   trajectory_close(t, &message);
+}
+
+static void export_and_verify(const char *path, const char *right)
+{
+  struct message message = {""};
+  bool other;
+  char *text = exported(path, &message);
+  if (!text)
+    require_reason(&message, "a file was not exported, without a word");
+  else
+    require(!right || strcmp(text, right) == 0 || !strchr(text, '\n') || strlen(text) == 0,
+            "a changed frame was exported");
+  struct sink sink;
+  sink_open(&sink);
+  const enum condition condition = verify_file(path, &other, sink.stream);
+  char *said = sink_close(&sink);
+  require(other || (strlen(said) > 0 && !strstr(said, "ended early")), "verified without a word");
+  require(condition != CONDITION_WHOLE || text, "a file is called whole, and cannot be exported");
+  free(said);
+  free(text);
+}
+
+static void read_pack(const char *path, bool same)
+{
+  struct message message = {""};
+  struct pack pack;
+  if (!pack_read(path, &pack, &message)) {
+    require_reason(&message, "a pack was refused without a word");
+    return;
+  }
+  const struct oracle_options options = {0};
+  struct oracle_summary summary;
+  struct sink sink;
+  sink_open(&sink);
+  if (!oracle_align(&all.whole, &pack, &message) ||
+      !oracle_compare(&all.whole, &pack, &options, sink.stream, &summary, &message))
+    require_reason(&message, "a pack was not compared, without a word");
+  free(sink_close(&sink));
+  oracle_sort(&pack);
+  char *text = dumped(&pack);
+  require(!same || strcmp(text, all.dump) == 0, "a changed pack was taken for good");
+  free(text);
+  pack_free(&pack);
+}
+
+/* The text as a file of this ending. */
+static void read_text(const uint8_t *data, size_t size, const char *ending)
+{
+  const char *folder = getenv("TMPDIR") ? getenv("TMPDIR") : ".";
+  bool other;
+  snprintf(all.text, sizeof all.text, "%.40s/uncross-fuzz-%d%s", folder, (int)getpid(), ending);
+  put(all.text, data, size);
+  if (strcmp(ending, ".txt") == 0) {
+    read_pack(all.text, false);
+  } else {
+    struct sink sink;
+    sink_open(&sink);
+    verify_file(all.text, &other, sink.stream);
+    char *said = sink_close(&sink);
+    require(strlen(said) > 0, "verified without a word");
+    free(said);
+  }
+  remove(all.text);
+}
+
+static char reader_of(uint8_t byte)
+{
+  const char *found = byte ? strchr(all.readers, byte) : NULL;
+  return found ? *found : all.readers[byte % strlen(all.readers)];
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
   if (size == 0)
     return 0;
-  if (data[0] == 's') {
-    read_scene(data + 1, size - 1);
-  } else if (data[0] == 'c') {
-    damage(&all.checkpoint, data + 1, size - 1);
+  const uint8_t *rest = data + 1;
+  const char reader = reader_of(data[0]);
+  size--;
+  switch (reader) {
+  case 's':
+    read_scene(rest, size);
+    break;
+  case 'o':
+    read_text(rest, size, ".txt");
+    break;
+  case 'k':
+    read_text(rest, size, ".csv");
+    break;
+  case 'j':
+    read_text(rest, size, ".json");
+    break;
+  case 'c':
+  case 'C':
+    damage(&all.checkpoint, reader == 'C', rest, size);
     read_checkpoint();
-  } else if (data[0] == 't') {
-    damage(&all.trajectory, data + 1, size - 1);
+    break;
+  case 't':
+    damage(&all.trajectory, false, rest, size);
     read_trajectory();
+    break;
+  case 'e':
+  case 'E':
+    damage(&all.checkpoint, reader == 'E', rest, size);
+    export_and_verify(all.checkpoint.path, NULL);
+    break;
+  case 'f':
+    damage(&all.trajectory, false, rest, size);
+    export_and_verify(all.trajectory.path, all.frame);
+    break;
+  case 'p':
+  case 'P':
+    damage(&all.pack, reader == 'P', rest, size);
+    read_pack(all.pack.path, true);
+    break;
+  default:
+    break;
   }
   return 0;
 }

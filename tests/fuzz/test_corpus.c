@@ -1,6 +1,6 @@
 /* What the fuzzer has kept, read once more, without a fuzzer: with what fuzz_readers.c asserts. Runs in the root of the
  * tree. */
-#include "io/files.h"
+#include "files/files.h"
 
 #include "fuzz/fuzz_readers.c"
 
@@ -26,8 +26,12 @@ static void test_all_kept_inputs_are_borne(void **unused)
     free(data);
   }
   closedir(corpus);
-  print_message("  %u scenes, %u checkpoints, %u trajectories\n", readers['s'], readers['c'], readers['t']);
+  for (const char *c = "sokjctefpCEP"; *c; c++)
+    print_message("  %u of reader %c\n", readers[(uint8_t)*c], *c);
   assert_true(readers['s'] > 100 && readers['c'] > 10 && readers['t'] > 10);
+  for (const char *c = "okjefpCEP"; *c; c++)
+    if (readers[(uint8_t)*c] < 3)
+      fail_msg("reader %c has only %u inputs", *c, readers[(uint8_t)*c]);
   end();
   remove_folder(folder);
 }

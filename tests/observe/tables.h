@@ -84,7 +84,7 @@ static inline struct puppet puppet_start(struct model model, enum observable whi
   struct puppet p = {.model = model};
   struct observe_plan plan = {.longest_lag = longest};
   plan.every[which] = every;
-  assert_true(model_finish(&p.model));
+  test_finish(&p.model);
   assert_true(state_alloc(&p.state, &p.model));
   assert_non_null(p.observers = observers_create(&plan, &p.model));
   return p;

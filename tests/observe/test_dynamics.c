@@ -162,7 +162,7 @@ static void end_to_end_vector_turns(void **unused)
   const double degrees = 3.14159265358979324 / 180;
   for (int still = 0; still < 2; still++) {
     struct model m = test_model(8, 8, 8, 0, 0.5, 1);
-    test_add_kind(&m, 2, 2);
+    test_add_kind(&m, 2, 2)->spring = 10.0;
     struct puppet p = puppet_start(m, OBSERVE_DYNAMICS, 1, 12);
     for (p.state.step = 0; p.state.step <= 48; p.state.step++) {
       for (uint32_t f = 0; f < 2; f++) {
@@ -190,7 +190,7 @@ static void error_of_the_ratio_knows_both_parts(void **unused)
 {
   (void)unused;
   struct model m = test_model(32, 32, 32, 0, 1, 1);
-  test_add_kind(&m, 8, 2);
+  test_add_kind(&m, 8, 2)->spring = 2.0;
   struct puppet p = puppet_start(m, OBSERVE_DYNAMICS, 1, 1);
   for (p.state.step = 0; p.state.step < 4; p.state.step++) {
     for (uint32_t f = 0; f < 8; f++) {
@@ -216,6 +216,7 @@ static void background_motion_is_taken_out(void **unused)
   (void)unused;
   struct model m = test_model(8, 8, 8, 5, 0.125, 1);
   struct fiber_kind *kind = test_add_kind(&m, 8, 4);
+  kind->bending = 8.0;
   m.flow = (struct vec3){0.54, -0.25, 0.125};
   m.solvent.acceleration = (struct vec3){0, 0, 0.0625};
   kind->force = (struct vec3){0, 0, 5 * 0.0625}; /* M = 5: the same acceleration for all */
@@ -329,6 +330,8 @@ static void kinds_are_kept_apart(void **unused)
   struct model m = test_model(8, 8, 8, 0, 1, 1);
   test_add_kind(&m, 3, 5);
   test_add_kind(&m, 2, 7)->ring = true;
+  for (int k = 0; k < 2; k++)
+    m.kind[k].spring = 2.0, m.kind[k].bending = 0.0;
   struct puppet p = puppet_start(m, OBSERVE_DYNAMICS, 1, 4);
   for (p.state.step = 0; p.state.step <= 8; p.state.step++) {
     puppet_sample(&p);

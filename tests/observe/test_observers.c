@@ -1,8 +1,8 @@
 /* The observers as a run sees them: energies and temperatures, cadence, checkpoints, memory order. */
 #include "tables.h"
 
+#include "mpc/grid.h"
 #include "observe/conserved.h"
-#include "solvent/solvent.h"
 
 /* A small suspension with a body force (net force zero), a flow, and a thermostat-free solvent. */
 static struct model suspension(void)
@@ -22,19 +22,18 @@ static struct model suspension(void)
 
 static const struct observe_plan everything = {.every = {2, 3, 2, 2, 5}, .longest_lag = 64};
 
-/* --- conserved ------------------------------------------------------------------------------------------------------
- */
+/* --- conserved ---------------------------------------------------------------------------------------------------- */
 
 /* By hand: two solvent particles, one dumbbell stretched by 0.25 and at rest in the half step ahead. */
 static void energy_by_hand(void **unused)
 {
   (void)unused;
   struct model m = test_model(8, 8, 8, 0, 0.125, 2);
-  m.solvent.particles = 2;
+  test_particles(&m, 2);
   m.solvent.acceleration = (struct vec3){0, 1, 0};
   test_add_kind(&m, 1, 2);
   m.kind[0].mass = 2;
-  assert_true(model_finish(&m));
+  test_finish(&m);
   struct state s;
   assert_true(state_alloc(&s, &m));
   s.solvent.vx[0] = 3;
@@ -131,15 +130,13 @@ static void temperature_of_a_small_system_is_one(void **unused)
   enum { STARTS = 20000 };
   double sum[5] = {0}, squares[5] = {0};
   struct model m = test_model(4, 4, 4, 0, 1e-6, 2);
-  m.solvent.particles = 12;
+  test_particles(&m, 12);
   m.flow = (struct vec3){2, -1, 0.5};
   test_add_kind(&m, 4, 1);
   struct test_run r = test_start(m);
-  struct work work;
-  assert_true(motion_work(&work, &r.model));
   for (r.model.seed = 1; r.model.seed <= STARTS; r.model.seed++) {
     assert_true(step_start(&r.state, &r.model, &r.work));
-    const struct motion motion = motion_measure(&r.model, &r.state, &work);
+    const struct motion motion = motion_measure(&r.model, &r.state, r.work.fiber.force);
     const struct temperatures t = motion_temperatures(&r.model, &motion);
     const double now[] = {t.solvent.x, t.solvent.y, t.solvent.z, t.vertex, t.vertex_half};
     for (int k = 0; k < 5; k++) {
@@ -151,12 +148,10 @@ static void temperature_of_a_small_system_is_one(void **unused)
     const double error = sqrt((squares[k] - sum[k] * sum[k]) / STARTS);
     assert_sigma(sum[k], error, 1.0, 3.5);
   }
-  work_free(&work);
   test_end(&r);
 }
 
-/* --- a run ----------------------------------------------------------------------------------------------------------
- */
+/* --- a run -------------------------------------------------------------------------------------------------------- */
 
 struct outcome {
   struct kept_rows *rows;
@@ -369,7 +364,7 @@ static void collision_rates(void **unused)
   struct puppet p = puppet_start(m, OBSERVE_COLLISIONS, 5, 0);
   struct kept_rows *rows = calloc(1, sizeof *rows);
   const struct observe_sink sink = {keep_row, rows};
-  const struct collision_counts counts[] = {{0, 0, 0, 0}, {960, 20, 16, 2}, {1920, 80, 40, 3}};
+  const struct collision_counts counts[] = {{0}, {960, 20, 16, 2, 0, 0}, {1920, 80, 40, 3, 0, 0}};
   for (int k = 0; k < 3; k++) {
     p.state.step = 5 * (uint64_t)k;
     p.state.counts = counts[k];

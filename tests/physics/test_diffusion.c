@@ -1,6 +1,7 @@
 /* Diffusion of loose vertices without hydrodynamics: wrong exchange sets, lost momentum, a wrong mass show here. */
 #include "../../validation/measure/diffusion.h"
 #include "support.h"
+#include "theory/theory.h"
 
 /* The averages over Poisson numbers, against values worked out apart from this code for few vertices:
  * c = 0.684094, D_0 = 0.0106620 at gamma 5, dt_c 0.02, 90 degrees, M = 5. */
@@ -45,7 +46,6 @@ static void among_phantoms_molecular_chaos_is_exact(void **unused)
 {
   (void)unused;
   struct model m = test_model(32, 32, 32, 5, 0.02, 1);
-  m.solvent.particles = 0;
   m.solvent.hydrodynamics = false;
   m.solvent.bath = BATH_PHANTOMS;
   test_add_kind(&m, 128, 1);
@@ -59,10 +59,32 @@ static void among_phantoms_molecular_chaos_is_exact(void **unused)
   test_end(&r);
 }
 
+/* The same for MPC-AT-a, which leaves a vertex alone among n particles M/(M + n) of its velocity: D_0 = kT dt_c/M
+ * [1/(1-c) - 1/2] with 1 - c = <n/(M + n)>, n Poisson of mean 5, M = 5, dt_c 0.02; worked out apart from this code:
+ * 1 - c = 0.47385873, D_0 = 0.00644133. The gates are those above. */
+static void among_phantoms_of_the_andersen_rule_too(void **unused)
+{
+  (void)unused;
+  struct model m = test_model(32, 32, 32, 5, 0.02, 1);
+  m.solvent.rule = RULE_AT_A;
+  m.solvent.hydrodynamics = false;
+  m.solvent.bath = BATH_PHANTOMS;
+  test_add_kind(&m, 128, 1);
+  struct test_run r = test_start(m);
+  struct sample d;
+  const double chaos = theory_vertex_diffusion(&at_a_rule, 5.0, 5.0, 0.0, 0.02);
+  assert_close(chaos, 0.00644133, 1e-8);
+  assert_true(diffusion_run(&r.model, &r.state, &r.work, 30, 1603, (uint32_t[]){1, 3}, &d));
+  assert_true(sample_error(&d) < 0.005 * chaos);
+  assert_sigma(d.mean, sample_error(&d), chaos, 4.5);
+  test_end(&r);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(retention_and_chaos_value),
                                      cmocka_unit_test(without_hydrodynamics_vertices_diffuse_as_molecular_chaos),
-                                     cmocka_unit_test(among_phantoms_molecular_chaos_is_exact)};
+                                     cmocka_unit_test(among_phantoms_molecular_chaos_is_exact),
+                                     cmocka_unit_test(among_phantoms_of_the_andersen_rule_too)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
 /* The solvent with heavy vertices in it, left alone: Maxwell, Poisson, equipartition; and the thermostats. */
+#include "fluid/fluid.h"
 #include "statistics.h"
 #include "support.h"
 
@@ -18,7 +19,7 @@ static double occupancy_ratio(const struct test_run *r)
   const size_t cells = (size_t)box_cell_count(&r->model.box);
   uint32_t *members = calloc(cells, sizeof *members);
   for (uint32_t i = 0; i < s->n; i++) {
-    struct point p = state_solvent_position(&r->state, &r->model, i);
+    struct point p = fluid_position_now(&r->state, &r->model, i);
     members[((size_t)(p.z >> LATTICE_BITS) * (size_t)r->model.box.cells[1] + (size_t)(p.y >> LATTICE_BITS)) *
                 (size_t)r->model.box.cells[0] +
             (size_t)(p.x >> LATTICE_BITS)]++;
@@ -78,7 +79,7 @@ static void solvent_and_vertices_share_energy(void **unused)
 /* From twice the temperature, the vertices among the solvent, to kT = 1 and a Maxwell distribution. Counting 3N instead
  * of 3(N-1) degrees of freedom per cell would end at 1.25 (gamma 5); one factor per cell without the Gamma
  * distribution, at a kurtosis below 3. */
-static void thermostat_holds(enum thermostat thermostat)
+static void thermostat_holds(enum thermostat_kind thermostat)
 {
   struct model m = test_model(8, 8, 8, 5, 0.02, 1);
   m.solvent.thermostat = thermostat;

@@ -71,8 +71,7 @@ static double predicted_temperature(const struct model *m, uint32_t collisions, 
   return kt;
 }
 
-/* --- the same, run -------------------------------------------------------------------------------------------------
- */
+/* --- the same, run ------------------------------------------------------------------------------------------------ */
 
 struct outcome {
   double energy_ratio, temperature; /* at the end; of the start's energy, and kT of the solvent */
@@ -80,10 +79,10 @@ struct outcome {
 };
 
 /* 400 t0 of 100 dumbbells with springs of no length in 2560 solvent particles, collisions every second step. */
-static struct outcome run_order(enum order order, struct model *copy)
+static struct outcome run_order(enum scheme order, struct model *copy)
 {
   struct model m = test_model(8, 8, 8, 5, 0.01, 2);
-  m.order = order;
+  m.scheme = order;
   m.crossing.forbidden = false;
   struct fiber_kind *k = test_add_kind(&m, DUMBBELLS, 2);
   k->bond_length = 0.0;
@@ -110,7 +109,7 @@ static struct outcome run_order(enum order order, struct model *copy)
 }
 
 /* Drift: the gate of 0.5 % is far above a leap-frog's oscillation and far below the paper's order. <r^2>: 4 sigma. */
-static void assert_equilibrium(enum order order, double expected_stretch)
+static void assert_equilibrium(enum scheme order, double expected_stretch)
 {
   struct outcome o = run_order(order, NULL);
   assert_close(o.energy_ratio, 1.0, 0.005);
@@ -122,13 +121,13 @@ static void assert_equilibrium(enum order order, double expected_stretch)
 static void kick_split_keeps_energy_and_size(void **unused)
 {
   (void)unused;
-  assert_equilibrium(ORDER_KICK_SPLIT, 1.0 / (1.0 - 0.25 * 2.0 * SPRING / MASS * 1e-4));
+  assert_equilibrium(SCHEME_KICK_SPLIT, 1.0 / (1.0 - 0.25 * 2.0 * SPRING / MASS * 1e-4));
 }
 
 static void drift_split_keeps_energy_and_size(void **unused)
 {
   (void)unused;
-  assert_equilibrium(ORDER_DRIFT_SPLIT, 1.0);
+  assert_equilibrium(SCHEME_DRIFT_SPLIT, 1.0);
 }
 
 /* The prediction is for dumbbells with Gaussian components in mean fields: good to a per cent or so. Gates: 5 % of the
@@ -137,7 +136,7 @@ static void paper_order_heats_and_shrinks_as_predicted(void **unused)
 {
   (void)unused;
   struct model m;
-  struct outcome o = run_order(ORDER_PAPER, &m);
+  struct outcome o = run_order(SCHEME_PAPER, &m);
   double stretch, kt = predicted_temperature(&m, 20000, &stretch);
   print_message("  predicted: kT x %.4f, k<r^2>/3kT = %.4f\n", kt, stretch);
   assert_true(o.temperature > 2.0);

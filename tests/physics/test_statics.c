@@ -48,11 +48,11 @@ static void look_at_fiber(const struct state *s, uint32_t first, struct expected
 /* 64 fibers of 16 vertices in 8^3 cells: 1.9 bonds per cell, as dense as the paper's densest. Canonical thermostat,
  * since every executed collision heats a little (docs/accuracy.md). Every fiber's average over time is one entry: 64 of
  * them. */
-static void statics_hold(enum order order, uint64_t seed)
+static void statics_hold(enum scheme order, uint64_t seed)
 {
   struct model m = test_model(8, 8, 8, 5, 0.01, 2);
   m.seed = seed;
-  m.order = order;
+  m.scheme = order;
   m.solvent.thermostat = THERMOSTAT_MAXWELL_BOLTZMANN;
   test_add_kind(&m, FIBERS, VERTICES)->bending = KAPPA;
   struct test_run r = test_start(m);
@@ -88,13 +88,13 @@ static void statics_hold(enum order order, uint64_t seed)
 static void statics_hold_with_kick_split(void **unused)
 {
   (void)unused;
-  statics_hold(ORDER_KICK_SPLIT, 1);
+  statics_hold(SCHEME_KICK_SPLIT, 1);
 }
 
 static void statics_hold_with_drift_split(void **unused)
 {
   (void)unused;
-  statics_hold(ORDER_DRIFT_SPLIT, 2);
+  statics_hold(SCHEME_DRIFT_SPLIT, 2);
 }
 
 int main(void)

@@ -1,8 +1,8 @@
 /* The exact audit at length: 4.5 million adversarial moves, two million moves of dense suspensions against all partners
- * and images, a million stacks of a few bonds that hit each other (fiber/adversarial.h). Some minutes. */
+ * and images, a million stacks of a few bonds that hit each other (contact/adversarial.h). Some minutes. */
 #include "stress.h"
 
-#include "fiber/adversarial.h"
+#include "contact/adversarial.h"
 
 static void adversarial_moves(void **unused)
 {

@@ -2,7 +2,7 @@
  * a small box; across the boundary, at several dt, with and without solvent. */
 #include "stress.h"
 
-#include "fiber/rings.h"
+#include "contact/rings.h"
 
 static const struct scene {
   const char *name;
@@ -27,7 +27,7 @@ static void follow(const struct scene *scene, uint64_t *steps)
     struct model m = scene->make(scene->per_cell, scene->dt);
     m.seed = dice_seed(2602) + 100 * run;
     m.crossing.exclusion = run % 2 ? EXCLUSION_PAPER : EXCLUSION_SHARED_VERTEX;
-    m.crossing.refusal = (run + (uint64_t)(scene - scenes)) % 3 == 2 ? REFUSAL_BOUNCE : REFUSAL_STAY;
+    m.crossing.rejection = (run + (uint64_t)(scene - scenes)) % 3 == 2 ? REJECTION_BOUNCE : REJECTION_STAY;
     struct test_run r = test_start(m);
     const struct followed f = follow_links(&r, each);
     if (f.changed > 0)

@@ -7,7 +7,7 @@
 struct long_run {
   const char *name;
   bool forbidden;
-  enum thermostat thermostat;
+  enum thermostat_kind thermostat;
   double steps;
 };
 

@@ -8,16 +8,18 @@ TOOLS = pathlib.Path(__file__).resolve().parents[2] / "tools"
 
 FILES = {
     "src/base/vec.h": "",
-    "src/state/state.h": '#include "base/vec.h"\n',
-    "src/solvent/flow.h": '#include "state/state.h"\n',
-    "src/solvent/flow.c": '#include "solvent/flow.h"\n/* Padding 2009, Eqs. (1)-(20) and (22), (25). */\nvoid flow(void)\n{\n}\n',
-    "src/fiber/bend.h": '#include "state/state.h"\n/* Padding 2009, Eq. (21). */\nstatic inline int bend(int x)\n{\n}\n',
+    "src/system/state.h": '#include "base/vec.h"\n',
+    "src/mpc/flow.h": '#include "system/state.h"\n',
+    "src/mpc/flow.c": '#include "mpc/flow.h"\n/* Padding 2009, Eqs. (1)-(20) and (22), (25). */\nvoid flow(void)\n{\n}\n',
+    "src/fiber/bend.h": '#include "system/state.h"\n/* Padding 2009, Eq. (21). */\nstatic inline int bend(int x)\n{\n}\n',
     "src/fiber/bend.c": '#include "fiber/bend.h"\nint twist(int x)\n{\n  /* Padding 2009, Eqs. (23) and (24). */\n}\n',
     "src/step.h": "",
-    "src/step.c": '#include "step.h"\n#include "fiber/bend.h"\n#include "solvent/flow.h"\n',
+    "src/step.c": '#include "step.h"\n#include "fiber/bend.h"\n#include "mpc/flow.h"\n',
     "src/observe/mean.h": '#include "fiber/bend.h" /* Eq. (1) */\n',
-    "src/io/file.h": "#include <hdf5.h>\n",
-    "src/main.c": '#include "io/file.h"\n#include "observe/mean.h"\n#include "step.h"\n',
+    "src/files/file.h": "#include <hdf5.h>\n",
+    "include/house.h": "#include <stddef.h>\n",
+    "src/api/door.c": '#include "house.h"\n#include "files/file.h"\n',
+    "src/cli/main.c": '#include "house.h"\n#include "files/file.h"\n#include "observe/mean.h"\n#include "step.h"\n',
     "docs/equations.tsv": "# comment\n" + "".join(
         f"{n}\t{'code' if n < 26 else 'later'}\tmeaning\t{'src/step.c' if n < 26 else '-'}\t-\n" for n in range(1, 44)),
 }
@@ -64,23 +66,23 @@ class Floors(Tree):
         self.assertEqual(status, 0, output)
 
     def test_upward_include(self):
-        self.add("src/state/state.h", '#include "step.h"\n')
-        self.complain("src/state/state.h:2: state (floor 1) must not include step (floor 3)")
+        self.add("src/system/state.h", '#include "step.h"\n')
+        self.complain("src/system/state.h:2: system (floor 1) must not include step (floor 3)")
 
-    def test_solvent_and_fiber_never_meet(self):
-        self.add("src/solvent/flow.c", '  # include "fiber/bend.h"\n')
-        self.complain("solvent (floor 2) must not include fiber (floor 2)")
+    def test_mpc_and_fiber_never_meet(self):
+        self.add("src/mpc/flow.c", '  # include "fiber/bend.h"\n')
+        self.complain("mpc (floor 2) must not include fiber (floor 2)")
 
-    def test_fiber_and_solvent_never_meet(self):
-        self.add("src/fiber/bend.h", '#include "solvent/flow.h"\n')
-        self.complain("fiber (floor 2) must not include solvent (floor 2)")
+    def test_fiber_and_mpc_never_meet(self):
+        self.add("src/fiber/bend.h", '#include "mpc/flow.h"\n')
+        self.complain("fiber (floor 2) must not include mpc (floor 2)")
 
     def test_angle_brackets_are_no_way_around(self):
-        self.add("src/solvent/flow.c", "#include <fiber/bend.h>\n")
+        self.add("src/mpc/flow.c", "#include <fiber/bend.h>\n")
         self.complain('files of this project are included as "room/file.h"')
 
     def test_macro_is_no_way_around(self):
-        self.add("src/solvent/flow.c", "#include BEND\n")
+        self.add("src/mpc/flow.c", "#include BEND\n")
         self.complain("#include BEND")
 
     def test_unknown_room(self):
@@ -101,16 +103,31 @@ class Floors(Tree):
         self.complain("src/fiber/knot.h:1: not reachable")
 
     def test_unreachable_source(self):
-        self.put("src/fiber/knot.c", '#include "state/state.h"\n')
+        self.put("src/fiber/knot.c", '#include "system/state.h"\n')
         self.complain("src/fiber/knot.c:1: not reachable")
 
     def test_file_library_in_the_physics(self):
         self.add("src/observe/mean.h", "#include <hdf5.h>\n")
-        self.complain("hdf5.h belongs to floor 4 and above")
+        self.complain("hdf5.h belongs to floor 6 and above")
 
     def test_test_library_in_the_program(self):
-        self.add("src/main.c", "#include <gsl/gsl_math.h>\n")
+        self.add("src/cli/main.c", "#include <gsl/gsl_math.h>\n")
         self.complain("gsl/gsl_math.h must not be used in src/")
+
+
+    def test_public_header_inside(self):
+        self.add("src/files/file.h", '#include "house.h"\n')
+        self.complain("src/files/file.h:2: the public header house.h is for api, cli only")
+
+    def test_public_header_that_knows_the_inside(self):
+        self.add("include/house.h", '#include "step.h"\n')
+        self.complain('include/house.h:2: #include "step.h": a public header includes the C library only')
+
+    def test_api_is_reached_through_the_public_header(self):
+        self.put("src/api/knob.h", "")
+        self.complain("src/api/knob.h:1: not reachable")
+        self.put("src/api/knob.c", '#include "api/knob.h"\n')
+        self.complain("src/api/knob.c:1: not reachable")
 
 
 class Equations(Tree):
@@ -125,7 +142,7 @@ class Equations(Tree):
         status, output = self.call("check-equations")
         self.assertEqual(status, 0, output)
         page = (self.root / "docs/equations.md").read_text()
-        self.assertIn("| (20) | meaning | code | [`src/solvent/flow.c: flow`](../src/solvent/flow.c) |", page)
+        self.assertIn("| (20) | meaning | code | [`src/mpc/flow.c: flow`](../src/mpc/flow.c) |", page)
         self.assertIn("| (21) | meaning | code | [`src/fiber/bend.h: bend`](../src/fiber/bend.h) |", page)
         self.assertIn("| (24) | meaning | code | [`src/fiber/bend.c: twist`](../src/fiber/bend.c) |", page)
 
@@ -135,7 +152,7 @@ class Equations(Tree):
 
     def test_two_homes(self):
         self.add("src/step.c", "/* Padding 2009, Eq. (7) */\n")
-        self.complain("Eq. (7) has more than one home: src/solvent/flow.c:2, src/step.c:4")
+        self.complain("Eq. (7) has more than one home: src/mpc/flow.c:2, src/step.c:4")
 
     def test_tag_of_what_is_not_code(self):
         self.add("src/step.c", "/* Padding 2009, Eq. (29) */\n")
@@ -169,10 +186,10 @@ class Equations(Tree):
         self.replace("docs/equations.tsv", "src/step.c", "tests/none.c")
         self.complain("Eq. (1) names tests/none.c, which is not there")
 
-    def test_claim(self):
-        (self.root / "validation/claims/tube").mkdir(parents=True)
-        self.replace("docs/equations.tsv", "1\tcode\tmeaning\tsrc/step.c\t-", "1\tcode\tmeaning\tsrc/step.c\tvalidation/claims/tube")
-        self.complain("Eq. (1) names a claim without a page, docs/claims/tube.md")
+    def test_case(self):
+        (self.root / "validation/cases/tube").mkdir(parents=True)
+        self.replace("docs/equations.tsv", "1\tcode\tmeaning\tsrc/step.c\t-", "1\tcode\tmeaning\tsrc/step.c\tvalidation/cases/tube")
+        self.complain("Eq. (1) names a case without a page, docs/claims/tube.md")
         self.put("docs/claims/tube.md", "")
         self.assertEqual(self.call("check-equations", "--write")[0], 0)
         self.assertIn("| [tube](claims/tube.md) |", (self.root / "docs/equations.md").read_text())

@@ -71,7 +71,7 @@ class Parse(unittest.TestCase):
         self.assertEqual((got.total, got.inclusive["work"], got.inclusive["sqrt"], got.address[0x200]), (5, 5, 2.5, 2))
 
 
-ROWS = [("dense", "fiber_sweep", "vertex", 100.0), ("dense", "fiber_kick", "vertex", 20.0)]
+ROWS = [("dense", "fiber_forces", "vertex", 100.0), ("dense", "fiber_kick", "vertex", 20.0)]
 
 
 class Table(unittest.TestCase):
@@ -80,17 +80,17 @@ class Table(unittest.TestCase):
         return [passes for _, passes in counts.judge(ROWS, table)]
 
     def test_within_the_guard(self):
-        self.assertEqual(self.verdicts(sweep=104.9, kick=19.1), [True, True])
+        self.assertEqual(self.verdicts(forces=104.9, kick=19.1), [True, True])
 
     def test_slower_fails(self):
-        self.assertEqual(self.verdicts(sweep=95.0, kick=20.0), [False, True])
+        self.assertEqual(self.verdicts(forces=95.0, kick=20.0), [False, True])
 
     def test_faster_fails_too(self):
-        self.assertEqual(self.verdicts(sweep=100.0, kick=21.2), [True, False])
+        self.assertEqual(self.verdicts(forces=100.0, kick=21.2), [True, False])
 
     def test_new_and_lost_stages_fail(self):
-        self.assertEqual(self.verdicts(sweep=100.0), [True, False])
-        self.assertEqual(self.verdicts(sweep=100.0, kick=20.0, forces=1.0), [True, True, False])
+        self.assertEqual(self.verdicts(forces=100.0), [True, False])
+        self.assertEqual(self.verdicts(forces=100.0, kick=20.0, other=1.0), [True, True, False])
 
     def test_written_and_read(self):
         build = counts.build_of("uncross 0.1.0 (commit 12ab; gcc (Debian 12.2.0-14; x) 12.2.0; -std=c11  -O3)\n")

@@ -36,7 +36,9 @@ class MeasureTest(unittest.TestCase):
         for name, steps in STEPS.items():
             path = self.scenes / f"{name}.yaml"
             path.write_text(re.sub(r"^steps: \d+", f"steps: {steps}", path.read_text(), flags=re.M)
-                            .replace("every: 4000", f"every: {steps}"))
+                            .replace("every: 4000", f"every: {steps}")
+                            .replace("conserved: {every: 400}", f"conserved: {{every: {steps // 4}}}")
+                            .replace("conserved: {every: 300}", f"conserved: {{every: {steps // 4}}}"))
 
     def test_table(self):
         kept = self.dir / "kept"
@@ -46,11 +48,16 @@ class MeasureTest(unittest.TestCase):
         wanted_header, wanted = rows((DATA / "observables.csv").read_text())
         self.assertEqual(header, wanted_header)
         self.assertEqual(list(values), list(wanted))
-        for name, (value, error, blocks, theory, resolve) in values.items():
-            self.assertEqual([theory, resolve], wanted[name][3:])
-            self.assertEqual(int(blocks), 16 if name in ("viscosity", "solvent_memory", "solvent_diffusion") else 2)
+        times = {"3.36": 3.36, "400": 4.0, "300": 4.0, "40": 4.0}  # of the scenes, and as shortened here
+        for name, (value, error, blocks, time, theory, resolve, bound) in values.items():
+            self.assertEqual([theory, resolve, bound], wanted[name][4:])
+            self.assertAlmostEqual(float(time), times[wanted[name][3]])
+            self.assertEqual(int(blocks), 16 if time == "3.36" else 2)
             self.assertGreaterEqual(float(error), 0.0)
-            self.assertGreater(float(value), 0.0)
+            if bound:
+                self.assertLess(abs(float(value)), 1e-6 * float(bound), name)
+            else:
+                self.assertGreater(float(value), 0.0, name)
         # `wave` is as long as ever: 16 runs of seeds that the reference has not seen; 4.5 standard errors, Student t of
         # 15 degrees of freedom: 4e-4 by chance, once and for all, for seeds are fixed.
         value, error = map(float, values["viscosity"][:2])
@@ -65,11 +72,17 @@ class MeasureTest(unittest.TestCase):
         self.assertEqual(measure(kept, "--scenes", self.scenes, "--runs", 2, "--reference")[1], table)
         self.assertEqual(sorted(blocks.read_text().splitlines()), sorted(whole.splitlines()))
 
-        # judge reads it
-        (self.dir / "reference.csv").write_text(table)
-        done = subprocess.run([UNCROSS, "oracle", "judge", self.dir / "reference.csv", DATA / "observables.csv"],
-                              capture_output=True, text=True, check=False)
-        self.assertIn("verdict", done.stdout, done.stderr)
+        # Blocks of one scene have one length.
+        blocks.write_text(whole.replace("time=4.0", "time=5.0", 1))
+        code, _, said = measure(kept, "--scenes", self.scenes, "--runs", 2)
+        self.assertEqual((code, "have different lengths" in said), (1, True), said)
+
+        # judge reads it, and does not compare blocks of other lengths
+        theirs = self.dir / "theirs.csv"
+        theirs.write_text(table)
+        for ours, wanted in ((theirs, "verdict"), (DATA / "observables.csv", "is another time")):
+            done = subprocess.run([UNCROSS, "oracle", "judge", ours, theirs], capture_output=True, text=True, check=False)
+            self.assertIn(wanted, done.stdout + done.stderr)
 
     def test_another_program_is_refused(self):
         (self.dir / "blocks.csv").write_text("# uncross 0.0\n")

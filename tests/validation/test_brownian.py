@@ -51,7 +51,7 @@ class Slowing(unittest.TestCase):
         self.assertLess(float(abs(lost).max()), 1e-15)
 
     def test_first_moment(self):
-        """<A.A>/3 of a chain without a field: forces cancel, so nothing; with it, <A.A> at once is exact for three beads:
+        """<A.A>/3 of a chain without a field: forces cancel, so nothing; with it, <A.A> at once is exact for three vertices:
         A = (1/3) sum_i (sum_j mu_ij) F_j, averaged here over shapes of their own, by another sum."""
         _, lost, _, _ = brownian.slowing(3, 64, 2.0, 0.01, 1e9, SPREAD)
         self.assertLess(float(abs(lost).max()), 1e-12)

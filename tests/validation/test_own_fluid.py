@@ -9,7 +9,7 @@ import numpy
 from scipy import integrate
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "validation"))
-from lib import brownian, claim, dilute, own_fluid  # noqa: E402
+from lib import brownian, case, dilute, own_fluid  # noqa: E402
 
 SPREAD = 1.0 / 6.0
 
@@ -76,8 +76,8 @@ class OwnFluid(unittest.TestCase):
             self.assertAlmostEqual(one[axis] / two[(axis + 1) % 3], 1.0, 5)
 
     def test_table(self):
-        """A row of the claim's table, made again from one rod: three axes of one shape are all."""
-        rods = claim.load("rods")
+        """A row of the case's table, made again from one rod: three axes of one shape are all."""
+        rods = case.load("rods")
         value, _ = own_fluid.share(lambda random: dilute.rod_shape(10, rods.BOND, random), 1.55, 1, SPREAD)
         whole = dilute.cells_rod(10, rods.BOND, 0.0)
         self.assertAlmostEqual(value / dilute.ETA / whole, rods.OWN[10][0], delta=rods.OWN[10][1])

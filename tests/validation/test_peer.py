@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Verdicts of claim peer on made-up tables: alike, apart by one per cent, absent; and its line of molecular chaos."""
+"""Verdicts of the validation case peer on made-up tables: alike, apart by one per cent, absent; and its line of molecular chaos."""
 import pathlib
 import sys
 import unittest
@@ -9,9 +9,9 @@ import numpy
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "validation"))
 
-from lib import claim, theory
+from lib import case, theory
 
-PEER = claim.load("peer")
+PEER = case.load("peer")
 
 
 class Made:

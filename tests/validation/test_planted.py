@@ -1,4 +1,4 @@
-"""Every planted bug can still be planted, and its claims and runs exist."""
+"""Every planted bug can still be planted, and its cases and runs exist."""
 import pathlib
 import re
 import sys
@@ -10,7 +10,7 @@ sys.dont_write_bytecode = True
 TREE = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(TREE / "validation"))
 
-from lib import claim as claims
+from lib import case as cases
 
 
 class Planted(unittest.TestCase):
@@ -22,14 +22,14 @@ class Planted(unittest.TestCase):
                 text = (TREE / bug["file"]).read_text()
                 self.assertEqual(text.count(bug["old"]), 1)
                 self.assertNotIn(bug["new"], text)
-                for claim, pattern in bug["claims"].items():
-                    names = [run.name for run in claims.load(claim).runs("quick")]
-                    self.assertTrue(any(re.fullmatch(pattern, name) for name in names), (claim, pattern))
+                for case, pattern in bug["cases"].items():
+                    names = [run.name for run in cases.load(case).runs("quick")]
+                    self.assertTrue(any(re.fullmatch(pattern, name) for name in names), (case, pattern))
 
-    def test_every_claim_has_one(self):
+    def test_every_case_has_one(self):
         bugs = yaml.safe_load((TREE / "validation/planted/bugs.yaml").read_text())
-        held = {claim for bug in bugs for claim in bug["claims"]}
-        gated = {name for name in claims.names() if claims.load(name).runs("quick")}
+        held = {case for bug in bugs for case in bug["cases"]}
+        gated = {name for name in cases.names() if cases.load(name).runs("quick")}
         self.assertEqual(gated - held - {"cost"}, set())  # cost is a matter of time, not of bugs
 
 

@@ -14,13 +14,13 @@ sys.dont_write_bytecode = True
 TREE = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(TREE / "validation"))
 
-from lib import claim as claims
+from lib import case as cases
 from lib import report
 
 CAMPAIGN = TREE / "reference-data/campaign"
-CLAIM = '''
+CASE = '''
 from lib import figures
-from lib.claim import Figure, Outcome, Verdict
+from lib.case import Figure, Outcome, Verdict
 from lib.runs import Run
 
 TITLE, PAPER = "Made up & so on", "Fig. 0"
@@ -56,7 +56,7 @@ def differences(a, b, where=""):
 
 class Verdicts(unittest.TestCase):
     def verdict(self, measured, kind="gate"):
-        return claims.Verdict("a.b", "", 1.0, "", 0.5, measured=measured, error=0.3, expected_error=0.4, kind=kind)
+        return cases.Verdict("a.b", "", 1.0, "", 0.5, measured=measured, error=0.3, expected_error=0.4, kind=kind)
 
     def test_words(self):
         self.assertEqual(self.verdict(1.5).verdict, "pass")
@@ -68,13 +68,13 @@ class Verdicts(unittest.TestCase):
 
     def test_what_cannot_tell_from_nothing_does_not_pass(self):
         for expected, tolerance, word in ((1.0, 0.51, "undecided"), (1.0, 0.5, "pass"), (-1.0, 0.51, "undecided"), (0.0, 0.1, "pass")):
-            self.assertEqual(claims.Verdict("a.b", "", expected, "", tolerance, measured=expected).verdict, word)
-        self.assertEqual(claims.Verdict("a.b", "", 1.0, "", 1.2, measured=1.0, detects=0.1).verdict, "undecided")
-        self.assertEqual(claims.Verdict("a.b", "", 1.0, "", 1.2, measured=3.0).verdict, "fail")
+            self.assertEqual(cases.Verdict("a.b", "", expected, "", tolerance, measured=expected).verdict, word)
+        self.assertEqual(cases.Verdict("a.b", "", 1.0, "", 1.2, measured=1.0, detects=0.1).verdict, "undecided")
+        self.assertEqual(cases.Verdict("a.b", "", 1.0, "", 1.2, measured=3.0).verdict, "fail")
 
     def test_what_cannot_tell_from_a_rival_does_not_pass(self):
         for measured, word in ((1.0, "pass"), (1.04, "undecided"), (1.2, "not reproduced")):
-            verdict = claims.Verdict("a.b", "", 1.0, "", 0.08, measured=measured, kind="paper", rival=1.1)
+            verdict = cases.Verdict("a.b", "", 1.0, "", 0.08, measured=measured, kind="paper", rival=1.1)
             self.assertEqual(verdict.verdict, word)
 
     def test_z(self):
@@ -90,16 +90,16 @@ class Verdicts(unittest.TestCase):
 
 
 class MadeUp(unittest.TestCase):
-    """A claim of one verdict, from one run of two."""
+    """A case of one verdict, from one run of two."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
-        (self.folder / "claims/made").mkdir(parents=True)
-        (self.folder / "claims/made/claim.py").write_text(CLAIM)
-        self.addCleanup(setattr, claims, "CLAIMS", claims.CLAIMS)
-        claims.CLAIMS = self.folder / "claims"
+        (self.folder / "cases/made").mkdir(parents=True)
+        (self.folder / "cases/made/case.py").write_text(CASE)
+        self.addCleanup(setattr, cases, "CASES", cases.CASES)
+        cases.CASES = self.folder / "cases"
 
     def report(self, x, tier="quick"):
         """(exit code, report.json) where the run said x."""
@@ -107,9 +107,9 @@ class MadeUp(unittest.TestCase):
         there.mkdir(parents=True, exist_ok=True)
         (there / "output.txt").write_text(f"n,x\n1,{x}\n")
         (there / "session.json").write_text('{"cpu_seconds": 3.0}')
-        every = claims.load("made").runs(tier)
+        every = cases.load("made").runs(tier)
         for run in every:
-            run.claim = "made"
+            run.case = "made"
         with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
             code = report.make(tier, every, ["made"], self.folder / "work", self.folder / "out")
         return code, json.loads((self.folder / "out/report.json").read_text())
@@ -136,8 +136,8 @@ class MadeUp(unittest.TestCase):
             self.assertEqual((suite.get("failures"), suite.get("skipped")), (failures, skipped))
             self.assertEqual(len(suite.findall("testcase/skipped")), int(skipped))
 
-    def test_a_claim_that_cannot_say_fails(self):
-        (self.folder / "claims/made/claim.py").write_text(CLAIM.replace('["there"]', '["absent"]'))
+    def test_a_case_that_cannot_say_fails(self):
+        (self.folder / "cases/made/case.py").write_text(CASE.replace('["there"]', '["absent"]'))
         code, said = self.report(1.0)
         self.assertEqual((code, said["claims"][0]["id"], said["claims"][0]["verdict"]), (1, "made.evaluate", "fail"))
 

@@ -45,18 +45,19 @@ class Runs(unittest.TestCase):
         path.chmod(0o755)
 
     def scene(self, steps, text=SCENE):
-        return runs.Run("a", scene=text, steps=steps, seed=3, claim="made-up")
+        return runs.Run("a", scene=text, steps=steps, seed=3, case="made-up")
 
     def execute(self, run, name="a", **options):
         return runs.execute(run, self.work / name, self.build, **options)
 
-    def interrupt(self, run, file):
-        """Exit code of a run that got SIGTERM once its folder held this file."""
+    def interrupt(self, run, file, old=None):
+        """Exit code of a run that got SIGTERM once its folder held this file, another one than that with the inode `old`."""
         child = subprocess.Popen([sys.executable, "-c", CHILD, str(pathlib.Path(runs.__file__).parents[1]), json.dumps(
             {"name": run.name, "scene": run.scene, "steps": run.steps, "seed": run.seed, "program": run.program}),
             str(self.work / "a"), str(self.build)])
         deadline = time.monotonic() + 60
-        while not (self.work / "a" / file).exists() and time.monotonic() < deadline:
+        path = self.work / "a" / file
+        while not (path.exists() and path.stat().st_ino != old) and time.monotonic() < deadline:
             time.sleep(0.01)
         time.sleep(0.3)
         child.send_signal(signal.SIGTERM)
@@ -123,12 +124,13 @@ class Runs(unittest.TestCase):
         inode = table.stat().st_ino
         later = threading.Timer(1.0, lambda: os.kill(orphan, signal.SIGTERM))
         later.start()
-        self.assertEqual(self.interrupt(run, "checkpoint.h5"), runs.INTERRUPTED)
+        checkpoint = (self.work / "a/checkpoint.h5").stat().st_ino
+        self.assertEqual(self.interrupt(run, "checkpoint.h5", checkpoint), runs.INTERRUPTED)
         self.assertEqual(table.stat().st_ino, inode)
 
     def test_program(self):
         self.program("echo n,x; echo 1,$1")
-        run = runs.Run("a", program=["made-up", 7], claim="made-up")
+        run = runs.Run("a", program=["made-up", 7], case="made-up")
         self.assertEqual(self.execute(run), 0)
         result = runs.Result(self.work / "a", run)
         self.assertTrue(result.finished)
@@ -136,13 +138,13 @@ class Runs(unittest.TestCase):
 
     def test_program_that_fails_has_no_result(self):
         self.program("echo n,x; exit 3")
-        run = runs.Run("a", program=["made-up"], claim="made-up")
+        run = runs.Run("a", program=["made-up"], case="made-up")
         self.assertEqual(self.execute(run), 3)
         self.assertFalse(runs.Result(self.work / "a", run).exists)
 
     def test_program_that_is_interrupted(self):
         self.program("echo n,x; exec sleep 60")
-        run = runs.Run("a", program=["made-up"], claim="made-up")
+        run = runs.Run("a", program=["made-up"], case="made-up")
         self.assertEqual(self.interrupt(run, "output.part"), runs.INTERRUPTED)
         self.assertFalse(runs.Result(self.work / "a", run).exists)
 

@@ -172,7 +172,7 @@ class Goals(unittest.TestCase):
 
     def test_stages(self):
         run = runs.Run("a", scene="box: [6, 6, 6]\n", steps=1000, hours=5.0, priority=2, goals=((100, 0), (600, 1)),
-                       claim="c")
+                       case="c")
         stages = run.stages()
         self.assertEqual([stage.path for stage in stages], ["c/a@100", "c/a@600", "c/a"])
         self.assertEqual([stage.priority for stage in stages], [0, 1, 2])

@@ -123,6 +123,13 @@ class Theory(unittest.TestCase):
         self.assertAlmostEqual(theory.retention(5, 130), 0.122371, 6)
         self.assertAlmostEqual(sum(theory.viscosity(10, 0.1, 130)), 8.7002486, 6)
 
+    def test_andersen(self):
+        """gamma 5, dt_c 0.1: 0.5 (5/4.0067379 - 0.5) = 0.3739490 and 4.0067379/1.2 = 3.3389483; gamma 10, dt_c 0.02:
+        0.2 (10/9.0000454 - 0.5) = 0.1222211 and 9.0000454/0.24 = 37.5001892."""
+        for point, parts in (((5, 0.1), (0.3739490, 3.3389483)), ((10, 0.02), (0.1222211, 37.5001892))):
+            for value, expected in zip(theory.andersen_viscosity(*point), parts):
+                self.assertAlmostEqual(value, expected, 6)
+
     def test_tail_of_a_large_box_is_that_of_an_infinite_one(self):
         """In 160^3 cells at t = 40, spread 1: what is missing is the k = 0 wave, 2/(3 gamma 160^3) = 1.1 % of the tail."""
         t, gamma = numpy.array([40.0]), 5

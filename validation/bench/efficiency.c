@@ -30,7 +30,8 @@ static void wave(const struct scene *scene, double time)
   struct work work;
   struct ratio lambda = {0};
   double *amplitude = calloc(last + 1, sizeof *amplitude);
-  if (!amplitude || !model_finish(&m) || !state_alloc(&state, &m) || !work_alloc(&work, &m))
+  finish(&m);
+  if (!amplitude || !state_alloc(&state, &m) || !work_alloc(&work, &m))
     exit(1);
   const double begin = cpu_seconds();
   const uint32_t pairs = 2 + (uint32_t)(time / (2.0 * last * interval));

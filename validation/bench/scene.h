@@ -13,7 +13,7 @@ struct scene {
   double dt, every;   /* t0; a collision every `every` steps, 0: every 0.02 t0 */
   double fibers;      /* number of them */
   double vertices;    /* of each fiber */
-  double crossing;    /* 1: refused, 0: free */
+  double crossing;    /* enum crossing_kind: 0 free, 1 sequential, 2 event-driven */
   double order;       /* 0 paper, 1 kick-split, 2 drift-split */
   double hydro;       /* 0: velocities of the solvent are swapped */
   double thermostat;  /* 0 none, 1 rescale, 2 maxwell-boltzmann */
@@ -24,7 +24,7 @@ struct scene {
 
 static inline struct scene scene_default(void)
 {
-  return (struct scene){32, 5, 0.01, 0, 0, 64, 1, ORDER_KICK_SPLIT, 1, THERMOSTAT_NONE, 0.5, 100, 64};
+  return (struct scene){32, 5, 0.01, 0, 0, 64, 1, SCHEME_KICK_SPLIT, 1, THERMOSTAT_NONE, 0.5, 100, 64};
 }
 
 static const struct scene_key {
@@ -79,10 +79,11 @@ static inline struct model scene_model(const struct scene *s)
   const int edge = (int)s->cells;
   const double interval = s->every > 0.0 ? s->every : fmax(1.0, nearbyint(0.02 / s->dt));
   struct model m = standard_model(edge, edge, edge, s->per_cell, s->dt, (uint32_t)interval);
-  m.order = (enum order)s->order;
-  m.crossing.forbidden = s->crossing != 0.0;
+  m.scheme = (enum scheme)s->order;
+  m.crossing.forbidden = s->crossing != CROSSING_FREE;
+  m.crossing.rule = (enum crossing_kind)s->crossing;
   m.solvent.hydrodynamics = s->hydro != 0.0;
-  m.solvent.thermostat = (enum thermostat)s->thermostat;
+  m.solvent.thermostat = (enum thermostat_kind)s->thermostat;
   if (s->fibers > 0.0) {
     struct fiber_kind *k = add_kind(&m, (uint32_t)s->fibers, (uint32_t)s->vertices);
     k->bond_length = s->bond_length;

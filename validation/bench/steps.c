@@ -68,8 +68,8 @@ static void start(struct contender *c, const char *text)
     c->a[i] = c->b[i] = c->c[i] = (double)i;
 }
 
-/* Warms up, and makes blocks long enough. At the start all vertices stand where their anchors are, and none needs a new
- * one for some 20 steps: what comes first is cheaper than what follows. */
+/* Warms up, and makes blocks long enough. At the start all vertices stand where their reference positions are, and none
+ * needs a new one for some 20 steps: what comes first is cheaper than what follows. */
 static void warm_up(struct contender *c, double seconds)
 {
   if (!c->triad)

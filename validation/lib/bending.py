@@ -1,4 +1,4 @@
-"""How the middle of a lone stiff fiber moves to the side, nothing fitted: the modes of a straight chain of vertices.
+"""Sideways motion of the middle of a lone stiff fiber, nothing fitted: the modes of a straight chain of vertices.
 
 Units a0 = kT = m = t0 = 1. Bends cost K = (kappa/<l^2>) D^T D, D the second difference along the fiber; vertices move by
 dx/dt = -H K x + noise, H their mobilities: what they have without hydrodynamics (dilute.sharing_matrix: members of one
@@ -72,8 +72,8 @@ def middle(t, mobility, kappa, bond2):
 
 @functools.lru_cache
 def lone(times, box, vertices, spacing, kappa, bond2, hydrodynamics, crowd):
-    """d^2 at lags `times` (a tuple). crowd: vertices of other fibers per cell, which are braked with this fiber's and make
-    the fluid heavier and more viscous; that they resist the flow, being stiff, is not in it."""
+    """d^2 at lags `times` (a tuple). crowd: vertices of other fibers per cell, which share cells with this fiber's and make
+    the fluid heavier and more viscous. Their stiffness, by which they resist the flow, is left out."""
     apart = dilute.sharing_matrix(lambda draw: dilute.rod_shape(vertices, spacing, draw), crowd=crowd)
     if not hydrodynamics:
         return numpy.array([middle(t, apart, kappa, bond2) for t in times])

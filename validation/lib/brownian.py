@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""How much slower a flexible chain diffuses for changing its shape: Brownian dynamics with hydrodynamic interactions.
+"""The loss of D of a flexible chain because it changes its shape: Brownian dynamics with hydrodynamic interactions.
 
-Kirkwood's D is that of the first moment. Later the center of mass is driven by what internal forces do through the mobility
-of the shape at hand, A = (1/N) sum_ij mu_ij F_j, and D(t) = D_K - int_0^t <A(0).A(s)>/3 ds (Fixman, J. Chem. Phys. 78, 1594,
+Kirkwood's D is that of short times. At later times the internal forces F move the center of mass, through the mobility of the
+present shape, with the velocity A = (1/N) sum_ij mu_ij F_j, and D(t) = D_K - int_0^t <A(0).A(s)>/3 ds (Fixman, J. Chem. Phys. 78, 1594,
 1983). Oseen's tensor, smeared over collision cells as in lib/dilute.py, is positive and has no divergence, so Ermak and
 McCammon's step needs no drift: x(t + dt) = x + mu F dt + sqrt(2 dt) L w, L L^T = mu.
 
@@ -64,9 +64,9 @@ def slowing(vertices, chains, time, alone, eta, spread, spring=3.0, dt=0.25, see
 
 
 def main():
-    from lib import claim, dilute
+    from lib import case, dilute
     vertices, chains, time = (int(word) for word in sys.argv[1:4])
-    alone = vertices * claim.load("chains").sharing(vertices)[0]
+    alone = vertices * case.load("chains").sharing(vertices)[0]
     times, lost, error, size = slowing(vertices, chains, time, alone, dilute.ETA, dilute.CELL_SPREAD)
     print(f"N = {vertices}; <R^2> over exact: {size:.3f}")
     for t in (1.0, 6.5, 13.0, 26.0, 52.0, 104.0):

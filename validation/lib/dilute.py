@@ -1,4 +1,4 @@
-"""One solute in a periodic box: how its mean square displacement grows, and what box, neighbors and images do to it.
+"""One solute in a periodic box: the growth of its mean square displacement, and the effects of box, neighbors and images.
 
 Units a0 = kT = m = t0 = 1. In it: Green-Kubo for a fluid of decaying transverse modes, images, Kirkwood, Rouse, and vertices
 that share collision cells.
@@ -10,12 +10,12 @@ import numpy
 from scipy import special
 
 from lib import stats, theory
-from lib.claim import Verdict
+from lib.case import Verdict
 
 MASS, PER_CELL, INTERVAL = 5.0, 5.0, 0.02  # of a vertex; of the solvent, per cell; between collisions
 NU, NU_ERROR = 2.148, 0.008  # kinematic viscosity at the paper's point, from shear waves: docs/accuracy.md
 ETA = PER_CELL * NU
-D_VERTEX, D_VERTEX_ERROR = 0.0179, 0.0001  # of one vertex in an infinite box: docs/accuracy.md, and the claim `mobility`
+D_VERTEX, D_VERTEX_ERROR = 0.0179, 0.0001  # of one vertex in an infinite box: docs/accuracy.md, and the case `mobility`
 DAMPING = 1.2  # of sound, Gamma in exp(-Gamma k^2 t): [nu + (2/3) D_T]/2
 SHORTEST_WAVE = 2.0  # k a0; waves shorter than 3 cells have left their mark within 0.2 t0
 # Lags from here on, t0: the first octave from which one local memory, c/t, describes vertices in all boxes. From 3.2 t0 on it
@@ -25,7 +25,7 @@ FIRST_LAG = 6.4
 
 
 def last_lag(box):
-    """And up to here: what a box remembers longest, 2/nu k^2 of its longest wave, but two octaves of lags at least."""
+    """The longest lag of a fit: the longest memory of the box, 2/nu k^2 of its longest wave, but at least two octaves of lags."""
     return max(4.0 * FIRST_LAG, 2.0 * box ** 2 / (4.0 * math.pi ** 2 * NU))
 
 
@@ -51,7 +51,7 @@ def stokes(length, eta=ETA):
 
 
 def image_shift(box, gyration2=0.0, eta=ETA):
-    """What the periodic images take from D: kT/(6 pi eta L) [2.837297 - (4 pi/3) R_g^2/L^2]."""
+    """The amount by which periodic images reduce D: kT/(6 pi eta L) [2.837297 - (4 pi/3) R_g^2/L^2]."""
     return stokes(box, eta) * (theory.PERIODIC - 4.0 * math.pi / 3.0 * gyration2 / box ** 2)
 
 
@@ -101,7 +101,7 @@ def waves(box):
 
 
 def memory(times, box, nu=NU, form=point_form, sound=theory.SOUND_SPEED, damping=DAMPING):
-    """How far D(t) = g_cm/6t is from its limit, at lags `times`, through the box's long waves.
+    """The difference of D(t) = g_cm/6t from its limit, at lags `times`, through the box's long waves.
 
     A solute is carried by the thermal waves of the fluid. Transverse ones decay as exp(-nu k^2 t), two for each k;
     sound is a damped oscillation, whose share in the displacement does not grow: with amplitudes kT P(k)/3 rho V per
@@ -187,21 +187,21 @@ def heavy_fluid(crowd):
 
 
 def in_pure_solvent(value, apart, crowd):
-    """D as it would be without what so many vertices per cell add to the viscosity; apart: the part of it that needs no
-    fluid to hand on momentum."""
+    """D corrected for the viscosity that so many vertices per cell add. apart: the part of D without hydrodynamics, which does not
+    depend on the viscosity."""
     return apart + (value - apart) * heavy_fluid(crowd)[0] / ETA
 
 
 # --- without hydrodynamics ----------------------------------------------------------------------------------------
 
 def poisson(mean, most=60):
-    """Numbers below `most`, and how probable each is."""
+    """The numbers below `most`, and their probabilities."""
     n = numpy.arange(most)
     return n, numpy.exp(special.xlogy(n, mean) - mean - special.gammaln(n + 1.0))
 
 
 def retention(vertices=1):
-    """What the common velocity of vertices alone in a cell with Poisson solvent keeps per collision, at 90 degrees:
+    """Share that the common velocity of vertices keeps per collision, in a cell with Poisson solvent, at 90 degrees:
     1 - (2/3) <n/(l M + n)>."""
     n, weight = poisson(PER_CELL)
     return 1.0 - 2.0 / 3.0 * float((weight * n / (vertices * MASS + n)).sum())
@@ -380,13 +380,13 @@ def held(name, statement, expected, source, pair, systematic, known=0.0, **optio
 
 
 def scatter(name, statement, p):
-    """A verdict on a fit: how improbable its scatter is, in standard errors of a normal value."""
+    """A verdict on a fit: the probability of its scatter, expressed in standard errors of a normal value."""
     return Verdict(name, statement, 0.0, "chi², the errors as they are", stats.SIGMAS,
                    None if p is None else stats.normal(p), 1.0)
 
 
 def worst(chances):
-    """Chance that of so many fits the worst is as bad as it is; None without any."""
+    """The probability that the worst of so many fits is as bad as it is; None without any."""
     return min(1.0, len(chances) * min(chances)) if chances else None
 
 

@@ -26,7 +26,7 @@ def styled():
 
 
 def with_residuals(width=6.6, height=5.0, columns=1, share=0.3):
-    """(figure, panels, residual panels): a row of panels, under each a flatter one for what is left over, same x."""
+    """(figure, panels, residual panels): a row of panels, and under each a flatter one for residuals, with the same x."""
     figure, axes = pyplot.subplots(2, columns, figsize=(width, height), sharex="col", squeeze=False,
                                    gridspec_kw={"height_ratios": [1.0, share]})
     for below in axes[1]:
@@ -54,7 +54,7 @@ def theory(axes, x, y, **options):
 
 
 def readable(axis):
-    """A logarithmic scale of less than two decades names 1, 2 and 5 of each; else it is left with one number or none."""
+    """A logarithmic scale of less than two decades gets labels at 1, 2 and 5 of each. Without this it would have one label or none."""
     low, high = axis.get_view_interval()
     if axis.get_scale() == "log" and isinstance(axis.get_major_locator(), ticker.LogLocator) and high < 100.0 * low:
         axis.set_major_locator(ticker.LogLocator(subs=(1.0, 2.0, 5.0)))

@@ -1,12 +1,13 @@
 #!/usr/bin/python3
-"""A solute makes the fluid around itself heavier, and is slower for it.
+"""A solute makes the fluid around itself heavier, and this slows the solute down.
 
-Vertices hand on momentum in collisions, the more the heavier they are: eta grows with their number per cell (Eq. (31) with the
-members' masses, dilute.heavy_fluid), a little more if they share cells. That is so in a coil, too, where its own vertices are.
-Driven by a unit force that its vertices share, a solute moves the less for it: Stokes' equation is solved with the viscosity
-that its vertices make, eta(r) = eta (1 + gain n(r)), on a periodic grid, by conjugate gradients, and without. Forces and
-densities are smeared over half of what lib/dilute.py smears a pair of vertices by, that is, over one cell. To first order the
-loss is 2 int delta eta e:e dr, e being the rate of strain; all orders are a quarter less.
+Vertices transfer momentum in collisions, the more the heavier they are. So eta grows with their number per cell (Eq. (31) with
+the members' masses, dilute.heavy_fluid), and a little more if they share cells. This also holds inside a coil, for its own
+vertices. The loss of D is found from Stokes' equation for a solute that is driven by a unit force, shared by its vertices. The
+equation is solved twice: with the viscosity that the vertices make, eta(r) = eta (1 + gain n(r)), on a periodic grid, by
+conjugate gradients, and with eta alone. Forces and densities are smeared over one cell, that is half of the variance by which
+lib/dilute.py smears a pair of vertices. To first order the loss is 2 int delta eta e:e dr, where e is the rate of strain; all
+orders together are a quarter less.
 
 usage: validation/lib/own_fluid.py chain|rod N SHAPES     prints delta D/D of the hydrodynamic part, and its error
 """
@@ -131,13 +132,13 @@ def share(draw, size, count, spread, seed=1):
 
 
 def main():
-    from lib import claim, dilute
+    from lib import case, dilute
     kind, n, shapes = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
     if kind == "chain":
         draw, size = lambda random: dilute.gaussian_shape(n, 1.0, random), math.sqrt((n * n - 1.0) / (6.0 * n))
         whole = dilute.cells_chain(n, 0.0)
     else:
-        bond = claim.load("rods").BOND
+        bond = case.load("rods").BOND
         draw, size = lambda random: dilute.rod_shape(n, bond, random), bond * math.sqrt((n * n - 1.0) / 12.0)
         whole = dilute.cells_rod(n, bond, 0.0)
     value, error = share(draw, size, shapes, 0.5 * dilute.CELL_SPREAD)

@@ -1,4 +1,4 @@
-"""The report: report.html, report.json, report.xml, from what runs have left. The same data make the same bytes."""
+"""The report: report.html, report.json, report.xml, from the results of runs. The same data make the same bytes."""
 import html
 import json
 import math
@@ -9,7 +9,7 @@ import xml.etree.ElementTree as xml
 
 import jinja2
 
-from lib import claim as claims
+from lib import case as cases
 from lib import figures, runs
 
 TITLES = {"quick": "Reduced systems (make validate)", "campaign": "The paper's own systems (make campaign)"}
@@ -17,14 +17,14 @@ TEMPLATE = pathlib.Path(__file__).resolve().parent / "report.html.jinja"
 
 
 def rounded(x, digits=10):
-    """Far more digits than any error bar, fewer than what another libm or BLAS changes."""
+    """Rounded to far more digits than any error bar has, and fewer than another libm or BLAS changes."""
     if x is None or not math.isfinite(x):
         return None
     return float(f"{x:.{digits}g}")
 
 
-def verdict_row(claim, verdict):
-    return {"id": verdict.id, "claim": claim, "statement": verdict.statement, "source": verdict.source,
+def verdict_row(case, verdict):
+    return {"id": verdict.id, "claim": case, "statement": verdict.statement, "source": verdict.source,
             "kind": verdict.kind, "verdict": verdict.verdict, "reason": verdict.reason,
             **{key: rounded(getattr(verdict, key)) for key in
                ("expected", "expected_error", "measured", "error", "tolerance", "z")}, "detects": rounded(verdict.seen)}
@@ -42,7 +42,7 @@ def provenance_row(result):
 
 
 def evaluate(module, name, results, tier):
-    """(verdicts, figures, prose) of a claim. One that cannot say is a failed one, and the others are told all the same."""
+    """(verdicts, figures, prose) of a case. If its evaluation raises an error, this is a failed verdict, and the other cases go on."""
     try:
         outcome = module.evaluate(results, tier)
         with figures.styled():
@@ -51,17 +51,17 @@ def evaluate(module, name, results, tier):
         return [verdict_row(name, verdict) for verdict in outcome.verdicts], drawn, outcome.prose
     except Exception as error:  # whatever it is: results may be nan, or not there
         traceback.print_exc()
-        return [verdict_row(name, claims.Verdict(f"{name}.evaluate", "the claim can be evaluated", 1.0, "", 0.0, measured=0.0,
+        return [verdict_row(name, cases.Verdict(f"{name}.evaluate", "the case can be evaluated", 1.0, "", 0.0, measured=0.0,
                                                  reason=f"{type(error).__name__}: {error}"))], [], ""
 
 
 def section(name, tier, every):
-    """What the report says of one claim. Runs that are not there yet are absent from what the claim is given."""
-    module = claims.load(name)
-    results = [result for result in every if result.run.claim == name]
+    """The section of one case. The case is given the results that exist; runs without results are not in the dict."""
+    module = cases.load(name)
+    results = [result for result in every if result.run.case == name]
     present = {result.run.name: result for result in results if result.exists}
     present.update({result.run.path: result for result in every
-                    if result.exists and result.run.claim in getattr(module, "USES", ())})
+                    if result.exists and result.run.case in getattr(module, "USES", ())})
     verdicts, drawn, prose_text = evaluate(module, name, present, tier)
     return {"id": name, "title": module.TITLE, "paper": module.PAPER, "prose": prose_text, "figures": drawn,
             "verdicts": verdicts,
@@ -73,8 +73,8 @@ def section(name, tier, every):
 
 
 def junit(tier, sections):
-    """JUnit XML, a test case per verdict. What is a finding about the paper passes, and says so; what is undecided fails in the
-    quick tier, and is skipped in the campaign."""
+    """JUnit XML, a test case per verdict. A finding about the paper ("not reproduced") passes, with its text. "Undecided" fails in
+    the quick tier, and is skipped in the campaign."""
     suites = xml.Element("testsuites", name="validation")
     for part in sections:
         undecided = [row for row in part["verdicts"] if row["verdict"] == "undecided"]
@@ -118,7 +118,7 @@ def plusminus(x, error):
 
 
 def number(x):
-    """Three significant digits: of what nobody reads closer."""
+    """Three significant digits, for numbers that need no more."""
     if x is None:
         return "–"
     if x == 0 or 1e-3 <= abs(x) < 1e5:
@@ -159,16 +159,18 @@ STANDING = """# Where the campaign stands
 
 <!-- written by `validation/run report --tier campaign` -->
 
-{hours:.1f} core-hours of {planned:.0f}. `validation/run report --tier campaign` makes the whole report,
-`reference-data/campaign/report.html`, from what is kept beside it.
+The campaign runs the paper's own systems. It has used {hours:.1f} of the {planned:.0f} core-hours that are planned. This page counts its
+verdicts, and lists those that are not a pass; [validation/README.md](../../validation/README.md#verdicts) says what each verdict means.
+`validation/run report --tier campaign` makes the whole report, `reference-data/campaign/report.html`, from the results that are kept
+beside it.
 
 | claim | | pass | fail | not reproduced | undecided | runs: finished, begun, all | core-hours |
 | --- | --- | --- | --- | --- | --- | --- | --- |
-{claims}
+{cases}
 
 ## Not reproduced
 
-What the paper says, or a formula that it uses, and what was measured.
+The measured number differs from the paper's, or from that of a formula that the paper uses. The last column gives the reason, where it is known.
 
 | | measured | expected | why |
 | --- | --- | --- | --- |
@@ -176,7 +178,7 @@ What the paper says, or a formula that it uses, and what was measured.
 
 ## Undecided
 
-Not measured yet, or so roughly that it could not disagree.
+The number is not measured yet, or its error is still so large that it would agree with a wrong value, too.
 
 | | so far | expected |
 | --- | --- | --- |
@@ -186,16 +188,16 @@ Not measured yet, or so roughly that it could not disagree.
 
 def standing(summed):
     """docs/claims/README.md, from what report.json holds."""
-    def rows(claim, word):
-        return [row for row in summed["claims"] if row["claim"] == claim and row["verdict"] == word]
+    def rows(case, word):
+        return [row for row in summed["claims"] if row["claim"] == case and row["verdict"] == word]
 
     def cell(text):
         return " ".join(text.split()).replace("|", "\\|")
-    claims, findings, undecided = [], [], []
+    cases, findings, undecided = [], [], []
     for part in summed["sections"]:
         name, counts = part["id"], [len(rows(part["id"], word)) for word in ("pass", "fail", "not reproduced", "undecided")]
         have = sum(row["run"].startswith(name + "/") for row in summed["runs"])
-        claims.append(f"| [{name}]({name}.md) | {cell(part['title'])} | {' | '.join(map(str, counts))} | "
+        cases.append(f"| [{name}]({name}.md) | {cell(part['title'])} | {' | '.join(map(str, counts))} | "
                       f"{have - len(part['unfinished'])}, {have}, {have + len(part['absent'])} | {part['cpu_seconds'] / 3600.0:.1f} |")
         findings += [f"| `{row['id']}`: {cell(row['statement'])} | {plusminus(row['measured'], row['error'])} | "
                      f"{plusminus(row['expected'], row['expected_error'])} ({cell(row['source'])}) | {cell(row['reason'])} |"
@@ -204,7 +206,7 @@ def standing(summed):
                       f"{plusminus(row['expected'], row['expected_error'])} |" for row in rows(name, "undecided")]
     return STANDING.format(hours=math.fsum(part["cpu_seconds"] for part in summed["sections"]) / 3600.0,
                            planned=math.fsum(part["hours_estimated"] for part in summed["sections"]),
-                           claims="\n".join(claims), findings="\n".join(findings), undecided="\n".join(undecided) or "| nothing | | |")
+                           cases="\n".join(cases), findings="\n".join(findings), undecided="\n".join(undecided) or "| nothing | | |")
 
 
 def write_standing(summed, page):

@@ -1,7 +1,8 @@
 """Runs: how they are described, executed, resumed, and read again.
 
-A run has a folder <work>/<claim>/<run>/. A scene's folder is what `uncross run` leaves there (docs/files.md) and the
-scene.yaml that it was given; a program's holds output.txt. Either has session.json: CPU time, and whether it is done.
+A run has a folder <work>/<case>/<run>/. The folder of a scene has the files of `uncross run` (docs/files.md) and the
+scene.yaml that it was given. The folder of a program has output.txt. Both have session.json: CPU time, and whether the run
+is finished.
 """
 import csv
 import dataclasses
@@ -35,7 +36,7 @@ class Run:
     hours: float = 0.0
     priority: int = 0
     goals: tuple = ()  # (steps, priority), ...: stops on the way to `steps`, so that every figure is coarse before one is fine
-    claim: str = None  # set by whoever lists the runs
+    case: str = None  # set by whoever lists the runs
     stage: bool = False  # a stop on the way, not the whole run
 
     def __post_init__(self):
@@ -46,7 +47,7 @@ class Run:
 
     @property
     def path(self):
-        return f"{self.claim}/{self.name}" + (f"@{self.steps}" if self.stage else "")
+        return f"{self.case}/{self.name}" + (f"@{self.steps}" if self.stage else "")
 
     def stages(self):
         """The run to each of its goals, then to its end; hours are those since the goal before."""
@@ -60,7 +61,7 @@ class Run:
 
     @property
     def scene_text(self):
-        """The scene with what is ours to say: steps, seed, and how often it is checkpointed."""
+        """The scene with the keys that a Run sets: steps, seed, and the cadence of checkpoints."""
         text = re.sub(r"^(steps|seed):.*\n?", "", self.scene, flags=re.M).rstrip("\n")
         text += f"\nsteps: {self.steps}\nseed: {self.seed}\n"
         if not re.search(r"^checkpoint:", text, re.M):
@@ -69,13 +70,13 @@ class Run:
 
     @property
     def identity(self):
-        """Changes when the run is another one; not with the number of steps."""
+        """A hash of the scene or of the arguments. It does not depend on the number of steps."""
         what = re.sub(r"^steps:.*\n", "", self.scene_text, flags=re.M) if self.scene else json.dumps(self.program)
         return hashlib.sha256(what.encode()).hexdigest()[:16]
 
 
 class Result:
-    """What a run has left so far: nothing, if what is there is of another scene or of other arguments."""
+    """The results of a run so far. Results of another scene or of other arguments count as none."""
 
     def __init__(self, folder, run):
         self.folder, self.run = pathlib.Path(folder), run
@@ -89,7 +90,7 @@ class Result:
 
     @property
     def digest(self):
-        """Of everything that is kept of the run: a number that somebody changed shows, whether a claim uses it or not."""
+        """A hash of all files that are kept of the run, so that a changed number shows even if no case uses it."""
         total = hashlib.sha256()
         for path in sorted(path for pattern in HARVESTED for path in self.folder.glob(pattern)):
             total.update(path.name.encode() + b"\0" + path.read_bytes())
@@ -109,7 +110,7 @@ class Result:
 
     @property
     def time(self):
-        """How far it came, in t0."""
+        """The time that it has reached, in t0."""
         return self.record.get("time", 0.0)
 
     @property
@@ -186,8 +187,8 @@ def command_of(run, folder, build):
 
 
 def prepare(run, folder, build, fresh):
-    """Makes the folder fit for the run. fresh: results of another scene or another program are thrown away (quick
-    tier); otherwise they are somebody's days, and it is an error."""
+    """Prepares the folder for the run. fresh: results of another scene or another program are removed (quick tier).
+    Otherwise they are an error, because they may have taken days."""
     session = read_json(folder / "session.json")
     program = program_hash(command_of(run, folder, build)[0])
     other = session and (session["identity"] != run.identity or (fresh and session["program"] != program))
@@ -261,7 +262,7 @@ def call(command, output, lock):
 
 def results_of(runs, work):
     """The results of these runs, in their order, whether there is anything yet or not."""
-    return [Result(pathlib.Path(work) / run.claim / run.name, run) for run in runs]
+    return [Result(pathlib.Path(work) / run.case / run.name, run) for run in runs]
 
 
 def write_plan(runs, work):
@@ -288,8 +289,8 @@ HARVESTED = ("scene.yaml", "run.json", "session.json", "output.txt", "*.csv")
 
 
 def harvest(run, work, kept):
-    """Copies what counts into `kept`, finished or not. True if there was anything."""
-    source, target = pathlib.Path(work) / run.claim / run.name, pathlib.Path(kept) / run.claim / run.name
+    """Copies the results into `kept`, finished or not. True if there were any."""
+    source, target = pathlib.Path(work) / run.case / run.name, pathlib.Path(kept) / run.case / run.name
     if not Result(source, run).exists:
         return False
     target.mkdir(parents=True, exist_ok=True)

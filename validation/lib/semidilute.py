@@ -1,4 +1,4 @@
-"""What the claims about many fibers share: their scenes, and the formulas that they are held against.
+"""Common code of the cases with many fibers: their scenes, and the formulas that they are compared with.
 
 Units a0 = kT = m = 1, time in t0. The paper's fiber: 64 vertices of mass 5, k = 100, l0 = 0.5, kappa = 64, so that
 L = l_p = 32 by the paper's count (vertices times l0); its mean contour is 63 x 0.5385 = 33.92."""
@@ -22,7 +22,7 @@ PAPER_ROTATION_TIME = 8.3e4  # tau_r with hydrodynamics, Sec. IV D
 
 
 TEMPLATE = pathlib.Path(__file__).resolve().parent / "fibers.yaml"
-SOLVENT = "thermostat: rescale"  # with hydrodynamics: see validation/claims/tube/README.md for why
+SOLVENT = "thermostat: rescale"  # with hydrodynamics: see validation/cases/tube/README.md for why
 FREE_SOLVENT = "thermostat: none"
 BATH = "hydrodynamics: false\n  bath: phantoms"  # without
 STANDARD = {"box": 32, "dt": 0.01, "flow": 0, "solvent": SOLVENT, "vertices": 64, "forbidden": "true",
@@ -72,7 +72,7 @@ def shared_diffusion(count=1, box=32, vertices=64):
 
 def free_fiber(times, vertices, count, box, hydrodynamics):
     """d^2 at lags `times` of a straight fiber that crosses others freely, l_p = L, nothing fitted (lib/bending.py). With
-    hydrodynamics as if it were alone in the fluid: what others do to the flow is not in it."""
+    hydrodynamics the fiber is alone in the fluid: the effect of other fibers on the flow is left out."""
     stiffness = vertices  # kappa = l_p/l0, l_p = vertices x l0
     return bending.lone(tuple(float(t) for t in times), box, vertices, BOND, stiffness, BOND2, hydrodynamics,
                         crowd(vertices, count, box))
@@ -193,7 +193,7 @@ def rotation_time(columns, shortest, longest, fibers, least=4):
 
 def first_rate(t, y):
     """(dy/dt at the start, error) of something that grows by small independent amounts, at a rate that itself changes
-    steadily: a line through the increments. (Not through y: what deviates from a line there goes on deviating.)"""
+    steadily: a line through the increments. (A line through y would be wrong, because deviations of y from it persist.)"""
     t, rates = numpy.asarray(t, float), numpy.diff(y) / numpy.diff(t)
     middle = 0.5 * (t[1:] + t[:-1]) - t[0]
     rough = stats.line(middle, rates, numpy.ones_like(rates))

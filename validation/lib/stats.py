@@ -1,5 +1,5 @@
-"""Means, fits and their standard errors. What is handed in as independent must be: blocks longer than any correlation, or
-separate runs. tests/validation/test_stats.py holds each against exact numbers."""
+"""Means, fits and their standard errors. Values must be independent where a function says so: blocks longer than any
+correlation, or separate runs. tests/validation/test_stats.py holds each against exact numbers."""
 import dataclasses
 import math
 
@@ -88,8 +88,8 @@ SIGMAS = sigmas(RATE, VERDICTS)  # 4.4
 
 
 def tolerance(error, expected_error=0.0, systematic=0.0, z=SIGMAS, values=None):
-    """z standard errors of both numbers, and a stated bound on what is systematic. values: how many independent values
-    the error comes from, if so few that z must be larger."""
+    """z standard errors of both numbers, plus a stated bound on systematic errors. values: the number of independent values
+    that the error comes from, if they are so few that z must be larger."""
     if values is not None:
         z = sigmas(RATE, VERDICTS, values - 1)
     return z * math.hypot(error, expected_error) + systematic

@@ -1,4 +1,4 @@
-"""Formulas that claims are held against and that no C code has, each once. Units a0 = kT = m = 1."""
+"""Formulas that validation cases compare with, and that are not in the C code, each once. Units a0 = kT = m = 1."""
 import math
 
 import numpy
@@ -20,13 +20,20 @@ def kinematic_viscosity(gamma=5.0, dt_c=0.02, alpha=90.0):
     return sum(viscosity(gamma, dt_c, alpha)) / gamma
 
 
+def andersen_viscosity(gamma, dt_c):
+    """Shear viscosity of MPC-AT-a in three dimensions (kinetic, collisional), molecular chaos: of the kinetic stress a collision
+    leaves 1 - P/gamma, P = gamma - 1 + exp(-gamma), and it hands on P/12 (Noguchi and Gompper, Phys. Rev. E 78, 016706 (2008))."""
+    partners = occupancy(gamma)
+    return gamma * dt_c * (gamma / partners - 0.5), partners / (12.0 * dt_c)
+
+
 def self_diffusion(gamma=5.0, dt_c=0.02, alpha=90.0):
     """Of a solvent particle, molecular chaos: the Green-Kubo sum of a velocity that keeps c per collision."""
     return dt_c * (1.0 / (1.0 - retention(gamma, alpha)) - 0.5)
 
 
 def retention(gamma=5.0, alpha=90.0):
-    """What a solvent particle keeps of its velocity per collision: 1 - (2/3)(1 - cos alpha)(gamma - 1 + exp(-gamma))/gamma."""
+    """Share of its velocity that a solvent particle keeps per collision: 1 - (2/3)(1 - cos alpha)(gamma - 1 + exp(-gamma))/gamma."""
     return 1.0 - 2.0 / 3.0 * (1.0 - math.cos(math.radians(alpha))) * occupancy(gamma) / gamma
 
 
@@ -83,7 +90,7 @@ def long_time_tail_unbounded(t, gamma, spread):
 
 
 def diffusion_still_to_come(t, cells, gamma, shear, sound, diffusion=0.0, smear=0.0):
-    """By how much <r^2>/6t falls short of its limit in this box, after a time t: (1/t) times the integral of min(s, t) C(s) ds
+    """The amount by which <r^2>/6t is below its limit in this box after a time t: (1/t) times the integral of min(s, t) C(s) ds
     of the waves of long_time_tail, which for a decay exp(-rate s) is (1 - exp(-rate t))/(rate^2 t)."""
     k2, count = shear_modes(cells)
     decays = [(2.0, shear * k2)] + ([] if sound is None else sound_decays(k2, sound))
@@ -92,5 +99,5 @@ def diffusion_still_to_come(t, cells, gamma, shear, sound, diffusion=0.0, smear=
 
 
 def image_correction(viscosity, cells):
-    """What D gains when the box grows to infinity, to leading order: 2.837297 kT/(6 pi eta L)."""
+    """The increase of D when the box grows to infinity, to leading order: 2.837297 kT/(6 pi eta L)."""
     return PERIODIC / (6.0 * math.pi * viscosity * cells)

@@ -1,16 +1,17 @@
 /*
  * What order-independent cell sums cost, and what they do to conservation.
  *
- * Cost: the same loop over the same particles adds each one's momentum to its cell, by srd_add (64-bit integers in
+ * Cost: the same loop over the same particles adds each one's momentum to its cell, by cell_add (64-bit integers in
  * units of 2^-44) or in plain doubles; ns per particle, medians of 15 alternating repetitions. Particles are sorted by
  * cell, as in a run, and binned on a shifted grid.
  *
  * Conservation: 10^4 collisions (binned on randomly shifted grids, streamed between) of one box with either kind of sum
  * and otherwise the same code; |change of total momentum| and relative change of energy, summed with compensation.
  */
+#include "fluid/fluid.h"
 #include "measure.h"
-#include "solvent/solvent.h"
-#include "solvent/srd.h"
+#include "mpc/grid.h"
+#include "mpc/rules/srd.h"
 
 #define REPETITIONS 15
 
@@ -38,34 +39,32 @@ static double median(double *x, size_t n)
   return x[n / 2];
 }
 
-/* --- the two sums ----------------------------------------------------------------------------------------------------
- */
+/* --- the two sums ------------------------------------------------------------------------------------------------- */
 
 static void bin(struct run *run, struct point shift)
 {
   const struct solvent *s = &run->state.solvent;
   for (uint32_t i = 0; i < s->n; i++)
-    run->work.collision.solvent_cell[i] =
-        solvent_cell_of(&run->model.box, (struct point){s->x[i], s->y[i], s->z[i]}, shift);
+    run->work.mpc.solvent_cell[i] = grid_cell_of(&run->model.box, (struct point){s->x[i], s->y[i], s->z[i]}, shift);
 }
 
 static uint64_t sum_integers(struct run *run)
 {
   const struct solvent *s = &run->state.solvent;
-  struct collision_work *c = &run->work.collision;
-  const uint64_t load = srd_load(1.0);
+  struct mpc *c = &run->work.mpc;
+  const uint64_t load = cell_load(1.0);
   uint64_t span = 0;
   memset(c->sum, 0, (size_t)box_cell_count(&run->model.box) * sizeof *c->sum);
   for (uint32_t i = 0; i < s->n; i++)
-    span |= srd_add(&c->sum[c->solvent_cell[i]], 1.0, load, (struct vec3){s->vx[i], s->vy[i], s->vz[i]});
+    span |= cell_add(&c->sum[c->solvent_cell[i]], 1.0, load, (struct vec3){s->vx[i], s->vy[i], s->vz[i]});
   return span;
 }
 
 static void sum_doubles(struct run *run, struct plain_sum *sum)
 {
   const struct solvent *s = &run->state.solvent;
-  const uint32_t *cell = run->work.collision.solvent_cell;
-  const uint64_t load = srd_load(1.0);
+  const uint32_t *cell = run->work.mpc.solvent_cell;
+  const uint64_t load = cell_load(1.0);
   memset(sum, 0, (size_t)box_cell_count(&run->model.box) * sizeof *sum);
   for (uint32_t i = 0; i < s->n; i++) {
     struct plain_sum *c = &sum[cell[i]];
@@ -76,15 +75,14 @@ static void sum_doubles(struct run *run, struct plain_sum *sum)
   }
 }
 
-/* --- cost ------------------------------------------------------------------------------------------------------------
- */
+/* --- cost --------------------------------------------------------------------------------------------------------- */
 
 static void compare_cost(int edge)
 {
   struct run run;
   run_start(&run, standard_model(edge, edge, edge, 5, 0.02, 1), 1);
   run_steps(&run, 1); /* sorts the particles */
-  bin(&run, solvent_grid_shift(&run.model, 2));
+  bin(&run, grid_shift(&run.model, 2));
   struct plain_sum *plain = calloc((size_t)box_cell_count(&run.model.box), sizeof *plain);
   double integers[REPETITIONS], doubles[REPETITIONS], collision[REPETITIONS];
   const double n = run.state.solvent.n;
@@ -114,8 +112,7 @@ static void compare_cost(int edge)
   run_end(&run);
 }
 
-/* --- conservation ----------------------------------------------------------------------------------------------------
- */
+/* --- conservation ------------------------------------------------------------------------------------------------- */
 
 struct totals {
   struct vec3 momentum;
@@ -143,10 +140,10 @@ static struct totals totals(const struct solvent *s)
   return (struct totals){{sum[0] + rest[0], sum[1] + rest[1], sum[2] + rest[2]}, sum[3] + rest[3]};
 }
 
-/* The transform of each cell from plain sums, as srd_solve makes it from integers. */
+/* The transform of each cell from plain sums, as cell_solve makes it from integers. */
 static void solve_plain(struct run *run, const struct plain_sum *sum, uint64_t step)
 {
-  struct cell_turn *turn = run->work.collision.turn;
+  struct cell_turn *turn = run->work.mpc.turn;
   for (int64_t k = 0; k < box_cell_count(&run->model.box); k++) {
     turn[k] = (struct cell_turn){.factor = 1.0, .active = sum[k].load >> 40 >= 2};
     if (turn[k].active == 0.0)
@@ -158,9 +155,9 @@ static void solve_plain(struct run *run, const struct plain_sum *sum, uint64_t s
 
 static void solve_integers(struct run *run, uint64_t step)
 {
-  struct collision_work *c = &run->work.collision;
+  struct mpc *c = &run->work.mpc;
   for (int64_t k = 0; k < box_cell_count(&run->model.box); k++) {
-    srd_solve(&c->sum[k], &c->turn[k]);
+    cell_solve(&c->sum[k], &c->turn[k]);
     if (c->turn[k].active != 0.0)
       c->turn[k].axis = random_axis(run->model.seed, RANDOM_ROTATION_AXIS, step, (uint32_t)k);
   }
@@ -170,7 +167,7 @@ static void turn_all(struct run *run)
 {
   struct solvent *s = &run->state.solvent;
   for (uint32_t i = 0; i < s->n; i++) {
-    const struct cell_turn *t = &run->work.collision.turn[run->work.collision.solvent_cell[i]];
+    const struct cell_turn *t = &run->work.mpc.turn[run->work.mpc.solvent_cell[i]];
     if (t->active == 0.0)
       continue;
     struct vec3 v = srd_apply(t, (struct vec3){s->vx[i], s->vy[i], s->vz[i]}, true, 0.0, 1.0, true);
@@ -189,8 +186,8 @@ static void compare_conservation(bool integers, uint32_t collisions)
   printf("%s sums:\n", integers ? "integer" : "double");
   for (uint32_t n = 1; n <= collisions; n++) {
     run.state.solvent_lag = 2;
-    stop_unless(solvent_stream(&run.state, &run.model, &run.work), &run);
-    bin(&run, solvent_grid_shift(&run.model, n));
+    stop_unless(fluid_stream(&run.state, &run.model, &run.work.fault), &run);
+    bin(&run, grid_shift(&run.model, n));
     if (integers) {
       (void)sum_integers(&run);
       solve_integers(&run, n);

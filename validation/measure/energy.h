@@ -17,7 +17,7 @@ static inline struct energy energy_on_step(const struct state *state, const stru
 {
   const struct solvent *s = &state->solvent;
   struct energy e = {.solvent = 0.0};
-  if (!fiber_forces(state, model, work, state->step))
+  if (!fiber_forces(state, model, work->fiber.force, state->step, &work->fault))
     return (struct energy){NAN, NAN, NAN, NAN};
   for (uint32_t i = 0; i < s->n; i++)
     e.solvent += 0.5 * (s->vx[i] * s->vx[i] + s->vy[i] * s->vy[i] + s->vz[i] * s->vz[i]);

@@ -1,7 +1,7 @@
 /*
- * Hydrodynamics off in two ways, the paper's velocity swap and the bath of phantoms (solvent/bath.h), at the paper's
- * point: diffusion of loose vertices, diffusion of Gaussian chains and relaxation of their first two Rouse modes, and
- * the CPU time of each. The two run in turn, block by block, so that a busy machine slows both alike.
+ * Hydrodynamics off in two ways, the paper's velocity swap and the bath of phantoms (mpc/random_solvent.h), at the
+ * paper's point: diffusion of loose vertices, diffusion of Gaussian chains and relaxation of their first two Rouse
+ * modes, and the CPU time of each. The two run in turn, block by block, so that a busy machine slows both alike.
  */
 #include "diffusion.h"
 #include "measure.h"
@@ -16,7 +16,6 @@ static struct model without_hydrodynamics(enum bath bath)
   struct model m = standard_model(8, 8, 8, 5, 0.02, 1);
   m.solvent.hydrodynamics = false;
   m.solvent.bath = bath;
-  m.solvent.particles = bath == BATH_PHANTOMS ? 0 : m.solvent.particles;
   return m;
 }
 
@@ -33,8 +32,7 @@ static double left_in_closed_box(const struct model *m, double n)
   return 1.0 - (1.0 - pow(m->solvent.particles / m->total_mass, 2.0)) / n;
 }
 
-/* --- loose vertices ------------------------------------------------------------------------------------------------
- */
+/* --- loose vertices ----------------------------------------------------------------------------------------------- */
 
 /* Mean square displacements between 0.6 and 1.8 t0, as in vertex_diffusion.c; phantoms `share` times as long. */
 static void measure_vertices(uint32_t vertices, uint32_t rounds, uint32_t share)
@@ -70,8 +68,7 @@ static void measure_vertices(uint32_t vertices, uint32_t rounds, uint32_t share)
   fflush(stdout);
 }
 
-/* --- chains --------------------------------------------------------------------------------------------------------
- */
+/* --- chains ------------------------------------------------------------------------------------------------------- */
 
 struct chains {
   struct run run;

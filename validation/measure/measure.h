@@ -23,12 +23,10 @@ static inline struct model standard_model(int lx, int ly, int lz, double per_cel
   memset(&m, 0, sizeof m);
   m.box = box_of_cells(lx, ly, lz);
   m.time_step = dt;
-  m.order = ORDER_KICK_SPLIT;
-  m.solvent.particles = (uint32_t)(per_cell * lx * ly * lz + 0.5);
+  m.scheme = SCHEME_KICK_SPLIT;
   m.solvent.per_cell = per_cell;
-  m.solvent.interval_steps = interval;
+  m.solvent.collision_interval = interval * dt;
   m.solvent.rotation_angle = 90.0;
-  m.solvent.sine = 1.0;
   m.solvent.hydrodynamics = true;
   m.crossing.forbidden = true;
   return m;
@@ -39,11 +37,14 @@ static inline struct model turned_model(int lx, int ly, int lz, double per_cell,
 {
   struct model m = standard_model(lx, ly, lz, per_cell, dt, 1);
   m.solvent.rotation_angle = angle;
-  if (angle != 90.0) {
-    m.solvent.cosine = cos(angle * 3.141592653589793 / 180.0);
-    m.solvent.sine = sin(angle * 3.141592653589793 / 180.0);
-  }
   return m;
+}
+
+/* The collision rule from a program's argument: `at-a`, or SRD by its angle in degrees. */
+static inline void set_rule(struct model *m, const char *word)
+{
+  m->solvent.rule = strcmp(word, "at-a") == 0 ? RULE_AT_A : RULE_SRD;
+  m->solvent.rotation_angle = m->solvent.rule == RULE_SRD ? atof(word) : 90.0;
 }
 
 /* Adds a kind of the paper's fibers: M = 5, k = 100, l0 = 0.5, kappa = 64, in equilibrium. */
@@ -52,13 +53,13 @@ static inline struct fiber_kind *add_kind(struct model *m, uint32_t count, uint3
   m->kind = realloc(m->kind, (m->kinds + 1) * sizeof *m->kind);
   struct fiber_kind *k = &m->kind[m->kinds++];
   memset(k, 0, sizeof *k);
+  snprintf(k->name, sizeof k->name, "kind%u", m->kinds);
   k->count = count;
   k->vertices = vertices;
   k->mass = 5.0;
   k->bond_length = 0.5;
   k->spring = 100.0;
   k->bending = 64.0;
-  k->start = START_EQUILIBRIUM;
   return k;
 }
 
@@ -73,15 +74,31 @@ static inline void stop_unless(bool ok, const struct run *run)
   exit(1);
 }
 
-/* Finishes the model and starts it from its equilibrium state of this seed. */
-static inline void run_start(struct run *run, struct model model, uint64_t seed)
+/* Finishes the model, or ends the program. */
+static inline void finish(struct model *model)
+{
+  struct model_error error;
+  if (model_finish(model, &error))
+    return;
+  fprintf(stderr, "%s: %s\n", error.path, error.text);
+  exit(1);
+}
+
+/* Starts a finished model from its equilibrium state of this seed. */
+static inline void run_start_finished(struct run *run, struct model model, uint64_t seed)
 {
   memset(run, 0, sizeof *run);
   run->model = model;
   run->model.seed = seed;
-  stop_unless(model_finish(&run->model) && state_alloc(&run->state, &run->model) && work_alloc(&run->work, &run->model),
-              run);
+  stop_unless(state_alloc(&run->state, &run->model) && work_alloc(&run->work, &run->model), run);
   stop_unless(step_start(&run->state, &run->model, &run->work), run);
+}
+
+/* The same of a model that is not finished yet. */
+static inline void run_start(struct run *run, struct model model, uint64_t seed)
+{
+  finish(&model);
+  run_start_finished(run, model, seed);
 }
 
 static inline void run_steps(struct run *run, uint64_t steps)

@@ -54,7 +54,7 @@ static inline bool needle_rates(struct model *model, struct state *state, struct
   for (uint32_t run = 0; run < runs; run++) {
     model->seed = seed + run;
     memset(&state->counts, 0, sizeof state->counts);
-    work->fiber.neighbors.built = false;
+    work->contact.neighbors.built = false;
     if (!step_start(state, model, work))
       return false;
     const struct energy before = energy_on_step(state, model, work);

@@ -1,5 +1,5 @@
-/* What refused moves cost, measured over a run without a thermostat: shared by `refusal` (docs/accuracy.md) and
- * `refused_moves` (validation/claims/conservation, galilean).
+/* What a crossing rule costs, measured over a run without a thermostat: shared by `refusal` (docs/accuracy.md) and
+ * `refused_moves` (validation/cases/conservation, galilean).
  *
  * heat      total energy gained per executed collision, kT: slope of a straight line through the energies on step
  *           (energy.h), its error from 24 parts of the run
@@ -17,21 +17,24 @@ enum { REFUSAL_PARTS = 24 };
 
 struct refusal_rule {
   const char *name;
-  enum refusal refusal;
+  enum rejection refusal;
   enum frame frame;
+  enum crossing_kind rule;
 };
 
-static const struct refusal_rule refusal_rules[] = {{"stay", REFUSAL_STAY, FRAME_LABORATORY},
-                                                    {"bounce", REFUSAL_BOUNCE, FRAME_LABORATORY},
-                                                    {"stay-flow", REFUSAL_STAY, FRAME_FLOW},
-                                                    {"bounce-flow", REFUSAL_BOUNCE, FRAME_FLOW}};
+static const struct refusal_rule refusal_rules[] = {
+    {"stay", REJECTION_STAY, FRAME_LABORATORY, CROSSING_SEQUENTIAL},
+    {"bounce", REJECTION_BOUNCE, FRAME_LABORATORY, CROSSING_SEQUENTIAL},
+    {"stay-flow", REJECTION_STAY, FRAME_FLOW, CROSSING_SEQUENTIAL},
+    {"bounce-flow", REJECTION_BOUNCE, FRAME_FLOW, CROSSING_SEQUENTIAL},
+    {"event-driven", REJECTION_STAY, FRAME_LABORATORY, CROSSING_EVENT_DRIVEN}};
 
 /* What to run: cells along each edge, fibers of so many vertices, flow along x, t0 to run after one of settling. */
 struct refusal_setup {
   int cells;
   uint32_t fibers, vertices;
   double flow, dt, time;
-  enum order order;
+  enum scheme order;
   uint64_t seed;
 };
 
@@ -98,9 +101,10 @@ static inline struct refusal_cost refusal_measure(const struct refusal_rule *rul
   struct model m =
       standard_model(setup->cells, setup->cells, setup->cells, 5, setup->dt, (uint32_t)(0.02 / setup->dt + 0.5));
   m.flow = (struct vec3){setup->flow, 0, 0};
-  m.order = setup->order;
-  m.crossing.refusal = rule->refusal;
+  m.scheme = setup->order;
+  m.crossing.rejection = rule->refusal;
   m.crossing.frame = rule->frame;
+  m.crossing.rule = rule->rule;
   add_kind(&m, setup->fibers, setup->vertices);
   struct run run;
   run_start(&run, m, setup->seed);

@@ -1,5 +1,5 @@
 /*
- * refusal.h for one density and flow as a table for validation/claims: a row for each rule and time step asked for.
+ * refusal.h for one density and flow as a table for validation/cases: a row for each rule and time step asked for.
  *
  * usage: refused_moves CELLS FIBERS VERTICES FLOW TIME SEED ORDER DT... [-- RULE...]
  *   FLOW a0/t0 along x, TIME t0 per row, ORDER paper, kick-split or drift-split, DT t0; RULE of refusal.h, all if none
@@ -7,7 +7,7 @@
 #include "refusal.h"
 
 static const char *const orders[] = {
-    [ORDER_PAPER] = "paper", [ORDER_KICK_SPLIT] = "kick-split", [ORDER_DRIFT_SPLIT] = "drift-split"};
+    [SCHEME_PAPER] = "paper", [SCHEME_KICK_SPLIT] = "kick-split", [SCHEME_DRIFT_SPLIT] = "drift-split"};
 
 static const struct refusal_rule *rule_of(const char *name)
 {
@@ -38,7 +38,7 @@ int main(int argc, char **argv)
   s.flow = atof(argv[4]);
   s.time = atof(argv[5]);
   s.seed = strtoull(argv[6], NULL, 10);
-  while (s.order <= ORDER_DRIFT_SPLIT && strcmp(orders[s.order], argv[7]) != 0)
+  while (s.order <= SCHEME_DRIFT_SPLIT && strcmp(orders[s.order], argv[7]) != 0)
     s.order++;
   int first_rule = 8;
   while (first_rule < argc && strcmp(argv[first_rule], "--") != 0)
@@ -52,7 +52,7 @@ int main(int argc, char **argv)
         print_row(&refusal_rules[r], &s);
     for (int b = first_rule + 1; b < argc; b++) {
       const struct refusal_rule *rule = rule_of(argv[b]);
-      if (!rule || s.dt <= 0.0 || s.order > ORDER_DRIFT_SPLIT) {
+      if (!rule || s.dt <= 0.0 || s.order > SCHEME_DRIFT_SPLIT) {
         fprintf(stderr, "%s: no such rule, time step or order\n", argv[0]);
         return 2;
       }

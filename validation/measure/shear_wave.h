@@ -16,10 +16,9 @@
 #define UNCROSS_SHEAR_WAVE_H
 
 #include "../../tests/statistics.h"
-#include "state/model.h"
-#include "state/state.h"
-#include "state/work.h"
 #include "step.h"
+#include "system/model.h"
+#include "system/state.h"
 
 struct shear_wave {
   double amplitude;     /* A, in a0/t0 */

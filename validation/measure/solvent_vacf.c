@@ -14,7 +14,7 @@
 
 #include "../../tests/statistics.h"
 #include "measure.h"
-#include "observe/theory.h"
+#include "theory/theory.h"
 
 #define WARM_UP 200 /* collisions before the first window */
 
@@ -69,10 +69,6 @@ static struct model model_of(const struct question *q)
 {
   struct model m = standard_model(q->cells, q->cells, q->cells, q->per_cell, q->interval, 1);
   m.solvent.rotation_angle = q->angle;
-  if (q->angle != 90.0) {
-    m.solvent.cosine = cos(q->angle * 3.14159265358979323846 / 180.0);
-    m.solvent.sine = sin(q->angle * 3.14159265358979323846 / 180.0);
-  }
   return m;
 }
 
@@ -125,14 +121,13 @@ static void measure_window(struct run *run, const struct question *q, struct ori
   }
 }
 
-static void print_answer(const struct question *q, const struct answer *a, double kt, double cpu)
+static void print_answer(const struct question *q, const struct answer *a, double cosine, double kt, double cpu)
 {
-  const double cosine = q->angle == 90.0 ? 0.0 : cos(q->angle * 3.14159265358979323846 / 180.0);
   printf("# box %d^3, %g per cell, dt_c %g, %g degrees, %u windows of %u collisions, seed %llu\n", q->cells,
          q->per_cell, q->interval, q->angle, q->windows, q->length, (unsigned long long)q->seed);
   printf("# kT %.6f; molecular chaos: c = %.6f, D = %.6f kT; %.0f s of CPU time\n", kt,
          1.0 - 2.0 / 3.0 * (1.0 - cosine) * theory_partners(q->per_cell) / q->per_cell,
-         theory_solvent_diffusion(q->per_cell, cosine, q->interval), cpu);
+         theory_solvent_diffusion(&srd_rule, q->per_cell, cosine, q->interval), cpu);
   printf("collisions,time,vacf,vacf_error,D,D_error\n");
   for (uint32_t k = 0; k < q->length; k++)
     printf("%u,%.8g,%.8e,%.2e,%.8e,%.2e\n", k, k * q->interval, a->vacf[k].mean, sample_error(&a->vacf[k]),
@@ -152,7 +147,7 @@ int main(int argc, char **argv)
   run_steps(&run, WARM_UP);
   for (uint32_t w = 0; w < q.windows; w++)
     measure_window(&run, &q, &o, &a);
-  print_answer(&q, &a, o.speeds / 3.0 / ((double)n - 1.0), cpu_seconds() - start);
+  print_answer(&q, &a, run.model.solvent.cosine, o.speeds / 3.0 / ((double)n - 1.0), cpu_seconds() - start);
   free(o.velocity);
   free(o.displacement);
   free(a.vacf);

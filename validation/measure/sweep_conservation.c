@@ -1,11 +1,11 @@
 /*
  * What bond collisions conserve, over sweeps with nothing else between them: no solvent, no forces. Largest change of
  * kinetic energy (kT) and of total momentum (m a0/t0, largest component) in one sweep, divided by its refused moves: to
- * rounding, whatever the rule. A table for validation/claims/conservation.
+ * rounding, whatever the rule. A table for validation/cases/conservation.
  *
  * usage: sweep_conservation CELLS FIBERS VERTICES DT SWEEPS SEED
  */
-#include "fiber/sweep.h"
+#include "contact/contact.h"
 #include "refusal.h"
 
 struct totals {
@@ -30,7 +30,7 @@ static void measure(const struct refusal_rule *rule, char **argv)
 {
   const int cells = atoi(argv[1]), sweeps = atoi(argv[5]);
   struct model m = standard_model(cells, cells, cells, 0, atof(argv[4]), 1);
-  m.crossing.refusal = rule->refusal;
+  m.crossing.rejection = rule->refusal;
   m.crossing.frame = rule->frame;
   add_kind(&m, (uint32_t)atoi(argv[2]), (uint32_t)atoi(argv[3]));
   struct run run;
@@ -39,7 +39,8 @@ static void measure(const struct refusal_rule *rule, char **argv)
   for (int k = 0; k < sweeps; k++) {
     const uint64_t executed = run.state.counts.executed;
     const struct totals a = totals_of(&run);
-    stop_unless(fiber_sweep(&run.state, &run.model, &run.work, 1.0, (uint64_t)k + 1, 0, NULL), &run);
+    stop_unless(
+        contact_drift(&run.state, &run.model, &run.work.contact, 1.0, (uint64_t)k + 1, 0, NULL, &run.work.fault), &run);
     const struct totals b = totals_of(&run);
     const uint64_t count = run.state.counts.executed - executed;
     if (count == 0)

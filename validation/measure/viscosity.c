@@ -29,8 +29,6 @@ static struct value measure(const struct point_of_solvent *p, int ly, uint32_t p
 {
   struct model m = standard_model(8, ly, 8, p->per_cell, p->collision_interval, 1);
   m.solvent.rotation_angle = p->angle;
-  m.solvent.cosine = p->angle == 90.0 ? 0.0 : cos(p->angle * 3.141592653589793 / 180.0);
-  m.solvent.sine = p->angle == 90.0 ? 1.0 : sin(p->angle * 3.141592653589793 / 180.0);
   struct run run;
   run_start(&run, m, 1);
 

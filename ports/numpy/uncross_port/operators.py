@@ -24,6 +24,32 @@ def random_operator(model, step, given):
     return {"word": word.astype(np.int64), "uniform": random.uniforms(word), "normal": normal, "axis": axis}
 
 
+def permutation(model, step, given):
+    purpose, draw, step, size = (int(x) for x in given["address"][0])
+    return {"order": column(random.permutation(model.seed, purpose, draw, step, size))}
+
+
+def crossing(model, step, given):
+    crosses, hit = [], []
+    for *points, flip in zip(*(given[name] for name in ("from", "to", "pivot", "a", "b")), given["flip"][:, 0]):
+        found = sweeps.crosses(*(point.tolist() for point in points), bool(flip))
+        crosses.append(found)
+        time, s, s_standing, normal = sweeps.describe(*points) if found else (0.0, 0.0, 0.0, np.zeros(3))
+        hit.append([time, s, s_standing, *normal])
+    return {"crosses": column(np.array(crosses, np.int64)), "hit": np.array(hit, float).reshape(-1, 6)}
+
+
+ENDS = "moving", "pivot", "a", "b"
+
+
+def exchange(model, step, given):
+    velocity = np.stack([given[end] for end in ENDS], axis=1)
+    momentum, after = np.zeros(len(velocity)), velocity.copy()
+    for row, contact in enumerate(given["contact"]):
+        momentum[row], after[row] = sweeps.exchange(given["mass"][row], velocity[row], *contact, given["normal"][row])
+    return {"momentum": column(momentum)} | {end: after[:, k] for k, end in enumerate(ENDS)}
+
+
 def order(model, step, given):
     return {"order": column(fiber.vertex_order(model, step, 0))}
 
@@ -109,7 +135,10 @@ def swap(model, step, given):
 
 OPERATORS = {
     "random": random_operator,
+    "permutation": permutation,
     "order": order,
+    "crossing": crossing,
+    "exchange": exchange,
     "long_sweep": sweep,
     "sweep": sweep,
     "bond_force": bond_force,
@@ -140,7 +169,7 @@ def run(pack):
     """Our outputs of every operator of a pack, from its inputs."""
     model, ours = model_of(pack), {}
     for (operator, step), tables in pack.items():
-        if operator != "model":
+        if operator in OPERATORS:
             out = OPERATORS[operator](model, step, inputs(tables))
             ours[operator, step] = {f"out.{name}": np.asarray(values) for name, values in out.items()}
     return ours

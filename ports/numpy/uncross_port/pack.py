@@ -6,7 +6,7 @@ A pack is {(operator, step): {table: array of [rows, columns]}}; names of tables
 import h5py
 import numpy as np
 
-# Columns of our outputs; x y z where nothing is said.
+# Columns of tables, by name and by operator and name; x y z where nothing is said.
 COLUMNS = {
     "word": "0 1 2 3",
     "uniform": "0 1",
@@ -18,8 +18,34 @@ COLUMNS = {
     "event": "vertex moving standing image_x image_y image_z executed",
     "hit": "time s s_standing normal_x normal_y normal_z momentum",
 }
-COLUMNS_AT = {("order", "order"): "vertex", ("swap", "order"): "particle"}
-COLUMNS_AT |= {("bin", "solvent"): "cell", ("bin", "vertex"): "cell"}
+COLUMNS |= {
+    "time": "dt",
+    "solvent_cell": "cell",
+    "vertex_cell": "cell",
+    "order": "vertex",
+    "crosses": "crosses",
+    "flip": "flip",
+    "mass": "moving pivot a b",
+    "contact": "s s_standing",
+    "box": "x y z",
+    "numbers": "seed_low seed_high particles interval forbidden exclusion_paper",
+    "reals": "time_step cosine sine acceleration_x acceleration_y acceleration_z",
+    "chain": "next prev fiber",
+    "run": "steps scheme thermostat hydrodynamics",
+    "counters": "step lag",
+}
+COLUMNS_AT = {
+    ("swap", "out.order"): "particle",
+    ("permutation", "out.order"): "entry",
+    ("bin", "out.solvent"): "cell",
+    ("bin", "out.vertex"): "cell",
+    ("crossing", "out.hit"): "time s s_standing normal_x normal_y normal_z",
+    ("exchange", "out.momentum"): "momentum",
+    ("exchange", "in.normal"): "x y z",
+    ("random", "in.address"): "purpose draw step entity",
+    ("permutation", "in.address"): "purpose draw step size",
+    ("model", "in.vertex"): "mass bond_length spring bending force_x force_y force_z",
+}
 
 
 class Tables(dict):
@@ -30,7 +56,10 @@ class Tables(dict):
 
 
 def columns(operator, name):
-    return COLUMNS_AT.get((operator, name)) or COLUMNS.get(name, "x y z")
+    """Names of the columns of a table, `in.` or `out.`, in the order in which this port has them."""
+    if name.startswith("bound."):
+        return "condition"
+    return COLUMNS_AT.get((operator, name)) or COLUMNS.get(name.partition(".")[2], "x y z")
 
 
 def read(path):
@@ -42,8 +71,15 @@ def read_hdf5(path):
     with h5py.File(path) as file:
         for group in file:
             operator, step = group.rsplit(".", 1)
-            pack[operator, int(step)] = {name: file[group][name][:] for name in file[group]}
+            pack[operator, int(step)] = {name: ordered(operator, name, file[group][name]) for name in file[group]}
     return pack
+
+
+def ordered(operator, name, data):
+    """The columns of a dataset in our order."""
+    names = data.attrs["components"]
+    names = (names.decode() if isinstance(names, bytes) else names).split()
+    return data[:][:, [names.index(word) for word in columns(operator, name).split()]]
 
 
 def number(text):
@@ -53,7 +89,7 @@ def number(text):
 
 
 def read_text(path):
-    """Columns in the order in which a table's names come first."""
+    """Lines may have any order, and whole reals no point."""
     values = {}
     with open(path, encoding="ascii") as file:
         for line in file:
@@ -67,7 +103,7 @@ def read_text(path):
     for group, tables in values.items():
         pack[group] = {}
         for table, rows in tables.items():
-            names = list(rows[0])
+            names = columns(group[0], table).split()
             pack[group][table] = np.array([[rows[row][name] for name in names] for row in range(len(rows))])
     return pack
 
@@ -79,12 +115,12 @@ def write(path, pack):
 def write_hdf5(path, pack):
     with h5py.File(path, "w") as file:
         file.attrs["format"] = np.bytes_("uncross pack")
-        file.attrs["version"] = np.int32(1)
+        file.attrs["version"] = np.int32(2)
         for (operator, step), tables in pack.items():
             group = file.create_group(f"{operator}.{step}")
             for table, values in tables.items():
                 data = group.create_dataset(table, data=values)
-                data.attrs["components"] = np.bytes_(columns(operator, table.split(".")[1]))
+                data.attrs["components"] = np.bytes_(columns(operator, table))
 
 
 def write_text(path, pack):
@@ -92,6 +128,6 @@ def write_text(path, pack):
         for (operator, step), tables in pack.items():
             for table, values in tables.items():
                 for row, line in enumerate(values.tolist()):
-                    for name, value in zip(columns(operator, table.split(".")[1]).split(), line):
+                    for name, value in zip(columns(operator, table).split(), line):
                         text = value.hex() if isinstance(value, float) else str(value)
                         file.write(f"{operator} {step} {row} {table}.{name} {text}\n")

@@ -4,6 +4,8 @@ import math
 
 import numpy as np
 
+from . import elementary
+
 # Purposes. The names are those of the address book.
 GRID_SHIFT, AXIS, VERTEX_ORDER, VELOCITY_SWAP, THERMOSTAT = 1, 2, 3, 4, 5
 
@@ -39,11 +41,22 @@ def uniforms(word):
     return ((integers(word) >> np.uint64(12)).astype(float) + 0.5) * 2.0**-52
 
 
+def normal_pairs(word):
+    """Two normal deviates from the words of each address: [..., 4] in, [..., 2] out."""
+    u = uniforms(word)
+    radius, (cosine, sine) = np.sqrt(-2.0 * elementary.log(u[..., 0])), elementary.circle_turns(u[..., 1])
+    return np.stack([radius * cosine, radius * sine], axis=-1)
+
+
 def normal_pair(word):
-    """Two normal deviates from the words of one address; math's log, cos and sin are those of the C library."""
-    first, second = (float(u) for u in uniforms(word))
-    radius, angle = math.sqrt(-2 * math.log(first)), 2 * math.pi * second
-    return radius * math.cos(angle), radius * math.sin(angle)
+    """The same of one address."""
+    return tuple(float(x) for x in normal_pairs(word))
+
+
+def normals(seed, purpose, step, entities):
+    """Three normal deviates for each entity, as three columns: [3, n]."""
+    first, second = (normal_pairs(words(seed, purpose, draw, step, entities)) for draw in (0, 1))
+    return np.stack([first[:, 0], first[:, 1], second[:, 0]])
 
 
 def axes(seed, purpose, step, entities):
@@ -82,6 +95,6 @@ def gamma(seed, step, cell, shape):
         w = float(uniforms(words(seed, THERMOSTAT, 2 * attempt + 1, step, cell))[0])
         root = 1 + c * x
         v = root * root * root
-        if v > 0 and math.log(w) < 0.5 * x * x + d - d * v + d * math.log(v):
+        if v > 0 and elementary.log(w) < 0.5 * x * x + d - d * v + d * elementary.log(v):
             return d * v
         attempt += 1

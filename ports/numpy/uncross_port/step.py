@@ -1,15 +1,13 @@
 """Whole steps: the operators in the three orders of docs/conventions.md, and the state hash after every stage."""
 
+import csv
 import struct
 from dataclasses import dataclass
-from pathlib import Path
 
-import h5py
 import numpy as np
 import xxhash
-import yaml
 
-from . import fiber, solvent, sweep
+from . import fiber, operators, solvent, sweep
 from .lattice import UNIT, dot
 
 # Stages of a step: name and duration in steps. A collision has none; other steps are drift, force, kick.
@@ -19,44 +17,35 @@ COLLIDING = {
     "kick-split": [("drift", 1.0), ("force", None), ("kick", 0.5), ("collide", None), ("kick", 0.5)],
     "drift-split": [("drift", 0.5), ("collide", None), ("drift", 0.5), ("force", None), ("kick", 1.0)],
 }
+THERMOSTATS = ["none", "rescale", "maxwell-boltzmann"]
+COLUMNS = "momentum_x momentum_y momentum_z solvent_kinetic vertex_kinetic bond bend".split()
 
 
 @dataclass
-class Scene:
-    """What a pack does not say about a run, from the scene file."""
+class Run:
+    """What a start says besides the model and the state."""
 
     steps: int
     order: str
     thermostat: str
     hydrodynamics: bool
-    start: Path
 
 
-def read_scene(path):
-    scene = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
-    liquid = scene.get("solvent", {})
-    return Scene(
-        steps=scene["steps"],
-        order=scene.get("order", "kick-split"),
-        thermostat=liquid.get("thermostat", "none"),
-        hydrodynamics=liquid.get("hydrodynamics", True),
-        start=Path(path).parent / scene["start"]["snapshot"],
-    )
+def run_of(row):
+    """Of the row of `in.run`."""
+    steps, scheme, thermostat, hydrodynamics = (int(x) for x in row)
+    return Run(steps, list(COLLIDING)[scheme], THERMOSTATS[thermostat], bool(hydrodynamics))
 
 
 class System:
     """A state and the stages that change it. Positions in lattice units; `lag`: half steps the solvent is behind."""
 
-    def __init__(self, model, scene):
-        self.model, self.scene = model, scene
-        with h5py.File(scene.start) as file:
-            state = file["state"]
-            self.solvent, self.solvent_velocity = state["solvent_position"][:], state["solvent_velocity"][:]
-            self.vertex, self.vertex_velocity = state["vertex_position"][:], state["vertex_velocity"][:]
-            self.lag = int(state.attrs["solvent_lag"])
-        self.finished = 0  # steps
+    def __init__(self, model, start):
+        self.model, self.scene = model, run_of(start["run"][0])
+        self.solvent, self.solvent_velocity = start["solvent"], start["solvent_velocity"]
+        self.vertex, self.vertex_velocity = start["vertex"], start["vertex_velocity"]
+        self.finished, self.lag = (int(x) for x in start["counters"][0])
         self.force = None
-        self.stream()
 
     def stream(self):
         if self.lag:
@@ -101,6 +90,8 @@ class System:
         collides = self.model.particles > 0 and (self.finished + 1) % self.model.interval == 0
         sweeps = 0
         for stage, share in COLLIDING[self.scene.order] if collides else QUIET:
+            if stage in ("force", "kick") and not len(self.vertex):
+                continue
             if stage == "drift":
                 self.drift(share, sweeps)
                 sweeps += 1
@@ -139,10 +130,20 @@ class System:
         return [*momentum, *kinetic, bond, (model.bending[middle] * (1 - cosine)).sum()]
 
 
-def trace(model, scene):
-    """Rows of a trace: step, stage, hash, sums."""
-    system = System(model, scene)
+def trace(model, start):
+    """Rows of a trace: step, stage, hash, sums. start: {name: table} of the operator `start`."""
+    system = System(model, start)
     yield 0, "start", system.state_hash(), system.sums()
-    for step in range(1, scene.steps + 1):
+    for step in range(1, system.scene.steps + 1):
         for stage in system.step():
             yield step, stage, system.state_hash(), system.sums()
+
+
+def write_trace(start, path):
+    """The trace of a run as CSV. start: tables of the pack of `uncross oracle start`."""
+    model = operators.model_of(start)
+    with open(path, "w", encoding="ascii", newline="") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(["step", "stage", "state_hash", *COLUMNS])
+        for number, stage, state_hash, sums in trace(model, operators.inputs(start["start", 0])):
+            table.writerow([number, stage, state_hash, *(f"{value:.17g}" for value in sums)])

@@ -56,10 +56,17 @@ def crosses(start, end, pivot, a, b, flip):
 
 
 def rounded_volume(p, q, r):
-    """(p x q) . r in doubles of a0^3, but for an exact zero, which stays one: times of 0 and 1, and ties, depend on it."""
-    if volume(p.tolist(), q.tolist(), r.tolist()) == 0:
-        return 0.0
-    return dot(cross(p * UNIT, q * UNIT), r * UNIT)
+    """(p x q) . r in doubles of a0^3; where they cannot tell its sign, the exact integer, rounded."""
+    in_doubles = dot(cross(p * UNIT, q * UNIT), r * UNIT)
+    size = np.abs([p, q, r]) * UNIT
+    (px, py, pz), (qx, qy, qz), (rx, ry, rz) = size
+    bound = rx * (py * qz + pz * qy) + ry * (pz * qx + px * qz) + rz * (px * qy + py * qx)
+    if abs(in_doubles) > 16 * 2.0**-53 * bound:
+        return in_doubles
+    exact = volume(p.tolist(), q.tolist(), r.tolist())
+    high, low = divmod(abs(exact), 2**64)
+    rounded = (float(high) * 2.0**64 + float(low)) * UNIT**3
+    return rounded if exact >= 0 else -rounded
 
 
 def excluded(model, vertex, moving):
@@ -84,15 +91,14 @@ def partners(model, position, start, end, pivot, skip):
             yield int(model.bonds[row]), image
 
 
-def describe(position, vertex, end, pivot, moving, standing, image, a, b):
-    """Time, contact points and normal of a crossing, in doubles of a0."""
-    start = position[vertex]
-    before = rounded_volume(b - a, position[pivot] - a, start - a)
-    after = rounded_volume(b - a, position[pivot] - a, end - a)
+def describe(start, end, pivot, a, b):
+    """Time, contact points (s, s') and normal of a crossing, in doubles of a0; points in lattice units."""
+    before = rounded_volume(b - a, pivot - a, start - a)
+    after = rounded_volume(b - a, pivot - a, end - a)
     time = min(max(before / (before - after), 0.0), 1.0)
     move = (end - start) * UNIT
     at = (start - a) * UNIT + time * move
-    p, q = (position[pivot] - a) * UNIT - at, (b - a) * UNIT
+    p, q = (pivot - a) * UNIT - at, (b - a) * UNIT
     pp, pq, qq, pt, qt = dot(p, p), dot(p, q), dot(q, q), dot(p, at), dot(q, at)
     denominator = pp * qq - pq * pq
     s, s_standing = 0.5, 0.5
@@ -100,10 +106,12 @@ def describe(position, vertex, end, pivot, moving, standing, image, a, b):
         s = min(max((pq * qt - qq * pt) / denominator, 0.0), 1.0)
         s_standing = min(max((pp * qt - pq * pt) / denominator, 0.0), 1.0)
     normal = cross(p, q)
+    if not normal.any():
+        normal = move - (dot(move, q) / dot(q, q)) * q
     normal = (1 / np.sqrt(dot(normal, normal))) * normal
     if dot(normal, move) < 0:
         normal = -normal
-    return Hit(float(time), moving, standing, image, pivot, s, s_standing, normal)
+    return float(time), s, s_standing, normal
 
 
 def hits_of_move(model, position, vertex, end):
@@ -118,18 +126,25 @@ def hits_of_move(model, position, vertex, end):
             a, b = position[standing] + shift, position[model.next[standing]] + shift
             flip = moving == vertex
             if crosses(*(point.tolist() for point in (position[vertex], end, position[pivot], a, b)), flip):
-                hits.append(describe(position, vertex, end, pivot, moving, standing, image, a, b))
+                time, *contact = describe(position[vertex], end, position[pivot], a, b)
+                hits.append(Hit(time, moving, standing, image, pivot, *contact))
     return sorted(hits, key=Hit.key)
 
 
-def exchange(model, velocity, vertex, hit):
-    """Momentum along the normal by the lever rule, mirrored: changes four velocities, returns the momentum."""
-    four = np.array([vertex, hit.pivot, hit.standing, model.next[hit.standing]])
-    lever = np.array([1 - hit.s, hit.s, hit.s_standing - 1, -hit.s_standing])
-    inverse_mass = 1 / model.mass[four]
-    approach = sum(lever * dot(velocity[four], hit.normal))  # Python's sum: from left to right
+def exchange(mass, velocity, s, s_standing, normal):
+    """Momentum along the normal by the lever rule, mirrored: of moving vertex, pivot, a and b, [4] masses and [4, 3]
+    velocities. Gives the momentum and the new velocities."""
+    lever = np.array([1 - s, s, s_standing - 1, -s_standing])
+    inverse_mass = 1 / mass
+    approach = sum(lever * dot(velocity, normal))  # Python's sum: from left to right
     momentum = 2 * approach / sum(lever * lever * inverse_mass)
-    velocity[four] -= (lever * momentum * inverse_mass)[:, None] * hit.normal
+    return momentum, velocity - (lever * momentum * inverse_mass)[:, None] * normal
+
+
+def execute(model, velocity, vertex, hit):
+    """Answers a hit: changes the velocities of its four vertices, returns the momentum."""
+    four = np.array([vertex, hit.pivot, hit.standing, model.next[hit.standing]])
+    momentum, velocity[four] = exchange(model.mass[four], velocity[four], hit.s, hit.s_standing, hit.normal)
     return momentum
 
 
@@ -143,7 +158,7 @@ def sweep(model, order, position, velocity, time):
             position[vertex] = end
         for rank, hit in enumerate(hits):
             executed = rank == 0
-            momentum = exchange(model, velocity, vertex, hit) if executed else 0.0
+            momentum = execute(model, velocity, vertex, hit) if executed else 0.0
             events.append([vertex, hit.moving, hit.standing, *hit.image, executed])
             rows.append([hit.time, hit.s, hit.s_standing, *hit.normal, momentum])
     return position, velocity, np.array(events, np.int64).reshape(-1, 7), np.array(rows, float).reshape(-1, 7)

@@ -1,0 +1,71 @@
+//! Forces and kicks: docs/porting.md, "Forces".
+
+use crate::scene::Scene;
+use crate::vector::*;
+
+fn accumulate(force: &mut Vector, part: Vector) {
+    *force = add(*force, part);
+}
+
+/// Bond by bond, in the order of their numbers.
+pub fn add_bonds(scene: &Scene, position: &[Point], force: &mut [Vector]) {
+    for j in 0..position.len() {
+        if let Some(next) = scene.next[j] {
+            let pull = bond(scene, j, between(position[next], position[j]));
+            accumulate(&mut force[j], pull);
+            accumulate(&mut force[next], pull.map(|x| -x));
+        }
+    }
+}
+
+/// The force on vertex j, whose bond is R. Kinds with l0 = 0 and kappa = 0 skip the root.
+fn bond(scene: &Scene, j: usize, r: Vector) -> Vector {
+    if scene.bond_length[j] == 0.0 && scene.bending[j] == 0.0 {
+        return scale(scene.spring[j], r);
+    }
+    let length = dot(r, r).sqrt();
+    let unit = scale(1.0 / length, r);
+    scale(scene.spring[j] * (length - scene.bond_length[j]), unit)
+}
+
+/// Bends, vertex by vertex, where both bonds exist and kappa is not 0.
+pub fn add_bends(scene: &Scene, position: &[Point], force: &mut [Vector]) {
+    for j in 0..position.len() {
+        if let (Some(prev), Some(next)) = (scene.prev[j], scene.next[j]) {
+            if scene.bending[j] != 0.0 {
+                let before = between(position[j], position[prev]);
+                let after = between(position[next], position[j]);
+                let (a, b) = bend(scene.bending[j], before, after);
+                accumulate(&mut force[prev], a);
+                accumulate(&mut force[next], b);
+                accumulate(&mut force[j], add(a, b).map(|x| -x));
+            }
+        }
+    }
+}
+
+/// The forces on the vertex before and on the one after.
+fn bend(kappa: f64, r0: Vector, r1: Vector) -> (Vector, Vector) {
+    let inverse0 = 1.0 / dot(r0, r0).sqrt();
+    let inverse1 = 1.0 / dot(r1, r1).sqrt();
+    let (u0, u1) = (scale(inverse0, r0), scale(inverse1, r1));
+    let c = dot(u0, u1);
+    let a = scale(-kappa * inverse0, subtract(u1, scale(c, u0)));
+    let b = scale(kappa * inverse1, subtract(u0, scale(c, u1)));
+    (a, b)
+}
+
+/// The constant force, plus bonds, plus bends.
+pub fn all(scene: &Scene, position: &[Point]) -> Vec<Vector> {
+    let mut force = scene.constant_force.clone();
+    add_bonds(scene, position, &mut force);
+    add_bends(scene, position, &mut force);
+    force
+}
+
+/// v + (time (1/M)) F
+pub fn kick(scene: &Scene, time: f64, velocity: &mut [Vector], force: &[Vector]) {
+    for j in 0..velocity.len() {
+        velocity[j] = add(velocity[j], scale(time * (1.0 / scene.mass[j]), force[j]));
+    }
+}

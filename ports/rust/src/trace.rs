@@ -1,0 +1,201 @@
+//! Whole steps: docs/porting.md, "A step" and "Formats" (starts, traces);
+//! docs/conventions.md, "Order of operations" and "The same bits".
+
+use crate::collision::{self as mpc, Members};
+use crate::forces;
+use crate::pack::Pack;
+use crate::random::VERTEX_ORDER;
+use crate::scene::Scene;
+use crate::sweep::sweep;
+use crate::vector::*;
+use std::fmt::Write;
+
+struct Run {
+    scene: Scene,
+    scheme: i64,
+    thermostat: i64,
+    hydrodynamics: bool,
+    /// Steps that are finished.
+    step: u64,
+    lag: u64,
+    solvent: Vec<Point>,
+    solvent_velocity: Vec<Vector>,
+    vertex: Vec<Point>,
+    vertex_velocity: Vec<Vector>,
+    force: Vec<Vector>,
+    table: String,
+}
+
+pub fn trace(pack: &Pack) -> Result<String, String> {
+    let start = pack.group("start", 0)?;
+    let mut run = Run {
+        scene: Scene::read(pack)?,
+        scheme: start.integer("run", "scheme"),
+        thermostat: start.integer("run", "thermostat"),
+        hydrodynamics: start.integer("run", "hydrodynamics") != 0,
+        step: start.integer("counters", "step") as u64,
+        lag: start.integer("counters", "lag") as u64,
+        solvent: start.points("solvent"),
+        solvent_velocity: start.vectors("solvent_velocity"),
+        vertex: start.points("vertex"),
+        vertex_velocity: start.vectors("vertex_velocity"),
+        force: Vec::new(),
+        table: "step,stage,state_hash\n".to_string(),
+    };
+    run.row(run.step, "start");
+    for _ in 0..start.integer("run", "steps") {
+        run.one_step();
+    }
+    Ok(run.table)
+}
+
+impl Run {
+    fn one_step(&mut self) {
+        let number = self.step + 1;
+        let dt = self.scene.time_step;
+        match (number % self.scene.interval == 0, self.scheme) {
+            (false, _) => {
+                self.drift(number, dt, 0);
+                self.force(number);
+                self.kick(number, dt);
+            }
+            (true, 0) => {
+                self.drift(number, dt, 0);
+                self.collide(number);
+                self.force(number);
+                self.kick(number, dt);
+            }
+            (true, 1) => {
+                self.drift(number, dt, 0);
+                self.force(number);
+                self.kick(number, 0.5 * dt);
+                self.collide(number);
+                self.kick(number, 0.5 * dt);
+            }
+            (true, _) => {
+                self.drift(number, 0.5 * dt, 0);
+                self.collide(number);
+                self.drift(number, 0.5 * dt, 1);
+                self.force(number);
+                self.kick(number, dt);
+            }
+        }
+        self.step = number;
+        self.row(number, "end");
+    }
+
+    fn row(&mut self, step: u64, stage: &str) {
+        let hash = self.hash();
+        writeln!(self.table, "{},{},{:016x}", step, stage, hash).unwrap();
+    }
+
+    /// `order` and `sweep`. A drift adds 2 to the lag, half a drift 1.
+    fn drift(&mut self, number: u64, time: f64, which: u32) {
+        let scene = &self.scene;
+        let order = if scene.forbidden {
+            scene.source(VERTEX_ORDER, number).permutation(which, scene.vertices())
+        } else {
+            (0..scene.vertices()).collect()
+        };
+        sweep(scene, time, &order, &mut self.vertex, &mut self.vertex_velocity);
+        self.lag += if time == scene.time_step { 2 } else { 1 };
+        self.row(number, "drift");
+    }
+
+    fn force(&mut self, number: u64) {
+        self.force = forces::all(&self.scene, &self.vertex);
+        if !self.vertex.is_empty() {
+            self.row(number, "force");
+        }
+    }
+
+    fn kick(&mut self, number: u64, time: f64) {
+        forces::kick(&self.scene, time, &mut self.vertex_velocity, &self.force);
+        if !self.vertex.is_empty() {
+            self.row(number, "kick");
+        }
+    }
+
+    fn collide(&mut self, number: u64) {
+        let scene = &self.scene;
+        let time = self.lag as f64 * (scene.time_step / 2.0);
+        mpc::stream(scene, time, &mut self.solvent, &mut self.solvent_velocity);
+        self.lag = 0;
+        let shift = mpc::shift(scene, number);
+        let solvent_cell = mpc::bin(scene, shift, &self.solvent);
+        let vertex_cell = mpc::bin(scene, shift, &self.vertex);
+        let members = Members {
+            solvent_cell: &solvent_cell,
+            vertex_cell: &vertex_cell,
+            solvent: &self.solvent_velocity,
+            vertex: &self.vertex_velocity,
+        };
+        let sums = mpc::sum(scene, &members);
+        let cells = mpc::solve(scene, number, &sums);
+        let relative = || mpc::relative(scene, &members, &sums, &cells.center);
+        let factor = match self.thermostat {
+            0 => vec![1.0; sums.members.len()],
+            1 => mpc::rescale(&sums, &relative()),
+            _ => mpc::maxwell_boltzmann(scene, number, &sums, &relative()),
+        };
+        mpc::rotate(scene, &cells, &factor, &solvent_cell, &mut self.solvent_velocity);
+        mpc::rotate(scene, &cells, &factor, &vertex_cell, &mut self.vertex_velocity);
+        if !self.hydrodynamics {
+            mpc::swap(scene, number, &mut self.solvent_velocity);
+        }
+        self.row(number, "collide");
+    }
+
+    /// The state hash: XXH64 with seed 0.
+    fn hash(&self) -> u64 {
+        let mut bytes: Vec<u8> = Vec::new();
+        let counts = [self.step, self.lag, self.solvent.len() as u64, self.vertex.len() as u64];
+        counts.iter().for_each(|count| bytes.extend(count.to_le_bytes()));
+        let both = [(&self.solvent, &self.solvent_velocity), (&self.vertex, &self.vertex_velocity)];
+        for (positions, velocities) in both {
+            for (r, v) in positions.iter().zip(velocities) {
+                r.iter().for_each(|x| bytes.extend(x.to_le_bytes()));
+                v.iter().for_each(|x| bytes.extend(x.to_le_bytes()));
+            }
+        }
+        xxh64(&bytes)
+    }
+}
+
+const PRIMES: [u64; 5] =
+    [0x9E3779B185EBCA87, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9, 0x85EBCA77C2B2AE63, 0x27D4EB2F165667C5];
+
+fn mix(lane: u64, input: u64) -> u64 {
+    lane.wrapping_add(input.wrapping_mul(PRIMES[1])).rotate_left(31).wrapping_mul(PRIMES[0])
+}
+
+/// XXH64 with seed 0 of whole 64-bit words.
+fn xxh64(bytes: &[u8]) -> u64 {
+    let word = |chunk: &[u8]| {
+        let mut eight = [0; 8];
+        eight.copy_from_slice(chunk);
+        u64::from_le_bytes(eight)
+    };
+    let mut lanes = [PRIMES[0].wrapping_add(PRIMES[1]), PRIMES[1], 0, PRIMES[0].wrapping_neg()];
+    let stripes = bytes.chunks_exact(32);
+    let rest = stripes.remainder();
+    for stripe in stripes {
+        for (lane, chunk) in lanes.iter_mut().zip(stripe.chunks_exact(8)) {
+            *lane = mix(*lane, word(chunk));
+        }
+    }
+    let mut hash = if bytes.len() < 32 {
+        PRIMES[4]
+    } else {
+        let turned = [1, 7, 12, 18].iter().zip(lanes).map(|(bits, lane)| lane.rotate_left(*bits));
+        let start = turned.fold(0u64, u64::wrapping_add);
+        lanes.iter().fold(start, |hash, lane| (hash ^ mix(0, *lane)).wrapping_mul(PRIMES[0]).wrapping_add(PRIMES[3]))
+    };
+    hash = hash.wrapping_add(bytes.len() as u64);
+    for chunk in rest.chunks_exact(8) {
+        hash = (hash ^ mix(0, word(chunk))).rotate_left(27).wrapping_mul(PRIMES[0]).wrapping_add(PRIMES[3]);
+    }
+    hash = (hash ^ hash >> 33).wrapping_mul(PRIMES[1]);
+    hash = (hash ^ hash >> 29).wrapping_mul(PRIMES[2]);
+    hash ^ hash >> 32
+}

@@ -1,0 +1,40 @@
+"""libuncross, loaded with the declarations of its own header."""
+import os
+import pathlib
+import re
+
+import cffi
+
+HERE = pathlib.Path(__file__).resolve().parent
+
+
+def declarations(header):
+    """What cffi wants of a header: no comments, no lines of the preprocessor, no C++."""
+    text = re.sub(r"/\*.*?\*/", "", header, flags=re.S)
+    text = re.sub(r"#ifdef __cplusplus.*?#endif", "", text, flags=re.S)
+    return re.sub(r"^[ \t]*#.*$|\bUNCROSS_API\b", "", text, flags=re.M)
+
+
+def find_header():
+    """Beside this file when installed, else in the tree of the sources."""
+    places = [HERE / "uncross.h", HERE.parents[1] / "include" / "uncross.h"]
+    return next(path for path in places if path.exists()).read_text(encoding="ascii")
+
+
+def open_library(ffi, name):
+    """$UNCROSS_LIBRARY, or the library of the prefix that this package is installed in, or the system's."""
+    chosen = os.environ.get("UNCROSS_LIBRARY")
+    beside = HERE.parents[2] / name
+    return ffi.dlopen(chosen or (str(beside) if beside.exists() else name))
+
+
+HEADER = find_header()
+INTERFACE = int(re.search(r"^#define UNCROSS_INTERFACE (\d+)$", HEADER, re.M)[1])
+AGE = int(re.search(r"^#define UNCROSS_INTERFACE_AGE (\d+)$", HEADER, re.M)[1])
+
+ffi = cffi.FFI()
+ffi.cdef(declarations(HEADER))
+lib = open_library(ffi, f"libuncross.so.{INTERFACE}")
+if lib.uncross_interface() != INTERFACE or lib.uncross_interface_age() < AGE:
+    raise ImportError(f"libuncross has interface {lib.uncross_interface()}.{lib.uncross_interface_age()}, "
+                      f"this package needs {INTERFACE}.{AGE}")

@@ -1,0 +1,424 @@
+/* Simulations in memory behind include/uncross.h. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "api/handle.h"
+#include "fluid/fluid.h"
+
+_Static_assert(sizeof(struct point) == 3 * sizeof(int64_t), "positions are shown as int64_t [n][3]");
+_Static_assert(sizeof(struct vec3) == 3 * sizeof(double), "velocities are shown as double [n][3]");
+
+/* --- making and freeing ------------------------------------------------------------------------------------------ */
+
+struct run_parts sim_parts(struct uncross_sim *sim)
+{
+  return (struct run_parts){&sim->scene, &sim->state, &sim->work, sim->observers};
+}
+
+void sim_look(struct uncross_sim *sim)
+{
+  sim->view.step = sim->state.step;
+  sim->view.lag = 0.5 * sim->state.solvent_lag;
+}
+
+/* What does not change as long as the simulation lives. */
+static void set_view(struct uncross_sim *sim)
+{
+  const struct model *m = &sim->scene.model;
+  const struct solvent *s = &sim->state.solvent;
+  struct uncross_view *v = &sim->view;
+  v->particles = s->n;
+  v->vertices = m->vertices;
+  v->fibers = m->fibers;
+  v->kinds = m->kinds;
+  for (int k = 0; k < 3; k++) {
+    v->cells[k] = m->box.cells[k];
+    v->edge[k] = m->box.edge[k];
+  }
+  v->position = &sim->state.position->x;
+  v->velocity = &sim->state.velocity->x;
+  v->mass = m->mass;
+  v->next = m->next;
+  v->fiber = m->fiber_of;
+  v->first = m->fiber_first;
+  v->kind = m->fiber_kind_of;
+  v->x = s->x, v->y = s->y, v->z = s->z;
+  v->vx = s->vx, v->vy = s->vy, v->vz = s->vz;
+  v->id = s->id;
+  sim_look(sim);
+}
+
+int sim_make(struct uncross_sim *sim, const struct uncross_scene *scene, const char *checkpoint, uncross_error *error)
+{
+  const int code = handle_read(scene, checkpoint, &sim->scene, error);
+  if (code != UNCROSS_OK)
+    return code;
+  sim->observers = observers_create(&sim->scene.observe, &sim->scene.model);
+  if (!sim->observers || !state_alloc(&sim->state, &sim->scene.model) || !work_alloc(&sim->work, &sim->scene.model))
+    return fail(error, UNCROSS_NO_MEMORY, "no memory for this scene; `uncross check` says how much it needs", NULL);
+  set_view(sim);
+  return UNCROSS_OK;
+}
+
+static void table_clear(struct table *t)
+{
+  for (size_t k = 0; t->column && k < t->face.columns; k++)
+    free(t->column[k]);
+  free(t->column);
+  free(t->name);
+  free(t->value);
+  *t = (struct table){.name = NULL};
+}
+
+static void forget_summaries(struct uncross_sim *sim)
+{
+  for (size_t k = 0; k < sim->summaries; k++)
+    table_clear(&sim->summary[k]);
+  free(sim->summary);
+  free(sim->listed);
+  sim->summary = NULL;
+  sim->listed = NULL;
+  sim->summaries = 0;
+}
+
+void sim_clear(struct uncross_sim *sim)
+{
+  forget_summaries(sim);
+  for (int k = 0; k < OBSERVABLES; k++)
+    table_clear(&sim->series[k]);
+  work_free(&sim->work);
+  state_free(&sim->state);
+  observers_free(sim->observers);
+  scene_free(&sim->scene);
+}
+
+/* --- tables ------------------------------------------------------------------------------------------------------ */
+
+/* A table without rows. leads: a first column of its own, or NULL. */
+static bool table_make(struct table *t, const char *name, const char *leads, const char *const *column, size_t columns)
+{
+  const size_t own = leads ? 1 : 0;
+  t->name = strdup(name);
+  t->column = calloc(columns + own + 1, sizeof *t->column);
+  bool ok = t->name && t->column;
+  t->face.columns = columns + own;
+  if (ok && leads)
+    ok = (t->column[0] = strdup(leads)) != NULL;
+  for (size_t k = 0; ok && k < columns; k++)
+    ok = (t->column[own + k] = strdup(column[k])) != NULL;
+  t->face.name = t->name;
+  t->face.column = (const char *const *)t->column;
+  return ok;
+}
+
+/* Room for one more row at its end; NULL if memory is short. */
+static double *table_row(struct table *t)
+{
+  if (t->face.rows == t->room) {
+    const size_t room = t->room ? 2 * t->room : 16;
+    double *bigger = realloc(t->value, room * t->face.columns * sizeof *bigger);
+    if (!bigger)
+      return NULL;
+    t->value = bigger;
+    t->room = room;
+    t->face.value = bigger;
+  }
+  return &t->value[t->face.rows++ * t->face.columns];
+}
+
+static bool take_row(void *context, enum observable which, size_t columns, const double *values)
+{
+  struct uncross_sim *sim = context;
+  double *row = table_row(&sim->series[which]);
+  if (!row)
+    return false;
+  row[0] = (double)sim->state.step;
+  memcpy(row + 1, values, columns * sizeof *row);
+  return true;
+}
+
+static bool sample(struct uncross_sim *sim)
+{
+  const struct observe_sink sink = {take_row, sim};
+  return !observers_due(sim->observers, sim->state.step) ||
+         observers_sample(sim->observers, &sim->scene.model, &sim->state, &sink);
+}
+
+static bool make_series(struct uncross_sim *sim)
+{
+  for (int k = 0; k < OBSERVABLES; k++) {
+    const char *const *names;
+    const size_t columns = sim->scene.observe.every[k] > 0 ? observe_series_columns((enum observable)k, &names) : 0;
+    if (columns > 0 && !table_make(&sim->series[k], observable_names[k], "step", names, columns))
+      return false;
+  }
+  return true;
+}
+
+static bool take_summary(void *context, const struct observe_table *from)
+{
+  struct uncross_sim *sim = context;
+  struct table *more = realloc(sim->summary, (sim->summaries + 1) * sizeof *more);
+  if (!more)
+    return false;
+  sim->summary = more;
+  struct table *t = &more[sim->summaries++];
+  *t = (struct table){.name = NULL};
+  const size_t values = from->rows * from->columns;
+  t->value = malloc((values + 1) * sizeof *t->value);
+  if (!t->value || !table_make(t, from->name, NULL, from->column, from->columns))
+    return false;
+  if (values > 0)
+    memcpy(t->value, from->value, values * sizeof *t->value);
+  t->face.value = t->value;
+  t->face.rows = from->rows;
+  return true;
+}
+
+static bool list_tables(struct uncross_sim *sim, size_t *count)
+{
+  forget_summaries(sim);
+  if (!observers_summaries(sim->observers, &sim->scene.model, take_summary, sim))
+    return false;
+  sim->listed =
+      calloc(OBSERVABLES + sim->summaries, sizeof *sim->listed); /* NOLINT(bugprone-sizeof-expression): pointers */
+  if (!sim->listed)
+    return false;
+  *count = 0;
+  for (int k = 0; k < OBSERVABLES; k++)
+    if (sim->series[k].face.columns > 0)
+      sim->listed[(*count)++] = &sim->series[k].face;
+  for (size_t k = 0; k < sim->summaries; k++)
+    sim->listed[(*count)++] = &sim->summary[k].face;
+  return true;
+}
+
+/* The tables are no part of what the caller may not change: they are made anew from it. */
+int uncross_sim_tables(const uncross_sim *of, const uncross_table *const **tables, size_t *count, uncross_error *error)
+{
+  struct uncross_sim *sim = (struct uncross_sim *)of;
+  if (!sim || !tables || !count)
+    return fail_null(error, "sim, tables or count");
+  struct call call;
+  call_begin(&call, false);
+  const bool ok = list_tables(sim, count);
+  call_end(&call);
+  if (!ok)
+    return fail(error, UNCROSS_NO_MEMORY, "no memory for tables", NULL);
+  *tables = sim->listed;
+  return UNCROSS_OK;
+}
+
+/* --- start, resume, advance, save -------------------------------------------------------------------------------- */
+
+static int start(struct uncross_sim *sim, uncross_error *error)
+{
+  struct message message;
+  const struct run_parts parts = sim_parts(sim);
+  const enum run_code code = run_begin(&parts, &sim->head, &message);
+  if (code != RUN_FINE)
+    return fail(error, (int)code, message.text, &sim->work.fault);
+  return make_series(sim) && sample(sim) ? UNCROSS_OK : fail(error, UNCROSS_NO_MEMORY, "no memory for tables", NULL);
+}
+
+static int resume(struct uncross_sim *sim, const struct uncross_scene *scene, const char *path, uncross_error *error)
+{
+  struct message message;
+  const struct run_parts parts = sim_parts(sim);
+  const enum run_code code = run_continue(&parts, path, scene->has_seed ? &scene->seed : NULL, &sim->head, &message);
+  if (code != RUN_FINE)
+    return fail(error, (int)code, message.text, NULL);
+  return make_series(sim) ? UNCROSS_OK : fail(error, UNCROSS_NO_MEMORY, "no memory for tables", NULL);
+}
+
+/* path: of a checkpoint, or NULL. */
+static uncross_sim *make(const uncross_scene *scene, const char *path, uncross_error *error)
+{
+  uncross_sim *sim = calloc(1, sizeof *sim);
+  if (!sim) {
+    fail(error, UNCROSS_NO_MEMORY, "out of memory", NULL);
+    return NULL;
+  }
+  struct call call;
+  call_begin(&call, path != NULL);
+  int code = sim_make(sim, scene, path, error);
+  call_end(&call);
+  call_begin(&call, path || sim->scene.snapshot);
+  if (code == UNCROSS_OK)
+    code = path ? resume(sim, scene, path, error) : start(sim, error);
+  call_end(&call);
+  if (code == UNCROSS_OK) {
+    sim_look(sim);
+    return sim;
+  }
+  uncross_sim_free(sim);
+  return NULL;
+}
+
+uncross_sim *uncross_sim_start(const uncross_scene *scene, uncross_error *error)
+{
+  if (!scene) {
+    fail_null(error, "scene");
+    return NULL;
+  }
+  struct call call;
+  call_begin(&call, false);
+  uncross_sim *sim = make(scene, NULL, error);
+  call_end(&call);
+  return sim;
+}
+
+uncross_sim *uncross_sim_resume(const uncross_scene *scene, const char *path, uncross_error *error)
+{
+  if (!scene || !path) {
+    fail_null(error, "scene or path");
+    return NULL;
+  }
+  struct call call;
+  call_begin(&call, false);
+  uncross_sim *sim = make(scene, path, error);
+  call_end(&call);
+  return sim;
+}
+
+static int stopped(const struct uncross_sim *sim, uncross_error *error)
+{
+  struct message message;
+  message_fault(&message, &sim->work.fault);
+  return fail(error, UNCROSS_STOPPED, message.text, &sim->work.fault);
+}
+
+static int advance(struct uncross_sim *sim, uint64_t steps, uncross_error *error)
+{
+  for (uint64_t k = 0; k < steps; k++) {
+    if (!step_advance(&sim->state, &sim->scene.model, &sim->work, NULL)) {
+      sim->stopped = true;
+      return stopped(sim, error);
+    }
+    if (!sample(sim))
+      return fail(error, UNCROSS_NO_MEMORY, "no memory for tables", NULL);
+  }
+  return UNCROSS_OK;
+}
+
+int uncross_sim_advance(uncross_sim *sim, uint64_t steps, uncross_error *error)
+{
+  if (!sim)
+    return fail_null(error, "sim");
+  if (sim->stopped)
+    return stopped(sim, error);
+  struct call call;
+  call_begin(&call, false);
+  const int code = advance(sim, steps, error);
+  sim_look(sim);
+  call_end(&call);
+  return code;
+}
+
+int uncross_sim_save(uncross_sim *sim, const char *path, uncross_error *error)
+{
+  if (!sim || !path)
+    return fail_null(error, "sim or path");
+  if (sim->stopped)
+    return stopped(sim, error);
+  struct call call;
+  struct message message;
+  const struct observe_block *blocks;
+  call_begin(&call, true);
+  const size_t count = observers_blocks(sim->observers, &blocks);
+  const bool ok =
+      checkpoint_write(path, &sim->head, &sim->scene.model, &sim->state, blocks, count, sim->scene.text, &message);
+  call_end(&call);
+  return ok ? UNCROSS_OK : fail(error, UNCROSS_NOT_WRITTEN, message.text, NULL);
+}
+
+void uncross_sim_free(uncross_sim *sim)
+{
+  if (!sim)
+    return;
+  sim_clear(sim);
+  free(sim);
+}
+
+/* --- looking ----------------------------------------------------------------------------------------------------- */
+
+uint64_t uncross_sim_step(const uncross_sim *sim)
+{
+  return sim ? sim->state.step : 0;
+}
+
+double uncross_sim_time(const uncross_sim *sim)
+{
+  return sim ? (double)sim->state.step * sim->scene.model.time_step : 0.0;
+}
+
+int uncross_sim_hash(const uncross_sim *sim, uint64_t *hash, uncross_error *error)
+{
+  if (!sim || !hash)
+    return fail_null(error, "sim or hash");
+  *hash = state_hash(&sim->state);
+  return *hash ? UNCROSS_OK : fail(error, UNCROSS_NO_MEMORY, "no memory for the hash", NULL);
+}
+
+int uncross_sim_counts(const uncross_sim *sim, uncross_counts *counts, uncross_error *error)
+{
+  if (!sim || !counts)
+    return fail_null(error, "sim or counts");
+  const struct collision_counts *c = &sim->state.counts;
+  *counts = (uncross_counts){c->moves, c->possible, c->executed, c->negative};
+  return UNCROSS_OK;
+}
+
+const uncross_view *uncross_sim_view(const uncross_sim *sim)
+{
+  return sim ? &sim->view : NULL;
+}
+
+const char *uncross_sim_kind(const uncross_sim *sim, uint32_t kind)
+{
+  return sim && kind < sim->scene.model.kinds ? sim->scene.model.kind[kind].name : NULL;
+}
+
+static void put(double *to, struct vec3 v)
+{
+  to[0] = v.x;
+  to[1] = v.y;
+  to[2] = v.z;
+}
+
+int uncross_sim_positions(const uncross_sim *sim, double *position, uncross_error *error)
+{
+  if (!sim || !position)
+    return fail_null(error, "sim or position");
+  for (uint32_t v = 0; v < sim->state.vertices; v++)
+    put(&position[3 * (size_t)v], point_in_a0(sim->state.position[v]));
+  return UNCROSS_OK;
+}
+
+int uncross_sim_solvent(const uncross_sim *sim, double *position, double *velocity, uncross_error *error)
+{
+  if (!sim)
+    return fail_null(error, "sim");
+  const struct model *m = &sim->scene.model;
+  const struct solvent *s = &sim->state.solvent;
+  for (uint32_t i = 0; i < s->n; i++) {
+    const size_t at = 3 * (size_t)s->id[i];
+    if (position)
+      put(&position[at], point_in_a0(fluid_position_now(&sim->state, m, i)));
+    if (velocity)
+      put(&velocity[at], fluid_velocity_now(&sim->state, m, i));
+  }
+  return UNCROSS_OK;
+}
+
+int uncross_sim_conserved(const uncross_sim *sim, uncross_conserved *conserved, uncross_error *error)
+{
+  if (!sim || !conserved)
+    return fail_null(error, "sim or conserved");
+  const struct conserved c = observe_conserved(&sim->scene.model, &sim->state);
+  *conserved = (uncross_conserved){
+      c.solvent_kinetic, c.vertex_kinetic, c.bond, c.bend, c.total, {c.momentum.x, c.momentum.y, c.momentum.z}};
+  return isfinite(c.total)
+             ? UNCROSS_OK
+             : fail(error, UNCROSS_NO_MEMORY, "no memory for forces, or a velocity is out of range", NULL);
+}

@@ -1,0 +1,19 @@
+/* A message for the user: where, what is wrong, what is allowed. */
+#ifndef UNCROSS_BASE_MESSAGE_H
+#define UNCROSS_BASE_MESSAGE_H
+
+#include <stddef.h>
+
+struct message {
+  char text[1024];
+};
+
+/* Writes printf-style text into the message, escaped as text_escape does (base/text.h): it may be shown anywhere. The
+ * message itself may be among the arguments. Always returns 0, for `return message_set(...)`. */
+int message_set(struct message *message, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* "file:line:col: " and then the text; line and column count from 1. Always returns 0. */
+int message_at(struct message *message, const char *file, size_t line, size_t column, const char *format, ...)
+    __attribute__((format(printf, 5, 6)));
+
+#endif

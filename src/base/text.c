@@ -1,0 +1,69 @@
+#include "base/text.h"
+
+#include <stdio.h>
+#include <string.h>
+
+size_t text_character(const char *text, uint32_t *code)
+{
+  const unsigned char *byte = (const unsigned char *)text;
+  static const struct {
+    unsigned char low, high, mask;
+    uint32_t least; /* number: shorter forms are not allowed */
+  } forms[] = {{0x01, 0x7f, 0x7f, 0}, {0xc2, 0xdf, 0x1f, 0x80}, {0xe0, 0xef, 0x0f, 0x800}, {0xf0, 0xf4, 0x07, 0x10000}};
+  size_t bytes = 0;
+  while (bytes < 4 && !(byte[0] >= forms[bytes].low && byte[0] <= forms[bytes].high))
+    bytes++;
+  if (bytes == 4)
+    return 0;
+  *code = byte[0] & forms[bytes].mask;
+  for (size_t k = 1; k <= bytes; k++) {
+    if ((byte[k] & 0xc0) != 0x80) /* '\0' is none either */
+      return 0;
+    *code = *code << 6 | (byte[k] & 0x3fu);
+  }
+  const bool surrogate = *code >= 0xd800 && *code <= 0xdfff;
+  return *code < forms[bytes].least || *code > 0x10ffff || surrogate ? 0 : bytes + 1;
+}
+
+bool text_acts(uint32_t code)
+{
+  static const uint32_t ranges[][2] = {{0x00, 0x1f},     {0x7f, 0x9f},     {0x200e, 0x200f},
+                                       {0x2028, 0x202e}, {0x2066, 0x2069}, {0xfeff, 0xfeff}};
+  for (size_t k = 0; k < sizeof ranges / sizeof *ranges; k++)
+    if (code >= ranges[k][0] && code <= ranges[k][1])
+      return true;
+  return false;
+}
+
+/* One character as it is shown, and the bytes that it takes. */
+static size_t show(const char *text, char shown[17])
+{
+  uint32_t code = 0;
+  const size_t bytes = text_character(text, &code), taken = bytes > 0 ? bytes : 1;
+  if (bytes > 0 && !text_acts(code)) {
+    memcpy(shown, text, bytes);
+    shown[bytes] = '\0';
+  } else if (code == '\n' || code == '\t') {
+    snprintf(shown, 17, "\\%c", code == '\n' ? 'n' : 't');
+  } else {
+    for (size_t k = 0; k < taken; k++)
+      snprintf(shown + 4 * k, 5, "\\x%02x", (unsigned char)text[k]);
+  }
+  return taken;
+}
+
+const char *text_escape(const char *text, char *to, size_t size)
+{
+  size_t at = 0;
+  while (*text) {
+    char shown[17];
+    text += show(text, shown);
+    const size_t length = strlen(shown);
+    if (at + length >= size)
+      break;
+    memcpy(to + at, shown, length);
+    at += length;
+  }
+  to[at] = '\0';
+  return to;
+}

@@ -1,0 +1,232 @@
+/* The command line: the table of commands. Options are in options.c. */
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/text.h"
+#include "cli/command.h"
+#include "files/build_info.h"
+#include "files/hdf5.h"
+#include "scene/scene.h"
+#include "version.h"
+
+/* What was to be printed must have arrived where it went. After a failure nothing more is said. */
+static enum exit_code told(enum exit_code code)
+{
+  const bool failure = code != EXIT_DONE && code < EXIT_CLOSE;
+  if (failure || (fflush(stdout) == 0 && !ferror(stdout)))
+    return code;
+  fprintf(stderr, "uncross: standard output: cannot write: %s\n", strerror(errno));
+  return EXIT_NOT_WRITTEN;
+}
+
+/* --- commands without a file of their own ------------------------------------------------------------------------ */
+
+static enum exit_code check(const struct arguments *a)
+{
+  const struct scene_settings settings = {a->sets, a->set};
+  struct scene scene;
+  struct message message;
+  if (!scene_read_numbers(a->file[0], &settings, &scene, &message)) {
+    fprintf(stderr, "uncross: %s\n", message.text);
+    return EXIT_BAD_INPUT;
+  }
+  scene_report(&scene);
+  scene_free(&scene);
+  return EXIT_DONE;
+}
+
+static enum exit_code schema(const struct arguments *a)
+{
+  (a->document ? scene_document : scene_schema)(stdout);
+  return EXIT_DONE;
+}
+
+static enum exit_code info(const struct arguments *a)
+{
+  struct message message;
+  if (file_info(a->file[0], &message))
+    return EXIT_DONE;
+  fprintf(stderr, "uncross: %s\n", message.text);
+  return EXIT_BAD_INPUT;
+}
+
+static enum exit_code export_frames(const struct arguments *a)
+{
+  struct message message;
+  FILE *out = a->out ? fopen(a->out, "wx") : stdout;
+  if (!out) {
+    int why = errno;
+    fprintf(stderr, "uncross: %s: cannot create: %s\n", text_shown(a->out), strerror(why));
+    return why == EEXIST ? EXIT_BAD_INPUT : EXIT_NOT_WRITTEN;
+  }
+  bool ok = trajectory_export(a->file[0], &a->export, out, &message);
+  enum exit_code code = ok ? EXIT_DONE : ferror(out) ? EXIT_NOT_WRITTEN : EXIT_BAD_INPUT;
+  if (!ok)
+    fprintf(stderr, "uncross: %s\n", message.text);
+  if ((out == stdout ? fflush(out) : fclose(out)) != 0 && ok) {
+    fprintf(stderr, "uncross: %s: cannot write: %s\n", a->out ? text_shown(a->out) : "standard output",
+            strerror(errno));
+    code = EXIT_NOT_WRITTEN;
+  }
+  if (code != EXIT_DONE && a->out)
+    remove(a->out);
+  return code;
+}
+
+#define MAY(code) (1u << (code))
+#define WRITES MAY(EXIT_NOT_WRITTEN)
+
+const struct command commands[COMMANDS] = {
+    [COMMAND_CHECK] = {"check", "SCENE", 1, WRITES,
+                       "what a scene says, all its derived numbers, memory, time, warnings", NULL, check},
+    [COMMAND_RUN] =
+        {"run", "SCENE", 1, MAY(EXIT_STOPPED) | WRITES | MAY(EXIT_INTERRUPTED), "runs a scene in a folder",
+         "DIR gets checkpoint.h5, run.json, a table for each observable, and trajectory.h5 (docs/files.md).\n"
+         "Nothing is written over. SIGINT (Ctrl-C), SIGTERM, SIGHUP, SIGUSR1 and SIGXCPU end the run after the step "
+         "at\n"
+         "hand, with a checkpoint. A second SIGINT or SIGTERM, a second later, ends it at once, without one.\n",
+         command_run},
+    [COMMAND_INFO] = {"info", "FILE", 1, WRITES, "what a file is: scene, checkpoint, trajectory, run.json, table", NULL,
+                      info},
+    [COMMAND_VERIFY] = {"verify", "FILE ...", 1, WRITES | MAY(EXIT_DAMAGED),
+                        "whether checkpoints, trajectories, packs, tables, folders of runs are whole",
+                        "Prints a line for each file: whole, readable (what it carries no checksum of), or damaged.\n",
+                        command_verify},
+    [COMMAND_SCHEMA] = {"schema", "", 0, WRITES, "the JSON schema of scenes, for editors", NULL, schema},
+    [COMMAND_EXPORT] = {"export", "FILE", 1, WRITES, "extended XYZ of a trajectory or checkpoint", NULL, export_frames},
+    [COMMAND_ANALYZE] = {"analyze", "TRAJECTORY", 1, WRITES,
+                         "the observables of a trajectory's scene from its frames, as new tables", NULL,
+                         command_analyze},
+    [COMMAND_EMIT] = {"oracle emit", "SCENE", 1, WRITES,
+                      "inputs and outputs of every operator, at two steps, as a pack", NULL, oracle_emit_file},
+    [COMMAND_EDGES] = {"oracle edges", "", 0, WRITES,
+                       "constructed inputs of operators, and their outputs, as a pack: ties, zeros, faces of cells",
+                       NULL, oracle_edges_file},
+    [COMMAND_START] = {"oracle start", "SCENE", 1, WRITES,
+                       "what a run of the scene starts from, as a pack: for ports' traces", NULL, oracle_start_file},
+    [COMMAND_TRACE] = {"oracle trace", "SCENE", 1, WRITES,
+                       "state hashes and sums after every stage of the scene's steps, as CSV", NULL, oracle_trace_file},
+    [COMMAND_DUMP] = {"oracle dump", "PACK", 1, WRITES, "a pack as text", NULL, oracle_dump_file},
+    [COMMAND_COMPARE] = {"oracle compare", "OURS THEIRS", 2, WRITES | MAY(EXIT_CLOSE) | MAY(EXIT_DIFFERS),
+                         "two packs, each HDF5 or text, or two traces: the first difference and what it means", NULL,
+                         oracle_compare_files},
+    [COMMAND_CHECK_PORT] = {"oracle check", "PORT", 1, WRITES | MAY(EXIT_CLOSE) | MAY(EXIT_DIFFERS),
+                            "runs a port over all packs and traces: one table, one exit code",
+                            "PORT is a program: `PORT PACK OUT` reads a pack and writes its outputs, `PORT --trace "
+                            "START OUT` writes a trace\n"
+                            "(docs/porting.md). --single and --only leave the traces out.\n",
+                            oracle_check_port},
+    [COMMAND_JUDGE] =
+        {"oracle judge", "OURS THEIRS", 2, WRITES | MAY(EXIT_DIFFERS) | MAY(EXIT_CANNOT_TELL),
+         "two tables of observables (docs/judging.md): could both be the same code?",
+         "OURS is reference-data/observables.csv. Averages are compared with their errors; energy and momentum must\n"
+         "stay within bounds that single precision keeps. 40 blocks (wave: 320) see all that must be seen.\n",
+         oracle_judge_files},
+};
+
+/* --- which one --------------------------------------------------------------------------------------------------- */
+
+static enum exit_code dispatch(enum command_code command, int count, char **words)
+{
+  struct arguments a;
+  enum exit_code code = arguments_read(command, count, words, &a);
+  if (code == EXIT_DONE && a.help)
+    help_command(stdout, command);
+  else if (code == EXIT_DONE)
+    code = commands[command].act(&a);
+  const bool words_matter = a.help || command != COMMAND_RUN; /* what a run is for is in its folder */
+  arguments_free(&a);
+  return words_matter ? told(code) : code;
+}
+
+static enum exit_code version(void)
+{
+  printf("uncross %s (commit %s; %s; %s)\n", UNCROSS_VERSION, build_info.commit, build_info.compiler, build_info.flags);
+  return EXIT_DONE;
+}
+
+/* The command of this name: "run"; or "oracle" and "emit". COMMANDS if there is none. */
+static enum command_code find_command(const char *first, const char *second)
+{
+  char both[64];
+  snprintf(both, sizeof both, "%s%s%s", first, second ? " " : "", second ? second : "");
+  int command = 0;
+  while (command < COMMANDS && strcmp(commands[command].name, both) != 0)
+    command++;
+  return (enum command_code)command;
+}
+
+static bool asks_help(const char *word)
+{
+  return strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0 || strcmp(word, "help") == 0;
+}
+
+static enum exit_code oracle(int count, char **words)
+{
+  const char *action = count > 1 ? words[1] : "";
+  if (asks_help(action)) {
+    help_group(stdout, "oracle");
+    return told(EXIT_DONE);
+  }
+  const enum command_code command = find_command("oracle", action);
+  return command < COMMANDS ? dispatch(command, count - 1, words + 1)
+                            : usage_error("oracle", "oracle: no such action: %s", action[0] ? action : "(none given)");
+}
+
+/* `uncross help [COMMAND [ACTION]]`; --man and --completion are for `make install`. */
+static enum exit_code help(int count, char **words)
+{
+  static const struct {
+    const char *word;
+    void (*print)(FILE *out);
+  } forms[] = {{"--man", help_man}, {"--completion", help_completion}};
+  const char *first = count > 1 ? words[1] : NULL, *second = count > 2 ? words[2] : NULL;
+  for (size_t k = 0; first && k < sizeof forms / sizeof *forms; k++)
+    if (strcmp(first, forms[k].word) == 0) {
+      forms[k].print(stdout);
+      return EXIT_DONE;
+    }
+  const enum command_code command = first ? find_command(first, second) : COMMANDS;
+  if (!first)
+    help_all(stdout);
+  else if (command < COMMANDS)
+    help_command(stdout, command);
+  else if (strcmp(first, "oracle") == 0 && !second)
+    help_group(stdout, first);
+  else
+    return usage_error("", "unknown command %s%s%s", first, second ? " " : "", second ? second : "");
+  return EXIT_DONE;
+}
+
+/* Opens /dev/null in place of standard streams that the caller has closed. Otherwise the next file that is opened would
+ * get the number of such a stream, and all output to the stream would go into the file. */
+static void keep_streams(void)
+{
+  int fd;
+  do
+    fd = open("/dev/null", O_RDONLY);
+  while (fd >= 0 && fd <= STDERR_FILENO);
+  if (fd >= 0)
+    close(fd);
+}
+
+int main(int count, char **words)
+{
+  keep_streams();
+  h5_skip_exit();
+  if (count < 2) {
+    help_all(stderr);
+    return EXIT_BAD_INPUT;
+  }
+  if (asks_help(words[1]))
+    return told(help(count - 1, words + 1));
+  if (strcmp(words[1], "--version") == 0)
+    return told(version());
+  if (strcmp(words[1], "oracle") == 0)
+    return oracle(count - 1, words + 1);
+  const enum command_code command = find_command(words[1], NULL);
+  return command < COMMANDS ? dispatch(command, count - 1, words + 1) : usage_error("", "unknown command %s", words[1]);
+}

@@ -1,0 +1,223 @@
+/* The table of options, and the words of a command line read with it. */
+#include <errno.h>
+#include <getopt.h>
+#include <inttypes.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "cli/command.h"
+
+#define OF(code) (1u << COMMAND_##code)
+#define ALL ((1u << COMMANDS) - 1u)
+#define AT(member) offsetof(struct arguments, member)
+#define ONLY_VALUE .flag = OPTION_NOWHERE
+
+const struct option_row option_rows[] = {
+    {"out", "DIR", OF(RUN) | OF(ANALYZE), OF(RUN) | OF(ANALYZE), OPTION_TEXT, 'o', AT(out), ONLY_VALUE,
+     .text = "the folder that is written to; it is made if it is not there"},
+    {"out", "FILE", OF(EMIT) | OF(EDGES) | OF(START), OF(EMIT) | OF(EDGES) | OF(START), OPTION_TEXT, 'o', AT(out),
+     ONLY_VALUE, .text = "the file that is written, which must not exist"},
+    {"out", "FILE", OF(EXPORT) | OF(TRACE) | OF(DUMP), 0, OPTION_TEXT, 'o', AT(out), ONLY_VALUE,
+     .text = "the file that is written, which must not exist; standard output without it"},
+    {"out", "FILE", OF(CHECK_PORT), 0, OPTION_TEXT, 'o', AT(out), ONLY_VALUE,
+     .text = "a report in JSON, a file that must not exist"},
+    {"set", "KEY=VALUE", OF(RUN) | OF(CHECK), 0, OPTION_LIST, 0, AT(set), ONLY_VALUE,
+     .text = "this value instead of the scene's, e.g. solvent.per_cell=10; may be given again and again"},
+    {"steps", "N", OF(RUN), 0, OPTION_WHOLE, 0, AT(steps), AT(has_steps), .most = INT64_MAX,
+     .text = "run to step N instead of the scene's `steps`; with --resume: extend a run"},
+    {"seed", "S", OF(RUN), 0, OPTION_WHOLE, 0, AT(seed), AT(has_seed), .most = UINT64_MAX,
+     .text = "use this seed instead of the scene's"},
+    {"resume", NULL, OF(RUN), 0, OPTION_SWITCH, 0, AT(resume), ONLY_VALUE, .text = "go on from DIR/checkpoint.h5"},
+    {"quiet", NULL, OF(RUN), 0, OPTION_SWITCH, 0, AT(quiet), ONLY_VALUE, .text = "no progress, no closing words"},
+    {"solvent", NULL, OF(EXPORT), 0, OPTION_SWITCH, 0, AT(export.solvent), ONLY_VALUE,
+     .text = "with the solvent particles, if the file has them"},
+    {"wrapped", NULL, OF(EXPORT), 0, OPTION_SWITCH, 0, AT(export.wrapped), ONLY_VALUE,
+     .text = "vertices folded into the box"},
+    {"first", "N", OF(EXPORT), 0, OPTION_WHOLE, 0, AT(export.first), ONLY_VALUE, .most = UINT64_MAX,
+     .text = "the first frame; frames are numbered from 0"},
+    {"last", "N", OF(EXPORT), 0, OPTION_WHOLE, 0, AT(export.last), ONLY_VALUE, .most = UINT64_MAX,
+     .text = "the last frame"},
+    {"stride", "N", OF(EXPORT), 0, OPTION_WHOLE, 0, AT(export.stride), ONLY_VALUE, .least = 1, .most = UINT64_MAX,
+     .text = "every N-th frame only"},
+    {"skip-damaged", NULL, OF(EXPORT) | OF(ANALYZE), 0, OPTION_SWITCH, 0, AT(skip_damaged), ONLY_VALUE,
+     .text = "leave out frames that are damaged, and name them on standard error"},
+    {"decimal", NULL, OF(DUMP), 0, OPTION_SWITCH, 0, AT(decimal), ONLY_VALUE,
+     .text = "reals in 17 decimal digits, exact too, instead of hexadecimal ones"},
+    {"packs", "DIR", OF(CHECK_PORT), 0, OPTION_TEXT, 0, AT(packs), ONLY_VALUE,
+     .text = "the folder of packs and traces; without it those that belong to this program"},
+    {"text", NULL, OF(CHECK_PORT), 0, OPTION_SWITCH, 0, AT(text), ONLY_VALUE,
+     .text = "the port reads packs as decimal text, not as HDF5"},
+    {"no-traces", NULL, OF(CHECK_PORT), 0, OPTION_SWITCH, 0, AT(no_traces), ONLY_VALUE,
+     .text = "the port makes no whole steps"},
+    {"seconds", "N", OF(CHECK_PORT), 0, OPTION_WHOLE, 0, AT(seconds), ONLY_VALUE, .least = 1, .most = 1000000,
+     .text = "how long each call of the port may take; 600 without it"},
+    {"single", NULL, OF(COMPARE) | OF(CHECK_PORT), 0, OPTION_SWITCH, 0, AT(oracle.single), ONLY_VALUE,
+     .text = "tolerances of single precision instead of double"},
+    {"only", "NAME[,NAME ...]", OF(COMPARE) | OF(JUDGE) | OF(CHECK_PORT), 0, OPTION_TEXT, 0, AT(oracle.only),
+     ONLY_VALUE, .text = "these operators (compare, check) or observables (judge) only"},
+    {"false-alarm", "P", OF(JUDGE), 0, OPTION_REAL, 0, AT(false_alarm), ONLY_VALUE, .low = 1e-9, .high = 0.5,
+     .text = "chance that equal codes are found different; 1e-3 without it"},
+    {"document", NULL, OF(SCHEMA), 0, OPTION_SWITCH, 0, AT(document), ONLY_VALUE,
+     .text = "the tables of docs/scene.md instead, for tools/document-keys"},
+    {"help", NULL, ALL, 0, OPTION_SWITCH, 'h', AT(help), ONLY_VALUE, .text = "this text"},
+};
+const size_t option_count = sizeof option_rows / sizeof *option_rows;
+
+enum { MOST_OPTIONS = sizeof option_rows / sizeof *option_rows, FIRST_CODE = 256 };
+
+enum exit_code usage_error(const char *command, const char *format, ...)
+{
+  char text[512];
+  va_list values;
+  va_start(values, format);
+  vsnprintf(text, sizeof text, format, values);
+  va_end(values);
+  fprintf(stderr, "uncross: %s; `uncross %s%s--help` lists what is allowed\n", text_shown(text), command,
+          *command ? " " : "");
+  return EXIT_BAD_INPUT;
+}
+
+/* --- values ------------------------------------------------------------------------------------------------------ */
+
+static bool take_whole(const struct option_row *row, const char *text, uint64_t *value)
+{
+  char *end;
+  errno = 0;
+  *value = text[0] >= '0' && text[0] <= '9' ? strtoull(text, &end, 10) : 0;
+  if (text[0] >= '0' && text[0] <= '9' && errno == 0 && *end == '\0' && *value >= row->least && *value <= row->most)
+    return true;
+  fprintf(stderr, "uncross: --%s %s: not a whole number from %" PRIu64 " to %" PRIu64 "\n", row->name, text_shown(text),
+          row->least, row->most);
+  return false;
+}
+
+static bool take_real(const struct option_row *row, const char *text, double *value)
+{
+  char *end;
+  *value = strtod(text, &end);
+  if (end != text && *end == '\0' && *value >= row->low && *value <= row->high)
+    return true;
+  fprintf(stderr, "uncross: --%s %s: not a number from %g to %g\n", row->name, text_shown(text), row->low, row->high);
+  return false;
+}
+
+static bool take(const struct option_row *row, const char *text, struct arguments *a)
+{
+  char *place = (char *)a + row->at;
+  bool ok = true;
+  switch (row->type) {
+  case OPTION_SWITCH:
+    *(bool *)place = true;
+    break;
+  case OPTION_TEXT:
+    *(const char **)(void *)place = text;
+    break;
+  case OPTION_WHOLE:
+    ok = take_whole(row, text, (uint64_t *)(void *)place);
+    break;
+  case OPTION_REAL:
+    ok = take_real(row, text, (double *)(void *)place);
+    break;
+  case OPTION_LIST:
+    a->set[a->sets++] = text;
+    break;
+  }
+  if (row->flag != OPTION_NOWHERE)
+    *(bool *)((char *)a + row->flag) = true;
+  return ok;
+}
+
+/* --- words ------------------------------------------------------------------------------------------------------- */
+
+/* The rows of a command as getopt_long wants them. */
+struct getopt_table {
+  struct option option[MOST_OPTIONS + 1];
+  char letters[2 * MOST_OPTIONS + 1];
+};
+
+static void make_table(enum command_code command, struct getopt_table *t)
+{
+  size_t options = 0, letters = 0;
+  memset(t, 0, sizeof *t);
+  for (size_t k = 0; k < option_count; k++) {
+    const struct option_row *row = &option_rows[k];
+    if (!option_is_of(row, command))
+      continue;
+    t->option[options++] = (struct option){row->name, row->argument != NULL, NULL, FIRST_CODE + (int)k};
+    if (row->letter)
+      t->letters[letters++] = row->letter;
+    if (row->letter && row->argument)
+      t->letters[letters++] = ':';
+  }
+}
+
+static const struct option_row *row_of(enum command_code command, int code)
+{
+  if (code >= FIRST_CODE)
+    return &option_rows[code - FIRST_CODE];
+  for (size_t k = 0; k < option_count; k++)
+    if (option_rows[k].letter == code && option_is_of(&option_rows[k], command))
+      return &option_rows[k];
+  return NULL;
+}
+
+static bool takes_many(const struct command *c)
+{
+  return strstr(c->files, "...") != NULL;
+}
+
+static enum exit_code check_words(enum command_code command, int files, const struct arguments *a)
+{
+  const struct command *c = &commands[command];
+  if (files != c->file_count && !(takes_many(c) && files > 1))
+    return usage_error(c->name, "%s: %s", c->name,
+                       c->file_count == 2   ? "two files are needed"
+                       : c->file_count == 0 ? "takes no file"
+                       : files == 0         ? "a file is missing"
+                                            : "one file only");
+  for (size_t k = 0; k < option_count; k++)
+    if (option_rows[k].needed >> command & 1u &&
+        !*(const char *const *)(const void *)((const char *)a + option_rows[k].at))
+      return usage_error(c->name, "%s: --%s %s is missing", c->name, option_rows[k].name, option_rows[k].argument);
+  return EXIT_DONE;
+}
+
+enum exit_code arguments_read(enum command_code command, int count, char **words, struct arguments *a)
+{
+  const struct command *c = &commands[command];
+  struct getopt_table table;
+  char name[64]; /* under which getopt_long complains */
+  int code;
+  *a = (struct arguments){.export = {.last = UINT64_MAX, .stride = 1}, .false_alarm = 1e-3, .seconds = 600};
+  a->set = calloc((size_t)count + 1, sizeof *a->set);
+  if (!a->set) {
+    fprintf(stderr, "uncross: no memory to begin with\n");
+    return EXIT_TROUBLE;
+  }
+  snprintf(name, sizeof name, "uncross %s", c->name);
+  words[0] = name;
+  make_table(command, &table);
+  while ((code = getopt_long(count, words, table.letters, table.option, NULL)) != -1) {
+    const struct option_row *row = row_of(command, code);
+    if (!row)
+      return usage_error(c->name, "wrong options"); /* getopt_long has said which */
+    if (!take(row, optarg, a))
+      return EXIT_BAD_INPUT;
+  }
+  if (a->help)
+    return EXIT_DONE;
+  for (int k = 0; k < 2 && optind + k < count; k++)
+    a->file[k] = words[optind + k];
+  a->all_files = words + optind;
+  a->files = (size_t)(count - optind);
+  a->export.notes = a->skip_damaged ? stderr : NULL;
+  return check_words(command, count - optind, a);
+}
+
+void arguments_free(struct arguments *a)
+{
+  free(a->set);
+  a->set = NULL;
+}

@@ -1,0 +1,177 @@
+/* `uncross oracle`: packs and traces for other implementations. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/command.h"
+#include "oracle/check.h"
+#include "oracle/judge.h"
+#include "oracle/oracle.h"
+
+static enum exit_code complain(const struct message *message, enum exit_code code)
+{
+  fprintf(stderr, "uncross: %s\n", message->text);
+  return code;
+}
+
+/* The file asked for, which must not exist, or standard output. */
+static enum exit_code open_output(const char *path, FILE **out)
+{
+  struct message message;
+  *out = path ? fopen(path, "wx") : stdout;
+  if (*out)
+    return EXIT_DONE;
+  const int why = errno;
+  message_set(&message, "%s: cannot create: %s", path, strerror(why));
+  return complain(&message, why == EEXIST ? EXIT_BAD_INPUT : EXIT_NOT_WRITTEN);
+}
+
+/* `code`: how it went so far, with a message if not well. */
+static enum exit_code close_output(FILE *out, enum exit_code code, const char *path, struct message *message)
+{
+  bool written = !ferror(out);
+  written = (out == stdout ? fflush(out) : fclose(out)) == 0 && written;
+  if (code == EXIT_DONE && !written) {
+    message_set(message, "%s: cannot write", path ? path : "standard output");
+    code = EXIT_NOT_WRITTEN;
+  }
+  if (code != EXIT_DONE && path)
+    remove(path);
+  return code == EXIT_DONE ? code : complain(message, code);
+}
+
+/* Writes the pack that `make` fills: of a scene, or of none (NULL). */
+static enum exit_code write_pack(const struct arguments *a, const struct scene *scene,
+                                 bool (*make)(const struct scene *, struct pack *, struct message *))
+{
+  struct message message;
+  struct pack pack = {0};
+  FILE *out;
+  enum exit_code code = open_output(a->out, &out);
+  if (code == EXIT_DONE) {
+    code = !make(scene, &pack, &message)               ? EXIT_BAD_INPUT
+           : !pack_write(&pack, out, a->out, &message) ? EXIT_NOT_WRITTEN
+                                                       : EXIT_DONE;
+    code = close_output(out, code, a->out, &message);
+    pack_free(&pack);
+  }
+  return code;
+}
+
+static enum exit_code write_pack_of_scene(const struct arguments *a,
+                                          bool (*make)(const struct scene *, struct pack *, struct message *))
+{
+  struct message message;
+  struct scene scene;
+  if (!scene_read(a->file[0], &scene, &message))
+    return complain(&message, EXIT_BAD_INPUT);
+  const enum exit_code code = write_pack(a, &scene, make);
+  scene_free(&scene);
+  return code;
+}
+
+enum exit_code oracle_emit_file(const struct arguments *a)
+{
+  return write_pack_of_scene(a, oracle_emit);
+}
+
+enum exit_code oracle_start_file(const struct arguments *a)
+{
+  return write_pack_of_scene(a, oracle_start);
+}
+
+static bool edges(const struct scene *none, struct pack *pack, struct message *message)
+{
+  (void)none;
+  return oracle_edges(pack, message);
+}
+
+enum exit_code oracle_edges_file(const struct arguments *a)
+{
+  return write_pack(a, NULL, edges);
+}
+
+enum exit_code oracle_trace_file(const struct arguments *a)
+{
+  struct message message;
+  struct scene scene;
+  if (!scene_read(a->file[0], &scene, &message))
+    return complain(&message, EXIT_BAD_INPUT);
+  FILE *out;
+  enum exit_code code = open_output(a->out, &out);
+  if (code == EXIT_DONE)
+    code = close_output(out, oracle_trace(&scene, out, &message) ? EXIT_DONE : EXIT_BAD_INPUT, a->out, &message);
+  scene_free(&scene);
+  return code;
+}
+
+enum exit_code oracle_dump_file(const struct arguments *a)
+{
+  struct message message;
+  struct pack pack;
+  if (!pack_read(a->file[0], &pack, &message))
+    return complain(&message, EXIT_BAD_INPUT);
+  oracle_sort(&pack);
+  FILE *out;
+  enum exit_code code = open_output(a->out, &out);
+  if (code == EXIT_DONE) {
+    pack_dump(&pack, a->decimal, out);
+    code = close_output(out, code, a->out, &message);
+  }
+  pack_free(&pack);
+  return code;
+}
+
+static const enum exit_code codes_of_verdicts[] = {
+    [ORACLE_SAME] = EXIT_DONE, [ORACLE_CLOSE] = EXIT_CLOSE, [ORACLE_DIFFERS] = EXIT_DIFFERS};
+
+static bool compare_packs(const struct arguments *a, struct oracle_summary *summary, struct message *message)
+{
+  struct pack ours, theirs;
+  if (!pack_read(a->file[0], &ours, message))
+    return false;
+  if (!pack_read(a->file[1], &theirs, message)) {
+    pack_free(&ours);
+    return false;
+  }
+  oracle_sort(&ours);
+  const bool ok =
+      oracle_align(&ours, &theirs, message) && oracle_compare(&ours, &theirs, &a->oracle, stdout, summary, message);
+  pack_free(&ours);
+  pack_free(&theirs);
+  return ok;
+}
+
+enum exit_code oracle_compare_files(const struct arguments *a)
+{
+  struct message message;
+  struct oracle_summary summary = {.verdict = ORACLE_DIFFERS};
+  const bool ok = oracle_is_trace(a->file[0])
+                      ? oracle_compare_traces(a->file[0], a->file[1], stdout, &summary, &message)
+                      : compare_packs(a, &summary, &message);
+  return ok ? codes_of_verdicts[summary.verdict] : complain(&message, EXIT_BAD_INPUT);
+}
+
+enum exit_code oracle_check_port(const struct arguments *a)
+{
+  const struct check_options options = {a->file[0], a->packs, a->out, a->text, a->no_traces, a->seconds, a->oracle};
+  struct message message;
+  enum oracle_verdict verdict = ORACLE_DIFFERS;
+  return oracle_check(&options, stdout, &verdict, &message) ? codes_of_verdicts[verdict]
+                                                            : complain(&message, EXIT_BAD_INPUT);
+}
+
+enum exit_code oracle_judge_files(const struct arguments *a)
+{
+  static const enum exit_code codes[] = {
+      [JUDGE_CONSISTENT] = EXIT_DONE, [JUDGE_CANNOT_TELL] = EXIT_CANNOT_TELL, [JUDGE_DIFFERS] = EXIT_DIFFERS};
+  const struct judge_options how = {a->false_alarm, a->oracle.only};
+  struct message message;
+  struct observable_means ours, theirs;
+  enum judge_verdict verdict = JUDGE_CANNOT_TELL;
+  const bool ok = observable_means_read(a->file[0], NULL, &ours, &message) &&
+                  observable_means_read(a->file[1], &ours, &theirs, &message) &&
+                  oracle_judge(&ours, &theirs, &how, stdout, &verdict, &message);
+  return ok ? codes[verdict] : complain(&message, EXIT_BAD_INPUT);
+}

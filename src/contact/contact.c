@@ -1,0 +1,135 @@
+#include "contact/contact.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "contact/rule.h"
+#include "system/plan.h"
+
+/* --- scratch ----------------------------------------------------------------------------------------------------- */
+
+enum { NEEDS = 9 };
+
+/* The single list of the scratch that the drifts of a model use. Lists that grow are allocated where they grow. */
+static void list_needs(struct contact *c, const struct model *m, bool everything, struct memory_need need[NEEDS])
+{
+  const struct crossing_rule *rule = crossing_rule_of(m);
+  const size_t noncrossing = everything || rule->forbids ? m->vertices : 0;
+  const size_t in_turns = everything || rule->in_turns ? m->vertices : 0;
+  const size_t at_once = everything || (rule->forbids && !rule->in_turns) ? m->vertices : 0;
+  const struct memory_need all[NEEDS] = {
+      {(void **)&c->order, in_turns, sizeof *c->order},
+      {(void **)&c->rank, in_turns, sizeof *c->rank},
+      {(void **)&c->range, noncrossing, sizeof *c->range},
+      {(void **)&c->queue, in_turns, sizeof *c->queue},
+      {(void **)&c->waits, in_turns, sizeof *c->waits},
+      {(void **)&c->candidates.first, noncrossing, sizeof *c->candidates.first},
+      {(void **)&c->flights.rate, at_once, sizeof *c->flights.rate},
+      {(void **)&c->flights.version, at_once, sizeof *c->flights.version},
+      {(void **)&c->flights.bend_of, at_once, sizeof *c->flights.bend_of},
+  };
+  memcpy(need, all, sizeof all);
+}
+
+bool contact_alloc(struct contact *c, const struct model *m, contact_force *force, bool everything)
+{
+  struct memory_need need[NEEDS];
+  memset(c, 0, sizeof *c);
+  c->force = force;
+  list_needs(c, m, everything, need);
+  return memory_take(need, NEEDS);
+}
+
+static void free_neighbors(struct neighbors *nb)
+{
+  for (uint32_t c = 0; nb->entries && c < nb->cell_count; c++)
+    if (nb->entries[c].room > NEIGHBORS_FIRST_ENTRIES)
+      free(nb->entries[c].at);
+  free(nb->entries);
+  free(nb->reference);
+  free(nb->clock);
+  free(nb->pairs.bond);
+  free(nb->pairs.other);
+  free(nb->pairs.limit);
+  free(nb->pairs.generation);
+  free(nb->pairs.image);
+}
+
+void contact_free(struct contact *c)
+{
+  struct memory_need need[NEEDS];
+  const struct model nothing = {0};
+  list_needs(c, &nothing, false, need);
+  memory_release(need, NEEDS);
+  free(c->candidates.at);
+  free(c->near.at);
+  free(c->flights.bends.at);
+  free(c->flights.queue.at);
+  free_neighbors(&c->neighbors);
+  memset(c, 0, sizeof *c);
+}
+
+uint64_t contact_bytes(const struct model *m)
+{
+  struct contact c = {0};
+  struct memory_need need[NEEDS];
+  list_needs(&c, m, false, need);
+  const size_t per_bond = sizeof(struct reference_position) + sizeof(struct bond_clock) + sizeof(struct grid_row);
+  return memory_bytes(need, NEEDS) + (crossing_rule_of(m)->forbids ? (uint64_t)m->bonds * per_bond : 0);
+}
+
+/* --- drift ------------------------------------------------------------------------------------------------------- */
+
+/* Moves everything by the motion of the frame of the moves. A common displacement crosses nothing. */
+static void follow_frame(struct state *state, const struct model *model, struct neighbors *nb, double dt)
+{
+  const struct point origin = {0, 0, 0}, shift = point_move(origin, vec3_scale(dt, model_frame_velocity(model)));
+  if (shift.x == 0 && shift.y == 0 && shift.z == 0)
+    return;
+  for (uint32_t i = 0; i < state->vertices; i++)
+    state->position[i] = point_plus(state->position[i], shift);
+  nb->moved = point_plus(nb->moved, shift);
+}
+
+/* In one step a vertex moves less than 2 (512 + 100) a0: two drifts of at most half an edge each, and the motion of the
+ * frame. So between two checks, vertices stay below 1.6 LATTICE_REACH. */
+#define STEPS_PER_LOOK 1024
+
+/* Records a fault if a vertex is so far out that differences of positions could overflow. If the frame has moved as
+ * far, the neighbor search is rebuilt, which sets its displacement to zero. */
+static bool look_how_far(const struct state *state, struct contact *contact, uint64_t step, struct fault *fault)
+{
+  struct neighbors *nb = &contact->neighbors;
+  const uint32_t lost = state_lost_vertex(state);
+  if (!point_within_reach(nb->moved))
+    nb->built = false;
+  if (lost == state->vertices)
+    return true;
+  const struct vec3 r = point_in_a0(state->position[lost]);
+  return fault_record(fault, FAULT_VERTEX_PLACE, step, lost, fmax(fabs(r.x), fmax(fabs(r.y), fabs(r.z))),
+                      (double)LATTICE_REACH * LATTICE_UNIT);
+}
+
+bool contact_drift(struct state *state, const struct model *model, struct contact *contact, double fraction,
+                   uint64_t step, uint32_t drift, const struct contact_log *log, struct fault *fault)
+{
+  const double dt = fraction * model->time_step;
+  if ((step % STEPS_PER_LOOK == 0 && !look_how_far(state, contact, step, fault)) ||
+      !crossing_rule_of(model)->drift(state, model, contact, dt, step, drift, log, fault))
+    return false;
+  follow_frame(state, model, &contact->neighbors, dt);
+  return true;
+}
+
+static bool act_drift(void *room, const struct moment *now, const struct stage *stage)
+{
+  return contact_drift(now->state, now->model, room, stage->fraction, now->step, stage->drift, now->log, now->fault);
+}
+
+void contact_plan_drift(struct plan *plan, const struct model *model, size_t room, double fraction, uint32_t drift)
+{
+  if (model->vertices > 0)
+    plan_append(plan, (struct stage){.act = act_drift, .room = room, .fraction = fraction, .drift = drift});
+}

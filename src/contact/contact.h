@@ -1,0 +1,175 @@
+/*
+ * Bonds that must not cross: the scratch of this room, and the stage that it adds to a step. A drift moves all
+ * vertices. The crossing rule (rule.h) decides what happens where bonds would cross.
+ */
+#ifndef UNCROSS_CONTACT_CONTACT_H
+#define UNCROSS_CONTACT_CONTACT_H
+
+#include "contact/event_queue.h"
+#include "contact/line.h"
+#include "system/fault.h"
+#include "system/model.h"
+#include "system/state.h"
+
+/* Another bond that may be touched: its number, and which periodic image of it, in box edges. */
+struct neighbor {
+  int32_t bond;
+  int32_t image[3];
+};
+
+struct neighbor_list {
+  uint32_t count, room;
+  struct neighbor *at;
+};
+
+/* A candidate contact: two bonds that may touch in this drift. Each of the two has an entry, with the other in `with`.
+ */
+struct candidate {
+  uint32_t bond;
+  struct neighbor with;
+  uint32_t next; /* 1 + the number of the bond's next candidate, or 0 */
+};
+
+struct candidate_list {
+  uint32_t count, room;
+  struct candidate *at;
+  uint32_t *first; /* [bonds] as `next` */
+};
+
+/* The reference position of a vertex: where it stood when its bonds last searched for partners. */
+struct reference_position {
+  struct point at; /* unwrapped */
+  double skin;     /* a0: the distance from there that the vertex may have */
+};
+
+struct image {
+  int32_t k[3]; /* in box edges */
+};
+
+/* The pair list (contact/pairs.h). A pair can touch only when the sum of its two bonds' paths exceeds its limit.
+ */
+struct pair_list {
+  uint32_t count, room;
+  uint32_t *bond, *other;
+  uint32_t *limit; /* as path, below, modulo 2^32 */
+  uint32_t
+      *generation; /* sum of both bonds' when the pair was found; if the sum is larger now, the pair is out of date */
+  struct image *image; /* of the other bond */
+};
+
+struct bond_clock {
+  uint32_t path;       /* bound on the way that its ends have gone, in units of 2^-20 a0, modulo 2^32 */
+  uint32_t generation; /* number of its searches for partners */
+};
+
+/* Entries that a row of the grid holds itself; a longer row is allocated elsewhere. */
+enum { NEIGHBORS_FIRST_ENTRIES = 15 };
+
+/* A bond that touches a search cell. */
+struct grid_entry {
+  int32_t bond;
+  int8_t image[3];         /* of the bond that lies there; 0: the image of its first end's reference position */
+  uint8_t starts;          /* bit k: along axis k, the lower face of the box around it is not below the cell */
+  uint8_t low[3], high[3]; /* faces of the box, in 2^cell_shift lattice units from the lower corner of the cell */
+};
+
+/* Bonds that touch a search cell. The first few stand in the row itself: four cache lines in all. */
+struct grid_row {
+  _Alignas(64) struct grid_entry *at;
+  uint32_t count, room;
+  struct grid_entry first[NEIGHBORS_FIRST_ENTRIES];
+};
+
+struct neighbors {
+  bool built;
+  struct reference_position *reference; /* [vertices] */
+  struct bond_clock *clock;             /* [vertices] of bond j; unused where vertex j has no bond j */
+  struct pair_list pairs;
+  int32_t cells[3];     /* of the search grid */
+  int64_t cell_edge[3]; /* lattice units */
+  int cell_shift[3];    /* 2^cell_shift is about 1/256 of cell_edge */
+  uint32_t cell_count;
+  struct grid_row *entries; /* [cell_count] */
+  struct point moved;       /* displacement of the frame of the moves since reference positions were first taken */
+  uint64_t renewed;         /* number of reference positions taken so far, for benchmarks */
+};
+
+/* A vertex that has changed its flight in this drift (contact/event_driven.c). */
+struct bend_in_path {
+  uint32_t vertex;
+  struct point start; /* its place at the start of the drift */
+  uint32_t contacts;  /* number of contacts of its bonds that were answered in this drift */
+  uint32_t cluster;   /* of a rigid cluster: the number of its first member in the list, + 1; else 0 */
+};
+
+struct bend_list {
+  uint32_t count, room;
+  struct bend_in_path *at;
+};
+
+/* The flights of a drift in which all vertices move at once. At tick T, vertex i is at position[i] + T rate[i]. */
+struct flights {
+  struct point *rate; /* [vertices] displacement in a tick, lattice units */
+  uint32_t *version;  /* [vertices] of bond j: number of changes of the flights of its ends */
+  uint32_t *bend_of;  /* [vertices] 1 + its place in `bends`, or 0 */
+  struct bend_list bends;
+  struct event_queue queue;
+};
+
+/* The force on a vertex of a fiber whose vertices stand at place(context, vertex), kT/a0. */
+typedef struct vec3 contact_force(const struct model *model, uint32_t vertex,
+                                  struct point (*place)(const void *context, uint32_t vertex), const void *context);
+
+struct contact {
+  contact_force *force;   /* given by the caller of contact_alloc */
+  struct flights flights; /* rules that move all at once, else NULL */
+  uint32_t *order;        /* [vertices] in which vertices move in this drift */
+  uint32_t *rank;  /* [vertices] order[rank[i]] = i. Order, rank, queue, waits: rules that move in turns, else NULL */
+  double *range;   /* [vertices] a0: bound on the distance that a vertex goes in this drift. Range and
+                      candidates.first: rules that forbid crossing, else NULL */
+  uint32_t *queue; /* [vertices] vertices that wait for their turns, in this order; `queued` of them */
+  uint32_t queued;
+  uint8_t *waits; /* [vertices] 1: moves at its turn, 0: moves at once */
+  struct candidate_list candidates;
+  struct neighbor_list near; /* scratch */
+  struct neighbors neighbors;
+  uint64_t waited,
+      called_back; /* number of moves so far that waited for their turn; of these, called back. For benchmarks */
+};
+
+/* Allocates the scratch for the drifts of this model; with `everything`, also what only other models need, for code
+ * that calls the parts of a drift by itself. False if memory is short. */
+bool contact_alloc(struct contact *contact, const struct model *model, contact_force *force, bool everything);
+void contact_free(struct contact *contact);
+
+/* Bytes that contact_alloc and the first drift allocate, before lists grow. */
+uint64_t contact_bytes(const struct model *model);
+
+/* A hit that a trial move found, and the answer to it. */
+struct contact_event {
+  uint32_t vertex;      /* that tried to move */
+  uint32_t moving_bond; /* its first vertex */
+  uint32_t standing_bond;
+  int32_t image[3]; /* of the standing bond, in box edges */
+  struct crossing_hit hit;
+  bool executed;  /* true for the first of this move's hits; the others have no effect */
+  double impulse; /* dP, m a0/t0, if executed; else 0 */
+};
+
+/* Receives each hit, for oracles and tests. NULL in runs. */
+struct contact_log {
+  void (*record)(void *context, const struct contact_event *event);
+  void *context;
+};
+
+/* A drift: all vertices move for a time fraction * dt, under the crossing rule. drift: its number within the step, 0
+ * or 1. False, with the fault recorded, if a vertex would move further than half the shortest edge, if one is beyond
+ * LATTICE_REACH (checked now and then only), or if memory is short. */
+bool contact_drift(struct state *state, const struct model *model, struct contact *contact, double fraction,
+                   uint64_t step, uint32_t drift, const struct contact_log *log, struct fault *fault);
+
+/* Appends a drift to a plan, if the model has vertices. room: offset of struct contact in struct work. */
+struct plan;
+void contact_plan_drift(struct plan *plan, const struct model *model, size_t room, double fraction, uint32_t drift);
+
+#endif

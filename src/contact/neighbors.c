@@ -1,0 +1,372 @@
+#include "contact/neighbors.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "contact/capsule.h"
+#include "contact/pairs.h"
+
+#define OVERLAPS 256 /* looked at together */
+#define FIRST_NEAR 64
+#define SEARCH_CELL_A0 1.0 /* least edge of a search cell */
+
+/* --- capsules ---------------------------------------------------------------------------------------------------- */
+
+/* The capsule in which a bond stays until one of its ends takes a new reference position. */
+static struct capsule capsule_of(const struct neighbors *nb, const struct model *model, uint32_t bond,
+                                 struct point origin)
+{
+  const struct reference_position *a = &nb->reference[bond], *b = &nb->reference[model->next[bond]];
+  return (struct capsule){point_difference(a->at, origin), point_difference(b->at, origin),
+                          capsule_most(a->skin, b->skin)};
+}
+
+/* --- lists ------------------------------------------------------------------------------------------------------- */
+
+/* Doubles the capacity of a row. Its first entries stand in the grid itself; they are copied to new memory. NULL if
+ * memory is short. */
+static void *grow(void *at, uint32_t *room, uint32_t first, size_t size)
+{
+  const bool began_here = *room == first;
+  if (*room > UINT32_MAX / 2)
+    return NULL;
+  void *bigger = began_here ? malloc(2 * first * size) : realloc(at, 2 * *room * size);
+  if (!bigger)
+    return NULL;
+  *room *= 2;
+  return began_here ? memcpy(bigger, at, first * size) : bigger;
+}
+
+static bool add_entry(struct grid_row *row, const struct grid_entry *e)
+{
+  if (row->count == row->room) {
+    struct grid_entry *bigger = grow(row->at, &row->room, NEIGHBORS_FIRST_ENTRIES, sizeof *bigger);
+    if (!bigger)
+      return false;
+    row->at = bigger;
+  }
+  row->at[row->count++] = *e;
+  return true;
+}
+
+static bool add_near(struct neighbor_list *list, struct neighbor n)
+{
+  if (list->count == list->room && !memory_double((void **)&list->at, &list->room, FIRST_NEAR, sizeof *list->at))
+    return false;
+  list->at[list->count++] = n;
+  return true;
+}
+
+/* --- grid -------------------------------------------------------------------------------------------------------- */
+
+/* The box around a capsule, in lattice units. */
+struct capsule_box {
+  struct point low, high;
+};
+
+static inline struct capsule_box box_around(struct point a, struct point b, double reach_a0)
+{
+  const int64_t reach = lattice_from_a0(reach_a0 + CAPSULE_SLACK);
+  return (struct capsule_box){
+      {(a.x < b.x ? a.x : b.x) - reach, (a.y < b.y ? a.y : b.y) - reach, (a.z < b.z ? a.z : b.z) - reach},
+      {(a.x > b.x ? a.x : b.x) + reach, (a.y > b.y ? a.y : b.y) + reach, (a.z > b.z ? a.z : b.z) + reach}};
+}
+
+static struct capsule_box box_of(const struct neighbors *nb, const struct model *model, uint32_t bond)
+{
+  const struct reference_position *p = &nb->reference[bond], *q = &nb->reference[model->next[bond]];
+  return box_around(p->at, q->at, capsule_most(p->skin, q->skin));
+}
+
+/* The image of the box in which a point lies. */
+static struct image image_of(struct point p, const struct box *box)
+{
+  return (struct image){{(int32_t)lattice_image(p.x, box->edge[0]), (int32_t)lattice_image(p.y, box->edge[1]),
+                         (int32_t)lattice_image(p.z, box->edge[2])}};
+}
+
+/* A walk along one axis through the search cells that an interval touches. */
+struct walk {
+  int64_t low, high;   /* the interval, from the lower side of the cell at hand */
+  int32_t cell, image; /* the cell at hand, wrapped */
+};
+
+/* The walk begins in the cell of `low`. Images are counted from `home`. */
+static struct walk walk_from(int64_t low, int64_t high, const struct neighbors *nb, int axis, int32_t home)
+{
+  const int64_t edge = nb->cell_edge[axis], at = lattice_image(low, edge), image = lattice_image(at, nb->cells[axis]);
+  return (struct walk){low - at * edge, high - at * edge, (int32_t)(at - image * nb->cells[axis]),
+                       (int32_t)image - home};
+}
+
+/* To the next cell; false if the interval ends before it. */
+static bool walk_on(struct walk *w, const struct neighbors *nb, int axis)
+{
+  if (w->high < nb->cell_edge[axis])
+    return false;
+  w->low -= nb->cell_edge[axis];
+  w->high -= nb->cell_edge[axis];
+  if (++w->cell == nb->cells[axis])
+    w->cell = 0, w->image++;
+  return true;
+}
+
+/* Fills one axis of an entry: the part of the interval that lies in the cell, in about 1/256 of its edge, rounded down.
+ * The rounding is safe: intervals that overlap in the cell still overlap. */
+static void note_axis(struct grid_entry *e, const struct walk *w, const struct neighbors *nb, int axis)
+{
+  e->image[axis] = (int8_t)w->image;
+  e->low[axis] = w->low < 0 ? 0 : (uint8_t)(w->low >> nb->cell_shift[axis]);
+  e->high[axis] = w->high < nb->cell_edge[axis] ? (uint8_t)(w->high >> nb->cell_shift[axis]) : UINT8_MAX;
+  e->starts = (uint8_t)((e->starts & ~(1 << axis)) | (w->low >= 0) << axis);
+}
+
+/* Pairs of bonds whose boxes overlap, before the distance is tested. image: of the other bond, counted as in
+ * grid_entry. near: if not NULL, the other bonds are listed there; if NULL, pairs whose capsules are not apart enter
+ * the pair list. */
+struct search {
+  struct neighbor_list *near;
+  uint32_t count;
+  struct overlap {
+    uint32_t bond, other;
+    int32_t image[3];
+  } at[OVERLAPS];
+};
+
+/* A function that handles the entry of a bond in one cell; visit_cells calls it for each cell. */
+typedef bool visit(struct neighbors *, const struct model *, uint32_t cell, const struct grid_entry *, struct search *);
+
+/* Calls `what` for each cell that the box around a bond touches. */
+static inline bool visit_cells(struct neighbors *nb, const struct model *model, uint32_t bond, struct capsule_box box,
+                               visit *what, struct search *found)
+{
+  struct grid_entry e = {.bond = (int32_t)bond};
+  const struct image home = image_of(nb->reference[bond].at, &model->box);
+  struct walk z = walk_from(box.low.z, box.high.z, nb, 2, home.k[2]);
+  const struct walk y_start = walk_from(box.low.y, box.high.y, nb, 1, home.k[1]),
+                    x_start = walk_from(box.low.x, box.high.x, nb, 0, home.k[0]);
+  do {
+    struct walk y = y_start;
+    note_axis(&e, &z, nb, 2);
+    do {
+      struct walk x = x_start;
+      note_axis(&e, &y, nb, 1);
+      do {
+        note_axis(&e, &x, nb, 0);
+        if (!what(nb, model, (uint32_t)((z.cell * nb->cells[1] + y.cell) * nb->cells[0] + x.cell), &e, found))
+          return false;
+      } while (walk_on(&x, nb, 0));
+    } while (walk_on(&y, nb, 1));
+  } while (walk_on(&z, nb, 2));
+  return true;
+}
+
+static bool leave_cell(struct neighbors *nb, const struct model *model, uint32_t cell, const struct grid_entry *e,
+                       struct search *found)
+{
+  (void)model, (void)found;
+  struct grid_row *row = &nb->entries[cell];
+  uint32_t k = 0;
+  while (k < row->count && !(row->at[k].bond == e->bond && memcmp(row->at[k].image, e->image, sizeof e->image) == 0))
+    k++;
+  if (k < row->count)
+    row->at[k] = row->at[--row->count];
+  return true;
+}
+
+static bool share_vertex(const struct model *model, uint32_t a, uint32_t b)
+{
+  return a == b || model->next[a] == (int32_t)b || model->next[b] == (int32_t)a;
+}
+
+/* True if the boxes of two entries of one cell overlap in this cell. */
+static inline bool overlap(const struct grid_entry *a, const struct grid_entry *b)
+{
+  return (a->low[0] <= b->high[0]) & (b->low[0] <= a->high[0]) & (a->low[1] <= b->high[1]) & (b->low[1] <= a->high[1]) &
+         (a->low[2] <= b->high[2]) & (b->low[2] <= a->high[2]);
+}
+
+/* Empties the list of overlaps: into `near` or the pair list, see struct search. */
+static bool settle(struct neighbors *nb, const struct model *model, struct search *found)
+{
+  for (uint32_t k = 0; k < found->count; k++) {
+    const struct overlap *c = &found->at[k];
+    if (share_vertex(model, c->bond, c->other))
+      continue;
+    const struct point mine_at = nb->reference[c->bond].at;
+    const struct image home = image_of(mine_at, &model->box),
+                       its_home = image_of(nb->reference[c->other].at, &model->box);
+    struct neighbor n = {.bond = (int32_t)c->other};
+    for (int axis = 0; axis < 3; axis++)
+      n.image[axis] = home.k[axis] - its_home.k[axis] + c->image[axis];
+    if (found->near) {
+      if (!add_near(found->near, n))
+        return false;
+      continue;
+    }
+    const int32_t back[3] = {-n.image[0], -n.image[1], -n.image[2]};
+    const struct capsule mine = capsule_of(nb, model, c->bond, mine_at),
+                         its = capsule_of(nb, model, c->other, point_image(mine_at, back, &model->box));
+    if (!capsules_apart(&mine, &its) && !pairs_add(nb, c->bond, n))
+      return false;
+  }
+  found->count = 0;
+  return true;
+}
+
+/* Collects the bonds of a cell whose boxes overlap with this one's. If two boxes overlap in several cells, the pair is
+ * taken only in the cell with the lower corner of the overlap: along every axis, one of the two boxes begins there. */
+static bool look_into_cell(struct neighbors *nb, const struct model *model, uint32_t cell,
+                           const struct grid_entry *mine, struct search *found)
+{
+  const struct grid_row *row = &nb->entries[cell];
+  for (uint32_t k = 0; k < row->count; k++) {
+    const struct grid_entry *e = &row->at[k];
+    if (!overlap(mine, e) || (mine->starts | e->starts) != 7)
+      continue;
+    if (found->count == OVERLAPS && !settle(nb, model, found))
+      return false;
+    __builtin_prefetch(&nb->reference[e->bond]);
+    __builtin_prefetch(&model->next[e->bond]);
+    found->at[found->count++] =
+        (struct overlap){(uint32_t)mine->bond,
+                         (uint32_t)e->bond,
+                         {mine->image[0] - e->image[0], mine->image[1] - e->image[1], mine->image[2] - e->image[2]}};
+  }
+  return true;
+}
+
+static bool enter_cell(struct neighbors *nb, const struct model *model, uint32_t cell, const struct grid_entry *mine,
+                       struct search *found)
+{
+  return look_into_cell(nb, model, cell, mine, found) && add_entry(&nb->entries[cell], mine);
+}
+
+/* --- the entrances ----------------------------------------------------------------------------------------------- */
+
+/* A reference position and a skin that contain both ends of a move, whether it is made or rejected. */
+static struct reference_position reference_of_move(const struct neighbors *nb, struct point from, struct point to)
+{
+  const struct point d = point_minus(to, from);
+  const double length = vec3_norm(point_difference(to, from));
+  struct point at = point_minus(to, nb->moved);
+  if (length > NEIGHBORS_SKIN) /* from its middle */
+    at = (struct point){at.x - d.x / 2, at.y - d.y / 2, at.z - d.z / 2};
+  return (struct reference_position){at, fmax(NEIGHBORS_SKIN, 0.5 * length + LATTICE_UNIT)};
+}
+
+/* Enters bonds into the grid and finds their pairs, after they got new reference positions. */
+static bool enter(struct neighbors *nb, const struct model *model, uint32_t bonds, const uint32_t *bond)
+{
+  struct search found;
+  found.near = NULL, found.count = 0;
+  for (uint32_t k = 0; k < bonds; k++)
+    if (!visit_cells(nb, model, bond[k], box_of(nb, model, bond[k]), enter_cell, &found))
+      return false;
+  return settle(nb, model, &found);
+}
+
+/* Prefetches a row of the grid. */
+static bool fetch_cell(struct neighbors *nb, const struct model *model, uint32_t cell, const struct grid_entry *e,
+                       struct search *found)
+{
+  (void)model, (void)e, (void)found;
+  const char *row = (const char *)&nb->entries[cell];
+  for (size_t line = 0; line < sizeof nb->entries[cell]; line += 64)
+    __builtin_prefetch(row + line, 1);
+  return true;
+}
+
+bool neighbors_renew(const struct state *state, const struct model *model, struct contact *contact, uint32_t n,
+                     const uint32_t *vertex, const struct point *from, const struct point *to, struct fault *fault)
+{
+  struct neighbors *nb = &contact->neighbors;
+  uint32_t bond[2 * NEIGHBORS_AT_ONCE] = {0};
+  const uint32_t bonds = model_bonds_at(model, n, vertex, bond);
+  /* Without prefetching, most of the time below is spent waiting for memory. */
+  for (uint32_t k = 0; k < bonds; k++)
+    visit_cells(nb, model, bond[k], box_of(nb, model, bond[k]), fetch_cell, NULL);
+  for (uint32_t k = 0; k < bonds; k++) {
+    visit_cells(nb, model, bond[k], box_of(nb, model, bond[k]), leave_cell, NULL);
+    nb->clock[bond[k]].generation++;
+  }
+  for (uint32_t k = 0; k < n; k++)
+    nb->reference[vertex[k]] = reference_of_move(nb, from[k], to[k]);
+  nb->renewed += n;
+  return enter(nb, model, bonds, bond) || fault_no_memory(fault, state->step + 1);
+}
+
+bool neighbors_near(const struct state *state, const struct model *model, struct contact *contact, uint32_t bond,
+                    const struct point end[2], double range, struct neighbor_list *near, struct fault *fault)
+{
+  struct neighbors *nb = &contact->neighbors;
+  const struct capsule_box box = box_around(point_minus(end[0], nb->moved), point_minus(end[1], nb->moved), range);
+  struct search found;
+  found.near = near, found.count = 0;
+  near->count = 0;
+  return (visit_cells(nb, model, bond, box, look_into_cell, &found) && settle(nb, model, &found)) ||
+         fault_no_memory(fault, state->step + 1);
+}
+
+/* Chooses search cells that divide the box edges exactly (in lattice units). There are about as many cells as bonds, or
+ * fewer.
+ */
+static void choose_grid(const struct model *model, struct neighbors *nb)
+{
+  const double edge = fmax(SEARCH_CELL_A0, cbrt(box_volume(&model->box) / (double)model->bonds));
+  for (int k = 0; k < 3; k++) {
+    int cells = (int)fmax(1.0, model->box.cells[k] / edge);
+    while (model->box.edge[k] % cells != 0)
+      cells--;
+    nb->cells[k] = cells;
+    nb->cell_edge[k] = model->box.edge[k] / cells;
+    while ((nb->cell_edge[k] - 1) >> nb->cell_shift[k] > UINT8_MAX)
+      nb->cell_shift[k]++;
+  }
+  nb->cell_count = (uint32_t)(nb->cells[0] * nb->cells[1] * nb->cells[2]);
+}
+
+static bool allocate(const struct model *model, struct neighbors *nb)
+{
+  if (nb->entries)
+    return true;
+  choose_grid(model, nb);
+  nb->reference = memory_alloc(model->vertices, sizeof *nb->reference);
+  nb->clock = memory_alloc(model->vertices, sizeof *nb->clock);
+  nb->entries = memory_alloc(nb->cell_count, sizeof *nb->entries);
+  if (!nb->reference || !nb->clock || !nb->entries)
+    return false;
+  for (uint32_t c = 0; c < nb->cell_count; c++) {
+    struct grid_row *row = &nb->entries[c];
+    row->at = row->first, row->count = 0, row->room = NEIGHBORS_FIRST_ENTRIES;
+  }
+  return true;
+}
+
+/* A bond visits all search cells around it, of which there must not be 10^18. Forces find every bond that is half an
+ * edge long before the next drift; half a drift adds less than one edge. */
+static bool spans_few_cells(const struct state *state, const struct model *model, uint32_t bond, struct fault *fault)
+{
+  const double length = vec3_norm(point_difference(state->position[model->next[bond]], state->position[bond]));
+  return length <= 2.0 * box_shortest_edge(&model->box) ||
+         fault_record(fault, FAULT_BOND_TOO_LONG, state->step + 1, bond, length, model_longest_bond(model));
+}
+
+bool neighbors_build(const struct state *state, const struct model *model, struct contact *contact, struct fault *fault)
+{
+  struct neighbors *nb = &contact->neighbors;
+  if (!allocate(model, nb))
+    return fault_no_memory(fault, state->step + 1);
+  nb->pairs.count = 0;
+  for (uint32_t c = 0; c < nb->cell_count; c++)
+    nb->entries[c].count = 0;
+  for (uint32_t j = 0; j < model->vertices; j++)
+    nb->reference[j] = (struct reference_position){state->position[j], NEIGHBORS_SKIN};
+  for (uint32_t j = 0; j < model->vertices; j++)
+    if (model->next[j] >= 0 && (!spans_few_cells(state, model, j, fault) || !enter(nb, model, 1, &j)))
+      return fault_no_memory(fault, state->step + 1); /* or the fault that is there already */
+  nb->moved = (struct point){0, 0, 0};
+  nb->built = true;
+  return true;
+}

@@ -1,0 +1,209 @@
+#include "contact/schedule.h"
+
+#include <string.h>
+
+#include "contact/candidates.h"
+#include "contact/capsule.h"
+#include "contact/drift.h"
+#include "contact/neighbors.h"
+
+enum { BLOCK = 64 }; /* vertices worked on at a time */
+
+/* late[k]: vertex first + k is about to leave its reference position, as neighbors_hold has it. */
+static void find_late(const struct state *state, const struct neighbors *nb, uint32_t first, uint32_t n,
+                      const struct vec3 *restrict d, int64_t *restrict late)
+{
+  const struct point *restrict p = &state->position[first], moved = nb->moved;
+  const struct reference_position *restrict reference = &nb->reference[first];
+  for (uint32_t k = 0; k < n; k++) {
+    const struct vec3 off = point_difference(point_move(p[k], d[k]), point_plus(reference[k].at, moved));
+    late[k] = !(vec3_dot(off, off) <= reference[k].skin * reference[k].skin);
+  }
+}
+
+/* Ranges of all vertices, and new reference positions for those that are about to leave theirs. */
+static bool prepare(const struct state *state, const struct model *model, struct contact *contact, double dt,
+                    struct fault *fault)
+{
+  struct vec3 d[BLOCK];
+  int64_t late[BLOCK];
+  uint32_t vertex[NEIGHBORS_AT_ONCE], count = 0;
+  struct point from[NEIGHBORS_AT_ONCE], to[NEIGHBORS_AT_ONCE];
+  for (uint32_t first = 0; first < state->vertices; first += BLOCK) {
+    const uint32_t n = state->vertices - first < BLOCK ? state->vertices - first : BLOCK;
+    if (!drift_displacements(state, model, dt, first, n, d, fault))
+      return false;
+    double *restrict range = &contact->range[first];
+    for (uint32_t k = 0; k < n; k++)
+      range[k] = vec3_norm(d[k]);
+    find_late(state, &contact->neighbors, first, n, d, late);
+    for (uint32_t k = 0; k < n; k++) {
+      if (!late[k])
+        continue;
+      vertex[count] = first + k;
+      from[count] = state->position[first + k];
+      to[count++] = point_move(state->position[first + k], d[k]);
+      if (count == NEIGHBORS_AT_ONCE) {
+        if (!neighbors_renew(state, model, contact, count, vertex, from, to, fault))
+          return false;
+        count = 0;
+      }
+    }
+  }
+  return count == 0 || neighbors_renew(state, model, contact, count, vertex, from, to, fault);
+}
+
+/* --- the plan ---------------------------------------------------------------------------------------------------- */
+
+/* Vertices of candidate contacts wait for their turns. Each candidate is listed with both of its bonds. */
+static void let_wait(const struct model *model, struct contact *contact)
+{
+  memset(contact->waits, 0, model->vertices);
+  for (uint32_t k = 0; k < contact->candidates.count; k++) {
+    const uint32_t bond = contact->candidates.at[k].bond;
+    contact->waits[bond] = contact->waits[model->next[bond]] = 1;
+  }
+}
+
+/* The vertices that wait, in the order of their turns. */
+static void queue_up(const struct state *state, struct contact *contact)
+{
+  uint32_t n = 0;
+  for (uint32_t k = 0; k < state->vertices; k++) {
+    const uint32_t i = contact->order[k];
+    contact->queue[n] = i;
+    n += contact->waits[i];
+  }
+  contact->queued = n;
+}
+
+/* Inserts vertex i into the queue; its turn is later than the present one. */
+static void join_queue(struct contact *contact, uint32_t i)
+{
+  uint32_t k = contact->queued++;
+  for (; contact->rank[contact->queue[k - 1]] > contact->rank[i]; k--)
+    contact->queue[k] = contact->queue[k - 1];
+  contact->queue[k] = i;
+}
+
+/* Moves all vertices that need not wait. */
+static void move_others(struct state *state, const struct model *model, const struct contact *contact, double dt)
+{
+  const struct vec3 *restrict v = state->velocity, frame = model_frame_velocity(model);
+  struct point *restrict p = state->position;
+  for (uint32_t i = 0; i < state->vertices; i++) {
+    const double time = contact->waits[i] ? 0.0 : dt;
+    p[i] = point_move(p[i], drift_displacement(v[i], frame, time));
+  }
+}
+
+bool schedule_plan(struct state *state, const struct model *model, struct contact *contact, double dt,
+                   struct fault *fault)
+{
+  if (!prepare(state, model, contact, dt, fault))
+    return false;
+  if (!candidates_find(state, model, contact, fault))
+    return false;
+  let_wait(model, contact);
+  queue_up(state, contact);
+  move_others(state, model, contact, dt);
+  return true;
+}
+
+/* True if the vertex has moved early, and its own turn comes after that of rank `now`. */
+static bool moved_early(const struct contact *contact, uint32_t i, uint32_t now)
+{
+  return !contact->waits[i] && contact->rank[i] > now;
+}
+
+/* The place of the vertex before it moved early; its present place, if it has not. Its velocity is still that of the
+ * early move: only bonds in a candidate contact are hit, and their ends wait or have been called back. */
+static struct point standing_place(const struct state *state, const struct model *model, const struct contact *contact,
+                                   uint32_t i, double dt, uint32_t now)
+{
+  const struct vec3 back = drift_displacement(state->velocity[i], model_frame_velocity(model), -dt);
+  return moved_early(contact, i, now) ? point_move(state->position[i], back) : state->position[i];
+}
+
+/* Calls back a vertex that has moved early: it returns to its former place and waits for its turn. */
+static void call_back(struct state *state, const struct model *model, struct contact *contact, uint32_t i, double dt,
+                      uint32_t now)
+{
+  if (!moved_early(contact, i, now))
+    return;
+  state->position[i] = standing_place(state, model, contact, i, dt, now);
+  contact->waits[i] = 1;
+  join_queue(contact, i);
+  contact->called_back++;
+}
+
+/* The place of a bond for the rest of this drift. Its ends may move by candidates_range from there. */
+struct standing_bond {
+  struct point end[2];
+  double range;
+};
+
+static struct standing_bond standing_bond(const struct state *state, const struct model *model,
+                                          const struct contact *contact, uint32_t bond, double dt, uint32_t now)
+{
+  const uint32_t end = (uint32_t)model->next[bond];
+  return (struct standing_bond){
+      {standing_place(state, model, contact, bond, dt, now), standing_place(state, model, contact, end, dt, now)},
+      candidates_range(model, contact, bond)};
+}
+
+static bool may_touch(const struct standing_bond *mine, const struct standing_bond *its, const int32_t image[3],
+                      const struct box *box)
+{
+  const struct point origin = mine->end[0];
+  const struct capsule c = {{0, 0, 0}, point_difference(mine->end[1], origin), mine->range};
+  const struct capsule d = {point_difference(point_image(its->end[0], image, box), origin),
+                            point_difference(point_image(its->end[1], image, box), origin), its->range};
+  return !capsules_apart(&c, &d);
+}
+
+/* Adds the bonds that bond `bond` may touch now to its candidates. The ends of all of them are called back if they have
+ * moved early. */
+static bool look_around_bond(struct state *state, const struct model *model, struct contact *contact, uint32_t bond,
+                             double dt, uint32_t now, struct fault *fault)
+{
+  struct neighbor_list *near = &contact->near;
+  const struct standing_bond mine = standing_bond(state, model, contact, bond, dt, now);
+  if (!neighbors_near(state, model, contact, bond, mine.end, mine.range, near, fault))
+    return false;
+  for (uint32_t k = 0; k < near->count; k++) {
+    const struct neighbor *n = &near->at[k];
+    const struct standing_bond its = standing_bond(state, model, contact, (uint32_t)n->bond, dt, now);
+    if (!may_touch(&mine, &its, n->image, &model->box))
+      continue;
+    if (!candidates_add(state, contact, bond, n, fault))
+      return false;
+    const int32_t ends[4] = {(int32_t)bond, model->next[bond], n->bond, model->next[n->bond]};
+    for (int e = 0; e < 4; e++)
+      call_back(state, model, contact, (uint32_t)ends[e], dt, now);
+  }
+  return true;
+}
+
+bool schedule_look_around(struct state *state, const struct model *model, struct contact *contact, uint32_t i,
+                          double dt, uint32_t now, struct fault *fault)
+{
+  uint32_t bond[2];
+  const int bonds = model_bonds_of(model, i, bond);
+  for (int b = 0; b < bonds; b++)
+    if (!look_around_bond(state, model, contact, bond[b], dt, now, fault))
+      return false;
+  return true;
+}
+
+bool schedule_reconsider(struct state *state, const struct model *model, struct contact *contact, uint32_t i, double dt,
+                         uint32_t now, struct fault *fault)
+{
+  const double furthest = box_shortest_edge(&model->box); /* a longer move is a fault */
+  const double range =
+      fmin(vec3_norm(drift_displacement(state->velocity[i], model_frame_velocity(model), dt)), furthest);
+  if (contact->rank[i] < now || range <= contact->range[i])
+    return true;
+  candidates_widen(model, contact, i, range);
+  return schedule_look_around(state, model, contact, i, dt, now, fault);
+}

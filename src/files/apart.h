@@ -1,0 +1,63 @@
+/*
+ * Work done apart: by a process of its own, which hands plain numbers over.
+ *
+ * HDF5 1.10.8 cannot be trusted with a file that comes from anywhere: on a damaged one it may free memory twice, loop,
+ * or ask for any amount of memory; and a file may name other files that HDF5 then opens. So no file is read by the
+ * process that needs its contents. A child does it; if it dies, the file is called damaged and the parent goes on.
+ *
+ * The child ignores the signals that end a run, has limits of its own for memory and for processor time (both grow with
+ * the file), and can open no other file once apart_shut is called. It never writes. It ends with its work, or when the
+ * parent lets go.
+ */
+#ifndef UNCROSS_FILES_APART_H
+#define UNCROSS_FILES_APART_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <sys/types.h>
+
+#include "base/message.h"
+
+/* Opens a file for reading, if it is a regular one; below 0, with a message, if it is not. A pipe or a device is not
+ * waited for. */
+int open_regular(const char *path, struct message *message);
+
+/* One end of the connection between the two processes. */
+struct apart {
+  const char *path; /* the file, for messages; must outlive this */
+  int socket;
+  pid_t child;    /* 0: this is the child */
+  double seconds; /* of processor time that one piece of work may take */
+  bool broken;    /* the other side is gone: nothing more is sent or received */
+  bool died;      /* the child did, and of the file */
+};
+
+/* Calls work(link, context) in a child that sees everything as it is now. A path that is not that of a regular file is
+ * refused before. False, with a message, if there can be no child; then there is nothing to end. */
+bool apart_start(struct apart *parent, const char *path, void (*work)(struct apart *link, void *context), void *context,
+                 struct message *message);
+
+/* Ends the child, whatever it does. */
+void apart_end(struct apart *parent);
+
+/* In the child. apart_shut: from now on no file can be opened. apart_go_on: processor time is counted anew. */
+void apart_shut(void);
+void apart_go_on(const struct apart *link);
+
+/* Sends or receives so many bytes. False if the other side is gone. */
+bool apart_put(struct apart *link, const void *data, size_t bytes);
+bool apart_get(struct apart *link, void *data, size_t bytes);
+
+/* A text of any length, or none (NULL). Received: memory to be freed; at most `most` bytes; *text is NULL for none. */
+bool apart_put_text(struct apart *link, const char *text);
+bool apart_get_text(struct apart *link, size_t most, char **text);
+
+/* How a piece of work went, as a number: 0 if it went well, another from 1 on with a message. Received: -1, with a
+ * message that names the file, if the child is no more. */
+void apart_put_verdict(struct apart *link, int verdict, const struct message *message);
+int apart_get_verdict(struct apart *parent, struct message *message);
+
+/* Says that, and if it is known how, the child died. Returns 0. */
+int apart_lost(struct apart *parent, struct message *message);
+
+#endif

@@ -1,0 +1,247 @@
+/* The process that lets HDF5 look at a file with frames. */
+#include "files/frames_apart.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "files/frames.h"
+#include "files/trajectory.h"
+
+#define LOST_NUMBER 2 /* verdicts that are sent are not negative */
+
+struct source {
+  const char *path;
+  struct frames_about about;
+  unsigned failures; /* of HDF5 */
+  hid_t file;
+  struct trajectory *trajectory; /* NULL: a checkpoint */
+  struct structure structure;
+  char *scene;
+  double *position, *velocity; /* [3 rows] */
+};
+
+/* --- what the file is -------------------------------------------------------------------------------------------- */
+
+static void read_creator(hid_t file, struct frames_about *about)
+{
+  hid_t h5md = h5_open_group(file, "h5md"), creator = h5_open_group(h5md, "creator");
+  hid_t by = h5_open_group(h5md, "author");
+  snprintf(about->creator, sizeof about->creator, "unknown");
+  snprintf(about->author, sizeof about->author, "unknown");
+  if (creator >= 0) {
+    h5_get_text(creator, "name", about->creator, sizeof about->creator);
+    h5_get_text(creator, "version", about->version, sizeof about->version);
+  }
+  if (by >= 0)
+    h5_get_text(by, "name", about->author, sizeof about->author);
+  h5_close(by);
+  h5_close(creator);
+  h5_close(h5md);
+  H5Eclear2(H5E_DEFAULT);
+}
+
+static bool open_structure(struct source *s, hid_t particles, hid_t connectivity, uint32_t rows,
+                           struct message *message)
+{
+  bool ok = particles >= 0 && structure_read(particles, connectivity, rows, &s->structure);
+  s->about.bonds = s->structure.stored_bonds;
+  return ok || h5_fail(message, s->path, "damaged, its species or bonds cannot be read");
+}
+
+static bool open_trajectory(struct source *s, struct message *message)
+{
+  struct trajectory *t = s->trajectory;
+  if (!trajectory_find(t, message))
+    return false;
+  const int found = h5_look(t->file, "connectivity");
+  hid_t connectivity = h5_open_object(t->file, "connectivity");
+  s->about.frames = t->frames;
+  s->about.rows = t->particles;
+  s->about.steps = t->step >= 0;
+  s->about.velocities = t->velocity >= 0;
+  s->about.checked = t->checksum >= 0;
+  const bool none = found == 0 && t->checksum < 0; /* what we write has bonds, if only none */
+  bool ok = none || connectivity >= 0 || h5_fail(message, s->path, "damaged, its bonds cannot be read");
+  /* Without a frame only this dataset proves how many particles there are. */
+  const hsize_t rows[1] = {t->particles};
+  if (ok && (t->frames > 0 || h5_array_is(t->group, "species", 1, rows)))
+    ok = open_structure(s, t->group, connectivity, t->particles, message);
+  h5_close(connectivity);
+  const int told = ok ? trajectory_read_scene(t, &s->scene) : 0;
+  ok = ok && (told >= 0 || h5_fail(message, s->path, "damaged, its scene cannot be read"));
+  if (ok)
+    read_creator(t->file, &s->about);
+  return ok;
+}
+
+static bool open_checkpoint(struct source *s, struct message *message)
+{
+  struct checkpoint_summary *summary = &s->about.summary;
+  if (!checkpoint_find(s->file, s->path, s->about.checked, summary, message))
+    return false;
+  hid_t group = h5_open_group(s->file, "structure");
+  const bool ok = open_structure(s, group, group, summary->vertices, message);
+  h5_close(group);
+  s->about.frames = 1;
+  s->about.rows = summary->vertices + summary->particles;
+  s->about.steps = s->about.velocities = true;
+  s->scene = ok ? h5_text_read(s->file, "scene") : NULL;
+  return ok && (s->scene || h5_fail(message, s->path, "damaged checkpoint: its scene cannot be read"));
+}
+
+static bool open_source(struct source *s, enum h5_trouble *trouble, struct message *message)
+{
+  s->file = h5_open(s->path, false, &s->about.checked, trouble, message);
+  apart_shut();
+  if (s->file < 0)
+    return false;
+  *trouble = H5_DAMAGED;
+  h5_watch(&s->failures);
+  s->about.checkpoint = checkpoint_is(s->file);
+  if (!s->about.checkpoint) {
+    s->trajectory = trajectory_allocate(s->path);
+    if (!s->trajectory)
+      return message_set(message, "%s: out of memory", s->path);
+    s->trajectory->file = s->file;
+  }
+  return (s->about.checkpoint ? open_checkpoint : open_trajectory)(s, message) &&
+         (s->failures == 0 || message_set(message, "%s: damaged: HDF5 cannot read some part of it", s->path));
+}
+
+/* --- frames ------------------------------------------------------------------------------------------------------ */
+
+static bool make_room(struct source *s, struct message *message)
+{
+  const size_t numbers = ((size_t)s->about.rows + 1) * 3;
+  if (!s->position)
+    s->position = malloc(numbers * sizeof *s->position);
+  if (!s->velocity && s->about.velocities)
+    s->velocity = malloc(numbers * sizeof *s->velocity);
+  return (s->position && (s->velocity || !s->about.velocities)) || message_set(message, "%s: out of memory", s->path);
+}
+
+static enum frame_verdict load_checkpoint(struct source *s, struct frame_moment *moment, struct message *message)
+{
+  const struct checkpoint_summary *summary = &s->about.summary;
+  struct model model = checkpoint_model(summary);
+  struct state state;
+  if (!state_alloc(&state, &model)) {
+    message_set(message, "%s: out of memory", s->path);
+    return FRAME_LOST;
+  }
+  bool ok = checkpoint_read_state(s->file, s->path, summary, &state, message);
+  if (ok) { /* which has particles in the order of their ids */
+    frame_positions(&state, &model, state.solvent.id, s->position);
+    frame_velocities(&state, &model, state.solvent.id, s->velocity);
+  }
+  state_free(&state);
+  *moment = (struct frame_moment){summary->numbers.step, (double)summary->numbers.step * summary->time_step, true, {0}};
+  for (int k = 0; k < 3; k++)
+    moment->edge[k] = summary->cells[k];
+  return ok ? FRAME_FINE : FRAME_DAMAGED;
+}
+
+static enum frame_verdict load(struct source *s, uint64_t frame, struct frame_moment *moment, struct message *message)
+{
+  if (!make_room(s, message))
+    return FRAME_LOST;
+  if (!s->trajectory)
+    return load_checkpoint(s, moment, message);
+  memset(moment, 0, sizeof *moment);
+  s->failures = 0;
+  moment->has_box = true;
+  const bool fine = trajectory_load(s->trajectory, frame, &moment->step, &moment->time, moment->edge, &moment->has_box,
+                                    s->position, s->velocity, message);
+  if (fine && s->failures > 0)
+    message_set(message, "%s: frame %" PRIu64 " (step %" PRIu64 ") is damaged: HDF5 cannot read some part of it",
+                s->path, frame, moment->step);
+  return fine && s->failures == 0 ? FRAME_FINE : FRAME_DAMAGED;
+}
+
+static bool put_structure(struct apart *link, const struct structure *s)
+{
+  const int32_t kinds = s->kinds;
+  return apart_put(link, &s->particles, sizeof s->particles) && apart_put(link, &kinds, sizeof kinds) &&
+         apart_put(link, &s->bonds, sizeof s->bonds) &&
+         apart_put(link, s->species, s->particles * sizeof *s->species) &&
+         apart_put(link, s->next, s->particles * sizeof *s->next) &&
+         apart_put(link, s->name, (size_t)s->kinds * sizeof *s->name);
+}
+
+static void answer(struct apart *link, struct source *s, const struct frame_request *request)
+{
+  struct message message = {""};
+  struct frame_moment moment = {0};
+  const enum frame_verdict verdict = load(s, request->frame, &moment, &message);
+  const size_t bytes = 3 * sizeof(double) * (size_t)s->about.rows;
+  apart_put_verdict(link, verdict == FRAME_LOST ? LOST_NUMBER : (int)verdict, &message);
+  if (verdict == FRAME_LOST)
+    return;
+  apart_put(link, &moment, sizeof moment);
+  if (verdict == FRAME_FINE && request->rows && apart_put(link, s->position, bytes) && s->velocity)
+    apart_put(link, s->velocity, bytes);
+}
+
+/* The file is not closed: HDF5 may fail once more there, and the process ends anyway. */
+static void let_go(struct source *s)
+{
+  structure_free(&s->structure);
+  free(s->scene);
+  free(s->position);
+  free(s->velocity);
+}
+
+void frames_serve(struct apart *link, void *path)
+{
+  struct source s = {.path = path};
+  struct message message = {""};
+  struct frame_request request;
+  enum h5_trouble trouble;
+  bool ok = open_source(&s, &trouble, &message);
+  apart_put_verdict(link, (int)(ok ? H5_FINE : trouble), &message);
+  ok = ok && apart_put(link, &s.about, sizeof s.about) && put_structure(link, &s.structure) &&
+       apart_put_text(link, s.scene);
+  while (ok && apart_get(link, &request, sizeof request)) {
+    apart_go_on(link);
+    answer(link, &s, &request);
+  }
+  let_go(&s);
+}
+
+/* --- sorts of files ---------------------------------------------------------------------------------------------- */
+
+/* False if the file has particles that cannot be read. */
+static bool find_sort(hid_t file, enum h5_sort *sort)
+{
+  static const struct {
+    const char *format;
+    enum h5_sort sort;
+  } known[] = {{CHECKPOINT_FORMAT, H5_CHECKPOINT}, {"uncross pack", H5_PACK}};
+  char format[64];
+  const int particles = h5_look(file, "particles");
+  *sort = particles > 0 ? H5_TRAJECTORY : H5_OTHER;
+  for (size_t k = 0; k < sizeof known / sizeof *known; k++)
+    if (h5_get_text(file, "format", format, sizeof format) && strcmp(format, known[k].format) == 0)
+      *sort = known[k].sort;
+  return particles >= 0;
+}
+
+void sort_serve(struct apart *link, void *path)
+{
+  struct message message = {""};
+  enum h5_trouble trouble;
+  bool sealed;
+  unsigned failures = 0;
+  hid_t file = h5_open(path, false, &sealed, &trouble, &message);
+  apart_shut();
+  h5_watch(&failures);
+  enum h5_sort sort = H5_OTHER;
+  if (file >= 0 && (!find_sort(file, &sort) || failures > 0)) {
+    trouble = H5_DAMAGED;
+    message_set(&message, "%s: damaged: HDF5 cannot read some part of it", (const char *)path);
+  }
+  apart_put_verdict(link, (int)trouble, &message);
+  if (trouble == H5_FINE)
+    apart_put(link, &sort, sizeof sort);
+}

@@ -1,0 +1,217 @@
+#include "files/output.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+
+/* Columns of the time series that the plan asks for, 0 if it does not or this is none. */
+static size_t wanted_columns(const struct observe_plan *plan, int which, const char *const **names)
+{
+  return plan->every[which] > 0 ? observe_series_columns((enum observable)which, names) : 0;
+}
+
+/* --- what is there already --------------------------------------------------------------------------------------- */
+
+struct search {
+  const struct folder *folder;
+  struct message *name;
+};
+
+static bool is_absent(const struct search *s, const char *table)
+{
+  message_set(s->name, "%s.csv", table);
+  return !folder_has(s->folder, s->name->text);
+}
+
+static bool take_absent(void *context, const struct observe_table *table)
+{
+  return is_absent(context, table->name);
+}
+
+bool output_left(const struct scene *scene, const struct observers *observers, const struct folder *folder,
+                 struct message *name)
+{
+  struct search search = {folder, name};
+  const char *const *names;
+  for (int k = 0; k < OBSERVABLES; k++)
+    if (wanted_columns(&scene->observe, k, &names) > 0 && !is_absent(&search, observable_names[k]))
+      return true;
+  return !observers_summaries(observers, &scene->model, take_absent, &search);
+}
+
+static bool remove_table(void *context, const struct observe_table *table)
+{
+  struct search *s = context;
+  message_set(s->name, "%s.csv", table->name);
+  folder_remove(s->folder, s->name->text);
+  return true;
+}
+
+void output_remove(const struct scene *scene, const struct observers *observers, const struct folder *folder)
+{
+  struct message name;
+  struct search search = {folder, &name};
+  const char *const *names;
+  for (int k = 0; k < OBSERVABLES; k++)
+    if (wanted_columns(&scene->observe, k, &names) > 0)
+      remove_table(&search, &(struct observe_table){.name = observable_names[k]});
+  observers_summaries(observers, &scene->model, remove_table, &search);
+  if (scene->trajectory_every > 0)
+    folder_remove(folder, "trajectory.h5");
+}
+
+/* Ends are 1 + a step, 0 before the first. */
+static bool same_end(const struct folder *folder, const char *file, uint64_t found, uint64_t end, const char *otherwise,
+                     struct message *message)
+{
+  char where[64] = "is missing or holds nothing of this run";
+  if (found > 0)
+    snprintf(where, sizeof where, "ends at step %" PRIu64, found - 1);
+  return found == end || message_set(message,
+                                     "%s/%s: %s, but went to step %" PRIu64
+                                     " when the checkpoint was written (changed, or lost with the "
+                                     "machine); put the whole file back, or %s",
+                                     folder->name, file, where, end - 1, otherwise);
+}
+
+bool output_whole(const struct scene *scene, const struct observers *observers, const struct folder *folder,
+                  uint64_t frames_end, struct message *message)
+{
+  const char *const *names;
+  uint64_t found;
+  for (int k = 0; k < OBSERVABLES; k++) {
+    const uint64_t end = observers_end(observers, (enum observable)k);
+    char file[64];
+    snprintf(file, sizeof file, "%s.csv", observable_names[k]);
+    const size_t columns = wanted_columns(&scene->observe, k, &names);
+    if (columns > 0 &&
+        !(series_find_end(folder, observable_names[k], columns, names, end, &found, message) &&
+          same_end(folder, file, found, end, "resume without this table in the scene's `observe`", message)))
+      return false;
+  }
+  char path[4096];
+  folder_path(folder, "trajectory.h5", path, sizeof path);
+  return scene->trajectory_every == 0 || frames_end == 0 || !trajectory_find_end(path, frames_end - 1, &found) ||
+         same_end(folder, "trajectory.h5", found, frames_end, "move it away to begin another", message);
+}
+
+/* --- what a run writes ------------------------------------------------------------------------------------------- */
+
+/* again: the run is resumed at step 0, whose samples are not in the checkpoint; its tables begin anew. */
+static bool open_series(struct output *o, const struct observe_plan *plan, const struct observers *observers,
+                        bool again, struct message *message)
+{
+  for (int k = 0; k < OBSERVABLES; k++) {
+    const char *const *names;
+    size_t columns = wanted_columns(plan, k, &names);
+    const uint64_t end = observers_end(observers, (enum observable)k);
+    char file[64];
+    snprintf(file, sizeof file, "%s.csv", observable_names[k]);
+    if (columns > 0 && again && end == 0)
+      folder_remove(o->folder, file);
+    if (columns > 0 && !series_open(&o->series[k], o->folder, observable_names[k], columns, names, end, message))
+      return false;
+  }
+  return true;
+}
+
+/* What a resumed run has to say of frames that are missing before step `step`; frames_end as in checkpoint_head. */
+static void tell_gap(const struct output *o, const char *path, bool there, uint64_t frames_end, uint64_t step,
+                     struct message *message)
+{
+  if (!there && frames_end == 0)
+    message_set(message, "%s: there was none; its frames begin after step %" PRIu64, path, step);
+  else if (!there)
+    message_set(message, "%s: is gone, it went to step %" PRIu64 "; the frames of a new one begin after step %" PRIu64,
+                path, frames_end - 1, step);
+  else if (frames_end > 0 && step - (frames_end - 1) > o->trajectory_every)
+    message_set(message, "%s: without frames from step %" PRIu64 " to %" PRIu64, path, frames_end - 1, step);
+}
+
+static bool open_trajectory(struct output *o, const struct scene *scene, bool resume, uint64_t frames_end,
+                            uint64_t step, struct message *message)
+{
+  char path[4096];
+  folder_path(o->folder, "trajectory.h5", path, sizeof path);
+  const bool there = folder_has(o->folder, "trajectory.h5");
+  const struct trajectory_options options = {.solvent = scene->trajectory_solvent,
+                                             .velocities = scene->trajectory_velocities,
+                                             .seed = scene->model.seed,
+                                             .folder = o->folder};
+  o->trajectory = trajectory_open(path, &scene->model, &options, resume, step, scene->text, message);
+  if (o->trajectory && resume && step > 0 && message->text[0] == '\0')
+    tell_gap(o, path, there, frames_end, step, message);
+  return o->trajectory != NULL;
+}
+
+/* The trajectory comes first: if another program has it open, no table is touched. */
+bool output_open(struct output *o, const struct scene *scene, const struct observers *observers,
+                 const struct folder *folder, bool resume, uint64_t frames_end, uint64_t step, struct message *message)
+{
+  *o = (struct output){.folder = folder, .trajectory_every = scene->trajectory_every};
+  message_set(message, "%s", "");
+  return (o->trajectory_every == 0 || open_trajectory(o, scene, resume, frames_end, step, message)) &&
+         open_series(o, &scene->observe, observers, resume && step == 0, message);
+}
+
+struct row_context {
+  struct output *output;
+  uint64_t step;
+  struct message *message;
+};
+
+static bool take_row(void *context, enum observable which, size_t columns, const double *values)
+{
+  struct row_context *c = context;
+  return series_row(&c->output->series[which], c->step, columns, values, c->message);
+}
+
+bool output_sample(struct output *o, struct observers *observers, const struct model *model, const struct state *state,
+                   struct message *message)
+{
+  struct row_context context = {o, state->step, message};
+  const struct observe_sink sink = {take_row, &context};
+  if (observers_due(observers, state->step)) {
+    message_set(message, "no memory for the observables of step %llu", (unsigned long long)state->step);
+    if (!observers_sample(observers, model, state, &sink))
+      return false;
+  }
+  return !o->trajectory || state->step % o->trajectory_every != 0 ||
+         trajectory_append(o->trajectory, model, state, message);
+}
+
+bool output_sync(struct output *o, struct message *message)
+{
+  for (int k = 0; k < OBSERVABLES; k++)
+    if (!series_sync(&o->series[k], message))
+      return false;
+  return !o->trajectory || trajectory_sync(o->trajectory, message);
+}
+
+struct table_context {
+  const struct folder *folder;
+  struct message *message;
+};
+
+static bool take_table(void *context, const struct observe_table *table)
+{
+  struct table_context *c = context;
+  return table_write(c->folder, table, c->message);
+}
+
+bool output_summaries(struct output *o, const struct observers *observers, const struct model *model,
+                      struct message *message)
+{
+  struct table_context context = {o->folder, message};
+  return observers_summaries(observers, model, take_table, &context);
+}
+
+bool output_close(struct output *o, struct message *message)
+{
+  bool ok = true;
+  for (int k = 0; k < OBSERVABLES; k++)
+    ok = series_close(&o->series[k], message) && ok;
+  if (o->trajectory)
+    ok = trajectory_close(o->trajectory, message) && ok;
+  o->trajectory = NULL;
+  return ok;
+}

@@ -1,0 +1,62 @@
+#include "files/record.h"
+
+#include <inttypes.h>
+#include <jansson.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "files/build_info.h"
+#include "version.h"
+
+/* JSON knows no NaN: null. */
+static json_t *real(double x)
+{
+  return isfinite(x) ? json_real(x) : json_null();
+}
+
+static json_t *conserved(double energy, struct vec3 p)
+{
+  return json_pack("{s:o, s:[o, o, o]}", "energy", real(energy), "momentum", real(p.x), real(p.y), real(p.z));
+}
+
+static json_t *counts(const struct collision_counts *c)
+{
+  return json_pack("{s:I, s:I, s:I, s:I, s:I, s:I}", "moves", (json_int_t)c->moves, "possible", (json_int_t)c->possible,
+                   "executed", (json_int_t)c->executed, "negative", (json_int_t)c->negative, "softened",
+                   (json_int_t)c->softened, "rigid", (json_int_t)c->rigid);
+}
+
+static json_t *hexadecimal(uint64_t x)
+{
+  char text[32];
+  snprintf(text, sizeof text, "%016" PRIx64, x);
+  return json_string(text);
+}
+
+/* Seeds are 64-bit: a string where JSON readers would round. */
+static json_t *seed(uint64_t x)
+{
+  char text[32];
+  snprintf(text, sizeof text, "%" PRIu64, x);
+  return json_string(text);
+}
+
+bool record_write(const struct folder *folder, const struct scene *scene, const struct record *r,
+                  struct message *message)
+{
+  json_t *root = json_pack(
+      "{s:s, s:s?, s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:I, s:I, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:s}", "status",
+      r->status, "reason", r->reason, "program", "uncross", "version", UNCROSS_VERSION, "commit", build_info.commit,
+      "compiler", build_info.compiler, "flags", build_info.flags, "seed", seed(scene->model.seed), "scene_fingerprint",
+      hexadecimal(scene->fingerprint), "steps", (json_int_t)r->step, "steps_wanted", (json_int_t)scene->steps, "time",
+      (double)r->step * scene->model.time_step, "wall_seconds", r->wall_seconds, "steps_per_second",
+      r->steps_per_second, "collisions", counts(&r->counts), "start", conserved(r->start_energy, r->start_momentum),
+      "end", conserved(r->now.total, r->now.momentum), "state_hash", hexadecimal(r->state_hash), "scene", scene->text);
+  char *text = root ? json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) : NULL;
+  message_set(message, "%s/run.json: no memory, or a scene that is not UTF-8", folder->name);
+  bool ok = text && file_replace(folder, "run.json", text, strlen(text), message);
+  free(text);
+  json_decref(root);
+  return ok;
+}

@@ -1,0 +1,28 @@
+/* run.json: identity, progress and end of a run. */
+#ifndef UNCROSS_FILES_RECORD_H
+#define UNCROSS_FILES_RECORD_H
+
+#include "base/message.h"
+#include "files/folder.h"
+#include "observe/observe.h"
+#include "scene/scene.h"
+#include "system/state.h"
+
+struct record {
+  const char *status; /* "finished", "interrupted", "stopped", "running" */
+  const char *reason; /* why it stopped; NULL if it did not */
+  uint64_t step;      /* of the last checkpoint, as what follows */
+  struct collision_counts counts;
+  double wall_seconds;     /* over all sessions */
+  double steps_per_second; /* of this session, everything included */
+  double start_energy;     /* kT */
+  struct vec3 start_momentum;
+  struct conserved now;
+  uint64_t state_hash;
+};
+
+/* Writes run.json in the folder, in place of an earlier one. */
+bool record_write(const struct folder *folder, const struct scene *scene, const struct record *record,
+                  struct message *message);
+
+#endif

@@ -1,0 +1,84 @@
+/* States that scenes start from: checkpoints, and last frames of trajectories. */
+#include "files/snapshot.h"
+#include "fluid/fluid.h"
+
+#include "files/checkpoint.h"
+#include "files/frames.h"
+#include "files/structure.h"
+#include "files/trajectory.h"
+
+/* Streams the solvent to where it is now. */
+static void make_up_lag(struct state *state, const struct model *model)
+{
+  struct solvent *p = &state->solvent;
+  for (uint32_t i = 0; state->solvent_lag > 0 && i < p->n; i++) {
+    const struct point r = fluid_position_now(state, model, i);
+    const struct vec3 v = fluid_velocity_now(state, model, i);
+    p->x[i] = r.x, p->y[i] = r.y, p->z[i] = r.z;
+    p->vx[i] = v.x, p->vy[i] = v.y, p->vz[i] = v.z;
+  }
+}
+
+static bool start_from_checkpoint(const char *path, const struct model *model, struct state *state,
+                                  struct message *message)
+{
+  struct checkpoint_summary summary;
+  if (!checkpoint_fetch(path, model, &summary, state, NULL, 0, message))
+    return false;
+  /* The lag is time that passed under the checkpoint's own time step and body force. */
+  struct model then = *model;
+  then.time_step = summary.time_step;
+  then.solvent.acceleration = summary.acceleration;
+  make_up_lag(state, &then);
+  return true;
+}
+
+/* Rows must be in the scene's order: vertices fiber by fiber, then solvent. */
+static bool in_order(const struct structure *structure, const struct model *model, const char *path,
+                     struct message *message)
+{
+  return !structure->stored_bonds || structure_is_of(structure, model) ||
+         message_set(message, "%s: its bonds are not the scene's", path);
+}
+
+static bool last_frame(struct trajectory *t, const char *path, const struct model *model, struct state *state,
+                       struct message *message)
+{
+  if (trajectory_frames(t) == 0)
+    return message_set(message, "%s: a trajectory without frames", path);
+  if (!trajectory_has_velocities(t))
+    return message_set(message, "%s: its frames hold no velocities; a start needs them", path);
+  if (model_has_solvent(model) && !trajectory_has_solvent(t, model))
+    return message_set(message, "%s: its frames hold %u particles; a start needs %u vertices and %u solvent particles",
+                       path, t->particles, model->vertices, model->solvent.particles);
+  return in_order(&t->frames_apart->structure, model, path, message) &&
+         trajectory_read(t, model, trajectory_frames(t) - 1, state, message);
+}
+
+static bool start_from_trajectory(const char *path, const struct model *model, struct state *state,
+                                  struct message *message)
+{
+  struct trajectory *t = trajectory_open_read(path, message);
+  if (!t)
+    return false;
+  struct message ignored;
+  bool ok = last_frame(t, path, model, state, message);
+  trajectory_close(t, &ignored);
+  return ok;
+}
+
+bool snapshot_read_start(const char *path, const struct model *model, struct state *state, struct message *message)
+{
+  enum h5_sort sort;
+  enum h5_trouble trouble;
+  if (!h5_find_sort(path, &sort, &trouble, message))
+    return false;
+  if (sort != H5_CHECKPOINT && sort != H5_TRAJECTORY)
+    return message_set(message, "%s: an HDF5 file, but neither a checkpoint nor an H5MD trajectory", path);
+  if (!(sort == H5_CHECKPOINT ? start_from_checkpoint : start_from_trajectory)(path, model, state, message))
+    return false;
+  state->step = 0;
+  state->solvent_lag = 0;
+  state->counts = (struct collision_counts){0};
+  return true;
+}

@@ -1,0 +1,126 @@
+/*
+ * Files that hold states: checkpoint.h5 (everything a resume needs, written aside, synced, renamed) and trajectory.h5
+ * (H5MD 1.1 frames, appended). docs/files.md lists their contents.
+ */
+#ifndef UNCROSS_FILES_SNAPSHOT_H
+#define UNCROSS_FILES_SNAPSHOT_H
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include "base/message.h"
+#include "files/folder.h"
+#include "observe/observe.h"
+#include "system/model.h"
+#include "system/state.h"
+
+/* The data of a checkpoint about its run, besides the state. */
+struct checkpoint_head {
+  uint64_t fingerprint; /* of the scene: scene.h */
+  uint64_t seed;
+  uint64_t state_hash; /* of the state as written; checked when read */
+  uint64_t frames_end; /* 1 + the step of the trajectory's last frame; 0: none, or not known */
+  double wall_seconds; /* spent so far, over all sessions */
+  double start_energy; /* kT, at step 0, for run.json of a resumed run */
+  struct vec3 start_momentum;
+  char version[64];
+};
+
+/* Writes a checkpoint as file_replace does (folder.h): the file is at every moment either the old or the new one.
+ * blocks: the observers' memory. The hash of the state is taken here and put into the head. False, with a message, on
+ * any failure; the file is then untouched. */
+bool checkpoint_write_in(const struct folder *folder, const char *file, struct checkpoint_head *head,
+                         const struct model *model, const struct state *state, const struct observe_block *blocks,
+                         size_t block_count, const char *scene_text, struct message *message);
+
+/* The same, for a file that is named by its path. */
+bool checkpoint_write(const char *path, struct checkpoint_head *head, const struct model *model,
+                      const struct state *state, const struct observe_block *blocks, size_t block_count,
+                      const char *scene_text, struct message *message);
+
+/* Reads a checkpoint into a state allocated for this model. Checks that it is one, is whole, has this model's numbers
+ * of particles and vertices, its box and its bonds, and that the state hash is right. Particles come back in id order.
+ * blocks: filled where given (block_count may be 0); a block that the file does not hold, or of another size, is a
+ * failure, and so is a setting with another value; a setting that the file does not hold is accepted. False, with a
+ * message that names the file and what is wrong, on any failure; the state must not be used then. The caller has to
+ * compare the fingerprint, which is in *head. */
+bool checkpoint_read(const char *path, const struct model *model, struct checkpoint_head *head, struct state *state,
+                     const struct observe_block *blocks, size_t block_count, struct message *message);
+
+/* Reads a starting state: a checkpoint, or the last frame of an H5MD file with positions and velocities of vertices
+ * (and of solvent, if the model has one). Sets step, lag and counts of crossings to 0; solvent that lags in a
+ * checkpoint is streamed to its present position. Velocities of vertices are taken to be of the half step ahead, as
+ * uncross writes them. Box, numbers and bonds must be the model's; whether bonds fit the box is for the caller to
+ * check. */
+bool snapshot_read_start(const char *path, const struct model *model, struct state *state, struct message *message);
+
+/* --- trajectory -------------------------------------------------------------------------------------------------- */
+
+struct trajectory; /* an open H5MD file */
+
+struct trajectory_options {
+  bool solvent; /* frames hold the solvent, else only the vertices */
+  bool velocities;
+  uint64_t seed;
+  const struct folder *folder; /* a run's: the path's last part must be a file of this folder, and no link; or NULL */
+};
+
+/* Creates a trajectory, or opens the one that is there and drops frames after `keep_to_step` (a resume; keep_to_step is
+ * UINT64_MAX to keep all). scene_text is stored in the file, so that `uncross analyze` needs nothing else.
+ * A resume that finds no file starts one; one that finds a file which cannot be read (a crash or a full disk broke it)
+ * renames that to NAME.damaged.1.h5 (or .2, ...) and starts a new one. After a success message->text is empty, or such
+ * a note for the user. NULL, with a message, on any failure; a readable file of other particles than asked for is one,
+ * and so is any file where one is to be created: nothing is written over. */
+struct trajectory *trajectory_open(const char *path, const struct model *model,
+                                   const struct trajectory_options *options, bool resume, uint64_t keep_to_step,
+                                   const char *scene_text, struct message *message);
+/* Appends the state as a frame, and flushes. Positions are unwrapped for vertices, wrapped for the solvent, which is
+ * shown where it is now. Refuses vertices 8192 a0 or more from the origin, where doubles no longer hold every lattice
+ * point. */
+bool trajectory_append(struct trajectory *trajectory, const struct model *model, const struct state *state,
+                       struct message *message);
+/* Waits until all frames are on the disk. */
+bool trajectory_sync(struct trajectory *trajectory, struct message *message);
+/* 1 + the step of the last frame of a trajectory that is being written; 0 if there is none, or for NULL. */
+uint64_t trajectory_end(const struct trajectory *trajectory);
+/* The same of a file, counting frames up to a step only; false if it is not there, is damaged, or is in use. */
+bool trajectory_find_end(const char *path, uint64_t keep_to_step, uint64_t *end);
+/* Closes it, NULL too; the handle is freed in any case. False, with a message, if data could not be written. */
+bool trajectory_close(struct trajectory *trajectory, struct message *message);
+
+/* Reading: number of frames, scene text, and one frame into a state (vertices always; velocities and solvent if stored,
+ * else as they were; positions come back to the very lattice points they were; lag 0). */
+struct trajectory *trajectory_open_read(const char *path, struct message *message);
+uint64_t trajectory_frames(const struct trajectory *trajectory);
+char *trajectory_scene_text(const struct trajectory *trajectory); /* to be freed; NULL if not one of ours */
+bool trajectory_has_steps(const struct trajectory *trajectory);   /* else every frame reads as step 0 */
+bool trajectory_has_velocities(const struct trajectory *trajectory);
+bool trajectory_has_solvent(const struct trajectory *trajectory, const struct model *model);
+bool trajectory_has_checksums(const struct trajectory *trajectory); /* else damage may go unseen */
+bool trajectory_read(struct trajectory *trajectory, const struct model *model, uint64_t frame, struct state *state,
+                     struct message *message);
+/* After trajectory_read failed: true if only this frame is to blame, and others may be read. */
+bool trajectory_damaged(const struct trajectory *trajectory);
+
+/* --- other forms ------------------------------------------------------------------------------------------------- */
+
+/* Which parts of a file are exported to Extended XYZ. */
+struct export_options {
+  bool solvent; /* the solvent too, if the file holds it */
+  bool wrapped; /* vertices folded into the box, else unwrapped as stored */
+  FILE *notes;  /* names damaged frames, which are left out; NULL: such a frame is a failure */
+  uint64_t first, last,
+      stride; /* frames first, first + stride, ... up to last (UINT64_MAX: to the end); stride 0 is 1 */
+};
+
+/* Extended XYZ of a trajectory or checkpoint to a stdio stream (OVITO, ASE): `uncross export`. Columns: a chemical
+ * symbol that stands for the kind, position, velocity if stored, id, and the id of the vertex to which a bond goes on
+ * (-1: none). False, with a message, if the file cannot be read or the stream not be written. */
+bool trajectory_export(const char *path, const struct export_options *options, FILE *out, struct message *message);
+
+/* Describes a file in a few lines: `uncross info`. Knows scenes, checkpoints, trajectories, run.json, CSV tables.
+ * False, with a message, if it is none of them or cannot be read. */
+bool file_info(const char *path, struct message *message);
+
+#endif

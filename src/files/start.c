@@ -1,0 +1,56 @@
+/* The state in which a run of a scene begins. */
+#include <stdlib.h>
+
+#include "files/snapshot.h"
+#include "files/start.h"
+#include "observe/conserved.h"
+#include "scene/scene.h"
+#include "step.h"
+#include "system/sound.h"
+
+/* Whether a scene may say this flow. */
+static bool may_be_said(struct vec3 flow)
+{
+  return fmax(fabs(flow.x), fmax(fabs(flow.y), fabs(flow.z))) <= MODEL_MOST_FLOW;
+}
+
+/* Where the scene says what flows, or else from what it starts. */
+static bool refuse_flow(const struct scene *scene, struct vec3 found, struct message *message)
+{
+  return scene_refuse_at(scene, scene_says(scene, "flow") ? "flow" : "start.snapshot", "flow", message,
+                         "the center of mass of '%s' moves at [%.9g, %.9g, %.9g] a0/t0, and a snapshot is given no "
+                         "other velocity; %s (a flow is at most %g along each axis)",
+                         scene->snapshot, found.x, found.y, found.z,
+                         may_be_said(found) ? "allowed: that one" : "no scene starts from it", MODEL_MOST_FLOW);
+}
+
+#define FLOW_ROUNDING 1e-6 /* a0/t0 */
+#define FLOW_HEAT 6.0      /* standard deviations of the thermal velocity of a center of mass */
+
+/* A snapshot's displacements are counted from the scene's flow, and its moves may be made in that frame: so it must
+ * flow like that. A bath, in which momentum is not kept, takes any snapshot along. */
+static bool flows_as_said(const struct scene *scene, const struct state *state, struct work *work,
+                          struct message *message)
+{
+  const struct model *m = &scene->model;
+  if (model_has_phantoms(m))
+    return true;
+  const struct motion motion = motion_measure(m, state, work->fiber.force);
+  const struct vec3 found = vec3_scale(1.0 / m->total_mass, vec3_add(motion.solvent_sum, motion.vertex.momentum));
+  const struct vec3 off = vec3_sub(found, m->flow);
+  const double most = vec3_norm(m->flow) > 0.0 ? FLOW_ROUNDING : FLOW_HEAT / sqrt(m->total_mass);
+  return (fabs(off.x) <= most && fabs(off.y) <= most && fabs(off.z) <= most) || refuse_flow(scene, found, message);
+}
+
+bool scene_start(const struct scene *scene, struct state *state, struct work *work, struct message *message)
+{
+  const struct model *m = &scene->model;
+  if (!scene->snapshot)
+    return step_start(state, m, work) || message_fault(message, &work->fault);
+  char *path = scene_snapshot_path(scene);
+  message_set(message, "no memory for the path of the snapshot");
+  bool ok = path && snapshot_read_start(path, m, state, message);
+  free(path);
+  return ok && (state_sound(state, m, &work->fault) || message_fault(message, &work->fault)) &&
+         flows_as_said(scene, state, work, message);
+}

@@ -1,0 +1,13 @@
+/* The state in which a run of a scene begins. */
+#ifndef UNCROSS_FILES_START_H
+#define UNCROSS_FILES_START_H
+
+#include "base/message.h"
+#include "scene/scene.h"
+#include "work.h"
+
+/* The state in which a run of the scene begins, drawn or its snapshot: a file whose bonds fit the box, and whose center
+ * of mass moves with the scene's flow. state and work are allocated for scene->model. */
+bool scene_start(const struct scene *scene, struct state *state, struct work *work, struct message *message);
+
+#endif

@@ -1,0 +1,193 @@
+#include "files/structure.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* --- writing ----------------------------------------------------------------------------------------------------- */
+
+/* Names of an enumeration must differ: a kind that is called like an earlier one, or like the solvent, gets its number.
+ */
+static void species_name(const struct model *model, uint32_t kind, char *name, size_t size)
+{
+  bool taken = strcmp(model->kind[kind].name, STRUCTURE_SOLVENT) == 0 || model->kind[kind].name[0] == '\0';
+  for (uint32_t k = 0; k < kind; k++)
+    taken |= strcmp(model->kind[k].name, model->kind[kind].name) == 0;
+  if (taken)
+    snprintf(name, size, "%s#%u", model->kind[kind].name, kind);
+  else
+    snprintf(name, size, "%s", model->kind[kind].name);
+}
+
+static hid_t species_type(const struct model *model)
+{
+  hid_t type = H5Tenum_create(H5T_STD_I32LE);
+  for (uint32_t k = 0; k <= model->kinds; k++) {
+    char name[MODEL_NAME_SIZE + 16] = STRUCTURE_SOLVENT;
+    int32_t value = (int32_t)k;
+    if (k < model->kinds)
+      species_name(model, k, name, sizeof name);
+    H5Tenum_insert(type, name, &value);
+  }
+  return type;
+}
+
+bool structure_write_particles(hid_t group, const struct model *model, bool solvent)
+{
+  hsize_t n = model->vertices + (solvent ? model->solvent.particles : 0);
+  int32_t *species = malloc((n + 1) * sizeof *species), *id = malloc((n + 1) * sizeof *id);
+  double *mass = malloc((n + 1) * sizeof *mass);
+  bool ok = species && id && mass;
+  for (hsize_t i = 0; ok && i < n; i++) {
+    bool vertex = i < model->vertices;
+    id[i] = (int32_t)i;
+    species[i] = (int32_t)(vertex ? model->fiber_kind_of[model->fiber_of[i]] : model->kinds);
+    mass[i] = vertex ? model->mass[i] : 1.0;
+  }
+  hid_t type = species_type(model);
+  ok = ok && h5_array_write(group, "species", type, 1, &n, species) &&
+       h5_array_write(group, "id", H5T_NATIVE_INT32, 1, &n, id) &&
+       h5_array_write(group, "mass", H5T_NATIVE_DOUBLE, 1, &n, mass);
+  h5_close(type);
+  free(species);
+  free(id);
+  free(mass);
+  return ok;
+}
+
+/* The model's bonds as pairs, to be freed; NULL if memory is short. */
+static int32_t *pairs_of(const struct model *model)
+{
+  int32_t *pair = malloc(((size_t)model->bonds + 1) * 2 * sizeof *pair);
+  size_t b = 0;
+  for (uint32_t v = 0; pair && v < model->vertices; v++)
+    if (model->next[v] >= 0) {
+      pair[2 * b] = (int32_t)v;
+      pair[2 * b++ + 1] = model->next[v];
+    }
+  return pair;
+}
+
+bool structure_write_bonds(hid_t group, const struct model *model)
+{
+  const hsize_t dims[2] = {model->bonds, 2};
+  int32_t *pair = pairs_of(model);
+  bool ok = pair && h5_array_write(group, "bonds", H5T_NATIVE_INT32, 2, dims, pair);
+  free(pair);
+  return ok;
+}
+
+bool structure_same_bonds(hid_t group, const struct model *model)
+{
+  const hsize_t dims[2] = {model->bonds, 2};
+  size_t bytes = (size_t)model->bonds * 2 * sizeof(int32_t);
+  int32_t *pair = pairs_of(model), *stored = malloc(bytes + 1);
+  bool same = pair && stored && h5_array_read(group, "bonds", H5T_NATIVE_INT32, 2, dims, stored) &&
+              memcmp(pair, stored, bytes) == 0;
+  free(pair);
+  free(stored);
+  return same;
+}
+
+/* --- reading ----------------------------------------------------------------------------------------------------- */
+
+static bool read_names(hid_t dataset, struct structure *s)
+{
+  hid_t type = H5Dget_type(dataset);
+  int members = type >= 0 && H5Tget_class(type) == H5T_ENUM ? H5Tget_nmembers(type) : 0;
+  hid_t base = members > 0 ? H5Tget_super(type) : -1;
+  bool ok = type >= 0 && (members == 0 || (base >= 0 && H5Tget_size(base) == sizeof(int32_t))); /* as we write them */
+  s->name = calloc((size_t)members + 1, sizeof *s->name);
+  for (int k = 0; s->name && ok && k < members; k++) {
+    int32_t value = -1;
+    char *name = H5Tget_member_name(type, (unsigned)k);
+    ok = name && H5Tget_member_value(type, (unsigned)k, &value) >= 0 && value == k;
+    if (ok)
+      snprintf(s->name[k], sizeof s->name[k], "%s", name);
+    H5free_memory(name);
+  }
+  s->kinds = members;
+  h5_close(base);
+  h5_close(type);
+  return s->name && ok;
+}
+
+/* Memory is asked for only when the dataset has been found to hold so many rows. */
+static bool read_species(hid_t particles, struct structure *s)
+{
+  hsize_t n = 0;
+  const int found = h5_look(particles, "species");
+  hid_t object = h5_open_object(particles, "species");
+  const bool fixed = object >= 0 && H5Iget_type(object) == H5I_DATASET;
+  bool ok = (found == 0 || object >= 0) && (!fixed || (h5_shape(object, 1, &n) == 1 && n == s->particles));
+  s->species = ok ? calloc((size_t)s->particles + 1, sizeof *s->species) : NULL;
+  ok = ok && s->species;
+  if (ok && fixed) {
+    hid_t type = H5Dget_type(object);
+    bool is_enum = H5Tget_class(type) == H5T_ENUM;
+    ok = type >= 0 && read_names(object, s) &&
+         h5_array_read(particles, "species", is_enum ? type : H5T_NATIVE_INT32, 1, &n, s->species);
+    h5_close(type);
+  }
+  h5_close(object);
+  return ok;
+}
+
+static bool read_bonds(hid_t connectivity, struct structure *s)
+{
+  hsize_t dims[2] = {0, 2};
+  s->next = malloc(((size_t)s->particles + 1) * sizeof *s->next);
+  if (!s->next)
+    return false;
+  for (uint32_t i = 0; i < s->particles; i++)
+    s->next[i] = -1;
+  int found = connectivity < 0 ? 0 : h5_look(connectivity, "bonds");
+  if (found <= 0)
+    return found == 0;
+  s->stored_bonds = true;
+  hid_t dataset = h5_open_dataset(connectivity, "bonds");
+  bool ok = h5_shape(dataset, 2, dims) == 2 && dims[1] == 2 && dims[0] <= INT32_MAX;
+  h5_close(dataset);
+  int32_t *pair = ok ? malloc((dims[0] + 1) * 2 * sizeof *pair) : NULL;
+  ok = pair && h5_array_read(connectivity, "bonds", H5T_NATIVE_INT32, 2, dims, pair);
+  for (hsize_t b = 0; ok && b < dims[0]; b++) {
+    ok = pair[2 * b] >= 0 && (uint32_t)pair[2 * b] < s->particles && pair[2 * b + 1] >= 0 &&
+         (uint32_t)pair[2 * b + 1] < s->particles;
+    if (ok)
+      s->next[pair[2 * b]] = pair[2 * b + 1];
+  }
+  s->bonds = (uint32_t)dims[0];
+  free(pair);
+  return ok;
+}
+
+bool structure_read(hid_t particles, hid_t connectivity, uint32_t rows, struct structure *s)
+{
+  memset(s, 0, sizeof *s);
+  s->particles = rows;
+  bool ok = read_species(particles, s) && read_bonds(connectivity, s);
+  if (!ok)
+    structure_free(s);
+  return ok;
+}
+
+bool structure_is_of(const struct structure *s, const struct model *model)
+{
+  bool same = s->bonds == model->bonds && s->particles >= model->vertices;
+  for (uint32_t i = 0; same && i < s->particles; i++)
+    same = s->next[i] == (i < model->vertices ? model->next[i] : -1);
+  return same;
+}
+
+void structure_free(struct structure *s)
+{
+  free(s->species);
+  free(s->name);
+  free(s->next);
+  memset(s, 0, sizeof *s);
+}
+
+bool structure_is_solvent(const struct structure *s, int32_t species)
+{
+  return species >= 0 && species < s->kinds && strcmp(s->name[species], STRUCTURE_SOLVENT) == 0;
+}

@@ -1,0 +1,46 @@
+/* The particles of a file: kinds, masses, bonds. Trajectories and checkpoints have the same datasets. */
+#ifndef UNCROSS_FILES_STRUCTURE_H
+#define UNCROSS_FILES_STRUCTURE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "files/hdf5.h"
+#include "system/model.h"
+
+#define STRUCTURE_SOLVENT "solvent" /* name of the last species */
+
+/* Writes into a group: `species` (enumeration: kinds of fiber, then the solvent), `mass` (m) and `id`, one row per
+ * vertex and, if asked for, per solvent particle. The id of a row is its number. */
+bool structure_write_particles(hid_t group, const struct model *model, bool solvent);
+
+/* Writes dataset `bonds` of pairs of vertices into a group. */
+bool structure_write_bonds(hid_t group, const struct model *model);
+
+/* True if the group's `bonds` are this model's. */
+bool structure_same_bonds(hid_t group, const struct model *model);
+
+/* The same as read back, without a model. */
+struct structure {
+  uint32_t particles;
+  int32_t *species;                   /* [particles] index into name */
+  int kinds;                          /* species, the solvent included if it has a name */
+  char (*name)[MODEL_NAME_SIZE + 16]; /* [kinds] */
+  int32_t *next;                      /* [particles] a bond goes on to this one; -1: none */
+  uint32_t bonds;
+  bool stored_bonds; /* the file says which bonds there are, or that there are none */
+};
+
+/* Reads `species` of `particles` and `bonds` of `connectivity` (below 0: there are none), for this number of rows. A
+ * file of another program without fixed species has one species without a name. False if they do not fit together or
+ * memory is short; nothing needs freeing then. */
+bool structure_read(hid_t particles, hid_t connectivity, uint32_t rows, struct structure *structure);
+void structure_free(struct structure *structure);
+
+/* True if its bonds are this model's, between its first rows. */
+bool structure_is_of(const struct structure *structure, const struct model *model);
+
+/* True if rows of this species are solvent. */
+bool structure_is_solvent(const struct structure *structure, int32_t species);
+
+#endif

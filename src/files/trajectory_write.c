@@ -1,0 +1,469 @@
+/* Trajectories are made, continued and appended to. */
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "files/frames.h"
+#include "files/structure.h"
+#include "files/trajectory.h"
+#include "version.h"
+
+#define PATH_SIZE 4096
+#define CHUNK_BYTES 65536 /* of small frames so many as fill this share a chunk */
+#define SLACK 262144      /* room for what HDF5 itself needs: headers, indices of chunks */
+
+/* --- creating ---------------------------------------------------------------------------------------------------- */
+
+static bool write_h5md(hid_t file)
+{
+  const int32_t version[2] = {1, 1};
+  hid_t root = h5_group(file, "h5md"), by = h5_group(root, "author"), creator = h5_group(root, "creator");
+  bool ok = h5_put(root, "version", H5T_NATIVE_INT32, 2, version) && h5_put_text(by, "name", "uncross") &&
+            h5_put_text(creator, "name", "uncross") && h5_put_text(creator, "version", UNCROSS_VERSION);
+  h5_close(by);
+  h5_close(creator);
+  h5_close(root);
+  return ok;
+}
+
+/* What H5MD leaves to each program: parameters/uncross. */
+static bool write_parameters(struct trajectory *t, const struct model *model, const struct trajectory_options *options,
+                             const char *scene_text)
+{
+  const hsize_t sums[2] = {0, FRAME_SUMS};
+  const int32_t version = TRAJECTORY_VERSION;
+  hid_t all = h5_group(t->file, "parameters"), own = h5_group(all, "uncross");
+  bool ok = h5_put(own, "format_version", H5T_NATIVE_INT32, 0, &version) &&
+            h5_put(own, "seed", H5T_NATIVE_UINT64, 0, &options->seed) &&
+            h5_put(own, "time_step", H5T_NATIVE_DOUBLE, 0, &model->time_step) &&
+            h5_put(own, "vertices", H5T_NATIVE_UINT32, 0, &model->vertices) &&
+            h5_text_write(own, "scene", scene_text ? scene_text : "");
+  t->checksum = ok ? h5_dataset(own, "checksum", H5T_NATIVE_UINT64, 2, sums, true, 1024 / FRAME_SUMS) : -1;
+  ok = t->checksum >= 0;
+  h5_close(own);
+  h5_close(all);
+  return ok;
+}
+
+static bool write_connectivity(hid_t file, const struct model *model)
+{
+  hobj_ref_t particles;
+  hid_t group = h5_group(file, "connectivity");
+  bool ok =
+      structure_write_bonds(group, model) && H5Rcreate(&particles, file, "/particles/trajectory", H5R_OBJECT, -1) >= 0;
+  hid_t bonds = ok ? H5Dopen2(group, "bonds", H5P_DEFAULT) : -1;
+  ok = ok && h5_put(bonds, "particles_group", H5T_STD_REF_OBJ, 0, &particles);
+  h5_close(bonds);
+  h5_close(group);
+  return ok;
+}
+
+/* A time-dependent element: a group with `value`, and links to the one `step` and `time` of the whole file. */
+static hid_t add_element(struct trajectory *t, hid_t parent, const char *name, int rank, const hsize_t *dims)
+{
+  hsize_t bytes = sizeof(double);
+  for (int k = 1; k < rank; k++)
+    bytes *= dims[k];
+  hid_t element = h5_group(parent, name);
+  hid_t value =
+      h5_dataset(element, "value", H5T_NATIVE_DOUBLE, rank, dims, true, bytes < CHUNK_BYTES ? CHUNK_BYTES / bytes : 1);
+  if (t->step < 0) {
+    const hsize_t none[1] = {0};
+    t->step = h5_dataset(element, "step", H5T_NATIVE_INT64, 1, none, true, 1024);
+    t->time = h5_dataset(element, "time", H5T_NATIVE_DOUBLE, 1, none, true, 1024);
+  } else {
+    H5Olink(t->step, element, "step", H5P_DEFAULT, H5P_DEFAULT);
+    H5Olink(t->time, element, "time", H5P_DEFAULT, H5P_DEFAULT);
+  }
+  h5_close(element);
+  return value;
+}
+
+static bool add_box(struct trajectory *t)
+{
+  const int32_t dimension = 3;
+  const char boundary[3][9] = {"periodic", "periodic", "periodic"};
+  const hsize_t dims[3] = {0, 3, 3};
+  hid_t type = H5Tcopy(H5T_C_S1);
+  H5Tset_size(type, sizeof boundary[0]);
+  hid_t box = h5_group(t->group, "box");
+  bool ok = h5_put(box, "dimension", H5T_NATIVE_INT32, 0, &dimension) && h5_put(box, "boundary", type, 3, boundary);
+  t->edges = add_element(t, box, "edges", 3, dims);
+  h5_close(type);
+  h5_close(box);
+  return ok && t->edges >= 0;
+}
+
+static bool make_room(struct trajectory *t, const struct model *model)
+{
+  t->row = malloc(((size_t)t->particles + 1) * 3 * sizeof *t->row);
+  t->slot = t->solvent ? malloc(((size_t)model->solvent.particles + 1) * sizeof *t->slot) : NULL;
+  return t->row && (t->slot || !t->solvent);
+}
+
+static bool create_contents(struct trajectory *t, const struct model *model, const struct trajectory_options *options,
+                            const char *scene_text)
+{
+  const hsize_t dims[3] = {0, t->particles, 3};
+  hid_t particles = h5_group(t->file, "particles");
+  t->group = h5_group(particles, "trajectory");
+  h5_close(particles);
+  t->position = t->group < 0 ? -1 : add_element(t, t->group, "position", 3, dims);
+  if (options->velocities && t->position >= 0)
+    t->velocity = add_element(t, t->group, "velocity", 3, dims);
+  return t->position >= 0 && (t->velocity >= 0 || !options->velocities) && add_box(t) &&
+         structure_write_particles(t->group, model, t->solvent) && write_h5md(t->file) &&
+         write_parameters(t, model, options, scene_text) && write_connectivity(t->file, model) &&
+         H5Fflush(t->file, H5F_SCOPE_GLOBAL) >= 0;
+}
+
+static bool reserve(hid_t file, const char *path, size_t bytes, struct message *message)
+{
+  int error = h5_reserve(file, bytes);
+  return error == 0 || message_set(message, "%s: no room for %zu bytes more: %s", path, bytes, strerror(error));
+}
+
+static uint32_t rows_wanted(const struct model *model, const struct trajectory_options *options)
+{
+  return model->vertices + (options->solvent ? model->solvent.particles : 0);
+}
+
+/* The folder of a run's trajectory and its name there; else no folder, and the path. */
+struct place {
+  struct folder folder;
+  const char *file;
+};
+
+static struct place place_of(const char *path, const struct trajectory_options *options)
+{
+  const char *slash = strrchr(path, '/');
+  if (!options->folder)
+    return (struct place){{"", FOLDER_BY_NAME}, path};
+  return (struct place){*options->folder, slash ? slash + 1 : path};
+}
+
+/* HDF5 opens files by path. What it opened must be the file in the folder that is locked. */
+static bool in_place(const struct trajectory *t, const struct trajectory_options *options, struct message *message)
+{
+  const struct place place = place_of(t->path, options);
+  return !options->folder || folder_holds(&place.folder, place.file, h5_descriptor(t->file), message);
+}
+
+static struct trajectory *create(const char *path, const struct model *model, const struct trajectory_options *options,
+                                 const char *scene_text, struct message *message)
+{
+  struct trajectory *t = trajectory_allocate(path);
+  if (!t) {
+    message_set(message, "%s: out of memory", path);
+    return NULL;
+  }
+  t->solvent = options->solvent && model_has_solvent(model);
+  t->particles = rows_wanted(model, options);
+  t->file = h5_create(path);
+  if (t->file < 0) {
+    message_set(message, "%s: cannot be created: %s", path, strerror(errno));
+    return trajectory_give_up(t);
+  }
+  if (!in_place(t, options, message)) {
+    remove(path); /* it was made just now, wherever it is */
+    return trajectory_give_up(t);
+  }
+  size_t bytes = 32 * ((size_t)t->particles + model->bonds) + strlen(scene_text ? scene_text : "") + SLACK;
+  bool ok = reserve(t->file, path, bytes, message);
+  if (ok && !(make_room(t, model) && create_contents(t, model, options, scene_text)))
+    ok = h5_fail(message, path, "trajectory cannot be created");
+  h5_trim(t->file);
+  if (ok)
+    return t;
+  const struct place place = place_of(path, options);
+  folder_remove(&place.folder, place.file);
+  return trajectory_give_up(t);
+}
+
+/* --- resuming ---------------------------------------------------------------------------------------------------- */
+
+/* Frames that stay. */
+struct kept {
+  uint64_t frames, last_step;
+  bool checked; /* against checksums */
+};
+
+static bool set_frames(struct trajectory *t, uint64_t frames)
+{
+  const hid_t datasets[] = {t->position, t->velocity, t->edges, t->time, t->checksum, t->step};
+  bool ok = true;
+  for (size_t k = 0; k < sizeof datasets / sizeof *datasets; k++) {
+    hsize_t dims[3];
+    if (datasets[k] < 0)
+      continue;
+    ok = ok && h5_shape(datasets[k], 3, dims) >= 1;
+    dims[0] = frames;
+    ok = ok && H5Dset_extent(datasets[k], dims) >= 0;
+  }
+  t->frames = frames;
+  return ok;
+}
+
+/* How many frames are of steps up to this one, and the last step among them. Each of them is held against its
+ * checksums. False, with a message, if one is damaged, or if steps do not increase. A frame that comes later may be
+ * damaged: it is not kept. */
+static bool find_kept(struct frames *frames, uint64_t keep_to_step, uint64_t *keep, uint64_t *last_step,
+                      struct message *message)
+{
+  const struct frames_about *about = &frames->about;
+  if (about->checkpoint || !about->steps)
+    return message_set(message, "%s: not a trajectory of this program", frames->path);
+  *last_step = 0;
+  for (*keep = 0; *keep < about->frames; ++*keep) {
+    const enum frame_verdict verdict = frames_check(frames, *keep, message);
+    const uint64_t step = frames->picture.step;
+    if (verdict != FRAME_LOST && step > keep_to_step)
+      return true;
+    if (verdict != FRAME_FINE)
+      return false;
+    if (*keep > 0 && step <= *last_step)
+      return message_set(message, "%s: the step of frame %" PRIu64 " is %" PRIu64 ", that of the frame before %" PRIu64,
+                         frames->path, *keep, step, *last_step);
+    *last_step = step;
+  }
+  return true;
+}
+
+bool trajectory_find_end(const char *path, uint64_t keep_to_step, uint64_t *end)
+{
+  enum h5_trouble trouble;
+  struct message ignored;
+  uint64_t keep, last_step;
+  struct frames *frames = frames_open(path, &trouble, &ignored);
+  const bool ok = frames && find_kept(frames, keep_to_step, &keep, &last_step, &ignored);
+  if (ok)
+    *end = keep > 0 ? last_step + 1 : 0;
+  frames_close(frames);
+  return ok;
+}
+
+/* The file must be of the same particles, or the frames to come would not fit. */
+static bool same_contents(const struct frames *frames, const struct model *model,
+                          const struct trajectory_options *options, struct message *message)
+{
+  const struct frames_about *about = &frames->about;
+  if (about->rows != rows_wanted(model, options) || about->velocities != options->velocities)
+    return message_set(
+        message,
+        "%s: its frames hold %u particles %s velocities, the scene asks for %u %s; move the file away, or "
+        "resume with the interrupted run's settings",
+        frames->path, about->rows, about->velocities ? "with" : "without", rows_wanted(model, options),
+        options->velocities ? "with" : "without");
+  return structure_is_of(&frames->structure, model) ||
+         message_set(message, "%s: its bonds are not the scene's; move the file away", frames->path);
+}
+
+/* Renames a damaged file to the first free NAME.damaged.N.h5. */
+static bool set_aside(const struct place *place, const char *path, const char *why, struct message *message)
+{
+  char aside[PATH_SIZE];
+  size_t stem = strlen(place->file);
+  if (stem > 3 && strcmp(place->file + stem - 3, ".h5") == 0)
+    stem -= 3;
+  for (int n = 1; n < 10000; n++) {
+    if (snprintf(aside, sizeof aside, "%.*s.damaged.%d.h5", (int)stem, place->file, n) >= (int)sizeof aside)
+      break;
+    if (folder_has(&place->folder, aside))
+      continue;
+    if (!folder_rename(&place->folder, place->file, aside))
+      break;
+    message_set(message, "%s cannot be continued (%.300s); it was renamed to %.300s and a new trajectory begins here",
+                path, why, aside);
+    return true;
+  }
+  return message_set(message, "%s: damaged, and cannot be renamed: move it away", path);
+}
+
+/* What is there, as a process of its own finds it: how many frames stay. Nothing is written before this. */
+static bool look_at(const char *path, const struct model *model, const struct trajectory_options *options,
+                    uint64_t keep_to_step, struct kept *kept, bool *damaged, struct message *message)
+{
+  enum h5_trouble trouble;
+  struct frames *frames = frames_open(path, &trouble, message);
+  *damaged = trouble == H5_DAMAGED;
+  if (!frames)
+    return false;
+  bool ok = same_contents(frames, model, options, message);
+  if (ok && !find_kept(frames, keep_to_step, &kept->frames, &kept->last_step, message)) {
+    *damaged = true;
+    ok = false;
+  }
+  kept->checked = frames->about.checked;
+  frames_close(frames);
+  return ok;
+}
+
+static bool drop_after(struct trajectory *t, const struct kept *kept)
+{
+  t->last_step = kept->last_step;
+  return t->edges >= 0 && t->time >= 0 && kept->frames <= t->frames && set_frames(t, kept->frames) &&
+         H5Fflush(t->file, H5F_SCOPE_GLOBAL) >= 0;
+}
+
+static struct trajectory *resume_existing(const char *path, const struct model *model,
+                                          const struct trajectory_options *options, uint64_t keep_to_step,
+                                          bool *damaged, struct message *message)
+{
+  enum h5_trouble trouble;
+  struct kept kept = {0};
+  bool sealed;
+  if (!look_at(path, model, options, keep_to_step, &kept, damaged, message))
+    return NULL;
+  struct trajectory *t = trajectory_allocate(path);
+  if (!t) {
+    message_set(message, "%s: out of memory", path);
+    return NULL;
+  }
+  t->file = h5_open(path, true, &sealed, &trouble, message);
+  *damaged = trouble == H5_DAMAGED;
+  if (t->file < 0 || !in_place(t, options, message))
+    return trajectory_give_up(t);
+  *damaged = !trajectory_find(t, message);
+  if (*damaged)
+    return trajectory_give_up(t);
+  t->solvent = options->solvent && model_has_solvent(model);
+  if (!make_room(t, model)) {
+    message_set(message, "%s: out of memory", path);
+    return trajectory_give_up(t);
+  }
+  if (!drop_after(t, &kept)) {
+    *damaged = true;
+    h5_fail(message, path, "its later frames cannot be removed");
+    return trajectory_give_up(t);
+  }
+  if (!kept.checked && kept.frames > 0)
+    message_set(message, "%s: an earlier program wrote it without checksums; its frames are kept as they are", path);
+  return t;
+}
+
+struct trajectory *trajectory_open(const char *path, const struct model *model,
+                                   const struct trajectory_options *options, bool resume, uint64_t keep_to_step,
+                                   const char *scene_text, struct message *message)
+{
+  const struct place place = place_of(path, options);
+  message->text[0] = '\0';
+  if (rows_wanted(model, options) == 0) {
+    message_set(message, "%s: a trajectory of no particles: there are no fibers, and the solvent is not asked for",
+                path);
+    return NULL;
+  }
+  if (resume && folder_has(&place.folder, place.file)) {
+    struct message why = {""};
+    bool damaged;
+    struct trajectory *t = resume_existing(path, model, options, keep_to_step, &damaged, &why);
+    if (t || !damaged)
+      *message = why;
+    if (t)
+      return t;
+    if (!damaged || !set_aside(&place, path, why.text, message))
+      return NULL;
+  }
+  return create(path, model, options, scene_text, message);
+}
+
+/* --- appending --------------------------------------------------------------------------------------------------- */
+
+static bool append_block(hid_t dataset, uint64_t frame, int rank, const hsize_t *frame_dims, hid_t type,
+                         const void *data)
+{
+  hsize_t dims[3] = {frame + 1}, start[3] = {frame}, count[3] = {1};
+  for (int k = 1; k < rank; k++)
+    dims[k] = count[k] = frame_dims[k - 1];
+  if (H5Dset_extent(dataset, dims) < 0)
+    return false;
+  hid_t file_space = H5Dget_space(dataset), memory = H5Screate_simple(rank, count, NULL);
+  bool ok = H5Sselect_hyperslab(file_space, H5S_SELECT_SET, start, NULL, count, NULL) >= 0 &&
+            H5Dwrite(dataset, type, memory, file_space, H5P_DEFAULT, data) >= 0;
+  h5_close(memory);
+  h5_close(file_space);
+  return ok;
+}
+
+/* Frames hold every lattice point within the limit. */
+static bool within_limit(const struct trajectory *t, const struct state *state, struct message *message)
+{
+  for (uint32_t v = 0; v < state->vertices; v++) {
+    const double *r = &t->row[3 * (size_t)v];
+    if (!(fabs(r[0]) < TRAJECTORY_LIMIT && fabs(r[1]) < TRAJECTORY_LIMIT && fabs(r[2]) < TRAJECTORY_LIMIT))
+      return message_set(message, "%s: step %llu: vertex %u is at (%.6g, %.6g, %.6g), unwrapped; frames hold %g a0",
+                         t->path, (unsigned long long)state->step, v, r[0], r[1], r[2], TRAJECTORY_LIMIT);
+  }
+  return true;
+}
+
+/* The step comes last: a frame without it does not count. A file of version 1 is continued without checksums. */
+static bool write_frame(struct trajectory *t, const struct model *model, const struct state *state)
+{
+  const hsize_t rows[2] = {t->particles, 3}, matrix[2] = {3, 3}, sums[1] = {FRAME_SUMS};
+  const size_t numbers = 3 * (size_t)t->particles;
+  const int *cells = model->box.cells;
+  const double edges[9] = {cells[0], 0, 0, 0, cells[1], 0, 0, 0, cells[2]};
+  const double diagonal[3] = {cells[0], cells[1], cells[2]};
+  const double time = (double)state->step * model->time_step;
+  const int64_t step = (int64_t)state->step;
+  uint64_t sum[FRAME_SUMS] = {[SUM_MOMENT] = frame_sum_moment(t->frames, step, time),
+                              [SUM_EDGES] = frame_sum_numbers(t->frames, diagonal, 3),
+                              [SUM_POSITION] = frame_sum_numbers(t->frames, t->row, numbers)};
+  bool ok = append_block(t->position, t->frames, 3, rows, H5T_NATIVE_DOUBLE, t->row);
+  if (ok && t->velocity >= 0) {
+    frame_velocities(state, model, t->slot, t->row);
+    sum[SUM_VELOCITY] = frame_sum_numbers(t->frames, t->row, numbers);
+    ok = append_block(t->velocity, t->frames, 3, rows, H5T_NATIVE_DOUBLE, t->row);
+  }
+  return ok && append_block(t->edges, t->frames, 3, matrix, H5T_NATIVE_DOUBLE, edges) &&
+         append_block(t->time, t->frames, 1, NULL, H5T_NATIVE_DOUBLE, &time) &&
+         (t->checksum < 0 || append_block(t->checksum, t->frames, 2, sums, H5T_NATIVE_UINT64, sum)) &&
+         append_block(t->step, t->frames, 1, NULL, H5T_NATIVE_INT64, &step) && H5Fflush(t->file, H5F_SCOPE_GLOBAL) >= 0;
+}
+
+/* The most that a frame can take: a new chunk of every dataset. */
+static size_t frame_bytes(const struct trajectory *t)
+{
+  size_t rows = 24 * (size_t)t->particles;
+  return 2 * (rows > CHUNK_BYTES ? rows : CHUNK_BYTES) + CHUNK_BYTES + SLACK;
+}
+
+bool trajectory_append(struct trajectory *t, const struct model *model, const struct state *state,
+                       struct message *message)
+{
+  if (t->broken)
+    return message_set(message, "%s: an earlier frame could not be written", t->path);
+  if (t->frames > 0 && state->step == t->last_step)
+    return true;
+  if (t->frames > 0 && state->step < t->last_step)
+    return message_set(message, "%s: a frame of step %llu cannot follow that of step %llu", t->path,
+                       (unsigned long long)state->step, (unsigned long long)t->last_step);
+  if (t->slot)
+    state_solvent_slots(state, t->slot);
+  frame_positions(state, model, t->slot, t->row);
+  if (!within_limit(t, state, message) || !reserve(t->file, t->path, frame_bytes(t), message))
+    return false;
+  bool ok = write_frame(t, model, state);
+  h5_trim(t->file);
+  if (!ok) {
+    t->broken = true;
+    return h5_fail(message, t->path, "a frame could not be written");
+  }
+  t->frames++;
+  t->last_step = state->step;
+  return true;
+}
+
+bool trajectory_sync(struct trajectory *t, struct message *message)
+{
+  const int error = h5_sync(t->file);
+  return error == 0 || message_set(message, "%s: not synced: %s", t->path, strerror(error));
+}
+
+uint64_t trajectory_end(const struct trajectory *t)
+{
+  return t && t->frames > 0 ? t->last_step + 1 : 0;
+}

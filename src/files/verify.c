@@ -1,0 +1,337 @@
+#include "files/verify.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <jansson.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/text.h"
+
+#define MOST_COLUMNS 4096
+
+static enum condition worse(enum condition a, enum condition b)
+{
+  return a > b ? a : b;
+}
+
+static enum condition say(FILE *out, enum condition condition, const struct message *message)
+{
+  fprintf(out, "%s\n", message->text);
+  return condition;
+}
+
+/* --- checkpoints and trajectories -------------------------------------------------------------------------------- */
+
+static enum condition verify_checkpoint(struct frames *f, FILE *out)
+{
+  struct message message;
+  const enum frame_verdict verdict = frames_read(f, 0, &message);
+  if (verdict != FRAME_FINE)
+    return say(out, verdict == FRAME_DAMAGED ? CONDITION_DAMAGED : CONDITION_UNKNOWN, &message);
+  if (f->about.checked)
+    fprintf(out, "%s: whole: every byte fits its seal, the state its hash\n", text_shown(f->path));
+  else
+    fprintf(out,
+            "%s: readable: the state fits its hash; the file is of version 1 and carries no checksum of the whole\n",
+            text_shown(f->path));
+  return CONDITION_WHOLE;
+}
+
+/* Steps must increase: what `frames_read` cannot see. */
+static bool in_order(const struct frames *f, uint64_t frame, uint64_t before, struct message *message)
+{
+  return frame == 0 || !f->about.steps || f->picture.step > before ||
+         message_set(message, "%s: frame %" PRIu64 " (step %" PRIu64 "): its step does not come after %" PRIu64,
+                     f->path, frame, f->picture.step, before);
+}
+
+static enum condition verify_trajectory(struct frames *f, FILE *out)
+{
+  struct message message;
+  uint64_t damaged = 0, before = 0;
+  for (uint64_t k = 0; k < f->about.frames; k++) {
+    enum frame_verdict verdict = frames_read(f, k, &message);
+    if (verdict == FRAME_FINE && !in_order(f, k, before, &message))
+      verdict = FRAME_DAMAGED;
+    if (verdict == FRAME_LOST)
+      return say(out, f->apart.died ? CONDITION_DAMAGED : CONDITION_UNKNOWN, &message);
+    if (verdict == FRAME_FINE)
+      before = f->picture.step;
+    else
+      say(out, CONDITION_DAMAGED, &message);
+    damaged += verdict != FRAME_FINE;
+  }
+  if (damaged > 0)
+    fprintf(out, "%s: damaged: %" PRIu64 " of %" PRIu64 " frames; --skip-damaged leaves them out\n",
+            text_shown(f->path), damaged, f->about.frames);
+  else if (f->about.checked)
+    fprintf(out, "%s: whole: %" PRIu64 " frames fit their checksums\n", text_shown(f->path), f->about.frames);
+  else
+    fprintf(out, "%s: readable: %" PRIu64 " frames; the file carries no checksum of them\n", text_shown(f->path),
+            f->about.frames);
+  return damaged > 0 ? CONDITION_DAMAGED : CONDITION_WHOLE;
+}
+
+enum condition verify_frames(struct frames *f, FILE *out)
+{
+  return f->about.checkpoint ? verify_checkpoint(f, out) : verify_trajectory(f, out);
+}
+
+static enum condition condition_of(enum h5_trouble trouble)
+{
+  return trouble == H5_DAMAGED ? CONDITION_DAMAGED : CONDITION_UNKNOWN;
+}
+
+static enum condition verify_hdf5(const char *path, bool *other, FILE *out)
+{
+  struct message message;
+  enum h5_sort sort;
+  enum h5_trouble trouble;
+  if (!h5_find_sort(path, &sort, &trouble, &message))
+    return say(out, condition_of(trouble), &message);
+  *other = sort == H5_PACK;
+  if (sort == H5_OTHER)
+    message_set(&message, "%s: an HDF5 file, but no checkpoint, trajectory or pack", path);
+  if (sort == H5_OTHER || *other)
+    return *other ? CONDITION_UNKNOWN : say(out, CONDITION_UNKNOWN, &message);
+  struct frames *f = frames_open(path, &trouble, &message);
+  if (!f)
+    return say(out, condition_of(trouble), &message);
+  const enum condition condition = verify_frames(f, out);
+  frames_close(f);
+  return condition;
+}
+
+/* --- tables ------------------------------------------------------------------------------------------------------ */
+
+static size_t count_columns(const char *line)
+{
+  size_t columns = 1;
+  for (; *line; line++)
+    columns += *line == ',';
+  return columns;
+}
+
+/* True if a line holds so many numbers. */
+static bool holds_numbers(const char *line, size_t columns)
+{
+  for (size_t k = 0; k < columns; k++) {
+    char *end;
+    strtod(line, &end);
+    if (end == line || *end != (k + 1 < columns ? ',' : '\0'))
+      return false;
+    line = end + 1;
+  }
+  return true;
+}
+
+/* What is wrong with the lines of a table, of which `rows` are sound; false if nothing is. `cut`: the last line has no
+ * end, as the table of a run that was killed may have. */
+static bool odd_table(FILE *in, const char *path, uint64_t *rows, bool *cut, struct message *message)
+{
+  char *line = NULL;
+  size_t room = 0, columns = 0;
+  ssize_t length;
+  bool odd = false;
+  for (uint64_t number = 1; !odd && (length = getline(&line, &room, in)) >= 0; number++) {
+    *cut = line[length - 1] != '\n';
+    line[strcspn(line, "\r\n")] = '\0';
+    if (number == 1)
+      columns = count_columns(line);
+    odd = !*cut && number > 1 && !holds_numbers(line, columns);
+    *rows = number - 1;
+    if (odd)
+      message_set(message, "%s:%" PRIu64 ": damaged: a row of %zu numbers is wanted", path, number, columns);
+  }
+  free(line);
+  if (!odd && (ferror(in) || columns == 0))
+    odd = !message_set(message, "%s: damaged: cannot be read, or empty", path);
+  return odd;
+}
+
+static enum condition verify_table(const char *path, bool running, FILE *out)
+{
+  bool cut = false;
+  struct message message;
+  uint64_t rows = 0;
+  const int fd = open_regular(path, &message);
+  FILE *in = fd < 0 ? NULL : fdopen(fd, "r");
+  if (!in) {
+    if (fd >= 0)
+      close(fd);
+    return fd < 0 ? say(out, CONDITION_UNKNOWN, &message) : CONDITION_UNKNOWN;
+  }
+  const bool odd = odd_table(in, path, &rows, &cut, &message);
+  fclose(in);
+  if (odd)
+    return say(out, CONDITION_DAMAGED, &message);
+  if (cut)
+    fprintf(out,
+            running ? "%s: readable: %" PRIu64 " rows, the last without an end; --resume makes it again\n"
+                    : "%s: damaged: the last of %" PRIu64 " rows has no end\n",
+            text_shown(path), rows);
+  else
+    fprintf(out, "%s: readable: rows: %" PRIu64 "; a table carries no checksum\n", text_shown(path), rows);
+  return cut && !running ? CONDITION_DAMAGED : CONDITION_WHOLE;
+}
+
+/* --- run.json ---------------------------------------------------------------------------------------------------- */
+
+static json_t *read_json(const char *path, struct message *message)
+{
+  json_error_t error;
+  const int fd = open_regular(path, message);
+  json_t *root = fd < 0 ? NULL : json_loadfd(fd, JSON_REJECT_DUPLICATES, &error);
+  if (fd >= 0 && !root)
+    message_set(message, "%s:%d:%d: damaged: not JSON: %s", path, error.line, error.column, error.text);
+  if (fd >= 0)
+    close(fd);
+  return root;
+}
+
+static enum condition verify_record(const char *path, FILE *out)
+{
+  struct message message;
+  json_t *root = read_json(path, &message);
+  if (!root)
+    return say(out, access(path, R_OK) == 0 ? CONDITION_DAMAGED : CONDITION_UNKNOWN, &message);
+  const bool run = json_is_string(json_object_get(root, "state_hash"));
+  json_decref(root);
+  fprintf(out, run ? "%s: readable: a record of a run; it carries no checksum\n" : "%s: readable: JSON\n",
+          text_shown(path));
+  return CONDITION_WHOLE;
+}
+
+/* --- any file ---------------------------------------------------------------------------------------------------- */
+
+static bool ends_with(const char *text, const char *end)
+{
+  const size_t n = strlen(text), m = strlen(end);
+  return n >= m && strcmp(text + n - m, end) == 0;
+}
+
+static enum condition verify_one(const char *path, bool running, bool *other, FILE *out)
+{
+  static const unsigned char signature[4] = {0x89, 'H', 'D', 'F'};
+  unsigned char head[4] = {0};
+  struct message message;
+  *other = false;
+  const int fd = open_regular(path, &message);
+  if (fd < 0)
+    return say(out, CONDITION_UNKNOWN, &message);
+  const bool hdf5 = read(fd, head, sizeof head) == (ssize_t)sizeof head && memcmp(head, signature, sizeof head) == 0;
+  close(fd);
+  if (hdf5 || ends_with(path, ".h5"))
+    return verify_hdf5(path, other, out);
+  if (ends_with(path, ".csv"))
+    return verify_table(path, running, out);
+  if (ends_with(path, ".json"))
+    return verify_record(path, out);
+  *other = true;
+  return CONDITION_UNKNOWN;
+}
+
+enum condition verify_file(const char *path, bool *other, FILE *out)
+{
+  return verify_one(path, false, other, out);
+}
+
+/* --- folders ----------------------------------------------------------------------------------------------------- */
+
+/* run.json is written after its checkpoint: it may be older, but of the same step it has the same state. */
+static enum condition same_state(const char *folder, const struct checkpoint_summary *summary, FILE *out)
+{
+  char path[4096], hash[32];
+  struct message message;
+  snprintf(path, sizeof path, "%.4000s/run.json", folder);
+  json_t *root = access(path, F_OK) == 0 ? read_json(path, &message) : NULL;
+  const char *told = json_string_value(json_object_get(root, "state_hash"));
+  const json_t *step = json_object_get(root, "step");
+  snprintf(hash, sizeof hash, "%016" PRIx64, summary->head.state_hash);
+  const bool same = !told || !json_is_integer(step) || (uint64_t)json_integer_value(step) != summary->numbers.step ||
+                    strcmp(told, hash) == 0;
+  if (!same)
+    fprintf(out, "%s: damaged: at step %" PRIu64 " the state hash is %s, in the checkpoint of this step %s\n",
+            text_shown(path), summary->numbers.step, told, hash);
+  json_decref(root);
+  return same ? CONDITION_WHOLE : CONDITION_DAMAGED;
+}
+
+/* The frames that were there when the checkpoint was written are synced before it. */
+static enum condition same_frames(const char *folder, const struct checkpoint_summary *summary, FILE *out)
+{
+  char path[4096];
+  uint64_t end;
+  snprintf(path, sizeof path, "%.4000s/trajectory.h5", folder);
+  if (summary->head.frames_end == 0 || access(path, F_OK) != 0 ||
+      !trajectory_find_end(path, summary->head.frames_end - 1, &end) || end == summary->head.frames_end)
+    return CONDITION_WHOLE;
+  fprintf(out, "%s: damaged: it goes to step %" PRIu64 ", when the checkpoint was written to %" PRIu64 "\n",
+          text_shown(path), end ? end - 1 : 0, summary->head.frames_end - 1);
+  return CONDITION_DAMAGED;
+}
+
+static int by_name(const struct dirent **a, const struct dirent **b)
+{
+  return strcmp((*a)->d_name, (*b)->d_name);
+}
+
+/* Files of a run; those that it set aside are known to be damaged. */
+static int is_of_run(const struct dirent *entry)
+{
+  const char *name = entry->d_name;
+  return !strstr(name, ".damaged.") && (strcmp(name, "checkpoint.h5") == 0 || strcmp(name, "trajectory.h5") == 0 ||
+                                        strcmp(name, "run.json") == 0 || ends_with(name, ".csv"));
+}
+
+/* Whether a run ended here; one that was killed has written so no more. */
+static bool is_finished(const char *folder)
+{
+  char path[4096];
+  struct message ignored;
+  snprintf(path, sizeof path, "%.4000s/run.json", folder);
+  json_t *root = access(path, F_OK) == 0 ? read_json(path, &ignored) : NULL;
+  const char *status = json_string_value(json_object_get(root, "status"));
+  const bool finished = status && strcmp(status, "finished") == 0;
+  json_decref(root);
+  return finished;
+}
+
+static enum condition verify_listed(const char *folder, struct dirent **list, int count, FILE *out)
+{
+  const bool running = !is_finished(folder);
+  enum condition condition = CONDITION_WHOLE;
+  for (int k = 0; k < count; k++) {
+    char path[4096];
+    bool other;
+    snprintf(path, sizeof path, "%.3800s/%.255s", folder, list[k]->d_name);
+    condition = worse(condition, verify_one(path, running, &other, out));
+  }
+  return condition;
+}
+
+enum condition verify_folder(const char *folder, FILE *out)
+{
+  struct dirent **list = NULL;
+  struct checkpoint_summary summary;
+  struct message ignored;
+  char path[4096];
+  const int count = scandir(folder, &list, is_of_run, by_name);
+  if (count <= 0) {
+    fprintf(out, "%s: %s\n", text_shown(folder), count < 0 ? strerror(errno) : "a folder without files of a run");
+    free(list);
+    return CONDITION_UNKNOWN;
+  }
+  enum condition condition = verify_listed(folder, list, count, out);
+  for (int k = 0; k < count; k++)
+    free(list[k]);
+  free(list);
+  snprintf(path, sizeof path, "%.4000s/checkpoint.h5", folder);
+  if (access(path, F_OK) == 0 && checkpoint_look(path, &summary, &ignored))
+    condition = worse(condition, worse(same_state(folder, &summary, out), same_frames(folder, &summary, out)));
+  return condition;
+}

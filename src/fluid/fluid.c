@@ -1,0 +1,34 @@
+#include "fluid/fluid.h"
+
+const struct fluid *fluid_row(enum fluid_kind kind)
+{
+  static const struct fluid *const fluids[FLUIDS] = {[FLUID_POINTS] = &fluid_points};
+  return fluids[kind];
+}
+
+const struct fluid *fluid_of(const struct model *model)
+{
+  (void)model; /* one fluid so far */
+  return fluid_row(FLUID_POINTS);
+}
+
+bool fluid_stream(struct state *state, const struct model *model, struct fault *fault)
+{
+  const bool ok = fluid_of(model)->stream(state, model, 0, state->solvent.n, fault);
+  state->solvent_lag = 0;
+  return ok;
+}
+
+struct point fluid_position_now(const struct state *state, const struct model *model, uint32_t i)
+{
+  struct point at;
+  fluid_of(model)->now(state, model, i, 1, &at, NULL);
+  return at;
+}
+
+struct vec3 fluid_velocity_now(const struct state *state, const struct model *model, uint32_t i)
+{
+  struct vec3 v;
+  fluid_of(model)->now(state, model, i, 1, NULL, &v);
+  return v;
+}

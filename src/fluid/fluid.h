@@ -1,0 +1,28 @@
+/* The solvent between collisions (Padding 2009, Sec. III, step 2). */
+#ifndef UNCROSS_FLUID_FLUID_H
+#define UNCROSS_FLUID_FLUID_H
+
+#include "system/fluid.h"
+
+/* Independent particles. */
+extern const struct fluid fluid_points;
+
+enum fluid_kind { FLUID_POINTS, FLUIDS };
+
+/* The fluid of this kind. */
+const struct fluid *fluid_row(enum fluid_kind kind);
+
+/* The fluid of a model. */
+const struct fluid *fluid_of(const struct model *model);
+
+/* Streams all particles, and sets the lag to 0. False as `stream` of struct fluid. */
+bool fluid_stream(struct state *state, const struct model *model, struct fault *fault);
+
+/* Position and velocity now of the particle at place i of memory, as `now` of struct fluid. */
+struct point fluid_position_now(const struct state *state, const struct model *model, uint32_t i);
+struct vec3 fluid_velocity_now(const struct state *state, const struct model *model, uint32_t i);
+
+/* The velocity that the body force has added to each particle since it was last streamed. */
+struct vec3 fluid_gain(const struct state *state, const struct model *model);
+
+#endif

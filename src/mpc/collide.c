@@ -1,0 +1,118 @@
+#include "mpc/collide.h"
+
+#include <string.h>
+
+#include "mpc/cell.h"
+#include "mpc/grid.h"
+#include "mpc/overflow.h"
+#include "mpc/rule.h"
+#include "mpc/sort.h"
+
+/* Particles are sorted by cell again after this many collisions. At the paper's mean free path of 0.02 a0, most
+ * neighbors in memory are still neighbors in space after them. */
+#define COLLISIONS_PER_SORT 50
+
+/* Particles per block. A block goes through several operations while it is in the cache. Smaller blocks would keep the
+ * processor from reading ahead. */
+#define BLOCK 16384
+
+static uint32_t block_size(uint32_t n, uint32_t first, uint32_t most)
+{
+  return n - first < most ? n - first : most;
+}
+
+static void clear_sums(struct mpc *c)
+{
+  memset(c->sum, 0, (size_t)c->cells * sizeof *c->sum);
+}
+
+/* Unsigned: the sum may wrap. overflow_of_energies finds out afterwards. */
+static void add_energy(int64_t *sum, double energy)
+{
+  *sum = (int64_t)((uint64_t)*sum + (uint64_t)llrint(CELL_ENERGY_SCALE * energy));
+}
+
+/* Sums the energies of all members cell by cell, in integers like the momenta. Momenta have been found in range before,
+ * so every energy is a number. */
+static bool sum_relative_energy(const struct state *state, const struct model *model, struct mpc *c, uint64_t step,
+                                struct fault *fault)
+{
+  memset(c->relative, 0, (size_t)c->cells * sizeof *c->relative);
+  double largest = 0.0;
+  for (uint32_t i = 0; i < state->solvent.n; i++) {
+    const double energy = cell_energy(&c->turn[c->solvent_cell[i]], 1.0, solvent_velocity(&state->solvent, i));
+    largest = energy > largest ? energy : largest;
+    add_energy(&c->relative[c->solvent_cell[i]], energy);
+  }
+  for (uint32_t v = 0; v < state->vertices; v++) {
+    const double energy = cell_energy(&c->turn[c->vertex_cell[v]], model->mass[v], state->velocity[v]);
+    largest = energy > largest ? energy : largest;
+    add_energy(&c->relative[c->vertex_cell[v]], energy);
+  }
+  return overflow_of_energies(state, model, c, largest, step, fault);
+}
+
+bool collide_sum(const struct state *state, const struct model *model, struct mpc *mpc, uint64_t step,
+                 struct fault *fault)
+{
+  const uint32_t n = state->solvent.n;
+  uint64_t span = 0;
+  clear_sums(mpc);
+  for (uint32_t i = 0; i < n; i += BLOCK)
+    span |= mpc->rule->add_particles(state, model, mpc, step, i, block_size(n, i, BLOCK));
+  span |= mpc->rule->add_vertices(state, model, mpc, step);
+  return overflow_of_momenta(state, model, mpc, span, step, fault);
+}
+
+/* Flight of the fluid, grid_bin and collide_sum: the three in one pass, block by block. */
+static bool gather(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step, struct fault *fault)
+{
+  const struct point shift = grid_shift(model, step);
+  uint64_t span = 0;
+  clear_sums(mpc);
+  for (uint32_t i = 0; i < state->solvent.n; i += BLOCK) {
+    const uint32_t n = block_size(state->solvent.n, i, BLOCK);
+    if (state->solvent_lag > 0 && !mpc->fluid->stream(state, model, i, n, fault))
+      return false;
+    grid_bin_particles(state, model, shift, i, n, mpc);
+    span |= mpc->rule->add_particles(state, model, mpc, step, i, n);
+  }
+  state->solvent_lag = 0;
+  grid_bin_vertices(state, model, shift, mpc);
+  span |= mpc->rule->add_vertices(state, model, mpc, step);
+  return overflow_of_momenta(state, model, mpc, span, step, fault);
+}
+
+void collide_solve(const struct model *model, struct mpc *mpc, uint64_t step)
+{
+  mpc->rule->solve(model, mpc, step);
+}
+
+bool collide_thermostat(const struct state *state, const struct model *model, struct mpc *mpc,
+                        const struct thermostat *thermostat, uint64_t step, struct fault *fault)
+{
+  if (!sum_relative_energy(state, model, mpc, step, fault))
+    return false;
+  thermostat->factors(mpc, model, step);
+  return true;
+}
+
+void collide_turn(struct state *state, const struct model *model, const struct mpc *mpc, bool scaled)
+{
+  mpc->rule->apply(state, model, mpc, scaled);
+}
+
+bool mpc_collide(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step, struct fault *fault)
+{
+  if (!gather(state, model, mpc, step, fault))
+    return false;
+  collide_solve(model, mpc, step);
+  if (mpc->thermostat && !collide_thermostat(state, model, mpc, mpc->thermostat, step, fault))
+    return false;
+  collide_turn(state, model, mpc, mpc->thermostat);
+  if (!model->solvent.hydrodynamics)
+    mpc_swap_velocities(state, model, mpc, step);
+  if (mpc->since_sort++ % COLLISIONS_PER_SORT == 0)
+    mpc_sort(state, model, mpc);
+  return true;
+}

@@ -1,0 +1,80 @@
+#include "mpc/mpc.h"
+
+#include <string.h>
+
+#include "base/memory.h"
+#include "mpc/rule.h"
+#include "mpc/thermostat.h"
+
+/* Bits of a hash table that is at most half full. */
+static uint32_t table_bits(uint32_t entries)
+{
+  uint32_t bits = 1;
+  while (((uint64_t)1 << bits) < 2 * (uint64_t)entries)
+    bits++;
+  return bits;
+}
+
+/* Entries of the cells' sums. */
+static size_t count_cells(const struct model *m)
+{
+  return model_has_phantoms(m) ? m->vertices : model_has_solvent(m) ? (size_t)box_cell_count(&m->box) : 0;
+}
+
+enum { NEEDS = 14 };
+
+/* The single list of the scratch that the collisions of a model use. */
+static void list_needs(struct mpc *c, const struct model *m, bool everything, struct memory_need need[NEEDS])
+{
+  const size_t cells = count_cells(m), particles = m->solvent.particles;
+  const size_t colliding = model_collides(m) ? m->vertices : 0, bathed = model_has_phantoms(m) ? m->vertices : 0;
+  const size_t thermostatted = everything || m->solvent.thermostat != THERMOSTAT_NONE ? cells : 0;
+  const size_t swapped = everything || !m->solvent.hydrodynamics ? particles : 0;
+  const bool drawing = everything || collision_rule_of(m)->thermal;
+  const struct memory_need all[NEEDS] = {
+      {(void **)&c->sum, cells, sizeof *c->sum},
+      {(void **)&c->turn, cells, sizeof *c->turn},
+      {(void **)&c->relative, thermostatted, sizeof *c->relative},
+      {(void **)&c->solvent_cell, particles, sizeof *c->solvent_cell},
+      {(void **)&c->vertex_cell, colliding, sizeof *c->vertex_cell},
+      {(void **)&c->occupied, bathed, sizeof *c->occupied},
+      {(void **)&c->table, bathed ? (size_t)1 << table_bits(m->vertices) : 0, sizeof *c->table},
+      {(void **)&c->order, particles, sizeof *c->order},
+      {(void **)&c->slot, swapped, sizeof *c->slot},
+      {(void **)&c->column, particles, sizeof *c->column},
+      {(void **)&c->drawn[0], drawing ? particles : 0, sizeof *c->drawn[0]},
+      {(void **)&c->drawn[1], drawing ? particles : 0, sizeof *c->drawn[1]},
+      {(void **)&c->drawn[2], drawing ? particles : 0, sizeof *c->drawn[2]},
+      {(void **)&c->drawn_vertex, drawing ? colliding : 0, sizeof *c->drawn_vertex},
+  };
+  memcpy(need, all, sizeof all);
+}
+
+bool mpc_alloc(struct mpc *c, const struct model *m, const struct fluid *fluid, bool everything)
+{
+  struct memory_need need[NEEDS];
+  *c = (struct mpc){.rule = collision_rule_of(m),
+                    .thermostat = thermostat_of(m->solvent.thermostat),
+                    .fluid = fluid,
+                    .cells = (uint32_t)count_cells(m),
+                    .table_bits = table_bits(m->vertices)};
+  list_needs(c, m, everything, need);
+  return memory_take(need, NEEDS);
+}
+
+void mpc_free(struct mpc *c)
+{
+  struct memory_need need[NEEDS];
+  const struct model nothing = {0};
+  list_needs(c, &nothing, false, need);
+  memory_release(need, NEEDS);
+  memset(c, 0, sizeof *c);
+}
+
+uint64_t mpc_bytes(const struct model *m)
+{
+  struct mpc c = {0};
+  struct memory_need need[NEEDS];
+  list_needs(&c, m, false, need);
+  return memory_bytes(need, NEEDS);
+}

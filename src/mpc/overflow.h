@@ -1,0 +1,20 @@
+/*
+ * The ranges of a cell's sums, and which member is too fast or too heavy if one is exceeded. cell_add lets sums wrap
+ * without a test, for speed. The functions here test afterwards: members times the largest addend bounds every sum.
+ */
+#ifndef UNCROSS_MPC_OVERFLOW_H
+#define UNCROSS_MPC_OVERFLOW_H
+
+#include "mpc/mpc.h"
+
+/* Tests momenta and masses in mpc->sum. span: the bitwise or of all that cell_add returned. False, with the fault
+ * recorded, if a sum may have wrapped. */
+bool overflow_of_momenta(const struct state *state, const struct model *model, const struct mpc *mpc, uint64_t span,
+                         uint64_t step, struct fault *fault);
+
+/* Tests energies in mpc->relative. largest: the largest energy of a member. False, with the fault recorded, if a sum
+ * may have wrapped. */
+bool overflow_of_energies(const struct state *state, const struct model *model, const struct mpc *mpc, double largest,
+                          uint64_t step, struct fault *fault);
+
+#endif

@@ -1,0 +1,113 @@
+/*
+ * The Andersen collision rule without angular momentum, MPC-AT-a (Noguchi, Kikuchi and Gompper, EPL 78, 10005 (2007)):
+ *
+ *   v_i' = V + xi_i - sum_j m_j xi_j / sum_j m_j,    V = sum_j m_j v_j / sum_j m_j,
+ *
+ * xi_i normal deviates of variance kT/m_i. So v_i' = xi_i + sum_j m_j (v_j - xi_j) / sum_j m_j: the sum of v - xi is
+ * all that a cell needs, and one fixed-point sum keeps momentum whatever the order of the members.
+ */
+#include "base/normal.h"
+#include "mpc/cell.h"
+#include "mpc/members.h"
+#include "mpc/rule.h"
+
+enum { BLOCK = 256 }; /* particles worked on at a time */
+
+static uint64_t add_particles(const struct state *state, const struct model *model, struct mpc *c, uint64_t step,
+                              uint32_t first, uint32_t n)
+{
+  const struct solvent *s = &state->solvent;
+  uint64_t span = 0;
+  for (uint32_t i = first; i < first + n; i += BLOCK) {
+    const uint32_t m = first + n - i < BLOCK ? first + n - i : BLOCK;
+    double *restrict x = &c->drawn[0][i], *restrict y = &c->drawn[1][i], *restrict z = &c->drawn[2][i];
+    const double *restrict vx = &s->vx[i], *restrict vy = &s->vy[i], *restrict vz = &s->vz[i];
+    double ux[BLOCK], uy[BLOCK], uz[BLOCK];
+    random_normal_columns(model->seed, RANDOM_ANDERSEN_PARTICLE, step, &s->id[i], m, x, y, z);
+    for (uint32_t k = 0; k < m; k++) {
+      ux[k] = vx[k] - x[k];
+      uy[k] = vy[k] - y[k];
+      uz[k] = vz[k] - z[k];
+    }
+    span |= members_add(c, i, m, ux, uy, uz);
+  }
+  return span;
+}
+
+/* A velocity from the Maxwell distribution of this mass. */
+static struct vec3 draw(uint64_t seed, enum random_purpose purpose, uint64_t step, uint32_t entity, double mass)
+{
+  double x, y, z;
+  random_normal_columns(seed, purpose, step, &entity, 1, &x, &y, &z);
+  return vec3_scale(1.0 / sqrt(mass), (struct vec3){x, y, z});
+}
+
+static uint64_t add_vertices(const struct state *state, const struct model *model, struct mpc *c, uint64_t step)
+{
+  uint64_t span = 0;
+  for (uint32_t v = 0; v < state->vertices; v++) {
+    const double mass = model->mass[v];
+    c->drawn_vertex[v] = draw(model->seed, RANDOM_ANDERSEN_VERTEX, step, v, mass);
+    span |=
+        cell_add(&c->sum[c->vertex_cell[v]], mass, cell_load(mass), vec3_sub(state->velocity[v], c->drawn_vertex[v]));
+  }
+  return span;
+}
+
+static void add_random_solvent(const struct model *model, struct mpc *c, uint64_t step, uint32_t place, double mass,
+                               struct vec3 velocity)
+{
+  const struct vec3 xi = draw(model->seed, RANDOM_ANDERSEN_PHANTOM, step, mpc_cell(c, place), mass);
+  cell_add(&c->sum[place], mass, cell_load(mass), vec3_sub(velocity, xi));
+}
+
+/* The centre is the mean of v - xi. */
+static void solve(const struct model *model, struct mpc *c, uint64_t step)
+{
+  (void)model, (void)step;
+  for (uint32_t k = 0; k < c->cells; k++)
+    cell_solve(&c->sum[k], &c->turn[k]);
+}
+
+static void apply(struct state *state, const struct model *model, const struct mpc *c, bool scaled)
+{
+  (void)model, (void)scaled; /* it is a thermostat by itself */
+  struct solvent *s = &state->solvent;
+  const double *const drawn[3] = {c->drawn[0], c->drawn[1], c->drawn[2]};
+  for (uint32_t i = 0; i < s->n; i++) {
+    const struct cell_turn *t = &c->turn[c->solvent_cell[i]];
+    const bool active = t->active != 0.0;
+    s->vx[i] = active ? t->center.x + drawn[0][i] : s->vx[i];
+    s->vy[i] = active ? t->center.y + drawn[1][i] : s->vy[i];
+    s->vz[i] = active ? t->center.z + drawn[2][i] : s->vz[i];
+  }
+  for (uint32_t v = 0; v < state->vertices; v++) {
+    const struct cell_turn *t = &c->turn[c->vertex_cell[v]];
+    if (t->active != 0.0)
+      state->velocity[v] = vec3_add(t->center, c->drawn_vertex[v]);
+  }
+}
+
+/* A member keeps V only: of its own velocity and stress nothing is left. */
+static double whole(double cosine)
+{
+  (void)cosine;
+  return 1.0;
+}
+
+static double handed_on(double cosine)
+{
+  (void)cosine;
+  return 1.0 / 12.0;
+}
+
+const struct collision_rule at_a_rule = {.name = "at-a",
+                                         .thermal = true,
+                                         .add_particles = add_particles,
+                                         .add_vertices = add_vertices,
+                                         .add_random_solvent = add_random_solvent,
+                                         .solve = solve,
+                                         .apply = apply,
+                                         .velocity_loss = whole,
+                                         .stress_loss = whole,
+                                         .handed_on = handed_on};

@@ -1,0 +1,14 @@
+/* Exchange of velocities (physics: hydrodynamics off), and of places in memory (speed only). */
+#ifndef UNCROSS_MPC_SORT_H
+#define UNCROSS_MPC_SORT_H
+
+#include "mpc/mpc.h"
+
+/* Permutes the solvent's velocities at random over the particles (Padding 2009, Sec. V B 2): particle id takes the
+ * velocity of particle order[id]. */
+void mpc_swap_velocities(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step);
+
+/* Sorts particles in memory by the cells of the unshifted grid. No effect on results. */
+void mpc_sort(struct state *state, const struct model *model, struct mpc *mpc);
+
+#endif

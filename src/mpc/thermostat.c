@@ -1,0 +1,57 @@
+#include "mpc/thermostat.h"
+
+#include "base/normal.h"
+#include "mpc/cell.h"
+
+double thermostat_gamma(uint64_t seed, uint64_t step, uint32_t cell, double shape)
+{
+  const double d = shape - 1.0 / 3.0, c = 1.0 / sqrt(9.0 * d);
+  for (uint32_t draw = 0;; draw += 2) {
+    double normal[2];
+    random_normal_pair(random_at(seed, RANDOM_THERMOSTAT, draw, step, cell), normal);
+    double u = random_uniform(random_at(seed, RANDOM_THERMOSTAT, draw + 1, step, cell), 0);
+    double root = 1.0 + c * normal[0], v = root * root * root;
+    if (v > 0.0 && elementary_log(u) < 0.5 * normal[0] * normal[0] + d - d * v + d * elementary_log(v))
+      return d * v;
+  }
+}
+
+/* One factor for all cells: a cell of N members has 3 (N-1) degrees of freedom with kT/2 each
+ * (Padding 2009, step 4: "rescale velocities relative to center-of-mass velocity"). */
+static void rescale(struct mpc *c, const struct model *model, uint64_t step)
+{
+  (void)model, (void)step;
+  double freedoms = 0.0, energy = 0.0;
+  for (uint32_t k = 0; k < c->cells; k++) {
+    if (c->turn[k].active == 0.0)
+      continue;
+    freedoms += 3.0 * (cell_members(&c->sum[k]) - 1);
+    energy += (double)c->relative[k] * CELL_ENERGY_UNIT;
+  }
+  double factor = energy > 0.0 ? sqrt(freedoms / energy) : 1.0;
+  for (uint32_t k = 0; k < c->cells; k++)
+    c->turn[k].factor = factor;
+}
+
+/* Canonical: each cell's relative kinetic energy is drawn afresh from its Gamma distribution of 3 (N-1) degrees of
+ * freedom (Huang, Chatterji, Sutmann, Gompper and Winkler, J. Comput. Phys. 229, 168 (2010)). */
+static void maxwell_boltzmann(struct mpc *c, const struct model *model, uint64_t step)
+{
+  for (uint32_t k = 0; k < c->cells; k++) {
+    if (c->turn[k].active == 0.0)
+      continue;
+    double energy = 0.5 * (double)c->relative[k] * CELL_ENERGY_UNIT;
+    double wanted = thermostat_gamma(model->seed, step, k, 1.5 * (cell_members(&c->sum[k]) - 1));
+    c->turn[k].factor = energy > 0.0 ? sqrt(wanted / energy) : 1.0;
+  }
+}
+
+static const struct thermostat thermostats[THERMOSTATS] = {
+    [THERMOSTAT_RESCALE] = {"rescale", rescale},
+    [THERMOSTAT_MAXWELL_BOLTZMANN] = {"maxwell-boltzmann", maxwell_boltzmann},
+};
+
+const struct thermostat *thermostat_of(enum thermostat_kind kind)
+{
+  return kind == THERMOSTAT_NONE ? NULL : &thermostats[kind];
+}

@@ -1,0 +1,20 @@
+/* Thermostats scale velocities relative to the center of mass of each collision cell, so they conserve momentum. */
+#ifndef UNCROSS_MPC_THERMOSTAT_H
+#define UNCROSS_MPC_THERMOSTAT_H
+
+#include "mpc/mpc.h"
+
+struct thermostat {
+  const char *name; /* as in scenes */
+
+  /* Sets the factor of every cell that has members to collide, from the relative kinetic energies (mpc->relative). */
+  void (*factors)(struct mpc *mpc, const struct model *model, uint64_t step);
+};
+
+/* The thermostat of this kind; NULL: none. */
+const struct thermostat *thermostat_of(enum thermostat_kind kind);
+
+/* A Gamma(shape, 1) deviate for this cell and step, shape >= 1 (Marsaglia and Tsang, ACM TOMS 26, 363 (2000)). */
+double thermostat_gamma(uint64_t seed, uint64_t step, uint32_t cell, double shape);
+
+#endif

@@ -1,0 +1,113 @@
+#include "oracle/evidence.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool takes_part(const struct pack_table *ours, const struct pack_table *theirs, const struct oracle_pair *pair)
+{
+  return theirs && ours->columns == pair->ours->columns && theirs->columns == ours->columns &&
+         strcmp(ours->place.operator_name, pair->ours->place.operator_name) == 0 &&
+         strcmp(ours->name, pair->ours->name) == 0;
+}
+
+static void find_parts(const struct oracle_pair *pair, struct evidence *e)
+{
+  for (size_t k = 0; k < pair->pack->count && e->parts < EVIDENCE_PARTS; k++) {
+    const struct pack_table *ours = &pair->pack->table[k];
+    const struct pack_table *theirs = pack_find(pair->pack_theirs, &ours->place, ours->name);
+    if (!takes_part(ours, theirs, pair))
+      continue;
+    struct evidence_part *part = &e->part[e->parts++];
+    *part = (struct evidence_part){{pair->pack, pair->pack_theirs, ours, theirs, pair->rounding}, 0, e->rows};
+    part->rows = ours->rows < theirs->rows ? ours->rows : theirs->rows;
+    e->rows += part->rows;
+  }
+}
+
+static void take_values(struct evidence *e)
+{
+  for (uint32_t k = 0; k < e->parts; k++) {
+    const struct evidence_part *part = &e->part[k];
+    for (uint32_t row = 0; row < part->rows; row++)
+      for (uint32_t column = 0; column < e->columns; column++) {
+        const size_t at = (size_t)(part->first + row) * e->columns + column;
+        e->ours[at] = pack_value(part->pair.ours, row, column);
+        e->theirs[at] = pack_value(part->pair.theirs, row, column);
+        e->tolerance[at] = oracle_tolerance(&part->pair, row, column);
+        e->different[at] = e->ours[at] != e->theirs[at];
+        e->wrong[at] = !(fabs(e->ours[at] - e->theirs[at]) <= e->tolerance[at]);
+        e->differences += e->different[at];
+        e->wrongs += e->wrong[at];
+      }
+  }
+}
+
+void evidence_count_all(struct evidence *e)
+{
+  memcpy(e->wrong, e->different, (size_t)e->rows * e->columns * sizeof *e->wrong);
+  e->wrongs = e->differences;
+}
+
+bool evidence_take(const struct oracle_pair *pair, struct evidence *e)
+{
+  memset(e, 0, sizeof *e);
+  e->columns = pair->ours->columns;
+  find_parts(pair, e);
+  const size_t n = (size_t)e->rows * e->columns + 1;
+  e->ours = calloc(n, sizeof *e->ours), e->theirs = calloc(n, sizeof *e->theirs);
+  e->tolerance = calloc(n, sizeof *e->tolerance), e->guess = calloc(n, sizeof *e->guess);
+  e->different = calloc(n, sizeof *e->different), e->wrong = calloc(n, sizeof *e->wrong);
+  if (!e->ours || !e->theirs || !e->tolerance || !e->guess || !e->different || !e->wrong)
+    return false;
+  take_values(e);
+  if (e->wrongs == 0)
+    evidence_count_all(e);
+  return e->wrongs > 0;
+}
+
+void evidence_free(struct evidence *e)
+{
+  free(e->ours);
+  free(e->theirs);
+  free(e->tolerance);
+  free(e->guess);
+  free(e->different);
+  free(e->wrong);
+  memset(e, 0, sizeof *e);
+}
+
+/* Where theirs is wrong, the guess must be far nearer than ours is: else a bound as wide as the error lets anything
+ * pass. */
+bool evidence_is(const struct evidence *e, size_t k, double x)
+{
+  const double off = fabs(e->theirs[k] - x);
+  if (isnan(e->theirs[k]))
+    return x == EVIDENCE_NAN;
+  if (off == 0.0)
+    return true;
+  return (off <= e->tolerance[k] || off <= 0x1p-40 * fabs(x)) &&
+         (!e->wrong[k] || off <= 0x1p-8 * fabs(e->theirs[k] - e->ours[k]));
+}
+
+enum evidence_fit evidence_judge(const struct evidence *e)
+{
+  enum evidence_fit fit = FIT_WHOLE;
+  for (size_t k = 0; k < (size_t)e->rows * e->columns; k++) {
+    if (evidence_is(e, k, e->guess[k]))
+      continue;
+    if (e->wrong[k])
+      return FIT_NOT;
+    fit = FIT_WRONG;
+  }
+  return fit;
+}
+
+const struct evidence_part *evidence_part_of(const struct evidence *e, uint32_t row, uint32_t *own)
+{
+  uint32_t k = 0;
+  while (k + 1 < e->parts && row >= e->part[k + 1].first)
+    k++;
+  *own = row - e->part[k].first;
+  return &e->part[k];
+}

@@ -1,0 +1,18 @@
+/*
+ * Inside the oracle: sweeps, replayed from the inputs of a pack with one thing changed. A wrong exchange changes the
+ * moves that follow, so a guess must make all of their events, and where all vertices end. If none does, each of their
+ * moves is judged alone, in the state that their own events before it have made.
+ */
+#ifndef UNCROSS_ORACLE_REPLAY_H
+#define UNCROSS_ORACLE_REPLAY_H
+
+#include "oracle/pair.h"
+
+/* True, and the text, if a guess makes theirs. */
+bool oracle_replay(const struct oracle_pair *pair, char text[ORACLE_TEXT]);
+
+/* True if moves are wrong, each judged alone, and a rule tells which, exactly: the text. Without a rule the text says
+ * how many, if events differ. */
+bool oracle_judge_moves(const struct oracle_pair *pair, char text[ORACLE_TEXT]);
+
+#endif

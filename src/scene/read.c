@@ -1,0 +1,318 @@
+#include "scene/read.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/vec3.h"
+#include "scene/value.h"
+#include "scene/words.h"
+#include "system/model.h"
+
+/* --- values ------------------------------------------------------------------------------------------------------ */
+
+/* Everything that the reading of one value needs. */
+struct reading {
+  const struct key_table *table;
+  const struct key *key;
+  const struct node *node;
+  const char *source; /* of the whole */
+  void *to;
+  void *from; /* the struct that holds `to` */
+  struct key_gaps *gaps;
+  struct message *message;
+};
+
+/* "table.key: what; allowed: ..." at this node. Always returns false. */
+static bool refuse_value(const struct reading *r, const struct node *node, const char *problem)
+{
+  char allowed[512];
+  key_describe(r->key, allowed, sizeof allowed);
+  const char *text = node_text(node);
+  return node_refuse(node, r->message, "%s%s%s: %s%.60s%s%s; allowed: %s", r->table->path, *r->table->path ? "." : "",
+                     r->key->name, text ? "'" : "", text ? text : "a list or mapping", text ? "' " : " ", problem,
+                     allowed);
+}
+
+static bool read_whole(const struct reading *r, const struct node *node, uint64_t *value)
+{
+  if (!node_whole(node, value))
+    return refuse_value(r, node, "is not a whole number of 64 bits");
+  return key_allows_whole(r->key, *value) || refuse_value(r, node, "is out of range");
+}
+
+static bool read_number(const struct reading *r, const struct node *node, double *value)
+{
+  if (!node_number(node, value))
+    return refuse_value(r, node, "is not a finite number");
+  return key_allows_number(r->key, *value) || refuse_value(r, node, "is out of range");
+}
+
+static bool is_triple(const struct reading *r)
+{
+  return (r->node->type == NODE_LIST && r->node->count == 3) || refuse_value(r, r->node, "is not a list of three");
+}
+
+static bool read_whole64(const struct reading *r)
+{
+  return read_whole(r, r->node, r->to);
+}
+
+static bool read_whole32(const struct reading *r)
+{
+  uint64_t value;
+  if (!read_whole(r, r->node, &value))
+    return false;
+  *(uint32_t *)r->to = (uint32_t)value;
+  return true;
+}
+
+static bool read_a_number(const struct reading *r)
+{
+  return read_number(r, r->node, r->to);
+}
+
+static bool read_vector(const struct reading *r)
+{
+  struct vec3 *v = r->to;
+  return is_triple(r) && read_number(r, node_item(r->node, 0), &v->x) && read_number(r, node_item(r->node, 1), &v->y) &&
+         read_number(r, node_item(r->node, 2), &v->z);
+}
+
+static bool read_cells(const struct reading *r)
+{
+  if (!is_triple(r))
+    return false;
+  for (size_t i = 0; i < 3; i++) {
+    uint64_t value;
+    if (!read_whole(r, node_item(r->node, i), &value))
+      return false;
+    ((int *)r->to)[i] = (int)value;
+  }
+  return true;
+}
+
+static bool read_switch(const struct reading *r)
+{
+  return node_switch(r->node, r->to) || refuse_value(r, r->node, "is neither true nor false");
+}
+
+/* The place of a word in the key's choices; -1 if it is none of them. */
+static int choice_number(const struct key *key, const char *word)
+{
+  for (int i = 0; key->choice[i]; i++)
+    if (strcmp(word, key->choice[i]) == 0)
+      return i;
+  return -1;
+}
+
+enum any { ANY }; /* how an enum is stored */
+
+static bool read_choice(const struct reading *r)
+{
+  const char *word = node_text(r->node);
+  int number = word ? choice_number(r->key, word) : -1;
+  if (number < 0) {
+    const char *nearest = word ? nearest_word(word, r->key->choice) : NULL;
+    char problem[128];
+    snprintf(problem, sizeof problem, "is no choice here%s%s%s", nearest ? ", did you mean '" : "",
+             nearest ? nearest : "", nearest ? "'?" : "");
+    return refuse_value(r, r->node, problem);
+  }
+  enum any value = (enum any)(r->key->first + number);
+  memcpy(r->to, &value, sizeof value);
+  return true;
+}
+
+static bool read_name(const struct reading *r)
+{
+  const char *text = node_text(r->node);
+  if (!text || !key_allows_name(text))
+    return refuse_value(r, r->node, "is not a name");
+  memcpy(r->to, text, strlen(text) + 1);
+  return true;
+}
+
+/* Always returns false. */
+static bool no_memory(const struct reading *r)
+{
+  return message_set(r->message, "%s: out of memory", r->node->source);
+}
+
+static bool read_text(const struct reading *r)
+{
+  const char *text = node_text(r->node);
+  if (!text || !*text)
+    return refuse_value(r, r->node, "is not a text");
+  char *copy = strdup(text);
+  memcpy(r->to, &copy, sizeof copy);
+  return copy || no_memory(r);
+}
+
+static bool read_mapping(const struct reading *r, const struct node *mapping, const struct key_table *table, void *to);
+
+static bool read_section(const struct reading *r)
+{
+  if (r->node->type != NODE_MAPPING)
+    return refuse_value(r, r->node, "is not a mapping");
+  return read_mapping(r, r->node, r->key->keys, r->to);
+}
+
+static bool read_list(const struct reading *r)
+{
+  if (r->node->type != NODE_LIST)
+    return refuse_value(r, r->node, "is not a list");
+  if (r->node->count > INT32_MAX)
+    return refuse_value(r, r->node, "is too long");
+  const uint32_t count = (uint32_t)r->node->count;
+  char *items = calloc(count ? count : 1, r->key->item_size);
+  if (!items)
+    return no_memory(r);
+  memcpy(r->to, &items, sizeof items);
+  memcpy((char *)r->from + r->key->count_offset, &count, sizeof count);
+  for (uint32_t i = 0; i < count; i++) {
+    const struct node *item = r->node->item[i];
+    if (item->type != NODE_MAPPING)
+      return refuse_value(r, item, "is not a mapping");
+    if (!read_mapping(r, item, r->key->keys, items + i * r->key->item_size))
+      return false;
+  }
+  return true;
+}
+
+static bool (*const readers[])(const struct reading *) = {
+    [KEY_WHOLE64] = read_whole64, [KEY_WHOLE32] = read_whole32, [KEY_NUMBER] = read_a_number,
+    [KEY_VECTOR] = read_vector,   [KEY_CELLS] = read_cells,     [KEY_SWITCH] = read_switch,
+    [KEY_CHOICE] = read_choice,   [KEY_NAME] = read_name,       [KEY_TEXT] = read_text,
+    [KEY_SECTION] = read_section, [KEY_LIST] = read_list,
+};
+
+/* --- mappings ---------------------------------------------------------------------------------------------------- */
+
+const struct key *keys_find(const struct key_table *table, const char *name)
+{
+  for (size_t k = 0; k < table->count; k++) {
+    const struct key *key = &table->key[k];
+    const struct key *found = key->type == KEY_INCLUDE       ? keys_find(key->keys, name)
+                              : strcmp(key->name, name) == 0 ? key
+                                                             : NULL;
+    if (found)
+      return found;
+  }
+  return NULL;
+}
+
+enum { WORDS_MAX = 60 };
+
+static size_t collect_words(const struct key_table *table, const char **words, size_t count)
+{
+  for (size_t k = 0; k < table->count && count < WORDS_MAX; k++)
+    if (table->key[k].type == KEY_INCLUDE)
+      count = collect_words(table->key[k].keys, words, count);
+    else
+      words[count++] = table->key[k].name;
+  return count;
+}
+
+bool keys_refuse(const struct node *node, const char *name, const struct key_table *table, struct message *message)
+{
+  const char *words[WORDS_MAX + 1];
+  words[collect_words(table, words, 0)] = NULL;
+  char hint[512];
+  suggest_word(name, words, hint, sizeof hint);
+  return node_refuse(node, message, "unknown key '%.60s'%s%s; %s", name, *table->path ? " in " : "", table->path, hint);
+}
+
+/* Every key of the mapping is known, and given once. Known keys are few, so a mapping with many has one twice early. */
+static bool check_names(const struct node *mapping, const struct key_table *table, struct message *message)
+{
+  for (size_t i = 0; i < mapping->count; i++) {
+    const struct node *node = mapping->key[i];
+    const char *name = node_text(node);
+    if (!name)
+      return node_refuse(node, message, "a key must be a word; see docs/scene.md");
+    if (!keys_find(table, name))
+      return keys_refuse(node, name, table, message);
+    for (size_t k = 0; k < i; k++)
+      if (strcmp(mapping->key[k]->text, name) == 0)
+        return node_refuse(node, message, "key '%s' is given twice, first in line %zu; give it once", name,
+                           mapping->key[k]->line);
+  }
+  return true;
+}
+
+bool key_read_text(const struct key *key, const char *text, void *to)
+{
+  static const struct key_table none = {"", NULL, 0, NULL};
+  struct tree tree = {NULL, NULL};
+  struct message ignored;
+  struct reading r = {.table = &none, .key = key, .to = to, .message = &ignored};
+  r.node = value_read(&tree, key->name, text, &ignored);
+  const bool ok = r.node && readers[key->type](&r);
+  tree_free(&tree);
+  return ok;
+}
+
+static bool read_table(const struct reading *r, const struct node *mapping, const struct key_table *table, void *to);
+
+/* A value that is there, alone or with others. */
+static bool read_given(const struct reading *r, const struct node *mapping)
+{
+  const char *other = r->key->excludes;
+  if (other && node_value(mapping, other))
+    return node_refuse(r->node, r->message, "%s.%s: %s is given too; allowed: one of the two", r->table->path,
+                       r->key->name, other);
+  return readers[r->key->type](r);
+}
+
+/* What a key means that is not there: scalars only, for sections say it themselves. */
+static bool read_missing(const struct reading *r, const struct node *mapping)
+{
+  const struct key *key = r->key;
+  if (mapping && key_is_required(key)) {
+    char allowed[512];
+    key_describe(key, allowed, sizeof allowed);
+    return node_refuse(mapping, r->message, "%s%skey '%s' is missing; allowed: %s", r->table->path,
+                       *r->table->path ? ": " : "", key->name, allowed);
+  }
+  if (key->type == KEY_SECTION)
+    return read_table(r, NULL, key->keys, r->to);
+  if (key->fallback)
+    r->gaps->defaults = true;
+  const char *text = r->gaps->missing == MISSING_DEFAULT && key->fallback ? key->fallback : key->absent;
+  return !text || key_read_text(key, text, r->to) || message_set(r->message, "%s: out of memory", r->source);
+}
+
+/* From a mapping; NULL: nothing but what missing keys mean. */
+static bool read_table(const struct reading *r, const struct node *mapping, const struct key_table *table, void *to)
+{
+  for (size_t k = 0; k < table->count; k++) {
+    struct reading inner = *r;
+    inner.table = table;
+    inner.key = &table->key[k];
+    inner.from = to;
+    inner.to = (char *)to + inner.key->offset;
+    bool ok;
+    if (inner.key->type == KEY_INCLUDE) {
+      ok = read_table(&inner, mapping, inner.key->keys, inner.to);
+    } else {
+      inner.node = node_value(mapping, inner.key->name);
+      ok = inner.node ? read_given(&inner, mapping) : read_missing(&inner, mapping);
+    }
+    if (!ok)
+      return false;
+  }
+  return true;
+}
+
+static bool read_mapping(const struct reading *r, const struct node *mapping, const struct key_table *table, void *to)
+{
+  return check_names(mapping, table, r->message) && read_table(r, mapping, table, to);
+}
+
+bool keys_read(const struct node *mapping, const struct key_table *table, struct key_gaps *gaps, void *destination,
+               struct message *message)
+{
+  const struct reading r = {.source = mapping->source, .gaps = gaps, .message = message};
+  return read_mapping(&r, mapping, table, destination);
+}

@@ -1,0 +1,95 @@
+/* A scene: one commented YAML file that says everything about a run. docs/scene.md documents every key. */
+#ifndef UNCROSS_SCENE_SCENE_H
+#define UNCROSS_SCENE_SCENE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <stdio.h>
+
+#include "base/message.h"
+#include "observe/observe.h"
+#include "scene/tree.h"
+#include "system/model.h"
+#include "system/state.h"
+
+struct scene {
+  struct model model; /* finished (model_finish) */
+  uint64_t steps;     /* length of the whole run */
+  char *snapshot; /* start from this file instead of each kind's `start`; NULL: none. As the scene says it: relative to
+                     the scene file's folder (scene_snapshot_path). */
+  struct observe_plan observe;
+  uint64_t trajectory_every;  /* steps between frames; 0: no trajectory */
+  bool trajectory_solvent;    /* frames hold the solvent too */
+  bool trajectory_velocities; /* frames hold velocities */
+  double checkpoint_seconds;  /* wall time between checkpoints; 0: none but at step 0, on signals, at the end */
+  char *path;                 /* as given */
+  char *text; /* stored in files, NUL-terminated: the scene file, byte for byte; or the effective scene, if keys were
+                 set from outside or have defaults of today. It reads back to the same fingerprint */
+  struct tree tree;     /* the keys that were given, and where: for scene_refuse_at */
+  uint64_t fingerprint; /* XXH64 of all keys that affect the physics; a resume needs the same one. Seed, steps, cadences
+                           of output, checkpoints and comments have no part in it. */
+};
+
+/* Keys that are set on top of the file, by --set or the library: "solvent.per_cell=5", "fibers.0.count=10",
+ * "fibers.rods.count=10". Values are YAML scalars or lists [a, b, c]; docs/scene.md. */
+struct scene_settings {
+  size_t count;
+  const char *const *option; /* [count] */
+};
+
+/* Reads, checks and finishes a scene. Missing keys take their defaults. settings may be NULL. On failure returns false
+ * and leaves a message `file:line:col: what is wrong; what is allowed`, or `--set key=value: ...`; the scene then needs
+ * no freeing. */
+bool scene_read(const char *path, struct scene *scene, struct message *message);
+bool scene_read_set(const char *path, const struct scene_settings *settings, struct scene *scene,
+                    struct message *message);
+void scene_free(struct scene *scene);
+
+/* The same without the model's lists of fibers and vertices (model_finish_numbers): for estimates. */
+bool scene_read_numbers(const char *path, const struct scene_settings *settings, struct scene *scene,
+                        struct message *message);
+
+/* The same for a run that is resumed; fingerprint: that of its checkpoint. Missing keys take the defaults of today. If
+ * the fingerprint then differs, the scene is read again with the keys' `absent` values, because a default may have
+ * changed since the run began. If the fingerprint still differs, the result is that of scene_read_set, and the caller
+ * has to compare fingerprints. */
+bool scene_read_as(const char *path, const struct scene_settings *settings, uint64_t fingerprint, struct scene *scene,
+                   struct message *message);
+
+/* The same from text that a file has kept, e.g. a trajectory: missing keys mean what they have always meant (`absent`).
+ * `path` serves messages only, and whether the snapshot that the scene may name can be read is not looked at. */
+bool scene_read_text(const char *path, const char *text, size_t size, struct scene *scene, struct message *message);
+
+/* A scene made of settings alone, without YAML: each of them "path=value", in order. Missing keys take their defaults.
+ */
+bool scene_make(const struct scene_settings *settings, struct scene *scene, struct message *message);
+
+/* Leaves the message "place: key: ..." about a key. path: such as "flow", "fibers.0.mass". The place is that of the key
+ * in the scene, or that of the section around it. Always returns false. */
+bool scene_refuse_at(const struct scene *scene, const char *path, const char *key, struct message *message,
+                     const char *format, ...) __attribute__((format(printf, 5, 6)));
+
+/* True if the scene's file, or a setting, gives the key of this path. */
+bool scene_says(const struct scene *scene, const char *path);
+
+/* Where the snapshot file is, seen from the working folder: to be freed; NULL if the scene has none, or memory is
+ * short. */
+char *scene_snapshot_path(const struct scene *scene);
+
+/* Writes the effective scene, every default filled in, as YAML that reads back to the same scene. physics_only leaves
+ * out seed, steps, observables, trajectory and checkpoints: the text whose hash is the fingerprint. False if memory is
+ * short. */
+bool scene_write(const struct scene *scene, FILE *f, bool physics_only);
+
+/* Writes the JSON schema (draft 2020-12) of a scene: types, ranges, defaults and meanings of all keys. What keys must
+ * be together is not in it. */
+void scene_schema(FILE *f);
+
+/* Writes the tables of docs/scene.md, each between the comments that tools/document-keys looks for. */
+void scene_document(FILE *f);
+
+/* Calls `tell` once for each of the paper's limits that the scene exceeds; returns the number of calls. */
+int scene_warnings(const struct scene *scene, void (*tell)(void *context, const char *text), void *context);
+
+#endif

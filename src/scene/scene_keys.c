@@ -1,0 +1,154 @@
+/* The keys of a scene besides those of its model (system/model_keys.c): the one place where each is declared. */
+#include "scene/scene_keys.h"
+
+#include "system/model_keys.h"
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+#define IN_SCENE(member) offsetof(struct scene, member)
+
+static const struct key start_keys[] = {
+    {.name = "snapshot",
+     .text = "A checkpoint, or an H5MD file with velocities; relative to the folder of the scene file. Replaces the "
+             "`start` of every kind; box and numbers of particles and vertices must agree, and its center of mass must "
+             "move with `flow`.",
+     .type = KEY_TEXT,
+     .offset = IN_SCENE(snapshot),
+     .first_format = true},
+};
+static const struct key_table start_table = {"start", NULL, COUNT(start_keys), start_keys};
+
+/* Of most observables; where the cadence goes is the section's own. Dynamics has one key more. */
+static const struct key every_keys[] = {
+    {.name = "every",
+     .text = "Steps between samples.",
+     .type = KEY_WHOLE64,
+     .least = 1,
+     .most = INT64_MAX,
+     .unit = "steps"},
+};
+static const struct key dynamics_keys[] = {
+    {.name = "every",
+     .text = "Steps between samples.",
+     .type = KEY_WHOLE64,
+     .least = 1,
+     .most = INT64_MAX,
+     .offset = IN_SCENE(observe.every[OBSERVE_DYNAMICS]),
+     .unit = "steps"},
+    {.name = "longest_lag",
+     .text =
+         "Longest lag; 0: as long as the run allows. Otherwise at least `every`. Above a quarter of `steps` a warning.",
+     .type = KEY_WHOLE64,
+     .absent = "0",
+     .most = INT64_MAX,
+     .offset = IN_SCENE(observe.longest_lag),
+     .unit = "steps",
+     .symbol = "t"},
+};
+static const struct key_table conserved_table = {"observe.conserved", NULL, COUNT(every_keys), every_keys};
+static const struct key_table temperature_table = {"observe.temperature", NULL, COUNT(every_keys), every_keys};
+static const struct key_table statics_table = {"observe.statics", NULL, COUNT(every_keys), every_keys};
+static const struct key_table dynamics_table = {"observe.dynamics", NULL, COUNT(dynamics_keys), dynamics_keys};
+static const struct key_table collisions_table = {"observe.collisions", NULL, COUNT(every_keys), every_keys};
+
+static const struct key observe_keys[] = {
+    {.name = "conserved",
+     .text = "Time series of energies and momentum.",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &conserved_table,
+     .offset = IN_SCENE(observe.every[OBSERVE_CONSERVED]),
+     .line = true},
+    {.name = "temperature",
+     .text = "Time series of solvent and vertex temperature.",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &temperature_table,
+     .offset = IN_SCENE(observe.every[OBSERVE_TEMPERATURE]),
+     .line = true},
+    {.name = "statics",
+     .text = "Averages of bonds, bends, end-to-end distance.",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &statics_table,
+     .offset = IN_SCENE(observe.every[OBSERVE_STATICS]),
+     .line = true},
+    {.name = "dynamics",
+     .text = "Functions of the lag: g(t), g_cm(t), d^2(t), end-to-end correlation, diffusion coefficient.",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &dynamics_table,
+     .line = true},
+    {.name = "collisions",
+     .text = "Time series of crossings possible, executed, negative.",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &collisions_table,
+     .offset = IN_SCENE(observe.every[OBSERVE_COLLISIONS]),
+     .line = true},
+};
+static const struct key_table observe_table = {"observe", NULL, COUNT(observe_keys), observe_keys};
+
+static const struct key trajectory_keys[] = {
+    {.name = "every",
+     .text = "Steps between frames.",
+     .type = KEY_WHOLE64,
+     .least = 1,
+     .most = INT64_MAX,
+     .offset = IN_SCENE(trajectory_every),
+     .unit = "steps"},
+    {.name = "solvent",
+     .text = "Frames hold the solvent too (6.5 MB each at 164 thousand particles with velocities).",
+     .type = KEY_SWITCH,
+     .absent = "false",
+     .offset = IN_SCENE(trajectory_solvent)},
+    {.name = "velocities",
+     .text = "Frames hold velocities.",
+     .type = KEY_SWITCH,
+     .absent = "true",
+     .offset = IN_SCENE(trajectory_velocities)},
+};
+static const struct key_table trajectory_table = {"trajectory", NULL, COUNT(trajectory_keys), trajectory_keys};
+
+static const struct key checkpoint_keys[] = {
+    {.name = "seconds",
+     .text = "Wall time between checkpoints, the first of them after 10 s at most; 0: none but at step 0, on signals "
+             "and at the end.",
+     .type = KEY_NUMBER,
+     .absent = "300",
+     .low = 0,
+     .high = 1e9,
+     .offset = IN_SCENE(checkpoint_seconds),
+     .unit = "s"},
+};
+static const struct key_table checkpoint_table = {"checkpoint", NULL, COUNT(checkpoint_keys), checkpoint_keys};
+
+static const struct key top_keys[] = {
+    {.type = KEY_INCLUDE, .keys = &model_keys, .offset = IN_SCENE(model)},
+    {.name = "steps",
+     .text = "Steps in all; `--steps` says otherwise. A finished run can be extended.",
+     .type = KEY_WHOLE64,
+     .most = INT64_MAX,
+     .offset = IN_SCENE(steps),
+     .aside = true},
+    {.name = "start", .text = "A start from a file.", .type = KEY_SECTION, .optional = true, .keys = &start_table},
+    {.name = "observe",
+     .text = "Observables on the fly; what is not asked for costs nothing.",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &observe_table,
+     .aside = true},
+    {.name = "trajectory",
+     .text = "Frames in `trajectory.h5`; absent: none.",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &trajectory_table,
+     .aside = true,
+     .line = true},
+    {.name = "checkpoint",
+     .text = "How often `checkpoint.h5` is written.",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &checkpoint_table,
+     .aside = true},
+};
+const struct key_table scene_keys = {"", "Keys of the file itself.", COUNT(top_keys), top_keys};

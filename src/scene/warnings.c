@@ -1,0 +1,161 @@
+/* What a scene may do, but probably should not: where the paper's limits are left (Padding 2009, Sec. IV). */
+#include <inttypes.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+#include "scene/scene.h"
+#include "system/fiber_kind.h"
+#include "theory/theory.h"
+
+struct teller {
+  void (*tell)(void *context, const char *text);
+  void *context;
+  int told;
+};
+
+static void warn(struct teller *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+static void warn(struct teller *t, const char *format, ...)
+{
+  char text[512];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  t->told++;
+  if (t->tell)
+    t->tell(t->context, text);
+}
+
+static void warn_solvent(struct teller *t, const struct model *m)
+{
+  const struct solvent_model *s = &m->solvent;
+  if (model_has_solvent(m) && model_collision_interval(m) > 0.1 * (1.0 + 1e-9))
+    warn(t, "collision_interval %.6g > 0.1 t0: the mean free path is no liquid's (paper, Sec. IV A)",
+         model_collision_interval(m));
+  if (s->rule == RULE_SRD && s->rotation_angle < 90.0)
+    warn(t, "rotation_angle %.6g < 90 degrees: weak coupling between fibers and solvent (paper, Sec. IV A)",
+         s->rotation_angle);
+  if (s->rule == RULE_SRD && s->rotation_angle > 170.0)
+    warn(t, "rotation_angle %.6g is close to 180 degrees, which the paper says to avoid (Sec. IV A)",
+         s->rotation_angle);
+  if (!model_is_isothermal(m) && vec3_norm(s->acceleration) > 0.0)
+    warn(t, "the acceleration does work on the solvent, and no thermostat takes the heat away");
+}
+
+/* A flow faster than a tenth of the speed of sound: Padding 2009, Sec. IV B. */
+static void warn_flow(struct teller *t, const struct model *m)
+{
+  const double mach = theory_mach(vec3_norm(m->flow), theory_sound_speed(model_is_isothermal(m)));
+  if (model_has_solvent(m) && mach > 0.1)
+    warn(t, "the flow's Mach number is %.3g > 0.1 (harmless while it is uniform: paper, Sec. V B 1)", mach);
+}
+
+static void warn_force(struct teller *t, const struct model *m)
+{
+  double scale = m->solvent.particles * vec3_norm(m->solvent.acceleration);
+  for (uint32_t k = 0; k < m->kinds; k++)
+    scale += (double)m->kind[k].count * m->kind[k].vertices * vec3_norm(m->kind[k].force);
+  const struct vec3 net = theory_net_force(m);
+  if (!model_has_phantoms(m) && vec3_norm(net) > 1e-12 * scale) /* a bath takes the momentum up */
+    warn(t,
+         "a net force of (%.6g, %.6g, %.6g) kT/a0 acts on a periodic system, which accelerates without end by %.3g "
+         "a0/t0^2; balance it with solvent.acceleration",
+         net.x, net.y, net.z, vec3_norm(net) / m->total_mass);
+}
+
+/* A bond that reaches half the shortest edge stops a run. A bond forgets its length in about 1/omega, omega^2 = 2k/M.
+ */
+static void warn_long_bonds(struct teller *t, const struct scene *scene, const struct fiber_kind *k)
+{
+  const struct model *m = &scene->model;
+  const double limit = 0.5 * box_shortest_edge(&m->box), forgets = sqrt(0.5 * k->mass / k->spring);
+  const double samples = 1.0 + (double)scene->steps * m->time_step / forgets;
+  const double expected = theory_bond_tail(k, limit) * k->count * fiber_bonds(k) * samples;
+  if (expected > 1e-3)
+    warn(t,
+         "fibers '%s': about %.2g bonds are expected to reach half the shortest edge, %.6g a0, which stops the run; "
+         "use stiffer springs or a larger box",
+         k->name, expected, limit);
+}
+
+static void warn_kind(struct teller *t, const struct scene *scene, const struct fiber_kind *k)
+{
+  const struct model *m = &scene->model;
+  const double gamma = m->solvent.per_cell, phase = fiber_highest_frequency(k) * m->time_step;
+  if (model_collides(m) && (k->mass > 2.0 * gamma || k->mass < 0.5 * gamma))
+    warn(t, "fibers '%s': mass %.6g is far from gamma = %.6g, the mass of the solvent in a cell (paper, Sec. IV A)",
+         k->name, k->mass, gamma);
+  if (k->vertices < 2)
+    return;
+  if (k->bond_length > 1.0)
+    warn(t, "fibers '%s': bond_length %.6g > 1 a0: the solvent passes between vertices (paper, Sec. IV A)", k->name,
+         k->bond_length);
+  if (phase > 0.5)
+    warn(t,
+         "fibers '%s': omega dt = %.3g: stable below 2, but its energies are off by %.0f %%; use a smaller time_step",
+         k->name, phase, 25.0 * phase * phase);
+  if (model_has_solvent(m) && m->scheme == SCHEME_PAPER && !model_is_isothermal(m))
+    warn(t,
+         "fibers '%s': the order 'paper' heats springs at every collision (docs/accuracy.md), and there is no "
+         "thermostat; kick-split does not",
+         k->name);
+  warn_long_bonds(t, scene, k);
+}
+
+/* Heat left by rejected moves, as measured once: about 0.7 (omega dt)^2 kT per executed collision, of which there are
+ * 1.15 times as many as theory_collision_rate says (docs/accuracy.md). */
+static void warn_heating(struct teller *t, const struct scene *scene)
+{
+  const struct model *m = &scene->model;
+  if (!m->crossing.forbidden || model_is_isothermal(m) || model_has_phantoms(m) || m->bonds == 0)
+    return;
+  double phase = 0.0;
+  for (uint32_t k = 0; k < m->kinds; k++)
+    phase = fmax(phase, fiber_highest_frequency(&m->kind[k]) * m->time_step);
+  const double time = (double)scene->steps * m->time_step;
+  const double each =
+      m->crossing.rule == CROSSING_SEQUENTIAL ? 0.7 * phase * phase : 0.09 * phase * phase * phase * phase;
+  const double heat = each * theory_executed_rate(m) * time;
+  const double rise = heat / (1.5 * m->solvent.particles + 3.0 * m->vertices);
+  if (rise > 0.01)
+    warn(t,
+         "contacts of bonds are expected to heat the system by some %.0f %% during the run (docs/accuracy.md); use a "
+         "thermostat or a smaller time_step",
+         100.0 * rise);
+}
+
+static void warn_observables(struct teller *t, const struct scene *scene)
+{
+  const struct observe_plan *plan = &scene->observe;
+  if (plan->longest_lag > scene->steps / 4)
+    warn(t,
+         "observe.dynamics.longest_lag %" PRIu64 " is more than a quarter of the run's %" PRIu64
+         " steps: the longest lags will have few samples",
+         plan->longest_lag, scene->steps);
+  for (int i = 0; i < OBSERVABLES; i++)
+    if (plan->every[i] > scene->steps)
+      warn(t, "observe.%s: sampled every %" PRIu64 " steps, but the run has %" PRIu64, observable_names[i],
+           plan->every[i], scene->steps);
+  if (plan->every[OBSERVE_COLLISIONS] > 0 && (!scene->model.crossing.forbidden || scene->model.bonds == 0))
+    warn(t, "observe.collisions: nothing is tested for crossings here, so all counts stay 0");
+  if (plan->every[OBSERVE_DYNAMICS] > 0 && scene->model.vertices == 0)
+    warn(t, "observe.dynamics: there are no fibers to observe");
+  if (plan->every[OBSERVE_STATICS] > 0 && scene->model.vertices == 0)
+    warn(t, "observe.statics: there are no fibers to observe");
+}
+
+int scene_warnings(const struct scene *scene, void (*tell)(void *context, const char *text), void *context)
+{
+  struct teller t = {tell, context, 0};
+  const struct model *m = &scene->model;
+  if (model_collides(m))
+    warn_solvent(&t, m);
+  warn_flow(&t, m);
+  warn_force(&t, m);
+  for (uint32_t k = 0; k < m->kinds; k++)
+    warn_kind(&t, scene, &m->kind[k]);
+  warn_heating(&t, scene);
+  warn_observables(&t, scene);
+  return t.told;
+}

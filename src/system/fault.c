@@ -1,0 +1,60 @@
+#include "system/fault.h"
+
+#include <inttypes.h>
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "base/text.h"
+
+static const char momentum_beyond[] = "has a momentum beyond the range of its cell's sums:",
+                  energy_beyond[] =
+                      "moves in its cell with a mass times velocity squared beyond the range of their sum:";
+
+static const struct {
+  const char *entity, *what, *unit;
+} wording[] = {
+    [FAULT_NONE] = {"", "nothing wrong", ""},
+    [FAULT_SOLVENT_MOVE] = {"solvent particle", "moves too far in one collision interval:", "a0"},
+    [FAULT_SOLVENT_SPEED] = {"solvent particle", momentum_beyond, "m a0/t0"},
+    [FAULT_VERTEX_SPEED] = {"vertex", momentum_beyond, "m a0/t0"},
+    [FAULT_SOLVENT_ENERGY] = {"solvent particle", energy_beyond, "m a0^2/t0^2"},
+    [FAULT_VERTEX_ENERGY] = {"vertex", energy_beyond, "m a0^2/t0^2"},
+    [FAULT_CELL_MASS] = {"collision cell", "holds more mass than its sum can:", "m"},
+    [FAULT_VERTEX_MOVE] = {"vertex", "moves too far in one time step:", "a0"},
+    [FAULT_VERTEX_PLACE] = {"vertex", "is too far from the origin, unwrapped:", "a0"},
+    [FAULT_SOLVENT_PLACE] = {"solvent particle", "is not in the box:", "a0"},
+    [FAULT_BOND_TOO_LONG] = {"bond", "is longer than half the shortest box edge:", "a0"},
+    [FAULT_NO_MEMORY] = {"", "", ""},
+};
+
+void fault_describe(const struct fault *fault, char *text, size_t size)
+{
+  if (fault->code == FAULT_NO_MEMORY) {
+    snprintf(text, size, "step %" PRIu64 ": memory is short for the lists of bonds that may touch", fault->step);
+    return;
+  }
+  const bool heated =
+      fault->code != FAULT_NONE && fault->code != FAULT_VERTEX_PLACE && fault->code != FAULT_SOLVENT_PLACE;
+  const char *hint = !heated ? "" : " (a time step that is too large, or a heated system, is the usual cause)";
+  snprintf(text, size, "step %" PRIu64 ": %s %" PRId64 " %s %.8g %s; at most %.8g is allowed%s", fault->step,
+           wording[fault->code].entity, fault->entity, wording[fault->code].what, text_real(fault->value),
+           wording[fault->code].unit, fault->limit, hint);
+}
+
+int message_fault(struct message *message, const struct fault *fault)
+{
+  fault_describe(fault, message->text, sizeof message->text);
+  return 0;
+}
+
+bool fault_record(struct fault *fault, enum fault_code code, uint64_t step, int64_t entity, double value, double limit)
+{
+  if (fault->code == FAULT_NONE)
+    *fault = (struct fault){code, step, entity, value, limit};
+  return false;
+}
+
+bool fault_no_memory(struct fault *fault, uint64_t step)
+{
+  return fault_record(fault, FAULT_NO_MEMORY, step, 0, 0.0, 0.0);
+}

@@ -1,0 +1,29 @@
+/* Lengths and frequencies of one kind of fiber. The bounds of a model, starts and theory use them.
+ * Units a0 = kT = m = 1. */
+#ifndef UNCROSS_SYSTEM_FIBER_KIND_H
+#define UNCROSS_SYSTEM_FIBER_KIND_H
+
+#include "system/model.h"
+
+/* Number of bonds of one fiber: N_v - 1, for a ring N_v. */
+double fiber_bonds(const struct fiber_kind *kind);
+
+/* Mean bond length of a bond of this kind in equilibrium, in a0. */
+double fiber_mean_bond(const struct fiber_kind *kind);
+
+/* Contour length: bonds times mean bond length, a0. The paper's L is theory_length. */
+double fiber_contour(const struct fiber_kind *kind);
+
+/* Highest frequency of stretching in a straight chain, 1/t0: 2 sqrt(k/M) cos(pi/2N_v), 2 sqrt(k/M) in a ring. */
+double fiber_stretch_frequency(const struct fiber_kind *kind);
+
+/* Highest frequency of bending of a straight chain at its mean bond length b, 1/t0: sqrt(kappa lambda/(M b^2)), lambda
+ * the largest eigenvalue of the fourth-difference matrix of a free chain (16 for N_v -> infinity and for rings). */
+double fiber_bend_frequency(const struct fiber_kind *kind);
+
+/* Highest frequency of a straight chain at its mean bond length, 1/t0: the larger of stretching along the chain and of
+ * motion across it, where bends and the tension of the bonds, k(1 - l0/b) per length, act together (the sum of their
+ * two maxima, a close upper bound). A leap-frog of step dt is unstable above 2/dt. */
+double fiber_highest_frequency(const struct fiber_kind *kind);
+
+#endif

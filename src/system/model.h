@@ -1,0 +1,219 @@
+/*
+ * model: what never changes during a run. It is built from a scene file (scene_read) or by hand. system/model_keys.c
+ * lists each given value with its range. model_finish checks the given values and derives the rest.
+ *
+ * Units: a0 (cell edge) = kT = m (solvent particle) = 1, time in t0 = a0 sqrt(m/kT) (Padding 2009, Table I).
+ */
+#ifndef UNCROSS_SYSTEM_MODEL_H
+#define UNCROSS_SYSTEM_MODEL_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/lattice.h"
+#include "system/keys.h"
+
+#define MODEL_NAME_SIZE 64
+
+/* The last name of an enum counts the others: tests/contract runs over all of them. */
+
+/* Where drift, collision and kick stand within a step: see step.c. */
+enum scheme { SCHEME_PAPER, SCHEME_KICK_SPLIT, SCHEME_DRIFT_SPLIT, SCHEMES };
+
+enum thermostat_kind { THERMOSTAT_NONE, THERMOSTAT_RESCALE, THERMOSTAT_MAXWELL_BOLTZMANN, THERMOSTATS };
+
+/* What happens in a collision cell: see mpc/rule.h. */
+enum rule { RULE_SRD, RULE_AT_A, RULES };
+
+/* What vertices collide with. */
+enum bath {
+  BATH_PARTICLES, /* the solvent's particles */
+  BATH_PHANTOMS,  /* velocities drawn anew at each collision: a heat bath, see mpc/random_solvent.h */
+  BATHS
+};
+
+/* Which bonds a moving bond is not tested against. */
+enum exclusion {
+  EXCLUSION_SHARED_VERTEX, /* those that share a vertex with it */
+  EXCLUSION_PAPER          /* those linked to either of the two moving bonds (Padding 2009, Sec. III A, literally) */
+};
+
+/* What happens where bonds would cross: the rows of contact/rule.c. */
+enum crossing_kind {
+  CROSSING_FREE,         /* nothing: bonds pass through each other */
+  CROSSING_SEQUENTIAL,   /* one vertex at a time (Padding 2009, Sec. III A) */
+  CROSSING_EVENT_DRIVEN, /* all vertices at once, contacts at their own time */
+  CROSSINGS
+};
+
+/* What a vertex does after its move was rejected and momentum was exchanged. */
+enum rejection {
+  REJECTION_STAY,   /* it stays where it is (Padding 2009, Sec. III A) */
+  REJECTION_BOUNCE, /* it moves with its new velocity for the rest of the time, if that crosses nothing */
+  REJECTIONS
+};
+
+/* The frame in which moves are made. A vertex whose move is rejected is at rest in this frame. */
+enum frame {
+  FRAME_LABORATORY, /* rejected vertices stand still, and so lag behind a flow (Padding 2009) */
+  FRAME_FLOW,       /* rejected vertices go with the scene's flow */
+  FRAMES
+};
+
+/* How the fibers of a kind are laid at the start. */
+enum fiber_start {
+  START_BY_SHAPE,    /* not said: circle for rings, equilibrium for open fibers; model_finish writes which */
+  START_EQUILIBRIUM, /* exact sample of the phantom chain, open fibers only */
+  START_STRAIGHT,    /* evenly spaced by the mean bond length along a line, open fibers only */
+  START_CIRCLE       /* evenly spaced on a circle, rings only */
+};
+
+/* The place of one fiber. */
+struct fiber_place {
+  struct vec3 center;    /* a0: middle of the straight fiber or of the circle */
+  struct vec3 direction; /* along the straight fiber, or normal to the circle; any length but 0 */
+};
+
+/* Fibers of one kind differ only in place. model_finish replaces mass, bending and start by their effective values. */
+struct fiber_kind {
+  char name[MODEL_NAME_SIZE]; /* different from those of other kinds */
+  uint32_t count;             /* fibers of this kind */
+  uint32_t vertices;          /* N_v, per fiber */
+  bool ring;                  /* the last vertex is bonded to the first */
+  double mass;                /* M, in m; effective: rounded to a multiple of MODEL_MASS_UNIT */
+  double bond_length;         /* l0, in a0 */
+  double spring;              /* k = K/l0, in kT/a0^2: Eq. (1) */
+  double bending;             /* kappa: Eq. (2); 0: no bend forces, or given by persistence_length */
+  double persistence_length;  /* l_p, in a0: sets bending to l_p/l0; 0: not given */
+  struct vec3 force;          /* constant force on each vertex, in kT/a0 */
+  enum fiber_start start;
+  uint32_t placed;           /* number of fibers whose place is given; the others are placed at random */
+  struct fiber_place *place; /* [placed], allocated */
+};
+
+#define MODEL_MASS_UNIT 0x1p-16 /* masses are multiples of this, so that a cell's mass is summed exactly */
+
+#define MODEL_MOST_BENDING 1e9 /* kT, given or derived */
+#define MODEL_MOST_FLOW 100.0  /* a0/t0, each component */
+#define MODEL_MOST_KINDS 4096
+
+struct solvent_model {
+  double per_cell;           /* gamma; 0: no solvent */
+  double collision_interval; /* dt_c, in t0; effective: interval_steps time steps */
+  double rotation_angle;     /* alpha, in degrees */
+  enum rule rule;
+  enum thermostat_kind thermostat;
+  enum bath bath;
+  bool hydrodynamics;       /* false: particles' velocities are permuted after each collision */
+  struct vec3 acceleration; /* constant body force per mass, in a0/t0^2 */
+
+  /* Derived by model_finish. */
+  uint32_t particles;      /* N_s = gamma x cells; 0: none, or phantoms */
+  uint32_t interval_steps; /* dt_c / dt: a collision every so many steps; 0 without a collision_interval */
+  double cosine, sine;     /* of alpha; exact at 90 and 180 degrees */
+};
+
+struct crossing_model {
+  bool forbidden;          /* false: crossable fibers */
+  enum crossing_kind rule; /* where they are not crossable */
+  enum exclusion exclusion;
+  enum rejection rejection;
+  enum frame frame;
+};
+
+struct model {
+  struct box box;   /* cells are given; edges are derived */
+  uint64_t seed;    /* key of every random number */
+  double time_step; /* dt, in t0 */
+  enum scheme scheme;
+  struct vec3 flow; /* uniform flow given to everything at the start, in a0/t0 */
+  struct solvent_model solvent;
+  struct crossing_model crossing;
+
+  uint32_t kinds;
+  struct fiber_kind *kind; /* [kinds], allocated */
+
+  /* Derived by model_finish. Vertices are numbered fiber by fiber, fibers kind by kind; bond j joins j and next[j]. */
+  uint32_t fibers, vertices, bonds;
+  uint32_t *fiber_first;   /* [fibers + 1]: first vertex of each fiber */
+  uint32_t *fiber_kind_of; /* [fibers] */
+  uint32_t *fiber_of;      /* [vertices] */
+  int32_t *next, *prev;    /* [vertices]: bonded neighbors along the fiber, -1 at an open end */
+  double *mass;            /* [vertices] M */
+  double *inverse_mass;    /* [vertices] 1/M */
+  double max_mass;         /* of any member of a collision cell */
+  double total_mass;       /* of solvent and vertices */
+};
+
+/* Checks the given values, each against its row of model_keys and all of them together, and fills the derived part. On
+ * failure, or if memory is short, returns false with the reason in *error; the model must then be freed. A model is
+ * finished only once. */
+bool model_finish(struct model *model, struct model_error *error);
+
+/* The same without the lists of fibers and vertices, which stay NULL: for callers that estimate. The time and the
+ * memory that it takes do not depend on how many fibers there are. */
+bool model_finish_numbers(struct model *model, struct model_error *error);
+
+/* Frees the derived part, the kinds and their places. */
+void model_free(struct model *model);
+
+/* The bonds that end at a vertex: none, one or two. Returns their number. */
+static inline int model_bonds_of(const struct model *model, uint32_t vertex, uint32_t bond[2])
+{
+  int bonds = 0;
+  if (model->prev[vertex] >= 0)
+    bond[bonds++] = (uint32_t)model->prev[vertex];
+  if (model->next[vertex] >= 0)
+    bond[bonds++] = vertex;
+  return bonds;
+}
+
+/* a0: bonds must be shorter. */
+static inline double model_longest_bond(const struct model *model)
+{
+  return 0.5 * box_shortest_edge(&model->box);
+}
+
+/* The bonds that end at these vertices, each once. bond: room for 2 n. Returns their number. */
+uint32_t model_bonds_at(const struct model *model, uint32_t n, const uint32_t *vertex, uint32_t *bond);
+
+static inline bool model_has_solvent(const struct model *model)
+{
+  return model->solvent.particles > 0;
+}
+
+/* a0/t0: the velocity of the frame in which moves are made. */
+static inline struct vec3 model_frame_velocity(const struct model *model)
+{
+  return model->crossing.frame == FRAME_FLOW ? model->flow : (struct vec3){0, 0, 0};
+}
+
+/* The collision rule draws velocities anew: it is a thermostat by itself (thermal, in mpc/rule.h). */
+static inline bool model_rule_is_thermal(const struct model *model)
+{
+  return model->solvent.rule == RULE_AT_A;
+}
+
+/* Something holds kT = 1: the rule, or a thermostat. */
+static inline bool model_is_isothermal(const struct model *model)
+{
+  return model_rule_is_thermal(model) || model->solvent.thermostat != THERMOSTAT_NONE;
+}
+
+static inline bool model_has_phantoms(const struct model *model)
+{
+  return model->solvent.bath == BATH_PHANTOMS;
+}
+
+/* True if the model has solvent or phantoms; without them there are no collisions. */
+static inline bool model_collides(const struct model *model)
+{
+  return model_has_solvent(model) || model_has_phantoms(model);
+}
+
+static inline double model_collision_interval(const struct model *model)
+{
+  return model->time_step * model->solvent.interval_steps;
+}
+
+#endif

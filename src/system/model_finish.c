@@ -1,0 +1,334 @@
+/* Checks and completes a model. Every bound is checked here, so that it holds for scenes and for models built by hand.
+ * Then the derived part is filled. */
+#include <inttypes.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/elementary.h"
+#include "system/fiber_kind.h"
+#include "system/model.h"
+#include "system/model_keys.h"
+#include "system/topology.h"
+
+/* Always returns false. */
+static bool reject(struct model_error *error, const char *path, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+static bool reject(struct model_error *error, const char *path, const char *format, ...)
+{
+  va_list arguments;
+  va_start(arguments, format);
+  snprintf(error->path, sizeof error->path, "%s", path);
+  vsnprintf(error->text, sizeof error->text, format, arguments);
+  va_end(arguments);
+  return false;
+}
+
+/* --- solvent ----------------------------------------------------------------------------------------------------- */
+
+static void derive_rotation(struct solvent_model *solvent)
+{
+  const struct circle_point p = elementary_circle_degrees(solvent->rotation_angle);
+  solvent->cosine = p.cosine;
+  solvent->sine = p.sine;
+}
+
+static bool derive_interval(struct model *m, struct model_error *error)
+{
+  const double interval = m->solvent.collision_interval, ratio = interval / m->time_step, whole = nearbyint(ratio);
+  if (!(whole >= 1.0 && whole <= 1e9 && fabs(ratio - whole) <= 1e-9 * whole))
+    return reject(error, "solvent.collision_interval",
+                  "%.15g is %.10g time steps of %.15g; allowed: a whole multiple of the time step, 1 to 1e9 of them",
+                  interval, ratio, m->time_step);
+  m->solvent.interval_steps = (uint32_t)whole;
+  m->solvent.collision_interval = model_collision_interval(m);
+  return true;
+}
+
+/* Per cell: keeps their momentum within a part of its sum's range, see mpc/random_solvent.c. */
+enum { MOST_PHANTOMS = 1000 };
+
+/* Phantoms are a heat bath by themselves: they have no memory, and nothing can act on them. */
+static bool check_phantoms(const struct model *m, struct model_error *error)
+{
+  const struct solvent_model *s = &m->solvent;
+  const struct {
+    bool ok;
+    const char *why;
+  } rows[] = {
+      {!s->hydrodynamics, "phantoms carry no hydrodynamic interactions; allowed with hydrodynamics: false"},
+      {s->thermostat == THERMOSTAT_NONE, "phantoms are a thermostat; allowed with thermostat: none"},
+      {vec3_norm(s->acceleration) == 0.0, "phantoms are not accelerated; allowed with acceleration: [0, 0, 0]"},
+      {s->per_cell <= MOST_PHANTOMS, "too many phantoms; allowed with a per_cell of at most 1000"},
+      {m->kinds > 0, "phantoms are drawn for fibers only, and there are none; allowed: particles"},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+    if (!rows[i].ok)
+      return reject(error, "solvent.bath", "%s", rows[i].why);
+  return true;
+}
+
+static bool derive_particles(struct model *m, struct model_error *error)
+{
+  m->solvent.particles = 0;
+  if (model_has_phantoms(m))
+    return check_phantoms(m, error);
+  const double particles = nearbyint(m->solvent.per_cell * box_volume(&m->box));
+  if (!(particles >= 1.0 && particles < 2147483648.0))
+    return reject(error, "solvent.per_cell",
+                  "%.15g in a box of %.0f cells makes %.0f particles; allowed: 1 to 2147483647", m->solvent.per_cell,
+                  box_volume(&m->box), particles);
+  m->solvent.particles = (uint32_t)particles;
+  return true;
+}
+
+static bool finish_solvent(struct model *m, struct model_error *error)
+{
+  derive_rotation(&m->solvent);
+  if (m->solvent.collision_interval != 0.0 && !derive_interval(m, error))
+    return false;
+  if (model_rule_is_thermal(m) && m->solvent.thermostat != THERMOSTAT_NONE)
+    return reject(error, "solvent.thermostat",
+                  "the collision rule holds the temperature by itself; allowed with it: none");
+  if (m->solvent.per_cell != 0.0)
+    return derive_particles(m, error);
+  return !model_has_phantoms(m) ||
+         reject(error, "solvent.bath", "phantoms without a per_cell; allowed with a per_cell above 0");
+}
+
+/* --- fibers ------------------------------------------------------------------------------------------------------ */
+
+/* A kind of fiber that is being checked. */
+struct look {
+  struct model *model;
+  struct fiber_kind *kind;
+  uint32_t number; /* of the kind */
+  struct model_error *error;
+};
+
+/* Records an error of one key of the kind, or of one of its places. Always returns false. */
+static bool reject_kind(const struct look *look, const char *key, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+static bool reject_kind(const struct look *look, const char *key, const char *format, ...)
+{
+  va_list arguments;
+  va_start(arguments, format);
+  snprintf(look->error->path, sizeof look->error->path, "fibers.%" PRIu32 ".%s", look->number, key);
+  vsnprintf(look->error->text, sizeof look->error->text, format, arguments);
+  va_end(arguments);
+  return false;
+}
+
+/* Masses are summed exactly, in multiples of MODEL_MASS_UNIT. */
+static bool round_mass(const struct look *look)
+{
+  const double rounded = nearbyint(look->kind->mass / MODEL_MASS_UNIT) * MODEL_MASS_UNIT;
+  if (rounded <= 0.0)
+    return reject_kind(look, "mass",
+                       "%.15g is rounded to a multiple of 2^-16 = 1.52587890625e-05, which is 0; allowed: "
+                       "1.52587890625e-05 to 65536",
+                       look->kind->mass);
+  look->kind->mass = rounded;
+  return true;
+}
+
+/* kappa = l_p/l0, Eq. (2) */
+static bool derive_bending(const struct look *look)
+{
+  struct fiber_kind *k = look->kind;
+  if (k->persistence_length == 0.0)
+    return true;
+  if (k->bending != 0.0)
+    return reject_kind(look, "persistence_length", "bending is given too; allowed: one of the two");
+  if (k->bond_length == 0.0)
+    return reject_kind(look, "persistence_length",
+                       "bending = persistence_length/bond_length needs a bond_length above 0; allowed: give bending "
+                       "instead");
+  k->bending = k->persistence_length / k->bond_length;
+  return k->bending <= MODEL_MOST_BENDING ||
+         reject_kind(look, "persistence_length",
+                     "bending = persistence_length/bond_length is %.6g kT; allowed: at most %g", k->bending,
+                     MODEL_MOST_BENDING);
+}
+
+static bool check_shape(const struct look *look)
+{
+  struct fiber_kind *k = look->kind;
+  if (k->ring && k->vertices < 3)
+    return reject_kind(look, "vertices", "a ring of %" PRIu32 "; allowed: 3 or more", k->vertices);
+  if (k->start == START_BY_SHAPE)
+    k->start = k->ring ? START_CIRCLE : START_EQUILIBRIUM;
+  if (k->ring != (k->start == START_CIRCLE))
+    return reject_kind(look, "start", "%s for %s; allowed: %s", model_start_word(k->start),
+                       k->ring ? "a ring" : "an open fiber", k->ring ? "circle" : "equilibrium | straight");
+  return true;
+}
+
+static bool check_count(const struct look *look, uint64_t *vertices)
+{
+  *vertices += (uint64_t)look->kind->count * look->kind->vertices;
+  return *vertices <= INT32_MAX ||
+         reject_kind(look, "count", "%" PRIu64 " vertices up to here; allowed: 2147483647 in all", *vertices);
+}
+
+/* Bonds must stay below half the shortest edge, where another image of a vertex is as near; and everything must be
+ * within reach of lattice_from_a0 when it is laid, and of 64-bit positions for a long run after that. */
+static bool check_extent(const struct look *look)
+{
+  const struct fiber_kind *k = look->kind;
+  const double bond = fiber_mean_bond(k), limit = 0.5 * box_shortest_edge(&look->model->box);
+  if (k->vertices < 2)
+    return true;
+  if (!(bond < limit))
+    return reject_kind(look, "bond_length",
+                       "the mean length of a bond is %.6g a0; allowed: below half the shortest edge of the box, %.6g "
+                       "a0",
+                       bond, limit);
+  const double contour = fiber_contour(k), half = k->ring ? contour / 6.283185307179586 : 0.5 * contour;
+  const double longest = k->start == START_EQUILIBRIUM ? 1e6 : LATTICE_MAX_MOVE - 1.0;
+  const double extent = k->start == START_EQUILIBRIUM ? contour : half;
+  if (!(extent < longest))
+    return reject_kind(look, "vertices", "%" PRIu32 " of them make %s of %.6g a0; allowed: below %.6g a0", k->vertices,
+                       k->start == START_EQUILIBRIUM ? "a contour"
+                       : k->ring                     ? "a radius"
+                                                     : "a half length",
+                       extent, longest);
+  return true;
+}
+
+static bool check_places(const struct look *look)
+{
+  const struct fiber_kind *k = look->kind;
+  char key[64];
+  if (k->placed == 0)
+    return true;
+  if (k->start == START_EQUILIBRIUM)
+    return reject_kind(look, "places",
+                       "fibers that start in equilibrium are placed at random; allowed with start: straight, or for "
+                       "rings");
+  if (k->placed > k->count) {
+    snprintf(key, sizeof key, "places.%" PRIu32, k->count);
+    return reject_kind(look, key, "%" PRIu32 " places; allowed: at most as many as fibers, %" PRIu32, k->placed,
+                       k->count);
+  }
+  for (uint32_t i = 0; i < k->placed; i++)
+    if (!(vec3_norm(k->place[i].direction) > 1e-6)) {
+      snprintf(key, sizeof key, "places.%" PRIu32 ".direction", i);
+      return reject_kind(look, key, "no direction; allowed: any vector longer than 1e-6");
+    }
+  return true;
+}
+
+/* The leap-frog of the fastest vibration: Eqs. (4) and (8), is stable below omega dt = 2. */
+static bool check_stability(const struct look *look)
+{
+  const double dt = look->model->time_step, omega = fiber_highest_frequency(look->kind);
+  return omega * dt < 2.0 ||
+         reject(look->error, "time_step",
+                "%.15g is unstable for the fibers '%s', whose highest frequency is %.6g / t0; allowed: below %.6g, and "
+                "a tenth of that for accuracy",
+                dt, look->kind->name, omega, 2.0 / omega);
+}
+
+static int compare_names(const void *a, const void *b)
+{
+  const struct fiber_kind *const *ka = a, *const *kb = b;
+  const int order = strcmp((*ka)->name, (*kb)->name);
+  return order ? order : (*ka > *kb) - (*ka < *kb);
+}
+
+/* The number of the first kind whose name an earlier one has; the number of kinds if there is none. */
+static bool find_namesake(const struct model *m, uint32_t *number)
+{
+  const struct fiber_kind **sorted = malloc((m->kinds + (size_t)1) * sizeof(struct fiber_kind *));
+  if (!sorted)
+    return false;
+  for (uint32_t k = 0; k < m->kinds; k++)
+    sorted[k] = &m->kind[k];
+  qsort(sorted, m->kinds, sizeof(struct fiber_kind *), compare_names);
+  *number = m->kinds;
+  for (uint32_t k = 1; k < m->kinds; k++) {
+    const uint32_t later = (uint32_t)(sorted[k] - m->kind);
+    if (strcmp(sorted[k]->name, sorted[k - 1]->name) == 0 && later < *number)
+      *number = later;
+  }
+  free(sorted);
+  return true;
+}
+
+static bool finish_kind(const struct look *look, uint64_t *vertices)
+{
+  return round_mass(look) && derive_bending(look) && check_shape(look) && check_count(look, vertices) &&
+         check_extent(look) && check_places(look) && check_stability(look);
+}
+
+static bool finish_fibers(struct model *m, struct model_error *error)
+{
+  uint64_t vertices = 0;
+  uint32_t namesake;
+  if (m->kinds > MODEL_MOST_KINDS)
+    return reject(error, "fibers", "%" PRIu32 " kinds; allowed: at most %d", m->kinds, MODEL_MOST_KINDS);
+  if (!find_namesake(m, &namesake))
+    return reject(error, "", "out of memory");
+  for (uint32_t k = 0; k < m->kinds; k++) {
+    const struct look look = {m, &m->kind[k], k, error};
+    if (k == namesake)
+      return reject_kind(&look, "name", "'%s' is the name of an earlier kind; allowed: a name of its own",
+                         look.kind->name);
+    if (!finish_kind(&look, &vertices))
+      return false;
+  }
+  return true;
+}
+
+/* --- crossing ---------------------------------------------------------------------------------------------------- */
+
+/* What only a rule knows that moves one vertex at a time. */
+static bool check_crossing(const struct model *m, struct model_error *error)
+{
+  const struct crossing_model *c = &m->crossing;
+  const struct {
+    bool ok;
+    const char *path, *why;
+  } rows[] = {
+      {c->rejection == REJECTION_STAY, "crossing.refusal",
+       "with rule: event-driven no move is refused: bonds bounce at the time of contact; allowed: stay, which has no "
+       "effect there"},
+      {c->frame == FRAME_LABORATORY, "crossing.frame",
+       "with rule: event-driven no vertex stands still, so there is no frame of the moves; allowed: laboratory, which "
+       "has "
+       "no effect there"},
+      {c->exclusion == EXCLUSION_SHARED_VERTEX, "crossing.exclusion",
+       "with rule: event-driven no bond moves alone, so none is linked to it; allowed: shared-vertex"},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof *rows && c->rule == CROSSING_EVENT_DRIVEN; i++)
+    if (!rows[i].ok)
+      return reject(error, rows[i].path, "%s", rows[i].why);
+  return true;
+}
+
+/* --- the whole --------------------------------------------------------------------------------------------------- */
+
+bool model_finish_numbers(struct model *m, struct model_error *error)
+{
+  if (m->crossing.rule == CROSSING_FREE) /* a model built by hand that leaves it open */
+    m->crossing.rule = CROSSING_SEQUENTIAL;
+  if (!keys_check(&model_keys, m, error))
+    return false;
+  m->box = box_of_cells(m->box.cells[0], m->box.cells[1], m->box.cells[2]);
+  if (!finish_solvent(m, error) || !finish_fibers(m, error) || !check_crossing(m, error))
+    return false;
+  if (!model_collides(m) && m->kinds == 0)
+    return reject(error, "", "there is nothing to simulate; a scene has a 'solvent', 'fibers', or both");
+  model_count(m);
+  return true;
+}
+
+bool model_finish(struct model *m, struct model_error *error)
+{
+  return model_finish_numbers(m, error) && (model_lay(m) || reject(error, "", "out of memory for this many vertices"));
+}

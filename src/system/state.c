@@ -1,0 +1,184 @@
+#include "system/state.h"
+
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <xxhash.h>
+
+#include "base/memory.h"
+
+bool state_alloc(struct state *s, const struct model *model)
+{
+  memset(s, 0, sizeof *s);
+  size_t n = model->solvent.particles ? model->solvent.particles : 1, v = model->vertices ? model->vertices : 1;
+  s->solvent.n = model->solvent.particles;
+  s->vertices = model->vertices;
+  int64_t **lattice[] = {&s->solvent.x, &s->solvent.y, &s->solvent.z};
+  double **real[] = {&s->solvent.vx, &s->solvent.vy, &s->solvent.vz};
+  bool ok = true;
+  for (int k = 0; k < 3; k++) {
+    ok &= (*lattice[k] = memory_alloc(n, sizeof **lattice[k])) != NULL;
+    ok &= (*real[k] = memory_alloc(n, sizeof **real[k])) != NULL;
+  }
+  ok &= (s->solvent.id = memory_alloc(n, sizeof *s->solvent.id)) != NULL;
+  ok &= (s->position = memory_alloc(v, sizeof *s->position)) != NULL;
+  ok &= (s->velocity = memory_alloc(v, sizeof *s->velocity)) != NULL;
+  if (!ok) {
+    state_free(s);
+    return false;
+  }
+  for (uint32_t i = 0; i < s->solvent.n; i++)
+    s->solvent.id[i] = i;
+  return true;
+}
+
+void state_free(struct state *s)
+{
+  free(s->solvent.x);
+  free(s->solvent.y);
+  free(s->solvent.z);
+  free(s->solvent.vx);
+  free(s->solvent.vy);
+  free(s->solvent.vz);
+  free(s->solvent.id);
+  free(s->position);
+  free(s->velocity);
+  memset(s, 0, sizeof *s);
+}
+
+uint64_t state_bytes(const struct model *model)
+{
+  return (uint64_t)model->solvent.particles * (6 * sizeof(double) + sizeof(uint32_t)) +
+         (uint64_t)model->vertices * (sizeof(struct point) + sizeof(struct vec3));
+}
+
+uint32_t state_lost_vertex(const struct state *s)
+{
+  uint32_t v = 0;
+  while (v < s->vertices && point_within_reach(s->position[v]))
+    v++;
+  return v;
+}
+
+void state_solvent_slots(const struct state *s, uint32_t *slot)
+{
+  for (uint32_t i = 0; i < s->solvent.n; i++)
+    slot[s->solvent.id[i]] = i;
+}
+
+/* --- fields ------------------------------------------------------------------------------------------------------ */
+
+const struct state_number state_numbers[] = {
+    {"step", 8, true, false, offsetof(struct state, step)},
+    {"solvent_lag", 4, true, false, offsetof(struct state, solvent_lag)},
+    {"moves", 8, false, false, offsetof(struct state, counts.moves)},
+    {"possible", 8, false, false, offsetof(struct state, counts.possible)},
+    {"executed", 8, false, false, offsetof(struct state, counts.executed)},
+    {"negative", 8, false, false, offsetof(struct state, counts.negative)},
+    {"softened", 8, false, true, offsetof(struct state, counts.softened)},
+    {"rigid", 8, false, true, offsetof(struct state, counts.rigid)},
+};
+const size_t state_number_count = sizeof state_numbers / sizeof *state_numbers;
+
+void state_groups(const struct state *s, struct state_group group[STATE_GROUPS])
+{
+  const struct solvent *p = &s->solvent;
+  struct point *r = s->position;
+  struct vec3 *v = s->velocity;
+  const struct state_group groups[STATE_GROUPS] = {
+      {p->n,
+       p->id,
+       2,
+       {{"solvent_position", true, {p->x, p->y, p->z}, sizeof *p->x},
+        {"solvent_velocity", false, {p->vx, p->vy, p->vz}, sizeof *p->vx}}},
+      {s->vertices,
+       NULL,
+       2,
+       {{"vertex_position", true, {&r->x, &r->y, &r->z}, sizeof *r},
+        {"vertex_velocity", false, {&v->x, &v->y, &v->z}, sizeof *v}}},
+  };
+  memcpy(group, groups, sizeof groups);
+}
+
+void state_group_slots(const struct state_group *group, uint32_t *slot)
+{
+  for (uint32_t i = 0; group->id && i < group->rows; i++)
+    slot[group->id[i]] = i;
+}
+
+/* Column c of row i of memory. */
+static char *place_in(const struct state_field *field, int c, uint32_t i)
+{
+  return (char *)field->column[c] + i * field->stride;
+}
+
+void state_field_get(const struct state_group *group, const struct state_field *field, const uint32_t *slot, void *rows)
+{
+  char *to = rows;
+  for (uint32_t k = 0; k < group->rows; k++)
+    for (int c = 0; c < 3; c++, to += 8)
+      memcpy(to, place_in(field, c, slot ? slot[k] : k), 8);
+}
+
+void state_field_set(const struct state_group *group, const struct state_field *field, const void *rows)
+{
+  const char *from = rows;
+  for (uint32_t k = 0; k < group->rows; k++)
+    for (int c = 0; c < 3; c++, from += 8)
+      memcpy(place_in(field, c, k), from, 8);
+  for (uint32_t k = 0; group->id && k < group->rows; k++)
+    group->id[k] = k;
+}
+
+/* --- hash -------------------------------------------------------------------------------------------------------- */
+
+/* Numbers of state and rows of groups, 64 bits each. */
+static void hash_numbers(XXH64_state_t *hash, const struct state *s, const struct state_group *group)
+{
+  for (size_t k = 0; k < state_number_count; k++) {
+    uint64_t number = 0;
+    memcpy(&number, (const char *)s + state_numbers[k].offset, state_numbers[k].bytes); /* little-endian */
+    if (state_numbers[k].hashed)
+      XXH64_update(hash, &number, sizeof number);
+  }
+  for (int g = 0; g < STATE_GROUPS; g++) {
+    const uint64_t rows = group[g].rows;
+    XXH64_update(hash, &rows, sizeof rows);
+  }
+}
+
+/* Rows in the order of their numbers, the fields of a row one after the other: little-endian on every machine that this
+ * project supports. */
+static void hash_group(XXH64_state_t *hash, const struct state_group *g, uint32_t *slot)
+{
+  state_group_slots(g, slot);
+  for (uint32_t k = 0; k < g->rows; k++) {
+    char row[2 * 3 * 8], *to = row;
+    for (size_t f = 0; f < g->fields; f++)
+      for (int c = 0; c < 3; c++, to += 8)
+        memcpy(to, place_in(&g->field[f], c, g->id ? slot[k] : k), 8);
+    XXH64_update(hash, row, (size_t)(to - row));
+  }
+}
+
+uint64_t state_hash(const struct state *s)
+{
+  struct state_group group[STATE_GROUPS];
+  state_groups(s, group);
+  XXH64_state_t *hash = XXH64_createState();
+  uint32_t most = 0;
+  for (int g = 0; g < STATE_GROUPS; g++)
+    most = group[g].id && group[g].rows > most ? group[g].rows : most;
+  uint32_t *slot = malloc(((size_t)most + 1) * sizeof *slot);
+  uint64_t digest = 0;
+  if (hash && slot) {
+    XXH64_reset(hash, 0);
+    hash_numbers(hash, s, group);
+    for (int g = 0; g < STATE_GROUPS; g++)
+      hash_group(hash, &group[g], slot);
+    digest = XXH64_digest(hash);
+  }
+  XXH64_freeState(hash);
+  free(slot);
+  return digest;
+}

@@ -1,0 +1,183 @@
+"""What `make install` puts below a prefix: it serves C, C++ and Python programs alone, and `make uninstall` removes it all.
+
+Needs BUILD, the build folder (default build), with the libraries in it.
+"""
+import filecmp
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+TOP = pathlib.Path(__file__).resolve().parents[2]
+BUILD = pathlib.Path(os.environ.get("BUILD", TOP / "build")).resolve()
+SCENE = TOP / "reference-data" / "mixed.yaml"
+STEPS = 30
+
+
+def call(*words, environment=None, folder=TOP, code=0):
+    done = subprocess.run([str(w) for w in words], cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                          check=False, env={**os.environ, "MAKEFLAGS": "", **(environment or {})})
+    if done.returncode != code:
+        raise AssertionError(f"{words}: {done.returncode}\n{done.stdout}{done.stderr}")
+    return done.stdout
+
+
+def make(target, prefix, destination=""):
+    return call("make", "-s", target, f"BUILD={os.path.relpath(BUILD, TOP)}", f"PREFIX={prefix}", f"DESTDIR={destination}")
+
+
+class Installed(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp(dir=BUILD))
+        cls.prefix = cls.folder / "prefix"
+        make("install", cls.prefix)
+        cls.environment = {"PKG_CONFIG_PATH": str(cls.prefix / "lib/pkgconfig"),
+                           "LD_LIBRARY_PATH": str(cls.prefix / "lib"),
+                           "PYTHONPATH": str(cls.prefix / "lib/python3/dist-packages")}
+        call(cls.prefix / "bin/uncross", "run", SCENE, "--out", cls.folder / "run", "--steps", STEPS, "--quiet")
+        cls.hash = json.loads((cls.folder / "run/run.json").read_text())["state_hash"]
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.folder)
+
+    def flags(self, *words):
+        return call("pkg-config", *words, environment=self.environment).split()
+
+    def program(self, name, compiler, source, *flags):
+        path = self.folder / name
+        call(*compiler.split(), "-Wall", "-Wextra", "-Wpedantic", "-Werror", source, *flags, "-o", path)
+        return call(path, SCENE, STEPS, environment=self.environment)
+
+    def test_the_c_example(self):
+        flags = self.flags("--cflags", "--libs", "uncross")
+        example = self.prefix / "share/uncross/examples/c/end_to_end.c"
+        told = self.program("shared", "cc -std=c99", example, *flags, "-lm")
+        self.assertRegex(told, f"^step {STEPS}, hash {self.hash}, end-to-end distance [0-9.]+ a0\n$")
+        needed = call("readelf", "-d", self.folder / "shared")
+        self.assertIn("Shared library: [libuncross.so.0]", needed)
+
+    def test_the_c_example_linked_statically(self):
+        flags = [f for f in self.flags("--cflags", "--libs", "--static", "uncross") if f != "-luncross"]
+        example = self.prefix / "share/uncross/examples/c/end_to_end.c"
+        told = self.program("static", "cc -std=c99", example, self.prefix / "lib/libuncross.a", *flags, "-lm")
+        self.assertIn(self.hash, told)
+        self.assertNotIn("libuncross", call("readelf", "-d", self.folder / "static"))
+
+    def test_the_header_in_c_plus_plus(self):
+        source = self.folder / "user.cc"
+        source.write_text('#include <uncross.h>\n#include <cstdio>\n'
+                          'int main(int, char **words)\n{\n  uncross_error error;\n'
+                          '  uncross_scene *scene = uncross_scene_read(words[1], nullptr, 0, &error);\n'
+                          '  uncross_sim *sim = uncross_sim_start(scene, &error);\n  uint64_t hash = 0;\n'
+                          '  uncross_sim_advance(sim, 30, &error);\n  uncross_sim_hash(sim, &hash, &error);\n'
+                          '  std::printf("%016llx\\n", (unsigned long long)hash);\n'
+                          '  uncross_sim_free(sim);\n  uncross_scene_free(scene);\n}\n')
+        told = self.program("user", "c++ -std=c++11", source, *self.flags("--cflags", "--libs", "uncross"))
+        self.assertEqual(told, self.hash + "\n")
+
+    def test_the_core(self):
+        """A program that is built with the core's headers, and needs no library for files."""
+        source = self.folder / "core.c"
+        source.write_text('#include <stdio.h>\n#include "step.h"\n'
+                          'int main(void)\n{\n  struct model m = {.box = box_of_cells(4, 4, 4), .seed = 1, .time_step = 0.01,\n'
+                          '    .solvent = {.per_cell = 5, .collision_interval = 0.02, .rotation_angle = 90, '
+                          '.hydrodynamics = true}};\n  struct model_error error;\n  struct state s;\n  struct work w;\n'
+                          '  if (!model_finish(&m, &error) || !state_alloc(&s, &m) || !work_alloc(&w, &m) || !step_start(&s, &m, &w) '
+                          '||\n      !step_advance(&s, &m, &w, NULL))\n    return 1;\n'
+                          '  printf("step %d\\n", (int)s.step);\n  return 0;\n}\n')
+        flags = self.flags("--cflags", "--libs", "uncross-core")
+        self.assertFalse([f for f in flags if re.search("hdf5|yaml|jansson", f)])
+        self.assertEqual(self.program("core", "cc -std=gnu11 -Wno-missing-field-initializers", source, *flags), "step 1\n")
+
+    def test_the_python_example(self):
+        example = self.prefix / "share/uncross/examples/python/end_to_end.py"
+        told = call("/usr/bin/python3", example, SCENE, STEPS, environment=self.environment, folder=self.folder)
+        self.assertRegex(told, f"^step {STEPS}, hash {self.hash}, end-to-end distance [0-9.]+ a0\n$")
+        c = self.program("again", "cc", self.prefix / "share/uncross/examples/c/end_to_end.c",
+                         *self.flags("--cflags", "--libs", "uncross"), "-lm")
+        self.assertEqual(told, c)
+
+    def test_the_programs_of_the_page(self):
+        page = (self.prefix / "share/uncross/docs/library.md").read_text()
+        c, python = (re.search(rf"```{language}\n(.*?)```", page, re.S)[1] for language in ("c", "python"))
+        place = self.folder / "page"
+        place.mkdir()
+        (place / "scene.yaml").write_text(
+            "box: [4, 4, 4]\ntime_step: 0.01\nsteps: 9\nsolvent: {per_cell: 3, collision_interval: 0.02}\nfibers:\n"
+            "  - {name: a, count: 2, vertices: 4, mass: 5, bond_length: 0.5, spring: 100, bending: 4}\n")
+        (place / "program.c").write_text(c)
+        call("cc", "-Wall", "-Wextra", "-Werror", place / "program.c", *self.flags("--cflags", "--libs", "uncross"), "-o",
+             place / "program")
+        told = call(place / "program", environment=self.environment, folder=place)
+        self.assertRegex(told, r"^hash [0-9a-f]{16}, vertex 0 at x = \S+ a0\n$")
+        again = call("/usr/bin/python3", "-c", python, environment=self.environment, folder=place)
+        self.assertEqual(again.splitlines()[0] + "\n", told)
+
+    def test_names(self):
+        """The shared library shows what uncross.h declares, and nothing else; the static one defines no other names."""
+        header = re.sub(r"/\*.*?\*/", "", (self.prefix / "include/uncross.h").read_text(), flags=re.S)
+        declared = set(re.findall(r"UNCROSS_API[^;(]*?(uncross_\w+)\(", header))
+        self.assertGreater(len(declared), 30)
+        shown = {line.split()[2] for line in call("nm", "-D", "--defined-only", self.prefix / "lib/libuncross.so").splitlines()}
+        self.assertEqual(shown, declared)
+        static = call("nm", "--defined-only", "--extern-only", self.prefix / "lib/libuncross.a").splitlines()
+        self.assertEqual({line.split()[2] for line in static if len(line.split()) == 3}, declared)
+
+    def test_manners(self):
+        """Nothing in it can end or print, or change signals and locale of the whole process."""
+        used = call("nm", "-D", "--undefined-only", self.prefix / "lib/libuncross.so").split()
+        used = {name.split("@")[0] for name in used}
+        self.assertIn("uselocale", used)
+        for name in ("exit", "abort", "__assert_fail", "setlocale", "puts", "printf", "perror", "stdout", "stderr"):
+            self.assertNotIn(name, used)
+        for path in sorted((BUILD / "lib/src").rglob("*.o")):  # a process of its own may, the one that reads files
+            used = {line.split()[-1] for line in call("nm", "--undefined-only", path).splitlines()}
+            if path.name != "apart.o":
+                self.assertFalse(used & {"_exit", "signal", "__sysv_signal", "sigaction", "setrlimit", "kill", "fork"}, path)
+
+    def test_man_page_and_completion(self):
+        page = (self.prefix / "share/man/man1/uncross.1").read_text()
+        self.assertEqual(page, call(BUILD / "uncross", "help", "--man"))
+        for word in (".SH uncross run SCENE", "\\-\\-resume", "\\-\\-false\\-alarm P", ".SH EXIT STATUS"):
+            self.assertIn(word, page)
+        script = self.prefix / "share/bash-completion/completions/uncross"
+
+        def complete(*words):
+            array = " ".join(f"'{w}'" for w in words)
+            told = call("bash", "-c", f". '{script}'; COMP_WORDS=({array}); COMP_CWORD={len(words) - 1}; _uncross; "
+                        "printf '%s\\n' \"${COMPREPLY[@]}\"", folder=self.folder)
+            return told.split()
+
+        self.assertEqual(complete("uncross", "an"), ["analyze"])
+        self.assertEqual(complete("uncross", "oracle", "e"), ["emit", "edges"])
+        self.assertEqual(complete("uncross", "run", "--re"), ["--resume"])
+        self.assertEqual(complete("uncross", "check", "--re"), [])
+        self.assertEqual(complete("uncross", "oracle", "judge", "--f"), ["--false-alarm"])
+        self.assertEqual(complete("uncross", "run", "run/run."), ["run/run.json"])
+
+    def test_uninstall_leaves_nothing(self):
+        destination = self.folder / "stage"
+        destination.mkdir()
+        make("install", "/usr/local", destination)
+        installed = sorted(p.relative_to(destination) for p in destination.rglob("*") if not p.is_dir())
+        self.assertIn(pathlib.Path("usr/local/share/uncross/docs/scene.md"), installed)
+        self.assertIn("prefix=/usr/local\n", (destination / "usr/local/lib/pkgconfig/uncross.pc").read_text())
+        self.assertTrue(filecmp.cmp(destination / "usr/local/lib/libuncross.so", BUILD / "lib/libuncross.so.0"))
+        other = destination / "usr/local/bin/other"
+        other.write_text("somebody else's\n")
+        make("uninstall", "/usr/local", destination)
+        self.assertEqual([p for p in destination.rglob("*") if not p.is_dir()], [other])
+        other.unlink()
+        make("install", "/usr/local", destination)
+        make("uninstall", "/usr/local", destination)
+        self.assertFalse(destination.exists() and list(destination.rglob("*")))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,156 @@
+"""The package python/uncross: views without copies and how long they live, errors, scenes by hand, runs in folders.
+
+Needs BUILD, the build folder (default build), with the libraries in it.
+"""
+import gc
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+
+TOP = pathlib.Path(__file__).resolve().parents[2]
+BUILD = pathlib.Path(os.environ.get("BUILD", TOP / "build")).resolve()
+os.environ["UNCROSS_LIBRARY"] = str(BUILD / "lib/libuncross.so")
+sys.path.insert(0, str(TOP / "python"))
+import uncross  # pylint: disable=wrong-import-position
+from uncross._library import ffi, lib  # pylint: disable=wrong-import-position
+
+SCENE = {"box": [5, 5, 5], "time_step": 0.01, "steps": 20, "seed": 2,
+         "solvent": {"per_cell": 4, "collision_interval": 0.02},
+         "fibers": [{"name": "rod", "count": 6, "vertices": 5, "mass": 5, "bond_length": 0.5, "spring": 100, "bending": 8},
+                    {"name": "ring", "count": 1, "vertices": 4, "mass": 5, "bond_length": 0.5, "spring": 100, "ring": True}],
+         "observe": {"conserved": {"every": 5}, "dynamics": {"every": 5}}}
+
+
+def address(pointer):
+    return int(ffi.cast("uintptr_t", pointer))
+
+
+class Python(unittest.TestCase):
+    def test_views_are_the_memory_of_the_run(self):
+        run = uncross.Run(SCENE)
+        view = lib.uncross_sim_view(run._sim)
+        for name, field, shape, kind in (("positions", "position", (34, 3), np.int64),
+                                         ("velocities", "velocity", (34, 3), np.float64),
+                                         ("solvent_x", "x", (500,), np.int64), ("solvent_vz", "vz", (500,), np.float64),
+                                         ("solvent_id", "id", (500,), np.uint32), ("first", "first", (8,), np.uint32)):
+            array = getattr(run, name)
+            self.assertEqual((array.shape, array.dtype), (shape, kind), name)
+            self.assertEqual(array.__array_interface__["data"][0], address(getattr(view, field)), name)
+            self.assertTrue(np.shares_memory(array, getattr(run, name)), name)
+            self.assertFalse(array.flags.owndata or array.flags.writeable, name)
+            with self.assertRaises(ValueError):
+                array[0] = 1
+        positions, before = run.positions, run.positions.copy()
+        run.advance(3)
+        self.assertFalse(np.array_equal(positions, before))
+        self.assertTrue(np.array_equal(positions * uncross.LATTICE_UNIT, run.positions_a0()))
+        self.assertEqual(list(run.next[-4:]), [31, 32, 33, 30])
+        self.assertEqual(run.kinds, ["rod", "ring"])
+        self.assertEqual(list(run.fiber[[0, 4, 5, 33]]), [0, 0, 1, 6])
+
+    def test_a_view_keeps_the_run_alive(self):
+        freed = []
+        run = uncross.Run(SCENE).advance(2)
+        handle, copy = run._sim, run.positions.copy()
+        watched = ffi.gc(ffi.cast("uncross_sim *", handle), lambda _pointer: freed.append(True))
+        run._sim = run._owner = watched
+        run._kept = None
+        part = run.positions[3:7]
+        del run, watched
+        gc.collect()
+        self.assertEqual(freed, [])
+        self.assertTrue(np.array_equal(part, copy[3:7]))
+        del part
+        gc.collect()
+        self.assertEqual(freed, [True])
+
+    def test_views_of_runs_that_are_gone(self):
+        """Read in a process whose freed memory is overwritten: a view of freed memory would not show positions."""
+        code = (f"import sys; sys.path.insert(0, {str(TOP / 'python')!r}); import uncross, gc\n"
+                f"scene = {SCENE!r}\n"
+                "views = [uncross.Run(scene).advance(4).positions for _ in range(20)]\n"
+                "gc.collect(); junk = [uncross.Run(scene, seed=k).advance(1) for k in range(20)]\n"
+                "assert all((v == views[0]).all() for v in views[1:]); print('same')\n")
+        done = subprocess.run(["/usr/bin/python3", "-c", code], capture_output=True, text=True, check=False,
+                              env={**os.environ, "MALLOC_PERTURB_": "165"})
+        self.assertEqual(done.stdout, "same\n", done.stderr)
+
+    def test_errors_are_exceptions(self):
+        with self.assertRaisesRegex(uncross.BadInput, "per_cel"):
+            uncross.Run(SCENE, solvent={"per_cel": 3})
+        with self.assertRaisesRegex(uncross.BadInput, r"^bad.yaml:2:1: "):
+            uncross.Scene.parse("box: [4, 4, 4]\nstep: 3\n", "bad.yaml")
+        with self.assertRaisesRegex(ValueError, "/nowhere.yaml"):
+            uncross.Run("/nowhere.yaml")
+        with self.assertRaises(uncross.NotWritten):
+            uncross.Run(SCENE).save("/nowhere/c.h5")
+        run = uncross.Run(SCENE, **{"fibers.0.force": [1e5, 0, 0]})
+        with self.assertRaisesRegex(uncross.Stopped, "moves too far in one time step") as caught:
+            run.advance(100)
+        error = caught.exception
+        self.assertEqual((error.code, error.cause), (lib.UNCROSS_STOPPED, lib.UNCROSS_CAUSE_VERTEX_MOVE))
+        self.assertEqual(error.step, run.step)
+        self.assertGreater(error.value, error.limit)
+        self.assertLess(error.entity, 34)
+
+    def test_against_the_program(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scene = uncross.Scene(SCENE)
+            path = pathlib.Path(folder) / "scene.yaml"
+            path.write_text(scene.text)
+            subprocess.run([BUILD / "uncross", "run", path, "--out", f"{folder}/program", "--quiet"], check=True)
+            record = json.loads(pathlib.Path(f"{folder}/program/run.json").read_text())
+            run = uncross.Run(path).advance(20)
+            self.assertEqual(f"{run.hash:016x}", record["state_hash"])
+            self.assertEqual(run.counts["moves"], record["collisions"]["moves"])
+            self.assertEqual(run.conserved["total"], record["end"]["energy"])
+
+            with uncross.FolderRun(scene, f"{folder}/ours") as ours:
+                ours.advance(7)
+                with self.assertRaisesRegex(uncross.NotWritten, "in use"):
+                    uncross.FolderRun(scene, f"{folder}/ours")
+            with uncross.FolderRun(scene, f"{folder}/ours", resume=True) as ours:
+                self.assertEqual((ours.step, ours.wanted), (7, 20))
+                ours.advance()
+            self.assertEqual(ours.hash, run.hash)
+            for table in ("conserved", "dynamics-rod"):
+                theirs = pathlib.Path(f"{folder}/program/{table}.csv").read_bytes()
+                self.assertEqual(pathlib.Path(f"{folder}/ours/{table}.csv").read_bytes(), theirs, table)
+                columns = theirs.decode().splitlines()[0].split(",")
+                values = np.array([[float(x) for x in line.split(",")] for line in theirs.decode().splitlines()[1:]])
+                self.assertEqual(list(run.tables[table]), columns)
+                for k, column in enumerate(columns):
+                    np.testing.assert_array_equal(run.tables[table][column], values[:, k], f"{table} {column}")
+
+            resumed = uncross.Run(scene, resume=f"{folder}/program/checkpoint.h5")
+            self.assertEqual((resumed.step, resumed.hash), (20, run.hash))
+            run.save(f"{folder}/again.h5")
+            self.assertEqual(uncross.Run(scene, resume=f"{folder}/again.h5").advance(5).hash, run.advance(5).hash)
+
+    def test_scenes(self):
+        scene = uncross.Scene(SCENE, seed=9, solvent={"per_cell": 6})
+        self.assertEqual((scene.number("seed"), scene.number("solvent.per_cell"), scene.number("solvent.collision_interval")),
+                         (9, 6, 0.02))
+        self.assertEqual(scene.get("fibers.1.name").strip(), "ring")
+        self.assertTrue(uncross.Scene(SCENE, **{"fibers.0.force": [1, 0, 0]}).warnings)
+        with self.assertRaises(TypeError):
+            uncross.Run(scene, seed=3)
+        position, velocity = uncross.Run(scene).solvent()
+        self.assertEqual(position.shape, (750, 3))
+        self.assertLess(abs(velocity.var() - 1), 0.2)  # 2250 numbers of variance 1 +- 0.03
+
+    def test_without_fibers_or_solvent(self):
+        bath = uncross.Run({key: SCENE[key] for key in ("box", "time_step", "steps", "solvent")}).advance(2)
+        self.assertEqual((bath.positions.shape, bath.solvent_x.shape), ((0, 3), (500,)))
+        dry = uncross.Run({key: SCENE[key] for key in ("box", "time_step", "steps", "fibers")}).advance(2)
+        self.assertEqual((dry.positions.shape, dry.solvent_x.shape), ((34, 3), (0,)))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,100 @@
+/* Foreign text on a terminal: which bytes pass, and none that act. */
+#include "support.h"
+
+#include "base/message.h"
+#include "base/text.h"
+
+/* Expected by hand; the UTF-8 of characters by Python: '\u202e'.encode(). */
+static const struct {
+  const char *raw, *shown;
+} texts[] = {
+    {"", ""},
+    {"plain, \"quoted\", \\ and %s", "plain, \"quoted\", \\ and %s"},
+    {"\x1b[31mred\x07", "\\x1b[31mred\\x07"},
+    {"a\nb\tc\r", "a\\nb\\tc\\x0d"},
+    {"\x7f", "\\x7f"},
+    {"\xc2\x9b"
+     "31m",
+     "\\xc2\\x9b31m"},                                              /* CSI as one character, U+009B */
+    {"\xc2\xa0\xc3\xa5\xce\xb3", "\xc2\xa0\xc3\xa5\xce\xb3"},       /* U+00A0, a with ring, gamma */
+    {"\xe2\x80\xaegnp.exe", "\\xe2\\x80\\xaegnp.exe"},              /* right to left from here: U+202E */
+    {"\xe2\x81\xa6", "\\xe2\\x81\\xa6"},                            /* U+2066 */
+    {"\xe2\x80\xa8\xe2\x80\xa9", "\\xe2\\x80\\xa8\\xe2\\x80\\xa9"}, /* U+2028, U+2029 */
+    {"\xf0\x9f\x98\x80", "\xf0\x9f\x98\x80"},                       /* U+1F600 */
+    {"\x9b"
+     "1m",
+     "\\x9b1m"},                                  /* CSI in 8 bits, no UTF-8 */
+    {"\xc0\x9b", "\\xc0\\x9b"},                   /* ESC in a longer form than allowed */
+    {"\xe0\x82\x9b", "\\xe0\\x82\\x9b"},          /* U+009B in a longer form */
+    {"\xed\xa0\x80", "\\xed\\xa0\\x80"},          /* half of a pair of UTF-16 */
+    {"\xf4\x90\x80\x80", "\\xf4\\x90\\x80\\x80"}, /* beyond U+10FFFF */
+    {"\xc3", "\\xc3"},                            /* cut off */
+    {"\xe2\x82", "\\xe2\\x82"},
+    {"\xe2\x82z", "\\xe2\\x82z"},
+};
+
+static void test_what_acts_is_escaped(void **unused)
+{
+  (void)unused;
+  for (size_t k = 0; k < sizeof texts / sizeof *texts; k++)
+    assert_string_equal(text_shown(texts[k].raw), texts[k].shown);
+}
+
+/* Every string of three bytes: what is shown has no control character, and is UTF-8 (as mbstowcs would have it). */
+static void test_nothing_acts(void **unused)
+{
+  (void)unused;
+  for (uint32_t k = 0; k < 1u << 24; k += 1 + k % 5) {
+    const char raw[4] = {(char)(k >> 16), (char)(k >> 8), (char)k, '\0'};
+    char shown[32];
+    text_escape(raw, shown, sizeof shown);
+    for (const unsigned char *c = (const unsigned char *)shown; *c; c++)
+      if (*c < 0x20 || *c == 0x7f || (*c == 0xc2 && c[1] < 0xa0) ||
+          ((*c & 0xc0) == 0x80 && (c == (const unsigned char *)shown || c[-1] < 0x80)) ||
+          (*c >= 0xc0 && (c[1] & 0xc0) != 0x80))
+        fail_msg("%02x %02x %02x is shown as '%s'", raw[0] & 0xff, raw[1] & 0xff, raw[2] & 0xff, shown);
+  }
+}
+
+static void test_it_is_cut_between_characters(void **unused)
+{
+  (void)unused;
+  char room[6];
+  assert_string_equal(text_escape("ab\xe2\x82\xac", room, 5), "ab");
+  assert_string_equal(text_escape("ab\xe2\x82\xac", room, 6), "ab\xe2\x82\xac");
+  assert_string_equal(text_escape("ab\x1b", room, 6), "ab");
+  assert_string_equal(text_escape("x", room, 1), "");
+}
+
+static void test_messages(void **unused)
+{
+  (void)unused;
+  struct message m;
+  message_set(&m, "%s: \x1b[2J %d\n", "file\nname", 3);
+  assert_string_equal(m.text, "file\\nname: \\x1b[2J 3\\n");
+  message_set(&m, "%s again", m.text); /* itself among the arguments */
+  assert_string_equal(m.text, "file\\nname: \\x1b[2J 3\\n again");
+  message_at(&m, "a\x1b", 1, 2, "%s", "\xff");
+  assert_string_equal(m.text, "a\\x1b:1:2: \\xff");
+  char longer[3000];
+  memset(longer, '\x1b', sizeof longer - 1);
+  longer[sizeof longer - 1] = '\0';
+  message_set(&m, "%s", longer);
+  assert_int_equal(strlen(m.text), 1020);
+}
+
+static void test_nan_has_no_sign(void **unused)
+{
+  (void)unused;
+  char text[64];
+  snprintf(text, sizeof text, "%g %g %g %g", text_real(-NAN), text_real(NAN), text_real(-INFINITY), text_real(-0.0));
+  assert_string_equal(text, "nan nan -inf -0");
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_what_acts_is_escaped), cmocka_unit_test(test_nothing_acts),
+                                     cmocka_unit_test(test_it_is_cut_between_characters),
+                                     cmocka_unit_test(test_messages), cmocka_unit_test(test_nan_has_no_sign)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

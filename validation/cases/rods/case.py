@@ -1,0 +1,406 @@
+"""Fig. 2, rods: diffusion against length, and what the periodic images do to it."""
+import dataclasses
+import functools
+import math
+import pathlib
+import re
+import string
+
+import numpy
+
+from lib import dilute, figures, stats, theory
+from lib.case import Figure, Outcome
+from lib.runs import Run
+
+TITLE = "Rods: diffusion against length, diameter and prefactor, and the images' share"
+PAPER = "Fig. 2"
+SCENE = string.Template((pathlib.Path(__file__).parent / "rods.yaml").read_text())
+
+
+def rods(name, vertices, box, count, time, bath="hydrodynamics", seed=1, priority=0):
+    """A run of rods; time in t0."""
+    scene = SCENE.substitute(box=box, count=count, vertices=vertices,
+                             hydrodynamics=str(bath == "hydrodynamics").lower(),
+                             bath="phantoms" if bath == "phantoms" else "particles")
+    return Run(name, scene=scene, steps=round(time / 0.01), seed=seed, priority=priority,
+               hours=dilute.hours(box, count * vertices, time, bath=bath, time_step=0.01))
+
+
+# With hydrodynamics. N, box: rods, time of one run in t0, and seeds up to which priorities 0, 1, 2 go.
+PAPER_BOXES = {10: 18, 15: 27, 30: 54, 45: 81, 60: 108}  # 1.8 N
+SYSTEMS = {
+    (10, 9): (1, 40000, 0, 1, 3), (10, 12): (2, 20000, 0, 2, 4), (10, 18): (6, 6000, 1, 4, 8),
+    (10, 27): (20, 2500, 0, 3, 6), (10, 36): (48, 1600, 0, 3, 6), (15, 18): (3, 8000, 0, 1, 3),
+    (15, 27): (10, 2500, 1, 3, 6), (30, 36): (7, 1500, 1, 4, 8), (30, 54): (24, 700, 0, 2, 6),
+    (45, 45): (5, 1000, 1, 5, 9), (45, 81): (24, 500, 0, 0, 4), (60, 54): (5, 700, 1, 5, 10),
+    (60, 72): (10, 1000, 0, 0, 3)}
+FREE = {10: (32, 1500), 15: (24, 1500), 30: (16, 1500), 45: (12, 1500), 60: (8, 2000)}  # without hydrodynamics
+
+
+def campaign():
+    found = [rods(f"phantoms-N{n}", n, 128, count, time, bath="phantoms") for n, (count, time) in FREE.items()]
+    for (n, box), (count, time, *limits) in SYSTEMS.items():
+        for seed in range(1, limits[-1] + 1):
+            priority = next(p for p, limit in enumerate(limits) if seed <= limit)
+            found.append(rods(f"N{n}-L{box}-s{seed}", n, box, count, time, seed=100000 * n + 100 * box + seed,
+                              priority=priority))
+    return found
+
+
+def quick():
+    return [rods("N10-L12-s1", 10, 12, 2, 5000, seed=10001), rods("N10-L18-s1", 10, 18, 6, 1600, seed=10002),
+            rods("N20-L20-s1", 20, 20, 3, 1800, seed=20001), rods("phantoms-N10", 10, 64, 32, 1500, bath="phantoms")]
+
+
+def runs(tier):
+    return quick() if tier == "quick" else campaign()
+
+
+# --- what they say ----------------------------------------------------------------------------------------------------
+
+BIAS = 0.04  # of Kirkwood's D: spheres in a straight row, short times
+PAPER_ETA = sum(theory.viscosity())  # the paper scales with the analytic viscosity, 11.18; measured, it is 10.74
+# Share of the hydrodynamic part that is lost because a rod's own vertices make the fluid around it heavier:
+# `validation/lib/own_fluid.py rod N 2`. The grid is good to 3 % of it.
+OWN = {10: (0.0494, 0.0015), 15: (0.0450, 0.0014), 30: (0.0373, 0.0011), 45: (0.0334, 0.0010), 60: (0.0311, 0.0009)}
+PREFACTOR = 1.0 / (3.0 * math.pi)
+CONTOUR = ("the length is counted as N/2, but bonds are 0.538 long on average; the contour, 0.538 (N - 1), is shorter "
+           "than N/2 at N = 10 and 6 % longer at N = 60, and the fit makes up for it by a smaller prefactor")
+BOND = (0.5 ** 3 + 3.0 * 0.5 / 100.0) / (0.5 ** 2 + 1.0 / 100.0)  # mean length of a bond: r^2 exp(-k (r - l0)^2/2) in closed form
+BOND2 = (0.5 ** 4 + 6.0 * 0.5 ** 2 / 100.0 + 3.0 / 100.0 ** 2) / (0.5 ** 2 + 1.0 / 100.0)
+
+
+def moments(n):
+    """Exact <R^2> and <R_g^2> of the paper's rods: bends of kappa = 2N, bonds of k = 100 and l0 = 0.5."""
+    kappa = 2.0 * n
+    cosine = 1.0 / math.tanh(kappa) - 1.0 / kappa
+    distance = numpy.arange(1, n)
+    terms = numpy.concatenate([[0.0], numpy.cumsum(cosine ** distance)])  # sums of <cos>^1 .. <cos>^m
+    ends = [m * BOND2 + 2.0 * BOND ** 2 * sum(terms[:m]) for m in distance]  # <R^2> of m bonds
+    return ends[-1], float(((n - distance) * ends).sum() / n ** 2)
+
+
+@dataclasses.dataclass
+class Point:
+    """A system's D in its box, of one rod in a box at rest, and in an infinite box; both with the same error."""
+    vertices: int
+    box: int
+    value: float
+    error: float
+    infinite: float
+    p: float  # of the fit over lags
+
+
+def with_hydrodynamics(results):
+    groups = {}
+    for name, result in results.items():
+        found = re.fullmatch(r"N(\d+)-L(\d+)-s\d+", name)
+        if found:
+            groups.setdefault((int(found[1]), int(found[2])), []).append(result)
+    points = []
+    for (n, box), members in sorted(groups.items()):
+        table = dilute.merged(members, "rod")
+        correction = functools.partial(dilute.memory, box=box, form=dilute.rod_form(n, BOND))
+        limit = dilute.long_time([(table, correction)], dilute.FIRST_LAG, [dilute.last_lag(box)]) if table else None
+        if limit:
+            count = int(re.search(r"count: (\d+)", members[0].run.scene)[1])
+            share = dilute.closed_box(count, n * dilute.MASS, box)
+            value = limit.value[0] / share
+            pure = dilute.in_pure_solvent(value, sharing(n)[0], (count - 1) * n / box ** 3)
+            points.append(Point(n, box, value, limit.error[0] / share, pure + dilute.image_shift(box, moments(n)[1]),
+                                limit.p))
+    return points
+
+
+def infinite(points):
+    """N: (D, error, p) in an infinite box, the mean over boxes; p: the chance that boxes differ as much as they do."""
+    found = {}
+    for n in sorted({p.vertices for p in points}):
+        same = [p for p in points if p.vertices == n]
+        found[n] = dilute.fair_mean([p.infinite for p in same], [p.error for p in same])
+    return found
+
+
+@functools.lru_cache(maxsize=None)
+def kirkwood(n):
+    return dilute.kirkwood_rod(n, BOND, dilute.stokes(dilute.D_VERTEX))
+
+
+@functools.lru_cache(maxsize=None)
+def sharing(n):
+    """D without hydrodynamics of a rod whose vertices share cells."""
+    return dilute.sharing_diffusion(lambda random: dilute.rod_shape(n, BOND, random), shapes=60)
+
+
+def cells(n):
+    """D of vertices that share cells, and feel each other through cells, in a fluid that they make heavier."""
+    own = float(numpy.interp(math.log(n), numpy.log(list(OWN)), [share for share, _ in OWN.values()]))
+    return dilute.cells_rod(n, BOND, sharing(n)[0], heavier=own)
+
+
+MODELS = {"Kirkwood": kirkwood, "the smeared field": cells}
+
+
+def free(results, n):
+    """(D, error) without hydrodynamics; None without the run."""
+    name = f"phantoms-N{n}"
+    table = dilute.merged([results[name]], "rod") if name in results else None
+    limit = dilute.long_time([(table, numpy.zeros_like)], 0.8, [25.6]) if table else None
+    return (limit.value[0], limit.error[0]) if limit else None
+
+
+@dataclasses.dataclass
+class Rule:
+    """D = A kT/(eta L) [ln(L/b) + 0.312], L = N/2: fitted A and b, Eq. (40)."""
+    prefactor: float
+    prefactor_error: float
+    diameter: float
+    diameter_error: float
+
+    def __call__(self, n, eta):
+        length = 0.5 * numpy.asarray(n, float)
+        return self.prefactor / (eta * length) * (numpy.log(length / self.diameter) + 0.312)
+
+
+def fitted(sizes, values, errors, eta):
+    """Least squares in A and A (0.312 - ln b): linear. None with fewer than 3 lengths."""
+    if len(sizes) < 3:
+        return None
+    length = 0.5 * numpy.asarray(sizes, float)
+    f = stats.line(numpy.log(length), numpy.asarray(values) * eta * length, numpy.asarray(errors) * eta * length)
+    ratio = f.value[0] / f.value[1]
+    slope = numpy.array([-1.0 / f.value[1], ratio / f.value[1]])  # of ln b = 0.312 - value[0]/value[1]
+    diameter = math.exp(0.312 - ratio)
+    return Rule(f.value[1], f.error[1], diameter, diameter * math.sqrt(slope @ f.covariance @ slope))
+
+
+def diameter_alone(sizes, values, errors, eta):
+    """(b, error) with the prefactor of theory, 1/(3 pi)."""
+    length = 0.5 * numpy.asarray(sizes, float)
+    scaled = numpy.asarray(values) * eta * length / PREFACTOR - numpy.log(length) - 0.312
+    value, error, _ = stats.weighted_mean(-scaled, numpy.asarray(errors) * eta * length / PREFACTOR)
+    return math.exp(value), math.exp(value) * error
+
+
+@dataclasses.dataclass
+class Fits:
+    """Eq. (40) fitted to D in an infinite box (measured eta), in the paper's boxes (the paper's eta), and to Kirkwood's
+    D at the same lengths with the same weights; b alone with the prefactor 1/(3 pi), (value, error), ours and
+    Kirkwood's."""
+    infinite: Rule
+    in_box: Rule
+    model: Rule
+    alone: tuple
+    model_alone: tuple
+
+
+def fits(far):
+    """None with fewer than 3 lengths."""
+    sizes = numpy.array(sorted(far))
+    if len(sizes) < 3:
+        return None
+    values, errors = (numpy.array([far[n][k] for n in sizes]) for k in (0, 1))
+    in_box = values - [dilute.image_shift(1.8 * n, moments(n)[1]) for n in sizes]
+    model = numpy.array([kirkwood(int(n)) for n in sizes])
+    scaled = model * errors / values
+    return Fits(fitted(sizes, values, errors, dilute.ETA), fitted(sizes, in_box, errors, PAPER_ETA),
+                fitted(sizes, model, scaled, dilute.ETA), diameter_alone(sizes, values, errors, dilute.ETA),
+                diameter_alone(sizes, model, scaled, dilute.ETA))
+
+
+def image_slope(points):
+    """(slope, error) of D against the images' share, at N = 10, its sign turned: theory has 1. None with one box."""
+    scan = [p for p in points if p.vertices == 10]
+    if len(scan) < 2:
+        return None
+    shift = [dilute.image_shift(p.box, moments(10)[1]) for p in scan]
+    f = stats.line(shift, [p.infinite - s for p, s in zip(scan, shift)], [p.error for p in scan])
+    return -f.value[1], f.error[1]
+
+
+@functools.lru_cache(maxsize=None)
+def scatter(n, samples=3000):
+    """Standard deviation of R^2 of the rods over its mean, from independent samples of their exact distribution."""
+    random = numpy.random.Generator(numpy.random.PCG64(n))
+    kappa, shape = 2.0 * n, (n - 1, samples)
+    length = random.normal(0.5, 0.1, (16, *shape))  # density times l^2: of 16 tries the first accepted
+    accepted = (length > 0.0) & (random.uniform(size=length.shape) < length ** 2)
+    length = numpy.take_along_axis(length, accepted.argmax(axis=0)[None], axis=0)[0]
+    cosine = 1.0 + numpy.log(random.uniform(math.exp(-2.0 * kappa), 1.0, shape)) / kappa
+    sine, azimuth = numpy.sqrt(1.0 - cosine ** 2), random.uniform(0.0, 2.0 * math.pi, shape)
+    u, v = numpy.tile([[0.0], [0.0], [1.0]], samples), numpy.tile([[1.0], [0.0], [0.0]], samples)
+    end = numpy.zeros((3, samples))
+    for bond in range(n - 1):
+        end += length[bond] * u
+        side = numpy.cos(azimuth[bond]) * v + numpy.sin(azimuth[bond]) * numpy.cross(u, v, axis=0)
+        u, v = cosine[bond] * u + sine[bond] * side, cosine[bond] * side - sine[bond] * u
+    square = (end ** 2).sum(axis=0)
+    return square.std() / square.mean()
+
+
+def size(result):
+    """(<R^2> over its exact value, its error); None without the table. Every rod starts with a shape of its own; its
+    slowest bend has another after zeta (N <l>)^4/(4.73^4 l_p), zeta = 1/(D_0 <l>), or sooner with hydrodynamics.
+    (Short runs cannot know their error: straight rods would come with small ones.)"""
+    try:
+        table = result.table("statics-rod")
+    except KeyError:
+        return None
+    n, count = (int(re.search(pattern, result.run.scene)[1]) for pattern in (r"vertices: (\d+)", r"count: (\d+)"))
+    tau = (n * BOND) ** 4 / (dilute.vertex_diffusion() * BOND * 4.73 ** 4 * n)
+    return table["Ree2"][0] / moments(n)[0], scatter(n) / math.sqrt(count * (1.0 + result.time / tau))
+
+
+def size_verdict(results):
+    ratios = [pair for pair in map(size, results.values()) if pair]
+    return dilute.held("rods.size", "<R^2> of the rods over its exact value, mean over all runs", 1.0, "exact: a Markov chain of bonds",
+                       stats.weighted_mean(*zip(*ratios))[:2] if ratios else None, 0.002)
+
+
+def free_verdict(results):
+    pairs = {n: free(results, n) for n in FREE}
+    pairs = {n: pair for n, pair in pairs.items() if pair}
+    known = max((sharing(n)[1] / sharing(n)[0] for n in pairs), default=0.0)
+    return dilute.held("rods.free-D", "Without hydrodynamics: D over molecular chaos of rods that share cells", 1.0,
+                       "lib/dilute.py: sharing_diffusion",
+                       dilute.mean_ratio(list(pairs.values()), [sharing(n)[0] for n in pairs]), 0.03, known)
+
+
+def kirkwood_verdict(far):
+    known = math.hypot(0.15 * dilute.D_VERTEX_ERROR / dilute.D_VERTEX, dilute.NU_ERROR / dilute.NU)
+    return dilute.held("rods.kirkwood", "D in an infinite box over Kirkwood's sum for a straight row of beads, mean",
+                       1.0, "Kirkwood's sum, with a_h of the claim mobility",
+                       dilute.mean_ratio(list(far.values()), [kirkwood(n) for n in far]), BIAS, known)
+
+
+def cells_verdict(far):
+    return dilute.held("rods.cells", "D in an infinite box over vertices in Oseen's field smeared over the cells, nothing "
+                       "fitted; mean", 1.0, "lib/dilute.py: cells_rod, to 4 %, as good as it is for a lone vertex; lib/own_fluid.py",
+                       dilute.mean_ratio(list(far.values()), [cells(n) for n in far]), dilute.CELLS,
+                       dilute.NU_ERROR / dilute.NU)
+
+
+def campaign_verdicts(points, far):
+    """What the quick tier's errors cannot tell."""
+    rules = fits(far)
+    prefactor = (rules.infinite.prefactor, rules.infinite.prefactor_error) if rules else None
+    box_prefactor = (rules.in_box.prefactor, rules.in_box.prefactor_error) if rules else None
+    box_diameter = (rules.in_box.diameter, rules.in_box.diameter_error) if rules else None
+    return [
+        dilute.held("rods.images", "Slope of D against the images' share kT/(6 pi eta L) (2.837297 - ...), N = 10", 1.0,
+                    "images of a periodic box (Hasimoto 1959)", image_slope(points), 0.1),
+        dilute.held("rods.prefactor", "Prefactor of the joint fit in an infinite box, L = N/2; and of Kirkwood's D",
+                    rules.model.prefactor if rules else 0.096, "Kirkwood's sum, the same lengths and weights", prefactor,
+                    0.004, rival=PREFACTOR),
+        dilute.held("rods.diameter", "b with the prefactor 1/(3 pi) in an infinite box, over that of Kirkwood's D", 1.0,
+                    "Kirkwood's sum; 4 % of D are 15 % of b",
+                    dilute.over(rules.alone, (rules.model_alone[0], 0.0)) if rules else None, 0.15),
+        dilute.held("rods.prefactor-theory", "The joint prefactor in an infinite box, against 1/(3 pi)", PREFACTOR,
+                    "Eq. (40)", prefactor, 0.002, kind="paper", rival=0.094, reason=CONTOUR),
+        dilute.held("rods.prefactor-paper", "Prefactor of the joint fit in the paper's boxes, eta = 11.18", 0.094,
+                    "Sec. V A", box_prefactor, 0.0005, kind="paper", rival=PREFACTOR,
+                    reason="images change b, not the prefactor; the paper's errors are not stated"),
+        dilute.held("rods.diameter-paper", "Diameter b of the same fit", 0.6, "Sec. V A", box_diameter, 0.05,
+                    kind="paper", reason="it goes up and down with the prefactor of the same fit")]
+
+
+# --- figures ----------------------------------------------------------------------------------------------------------
+
+def draw_lengths(results, points, far):
+    figure, axes, below = figures.with_residuals(height=6.0)
+    n = numpy.geomspace(8.0, 75.0, 60)
+    chaos = dilute.vertex_diffusion()
+    figures.theory(axes, n, Rule(0.094, 0, 0.6, 0)(n, PAPER_ETA), label="paper: 0.094, b = 0.6")
+    figures.theory(axes, n, Rule(PREFACTOR, 0, 2.0 * dilute.stokes(dilute.D_VERTEX), 0)(n, dilute.ETA), linestyle="--",
+                   label="Eq. (40), 1/(3$\\pi$), b = 2$a_h$")
+    whole = numpy.unique(n.round().astype(int))
+    figures.theory(axes, whole, [kirkwood(int(k)) for k in whole], color=figures.COLORS[0], linewidth=0.9,
+                   label="Kirkwood")
+    figures.theory(axes, list(FREE), [cells(k) for k in FREE], color=figures.COLORS[0], linewidth=0.9, linestyle=":",
+                   label="smeared over cells")
+    figures.theory(below, list(FREE), [kirkwood(k) / cells(k) - 1.0 for k in FREE], color=figures.COLORS[0],
+                   linewidth=0.9)
+    figures.theory(axes, n, chaos / n, linestyle="-.", label="$D_0/N$")
+    figures.theory(axes, list(FREE), [sharing(k)[0] for k in FREE], color=figures.COLORS[2], linewidth=0.9,
+                   label="vertices that share cells")
+    paper = Rule(0.094, 0, 0.6, 0)
+    for k, (value, error, _) in far.items():
+        shift, label = dilute.image_shift(1.8 * k, moments(k)[1]), k == min(far)
+        figures.points(axes, k, value, error, 0, label="infinite box" if label else None)
+        figures.points(axes, k, value - shift, error, 1, label="in the paper's box, from all boxes" if label else None)
+        figures.points(below, k, value / cells(k) - 1.0, error / cells(k), 0)
+        figures.points(below, 1.03 * k, (value - shift) / paper(k, PAPER_ETA) - 1.0, error / paper(k, PAPER_ETA), 1)
+    direct = [p for p in points if PAPER_BOXES.get(p.vertices) == p.box]
+    for i, p in enumerate(direct):
+        figures.points(axes, 1.05 * p.vertices, p.value, p.error, 5, markerfacecolor="none",
+                       label="the paper's box itself" if i == 0 else None)
+    measured = [(k, free(results, k)) for k in FREE]
+    for i, (k, pair) in enumerate((k, pair) for k, pair in measured if pair):
+        figures.points(axes, k, *pair, number=2, label="no hydrodynamics" if i == 0 else None)
+        figures.points(below, k / 1.03, pair[0] / sharing(k)[0] - 1.0, pair[1] / sharing(k)[0], 2)
+    axes.set(xscale="log", yscale="log", ylabel="D, $a_0^2/t_0$", xlim=(8, 75))
+    figures.legend(axes, ncols=2, loc="lower left", fontsize=7.5)
+    below.set(xlabel="N", ylabel="over theory, $-1$", ylim=(-0.15, 0.15), xticks=[10, 15, 20, 30, 45, 60],
+              xticklabels=["10", "15", "20", "30", "45", "60"])
+    below.minorticks_off()
+    return figure
+
+
+def draw_images(points):
+    figure, axes, below = figures.with_residuals()
+    x = numpy.linspace(0.0, 0.115, 60)
+    for number, n in enumerate(sorted({p.vertices for p in points})):
+        same = [p for p in points if p.vertices == n]
+        if len(same) < 2:
+            continue  # one point lies on any line
+        mean = dilute.fair_mean([p.infinite for p in same], [p.error for p in same])[0]
+        line = mean - numpy.array([dilute.image_shift(1.0 / v, moments(n)[1]) if v else 0.0 for v in x])
+        end = x <= 1.1 / min(p.box for p in same)
+        figures.theory(axes, x[end], line[end], color=figures.COLORS[number], linewidth=0.8)
+        share = [1.0 / p.box for p in same]
+        figures.points(axes, share, [p.value for p in same], [p.error for p in same], number, label=f"N = {n}")
+        figures.points(below, share, [p.infinite / mean - 1.0 for p in same], [p.error / mean for p in same], number)
+    axes.set(ylabel="D, $a_0^2/t_0$", xlim=(0.0, 0.118), ylim=(0.0, 0.0062))
+    figures.legend(axes, ncols=3)
+    below.set(xlabel="$1/L_b$, $1/a_0$", ylabel="over line, $-1$", ylim=(-0.12, 0.12))
+    return figure
+
+
+def words(points, far):
+    parts = []
+    slope = image_slope(points)
+    if slope:
+        parts.append(f"""**Effect of the images**, at N = 10: D against their share has the slope {slope[0]:.2f} ±
+{slope[1]:.2f}; theory has 1. In boxes that grow with the rod they take a constant times kT/(eta L). This makes b larger and
+does not change the prefactor.""")
+    if far:
+        parts.append(f"**D in an infinite box**, 10⁻³ a0²/t0: {dilute.listed(far, MODELS)}.")
+    rules = fits(far)
+    if rules:
+        rows = "; ".join(f"{name} {rule.prefactor:.4f} ± {rule.prefactor_error:.4f} and {rule.diameter:.2f} ± "
+                         f"{rule.diameter_error:.2f}" for name, rule in (
+                             ("infinite box, measured viscosity:", rules.infinite),
+                             ("the paper's boxes, the paper's viscosity:", rules.in_box)))
+        parts.append(f"""Joint fits of Eq. (40) with L = N/2, prefactor and b (the paper: 0.094 and 0.6): {rows}.
+Kirkwood's D for these rods, without any images, gives {rules.model.prefactor:.4f} and {rules.model.diameter:.2f}. With
+1/(3 pi) held, b = {rules.alone[0]:.3f} ± {rules.alone[1]:.3f}. Prefactor and ln b of one fit are
+correlated almost fully.""")
+        parts.append(f"**Why the prefactor is below 1/(3 pi)**: {CONTOUR}.")
+    return "\n\n".join(parts)
+
+
+def evaluate(results, tier):
+    points = with_hydrodynamics(results)
+    far = infinite(points)
+    found = [cells_verdict(far), dilute.scatter("rods.lags", "Scatter of D(t) over lags about a local memory, the worst system, "
+                                                "in standard errors", dilute.worst([p.p for p in points])), kirkwood_verdict(far), free_verdict(results), size_verdict(results)]
+    if tier == "campaign":
+        found += campaign_verdicts(points, far)
+    pictures = [
+        Figure("lengths", "Fig. 2, rods: diffusion against length. Below: divided by theory. Blue: infinite box, by Oseen's "
+               "field smeared over cells (line: Kirkwood's sum). Red: the paper's boxes, by the paper's line. Green: no hydrodynamics, by molecular "
+               "chaos with shared cells.", lambda: draw_lengths(results, points, far))]
+    if len({(p.vertices, p.box) for p in points}) > len({p.vertices for p in points}):
+        pictures.append(Figure("images", "Effect of the box: the same rods in several boxes. Lines: one limit for each "
+                               "length measured in several, less the images' share; L_b is the box.", lambda: draw_images(points)))
+    return Outcome(found, pictures, words(points, far))

@@ -1,0 +1,332 @@
+"""Fig. 4: what hydrodynamics and uncrossability do to d^2(t) in the densest suspension."""
+import math
+
+import numpy
+
+from lib import dilute, figures, stats
+from lib import semidilute as sd
+from lib.case import Figure, Outcome, Verdict
+from lib.runs import Run
+
+TITLE = "The tube: hydrodynamics and uncrossability"
+PAPER = "Fig. 4"
+USES = ("galilean",)  # its comoving54 bounces
+
+# name -> (solvent, crossings forbidden)
+CASES = {"hi-entangled": (sd.SOLVENT, "true"), "hi-free": (sd.SOLVENT, "false"),
+         "off-entangled": (sd.BATH, "true"), "off-free": (sd.BATH, "false")}
+# The same with other choices: none of them may move d^2, neither before fibers meet nor in the tube.
+CHOICES = {"none": {"solvent": sd.FREE_SOLVENT},
+           "maxwell-boltzmann": {"solvent": "thermostat: maxwell-boltzmann"},
+           "bounce": {"refusal": "bounce"},
+           "dt5": {"dt": 0.005}}
+LATE = ("maxwell-boltzmann", "dt5")  # without a thermostat the system would be half as hot again by then
+
+
+def campaign():
+    # c L^3 = 1000. 8,300,000 steps are one tau_r by the paper, with hydrodynamics; 0.3 of it are 2,500,000.
+    long = {"hi-entangled": (8300000, 11.0, ((300000, 0), (2500000, 1))),
+            "hi-free": (8300000, 6.4, ((300000, 0), (2500000, 1))),
+            "off-entangled": (4800000, 10.7, ((300000, 0), (1200000, 1))),
+            "off-free": (4800000, 4.3, ((300000, 0), (1200000, 1)))}
+    found = []
+    for number, (name, (solvent, forbidden)) in enumerate(CASES.items()):
+        steps, hours, goals = long[name]
+        found.append(Run(name, scene=sd.scene(count=1000, solvent=solvent, forbidden=forbidden), steps=steps,
+                         hours=hours,
+                         seed=400 + number, priority=2, goals=goals))
+        found.append(Run(name + "-short", steps=4000, hours=0.012, seed=410 + number,
+                         scene=sd.scene(count=1000, solvent=solvent, forbidden=forbidden, every=1, longest_lag=1024,
+                                  series=100)))
+    for number, (name, values) in enumerate(CHOICES.items()):
+        scale = int(round(0.01 / values.get("dt", 0.01)))
+        found.append(Run("choice-" + name, steps=4000 * scale, hours=0.012 * scale, seed=420 + number,
+                         scene=sd.scene(count=1000, every=scale, longest_lag=1024 * scale, series=100, **values)))
+    for number, name in enumerate(LATE):
+        scale = int(round(0.01 / CHOICES[name].get("dt", 0.01)))
+        found.append(Run("late-" + name, steps=100000 * scale, hours=0.15 * scale, seed=440 + number, priority=1,
+                         scene=sd.scene(count=1000, every=50 * scale, longest_lag=100000 * scale, series=1000 * scale,
+                                        **CHOICES[name])))
+    # Four fibers in one box: each is dilute, and four times the turning is seen for the same solvent. 40 without
+    # hydrodynamics, where nobody feels anybody.
+    found.append(Run("rotation-hi", steps=10000000, hours=2.6, seed=431, priority=2, goals=((2000000, 0), (4000000, 1)),
+                     scene=sd.scene(count=4, forbidden="false", every=1000, longest_lag=1024000)))
+    found.append(Run("rotation-off", steps=20000000, hours=1.2, seed=432, priority=1, goals=((4000000, 0),),
+                     scene=sd.scene(count=40, solvent=sd.BATH, forbidden="false", every=1000, longest_lag=2048000)))
+    return found
+
+
+def quick():
+    # c L^3 = 400 of fibers of 24 vertices, L = 12: a mesh of 1.04 a0, a tube that shows within 100 t0.
+    small = {"box": 10, "vertices": 24, "count": 231, "every": 10, "longest_lag": 12288, "series": 1000}
+    found = [Run(name, scene=sd.scene(solvent=solvent, forbidden=forbidden, **small), steps=24576, seed=440 + number,
+                 hours=0.007 if forbidden == "true" else 0.002)
+             for number, (name, (solvent, forbidden)) in enumerate(CASES.items())]
+    found += [Run("choice-" + name, scene=sd.scene(**{**small, **CHOICES[name]}), steps=6000, seed=450 + number,
+                  hours=0.002)
+              for number, name in enumerate(SYSTEMS["quick"]["choices"])]
+    return found
+
+
+def runs(tier):
+    return quick() if tier == "quick" else campaign()
+
+
+
+# --- what runs say ----------------------------------------------------------------------------------------------------
+
+# Of each tier: fiber (L = l_p by the paper's count; its mean contour), cells along an edge, number; lags (t0) at which
+# curves are compared: before fibers meet, while hydrodynamics still counts most, and for other choices of the method.
+SYSTEMS = {"quick": {"length": 12.0, "contour": 23 * sd.BOND, "box": 10, "count": 231, "early": 0.1, "fast": 3.2,
+                     "choice": 3.2, "choices": ("none", "bounce"), "hindered": 0.85, "late": 50.0},
+           "campaign": {"length": 32.0, "contour": 63 * sd.BOND, "box": 32, "count": 1000, "early": 0.04, "fast": 2.56,
+                        "choice": 5.12, "choices": tuple(CHOICES), "hindered": 0.6, "late": 512.0}}
+LABELS = {"hi-entangled": "hydrodynamics on, uncrossable", "hi-free": "on, crossing free",
+          "off-entangled": "off, uncrossable", "off-free": "off, crossing free"}
+# Lags (t0) after bends and before few intervals are left; fibers.
+ROTATION = {"hi": (800.0, 5000.0, 4), "off": (3000.0, 16000.0, 40)}
+
+
+def curve(results, name):
+    """Short lags from the short run, the rest from the long one."""
+    return sd.joined(sd.table(results.get(name + "-short"), least=4), sd.table(results.get(name)))
+
+
+def size(system):
+    """(vertices of a fiber, fibers, edge of the box)"""
+    return round(system["contour"] / sd.BOND) + 1, system["count"], system["box"]
+
+
+def width(system):
+    """L_perp of Eq. (35)."""
+    mesh = sd.mesh_size(system["count"], system["length"], system["box"])
+    return sd.tube_width(mesh, system["length"], system["length"])
+
+
+def expected_rotation(which, system):
+    """tau_r of a fiber, 1/(2 D_r), among as many as the run has: with hydrodynamics a rigid rod of b = 0.6 a0 in this
+    box; without, vertices whose friction acts at the radius of gyration, less than that of vertices alone
+    (sd.shared_diffusion)."""
+    vertices, _, box = size(system)
+    if which == "hi":
+        eta, _ = dilute.heavy_fluid(sd.crowd(vertices, ROTATION["hi"][2], box))
+        return sd.rod_rotation_time(system["contour"], 0.6, eta, box**3)
+    gyration = 82.036 if vertices == 64 else system["contour"]**2 / 12.0  # exact: sum of <R^2> of all pairs of 64 vertices
+    return vertices * gyration / (2.0 * sd.shared_diffusion(ROTATION["off"][2], box, vertices))
+
+
+def rotation(results, which):
+    """(tau_r, error, intercept), or None."""
+    return sd.rotation_time(sd.table(results.get("rotation-" + which), least=2), *ROTATION[which])
+
+
+def ratio(one, other, name, time):
+    """(ratio, error) of two curves at a lag, or None."""
+    a, b = sd.at(one, name, time), sd.at(other, name, time)
+    if a is None or b is None:
+        return None
+    return a[0] / b[0], a[0] / b[0] * math.hypot(a[1] / a[0], b[1] / b[0])
+
+
+# --- verdicts ---------------------------------------------------------------------------------------------------------
+
+def early_verdicts(curves, system):
+    """Fibers that have not met yet do not know whether they may cross. By collision theory so many per cent of the
+    vertices have been refused a move by then; nobody's displacement changes by more."""
+    bonds = (size(system)[0] - 1) * system["count"]
+    met = 4.0 * sd.collision_rate(bonds, system["box"]**3) * system["box"]**3 / bonds * system["early"]
+    return [sd.measured(Verdict(f"tube.early.{which}", f"d² uncrossable / crossing free at {system['early']} t0, "
+                             + ("hydrodynamics on" if which == "hi" else "off"), 1.0,
+                             "the same dynamics until fibers meet (paper, Fig. 4)", met),
+                     ratio(curves[f"{which}-entangled"], curves[f"{which}-free"], "d2", system["early"]), met)
+            for which in ("hi", "off")]
+
+
+def friction_verdicts(curves, system):
+    """Fibers that cross freely have nothing that is left to fit, with hydrodynamics or without, as long as the others'
+    stiffness does not resist the flow (lib/bending.py)."""
+    fast = system["fast"]
+    expected = {which: sd.free_fiber([fast], *size(system), which == "hi")[0] for which in ("hi", "off")}
+    words = {"hi": ("on", "Oseen's field in a fluid that vertices make heavier and more viscous"),
+             "off": ("off", "vertices that share cells; others as heavier solvent, which forgets them though they stay")}
+    found = [sd.measured(Verdict(f"tube.friction.{which}", f"d² over that of a straight fiber, nothing fitted, "
+                                 f"hydrodynamics {on}, crossing free, {fast} t0", 1.0, f"lib/bending.py: {why}: 8 %", 0.08),
+                         sd.over(sd.at(curves[f"{which}-free"], "d2_contour", fast), expected[which]), 0.08)
+             for which, (on, why) in words.items()]
+    share = expected["off"] / expected["hi"]
+    below = sd.measured(Verdict("tube.hydrodynamics", f"d² without hydrodynamics / with, crossing free, {fast} t0", share,
+                                "paper, Fig. 4: below 1; how far, by lib/bending.py to 8 % each", 0.12 * share),
+                        ratio(curves["off-free"], curves["hi-free"], "d2_contour", fast), 0.12 * share)
+    return [*found, below]
+
+
+def plateau_verdicts(curves, system):
+    """Is there a plateau, and how high is the curve where the paper has its line?"""
+    found, late = [], system["late"]
+    for which, on in (("hi", "on"), ("off", "off")):
+        columns = curves[f"{which}-entangled"]
+        flat = Verdict(f"tube.flat.{which}", f"exponent of d²(t) (contour) over the last factor of 8 in t, hydrodynamics {on}",
+                       0.0, "a plateau: below 0.1; 3/8 is half of what it was before the bend", 0.1, kind="paper", rival=0.25,
+                       reason="The curve bends and goes on rising: the tube is not fixed, it shifts as its neighbors move, "
+                              "and is left by its ends.")
+        height = Verdict(f"tube.height.{which}", f"d² (contour) at {late:g} t0 over 2 L⊥², hydrodynamics {on}", 1.0,
+                         "the paper's line, Eq. (35) with L = l_p = 32, a theory of scaling to some 40 %", 0.4, kind="paper",
+                         reason="d² compares two positions in the tube, each of which fluctuates by L⊥² in each of two "
+                                "directions about its axis: 4 L⊥² if they forget each other, 2 L⊥² if one of them were the "
+                                "axis. The curve passes both, and does not stop.")
+        sd.measured(flat, sd.last_exponent(columns), 0.1)
+        found += [flat, sd.measured(height, sd.over(sd.at(columns, "d2_contour", late), 2.0 * width(system)**2), 0.4)]
+    return found
+
+
+def hindered_verdict(curves, system):
+    """At the end of the shorter curve: d^2 with the constraint over d^2 without. A broken constraint gives 1."""
+    bound = system["hindered"]
+    verdict = Verdict("tube.hindered", "d² uncrossable / crossing free at the longest common lag, hydrodynamics on",
+                      0.0, f"a tube holds the middle of a fiber: below {bound}; without a tube 1", bound, detects=1.0 - bound)
+    a, b = curves["hi-entangled"], curves["hi-free"]
+    common = [t for t in a["time"] if sd.at(b, "d2", t)] if a is not None else []
+    if common and common[-1] >= system["late"]:
+        verdict.measured = ratio(a, b, "d2_contour", common[-1])[0]
+    return verdict
+
+
+def normalized_verdict(curves, times, measured):
+    """At equal t/tau_r, each its own, as the paper's figure has it."""
+    at = 3e-4
+    verdict = Verdict("tube.below", f"d² without hydrodynamics / with, crossing free, at t/τ_r = {at:g} each", 0.0,
+                      "paper, Fig. 4: “systematically below”, that is, below 1", 1.0, kind="paper", detects=0.1,
+                      reason="Without hydrodynamics friction is the same at all lengths. With them it is lower for long "
+                             "waves than for short ones, and lowest for the turning of the whole: in units of τ_r short "
+                             "waves are slower. At equal time (tube.hydrodynamics) the curve without is below.")
+    values, errors = [], []
+    for which in ("off", "hi"):
+        columns = curves[which + "-free"]
+        t = at * times[which]
+        if columns is None or not columns["time"][0] <= t <= columns["time"][-1]:
+            return verdict
+        values.append(math.exp(numpy.interp(math.log(t), numpy.log(columns["time"]), numpy.log(columns["d2"]))))
+        if measured[which]:  # d^2 grows as t^(1/2) or so there, and t is as good as tau_r
+            errors.append(0.5 * measured[which][1] / measured[which][0])
+    share, error = values[0] / values[1], values[0] / values[1] * math.hypot(*errors)
+    if abs(share - 1.0) > stats.SIGMAS * error:  # else it is too rough to say
+        verdict.measured, verdict.error = share, error
+    verdict.statement += f" (so far {share:.2f} ± {error:.2f})"
+    return verdict
+
+
+def choice_verdicts(results, curves, system):
+    words = {"none": "no thermostat", "maxwell-boltzmann": "canonical thermostat", "bounce": "refused vertices bounce",
+             "dt5": "half the time step"}
+    return [sd.measured(Verdict(f"tube.choice.{name}", f"d² of `{name}` ({words[name]}) over that of the run, "
+                             f"{system['choice']} t0, before fibers meet", 1.0, "choices of method do not move the result", 0.0),
+                     ratio(sd.table(results.get("choice-" + name), least=2), curves["hi-entangled"], "d2_contour",
+                           system["choice"]), 0.01)
+            for name in system["choices"]]
+
+
+def late_verdicts(results, curves, system):
+    """The same when fibers have long met."""
+    others = {**{name: ("late-" + name, f"`{name}`") for name in LATE},
+              "bounce": ("galilean/comoving54", "`bounce`, in the frame of a flow of 0.54")}
+    return [sd.measured(Verdict(f"tube.late.{name}", f"d² of {words} over that of the run, {system['late']:g} t0", 1.0,
+                                "choices of method do not move the result", 0.0),
+                        ratio(sd.table(results.get(run)), curves["hi-entangled"], "d2_contour", system["late"]), 0.01)
+            for name, (run, words) in others.items()]
+
+
+def rotation_verdicts(results, system):
+    found = [sd.measured(Verdict("tube.rotation.paper", "τ_r with hydrodynamics, t0", sd.PAPER_ROTATION_TIME,
+                              "Sec. IV D, without an error bar: 15 %", 0.15 * sd.PAPER_ROTATION_TIME, kind="paper",
+                              reason="Ours is from lags of a tenth of it, by an exponential after bends have relaxed."),
+                      rotation(results, "hi"), 0.15 * sd.PAPER_ROTATION_TIME)]
+    for which, source in (("hi", "rigid rod (Tirado), b = 0.6 a0, in a periodic box: 20 % for bends"),
+                          ("off", "friction of the vertices at the radius of gyration: 20 % for bends")):
+        expected = expected_rotation(which, system)
+        on = "on" if which == "hi" else "off"
+        found.append(sd.measured(Verdict(f"tube.rotation.{which}", f"τ_r, hydrodynamics {on}, t0", expected, source,
+                                         0.2 * expected), rotation(results, which), 0.2 * expected))
+    return found
+
+
+# --- figures ----------------------------------------------------------------------------------------------------------
+
+def draw(curves, system, times, errors, column):
+    """times: tau_r of either kind; errors: theirs, relative."""
+    figure, above, below = figures.with_residuals(height=5.6)
+    scale = system["length"]**2
+    for number, (name, columns) in enumerate(curves.items()):
+        if columns is None:
+            continue
+        tau = times[name.split("-")[0]]
+        figures.points(above, columns["time"] / tau, columns[column] / scale, columns[column + "_error"] / scale,
+                       number,
+                       label=LABELS[name], linestyle="-" if "entangled" in name else ":", markersize=3.2,
+                       markerfacecolor=None if "entangled" in name else "white")
+    square = width(system)**2 / scale
+    above.axhline(2 * square, color="#222222", linestyle="-.", linewidth=1.1, label="tube, 2 L⊥², Eq. (35)")
+    above.axhline(4 * square, color="#222222", linestyle=(0, (1, 3)), linewidth=1.1, label="4 L⊥²")
+    for which, line in (("hi", "-"), ("off", "--")) if column == "d2_contour" else ():  # the other has the vertices' floor
+        lags = numpy.geomspace(0.5, 0.003 * times[which], 24)
+        alone = sd.free_fiber(lags, *size(system), which == "hi")
+        figures.theory(above, lags / times[which], alone / scale, linestyle=line,
+                       label=f"straight fiber, nothing fitted, {'on' if which == 'hi' else 'off'}")
+    for number, which in enumerate(("hi", "off")):
+        a, b = curves[which + "-entangled"], curves[which + "-free"]
+        if a is None or b is None:
+            continue
+        pairs = [(t, ratio(a, b, column, t)) for t in a["time"] if sd.at(b, column, t)]
+        figures.points(below, [t / times[which] for t, _ in pairs], [pair[0] for _, pair in pairs],
+                       [pair[1] for _, pair in pairs], 2 * number, linestyle="-", markersize=3)
+    for number, which in enumerate(("hi", "off")):
+        if errors[which]:
+            figures.points(above, [0.1], [3e-6 * 4**number], None, 2 * number, xerr=[0.1 * errors[which]], markersize=0,
+                           label="error of τ_r" if number == 0 else None)
+    above.set(xscale="log", yscale="log", ylabel="⟨d²⟩/L²" + (", contour" if "contour" in column else ""))
+    below.set(xscale="log", xlabel="t/τ_r", ylabel="uncrossable\n/ free", ylim=(0, 1.2))
+    below.axhline(1.0, color="#444444", linewidth=0.8)
+    above.set_ylim(top=20.0 * above.get_ylim()[1])  # room for the legend
+    figures.legend(above, ncols=2, loc="upper left")
+    return figure
+
+
+def evaluate(results, tier):
+    system = SYSTEMS[tier]
+    curves = {name: curve(results, name) for name in CASES}
+    measured = {which: rotation(results, which) for which in ("hi", "off")}
+    times = {which: measured[which][0] if measured[which] else expected_rotation(which, system) for which in measured}
+    words = {which: f"({1e-5 * pair[0]:.2f} ± {1e-5 * pair[1]:.2f})·10⁵ t0" if pair else
+             f"{1e-5 * times[which]:.2f}·10⁵ t0 (estimated)" for which, pair in measured.items()}
+    verdicts = early_verdicts(curves, system) + friction_verdicts(curves, system)
+    verdicts.append(hindered_verdict(curves, system))
+    verdicts += choice_verdicts(results, curves, system)
+    if tier == "campaign":  # fibers of the quick tier are too short for a plateau, and nobody measures their tau_r
+        verdicts += late_verdicts(results, curves, system)
+        verdicts += plateau_verdicts(curves, system) + rotation_verdicts(results, system)
+        verdicts.append(normalized_verdict(curves, times, measured))
+    caption = (f"c L³ = {system['count']}, L = l_p = {system['length']:g} a0. Filled: crossing forbidden. Open: crossing free. Time is in "
+               f"units of the rotation time τ_r of a lone fiber: {words['hi']} with hydrodynamics, {words['off']} without. Below: "
+               "forbidden over free at the same lag. Horizontal bars: the error of τ_r, by which each pair of curves may be shifted sideways.")
+    errors = {which: pair[1] / pair[0] if pair else None for which, pair in measured.items()}
+    found = [Figure(f"fig4-{column}", what + caption, lambda column=column: draw(curves, system, times, errors, column))
+             for column, what in (("d2", "The paper's d²(t), to the nearest vertex. "),
+                                  ("d2_contour", "The same to the nearest point of the contour. "))]
+    return Outcome(verdicts, found, PROSE)
+
+
+PROSE = """Crossing is forbidden or allowed, and hydrodynamics are on or off (a bath of phantoms). All four curves are of the
+same fibers. They agree until fibers meet. Then d² of those that may not cross falls behind, and bends over in their tube.
+Without hydrodynamics each vertex has its own friction, and d² is lower at equal time. Over t/τ_r, with the τ_r of each curve, this is
+reversed: with hydrodynamics the friction is lower for long waves than for short ones, and lowest for the rotation of the whole fiber.
+
+The runs have a thermostat (one factor for all velocities), because rejected moves heat: without one this system gains
+7·10⁻⁴ of its energy per t0. The effect of another thermostat, of `refusal: bounce` and of half the time step is
+measured twice: before fibers meet (`choice`), and in the tube (`late`). τ_r is measured from rotational diffusion at lags of some hundredths to a
+tenth of it, without the quick tilt by bends. This needs a run of only a tenth of the correlation time of the end-to-end vector. Four fibers
+that may cross share the box: their concentration raises the viscosity by some 4 %, and the statistics are four times as large.
+
+“Off” still has some coupling in so dense a suspension. Vertices that share a collision cell, two of each fiber and others, are
+slowed down together, with the bath of phantoms as with the paper's swap of velocities. “On” is another fluid than the solvent. With two
+vertices of mass 5 per cell, collisions transfer more momentum, and the fluid is 2.9 times as viscous. The dashed and the full line are the
+modes of a straight fiber, without hydrodynamics and with, nothing fitted. Fibers that may cross follow their line until the stiffness of the
+others matters, from some 3 t0 on with hydrodynamics. The mass of the vertices is a large part of the reason why hydrodynamics matter so little here."""

@@ -1,0 +1,96 @@
+"""What a validation case returns: verdicts, figures, and text (validation/README.md)."""
+import dataclasses
+import importlib.util
+import math
+import pathlib
+import sys
+
+CASES = pathlib.Path(__file__).resolve().parent.parent / "cases"
+# The order of the report: the solvents, then single vertices and fibers in it, then many fibers.
+ORDER = ("solvent", "andersen", "mobility", "chains", "rods", "galilean", "tube", "msd", "conservation", "cost", "peer")
+TIERS = ("quick", "campaign")
+
+
+@dataclasses.dataclass
+class Verdict:
+    """A measured number compared with an expected one. `error` and `expected_error` are standard errors. `tolerance` is the
+    largest difference that is allowed. `detects` is the smallest wrong effect that would be seen every time; without a
+    value it is twice the tolerance. All have the same unit.
+
+    kind "gate": a disagreement is our bug. kind "paper": a disagreement is a finding, and `reason` explains it, if known.
+
+    `rival`, where given, is another value that the measured number must be told from. The verdict stays "undecided" while
+    the measurement is too rough: while `detects` is larger than the expected number, or the rival agrees, too."""
+    id: str
+    statement: str
+    expected: float
+    source: str
+    tolerance: float
+    measured: float = None  # None: not there yet
+    error: float = 0.0
+    expected_error: float = 0.0
+    detects: float = None
+    kind: str = "gate"
+    reason: str = ""
+    rival: float = None
+
+    @property
+    def verdict(self):
+        if self.measured is None or not math.isfinite(self.measured):
+            return "undecided"
+        if abs(self.measured - self.expected) <= self.tolerance:
+            return "undecided" if self.blind else "pass"
+        return "fail" if self.kind == "gate" else "not reproduced"
+
+    @property
+    def seen(self):
+        """The smallest wrong effect that would be seen every time; None as long as the tolerance is not known either."""
+        if self.detects is not None:
+            return self.detects
+        return 2.0 * self.tolerance if self.measured is not None or self.tolerance else None
+
+    @property
+    def blind(self):
+        """Is the measurement too rough: would an effect as large as the expected number be missed, or does the rival agree, too?"""
+        if self.rival is not None and abs(self.measured - self.rival) <= self.tolerance:
+            return True
+        return self.expected != 0.0 and max(self.seen, self.tolerance) > abs(self.expected)
+
+    @property
+    def z(self):
+        """Difference in standard errors of both; None where there are none."""
+        error = math.hypot(self.error or 0.0, self.expected_error or 0.0)
+        if self.verdict == "undecided" or not math.isfinite(error) or error == 0.0:
+            return None
+        return (self.measured - self.expected) / error
+
+
+@dataclasses.dataclass
+class Figure:
+    """draw() is called with nothing and returns a matplotlib Figure (lib/figures.py helps)."""
+    name: str
+    caption: str
+    draw: object
+
+
+@dataclasses.dataclass
+class Outcome:
+    verdicts: list
+    figures: list = dataclasses.field(default_factory=list)
+    prose: str = ""  # paragraphs, separated by empty lines; `code` and **bold** are kept
+
+
+def load(name):
+    """The module of a validation case."""
+    path = CASES / name / "case.py"
+    spec = importlib.util.spec_from_file_location(f"case_{name}", path)
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+def names():
+    """The names of all validation cases, in the order of the report."""
+    found = [path.parent.name for path in CASES.glob("*/case.py")]
+    return sorted(found, key=lambda name: (ORDER.index(name) if name in ORDER else len(ORDER), name))
