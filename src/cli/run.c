@@ -137,6 +137,11 @@ static enum exit_code run_to_end(uncross_run *run, const struct arguments *a, un
   return code;
 }
 
+static void tell_warning(void *file, const char *text)
+{
+  fprintf(file, "uncross: warning: %s\n", text_shown(text));
+}
+
 enum exit_code command_run(const struct arguments *a)
 {
   uncross_error error;
@@ -144,6 +149,10 @@ enum exit_code command_run(const struct arguments *a)
   uncross_scene *scene = read_scene(a, &error);
   if (!scene)
     return complain(&error);
+  if (!a->quiet && uncross_scene_warnings(scene, tell_warning, stderr, &error) != UNCROSS_OK) {
+    uncross_scene_free(scene);
+    return complain(&error);
+  }
   watch_signals();
   uncross_run *run = uncross_run_open(scene, a->out, a->resume ? UNCROSS_RESUME : UNCROSS_NEW, &error);
   const enum exit_code code = run ? run_to_end(run, a, &error) : complain(&error);

@@ -42,10 +42,16 @@ static json_t *seed(uint64_t x)
   return json_string(text);
 }
 
-/* What a reader of the results should know. */
-static json_t *warnings(const struct record *r)
+static void add_text(void *list, const char *text)
+{
+  json_array_append_new(list, json_string(text));
+}
+
+/* What a reader of the results should know: of the scene, and of what happened. */
+static json_t *warnings(const struct scene *scene, const struct record *r)
 {
   json_t *list = json_array();
+  scene_warnings(scene, add_text, list);
   char text[256];
   if (r->counts.rigid > 0) {
     snprintf(
@@ -54,7 +60,7 @@ static json_t *warnings(const struct record *r)
         " contacts found no impulse that separates the bonds, which then moved rigidly for the rest of a drift; such "
         "drifts do not conserve energy; a smaller time_step has fewer",
         r->counts.rigid);
-    json_array_append_new(list, json_string(text));
+    add_text(list, text);
   }
   return list;
 }
@@ -68,7 +74,7 @@ bool record_write(const struct folder *folder, const struct scene *scene, const 
       "compiler", build_info.compiler, "flags", build_info.flags, "seed", seed(scene->model.seed), "scene_fingerprint",
       hexadecimal(scene->fingerprint), "steps", (json_int_t)r->step, "steps_wanted", (json_int_t)scene->steps, "time",
       (double)r->step * scene->model.time_step, "wall_seconds", r->wall_seconds, "steps_per_second",
-      r->steps_per_second, "collisions", counts(&r->counts), "warnings", warnings(r), "start",
+      r->steps_per_second, "collisions", counts(&r->counts), "warnings", warnings(scene, r), "start",
       conserved(r->start_energy, r->start_momentum), "end", conserved(r->now.total, r->now.momentum), "state_hash",
       hexadecimal(r->state_hash), "scene", scene->text);
   char *text = root ? json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) : NULL;

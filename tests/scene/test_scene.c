@@ -786,6 +786,47 @@ static void warnings(void **unused)
   scene_free(&bath);
 }
 
+/* The number that a warning names ends it: `change` puts it into the scene. */
+static void remedies(void **unused)
+{
+  (void)unused;
+  const struct {
+    size_t line;
+    const char *text, *warns, *number; /* what comes before the number */
+    size_t to;
+    const char *change;
+  } rows[] = {
+      {17, "    force: [0.3, 0.1, 1]", "a net force", "solvent.acceleration: ", 9,
+       "  acceleration: %s\n  thermostat: rescale"},
+      {16, "    spring: 1.5e4", "omega dt =", "with time_step ", 2, "time_step: %s"},
+      {16, "    spring: 0.3\n    start: equilibrium", "half the shortest edge", "use edges of ", 1,
+       "box: [%s, 99, 99]"},
+      {21, "  dynamics: {every: 10, longest_lag: 50}", "longest_lag", "use steps: ", 3, "steps: %s"},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    char all[8192] = "", number[128], line[256], text[4096];
+    struct scene s = read_with(rows[i].line, rows[i].text);
+    scene_warnings(&s, collect, all);
+    scene_free(&s);
+    assert_non_null(strstr(all, rows[i].warns));
+    const char *at = strstr(all, rows[i].number) + strlen(rows[i].number);
+    snprintf(number, sizeof number, "%.*s", (int)(*at == '[' ? strcspn(at, "]") + 1 : strcspn(at, " \n")), at);
+    snprintf(line, sizeof line, rows[i].change, number);
+    size_t used = 0;
+    for (size_t k = 0; k < GOOD_LINES; k++)
+      used += (size_t)snprintf(text + used, sizeof text - used, "%s\n",
+                               k + 1 == rows[i].to     ? line
+                               : k + 1 == rows[i].line ? rows[i].text
+                                                       : good[k]);
+    s = read_text(text);
+    all[0] = '\0';
+    scene_warnings(&s, collect, all);
+    if (strstr(all, rows[i].warns))
+      fail_msg("with '%s': %s", line, all);
+    scene_free(&s);
+  }
+}
+
 /* Rejected moves heat: at cL^3 = 1000 by a quarter in 300 t0, at 100 by 1e-5 per t0 (DESIGN's prototype). */
 static void warning_of_heat(void **unused)
 {
@@ -804,6 +845,11 @@ static void warning_of_heat(void **unused)
   assert_non_null(at);
   percent = strtod(at + 8, NULL);
   assert_close(percent, 24.0, 6.0);
+  s.model.time_step = strtod(strstr(all, "time_step ") + 10, NULL);
+  s.steps = (uint64_t)(300.0 / s.model.time_step);
+  all[0] = '\0';
+  scene_warnings(&s, collect, all);
+  assert_null(strstr(all, "by some "));
   s.model.solvent.thermostat = THERMOSTAT_RESCALE;
   assert_int_equal(scene_warnings(&s, NULL, NULL), 0);
   scene_free(&s);
@@ -1031,6 +1077,7 @@ int main(void)
       cmocka_unit_test(settings_make_a_scene),
       cmocka_unit_test(many_kinds),
       cmocka_unit_test(warnings),
+      cmocka_unit_test(remedies),
       cmocka_unit_test(warning_of_heat),
       cmocka_unit_test(shipped_scenes_are_sound),
       cmocka_unit_test(report),
