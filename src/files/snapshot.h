@@ -119,8 +119,8 @@ struct export_options {
  * (-1: none). False, with a message, if the file cannot be read or the stream not be written. */
 bool trajectory_export(const char *path, const struct export_options *options, FILE *out, struct message *message);
 
-/* Describes a file in a few lines: `uncross info`. Knows scenes, checkpoints, trajectories, run.json, CSV tables, and folders of runs.
- * False, with a message, if it is none of them or cannot be read. */
+/* Describes a file in a few lines: `uncross info`. Knows scenes, checkpoints, trajectories, run.json, CSV tables, and
+ * folders of runs. False, with a message, if it is none of them or cannot be read. */
 bool file_info(const char *path, struct message *message);
 
 #endif
