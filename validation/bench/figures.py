@@ -59,7 +59,10 @@ def speed(rows, out):
     left.set(xlabel="edge of the box, a0", ylabel="ns per particle and collision", title="solvent alone")
     left.set_ylim(bottom=0)
     left.legend(fontsize=7)
-    points(middle, select(rows, r"speed/cL\^3 = (\d+) over solvent"), color=BLACK)
+    for rule, fill in (("", BLACK), (", event-driven", "white")):
+        points(middle, select(rows, rf"speed/cL\^3 = (\d+){rule} over solvent"), color=BLACK, markerfacecolor=fill,
+               label=rule[2:] or "sequential")
+    middle.legend(fontsize=8)
     middle.plot((100, 1000), (1.5, 8), "v", color=GRAY, label="wanted at most")
     middle.set(xlabel="cL³", ylabel="time over the solvent's", title="fibers of 64 vertices, dt 0.01")
     logarithmic_y(middle)
