@@ -3,10 +3,11 @@ set terminal svg size 920,480 font "DejaVu Sans,12" background "white"
 set output "contacts.svg"
 set multiplot layout 1,2
 set logscale x
-set xlabel "time step dt, t0" offset 0,0.5
+set xlabel "time step dt, t0" offset 0,0.2
 set xrange [0.0042:0.024]
 set xtics (0.005, 0.01, 0.02)
-set key below samplen 2 font ",10" vertical maxrows 4
+set key outside bottom center samplen 2 font ",10" vertical maxrows 4
+set bmargin 8
 set logscale y
 set format y "10^{%T}"
 set yrange [1e-11:1]
@@ -25,6 +26,6 @@ set format y "%g"
 set yrange [0.994:1.004]
 set title "balance, kappa 64: <J exp(-DeltaH/kT)>"
 plot "contacts.tsv" index 2 using (0.985*$1):6:7 with yerrorbars pt 7 ps 0.7 lc rgb "#2a7f62" title "J = (a'/a) |da'/da|", \
-     "" index 2 using (1.015*$1):8:9 with yerrorbars pt 6 ps 0.7 lc rgb "#c77f12" title "J = a'/a also at the bounds", \
+     "" index 2 using (1.015*$1):8:9 with yerrorbars pt 6 ps 0.7 lc rgb "#c77f12" title "J = a'/a also where softened", \
      1.0 with lines lc rgb "#222222" notitle
 unset multiplot
