@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "oracle/patterns.h"
+#include "oracle/single.h"
 
 /* --- what all relations use --------------------------------------------------------------------------------------- */
 
@@ -134,7 +135,7 @@ static double clipped(const struct evidence *e, uint32_t row, uint32_t column)
 
 static double single(const struct evidence *e, uint32_t row, uint32_t column)
 {
-  return (double)(float)ours(e, row, column);
+  return single_of(ours(e, row, column));
 }
 
 static double change(const struct evidence *e, uint32_t row, uint32_t column, double part)

@@ -5,6 +5,7 @@
 
 #include "oracle/patterns.h"
 #include "oracle/relations.h"
+#include "oracle/single.h"
 
 #define COUNT_OF(list) (sizeof(list) / sizeof *(list))
 
@@ -87,7 +88,7 @@ static struct vec3 bond_pull(const struct fibers *f, const struct bond_twist *t,
   if (t->flat)
     r.z = 0.0;
   if (t->single)
-    r = (struct vec3){(float)r.x, (float)r.y, (float)r.z};
+    r = (struct vec3){single_of(r.x), single_of(r.y), single_of(r.z)};
   const double squared = vec3_dot(r, r), length = t->squared ? squared : sqrt(squared);
   const double k = (1.0 + t->spring) * constant(f, t->spring_of_next ? (j + 1) % f->n : j, SPRING);
   const double rest = (1.0 + t->rest) * constant(f, j, REST);

@@ -8,6 +8,7 @@
 #include "oracle/edges.h"
 #include "oracle/patterns.h"
 #include "oracle/relations.h"
+#include "oracle/single.h"
 
 #define COUNT_OF(list) (sizeof(list) / sizeof *(list))
 
@@ -205,8 +206,8 @@ static bool normals(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
       {.scale = 1.0, .turns = 0.5, .text = "an angle of pi times the uniform, not 2 pi"},
       {.scale = 1.0, .turns = -1.0, .text = "sign: the angle's negative"},
       {.scale = 1.0, .turns = 1.0, .uncut = true, .text = "the radius from 1 - u: it is of u"},
-      {.scale = 1.0, .turns = (double)(float)pi / pi, .text = "pi in single precision"},
-      {.scale = 1.0, .turns = (double)(float)(2.0 * pi) / (2.0 * pi), .text = "2 pi in single precision"},
+      {.scale = 1.0, .turns = single_of(pi) / pi, .text = "pi in single precision"},
+      {.scale = 1.0, .turns = single_of(2.0 * pi) / (2.0 * pi), .text = "2 pi in single precision"},
       {.scale = 1.0, .turns = 3.14159 / pi, .text = "pi of 6 digits"},
       {.scale = 1.0, .turns = 3.1415926 / pi, .text = "pi of 8 digits"},
       {.scale = 1.0, .turns = 3.14159265 / pi, .text = "pi of 9 digits"},

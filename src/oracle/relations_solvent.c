@@ -9,6 +9,7 @@
 #include "mpc/cell.h"
 #include "oracle/patterns.h"
 #include "oracle/relations.h"
+#include "oracle/single.h"
 
 #define COUNT_OF(list) (sizeof(list) / sizeof *(list))
 
@@ -16,7 +17,7 @@ typedef double rounding(double x);
 
 static double single_precision(double x)
 {
-  return (double)(float)x;
+  return single_of(x);
 }
 
 /* --- streaming ---------------------------------------------------------------------------------------------------- */
@@ -130,14 +131,14 @@ static double bin_coordinate(const struct bin_twist *t, double at, double shift,
     return c < 0.0 ? c + cells : c;
   }
   if (t->single_sum)
-    x = (double)((float)(at * LATTICE_UNIT) + (float)(moved * LATTICE_UNIT)) * LATTICE_PER_A0;
+    x = single_of(single_of(at * LATTICE_UNIT) + single_of(moved * LATTICE_UNIT)) * LATTICE_PER_A0;
   x -= edge * floor(x / edge);
   if (t->upper_face)
     return ceil(x * LATTICE_UNIT) - 1.0;
   if (t->nearest)
     return fmod(rint(x * LATTICE_UNIT), box->cells[axis]);
   if (t->single)
-    return fmod((double)floorf((float)(x * LATTICE_UNIT)), box->cells[axis]);
+    return fmod(floor(single_of(x * LATTICE_UNIT)), box->cells[axis]);
   return floor(x * LATTICE_UNIT);
 }
 

@@ -9,6 +9,7 @@
 #include "oracle/contact_model.h"
 #include "oracle/patterns.h"
 #include "oracle/rows.h"
+#include "oracle/single.h"
 
 #define MOST_HITS 64
 #define FAR 64 /* images */
@@ -319,7 +320,7 @@ static uint32_t find_hits(const struct sweeper *s, uint32_t vertex, struct point
 
 static int64_t rounded(enum trial_rule rule, double a0)
 {
-  const double x = (rule == TRIAL_SINGLE ? (double)(float)a0 : a0) * LATTICE_PER_A0;
+  const double x = (rule == TRIAL_SINGLE ? single_of(a0) : a0) * LATTICE_PER_A0;
   return (int64_t)(rule == TRIAL_CUT ? trunc(x) : rule == TRIAL_DOWN ? floor(x) : rule == TRIAL_UP ? ceil(x) : rint(x));
 }
 
