@@ -157,7 +157,7 @@ static void add_range(struct maker *m, const char *name)
   for (uint32_t k = 0; k < m->u->n; k++)
     if (m->u->wrong[k])
       least = fmin(least, m->value[k]), most = fmax(most, m->value[k]);
-  const double cost = 5.0 + 0.5 * log2(m->u->n);
+  const double cost = 5.0 + log2(m->u->n);
   snprintf(text, sizeof text, "%.60s is %.10g or more", name, least);
   add_test(m, cost, is_least, least, text, NULL);
   snprintf(text, sizeof text, "%.60s is %.10g or less", name, most);
@@ -304,12 +304,19 @@ static double is_whole(double number)
   return isnan(number) ? NAN : number == floor(number);
 }
 
-static bool few_values(const struct pack_table *t, uint32_t column)
+static double largest(const struct pack_table *t, uint32_t column)
 {
   double most = 0.0;
   for (uint32_t row = 0; row < t->rows; row++)
     most = fmax(most, fabs(pack_value(t, row, column)));
-  return !t->real && most < 1e6;
+  return most;
+}
+
+/* What facts are made of a column of integers: those of 0 and 1 are no numbers. */
+static enum sort sort_of(const struct pack_table *t, uint32_t column)
+{
+  const double most = largest(t, column);
+  return t->real || most >= 1e6 ? NUMBER : most <= 1.0 ? EQUAL : SIGN | COUNT | PARITY;
 }
 
 static void collect_column(struct maker *m, const struct pack_table *t, uint32_t column, const char *cells)
@@ -321,8 +328,7 @@ static void collect_column(struct maker *m, const struct pack_table *t, uint32_t
            : own ? " along the same axis"
                  : "");
   take_column(m, t->name, column, cells);
-  make(m, SIGN, name);
-  make(m, !own && few_values(t, column) ? COUNT | PARITY : RANGE, name);
+  make(m, own ? NUMBER : sort_of(t, column), name);
   if (is_position(t)) {
     replace(m, cell_along);
     snprintf(name, sizeof name, "cell of %.30s%s%.20s", t->name, own ? " along the same axis" : ".",

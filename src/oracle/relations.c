@@ -174,8 +174,8 @@ static bool of_value(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
       {nothing, "NaN: 0/0, or the root or logarithm of a negative number"},
       {zero, "0 came out"},
       {negative, "sign: the negative of what is wanted"},
-      {half_change, "half a step: changed by half of what is wanted"},
-      {twice_change, "a step instead of half a step: changed by twice what is wanted"},
+      {half_change, "changed by half of what is wanted"},
+      {twice_change, "changed by twice what is wanted"},
       {other_change, "sign: changed by the negative of what is wanted"},
       {only_change, "what went in is replaced by the change, which is to be added to it"},
       {inverse, "inverted: 1/x for x"},
@@ -199,6 +199,7 @@ static bool by_factor(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
 {
   const size_t best = largest_wrong(e);
   const double c = e->theirs[best] / e->ours[best];
+  e->free = 1;
   for (size_t j = 0; j < (size_t)e->rows * e->columns; j++)
     e->guess[j] = c * e->ours[j];
   return k == 0 && isfinite(c) && c != 0.0 && c != 1.0 &&
@@ -209,6 +210,7 @@ static bool by_offset(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
 {
   const size_t best = largest_wrong(e);
   const double c = e->theirs[best] - e->ours[best];
+  e->free = 1;
   for (size_t j = 0; j < (size_t)e->rows * e->columns; j++)
     e->guess[j] = e->ours[j] + c;
   return k == 0 && isfinite(c) &&
@@ -218,6 +220,7 @@ static bool by_offset(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
 static bool by_change(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
 {
   double most = 0.0, c = NAN;
+  e->free = 1;
   for (uint32_t row = 0; row < e->rows; row++)
     for (uint32_t column = 0; column < e->columns; column++) {
       const double in = input(e, row, column), wanted = ours(e, row, column) - in;
@@ -259,6 +262,28 @@ static bool by_columns(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
                       pairs ? "" : t->component[from[k][2]]);
 }
 
+/* Two columns of any table, if only they are wrong. */
+static bool by_two_columns(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
+{
+  uint32_t wrong[2] = {0, 0}, count = 0;
+  for (uint32_t column = 0; column < e->columns; column++) {
+    bool any = false;
+    for (uint32_t row = 0; row < e->rows; row++)
+      any |= e->wrong[at(e, row, column)];
+    if (any && count < 2)
+      wrong[count] = column;
+    count += any;
+  }
+  if (k > 0 || count != 2)
+    return false;
+  for (uint32_t row = 0; row < e->rows; row++)
+    for (uint32_t j = 0; j < 2; j++)
+      e->guess[at(e, row, wrong[j])] = ours(e, row, wrong[1 - j]);
+  const struct pack_table *t = e->part[0].pair.ours;
+  return relation_say(text, "columns exchanged: %.20s is what %.20s should be, and %.20s what %.20s should",
+                      t->component[wrong[0]], t->component[wrong[1]], t->component[wrong[1]], t->component[wrong[0]]);
+}
+
 static bool by_one_column(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
 {
   if (e->columns != 3 || k >= 3)
@@ -292,6 +317,7 @@ static bool by_row_alike(struct evidence *e, uint32_t k, char text[RELATION_TEXT
 {
   const size_t best = largest_wrong(e) / e->columns * e->columns;
   char value[RELATION_TEXT] = "";
+  e->free = e->columns;
   for (uint32_t column = 0; column < e->columns && column < 4; column++)
     snprintf(value + strlen(value), sizeof value - strlen(value), " %.6g", e->theirs[best + column]);
   for (uint32_t row = 0; row < e->rows; row++)
@@ -340,16 +366,17 @@ static bool by_mass(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
 }
 
 const struct relation oracle_relations_any[] = {
-    {NULL, NULL, of_value, 1},
-    {NULL, NULL, by_columns, 3},
-    {NULL, NULL, by_one_column, 2},
-    {NULL, NULL, by_rows, 3},
-    {NULL, NULL, by_row_alike, 4},
-    {NULL, NULL, by_factor, 3},
-    {NULL, NULL, by_offset, 3},
-    {NULL, NULL, by_change, 3},
-    {NULL, NULL, by_modulus, 2},
-    {NULL, NULL, by_mass, 2},
+    {NULL, NULL, of_value, false},
+    {NULL, NULL, by_columns, false},
+    {NULL, NULL, by_two_columns, false},
+    {NULL, NULL, by_one_column, false},
+    {NULL, NULL, by_rows, false},
+    {NULL, NULL, by_row_alike, false},
+    {NULL, NULL, by_factor, false},
+    {NULL, NULL, by_offset, false},
+    {NULL, NULL, by_change, false},
+    {NULL, NULL, by_modulus, false},
+    {NULL, NULL, by_mass, false},
     {.make = NULL},
 };
 
@@ -368,9 +395,9 @@ bool oracle_one_sided(const struct evidence *e, char text[RELATION_TEXT])
     above += e->theirs[k] > e->ours[k];
   }
   const char *side = n < 8         ? NULL
-                     : below == n  ? "below what is wanted (rounded down, or cut?)"
+                     : below == n  ? "below what is wanted"
                      : above == n  ? "above what is wanted"
-                     : toward == n ? "toward zero (cut, not rounded?)"
+                     : toward == n ? "toward zero"
                      : away == n   ? "away from zero"
                                    : NULL;
   return side && relation_say(text, "one-sided: all %u wrong values are %s", n, side);

@@ -364,9 +364,9 @@ static bool kicks(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
 }
 
 const struct relation oracle_relations_fiber[] = {
-    {"bond_force", "out.force", bonds, 2},
-    {"bend_force", "out.force", bends, 2},
-    {"force", "out.force", forces, 2},
-    {"kick", "out.velocity", kicks, 2},
+    {"bond_force", "out.force", bonds, false},
+    {"bend_force", "out.force", bends, false},
+    {"force", "out.force", forces, false},
+    {"kick", "out.velocity", kicks, false},
     {.make = NULL},
 };

@@ -585,8 +585,8 @@ static bool swapped(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
 }
 
 const struct relation oracle_relations_random[] = {
-    {"random", "out.word", words, 8},      {"random", "out.uniform", uniforms, 4}, {"random", "out.normal", normals, 4},
-    {"random", "out.axis", axes, 4},       {"random", "out.axis", axis_length, 3}, {"shift", "out.shift", shifts, 2},
-    {NULL, "out.order", order_changed, 2}, {NULL, "out.order", orders, 2},         {"solve", "out.axis", axes, 4},
-    {"solve", "out.axis", axis_length, 3}, {"swap", "out.velocity", swapped, 3},   {.make = NULL},
+    {"random", "out.word", words, false},      {"random", "out.uniform", uniforms, false}, {"random", "out.normal", normals, false},
+    {"random", "out.axis", axes, false},       {"random", "out.axis", axis_length, false}, {"shift", "out.shift", shifts, false},
+    {NULL, "out.order", order_changed, false}, {NULL, "out.order", orders, false},         {"solve", "out.axis", axes, false},
+    {"solve", "out.axis", axis_length, false}, {"swap", "out.velocity", swapped, false},   {.make = NULL},
 };
