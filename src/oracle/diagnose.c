@@ -74,16 +74,17 @@ bool oracle_is_single(const struct oracle_pair *p, uint32_t rows)
   double worst = 0.0, size = 0.0;
   uint32_t wrong = 0;
   for (uint32_t column = 0; column < p->ours->columns; column++) {
-    double sum = 0.0, squares = 0.0;
+    double sum = 0.0, squares = 0.0, most = 0.0, off = 0.0;
     for (uint32_t row = 0; row < rows; row++) {
       const double ours = pack_value(p->ours, row, column), d = ours - pack_value(p->theirs, row, column);
       size = fmax(size, fabs(ours));
       worst = fabs(d) <= worst ? worst : fabs(d);
+      most = fmax(most, fabs(ours)), off = fabs(d) <= off ? off : fabs(d);
       sum += d;
       squares += d * d;
       wrong += d != 0.0;
     }
-    if (!(fabs(sum) <= 4.0 * sqrt(squares)))
+    if (!(fabs(sum) <= 4.0 * sqrt(squares)) || off > 0x1p-16 * most || (off > 0.0 && !p->ours->real && most < 0x1p30))
       return false;
   }
   return p->rounding < 0x1p-30 && wrong >= 8 && worst > 0x1p-32 * size && worst < 0x1p-16 * size;
@@ -103,7 +104,6 @@ const struct oracle_pattern oracle_patterns_any[] = {
 
 #define MOST_FITS 24
 #define MOST_TABLES 8
-#define AS_IF "as if in these rows only: " /* a cause, where it is not the whole story */
 
 struct search {
   struct evidence *e;
@@ -204,13 +204,14 @@ static void say_wrong_columns(const struct evidence *e, char text[RELATION_TEXT]
   snprintf(text + strlen(text), RELATION_TEXT - strlen(text), " only)");
 }
 
-/* All relations of a list that are right everywhere, or the first if they are of any operator. Told are those that
- * chance would not make fit. */
+/* All relations of a list that are right everywhere, if chance would not make them fit. One with free numbers is told
+ * alone only. */
 static void search_relations(struct search *s, const struct relation *r, bool any_operator)
 {
   struct {
     char text[RELATION_TEXT];
     double bits;
+    uint32_t free;
   } fit[MOST_FITS];
   struct evidence *e = s->e;
   uint32_t fits = 0;
@@ -226,23 +227,24 @@ static void search_relations(struct search *s, const struct relation *r, bool an
         say_wrong_columns(e, said);
       const enum evidence_fit how = evidence_judge(e);
       if (how == FIT_WHOLE && fits < MOST_FITS && (!r->together || makes_others(s, r, k))) {
-        fit[fits].bits = evidence_bits(e);
+        fit[fits].bits = evidence_bits(e), fit[fits].free = e->free;
         memcpy(fit[fits++].text, said, sizeof said);
       }
-      if (how == FIT_WRONG && !*s->partial && !r->together && evidence_bits(e) >= EVIDENCE_SURE + log2(s->tried))
-        snprintf(s->partial, RELATION_TEXT, "%s%.130s", any_operator ? "" : AS_IF, said);
+      if (how == FIT_WRONG && any_operator && !*s->partial && evidence_bits(e) >= EVIDENCE_SURE + log2(s->tried))
+        memcpy(s->partial, said, sizeof said);
     }
   }
   const double choice = any_operator ? evidence_ways(e->rows, e->wrong_rows) : evidence_choice(e);
-  for (uint32_t k = 0; k < fits && !(any_operator && s->named); k++)
-    if (fit[k].bits + choice >= EVIDENCE_SURE + log2(s->tried))
+  for (uint32_t k = 0; k < fits; k++)
+    if (fit[k].bits + choice >= EVIDENCE_SURE + log2(s->tried) && !(fit[k].free > 0 && s->named))
       oracle_name(s->text, &s->named, fit[k].text);
 }
 
 static bool search_all_relations(struct search *s)
 {
-  static const struct relation *const lists[] = {oracle_relations_random, oracle_relations_contact,
-                                                 oracle_relations_fiber, oracle_relations_solvent};
+  static const struct relation *const lists[] = {
+      oracle_relations_random, oracle_relations_permutation, oracle_relations_contact, oracle_relations_fiber,
+      oracle_relations_grid,   oracle_relations_sum,         oracle_relations_rotate,  oracle_relations_thermostat};
   for (size_t k = 0; k < sizeof lists / sizeof lists[0] && !s->named; k++)
     search_relations(s, lists[k], false);
   if (!s->named)
@@ -270,6 +272,8 @@ static void say_which_table(const struct oracle_pair *p, char text[ORACLE_TEXT])
 {
   const struct pack_table *other = NULL;
   uint32_t others = 0;
+  if (!is_for("bin", NULL, p) && !is_for("rotate", NULL, p) && !is_for("exchange", NULL, p))
+    return;
   for (size_t k = 0; k < p->pack->count; k++) {
     struct oracle_pair pair = *p;
     pair.ours = &p->pack->table[k];
@@ -301,8 +305,8 @@ static void say_size(const struct evidence *e, char *text)
     snprintf(text + strlen(text), ORACLE_TEXT - strlen(text), "; off by %.3g to %.3g", least, most);
 }
 
-/* Which rows are wrong, by an exact rule if there is one, and what their values are if a relation is right there. A
- * relation with a cause is told with a rule only. */
+/* Which rows are wrong, by an exact rule if there is one, and what their values are if a relation of any operator is
+ * right there. */
 static void describe(struct evidence *e, const char *partial, const char *unknown, char *text)
 {
   char rows[ROWS_TEXT], side[RELATION_TEXT] = "";
@@ -314,8 +318,6 @@ static void describe(struct evidence *e, const char *partial, const char *unknow
     if (exact)
       memcpy(rows, all, sizeof rows);
   }
-  if (!exact && strncmp(partial, AS_IF, strlen(AS_IF)) == 0)
-    partial = "";
   if (!*partial)
     oracle_one_sided(e, side);
   snprintf(text, ORACLE_TEXT, "%s%s%s%s%s", exact ? "" : unknown, exact ? "" : "; ", *partial ? partial : side,
@@ -367,7 +369,8 @@ static bool diagnose_sweep(const struct oracle_pair *p, bool beyond, const char 
   if (!beyond || !rows_follow || moves_are_right(p))
     return false;
   say_first_hit(p, unknown, text);
-  return oracle_judge_moves(p, text) || search_patterns(oracle_patterns_sweep, p, text) || true;
+  const bool events = strcmp(p->ours->name, "out.event") == 0;
+  return (events && oracle_judge_moves(p, unknown, text)) || search_patterns(oracle_patterns_sweep, p, text) || true;
 }
 
 void oracle_diagnose(const struct oracle_pair *p, bool beyond, char text[ORACLE_TEXT])

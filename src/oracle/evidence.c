@@ -74,7 +74,11 @@ static double choices(const struct evidence *e, uint32_t column)
     if (j == count)
       seen[count++] = x;
   }
-  return count > 1 ? log2(count - 1.0) : 0.0;
+  double most = 0.0;
+  for (uint32_t row = 0; row < e->rows; row++)
+    most = fmax(most, fabs(e->ours[(size_t)row * e->columns + column]));
+  /* Nearly all are different: then what counts is how large they may be. */
+  return count > 1 && count >= e->rows ? fmin(20.0, log2(1.0 + most)) : count > 1 ? log2(count - 1.0) : 0.0;
 }
 
 bool evidence_load(const struct oracle_pair *pair, struct evidence *e)
@@ -169,7 +173,8 @@ static double bits_of_value(const struct evidence *e, size_t k)
     return e->choice[k % e->columns];
   if (isnan(e->theirs[k]))
     return 20.0;
-  const double least = fmax(fmax(off, e->tolerance[k]), 0x1p-50 * fabs(e->theirs[k]));
+  const double doubt = error > e->tolerance[k] ? e->tolerance[k] : 0.0;
+  const double least = fmax(fmax(off, doubt), 0x1p-52 * fabs(e->theirs[k]));
   return fmin(20.0, fmax(0.0, log2(error / least)));
 }
 

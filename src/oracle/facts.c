@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/random.h"
+#include "contact/line.h"
 #include "oracle/patterns.h"
 
 /* --- sets --------------------------------------------------------------------------------------------------------- */
@@ -752,6 +753,90 @@ static void collect_events(struct maker *m)
           moves_own_bond);
 }
 
+/* --- single tests for a crossing ---------------------------------------------------------------------------------- */
+
+/* The five determinants of a test: whether one is exactly zero, and their largest difference, a0. */
+static bool test_points(const struct evidence_part *part, uint32_t row, struct point r[5])
+{
+  static const char *const names[5] = {"in.from", "in.to", "in.pivot", "in.a", "in.b"};
+  for (int k = 0; k < 5; k++) {
+    const struct pack_table *t = sibling(part, names[k]);
+    if (!oracle_is_vectors(t, false, row))
+      return false;
+    r[k] = oracle_point(t, row);
+  }
+  return true;
+}
+
+static double has_zero(const struct evidence_part *part, uint32_t row, uint32_t column)
+{
+  struct point r[5];
+  (void)column;
+  if (!test_points(part, row, r))
+    return NAN;
+  return !crossing_orientation(r[3], r[4], r[2], r[0]) || !crossing_orientation(r[3], r[4], r[2], r[1]) ||
+         !crossing_orientation(r[3], r[4], r[0], r[1]) || !crossing_orientation(r[0], r[1], r[2], r[3]) ||
+         !crossing_orientation(r[0], r[1], r[2], r[4]);
+}
+
+static double test_size(const struct evidence_part *part, uint32_t row, uint32_t column)
+{
+  struct point r[5];
+  double size = 0.0;
+  (void)column;
+  if (!test_points(part, row, r))
+    return NAN;
+  for (int k = 0; k < 5; k++)
+    size = fmax(size, vec3_norm(point_difference(r[k], r[(k + 1) % 5])));
+  return size;
+}
+
+static void collect_tests(struct maker *m)
+{
+  if (strcmp(m->u->e->part[0].pair.ours->place.operator_name, "crossing") != 0)
+    return;
+  make_of(m, FLAG, "a determinant is exactly zero|no determinant is zero", has_zero);
+  make_of(m, RANGE, "the largest difference of the points", test_size);
+}
+
+/* --- faces of cells ----------------------------------------------------------------------------------------------- */
+
+/* Position plus shift lies on a face of a cell; is more than one edge away from the box. */
+static double place_after_shift(const struct evidence_part *part, uint32_t row, bool far)
+{
+  const struct pack_table *r = oracle_input(&part->pair), *shift = sibling(part, "in.shift");
+  struct box box;
+  double found = 0.0;
+  if (!oracle_is_vectors(r, false, row) || !oracle_is_vectors(shift, false, 0) || !oracle_box(&part->pair, &box))
+    return NAN;
+  for (uint32_t k = 0; k < 3; k++) {
+    const uint64_t at = (uint64_t)r->value.integer[3 * (size_t)row + k] + (uint64_t)shift->value.integer[k];
+    const int64_t image = lattice_image((int64_t)at, box.edge[k]);
+    found = far ? fmax(found, image < -1 || image > 1) : fmax(found, (int64_t)at % LATTICE_CELL == 0);
+  }
+  return found;
+}
+
+static double is_on_face(const struct evidence_part *part, uint32_t row, uint32_t column)
+{
+  (void)column;
+  return place_after_shift(part, row, false);
+}
+
+static double is_far(const struct evidence_part *part, uint32_t row, uint32_t column)
+{
+  (void)column;
+  return place_after_shift(part, row, true);
+}
+
+static void collect_faces(struct maker *m)
+{
+  if (strcmp(m->u->e->part[0].pair.ours->place.operator_name, "bin") != 0)
+    return;
+  make_of(m, FLAG, "it lies on a face of a cell|it lies on no face of a cell", is_on_face);
+  make_of(m, FLAG, "it is more than one edge away|it is one edge away at most", is_far);
+}
+
 /* --- axes --------------------------------------------------------------------------------------------------------- */
 
 /* Points of the square that are tried before one is in the disk. */
@@ -787,6 +872,8 @@ void facts_collect(const struct units *u, struct facts *f)
     collect_cells(&m);
     collect_events(&m);
     collect_axes(&m);
+    collect_tests(&m);
+    collect_faces(&m);
     collect_siblings(&m);
   }
   free(m.value);

@@ -97,6 +97,12 @@ static double negative(const struct evidence *e, uint32_t row, uint32_t column)
   return -ours(e, row, column);
 }
 
+static double one(const struct evidence *e, uint32_t row, uint32_t column)
+{
+  (void)e, (void)row, (void)column;
+  return 1.0;
+}
+
 static double inverse(const struct evidence *e, uint32_t row, uint32_t column)
 {
   return 1.0 / ours(e, row, column);
@@ -173,6 +179,7 @@ static bool of_value(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
       {input, "nothing done: what came out is what went in"},
       {nothing, "NaN: 0/0, or the root or logarithm of a negative number"},
       {zero, "0 came out"},
+      {one, "1 came out"},
       {negative, "sign: the negative of what is wanted"},
       {half_change, "changed by half of what is wanted"},
       {twice_change, "changed by twice what is wanted"},
@@ -235,13 +242,14 @@ static bool by_change(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
 
 static bool by_modulus(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
 {
-  const int bits = 8 + (int)k;
-  if (k > 44 || e->part[0].pair.ours->real)
+  const bool is_signed = k % 2;
+  const int bits = 8 + (int)k / 2;
+  if (k > 88 || e->part[0].pair.ours->real)
     return false;
   const double range = ldexp(1.0, bits);
   for (size_t j = 0; j < (size_t)e->rows * e->columns; j++)
-    e->guess[j] = e->ours[j] - range * floor(e->ours[j] / range);
-  return relation_say(text, "an integer cut to %d bits", bits);
+    e->guess[j] = e->ours[j] - range * floor(e->ours[j] / range + (is_signed ? 0.5 : 0.0));
+  return relation_say(text, "an integer cut to %d bits%s", bits, is_signed ? " with sign" : "");
 }
 
 /* --- other rows and columns --------------------------------------------------------------------------------------- */

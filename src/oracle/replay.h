@@ -11,8 +11,8 @@
 /* True, and the text, if a guess makes theirs. */
 bool oracle_replay(const struct oracle_pair *pair, char text[ORACLE_TEXT]);
 
-/* True if moves are wrong, each judged alone, and a rule tells which, exactly: the text. Without a rule the text says
- * how many, if events differ. */
-bool oracle_judge_moves(const struct oracle_pair *pair, char text[ORACLE_TEXT]);
+/* True if moves are wrong, each judged alone: the text says how many crossings are missed and invented, and the rule for
+ * them if there is one, else `unknown`. */
+bool oracle_judge_moves(const struct oracle_pair *pair, const char *unknown, char text[ORACLE_TEXT]);
 
 #endif
