@@ -132,6 +132,8 @@ bool evidence_is(const struct evidence *e, size_t k, double x)
     return x == EVIDENCE_NAN;
   if (off == 0.0)
     return true;
+  if (!isfinite(x))
+    return false;
   return (off <= e->tolerance[k] || off <= 0x1p-40 * fabs(x)) &&
          (!e->wrong[k] || off <= 0x1p-8 * fabs(e->theirs[k] - e->ours[k]));
 }
@@ -178,19 +180,21 @@ static double bits_of_value(const struct evidence *e, size_t k)
   return fmin(20.0, fmax(0.0, log2(error / least)));
 }
 
+#define PAIRS 64 /* more tell nothing new */
+
 double evidence_bits(const struct evidence *e)
 {
-  size_t seen[8];
+  size_t seen[PAIRS];
   uint32_t count = 0;
   double bits = 0.0;
-  for (size_t k = 0; k < (size_t)e->rows * e->columns && count < 8 + e->free; k++) {
+  for (size_t k = 0; k < (size_t)e->rows * e->columns && count < PAIRS + e->free; k++) {
     bool known = !e->wrong[k];
-    for (uint32_t j = 0; j < count && j < 8; j++)
+    for (uint32_t j = 0; j < count && j < PAIRS; j++)
       known |= e->ours[seen[j]] == e->ours[k] && e->theirs[seen[j]] == e->theirs[k];
     if (known)
       continue;
     bits += count < e->free ? 0.0 : bits_of_value(e, k);
-    if (count < 8)
+    if (count < PAIRS)
       seen[count] = k;
     count++;
   }

@@ -315,8 +315,9 @@ static bool by_rows(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
     const uint32_t n = part->rows, other = k == 0 ? (own + 1) % n : k == 1 ? (own + n - 1) % n : n - 1 - own;
     const bool wraps = k < 2 && other != own + 1 && other + 1 != own;
     for (uint32_t column = 0; column < e->columns; column++)
-      e->guess[at(e, row, column)] =
-          wraps && n > 2 ? e->theirs[at(e, row, column)] : ours(e, part->first + other, column);
+      e->guess[at(e, row, column)] = !(wraps && n > 2)             ? ours(e, part->first + other, column)
+                                     : e->wrong_rows > 2 * e->parts ? e->theirs[at(e, row, column)]
+                                                                    : NAN;
   }
   return relation_say(text, "%s", which[k]);
 }

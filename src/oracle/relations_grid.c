@@ -156,6 +156,9 @@ static bool pushes(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
 
 /* --- cells -------------------------------------------------------------------------------------------------------- */
 
+/* Cells from coordinates in double precision: how they are wrapped, and whether the sum is of integers. */
+enum doubles { NO_DOUBLES, CELL_OF_DOUBLES, REMAINDER_OF_DOUBLES, CELL_OF_SUM, REMAINDER_OF_SUM };
+
 /* Where a coordinate is that is not wrapped as often as it takes. */
 enum outside { OUTSIDE_WRAPPED, OUTSIDE_KEPT, OUTSIDE_CLAMPED };
 
@@ -165,7 +168,8 @@ struct bin_twist {
   int64_t units;                    /* lattice units further on */
   int shift_of;                     /* 1 + component, of all axes */
   int turned;                       /* components of the shift further on */
-  bool in_doubles, doubles_wrapped, size; /* size: |x| */
+  enum doubles doubles;
+  bool size; /* |x| */
   bool wrapped_first, clamped, nearest, toward_zero, upper_face, single, half, single_sum;
   int wrapped_by; /* 1 + axis whose edge all are wrapped by */
   const char *text;
@@ -180,9 +184,12 @@ static int64_t wrapped_once(int64_t x, int64_t edge, enum outside how)
 /* In numbers of double precision, a0. */
 static double bin_in_doubles(const struct bin_twist *t, int64_t at, int64_t shift, double cells)
 {
-  const double x = (double)at * LATTICE_UNIT + (double)shift * LATTICE_UNIT;
-  const double c = t->doubles_wrapped ? floor(x - cells * floor(x / cells)) : floor(x) - cells * floor(floor(x) / cells);
-  return c;
+  const bool of_sum = t->doubles == CELL_OF_SUM || t->doubles == REMAINDER_OF_SUM;
+  const double x =
+      of_sum ? (double)(at + shift) * LATTICE_UNIT : (double)at * LATTICE_UNIT + (double)shift * LATTICE_UNIT;
+  const bool remainder = t->doubles == REMAINDER_OF_DOUBLES || t->doubles == REMAINDER_OF_SUM;
+  const double rest = fmod(remainder ? x : floor(x), cells);
+  return floor(rest < 0.0 ? rest + cells : rest);
 }
 
 static int64_t cell_of_units(int64_t x)
@@ -195,9 +202,9 @@ static double bin_coordinate(const struct bin_twist *t, int64_t at, int64_t shif
 {
   const int64_t edge = box->edge[t->wrapped_by ? t->wrapped_by - 1 : (int)axis];
   const double cells = box->cells[axis], factor = 1.0 + t->shift[axis];
-  const int64_t moved = (int64_t)rint(factor * (double)shift);
+  const int64_t moved = factor == 1.0 ? shift : (int64_t)rint(factor * (double)shift);
   int64_t x = at + moved + t->units;
-  if (t->in_doubles)
+  if (t->doubles)
     return bin_in_doubles(t, at, moved, cells);
   if (t->wrapped_first)
     return (double)cell_of_units(at - edge * lattice_image(at, edge) + moved);
@@ -224,7 +231,7 @@ static double bin_coordinate(const struct bin_twist *t, int64_t at, int64_t shif
   return (double)cell_of_units(x);
 }
 
-#define REACH ((int64_t)1 << 60) /* of positions and shifts, so that sums fit */
+#define REACH ((int64_t)1 << 61) /* of positions and shifts, so that sums fit */
 
 static bool bin_point(const struct evidence_part *part, uint32_t row, const struct bin_twist *t, struct box *box,
                       double c[3])
@@ -277,10 +284,11 @@ static bool bins(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
       {.once = OUTSIDE_CLAMPED, .text = "wrapped by one edge at most, then stopped at the faces: vertices may be further"},
       {.units = -1, .text = "cells are half-open: what lies on a face belongs to the cell above it (1 unit too low)"},
       {.units = 1, .text = "cells of coordinates that are 1 unit too high"},
-      {.in_doubles = true, .text = "cells from double precision: positions are integers of 64 bits"},
-      {.in_doubles = true,
-       .doubles_wrapped = true,
-       .text = "cells from coordinates wrapped in double precision: positions are integers of 64 bits"},
+      {.doubles = CELL_OF_DOUBLES, .text = "cells from position and shift in doubles: they are integers of 64 bits"},
+      {.doubles = REMAINDER_OF_DOUBLES,
+       .text = "cells from position and shift added and wrapped in doubles: they are integers of 64 bits"},
+      {.doubles = CELL_OF_SUM, .text = "cells from coordinates in doubles: they are integers of 64 bits"},
+      {.doubles = REMAINDER_OF_SUM, .text = "cells from coordinates wrapped in doubles: they are integers of 64 bits"},
       {.size = true, .text = "cells of |x|: negative coordinates are wrapped, not reflected"},
       {.shift_of = 1, .text = "the grid shift's x along all axes"},
       {.shift_of = 2, .text = "the grid shift's y along all axes"},

@@ -16,6 +16,7 @@ struct rescale_twist {
   double per_member, per_cell; /* degrees of freedom, more than 3 and -3 */
   double of_all;               /* more, once */
   bool by_mass;                /* in units of m, for members */
+  bool of_theirs;              /* relative energies */
   bool inverted, no_root, all_factors, all_cells, per_cell_factor, double_energy;
   const char *text;
 };
@@ -23,8 +24,8 @@ struct rescale_twist {
 static bool make_rescale(const struct evidence_part *part, const void *twist, double *guess)
 {
   const struct rescale_twist *t = twist;
-  const struct pack_table *load = oracle_sibling(&part->pair, "in.load"),
-                          *energy = oracle_sibling(&part->pair, "out.relative");
+  const struct pack_table *load = oracle_sibling(&part->pair, "in.load");
+  const struct pack_table *energy = (t->of_theirs ? oracle_sibling_of_theirs : oracle_sibling)(&part->pair, "out.relative");
   double wanted = 0.0, present = 0.0;
   if (!load || !energy || load->rows != part->rows || energy->rows != part->rows || part->pair.ours->columns != 1)
     return false;
@@ -65,6 +66,7 @@ static bool rescales(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
       {.per_member = 3.0, .per_cell = -3.0, .text = "6 (N - 1) degrees of freedom for 3 (N - 1)"},
       {.by_mass = true, .text = "degrees of freedom by the mass of members, not by their number"},
       {.all_cells = true, .text = "degrees of freedom of cells that are not active, too"},
+      {.of_theirs = true, .text = "the factor is right for their relative energies, which differ within tolerance"},
       {.inverted = true, .text = "the factor inverted: root of present over wanted"},
       {.no_root = true, .text = "the factor without its root"},
       {.inverted = true, .no_root = true, .text = "the factor inverted and without its root"},
@@ -84,7 +86,7 @@ struct gamma_twist {
   double third; /* d = a - 1/3 + this */
   double scale; /* of the energy, 0: 1 */
   double shape_scale, nine; /* times the shape, the 9 in 1/sqrt(9 d): less 1 */
-  bool c_of_shape, c_without_root, same_draw, squeezed, one_cell, sign_of_x;
+  bool c_of_shape, c_without_root, same_draw, squeezed, one_cell, sign_of_x, of_theirs;
   int later, entity, purpose, draw;
   int stride; /* draws per attempt, 0: 2 */
   bool second, untested, other_uniform, inverted, no_root, without_d, rank, test_turned, one_member_less, squared;
@@ -117,8 +119,8 @@ static double gamma_deviate(const struct gamma_twist *t, uint64_t seed, uint64_t
 static bool make_boltzmann(const struct evidence_part *part, const void *twist, double *guess)
 {
   const struct gamma_twist *t = twist;
-  const struct pack_table *load = oracle_sibling(&part->pair, "in.load"),
-                          *energy = oracle_sibling(&part->pair, "out.relative");
+  const struct pack_table *load = oracle_sibling(&part->pair, "in.load");
+  const struct pack_table *energy = (t->of_theirs ? oracle_sibling_of_theirs : oracle_sibling)(&part->pair, "out.relative");
   uint32_t rank = 0;
   if (!load || !energy || load->rows != part->rows || energy->rows != part->rows || part->pair.ours->columns != 1)
     return false;
@@ -176,6 +178,7 @@ static bool boltzmanns(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
       {.rank = true, .text = "random address: Gamma by the rank of the active cell"},
       {.purpose = 2, .text = "random address: Gamma with purpose 2"},
       {.purpose = 4, .text = "random address: Gamma with purpose 4"},
+      {.of_theirs = true, .text = "the factor is right for their relative energies, which differ within tolerance"},
       {.inverted = true, .text = "the factor inverted"},
       {.no_root = true, .text = "the factor without its root"},
       {.inverted = true, .no_root = true, .text = "the factor inverted and without its root"},

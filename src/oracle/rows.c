@@ -235,10 +235,20 @@ static void say_all(const struct units *u, char text[ROWS_TEXT])
   snprintf(text, ROWS_TEXT, "%s: %u of %u", u->values ? "all values" : "all rows", u->n, u->n);
 }
 
+/* Values tell nothing more than rows if each wrong row is wrong in all columns that are. */
+static bool rows_are_whole(const struct units *u)
+{
+  for (uint32_t row = 0; row < u->e->rows; row++)
+    for (uint32_t k = 0; u->wrong[row] && k < u->columns; k++)
+      if (!u->e->wrong[(size_t)row * u->e->columns + u->column[k]])
+        return false;
+  return true;
+}
+
 bool oracle_describe_rows(const struct evidence *e, char text[ROWS_TEXT])
 {
-  bool found = false, listed = false;
-  for (int values = 0; values < 2 && !found; values++) {
+  bool found = false, listed = false, whole = false;
+  for (int values = 0; values < 2 && !found && !whole; values++) {
     struct units u;
     struct facts f = {0};
     struct rule rule;
@@ -252,6 +262,7 @@ bool oracle_describe_rows(const struct evidence *e, char text[ROWS_TEXT])
       say_all(&u, text);
     else if (values == 0)
       listed = say_list(&u, text);
+    whole = values == 0 && rows_are_whole(&u);
     facts_free(&f);
     free(u.wrong);
   }
