@@ -180,3 +180,68 @@ bool oracle_judge_moves(const struct oracle_pair *p, const char *unknown, char t
   sweeper_finish(&s);
   return ok;
 }
+
+/* --- events that are right, and not reported ---------------------------------------------------------------------- */
+
+enum { REPORT_FACTS = 9 };
+static const char *const report_names = "vertex moving standing image_x image_y image_z executed image rank";
+
+static bool same_event(const struct pack_table *a, uint32_t row, const struct pack_table *b, uint32_t other)
+{
+  for (uint32_t k = 0; k < 6; k++)
+    if (pack_value(a, row, k) != pack_value(b, other, k))
+      return false;
+  return true;
+}
+
+static uint32_t count_alike(const struct pack_table *t, const struct pack_table *of, uint32_t row)
+{
+  uint32_t n = 0;
+  for (uint32_t k = 0; k < t->rows; k++)
+    n += same_event(of, row, t, k);
+  return n;
+}
+
+static void put_report(const struct pack_table *t, uint32_t row, int64_t facts[REPORT_FACTS])
+{
+  for (uint32_t k = 0; k < 7; k++)
+    facts[k] = (int64_t)pack_value(t, row, k);
+  facts[7] = facts[3] != 0 || facts[4] != 0 || facts[5] != 0;
+  facts[8] = 0;
+  for (uint32_t k = row; k > 0 && pack_value(t, k - 1, 0) == pack_value(t, row, 0); k--)
+    facts[8]++;
+}
+
+bool oracle_judge_reports(const struct oracle_pair *p, const char *unknown, char text[ORACLE_TEXT])
+{
+  const struct pack_table *mine = oracle_sibling(p, "out.event"), *its = oracle_sibling_of_theirs(p, "out.event");
+  struct pack ours = {0}, theirs = {0};
+  struct pack_place place = p->ours->place;
+  uint32_t missed = 0, invented = 0;
+  if (!mine || !its || mine->columns != 7 || its->columns != 7)
+    return false;
+  snprintf(place.operator_name, sizeof place.operator_name, "reports");
+  int64_t *facts = pack_put_integers(&ours, &place, "in.event", report_names, mine->rows);
+  int64_t *all = pack_put_integers(&ours, &place, "out.reported", "reported", mine->rows);
+  int64_t *found = pack_put_integers(&theirs, &place, "out.reported", "reported", mine->rows);
+  for (uint32_t k = 0; facts && all && found && k < mine->rows; k++) {
+    put_report(mine, k, &facts[(size_t)REPORT_FACTS * k]);
+    all[k] = 1, found[k] = count_alike(its, mine, k) > 0;
+    missed += !found[k];
+  }
+  for (uint32_t k = 0; k < its->rows; k++)
+    invented += count_alike(mine, its, k) == 0;
+  char rows[ROWS_TEXT] = "";
+  if (!ours.failed && !theirs.failed && missed > 0) {
+    const struct oracle_pair pair = {&ours, &theirs, &ours.table[1], &theirs.table[0], p->rounding};
+    struct evidence e = {0};
+    if (evidence_take(&pair, &e))
+      oracle_describe_rows(&e, rows);
+    evidence_free(&e);
+  }
+  snprintf(text, ORACLE_TEXT, "%s; all vertices end where they should, but %u events are not reported, %u that are none are%s%s",
+           unknown, missed, invented, *rows ? ": " : "", rows);
+  pack_free(&ours);
+  pack_free(&theirs);
+  return missed + invented > 0;
+}

@@ -103,6 +103,11 @@ static double one(const struct evidence *e, uint32_t row, uint32_t column)
   return 1.0;
 }
 
+static double complement(const struct evidence *e, uint32_t row, uint32_t column)
+{
+  return 1.0 - ours(e, row, column);
+}
+
 static double inverse(const struct evidence *e, uint32_t row, uint32_t column)
 {
   return 1.0 / ours(e, row, column);
@@ -185,6 +190,7 @@ static bool of_value(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
       {twice_change, "changed by twice what is wanted"},
       {other_change, "sign: changed by the negative of what is wanted"},
       {only_change, "what went in is replaced by the change, which is to be added to it"},
+      {complement, "the rest to 1: 1 - x for x"},
       {inverse, "inverted: 1/x for x"},
       {square, "squared, or a root that is missing: x^2 for x"},
       {root, "a root too many: sqrt(x) for x"},

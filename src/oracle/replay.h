@@ -15,4 +15,7 @@ bool oracle_replay(const struct oracle_pair *pair, char text[ORACLE_TEXT]);
  * them if there is one, else `unknown`. */
 bool oracle_judge_moves(const struct oracle_pair *pair, const char *unknown, char text[ORACLE_TEXT]);
 
+/* The same where all vertices end as they should: which events are not reported. False if none is missing or invented. */
+bool oracle_judge_reports(const struct oracle_pair *pair, const char *unknown, char text[ORACLE_TEXT]);
+
 #endif
