@@ -157,8 +157,9 @@ static bool pierces(enum side_rule rule, bool a, bool b, bool side)
 
 bool contact_crosses(const struct contact_twist *t, const struct contact_points *r)
 {
-  const int before = sign_of(t, r->a, r->b, r->pivot, r->from), after = sign_of(t, r->a, r->b, r->pivot, r->to);
-  const int path = sign_of(t, r->a, r->b, r->from, r->to);
+  const int turn = t->bond_turned ? -1 : 1;
+  const int before = turn * sign_of(t, r->a, r->b, r->pivot, r->from);
+  const int after = turn * sign_of(t, r->a, r->b, r->pivot, r->to), path = turn * sign_of(t, r->a, r->b, r->from, r->to);
   const int a = sign_of(t, r->from, r->to, r->pivot, r->a), b = sign_of(t, r->from, r->to, r->pivot, r->b);
   if ((t->zero[0] == ZERO_MISSES && (!before || !after)) || (t->zero[1] == ZERO_MISSES && !path) ||
       (t->zero[2] == ZERO_MISSES && (!a || !b)))
@@ -324,6 +325,7 @@ const struct contact_twist contact_test_twists[] = {
     {.exact = WITHOUT_CARRY,
      .unfiltered = true,
      .text = "determinants in several words without the carry from the low one to the high one"},
+    {.bond_turned = true, .text = "the standing bond taken the other way round in the volumes: zero counts as negative there"},
     {.change_of_sign = CHANGE_ANY, .text = "the first volume's sign need not change (condition 1)"},
     {.change_of_sign = CHANGE_NONE, .text = "the first volume's sign must stay, it should change (condition 1)"},
     {.change_of_sign = CHANGE_UP, .text = "crossings are found from the negative to the positive side only (condition 1)"},

@@ -76,6 +76,7 @@ struct contact_twist {
   enum mass_rule mass, mass_after; /* in dP, in the velocities */
   int s_term, standing_term, denominator_term; /* 1: sign of its first term, 2: of its second; 3, 4: left out */
   enum contact_place normal_place;
+  bool bond_turned; /* b - a for a - b in the volumes */
   bool unfiltered, time_from_end, time_of_sum, s_from_pivot, standing_from_b, s_half, standing_half, unclamped;
   bool clipped, clipped_above, absolute, unsquared, unlevered, approach_without_normal;
   unsigned no_approach, no_compliance, no_change; /* sets of vertices left out */

@@ -96,7 +96,7 @@ static bool is_single(const struct oracle_pair *p)
 }
 
 const struct oracle_pattern oracle_patterns_any[] = {
-    {NULL, NULL, "single precision somewhere: right to 5 to 8 digits (--single has its tolerances)", is_single},
+    {NULL, NULL, ORACLE_AS_SINGLE, is_single},
     {.meaning = NULL},
 };
 
@@ -379,7 +379,7 @@ void oracle_diagnose(const struct oracle_pair *p, bool beyond, char text[ORACLE_
   struct evidence e = {0};
   struct search s = {.e = &e, .text = text};
   const char *const unknown =
-      beyond ? "none of those known" : "order of operations, fused multiply-add, or library functions";
+      beyond ? "none of those known" : "as of another order of operations, fused multiply-add, or library functions";
   snprintf(text, ORACLE_TEXT, "%s", unknown);
   if (p->ours->columns != p->theirs->columns || (is_for("sweep", NULL, p) && diagnose_sweep(p, beyond, unknown, text)))
     return;

@@ -105,8 +105,12 @@ bool evidence_take(const struct oracle_pair *pair, struct evidence *e)
 {
   if (!evidence_load(pair, e))
     return false;
-  if (e->wrongs == 0)
+  if (e->wrongs == 0) {
     evidence_count_all(e);
+    /* What is off by rounding only is held against guesses without any. */
+    for (size_t k = 0; !pair->ours->real && k < (size_t)e->rows * e->columns; k++)
+      e->tolerance[k] = 0.0;
+  }
   return e->wrongs > 0;
 }
 

@@ -63,7 +63,7 @@ void facts_of_places(struct maker *m)
   facts_make_of(m, EQUAL, "the row's number modulo 3", remainder_of_3);
   if (m->u->e->parts > 1)
     facts_make_of(m, EQUAL, "the step", step_number);
-  if (m->u->values || m->u->e->columns == 1) {
+  if ((m->u->values || m->u->e->columns == 1) && strcmp(m->u->e->part[0].pair.ours->name, "out.found") != 0) {
     facts_make_of(m, NUMBER, "the right value", right_value);
     facts_make_of(m, FLAG, "the right value is 2^31 or more|the right value is below 2^31", is_large_word);
   }

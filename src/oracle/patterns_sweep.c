@@ -28,7 +28,6 @@ static bool hits_single(const struct oracle_pair *p)
 
 const struct oracle_pattern oracle_patterns_sweep[] = {
     {"sweep", NULL, "no velocity changes, though hits are found: no exchange of momentum", .fits = no_exchange},
-    {"sweep", "out.hit", "single precision somewhere: right to 5 to 8 digits (--single has its tolerances)",
-     .fits = hits_single},
+    {"sweep", "out.hit", ORACLE_AS_SINGLE, .fits = hits_single},
     {.meaning = NULL},
 };

@@ -260,15 +260,26 @@ static bool by_modulus(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
 
 /* --- other rows and columns --------------------------------------------------------------------------------------- */
 
+static bool is_wrong_column(const struct evidence *e, uint32_t column)
+{
+  bool any = false;
+  for (uint32_t row = 0; row < e->rows; row++)
+    any |= e->wrong[at(e, row, column)];
+  return any;
+}
+
 static bool by_columns(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
 {
   static const uint8_t from[][3] = {{1, 0, 2}, {0, 2, 1}, {2, 1, 0}, {1, 2, 0}, {2, 0, 1}};
   const bool pairs = e->columns == 2;
   if (k >= (pairs ? 1U : 5U) || (e->columns != 2 && e->columns != 3))
     return false;
+  bool moved = true; /* only wrong columns, and all of them */
+  for (uint32_t column = 0; column < e->columns; column++)
+    moved &= (from[k][column] != column) == is_wrong_column(e, column);
   for (uint32_t row = 0; row < e->rows; row++)
     for (uint32_t column = 0; column < e->columns; column++)
-      e->guess[at(e, row, column)] = ours(e, row, from[k][column]);
+      e->guess[at(e, row, column)] = moved ? ours(e, row, from[k][column]) : NAN;
   const struct pack_table *t = e->part[0].pair.ours;
   return relation_say(text, "columns exchanged: %.10s %.10s%s%.10s are what %.10s %.10s%s%.10s should be",
                       t->component[0], t->component[1], pairs ? "" : " ", pairs ? "" : t->component[2],
@@ -281,9 +292,7 @@ static bool by_two_columns(struct evidence *e, uint32_t k, char text[RELATION_TE
 {
   uint32_t wrong[2] = {0, 0}, count = 0;
   for (uint32_t column = 0; column < e->columns; column++) {
-    bool any = false;
-    for (uint32_t row = 0; row < e->rows; row++)
-      any |= e->wrong[at(e, row, column)];
+    const bool any = is_wrong_column(e, column);
     if (any && count < 2)
       wrong[count] = column;
     count += any;
@@ -305,7 +314,7 @@ static bool by_one_column(struct evidence *e, uint32_t k, char text[RELATION_TEX
   for (uint32_t row = 0; row < e->rows; row++)
     for (uint32_t column = 0; column < 3; column++)
       e->guess[at(e, row, column)] = ours(e, row, k);
-  return relation_say(text, "the same along all axes: that of %s", e->part[0].pair.ours->component[k]);
+  return relation_say(text, "the same along axes: that of %s", e->part[0].pair.ours->component[k]);
 }
 
 /* The numbers of another row of the same part. */

@@ -206,6 +206,7 @@ struct bend_twist {
   int kappa_of; /* -1, 1: of the neighbor */
   bool cosine_squared, projection_squared_before, projection_squared_after, lengths_before, lengths_after;
   bool middle_of_before, middle_of_after, unprojected_before, unprojected_after, of_both;
+  bool squared_before, squared_after, turned_before, turned_after;
   double kappa;
   const char *text;
 };
@@ -220,10 +221,10 @@ static void add_bend(const struct fibers *f, const struct bend_twist *t, int64_t
   const double kappa = (1.0 + t->kappa) * constant(f, t->kappa_of < 0 ? prev : t->kappa_of > 0 ? next : v, BENDING);
   const double dot = vec3_dot(u0, u1);
   const double c = t->no_projection ? 0.0 : t->cosine_turned ? -dot : t->cosine_squared ? dot * dot : dot;
-  const double c0 = t->projection_squared_before ? dot * dot : t->unprojected_before ? 0.0 : c;
-  const double c1 = t->projection_squared_after ? dot * dot : t->unprojected_after ? 0.0 : c;
-  const double p0 = t->undivided_before ? 1.0 : t->lengths_after ? i1 : t->of_both ? i0 * i1 : t->squared ? i0 * i0 : t->exchanged ? i1 : i0;
-  const double p1 = t->undivided_after ? 1.0 : t->lengths_before ? i0 : t->of_both ? i0 * i1 : t->squared ? i1 * i1 : t->exchanged ? i0 : i1;
+  const double c0 = t->turned_before ? -dot : t->projection_squared_before ? dot * dot : t->unprojected_before ? 0.0 : c;
+  const double c1 = t->turned_after ? -dot : t->projection_squared_after ? dot * dot : t->unprojected_after ? 0.0 : c;
+  const double p0 = t->undivided_before ? 1.0 : t->lengths_after ? i1 : t->of_both ? i0 * i1 : t->squared || t->squared_before ? i0 * i0 : t->exchanged ? i1 : i0;
+  const double p1 = t->undivided_after ? 1.0 : t->lengths_before ? i0 : t->of_both ? i0 * i1 : t->squared || t->squared_after ? i1 * i1 : t->exchanged ? i0 : i1;
   const struct vec3 a = vec3_scale((1.0 + t->before) * -kappa * p0, vec3_add_scaled(u1, -c0, u0));
   const struct vec3 b = vec3_scale((1.0 + t->after) * kappa * p1, vec3_add_scaled(u0, -c1, u1));
   put(force, prev, 1.0, a);
@@ -291,6 +292,10 @@ static bool bends(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
       {.undivided_before = true, .text = "the bend's force on the vertex before without 1/length"},
       {.undivided_after = true, .text = "the bend's force on the vertex after without 1/length"},
       {.squared = true, .text = "bends with 1/length squared"},
+      {.squared_before = true, .text = "A with 1/length squared"},
+      {.squared_after = true, .text = "B with 1/length squared"},
+      {.turned_before = true, .text = "sign of the projection in A: u1 + c u0"},
+      {.turned_after = true, .text = "sign of the projection in B: u0 + c u1"},
       {.roots_left_out = true, .text = "lengths of bends without their root"},
       {.no_projection = true, .text = "bends without their projection: u1 for u1 - c u0"},
       {.cosine_turned = true, .text = "sign of the projection: u1 + c u0 for u1 - c u0"},

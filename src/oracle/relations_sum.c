@@ -59,6 +59,7 @@ static uint32_t cell_of(const struct members *m, int vertices, uint32_t k)
 struct member_twist {
   double power, scale; /* power of the mass, more than 1; scale, 0: 1 */
   double center;       /* times, less 1 */
+  double solvent;      /* its mass, 0: 1 */
   bool of_squares;     /* v.v - c.c */
   uint32_t no_first_solvent, no_last_solvent, no_first_vertices, no_last_vertices; /* so many */
   rounding *round, *before;
@@ -76,7 +77,7 @@ static double weight(const struct members *m, const struct member_twist *t, int 
   const bool out = (t->no_solvent && !vertices) || (t->no_vertices && vertices) ||
                    (!vertices && (k < t->no_first_solvent || k + t->no_last_solvent >= m->n[0])) ||
                    (vertices && (k < t->no_first_vertices || k + t->no_last_vertices >= m->n[1]));
-  return out ? 0.0 : pow(mass, 1.0 + t->power);
+  return out ? 0.0 : (!vertices && t->solvent != 0.0 ? t->solvent : 1.0) * pow(mass, 1.0 + t->power);
 }
 
 /* Number k of members left out at either end of a list: 0 .. 4 MOST_LEFT_OUT - 1. */
@@ -125,6 +126,8 @@ static bool momenta(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
       {.power = -1.0, .text = "momentum without the mass: vertices count as solvent"},
       {.power = 1.0, .text = "momentum with the mass squared"},
       {.power = -2.0, .text = "momentum with the mass inverted: v/M for M v"},
+      {.solvent = 2.0, .text = "momentum with 2 for the mass of solvent: it is 1"},
+      {.solvent = 0.5, .text = "momentum with 1/2 for the mass of solvent: it is 1"},
       {.power = -0.5, .text = "momentum with the root of the mass"},
       {.whole_masses = true, .text = "momentum with masses cut to integers"},
       {.from_next = true, .text = "momentum with the mass of the next vertex"},
@@ -276,15 +279,21 @@ struct center_twist {
   enum divisor by;
   bool all_cells;
   double least;
+  int momentum_of, load_of; /* cells further on */
   const char *text;
 };
+
+static uint32_t further(const struct pack_table *t, uint32_t row, int by)
+{
+  return (row + t->rows + (uint32_t)by) % t->rows;
+}
 
 static double center_value(const struct evidence_part *part, uint32_t row, uint32_t column, const void *twist)
 {
   const struct center_twist *t = twist;
   const struct pack_table *p = oracle_sibling(&part->pair, "in.momentum"),
                           *load = oracle_sibling(&part->pair, "in.load");
-  const double n = load ? pack_value(load, row, 0) : NAN, mass = load ? pack_value(load, row, 1) * CELL_MASS_UNIT : NAN;
+  const double n = load ? pack_value(load, row, 0) : NAN, mass = load ? pack_value(load, further(load, row, t->load_of), 1) * CELL_MASS_UNIT : NAN;
   if (!p || isnan(n))
     return NAN;
   if (n < (t->all_cells ? 1.0 : t->least > 0.0 ? t->least : 2.0))
@@ -304,7 +313,7 @@ static double center_value(const struct evidence_part *part, uint32_t row, uint3
                     : t->by == BY_MASS_TWICE      ? 2.0 * mass
                     : t->by == BY_WHOLE_MASS ? floor(mass)
                                              : mass / CELL_MASS_UNIT;
-  return pack_value(p, row, column) / CELL_MOMENTUM_SCALE / by;
+  return pack_value(p, further(p, row, t->momentum_of), column) / CELL_MOMENTUM_SCALE / by;
 }
 
 static bool centers(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
@@ -324,6 +333,10 @@ static bool centers(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
       {.by = BY_MASS_AND_NUMBER, .text = "center by the mass times the number of members"},
       {.by = BY_MEAN_MASS, .text = "center by the mean mass of members"},
       {.by = BY_MASS_TWICE, .text = "center by twice the mass"},
+      {.momentum_of = 1, .text = "center with the momentum of the next cell"},
+      {.momentum_of = -1, .text = "center with the momentum of the cell before"},
+      {.load_of = 1, .text = "center with the mass of the next cell"},
+      {.load_of = -1, .text = "center with the mass of the cell before"},
       {.all_cells = true, .text = "centers of cells of one member, too: they are not active"},
       {.least = 3.0, .text = "cells of two members are not active: from 2 members on they are"},
   };

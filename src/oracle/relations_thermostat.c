@@ -86,7 +86,7 @@ struct gamma_twist {
   double third; /* d = a - 1/3 + this */
   double scale; /* of the energy, 0: 1 */
   double shape_scale, nine; /* times the shape, the 9 in 1/sqrt(9 d): less 1 */
-  bool c_of_shape, c_without_root, same_draw, squeezed, one_cell, sign_of_x, of_theirs;
+  bool c_of_shape, c_without_root, same_draw, squeezed, one_cell, sign_of_x, of_theirs, normal_of_test;
   int later, entity, purpose, draw;
   int stride; /* draws per attempt, 0: 2 */
   bool second, untested, other_uniform, inverted, no_root, without_d, rank, test_turned, one_member_less, squared;
@@ -102,7 +102,7 @@ static double gamma_deviate(const struct gamma_twist *t, uint64_t seed, uint64_t
   for (uint32_t attempt = 0; attempt < 256; attempt++) {
     const uint32_t draw = attempt * (uint32_t)(t->stride ? t->stride : 2) + (uint32_t)t->draw;
     double pair[2];
-    random_normal_pair(random_at(seed, purpose, draw, step, cell), pair);
+    random_normal_pair(random_at(seed, purpose, draw + (t->normal_of_test ? 1 : 0), step, cell), pair);
     const double x = pair[t->second],
                  w = random_uniform(random_at(seed, purpose, draw + (t->same_draw ? 0 : 1), step, cell), t->other_uniform);
     const double root = 1.0 + c * x, v = t->squared ? root * root : root * root * root;
@@ -154,6 +154,8 @@ static bool boltzmanns(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
       {.other_uniform = true, .text = "Gamma with uniform 1 of the test's draw: it takes uniform 0"},
       {.untested = true, .text = "Gamma without its test: the first attempt is taken where it should be rejected, too"},
       {.same_draw = true, .text = "Gamma's uniform from the draw of the normal: it is of the next draw"},
+      {.normal_of_test = true, .text = "Gamma's normal from the draw of the uniform: it is of the draw before"},
+      {.third = -1.0 / 6.0, .text = "Gamma with d = a - 1/2: it is a - 1/3"},
       {.squeezed = true, .text = "Gamma with the squeeze 1 - 0.0331 x^4 for the test with logarithms"},
       {.shape_scale = 1.0, .text = "Gamma of twice the shape: 3 (N - 1)/2"},
       {.shape_scale = -1.0 / 3.0, .text = "Gamma of shape N - 1: 3 (N - 1)/2"},

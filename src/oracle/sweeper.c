@@ -133,7 +133,7 @@ static bool takes_image(const struct sweep_twist *t, const int64_t image[3])
     const int64_t away = image[k] < 0 ? -image[k] : image[k];
     size += away;
     farthest = most(farthest, away);
-    if ((t->above_only && image[k] < 0) || (t->below_only && image[k] > 0) || (t->no_axis == k + 1 && image[k] != 0))
+    if ((t->above_only && image[k] < 0) || (t->below_only && image[k] > 0) || (t->no_axis == k + 1 && image[k] != 0) || (t->near_axis == k + 1 && away > 1))
       return false;
   }
   return !(t->images == 1 && size > 0) && !(t->images == 2 && farthest > 1) && !(t->one_axis && size > 1);

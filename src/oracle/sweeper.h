@@ -57,7 +57,7 @@ struct sweep_twist {
   enum pivot_rule pivot;
   int images; /* 1: none; 2: one box around; else any */
   bool above_only, below_only, one_axis, negated, report_negated;
-  int no_axis, edge_of; /* 1 + axis */
+  int no_axis, near_axis, edge_of; /* 1 + axis; near: one box away at most */
   enum exclusion_rule exclusion;
   enum partner_rule partners;
   enum bond_rule bonds;
@@ -88,7 +88,6 @@ struct sweeper {
   uint32_t cursor; /* of their events */
   double tolerance;
 };
-
 
 /* The tables of the pair's sweep; false if one is missing, or is not of its shape. */
 bool sweeper_take(const struct oracle_pair *p, struct sweeper *s);

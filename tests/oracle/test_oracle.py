@@ -373,8 +373,8 @@ class OracleTest(unittest.TestCase):
         self.assert_named(self.events(change=swap_lever), "1 - x for x (in s, s_standing only)")
         self.assert_named(self.events(change=turn), "normal turned")
         self.assert_named(self.events(change=half), "a constant factor: 0.5")
-        self.assert_named(self.events(change=none), "0 came out (in executed only)")
-        self.assert_named(self.events(change=every), "wrong exactly in", "where the right value is 0")
+        self.assert_named(self.events(change=none), "executed is never set")
+        self.assert_named(self.events(change=every), "1 came out (in executed only)")
         count = [0]
 
         def all_but_third(event):
