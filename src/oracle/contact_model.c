@@ -38,8 +38,8 @@ static int sign_of_double(double x)
 /* True if doubles cannot tell the sign: docs/porting.md has the bound. */
 static bool is_doubtful(struct vec3 p, struct vec3 q, struct vec3 r)
 {
-  const double size = fabs(r.x) * (fabs(p.y * q.z) + fabs(p.z * q.y)) + fabs(r.y) * (fabs(p.z * q.x) + fabs(p.x * q.z)) +
-                      fabs(r.z) * (fabs(p.x * q.y) + fabs(p.y * q.x));
+  const double size = fabs(r.x) * (fabs(p.y * q.z) + fabs(p.z * q.y)) +
+                      fabs(r.y) * (fabs(p.z * q.x) + fabs(p.x * q.z)) + fabs(r.z) * (fabs(p.x * q.y) + fabs(p.y * q.x));
   return !(fabs(volume(p, q, r)) > 16.0 * 0x1p-53 * size);
 }
 
@@ -159,7 +159,8 @@ bool contact_crosses(const struct contact_twist *t, const struct contact_points 
 {
   const int turn = t->bond_turned ? -1 : 1;
   const int before = turn * sign_of(t, r->a, r->b, r->pivot, r->from);
-  const int after = turn * sign_of(t, r->a, r->b, r->pivot, r->to), path = turn * sign_of(t, r->a, r->b, r->from, r->to);
+  const int after = turn * sign_of(t, r->a, r->b, r->pivot, r->to),
+            path = turn * sign_of(t, r->a, r->b, r->from, r->to);
   const int a = sign_of(t, r->from, r->to, r->pivot, r->a), b = sign_of(t, r->from, r->to, r->pivot, r->b);
   if ((t->zero[0] == ZERO_MISSES && (!before || !after)) || (t->zero[1] == ZERO_MISSES && !path) ||
       (t->zero[2] == ZERO_MISSES && (!a || !b)))
@@ -236,15 +237,15 @@ struct contact_hit contact_describe(const struct contact_twist *t, const struct 
 static double inverse_mass(enum mass_rule rule, const double mass[4], int k)
 {
   const double sum = mass[0] + mass[1] + mass[2] + mass[3];
-  return rule == MASS_NONE                                          ? 1.0
-         : rule == MASS_TIMES                                       ? mass[k]
-         : rule >= MASS_OF_MOVER && rule <= MASS_OF_B               ? 1.0 / mass[rule - MASS_OF_MOVER]
-         : rule == MASS_OF_BOND                                     ? 1.0 / mass[k / 2 * 2]
-         : rule == MASS_MEAN                                        ? 4.0 / sum
-         : rule == MASS_SUM                                         ? 1.0 / sum
-         : rule == MASS_SQUARED                                     ? 1.0 / (mass[k] * mass[k])
-         : rule == MASS_ROOT                                        ? 1.0 / sqrt(mass[k])
-                                                                    : 1.0 / mass[k];
+  return rule == MASS_NONE                            ? 1.0
+         : rule == MASS_TIMES                         ? mass[k]
+         : rule >= MASS_OF_MOVER && rule <= MASS_OF_B ? 1.0 / mass[rule - MASS_OF_MOVER]
+         : rule == MASS_OF_BOND                       ? 1.0 / mass[k / 2 * 2]
+         : rule == MASS_MEAN                          ? 4.0 / sum
+         : rule == MASS_SUM                           ? 1.0 / sum
+         : rule == MASS_SQUARED                       ? 1.0 / (mass[k] * mass[k])
+         : rule == MASS_ROOT                          ? 1.0 / sqrt(mass[k])
+                                                      : 1.0 / mass[k];
 }
 
 static void levers_of(const struct contact_twist *t, const struct contact_hit *hit, double lever[4])
@@ -289,206 +290,3 @@ double contact_exchange(const struct contact_twist *t, const struct contact_hit 
   }
   return impulse;
 }
-
-/* --- guesses ------------------------------------------------------------------------------------------------------ */
-
-const struct contact_twist contact_test_twists[] = {
-    {.zero = {ZERO_POSITIVE, ZERO_RIGHT, ZERO_RIGHT}, .text = "a determinant that is exactly zero counts as positive in condition 1 whatever `flip` says: there `flip` turns it"},
-    {.zero = {ZERO_NEGATIVE, ZERO_NEGATIVE, ZERO_NEGATIVE}, .text = "a determinant that is exactly zero counts as negative: it counts as positive, but for `flip` in condition 1"},
-    {.zero = {ZERO_NEGATIVE, ZERO_RIGHT, ZERO_RIGHT}, .text = "a determinant that is exactly zero counts as negative in condition 1: it counts as positive, but for `flip`"},
-    {.zero = {ZERO_FLIPS_OTHERWISE, ZERO_RIGHT, ZERO_RIGHT}, .text = "a determinant that is exactly zero: `flip` is turned round in condition 1"},
-    {.zero = {ZERO_RIGHT, ZERO_FLIPS, ZERO_FLIPS}, .text = "a determinant that is exactly zero: `flip` is for condition 1 only, not 2 and 3"},
-    {.zero = {ZERO_RIGHT, ZERO_FLIPS, ZERO_RIGHT}, .text = "a determinant that is exactly zero: `flip` is for condition 1 only, not 2"},
-    {.zero = {ZERO_RIGHT, ZERO_RIGHT, ZERO_FLIPS}, .text = "a determinant that is exactly zero: `flip` is for condition 1 only, not 3"},
-    {.zero = {ZERO_FLIPS_OTHERWISE, ZERO_FLIPS_OTHERWISE, ZERO_FLIPS_OTHERWISE}, .text = "a determinant that is exactly zero: `flip` is turned round, and is for condition 1 only"},
-    {.zero = {ZERO_MISSES, ZERO_MISSES, ZERO_MISSES}, .text = "a determinant that is exactly zero counts as no crossing: it counts as positive, but for `flip` in condition 1"},
-    {.zero = {ZERO_MISSES, ZERO_RIGHT, ZERO_RIGHT}, .text = "a determinant that is exactly zero counts as no crossing in condition 1: it counts as positive, but for `flip`"},
-    {.zero = {ZERO_RIGHT, ZERO_NEGATIVE, ZERO_RIGHT}, .text = "a determinant that is exactly zero counts as negative in condition 2: it counts as positive"},
-    {.zero = {ZERO_RIGHT, ZERO_MISSES, ZERO_RIGHT}, .text = "a determinant that is exactly zero counts as no crossing in condition 2: it counts as positive"},
-    {.zero = {ZERO_RIGHT, ZERO_RIGHT, ZERO_NEGATIVE}, .text = "a determinant that is exactly zero counts as negative in condition 3: it counts as positive"},
-    {.zero = {ZERO_RIGHT, ZERO_RIGHT, ZERO_MISSES}, .text = "a determinant that is exactly zero counts as no crossing in condition 3: it counts as positive"},
-    {.zero = {ZERO_RIGHT, ZERO_NEGATIVE, ZERO_NEGATIVE}, .text = "a determinant that is exactly zero counts as negative in conditions 2 and 3: it counts as positive"},
-    {.zero = {ZERO_RIGHT, ZERO_MISSES, ZERO_MISSES}, .text = "a determinant that is exactly zero counts as no crossing in conditions 2 and 3: it counts as positive"},
-    {.zero = {ZERO_MISSES, ZERO_RIGHT, ZERO_MISSES}, .text = "a determinant that is exactly zero counts as no crossing in conditions 1 and 3: it counts as positive, but for `flip`"},
-    {.exact = IN_DOUBLES, .text = "determinants in doubles alone: their signs are exact"},
-    {.exact = IN_SINGLES, .text = "determinants in single precision: their signs are exact"},
-    {.exact = DOUBT_IS_ZERO, .text = "determinants that doubles cannot tell count as zero: their signs are exact"},
-    {.exact = MINORS_OF_64, .text = "minors of determinants in integers of 64 bits: they need up to 128, all of it 192"},
-    {.exact = MINORS_OF_64,
-     .unfiltered = true,
-     .text = "minors of determinants in integers of 64 bits: they need up to 128, all of it 192"},
-    {.exact = ALL_OF_64, .text = "determinants in integers of 64 bits: they need up to 192"},
-    {.exact = ALL_OF_64, .unfiltered = true, .text = "determinants in integers of 64 bits: they need up to 192"},
-    {.exact = ALL_OF_128, .text = "determinants in integers of 128 bits: they need up to 192"},
-    {.exact = ALL_OF_128, .unfiltered = true, .text = "determinants in integers of 128 bits: they need up to 192"},
-    {.exact = WITHOUT_CARRY, .text = "determinants in several words without the carry from the low one to the high one"},
-    {.exact = WITHOUT_CARRY,
-     .unfiltered = true,
-     .text = "determinants in several words without the carry from the low one to the high one"},
-    {.bond_turned = true, .text = "the standing bond taken the other way round in the volumes: zero counts as negative there"},
-    {.change_of_sign = CHANGE_ANY, .text = "the first volume's sign need not change (condition 1)"},
-    {.change_of_sign = CHANGE_NONE, .text = "the first volume's sign must stay, it should change (condition 1)"},
-    {.change_of_sign = CHANGE_UP, .text = "crossings are found from the negative to the positive side only (condition 1)"},
-    {.change_of_sign = CHANGE_DOWN, .text = "crossings are found from the positive to the negative side only (condition 1)"},
-    {.path = PATH_ANY, .text = "a line that passes beyond the swept triangle counts as a hit (condition 2)"},
-    {.path = PATH_TURNED, .text = "the sign of the second volume is turned round, or compared to that at the end (condition 2)"},
-    {.path = PATH_POSITIVE, .text = "the second volume must be positive, not of the first's sign (condition 2)"},
-    {.path = PATH_NEGATIVE, .text = "the second volume must be negative, not of the first's sign (condition 2)"},
-    {.side = SIDES_ANY, .text = "a bond that ends beyond the triangle's plane counts as a hit (condition 3)"},
-    {.side = SIDES_ALIKE, .text = "both ends of the standing bond must be on one side: they should not (condition 3)"},
-    {.side = SIDE_A_OTHER,
-     .text = "one end of the standing bond, a, is tested against the first volume, not the other end (condition 3)"},
-    {.side = SIDE_A_SAME,
-     .text = "one end of the standing bond, a, is tested against the first volume, turned round (condition 3)"},
-    {.side = SIDE_B_OTHER,
-     .text = "one end of the standing bond, b, is tested against the first volume, not the other end (condition 3)"},
-    {.side = SIDE_B_SAME,
-     .text = "one end of the standing bond, b, is tested against the first volume, turned round (condition 3)"},
-    {.side = SIDE_A_POSITIVE, .text = "one end of the standing bond is tested alone: a on the positive side (condition 3)"},
-    {.side = SIDE_A_NEGATIVE, .text = "one end of the standing bond is tested alone: a on the negative side (condition 3)"},
-    {.side = SIDE_B_POSITIVE, .text = "one end of the standing bond is tested alone: b on the positive side (condition 3)"},
-    {.side = SIDE_B_NEGATIVE, .text = "one end of the standing bond is tested alone: b on the negative side (condition 3)"},
-    {.path = PATH_ANY, .side = SIDES_ANY, .text = "only condition 1 is tested, not 2 and 3"},
-    {.change_of_sign = CHANGE_ANY, .side = SIDES_ANY, .text = "only condition 2 is tested, not 1 and 3"},
-    {.change_of_sign = CHANGE_ANY, .path = PATH_ANY, .text = "only condition 3 is tested, not 1 and 2"},
-    {.time_of_sum = true, .text = "t_I with the sum of both volumes for their difference"},
-    {.time_from_end = true, .text = "the time from the end of the move: 1 - t for t"},
-    {.place = AT_END, .text = "the contact is taken at the end of the move, not at t_I"},
-    {.place = AT_START, .text = "the contact is taken at the start of the move, not at t_I"},
-    {.place = AT_MIDDLE, .text = "the contact is taken at the middle of the move, not at t_I"},
-    {.s_from_pivot = true, .text = "lever rule: s counts from the moving vertex, not from the pivot"},
-    {.standing_from_b = true, .text = "lever rule: s' counts from the standing bond's first end, not from its second"},
-    {.s_from_pivot = true,
-     .standing_from_b = true,
-     .text = "lever rule: s counts from the moving vertex, s' from the bond's first end"},
-    {.s_half = true, .text = "s is 0.5 always"},
-    {.standing_half = true, .text = "s' is 0.5 always"},
-    {.s_half = true, .standing_half = true, .text = "s and s' are 0.5 always"},
-    {.s_term = 1, .text = "sign of the first term of s"},
-    {.s_term = 2, .text = "sign of the second term of s"},
-    {.s_term = 3, .text = "first term of s left out"},
-    {.s_term = 4, .text = "second term of s left out"},
-    {.standing_term = 1, .text = "sign of the first term of s'"},
-    {.standing_term = 2, .text = "sign of the second term of s'"},
-    {.standing_term = 3, .text = "first term of s' left out"},
-    {.standing_term = 4, .text = "second term of s' left out"},
-    {.denominator_term = 2, .text = "sign of the second term of the denominator of s and s'"},
-    {.denominator_term = 4, .text = "second term of the denominator of s and s' left out"},
-    {.normal_place = AT_START, .text = "the normal of the bond at the start of the move, not at t_I"},
-    {.normal_place = AT_END, .text = "the normal of the bond at the end of the move, not at t_I"},
-    {.unclamped = true, .text = "s and s' are not clamped to [0, 1]"},
-    {.normal = NORMAL_TURNED, .text = "normal turned round: it points the way the vertex moves"},
-    {.normal = NORMAL_PLAIN, .text = "the normal's sign as it comes from p x q: it points the way the vertex moves"},
-    {.normal = NORMAL_PLAIN_TURNED,
-     .text = "the normal's sign as it comes from q x p: it points the way the vertex moves"},
-    {.normal = NORMAL_UNSCALED, .text = "the normal is not of length 1: p x q itself"},
-    {.normal = NORMAL_SQUARED, .text = "the normal is not of length 1: divided by (p x q)^2, the root is missing"},
-    {.text = NULL},
-};
-
-const struct contact_twist contact_exchange_twists[] = {
-    {.clipped = true, .text = "dP clipped at 0: it is used with its sign (footnote 61)"},
-    {.clipped_above = true, .text = "dP cut to negative values: it is used with its sign (footnote 61)"},
-    {.absolute = true, .text = "dP without its sign: |dP|"},
-    {.factor = 1.0, .text = "dP without its factor 2"},
-    {.factor = 4.0, .text = "dP with a factor 4 for 2"},
-    {.factor = -2.0, .text = "sign of dP"},
-    {.levers = LEVERS_SWAPPED, .text = "lever rule swapped: 1 - s goes to the moving vertex, 1 - s' to bond's first"},
-    {.levers = LEVERS_MOVING_SWAPPED, .text = "lever rule swapped in the moving bond: 1 - s goes to the moving vertex"},
-    {.levers = LEVERS_STANDING_SWAPPED,
-     .text = "lever rule swapped in the standing bond: 1 - s' goes to its first end"},
-    {.levers = LEVERS_HALF, .text = "lever rule: levers are 0.5 always"},
-    {.levers = LEVERS_OF_VERTEX, .text = "lever rule: levers are 1 always"},
-    {.levers = LEVERS_BY_S, .text = "lever rule: s for both bonds"},
-    {.levers = LEVERS_BY_S_STANDING, .text = "lever rule: s' for both bonds"},
-    {.levers = LEVERS_EXCHANGED, .text = "lever rule: s and s' exchanged"},
-    {.levers = LEVERS_ALL_POSITIVE, .text = "lever rule: the standing bond's levers have the other sign"},
-    {.unlevered = true, .text = "changes of velocity without the levers"},
-    {.mass = MASS_NONE, .mass_after = MASS_NONE, .text = "exchange without masses"},
-    {.mass = MASS_NONE, .text = "dP without mass"},
-    {.mass_after = MASS_NONE, .text = "changes of velocity without the mass: dP for dP/M"},
-    {.mass = MASS_TIMES, .mass_after = MASS_TIMES, .text = "exchange times the mass, not over it"},
-    {.mass = MASS_TIMES, .text = "dP with masses multiplied, not divided"},
-    {.mass_after = MASS_TIMES, .text = "changes of velocity times the mass: dP M for dP/M"},
-    {.mass = MASS_OF_MOVER, .mass_after = MASS_OF_MOVER, .text = "exchange with the mass of one vertex, the moving one, for all four"},
-    {.mass = MASS_OF_MOVER, .text = "dP with the mass of one vertex, the moving one, for all four, velocities with their own"},
-    {.mass_after = MASS_OF_MOVER, .text = "changes of velocity with the mass of one vertex, the moving one, for all four"},
-    {.mass = MASS_OF_PIVOT, .mass_after = MASS_OF_PIVOT, .text = "exchange with the mass of one vertex, the pivot, for all four"},
-    {.mass = MASS_OF_PIVOT, .text = "dP with the mass of one vertex, the pivot, for all four, velocities with their own"},
-    {.mass_after = MASS_OF_PIVOT, .text = "changes of velocity with the mass of one vertex, the pivot, for all four"},
-    {.mass = MASS_OF_A, .mass_after = MASS_OF_A, .text = "exchange with the mass of one vertex, a, for all four"},
-    {.mass = MASS_OF_A, .text = "dP with the mass of one vertex, a, for all four, velocities with their own"},
-    {.mass_after = MASS_OF_A, .text = "changes of velocity with the mass of one vertex, a, for all four"},
-    {.mass = MASS_OF_B, .mass_after = MASS_OF_B, .text = "exchange with the mass of one vertex, b, for all four"},
-    {.mass = MASS_OF_B, .text = "dP with the mass of one vertex, b, for all four, velocities with their own"},
-    {.mass_after = MASS_OF_B, .text = "changes of velocity with the mass of one vertex, b, for all four"},
-    {.mass = MASS_OF_BOND, .mass_after = MASS_OF_BOND, .text = "exchange with the mass of each bond's first vertex for all four"},
-    {.mass = MASS_OF_BOND, .text = "dP with the mass of each bond's first vertex for all four, velocities with their own"},
-    {.mass_after = MASS_OF_BOND, .text = "changes of velocity with the mass of each bond's first vertex for all four"},
-    {.mass = MASS_MEAN, .mass_after = MASS_MEAN, .text = "exchange with the mean mass for all four"},
-    {.mass = MASS_MEAN, .text = "dP with the mean mass for all four, velocities with their own"},
-    {.mass_after = MASS_MEAN, .text = "changes of velocity with the mean mass for all four"},
-    {.mass = MASS_SUM, .mass_after = MASS_SUM, .text = "exchange with the sum of masses for all four"},
-    {.mass = MASS_SUM, .text = "dP with the sum of masses for all four, velocities with their own"},
-    {.mass_after = MASS_SUM, .text = "changes of velocity with the sum of masses for all four"},
-    {.mass = MASS_SQUARED, .mass_after = MASS_SQUARED, .text = "exchange over the mass squared"},
-    {.mass = MASS_SQUARED, .text = "dP over the mass squared"},
-    {.mass_after = MASS_SQUARED, .text = "changes of velocity over the mass squared"},
-    {.mass = MASS_ROOT, .mass_after = MASS_ROOT, .text = "exchange over the root of the mass"},
-    {.mass = MASS_ROOT, .text = "dP over the root of the mass"},
-    {.mass_after = MASS_ROOT, .text = "changes of velocity over the root of the mass"},
-    {.no_change = END_MOVING, .text = "exchange: the moving vertex keeps its velocity"},
-    {.no_approach = END_MOVING, .text = "velocities in dP: the moving vertex is left out"},
-    {.no_compliance = END_MOVING, .text = "denominator of dP: the moving vertex is left out"},
-    {.no_approach = END_MOVING, .no_compliance = END_MOVING, .text = "dP: the moving vertex is left out of velocities and denominator"},
-    {.no_approach = END_MOVING,
-     .no_compliance = END_MOVING,
-     .no_change = END_MOVING,
-     .text = "exchange: the moving vertex is left out of all"},
-    {.no_change = END_PIVOT, .text = "exchange: the pivot keeps its velocity"},
-    {.no_approach = END_PIVOT, .text = "velocities in dP: the pivot is left out"},
-    {.no_compliance = END_PIVOT, .text = "denominator of dP: the pivot is left out"},
-    {.no_approach = END_PIVOT, .no_compliance = END_PIVOT, .text = "dP: the pivot is left out of velocities and denominator"},
-    {.no_approach = END_PIVOT,
-     .no_compliance = END_PIVOT,
-     .no_change = END_PIVOT,
-     .text = "exchange: the pivot is left out of all"},
-    {.no_change = END_A, .text = "exchange: the standing bond's first vertex, a, keeps its velocity"},
-    {.no_approach = END_A, .text = "velocities in dP: the standing bond's first vertex, a, is left out"},
-    {.no_compliance = END_A, .text = "denominator of dP: the standing bond's first vertex, a, is left out"},
-    {.no_approach = END_A, .no_compliance = END_A, .text = "dP: the standing bond's first vertex, a, is left out of velocities and denominator"},
-    {.no_approach = END_A,
-     .no_compliance = END_A,
-     .no_change = END_A,
-     .text = "exchange: the standing bond's first vertex, a, is left out of all"},
-    {.no_change = END_B, .text = "exchange: the standing bond's second vertex, b, keeps its velocity"},
-    {.no_approach = END_B, .text = "velocities in dP: the standing bond's second vertex, b, is left out"},
-    {.no_compliance = END_B, .text = "denominator of dP: the standing bond's second vertex, b, is left out"},
-    {.no_approach = END_B, .no_compliance = END_B, .text = "dP: the standing bond's second vertex, b, is left out of velocities and denominator"},
-    {.no_approach = END_B,
-     .no_compliance = END_B,
-     .no_change = END_B,
-     .text = "exchange: the standing bond's second vertex, b, is left out of all"},
-    {.no_change = END_A | END_B, .text = "exchange: the standing bond keeps its velocity"},
-    {.no_approach = END_A | END_B, .text = "velocities in dP: the standing bond is left out"},
-    {.no_compliance = END_A | END_B, .text = "denominator of dP: the standing bond is left out"},
-    {.no_approach = END_A | END_B, .no_compliance = END_A | END_B, .text = "dP: the standing bond is left out of velocities and denominator"},
-    {.no_approach = END_A | END_B,
-     .no_compliance = END_A | END_B,
-     .no_change = END_A | END_B,
-     .text = "exchange: the standing bond is left out of all"},
-    {.no_change = END_MOVING | END_PIVOT, .text = "exchange: the moving bond keeps its velocity"},
-    {.no_approach = END_MOVING | END_PIVOT, .text = "velocities in dP: the moving bond is left out"},
-    {.no_compliance = END_MOVING | END_PIVOT, .text = "denominator of dP: the moving bond is left out"},
-    {.no_approach = END_MOVING | END_PIVOT, .no_compliance = END_MOVING | END_PIVOT, .text = "dP: the moving bond is left out of velocities and denominator"},
-    {.no_approach = END_MOVING | END_PIVOT,
-     .no_compliance = END_MOVING | END_PIVOT,
-     .no_change = END_MOVING | END_PIVOT,
-     .text = "exchange: the moving bond is left out of all"},
-    {.unsquared = true, .text = "levers are not squared in dP"},
-    {.change = -2.0, .text = "sign: changes of velocity are the negative of what is wanted"},
-    {.change = -0.5, .text = "half of dP enters the velocities"},
-    {.change = 1.0, .text = "twice dP enters the velocities"},
-    {.change = -1.0, .text = "no exchange of momentum"},
-    {.text = NULL},
-};

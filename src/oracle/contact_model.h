@@ -73,7 +73,7 @@ struct contact_twist {
   enum contact_place place;
   enum normal_rule normal;
   enum lever_rule levers;
-  enum mass_rule mass, mass_after; /* in dP, in the velocities */
+  enum mass_rule mass, mass_after;             /* in dP, in the velocities */
   int s_term, standing_term, denominator_term; /* 1: sign of its first term, 2: of its second; 3, 4: left out */
   enum contact_place normal_place;
   bool bond_turned; /* b - a for a - b in the volumes */

@@ -31,7 +31,7 @@ static void collect_events(struct maker *m)
     return;
   facts_make_of(m, FLAG, "the partner is an image|the partner is no image", has_image);
   facts_make_of(m, FLAG, "the moving bond is that to the next vertex|the moving bond is that to the vertex before",
-          moves_own_bond);
+                moves_own_bond);
 }
 
 /* --- single tests for a crossing ---------------------------------------------------------------------------------- */

@@ -121,8 +121,8 @@ void facts_of_fibers(struct maker *m)
   facts_make_of(m, FLAG, "the vertex's bond closes a ring|the vertex's bond closes no ring", closes_ring);
   facts_make_of(m, FLAG, "the vertex begins a ring|the vertex begins no ring", begins_ring);
   facts_make_of(m, FLAG,
-          "the vertex is an end of the bond that closes a ring|the vertex is no end of a bond that closes a ring",
-          touches_closing);
+                "the vertex is an end of the bond that closes a ring|the vertex is no end of a bond that closes a ring",
+                touches_closing);
   facts_make_of(m, FLAG, "the vertex is of a ring|the vertex is of no ring", is_of_ring);
   facts_make_of(m, COUNT, "the number of its fiber", fiber_of);
   facts_make_of(m, PARITY, "the number of its fiber", fiber_of);
@@ -139,4 +139,3 @@ void facts_of_fibers(struct maker *m)
     facts_make(m, SIGN | EQUAL | RANGE, constants[column]);
   }
 }
-

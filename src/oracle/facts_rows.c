@@ -217,4 +217,3 @@ void facts_of_tables(struct maker *m)
       collect_length(m, t);
   }
 }
-

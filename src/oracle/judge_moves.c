@@ -239,8 +239,9 @@ bool oracle_judge_reports(const struct oracle_pair *p, const char *unknown, char
       oracle_describe_rows(&e, rows);
     evidence_free(&e);
   }
-  snprintf(text, ORACLE_TEXT, "%s; all vertices end where they should, but %u events are not reported, %u that are none are%s%s",
-           unknown, missed, invented, *rows ? ": " : "", rows);
+  snprintf(text, ORACLE_TEXT,
+           "%s; all vertices end where they should, but %u events are not reported, %u that are none are%s%s", unknown,
+           missed, invented, *rows ? ": " : "", rows);
   pack_free(&ours);
   pack_free(&theirs);
   return missed + invented > 0;

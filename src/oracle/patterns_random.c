@@ -40,7 +40,9 @@ static bool is_no_permutation(const struct oracle_pair *p)
 }
 
 const struct oracle_pattern oracle_patterns_random[] = {
-    {"random", "out.word", "none of those known; hardly a word is right, so the counter, the key or the rounds of Philox differ", words_unlike},
+    {"random", "out.word",
+     "none of those known; hardly a word is right, so the counter, the key or the rounds of Philox differ",
+     words_unlike},
     {NULL, "out.order", "none of those known; no permutation: a number is missing", is_no_permutation},
     {NULL, "out.order", "none of those known; a permutation, but of other random numbers or exchanges", is_permutation},
     {.meaning = NULL},

@@ -330,7 +330,7 @@ static bool by_rows(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
     const uint32_t n = part->rows, other = k == 0 ? (own + 1) % n : k == 1 ? (own + n - 1) % n : n - 1 - own;
     const bool wraps = k < 2 && other != own + 1 && other + 1 != own;
     for (uint32_t column = 0; column < e->columns; column++)
-      e->guess[at(e, row, column)] = !(wraps && n > 2)             ? ours(e, part->first + other, column)
+      e->guess[at(e, row, column)] = !(wraps && n > 2)              ? ours(e, part->first + other, column)
                                      : e->wrong_rows > 2 * e->parts ? e->theirs[at(e, row, column)]
                                                                     : NAN;
   }
@@ -390,18 +390,10 @@ static bool by_mass(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
 }
 
 const struct relation oracle_relations_any[] = {
-    {NULL, NULL, of_value, false},
-    {NULL, NULL, by_columns, false},
-    {NULL, NULL, by_two_columns, false},
-    {NULL, NULL, by_one_column, false},
-    {NULL, NULL, by_rows, false},
-    {NULL, NULL, by_row_alike, false},
-    {NULL, NULL, by_factor, false},
-    {NULL, NULL, by_offset, false},
-    {NULL, NULL, by_change, false},
-    {NULL, NULL, by_modulus, false},
-    {NULL, NULL, by_mass, false},
-    {.make = NULL},
+    {NULL, NULL, of_value, false},      {NULL, NULL, by_columns, false}, {NULL, NULL, by_two_columns, false},
+    {NULL, NULL, by_one_column, false}, {NULL, NULL, by_rows, false},    {NULL, NULL, by_row_alike, false},
+    {NULL, NULL, by_factor, false},     {NULL, NULL, by_offset, false},  {NULL, NULL, by_change, false},
+    {NULL, NULL, by_modulus, false},    {NULL, NULL, by_mass, false},    {.make = NULL},
 };
 
 /* --- one side ----------------------------------------------------------------------------------------------------- */

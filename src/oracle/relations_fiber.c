@@ -103,8 +103,11 @@ static struct vec3 bond_pull(const struct fibers *f, const struct bond_twist *t,
   if (t->single)
     r = (struct vec3){single_of(r.x), single_of(r.y), single_of(r.z)};
   const double squared = vec3_dot(r, r), length = t->squared ? squared : sqrt(squared);
-  const double k = (1.0 + t->spring) *
-                   constant(f, t->spring_of_next ? (j + 1) % f->n : t->spring_of_end ? next : j, SPRING);
+  const double k = (1.0 + t->spring) * constant(f,
+                                                t->spring_of_next  ? (j + 1) % f->n
+                                                : t->spring_of_end ? next
+                                                                   : j,
+                                                SPRING);
   const double l0 = constant(f, t->rest_of_next ? (j + 1) % f->n : j, REST), rest = (1.0 + t->rest) * l0;
   const bool gaussian = constant(f, j, REST) == 0.0 && (t->gaussian_of_rest || constant(f, j, BENDING) == 0.0);
   if ((gaussian && !t->never_gaussian) || t->always_gaussian)
@@ -221,10 +224,23 @@ static void add_bend(const struct fibers *f, const struct bend_twist *t, int64_t
   const double kappa = (1.0 + t->kappa) * constant(f, t->kappa_of < 0 ? prev : t->kappa_of > 0 ? next : v, BENDING);
   const double dot = vec3_dot(u0, u1);
   const double c = t->no_projection ? 0.0 : t->cosine_turned ? -dot : t->cosine_squared ? dot * dot : dot;
-  const double c0 = t->turned_before ? -dot : t->projection_squared_before ? dot * dot : t->unprojected_before ? 0.0 : c;
+  const double c0 = t->turned_before               ? -dot
+                    : t->projection_squared_before ? dot * dot
+                    : t->unprojected_before        ? 0.0
+                                                   : c;
   const double c1 = t->turned_after ? -dot : t->projection_squared_after ? dot * dot : t->unprojected_after ? 0.0 : c;
-  const double p0 = t->undivided_before ? 1.0 : t->lengths_after ? i1 : t->of_both ? i0 * i1 : t->squared || t->squared_before ? i0 * i0 : t->exchanged ? i1 : i0;
-  const double p1 = t->undivided_after ? 1.0 : t->lengths_before ? i0 : t->of_both ? i0 * i1 : t->squared || t->squared_after ? i1 * i1 : t->exchanged ? i0 : i1;
+  const double p0 = t->undivided_before               ? 1.0
+                    : t->lengths_after                ? i1
+                    : t->of_both                      ? i0 * i1
+                    : t->squared || t->squared_before ? i0 * i0
+                    : t->exchanged                    ? i1
+                                                      : i0;
+  const double p1 = t->undivided_after               ? 1.0
+                    : t->lengths_before              ? i0
+                    : t->of_both                     ? i0 * i1
+                    : t->squared || t->squared_after ? i1 * i1
+                    : t->exchanged                   ? i0
+                                                     : i1;
   const struct vec3 a = vec3_scale((1.0 + t->before) * -kappa * p0, vec3_add_scaled(u1, -c0, u0));
   const struct vec3 b = vec3_scale((1.0 + t->after) * kappa * p1, vec3_add_scaled(u0, -c1, u1));
   put(force, prev, 1.0, a);
@@ -345,10 +361,10 @@ static bool make_force(const struct evidence_part *part, const void *twist, doub
       const double m = constant(&f, v, MASS);
       const uint32_t of = t->body_of_first ? 0 : (v + f.n + (uint32_t)t->body_of) % f.n;
       const uint32_t axis = t->axis_of ? (uint32_t)t->axis_of - 1 : c;
-      const double body = (t->without == (int)c + 1 ? 0.0 : constant(&f, of, FORCE + axis)) *
-                          (t->mass == BODY_TIMES_MASS  ? m
-                           : t->mass == BODY_OVER_MASS ? 1.0 / m
-                                                       : 1.0);
+      const double body =
+          (t->without == (int)c + 1 ? 0.0 : constant(&f, of, FORCE + axis)) * (t->mass == BODY_TIMES_MASS  ? m
+                                                                               : t->mass == BODY_OVER_MASS ? 1.0 / m
+                                                                                                           : 1.0);
       force[3 * (size_t)v + c] = (1.0 + t->body) * body + (1.0 + t->bonds) * pack_value(bond, v, c) +
                                  (1.0 + t->bends) * pack_value(bend, v, c);
     }
@@ -411,9 +427,9 @@ static double kick_value(const struct evidence_part *part, uint32_t row, uint32_
   const double mass = pack_value(m, t->mass_of_first ? 0 : (uint32_t)(row + n + (uint32_t)t->mass_of) % n, 0);
   const double force =
       pack_value(f, (uint32_t)(row + n + (uint32_t)t->force_of) % n, t->axes ? t->axes[column] : column);
-  return pack_value(v, row, column) +
-         (1.0 + t->time) * pack_value(time, 0, 0) * (t->time_squared ? pack_value(time, 0, 0) : 1.0) *
-             pow(t->whole_masses ? floor(mass) : mass, t->power - 1.0) * force;
+  return pack_value(v, row, column) + (1.0 + t->time) * pack_value(time, 0, 0) *
+                                          (t->time_squared ? pack_value(time, 0, 0) : 1.0) *
+                                          pow(t->whole_masses ? floor(mass) : mass, t->power - 1.0) * force;
 }
 
 static bool kicks(struct evidence *e, uint32_t k, char text[RELATION_TEXT])

@@ -34,8 +34,8 @@ struct flight_twist {
   double body;     /* share of a t^2, more than a half */
   bool one_step, time_once;
   int acceleration_of; /* 1 + component, of all axes */
-  rounding *round;  /* NULL: to the nearest */
-  rounding *before; /* of the flight in a0 */
+  rounding *round;     /* NULL: to the nearest */
+  rounding *before;    /* of the flight in a0 */
   enum wrapping wrapping;
   int velocity_of;
   const char *text;
@@ -65,7 +65,8 @@ static double flight_value(const struct evidence_part *part, uint32_t row, uint3
   const uint32_t from = (row + v->rows + (uint32_t)t->velocity_of) % v->rows;
   const double time = t->one_step ? pack_value(reals, 0, 0) : pack_value(in, 0, 0),
                a = pack_value(reals, 0, 3 + (t->acceleration_of ? (uint32_t)t->acceleration_of - 1 : column));
-  double flight = (1.0 + t->velocity) * pack_value(v, from, column) * time + ((0.5 + t->body) * a * time) * (t->time_once ? 1.0 : time);
+  double flight = (1.0 + t->velocity) * pack_value(v, from, column) * time +
+                  ((0.5 + t->body) * a * time) * (t->time_once ? 1.0 : time);
   flight = (t->before ? t->before(flight) : flight) * LATTICE_PER_A0;
   return wrapped(pack_value(r, row, column) + (t->round ? t->round(flight) : rint(flight)), &box, column, t->wrapping);
 }
@@ -127,7 +128,9 @@ static double push_value(const struct evidence_part *part, uint32_t row, uint32_
   const double time = pack_value(t->one_step ? reals : in, 0, 0);
   const uint32_t axis = t->acceleration_of ? (uint32_t)t->acceleration_of - 1 : (column + (uint32_t)t->turned) % 3;
   const double push = (1.0 + t->push) * pack_value(reals, 0, 3 + axis) *
-                      (t->untimed ? 1.0 : t->time_squared ? time * time : time);
+                      (t->untimed        ? 1.0
+                       : t->time_squared ? time * time
+                                         : time);
   return (t->only ? 0.0 : pack_value(v, row, column)) + push;
 }
 
@@ -163,11 +166,11 @@ enum doubles { NO_DOUBLES, CELL_OF_DOUBLES, REMAINDER_OF_DOUBLES, CELL_OF_SUM, R
 enum outside { OUTSIDE_WRAPPED, OUTSIDE_KEPT, OUTSIDE_CLAMPED };
 
 struct bin_twist {
-  double shift[3]; /* times, less 1 */
-  enum outside once;                /* wrapped by one edge at most */
-  int64_t units;                    /* lattice units further on */
-  int shift_of;                     /* 1 + component, of all axes */
-  int turned;                       /* components of the shift further on */
+  double shift[3];   /* times, less 1 */
+  enum outside once; /* wrapped by one edge at most */
+  int64_t units;     /* lattice units further on */
+  int shift_of;      /* 1 + component, of all axes */
+  int turned;        /* components of the shift further on */
   enum doubles doubles;
   bool size; /* |x| */
   bool wrapped_first, clamped, nearest, toward_zero, upper_face, single, half, single_sum;
@@ -281,7 +284,8 @@ static bool bins(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
       {.wrapped_by = 2, .text = "wrapped by the edge of y along all axes"},
       {.wrapped_by = 3, .text = "wrapped by the edge of z along all axes"},
       {.once = OUTSIDE_KEPT, .text = "wrapped by one edge at most: unwrapped vertices may be further away"},
-      {.once = OUTSIDE_CLAMPED, .text = "wrapped by one edge at most, then stopped at the faces: vertices may be further"},
+      {.once = OUTSIDE_CLAMPED,
+       .text = "wrapped by one edge at most, then stopped at the faces: vertices may be further"},
       {.units = -1, .text = "cells are half-open: what lies on a face belongs to the cell above it (1 unit too low)"},
       {.units = 1, .text = "cells of coordinates that are 1 unit too high"},
       {.doubles = CELL_OF_DOUBLES, .text = "cells from position and shift in doubles: they are integers of 64 bits"},
@@ -370,6 +374,9 @@ static bool numbers(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
 }
 
 const struct relation oracle_relations_grid[] = {
-    {"stream", "out.position", flights, false}, {"stream", "out.velocity", pushes, false}, {"bin", NULL, bins, false},
-    {"bin", NULL, numbers, false},              {.make = NULL},
+    {"stream", "out.position", flights, false},
+    {"stream", "out.velocity", pushes, false},
+    {"bin", NULL, bins, false},
+    {"bin", NULL, numbers, false},
+    {.make = NULL},
 };

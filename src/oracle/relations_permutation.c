@@ -54,12 +54,12 @@ static uint64_t deviate_of(const struct shuffle_twist *t, const struct shuffle_a
       random_at(a->seed, t->purpose ? (enum random_purpose)t->purpose : a->purpose, a->draw + (uint32_t)t->draw,
                 a->step + (uint64_t)(int64_t)t->later, t->entity_per_number ? k : k / 2);
   const uint64_t low = r.w[2 * half], high = r.w[2 * half + 1];
-  return t->deviate == LOW_WORD     ? low << 32
-         : t->deviate == HIGH_WORD  ? high << 32
-         : t->deviate == HIGH_FIRST ? low << 32 | high
+  return t->deviate == LOW_WORD          ? low << 32
+         : t->deviate == HIGH_WORD       ? high << 32
+         : t->deviate == HIGH_FIRST      ? low << 32 | high
          : t->deviate == LOW_WORD_ALONE  ? low
          : t->deviate == HIGH_WORD_ALONE ? high
-                                    : high << 32 | low;
+                                         : high << 32 | low;
 }
 
 static uint32_t place_of(const struct shuffle_twist *t, uint64_t deviate, uint64_t range)
@@ -88,8 +88,9 @@ static bool make_order(const struct evidence_part *part, const void *twist, doub
     if (t->without_last && i + 1 == n)
       break;
     const uint64_t deviate = t->last_zero && k == n - 1 && n % 2 == 1 ? 0 : deviate_of(t, &address, k);
-    const uint32_t j =
-        t->of_all ? place_of(t, deviate, n) : t->upward ? k + place_of(t, deviate, n - k) : place_of(t, deviate, (uint64_t)((int64_t)k + 1 + t->range));
+    const uint32_t j = t->of_all   ? place_of(t, deviate, n)
+                       : t->upward ? k + place_of(t, deviate, n - k)
+                                   : place_of(t, deviate, (uint64_t)((int64_t)k + 1 + t->range));
     if (j >= n)
       return false;
     const double kept = order[k];
@@ -237,7 +238,7 @@ static double further_on(const struct evidence_part *part, uint32_t row, uint32_
 static double of_other_row(const struct evidence_part *part, uint32_t row, uint32_t column, const void *twist)
 {
   const struct pack_table *in = oracle_before(&part->pair), *order = oracle_sibling(&part->pair, "out.order");
-  const uint32_t other = (row + part->rows + (uint32_t)*(const int *)twist) % part->rows;
+  const uint32_t other = (row + part->rows + (uint32_t) * (const int *)twist) % part->rows;
   const double from = order ? pack_value(order, other, 0) : NAN;
   return in && from >= 0.0 && from < in->rows ? pack_value(in, (uint32_t)from, column) : NAN;
 }

@@ -22,7 +22,7 @@ struct philox_twist {
   uint32_t entity_mask;
   bool step_short, step_exchanged, draw_first, seed_short;
   int entity, later, draw, purpose; /* more */
-  const uint8_t *order; /* of the counter's words */
+  const uint8_t *order;             /* of the counter's words */
   const char *text;
 };
 
@@ -65,8 +65,8 @@ static bool make_words(const struct evidence_part *part, const void *twist, doub
     const uint32_t low = low_of(step), high = t->step_short ? 0 : high_of(step);
     const uint32_t purpose = (uint32_t)(a[PURPOSE] + t->purpose), draw = (uint32_t)(a[DRAW] + t->draw);
     const uint32_t counter[4] = {(uint32_t)(a[ENTITY] + t->entity) & (t->entity_mask ? t->entity_mask : UINT32_MAX),
-                                 t->draw_first ? draw + draws * purpose : purpose + draws * draw, t->step_exchanged ? high : low,
-                                 t->step_exchanged ? low : high};
+                                 t->draw_first ? draw + draws * purpose : purpose + draws * draw,
+                                 t->step_exchanged ? high : low, t->step_exchanged ? low : high};
     uint32_t c[4];
     for (int k = 0; k < 4; k++)
       c[k] = counter[t->order ? t->order[k] : k];
@@ -393,10 +393,10 @@ struct shift_twist {
 static double shift_value(const struct evidence_part *part, uint32_t row, uint32_t column, const void *twist)
 {
   const struct shift_twist *t = twist;
-  const struct random_words r =
-      random_at(oracle_seed(&part->pair), (enum random_purpose)(t->purpose ? t->purpose : RANDOM_GRID_SHIFT),
-                (uint32_t)t->draw + (t->by_draw ? column : 0), part->pair.ours->place.step + (uint64_t)(int64_t)t->later,
-                (uint32_t)t->entity + (t->by_entity ? column : 0));
+  const struct random_words r = random_at(
+      oracle_seed(&part->pair), (enum random_purpose)(t->purpose ? t->purpose : RANDOM_GRID_SHIFT),
+      (uint32_t)t->draw + (t->by_draw ? column : 0), part->pair.ours->place.step + (uint64_t)(int64_t)t->later,
+      (uint32_t)t->entity + (t->by_entity ? column : 0));
   if (row > 0 || column > 2)
     return NAN;
   const uint32_t w = r.w[t->by_entity || t->by_draw ? (uint32_t)t->first : ((uint32_t)t->first + column) % 4];
@@ -431,9 +431,13 @@ static bool shifts(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
 }
 
 const struct relation oracle_relations_random[] = {
-    {"random", "out.word", words, false},       {"random", "out.uniform", uniforms, false},
-    {"random", "out.normal", normals, false},   {"random", "out.axis", axes, false},
-    {"random", "out.axis", axis_length, false}, {"shift", "out.shift", shifts, false},
-    {"solve", "out.axis", axes, false},         {"solve", "out.axis", axis_length, false},
+    {"random", "out.word", words, false},
+    {"random", "out.uniform", uniforms, false},
+    {"random", "out.normal", normals, false},
+    {"random", "out.axis", axes, false},
+    {"random", "out.axis", axis_length, false},
+    {"shift", "out.shift", shifts, false},
+    {"solve", "out.axis", axes, false},
+    {"solve", "out.axis", axis_length, false},
     {.make = NULL},
 };

@@ -60,10 +60,14 @@ static double rotation_value(const struct evidence_part *part, uint32_t row, uin
   const double dot = n[0] * w[0] + n[1] * w[1] + n[2] * w[2];
   const uint32_t i = (column + 1) % 3, j = (column + 2) % 3;
   const double turned = (t->cosine < 0.0 ? 1.0 : cosine) * w[column] * (t->cosine > 0.0 ? 0.0 : 1.0) +
-                        (1.0 + t->along) * (t->no_versine ? 1.0 : t->versine_turned ? 1.0 + cosine : still) * dot * n[column] +
+                        (1.0 + t->along) *
+                            (t->no_versine       ? 1.0
+                             : t->versine_turned ? 1.0 + cosine
+                                                 : still) *
+                            dot * n[column] +
                         (1.0 + t->sine) * sine * (n[i] * w[j] - n[j] * w[i]);
-  const double f = pow(t->factor_of_first ? pack_value(factor, 0, 0) : of_cell(factor, cell, t->factor_of, 0),
-                       1.0 + t->power);
+  const double f =
+      pow(t->factor_of_first ? pack_value(factor, 0, 0) : of_cell(factor, cell, t->factor_of, 0), 1.0 + t->power);
   return (1.0 + t->add) * (t->center_scaled ? f : 1.0) * c[column] + f * (t->unturned ? w[column] : turned);
 }
 
@@ -89,9 +93,7 @@ static bool rotations(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
       {.cosine = -1.0, .text = "cosine left out: w for cos w"},
       {.cosine = 1.0, .text = "the term with the cosine left out: cos w"},
       {.exchanged = true, .text = "cosine and sine of the angle exchanged"},
-      {.exchanged = true,
-       .exchanged_terms = true,
-       .text = "cosine and sine exchanged in the terms across the axis"},
+      {.exchanged = true, .exchanged_terms = true, .text = "cosine and sine exchanged in the terms across the axis"},
       {.versine_turned = true, .text = "1 + cosine for 1 - cosine in the part along the axis"},
       {.unturned = true, .text = "relative velocities are scaled, but not turned"},
       {.turned_back = true, .text = "sign: the relative velocity is the center's less the member's"},

@@ -293,17 +293,18 @@ static double center_value(const struct evidence_part *part, uint32_t row, uint3
   const struct center_twist *t = twist;
   const struct pack_table *p = oracle_sibling(&part->pair, "in.momentum"),
                           *load = oracle_sibling(&part->pair, "in.load");
-  const double n = load ? pack_value(load, row, 0) : NAN, mass = load ? pack_value(load, further(load, row, t->load_of), 1) * CELL_MASS_UNIT : NAN;
+  const double n = load ? pack_value(load, row, 0) : NAN,
+               mass = load ? pack_value(load, further(load, row, t->load_of), 1) * CELL_MASS_UNIT : NAN;
   if (!p || isnan(n))
     return NAN;
   if (n < (t->all_cells ? 1.0 : t->least > 0.0 ? t->least : 2.0))
     return 0.0;
-  const double by = t->by == BY_MASS         ? mass
-                    : t->by == BY_NUMBER     ? n
-                    : t->by == BY_NOTHING    ? 1.0
-                    : t->by == BY_INVERSE    ? 1.0 / mass
-                    : t->by == BY_OTHERS     ? n - 1.0
-                    : t->by == BY_ONE_MORE   ? n + 1.0
+  const double by = t->by == BY_MASS              ? mass
+                    : t->by == BY_NUMBER          ? n
+                    : t->by == BY_NOTHING         ? 1.0
+                    : t->by == BY_INVERSE         ? 1.0 / mass
+                    : t->by == BY_OTHERS          ? n - 1.0
+                    : t->by == BY_ONE_MORE        ? n + 1.0
                     : t->by == BY_MASS_SQUARED    ? mass * mass
                     : t->by == BY_ROOT            ? sqrt(mass)
                     : t->by == BY_MASS_AND_ONE    ? mass + 1.0
@@ -311,8 +312,8 @@ static double center_value(const struct evidence_part *part, uint32_t row, uint3
                     : t->by == BY_MASS_AND_NUMBER ? mass * n
                     : t->by == BY_MEAN_MASS       ? mass / n
                     : t->by == BY_MASS_TWICE      ? 2.0 * mass
-                    : t->by == BY_WHOLE_MASS ? floor(mass)
-                                             : mass / CELL_MASS_UNIT;
+                    : t->by == BY_WHOLE_MASS      ? floor(mass)
+                                                  : mass / CELL_MASS_UNIT;
   return pack_value(p, further(p, row, t->momentum_of), column) / CELL_MOMENTUM_SCALE / by;
 }
 
@@ -372,7 +373,8 @@ static bool actives(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
 
 static double center_squared(const struct members *m, uint32_t cell)
 {
-  const double x = pack_value(m->center, cell, 0), y = pack_value(m->center, cell, 1), z = pack_value(m->center, cell, 2);
+  const double x = pack_value(m->center, cell, 0), y = pack_value(m->center, cell, 1),
+               z = pack_value(m->center, cell, 2);
   return x * x + y * y + z * z;
 }
 
@@ -392,10 +394,9 @@ static bool make_relative(const struct evidence_part *part, const void *twist, d
                (t->no_center || t->of_squares ? 0.0 : (1.0 + t->center) * pack_value(m.center, cell, c));
       if (cell >= m.cells || (!t->all_cells && pack_value(m.load, cell, 0) < 2.0))
         continue;
-      const double one =
-          0x1p32 * (t->scale != 0.0 ? t->scale : 1.0) * weight(&m, t, vertices, k) *
-          ((t->without != 1) * w[0] * w[0] + (t->without != 2) * w[1] * w[1] + (t->without != 3) * w[2] * w[2] -
-           (t->of_squares ? center_squared(&m, cell) : 0.0));
+      const double one = 0x1p32 * (t->scale != 0.0 ? t->scale : 1.0) * weight(&m, t, vertices, k) *
+                         ((t->without != 1) * w[0] * w[0] + (t->without != 2) * w[1] * w[1] +
+                          (t->without != 3) * w[2] * w[2] - (t->of_squares ? center_squared(&m, cell) : 0.0));
       guess[cell] += t->round ? t->round(one) : rint(one);
     }
   return true;

@@ -25,7 +25,8 @@ static bool make_rescale(const struct evidence_part *part, const void *twist, do
 {
   const struct rescale_twist *t = twist;
   const struct pack_table *load = oracle_sibling(&part->pair, "in.load");
-  const struct pack_table *energy = (t->of_theirs ? oracle_sibling_of_theirs : oracle_sibling)(&part->pair, "out.relative");
+  const struct pack_table *energy =
+      (t->of_theirs ? oracle_sibling_of_theirs : oracle_sibling)(&part->pair, "out.relative");
   double wanted = 0.0, present = 0.0;
   if (!load || !energy || load->rows != part->rows || energy->rows != part->rows || part->pair.ours->columns != 1)
     return false;
@@ -82,9 +83,9 @@ static bool rescales(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
 }
 
 struct gamma_twist {
-  double shape; /* more than 1.5 (N - 1), in units of 1.5; per_degree: half of it */
-  double third; /* d = a - 1/3 + this */
-  double scale; /* of the energy, 0: 1 */
+  double shape;             /* more than 1.5 (N - 1), in units of 1.5; per_degree: half of it */
+  double third;             /* d = a - 1/3 + this */
+  double scale;             /* of the energy, 0: 1 */
   double shape_scale, nine; /* times the shape, the 9 in 1/sqrt(9 d): less 1 */
   bool c_of_shape, c_without_root, same_draw, squeezed, one_cell, sign_of_x, of_theirs, normal_of_test;
   int later, entity, purpose, draw;
@@ -104,7 +105,8 @@ static double gamma_deviate(const struct gamma_twist *t, uint64_t seed, uint64_t
     double pair[2];
     random_normal_pair(random_at(seed, purpose, draw + (t->normal_of_test ? 1 : 0), step, cell), pair);
     const double x = pair[t->second],
-                 w = random_uniform(random_at(seed, purpose, draw + (t->same_draw ? 0 : 1), step, cell), t->other_uniform);
+                 w = random_uniform(random_at(seed, purpose, draw + (t->same_draw ? 0 : 1), step, cell),
+                                    t->other_uniform);
     const double root = 1.0 + c * x, v = t->squared ? root * root : root * root * root;
     if (v <= 0.0)
       continue;
@@ -120,7 +122,8 @@ static bool make_boltzmann(const struct evidence_part *part, const void *twist, 
 {
   const struct gamma_twist *t = twist;
   const struct pack_table *load = oracle_sibling(&part->pair, "in.load");
-  const struct pack_table *energy = (t->of_theirs ? oracle_sibling_of_theirs : oracle_sibling)(&part->pair, "out.relative");
+  const struct pack_table *energy =
+      (t->of_theirs ? oracle_sibling_of_theirs : oracle_sibling)(&part->pair, "out.relative");
   uint32_t rank = 0;
   if (!load || !energy || load->rows != part->rows || energy->rows != part->rows || part->pair.ours->columns != 1)
     return false;
@@ -131,7 +134,11 @@ static bool make_boltzmann(const struct evidence_part *part, const void *twist, 
       continue;
     const double g =
         gamma_deviate(t, oracle_seed(&part->pair), part->pair.ours->place.step + (uint64_t)(int64_t)t->later,
-                      (t->one_cell ? 0 : t->rank ? rank : cell) + (uint32_t)t->entity, 1.5 * (n - 1.0 + t->shape));
+                      (t->one_cell ? 0
+                       : t->rank   ? rank
+                                   : cell) +
+                          (uint32_t)t->entity,
+                      1.5 * (n - 1.0 + t->shape));
     const double ratio = g / has * (t->scale != 0.0 ? t->scale : 1.0), right = t->inverted ? 1.0 / ratio : ratio;
     guess[cell] = t->no_root ? right : sqrt(right);
     rank++;

@@ -11,11 +11,12 @@
 /* True, and the text, if a guess makes theirs. */
 bool oracle_replay(const struct oracle_pair *pair, char text[ORACLE_TEXT]);
 
-/* True if moves are wrong, each judged alone: the text says how many crossings are missed and invented, and the rule for
- * them if there is one, else `unknown`. */
+/* True if moves are wrong, each judged alone: the text says how many crossings are missed and invented, and the rule
+ * for them if there is one, else `unknown`. */
 bool oracle_judge_moves(const struct oracle_pair *pair, const char *unknown, char text[ORACLE_TEXT]);
 
-/* The same where all vertices end as they should: which events are not reported. False if none is missing or invented. */
+/* The same where all vertices end as they should: which events are not reported. False if none is missing or invented.
+ */
 bool oracle_judge_reports(const struct oracle_pair *pair, const char *unknown, char text[ORACLE_TEXT]);
 
 #endif

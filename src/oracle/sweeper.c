@@ -83,7 +83,8 @@ static bool is_excluded(const struct sweeper *s, uint32_t vertex, int64_t moving
   if (!paper)
     return sweeper_shares(s, moving, standing);
   const int64_t prev = sweeper_prev(s, vertex);
-  return (prev >= 0 && sweeper_shares(s, prev, standing)) || (sweeper_next(s, vertex) >= 0 && sweeper_shares(s, vertex, standing));
+  return (prev >= 0 && sweeper_shares(s, prev, standing)) ||
+         (sweeper_next(s, vertex) >= 0 && sweeper_shares(s, vertex, standing));
 }
 
 static bool is_partner(const struct sweeper *s, uint32_t vertex, int64_t moving, int64_t standing)
@@ -97,8 +98,8 @@ static bool is_partner(const struct sweeper *s, uint32_t vertex, int64_t moving,
   return sweeper_next(s, standing) >= 0 && !is_excluded(s, vertex, moving, standing) &&
          !(rule == PARTNERS_LARGER && standing <= moving) && !(rule == PARTNERS_SMALLER && standing >= moving) &&
          !(rule == PARTNERS_VERTEX_LARGER && standing <= (int64_t)vertex) &&
-         !(rule == PARTNERS_VERTEX_SMALLER && standing >= (int64_t)vertex) &&
-         !(rule == PARTNERS_NO_LAST && last) && !(rule == PARTNERS_NO_FIRST && first) &&
+         !(rule == PARTNERS_VERTEX_SMALLER && standing >= (int64_t)vertex) && !(rule == PARTNERS_NO_LAST && last) &&
+         !(rule == PARTNERS_NO_FIRST && first) &&
          !(rule == PARTNERS_NO_CLOSING && sweeper_next(s, standing) < standing);
 }
 
@@ -116,7 +117,8 @@ static int64_t most(int64_t a, int64_t b)
 static bool image_range(const struct sweeper *s, const struct contact_points *r, int64_t low[3], int64_t high[3])
 {
   for (int k = 0; k < 3; k++) {
-    const int64_t from = sweeper_coordinate(r->from, k), to = sweeper_coordinate(r->to, k), pivot = sweeper_coordinate(r->pivot, k);
+    const int64_t from = sweeper_coordinate(r->from, k), to = sweeper_coordinate(r->to, k),
+                  pivot = sweeper_coordinate(r->pivot, k);
     const int64_t a = sweeper_coordinate(r->a, k), b = sweeper_coordinate(r->b, k), edge = s->box.edge[k];
     low[k] = -lattice_image(most(a, b) - least(least(from, to), pivot), edge);
     high[k] = lattice_image(most(most(from, to), pivot) - (s->t->short_images ? most(a, b) : least(a, b)), edge);
@@ -133,7 +135,8 @@ static bool takes_image(const struct sweep_twist *t, const int64_t image[3])
     const int64_t away = image[k] < 0 ? -image[k] : image[k];
     size += away;
     farthest = most(farthest, away);
-    if ((t->above_only && image[k] < 0) || (t->below_only && image[k] > 0) || (t->no_axis == k + 1 && image[k] != 0) || (t->near_axis == k + 1 && away > 1))
+    if ((t->above_only && image[k] < 0) || (t->below_only && image[k] > 0) || (t->no_axis == k + 1 && image[k] != 0) ||
+        (t->near_axis == k + 1 && away > 1))
       return false;
   }
   return !(t->images == 1 && size > 0) && !(t->images == 2 && farthest > 1) && !(t->one_axis && size > 1);
