@@ -220,14 +220,14 @@ static void search_relations(struct search *s, const struct relation *r, bool an
     char said[RELATION_TEXT];
     if (!is_for(r->operator_name, r->table, &e->part[0].pair))
       continue;
-    e->free = 0;
-    for (uint32_t k = 0; r->make(e, k, said); k++, e->free = 0) {
+    e->free = 0, e->decides = false;
+    for (uint32_t k = 0; r->make(e, k, said); k++, e->free = 0, e->decides = false) {
       s->tried++;
       if (any_operator && leave_right_columns(e))
         say_wrong_columns(e, said);
       const enum evidence_fit how = evidence_judge(e);
       if (how == FIT_WHOLE && fits < MOST_FITS && (!r->together || makes_others(s, r, k))) {
-        fit[fits].bits = evidence_bits(e), fit[fits].free = e->free;
+        fit[fits].bits = e->decides ? 0.0 : evidence_bits(e), fit[fits].free = e->free;
         memcpy(fit[fits++].text, said, sizeof said);
       }
       if (how == FIT_WRONG && any_operator && !*s->partial && evidence_bits(e) >= EVIDENCE_SURE + log2(s->tried))

@@ -26,6 +26,7 @@ struct evidence {
   uint32_t differences, wrongs, wrong_rows;  /* wrongs: values */
   double *choice;                            /* [columns]: log2 of how many values there are in a column */
   bool *moved;                               /* [rows]: some guess changes few rows, and this one is among them */
+  bool decides;                              /* the guess only decides which of two values comes out */
   uint32_t free;                             /* numbers of the guess that were taken from theirs */
 };
 

@@ -163,22 +163,48 @@ static bool describe(const struct oracle_pair *p, const struct judged *j, const 
   return said;
 }
 
-bool oracle_judge_moves(const struct oracle_pair *p, const char *unknown, char text[ORACLE_TEXT])
+/* All moves of one step. False if they cannot be followed to the end. */
+static bool judge_all(const struct oracle_pair *p, struct judged *j)
 {
   static const struct sweep_twist right = {.text = NULL};
   struct sweeper s;
-  struct judged j = {0};
   if (!sweeper_take(p, &s))
     return false;
   s.t = &right;
   bool ok = sweeper_begin(&s);
   for (uint32_t turn = 0; ok && turn < s.n; turn++)
-    ok = judge_move(&s, sweeper_vertex(&s, turn), &j);
-  ok = ok && s.cursor == s.event->rows && !j.failed && describe(p, &j, unknown, text);
-  free(j.fact);
-  free(j.found);
+    ok = judge_move(&s, sweeper_vertex(&s, turn), j);
+  ok = ok && s.cursor == s.event->rows && !j->failed;
   sweeper_finish(&s);
   return ok;
+}
+
+bool oracle_judge_moves(const struct oracle_pair *p, const char *unknown, char text[ORACLE_TEXT])
+{
+  struct judged j = {0};
+  const bool ok = judge_all(p, &j) && describe(p, &j, unknown, text);
+  free(j.fact);
+  free(j.found);
+  return ok;
+}
+
+void oracle_count_hits(const struct oracle_pair *p, uint32_t *hits, uint32_t *wrong)
+{
+  *hits = *wrong = 0;
+  for (size_t k = 0; k < p->pack->count; k++) {
+    const struct pack_table *ours = &p->pack->table[k];
+    const struct pack_table *theirs = pack_find(p->pack_theirs, &ours->place, ours->name);
+    if (strcmp(ours->place.operator_name, p->ours->place.operator_name) != 0 || strcmp(ours->name, "out.event") != 0 ||
+        !theirs)
+      continue;
+    struct judged j = {0};
+    judge_all(&(struct oracle_pair){p->pack, p->pack_theirs, ours, theirs, p->rounding}, &j);
+    for (uint32_t n = 0; n < j.count; n++)
+      *wrong += j.found[n][0] != j.found[n][1];
+    *hits += j.count;
+    free(j.fact);
+    free(j.found);
+  }
 }
 
 /* --- events that are right, and not reported ---------------------------------------------------------------------- */

@@ -169,6 +169,12 @@ static double backward_number(const struct evidence_part *part, uint32_t row, ui
   return pack_value(part->pair.ours, part->rows - 1 - row, 0);
 }
 
+static double first_two_exchanged(const struct evidence_part *part, uint32_t row, uint32_t column, const void *twist)
+{
+  (void)column, (void)twist;
+  return pack_value(part->pair.ours, row < 2 && part->rows > 1 ? 1 - row : row, 0);
+}
+
 static bool order_changed(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
 {
   static const struct {
@@ -176,6 +182,7 @@ static bool order_changed(struct evidence *e, uint32_t k, char text[RELATION_TEX
     const char *text;
   } known[] = {{inverse_number, "the inverse permutation: applied from the other side"},
                {own_number, "not permuted: the order of their numbers"},
+               {first_two_exchanged, "the permutation with its first two entries exchanged"},
                {backward_number, "the permutation backwards: from its last entry to its first"}};
   if (k >= COUNT_OF(known))
     return false;

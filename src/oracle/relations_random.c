@@ -104,6 +104,7 @@ static bool words(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
       {.draw_factor = 65536, .text = "random address: the draw is times 65536, not 256"},
       {.draw_factor = 0x1000000, .text = "random address: the draw is times 2^24, not 256"},
       {.entity_mask = 0xFF, .text = "entities cut to 8 bits"},
+      {.entity_mask = 0xFFF, .text = "entities cut to 12 bits"},
       {.entity_mask = 0xFFFF, .text = "entities cut to 16 bits"},
       {.entity_mask = 0xFFFFFF, .text = "entities cut to 24 bits"},
       {.step_short = true, .text = "steps cut to 32 bits: the high word is the counter's last"},

@@ -196,6 +196,7 @@ static bool boltzmanns(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
   };
   if (k >= COUNT_OF(known))
     return false;
+  e->decides = known[k].untested || known[k].test_turned || known[k].squeezed || known[k].same_draw;
   relation_fill_tables(e, make_boltzmann, &known[k]);
   return relation_say(text, "%s", known[k].text);
 }

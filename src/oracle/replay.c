@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "oracle/evidence.h"
 #include "oracle/sweeper.h"
 
 /* --- moves -------------------------------------------------------------------------------------------------------- */
@@ -210,17 +211,46 @@ static const struct sweep_twist twists[] = {
     {.choice = CHOICE_NONE, .text = "no hit of a move executed"},
 };
 
+/* A change of which hits are found says nothing if chance may choose the same ones: few hits, or nearly all. */
+static bool enough_hits(const struct oracle_pair *p)
+{
+  const double tried = (double)(sizeof twists / sizeof *twists) + 64.0;
+  uint32_t hits, wrong;
+  oracle_count_hits(p, &hits, &wrong);
+  return wrong == 0 || evidence_ways(hits, wrong) >= EVIDENCE_SURE + log2(tried);
+}
+
+static bool finds_other_hits(const struct sweep_twist *t)
+{
+  return t->images || t->above_only || t->below_only || t->one_axis || t->negated || t->no_axis || t->near_axis ||
+         t->edge_of || t->short_images || t->skips_first || t->exclusion || t->partners || t->bonds;
+}
+
+/* Changes that make theirs; of those that find other hits only, or of the others only. */
+static bool name_kind(const struct oracle_pair *p, double tolerance, bool finders, char text[ORACLE_TEXT], bool *named)
+{
+  const struct contact_twist *const list = finders ? contact_test_twists : contact_exchange_twists;
+  for (size_t k = 0; k < sizeof twists / sizeof *twists; k++)
+    if (finds_other_hits(&twists[k]) == finders && makes_all(p, &twists[k], tolerance))
+      oracle_name(text, named, twists[k].text);
+  for (const struct contact_twist *c = list; c->text; c++)
+    if (makes_all(p, &(struct sweep_twist){.contact = *c}, tolerance))
+      oracle_name(text, named, c->text);
+  return *named;
+}
+
 static bool name_guesses(const struct oracle_pair *p, double tolerance, char text[ORACLE_TEXT])
 {
-  const struct contact_twist *const lists[] = {contact_test_twists, contact_exchange_twists};
   bool named = false;
-  for (size_t k = 0; k < sizeof twists / sizeof *twists; k++)
-    if (makes_all(p, &twists[k], tolerance))
-      oracle_name(text, &named, twists[k].text);
-  for (int list = 0; list < 2; list++)
-    for (const struct contact_twist *c = lists[list]; c->text; c++)
-      if (makes_all(p, &(struct sweep_twist){.contact = *c}, tolerance))
-        oracle_name(text, &named, c->text);
+  if (enough_hits(p)) {
+    name_kind(p, tolerance, true, text, &named);
+    return name_kind(p, tolerance, false, text, &named);
+  }
+  if (name_kind(p, tolerance, false, text, &named))
+    return true;
+  char hits[ORACLE_TEXT] = "";
+  if (name_kind(p, tolerance, true, hits, &named))
+    snprintf(text, ORACLE_TEXT, "too few hits to tell; among what would make them: %.580s", hits);
   return named;
 }
 
