@@ -4,6 +4,7 @@
 #include <stddef.h>
 
 #include "contact/line.h"
+#include "oracle/single.h"
 
 /* --- the three conditions ----------------------------------------------------------------------------------------- */
 
@@ -12,33 +13,162 @@ static double volume(struct vec3 p, struct vec3 q, struct vec3 r)
   return vec3_dot(vec3_cross(p, q), r);
 }
 
-static int sign_of(const struct contact_twist *t, struct point origin, struct point u, struct point v, struct point w)
+__extension__ typedef __int128 int128;
+__extension__ typedef unsigned __int128 uint128;
+
+struct integers {
+  int64_t x, y, z;
+};
+
+static struct integers less(struct point a, struct point b)
 {
-  if (!t->doubles)
-    return crossing_orientation(origin, u, v, w);
-  const double det = volume(point_difference(u, origin), point_difference(v, origin), point_difference(w, origin));
-  return (det > 0.0) - (det < 0.0);
+  return (struct integers){a.x - b.x, a.y - b.y, a.z - b.z};
 }
 
-static bool positive(int sign, bool zero_negative)
+static struct vec3 real_of(struct integers p)
 {
+  return (struct vec3){(double)p.x, (double)p.y, (double)p.z};
+}
+
+static int sign_of_double(double x)
+{
+  return (x > 0.0) - (x < 0.0);
+}
+
+/* True if doubles cannot tell the sign: docs/porting.md has the bound. */
+static bool is_doubtful(struct vec3 p, struct vec3 q, struct vec3 r)
+{
+  const double size = fabs(r.x) * (fabs(p.y * q.z) + fabs(p.z * q.y)) +
+                      fabs(r.y) * (fabs(p.z * q.x) + fabs(p.x * q.z)) + fabs(r.z) * (fabs(p.x * q.y) + fabs(p.y * q.x));
+  return !(fabs(volume(p, q, r)) > 16.0 * 0x1p-53 * size);
+}
+
+static int sign_in_singles(struct vec3 p, struct vec3 q, struct vec3 r)
+{
+  const double yz = single_of(single_of(p.y) * single_of(q.z)), zy = single_of(single_of(p.z) * single_of(q.y));
+  const double zx = single_of(single_of(p.z) * single_of(q.x)), xz = single_of(single_of(p.x) * single_of(q.z));
+  const double xy = single_of(single_of(p.x) * single_of(q.y)), yx = single_of(single_of(p.y) * single_of(q.x));
+  const double x = single_of(single_of(r.x) * single_of(yz - zy)), y = single_of(single_of(r.y) * single_of(zx - xz));
+  return sign_of_double(single_of(single_of(x + y) + single_of(single_of(r.z) * single_of(xy - yx))));
+}
+
+static int64_t product_of_64(int64_t a, int64_t b)
+{
+  return (int64_t)((uint64_t)a * (uint64_t)b);
+}
+
+static int128 minor_of(bool short_words, int64_t a, int64_t b, int64_t c, int64_t d)
+{
+  if (short_words)
+    return (int64_t)((uint64_t)product_of_64(a, b) - (uint64_t)product_of_64(c, d));
+  return (int128)a * b - (int128)c * d;
+}
+
+/* Integers that are too short, or added wrongly. */
+static int sign_in_integers(enum exact_rule rule, struct integers p, struct integers q, struct integers r)
+{
+  const bool is_short = rule == MINORS_OF_64 || rule == ALL_OF_64;
+  const int128 minor[3] = {minor_of(is_short, p.y, q.z, p.z, q.y), minor_of(is_short, p.z, q.x, p.x, q.z),
+                           minor_of(is_short, p.x, q.y, p.y, q.x)};
+  const int64_t factor[3] = {r.x, r.y, r.z};
+  int128 high = 0, low = 0;
+  uint128 all = 0;
+  for (int k = 0; k < 3; k++) {
+    high += (minor[k] >> 64) * factor[k];
+    low += (int128)(uint64_t)minor[k] * factor[k];
+    all += (uint128)minor[k] * (uint128)(int128)factor[k];
+  }
+  if (rule == ALL_OF_64)
+    return ((int64_t)(uint64_t)all > 0) - ((int64_t)(uint64_t)all < 0);
+  if (rule == ALL_OF_128)
+    return ((int128)all > 0) - ((int128)all < 0);
+  high += rule == WITHOUT_CARRY ? 0 : low >> 64;
+  return high < 0 ? -1 : high > 0 || (uint64_t)low != 0;
+}
+
+static int sign_of(const struct contact_twist *t, struct point origin, struct point u, struct point v, struct point w)
+{
+  if (t->exact == EXACT)
+    return crossing_orientation(origin, u, v, w);
+  const struct integers p = less(u, origin), q = less(v, origin), r = less(w, origin);
+  const struct vec3 a = real_of(p), b = real_of(q), c = real_of(r);
+  if (t->exact == IN_SINGLES)
+    return sign_in_singles(a, b, c);
+  if (t->exact == IN_DOUBLES || (!t->unfiltered && !is_doubtful(a, b, c)))
+    return sign_of_double(volume(a, b, c));
+  return t->exact == DOUBT_IS_ZERO ? 0 : sign_in_integers(t->exact, p, q, r);
+}
+
+static bool positive(const struct contact_twist *t, int sign, int condition, bool flip)
+{
+  const enum zero_rule rule = t->zero[condition] != ZERO_RIGHT ? t->zero[condition]
+                              : condition == 0                 ? ZERO_FLIPS
+                                                               : ZERO_POSITIVE;
+  const bool zero_negative =
+      rule == ZERO_NEGATIVE || (rule == ZERO_FLIPS && flip) || (rule == ZERO_FLIPS_OTHERWISE && !flip);
   return zero_negative ? sign > 0 : sign >= 0;
+}
+
+static bool changes(enum change_rule rule, bool before, bool after)
+{
+  return rule == CHANGE_ANY    ? true
+         : rule == CHANGE_NONE ? before == after
+         : rule == CHANGE_UP   ? after && !before
+         : rule == CHANGE_DOWN ? before && !after
+                               : before != after;
+}
+
+static bool passes(enum path_rule rule, bool path, bool side)
+{
+  return rule == PATH_ANY        ? true
+         : rule == PATH_TURNED   ? path != side
+         : rule == PATH_POSITIVE ? path
+         : rule == PATH_NEGATIVE ? !path
+                                 : path == side;
+}
+
+static bool pierces(enum side_rule rule, bool a, bool b, bool side)
+{
+  switch (rule) {
+  case SIDES:
+    return a != b;
+  case SIDES_ANY:
+    return true;
+  case SIDES_ALIKE:
+    return a == b;
+  case SIDE_A_POSITIVE:
+    return a;
+  case SIDE_A_NEGATIVE:
+    return !a;
+  case SIDE_B_POSITIVE:
+    return b;
+  case SIDE_B_NEGATIVE:
+    return !b;
+  case SIDE_A_OTHER:
+    return a != side;
+  case SIDE_A_SAME:
+    return a == side;
+  case SIDE_B_OTHER:
+    return b != side;
+  default:
+    return b == side;
+  }
 }
 
 bool contact_crosses(const struct contact_twist *t, const struct contact_points *r)
 {
-  const int before = sign_of(t, r->a, r->b, r->pivot, r->from), after = sign_of(t, r->a, r->b, r->pivot, r->to);
-  const int path = sign_of(t, r->a, r->b, r->from, r->to);
+  const int turn = t->bond_turned ? -1 : 1;
+  const int before = turn * sign_of(t, r->a, r->b, r->pivot, r->from);
+  const int after = turn * sign_of(t, r->a, r->b, r->pivot, r->to),
+            path = turn * sign_of(t, r->a, r->b, r->from, r->to);
   const int a = sign_of(t, r->from, r->to, r->pivot, r->a), b = sign_of(t, r->from, r->to, r->pivot, r->b);
-  const bool first = t->zero == ZERO_NEGATIVE || (t->zero == ZERO_FLIPS_OTHERWISE && !r->flip) ||
-                     ((t->zero == ZERO_FLIPS || t->zero == ZERO_FLIPS_EVERYWHERE) && r->flip);
-  const bool others = t->zero == ZERO_NEGATIVE || (t->zero == ZERO_FLIPS_EVERYWHERE && r->flip);
-  const bool side = positive(before, first);
-  if (t->zero == ZERO_MISSES && (!before || !after || !path || !a || !b))
+  if ((t->zero[0] == ZERO_MISSES && (!before || !after)) || (t->zero[1] == ZERO_MISSES && !path) ||
+      (t->zero[2] == ZERO_MISSES && (!a || !b)))
     return false;
-  return (t->no_change || positive(after, first) != side) &&
-         (t->no_path || (positive(path, others) == side) != t->path_turned) &&
-         (t->no_sides || positive(a, others) != (t->one_side ? side : positive(b, others)));
+  const bool side = positive(t, before, 0, r->flip);
+  return changes(t->change_of_sign, side, positive(t, after, 0, r->flip)) &&
+         passes(t->path, positive(t, path, 1, r->flip), side) &&
+         pierces(t->side, positive(t, a, 2, r->flip), positive(t, b, 2, r->flip), side);
 }
 
 /* --- what a hit is like ------------------------------------------------------------------------------------------- */
@@ -67,47 +197,72 @@ static struct vec3 normal_of(const struct contact_twist *t, struct vec3 p, struc
   return turn ? vec3_scale(-1.0, n) : n;
 }
 
+/* x - y with one of the terms changed. */
+static double difference_of(int term, double x, double y)
+{
+  return (term == 1 ? -x : term == 3 ? 0.0 : x) - (term == 2 ? -y : term == 4 ? 0.0 : y);
+}
+
+static double share_at(enum contact_place place, double right)
+{
+  return place == AT_END ? 1.0 : place == AT_START ? 0.0 : place == AT_MIDDLE ? 0.5 : right;
+}
+
 struct contact_hit contact_describe(const struct contact_twist *t, const struct contact_points *r)
 {
   const double before = rounded_volume(r, r->from), after = rounded_volume(r, r->to);
-  const double right = clamp(t, before / (before - after));
-  const double share = t->place == AT_END ? 1.0 : t->place == AT_START ? 0.0 : t->place == AT_MIDDLE ? 0.5 : right;
-  const struct vec3 move = point_difference(r->to, r->from);
-  const struct vec3 at = vec3_add_scaled(point_difference(r->from, r->a), t->time_from_end ? 1.0 - share : share, move);
+  const double right = clamp(t, before / (t->time_of_sum ? before + after : before - after));
+  const double share = share_at(t->place, right);
+  const struct vec3 move = point_difference(r->to, r->from), start = point_difference(r->from, r->a);
+  const struct vec3 at = vec3_add_scaled(start, t->time_from_end ? 1.0 - share : share, move);
   const struct vec3 p = vec3_sub(point_difference(r->pivot, r->a), at), q = point_difference(r->b, r->a);
+  const struct vec3 along =
+      t->normal_place == AT_TIME
+          ? p
+          : vec3_sub(point_difference(r->pivot, r->a), vec3_add_scaled(start, share_at(t->normal_place, right), move));
   const double pp = vec3_dot(p, p), pq = vec3_dot(p, q), qq = vec3_dot(q, q), pt = vec3_dot(p, at),
                qt = vec3_dot(q, at);
-  const double denominator = pp * qq - pq * pq;
+  const double denominator = difference_of(t->denominator_term, pp * qq, pq * pq);
   double s = 0.5, standing = 0.5;
   if (denominator > 0.0) {
-    s = t->s_half ? 0.5 : clamp(t, (pq * qt - qq * pt) / denominator);
-    standing = t->standing_half ? 0.5 : clamp(t, (pp * qt - pq * pt) / denominator);
+    s = t->s_half ? 0.5 : clamp(t, difference_of(t->s_term, pq * qt, qq * pt) / denominator);
+    standing = t->standing_half ? 0.5 : clamp(t, difference_of(t->standing_term, pp * qt, pq * pt) / denominator);
   }
   return (struct contact_hit){t->time_from_end ? 1.0 - right : right, t->s_from_pivot ? 1.0 - s : s,
-                              t->standing_from_b ? 1.0 - standing : standing, normal_of(t, p, q, move)};
+                              t->standing_from_b ? 1.0 - standing : standing, normal_of(t, along, q, move)};
 }
 
 /* --- the exchange ------------------------------------------------------------------------------------------------- */
 
 static double inverse_mass(enum mass_rule rule, const double mass[4], int k)
 {
-  return rule == MASS_NONE       ? 1.0
-         : rule == MASS_TIMES    ? mass[k]
-         : rule == MASS_OF_MOVER ? 1.0 / mass[0]
-         : rule == MASS_SQUARED  ? 1.0 / (mass[k] * mass[k])
-                                 : 1.0 / mass[k];
+  const double sum = mass[0] + mass[1] + mass[2] + mass[3];
+  return rule == MASS_NONE                            ? 1.0
+         : rule == MASS_TIMES                         ? mass[k]
+         : rule >= MASS_OF_MOVER && rule <= MASS_OF_B ? 1.0 / mass[rule - MASS_OF_MOVER]
+         : rule == MASS_OF_BOND                       ? 1.0 / mass[k / 2 * 2]
+         : rule == MASS_MEAN                          ? 4.0 / sum
+         : rule == MASS_SUM                           ? 1.0 / sum
+         : rule == MASS_SQUARED                       ? 1.0 / (mass[k] * mass[k])
+         : rule == MASS_ROOT                          ? 1.0 / sqrt(mass[k])
+                                                      : 1.0 / mass[k];
 }
 
 static void levers_of(const struct contact_twist *t, const struct contact_hit *hit, double lever[4])
 {
   const bool moving = t->levers == LEVERS_SWAPPED || t->levers == LEVERS_MOVING_SWAPPED;
   const bool standing = t->levers == LEVERS_SWAPPED || t->levers == LEVERS_STANDING_SWAPPED;
-  const double s = moving ? 1.0 - hit->s : hit->s, u = standing ? 1.0 - hit->s_standing : hit->s_standing;
+  const bool other_s = t->levers == LEVERS_BY_S_STANDING || t->levers == LEVERS_EXCHANGED;
+  const bool other_standing = t->levers == LEVERS_BY_S || t->levers == LEVERS_EXCHANGED;
+  const double first = other_s ? hit->s_standing : hit->s, second = other_standing ? hit->s : hit->s_standing;
+  const double s = moving ? 1.0 - first : first, u = standing ? 1.0 - second : second;
   lever[0] = 1.0 - s, lever[1] = s, lever[2] = u - 1.0, lever[3] = -u;
   if (t->levers == LEVERS_HALF)
     lever[0] = lever[1] = 0.5, lever[2] = lever[3] = -0.5;
   if (t->levers == LEVERS_OF_VERTEX)
     lever[0] = lever[1] = 1.0, lever[2] = lever[3] = -1.0;
+  if (t->levers == LEVERS_ALL_POSITIVE)
+    lever[2] = 1.0 - u, lever[3] = u;
 }
 
 double contact_exchange(const struct contact_twist *t, const struct contact_hit *hit, const double mass[4],
@@ -117,96 +272,21 @@ double contact_exchange(const struct contact_twist *t, const struct contact_hit 
   levers_of(t, hit, lever);
   for (int k = 0; k < 4; k++) {
     const double square = t->unsquared ? fabs(lever[k]) : lever[k] * lever[k];
-    if (k < 2 || !t->approach_of_moving)
+    if (!(t->no_approach & 1U << k))
       approach += lever[k] * vec3_dot(v[k], hit->normal);
-    if (k < 2 || !t->compliance_of_moving)
+    if (!(t->no_compliance & 1U << k))
       compliance += square * inverse_mass(t->mass, mass, k);
   }
   double impulse = (t->factor != 0.0 ? t->factor : 2.0) * approach / compliance;
-  impulse = t->clipped ? fmax(impulse, 0.0) : t->absolute ? fabs(impulse) : impulse;
-  for (int k = 0; k < 4; k++)
-    if (!(t->moving_only && k >= 2) && !(t->standing_only && k < 2))
-      v[k] = vec3_add_scaled(v[k], -(1.0 + t->change) * lever[k] * impulse * inverse_mass(t->mass_after, mass, k),
+  impulse = t->clipped         ? fmax(impulse, 0.0)
+            : t->clipped_above ? fmin(impulse, 0.0)
+            : t->absolute      ? fabs(impulse)
+                               : impulse;
+  for (int k = 0; k < 4; k++) {
+    const double part = t->unlevered ? (double)((lever[k] > 0.0) - (lever[k] < 0.0)) : lever[k];
+    if (!(t->no_change & 1U << k))
+      v[k] = vec3_add_scaled(v[k], -(1.0 + t->change) * part * impulse * inverse_mass(t->mass_after, mass, k),
                              hit->normal);
+  }
   return impulse;
 }
-
-/* --- guesses ------------------------------------------------------------------------------------------------------ */
-
-const struct contact_twist contact_test_twists[] = {
-    {.zero = ZERO_POSITIVE, .text = "a determinant that is exactly zero: it counts as positive, but for `flip`"},
-    {.zero = ZERO_NEGATIVE,
-     .text = "a determinant that is exactly zero counts as negative: it counts as positive, but for `flip`"},
-    {.zero = ZERO_FLIPS_OTHERWISE, .text = "a determinant that is exactly zero: `flip` is turned round"},
-    {.zero = ZERO_FLIPS_EVERYWHERE, .text = "a determinant that is exactly zero: `flip` is for condition 1 only"},
-    {.zero = ZERO_MISSES,
-     .text = "a determinant that is exactly zero counts as no crossing: it counts as positive, but for `flip`"},
-    {.doubles = true, .text = "determinants in doubles alone: their signs are exact"},
-    {.no_change = true, .text = "the first volume's sign need not change (condition 1)"},
-    {.no_path = true, .text = "a line that passes beyond the swept triangle counts as a hit (condition 2)"},
-    {.path_turned = true, .text = "the sign of the second volume is turned round (condition 2)"},
-    {.no_sides = true, .text = "a bond that ends beyond the triangle's plane counts as a hit (condition 3)"},
-    {.one_side = true,
-     .text = "one end of the standing bond is tested against the first volume, not the other end (condition 3)"},
-    {.no_path = true, .no_sides = true, .text = "only condition 1 is tested, not 2 and 3"},
-    {.time_from_end = true, .text = "the time from the end of the move: 1 - t for t"},
-    {.place = AT_END, .text = "the contact is taken at the end of the move, not at t_I"},
-    {.place = AT_START, .text = "the contact is taken at the start of the move, not at t_I"},
-    {.place = AT_MIDDLE, .text = "the contact is taken at the middle of the move, not at t_I"},
-    {.s_from_pivot = true, .text = "lever rule: s counts from the moving vertex, not from the pivot"},
-    {.standing_from_b = true, .text = "lever rule: s' counts from the standing bond's first end, not from its second"},
-    {.s_from_pivot = true,
-     .standing_from_b = true,
-     .text = "lever rule: s counts from the moving vertex, s' from the bond's first end"},
-    {.s_half = true, .text = "s is 0.5 always"},
-    {.standing_half = true, .text = "s' is 0.5 always"},
-    {.s_half = true, .standing_half = true, .text = "s and s' are 0.5 always"},
-    {.unclamped = true, .text = "s and s' are not clamped to [0, 1]"},
-    {.normal = NORMAL_TURNED, .text = "normal turned round: it points the way the vertex moves"},
-    {.normal = NORMAL_PLAIN, .text = "the normal's sign as it comes from p x q: it points the way the vertex moves"},
-    {.normal = NORMAL_PLAIN_TURNED,
-     .text = "the normal's sign as it comes from q x p: it points the way the vertex moves"},
-    {.normal = NORMAL_UNSCALED, .text = "the normal is not of length 1: p x q itself"},
-    {.normal = NORMAL_SQUARED, .text = "the normal is not of length 1: divided by (p x q)^2, the root is missing"},
-    {.text = NULL},
-};
-
-const struct contact_twist contact_exchange_twists[] = {
-    {.clipped = true, .text = "dP clipped at 0: it is used with its sign (footnote 61)"},
-    {.absolute = true, .text = "dP without its sign: |dP|"},
-    {.factor = 1.0, .text = "dP without its factor 2"},
-    {.factor = 4.0, .text = "dP with a factor 4 for 2"},
-    {.factor = -2.0, .text = "sign of dP"},
-    {.levers = LEVERS_SWAPPED, .text = "lever rule swapped: 1 - s goes to the moving vertex, 1 - s' to bond's first"},
-    {.levers = LEVERS_MOVING_SWAPPED, .text = "lever rule swapped in the moving bond: 1 - s goes to the moving vertex"},
-    {.levers = LEVERS_STANDING_SWAPPED,
-     .text = "lever rule swapped in the standing bond: 1 - s' goes to its first end"},
-    {.levers = LEVERS_HALF, .text = "lever rule: levers are 0.5 always"},
-    {.levers = LEVERS_OF_VERTEX, .text = "lever rule: levers are 1 always"},
-    {.mass = MASS_NONE, .mass_after = MASS_NONE, .text = "exchange without masses"},
-    {.mass = MASS_NONE, .text = "dP without mass"},
-    {.mass_after = MASS_NONE, .text = "changes of velocity without the mass: dP for dP/M"},
-    {.mass = MASS_TIMES, .mass_after = MASS_TIMES, .text = "exchange times the mass, not over it"},
-    {.mass = MASS_TIMES, .text = "dP with masses multiplied, not divided"},
-    {.mass_after = MASS_TIMES, .text = "changes of velocity times the mass: dP M for dP/M"},
-    {.mass = MASS_OF_MOVER, .mass_after = MASS_OF_MOVER, .text = "dP with the mass of one vertex for all four"},
-    {.mass = MASS_OF_MOVER, .text = "dP with the mass of one vertex for all four, velocities with their own"},
-    {.mass_after = MASS_OF_MOVER, .text = "changes of velocity with the mass of one vertex for all four"},
-    {.mass = MASS_SQUARED, .mass_after = MASS_SQUARED, .text = "exchange over the mass squared"},
-    {.mass_after = MASS_SQUARED, .text = "changes of velocity over the mass squared"},
-    {.compliance_of_moving = true, .text = "levers of the moving bond only in the denominator of dP"},
-    {.approach_of_moving = true, .text = "velocities of the moving bond only in dP"},
-    {.approach_of_moving = true, .compliance_of_moving = true, .text = "levers of the moving bond only in dP"},
-    {.approach_of_moving = true,
-     .compliance_of_moving = true,
-     .moving_only = true,
-     .text = "levers of the moving bond only, in dP and in the changes of velocity"},
-    {.moving_only = true, .text = "the moving bond only changes its velocities"},
-    {.standing_only = true, .text = "the standing bond only changes its velocities"},
-    {.unsquared = true, .text = "levers are not squared in dP"},
-    {.change = -2.0, .text = "sign: changes of velocity are the negative of what is wanted"},
-    {.change = -0.5, .text = "half of dP enters the velocities"},
-    {.change = 1.0, .text = "twice dP enters the velocities"},
-    {.change = -1.0, .text = "no exchange of momentum"},
-    {.text = NULL},
-};

@@ -12,14 +12,16 @@ struct oracle_pattern {
 };
 
 /* Each list ends with one without a meaning; the first pattern that fits is told. */
-extern const struct oracle_pattern oracle_patterns_random[], oracle_patterns_solvent[], oracle_patterns_contact[],
-    oracle_patterns_sweep[], oracle_patterns_any[];
+extern const struct oracle_pattern oracle_patterns_random[], oracle_patterns_sweep[], oracle_patterns_any[];
 
 /* True if theirs is this guess, within tolerance. */
 bool oracle_guessed(const struct oracle_pair *pair, uint32_t row, uint32_t column, double guess);
 
 /* True if theirs is ours, within tolerance. */
 bool oracle_agrees(const struct oracle_pair *pair, uint32_t row, uint32_t column);
+
+#define ORACLE_AS_SINGLE                                                                                               \
+  "right to 5 to 8 digits, with errors of either sign: as of single precision, or of a constant of so few digits"
 
 /* True if the first rows are right to 5 to 8 digits, not better, and the errors scatter about 0. */
 bool oracle_is_single(const struct oracle_pair *pair, uint32_t rows);

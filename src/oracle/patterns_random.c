@@ -40,8 +40,10 @@ static bool is_no_permutation(const struct oracle_pair *p)
 }
 
 const struct oracle_pattern oracle_patterns_random[] = {
-    {"random", "out.word", "hardly a word is right: counter, key or rounds of Philox", words_unlike},
-    {NULL, "out.order", "no permutation: a number is missing", is_no_permutation},
-    {NULL, "out.order", "a permutation, but of other random numbers or exchanges", is_permutation},
+    {"random", "out.word",
+     "none of those known; hardly a word is right, so the counter, the key or the rounds of Philox differ",
+     words_unlike},
+    {NULL, "out.order", "none of those known; no permutation: a number is missing", is_no_permutation},
+    {NULL, "out.order", "none of those known; a permutation, but of other random numbers or exchanges", is_permutation},
     {.meaning = NULL},
 };

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "oracle/patterns.h"
+#include "oracle/single.h"
 
 /* --- what all relations use --------------------------------------------------------------------------------------- */
 
@@ -96,6 +97,17 @@ static double negative(const struct evidence *e, uint32_t row, uint32_t column)
   return -ours(e, row, column);
 }
 
+static double one(const struct evidence *e, uint32_t row, uint32_t column)
+{
+  (void)e, (void)row, (void)column;
+  return 1.0;
+}
+
+static double complement(const struct evidence *e, uint32_t row, uint32_t column)
+{
+  return 1.0 - ours(e, row, column);
+}
+
 static double inverse(const struct evidence *e, uint32_t row, uint32_t column)
 {
   return 1.0 / ours(e, row, column);
@@ -134,7 +146,7 @@ static double clipped(const struct evidence *e, uint32_t row, uint32_t column)
 
 static double single(const struct evidence *e, uint32_t row, uint32_t column)
 {
-  return (double)(float)ours(e, row, column);
+  return single_of(ours(e, row, column));
 }
 
 static double change(const struct evidence *e, uint32_t row, uint32_t column, double part)
@@ -172,11 +184,13 @@ static bool of_value(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
       {input, "nothing done: what came out is what went in"},
       {nothing, "NaN: 0/0, or the root or logarithm of a negative number"},
       {zero, "0 came out"},
+      {one, "1 came out"},
       {negative, "sign: the negative of what is wanted"},
-      {half_change, "half a step: changed by half of what is wanted"},
-      {twice_change, "a step instead of half a step: changed by twice what is wanted"},
+      {half_change, "changed by half of what is wanted"},
+      {twice_change, "changed by twice what is wanted"},
       {other_change, "sign: changed by the negative of what is wanted"},
       {only_change, "what went in is replaced by the change, which is to be added to it"},
+      {complement, "the rest to 1: 1 - x for x"},
       {inverse, "inverted: 1/x for x"},
       {square, "squared, or a root that is missing: x^2 for x"},
       {root, "a root too many: sqrt(x) for x"},
@@ -198,6 +212,7 @@ static bool by_factor(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
 {
   const size_t best = largest_wrong(e);
   const double c = e->theirs[best] / e->ours[best];
+  e->free = 1;
   for (size_t j = 0; j < (size_t)e->rows * e->columns; j++)
     e->guess[j] = c * e->ours[j];
   return k == 0 && isfinite(c) && c != 0.0 && c != 1.0 &&
@@ -208,6 +223,7 @@ static bool by_offset(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
 {
   const size_t best = largest_wrong(e);
   const double c = e->theirs[best] - e->ours[best];
+  e->free = 1;
   for (size_t j = 0; j < (size_t)e->rows * e->columns; j++)
     e->guess[j] = e->ours[j] + c;
   return k == 0 && isfinite(c) &&
@@ -217,6 +233,7 @@ static bool by_offset(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
 static bool by_change(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
 {
   double most = 0.0, c = NAN;
+  e->free = 1;
   for (uint32_t row = 0; row < e->rows; row++)
     for (uint32_t column = 0; column < e->columns; column++) {
       const double in = input(e, row, column), wanted = ours(e, row, column) - in;
@@ -231,16 +248,25 @@ static bool by_change(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
 
 static bool by_modulus(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
 {
-  const int bits = 8 + (int)k;
-  if (k > 44 || e->part[0].pair.ours->real)
+  const bool is_signed = k % 2;
+  const int bits = 8 + (int)k / 2;
+  if (k > 88 || e->part[0].pair.ours->real)
     return false;
   const double range = ldexp(1.0, bits);
   for (size_t j = 0; j < (size_t)e->rows * e->columns; j++)
-    e->guess[j] = e->ours[j] - range * floor(e->ours[j] / range);
-  return relation_say(text, "an integer cut to %d bits", bits);
+    e->guess[j] = e->ours[j] - range * floor(e->ours[j] / range + (is_signed ? 0.5 : 0.0));
+  return relation_say(text, "an integer cut to %d bits%s", bits, is_signed ? " with sign" : "");
 }
 
 /* --- other rows and columns --------------------------------------------------------------------------------------- */
+
+static bool is_wrong_column(const struct evidence *e, uint32_t column)
+{
+  bool any = false;
+  for (uint32_t row = 0; row < e->rows; row++)
+    any |= e->wrong[at(e, row, column)];
+  return any;
+}
 
 static bool by_columns(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
 {
@@ -248,14 +274,37 @@ static bool by_columns(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
   const bool pairs = e->columns == 2;
   if (k >= (pairs ? 1U : 5U) || (e->columns != 2 && e->columns != 3))
     return false;
+  bool moved = true; /* only wrong columns, and all of them */
+  for (uint32_t column = 0; column < e->columns; column++)
+    moved &= (from[k][column] != column) == is_wrong_column(e, column);
   for (uint32_t row = 0; row < e->rows; row++)
     for (uint32_t column = 0; column < e->columns; column++)
-      e->guess[at(e, row, column)] = ours(e, row, from[k][column]);
+      e->guess[at(e, row, column)] = moved ? ours(e, row, from[k][column]) : NAN;
   const struct pack_table *t = e->part[0].pair.ours;
   return relation_say(text, "columns exchanged: %.10s %.10s%s%.10s are what %.10s %.10s%s%.10s should be",
                       t->component[0], t->component[1], pairs ? "" : " ", pairs ? "" : t->component[2],
                       t->component[from[k][0]], t->component[from[k][1]], pairs ? "" : " ",
                       pairs ? "" : t->component[from[k][2]]);
+}
+
+/* Two columns of any table, if only they are wrong. */
+static bool by_two_columns(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
+{
+  uint32_t wrong[2] = {0, 0}, count = 0;
+  for (uint32_t column = 0; column < e->columns; column++) {
+    const bool any = is_wrong_column(e, column);
+    if (any && count < 2)
+      wrong[count] = column;
+    count += any;
+  }
+  if (k > 0 || count != 2)
+    return false;
+  for (uint32_t row = 0; row < e->rows; row++)
+    for (uint32_t j = 0; j < 2; j++)
+      e->guess[at(e, row, wrong[j])] = ours(e, row, wrong[1 - j]);
+  const struct pack_table *t = e->part[0].pair.ours;
+  return relation_say(text, "columns exchanged: %.20s is what %.20s should be, and %.20s what %.20s should",
+                      t->component[wrong[0]], t->component[wrong[1]], t->component[wrong[1]], t->component[wrong[0]]);
 }
 
 static bool by_one_column(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
@@ -265,7 +314,7 @@ static bool by_one_column(struct evidence *e, uint32_t k, char text[RELATION_TEX
   for (uint32_t row = 0; row < e->rows; row++)
     for (uint32_t column = 0; column < 3; column++)
       e->guess[at(e, row, column)] = ours(e, row, k);
-  return relation_say(text, "the same along all axes: that of %s", e->part[0].pair.ours->component[k]);
+  return relation_say(text, "the same along axes: that of %s", e->part[0].pair.ours->component[k]);
 }
 
 /* The numbers of another row of the same part. */
@@ -281,8 +330,9 @@ static bool by_rows(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
     const uint32_t n = part->rows, other = k == 0 ? (own + 1) % n : k == 1 ? (own + n - 1) % n : n - 1 - own;
     const bool wraps = k < 2 && other != own + 1 && other + 1 != own;
     for (uint32_t column = 0; column < e->columns; column++)
-      e->guess[at(e, row, column)] =
-          wraps && n > 2 ? e->theirs[at(e, row, column)] : ours(e, part->first + other, column);
+      e->guess[at(e, row, column)] = !(wraps && n > 2)              ? ours(e, part->first + other, column)
+                                     : e->wrong_rows > 2 * e->parts ? e->theirs[at(e, row, column)]
+                                                                    : NAN;
   }
   return relation_say(text, "%s", which[k]);
 }
@@ -291,6 +341,7 @@ static bool by_row_alike(struct evidence *e, uint32_t k, char text[RELATION_TEXT
 {
   const size_t best = largest_wrong(e) / e->columns * e->columns;
   char value[RELATION_TEXT] = "";
+  e->free = e->columns;
   for (uint32_t column = 0; column < e->columns && column < 4; column++)
     snprintf(value + strlen(value), sizeof value - strlen(value), " %.6g", e->theirs[best + column]);
   for (uint32_t row = 0; row < e->rows; row++)
@@ -339,17 +390,10 @@ static bool by_mass(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
 }
 
 const struct relation oracle_relations_any[] = {
-    {NULL, NULL, of_value, 1},
-    {NULL, NULL, by_columns, 3},
-    {NULL, NULL, by_one_column, 2},
-    {NULL, NULL, by_rows, 3},
-    {NULL, NULL, by_row_alike, 4},
-    {NULL, NULL, by_factor, 3},
-    {NULL, NULL, by_offset, 3},
-    {NULL, NULL, by_change, 3},
-    {NULL, NULL, by_modulus, 2},
-    {NULL, NULL, by_mass, 2},
-    {.make = NULL},
+    {NULL, NULL, of_value, false},      {NULL, NULL, by_columns, false}, {NULL, NULL, by_two_columns, false},
+    {NULL, NULL, by_one_column, false}, {NULL, NULL, by_rows, false},    {NULL, NULL, by_row_alike, false},
+    {NULL, NULL, by_factor, false},     {NULL, NULL, by_offset, false},  {NULL, NULL, by_change, false},
+    {NULL, NULL, by_modulus, false},    {NULL, NULL, by_mass, false},    {.make = NULL},
 };
 
 /* --- one side ----------------------------------------------------------------------------------------------------- */
@@ -367,9 +411,9 @@ bool oracle_one_sided(const struct evidence *e, char text[RELATION_TEXT])
     above += e->theirs[k] > e->ours[k];
   }
   const char *side = n < 8         ? NULL
-                     : below == n  ? "below what is wanted (rounded down, or cut?)"
+                     : below == n  ? "below what is wanted"
                      : above == n  ? "above what is wanted"
-                     : toward == n ? "toward zero (cut, not rounded?)"
+                     : toward == n ? "toward zero"
                      : away == n   ? "away from zero"
                                    : NULL;
   return side && relation_say(text, "one-sided: all %u wrong values are %s", n, side);

@@ -17,12 +17,14 @@ typedef bool relation_maker(struct evidence *e, uint32_t k, char text[RELATION_T
 struct relation {
   const char *operator_name, *table; /* NULL: any */
   relation_maker *make;
-  uint32_t least; /* wrong values that it takes to tell: more than it has free numbers */
+  bool together; /* of all tables of the operator: the guess must make each of them */
 };
 
-/* Each list ends with one that makes none. From the most to the least telling. */
-extern const struct relation oracle_relations_random[], oracle_relations_contact[], oracle_relations_fiber[],
-    oracle_relations_solvent[], oracle_relations_any[];
+/* Each list ends with one that makes none. From the most to the least telling. Those of any operator say what the
+ * values are, and no cause. */
+extern const struct relation oracle_relations_random[], oracle_relations_permutation[], oracle_relations_contact[],
+    oracle_relations_fiber[], oracle_relations_grid[], oracle_relations_sum[], oracle_relations_rotate[],
+    oracle_relations_thermostat[], oracle_relations_any[];
 
 /* Writes the text; true, for makers to return. */
 bool relation_say(char text[RELATION_TEXT], const char *format, ...);

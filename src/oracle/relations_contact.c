@@ -94,8 +94,8 @@ static bool exchanges(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
 }
 
 const struct relation oracle_relations_contact[] = {
-    {"crossing", "out.crosses", tests, 1},
-    {"crossing", "out.hit", tests, 1},
-    {"exchange", NULL, exchanges, 1},
+    {"crossing", "out.crosses", tests, false},
+    {"crossing", "out.hit", tests, false},
+    {"exchange", NULL, exchanges, true},
     {.make = NULL},
 };

@@ -5,6 +5,7 @@
 
 #include "oracle/patterns.h"
 #include "oracle/relations.h"
+#include "oracle/single.h"
 
 #define COUNT_OF(list) (sizeof(list) / sizeof *(list))
 
@@ -70,13 +71,26 @@ static void put(double *force, int64_t vertex, double factor, struct vec3 v)
 
 /* --- bonds -------------------------------------------------------------------------------------------------------- */
 
+/* What the tension is, for k (l - l0). */
+enum stretch {
+  STRETCH,
+  STRETCH_BY_REST,
+  STRETCH_BY_LENGTH,
+  STRETCH_SIZE,
+  STRETCH_SQUARED,
+  STRETCH_CUBED,
+  STRETCH_OF_SQUARES
+};
+
 /* Zeros: as it should be. */
 struct bond_twist {
+  enum stretch stretch;
   double rest;             /* times l0, less 1 */
   double action, reaction; /* times the force on j, and on the next one, less 1 */
   double spring;           /* times k, less 1 */
   const char *text;
-  bool spring_of_next; /* number, not of the fiber */
+  bool spring_of_next, rest_of_next; /* number, not of the fiber */
+  bool spring_of_end, closing_turned, gaussian_of_rest;
   bool squared, undivided, pull_only, push_only, image, no_closing, always_gaussian, never_gaussian, flat;
   bool no_first, no_last, single;
 };
@@ -87,16 +101,27 @@ static struct vec3 bond_pull(const struct fibers *f, const struct bond_twist *t,
   if (t->flat)
     r.z = 0.0;
   if (t->single)
-    r = (struct vec3){(float)r.x, (float)r.y, (float)r.z};
+    r = (struct vec3){single_of(r.x), single_of(r.y), single_of(r.z)};
   const double squared = vec3_dot(r, r), length = t->squared ? squared : sqrt(squared);
-  const double k = (1.0 + t->spring) * constant(f, t->spring_of_next ? (j + 1) % f->n : j, SPRING);
-  const double rest = (1.0 + t->rest) * constant(f, j, REST);
-  const bool gaussian = constant(f, j, REST) == 0.0 && constant(f, j, BENDING) == 0.0;
+  const double k = (1.0 + t->spring) * constant(f,
+                                                t->spring_of_next  ? (j + 1) % f->n
+                                                : t->spring_of_end ? next
+                                                                   : j,
+                                                SPRING);
+  const double l0 = constant(f, t->rest_of_next ? (j + 1) % f->n : j, REST), rest = (1.0 + t->rest) * l0;
+  const bool gaussian = constant(f, j, REST) == 0.0 && (t->gaussian_of_rest || constant(f, j, BENDING) == 0.0);
   if ((gaussian && !t->never_gaussian) || t->always_gaussian)
     return vec3_scale(k, r);
   double stretch = length - rest;
   if ((t->pull_only && stretch < 0.0) || (t->push_only && stretch > 0.0))
     stretch = 0.0;
+  stretch = t->stretch == STRETCH_BY_REST      ? stretch / rest
+            : t->stretch == STRETCH_BY_LENGTH  ? stretch / length
+            : t->stretch == STRETCH_SIZE       ? fabs(stretch)
+            : t->stretch == STRETCH_SQUARED    ? stretch * stretch
+            : t->stretch == STRETCH_CUBED      ? stretch * stretch * stretch
+            : t->stretch == STRETCH_OF_SQUARES ? length * length - rest * rest
+                                               : stretch;
   return vec3_scale(k * stretch, vec3_scale(t->undivided ? 1.0 : 1.0 / length, r));
 }
 
@@ -110,7 +135,9 @@ static void add_bonds(const struct fibers *f, const struct bond_twist *t, double
     const int64_t next = next_of(f, j);
     if (next < 0 || (t->no_closing && next < j) || (t->no_first && j == first) || (t->no_last && j == last))
       continue;
-    const struct vec3 pull = bond_pull(f, t, j, next);
+    struct vec3 pull = bond_pull(f, t, j, next);
+    if (t->closing_turned && next < j)
+      pull = vec3_scale(-1.0, pull);
     put(force, j, 1.0 + t->action, pull);
     put(force, next, -1.0 - t->reaction, pull);
   }
@@ -131,6 +158,20 @@ static bool bonds(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
   static const struct bond_twist known[] = {
       {.action = -2.0, .reaction = -2.0, .text = "sign: the negative of what is wanted; bonds pull when stretched"},
       {.rest = -1.0, .text = "the rest length l0 is left out: k R for k (l - l0) R/l"},
+      {.stretch = STRETCH_BY_REST, .text = "the stretch relative to l0: k (l - l0)/l0 for k (l - l0)"},
+      {.stretch = STRETCH_BY_LENGTH, .text = "the stretch relative to the length: k (l - l0)/l for k (l - l0)"},
+      {.stretch = STRETCH_SIZE, .text = "the stretch without its sign: k |l - l0|"},
+      {.stretch = STRETCH_SQUARED, .text = "the stretch squared: k (l - l0)^2"},
+      {.stretch = STRETCH_CUBED, .text = "the stretch cubed: k (l - l0)^3"},
+      {.stretch = STRETCH_OF_SQUARES, .text = "the stretch of squares: k (l^2 - l0^2)"},
+      {.reaction = 1.0, .text = "the force on the next vertex twice"},
+      {.action = 1.0, .text = "the force on the bond's first vertex twice"},
+      {.reaction = -0.5, .text = "the force on the next vertex halved"},
+      {.action = -0.5, .text = "the force on the bond's first vertex halved"},
+      {.rest_of_next = true, .text = "the rest length of the next number's vertex"},
+      {.spring_of_end = true, .text = "the spring constant of the bond's second vertex"},
+      {.closing_turned = true, .text = "sign: the bond that closes a ring the other way round"},
+      {.gaussian_of_rest = true, .text = "bonds of l0 = 0 and a bending constant, too, without their root"},
       {.always_gaussian = true, .text = "the rest length l0 is left out: k R for k (l - l0) R/l"},
       {.squared = true, .text = "bond lengths without their root: R.R for its root"},
       {.undivided = true, .text = "the bond vector is not divided by its length: k (l - l0) R"},
@@ -166,6 +207,9 @@ struct bend_twist {
   bool exchanged, undivided_before, undivided_after, squared, no_projection, cosine_turned, image;
   bool no_closing, no_ends_of_closing, no_first, no_last, before_only_projected, roots_left_out;
   int kappa_of; /* -1, 1: of the neighbor */
+  bool cosine_squared, projection_squared_before, projection_squared_after, lengths_before, lengths_after;
+  bool middle_of_before, middle_of_after, unprojected_before, unprojected_after, of_both;
+  bool squared_before, squared_after, turned_before, turned_after;
   double kappa;
   const char *text;
 };
@@ -178,14 +222,30 @@ static void add_bend(const struct fibers *f, const struct bend_twist *t, int64_t
   const double i0 = 1.0 / (t->roots_left_out ? d0 : sqrt(d0)), i1 = 1.0 / (t->roots_left_out ? d1 : sqrt(d1));
   const struct vec3 u0 = vec3_scale(t->exchanged ? i1 : i0, r0), u1 = vec3_scale(t->exchanged ? i0 : i1, r1);
   const double kappa = (1.0 + t->kappa) * constant(f, t->kappa_of < 0 ? prev : t->kappa_of > 0 ? next : v, BENDING);
-  const double c = t->no_projection ? 0.0 : t->cosine_turned ? -vec3_dot(u0, u1) : vec3_dot(u0, u1);
-  const double p0 = t->undivided_before ? 1.0 : t->squared ? i0 * i0 : t->exchanged ? i1 : i0;
-  const double p1 = t->undivided_after ? 1.0 : t->squared ? i1 * i1 : t->exchanged ? i0 : i1;
-  const struct vec3 a = vec3_scale((1.0 + t->before) * -kappa * p0, vec3_add_scaled(u1, -c, u0));
-  const struct vec3 b = vec3_scale((1.0 + t->after) * kappa * p1, vec3_add_scaled(u0, -c, u1));
+  const double dot = vec3_dot(u0, u1);
+  const double c = t->no_projection ? 0.0 : t->cosine_turned ? -dot : t->cosine_squared ? dot * dot : dot;
+  const double c0 = t->turned_before               ? -dot
+                    : t->projection_squared_before ? dot * dot
+                    : t->unprojected_before        ? 0.0
+                                                   : c;
+  const double c1 = t->turned_after ? -dot : t->projection_squared_after ? dot * dot : t->unprojected_after ? 0.0 : c;
+  const double p0 = t->undivided_before               ? 1.0
+                    : t->lengths_after                ? i1
+                    : t->of_both                      ? i0 * i1
+                    : t->squared || t->squared_before ? i0 * i0
+                    : t->exchanged                    ? i1
+                                                      : i0;
+  const double p1 = t->undivided_after               ? 1.0
+                    : t->lengths_before              ? i0
+                    : t->of_both                     ? i0 * i1
+                    : t->squared || t->squared_after ? i1 * i1
+                    : t->exchanged                   ? i0
+                                                     : i1;
+  const struct vec3 a = vec3_scale((1.0 + t->before) * -kappa * p0, vec3_add_scaled(u1, -c0, u0));
+  const struct vec3 b = vec3_scale((1.0 + t->after) * kappa * p1, vec3_add_scaled(u0, -c1, u1));
   put(force, prev, 1.0, a);
   put(force, next, 1.0, b);
-  put(force, v, -1.0 - t->middle, vec3_add(a, b));
+  put(force, v, -1.0 - t->middle, t->middle_of_before ? a : t->middle_of_after ? b : vec3_add(a, b));
 }
 
 static bool has_bend(const struct fibers *f, int64_t v)
@@ -225,13 +285,33 @@ static bool bends(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
       {.middle = -2.0, .text = "sign: the bend's force on the middle vertex is -(A + B)"},
       {.before = -1.0, .text = "the bend's force on the vertex before is left out"},
       {.after = -1.0, .text = "the bend's force on the vertex after is left out"},
-      {.before = -2.0, .text = "sign: the bend's force A on the vertex before"},
-      {.after = -2.0, .text = "sign: the bend's force B on the vertex after"},
+      {.before = -2.0,
+       .text = "sign: the bend's force A on the vertex before, or the bond after it taken the other way round"},
+      {.after = -2.0,
+       .text = "sign: the bend's force B on the vertex after, or the bond before it taken the other way round"},
+      {.middle_of_before = true, .text = "the bend's force on the middle vertex is -A: it is -(A + B)"},
+      {.middle_of_after = true, .text = "the bend's force on the middle vertex is -B: it is -(A + B)"},
+      {.cosine_squared = true, .text = "the cosine squared in the projection: u1 - c^2 u0 for u1 - c u0"},
+      {.projection_squared_before = true, .text = "the cosine squared in A: u1 - c^2 u0 for u1 - c u0"},
+      {.projection_squared_after = true, .text = "the cosine squared in B: u0 - c^2 u1 for u0 - c u1"},
+      {.unprojected_before = true, .text = "A without its projection: u1 for u1 - c u0"},
+      {.unprojected_after = true, .text = "B without its projection: u0 for u0 - c u1"},
+      {.lengths_before = true, .text = "the bend's force on the vertex after by the length of the bond before"},
+      {.lengths_after = true, .text = "the bend's force on the vertex before by the length of the bond after"},
+      {.lengths_before = true, .lengths_after = true, .text = "the bend's forces by the length of the other bond"},
+      {.of_both = true, .text = "the bend's forces by both lengths"},
+      {.before = 1.0, .text = "the bend's force on the vertex before twice"},
+      {.after = 1.0, .text = "the bend's force on the vertex after twice"},
+      {.middle = 1.0, .text = "the bend's force on the middle vertex twice"},
       {.exchanged = true, .text = "the bend's two lengths exchanged"},
       {.undivided_before = true, .undivided_after = true, .text = "bends without 1/length: kappa/l (u - c u)"},
       {.undivided_before = true, .text = "the bend's force on the vertex before without 1/length"},
       {.undivided_after = true, .text = "the bend's force on the vertex after without 1/length"},
       {.squared = true, .text = "bends with 1/length squared"},
+      {.squared_before = true, .text = "A with 1/length squared"},
+      {.squared_after = true, .text = "B with 1/length squared"},
+      {.turned_before = true, .text = "sign of the projection in A: u1 + c u0"},
+      {.turned_after = true, .text = "sign of the projection in B: u0 + c u1"},
       {.roots_left_out = true, .text = "lengths of bends without their root"},
       {.no_projection = true, .text = "bends without their projection: u1 for u1 - c u0"},
       {.cosine_turned = true, .text = "sign of the projection: u1 + c u0 for u1 - c u0"},
@@ -258,6 +338,8 @@ enum body_mass { BODY_PLAIN, BODY_TIMES_MASS, BODY_OVER_MASS };
 struct force_twist {
   double body, bonds, bends; /* times, less 1 */
   int body_of;               /* vertices further on */
+  bool body_of_first;        /* vertex 0 */
+  int without, axis_of;      /* 1 + component */
   enum body_mass mass;
   const char *text;
 };
@@ -277,10 +359,12 @@ static bool make_force(const struct evidence_part *part, const void *twist, doub
   for (uint32_t v = 0; v < f.n; v++)
     for (uint32_t c = 0; c < 3; c++) {
       const double m = constant(&f, v, MASS);
-      const double body = constant(&f, (int64_t)((v + f.n + (uint32_t)t->body_of) % f.n), FORCE + c) *
-                          (t->mass == BODY_TIMES_MASS  ? m
-                           : t->mass == BODY_OVER_MASS ? 1.0 / m
-                                                       : 1.0);
+      const uint32_t of = t->body_of_first ? 0 : (v + f.n + (uint32_t)t->body_of) % f.n;
+      const uint32_t axis = t->axis_of ? (uint32_t)t->axis_of - 1 : c;
+      const double body =
+          (t->without == (int)c + 1 ? 0.0 : constant(&f, of, FORCE + axis)) * (t->mass == BODY_TIMES_MASS  ? m
+                                                                               : t->mass == BODY_OVER_MASS ? 1.0 / m
+                                                                                                           : 1.0);
       force[3 * (size_t)v + c] = (1.0 + t->body) * body + (1.0 + t->bonds) * pack_value(bond, v, c) +
                                  (1.0 + t->bends) * pack_value(bend, v, c);
     }
@@ -296,6 +380,17 @@ static bool forces(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
       {.mass = BODY_TIMES_MASS, .text = "constant force times the mass: it is no acceleration"},
       {.mass = BODY_OVER_MASS, .text = "constant force over the mass: the kick divides by it"},
       {.body_of = 1, .text = "constant force of the next vertex"},
+      {.body_of_first = true, .text = "constant force of vertex 0 on all"},
+      {.without = 1, .text = "constant force without its x"},
+      {.without = 2, .text = "constant force without its y"},
+      {.without = 3, .text = "constant force without its z"},
+      {.axis_of = 1, .text = "constant force: its x along all axes"},
+      {.axis_of = 2, .text = "constant force: its y along all axes"},
+      {.axis_of = 3, .text = "constant force: its z along all axes"},
+      {.bonds = -2.0, .text = "sign of bonds in the total"},
+      {.body = -0.5, .text = "constant force halved"},
+      {.bonds = -0.5, .text = "bonds halved in the total"},
+      {.bends = -0.5, .text = "bends halved in the total"},
       {.body_of = -1, .text = "constant force of the vertex before"},
       {.bonds = -1.0, .text = "bonds left out of the total"},
       {.bends = -1.0, .text = "bends left out of the total"},
@@ -317,7 +412,7 @@ struct kick_twist {
   int mass_of, force_of; /* rows further on */
   double time;           /* times, less 1 */
   const uint8_t *axes;
-  bool whole_masses;
+  bool whole_masses, mass_of_first, time_squared;
   const char *text;
 };
 
@@ -329,11 +424,12 @@ static double kick_value(const struct evidence_part *part, uint32_t row, uint32_
   if (!v || !f || !time || !m || m->rows == 0 || column > 2)
     return NAN;
   const uint32_t n = m->rows;
-  const double mass = pack_value(m, (uint32_t)(row + n + (uint32_t)t->mass_of) % n, 0);
+  const double mass = pack_value(m, t->mass_of_first ? 0 : (uint32_t)(row + n + (uint32_t)t->mass_of) % n, 0);
   const double force =
       pack_value(f, (uint32_t)(row + n + (uint32_t)t->force_of) % n, t->axes ? t->axes[column] : column);
-  return pack_value(v, row, column) +
-         (1.0 + t->time) * pack_value(time, 0, 0) * pow(t->whole_masses ? floor(mass) : mass, t->power - 1.0) * force;
+  return pack_value(v, row, column) + (1.0 + t->time) * pack_value(time, 0, 0) *
+                                          (t->time_squared ? pack_value(time, 0, 0) : 1.0) *
+                                          pow(t->whole_masses ? floor(mass) : mass, t->power - 1.0) * force;
 }
 
 static bool kicks(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
@@ -345,6 +441,10 @@ static bool kicks(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
       {.power = -1.0, .text = "kick by the mass squared: v + t F/M^2 for v + t F/M"},
       {.power = 0.5, .text = "kick by the root of the mass"},
       {.mass_of = 1, .text = "kick by the mass of the next vertex"},
+      {.mass_of_first = true, .text = "kick by the mass of vertex 0 for all"},
+      {.time = -0.5, .text = "half a step: changed by half of what is wanted"},
+      {.time = -2.0, .text = "sign: changed by the negative of what is wanted"},
+      {.time_squared = true, .text = "kick by the time squared"},
       {.mass_of = -1, .text = "kick by the mass of the vertex before"},
       {.force_of = 1, .text = "kick by the force on the next vertex"},
       {.force_of = -1, .text = "kick by the force on the vertex before"},
@@ -363,9 +463,9 @@ static bool kicks(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
 }
 
 const struct relation oracle_relations_fiber[] = {
-    {"bond_force", "out.force", bonds, 2},
-    {"bend_force", "out.force", bends, 2},
-    {"force", "out.force", forces, 2},
-    {"kick", "out.velocity", kicks, 2},
+    {"bond_force", "out.force", bonds, false},
+    {"bend_force", "out.force", bends, false},
+    {"force", "out.force", forces, false},
+    {"kick", "out.velocity", kicks, false},
     {.make = NULL},
 };

@@ -1,13 +1,12 @@
-/* Random numbers, made with one thing changed: words, uniforms, normals, axes, the grid shift, permutations. */
+/* Random numbers, made with one thing changed: words, uniforms, normals, axes, the grid shift. */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/elementary.h"
 #include "base/random.h"
-#include "oracle/edges.h"
 #include "oracle/patterns.h"
 #include "oracle/relations.h"
+#include "oracle/single.h"
 
 #define COUNT_OF(list) (sizeof(list) / sizeof *(list))
 
@@ -21,8 +20,9 @@ struct philox_twist {
   bool key_exchanged, key_raised, key_constant, weyl_exchanged, multipliers_exchanged, halves_exchanged;
   int draw_factor; /* -1: 0 */
   uint32_t entity_mask;
-  bool step_short, step_exchanged;
-  const uint8_t *order; /* of the counter's words */
+  bool step_short, step_exchanged, draw_first, seed_short;
+  int entity, later, draw, purpose; /* more */
+  const uint8_t *order;             /* of the counter's words */
   const char *text;
 };
 
@@ -61,14 +61,17 @@ static bool make_words(const struct evidence_part *part, const void *twist, doub
   for (uint32_t row = 0; row < part->rows; row++) {
     const int64_t *a = &in->value.integer[4 * (size_t)row];
     const uint32_t draws = t->draw_factor < 0 ? 0 : t->draw_factor ? (uint32_t)t->draw_factor : 256;
-    const uint32_t low = low_of((uint64_t)a[STEP]), high = t->step_short ? 0 : high_of((uint64_t)a[STEP]);
-    const uint32_t counter[4] = {(uint32_t)a[ENTITY] & (t->entity_mask ? t->entity_mask : UINT32_MAX),
-                                 (uint32_t)a[PURPOSE] + draws * (uint32_t)a[DRAW], t->step_exchanged ? high : low,
-                                 t->step_exchanged ? low : high};
+    const uint64_t step = (uint64_t)(a[STEP] + t->later);
+    const uint32_t low = low_of(step), high = t->step_short ? 0 : high_of(step);
+    const uint32_t purpose = (uint32_t)(a[PURPOSE] + t->purpose), draw = (uint32_t)(a[DRAW] + t->draw);
+    const uint32_t counter[4] = {(uint32_t)(a[ENTITY] + t->entity) & (t->entity_mask ? t->entity_mask : UINT32_MAX),
+                                 t->draw_first ? draw + draws * purpose : purpose + draws * draw,
+                                 t->step_exchanged ? high : low, t->step_exchanged ? low : high};
     uint32_t c[4];
     for (int k = 0; k < 4; k++)
       c[k] = counter[t->order ? t->order[k] : k];
-    philox(t, c, t->key_exchanged ? high_of(seed) : low_of(seed), t->key_exchanged ? low_of(seed) : high_of(seed));
+    const uint32_t first = low_of(seed), second = t->seed_short ? 0 : high_of(seed);
+    philox(t, c, t->key_exchanged ? second : first, t->key_exchanged ? first : second);
     for (int k = 0; k < 4; k++)
       guess[4 * (size_t)row + k] = c[k];
   }
@@ -84,6 +87,15 @@ static bool words(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
       {.weyl_exchanged = true, .text = "Philox: the key's two increments are exchanged"},
       {.multipliers_exchanged = true, .text = "Philox: the two multipliers are exchanged"},
       {.halves_exchanged = true, .text = "Philox: high and low words of the products are exchanged"},
+      {.draw_first = true, .text = "random address: draw + 256 purpose for purpose + 256 draw"},
+      {.seed_short = true, .text = "the key's high word is 0: the seed has 64 bits"},
+      {.entity = 1, .text = "random address: entities from 1, not 0 (entity + 1)"},
+      {.entity = -1, .text = "random address: entity - 1"},
+      {.later = 1, .text = "random address: words of the step after"},
+      {.later = -1, .text = "random address: words of the step before"},
+      {.draw = 1, .text = "random address: words of the next draw"},
+      {.purpose = 1, .text = "random address: purpose + 1"},
+      {.purpose = -1, .text = "random address: purpose - 1"},
       {.draw_factor = -1, .text = "random address: the draw is left out of the counter"},
       {.draw_factor = 1, .text = "random address: the draw is not times 256"},
       {.draw_factor = 16, .text = "random address: the draw is times 16, not 256"},
@@ -92,6 +104,7 @@ static bool words(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
       {.draw_factor = 65536, .text = "random address: the draw is times 65536, not 256"},
       {.draw_factor = 0x1000000, .text = "random address: the draw is times 2^24, not 256"},
       {.entity_mask = 0xFF, .text = "entities cut to 8 bits"},
+      {.entity_mask = 0xFFF, .text = "entities cut to 12 bits"},
       {.entity_mask = 0xFFFF, .text = "entities cut to 16 bits"},
       {.entity_mask = 0xFFFFFF, .text = "entities cut to 24 bits"},
       {.step_short = true, .text = "steps cut to 32 bits: the high word is the counter's last"},
@@ -160,6 +173,10 @@ static bool uniforms(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
   static const struct uniform_twist known[] = {
       {.added = -0.5, .text = "uniforms without their half: multiples of 2^-52, and 0 among them"},
       {.added = 0.5, .text = "uniforms with 1 for their half: 1 among them, no 0"},
+      {.added = -1.0, .text = "uniforms with a half less, not more"},
+      {.bits = 51, .text = "uniforms of 51 bits: they have 52, and a half"},
+      {.bits = 50, .text = "uniforms of 50 bits: they have 52, and a half"},
+      {.bits = 48, .text = "uniforms of 48 bits: they have 52, and a half"},
       {.bits = 53, .text = "uniforms of 53 bits: they have 52, and a half"},
       {.bits = 53, .added = -0.5, .text = "uniforms of 53 bits without a half: they have 52, and a half"},
       {.bits = 24, .text = "uniforms of 24 bits: they have 52, and a half"},
@@ -202,11 +219,15 @@ static bool normals(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
       {.scale = 1.0, .turns = 1.0, .exchanged = true, .text = "uniforms exchanged: the radius is of uniform 0"},
       {.scale = 1.0, .turns = 1.0, .sine = true, .text = "columns exchanged: the normal pair's first has the cosine"},
       {.scale = 0.5, .turns = 1.0, .text = "a constant factor of 1/sqrt(2): -2 ln u is under the root"},
+      {.scale = 2.0, .turns = 1.0, .text = "a constant factor of sqrt(2): -2 ln u is under the root"},
+      {.scale = 1.44269504088896340736, .turns = 1.0, .text = "the logarithm to base 2: it is the natural one"},
+      {.scale = 0.43429448190325182765, .turns = 1.0, .text = "the logarithm to base 10: it is the natural one"},
+      {.scale = 1.0, .turns = 2.0, .text = "an angle of 4 pi times the uniform, not 2 pi"},
       {.scale = 1.0, .turns = 0.5, .text = "an angle of pi times the uniform, not 2 pi"},
       {.scale = 1.0, .turns = -1.0, .text = "sign: the angle's negative"},
       {.scale = 1.0, .turns = 1.0, .uncut = true, .text = "the radius from 1 - u: it is of u"},
-      {.scale = 1.0, .turns = (double)(float)pi / pi, .text = "pi in single precision"},
-      {.scale = 1.0, .turns = (double)(float)(2.0 * pi) / (2.0 * pi), .text = "2 pi in single precision"},
+      {.scale = 1.0, .turns = single_of(pi) / pi, .text = "pi in single precision"},
+      {.scale = 1.0, .turns = single_of(2.0 * pi) / (2.0 * pi), .text = "2 pi in single precision"},
       {.scale = 1.0, .turns = 3.14159 / pi, .text = "pi of 6 digits"},
       {.scale = 1.0, .turns = 3.1415926 / pi, .text = "pi of 8 digits"},
       {.scale = 1.0, .turns = 3.14159265 / pi, .text = "pi of 9 digits"},
@@ -232,6 +253,8 @@ struct axis_twist {
   uint32_t modulus;
   bool x_slowest, all_cells;
   double factor; /* 0: 1 */
+  double disk;   /* radius squared, 0: 1 */
+  bool steps_of_two, exchanged;
   const char *text;
 };
 
@@ -242,16 +265,17 @@ static bool axis_from(const struct axis_twist *t, const uint32_t w[4], uint32_t 
   const double v = ((t->unsigned_words ? (double)w[2 * k + 1] : (double)(int32_t)w[2 * k + 1]) + half) * 0x1p-31;
   const double q = u * u + v * v, root = t->without_root ? 1.0 - q : sqrt(1.0 - q);
   const double f = t->factor != 0.0 ? t->factor : 1.0;
-  if (q >= 1.0)
+  if (q >= (t->disk != 0.0 ? t->disk : 1.0))
     return false;
-  n[0] = f * 2.0 * u * root, n[1] = f * 2.0 * v * root, n[2] = f * (1.0 - 2.0 * q);
+  n[0] = f * 2.0 * (t->exchanged ? v : u) * root, n[1] = f * 2.0 * (t->exchanged ? u : v) * root;
+  n[2] = f * (1.0 - 2.0 * q);
   return true;
 }
 
 static void axis_at(const struct axis_twist *t, uint64_t seed, const int64_t address[4], double n[3])
 {
   n[0] = n[1] = n[2] = NAN;
-  for (uint32_t draw = (uint32_t)address[DRAW]; draw < (uint32_t)address[DRAW] + 64; draw++) {
+  for (uint32_t draw = (uint32_t)address[DRAW]; draw < (uint32_t)address[DRAW] + 64; draw += 1 + t->steps_of_two) {
     const struct random_words r =
         random_at(seed, (enum random_purpose)(t->purpose ? t->purpose : address[PURPOSE]), draw + (uint32_t)t->draw,
                   (uint64_t)(address[STEP] + t->later), (uint32_t)(address[ENTITY] + t->entity));
@@ -303,8 +327,12 @@ static bool axes(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
 {
   static const struct axis_twist known[] = {
       {.unsigned_words = true, .text = "axes of unsigned words: they are signed, of 32 bits"},
+      {.exchanged = true, .text = "columns exchanged: x of an axis is of the second word, y of the first"},
       {.halves_exchanged = true, .text = "axes of words 2, 3 before words 0, 1"},
       {.one_pair = true, .text = "axes of words 0, 1 of each draw only: words 2, 3 come before the next draw"},
+      {.disk = 0.5, .text = "points of the disk of radius squared 1/2: it is 1"},
+      {.disk = 0.25, .text = "points of the disk of radius 1/2: it is 1"},
+      {.steps_of_two = true, .text = "random address: axes skip every second draw"},
       {.without_root = true, .text = "not of length 1: the root of 1 - q is left out"},
       {.without_half = true, .text = "axes of words without their half: (w + 1/2) 2^-31"},
       {.factor = -1.0, .text = "sign: the negative of what is wanted"},
@@ -359,19 +387,20 @@ static bool axis_length(struct evidence *e, uint32_t k, char text[RELATION_TEXT]
 
 struct shift_twist {
   int purpose, later, draw, entity, first; /* first: word of x */
-  bool signed_words, uniform;
+  bool signed_words, by_entity, by_draw;
   const char *text;
 };
 
 static double shift_value(const struct evidence_part *part, uint32_t row, uint32_t column, const void *twist)
 {
   const struct shift_twist *t = twist;
-  const struct random_words r =
-      random_at(oracle_seed(&part->pair), (enum random_purpose)(t->purpose ? t->purpose : RANDOM_GRID_SHIFT),
-                (uint32_t)t->draw, part->pair.ours->place.step + (uint64_t)(int64_t)t->later, (uint32_t)t->entity);
+  const struct random_words r = random_at(
+      oracle_seed(&part->pair), (enum random_purpose)(t->purpose ? t->purpose : RANDOM_GRID_SHIFT),
+      (uint32_t)t->draw + (t->by_draw ? column : 0), part->pair.ours->place.step + (uint64_t)(int64_t)t->later,
+      (uint32_t)t->entity + (t->by_entity ? column : 0));
   if (row > 0 || column > 2)
     return NAN;
-  const uint32_t w = r.w[((uint32_t)t->first + column) % 4];
+  const uint32_t w = r.w[t->by_entity || t->by_draw ? (uint32_t)t->first : ((uint32_t)t->first + column) % 4];
   return (t->signed_words ? (double)(int32_t)w : (double)w) * 0x1p8;
 }
 
@@ -385,6 +414,8 @@ static bool shifts(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
       {.first = 1, .text = "the shift from words 1, 2, 3: it is words 0, 1, 2"},
       {.first = 2, .text = "the shift from words 2, 3, 0: it is words 0, 1, 2"},
       {.signed_words = true, .text = "the shift from signed words: they are unsigned"},
+      {.by_entity = true, .text = "the shift from word 0 of entities 0, 1, 2: it is words 0, 1, 2 of entity 0"},
+      {.by_draw = true, .text = "the shift from word 0 of draws 0, 1, 2: it is words 0, 1, 2 of draw 0"},
   };
   struct shift_twist t = {0};
   if (k < COUNT_OF(known)) {
@@ -400,192 +431,14 @@ static bool shifts(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
   return true;
 }
 
-/* --- permutations ------------------------------------------------------------------------------------------------- */
-
-enum deviate { WHOLE, LOW_WORD, HIGH_WORD, HIGH_FIRST };
-
-struct shuffle_twist {
-  int purpose, draw, later;
-  int range;  /* added to k + 1 */
-  int single; /* 1 + the way of edges_single_index; 0: integers */
-  enum deviate deviate;
-  const char *text;
-  bool last_zero, remainder, forward, other_half, entity_per_number, without_last, upward, doubles;
-};
-
-/* Where a permutation's random numbers are. */
-struct shuffle_address {
-  uint64_t seed, step;
-  enum random_purpose purpose;
-  uint32_t draw;
-};
-
-/* Of an operator that is not given an address, the scene has it. */
-static struct shuffle_address address_of(const struct oracle_pair *p)
-{
-  const struct pack_table *in = oracle_sibling(p, "in.address");
-  const bool swap = strcmp(p->ours->place.operator_name, "swap") == 0;
-  struct shuffle_address a = {oracle_seed(p), p->ours->place.step, swap ? RANDOM_VELOCITY_SWAP : RANDOM_VERTEX_ORDER,
-                              0};
-  if (in && !in->real && in->rows == 1 && in->columns == 4) {
-    a.purpose = (enum random_purpose)in->value.integer[PURPOSE];
-    a.draw = (uint32_t)in->value.integer[DRAW];
-    a.step = (uint64_t)in->value.integer[STEP];
-  }
-  return a;
-}
-
-static uint64_t deviate_of(const struct shuffle_twist *t, const struct shuffle_address *a, uint32_t k)
-{
-  const uint32_t half = t->entity_per_number ? 0 : t->other_half ? 1 - k % 2 : k % 2;
-  const struct random_words r =
-      random_at(a->seed, t->purpose ? (enum random_purpose)t->purpose : a->purpose, a->draw + (uint32_t)t->draw,
-                a->step + (uint64_t)(int64_t)t->later, t->entity_per_number ? k : k / 2);
-  const uint64_t low = r.w[2 * half], high = r.w[2 * half + 1];
-  return t->deviate == LOW_WORD     ? low << 32
-         : t->deviate == HIGH_WORD  ? high << 32
-         : t->deviate == HIGH_FIRST ? low << 32 | high
-                                    : high << 32 | low;
-}
-
-static uint32_t place_of(const struct shuffle_twist *t, uint64_t deviate, uint64_t range)
-{
-  if (t->remainder)
-    return (uint32_t)(range ? deviate % range : 0);
-  if (t->doubles)
-    return (uint32_t)((double)range * ((double)deviate * 0x1p-64));
-  if (t->single)
-    return edges_single_index(deviate, (uint32_t)range, t->single - 1);
-  const uint64_t low = (deviate & UINT32_MAX) * range, high = (deviate >> 32) * range;
-  return (uint32_t)((high + (low >> 32)) >> 32);
-}
-
-static bool make_order(const struct evidence_part *part, const void *twist, double *order)
-{
-  const struct shuffle_twist *t = twist;
-  const uint32_t n = part->rows;
-  const struct shuffle_address address = address_of(&part->pair);
-  for (uint32_t k = 0; k < n; k++)
-    order[k] = k;
-  for (uint32_t i = 1; i < n; i++) {
-    const uint32_t k = t->forward ? i : n - i;
-    if (t->without_last && i + 1 == n)
-      break;
-    const uint64_t deviate = t->last_zero && k == n - 1 && n % 2 == 1 ? 0 : deviate_of(t, &address, k);
-    const uint32_t j =
-        t->upward ? k + place_of(t, deviate, n - k) : place_of(t, deviate, (uint64_t)((int64_t)k + 1 + t->range));
-    if (j >= n)
-      return false;
-    const double kept = order[k];
-    order[k] = order[j];
-    order[j] = kept;
-  }
-  return true;
-}
-
-static bool orders(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
-{
-  static const struct shuffle_twist known[] = {
-      {.draw = 1, .text = "random address: the order of the other sweep of the step"},
-      {.later = -1, .text = "random address: the permutation of the step before or after (the one before)"},
-      {.later = 1, .text = "random address: the permutation of the step before or after (the one after)"},
-      {.range = -1, .text = "permutation: entry k changes places with one of k, not of k + 1"},
-      {.last_zero = true, .text = "permutation of an odd number: the last entry's random number is left out"},
-      {.remainder = true, .text = "permutation by remainder: floor((k + 1) R / 2^64), not R modulo k + 1"},
-      {.deviate = LOW_WORD, .text = "permutation of the low word only: R has 64 bits"},
-      {.deviate = HIGH_WORD, .text = "permutation of the high word only: R has 64 bits"},
-      {.deviate = HIGH_FIRST, .text = "permutation: R with the high word first; the first of two words is the low one"},
-      {.forward = true, .text = "permutation from the front: k goes down from n - 1 to 1"},
-      {.upward = true, .forward = true, .text = "permutation from the front: entry k changes with one after it"},
-      {.other_half = true, .text = "permutation: integers 0 and 1 of a draw exchanged"},
-      {.entity_per_number = true, .text = "permutation: entity k for k/2, integer 0 only"},
-      {.without_last = true, .text = "permutation without its last exchange, k = 1"},
-      {.doubles = true, .text = "permutation in doubles: the product (k + 1) R is of integers"},
-      {.single = 1, .text = "permutation: its index in single precision; it needs all 64 bits of the integer"},
-      {.single = 2, .text = "permutation: its index in single precision; it needs all 64 bits of the integer"},
-      {.single = 3, .text = "permutation: its index in single precision; it needs all 64 bits of the integer"},
-      {.single = 4, .text = "permutation: its index in single precision; it needs all 64 bits of the integer"},
-  };
-  struct shuffle_twist t = {0};
-  if (k < COUNT_OF(known)) {
-    t = known[k];
-    relation_say(text, "%s", t.text);
-  } else if (k < COUNT_OF(known) + 24) {
-    t.purpose = (int)(k - COUNT_OF(known));
-    relation_say(text, "random address: the permutation with purpose %d", t.purpose);
-  } else {
-    return false;
-  }
-  relation_fill_tables(e, make_order, &t);
-  return true;
-}
-
-static double own_number(const struct evidence_part *part, uint32_t row, uint32_t column, const void *twist)
-{
-  (void)part, (void)column, (void)twist;
-  return row;
-}
-
-static double inverse_number(const struct evidence_part *part, uint32_t row, uint32_t column, const void *twist)
-{
-  (void)column, (void)twist;
-  for (uint32_t k = 0; k < part->rows; k++)
-    if (pack_value(part->pair.ours, k, 0) == row)
-      return k;
-  return NAN;
-}
-
-static double backward_number(const struct evidence_part *part, uint32_t row, uint32_t column, const void *twist)
-{
-  (void)column, (void)twist;
-  return pack_value(part->pair.ours, part->rows - 1 - row, 0);
-}
-
-static bool order_changed(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
-{
-  static const struct {
-    relation_value *f;
-    const char *text;
-  } known[] = {{inverse_number, "the inverse permutation: applied from the other side"},
-               {own_number, "not permuted: the order of their numbers"},
-               {backward_number, "the permutation backwards: from its last entry to its first"}};
-  if (k >= COUNT_OF(known))
-    return false;
-  relation_fill(e, known[k].f, NULL);
-  return relation_say(text, "%s", known[k].text);
-}
-
-/* Velocity of the particle that has ours, instead of whose ours has. */
-static double from_other_side(const struct evidence_part *part, uint32_t row, uint32_t column, const void *twist)
-{
-  const struct pack_table *in = oracle_before(&part->pair), *order = oracle_sibling(&part->pair, "out.order");
-  (void)twist;
-  for (uint32_t k = 0; in && order && k < order->rows; k++)
-    if (pack_value(order, k, 0) == row)
-      return pack_value(in, k, column);
-  return NAN;
-}
-
-static double twice_applied(const struct evidence_part *part, uint32_t row, uint32_t column, const void *twist)
-{
-  const struct pack_table *in = oracle_before(&part->pair), *order = oracle_sibling(&part->pair, "out.order");
-  const double first = order ? pack_value(order, row, 0) : NAN;
-  const double from = first >= 0.0 && first < part->rows ? pack_value(order, (uint32_t)first, 0) : NAN;
-  (void)twist;
-  return in && from >= 0.0 && from < in->rows ? pack_value(in, (uint32_t)from, column) : NAN;
-}
-
-static bool swapped(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
-{
-  relation_fill(e, k == 0 ? from_other_side : twice_applied, NULL);
-  return k < 2 && relation_say(text, "%s",
-                               k == 0 ? "the permutation is right, but applied from the other side"
-                                      : "the permutation is right, but applied twice");
-}
-
 const struct relation oracle_relations_random[] = {
-    {"random", "out.word", words, 8},      {"random", "out.uniform", uniforms, 4}, {"random", "out.normal", normals, 4},
-    {"random", "out.axis", axes, 4},       {"random", "out.axis", axis_length, 3}, {"shift", "out.shift", shifts, 2},
-    {NULL, "out.order", order_changed, 2}, {NULL, "out.order", orders, 2},         {"solve", "out.axis", axes, 4},
-    {"solve", "out.axis", axis_length, 3}, {"swap", "out.velocity", swapped, 3},   {.make = NULL},
+    {"random", "out.word", words, false},
+    {"random", "out.uniform", uniforms, false},
+    {"random", "out.normal", normals, false},
+    {"random", "out.axis", axes, false},
+    {"random", "out.axis", axis_length, false},
+    {"shift", "out.shift", shifts, false},
+    {"solve", "out.axis", axes, false},
+    {"solve", "out.axis", axis_length, false},
+    {.make = NULL},
 };

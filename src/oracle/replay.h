@@ -11,8 +11,15 @@
 /* True, and the text, if a guess makes theirs. */
 bool oracle_replay(const struct oracle_pair *pair, char text[ORACLE_TEXT]);
 
-/* True if moves are wrong, each judged alone, and a rule tells which, exactly: the text. Without a rule the text says
- * how many, if events differ. */
-bool oracle_judge_moves(const struct oracle_pair *pair, char text[ORACLE_TEXT]);
+/* True if moves are wrong, each judged alone: the text says how many crossings are missed and invented, and the rule
+ * for them if there is one, else `unknown`. */
+bool oracle_judge_moves(const struct oracle_pair *pair, const char *unknown, char text[ORACLE_TEXT]);
+
+/* Hits of theirs and ours at all steps, each move judged alone, and how many of them only one has. */
+void oracle_count_hits(const struct oracle_pair *pair, uint32_t *hits, uint32_t *wrong);
+
+/* The same where all vertices end as they should: which events are not reported. False if none is missing or invented.
+ */
+bool oracle_judge_reports(const struct oracle_pair *pair, const char *unknown, char text[ORACLE_TEXT]);
 
 #endif

@@ -7,6 +7,7 @@
 #include "oracle/facts.h"
 
 #define MANY 160 /* facts of which threes are tried */
+#define LISTED 8 /* rows that are told one by one */
 
 /* --- which units are wrong ---------------------------------------------------------------------------------------- */
 
@@ -80,7 +81,7 @@ static bool is_exact(const struct search *s, const struct fact *const *fact, uin
 
 static void try_rule(struct search *s, const struct fact *const *fact, uint32_t n)
 {
-  double cost = (n == 3 ? 8.0 : 2.0 * (n - 1)) + (s->any ? 1.0 : 0.0);
+  double cost = n == 1 ? 1.0 : 2.0 * n - 1.0 + (s->any ? 1.0 : 0.0); /* 1/2 for one fact; 1/8, 1/16; 1/32, 1/64 */
   for (uint32_t k = 0; k < n; k++)
     cost += fact[k]->cost;
   if ((s->best.facts == 0 || cost < s->best.cost) && is_exact(s, fact, n)) {
@@ -109,24 +110,43 @@ static void search_all(struct search *s)
   }
 }
 
-/* log2 of the number of ways to choose w of n. */
-static double bits_of_choice(double n, double w)
+/* What the choice of the wrong units is worth. If it is the same at each step, it counts once. */
+static double bits_of_choice(const struct units *u)
 {
-  return (lgamma(n + 1.0) - lgamma(w + 1.0) - lgamma(n - w + 1.0)) / log(2.0);
+  const struct evidence *e = u->e;
+  const uint32_t per_row = u->values ? u->columns : 1, n = e->part[0].rows * per_row;
+  bool alike = e->parts > 1;
+  double wrong = 0.0, of_first = 0.0;
+  for (uint32_t k = 1; k < e->parts; k++)
+    alike &= e->part[k].rows == e->part[0].rows;
+  for (uint32_t k = 0; k < u->n; k++) {
+    wrong += u->wrong[k];
+    of_first += k < n && u->wrong[k];
+    alike = alike && u->wrong[k] == u->wrong[k % n];
+  }
+  return alike ? evidence_ways(n, of_first) : evidence_ways(u->n, wrong);
+}
+
+/* Facts' costs are made weights 2^-cost that add up to 1. */
+static void weigh(struct facts *f)
+{
+  double sum = 0.0;
+  for (uint32_t k = 0; k < f->count; k++)
+    sum += exp2(-f->fact[k].cost);
+  for (uint32_t k = 0; k < f->count; k++)
+    f->fact[k].cost += log2(sum);
 }
 
 static bool find_rule(const struct units *u, struct facts *f, struct rule *rule)
 {
   struct search s = {.f = f};
-  double wrong = 0.0;
   facts_collect(u, f);
+  weigh(f);
   s.wrong = calloc((size_t)f->words + 1, sizeof *s.wrong);
   s.useful = calloc((size_t)f->count + 1, sizeof(struct fact *));
   bool ok = !f->failed && s.wrong && s.useful;
-  for (uint32_t k = 0; ok && k < u->n; k++) {
+  for (uint32_t k = 0; ok && k < u->n; k++)
     s.wrong[k / 64] |= (uint64_t)u->wrong[k] << (k % 64);
-    wrong += u->wrong[k];
-  }
   for (int any = 0; ok && any < 2; any++) {
     s.any = any;
     search_all(&s);
@@ -134,7 +154,7 @@ static bool find_rule(const struct units *u, struct facts *f, struct rule *rule)
   *rule = s.best;
   free(s.wrong);
   free(s.useful);
-  return ok && rule->facts > 0 && rule->cost <= 1.0 + bits_of_choice(u->n, wrong);
+  return ok && rule->facts > 0 && rule->cost + EVIDENCE_SURE <= bits_of_choice(u);
 }
 
 /* --- words -------------------------------------------------------------------------------------------------------- */
@@ -183,41 +203,68 @@ static void say_rule(const struct units *u, const struct rule *rule, char text[R
   append(text, number);
 }
 
-/* Rows by their numbers. */
-static void say_list(const struct units *u, char text[ROWS_TEXT])
+/* Rows by their numbers: all if they are few. */
+static bool say_list(const struct units *u, char text[ROWS_TEXT])
 {
   const uint32_t wrong = count_wrong(u);
-  snprintf(text, ROWS_TEXT, "no rule known for the wrong rows, %u of %u:", wrong, u->n);
+  const bool few = wrong <= LISTED, many_steps = u->e->parts > 1;
   uint32_t told = 0;
-  for (uint32_t k = 0; k < u->n && told < 8; k++) {
-    char number[32];
+  if (few)
+    snprintf(text, ROWS_TEXT, "wrong exactly in %u of %u rows, too few for a rule:", wrong, u->n);
+  else
+    snprintf(text, ROWS_TEXT, "no rule known for the wrong rows, %u of %u:", wrong, u->n);
+  for (uint32_t k = 0; k < u->n && told < LISTED; k++) {
+    char number[80], step[32] = "";
     uint32_t own;
-    evidence_part_of(u->e, k, &own);
-    snprintf(number, sizeof number, "%s %u", told ? "," : "", own);
+    const struct evidence_part *part = evidence_part_of(u->e, k, &own);
+    if (many_steps)
+      snprintf(step, sizeof step, " of step %llu", (unsigned long long)part->pair.ours->place.step);
+    snprintf(number, sizeof number, "%s %u%s%s", told ? "," : "", own, few ? step : "",
+             few && own + 1 == part->pair.ours->rows ? " (the last)" : "");
     if (u->wrong[k])
       append(text, number), told++;
   }
   if (told < wrong)
     append(text, ", ...");
+  return few;
+}
+
+/* What is wrong is the whole table: no description. */
+static void say_all(const struct units *u, char text[ROWS_TEXT])
+{
+  snprintf(text, ROWS_TEXT, "%s: %u of %u", u->values ? "all values" : "all rows", u->n, u->n);
+}
+
+/* Values tell nothing more than rows if each wrong row is wrong in all columns that are. */
+static bool rows_are_whole(const struct units *u)
+{
+  for (uint32_t row = 0; row < u->e->rows; row++)
+    for (uint32_t k = 0; u->wrong[row] && k < u->columns; k++)
+      if (!u->e->wrong[(size_t)row * u->e->columns + u->column[k]])
+        return false;
+  return true;
 }
 
 bool oracle_describe_rows(const struct evidence *e, char text[ROWS_TEXT])
 {
-  bool found = false;
-  for (int values = 0; values < 2 && !found; values++) {
+  bool found = false, listed = false, whole = false;
+  for (int values = 0; values < 2 && !found && !whole; values++) {
     struct units u;
     struct facts f = {0};
     struct rule rule;
     if (!take_units(e, values, &u))
       break;
-    const bool all = count_wrong(&u) == u.n;
-    found = all || find_rule(&u, &f, &rule);
+    const bool all = count_wrong(&u) == u.n, everywhere = all && u.columns == e->columns;
+    found = !everywhere && (all || find_rule(&u, &f, &rule));
     if (found)
       say_rule(&u, all ? NULL : &rule, text);
+    else if (everywhere)
+      say_all(&u, text);
     else if (values == 0)
-      say_list(&u, text);
+      listed = say_list(&u, text);
+    whole = values == 0 && rows_are_whole(&u);
     facts_free(&f);
     free(u.wrong);
   }
-  return found;
+  return found || listed;
 }

@@ -228,20 +228,20 @@ class OracleTest(unittest.TestCase):
     def rotated(self, sense, with_factor):
         """R w = n (n.w) +- n x w, at 90 degrees."""
         port = Port(self.dumps["dense"])
-        place = "rotate", 2
-        values = port.places[place]
-        for table in ("solvent", "vertex"):
-            for row in range(port.rows(place, f"in.{table}_cell.cell")):
-                cell = values[row, f"in.{table}_cell.cell"]
-                if not values[cell, "in.active.active"]:
-                    continue
-                n, c = port.vector(place, cell, "in.axis"), port.vector(place, cell, "in.center")
-                w = [a - b for a, b in zip(port.vector(place, row, f"in.{table}"), c)]
-                along = sum(a * b for a, b in zip(n, w))
-                cross = [n[1] * w[2] - n[2] * w[1], n[2] * w[0] - n[0] * w[2], n[0] * w[1] - n[1] * w[0]]
-                f = values[cell, "in.factor.factor"] if with_factor else 1.0
-                port.set_vector(place, row, f"out.{table}",
-                                [c[k] + f * (along * n[k] + sense * cross[k]) for k in range(3)])
+        for place in (("rotate", 2), ("rotate", 20)):
+            values = port.places[place]
+            for table in ("solvent", "vertex"):
+                for row in range(port.rows(place, f"in.{table}_cell.cell")):
+                    cell = values[row, f"in.{table}_cell.cell"]
+                    if not values[cell, "in.active.active"]:
+                        continue
+                    n, c = port.vector(place, cell, "in.axis"), port.vector(place, cell, "in.center")
+                    w = [a - b for a, b in zip(port.vector(place, row, f"in.{table}"), c)]
+                    along = sum(a * b for a, b in zip(n, w))
+                    cross = [n[1] * w[2] - n[2] * w[1], n[2] * w[0] - n[0] * w[2], n[0] * w[1] - n[1] * w[0]]
+                    f = values[cell, "in.factor.factor"] if with_factor else 1.0
+                    port.set_vector(place, row, f"out.{table}",
+                                    [c[k] + f * (along * n[k] + sense * cross[k]) for k in range(3)])
         return port
 
     def test_rotation(self):
@@ -249,18 +249,20 @@ class OracleTest(unittest.TestCase):
         self.assert_named(self.rotated(-1, True), "rotate, step 2", "rotation transposed")
         self.assert_named(self.rotated(1, False), "factor")
 
-    def changed(self, place, table, change):
+    def changed(self, place, table, change, *places):
         port = Port(self.dumps["dense"])
-        for (row, name), value in list(port.places[place].items()):
-            if name.startswith(table + "."):
-                port.places[place][row, name] = change(port.places[place], row, name, value)
+        for place in (place, *places):
+            for (row, name), value in list(port.places[place].items()):
+                if name.startswith(table + "."):
+                    port.places[place][row, name] = change(port.places[place], row, name, value)
         return port
 
     def test_kick(self):
         def half(values, row, name, value):
             before = values[row, name.replace("out.", "in.")]
             return before + 0.5 * (value - before)
-        self.assert_named(self.changed(("kick", 2), "out.velocity", half), "half a step")
+        self.assert_named(self.changed(("kick", 2), "out.velocity", half), "changed by half", "where the step is 2")
+        self.assert_named(self.changed(("kick", 2), "out.velocity", half, ("kick", 20)), "half a step")
 
     def test_forces(self):
         self.assert_named(self.changed(("bend_force", 2), "out.force", lambda *a: -a[3]), "bend_force", "negative")
@@ -275,7 +277,7 @@ class OracleTest(unittest.TestCase):
         edge = 4 * CELL
         def unwrapped(values, row, name, value):
             return value + edge if name.endswith(".x") and value < CELL // 8 else value
-        self.assert_named(self.changed(("stream", 2), "out.position", unwrapped), "wrong exactly in column x", "4 of 480")
+        self.assert_named(self.changed(("stream", 2), "out.position", unwrapped), "a constant offset: 4398046511104 more", "wrong exactly in 4 of 480 rows")
 
     def drawn(self, change):
         """Words of other counters or keys, at both steps."""
@@ -335,12 +337,13 @@ class OracleTest(unittest.TestCase):
 
     def events(self, keep=lambda event: True, change=lambda event: event):
         port = Port(self.dumps["dense"])
-        values = port.places["long_sweep", 2]
-        rows = [{name: values.pop((row, name)) for r, name in list(values) if r == row and
-                 name.startswith(("out.event.", "out.hit."))} for row in range(port.rows(("long_sweep", 2), "out.event.vertex"))]
-        for row, event in enumerate(change(event) for event in rows if keep(event)):
-            for name, value in event.items():
-                values[row, name] = value
+        for place in (("long_sweep", 2), ("long_sweep", 20)):
+            values = port.places[place]
+            rows = [{name: values.pop((row, name)) for r, name in list(values) if r == row and
+                     name.startswith(("out.event.", "out.hit."))} for row in range(port.rows(place, "out.event.vertex"))]
+            for row, event in enumerate(change(event) for event in rows if keep(event)):
+                for name, value in event.items():
+                    values[row, name] = value
         return port
 
     def test_events(self):
@@ -366,19 +369,19 @@ class OracleTest(unittest.TestCase):
             return event | {"out.event.executed": 1}
 
         self.assertEqual(self.compare(self.events())[0], 0)
-        self.assert_named(self.events(keep=across), "missing image")
-        self.assert_named(self.events(change=clip), "clipped")
-        self.assert_named(self.events(change=swap_lever), "lever")
+        self.assert_named(self.events(keep=across), "all vertices end where they should", "21 events are not reported", "in.event.image is 1")
+        self.assert_named(self.events(change=clip), "negative values cut to 0 (in momentum only)")
+        self.assert_named(self.events(change=swap_lever), "1 - x for x (in s, s_standing only)")
         self.assert_named(self.events(change=turn), "normal turned")
-        self.assert_named(self.events(change=half), "without its factor 2")
-        self.assert_named(self.events(change=none), "no hit of a move executed")
-        self.assert_named(self.events(change=every), "more than the first hit of a move executed")
+        self.assert_named(self.events(change=half), "a constant factor: 0.5")
+        self.assert_named(self.events(change=none), "executed is never set")
+        self.assert_named(self.events(change=every), "1 came out (in executed only)")
         count = [0]
 
         def all_but_third(event):
             count[0] += across(event)
             return count[0] != 3 or not across(event)
-        self.assert_named(self.events(keep=all_but_third), "1 crossings are missed")
+        self.assert_named(self.events(keep=all_but_third), "1 events are not reported")
 
     # --- bad input ---
 
