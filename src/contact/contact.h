@@ -67,10 +67,9 @@ enum { NEIGHBORS_FIRST_ENTRIES = 15 };
 
 /* A bond that touches a search cell. */
 struct grid_entry {
+  uint64_t key; /* the part of the box around the bond that lies in the cell: contact/neighbors.c */
   int32_t bond;
-  int8_t image[3];         /* of the bond that lies there; 0: the image of its first end's reference position */
-  uint8_t starts;          /* bit k: along axis k, the lower face of the box around it is not below the cell */
-  uint8_t low[3], high[3]; /* faces of the box, in 2^cell_shift lattice units from the lower corner of the cell */
+  int8_t image[3]; /* of the bond that lies there; 0: the image of its first end's reference position */
 };
 
 /* Bonds that touch a search cell. The first few stand in the row itself: four cache lines in all. */
@@ -87,7 +86,10 @@ struct neighbors {
   struct pair_list pairs;
   int32_t cells[3];     /* of the search grid */
   int64_t cell_edge[3]; /* lattice units */
-  int cell_shift[3];    /* 2^cell_shift is about 1/256 of cell_edge */
+  int cell_shift[3];    /* 2^cell_shift is about 1/128 of cell_edge */
+  struct {
+    double cells, cell_edge, box_edge;
+  } inverse[3]; /* of the number of cells, and of edges in lattice units */
   uint32_t cell_count;
   struct grid_row *entries; /* [cell_count] */
   struct point moved;       /* displacement of the frame of the moves since reference positions were first taken */
