@@ -49,7 +49,9 @@ static void free_neighbors(struct neighbors *nb)
       free(nb->entries[c].at);
   free(nb->entries);
   free(nb->reference);
-  free(nb->clock);
+  free(nb->path);
+  free(nb->generation);
+  free(nb->hold);
   free(nb->pairs.bond);
   free(nb->pairs.other);
   free(nb->pairs.limit);
@@ -76,7 +78,7 @@ uint64_t contact_bytes(const struct model *m)
   struct contact c = {0};
   struct memory_need need[NEEDS];
   list_needs(&c, m, false, need);
-  const size_t per_bond = sizeof(struct reference_position) + sizeof(struct bond_clock) + sizeof(struct grid_row);
+  const size_t per_bond = sizeof(struct reference_position) + 3 * sizeof(uint32_t) + sizeof(struct grid_row);
   return memory_bytes(need, NEEDS) + (crossing_rule_of(m)->forbids ? (uint64_t)m->bonds * per_bond : 0);
 }
 

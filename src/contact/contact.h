@@ -57,11 +57,6 @@ struct pair_list {
   struct image *image; /* of the other bond */
 };
 
-struct bond_clock {
-  uint32_t path;       /* bound on the way that its ends have gone, in units of 2^-20 a0, modulo 2^32 */
-  uint32_t generation; /* number of its searches for partners */
-};
-
 /* Entries that a row of the grid holds itself; a longer row is allocated elsewhere. */
 enum { NEIGHBORS_FIRST_ENTRIES = 15 };
 
@@ -82,7 +77,10 @@ struct grid_row {
 struct neighbors {
   bool built;
   struct reference_position *reference; /* [vertices] */
-  struct bond_clock *clock;             /* [vertices] of bond j; unused where vertex j has no bond j */
+  uint32_t *path; /* [vertices] bound on the way that both ends of bond j have gone, in units of 2^-20 a0, modulo 2^32.
+                     Where vertex j has no bond j, its own way. */
+  uint32_t *generation; /* [vertices] number of searches of bond j for partners */
+  uint32_t *hold;       /* [vertices] vertex j stays within its skin until path[j] exceeds this: contact/takeoff.c */
   struct pair_list pairs;
   int32_t cells[3];     /* of the search grid */
   int64_t cell_edge[3]; /* lattice units */
@@ -127,7 +125,7 @@ struct contact {
   struct flights flights; /* rules that move all at once, else NULL */
   uint32_t *order;        /* [vertices] in which vertices move in this drift */
   uint32_t *rank;  /* [vertices] order[rank[i]] = i. Order, rank, queue, waits: rules that move in turns, else NULL */
-  double *range;   /* [vertices] a0: bound on the distance that a vertex goes in this drift. Range and
+  uint32_t *range; /* [vertices] bound on the distance that a vertex goes in this drift, units of paths. Range and
                       candidates.first: rules that forbid crossing, else NULL */
   uint32_t *queue; /* [vertices] vertices that wait for their turns, in this order; `queued` of them */
   uint32_t queued;

@@ -25,9 +25,9 @@
 #include "contact/impulse.h"
 #include "contact/neighbors.h"
 #include "contact/rule.h"
+#include "contact/takeoff.h"
 
 enum {
-  BLOCK = 64,          /* vertices worked on at a time */
   MOST_CONTACTS = 1000 /* of one vertex in one drift; beyond it, its cluster moves rigidly */
 };
 
@@ -58,60 +58,6 @@ static struct point start_of(const struct event_drift *d, uint32_t i)
 {
   const struct flights *f = &d->contact->flights;
   return f->bend_of[i] ? f->bends.at[f->bend_of[i] - 1].start : d->state->position[i];
-}
-
-struct renewal {
-  uint32_t count, vertex[NEIGHBORS_AT_ONCE];
-  struct point from[NEIGHBORS_AT_ONCE], to[NEIGHBORS_AT_ONCE];
-};
-
-static bool renew(const struct event_drift *d, struct renewal *r)
-{
-  const bool ok =
-      r->count == 0 || neighbors_renew(d->state, d->model, d->contact, r->count, r->vertex, r->from, r->to, d->fault);
-  r->count = 0;
-  return ok;
-}
-
-/* Flights and ranges of n vertices. late[k]: vertex first + k is about to leave the skin of its reference position. */
-static void take_off(const struct event_drift *d, uint32_t first, uint32_t n, const struct vec3 *restrict displacement,
-                     int64_t *restrict late)
-{
-  const struct point *restrict p = &d->state->position[first];
-  const struct reference_position *restrict reference = &d->contact->neighbors.reference[first];
-  struct point *restrict rate = &d->contact->flights.rate[first];
-  double *restrict range = &d->contact->range[first];
-  for (uint32_t k = 0; k < n; k++) {
-    const struct point r = flight_rate(displacement[k]), origin = {0, 0, 0}, by = flight_place(origin, r, FLIGHT_TICKS);
-    const struct vec3 off = point_difference(point_plus(p[k], by), reference[k].at);
-    rate[k] = r;
-    range[k] = vec3_norm(point_in_a0(by));
-    late[k] = !(vec3_dot(off, off) <= reference[k].skin * reference[k].skin);
-  }
-}
-
-static bool begin_flights(const struct event_drift *d)
-{
-  const struct state *state = d->state;
-  struct vec3 displacement[BLOCK];
-  int64_t late[BLOCK];
-  struct renewal r = {.count = 0};
-  for (uint32_t first = 0; first < state->vertices; first += BLOCK) {
-    const uint32_t n = state->vertices - first < BLOCK ? state->vertices - first : BLOCK;
-    if (!drift_displacements(state, d->model, d->dt, first, n, displacement, d->fault))
-      return false;
-    take_off(d, first, n, displacement, late);
-    for (uint32_t k = 0; k < n; k++) {
-      if (!late[k])
-        continue;
-      r.vertex[r.count] = first + k;
-      r.from[r.count] = state->position[first + k];
-      r.to[r.count++] = place_of(d, first + k, FLIGHT_TICKS);
-      if (r.count == NEIGHBORS_AT_ONCE && !renew(d, &r))
-        return false;
-    }
-  }
-  return renew(d, &r);
 }
 
 static void land(const struct event_drift *d)
@@ -241,15 +187,13 @@ static bool steer(const struct event_drift *d, uint32_t i, struct point rate, in
   if (!check_range(d, i, start, end))
     return false;
   /* A straight piece stays within its range of the start if both its ends do. */
-  const double range = vec3_norm(point_difference(end, start)) + LATTICE_UNIT;
+  const uint32_t range = candidates_units(vec3_norm(point_difference(end, start)) + LATTICE_UNIT);
   const bool wider = range > c->range[i], leaves = !neighbors_hold(&c->neighbors, i, end);
   if (wider)
     candidates_widen(d->model, c, i, range);
-  if (leaves) {
-    struct renewal r = {1, {i}, {here}, {end}};
-    if (!renew(d, &r))
-      return false;
-  }
+  if (leaves && !neighbors_renew(d->state, d->model, c, 1, &i, &here, &end, d->fault))
+    return false;
+  c->neighbors.hold[i] = c->neighbors.path[i]; /* to be looked at in the next drift */
   return !(wider || leaves) || look_around(d, i);
 }
 
@@ -478,7 +422,7 @@ static bool drift_event_driven(struct state *state, const struct model *model, s
 {
   (void)step;
   const struct event_drift d = {state, model, contact, dt, (double)drift * dt - 0.5 * model->time_step, log, fault};
-  if ((!contact->neighbors.built && !neighbors_build(state, model, contact, fault)) || !begin_flights(&d) ||
+  if ((!contact->neighbors.built && !neighbors_build(state, model, contact, fault)) || !take_off(state, model, contact, dt, fault) ||
       !candidates_find(state, model, contact, fault) || !search_all(&d))
     return false;
   struct event e;

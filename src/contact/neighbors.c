@@ -316,10 +316,12 @@ bool neighbors_renew(const struct state *state, const struct model *model, struc
     visit_cells(nb, model, bond[k], box_of(nb, model, bond[k]), fetch_cell, NULL);
   for (uint32_t k = 0; k < bonds; k++) {
     visit_cells(nb, model, bond[k], box_of(nb, model, bond[k]), leave_cell, NULL);
-    nb->clock[bond[k]].generation++;
+    nb->generation[bond[k]]++;
   }
-  for (uint32_t k = 0; k < n; k++)
+  for (uint32_t k = 0; k < n; k++) {
     nb->reference[vertex[k]] = reference_of_move(nb, from[k], to[k]);
+    nb->hold[vertex[k]] = nb->path[vertex[k]];
+  }
   nb->renewed += n;
   return enter(nb, model, bonds, bond) || fault_no_memory(fault, state->step + 1);
 }
@@ -363,9 +365,11 @@ static bool allocate(const struct model *model, struct neighbors *nb)
     return true;
   choose_grid(model, nb);
   nb->reference = memory_alloc(model->vertices, sizeof *nb->reference);
-  nb->clock = memory_alloc(model->vertices, sizeof *nb->clock);
+  nb->path = memory_alloc(model->vertices, sizeof *nb->path);
+  nb->generation = memory_alloc(model->vertices, sizeof *nb->generation);
+  nb->hold = memory_alloc(model->vertices, sizeof *nb->hold);
   nb->entries = memory_alloc(nb->cell_count, sizeof *nb->entries);
-  if (!nb->reference || !nb->clock || !nb->entries)
+  if (!nb->reference || !nb->path || !nb->generation || !nb->hold || !nb->entries)
     return false;
   for (uint32_t c = 0; c < nb->cell_count; c++) {
     struct grid_row *row = &nb->entries[c];
@@ -391,8 +395,10 @@ bool neighbors_build(const struct state *state, const struct model *model, struc
   nb->pairs.count = 0;
   for (uint32_t c = 0; c < nb->cell_count; c++)
     nb->entries[c].count = 0;
-  for (uint32_t j = 0; j < model->vertices; j++)
+  for (uint32_t j = 0; j < model->vertices; j++) {
     nb->reference[j] = (struct reference_position){state->position[j], NEIGHBORS_SKIN};
+    nb->hold[j] = nb->path[j];
+  }
   for (uint32_t j = 0; j < model->vertices; j++)
     if (model->next[j] >= 0 && (!spans_few_cells(state, model, j, fault) || !enter(nb, model, 1, &j)))
       return fault_no_memory(fault, state->step + 1); /* or the fault that is there already */

@@ -21,12 +21,11 @@ bool pairs_add(struct neighbors *nb, uint32_t bond, struct neighbor n)
   struct pair_list *p = &nb->pairs;
   if (p->count == p->room && !grow_pairs(p))
     return false;
-  const struct bond_clock *mine = &nb->clock[bond], *its = &nb->clock[n.bond];
   const uint32_t k = p->count++;
   p->bond[k] = bond;
   p->other[k] = (uint32_t)n.bond;
-  p->limit[k] = mine->path + its->path; /* due in the next drift: that makes paths longer */
-  p->generation[k] = mine->generation + its->generation;
+  p->limit[k] = nb->path[bond] + nb->path[n.bond] - 1; /* less than the sum of both: due */
+  p->generation[k] = nb->generation[bond] + nb->generation[n.bond];
   p->image[k] = (struct image){{n.image[0], n.image[1], n.image[2]}};
   return true;
 }
