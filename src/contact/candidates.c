@@ -172,9 +172,11 @@ static void fetch_due(const struct state *state, const struct model *model, cons
     __builtin_prefetch(&state->position[bonds[b]]);
     __builtin_prefetch(&state->position[bonds[b] + 1].z);
     __builtin_prefetch(&contact->range[bonds[b]]);
+    __builtin_prefetch(&contact->neighbors.generation[bonds[b]]);
     __builtin_prefetch(&model->next[bonds[b]]);
   }
   __builtin_prefetch(&contact->neighbors.pairs.image[pair]);
+  __builtin_prefetch(&contact->neighbors.pairs.generation[pair]);
 }
 
 /* Measures one of the pairs that are due. A pair that is out of date is dropped. The last pair of the list takes its

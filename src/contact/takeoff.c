@@ -53,34 +53,47 @@ static bool renew(const struct state *state, const struct model *model, struct c
   return true;
 }
 
-/* Lists the vertices among first .. first + n - 1 whose paths exceed their limits. Returns their number. */
-static uint32_t list_due(const struct neighbors *nb, uint32_t first, uint32_t n, uint32_t *restrict due)
+/* Vertices whose skins have to be looked at. */
+struct due {
+  uint32_t count, vertex[BLOCK];
+};
+
+/* Lists the vertices among first .. first + BLOCK - 1 whose paths exceed their limits, and prefetches their data. */
+static void list_due(const struct state *state, const struct contact *contact, uint32_t first,
+                     struct due *restrict due)
 {
-  const uint32_t *restrict path = &nb->path[first], *restrict hold = &nb->hold[first];
-  uint32_t left[BLOCK], count = 0;
-  for (uint32_t k = 0; k < n; k++)
-    left[k] = hold[k] - path[k];
-  for (uint32_t k = 0; k < n; k++) {
-    due[count] = first + k;
-    count += left[k] >> 31; /* less than 0 */
+  const uint32_t left = first < state->vertices ? state->vertices - first : 0, n = left < BLOCK ? left : BLOCK;
+  const uint32_t *restrict path = contact->neighbors.path, *restrict hold = contact->neighbors.hold;
+  due->count = 0;
+  for (uint32_t i = first; i < first + n; i++) {
+    due->vertex[due->count] = i;
+    due->count += (hold[i] - path[i]) >> 31; /* less than 0 */
   }
-  return count;
+  for (uint32_t k = 0; k < due->count; k++) {
+    __builtin_prefetch(&state->position[due->vertex[k]]);
+    __builtin_prefetch(&state->position[due->vertex[k]].z);
+    __builtin_prefetch(&contact->flights.rate[due->vertex[k]]);
+    __builtin_prefetch(&contact->flights.rate[due->vertex[k]].z);
+    __builtin_prefetch(&contact->neighbors.reference[due->vertex[k]]);
+  }
 }
 
 /* New reference positions for those that need them. */
 static bool renew_late(const struct state *state, const struct model *model, struct contact *contact,
                        struct fault *fault)
 {
+  struct neighbors *nb = &contact->neighbors;
   struct renewal r = {.count = 0};
-  uint32_t due[BLOCK];
-  for (uint32_t first = 0; first < state->vertices; first += BLOCK) {
-    const uint32_t n = state->vertices - first < BLOCK ? state->vertices - first : BLOCK,
-                   count = list_due(&contact->neighbors, first, n, due);
-    for (uint32_t k = 0; k < count; k++) {
-      const uint32_t i = due[k];
+  struct due due[2];
+  uint32_t now = 0;
+  list_due(state, contact, 0, &due[now]);
+  for (uint32_t first = 0; first < state->vertices; first += BLOCK, now = !now) {
+    list_due(state, contact, first + BLOCK, &due[!now]);
+    for (uint32_t k = 0; k < due[now].count; k++) {
+      const uint32_t i = due[now].vertex[k];
       const struct point from = state->position[i], to = flight_place(from, contact->flights.rate[i], FLIGHT_TICKS);
-      if (neighbors_hold(&contact->neighbors, i, to)) {
-        hold_until(&contact->neighbors, i, to);
+      if (neighbors_hold(nb, i, to)) {
+        hold_until(nb, i, to);
         continue;
       }
       r.vertex[r.count] = i, r.from[r.count] = from, r.to[r.count++] = to;
