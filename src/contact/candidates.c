@@ -87,7 +87,7 @@ static void fill_column(const struct state *state, const struct model *model, co
                  m = (uint32_t)model->next[l];
   const struct point *at = state->position;
   const struct vec3 p = point_difference(at[j], at[i]), q = point_difference(at[m], at[l]),
-                    w = point_difference(point_image(at[l], list->image[pair].k, &model->box), at[i]);
+                    w = point_difference(point_image(at[l], list->detail[pair].image.k, &model->box), at[i]);
   s->pair[k] = pair;
   s->path[k] = path[i] - way_of(model, contact, i) + path[l] - way_of(model, contact, l);
   s->p[0][k] = p.x, s->p[1][k] = p.y, s->p[2][k] = p.z;
@@ -156,7 +156,7 @@ static bool settle_columns(const struct state *state, struct contact *contact, c
     list->limit[pair] = limit[k];
     if ((limit[k] - contact->neighbors.path[i] - contact->neighbors.path[l]) >> 31 == 0)
       continue;
-    const int32_t *image = list->image[pair].k;
+    const int32_t *image = list->detail[pair].image.k;
     const struct neighbor n = {(int32_t)l, {image[0], image[1], image[2]}};
     if (!candidates_add(state, contact, i, &n, fault))
       return false;
@@ -175,8 +175,7 @@ static void fetch_due(const struct state *state, const struct model *model, cons
     __builtin_prefetch(&contact->neighbors.generation[bonds[b]]);
     __builtin_prefetch(&model->next[bonds[b]]);
   }
-  __builtin_prefetch(&contact->neighbors.pairs.image[pair]);
-  __builtin_prefetch(&contact->neighbors.pairs.generation[pair]);
+  __builtin_prefetch(&contact->neighbors.pairs.detail[pair]);
 }
 
 /* Measures one of the pairs that are due. A pair that is out of date is dropped. The last pair of the list takes its

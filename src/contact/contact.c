@@ -10,7 +10,7 @@
 
 /* --- scratch ----------------------------------------------------------------------------------------------------- */
 
-enum { NEEDS = 9 };
+enum { NEEDS = 8 };
 
 /* The single list of the scratch that the drifts of a model use. Lists that grow are allocated where they grow. */
 static void list_needs(struct contact *c, const struct model *m, bool everything, struct memory_need need[NEEDS])
@@ -26,7 +26,6 @@ static void list_needs(struct contact *c, const struct model *m, bool everything
       {(void **)&c->queue, in_turns, sizeof *c->queue},
       {(void **)&c->waits, in_turns, sizeof *c->waits},
       {(void **)&c->candidates.first, noncrossing, sizeof *c->candidates.first},
-      {(void **)&c->flights.rate, at_once, sizeof *c->flights.rate},
       {(void **)&c->flights.version, at_once, sizeof *c->flights.version},
       {(void **)&c->flights.bend_of, at_once, sizeof *c->flights.bend_of},
   };
@@ -55,8 +54,7 @@ static void free_neighbors(struct neighbors *nb)
   free(nb->pairs.bond);
   free(nb->pairs.other);
   free(nb->pairs.limit);
-  free(nb->pairs.generation);
-  free(nb->pairs.image);
+  free(nb->pairs.detail);
 }
 
 void contact_free(struct contact *c)

@@ -52,9 +52,10 @@ struct pair_list {
   uint32_t count, room;
   uint32_t *bond, *other;
   uint32_t *limit; /* as path, below, modulo 2^32 */
-  uint32_t
-      *generation; /* sum of both bonds' when the pair was found; if the sum is larger now, the pair is out of date */
-  struct image *image; /* of the other bond */
+  struct pair_detail {
+    struct image image;  /* of the other bond */
+    uint32_t generation; /* sum of both bonds' when the pair was found; if it is larger now, the pair is out of date */
+  } * detail;            /* read only where the pair is due */
 };
 
 /* Entries that a row of the grid holds itself; a longer row is allocated elsewhere. */
@@ -98,6 +99,7 @@ struct neighbors {
 struct bend_in_path {
   uint32_t vertex;
   struct point start; /* its place at the start of the drift */
+  struct point rate;  /* its displacement in a tick, lattice units */
   uint32_t contacts;  /* number of contacts of its bonds that were answered in this drift */
   uint32_t cluster;   /* of a rigid cluster: the number of its first member in the list, + 1; else 0 */
 };
@@ -107,9 +109,9 @@ struct bend_list {
   struct bend_in_path *at;
 };
 
-/* The flights of a drift in which all vertices move at once. At tick T, vertex i is at position[i] + T rate[i]. */
+/* The flights of a drift in which all vertices move at once. At tick T, vertex i is at position[i] + T rate. The rate
+ * follows from its velocity, or is in `bends`. */
 struct flights {
-  struct point *rate; /* [vertices] displacement in a tick, lattice units */
   uint32_t *version;  /* [vertices] of bond j: number of changes of the flights of its ends */
   uint32_t *bend_of;  /* [vertices] 1 + its place in `bends`, or 0 */
   struct bend_list bends;

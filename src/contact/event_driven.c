@@ -48,9 +48,21 @@ static bool no_memory(const struct event_drift *d)
 
 /* --- flights ------------------------------------------------------------------------------------------------------ */
 
+/* The flight of a vertex that has not bent follows from its velocity. */
+static struct point straight_rate(const struct event_drift *d, uint32_t i)
+{
+  return takeoff_rate(d->state->velocity[i], model_frame_velocity(d->model), d->dt);
+}
+
+static struct point rate_of(const struct event_drift *d, uint32_t i)
+{
+  const struct flights *f = &d->contact->flights;
+  return f->bend_of[i] ? f->bends.at[f->bend_of[i] - 1].rate : straight_rate(d, i);
+}
+
 static struct point place_of(const struct event_drift *d, uint32_t i, int32_t tick)
 {
-  return flight_place(d->state->position[i], d->contact->flights.rate[i], tick);
+  return flight_place(d->state->position[i], rate_of(d, i), tick);
 }
 
 /* The place of a vertex at the start of the drift. */
@@ -60,31 +72,37 @@ static struct point start_of(const struct event_drift *d, uint32_t i)
   return f->bend_of[i] ? f->bends.at[f->bend_of[i] - 1].start : d->state->position[i];
 }
 
+/* All vertices fly straight to the end; those whose flights have bent are put where such a flight ends where theirs
+ * does. */
 static void land(const struct event_drift *d)
 {
   struct point *restrict p = d->state->position;
-  const struct point *restrict rate = d->contact->flights.rate;
-  for (uint32_t i = 0; i < d->state->vertices; i++)
-    p[i] = flight_place(p[i], rate[i], FLIGHT_TICKS);
+  const struct vec3 *restrict v = d->state->velocity, frame = model_frame_velocity(d->model);
   struct flights *f = &d->contact->flights;
-  for (uint32_t k = 0; k < f->bends.count; k++)
-    f->bend_of[f->bends.at[k].vertex] = 0;
+  for (uint32_t k = 0; k < f->bends.count; k++) {
+    const uint32_t i = f->bends.at[k].vertex;
+    p[i] = flight_place(p[i], point_minus(f->bends.at[k].rate, straight_rate(d, i)), FLIGHT_TICKS);
+    f->bend_of[i] = 0;
+  }
   f->bends.count = 0;
+  for (uint32_t i = 0; i < d->state->vertices; i++)
+    p[i] = flight_place(p[i], takeoff_rate(v[i], frame, d->dt), FLIGHT_TICKS);
 }
 
 /* --- contacts to come --------------------------------------------------------------------------------------------- */
 
 static struct flight_pair pair_of(const struct event_drift *d, uint32_t bond, uint32_t other, const int32_t image[3])
 {
-  const struct point *at = d->state->position, *rate = d->contact->flights.rate;
+  const struct point *at = d->state->position;
   const uint32_t j = (uint32_t)d->model->next[bond], m = (uint32_t)d->model->next[other];
+  const struct point bond_rate = rate_of(d, bond), other_rate = rate_of(d, other);
   return (struct flight_pair){
       .p = point_minus(at[j], at[bond]),
       .q = point_minus(at[m], at[other]),
       .w = point_minus(point_image(at[other], image, &d->model->box), at[bond]),
-      .p_rate = point_minus(rate[j], rate[bond]),
-      .q_rate = point_minus(rate[m], rate[other]),
-      .w_rate = point_minus(rate[other], rate[bond]),
+      .p_rate = point_minus(rate_of(d, j), bond_rate),
+      .q_rate = point_minus(rate_of(d, m), other_rate),
+      .w_rate = point_minus(other_rate, bond_rate),
   };
 }
 
@@ -120,6 +138,8 @@ static bool search_all(const struct event_drift *d)
 
 /* --- paths bend --------------------------------------------------------------------------------------------------- */
 
+/* The bend of a vertex; a new one if its flight has been straight. Its velocity must not have changed by then. NULL if
+ * memory is short. */
 static struct bend_in_path *bend_of(const struct event_drift *d, uint32_t i)
 {
   struct flights *f = &d->contact->flights;
@@ -128,7 +148,7 @@ static struct bend_in_path *bend_of(const struct event_drift *d, uint32_t i)
   struct bend_list *list = &f->bends;
   if (list->count == list->room && !memory_double((void **)&list->at, &list->room, 64, sizeof *list->at))
     return NULL;
-  list->at[list->count] = (struct bend_in_path){i, d->state->position[i], 0, 0};
+  list->at[list->count] = (struct bend_in_path){i, d->state->position[i], straight_rate(d, i), 0, 0};
   f->bend_of[i] = ++list->count;
   return &list->at[list->count - 1];
 }
@@ -177,11 +197,11 @@ static bool check_range(const struct event_drift *d, uint32_t i, struct point st
 static bool steer(const struct event_drift *d, uint32_t i, struct point rate, int32_t tick)
 {
   struct contact *c = d->contact;
-  const struct bend_in_path *bend = bend_of(d, i);
+  struct bend_in_path *bend = bend_of(d, i);
   if (!bend)
     return no_memory(d);
   const struct point start = bend->start, here = place_of(d, i, tick);
-  c->flights.rate[i] = rate;
+  bend->rate = rate;
   d->state->position[i] = flight_place(here, rate, -tick);
   const struct point end = place_of(d, i, FLIGHT_TICKS);
   if (!check_range(d, i, start, end))
@@ -322,11 +342,11 @@ static bool make_rigid(const struct event_drift *d, const struct meeting *m)
       return no_memory(d);
     if (bend->cluster && !cluster) {
       cluster = bend->cluster;
-      sum = flight_place((struct point){0, 0, 0}, d->contact->flights.rate[m->vertex[k]], 4);
+      sum = flight_place((struct point){0, 0, 0}, bend->rate, 4);
     }
   }
   for (int k = 0; k < 4 && !cluster; k++)
-    sum = point_plus(sum, d->contact->flights.rate[m->vertex[k]]);
+    sum = point_plus(sum, rate_of(d, m->vertex[k]));
   const struct point rate = {sum.x / 4, sum.y / 4, sum.z / 4};
   cluster = cluster ? cluster : d->contact->flights.bend_of[m->vertex[0]];
   for (int k = 0; k < 4; k++) {
@@ -411,6 +431,9 @@ static bool answer(const struct event_drift *d, const struct event *e)
     const struct neighbor other = {(int32_t)e->other, {e->image[0], e->image[1], e->image[2]}};
     return search_pair(d, e->bond, &other, e->tick + 1);
   }
+  for (int k = 0; k < 4; k++) /* before velocities change */
+    if (!bend_of(d, m.vertex[k]))
+      return no_memory(d);
   if (!may_exchange(d, &m) || !exchange(d, &m))
     return make_rigid(d, &m);
   note(d, &m);

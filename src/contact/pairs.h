@@ -22,7 +22,7 @@ void pairs_drop(struct neighbors *nb, uint32_t k);
 static inline bool pairs_out_of_date(const struct neighbors *nb, uint32_t k)
 {
   const struct pair_list *p = &nb->pairs;
-  return p->generation[k] != nb->generation[p->bond[k]] + nb->generation[p->other[k]];
+  return p->detail[k].generation != nb->generation[p->bond[k]] + nb->generation[p->other[k]];
 }
 
 #endif

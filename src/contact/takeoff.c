@@ -1,5 +1,5 @@
 /*
- * A drift reads every vertex, so what is read is kept short: velocities, for flights and ranges. Reference positions
+ * A drift reads every vertex, so what is read is kept short: velocities, for ranges. Reference positions
  * are read now and then. A vertex that is `left` inside of its skin cannot leave it before its way has grown by `left`.
  * The path of bond i is a bound on the way of vertex i; so the vertex has a limit, `hold`, and its skin is looked at
  * when the path exceeds it.
@@ -7,8 +7,6 @@
 #include "contact/takeoff.h"
 
 #include "contact/candidates.h"
-#include "contact/drift.h"
-#include "contact/flight.h"
 #include "contact/neighbors.h"
 
 enum { BLOCK = 64 }; /* vertices worked on at a time */
@@ -16,13 +14,8 @@ enum { BLOCK = 64 }; /* vertices worked on at a time */
 /* a0: a rate is rounded by half a lattice unit along each axis, and flown for all ticks: 2^-25 sqrt(3) at most. */
 #define FLIGHT_ROUNDING 0x1p-24
 
-/* Flights and ranges of n vertices. */
-static void steer_all(struct contact *contact, uint32_t first, uint32_t n, const struct vec3 *restrict displacement)
+static void ranges_of(const struct vec3 *restrict displacement, uint32_t n, uint32_t *restrict range)
 {
-  struct point *restrict rate = &contact->flights.rate[first];
-  uint32_t *restrict range = &contact->range[first];
-  for (uint32_t k = 0; k < n; k++)
-    rate[k] = flight_rate(displacement[k]);
   for (uint32_t k = 0; k < n; k++)
     range[k] = candidates_units(vec3_norm(displacement[k]) + FLIGHT_ROUNDING);
 }
@@ -72,16 +65,17 @@ static void list_due(const struct state *state, const struct contact *contact, u
   for (uint32_t k = 0; k < due->count; k++) {
     __builtin_prefetch(&state->position[due->vertex[k]]);
     __builtin_prefetch(&state->position[due->vertex[k]].z);
-    __builtin_prefetch(&contact->flights.rate[due->vertex[k]]);
-    __builtin_prefetch(&contact->flights.rate[due->vertex[k]].z);
+    __builtin_prefetch(&state->velocity[due->vertex[k]]);
+    __builtin_prefetch(&state->velocity[due->vertex[k]].z);
     __builtin_prefetch(&contact->neighbors.reference[due->vertex[k]]);
   }
 }
 
 /* New reference positions for those that need them. */
 static bool renew_late(const struct state *state, const struct model *model, struct contact *contact,
-                       struct fault *fault)
+                       double dt, struct fault *fault)
 {
+  const struct vec3 frame = model_frame_velocity(model);
   struct neighbors *nb = &contact->neighbors;
   struct renewal r = {.count = 0};
   struct due due[2];
@@ -91,7 +85,7 @@ static bool renew_late(const struct state *state, const struct model *model, str
     list_due(state, contact, first + BLOCK, &due[!now]);
     for (uint32_t k = 0; k < due[now].count; k++) {
       const uint32_t i = due[now].vertex[k];
-      const struct point from = state->position[i], to = flight_place(from, contact->flights.rate[i], FLIGHT_TICKS);
+      const struct point from = state->position[i], to = flight_place(from, takeoff_rate(state->velocity[i], frame, dt), FLIGHT_TICKS);
       if (neighbors_hold(nb, i, to)) {
         hold_until(nb, i, to);
         continue;
@@ -112,8 +106,8 @@ bool take_off(const struct state *state, const struct model *model, struct conta
     const uint32_t n = state->vertices - first < BLOCK ? state->vertices - first : BLOCK;
     if (!drift_displacements(state, model, dt, first, n, displacement, fault))
       return false;
-    steer_all(contact, first, n, displacement);
+    ranges_of(displacement, n, &contact->range[first]);
   }
   candidates_lengthen(model, contact);
-  return renew_late(state, model, contact, fault);
+  return renew_late(state, model, contact, dt, fault);
 }

@@ -3,9 +3,16 @@
 #define UNCROSS_CONTACT_TAKEOFF_H
 
 #include "contact/contact.h"
+#include "contact/drift.h"
+#include "contact/flight.h"
 
-/* Gives every vertex its flight for a time dt (contact->flights.rate) and its range, lengthens the paths of bonds, and
- * takes new reference positions for vertices that would leave their skins. False, with the fault recorded, as
+/* The displacement in a tick, lattice units, of a vertex of this velocity that flies straight for a time dt. */
+static inline struct point takeoff_rate(struct vec3 velocity, struct vec3 frame, double dt)
+{
+  return flight_rate(drift_displacement(velocity, frame, dt));
+}
+
+/* Gives every vertex its range in a flight for a time dt (contact->range), lengthens the paths of bonds, and takes new reference positions for vertices that would leave their skins. False, with the fault recorded, as
  * contact_drift. */
 bool take_off(const struct state *state, const struct model *model, struct contact *contact, double dt,
               struct fault *fault);

@@ -119,7 +119,7 @@ static uint64_t check_limits(const struct test_run *r)
     const uint32_t j = (uint32_t)r->model.next[i], m = (uint32_t)r->model.next[l];
     const double distance =
         capsule_distance(point_difference(at[j], at[i]), point_difference(at[m], at[l]),
-                         point_difference(point_image(at[l], nb->pairs.image[n].k, &r->model.box), at[i]));
+                         point_difference(point_image(at[l], nb->pairs.detail[n].image.k, &r->model.box), at[i]));
     if (distance < left * 0x1p-20)
       fail_msg("bonds %u and %u are %g a0 apart, and need not be looked at for %g a0", i, l, distance, left * 0x1p-20);
     waiting++;
