@@ -112,9 +112,10 @@ struct bend_list {
 /* The flights of a drift in which all vertices move at once. At tick T, vertex i is at position[i] + T rate. The rate
  * follows from its velocity, or is in `bends`. */
 struct flights {
-  uint32_t *version;  /* [vertices] of bond j: number of changes of the flights of its ends */
-  uint32_t *bend_of;  /* [vertices] 1 + its place in `bends`, or 0 */
-  struct bend_list bends;
+  uint32_t *version;      /* [vertices] of bond j: number of changes of the flights of its ends */
+  uint32_t *bend_of;      /* [vertices] 1 + its place in `bends`, or 0 */
+  double time;            /* t0: of the drift */
+  struct bend_list bends; /* kept until the next drift begins, for tests */
   struct event_queue queue;
 };
 

@@ -56,8 +56,7 @@ static struct point straight_rate(const struct event_drift *d, uint32_t i)
 
 static struct point rate_of(const struct event_drift *d, uint32_t i)
 {
-  const struct flights *f = &d->contact->flights;
-  return f->bend_of[i] ? f->bends.at[f->bend_of[i] - 1].rate : straight_rate(d, i);
+  return takeoff_rate_now(d->state, d->model, &d->contact->flights, i);
 }
 
 static struct point place_of(const struct event_drift *d, uint32_t i, int32_t tick)
@@ -84,7 +83,6 @@ static void land(const struct event_drift *d)
     p[i] = flight_place(p[i], point_minus(f->bends.at[k].rate, straight_rate(d, i)), FLIGHT_TICKS);
     f->bend_of[i] = 0;
   }
-  f->bends.count = 0;
   for (uint32_t i = 0; i < d->state->vertices; i++)
     p[i] = flight_place(p[i], takeoff_rate(v[i], frame, d->dt), FLIGHT_TICKS);
 }
@@ -445,8 +443,10 @@ static bool drift_event_driven(struct state *state, const struct model *model, s
 {
   (void)step;
   const struct event_drift d = {state, model, contact, dt, (double)drift * dt - 0.5 * model->time_step, log, fault};
-  if ((!contact->neighbors.built && !neighbors_build(state, model, contact, fault)) || !take_off(state, model, contact, dt, fault) ||
-      !candidates_find(state, model, contact, fault) || !search_all(&d))
+  contact->flights.time = dt;
+  contact->flights.bends.count = 0;
+  if ((!contact->neighbors.built && !neighbors_build(state, model, contact, fault)) ||
+      !take_off(state, model, contact, dt, fault) || !candidates_find(state, model, contact, fault) || !search_all(&d))
     return false;
   struct event e;
   while (event_queue_pop(&contact->flights.queue, &e))

@@ -80,7 +80,7 @@ static struct capsule_box box_of(const struct neighbors *nb, const struct model 
 }
 
 /* The image of the box in which a point lies. */
-static struct image image_of(const struct neighbors *nb, struct point p, const struct box *box)
+static inline struct image image_of(const struct neighbors *nb, struct point p, const struct box *box)
 {
   return (struct image){{(int32_t)lattice_image_by(p.x, box->edge[0], nb->inverse[0].box_edge),
                          (int32_t)lattice_image_by(p.y, box->edge[1], nb->inverse[1].box_edge),
@@ -116,9 +116,9 @@ static bool walk_on(struct walk *w, const struct neighbors *nb, int axis)
 
 /* --- keys -------------------------------------------------------------------------------------------------------- */
 
-/* The part of a box that lies in a cell, in one integer. Along axis k, the faces are at `low` and `high`, in about 1/128
- * of the cell's edge, rounded down. The rounding is safe: intervals that overlap in the cell still overlap. Byte k of
- * the key is low, byte 3 + k is 127 - high; bit 48 + k says that the box begins below the cell. */
+/* The part of a box that lies in a cell, in one integer. Along axis k, the faces are at `low` and `high`, in about
+ * 1/128 of the cell's edge, rounded down. The rounding is safe: intervals that overlap in the cell still overlap. Byte
+ * k of the key is low, byte 3 + k is 127 - high; bit 48 + k says that the box begins below the cell. */
 enum { FACE_MOST = 127, BEGINS_BELOW = 48 };
 
 static inline uint64_t key_of_axis(const struct walk *w, const struct neighbors *nb, int axis)
@@ -142,9 +142,9 @@ static inline struct probe probe_of(uint64_t key)
   return (struct probe){EACH_BYTE * 0xff - swapped, key & (uint64_t)7 << BEGINS_BELOW};
 }
 
-/* True if the boxes of two entries of one cell overlap, and the lower corner of the overlap lies in this cell: so a pair
- * that overlaps in several cells is taken once. Along every axis one of the two boxes begins in the cell; each face
- * `low` is at most the other's `high`, that is, no byte of the key is greater than that of the probe. In the
+/* True if the boxes of two entries of one cell overlap, and the lower corner of the overlap lies in this cell: so a
+ * pair that overlaps in several cells is taken once. Along every axis one of the two boxes begins in the cell; each
+ * face `low` is at most the other's `high`, that is, no byte of the key is greater than that of the probe. In the
  * difference the highest bit of a byte stays set if its byte is not greater; no byte borrows from the next. */
 static inline bool overlap(struct probe mine, uint64_t its)
 {
@@ -217,13 +217,15 @@ static bool share_vertex(const struct model *model, uint32_t a, uint32_t b)
 /* Empties the list of overlaps: into `near` or the pair list, see struct search. */
 static bool settle(struct neighbors *nb, const struct model *model, struct search *found)
 {
+  struct image home = {{0, 0, 0}};
   for (uint32_t k = 0; k < found->count; k++) {
     const struct overlap *c = &found->at[k];
+    const struct point mine_at = nb->reference[c->bond].at;
+    if (k == 0 || c->bond != c[-1].bond)
+      home = image_of(nb, mine_at, &model->box);
     if (share_vertex(model, c->bond, c->other))
       continue;
-    const struct point mine_at = nb->reference[c->bond].at;
-    const struct image home = image_of(nb, mine_at, &model->box),
-                       its_home = image_of(nb, nb->reference[c->other].at, &model->box);
+    const struct image its_home = image_of(nb, nb->reference[c->other].at, &model->box);
     struct neighbor n = {.bond = (int32_t)c->other};
     for (int axis = 0; axis < 3; axis++)
       n.image[axis] = home.k[axis] - its_home.k[axis] + c->image[axis];

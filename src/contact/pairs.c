@@ -24,8 +24,8 @@ bool pairs_add(struct neighbors *nb, uint32_t bond, struct neighbor n)
   p->bond[k] = bond;
   p->other[k] = (uint32_t)n.bond;
   p->limit[k] = nb->path[bond] + nb->path[n.bond] - 1; /* less than the sum of both: due */
-  p->detail[k] = (struct pair_detail){{{n.image[0], n.image[1], n.image[2]}},
-                                      nb->generation[bond] + nb->generation[n.bond]};
+  p->detail[k] =
+      (struct pair_detail){{{n.image[0], n.image[1], n.image[2]}}, nb->generation[bond] + nb->generation[n.bond]};
   return true;
 }
 

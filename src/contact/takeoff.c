@@ -52,8 +52,7 @@ struct due {
 };
 
 /* Lists the vertices among first .. first + BLOCK - 1 whose paths exceed their limits, and prefetches their data. */
-static void list_due(const struct state *state, const struct contact *contact, uint32_t first,
-                     struct due *restrict due)
+static void list_due(const struct state *state, const struct contact *contact, uint32_t first, struct due *restrict due)
 {
   const uint32_t left = first < state->vertices ? state->vertices - first : 0, n = left < BLOCK ? left : BLOCK;
   const uint32_t *restrict path = contact->neighbors.path, *restrict hold = contact->neighbors.hold;
@@ -72,8 +71,8 @@ static void list_due(const struct state *state, const struct contact *contact, u
 }
 
 /* New reference positions for those that need them. */
-static bool renew_late(const struct state *state, const struct model *model, struct contact *contact,
-                       double dt, struct fault *fault)
+static bool renew_late(const struct state *state, const struct model *model, struct contact *contact, double dt,
+                       struct fault *fault)
 {
   const struct vec3 frame = model_frame_velocity(model);
   struct neighbors *nb = &contact->neighbors;
@@ -85,7 +84,8 @@ static bool renew_late(const struct state *state, const struct model *model, str
     list_due(state, contact, first + BLOCK, &due[!now]);
     for (uint32_t k = 0; k < due[now].count; k++) {
       const uint32_t i = due[now].vertex[k];
-      const struct point from = state->position[i], to = flight_place(from, takeoff_rate(state->velocity[i], frame, dt), FLIGHT_TICKS);
+      const struct point from = state->position[i],
+                         to = flight_place(from, takeoff_rate(state->velocity[i], frame, dt), FLIGHT_TICKS);
       if (neighbors_hold(nb, i, to)) {
         hold_until(nb, i, to);
         continue;

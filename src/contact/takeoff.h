@@ -12,8 +12,16 @@ static inline struct point takeoff_rate(struct vec3 velocity, struct vec3 frame,
   return flight_rate(drift_displacement(velocity, frame, dt));
 }
 
-/* Gives every vertex its range in a flight for a time dt (contact->range), lengthens the paths of bonds, and takes new reference positions for vertices that would leave their skins. False, with the fault recorded, as
- * contact_drift. */
+/* The displacement of vertex i in a tick, within a drift: that of its last bend, or what its velocity gives. */
+static inline struct point takeoff_rate_now(const struct state *state, const struct model *model,
+                                            const struct flights *f, uint32_t i)
+{
+  return f->bend_of[i] ? f->bends.at[f->bend_of[i] - 1].rate
+                       : takeoff_rate(state->velocity[i], model_frame_velocity(model), f->time);
+}
+
+/* Gives every vertex its range in a flight for a time dt (contact->range), lengthens the paths of bonds, and takes new
+ * reference positions for vertices that would leave their skins. False, with the fault recorded, as contact_drift. */
 bool take_off(const struct state *state, const struct model *model, struct contact *contact, double dt,
               struct fault *fault);
 
