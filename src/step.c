@@ -3,7 +3,8 @@
  *
  *   1  coordinates and velocities                       step_start, or a snapshot (files/)
  *   2  stream the solvent                 Eq. (3)       fluid/points.c
- *   3  move the vertices, one by one      Eq. (4)       contact/sequential.c; crossings: line.c, impulse.h
+ *   3  move the vertices                  Eq. (4)       one by one as the paper does: contact/sequential.c, line.c;
+ *      so that no bonds cross                           all at once: contact/event_driven.c; exchanges: impulse.h
  *   4  SRD collision                      Eqs. (5, 6)   mpc/collide.c, rules/srd.h
  *   5  forces                             Eqs. (1, 2)   fiber/force.c
  *   6  kick                               Eqs. (7, 8)   fiber/force.c

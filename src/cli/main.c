@@ -89,8 +89,8 @@ const struct command commands[COMMANDS] = {
          "at\n"
          "hand, with a checkpoint. A second SIGINT or SIGTERM, a second later, ends it at once, without one.\n",
          command_run},
-    [COMMAND_INFO] = {"info", "FILE", 1, WRITES, "what a file is: scene, checkpoint, trajectory, run.json, table", NULL,
-                      info},
+    [COMMAND_INFO] = {"info", "FILE", 1, WRITES,
+                      "what a file is: scene, checkpoint, trajectory, run.json, table; or a run's folder", NULL, info},
     [COMMAND_VERIFY] = {"verify", "FILE ...", 1, WRITES | MAY(EXIT_DAMAGED),
                         "whether checkpoints, trajectories, packs, tables, folders of runs are whole",
                         "Prints a line for each file: whole, readable (what it carries no checksum of), or damaged.\n",

@@ -99,7 +99,44 @@ static enum exit_code loop(uncross_run *run, struct progress *progress, uncross_
   return done ? EXIT_DONE : EXIT_INTERRUPTED;
 }
 
-static void tell_end(const uncross_run *run, const struct progress *progress, const char *folder, enum exit_code code)
+/* A word as a shell takes it. */
+static void print_word(const char *word)
+{
+  static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./=:,+-";
+  if (*word && word[strspn(word, plain)] == '\0') {
+    printf(" %s", word);
+    return;
+  }
+  printf(" '");
+  for (const char *shown = text_shown(word); *shown; shown++)
+    if (*shown == '\'')
+      fputs("'\\''", stdout);
+    else
+      putchar(*shown);
+  printf("'");
+}
+
+/* The command that continues this run. */
+static void tell_resume(const struct arguments *a)
+{
+  printf("go on with:  uncross run");
+  print_word(a->file[0]);
+  printf(" --out");
+  print_word(a->out);
+  printf(" --resume");
+  if (a->has_steps)
+    printf(" --steps %" PRIu64, a->steps);
+  if (a->has_seed)
+    printf(" --seed %" PRIu64, a->seed);
+  for (size_t k = 0; k < a->sets; k++) {
+    printf(" --set");
+    print_word(a->set[k]);
+  }
+  printf("\n");
+}
+
+static void tell_end(const uncross_run *run, const struct progress *progress, const struct arguments *a,
+                     enum exit_code code)
 {
   uint64_t hash = 0;
   char spent[64];
@@ -107,9 +144,9 @@ static void tell_end(const uncross_run *run, const struct progress *progress, co
   uncross_sim_hash(uncross_run_sim(run), &hash, NULL);
   printf("%s at step %" PRIu64 " of %" PRIu64 " after %s (%.1f steps/s)\nstate hash %016" PRIx64 "\nresults in %s\n",
          code == EXIT_DONE ? "finished" : "interrupted", step_of(run), uncross_run_wanted(run), spent,
-         progress_rate(progress, step_of(run)), hash, text_shown(folder));
+         progress_rate(progress, step_of(run)), hash, text_shown(a->out));
   if (code == EXIT_INTERRUPTED)
-    printf("go on with --resume\n");
+    tell_resume(a);
 }
 
 static void tell_note(const uncross_run *run)
@@ -133,8 +170,13 @@ static enum exit_code run_to_end(uncross_run *run, const struct arguments *a, un
   if (code == EXIT_DONE || code == EXIT_INTERRUPTED)
     tell_note(run);
   if (!a->quiet && (code == EXIT_DONE || code == EXIT_INTERRUPTED))
-    tell_end(run, &progress, a->out, code);
+    tell_end(run, &progress, a, code);
   return code;
+}
+
+static void tell_warning(void *file, const char *text)
+{
+  fprintf(file, "uncross: warning: %s\n", text_shown(text));
 }
 
 enum exit_code command_run(const struct arguments *a)
@@ -144,6 +186,10 @@ enum exit_code command_run(const struct arguments *a)
   uncross_scene *scene = read_scene(a, &error);
   if (!scene)
     return complain(&error);
+  if (!a->quiet && uncross_scene_warnings(scene, tell_warning, stderr, &error) != UNCROSS_OK) {
+    uncross_scene_free(scene);
+    return complain(&error);
+  }
   watch_signals();
   uncross_run *run = uncross_run_open(scene, a->out, a->resume ? UNCROSS_RESUME : UNCROSS_NEW, &error);
   const enum exit_code code = run ? run_to_end(run, a, &error) : complain(&error);

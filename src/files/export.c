@@ -19,6 +19,61 @@ static const char *symbol_of(int32_t species)
   return symbols[(size_t)(species < 0 ? 0 : species) % n];
 }
 
+/* --- fibers ------------------------------------------------------------------------------------------------------ */
+
+/* Where a row stands: in which fiber, counted from 0 in the order of their first vertices, and at which place along
+ * it; both -1 for solvent. */
+struct place {
+  int32_t fiber, along;
+};
+
+/* All rows that bonds lead to from this one get their places, in the fiber of this number. In a file of another program
+ * bonds may lead anywhere: a row keeps the first place that it gets. */
+static void follow_fiber(const struct structure *s, int32_t first, struct place *place)
+{
+  int32_t along = 0;
+  for (int32_t row = first; row >= 0 && place[row].fiber < 0; row = s->next[row])
+    place[row] = (struct place){first, along++};
+}
+
+/* [particles] into `place`; number: scratch, [particles]. At first a fiber has the number of its first row. Open fibers
+ * begin where no bond leads to; what is left then are rings. */
+static void find_places(const struct structure *s, struct place *place, int32_t *number)
+{
+  const int32_t rows = (int32_t)s->particles;
+  int32_t fibers = 0;
+  for (int32_t row = 0; row < rows; row++)
+    place[row] = (struct place){-1, -1}, number[row] = 0;
+  for (int32_t row = 0; row < rows; row++)
+    if (s->next[row] >= 0)
+      number[s->next[row]] = 1; /* a bond leads here */
+  for (int rings = 0; rings < 2; rings++)
+    for (int32_t row = 0; row < rows; row++)
+      if (!structure_is_solvent(s, s->species[row]) && (rings || !number[row]))
+        follow_fiber(s, row, place);
+  for (int32_t row = 0; row < rows; row++)
+    if (place[row].along == 0)
+      number[row] = fibers++;
+  for (int32_t row = 0; row < rows; row++)
+    if (place[row].fiber >= 0)
+      place[row].fiber = number[place[row].fiber];
+}
+
+/* To be freed; NULL if memory is short. */
+static struct place *places_of(const struct structure *s)
+{
+  struct place *place = malloc((s->particles + (size_t)1) * sizeof *place);
+  int32_t *number = malloc((s->particles + (size_t)1) * sizeof *number);
+  if (place && number)
+    find_places(s, place, number);
+  free(number);
+  if (!number) {
+    free(place);
+    return NULL;
+  }
+  return place;
+}
+
 /* --- printing ---------------------------------------------------------------------------------------------------- */
 
 static bool row_is_solvent(const struct frames *s, uint32_t row)
@@ -38,8 +93,10 @@ static void print_comment(FILE *out, const struct frames *s, bool solvent)
 {
   const struct picture *p = &s->picture;
   const char *between = "";
-  fprintf(out, "Lattice=\"%.17g 0 0 0 %.17g 0 0 0 %.17g\" Properties=species:S:1:pos:R:3%s:id:I:1:next:I:1", p->edge[0],
-          p->edge[1], p->edge[2], p->velocity ? ":velo:R:3" : "");
+  fprintf(
+      out,
+      "Lattice=\"%.17g 0 0 0 %.17g 0 0 0 %.17g\" Properties=species:S:1:pos:R:3%s:id:I:1:next:I:1:fiber:I:1:place:I:1",
+      p->edge[0], p->edge[1], p->edge[2], p->velocity ? ":velo:R:3" : "");
   fprintf(out, " pbc=\"T T T\" Step=%" PRIu64 " Time=%.17g kinds=\"", p->step, text_real(p->time));
   for (int k = 0; k < s->structure.kinds; k++) {
     bool is_solvent = structure_is_solvent(&s->structure, k);
@@ -59,7 +116,7 @@ static double fold(double x, double edge)
   return r < edge ? r : 0.0;
 }
 
-static void print_row(FILE *out, const struct frames *s, uint32_t row, bool wrapped)
+static void print_row(FILE *out, const struct frames *s, const struct place *place, uint32_t row, bool wrapped)
 {
   const struct structure *is = &s->structure;
   const double *x = &s->picture.position[3 * (size_t)row], *edge = s->picture.edge;
@@ -68,10 +125,13 @@ static void print_row(FILE *out, const struct frames *s, uint32_t row, bool wrap
     fprintf(out, " %.17g", text_real(wrapped ? fold(x[k], edge[k]) : x[k]));
   for (int k = 0; s->picture.velocity && k < 3; k++)
     fprintf(out, " %.17g", text_real(s->picture.velocity[3 * (size_t)row + (size_t)k]));
-  fprintf(out, " %" PRIu32 " %" PRId32 "\n", row, row < is->particles ? is->next[row] : -1);
+  const struct place none = {-1, -1}, at = row < is->particles ? place[row] : none;
+  fprintf(out, " %" PRIu32 " %" PRId32 " %" PRId32 " %" PRId32 "\n", row, row < is->particles ? is->next[row] : -1,
+          at.fiber, at.along);
 }
 
-static void print_frame(FILE *out, const struct frames *s, const struct export_options *options)
+static void print_frame(FILE *out, const struct frames *s, const struct place *place,
+                        const struct export_options *options)
 {
   uint32_t shown = 0;
   for (uint32_t row = 0; row < s->about.rows; row++)
@@ -80,12 +140,12 @@ static void print_frame(FILE *out, const struct frames *s, const struct export_o
   print_comment(out, s, options->solvent);
   for (uint32_t row = 0; row < s->about.rows; row++)
     if (options->solvent || !row_is_solvent(s, row))
-      print_row(out, s, row, options->wrapped);
+      print_row(out, s, place, row, options->wrapped);
 }
 
 /* True if it can go on: the frame is printed, or it may be left out. */
-static bool show_frame(struct frames *s, uint64_t frame, const struct export_options *options, FILE *out,
-                       struct message *message)
+static bool show_frame(struct frames *s, const struct place *place, uint64_t frame,
+                       const struct export_options *options, FILE *out, struct message *message)
 {
   enum frame_verdict verdict = frames_read(s, frame, message);
   if (verdict == FRAME_FINE && !s->picture.has_box) {
@@ -94,13 +154,14 @@ static bool show_frame(struct frames *s, uint64_t frame, const struct export_opt
     verdict = FRAME_DAMAGED;
   }
   if (verdict == FRAME_FINE)
-    print_frame(out, s, options);
+    print_frame(out, s, place, options);
   else if (verdict == FRAME_DAMAGED && options->notes)
     fprintf(options->notes, "uncross: left out: %s\n", message->text);
   return verdict == FRAME_FINE || (verdict == FRAME_DAMAGED && options->notes);
 }
 
-static bool print_frames(struct frames *s, const struct export_options *options, FILE *out, struct message *message)
+static bool print_frames(struct frames *s, const struct place *place, const struct export_options *options, FILE *out,
+                         struct message *message)
 {
   const uint64_t stride = options->stride ? options->stride : 1;
   if (options->first > options->last)
@@ -112,7 +173,7 @@ static bool print_frames(struct frames *s, const struct export_options *options,
                        s->path, options->first, s->about.frames ? s->about.frames - 1 : 0, s->about.frames);
   uint64_t last = options->last < s->about.frames ? options->last : s->about.frames - 1;
   for (uint64_t frame = options->first; frame <= last; frame += stride) {
-    if (!show_frame(s, frame, options, out, message))
+    if (!show_frame(s, place, frame, options, out, message))
       return false;
     if (ferror(out) || last - frame < stride)
       break;
@@ -126,7 +187,12 @@ bool trajectory_export(const char *path, const struct export_options *options, F
 {
   enum h5_trouble trouble;
   struct frames *frames = frames_open(path, &trouble, message);
-  const bool ok = frames && print_frames(frames, options, out, message);
+  if (!frames)
+    return false;
+  struct place *place = places_of(&frames->structure);
+  const bool ok = place ? print_frames(frames, place, options, out, message)
+                        : message_set(message, "%s: no memory for the places of its particles", path);
+  free(place);
   frames_close(frames);
   return ok;
 }

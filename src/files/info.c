@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/text.h"
@@ -269,7 +270,7 @@ static bool look_at(const char *path, struct look *look, struct message *message
   return ok;
 }
 
-bool file_info(const char *path, struct message *message)
+static bool file_info_of_one(const char *path, struct message *message)
 {
   struct look look;
   if (!look_at(path, &look, message))
@@ -278,4 +279,29 @@ bool file_info(const char *path, struct message *message)
     if (sorts[k].is(&look))
       return sorts[k].tell(&look, message);
   return tell_neither(&look, message);
+}
+
+/* The files that every run has, or may have. */
+static bool folder_info(const char *folder, struct message *message)
+{
+  static const char *const names[] = {"run.json", "checkpoint.h5", "trajectory.h5"};
+  bool any = false;
+  for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+    char path[4096 + 32];
+    snprintf(path, sizeof path, "%s/%s", folder, names[k]);
+    if (access(path, F_OK) != 0)
+      continue;
+    any = true;
+    if (!file_info_of_one(path, message))
+      return false;
+  }
+  return any || message_set(message, "%s: a folder without run.json, checkpoint.h5 or trajectory.h5", folder);
+}
+
+bool file_info(const char *path, struct message *message)
+{
+  struct stat s;
+  if (strlen(path) <= 4096 && stat(path, &s) == 0 && S_ISDIR(s.st_mode))
+    return folder_info(path, message);
+  return file_info_of_one(path, message);
 }

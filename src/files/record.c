@@ -42,17 +42,41 @@ static json_t *seed(uint64_t x)
   return json_string(text);
 }
 
+static void add_text(void *list, const char *text)
+{
+  json_array_append_new(list, json_string(text));
+}
+
+/* What a reader of the results should know: of the scene, and of what happened. */
+static json_t *warnings(const struct scene *scene, const struct record *r)
+{
+  json_t *list = json_array();
+  scene_warnings(scene, add_text, list);
+  char text[256];
+  if (r->counts.rigid > 0) {
+    snprintf(
+        text, sizeof text,
+        "%" PRIu64
+        " contacts found no impulse that separates the bonds, which then moved rigidly for the rest of a drift; such "
+        "drifts do not conserve energy; a smaller time_step has fewer",
+        r->counts.rigid);
+    add_text(list, text);
+  }
+  return list;
+}
+
 bool record_write(const struct folder *folder, const struct scene *scene, const struct record *r,
                   struct message *message)
 {
   json_t *root = json_pack(
-      "{s:s, s:s?, s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:I, s:I, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:s}", "status",
+      "{s:s, s:s?, s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:I, s:I, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:o, s:s}", "status",
       r->status, "reason", r->reason, "program", "uncross", "version", UNCROSS_VERSION, "commit", build_info.commit,
       "compiler", build_info.compiler, "flags", build_info.flags, "seed", seed(scene->model.seed), "scene_fingerprint",
       hexadecimal(scene->fingerprint), "steps", (json_int_t)r->step, "steps_wanted", (json_int_t)scene->steps, "time",
       (double)r->step * scene->model.time_step, "wall_seconds", r->wall_seconds, "steps_per_second",
-      r->steps_per_second, "collisions", counts(&r->counts), "start", conserved(r->start_energy, r->start_momentum),
-      "end", conserved(r->now.total, r->now.momentum), "state_hash", hexadecimal(r->state_hash), "scene", scene->text);
+      r->steps_per_second, "collisions", counts(&r->counts), "warnings", warnings(scene, r), "start",
+      conserved(r->start_energy, r->start_momentum), "end", conserved(r->now.total, r->now.momentum), "state_hash",
+      hexadecimal(r->state_hash), "scene", scene->text);
   char *text = root ? json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) : NULL;
   message_set(message, "%s/run.json: no memory, or a scene that is not UTF-8", folder->name);
   bool ok = text && file_replace(folder, "run.json", text, strlen(text), message);

@@ -116,11 +116,12 @@ struct export_options {
 
 /* Extended XYZ of a trajectory or checkpoint to a stdio stream (OVITO, ASE): `uncross export`. Columns: a chemical
  * symbol that stands for the kind, position, velocity if stored, id, and the id of the vertex to which a bond goes on
- * (-1: none). False, with a message, if the file cannot be read or the stream not be written. */
+ * (-1: none), the number of the fiber, the place along it. False, with a message, if the file cannot be read or the
+ * stream not be written. */
 bool trajectory_export(const char *path, const struct export_options *options, FILE *out, struct message *message);
 
-/* Describes a file in a few lines: `uncross info`. Knows scenes, checkpoints, trajectories, run.json, CSV tables.
- * False, with a message, if it is none of them or cannot be read. */
+/* Describes a file in a few lines: `uncross info`. Knows scenes, checkpoints, trajectories, run.json, CSV tables, and
+ * folders of runs. False, with a message, if it is none of them or cannot be read. */
 bool file_info(const char *path, struct message *message);
 
 #endif

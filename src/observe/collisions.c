@@ -1,7 +1,10 @@
-/* Crossings counted by the sweep: totals, and the rate since the row before. */
+/* Contacts of bonds: totals, and the rate since the row before. */
 #include "observe/observer.h"
 
+#include <math.h>
 #include <string.h>
+
+#include "theory/theory.h"
 
 enum { LAST_STEP = 1, LAST_EXECUTED, INTEGERS };
 
@@ -29,18 +32,30 @@ static void collisions_row(struct observer *observer, struct view *view, double 
                            executed,
                            (double)c->negative,
                            ratio(executed, (double)c->possible),
-                           ratio(new, time * view->model->vertices)};
+                           ratio(new, time * view->model->vertices),
+                           observer->constant > 0.0 && time > 0.0 ? new / (time * observer->constant) : NAN,
+                           (double)c->softened,
+                           (double)c->rigid};
   memcpy(row, values, sizeof values);
   observer->integer[LAST_STEP] = (int64_t)view->state->step;
   observer->integer[LAST_EXECUTED] = (int64_t)c->executed;
 }
 
-static const char *const columns[] = {
-    "time", "moves", "possible", "executed", "negative", "executed_per_possible", "rate_per_vertex"};
+static const char *const columns[] = {"time",
+                                      "moves",
+                                      "possible",
+                                      "executed",
+                                      "negative",
+                                      "executed_per_possible",
+                                      "rate_per_vertex",
+                                      "rate_over_theory",
+                                      "softened",
+                                      "rigid"};
 
 const struct observer_type collisions_observer = {
     .column = columns,
     .columns = sizeof columns / sizeof *columns,
     .size = size_collisions,
+    .constant = theory_contact_rate,
     .row = collisions_row,
 };

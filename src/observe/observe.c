@@ -64,6 +64,7 @@ static bool create(struct observers *observers, enum observable which, const str
   o->size = (struct observer_size){.integers = 1};
   if (o->type->size)
     o->type->size(o, model, &o->size);
+  o->constant = o->type->constant ? o->type->constant(model) : 0.0;
   o->real = zeroed(o->size.reals, sizeof *o->real);
   o->integer = zeroed(o->size.integers, sizeof *o->integer);
   o->scratch = zeroed(o->size.scratch, sizeof *o->scratch);

@@ -21,6 +21,7 @@ struct observer {
   const struct observer_type *type;
   uint64_t every, longest_lag; /* of the plan, in steps */
   struct observer_size size;
+  double constant;  /* of the model: what type->constant gave */
   double *real;     /* [size.reals] zero at first */
   int64_t *integer; /* [size.integers] zero at first; [0] is 1 + the last step sampled, 0 if none */
   double *scratch;  /* [size.scratch] undefined between samples */
@@ -46,6 +47,9 @@ struct observer_take {
 struct observer_type {
   /* Adds the memory that the type needs beyond integer[0]; NULL if none. */
   void (*size)(const struct observer *observer, const struct model *model, struct observer_size *size);
+
+  /* A number that the type needs at each sample, and that the model alone decides; NULL if none. */
+  double (*constant)(const struct model *model);
 
   /* A time series: its columns, and the function that fills a row. */
   const char *const *column;

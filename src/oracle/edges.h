@@ -13,7 +13,8 @@ enum { EDGES_PAIRS = 44, EDGES_CHAINS = 10 };
     "box=[4, 5, 3]", "time_step=0.0078125", "steps=1", "seed=1311768467463790320", "solvent.per_cell=2",               \
         "solvent.collision_interval=0.0078125", "fibers.0.name=pair", "fibers.0.count=44", "fibers.0.vertices=2",      \
         "fibers.0.mass=1.5", "fibers.0.bond_length=0", "fibers.0.spring=30", "fibers.1.name=chain",                    \
-        "fibers.1.count=10", "fibers.1.vertices=3", "fibers.1.mass=4", "fibers.1.bond_length=0", "fibers.1.spring=30"  \
+        "fibers.1.count=10", "fibers.1.vertices=3", "fibers.1.mass=4", "fibers.1.bond_length=0", "fibers.1.spring=30", \
+        "crossing.rule=sequential"                                                                                     \
   }
 
 /* Ways to make an index below n of a 64-bit integer r in single precision: from all bits, from the high word, from 24

@@ -1,5 +1,6 @@
 #include "scene/read.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -36,8 +37,13 @@ static bool refuse_value(const struct reading *r, const struct node *node, const
 
 static bool read_whole(const struct reading *r, const struct node *node, uint64_t *value)
 {
-  if (!node_whole(node, value))
-    return refuse_value(r, node, "is not a whole number of 64 bits");
+  double number;
+  char problem[64] = "is not a whole number of 64 bits";
+  if (!node_whole(node, value)) {
+    if (node_number(node, &number) && number >= 0.0 && number < 0x1p53 && floor(number) == number)
+      snprintf(problem, sizeof problem, "is a whole number, but not in digits: write %.0f", number);
+    return refuse_value(r, node, problem);
+  }
   return key_allows_whole(r->key, *value) || refuse_value(r, node, "is out of range");
 }
 
@@ -151,10 +157,37 @@ static bool read_text(const struct reading *r)
 
 static bool read_mapping(const struct reading *r, const struct node *mapping, const struct key_table *table, void *to);
 
+/* "is not a mapping, as {every: 100}": the keys that the section must have, or its first. */
+static void describe_missing_mapping(const struct key_table *table, char *text, size_t size)
+{
+  static const char *const example[] = {
+      [KEY_WHOLE64] = "100",     [KEY_WHOLE32] = "100", [KEY_NUMBER] = "0.5", [KEY_VECTOR] = "[0, 0, 1]",
+      [KEY_CELLS] = "[8, 8, 8]", [KEY_SWITCH] = "true", [KEY_NAME] = "a",     [KEY_TEXT] = "file",
+      [KEY_SECTION] = "{...}",   [KEY_LIST] = "[...]",  [KEY_INCLUDE] = "",
+  };
+  size_t used = (size_t)snprintf(text, size, "is not a mapping, as {"), required = 0;
+  for (size_t k = 0; k < table->count; k++)
+    required += key_is_required(&table->key[k]);
+  const char *between = "";
+  for (size_t k = 0; k < table->count && used < size; k++) {
+    const struct key *key = &table->key[k];
+    if (required ? !key_is_required(key) : k > 0)
+      continue;
+    used += (size_t)snprintf(text + used, size - used, "%s%s: %s", between, key->name,
+                             key->type == KEY_CHOICE ? key->choice[0] : example[key->type]);
+    between = ", ";
+  }
+  if (used < size)
+    snprintf(text + used, size - used, "}");
+}
+
 static bool read_section(const struct reading *r)
 {
-  if (r->node->type != NODE_MAPPING)
-    return refuse_value(r, r->node, "is not a mapping");
+  char problem[256];
+  if (r->node->type != NODE_MAPPING) {
+    describe_missing_mapping(r->key->keys, problem, sizeof problem);
+    return refuse_value(r, r->node, problem);
+  }
   return read_mapping(r, r->node, r->key->keys, r->to);
 }
 

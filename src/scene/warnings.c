@@ -27,20 +27,40 @@ static void warn(struct teller *t, const char *format, ...)
     t->tell(t->context, text);
 }
 
+/* A time step of few digits, at most this one, of which the collision interval is a multiple. */
+static double time_step_below(const struct model *m, double most)
+{
+  const double interval = model_collides(m) ? model_collision_interval(m) : m->time_step;
+  for (uint64_t n = (uint64_t)ceil(interval / most * (1.0 - 1e-9));; n++) {
+    uint64_t rest = n;
+    while (rest % 2 == 0)
+      rest /= 2;
+    while (rest % 5 == 0)
+      rest /= 5;
+    if (rest == 1)
+      return interval / (double)n;
+  }
+}
+
 static void warn_solvent(struct teller *t, const struct model *m)
 {
   const struct solvent_model *s = &m->solvent;
   if (model_has_solvent(m) && model_collision_interval(m) > 0.1 * (1.0 + 1e-9))
-    warn(t, "collision_interval %.6g > 0.1 t0: the mean free path is no liquid's (paper, Sec. IV A)",
+    warn(t,
+         "collision_interval %.6g > 0.1 t0: the mean free path is no liquid's (paper, Sec. IV A); use "
+         "solvent.collision_interval 0.1 "
+         "or less",
          model_collision_interval(m));
   if (s->rule == RULE_SRD && s->rotation_angle < 90.0)
-    warn(t, "rotation_angle %.6g < 90 degrees: weak coupling between fibers and solvent (paper, Sec. IV A)",
+    warn(t,
+         "rotation_angle %.6g < 90 degrees: weak coupling between fibers and solvent (paper, Sec. IV A); use 90 to 170",
          s->rotation_angle);
   if (s->rule == RULE_SRD && s->rotation_angle > 170.0)
-    warn(t, "rotation_angle %.6g is close to 180 degrees, which the paper says to avoid (Sec. IV A)",
+    warn(t, "rotation_angle %.6g is close to 180 degrees, which the paper says to avoid (Sec. IV A); use 90 to 170",
          s->rotation_angle);
   if (!model_is_isothermal(m) && vec3_norm(s->acceleration) > 0.0)
-    warn(t, "the acceleration does work on the solvent, and no thermostat takes the heat away");
+    warn(t, "the acceleration does work on the solvent, and no thermostat takes the heat away; use solvent.thermostat: "
+            "rescale");
 }
 
 /* A flow faster than a tenth of the speed of sound: Padding 2009, Sec. IV B. */
@@ -56,27 +76,45 @@ static void warn_force(struct teller *t, const struct model *m)
   double scale = m->solvent.particles * vec3_norm(m->solvent.acceleration);
   for (uint32_t k = 0; k < m->kinds; k++)
     scale += (double)m->kind[k].count * m->kind[k].vertices * vec3_norm(m->kind[k].force);
-  const struct vec3 net = theory_net_force(m);
+  const struct vec3 net = theory_net_force(m), a = m->solvent.acceleration;
+  const double n = m->solvent.particles;
+  char remedy[160] = "without a solvent, forces have to balance each other";
+  if (n > 0.0)
+    snprintf(remedy, sizeof remedy, "solvent.acceleration: [%.17g, %.17g, %.17g] balances it", a.x - net.x / n,
+             a.y - net.y / n, a.z - net.z / n);
   if (!model_has_phantoms(m) && vec3_norm(net) > 1e-12 * scale) /* a bath takes the momentum up */
     warn(t,
          "a net force of (%.6g, %.6g, %.6g) kT/a0 acts on a periodic system, which accelerates without end by %.3g "
-         "a0/t0^2; balance it with solvent.acceleration",
-         net.x, net.y, net.z, vec3_norm(net) / m->total_mass);
+         "a0/t0^2; %s",
+         net.x, net.y, net.z, vec3_norm(net) / m->total_mass, remedy);
 }
 
-/* A bond that reaches half the shortest edge stops a run. A bond forgets its length in about 1/omega, omega^2 = 2k/M.
- */
+/* Bonds of this kind that are expected to become longer than `limit` in the run. A bond forgets its length in about
+ * 1/omega, omega^2 = 2k/M. */
+static double bonds_beyond(const struct scene *scene, const struct fiber_kind *k, double limit)
+{
+  const double forgets = sqrt(0.5 * k->mass / k->spring);
+  const double samples = 1.0 + (double)scene->steps * scene->model.time_step / forgets;
+  return theory_bond_tail(k, limit) * k->count * fiber_bonds(k) * samples;
+}
+
+#define MOST_LONG_BONDS 1e-3
+
+/* A bond that reaches half the shortest edge stops a run. */
 static void warn_long_bonds(struct teller *t, const struct scene *scene, const struct fiber_kind *k)
 {
   const struct model *m = &scene->model;
-  const double limit = 0.5 * box_shortest_edge(&m->box), forgets = sqrt(0.5 * k->mass / k->spring);
-  const double samples = 1.0 + (double)scene->steps * m->time_step / forgets;
-  const double expected = theory_bond_tail(k, limit) * k->count * fiber_bonds(k) * samples;
-  if (expected > 1e-3)
-    warn(t,
-         "fibers '%s': about %.2g bonds are expected to reach half the shortest edge, %.6g a0, which stops the run; "
-         "use stiffer springs or a larger box",
-         k->name, expected, limit);
+  const double limit = 0.5 * box_shortest_edge(&m->box);
+  const double expected = bonds_beyond(scene, k, limit);
+  if (!(expected > MOST_LONG_BONDS))
+    return;
+  double edge = 2.0 * limit;
+  while (bonds_beyond(scene, k, 0.5 * edge) > MOST_LONG_BONDS && edge < LATTICE_MAX_EDGE)
+    edge = ceil(edge + 1.0);
+  warn(t,
+       "fibers '%s': about %.2g bonds are expected to reach half the shortest edge, %.6g a0, which stops the run; "
+       "use edges of %.6g or more, or stiffer springs",
+       k->name, expected, limit, edge);
 }
 
 static void warn_kind(struct teller *t, const struct scene *scene, const struct fiber_kind *k)
@@ -84,17 +122,21 @@ static void warn_kind(struct teller *t, const struct scene *scene, const struct 
   const struct model *m = &scene->model;
   const double gamma = m->solvent.per_cell, phase = fiber_highest_frequency(k) * m->time_step;
   if (model_collides(m) && (k->mass > 2.0 * gamma || k->mass < 0.5 * gamma))
-    warn(t, "fibers '%s': mass %.6g is far from gamma = %.6g, the mass of the solvent in a cell (paper, Sec. IV A)",
-         k->name, k->mass, gamma);
+    warn(t,
+         "fibers '%s': mass %.6g is far from gamma = %.6g, the mass of the solvent in a cell (paper, Sec. IV A); use "
+         "%.6g to %.6g",
+         k->name, k->mass, gamma, 0.5 * gamma, 2.0 * gamma);
   if (k->vertices < 2)
     return;
   if (k->bond_length > 1.0)
-    warn(t, "fibers '%s': bond_length %.6g > 1 a0: the solvent passes between vertices (paper, Sec. IV A)", k->name,
-         k->bond_length);
+    warn(t,
+         "fibers '%s': bond_length %.6g > 1 a0: the solvent passes between vertices (paper, Sec. IV A); use 1 or less",
+         k->name, k->bond_length);
   if (phase > 0.5)
     warn(t,
-         "fibers '%s': omega dt = %.3g: stable below 2, but its energies are off by %.0f %%; use a smaller time_step",
-         k->name, phase, 25.0 * phase * phase);
+         "fibers '%s': omega dt = %.3g: stable below 2, but its energies are off by %.0f %%; with time_step %.6g they "
+         "are off by 2 %% at most",
+         k->name, phase, 25.0 * phase * phase, time_step_below(m, m->time_step * sqrt(0.02 / 0.25) / phase));
   if (model_has_solvent(m) && m->scheme == SCHEME_PAPER && !model_is_isothermal(m))
     warn(t,
          "fibers '%s': the order 'paper' heats springs at every collision (docs/accuracy.md), and there is no "
@@ -102,6 +144,8 @@ static void warn_kind(struct teller *t, const struct scene *scene, const struct 
          k->name);
   warn_long_bonds(t, scene, k);
 }
+
+#define MOST_RISE 0.01
 
 /* Heat left by rejected moves, as measured once: about 0.7 (omega dt)^2 kT per executed collision, of which there are
  * 1.15 times as many as theory_collision_rate says (docs/accuracy.md). */
@@ -118,11 +162,13 @@ static void warn_heating(struct teller *t, const struct scene *scene)
       m->crossing.rule == CROSSING_SEQUENTIAL ? 0.7 * phase * phase : 0.09 * phase * phase * phase * phase;
   const double heat = each * theory_executed_rate(m) * time;
   const double rise = heat / (1.5 * m->solvent.particles + 3.0 * m->vertices);
-  if (rise > 0.01)
+  const double order = m->crossing.rule == CROSSING_SEQUENTIAL ? 2.0 : 4.0; /* of the heat, in the time step */
+  if (rise > MOST_RISE)
     warn(t,
-         "contacts of bonds are expected to heat the system by some %.0f %% during the run (docs/accuracy.md); use a "
-         "thermostat or a smaller time_step",
-         100.0 * rise);
+         "contacts of bonds are expected to heat the system by some %.0f %% during the run (docs/accuracy.md); use %s"
+         "a thermostat, or time_step %.6g for less than 1 %%",
+         100.0 * rise, m->crossing.rule == CROSSING_SEQUENTIAL ? "crossing.rule: event-driven, " : "",
+         time_step_below(m, m->time_step * pow(MOST_RISE / rise, 1.0 / order)));
 }
 
 static void warn_observables(struct teller *t, const struct scene *scene)
@@ -131,8 +177,8 @@ static void warn_observables(struct teller *t, const struct scene *scene)
   if (plan->longest_lag > scene->steps / 4)
     warn(t,
          "observe.dynamics.longest_lag %" PRIu64 " is more than a quarter of the run's %" PRIu64
-         " steps: the longest lags will have few samples",
-         plan->longest_lag, scene->steps);
+         " steps: the longest lags will have few samples; use steps: %" PRIu64 " or more",
+         plan->longest_lag, scene->steps, 4 * plan->longest_lag);
   for (int i = 0; i < OBSERVABLES; i++)
     if (plan->every[i] > scene->steps)
       warn(t, "observe.%s: sampled every %" PRIu64 " steps, but the run has %" PRIu64, observable_names[i],

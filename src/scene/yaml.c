@@ -24,6 +24,14 @@ static yaml_mark_t mark_of_offset(const char *text, size_t offset)
   return mark;
 }
 
+/* Whether this line begins with a tab, or with spaces and a tab. */
+static bool tab_indents(const char *text, size_t line)
+{
+  while (line > 0 && *text)
+    line -= *text++ == '\n';
+  return text[strspn(text, " ")] == '\t';
+}
+
 static bool refuse_syntax(const yaml_parser_t *parser, const char *path, const char *text, struct message *message)
 {
   bool unreadable = parser->error == YAML_READER_ERROR;
@@ -32,8 +40,9 @@ static bool refuse_syntax(const yaml_parser_t *parser, const char *path, const c
   char context[128] = "";
   if (parser->context && !unreadable)
     snprintf(context, sizeof context, "%s (begun in line %zu), ", parser->context, parser->context_mark.line + 1);
-  return message_at(message, path, mark.line + 1, mark.column + 1, "not YAML: %s%s; a scene is a YAML mapping in UTF-8",
-                    context, problem);
+  return message_at(message, path, mark.line + 1, mark.column + 1, "not YAML: %s%s; %s", context, problem,
+                    tab_indents(text, mark.line) ? "a tab indents this line: YAML indents by spaces"
+                                                 : "a scene is a YAML mapping in UTF-8");
 }
 
 /* What a scene may not use of YAML in this event; NULL if all is well. */

@@ -245,6 +245,7 @@ static const struct key crossing_keys[] = {
          "when they touch.",
      .type = KEY_CHOICE,
      .absent = "sequential",
+     .fallback = "event-driven",
      .choice = crossing_words,
      .first = CROSSING_SEQUENTIAL,
      .offset = IN_MODEL(crossing.rule)},

@@ -310,12 +310,17 @@ double theory_self_collision_rate(const struct fiber_kind *kind)
   return kind->count * rate;
 }
 
-double theory_executed_rate(const struct model *model)
+double theory_contact_rate(const struct model *model)
 {
   double rate = theory_collision_rate(model);
   for (uint32_t k = 0; k < model->kinds; k++)
     rate += theory_self_collision_rate(&model->kind[k]);
-  return model->crossing.rule == CROSSING_SEQUENTIAL ? 1.15 * rate : rate;
+  return rate;
+}
+
+double theory_executed_rate(const struct model *model)
+{
+  return (model->crossing.rule == CROSSING_SEQUENTIAL ? 1.15 : 1.0) * theory_contact_rate(model);
 }
 
 struct vec3 theory_net_force(const struct model *model)

@@ -134,9 +134,12 @@ double theory_line_density(const struct model *model);
  * That is of bonds of different fibers, or far apart along a fiber. */
 double theory_collision_rate(const struct model *model);
 
-/* Contacts that the model's crossing rule is expected to answer, per t0 in the whole box: those of the ideal gas, and
- * of fibers with themselves. A rule that moves one vertex after the other finds some with dP < 0 and as many to undo
- * them: 1.15 times as many in all (docs/accuracy.md). */
+/* Contacts per t0 in the whole box by kinetic theory: those of the ideal gas, and of fibers with themselves. */
+double theory_contact_rate(const struct model *model);
+
+/* Contacts that the model's crossing rule is expected to answer. event-driven: theory_contact_rate. A rule that moves
+ * one vertex after the other finds some with dP < 0 and as many to undo them: 1.15 times as many in all
+ * (docs/accuracy.md). */
 double theory_executed_rate(const struct model *model);
 
 /* Collisions per t0 of bonds of the same fiber, for all fibers of a kind without bending stiffness: exact for springs

@@ -125,12 +125,19 @@ sed 's/bending: 4/bending: 5/' "$scene" >"$dir/other.yaml"
 gives 2 'is of another scene' run "$dir/other.yaml" --out "$run" --resume --steps 23
 sed 's/conserved: {every: 1}/statics: {every: 1}/' "$scene" >"$dir/other.yaml"
 gives 2 'no memory of the observable' run "$dir/other.yaml" --out "$run" --resume --steps 23
-"$uncross" run "$scene" --out "$dir/stopped" --steps 100000000 >"$dir/out" 2>"$dir/err" &
+"$uncross" run "$scene" --out "$dir/stop'd here" --set "box=[4, 4, 5]" --steps 100000000 >"$dir/out" 2>"$dir/err" &
 sleep 0.4
 kill -INT $!
 wait $!
-[ $? = 5 ] && grep -q '^go on with --resume$' "$dir/out"
+[ $? = 5 ] && grep -q '^go on with:  uncross run ' "$dir/out"
 ok $? "SIGINT: exit code 5, and what to do next"
+next=$(sed -n 's/^go on with:  uncross //p' "$dir/out")
+eval "timeout -s INT 0.4 \"$uncross\" $next" >"$dir/out" 2>&1
+[ $? = 124 ] && grep -q '^go on with:  uncross run ' "$dir/out"
+ok $? "what is printed is the whole command, as a shell takes it"
+"$uncross" info "$dir/stop'd here" >"$dir/out" && grep -q 'run.json: record of a run' "$dir/out" && grep -q 'checkpoint.h5: checkpoint of' "$dir/out"
+ok $? "info of a run's folder"
+gives 2 'a folder without run.json' info "$dir"
 
 # Nothing can be written: root may write anywhere, but not where no file can change.
 mkdir "$dir/fixed"

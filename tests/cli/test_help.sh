@@ -64,6 +64,7 @@ seed: 1
 solvent: {per_cell: 3, collision_interval: 0.02}
 fibers:
   - {name: a, count: 2, vertices: 4, mass: 5, bond_length: 0.5, spring: 100, bending: 4}
+crossing: {rule: sequential}
 trajectory: {every: 2, velocities: true}
 YAML
 sed 's/per_cell: 3/per_cell: 5/; s/count: 2/count: 3/' "$dir/scene.yaml" >"$dir/other.yaml"

@@ -19,6 +19,7 @@ steps: 20
 solvent: {per_cell: 3, collision_interval: 0.02}
 fibers:
   - {name: NAME, count: 2, vertices: 4, mass: 5, bond_length: 0.5, spring: 100, bending: 4}
+crossing: {rule: sequential}  # a scene that leaves out no changed default is kept as it is
 observe: {statics: {every: 1}}
 trajectory: {every: 10, velocities: true}
 """

@@ -21,6 +21,7 @@ seed: 1
 solvent: {per_cell: 3, collision_interval: 0.02}
 fibers:
   - {name: a, count: 2, vertices: 5, mass: 5, bond_length: 0.5, spring: 100, bending: 4}
+crossing: {rule: sequential}
 trajectory: {every: 5, velocities: true, solvent: true}
 observe:
   conserved: {every: 5}

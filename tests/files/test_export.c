@@ -52,15 +52,15 @@ static const char *next_line(const char *line)
 struct row {
   char symbol[8];
   double x[3], v[3];
-  int id, next;
+  int id, next, fiber, place;
 };
 
 static struct row parse_row(const char *line)
 {
   struct row r;
-  assert_int_equal(sscanf(line, "%7s %lf %lf %lf %lf %lf %lf %d %d\n", r.symbol, &r.x[0], &r.x[1], &r.x[2], &r.v[0],
-                          &r.v[1], &r.v[2], &r.id, &r.next),
-                   9);
+  assert_int_equal(sscanf(line, "%7s %lf %lf %lf %lf %lf %lf %d %d %d %d\n", r.symbol, &r.x[0], &r.x[1], &r.x[2],
+                          &r.v[0], &r.v[1], &r.v[2], &r.id, &r.next, &r.fiber, &r.place),
+                   11);
   return r;
 }
 
@@ -72,6 +72,8 @@ static void assert_row_is_vertex(const struct row *row, const struct test_run *r
   assert_int_equal(row->id, v);
   assert_int_equal(row->next, r->model.next[v]);
   assert_string_equal(row->symbol, v < 40 ? "C" : "N"); /* 5 fibers of 8, then 3 rings of 6 */
+  assert_int_equal(row->fiber, v < 40 ? v / 8 : 5 + (v - 40) / 6);
+  assert_int_equal(row->place, v < 40 ? v % 8 : (v - 40) % 6);
 }
 
 static void numbers_survive(void **unused)
@@ -89,8 +91,9 @@ static void numbers_survive(void **unused)
     const char *line = text;
     assert_int_equal(atoi(line), r.state.vertices + r.state.solvent.n);
     line = next_line(line);
-    const char comment[] = "Lattice=\"6 0 0 0 5 0 0 0 7\" Properties=species:S:1:pos:R:3:velo:R:3:id:I:1:next:I:1 "
-                           "pbc=\"T T T\" Step=7 Time=0.070000000000000007 kinds=\"C:kind1 N:kind2 H:solvent\"\n";
+    const char comment[] =
+        "Lattice=\"6 0 0 0 5 0 0 0 7\" Properties=species:S:1:pos:R:3:velo:R:3:id:I:1:next:I:1:fiber:I:1:place:I:1 "
+        "pbc=\"T T T\" Step=7 Time=0.070000000000000007 kinds=\"C:kind1 N:kind2 H:solvent\"\n";
     assert_memory_equal(line, comment, strlen(comment));
     for (uint32_t v = 0; v < r.state.vertices; v++) {
       struct row row = parse_row(line = next_line(line));
@@ -102,6 +105,7 @@ static void numbers_survive(void **unused)
       struct row row = parse_row(line = next_line(line));
       struct vec3 x = point_in_a0(fluid_position_now(&r.state, &r.model, slot[id]));
       assert_true(row.x[0] == x.x && row.x[1] == x.y && row.x[2] == x.z && row.next == -1 && row.symbol[0] == 'H');
+      assert_true(row.fiber == -1 && row.place == -1);
     }
     assert_string_equal(next_line(line), "");
     free(slot);

@@ -111,10 +111,15 @@ static void everything_reads_back(void **unused)
   assert_int_equal(json_integer_value(json_object_get(counts, "possible")), 30);
   assert_int_equal(json_integer_value(json_object_get(counts, "executed")), 20);
   assert_int_equal(json_integer_value(json_object_get(counts, "negative")), 10);
+  assert_int_equal(json_integer_value(json_object_get(counts, "softened")), 5);
+  assert_int_equal(json_integer_value(json_object_get(counts, "rigid")), 2);
+  const json_t *warnings = json_object_get(root, "warnings");
+  assert_int_equal(json_array_size(warnings), 1);
+  assert_int_equal(strncmp(json_string_value(json_array_get(warnings, 0)), "2 contacts found no impulse", 27), 0);
   static const char *const build[] = {"commit", "compiler", "flags"};
   for (int k = 0; k < 3; k++)
     assert_true(json_string_length(json_object_get(root, build[k])) > 0);
-  assert_int_equal(json_object_size(root), 19);
+  assert_int_equal(json_object_size(root), 20);
   json_decref(root);
   forget(&scene, &r);
   remove_folder(folder);

@@ -338,8 +338,12 @@ class RunFolder(unittest.TestCase):
 
     def test_signals_end_a_run_with_a_checkpoint(self):
         for number in signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1, signal.SIGXCPU:
-            run = self.start(SCENE, "run.json", *FOR_EVER, *(["--resume"] if self.run_folder.exists() else []))
-            time.sleep(0.1)
+            # nohup, under which all of this may run, ignores SIGHUP
+            run = self.start(SCENE, "run.json", *FOR_EVER, *(["--resume"] if self.run_folder.exists() else []),
+                             before=lambda: signal.signal(signal.SIGHUP, signal.SIG_DFL))
+            deadline = time.monotonic() + 60
+            while self.record()["status"] != "running" and time.monotonic() < deadline:
+                time.sleep(0.01)
             run.send_signal(number)
             self.assertEqual(run.wait(60), 5, number)
             self.assertEqual(self.record()["status"], "interrupted")

@@ -3,6 +3,7 @@
 
 #include "mpc/grid.h"
 #include "observe/conserved.h"
+#include "theory/theory.h"
 
 /* A small suspension with a body force (net force zero), a flow, and a thermostat-free solvent. */
 static struct model suspension(void)
@@ -355,7 +356,7 @@ static void repeated_and_refused_samples(void **unused)
   test_end(&r);
 }
 
-/* Rates are per vertex and t0 since the row before: 192 vertices; 0.1 t0 between rows. */
+/* Rates are per vertex and t0, and over theory, since the row before: 192 vertices; 0.1 t0 between rows. */
 static void collision_rates(void **unused)
 {
   (void)unused;
@@ -364,18 +365,24 @@ static void collision_rates(void **unused)
   struct puppet p = puppet_start(m, OBSERVE_COLLISIONS, 5, 0);
   struct kept_rows *rows = calloc(1, sizeof *rows);
   const struct observe_sink sink = {keep_row, rows};
-  const struct collision_counts counts[] = {{0}, {960, 20, 16, 2, 0, 0}, {1920, 80, 40, 3, 0, 0}};
+  const struct collision_counts counts[] = {{0}, {960, 20, 16, 2, 5, 0}, {1920, 80, 40, 3, 6, 1}};
   for (int k = 0; k < 3; k++) {
     p.state.step = 5 * (uint64_t)k;
     p.state.counts = counts[k];
     assert_true(observers_sample(p.observers, &p.model, &p.state, &sink));
   }
-  const double expected[3][8] = {{OBSERVE_COLLISIONS, 0, 0, 0, 0, 0, 0, 0},
-                                 {OBSERVE_COLLISIONS, 0.1, 960, 20, 16, 2, 0.8, 16 / 192.0 / 0.1},
-                                 {OBSERVE_COLLISIONS, 0.2, 1920, 80, 40, 3, 0.5, 24 / 192.0 / 0.1}};
-  assert_int_equal(rows->count, 24);
-  for (int k = 0; k < 24; k++)
-    assert_close(rows->value[k], expected[k / 8][k % 8], 1e-12);
+  enum { COLUMNS = 11 };
+  const double theory = theory_collision_rate(&p.model); /* test_theory.c */
+  const double expected[3][COLUMNS] = {
+      {OBSERVE_COLLISIONS, 0, 0, 0, 0, 0, 0, 0, NAN, 0, 0},
+      {OBSERVE_COLLISIONS, 0.1, 960, 20, 16, 2, 0.8, 16 / 192.0 / 0.1, 16 / (0.1 * theory), 5, 0},
+      {OBSERVE_COLLISIONS, 0.2, 1920, 80, 40, 3, 0.5, 24 / 192.0 / 0.1, 24 / (0.1 * theory), 6, 1}};
+  assert_int_equal(rows->count, 3 * COLUMNS);
+  for (int k = 0; k < 3 * COLUMNS; k++)
+    if (isnan(expected[k / COLUMNS][k % COLUMNS]))
+      assert_true(isnan(rows->value[k]));
+    else
+      assert_close(rows->value[k], expected[k / COLUMNS][k % COLUMNS], 1e-12);
   free(rows);
   puppet_end(&p);
 }

@@ -151,7 +151,8 @@ class OracleTest(unittest.TestCase):
         scene = self.dir / "fast.yaml"
         scene.write_text("box: [2, 2, 2]\ntime_step: 0.03\nsteps: 4\nseed: 3\n"
                          "solvent: {per_cell: 3, collision_interval: 0.06}\n"
-                         "fibers: [{name: chain, count: 3, vertices: 4, mass: 1, bond_length: 0.3, spring: 100, bending: 1}]\n")
+                         "fibers: [{name: chain, count: 3, vertices: 4, mass: 1, bond_length: 0.3, spring: 100, bending: 1}]\n"
+                         "crossing: {rule: sequential}\n")
         self.assertEqual(run("emit", scene, "-o", self.dir / "fast.h5"), (0, ""))
         port = Port(run("dump", self.dir / "fast.h5")[1])
         times = [port.places["long_sweep", step][0, "in.time.dt"] / 0.03 for step in (2, 4)]
@@ -527,7 +528,7 @@ class OracleTest(unittest.TestCase):
             scene, pack = self.dir / "rule.yaml", self.dir / "rule.h5"
             scene.write_text("box: [4, 4, 4]\ntime_step: 0.02\nsteps: 4\nsolvent: {per_cell: 5, collision_interval: 0.02}\n"
                              "fibers: [{name: a, count: 2, vertices: 3, mass: 5, bond_length: 0.5, spring: 100}]\n"
-                             f"crossing: {{{rule}}}\n")
+                             f"crossing: {{rule: sequential, {rule}}}\n")
             status, said = run("emit", scene, "-o", pack)
             self.assertEqual((status, pack.exists()), (2, False))
             self.assertIn("by the paper's rule", said)

@@ -27,8 +27,9 @@ static const struct key with_young[] = {
 };
 static const struct key_table young_keys = {"", NULL, 2, with_young};
 
+/* It gives each key whose default has changed. */
 static const char text[] = "# a comment\nbox: [4, 4, 4]\ntime_step: 0.01\nsteps: 1\n"
-                           "solvent: {per_cell: 3, collision_interval: 0.01}\n";
+                           "solvent: {per_cell: 3, collision_interval: 0.01}\ncrossing: {rule: sequential}\n";
 
 static struct scene read_by(const struct key_table *keys, const char *said, enum key_missing missing,
                             const uint64_t *fingerprint)

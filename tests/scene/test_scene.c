@@ -91,11 +91,13 @@ static const struct bad bad_scenes[] = {
     {2, "time_step: 0x1p-7", 2, 12, "is not a finite number"},
     {2, "time_step: 1_0", 2, 12, "is not a finite number"},
     {2, "time_step: 0.01.0", 2, 12, "is not a finite number"},
-    {3, "steps: 1e4", 3, 8, "steps: '1e4' is not a whole number"},
+    {3, "steps: 1e4", 3, 8, "steps: '1e4' is a whole number, but not in digits: write 10000"},
+    {21, "  statics: true", 21, 12, "observe.statics: 'true' is not a mapping, as {every: 100}; allowed: a mapping"},
+    {21, "\tstatics: {every: 10}", 21, 1, "a tab indents this line: YAML indents by spaces"},
     {3, "steps: 100.5", 3, 8, "is not a whole number"},
-    {3, "steps: 0100", 3, 8, "is not a whole number"},
+    {3, "steps: 0100", 3, 8, "write 100;"},
     {19, "  forbidden: yes", 19, 14, "crossing.forbidden: 'yes' is neither true nor false; allowed: true | false"},
-    {18, "checkpoint: 5\ncrossing:", 18, 13, "checkpoint: '5' is not a mapping"},
+    {18, "checkpoint: 5\ncrossing:", 18, 13, "checkpoint: '5' is not a mapping, as {seconds: 0.5}; allowed: a mapping"},
     {5, "order: kicksplit", 5, 8, "order: 'kicksplit' is no choice here, did you mean 'kick-split'?; allowed: paper |"},
     {5, "order: 3", 5, 8, "is no choice here; allowed: paper | kick-split | drift-split"},
     {17, "    start: straight\n    places: none", 18, 13, "fibers.places: 'none' is not a list"},
@@ -489,24 +491,26 @@ static void fingerprints(void **unused)
 }
 
 /* As the program of commit af01d53 printed them (`uncross check`). A checkpoint resumes only with its fingerprint, so
- * they stay, whatever keys are added. */
+ * they stay, whatever keys are added. What the scenes have changed since is set back. */
 static void fingerprints_stay(void **unused)
 {
   (void)unused;
+  static const char *const paper[] = {"crossing.rule=sequential", "solvent.thermostat=rescale"};
   const struct {
     const char *path;
     uint64_t fingerprint;
+    size_t set; /* of `paper` */
   } rows[] = {
-      {"scenes/chains.yaml", 0xe900124ac639260b},         {"scenes/dense-crossable.yaml", 0x93d2febcb2ceecb8},
-      {"scenes/dense.yaml", 0xd42870592b905d33},          {"scenes/rings.yaml", 0x60247d7e46679b27},
-      {"scenes/semidilute.yaml", 0x4fa44d7e597c2d40},     {"scenes/solvent.yaml", 0xfb58264a361f4f30},
-      {"reference-data/coarse.yaml", 0x42df1dd8c37a4632}, {"reference-data/dense.yaml", 0x5efa7dc91f00a88c},
-      {"reference-data/mixed.yaml", 0xd4aa0ded08982ac7},
+      {"scenes/chains.yaml", 0xe900124ac639260b, 0},         {"scenes/dense-crossable.yaml", 0x93d2febcb2ceecb8, 2},
+      {"scenes/dense.yaml", 0xd42870592b905d33, 2},          {"scenes/rings.yaml", 0x60247d7e46679b27, 1},
+      {"scenes/semidilute.yaml", 0x4fa44d7e597c2d40, 0},     {"scenes/solvent.yaml", 0xfb58264a361f4f30, 1},
+      {"reference-data/coarse.yaml", 0x42df1dd8c37a4632, 0}, {"reference-data/dense.yaml", 0x5efa7dc91f00a88c, 0},
+      {"reference-data/mixed.yaml", 0xd4aa0ded08982ac7, 0},
   };
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     struct scene s;
     struct message message;
-    if (!scene_read(rows[i].path, &s, &message))
+    if (!scene_read_set(rows[i].path, &(struct scene_settings){rows[i].set, paper}, &s, &message))
       fail_msg("%s", message.text);
     if (s.fingerprint != rows[i].fingerprint)
       fail_msg("%s has the fingerprint %016lx", rows[i].path, (unsigned long)s.fingerprint);
@@ -574,7 +578,7 @@ static void settings_are_as_the_file(void **unused)
   free(twice);
   scene_free(&again);
   scene_free(&s);
-  assert_true(read_set(NULL, 0, &s, &message));
+  assert_true(scene_read_set("scenes/semidilute.yaml", &(struct scene_settings){0, NULL}, &s, &message));
   assert_non_null(strstr(s.text, "# ")); /* the file's own text, comments and all */
   assert_null(strstr(s.text, "effective scene"));
   scene_free(&s);
@@ -646,6 +650,7 @@ static void settings_make_a_scene(void **unused)
       "fibers.0.spring=100",
       "fibers.0.bending=10",
       "observe.dynamics.every=10",
+      "crossing.rule=sequential",
   };
   const struct scene_settings settings = {sizeof options / sizeof *options, options};
   struct scene s, file = read_with(0, ""), again;
@@ -783,6 +788,47 @@ static void warnings(void **unused)
   scene_free(&bath);
 }
 
+/* The number that a warning names ends it: `change` puts it into the scene. */
+static void remedies(void **unused)
+{
+  (void)unused;
+  const struct {
+    size_t line;
+    const char *text, *warns, *number; /* what comes before the number */
+    size_t to;
+    const char *change;
+  } rows[] = {
+      {17, "    force: [0.3, 0.1, 1]", "a net force", "solvent.acceleration: ", 9,
+       "  acceleration: %s\n  thermostat: rescale"},
+      {16, "    spring: 1.5e4", "omega dt =", "with time_step ", 2, "time_step: %s"},
+      {16, "    spring: 0.3\n    start: equilibrium", "half the shortest edge", "use edges of ", 1,
+       "box: [%s, 99, 99]"},
+      {21, "  dynamics: {every: 10, longest_lag: 50}", "longest_lag", "use steps: ", 3, "steps: %s"},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    char all[8192] = "", number[128], line[256], text[4096];
+    struct scene s = read_with(rows[i].line, rows[i].text);
+    scene_warnings(&s, collect, all);
+    scene_free(&s);
+    assert_non_null(strstr(all, rows[i].warns));
+    const char *at = strstr(all, rows[i].number) + strlen(rows[i].number);
+    snprintf(number, sizeof number, "%.*s", (int)(*at == '[' ? strcspn(at, "]") + 1 : strcspn(at, " \n")), at);
+    snprintf(line, sizeof line, rows[i].change, number);
+    size_t used = 0;
+    for (size_t k = 0; k < GOOD_LINES; k++)
+      used += (size_t)snprintf(text + used, sizeof text - used, "%s\n",
+                               k + 1 == rows[i].to     ? line
+                               : k + 1 == rows[i].line ? rows[i].text
+                                                       : good[k]);
+    s = read_text(text);
+    all[0] = '\0';
+    scene_warnings(&s, collect, all);
+    if (strstr(all, rows[i].warns))
+      fail_msg("with '%s': %s", line, all);
+    scene_free(&s);
+  }
+}
+
 /* Rejected moves heat: at cL^3 = 1000 by a quarter in 300 t0, at 100 by 1e-5 per t0 (DESIGN's prototype). */
 static void warning_of_heat(void **unused)
 {
@@ -801,6 +847,11 @@ static void warning_of_heat(void **unused)
   assert_non_null(at);
   percent = strtod(at + 8, NULL);
   assert_close(percent, 24.0, 6.0);
+  s.model.time_step = strtod(strstr(all, "time_step ") + 10, NULL);
+  s.steps = (uint64_t)(300.0 / s.model.time_step);
+  all[0] = '\0';
+  scene_warnings(&s, collect, all);
+  assert_null(strstr(all, "by some "));
   s.model.solvent.thermostat = THERMOSTAT_RESCALE;
   assert_int_equal(scene_warnings(&s, NULL, NULL), 0);
   scene_free(&s);
@@ -1028,6 +1079,7 @@ int main(void)
       cmocka_unit_test(settings_make_a_scene),
       cmocka_unit_test(many_kinds),
       cmocka_unit_test(warnings),
+      cmocka_unit_test(remedies),
       cmocka_unit_test(warning_of_heat),
       cmocka_unit_test(shipped_scenes_are_sound),
       cmocka_unit_test(report),

@@ -59,7 +59,10 @@ def speed(rows, out):
     left.set(xlabel="edge of the box, a0", ylabel="ns per particle and collision", title="solvent alone")
     left.set_ylim(bottom=0)
     left.legend(fontsize=7)
-    points(middle, select(rows, r"speed/cL\^3 = (\d+) over solvent"), color=BLACK)
+    for rule, fill in (("", BLACK), (", event-driven", "white")):
+        points(middle, select(rows, rf"speed/cL\^3 = (\d+){rule} over solvent"), color=BLACK, markerfacecolor=fill,
+               label=rule[2:] or "sequential")
+    middle.legend(fontsize=8)
     middle.plot((100, 1000), (1.5, 8), "v", color=GRAY, label="wanted at most")
     middle.set(xlabel="cL³", ylabel="time over the solvent's", title="fibers of 64 vertices, dt 0.01")
     logarithmic_y(middle)
@@ -106,8 +109,10 @@ def precision(rows, out):
             if abs(v - 1.0) > 0.003:
                 left.annotate(f"{step:g}", (cost[step], abs(v - 1.0)), (4, 3), textcoords="offset points", fontsize=7)
         points(middle, select(rows, f"precision/g\\(10 t0\\), {order}, dt ([0-9.]+)"), color=color, label=order)
-        dt, value, error = select(rows, f"precision/drift, refused, {order}, dt ([0-9.]+)")
-        points(right, (dt, [abs(v) for v in value], error), color=color, label=order)
+        for rule, fill in (("", color), (", event-driven", "white")):
+            dt, value, error = select(rows, f"precision/drift, refused, {order}{rule}, dt ([0-9.]+)")
+            if dt:
+                points(right, (dt, [abs(v) for v in value], error), color=color, label=order + rule, markerfacecolor=fill)
     left.axhline(0.01, color=GRAY, linestyle="--")
     left.set(xlabel="CPU s per t0, cL³ = 100; beside the points: dt", ylabel="|error| of the stiffest mode",
              yscale="log", ylim=(3e-4, 0.5))

@@ -5,6 +5,7 @@ BOXES = (16, 24, 32, 48, 64, 100)
 DENSITIES = (30, 100, 300, 1000)       # c L^3 = fibers in 32^3 cells
 SWEEP_BOXES = (16, 24, 32, 48)         # at c L^3 = 300
 SWEEP_DENSITIES = (30, 100, 300, 1000, 2000)
+RULES = {"": 1, ", event-driven": 2}   # how rows name a crossing rule -> `crossing` of the scene; none: sequential
 
 
 def blocks(store, rounds, seconds, scenes):
@@ -41,12 +42,13 @@ def solvent(store, effort):
 def suspensions(store, effort):
     """Fibers of 64 vertices, dt 0.01, dt_c 0.02, in 32^3 cells: time of a step over the time of the solvent alone."""
     rounds, alone = max(3, round(7 * effort)), "cells=32"
-    scenes = {fibers: f"cells=32,fibers={fibers}" for fibers in DENSITIES}
+    scenes = {f"{fibers}{rule}": f"cells=32,fibers={fibers},crossing={on}" for rule, on in RULES.items()
+              for fibers in DENSITIES}
     times, _ = blocks(store, rounds, 0.4, [alone, *scenes.values()])
     rows = [common.row("speed/solvent 32^3, dt 0.01", "ms per step", [1e3 * t for t in times[alone]])]
-    for fibers, scene in scenes.items():
-        rows.append(common.row(f"speed/cL^3 = {fibers}", "ms per step", [1e3 * t for t in times[scene]]))
-        rows.append(rows_of_ratio(f"speed/cL^3 = {fibers} over solvent", times, scene, alone))
+    for name, scene in scenes.items():
+        rows.append(common.row(f"speed/cL^3 = {name}", "ms per step", [1e3 * t for t in times[scene]]))
+        rows.append(rows_of_ratio(f"speed/cL^3 = {name} over solvent", times, scene, alone))
     return rows
 
 
@@ -56,12 +58,13 @@ def detection(store, effort):
 
     def measure(pairs):
         scenes = [f"per_cell=0,cells={edge},fibers={fibers},crossing={on}"
-                  for edge, fibers in pairs.values() for on in (0, 1)]
+                  for edge, fibers in pairs.values() for on in (0, *RULES.values())]
         times, _ = blocks(store, rounds, 0.15, scenes)
         rows = []
-        for (name, (_, fibers)), off, on in zip(pairs.items(), scenes[::2], scenes[1::2]):
-            nanoseconds = [1e9 * (a - b) / (64 * fibers) for a, b in zip(times[on], times[off])]
-            rows.append(common.row(f"detection/{name}", "ns per vertex and step", nanoseconds))
+        for (name, (_, fibers)), off, *forbidden in zip(pairs.items(), scenes[::3], scenes[1::3], scenes[2::3]):
+            for rule, on in zip(RULES, forbidden):
+                nanoseconds = [1e9 * (a - b) / (64 * fibers) for a, b in zip(times[on], times[off])]
+                rows.append(common.row(f"detection/{name}{rule}", "ns per vertex and step", nanoseconds))
             rows.append(common.row(f"phantoms/{name}", "ns per vertex and step",
                                    [1e9 * t / 64 / fibers for t in times[off]]))
         return rows
