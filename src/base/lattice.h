@@ -99,6 +99,15 @@ static inline int64_t lattice_image(int64_t x, int64_t edge)
   return q * edge > x ? q - 1 : q;
 }
 
+/* The same without a division, with inverse = 1.0 / edge at hand. For |x| < 2^62 and images below 2^40: the product is
+ * then less than 1 from the quotient, so its whole part is the image, or next to it. */
+static inline int64_t lattice_image_by(int64_t x, int64_t edge, double inverse)
+{
+  int64_t q = (int64_t)((double)x * inverse);
+  q -= q * edge > x;
+  return q + (x - q * edge >= edge);
+}
+
 /* a - b in a0, exact below 8192 a0. */
 static inline struct vec3 point_difference(struct point a, struct point b)
 {

@@ -11,33 +11,42 @@ enum { PAIRS = 256, FIRST_CANDIDATES = 1024 }; /* pairs worked on at a time; roo
 
 /* --- paths ------------------------------------------------------------------------------------------------------- */
 
-/* A distance in the units of a path, rounded up. Distances beyond 64 a0 are cut to 64: no limit is more than 32 a0
- * away. So between two drifts the sum of two paths grows by far less than 2^31 units (2048 a0), where the sign of a
- * difference modulo 2^32 would be wrong. */
-static inline uint32_t path_units(double way)
+/* By how much a bond's path grows in a drift in which its ends go so far. Ways beyond 64 a0 are cut to 64: no limit is
+ * more than 32 a0 away. So between two drifts the sum of two paths grows by far less than 2^31 units (2048 a0), where
+ * the sign of a difference modulo 2^32 would be wrong. */
+static inline uint32_t way(uint32_t one, uint32_t other)
 {
-  return (uint32_t)(int32_t)(capsule_least(way, 64.0) * 0x1p20) + 1;
+  const uint32_t longest = 64u << CANDIDATES_UNITS, further = one > other ? one : other;
+  return further < longest ? further : longest;
 }
 
-/* Lengthens all paths by this drift. */
-static void lengthen_paths(const struct model *model, struct contact *contact)
+/* By how much bond j's path has grown in this drift. */
+static inline uint32_t way_of(const struct model *model, const struct contact *contact, uint32_t j)
 {
-  const double *restrict range = contact->range;
-  const int32_t *restrict next = model->next;
-  struct bond_clock *restrict clock = contact->neighbors.clock;
-  for (uint32_t j = 0; j < model->vertices; j++)
-    clock[j].path += path_units(capsule_most(range[j], range[next[j] < 0 ? (int32_t)j : next[j]]));
+  return way(contact->range[j], contact->range[model->next[j] < 0 ? (int32_t)j : model->next[j]]);
 }
 
-void candidates_widen(const struct model *model, struct contact *contact, uint32_t i, double range)
+void candidates_lengthen(const struct model *model, struct contact *contact)
+{
+  const uint32_t *restrict range = contact->range;
+  uint32_t *restrict path = contact->neighbors.path;
+  for (uint32_t f = 0; f < model->fibers; f++) {
+    const uint32_t last = model->fiber_first[f + 1] - 1;
+    for (uint32_t j = model->fiber_first[f]; j < last; j++)
+      path[j] += way(range[j], range[j + 1]);
+    path[last] += way_of(model, contact, last);
+  }
+}
+
+void candidates_widen(const struct model *model, struct contact *contact, uint32_t i, uint32_t range)
 {
   uint32_t bond[2];
   const int bonds = model_bonds_of(model, i, bond);
   for (int b = 0; b < bonds; b++)
-    contact->neighbors.clock[bond[b]].path -= path_units(candidates_range(model, contact, bond[b]));
+    contact->neighbors.path[bond[b]] -= way_of(model, contact, bond[b]);
   contact->range[i] = range;
   for (int b = 0; b < bonds; b++)
-    contact->neighbors.clock[bond[b]].path += path_units(candidates_range(model, contact, bond[b]));
+    contact->neighbors.path[bond[b]] += way_of(model, contact, bond[b]);
 }
 
 /* --- pairs that are due ------------------------------------------------------------------------------------------ */
@@ -49,10 +58,10 @@ static uint32_t list_due(const struct neighbors *nb, uint32_t first, uint32_t n,
     return 0;
   const uint32_t *restrict bond = &nb->pairs.bond[first], *restrict other = &nb->pairs.other[first],
                            *restrict limit = &nb->pairs.limit[first];
-  const struct bond_clock *restrict clock = nb->clock;
+  const uint32_t *restrict path = nb->path;
   uint32_t left[PAIRS], count = 0;
   for (uint32_t k = 0; k < n; k++)
-    left[k] = limit[k] - clock[bond[k]].path - clock[other[k]].path;
+    left[k] = limit[k] - path[bond[k]] - path[other[k]];
   for (uint32_t k = 0; k < n; k++) {
     due[count] = first + k;
     count += left[k] >> 31; /* less than 0 */
@@ -73,15 +82,14 @@ static void fill_column(const struct state *state, const struct model *model, co
                         uint32_t pair, struct columns *s)
 {
   const struct pair_list *list = &contact->neighbors.pairs;
-  const struct bond_clock *clock = contact->neighbors.clock;
+  const uint32_t *path = contact->neighbors.path;
   const uint32_t k = s->count++, i = list->bond[pair], j = (uint32_t)model->next[i], l = list->other[pair],
                  m = (uint32_t)model->next[l];
   const struct point *at = state->position;
   const struct vec3 p = point_difference(at[j], at[i]), q = point_difference(at[m], at[l]),
-                    w = point_difference(point_image(at[l], list->image[pair].k, &model->box), at[i]);
+                    w = point_difference(point_image(at[l], list->detail[pair].image.k, &model->box), at[i]);
   s->pair[k] = pair;
-  s->path[k] = clock[i].path - path_units(candidates_range(model, contact, i)) + clock[l].path -
-               path_units(candidates_range(model, contact, l));
+  s->path[k] = path[i] - way_of(model, contact, i) + path[l] - way_of(model, contact, l);
   s->p[0][k] = p.x, s->p[1][k] = p.y, s->p[2][k] = p.z;
   s->q[0][k] = q.x, s->q[1][k] = q.y, s->q[2][k] = q.z;
   s->w[0][k] = w.x, s->w[1][k] = w.y, s->w[2][k] = w.z;
@@ -94,7 +102,7 @@ static void limit_columns(const struct columns *restrict s, uint32_t *restrict l
     const struct vec3 p = {s->p[0][k], s->p[1][k], s->p[2][k]}, q = {s->q[0][k], s->q[1][k], s->q[2][k]},
                       w = {s->w[0][k], s->w[1][k], s->w[2][k]};
     const double apart = capsule_most(capsule_distance(p, q, w) - CAPSULE_SLACK, 0.0);
-    limit[k] = s->path[k] + (uint32_t)(int32_t)(capsule_least(apart, 32.0) * 0x1p20);
+    limit[k] = s->path[k] + (uint32_t)(int32_t)(capsule_least(apart, 32.0) * (1 << CANDIDATES_UNITS));
   }
 }
 
@@ -146,9 +154,9 @@ static bool settle_columns(const struct state *state, struct contact *contact, c
   for (uint32_t k = 0; k < s->count; k++) {
     const uint32_t pair = s->pair[k], i = list->bond[pair], l = list->other[pair];
     list->limit[pair] = limit[k];
-    if ((limit[k] - contact->neighbors.clock[i].path - contact->neighbors.clock[l].path) >> 31 == 0)
+    if ((limit[k] - contact->neighbors.path[i] - contact->neighbors.path[l]) >> 31 == 0)
       continue;
-    const int32_t *image = list->image[pair].k;
+    const int32_t *image = list->detail[pair].image.k;
     const struct neighbor n = {(int32_t)l, {image[0], image[1], image[2]}};
     if (!candidates_add(state, contact, i, &n, fault))
       return false;
@@ -164,9 +172,10 @@ static void fetch_due(const struct state *state, const struct model *model, cons
     __builtin_prefetch(&state->position[bonds[b]]);
     __builtin_prefetch(&state->position[bonds[b] + 1].z);
     __builtin_prefetch(&contact->range[bonds[b]]);
+    __builtin_prefetch(&contact->neighbors.generation[bonds[b]]);
     __builtin_prefetch(&model->next[bonds[b]]);
   }
-  __builtin_prefetch(&contact->neighbors.pairs.image[pair]);
+  __builtin_prefetch(&contact->neighbors.pairs.detail[pair]);
 }
 
 /* Measures one of the pairs that are due. A pair that is out of date is dropped. The last pair of the list takes its
@@ -198,7 +207,6 @@ bool candidates_find(const struct state *state, const struct model *model, struc
   uint32_t due[2][PAIRS] = {{0}}, count[2], now = 0;
   struct columns s;
   forget_candidates(&contact->candidates);
-  lengthen_paths(model, contact);
   count[0] = next_due(state, model, contact, 0, due[0]);
   for (uint32_t first = 0; first < contact->neighbors.pairs.count; first += PAIRS, now = !now) {
     count[!now] = next_due(state, model, contact, first + PAIRS, due[!now]);

@@ -13,8 +13,20 @@
 #include "contact/capsule.h"
 #include "contact/contact.h"
 
-/* Adds to all paths the distance that the bonds' ends may go in this drift (contact->range, a0). Fills
- * contact->candidates: all pairs that may touch. False, with the fault recorded, if memory is short. */
+#define CANDIDATES_UNITS 20 /* paths and ranges are in units of 2^-20 a0 */
+
+/* A distance below 2000 a0 in these units, rounded up. */
+static inline uint32_t candidates_units(double distance)
+{
+  return (uint32_t)(int32_t)(distance * (1 << CANDIDATES_UNITS)) + 1;
+}
+
+/* Adds to all paths the distance that the bonds' ends may go in this drift (contact->range). Once in a drift, before
+ * candidates_find. */
+void candidates_lengthen(const struct model *model, struct contact *contact);
+
+/* Fills contact->candidates: all pairs that may touch in this drift. False, with the fault recorded, if memory is
+ * short. */
 bool candidates_find(const struct state *state, const struct model *model, struct contact *contact,
                      struct fault *fault);
 
@@ -24,13 +36,14 @@ bool candidates_find(const struct state *state, const struct model *model, struc
 bool candidates_add(const struct state *state, struct contact *contact, uint32_t bond, const struct neighbor *n,
                     struct fault *fault);
 
-/* Raises the range of vertex i to `range`, a0, and the paths of its bonds accordingly. */
-void candidates_widen(const struct model *model, struct contact *contact, uint32_t i, double range);
+/* Raises the range of vertex i to `range`, and the paths of its bonds accordingly. */
+void candidates_widen(const struct model *model, struct contact *contact, uint32_t i, uint32_t range);
 
 /* Bound on the distance that the ends of a bond go in this drift, a0. */
 static inline double candidates_range(const struct model *model, const struct contact *contact, uint32_t bond)
 {
-  return capsule_most(contact->range[bond], contact->range[model->next[bond]]);
+  const uint32_t mine = contact->range[bond], its = contact->range[model->next[bond]];
+  return (double)(mine > its ? mine : its) / (1 << CANDIDATES_UNITS);
 }
 
 #endif

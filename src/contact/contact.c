@@ -10,7 +10,7 @@
 
 /* --- scratch ----------------------------------------------------------------------------------------------------- */
 
-enum { NEEDS = 9 };
+enum { NEEDS = 8 };
 
 /* The single list of the scratch that the drifts of a model use. Lists that grow are allocated where they grow. */
 static void list_needs(struct contact *c, const struct model *m, bool everything, struct memory_need need[NEEDS])
@@ -26,7 +26,6 @@ static void list_needs(struct contact *c, const struct model *m, bool everything
       {(void **)&c->queue, in_turns, sizeof *c->queue},
       {(void **)&c->waits, in_turns, sizeof *c->waits},
       {(void **)&c->candidates.first, noncrossing, sizeof *c->candidates.first},
-      {(void **)&c->flights.rate, at_once, sizeof *c->flights.rate},
       {(void **)&c->flights.version, at_once, sizeof *c->flights.version},
       {(void **)&c->flights.bend_of, at_once, sizeof *c->flights.bend_of},
   };
@@ -49,12 +48,13 @@ static void free_neighbors(struct neighbors *nb)
       free(nb->entries[c].at);
   free(nb->entries);
   free(nb->reference);
-  free(nb->clock);
+  free(nb->path);
+  free(nb->generation);
+  free(nb->hold);
   free(nb->pairs.bond);
   free(nb->pairs.other);
   free(nb->pairs.limit);
-  free(nb->pairs.generation);
-  free(nb->pairs.image);
+  free(nb->pairs.detail);
 }
 
 void contact_free(struct contact *c)
@@ -76,7 +76,7 @@ uint64_t contact_bytes(const struct model *m)
   struct contact c = {0};
   struct memory_need need[NEEDS];
   list_needs(&c, m, false, need);
-  const size_t per_bond = sizeof(struct reference_position) + sizeof(struct bond_clock) + sizeof(struct grid_row);
+  const size_t per_bond = sizeof(struct reference_position) + 3 * sizeof(uint32_t) + sizeof(struct grid_row);
   return memory_bytes(need, NEEDS) + (crossing_rule_of(m)->forbids ? (uint64_t)m->bonds * per_bond : 0);
 }
 

@@ -52,14 +52,10 @@ struct pair_list {
   uint32_t count, room;
   uint32_t *bond, *other;
   uint32_t *limit; /* as path, below, modulo 2^32 */
-  uint32_t
-      *generation; /* sum of both bonds' when the pair was found; if the sum is larger now, the pair is out of date */
-  struct image *image; /* of the other bond */
-};
-
-struct bond_clock {
-  uint32_t path;       /* bound on the way that its ends have gone, in units of 2^-20 a0, modulo 2^32 */
-  uint32_t generation; /* number of its searches for partners */
+  struct pair_detail {
+    struct image image;  /* of the other bond */
+    uint32_t generation; /* sum of both bonds' when the pair was found; if it is larger now, the pair is out of date */
+  } * detail;            /* read only where the pair is due */
 };
 
 /* Entries that a row of the grid holds itself; a longer row is allocated elsewhere. */
@@ -67,10 +63,9 @@ enum { NEIGHBORS_FIRST_ENTRIES = 15 };
 
 /* A bond that touches a search cell. */
 struct grid_entry {
+  uint64_t key; /* the part of the box around the bond that lies in the cell: contact/neighbors.c */
   int32_t bond;
-  int8_t image[3];         /* of the bond that lies there; 0: the image of its first end's reference position */
-  uint8_t starts;          /* bit k: along axis k, the lower face of the box around it is not below the cell */
-  uint8_t low[3], high[3]; /* faces of the box, in 2^cell_shift lattice units from the lower corner of the cell */
+  int8_t image[3]; /* of the bond that lies there; 0: the image of its first end's reference position */
 };
 
 /* Bonds that touch a search cell. The first few stand in the row itself: four cache lines in all. */
@@ -83,11 +78,17 @@ struct grid_row {
 struct neighbors {
   bool built;
   struct reference_position *reference; /* [vertices] */
-  struct bond_clock *clock;             /* [vertices] of bond j; unused where vertex j has no bond j */
+  uint32_t *path; /* [vertices] bound on the way that both ends of bond j have gone, in units of 2^-20 a0, modulo 2^32.
+                     Where vertex j has no bond j, its own way. */
+  uint32_t *generation; /* [vertices] number of searches of bond j for partners */
+  uint32_t *hold;       /* [vertices] vertex j stays within its skin until path[j] exceeds this: contact/takeoff.c */
   struct pair_list pairs;
   int32_t cells[3];     /* of the search grid */
   int64_t cell_edge[3]; /* lattice units */
-  int cell_shift[3];    /* 2^cell_shift is about 1/256 of cell_edge */
+  int cell_shift[3];    /* 2^cell_shift is about 1/128 of cell_edge */
+  struct {
+    double cells, cell_edge, box_edge;
+  } inverse[3]; /* of the number of cells, and of edges in lattice units */
   uint32_t cell_count;
   struct grid_row *entries; /* [cell_count] */
   struct point moved;       /* displacement of the frame of the moves since reference positions were first taken */
@@ -98,6 +99,7 @@ struct neighbors {
 struct bend_in_path {
   uint32_t vertex;
   struct point start; /* its place at the start of the drift */
+  struct point rate;  /* its displacement in a tick, lattice units */
   uint32_t contacts;  /* number of contacts of its bonds that were answered in this drift */
   uint32_t cluster;   /* of a rigid cluster: the number of its first member in the list, + 1; else 0 */
 };
@@ -107,12 +109,13 @@ struct bend_list {
   struct bend_in_path *at;
 };
 
-/* The flights of a drift in which all vertices move at once. At tick T, vertex i is at position[i] + T rate[i]. */
+/* The flights of a drift in which all vertices move at once. At tick T, vertex i is at position[i] + T rate. The rate
+ * follows from its velocity, or is in `bends`. */
 struct flights {
-  struct point *rate; /* [vertices] displacement in a tick, lattice units */
-  uint32_t *version;  /* [vertices] of bond j: number of changes of the flights of its ends */
-  uint32_t *bend_of;  /* [vertices] 1 + its place in `bends`, or 0 */
-  struct bend_list bends;
+  uint32_t *version;      /* [vertices] of bond j: number of changes of the flights of its ends */
+  uint32_t *bend_of;      /* [vertices] 1 + its place in `bends`, or 0 */
+  double time;            /* t0: of the drift */
+  struct bend_list bends; /* kept until the next drift begins, for tests */
   struct event_queue queue;
 };
 
@@ -125,7 +128,7 @@ struct contact {
   struct flights flights; /* rules that move all at once, else NULL */
   uint32_t *order;        /* [vertices] in which vertices move in this drift */
   uint32_t *rank;  /* [vertices] order[rank[i]] = i. Order, rank, queue, waits: rules that move in turns, else NULL */
-  double *range;   /* [vertices] a0: bound on the distance that a vertex goes in this drift. Range and
+  uint32_t *range; /* [vertices] bound on the distance that a vertex goes in this drift, units of paths. Range and
                       candidates.first: rules that forbid crossing, else NULL */
   uint32_t *queue; /* [vertices] vertices that wait for their turns, in this order; `queued` of them */
   uint32_t queued;

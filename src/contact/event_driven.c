@@ -25,9 +25,9 @@
 #include "contact/impulse.h"
 #include "contact/neighbors.h"
 #include "contact/rule.h"
+#include "contact/takeoff.h"
 
 enum {
-  BLOCK = 64,          /* vertices worked on at a time */
   MOST_CONTACTS = 1000 /* of one vertex in one drift; beyond it, its cluster moves rigidly */
 };
 
@@ -48,9 +48,20 @@ static bool no_memory(const struct event_drift *d)
 
 /* --- flights ------------------------------------------------------------------------------------------------------ */
 
+/* The flight of a vertex that has not bent follows from its velocity. */
+static struct point straight_rate(const struct event_drift *d, uint32_t i)
+{
+  return takeoff_rate(d->state->velocity[i], model_frame_velocity(d->model), d->dt);
+}
+
+static struct point rate_of(const struct event_drift *d, uint32_t i)
+{
+  return takeoff_rate_now(d->state, d->model, &d->contact->flights, i);
+}
+
 static struct point place_of(const struct event_drift *d, uint32_t i, int32_t tick)
 {
-  return flight_place(d->state->position[i], d->contact->flights.rate[i], tick);
+  return flight_place(d->state->position[i], rate_of(d, i), tick);
 }
 
 /* The place of a vertex at the start of the drift. */
@@ -60,85 +71,36 @@ static struct point start_of(const struct event_drift *d, uint32_t i)
   return f->bend_of[i] ? f->bends.at[f->bend_of[i] - 1].start : d->state->position[i];
 }
 
-struct renewal {
-  uint32_t count, vertex[NEIGHBORS_AT_ONCE];
-  struct point from[NEIGHBORS_AT_ONCE], to[NEIGHBORS_AT_ONCE];
-};
-
-static bool renew(const struct event_drift *d, struct renewal *r)
-{
-  const bool ok =
-      r->count == 0 || neighbors_renew(d->state, d->model, d->contact, r->count, r->vertex, r->from, r->to, d->fault);
-  r->count = 0;
-  return ok;
-}
-
-/* Flights and ranges of n vertices. late[k]: vertex first + k is about to leave the skin of its reference position. */
-static void take_off(const struct event_drift *d, uint32_t first, uint32_t n, const struct vec3 *restrict displacement,
-                     int64_t *restrict late)
-{
-  const struct point *restrict p = &d->state->position[first];
-  const struct reference_position *restrict reference = &d->contact->neighbors.reference[first];
-  struct point *restrict rate = &d->contact->flights.rate[first];
-  double *restrict range = &d->contact->range[first];
-  for (uint32_t k = 0; k < n; k++) {
-    const struct point r = flight_rate(displacement[k]), origin = {0, 0, 0}, by = flight_place(origin, r, FLIGHT_TICKS);
-    const struct vec3 off = point_difference(point_plus(p[k], by), reference[k].at);
-    rate[k] = r;
-    range[k] = vec3_norm(point_in_a0(by));
-    late[k] = !(vec3_dot(off, off) <= reference[k].skin * reference[k].skin);
-  }
-}
-
-static bool begin_flights(const struct event_drift *d)
-{
-  const struct state *state = d->state;
-  struct vec3 displacement[BLOCK];
-  int64_t late[BLOCK];
-  struct renewal r = {.count = 0};
-  for (uint32_t first = 0; first < state->vertices; first += BLOCK) {
-    const uint32_t n = state->vertices - first < BLOCK ? state->vertices - first : BLOCK;
-    if (!drift_displacements(state, d->model, d->dt, first, n, displacement, d->fault))
-      return false;
-    take_off(d, first, n, displacement, late);
-    for (uint32_t k = 0; k < n; k++) {
-      if (!late[k])
-        continue;
-      r.vertex[r.count] = first + k;
-      r.from[r.count] = state->position[first + k];
-      r.to[r.count++] = place_of(d, first + k, FLIGHT_TICKS);
-      if (r.count == NEIGHBORS_AT_ONCE && !renew(d, &r))
-        return false;
-    }
-  }
-  return renew(d, &r);
-}
-
+/* All vertices fly straight to the end; those whose flights have bent are put where such a flight ends where theirs
+ * does. */
 static void land(const struct event_drift *d)
 {
   struct point *restrict p = d->state->position;
-  const struct point *restrict rate = d->contact->flights.rate;
-  for (uint32_t i = 0; i < d->state->vertices; i++)
-    p[i] = flight_place(p[i], rate[i], FLIGHT_TICKS);
+  const struct vec3 *restrict v = d->state->velocity, frame = model_frame_velocity(d->model);
   struct flights *f = &d->contact->flights;
-  for (uint32_t k = 0; k < f->bends.count; k++)
-    f->bend_of[f->bends.at[k].vertex] = 0;
-  f->bends.count = 0;
+  for (uint32_t k = 0; k < f->bends.count; k++) {
+    const uint32_t i = f->bends.at[k].vertex;
+    p[i] = flight_place(p[i], point_minus(f->bends.at[k].rate, straight_rate(d, i)), FLIGHT_TICKS);
+    f->bend_of[i] = 0;
+  }
+  for (uint32_t i = 0; i < d->state->vertices; i++)
+    p[i] = flight_place(p[i], takeoff_rate(v[i], frame, d->dt), FLIGHT_TICKS);
 }
 
 /* --- contacts to come --------------------------------------------------------------------------------------------- */
 
 static struct flight_pair pair_of(const struct event_drift *d, uint32_t bond, uint32_t other, const int32_t image[3])
 {
-  const struct point *at = d->state->position, *rate = d->contact->flights.rate;
+  const struct point *at = d->state->position;
   const uint32_t j = (uint32_t)d->model->next[bond], m = (uint32_t)d->model->next[other];
+  const struct point bond_rate = rate_of(d, bond), other_rate = rate_of(d, other);
   return (struct flight_pair){
       .p = point_minus(at[j], at[bond]),
       .q = point_minus(at[m], at[other]),
       .w = point_minus(point_image(at[other], image, &d->model->box), at[bond]),
-      .p_rate = point_minus(rate[j], rate[bond]),
-      .q_rate = point_minus(rate[m], rate[other]),
-      .w_rate = point_minus(rate[other], rate[bond]),
+      .p_rate = point_minus(rate_of(d, j), bond_rate),
+      .q_rate = point_minus(rate_of(d, m), other_rate),
+      .w_rate = point_minus(other_rate, bond_rate),
   };
 }
 
@@ -174,6 +136,8 @@ static bool search_all(const struct event_drift *d)
 
 /* --- paths bend --------------------------------------------------------------------------------------------------- */
 
+/* The bend of a vertex; a new one if its flight has been straight. Its velocity must not have changed by then. NULL if
+ * memory is short. */
 static struct bend_in_path *bend_of(const struct event_drift *d, uint32_t i)
 {
   struct flights *f = &d->contact->flights;
@@ -182,7 +146,7 @@ static struct bend_in_path *bend_of(const struct event_drift *d, uint32_t i)
   struct bend_list *list = &f->bends;
   if (list->count == list->room && !memory_double((void **)&list->at, &list->room, 64, sizeof *list->at))
     return NULL;
-  list->at[list->count] = (struct bend_in_path){i, d->state->position[i], 0, 0};
+  list->at[list->count] = (struct bend_in_path){i, d->state->position[i], straight_rate(d, i), 0, 0};
   f->bend_of[i] = ++list->count;
   return &list->at[list->count - 1];
 }
@@ -231,25 +195,23 @@ static bool check_range(const struct event_drift *d, uint32_t i, struct point st
 static bool steer(const struct event_drift *d, uint32_t i, struct point rate, int32_t tick)
 {
   struct contact *c = d->contact;
-  const struct bend_in_path *bend = bend_of(d, i);
+  struct bend_in_path *bend = bend_of(d, i);
   if (!bend)
     return no_memory(d);
   const struct point start = bend->start, here = place_of(d, i, tick);
-  c->flights.rate[i] = rate;
+  bend->rate = rate;
   d->state->position[i] = flight_place(here, rate, -tick);
   const struct point end = place_of(d, i, FLIGHT_TICKS);
   if (!check_range(d, i, start, end))
     return false;
   /* A straight piece stays within its range of the start if both its ends do. */
-  const double range = vec3_norm(point_difference(end, start)) + LATTICE_UNIT;
+  const uint32_t range = candidates_units(vec3_norm(point_difference(end, start)) + LATTICE_UNIT);
   const bool wider = range > c->range[i], leaves = !neighbors_hold(&c->neighbors, i, end);
   if (wider)
     candidates_widen(d->model, c, i, range);
-  if (leaves) {
-    struct renewal r = {1, {i}, {here}, {end}};
-    if (!renew(d, &r))
-      return false;
-  }
+  if (leaves && !neighbors_renew(d->state, d->model, c, 1, &i, &here, &end, d->fault))
+    return false;
+  c->neighbors.hold[i] = c->neighbors.path[i]; /* to be looked at in the next drift */
   return !(wider || leaves) || look_around(d, i);
 }
 
@@ -378,11 +340,11 @@ static bool make_rigid(const struct event_drift *d, const struct meeting *m)
       return no_memory(d);
     if (bend->cluster && !cluster) {
       cluster = bend->cluster;
-      sum = flight_place((struct point){0, 0, 0}, d->contact->flights.rate[m->vertex[k]], 4);
+      sum = flight_place((struct point){0, 0, 0}, bend->rate, 4);
     }
   }
   for (int k = 0; k < 4 && !cluster; k++)
-    sum = point_plus(sum, d->contact->flights.rate[m->vertex[k]]);
+    sum = point_plus(sum, rate_of(d, m->vertex[k]));
   const struct point rate = {sum.x / 4, sum.y / 4, sum.z / 4};
   cluster = cluster ? cluster : d->contact->flights.bend_of[m->vertex[0]];
   for (int k = 0; k < 4; k++) {
@@ -467,6 +429,9 @@ static bool answer(const struct event_drift *d, const struct event *e)
     const struct neighbor other = {(int32_t)e->other, {e->image[0], e->image[1], e->image[2]}};
     return search_pair(d, e->bond, &other, e->tick + 1);
   }
+  for (int k = 0; k < 4; k++) /* before velocities change */
+    if (!bend_of(d, m.vertex[k]))
+      return no_memory(d);
   if (!may_exchange(d, &m) || !exchange(d, &m))
     return make_rigid(d, &m);
   note(d, &m);
@@ -478,8 +443,10 @@ static bool drift_event_driven(struct state *state, const struct model *model, s
 {
   (void)step;
   const struct event_drift d = {state, model, contact, dt, (double)drift * dt - 0.5 * model->time_step, log, fault};
-  if ((!contact->neighbors.built && !neighbors_build(state, model, contact, fault)) || !begin_flights(&d) ||
-      !candidates_find(state, model, contact, fault) || !search_all(&d))
+  contact->flights.time = dt;
+  contact->flights.bends.count = 0;
+  if ((!contact->neighbors.built && !neighbors_build(state, model, contact, fault)) ||
+      !take_off(state, model, contact, dt, fault) || !candidates_find(state, model, contact, fault) || !search_all(&d))
     return false;
   struct event e;
   while (event_queue_pop(&contact->flights.queue, &e))

@@ -80,10 +80,11 @@ static struct capsule_box box_of(const struct neighbors *nb, const struct model 
 }
 
 /* The image of the box in which a point lies. */
-static struct image image_of(struct point p, const struct box *box)
+static inline struct image image_of(const struct neighbors *nb, struct point p, const struct box *box)
 {
-  return (struct image){{(int32_t)lattice_image(p.x, box->edge[0]), (int32_t)lattice_image(p.y, box->edge[1]),
-                         (int32_t)lattice_image(p.z, box->edge[2])}};
+  return (struct image){{(int32_t)lattice_image_by(p.x, box->edge[0], nb->inverse[0].box_edge),
+                         (int32_t)lattice_image_by(p.y, box->edge[1], nb->inverse[1].box_edge),
+                         (int32_t)lattice_image_by(p.z, box->edge[2], nb->inverse[2].box_edge)}};
 }
 
 /* A walk along one axis through the search cells that an interval touches. */
@@ -95,7 +96,8 @@ struct walk {
 /* The walk begins in the cell of `low`. Images are counted from `home`. */
 static struct walk walk_from(int64_t low, int64_t high, const struct neighbors *nb, int axis, int32_t home)
 {
-  const int64_t edge = nb->cell_edge[axis], at = lattice_image(low, edge), image = lattice_image(at, nb->cells[axis]);
+  const int64_t edge = nb->cell_edge[axis], at = lattice_image_by(low, edge, nb->inverse[axis].cell_edge),
+                image = lattice_image_by(at, nb->cells[axis], nb->inverse[axis].cells);
   return (struct walk){low - at * edge, high - at * edge, (int32_t)(at - image * nb->cells[axis]),
                        (int32_t)image - home};
 }
@@ -112,15 +114,44 @@ static bool walk_on(struct walk *w, const struct neighbors *nb, int axis)
   return true;
 }
 
-/* Fills one axis of an entry: the part of the interval that lies in the cell, in about 1/256 of its edge, rounded down.
- * The rounding is safe: intervals that overlap in the cell still overlap. */
-static void note_axis(struct grid_entry *e, const struct walk *w, const struct neighbors *nb, int axis)
+/* --- keys -------------------------------------------------------------------------------------------------------- */
+
+/* The part of a box that lies in a cell, in one integer. Along axis k, the faces are at `low` and `high`, in about
+ * 1/128 of the cell's edge, rounded down. The rounding is safe: intervals that overlap in the cell still overlap. Byte
+ * k of the key is low, byte 3 + k is 127 - high; bit 48 + k says that the box begins below the cell. */
+enum { FACE_MOST = 127, BEGINS_BELOW = 48 };
+
+static inline uint64_t key_of_axis(const struct walk *w, const struct neighbors *nb, int axis)
 {
-  e->image[axis] = (int8_t)w->image;
-  e->low[axis] = w->low < 0 ? 0 : (uint8_t)(w->low >> nb->cell_shift[axis]);
-  e->high[axis] = w->high < nb->cell_edge[axis] ? (uint8_t)(w->high >> nb->cell_shift[axis]) : UINT8_MAX;
-  e->starts = (uint8_t)((e->starts & ~(1 << axis)) | (w->low >= 0) << axis);
+  const uint64_t low = w->low < 0 ? 0 : (uint64_t)(w->low >> nb->cell_shift[axis]);
+  const uint64_t high = w->high < nb->cell_edge[axis] ? (uint64_t)(w->high >> nb->cell_shift[axis]) : FACE_MOST;
+  return low << 8 * axis | (FACE_MOST - high) << 8 * (axis + 3) | (uint64_t)(w->low < 0) << (BEGINS_BELOW + axis);
 }
+
+/* What a key is compared with, made of the key of one box: high in bytes 0 to 2, 127 - low in bytes 3 to 5. The highest
+ * bit of each byte is set. below: the other box must not begin below the cell along the axes of these bits. */
+struct probe {
+  uint64_t faces, below;
+};
+
+#define EACH_BYTE 0x0101010101010101u
+
+static inline struct probe probe_of(uint64_t key)
+{
+  const uint64_t swapped = (key & 0xffffff) << 24 | (key >> 24 & 0xffffff);
+  return (struct probe){EACH_BYTE * 0xff - swapped, key & (uint64_t)7 << BEGINS_BELOW};
+}
+
+/* True if the boxes of two entries of one cell overlap, and the lower corner of the overlap lies in this cell: so a
+ * pair that overlaps in several cells is taken once. Along every axis one of the two boxes begins in the cell; each
+ * face `low` is at most the other's `high`, that is, no byte of the key is greater than that of the probe. In the
+ * difference the highest bit of a byte stays set if its byte is not greater; no byte borrows from the next. */
+static inline bool overlap(struct probe mine, uint64_t its)
+{
+  return ((~(mine.faces - its) & EACH_BYTE * 0x80) | (mine.below & its)) == 0;
+}
+
+/* --- visits to cells --------------------------------------------------------------------------------------------- */
 
 /* Pairs of bonds whose boxes overlap, before the distance is tested. image: of the other bond, counted as in
  * grid_entry. near: if not NULL, the other bonds are listed there; if NULL, pairs whose capsules are not apart enter
@@ -142,18 +173,21 @@ static inline bool visit_cells(struct neighbors *nb, const struct model *model, 
                                visit *what, struct search *found)
 {
   struct grid_entry e = {.bond = (int32_t)bond};
-  const struct image home = image_of(nb->reference[bond].at, &model->box);
+  const struct image home = image_of(nb, nb->reference[bond].at, &model->box);
   struct walk z = walk_from(box.low.z, box.high.z, nb, 2, home.k[2]);
   const struct walk y_start = walk_from(box.low.y, box.high.y, nb, 1, home.k[1]),
                     x_start = walk_from(box.low.x, box.high.x, nb, 0, home.k[0]);
   do {
     struct walk y = y_start;
-    note_axis(&e, &z, nb, 2);
+    const uint64_t key_z = key_of_axis(&z, nb, 2);
+    e.image[2] = (int8_t)z.image;
     do {
       struct walk x = x_start;
-      note_axis(&e, &y, nb, 1);
+      const uint64_t key_yz = key_z | key_of_axis(&y, nb, 1);
+      e.image[1] = (int8_t)y.image;
       do {
-        note_axis(&e, &x, nb, 0);
+        e.key = key_yz | key_of_axis(&x, nb, 0);
+        e.image[0] = (int8_t)x.image;
         if (!what(nb, model, (uint32_t)((z.cell * nb->cells[1] + y.cell) * nb->cells[0] + x.cell), &e, found))
           return false;
       } while (walk_on(&x, nb, 0));
@@ -180,23 +214,18 @@ static bool share_vertex(const struct model *model, uint32_t a, uint32_t b)
   return a == b || model->next[a] == (int32_t)b || model->next[b] == (int32_t)a;
 }
 
-/* True if the boxes of two entries of one cell overlap in this cell. */
-static inline bool overlap(const struct grid_entry *a, const struct grid_entry *b)
-{
-  return (a->low[0] <= b->high[0]) & (b->low[0] <= a->high[0]) & (a->low[1] <= b->high[1]) & (b->low[1] <= a->high[1]) &
-         (a->low[2] <= b->high[2]) & (b->low[2] <= a->high[2]);
-}
-
 /* Empties the list of overlaps: into `near` or the pair list, see struct search. */
 static bool settle(struct neighbors *nb, const struct model *model, struct search *found)
 {
+  struct image home = {{0, 0, 0}};
   for (uint32_t k = 0; k < found->count; k++) {
     const struct overlap *c = &found->at[k];
+    const struct point mine_at = nb->reference[c->bond].at;
+    if (k == 0 || c->bond != c[-1].bond)
+      home = image_of(nb, mine_at, &model->box);
     if (share_vertex(model, c->bond, c->other))
       continue;
-    const struct point mine_at = nb->reference[c->bond].at;
-    const struct image home = image_of(mine_at, &model->box),
-                       its_home = image_of(nb->reference[c->other].at, &model->box);
+    const struct image its_home = image_of(nb, nb->reference[c->other].at, &model->box);
     struct neighbor n = {.bond = (int32_t)c->other};
     for (int axis = 0; axis < 3; axis++)
       n.image[axis] = home.k[axis] - its_home.k[axis] + c->image[axis];
@@ -215,15 +244,15 @@ static bool settle(struct neighbors *nb, const struct model *model, struct searc
   return true;
 }
 
-/* Collects the bonds of a cell whose boxes overlap with this one's. If two boxes overlap in several cells, the pair is
- * taken only in the cell with the lower corner of the overlap: along every axis, one of the two boxes begins there. */
+/* Collects the bonds of a cell whose boxes overlap with this one's. */
 static bool look_into_cell(struct neighbors *nb, const struct model *model, uint32_t cell,
                            const struct grid_entry *mine, struct search *found)
 {
   const struct grid_row *row = &nb->entries[cell];
+  const struct probe probe = probe_of(mine->key);
   for (uint32_t k = 0; k < row->count; k++) {
     const struct grid_entry *e = &row->at[k];
-    if (!overlap(mine, e) || (mine->starts | e->starts) != 7)
+    if (!overlap(probe, e->key))
       continue;
     if (found->count == OVERLAPS && !settle(nb, model, found))
       return false;
@@ -289,10 +318,12 @@ bool neighbors_renew(const struct state *state, const struct model *model, struc
     visit_cells(nb, model, bond[k], box_of(nb, model, bond[k]), fetch_cell, NULL);
   for (uint32_t k = 0; k < bonds; k++) {
     visit_cells(nb, model, bond[k], box_of(nb, model, bond[k]), leave_cell, NULL);
-    nb->clock[bond[k]].generation++;
+    nb->generation[bond[k]]++;
   }
-  for (uint32_t k = 0; k < n; k++)
+  for (uint32_t k = 0; k < n; k++) {
     nb->reference[vertex[k]] = reference_of_move(nb, from[k], to[k]);
+    nb->hold[vertex[k]] = nb->path[vertex[k]];
+  }
   nb->renewed += n;
   return enter(nb, model, bonds, bond) || fault_no_memory(fault, state->step + 1);
 }
@@ -321,8 +352,11 @@ static void choose_grid(const struct model *model, struct neighbors *nb)
       cells--;
     nb->cells[k] = cells;
     nb->cell_edge[k] = model->box.edge[k] / cells;
-    while ((nb->cell_edge[k] - 1) >> nb->cell_shift[k] > UINT8_MAX)
+    while ((nb->cell_edge[k] - 1) >> nb->cell_shift[k] > FACE_MOST)
       nb->cell_shift[k]++;
+    nb->inverse[k].cells = 1.0 / cells;
+    nb->inverse[k].cell_edge = 1.0 / (double)nb->cell_edge[k];
+    nb->inverse[k].box_edge = 1.0 / (double)model->box.edge[k];
   }
   nb->cell_count = (uint32_t)(nb->cells[0] * nb->cells[1] * nb->cells[2]);
 }
@@ -333,9 +367,11 @@ static bool allocate(const struct model *model, struct neighbors *nb)
     return true;
   choose_grid(model, nb);
   nb->reference = memory_alloc(model->vertices, sizeof *nb->reference);
-  nb->clock = memory_alloc(model->vertices, sizeof *nb->clock);
+  nb->path = memory_alloc(model->vertices, sizeof *nb->path);
+  nb->generation = memory_alloc(model->vertices, sizeof *nb->generation);
+  nb->hold = memory_alloc(model->vertices, sizeof *nb->hold);
   nb->entries = memory_alloc(nb->cell_count, sizeof *nb->entries);
-  if (!nb->reference || !nb->clock || !nb->entries)
+  if (!nb->reference || !nb->path || !nb->generation || !nb->hold || !nb->entries)
     return false;
   for (uint32_t c = 0; c < nb->cell_count; c++) {
     struct grid_row *row = &nb->entries[c];
@@ -361,8 +397,10 @@ bool neighbors_build(const struct state *state, const struct model *model, struc
   nb->pairs.count = 0;
   for (uint32_t c = 0; c < nb->cell_count; c++)
     nb->entries[c].count = 0;
-  for (uint32_t j = 0; j < model->vertices; j++)
+  for (uint32_t j = 0; j < model->vertices; j++) {
     nb->reference[j] = (struct reference_position){state->position[j], NEIGHBORS_SKIN};
+    nb->hold[j] = nb->path[j];
+  }
   for (uint32_t j = 0; j < model->vertices; j++)
     if (model->next[j] >= 0 && (!spans_few_cells(state, model, j, fault) || !enter(nb, model, 1, &j)))
       return fault_no_memory(fault, state->step + 1); /* or the fault that is there already */

@@ -10,8 +10,7 @@ static bool grow_pairs(struct pair_list *p)
   const bool grown = room > p->room && memory_grow((void **)&p->bond, room, sizeof *p->bond) &&
                      memory_grow((void **)&p->other, room, sizeof *p->other) &&
                      memory_grow((void **)&p->limit, room, sizeof *p->limit) &&
-                     memory_grow((void **)&p->generation, room, sizeof *p->generation) &&
-                     memory_grow((void **)&p->image, room, sizeof *p->image);
+                     memory_grow((void **)&p->detail, room, sizeof *p->detail);
   p->room = grown ? room : p->room;
   return grown;
 }
@@ -21,13 +20,12 @@ bool pairs_add(struct neighbors *nb, uint32_t bond, struct neighbor n)
   struct pair_list *p = &nb->pairs;
   if (p->count == p->room && !grow_pairs(p))
     return false;
-  const struct bond_clock *mine = &nb->clock[bond], *its = &nb->clock[n.bond];
   const uint32_t k = p->count++;
   p->bond[k] = bond;
   p->other[k] = (uint32_t)n.bond;
-  p->limit[k] = mine->path + its->path; /* due in the next drift: that makes paths longer */
-  p->generation[k] = mine->generation + its->generation;
-  p->image[k] = (struct image){{n.image[0], n.image[1], n.image[2]}};
+  p->limit[k] = nb->path[bond] + nb->path[n.bond] - 1; /* less than the sum of both: due */
+  p->detail[k] =
+      (struct pair_detail){{{n.image[0], n.image[1], n.image[2]}}, nb->generation[bond] + nb->generation[n.bond]};
   return true;
 }
 
@@ -38,6 +36,5 @@ void pairs_drop(struct neighbors *nb, uint32_t k)
   p->bond[k] = p->bond[last];
   p->other[k] = p->other[last];
   p->limit[k] = p->limit[last];
-  p->generation[k] = p->generation[last];
-  p->image[k] = p->image[last];
+  p->detail[k] = p->detail[last];
 }

@@ -11,7 +11,7 @@
 
 #include "contact/contact.h"
 
-/* Adds a pair that has just been found; it is due in the next drift. False if memory is short. */
+/* Adds a pair that has just been found; it is due when the list is next read. False if memory is short. */
 bool pairs_add(struct neighbors *nb, uint32_t bond, struct neighbor n);
 
 /* Drops pair k; the last pair takes its place. */
@@ -22,7 +22,7 @@ void pairs_drop(struct neighbors *nb, uint32_t k);
 static inline bool pairs_out_of_date(const struct neighbors *nb, uint32_t k)
 {
   const struct pair_list *p = &nb->pairs;
-  return p->generation[k] != nb->clock[p->bond[k]].generation + nb->clock[p->other[k]].generation;
+  return p->detail[k].generation != nb->generation[p->bond[k]] + nb->generation[p->other[k]];
 }
 
 #endif

@@ -33,9 +33,9 @@ static bool prepare(const struct state *state, const struct model *model, struct
     const uint32_t n = state->vertices - first < BLOCK ? state->vertices - first : BLOCK;
     if (!drift_displacements(state, model, dt, first, n, d, fault))
       return false;
-    double *restrict range = &contact->range[first];
+    uint32_t *restrict range = &contact->range[first];
     for (uint32_t k = 0; k < n; k++)
-      range[k] = vec3_norm(d[k]);
+      range[k] = candidates_units(vec3_norm(d[k]));
     find_late(state, &contact->neighbors, first, n, d, late);
     for (uint32_t k = 0; k < n; k++) {
       if (!late[k])
@@ -102,6 +102,7 @@ bool schedule_plan(struct state *state, const struct model *model, struct contac
 {
   if (!prepare(state, model, contact, dt, fault))
     return false;
+  candidates_lengthen(model, contact);
   if (!candidates_find(state, model, contact, fault))
     return false;
   let_wait(model, contact);
@@ -200,8 +201,8 @@ bool schedule_reconsider(struct state *state, const struct model *model, struct 
                          uint32_t now, struct fault *fault)
 {
   const double furthest = box_shortest_edge(&model->box); /* a longer move is a fault */
-  const double range =
-      fmin(vec3_norm(drift_displacement(state->velocity[i], model_frame_velocity(model), dt)), furthest);
+  const uint32_t range = candidates_units(
+      fmin(vec3_norm(drift_displacement(state->velocity[i], model_frame_velocity(model), dt)), furthest));
   if (contact->rank[i] < now || range <= contact->range[i])
     return true;
   candidates_widen(model, contact, i, range);

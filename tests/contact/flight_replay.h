@@ -141,11 +141,21 @@ static inline bool find_rigid_bend(struct replay *p, uint32_t v, struct point en
   return true;
 }
 
+/* The rate of a vertex at the end of a drift in which its flight has bent. */
+static inline struct point rate_at_end(const struct bend_list *bends, uint32_t v)
+{
+  uint32_t k = 0;
+  while (k < bends->count && bends->at[k].vertex != v)
+    k++;
+  assert_true(k < bends->count);
+  return bends->at[k].rate;
+}
+
 /* The paths end where the vertices are. False if a rigid cluster makes them unknown. */
 static inline bool paths_end(struct replay *p, uint64_t rigid_before, uint64_t seed)
 {
   const struct state *state = &p->run->state;
-  const struct flights *f = &p->run->work.contact.flights;
+  const struct bend_list *bends = &p->run->work.contact.flights.bends;
   bool known = true;
   for (uint32_t v = 0; v < state->vertices; v++) {
     const struct piece *last = &p->piece[p->last[v]];
@@ -154,7 +164,7 @@ static inline bool paths_end(struct replay *p, uint64_t rigid_before, uint64_t s
       continue;
     if (state->counts.rigid == rigid_before)
       fail_msg("seed %lu: vertex %u does not end where its path ends", (unsigned long)seed, v);
-    known = known && find_rigid_bend(p, v, is, f->rate[v]);
+    known = known && find_rigid_bend(p, v, is, rate_at_end(bends, v));
   }
   return known;
 }
@@ -304,15 +314,15 @@ static inline void shuffle_pairs(struct pair_list *list, struct dice *d)
 {
   for (uint32_t k = list->count; k-- > 1;) {
     const uint32_t j = (uint32_t)dice_integer(d, 0, k);
-    uint32_t *columns[] = {list->bond, list->other, list->limit, list->generation};
-    for (int c = 0; c < 4; c++) {
+    uint32_t *columns[] = {list->bond, list->other, list->limit};
+    for (int c = 0; c < 3; c++) {
       const uint32_t swap = columns[c][k];
       columns[c][k] = columns[c][j];
       columns[c][j] = swap;
     }
-    const struct image swap = list->image[k];
-    list->image[k] = list->image[j];
-    list->image[j] = swap;
+    const struct pair_detail swap = list->detail[k];
+    list->detail[k] = list->detail[j];
+    list->detail[j] = swap;
   }
 }
 

@@ -28,7 +28,7 @@ static uint32_t times_listed(const struct neighbors *nb, uint32_t bond, uint32_t
     if (!(a == bond && b == other) && !(a == other && b == bond))
       continue;
     const int64_t sign = a == bond ? 1 : -1;
-    const int32_t *image = nb->pairs.image[n].k;
+    const int32_t *image = nb->pairs.detail[n].image.k;
     const bool same = sign * image[0] == i && sign * image[1] == j && sign * image[2] == k;
     times += same && !pairs_out_of_date(nb, n);
   }

@@ -113,13 +113,13 @@ static uint64_t check_limits(const struct test_run *r)
   uint64_t waiting = 0;
   for (uint32_t n = 0; n < nb->pairs.count; n++) {
     const uint32_t i = nb->pairs.bond[n], l = nb->pairs.other[n];
-    const int32_t left = (int32_t)(nb->pairs.limit[n] - nb->clock[i].path - nb->clock[l].path);
+    const int32_t left = (int32_t)(nb->pairs.limit[n] - nb->path[i] - nb->path[l]);
     if (left < 0)
       continue;
     const uint32_t j = (uint32_t)r->model.next[i], m = (uint32_t)r->model.next[l];
     const double distance =
         capsule_distance(point_difference(at[j], at[i]), point_difference(at[m], at[l]),
-                         point_difference(point_image(at[l], nb->pairs.image[n].k, &r->model.box), at[i]));
+                         point_difference(point_image(at[l], nb->pairs.detail[n].image.k, &r->model.box), at[i]));
     if (distance < left * 0x1p-20)
       fail_msg("bonds %u and %u are %g a0 apart, and need not be looked at for %g a0", i, l, distance, left * 0x1p-20);
     waiting++;
@@ -133,7 +133,7 @@ static void make_paths_long(struct test_run *r)
   struct neighbors *nb = &r->work.contact.neighbors;
   assert_true(neighbors_build(&r->state, &r->model, &r->work.contact, &r->work.fault));
   for (uint32_t j = 0; j < r->state.vertices; j++)
-    nb->clock[j].path = UINT32_MAX - 40000 * (j % 7);
+    nb->path[j] = UINT32_MAX - 40000 * (j % 7);
   assert_true(neighbors_build(&r->state, &r->model, &r->work.contact, &r->work.fault));
 }
 

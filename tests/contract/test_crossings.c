@@ -154,13 +154,12 @@ static void shuffle_pairs(struct contact *contact, struct dice *d)
   struct pair_list *p = &contact->neighbors.pairs;
   for (uint32_t k = p->count; k-- > 1;) {
     const uint32_t j = (uint32_t)dice_integer(d, 0, k);
-    const struct image image = p->image[k];
+    const struct pair_detail detail = p->detail[k];
     swap_words(p->bond, k, j);
     swap_words(p->other, k, j);
     swap_words(p->limit, k, j);
-    swap_words(p->generation, k, j);
-    p->image[k] = p->image[j];
-    p->image[j] = image;
+    p->detail[k] = p->detail[j];
+    p->detail[j] = detail;
   }
 }
 

@@ -20,7 +20,7 @@
 #define UNCROSS_CONTACTS_H
 
 #include "../../tests/statistics.h"
-#include "contact/flight.h"
+#include "contact/takeoff.h"
 #include "energy.h"
 #include "measure.h"
 #include "theory/theory.h"
@@ -117,6 +117,14 @@ struct contact_at {
   struct vec3 before[4]; /* velocities */
 };
 
+/* The place of a vertex at a tick of the drift at hand. */
+static inline struct point contact_place(const struct run *r, uint32_t v, int64_t tick)
+{
+  const struct point p = r->state.position[v],
+                     rate = takeoff_rate_now(&r->state, &r->model, &r->work.contact.flights, v);
+  return (struct point){p.x + rate.x * tick, p.y + rate.y * tick, p.z + rate.z * tick};
+}
+
 static inline double contact_energy(const struct contact_watch *w, const struct contact_at *at, int64_t tick,
                                     double tau, bool after, struct vec3 *force_at)
 {
@@ -131,14 +139,10 @@ static inline double contact_energy(const struct contact_watch *w, const struct 
     chain.kind = &r->model.kind[r->model.fiber_kind_of[fiber[f]]];
     if (chain.n > CONTACTS_MOST_VERTICES)
       exit(3);
-    const struct point *rate = r->work.contact.flights.rate, *p = r->state.position;
-    const struct point origin = {p[chain.first].x + rate[chain.first].x * tick,
-                                 p[chain.first].y + rate[chain.first].y * tick,
-                                 p[chain.first].z + rate[chain.first].z * tick};
+    const struct point origin = contact_place(r, chain.first, tick);
     for (uint32_t i = 0; i < chain.n; i++) {
       const uint32_t v = chain.first + i;
-      const struct point place = {p[v].x + rate[v].x * tick, p[v].y + rate[v].y * tick, p[v].z + rate[v].z * tick};
-      contact[i] = point_difference(place, origin);
+      contact[i] = point_difference(contact_place(r, v, tick), origin);
       chain.v[i] = r->state.velocity[v];
       for (int k = 0; k < 4 && !after; k++)
         if (at->vertex[k] == v)
