@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "contact/rule.h"
 #include "fiber/force.h"
 #include "files/start.h"
 #include "oracle/columns.h"
@@ -62,9 +61,6 @@ bool oracle_emit(const struct scene *scene, struct pack *pack, struct message *m
                        scene->path);
   if (model->solvent.rule != RULE_SRD)
     return message_set(message, "%s: solvent.rule; packs hold the operators of the rule srd only", scene->path);
-  if (crossing_rule_of(model)->forbids && !crossing_rule_of(model)->in_turns)
-    return message_set(message, "%s: crossing.rule: event-driven; packs hold drifts by the rule sequential only",
-                       scene->path);
   if (model->crossing.rejection != REJECTION_STAY || model->crossing.frame != FRAME_LABORATORY)
     return message_set(
         message, "%s: crossing.refusal or crossing.frame; packs hold drifts by the paper's rule: stay, laboratory",
@@ -85,12 +81,15 @@ static bool put_edges(struct oracle_stage *g, const struct scene *scene, uint64_
   return oracle_run_operators(g, true) || g->pack->failed || message_fault(message, &g->work->fault);
 }
 
-bool oracle_edges(struct pack *pack, struct message *message)
+bool oracle_edges(bool contacts, struct pack *pack, struct message *message)
 {
-  static const char *const settings[] = EDGES_SETTINGS;
+  static const char *const in_turns[] = EDGES_SETTINGS, *const at_once[] = EDGES_EVENT_SETTINGS;
+  const struct scene_settings settings = contacts
+                                             ? (struct scene_settings){sizeof at_once / sizeof *at_once, at_once}
+                                             : (struct scene_settings){sizeof in_turns / sizeof *in_turns, in_turns};
   struct scene scene;
   memset(pack, 0, sizeof *pack);
-  if (!scene_make(&(struct scene_settings){sizeof settings / sizeof *settings, settings}, &scene, message))
+  if (!scene_make(&settings, &scene, message))
     return false;
   oracle_put_model(pack, &scene.model);
   const bool ok = with_run(&scene, put_edges, 1, pack, message);
