@@ -301,6 +301,7 @@ static const struct needle {
     {23, {-4, 8, 1}, {4, 9, 0}, {0, 0, 0}, 0},
 };
 enum { NEEDLES = sizeof needles / sizeof *needles };
+_Static_assert(NEEDLES + 3 == EDGES_NEEDLES, "three make a cluster");
 
 static struct point corner_of(int slot)
 {
@@ -326,13 +327,21 @@ static void stand_needles(struct oracle_stage *g, uint32_t first)
   }
 }
 
-/* Needles that nothing else needs, out of the way. */
-static void put_aside(struct oracle_stage *g, uint32_t first)
+/* Two needles of some lattice units that are answered in tick 2, where they part already: no impulse separates them.
+ * And a third one that meets both later. */
+static void stand_cluster(struct oracle_stage *g, uint32_t first)
 {
-  for (uint32_t k = NEEDLES; k < EDGES_NEEDLES; k++)
-    for (uint32_t e = 0; e < 2; e++)
-      g->state->position[first + 2 * k + e] =
-          in_slot(24, (const int[3]){-6 + 2 * (int)(k - NEEDLES), 4 + 3 * (int)e, -3});
+  static const struct point place[4] = {{1, -9, -2}, {-2, 2, -5}, {2, 7, 1}, {-7, 2, -11}};
+  static const struct vec3 rate[4] = {{3, 2, -2}, {1, 0, 0}, {1, -3, -3}, {-2, 3, 3}};
+  const int slot = 25, low[3] = {0, 4, -4}, high[3] = {0, 4, 4}, middle[3] = {0, 8, 0};
+  for (uint32_t k = 0; k < 4; k++) {
+    g->state->position[first + k] = point_plus(in_slot(slot, middle), place[k]);
+    g->state->velocity[first + k] = vec3_scale(0x1p-24 / DRIFT, rate[k]);
+  }
+  for (uint32_t k = 4; k < 6; k++) {
+    g->state->position[first + k] = in_slot(slot, k == 4 ? low : high);
+    g->state->velocity[first + k] = (struct vec3){0, 0.5 / DRIFT, 0};
+  }
 }
 
 /* The other fibers in a tangle, each some boxes away. */
@@ -356,7 +365,7 @@ bool oracle_edges_event_drift(struct oracle_stage *g)
   const uint32_t first = 2 * EDGES_PAIRS + 3 * EDGES_CHAINS;
   edges_at_the_same_time(g);
   stand_needles(g, first);
-  put_aside(g, first);
+  stand_cluster(g, first + 2 * NEEDLES);
   tangle(g, first + 2 * EDGES_NEEDLES, EDGES_STIFF + EDGES_RINGS, 1.5);
   return oracle_event_drift_for(g, DRIFT, -0.5 * DRIFT);
 }
