@@ -252,7 +252,7 @@ bool oracle_edges_impulse(struct oracle_stage *g)
                                      {1e-9, -1},
                                      {0, 1},
                                      {-1, 3},
-                                     {0x1p-1060, 0x1p-1050}};
+                                     {1e-30, 1e-20}};
   enum { BOUNDS = sizeof bounds / sizeof *bounds };
   struct dice d = {61};
   struct oracle_impulse e[IMPULSES];
