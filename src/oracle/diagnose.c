@@ -104,7 +104,7 @@ const struct oracle_pattern oracle_patterns_any[] = {
 static const char *name_of(const struct oracle_pair *p)
 {
   const char *name = p->ours->place.operator_name;
-  return strcmp(name, "long_sweep") == 0 ? "sweep" : name;
+  return strncmp(name, "long_", strlen("long_")) == 0 ? name + strlen("long_") : name;
 }
 
 static bool is_for(const char *operator_name, const char *table, const struct oracle_pair *p)
@@ -154,7 +154,8 @@ static bool search_relations(const struct relation *r, struct evidence *e, bool 
 static bool search_all_relations(struct evidence *e, char *text, char partial[RELATION_TEXT])
 {
   static const struct relation *const lists[] = {oracle_relations_random, oracle_relations_contact,
-                                                 oracle_relations_fiber, oracle_relations_solvent};
+                                                 oracle_relations_fiber, oracle_relations_event,
+                                                 oracle_relations_solvent};
   bool found = false;
   for (size_t k = 0; k < sizeof lists / sizeof lists[0] && !found; k++)
     found = search_relations(lists[k], e, true, text, partial);
@@ -231,7 +232,8 @@ void oracle_diagnose(const struct oracle_pair *p, bool beyond, char text[ORACLE_
   const char *const unknown =
       beyond ? "none of those known" : "order of operations, fused multiply-add, or library functions";
   snprintf(text, ORACLE_TEXT, "%s", unknown);
-  if (p->ours->columns != p->theirs->columns || (is_for("sweep", NULL, p) && diagnose_sweep(p, beyond, text)))
+  if (p->ours->columns != p->theirs->columns || (is_for("sweep", NULL, p) && diagnose_sweep(p, beyond, text)) ||
+      (is_for("event_drift", NULL, p) && oracle_replay_events(p, text)))
     return;
   if (evidence_take(p, &e)) {
     if (search_all_relations(&e, text, partial) || search_patterns(oracle_patterns_contact, p, text) ||

@@ -22,7 +22,7 @@ struct relation {
 
 /* Each list ends with one that makes none. From the most to the least telling. */
 extern const struct relation oracle_relations_random[], oracle_relations_contact[], oracle_relations_fiber[],
-    oracle_relations_solvent[], oracle_relations_any[];
+    oracle_relations_event[], oracle_relations_solvent[], oracle_relations_any[];
 
 /* Writes the text; true, for makers to return. */
 bool relation_say(char text[RELATION_TEXT], const char *format, ...);

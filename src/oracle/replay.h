@@ -11,6 +11,9 @@
 /* True, and the text, if a guess makes theirs. */
 bool oracle_replay(const struct oracle_pair *pair, char text[ORACLE_TEXT]);
 
+/* The same for a drift of the rule `event-driven`. */
+bool oracle_replay_events(const struct oracle_pair *pair, char text[ORACLE_TEXT]);
+
 /* True if moves are wrong, each judged alone, and a rule tells which, exactly: the text. Without a rule the text says
  * how many, if events differ. */
 bool oracle_judge_moves(const struct oracle_pair *pair, char text[ORACLE_TEXT]);

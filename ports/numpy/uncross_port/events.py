@@ -126,7 +126,7 @@ def first_contact(pair, start):
             return first
         middle = first + (last - first) // 2
         intervals += [(middle, last), (first, middle)]
-    return TICKS
+    return TICKS  # none
 
 
 # --- a contact ---
@@ -249,6 +249,7 @@ class Drift:
     def __init__(self, model, position, velocity, time, start):
         self.model, self.time, self.start = model, time, start
         self.position, self.velocity = position.copy(), velocity.copy()
+        self.origin = position
         self.rate = self.rates(velocity)
         self.contacts = np.zeros(len(position), int)
         self.cluster = np.zeros(len(position), int)  # 0: of none
