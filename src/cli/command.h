@@ -35,7 +35,7 @@ struct arguments {
   const char *out;
   const char **set; /* [sets] "key=value" */
   size_t sets;
-  bool has_steps, has_seed, resume, quiet, document, decimal, skip_damaged, help;
+  bool has_steps, has_seed, resume, quiet, document, decimal, contacts, skip_damaged, help;
   uint64_t steps, seed; /* instead of the scene's */
   struct export_options export;
   struct oracle_options oracle;

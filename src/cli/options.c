@@ -45,6 +45,8 @@ const struct option_row option_rows[] = {
      .text = "leave out frames that are damaged, and name them on standard error"},
     {"decimal", NULL, OF(DUMP), 0, OPTION_SWITCH, 0, AT(decimal), ONLY_VALUE,
      .text = "reals in 17 decimal digits, exact too, instead of hexadecimal ones"},
+    {"contacts", NULL, OF(EDGES), 0, OPTION_SWITCH, 0, AT(contacts), ONLY_VALUE,
+     .text = "those of contacts at their own time (crossing.rule: event-driven)"},
     {"packs", "DIR", OF(CHECK_PORT), 0, OPTION_TEXT, 0, AT(packs), ONLY_VALUE,
      .text = "the folder of packs and traces; without it those that belong to this program"},
     {"text", NULL, OF(CHECK_PORT), 0, OPTION_SWITCH, 0, AT(text), ONLY_VALUE,

@@ -84,12 +84,18 @@ enum exit_code oracle_start_file(const struct arguments *a)
 static bool edges(const struct scene *none, struct pack *pack, struct message *message)
 {
   (void)none;
-  return oracle_edges(pack, message);
+  return oracle_edges(false, pack, message);
+}
+
+static bool contacts(const struct scene *none, struct pack *pack, struct message *message)
+{
+  (void)none;
+  return oracle_edges(true, pack, message);
 }
 
 enum exit_code oracle_edges_file(const struct arguments *a)
 {
-  return write_pack(a, NULL, edges);
+  return write_pack(a, NULL, a->contacts ? contacts : edges);
 }
 
 enum exit_code oracle_trace_file(const struct arguments *a)

@@ -2,6 +2,7 @@
 
 #include "contact/capsule.h"
 #include "contact/determinant.h"
+#include "contact/hull.h"
 
 /* The pair at one tick, exact: in lattice units, and in a0. */
 struct knot {
@@ -172,15 +173,29 @@ static bool planes_separate_exactly(const struct knot *a, const struct knot *b)
 
 /* --- the search --------------------------------------------------------------------------------------------------- */
 
-/* From knot a to knot b, `ticks` later. In a single tick, and where all is nearly in one plane, rounding must not
- * matter: (i) is of no use there, and the gap is turned by rounding. */
+/* The corners of (ii), in lattice units. */
+static void corners_at(const struct knot *k, struct difference corner[4])
+{
+  const struct difference w = k->exact_w, p = k->exact_p, wq = minus_times(w, -1, k->exact_q);
+  corner[0] = w, corner[1] = wq, corner[2] = minus_times(w, 1, p), corner[3] = minus_times(wq, 1, p);
+}
+
+/* A single tick: (i) and (ii) with any plane, exactly. */
+static bool tick_excluded(const struct knot *a, const struct knot *b)
+{
+  struct difference corner[HULL_POINTS];
+  corners_at(a, corner), corners_at(b, corner + 4);
+  return volume_keeps_exact_sign(a, b) || hull_misses_origin(corner);
+}
+
+/* From knot a to knot b, `ticks` later. What doubles exclude here, tick_excluded excludes in each tick of the interval:
+ * they save time, and decide nothing. */
 static bool excluded(const struct knot *a, const struct knot *b, int32_t ticks)
 {
   const enum volume_sign volume = sign_of_volume(a, b);
   if (volume == VOLUME_KEEPS_SIGN || plane_separates(gap_of(a), a, b) || plane_separates(gap_of(b), a, b))
     return true;
-  return (ticks == 1 && volume_keeps_exact_sign(a, b)) ||
-         ((ticks == 1 || volume == VOLUME_IN_DOUBT) && planes_separate_exactly(a, b));
+  return ticks == 1 ? tick_excluded(a, b) : volume == VOLUME_IN_DOUBT && planes_separate_exactly(a, b);
 }
 
 bool flight_excluded(const struct flight_pair *pair, int32_t from, int32_t to)

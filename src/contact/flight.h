@@ -16,11 +16,15 @@
  *       corners from the origin, the bonds do not touch. Any direction of the plane may be tried.
  *
  * Rounding errors are bounded on the safe side. An interval that is not excluded is halved. A single tick that is in
- * doubt is decided in exact integers, (i) and (ii) both; (ii) with every direction that the shortest line between two
- * bonds can have. If it is still not excluded, it counts as a contact at its first tick. So no contact is missed. And
- * at the tick of the answer the bonds are no further apart than any two of their points move towards each other within
- * one tick (1e-7 a0): else the plane perpendicular to the shortest line would separate them. So a contact may be
- * answered up to a tick early, and one may be answered that would just have been missed by as little.
+ * doubt is decided in exact integers: by (i), and by (ii) with any plane (contact/hull.h). If it is still not excluded,
+ * it counts as a contact at its first tick. So no contact is missed. And at the tick of the answer the bonds are no
+ * further apart than any two of their points move towards each other within one tick (1e-7 a0): else the plane
+ * perpendicular to the shortest line would separate them. So a contact may be answered up to a tick early, and one may
+ * be answered that would just have been missed by as little.
+ *
+ * The answer is a matter of integers alone. If (i) or (ii) excludes an interval, the same excludes each tick of it: the
+ * coefficients over a part are means of those over the whole, and so are the corners. So the answer is the first tick
+ * that exact arithmetic does not exclude, whatever is tried before, and wherever intervals are halved.
  */
 #ifndef UNCROSS_CONTACT_FLIGHT_H
 #define UNCROSS_CONTACT_FLIGHT_H

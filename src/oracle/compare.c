@@ -102,6 +102,12 @@ static const char *entity_of(const struct pack_table *t)
                                          {"long_sweep", "out.hit", "event"},
                                          {"sweep", "out.event", "event"},
                                          {"sweep", "out.hit", "event"},
+                                         {"contact_search", "", "search"},
+                                         {"impulse", "", "impulse"},
+                                         {"long_event_drift", "out.event", "event"},
+                                         {"long_event_drift", "out.hit", "event"},
+                                         {"event_drift", "out.event", "event"},
+                                         {"event_drift", "out.hit", "event"},
                                          {"random", "", "address"},
                                          {"shift", "", "row"}};
   for (size_t k = 0; k < sizeof words / sizeof *words; k++)

@@ -118,19 +118,21 @@ static bool is_sum(const char *name)
   return strcmp(name, "step") != 0 && strcmp(name, "stage") != 0 && strcmp(name, "state_hash") != 0;
 }
 
-/* Their sum of this name is not ours. */
-static bool sum_differs(const struct trace *ours, const struct trace *theirs, const char *name)
-{
-  const double x = sum_of(ours, name), y = sum_of(theirs, name);
-  const double size = 1.0 + fabs(x) + sum_of(ours, "solvent_kinetic") + sum_of(ours, "vertex_kinetic");
-  return !(fabs(x - y) <= SUMS * size);
-}
-
 static bool same_hash(const char *a, const char *b)
 {
   for (; *a && tolower((unsigned char)*a) == tolower((unsigned char)*b); a++)
     b++;
   return *a == *b;
+}
+
+/* Their sum of this name is not ours; or their hash, of contacts. */
+static bool sum_differs(const struct trace *ours, const struct trace *theirs, const char *name)
+{
+  if (strcmp(name, "contacts_hash") == 0)
+    return !same_hash(value_of(ours, name), value_of(theirs, name));
+  const double x = sum_of(ours, name), y = sum_of(theirs, name);
+  const double size = 1.0 + fabs(x) + sum_of(ours, "solvent_kinetic") + sum_of(ours, "vertex_kinetic");
+  return !(fabs(x - y) <= SUMS * size);
 }
 
 static enum difference compare_row(const struct trace *ours, const struct trace *theirs)

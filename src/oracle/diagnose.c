@@ -119,7 +119,7 @@ struct search {
 static const char *name_of(const struct oracle_pair *p)
 {
   const char *name = p->ours->place.operator_name;
-  return strcmp(name, "long_sweep") == 0 ? "sweep" : name;
+  return strncmp(name, "long_", strlen("long_")) == 0 ? name + strlen("long_") : name;
 }
 
 static bool is_for(const char *operator_name, const char *table, const struct oracle_pair *p)
@@ -243,8 +243,9 @@ static void search_relations(struct search *s, const struct relation *r, bool an
 static bool search_all_relations(struct search *s)
 {
   static const struct relation *const lists[] = {
-      oracle_relations_random, oracle_relations_permutation, oracle_relations_contact, oracle_relations_fiber,
-      oracle_relations_grid,   oracle_relations_sum,         oracle_relations_rotate,  oracle_relations_thermostat};
+      oracle_relations_random, oracle_relations_permutation, oracle_relations_contact,
+      oracle_relations_fiber,  oracle_relations_event,       oracle_relations_grid,
+      oracle_relations_sum,    oracle_relations_rotate,      oracle_relations_thermostat};
   for (size_t k = 0; k < sizeof lists / sizeof lists[0] && !s->named; k++)
     search_relations(s, lists[k], false);
   if (!s->named)
@@ -381,7 +382,9 @@ void oracle_diagnose(const struct oracle_pair *p, bool beyond, char text[ORACLE_
   const char *const unknown =
       beyond ? "none of those known" : "as of another order of operations, fused multiply-add, or library functions";
   snprintf(text, ORACLE_TEXT, "%s", unknown);
-  if (p->ours->columns != p->theirs->columns || (is_for("sweep", NULL, p) && diagnose_sweep(p, beyond, unknown, text)))
+  if (p->ours->columns != p->theirs->columns ||
+      (is_for("sweep", NULL, p) && diagnose_sweep(p, beyond, unknown, text)) ||
+      (is_for("event_drift", NULL, p) && oracle_replay_events(p, text)))
     return;
   if (evidence_take(p, &e)) {
     char side[RELATION_TEXT];

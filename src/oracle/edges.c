@@ -63,7 +63,7 @@ bool oracle_edges_permutation(struct oracle_stage *g)
 
 enum { EXCHANGES = 100 };
 
-static struct vec3 draw_normal(struct dice *d)
+struct vec3 edges_normal(struct dice *d)
 {
   const struct vec3 axes[3] = {{1, 0, 0}, {0, -1, 0}, {0, 0, 1}};
   struct vec3 n = dice_vector(d, 1.0);
@@ -73,7 +73,7 @@ static struct vec3 draw_normal(struct dice *d)
 }
 
 /* Ends of bonds are met now and then. */
-static double draw_place(struct dice *d)
+double edges_place(struct dice *d)
 {
   const double ends[3] = {0.0, 1.0, 0.5};
   const uint64_t k = dice_u64(d) % 8;
@@ -90,8 +90,8 @@ bool oracle_edges_exchange(struct oracle_stage *g)
       e[k].velocity[end] = vec3_scale(dice_u64(&d) % 8 && k % 16 ? 1.0 : 0.0, dice_vector(&d, 2.0));
       e[k].mass[end] = k % 4 == 0 ? 5.0 : masses[dice_u64(&d) % 6];
     }
-    e[k].s = draw_place(&d), e[k].s_standing = draw_place(&d);
-    e[k].normal = draw_normal(&d);
+    e[k].s = edges_place(&d), e[k].s_standing = edges_place(&d);
+    e[k].normal = edges_normal(&d);
   }
   oracle_put_exchanges(g, e, EXCHANGES);
   return true;
@@ -232,11 +232,16 @@ static void build(struct scaffold *f)
   }
 }
 
-bool oracle_edges_sweep(struct oracle_stage *g)
+void edges_at_the_same_time(struct oracle_stage *g)
 {
   struct scaffold f = {g, 0, 2 * EDGES_PAIRS, 0};
   memset(g->state->velocity, 0, g->state->vertices * sizeof *g->state->velocity);
   build(&f);
   g->work->contact.neighbors.built = false;
+}
+
+bool oracle_edges_sweep(struct oracle_stage *g)
+{
+  edges_at_the_same_time(g);
   return oracle_sweep_for(g, 32.0, 0);
 }

@@ -2,8 +2,9 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+#include <xxhash.h>
 
-#include "contact/rule.h"
+#include "contact/flight.h"
 #include "fiber/force.h"
 #include "files/start.h"
 #include "oracle/columns.h"
@@ -62,9 +63,6 @@ bool oracle_emit(const struct scene *scene, struct pack *pack, struct message *m
                        scene->path);
   if (model->solvent.rule != RULE_SRD)
     return message_set(message, "%s: solvent.rule; packs hold the operators of the rule srd only", scene->path);
-  if (crossing_rule_of(model)->forbids && !crossing_rule_of(model)->in_turns)
-    return message_set(message, "%s: crossing.rule: event-driven; packs hold drifts by the rule sequential only",
-                       scene->path);
   if (model->crossing.rejection != REJECTION_STAY || model->crossing.frame != FRAME_LABORATORY)
     return message_set(
         message, "%s: crossing.refusal or crossing.frame; packs hold drifts by the paper's rule: stay, laboratory",
@@ -85,12 +83,15 @@ static bool put_edges(struct oracle_stage *g, const struct scene *scene, uint64_
   return oracle_run_operators(g, true) || g->pack->failed || message_fault(message, &g->work->fault);
 }
 
-bool oracle_edges(struct pack *pack, struct message *message)
+bool oracle_edges(bool contacts, struct pack *pack, struct message *message)
 {
-  static const char *const settings[] = EDGES_SETTINGS;
+  static const char *const in_turns[] = EDGES_SETTINGS, *const at_once[] = EDGES_EVENT_SETTINGS;
+  const struct scene_settings settings = contacts
+                                             ? (struct scene_settings){sizeof at_once / sizeof *at_once, at_once}
+                                             : (struct scene_settings){sizeof in_turns / sizeof *in_turns, in_turns};
   struct scene scene;
   memset(pack, 0, sizeof *pack);
-  if (!scene_make(&(struct scene_settings){sizeof settings / sizeof *settings, settings}, &scene, message))
+  if (!scene_make(&settings, &scene, message))
     return false;
   oracle_put_model(pack, &scene.model);
   const bool ok = with_run(&scene, put_edges, 1, pack, message);
@@ -111,6 +112,9 @@ static bool put_start(struct oracle_stage *g, const struct scene *scene, uint64_
   to = oracle_put_integers(g, "in.counters", "step lag", 1);
   if (to)
     to[0] = (int64_t)g->state->step, to[1] = g->state->solvent_lag;
+  to = oracle_has_events(m) ? oracle_put_integers(g, "in.rule", "event_driven", 1) : NULL;
+  if (to)
+    to[0] = 1;
   oracle_put_solvent_positions(g, "in.solvent");
   oracle_put_solvent_velocities(g, "in.solvent_velocity");
   oracle_put_points(g, "in.vertex", g->state->position, g->state->vertices);
@@ -148,8 +152,30 @@ struct tracer {
   FILE *out;
   uint32_t *slot;
   uint64_t step;
-  bool short_of_memory; /* for a hash */
+  bool short_of_memory;    /* for a hash */
+  uint64_t contacts;       /* since the last row, of a scene whose drifts have events */
+  XXH64_state_t *together; /* of their numbers; NULL where there are none */
 };
+
+/* The order of these words is that of docs/porting.md. */
+static void trace_contact(void *context, const struct contact_event *v)
+{
+  struct tracer *t = context;
+  const int64_t word[6] = {v->moving_bond, v->standing_bond, v->image[0],
+                           v->image[1],    v->image[2],      (int64_t)(v->hit.time * FLIGHT_TICKS)};
+  t->contacts++;
+  XXH64_update(t->together, word, sizeof word);
+}
+
+static void end_row(struct tracer *t)
+{
+  if (t->together) {
+    fprintf(t->out, ",%" PRIu64 ",%016" PRIx64, t->contacts, (uint64_t)XXH64_digest(t->together));
+    t->contacts = 0;
+    XXH64_reset(t->together, 0);
+  }
+  fputc('\n', t->out);
+}
 
 /* Plain sums in the order of ids and vertices, of velocities as they stand, half steps and lag or not. */
 static void trace_row(void *context, const char *stage, const struct state *state)
@@ -172,19 +198,22 @@ static void trace_row(void *context, const char *stage, const struct state *stat
     vertex += 0.5 * t->model->mass[j] * vec3_dot(state->velocity[j], state->velocity[j]);
   }
   const struct fiber_energy e = fiber_energies(state, t->model);
-  fprintf(t->out, "%" PRIu64 ",%s,%016" PRIx64 ",%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n", t->step, stage, hash,
+  fprintf(t->out, "%" PRIu64 ",%s,%016" PRIx64 ",%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g", t->step, stage, hash,
           momentum.x, momentum.y, momentum.z, solvent, vertex, e.bond, e.bend);
+  end_row(t);
 }
 
 static bool trace_steps(const struct scene *scene, struct state *state, struct work *work, struct tracer *t,
                         struct message *message)
 {
   const struct step_watch watch = {trace_row, t};
-  fputs("step,stage,state_hash,momentum_x,momentum_y,momentum_z,solvent_kinetic,vertex_kinetic,bond,bend\n", t->out);
+  const struct contact_log log = {trace_contact, t};
+  fputs("step,stage,state_hash,momentum_x,momentum_y,momentum_z,solvent_kinetic,vertex_kinetic,bond,bend", t->out);
+  fputs(t->together ? ",contacts,contacts_hash\n" : "\n", t->out);
   trace_row(t, "start", state);
   while (state->step < scene->steps) {
     t->step = state->step + 1;
-    if (!step_advance_watched(state, &scene->model, work, NULL, &watch))
+    if (!step_advance_watched(state, &scene->model, work, t->together ? &log : NULL, &watch))
       return message_fault(message, &work->fault);
     trace_row(t, "end", state);
   }
@@ -197,11 +226,16 @@ bool oracle_trace(const struct scene *scene, FILE *out, struct message *message)
   struct work work = {0};
   struct tracer t = {.model = &scene->model, .out = out};
   t.slot = malloc(((size_t)scene->model.solvent.particles + 1) * sizeof *t.slot);
-  bool ok = t.slot && state_alloc(&state, &scene->model) && work_alloc(&work, &scene->model);
+  const bool events = oracle_has_events(&scene->model);
+  t.together = events ? XXH64_createState() : NULL;
+  bool ok = t.slot && (t.together || !events) && state_alloc(&state, &scene->model) && work_alloc(&work, &scene->model);
   message_set(message, "no memory for this scene");
+  if (ok && events)
+    XXH64_reset(t.together, 0);
   ok = ok && scene_start(scene, &state, &work, message) && trace_steps(scene, &state, &work, &t, message);
   work_free(&work);
   state_free(&state);
+  XXH64_freeState(t.together);
   free(t.slot);
   return ok;
 }

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/normal.h"
+#include "contact/rule.h"
 #include "oracle/columns.h"
 #include "oracle/stages.h"
 
@@ -74,33 +75,52 @@ static bool run_random(struct oracle_stage *g)
 
 /* --- all of them ------------------------------------------------------------------------------------------------- */
 
+enum of { OF_FIBERS, OF_TURNS, OF_EVENTS, OF_SOLVENT }; /* OF_TURNS, OF_EVENTS: of one kind of crossing rule */
+
 static const struct operation {
   const char *name;
   bool (*run)(struct oracle_stage *);   /* of the scene's state; NULL: none */
   bool (*edges)(struct oracle_stage *); /* of constructed inputs; NULL: none */
-  bool of_solvent;                      /* else of fibers */
+  enum of of;
 } operations[] = {
-    {"random", run_random, NULL, false},
-    {"permutation", NULL, oracle_edges_permutation, false},
-    {"order", oracle_run_order, NULL, false},
-    {"crossing", oracle_run_crossing, oracle_edges_crossing, false},
-    {"exchange", oracle_run_exchange, oracle_edges_exchange, false},
-    {"long_sweep", oracle_run_long_sweep, NULL, false},
-    {"sweep", oracle_run_sweep, oracle_edges_sweep, false},
-    {"bond_force", oracle_run_bond_force, NULL, false},
-    {"bend_force", oracle_run_bend_force, NULL, false},
-    {"force", oracle_run_force, NULL, false},
-    {"kick", oracle_run_kick, NULL, false},
-    {"stream", oracle_run_stream, NULL, true},
-    {"shift", oracle_run_shift, NULL, true},
-    {"bin", oracle_run_bin, oracle_edges_bin, true},
-    {"sum", oracle_run_sum, NULL, true},
-    {"solve", oracle_run_solve, NULL, true},
-    {"rescale", oracle_run_rescale, NULL, true},
-    {"maxwell_boltzmann", oracle_run_maxwell_boltzmann, NULL, true},
-    {"rotate", oracle_run_rotate, NULL, true},
-    {"swap", oracle_run_swap, NULL, true},
+    {"random", run_random, NULL, OF_FIBERS},
+    {"permutation", NULL, oracle_edges_permutation, OF_TURNS},
+    {"order", oracle_run_order, NULL, OF_TURNS},
+    {"crossing", oracle_run_crossing, oracle_edges_crossing, OF_TURNS},
+    {"exchange", oracle_run_exchange, oracle_edges_exchange, OF_TURNS},
+    {"long_sweep", oracle_run_long_sweep, NULL, OF_TURNS},
+    {"sweep", oracle_run_sweep, oracle_edges_sweep, OF_TURNS},
+    {"contact_search", oracle_run_contact_search, oracle_edges_contact_search, OF_EVENTS},
+    {"impulse", oracle_run_impulse, oracle_edges_impulse, OF_EVENTS},
+    {"long_event_drift", oracle_run_long_event_drift, NULL, OF_EVENTS},
+    {"event_drift", oracle_run_event_drift, oracle_edges_event_drift, OF_EVENTS},
+    {"bond_force", oracle_run_bond_force, NULL, OF_FIBERS},
+    {"bend_force", oracle_run_bend_force, NULL, OF_FIBERS},
+    {"force", oracle_run_force, NULL, OF_FIBERS},
+    {"kick", oracle_run_kick, NULL, OF_FIBERS},
+    {"stream", oracle_run_stream, NULL, OF_SOLVENT},
+    {"shift", oracle_run_shift, NULL, OF_SOLVENT},
+    {"bin", oracle_run_bin, oracle_edges_bin, OF_SOLVENT},
+    {"sum", oracle_run_sum, NULL, OF_SOLVENT},
+    {"solve", oracle_run_solve, NULL, OF_SOLVENT},
+    {"rescale", oracle_run_rescale, NULL, OF_SOLVENT},
+    {"maxwell_boltzmann", oracle_run_maxwell_boltzmann, NULL, OF_SOLVENT},
+    {"rotate", oracle_run_rotate, NULL, OF_SOLVENT},
+    {"swap", oracle_run_swap, NULL, OF_SOLVENT},
 };
+
+/* True if a step of this model has the operation. */
+static bool is_of(enum of of, const struct model *m)
+{
+  const bool events = oracle_has_events(m);
+  return of == OF_SOLVENT ? model_has_solvent(m) : of == OF_TURNS ? !events : of == OF_EVENTS ? events : true;
+}
+
+bool oracle_has_events(const struct model *m)
+{
+  const struct crossing_rule *rule = crossing_rule_of(m);
+  return rule->forbids && !rule->in_turns;
+}
 
 bool oracle_run_operators(struct oracle_stage *g, bool edges)
 {
@@ -110,7 +130,7 @@ bool oracle_run_operators(struct oracle_stage *g, bool edges)
     const struct operation *o = &operations[k];
     bool (*run)(struct oracle_stage *) = edges ? o->edges : o->run;
     snprintf(g->place.operator_name, sizeof g->place.operator_name, "%s", o->name);
-    if (run && (!o->of_solvent || model_has_solvent(g->model)))
+    if (run && is_of(o->of, g->model))
       ok = run(g);
   }
   return ok && !g->pack->failed;
@@ -127,10 +147,10 @@ int oracle_operator_rank(const char *name)
 /* Tables of one operator, each made of those before it; what is not here comes last. */
 static int table_rank(const char *name)
 {
-  static const char *const names[] = {"out.word",     "out.uniform",  "out.normal", "out.active",   "out.center",
-                                      "out.axis",     "out.crosses",  "out.event",  "out.hit",      "out.order",
-                                      "out.position", "out.momentum", "out.load",   "out.relative", "out.factor",
-                                      "out.solvent",  "out.vertex",   "out.force",  "out.velocity"};
+  static const char *const names[] = {
+      "out.word", "out.uniform",  "out.normal", "out.active",  "out.center", "out.axis",     "out.crosses",
+      "out.tick", "out.answer",   "out.event",  "out.hit",     "out.order",  "out.position", "out.momentum",
+      "out.load", "out.relative", "out.factor", "out.solvent", "out.vertex", "out.force",    "out.velocity"};
   int rank = 0;
   while (rank < (int)(sizeof names / sizeof *names) && strcmp(names[rank], name) != 0)
     rank++;

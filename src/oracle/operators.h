@@ -23,6 +23,10 @@ void oracle_put_model(struct pack *pack, const struct model *model);
  * on these. False, with work->fault or pack->failed saying why. */
 bool oracle_run_operators(struct oracle_stage *stage, bool edges);
 
+/* True if bonds of this model exchange momentum at the time of contact (rule `event-driven`): its drifts have events,
+ * and no order. */
+bool oracle_has_events(const struct model *model);
+
 /* Where an operator stands among all of them; 0 for what is none, as `model`. */
 int oracle_operator_rank(const char *name);
 

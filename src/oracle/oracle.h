@@ -19,8 +19,9 @@
  * and at the last one of the scene. The pack needs freeing in any case. */
 bool oracle_emit(const struct scene *scene, struct pack *pack, struct message *message);
 
-/* Fills a pack with operators' inputs that are constructed, not from a scene, and their outputs (docs/porting.md). */
-bool oracle_edges(struct pack *pack, struct message *message);
+/* Fills a pack with operators' inputs that are constructed, not from a scene, and their outputs (docs/porting.md).
+ * contacts: those of contacts at their own time (rule `event-driven`). */
+bool oracle_edges(bool contacts, struct pack *pack, struct message *message);
 
 /* Fills a pack with what a run of the scene starts from: the model, the state, the stages of its steps. */
 bool oracle_start(const struct scene *scene, struct pack *pack, struct message *message);

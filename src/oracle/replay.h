@@ -21,5 +21,7 @@ void oracle_count_hits(const struct oracle_pair *pair, uint32_t *hits, uint32_t 
 /* The same where all vertices end as they should: which events are not reported. False if none is missing or invented.
  */
 bool oracle_judge_reports(const struct oracle_pair *pair, const char *unknown, char text[ORACLE_TEXT]);
+/* The same for a drift of the rule `event-driven`. */
+bool oracle_replay_events(const struct oracle_pair *pair, char text[ORACLE_TEXT]);
 
 #endif

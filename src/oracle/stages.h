@@ -11,6 +11,10 @@ bool oracle_run_crossing(struct oracle_stage *stage);
 bool oracle_run_exchange(struct oracle_stage *stage);
 bool oracle_run_long_sweep(struct oracle_stage *stage);
 bool oracle_run_sweep(struct oracle_stage *stage);
+bool oracle_run_contact_search(struct oracle_stage *stage);
+bool oracle_run_impulse(struct oracle_stage *stage);
+bool oracle_run_long_event_drift(struct oracle_stage *stage);
+bool oracle_run_event_drift(struct oracle_stage *stage);
 bool oracle_run_bond_force(struct oracle_stage *stage);
 bool oracle_run_bend_force(struct oracle_stage *stage);
 bool oracle_run_force(struct oracle_stage *stage);
@@ -36,5 +40,10 @@ bool oracle_edges_crossing(struct oracle_stage *stage);
 bool oracle_edges_exchange(struct oracle_stage *stage);
 bool oracle_edges_sweep(struct oracle_stage *stage);
 bool oracle_edges_bin(struct oracle_stage *stage);
+
+/* The same for contacts at their own time (edges_event.c). */
+bool oracle_edges_contact_search(struct oracle_stage *stage);
+bool oracle_edges_impulse(struct oracle_stage *stage);
+bool oracle_edges_event_drift(struct oracle_stage *stage);
 
 #endif

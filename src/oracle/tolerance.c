@@ -9,10 +9,9 @@
 
 #include "base/lattice.h"
 #include "mpc/rules/srd.h"
-#include "oracle/pair.h"
+#include "oracle/tolerance.h"
 
-/* Largest size in columns from .. to-1 of a table; 0 if there is none. */
-static double largest(const struct pack_table *t, uint32_t from, uint32_t to)
+double tolerance_largest(const struct pack_table *t, uint32_t from, uint32_t to)
 {
   double most = 0.0;
   for (uint32_t row = 0; t && row < t->rows; row++)
@@ -29,9 +28,9 @@ static double smallest(const struct pack_table *t, uint32_t column)
   return least;
 }
 
-static double size_of(const struct oracle_pair *p, const char *name)
+double tolerance_size_of(const struct oracle_pair *p, const char *name)
 {
-  return largest(oracle_sibling(p, name), 0, PACK_COLUMNS);
+  return tolerance_largest(oracle_sibling(p, name), 0, PACK_COLUMNS);
 }
 
 static const struct pack_table *of_model(const struct oracle_pair *p, const char *name)
@@ -43,27 +42,26 @@ enum vertex_column { MASS, BOND_LENGTH, SPRING, BENDING, FORCE };
 
 static double most_of(const struct oracle_pair *p, enum vertex_column column)
 {
-  return largest(of_model(p, "in.vertex"), (uint32_t)column, (uint32_t)column + (column == FORCE ? 3 : 1));
+  return tolerance_largest(of_model(p, "in.vertex"), (uint32_t)column, (uint32_t)column + (column == FORCE ? 3 : 1));
 }
 
-static double heaviest(const struct oracle_pair *p)
+double tolerance_heaviest(const struct oracle_pair *p)
 {
   return fmax(1.0, most_of(p, MASS));
 }
 
-static double lightest(const struct oracle_pair *p)
+double tolerance_lightest(const struct oracle_pair *p)
 {
   return smallest(of_model(p, "in.vertex"), MASS);
 }
 
 static double velocities(const struct oracle_pair *p)
 {
-  return fmax(size_of(p, "in.velocity"), fmax(size_of(p, "in.solvent"), size_of(p, "in.vertex")));
+  return fmax(tolerance_size_of(p, "in.velocity"),
+              fmax(tolerance_size_of(p, "in.solvent"), tolerance_size_of(p, "in.vertex")));
 }
 
 /* --- rules: what n S is; times u it is the tolerance ------------------------------------------------------------- */
-
-typedef double rule(const struct oracle_pair *p, uint32_t row, uint32_t column);
 
 static double exact(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
@@ -71,23 +69,17 @@ static double exact(const struct oracle_pair *p, uint32_t row, uint32_t column)
   return 0.0;
 }
 
-/* Ours is of doubles in any case, so in single precision only one side rounds to 24 bits, inputs included. */
-static bool single(const struct oracle_pair *p)
-{
-  return p->rounding > 0x1p-30;
-}
-
 /* What is exact in doubles is rounded once in single precision. */
 static double uniform(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
   (void)row, (void)column;
-  return single(p) ? p->rounding : 0.0;
+  return tolerance_single(p) ? p->rounding : 0.0;
 }
 
 static double copied_velocity(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
   (void)row, (void)column;
-  return single(p) ? p->rounding * velocities(p) : 0.0;
+  return tolerance_single(p) ? p->rounding * velocities(p) : 0.0;
 }
 
 /* Rounding the uniform u changes -2 ln u by 2u, and its root r by u/r, or sqrt(2u) where r is small. */
@@ -95,7 +87,7 @@ static double normal_pair(const struct oracle_pair *p, uint32_t row, uint32_t co
 {
   const double r = hypot(pack_value(p->ours, row, 0), pack_value(p->ours, row, 1));
   (void)column;
-  return 24.0 * 8.6 * p->rounding + (single(p) ? fmin(p->rounding / r, sqrt(2.0 * p->rounding)) : 0.0);
+  return 24.0 * 8.6 * p->rounding + (tolerance_single(p) ? fmin(p->rounding / r, sqrt(2.0 * p->rounding)) : 0.0);
 }
 
 /* The root sqrt(1-q) = sqrt((1+z)/2) amplifies the rounding of q. */
@@ -145,7 +137,7 @@ static bool four_of(const struct oracle_pair *p, const struct pack_table *event,
 static bool inherit(const struct oracle_pair *p, uint32_t until, double error[MOST_INHERITING])
 {
   const struct pack_table *event = oracle_sibling(p, "out.event"), *chain = of_model(p, "in.chain");
-  const double masses = 8.0 * heaviest(p) / lightest(p);
+  const double masses = 8.0 * tolerance_heaviest(p) / tolerance_lightest(p);
   uint32_t four[4];
   if (!event || event->columns < 7 || !chain || chain->rows > MOST_INHERITING)
     return false;
@@ -186,23 +178,25 @@ static double inherited_by_vertex(const struct oracle_pair *p, uint32_t vertex)
 
 static double hit(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
-  const double scale = column == 6 ? 8.0 * heaviest(p) * size_of(p, "in.velocity") : 1.0;
-  const double inherited = single(p) ? inherited_by_event(p, row) : 0.0;
+  const double scale = column == 6 ? 8.0 * tolerance_heaviest(p) * tolerance_size_of(p, "in.velocity") : 1.0;
+  const double inherited = tolerance_single(p) ? inherited_by_event(p, row) : 0.0;
   return (64.0 + inherited) * condition(p, row) * scale * p->rounding;
 }
 
 static double sweep_velocity(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
-  const double exchange =
-      single(p) ? inherited_by_vertex(p, row) : 64.0 * size_of(p, "bound.hit") * 8.0 * heaviest(p) / lightest(p);
+  const double exchange = tolerance_single(p) ? inherited_by_vertex(p, row)
+                                              : 64.0 * tolerance_size_of(p, "bound.hit") * 8.0 * tolerance_heaviest(p) /
+                                                    tolerance_lightest(p);
   (void)column;
-  return (8.0 + exchange) * size_of(p, "in.velocity") * p->rounding;
+  return (8.0 + exchange) * tolerance_size_of(p, "in.velocity") * p->rounding;
 }
 
 static double sweep_position(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
-  const double time = size_of(p, "in.time");
-  return 1.0 + LATTICE_PER_A0 * time * (4.0 * size_of(p, "in.velocity") * p->rounding + sweep_velocity(p, row, column));
+  const double time = tolerance_size_of(p, "in.time");
+  return 1.0 + LATTICE_PER_A0 * time *
+                   (4.0 * tolerance_size_of(p, "in.velocity") * p->rounding + sweep_velocity(p, row, column));
 }
 
 /* --- one exchange ------------------------------------------------------------------------------------------------ */
@@ -296,26 +290,36 @@ static double force(const struct oracle_pair *p, uint32_t row, uint32_t column)
   return bond_force(p, row, column) + bend_force(p, row, column) + 14.0 * most_of(p, FORCE) * p->rounding;
 }
 
+double tolerance_strongest(const struct oracle_pair *p)
+{
+  double longest, shortest;
+  bonds(p, &longest, &shortest);
+  return 4.0 * most_of(p, SPRING) * (longest + most_of(p, BOND_LENGTH)) +
+         (shortest > 0.0 ? 8.0 * most_of(p, BENDING) / shortest : 0.0) + most_of(p, FORCE);
+}
+
 static double kick(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
   (void)row, (void)column;
-  return 8.0 * (velocities(p) + size_of(p, "in.time") * size_of(p, "in.force") / lightest(p)) * p->rounding;
+  return 8.0 *
+         (velocities(p) + tolerance_size_of(p, "in.time") * tolerance_size_of(p, "in.force") / tolerance_lightest(p)) *
+         p->rounding;
 }
 
 static double acceleration(const struct oracle_pair *p)
 {
-  return largest(of_model(p, "in.reals"), 3, 6);
+  return tolerance_largest(of_model(p, "in.reals"), 3, 6);
 }
 
 static double stream_velocity(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
   (void)row, (void)column;
-  return 4.0 * (velocities(p) + acceleration(p) * size_of(p, "in.time")) * p->rounding;
+  return 4.0 * (velocities(p) + acceleration(p) * tolerance_size_of(p, "in.time")) * p->rounding;
 }
 
 static double stream_position(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
-  const double t = size_of(p, "in.time");
+  const double t = tolerance_size_of(p, "in.time");
   (void)row, (void)column;
   return 1.0 + LATTICE_PER_A0 * 10.0 * (velocities(p) * t + 0.5 * acceleration(p) * t * t) * p->rounding;
 }
@@ -323,50 +327,51 @@ static double stream_position(const struct oracle_pair *p, uint32_t row, uint32_
 static double members(const struct oracle_pair *p)
 {
   const struct pack_table *load = oracle_sibling(p, "out.load");
-  return largest(load ? load : oracle_sibling(p, "in.load"), 0, 1);
+  return tolerance_largest(load ? load : oracle_sibling(p, "in.load"), 0, 1);
 }
 
 static double momentum(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
   const double n = members(p);
   (void)row, (void)column;
-  return 0.5 * n + 1.0 + CELL_MOMENTUM_SCALE * n * (n + 1.0) * heaviest(p) * velocities(p) * p->rounding;
+  return 0.5 * n + 1.0 + CELL_MOMENTUM_SCALE * n * (n + 1.0) * tolerance_heaviest(p) * velocities(p) * p->rounding;
 }
 
 static double center(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
   (void)row, (void)column;
-  return 8.0 * largest(p->ours, 0, 3) * p->rounding;
+  return 8.0 * tolerance_largest(p->ours, 0, 3) * p->rounding;
 }
 
 static double relative(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
-  const double n = members(p), w = velocities(p) + size_of(p, "in.center");
+  const double n = members(p), w = velocities(p) + tolerance_size_of(p, "in.center");
   (void)row, (void)column;
-  return 0.5 * n + 1.0 + 0x1p32 * n * (n + 16.0) * 3.0 * heaviest(p) * w * w * p->rounding;
+  return 0.5 * n + 1.0 + 0x1p32 * n * (n + 16.0) * 3.0 * tolerance_heaviest(p) * w * w * p->rounding;
 }
 
 static double rescale(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
   (void)row, (void)column;
-  return (p->ours->rows + 10.0) * largest(p->ours, 0, 1) * p->rounding;
+  return (p->ours->rows + 10.0) * tolerance_largest(p->ours, 0, 1) * p->rounding;
 }
 
 static double boltzmann(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
   (void)row, (void)column;
-  return 256.0 * largest(p->ours, 0, 1) * p->rounding;
+  return 256.0 * tolerance_largest(p->ours, 0, 1) * p->rounding;
 }
 
 static double rotate(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
   (void)row, (void)column;
-  return 24.0 * 3.0 * size_of(p, "in.factor") * (velocities(p) + size_of(p, "in.center")) * p->rounding;
+  return 24.0 * 3.0 * tolerance_size_of(p, "in.factor") * (velocities(p) + tolerance_size_of(p, "in.center")) *
+         p->rounding;
 }
 
 static const struct {
   const char *operator_name, *table;
-  rule *tolerance;
+  tolerance_rule *tolerance;
 } rules[] = {
     {"random", "out.uniform", uniform},
     {"random", "out.normal", normal_pair},
@@ -380,6 +385,15 @@ static const struct {
     {"sweep", "out.hit", hit},
     {"sweep", "out.position", sweep_position},
     {"sweep", "out.velocity", sweep_velocity},
+    {"impulse", "out.answer", tolerance_impulse_answer},
+    {"impulse", "out.momentum", tolerance_impulse_momentum},
+    {"impulse", "out.p0", tolerance_impulse_velocity},
+    {"impulse", "out.p1", tolerance_impulse_velocity},
+    {"impulse", "out.q0", tolerance_impulse_velocity},
+    {"impulse", "out.q1", tolerance_impulse_velocity},
+    {"event_drift", "out.hit", tolerance_event_hit},
+    {"event_drift", "out.position", tolerance_event_position},
+    {"event_drift", "out.velocity", tolerance_event_velocity},
     {"bond_force", "out.force", bond_force},
     {"bend_force", "out.force", bend_force},
     {"force", "out.force", force},
@@ -400,10 +414,10 @@ static const struct {
 
 double oracle_tolerance(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
-  rule *found = exact;
+  tolerance_rule *found = exact;
   const char *operator_name = p->ours->place.operator_name;
-  if (strcmp(operator_name, "long_sweep") == 0)
-    operator_name = "sweep";
+  if (strncmp(operator_name, "long_", strlen("long_")) == 0)
+    operator_name += strlen("long_");
   for (size_t k = 0; k < sizeof rules / sizeof *rules; k++)
     if (strcmp(rules[k].operator_name, operator_name) == 0 && strcmp(rules[k].table, p->ours->name) == 0)
       found = rules[k].tolerance;

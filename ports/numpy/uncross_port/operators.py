@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from . import fiber, random, solvent
+from . import events, fiber, random, solvent
 from . import model as models
 from . import sweep as sweeps
 from .pack import Tables
@@ -58,6 +58,29 @@ def sweep(model, step, given):
     position, velocity, event, hit = sweeps.sweep(
         model, given["order"][:, 0], given["position"], given["velocity"], scalar(given["time"])
     )
+    return {"event": event, "hit": hit, "position": position, "velocity": velocity}
+
+
+def contact_search(model, step, given):
+    vectors = zip(*(given[name].tolist() for name in ("p", "q", "w", "p_rate", "q_rate", "w_rate")))
+    return {"tick": column([events.first_contact(pair, int(first)) for pair, first in zip(vectors, given["from"][:, 0])])}
+
+
+FOUR = "p0", "p1", "q0", "q1"
+
+
+def impulse(model, step, given):
+    velocity = np.stack([given[end] for end in FOUR], axis=1).astype(float)
+    force = np.stack([given[f"force_{end}"] for end in FOUR], axis=1)
+    answer, momentum, after = np.zeros(len(velocity), np.int64), np.zeros(len(velocity)), velocity.copy()
+    for row, (s, t) in enumerate(given["contact"]):
+        how = s, t, given["normal"][row], scalar(given["tau"][row : row + 1])
+        answer[row], momentum[row], after[row] = events.impulse(given["mass"][row], velocity[row], force[row], *how)
+    return {"answer": column(answer), "momentum": column(momentum)} | {end: after[:, k] for k, end in enumerate(FOUR)}
+
+
+def event_drift(model, step, given):
+    position, velocity, event, hit = events.drift(model, given["position"], given["velocity"], *given["time"][0])
     return {"event": event, "hit": hit, "position": position, "velocity": velocity}
 
 
@@ -141,6 +164,10 @@ OPERATORS = {
     "exchange": exchange,
     "long_sweep": sweep,
     "sweep": sweep,
+    "contact_search": contact_search,
+    "impulse": impulse,
+    "long_event_drift": event_drift,
+    "event_drift": event_drift,
     "bond_force": bond_force,
     "bend_force": bend_force,
     "force": force,

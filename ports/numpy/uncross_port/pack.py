@@ -33,6 +33,10 @@ COLUMNS |= {
     "chain": "next prev fiber",
     "run": "steps scheme thermostat hydrodynamics",
     "counters": "step lag",
+    "tick": "tick",
+    "tau": "tau",
+    "answer": "answer",
+    "rule": "event_driven",
 }
 COLUMNS_AT = {
     ("swap", "out.order"): "particle",
@@ -44,8 +48,17 @@ COLUMNS_AT = {
     ("exchange", "in.normal"): "x y z",
     ("random", "in.address"): "purpose draw step entity",
     ("permutation", "in.address"): "purpose draw step size",
+    ("contact_search", "in.from"): "tick",
+    ("impulse", "in.normal"): "x y z",
+    ("impulse", "in.mass"): "p0 p1 q0 q1",
+    ("impulse", "in.contact"): "s t",
+    ("impulse", "out.momentum"): "momentum",
     ("model", "in.vertex"): "mass bond_length spring bending force_x force_y force_z",
 }
+for drift in ("event_drift", "long_event_drift"):
+    COLUMNS_AT[drift, "in.time"] = "dt start"
+    COLUMNS_AT[drift, "out.event"] = "bond other image_x image_y image_z tick"
+    COLUMNS_AT[drift, "out.hit"] = "s t normal_x normal_y normal_z momentum"
 
 
 class Tables(dict):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import xxhash
 
-from . import fiber, operators, solvent, sweep
+from . import events, fiber, operators, solvent, sweep
 from .lattice import UNIT, dot
 
 # Stages of a step: name and duration in steps. A collision has none; other steps are drift, force, kick.
@@ -18,6 +18,7 @@ COLLIDING = {
     "drift-split": [("drift", 0.5), ("collide", None), ("drift", 0.5), ("force", None), ("kick", 1.0)],
 }
 THERMOSTATS = ["none", "rescale", "maxwell-boltzmann"]
+CONTACT_COLUMNS = ["contacts", "contacts_hash"]
 COLUMNS = "momentum_x momentum_y momentum_z solvent_kinetic vertex_kinetic bond bend".split()
 
 
@@ -46,6 +47,8 @@ class System:
         self.vertex, self.vertex_velocity = start["vertex"], start["vertex_velocity"]
         self.finished, self.lag = (int(x) for x in start["counters"][0])
         self.force = None
+        self.event_driven = bool(start["rule"].any())
+        self.contacts = []  # rows of events since the last row of the trace
 
     def stream(self):
         if self.lag:
@@ -54,10 +57,16 @@ class System:
             self.lag = 0
 
     def drift(self, share, sweep_number):
+        self.lag += int(2 * share)
+        if self.event_driven:
+            time = share * self.model.dt
+            start = sweep_number * time - 0.5 * self.model.dt
+            moved = events.drift(self.model, self.vertex, self.vertex_velocity, time, start)
+            self.vertex, self.vertex_velocity, self.contacts = moved[:3]
+            return
         order = fiber.vertex_order(self.model, self.finished + 1, sweep_number)
         moved = sweep.sweep(self.model, order, self.vertex, self.vertex_velocity, share * self.model.dt)
         self.vertex, self.vertex_velocity = moved[:2]
-        self.lag += int(2 * share)
 
     def kick(self, share):
         self.vertex_velocity = fiber.kick(self.model, self.vertex_velocity, self.force, share * self.model.dt)
@@ -112,6 +121,13 @@ class System:
             digest.update(np.hstack([position, velocity.view(np.int64)]).astype("<i8").tobytes())
         return digest.hexdigest()
 
+    def take_contacts(self):
+        """Number of contacts since it was asked last, and the hash of their rows; nothing where drifts have no events."""
+        if not self.event_driven:
+            return []
+        rows, self.contacts = self.contacts, []
+        return [len(rows), xxhash.xxh64(np.asarray(rows, "<i8").tobytes()).hexdigest()]
+
     def sums(self):
         """Momentum, kinetic energies of solvent and vertices, bond and bend energy: plain sums."""
         model = self.model
@@ -131,19 +147,19 @@ class System:
 
 
 def trace(model, start):
-    """Rows of a trace: step, stage, hash, sums. start: {name: table} of the operator `start`."""
+    """Rows of a trace: step, stage, hash, sums, contacts. start: {name: table} of the operator `start`."""
     system = System(model, start)
-    yield 0, "start", system.state_hash(), system.sums()
+    yield 0, "start", system.state_hash(), system.sums(), system.take_contacts()
     for step in range(1, system.scene.steps + 1):
         for stage in system.step():
-            yield step, stage, system.state_hash(), system.sums()
+            yield step, stage, system.state_hash(), system.sums(), system.take_contacts()
 
 
 def write_trace(start, path):
     """The trace of a run as CSV. start: tables of the pack of `uncross oracle start`."""
-    model = operators.model_of(start)
+    model, tables = operators.model_of(start), operators.inputs(start["start", 0])
     with open(path, "w", encoding="ascii", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
-        table.writerow(["step", "stage", "state_hash", *COLUMNS])
-        for number, stage, state_hash, sums in trace(model, operators.inputs(start["start", 0])):
-            table.writerow([number, stage, state_hash, *(f"{value:.17g}" for value in sums)])
+        table.writerow(["step", "stage", "state_hash", *COLUMNS, *(CONTACT_COLUMNS if tables["rule"].any() else [])])
+        for number, stage, state_hash, sums, contacts in trace(model, tables):
+            table.writerow([number, stage, state_hash, *(f"{value:.17g}" for value in sums), *contacts])

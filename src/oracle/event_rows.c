@@ -1,0 +1,183 @@
+#include "oracle/event_rows.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "contact/rule.h"
+#include "contact/takeoff.h"
+#include "oracle/columns.h"
+
+const char *const oracle_ends[4] = {"p0", "p1", "q0", "q1"};
+
+/* --- searches ---------------------------------------------------------------------------------------------------- */
+
+/* The points of one kind of all searches: they stand at `offset` in each. */
+static void put_points(struct oracle_stage *g, const char *name, const struct oracle_search *s, size_t offset,
+                       uint32_t n)
+{
+  int64_t *to = oracle_put_integers(g, name, "x y z", n);
+  for (uint32_t k = 0; to && k < n; k++) {
+    struct point p;
+    memcpy(&p, (const char *)&s[k].pair + offset, sizeof p);
+    to[3 * k] = p.x, to[3 * k + 1] = p.y, to[3 * k + 2] = p.z;
+  }
+}
+
+void oracle_put_searches(struct oracle_stage *g, const struct oracle_search *s, uint32_t n)
+{
+  put_points(g, "in.p", s, offsetof(struct flight_pair, p), n);
+  put_points(g, "in.q", s, offsetof(struct flight_pair, q), n);
+  put_points(g, "in.w", s, offsetof(struct flight_pair, w), n);
+  put_points(g, "in.p_rate", s, offsetof(struct flight_pair, p_rate), n);
+  put_points(g, "in.q_rate", s, offsetof(struct flight_pair, q_rate), n);
+  put_points(g, "in.w_rate", s, offsetof(struct flight_pair, w_rate), n);
+  int64_t *from = oracle_put_integers(g, "in.from", "tick", n);
+  for (uint32_t k = 0; from && k < n; k++)
+    from[k] = s[k].from;
+  int64_t *tick = oracle_put_integers(g, "out.tick", "tick", n);
+  for (uint32_t k = 0; tick && k < n; k++)
+    tick[k] = flight_contact(&s[k].pair, s[k].from);
+}
+
+/* --- impulses ---------------------------------------------------------------------------------------------------- */
+
+/* A vector of one of the four ends, in each row: it stands at `offset`. */
+static void put_vectors(struct oracle_stage *g, const char *kind, const struct oracle_impulse *e, size_t offset,
+                        int end, uint32_t n)
+{
+  char name[PACK_WORD];
+  snprintf(name, sizeof name, "%s%s", kind, oracle_ends[end]);
+  double *to = oracle_put_reals(g, name, "x y z", n);
+  for (uint32_t k = 0; to && k < n; k++) {
+    struct vec3 v;
+    memcpy(&v, (const char *)&e[k] + offset + (size_t)end * sizeof v, sizeof v);
+    to[3 * k] = v.x, to[3 * k + 1] = v.y, to[3 * k + 2] = v.z;
+  }
+}
+
+static void put_inputs(struct oracle_stage *g, const struct oracle_impulse *e, uint32_t n)
+{
+  for (int end = 0; end < 4; end++)
+    put_vectors(g, "in.", e, offsetof(struct oracle_impulse, velocity), end, n);
+  for (int end = 0; end < 4; end++)
+    put_vectors(g, "in.force_", e, offsetof(struct oracle_impulse, force), end, n);
+  double *mass = oracle_put_reals(g, "in.mass", "p0 p1 q0 q1", n);
+  for (uint32_t k = 0; mass && k < n; k++)
+    memcpy(&mass[4 * (size_t)k], e[k].mass, sizeof e[k].mass);
+  double *contact = oracle_put_reals(g, "in.contact", "s t", n);
+  for (uint32_t k = 0; contact && k < n; k++)
+    contact[2 * k] = e[k].s, contact[2 * k + 1] = e[k].t;
+  double *normal = oracle_put_reals(g, "in.normal", "x y z", n);
+  for (uint32_t k = 0; normal && k < n; k++)
+    normal[3 * k] = e[k].normal.x, normal[3 * k + 1] = e[k].normal.y, normal[3 * k + 2] = e[k].normal.z;
+  double *tau = oracle_put_reals(g, "in.tau", "tau", n);
+  for (uint32_t k = 0; tau && k < n; k++)
+    tau[k] = e[k].tau;
+}
+
+static enum contact_answer exchange(struct oracle_impulse *e, double *momentum)
+{
+  struct contact_end end[4];
+  struct contact_geometry at = {e->s, e->t, e->normal, 0.0};
+  for (int k = 0; k < 4; k++)
+    end[k] = (struct contact_end){&e->velocity[k], 1.0 / e->mass[k], e->force[k]};
+  const enum contact_answer answer = impulse_at_own_time(end, &at, e->tau);
+  *momentum = at.impulse;
+  return answer;
+}
+
+void oracle_put_impulses(struct oracle_stage *g, const struct oracle_impulse *before, uint32_t n)
+{
+  struct oracle_impulse *e = malloc(((size_t)n + 1) * sizeof *e);
+  double *momentum = malloc(((size_t)n + 1) * sizeof *momentum);
+  put_inputs(g, before, n);
+  int64_t *answer = oracle_put_integers(g, "out.answer", "answer", n);
+  g->pack->failed |= !e || !momentum;
+  for (uint32_t k = 0; !g->pack->failed && k < n; k++) {
+    e[k] = before[k];
+    answer[k] = exchange(&e[k], &momentum[k]);
+  }
+  double *dp = oracle_put_reals(g, "out.momentum", "momentum", n);
+  if (!g->pack->failed) {
+    memcpy(dp, momentum, n * sizeof *dp);
+    for (int end = 0; end < 4; end++)
+      put_vectors(g, "out.", e, offsetof(struct oracle_impulse, velocity), end, n);
+  }
+  free(e);
+  free(momentum);
+}
+
+/* --- events ------------------------------------------------------------------------------------------------------ */
+
+void oracle_put_events(struct oracle_stage *g, const struct oracle_events *e)
+{
+  int64_t *who = oracle_put_integers(g, "out.event", "bond other image_x image_y image_z tick", e->count);
+  for (uint32_t k = 0; who && k < e->count; k++) {
+    const struct contact_event *v = &e->at[k].event;
+    const int64_t row[6] = {v->moving_bond, v->standing_bond, v->image[0], v->image[1], v->image[2], e->at[k].tick};
+    memcpy(&who[6 * (size_t)k], row, sizeof row);
+  }
+  double *how = oracle_put_reals(g, "out.hit", "s t normal_x normal_y normal_z momentum", e->count);
+  for (uint32_t k = 0; how && k < e->count; k++) {
+    const struct contact_event *v = &e->at[k].event;
+    const double row[6] = {v->hit.s, v->hit.s_standing, v->hit.normal.x, v->hit.normal.y, v->hit.normal.z, v->impulse};
+    memcpy(&how[6 * (size_t)k], row, sizeof row);
+  }
+  double *condition = oracle_put_reals(g, "bound.hit", "condition", e->count);
+  for (uint32_t k = 0; condition && k < e->count; k++)
+    condition[k] = e->at[k].condition;
+}
+
+/* Of nearly parallel bonds, s and t are inexact. */
+static double condition_of(const struct oracle_stage *g, const struct contact_event *v, int32_t tick)
+{
+  const struct model *m = g->model;
+  const uint32_t four[4] = {v->moving_bond, (uint32_t)m->next[v->moving_bond], v->standing_bond,
+                            (uint32_t)m->next[v->standing_bond]};
+  struct point at[4];
+  for (int k = 0; k < 4; k++)
+    at[k] = flight_place(g->state->position[four[k]],
+                         takeoff_rate_now(g->state, m, &g->work->contact.flights, four[k]), tick);
+  const struct vec3 p = point_difference(at[1], at[0]), q = point_difference(at[3], at[2]);
+  const double parallel = vec3_norm(p) * vec3_norm(q) / vec3_norm(vec3_cross(p, q));
+  return parallel * parallel * (1.0 + (vec3_norm(p) + vec3_norm(q)) / fmin(vec3_norm(p), vec3_norm(q)));
+}
+
+static void take_event(void *context, const struct contact_event *v)
+{
+  struct oracle_events *e = context;
+  struct oracle_event *grown = realloc(e->at, (e->count + 1) * sizeof *grown);
+  e->failed |= !grown;
+  if (!grown)
+    return;
+  e->at = grown;
+  const int32_t tick = (int32_t)(v->hit.time * FLIGHT_TICKS);
+  e->at[e->count++] = (struct oracle_event){*v, tick, condition_of(e->stage, v, tick)};
+}
+
+/* The first drift of a step begins half a time step before its middle. So here a step has twice this length. */
+bool oracle_drift_at_once(struct oracle_stage *g, double dt, double start, const struct contact_log *log)
+{
+  struct model m = *g->model;
+  m.time_step = -2.0 * start;
+  return event_driven_rule.drift(g->state, &m, &g->work->contact, dt, g->place.step, 0, log, &g->work->fault);
+}
+
+bool oracle_event_drift_for(struct oracle_stage *g, double dt, double start)
+{
+  struct oracle_events events = {.stage = g};
+  const struct contact_log log = {take_event, &events};
+  double *time = oracle_put_reals(g, "in.time", "dt start", 1);
+  if (time)
+    time[0] = dt, time[1] = start;
+  oracle_put_points(g, "in.position", g->state->position, g->state->vertices);
+  oracle_put_vectors(g, "in.velocity", g->state->velocity, g->state->vertices);
+  const bool ok = oracle_drift_at_once(g, dt, start, &log);
+  oracle_put_events(g, &events);
+  oracle_put_points(g, "out.position", g->state->position, g->state->vertices);
+  oracle_put_vectors(g, "out.velocity", g->state->velocity, g->state->vertices);
+  g->pack->failed |= events.failed;
+  free(events.at);
+  return ok;
+}

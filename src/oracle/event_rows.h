@@ -1,0 +1,51 @@
+/* Tables of the operators `contact_search`, `impulse` and `event_drift`: the rule `event-driven`, part by part. */
+#ifndef UNCROSS_ORACLE_EVENT_ROWS_H
+#define UNCROSS_ORACLE_EVENT_ROWS_H
+
+#include "contact/flight.h"
+#include "contact/impulse.h"
+#include "oracle/operators.h"
+
+/* A search for the first contact of two bonds, from a tick on. */
+struct oracle_search {
+  struct flight_pair pair;
+  int32_t from;
+};
+
+/* What the impulse of a contact is computed from: the ends of the first bond, then of the other. */
+struct oracle_impulse {
+  struct vec3 velocity[4], force[4]; /* a0/t0, kT/a0 */
+  double mass[4];
+  double s, t;
+  struct vec3 normal;
+  double tau; /* from the middle between two kicks, t0 */
+};
+
+/* Contacts of a drift, as they were answered. */
+struct oracle_events {
+  const struct oracle_stage *stage;
+  struct oracle_event {
+    struct contact_event event;
+    int32_t tick;
+    double condition; /* how much its data amplify rounding (docs/porting.md, Tolerances) */
+  } * at;
+  uint32_t count;
+  bool failed; /* memory was short */
+};
+
+/* Names of the four ends in tables. */
+extern const char *const oracle_ends[4];
+
+/* Puts n searches with their ticks; n impulses with the velocities after them; the events of a drift. */
+void oracle_put_searches(struct oracle_stage *g, const struct oracle_search *search, uint32_t n);
+void oracle_put_impulses(struct oracle_stage *g, const struct oracle_impulse *before, uint32_t n);
+void oracle_put_events(struct oracle_stage *g, const struct oracle_events *events);
+
+/* The drift, in one piece of `dt` t0, that begins `start` t0 after the middle between two kicks; the state is advanced.
+ * False, with work->fault or pack->failed saying why. */
+bool oracle_event_drift_for(struct oracle_stage *stage, double dt, double start);
+
+/* The same without tables. log: told of each contact, or NULL. */
+bool oracle_drift_at_once(struct oracle_stage *stage, double dt, double start, const struct contact_log *log);
+
+#endif

@@ -1,0 +1,29 @@
+/* Inside the oracle: sizes of what a pack's tables hold, from which tolerances are made (docs/porting.md). */
+#ifndef UNCROSS_ORACLE_TOLERANCE_H
+#define UNCROSS_ORACLE_TOLERANCE_H
+
+#include "oracle/pair.h"
+
+/* The largest size in columns from .. to - 1; 0 for no table. */
+double tolerance_largest(const struct pack_table *table, uint32_t from, uint32_t to);
+
+/* The same of all of a table beside the pair's. */
+double tolerance_size_of(const struct oracle_pair *pair, const char *name);
+
+/* Largest and smallest mass; the largest force on a vertex where vertices stand as `in.position` has them. */
+double tolerance_heaviest(const struct oracle_pair *pair);
+double tolerance_lightest(const struct oracle_pair *pair);
+double tolerance_strongest(const struct oracle_pair *pair);
+
+/* Ours is of doubles in any case, so in single precision only one side rounds to 24 bits, inputs included. */
+static inline bool tolerance_single(const struct oracle_pair *p)
+{
+  return p->rounding > 0x1p-30;
+}
+
+/* Bounds for the operators of contacts at their own time; each is that of one table (tolerance_event.c). */
+typedef double tolerance_rule(const struct oracle_pair *pair, uint32_t row, uint32_t column);
+tolerance_rule tolerance_impulse_answer, tolerance_impulse_momentum, tolerance_impulse_velocity, tolerance_event_hit,
+    tolerance_event_velocity, tolerance_event_position;
+
+#endif
