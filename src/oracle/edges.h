@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "oracle/dice.h"
+#include "base/vec3.h"
 #include "oracle/operators.h"
 
 /* Fibers of two and of three vertices, as many as the states of edges.c need. */
@@ -38,6 +38,7 @@ enum { EDGES_NEEDLES = 20, EDGES_STIFF = 10, EDGES_RINGS = 4 };
   }
 
 /* A unit vector, along an axis now and then; a place along a bond, an end now and then. */
+struct dice; /* oracle/dice.h */
 struct vec3 edges_normal(struct dice *d);
 double edges_place(struct dice *d);
 

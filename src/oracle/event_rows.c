@@ -137,8 +137,8 @@ static double condition_of(const struct oracle_stage *g, const struct contact_ev
                             (uint32_t)m->next[v->standing_bond]};
   struct point at[4];
   for (int k = 0; k < 4; k++)
-    at[k] = flight_place(g->state->position[four[k]],
-                         takeoff_rate_now(g->state, m, &g->work->contact.flights, four[k]), tick);
+    at[k] = flight_place(g->state->position[four[k]], takeoff_rate_now(g->state, m, &g->work->contact.flights, four[k]),
+                         tick);
   const struct vec3 p = point_difference(at[1], at[0]), q = point_difference(at[3], at[2]);
   const double parallel = vec3_norm(p) * vec3_norm(q) / vec3_norm(vec3_cross(p, q));
   return parallel * parallel * (1.0 + (vec3_norm(p) + vec3_norm(q)) / fmin(vec3_norm(p), vec3_norm(q)));

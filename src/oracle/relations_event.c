@@ -85,36 +85,17 @@ static double exchanged(const struct evidence_part *part, uint32_t row, uint32_t
   return strcmp(name, "momentum") == 0 ? impulse : strcmp(name, "answer") == 0 ? (double)answer : NAN;
 }
 
-/* A guess of the answers must make the impulses, too: many bugs make the same answers. */
-static bool makes_impulses(const struct evidence *e, const struct event_twist *t)
-{
-  for (uint32_t k = 0; k < e->parts; k++) {
-    struct evidence_part part = e->part[k];
-    part.pair.ours = oracle_sibling(&part.pair, "out.momentum");
-    part.pair.theirs = oracle_sibling_of_theirs(&e->part[k].pair, "out.momentum");
-    if (!part.pair.ours || !part.pair.theirs || part.pair.theirs->columns != 1)
-      continue;
-    for (uint32_t row = 0; row < oracle_common_rows(&part.pair); row++)
-      if (!oracle_guessed(&part.pair, row, 0, exchanged(&part, row, 0, t)))
-        return false;
-  }
-  return true;
-}
-
 static bool impulses(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
 {
   const struct event_twist *t = &event_impulse_twists[k];
   if (!t->text)
     return false;
   relation_fill(e, exchanged, t);
-  if (strcmp(e->part[0].pair.ours->name, "out.answer") == 0 && !makes_impulses(e, t))
-    for (size_t j = 0; j < (size_t)e->rows * e->columns; j++)
-      e->guess[j] = NAN;
   return relation_say(text, "%s", t->text);
 }
 
 const struct relation oracle_relations_event[] = {
-    {"contact_search", "out.tick", searches, 1},
-    {"impulse", NULL, impulses, 1},
+    {"contact_search", "out.tick", searches, .together = false},
+    {"impulse", NULL, impulses, .together = true}, /* many bugs make the same answers */
     {.make = NULL},
 };
