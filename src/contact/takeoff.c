@@ -77,7 +77,7 @@ static bool renew_late(const struct state *state, const struct model *model, str
   const struct vec3 frame = model_frame_velocity(model);
   struct neighbors *nb = &contact->neighbors;
   struct renewal r = {.count = 0};
-  struct due due[2];
+  struct due due[2] = {{0, {0}}, {0, {0}}};
   uint32_t now = 0;
   list_due(state, contact, 0, &due[now]);
   for (uint32_t first = 0; first < state->vertices; first += BLOCK, now = !now) {

@@ -62,7 +62,7 @@ static void find_places(const struct structure *s, struct place *place, int32_t 
 /* To be freed; NULL if memory is short. */
 static struct place *places_of(const struct structure *s)
 {
-  struct place *place = malloc((s->particles + (size_t)1) * sizeof *place);
+  struct place *place = calloc(s->particles + (size_t)1, sizeof *place);
   int32_t *number = malloc((s->particles + (size_t)1) * sizeof *number);
   if (place && number)
     find_places(s, place, number);
