@@ -31,17 +31,23 @@ fn bond(scene: &Scene, j: usize, r: Vector) -> Vector {
 /// Bends, vertex by vertex, where both bonds exist and kappa is not 0.
 pub fn add_bends(scene: &Scene, position: &[Point], force: &mut [Vector]) {
     for j in 0..position.len() {
-        if let (Some(prev), Some(next)) = (scene.prev[j], scene.next[j]) {
-            if scene.bending[j] != 0.0 {
-                let before = between(position[j], position[prev]);
-                let after = between(position[next], position[j]);
-                let (a, b) = bend(scene.bending[j], before, after);
-                accumulate(&mut force[prev], a);
-                accumulate(&mut force[next], b);
-                accumulate(&mut force[j], add(a, b).map(|x| -x));
-            }
+        if let (Some(prev), Some(next), Some((a, b))) = (scene.prev[j], scene.next[j], bend_at(scene, position, j)) {
+            accumulate(&mut force[prev], a);
+            accumulate(&mut force[next], b);
+            accumulate(&mut force[j], add(a, b).map(|x| -x));
         }
     }
+}
+
+/// A and B of the bend of vertex j, if it has one.
+fn bend_at(scene: &Scene, position: &[Point], j: usize) -> Option<(Vector, Vector)> {
+    let (prev, next) = (scene.prev[j]?, scene.next[j]?);
+    if scene.bending[j] == 0.0 {
+        return None;
+    }
+    let before = between(position[j], position[prev]);
+    let after = between(position[next], position[j]);
+    Some(bend(scene.bending[j], before, after))
 }
 
 /// The forces on the vertex before and on the one after.
@@ -53,6 +59,24 @@ fn bend(kappa: f64, r0: Vector, r1: Vector) -> (Vector, Vector) {
     let a = scale(-kappa * inverse0, subtract(u1, scale(c, u0)));
     let b = scale(kappa * inverse1, subtract(u0, scale(c, u1)));
     (a, b)
+}
+
+/// The force on one vertex alone, in the order of docs/porting.md, "Contacts at their own time", *Forces*.
+pub fn on_vertex(scene: &Scene, position: &[Point], j: usize) -> Vector {
+    let pull = |first: usize, last: usize| bond(scene, first, between(position[last], position[first]));
+    let before = scene.prev[j].map_or([0.0; 3], |prev| pull(prev, j));
+    let after = scene.next[j].map_or([0.0; 3], |next| pull(j, next));
+    let mut force = add(subtract(scene.constant_force[j], before), after);
+    if let Some((_, b)) = scene.prev[j].and_then(|prev| bend_at(scene, position, prev)) {
+        accumulate(&mut force, b);
+    }
+    if let Some((a, b)) = bend_at(scene, position, j) {
+        force = subtract(force, add(a, b));
+    }
+    if let Some((a, _)) = scene.next[j].and_then(|next| bend_at(scene, position, next)) {
+        accumulate(&mut force, a);
+    }
+    force
 }
 
 /// The constant force, plus bonds, plus bends.
