@@ -7,22 +7,32 @@ fn accumulate(force: &mut Vector, part: Vector) {
     *force = add(*force, part);
 }
 
-/// Bond by bond, in the order of their numbers.
+/// Bond by bond, in the order of their numbers, as alone in `bond_force`.
 pub fn add_bonds(scene: &Scene, position: &[Point], force: &mut [Vector]) {
+    add_bonds_by(|j, r| bond(scene, j, r), scene, position, force);
+}
+
+fn add_bonds_by(pull: impl Fn(usize, Vector) -> Vector, scene: &Scene, position: &[Point], force: &mut [Vector]) {
     for j in 0..position.len() {
         if let Some(next) = scene.next[j] {
-            let pull = bond(scene, j, between(position[next], position[j]));
+            let pull = pull(j, between(position[next], position[j]));
             accumulate(&mut force[j], pull);
             accumulate(&mut force[next], pull.map(|x| -x));
         }
     }
 }
 
-/// The force on vertex j, whose bond is R. Kinds with l0 = 0 and kappa = 0 skip the root.
+/// The force on vertex j, whose bond is R. Kinds with l0 = 0 skip the root.
 fn bond(scene: &Scene, j: usize, r: Vector) -> Vector {
-    if scene.bond_length[j] == 0.0 && scene.bending[j] == 0.0 {
-        return scale(scene.spring[j], r);
+    if scene.bond_length[j] == 0.0 {
+        scale(scene.spring[j], r)
+    } else {
+        stretched(scene, j, r)
     }
+}
+
+/// (k (l - l0)) u
+fn stretched(scene: &Scene, j: usize, r: Vector) -> Vector {
     let length = dot(r, r).sqrt();
     let unit = scale(1.0 / length, r);
     scale(scene.spring[j] * (length - scene.bond_length[j]), unit)
@@ -79,10 +89,11 @@ pub fn on_vertex(scene: &Scene, position: &[Point], j: usize) -> Vector {
     force
 }
 
-/// The constant force, plus bonds, plus bends.
+/// The constant force, plus bonds, plus bends. Here kinds with bends take the root, whatever l0.
 pub fn all(scene: &Scene, position: &[Point]) -> Vec<Vector> {
     let mut force = scene.constant_force.clone();
-    add_bonds(scene, position, &mut force);
+    let pull = |j: usize, r: Vector| if scene.bending[j] == 0.0 { bond(scene, j, r) } else { stretched(scene, j, r) };
+    add_bonds_by(pull, scene, position, &mut force);
     add_bends(scene, position, &mut force);
     force
 }
