@@ -2,6 +2,7 @@
 //! docs/conventions.md, "The crossing test"; docs/porting.md, "Sweep".
 
 use crate::vector::*;
+use crate::wide;
 
 /// The points of one test. `flip`: the moving vertex is the first of its bond.
 #[derive(Clone, Copy)]
@@ -36,16 +37,10 @@ fn determinant(p: Point, q: Point, r: Point) -> f64 {
     }
 }
 
-/// The determinant in 192-bit integers: high * 2^64 + low.
+/// The exact determinant, rounded.
 fn exact(p: Point, q: Point, r: Point) -> f64 {
-    let minor = |i: usize, j: usize| i128::from(p[i]) * i128::from(q[j]) - i128::from(p[j]) * i128::from(q[i]);
-    let (mut high, mut low) = (0i128, 0i128);
-    for (factor, minor) in [(r[0], minor(1, 2)), (r[1], minor(2, 0)), (r[2], minor(0, 1))] {
-        high += i128::from(factor) * (minor >> 64);
-        low += i128::from(factor) * i128::from(minor as u64);
-    }
-    high += low >> 64;
-    rounded(high, low as u64)
+    let value = wide::determinant(p, q, r);
+    rounded(value.high, value.low)
 }
 
 /// The size is rounded: all above the low 64 bits first, then the sum.

@@ -2,8 +2,11 @@
 //! `port PACK OUT` reads a pack in text and writes its outputs; `port --trace START OUT` writes a trace.
 
 mod collision;
+mod contact;
 mod crossing;
 mod elementary;
+mod events;
+mod flight;
 mod forces;
 mod operators;
 mod pack;
@@ -12,6 +15,7 @@ mod scene;
 mod sweep;
 mod trace;
 mod vector;
+mod wide;
 
 use std::{env, fs, process};
 

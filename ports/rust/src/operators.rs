@@ -1,7 +1,10 @@
 //! Every operator of a pack, each from the pack's own input: docs/porting.md, "The operators".
 
 use crate::collision::{self as mpc, Cells, Members, Sums};
+use crate::contact::{impulse, Ends};
 use crate::crossing::{cross_bonds, exchange, Four, Test};
+use crate::events;
+use crate::flight::Flight;
 use crate::forces;
 use crate::pack::{Group, Pack, Writer};
 use crate::random::{normal, uniform, Source, VERTEX_ORDER};
@@ -28,6 +31,9 @@ fn one(scene: &Scene, operator: &str, step: u64, group: &Group, out: &mut Writer
         "crossing" => crossing(group, out),
         "exchange" => exchanges(group, out),
         "long_sweep" | "sweep" => sweeps(scene, group, out),
+        "contact_search" => contact_searches(group, out),
+        "impulse" => impulses(group, out),
+        "long_event_drift" | "event_drift" => event_drifts(scene, group, out),
         "bond_force" | "bend_force" | "force" => force(scene, operator, group, out),
         "kick" => kick(scene, group, out),
         "stream" => stream(scene, group, out),
@@ -133,6 +139,57 @@ fn write_event(out: &mut Writer, row: usize, event: &Event) {
     out.value(row, "event", "executed", i64::from(event.executed));
     write_hit(out, row, &event.hit);
     out.value(row, "hit", "momentum", event.momentum);
+}
+
+fn contact_searches(group: &Group, out: &mut Writer) {
+    let place = ["p", "q", "w"].map(|table| group.points(table));
+    let rate = ["p_rate", "q_rate", "w_rate"].map(|table| group.points(table));
+    for (row, &from) in group.integers("from", "tick").iter().enumerate() {
+        let of_row = |points: &[Vec<Point>; 3]| [0, 1, 2].map(|k| points[k][row]);
+        out.value(row, "tick", "tick", Flight { place: of_row(&place), rate: of_row(&rate) }.search(from));
+    }
+}
+
+const ENDS: [&str; 4] = ["p0", "p1", "q0", "q1"];
+
+fn impulses(group: &Group, out: &mut Writer) {
+    let velocity = ENDS.map(|name| group.vectors(name));
+    let force = ENDS.map(|name| group.vectors(&format!("force_{}", name)));
+    let mass = ENDS.map(|name| group.reals("mass", name));
+    let (s, t) = (group.reals("contact", "s"), group.reals("contact", "t"));
+    let (normal, tau) = (group.vectors("normal"), group.reals("tau", "tau"));
+    for row in 0..s.len() {
+        let of_row = |vectors: &[Vec<Vector>; 4]| [0, 1, 2, 3].map(|k| vectors[k][row]);
+        let mass = [0, 1, 2, 3].map(|k| mass[k][row]);
+        let mut ends = Ends { velocity: of_row(&velocity), force: of_row(&force), mass };
+        let (answer, momentum) = impulse(&mut ends, s[row], t[row], normal[row], tau[row]);
+        out.value(row, "answer", "answer", answer as i64);
+        out.value(row, "momentum", "momentum", momentum);
+        for (k, name) in ENDS.iter().enumerate() {
+            out.triple(row, name, ends.velocity[k]);
+        }
+    }
+}
+
+fn event_drifts(scene: &Scene, group: &Group, out: &mut Writer) {
+    let (mut r, mut v) = (group.points("position"), group.vectors("velocity"));
+    let rows = events::drift(scene, group.real("time", "dt"), group.real("time", "start"), &mut r, &mut v);
+    for (row, event) in rows.iter().enumerate() {
+        out.value(row, "event", "bond", event.bond);
+        out.value(row, "event", "other", event.other);
+        for (axis, name) in ["image_x", "image_y", "image_z"].iter().enumerate() {
+            out.value(row, "event", name, event.image[axis]);
+        }
+        out.value(row, "event", "tick", event.tick);
+        out.value(row, "hit", "s", event.contact.s);
+        out.value(row, "hit", "t", event.contact.t);
+        for (axis, name) in ["normal_x", "normal_y", "normal_z"].iter().enumerate() {
+            out.value(row, "hit", name, event.contact.normal[axis]);
+        }
+        out.value(row, "hit", "momentum", event.momentum);
+    }
+    out.triples("position", &r);
+    out.triples("velocity", &v);
 }
 
 fn force(scene: &Scene, operator: &str, group: &Group, out: &mut Writer) {

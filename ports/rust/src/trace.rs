@@ -2,6 +2,7 @@
 //! docs/conventions.md, "Order of operations" and "The same bits".
 
 use crate::collision::{self as mpc, Members};
+use crate::events;
 use crate::forces;
 use crate::pack::Pack;
 use crate::random::VERTEX_ORDER;
@@ -23,6 +24,9 @@ struct Run {
     vertex: Vec<Point>,
     vertex_velocity: Vec<Vector>,
     force: Vec<Vector>,
+    event_driven: bool,
+    /// Bond, other, image and tick of the contacts since the last row.
+    contacts: Vec<[i64; 6]>,
     table: String,
 }
 
@@ -40,8 +44,11 @@ pub fn trace(pack: &Pack) -> Result<String, String> {
         vertex: start.points("vertex"),
         vertex_velocity: start.vectors("vertex_velocity"),
         force: Vec::new(),
-        table: "step,stage,state_hash\n".to_string(),
+        event_driven: start.integers("rule", "event_driven").first() == Some(&1),
+        contacts: Vec::new(),
+        table: "step,stage,state_hash".to_string(),
     };
+    run.table.push_str(if run.event_driven { ",contacts,contacts_hash\n" } else { "\n" });
     run.row(run.step, "start");
     for _ in 0..start.integer("run", "steps") {
         run.one_step();
@@ -86,11 +93,38 @@ impl Run {
 
     fn row(&mut self, step: u64, stage: &str) {
         let hash = self.hash();
-        writeln!(self.table, "{},{},{:016x}", step, stage, hash).unwrap();
+        write!(self.table, "{},{},{:016x}", step, stage, hash).unwrap();
+        if self.event_driven {
+            let bytes: Vec<u8> = self.contacts.iter().flatten().flat_map(|word| word.to_le_bytes()).collect();
+            write!(self.table, ",{},{:016x}", self.contacts.len(), xxh64(&bytes)).unwrap();
+            self.contacts.clear();
+        }
+        self.table.push('\n');
     }
 
-    /// `order` and `sweep`. A drift adds 2 to the lag, half a drift 1.
+    /// A drift adds 2 to the lag, half a drift 1.
     fn drift(&mut self, number: u64, time: f64, which: u32) {
+        if self.event_driven {
+            self.fly(time, which);
+        } else {
+            self.sweep(number, time, which);
+        }
+        self.lag += if time == self.scene.time_step { 2 } else { 1 };
+        self.row(number, "drift");
+    }
+
+    /// `event_drift`. The first drift of a step begins half a step before the middle, the second one in the middle.
+    fn fly(&mut self, time: f64, which: u32) {
+        let start = if which == 0 { -0.5 * self.scene.time_step } else { 0.0 };
+        let rows = events::drift(&self.scene, time, start, &mut self.vertex, &mut self.vertex_velocity);
+        self.contacts.extend(rows.iter().map(|row| {
+            let [x, y, z] = row.image;
+            [row.bond as i64, row.other as i64, x, y, z, row.tick]
+        }));
+    }
+
+    /// `order` and `sweep`
+    fn sweep(&mut self, number: u64, time: f64, which: u32) {
         let scene = &self.scene;
         let order = if scene.forbidden {
             scene.source(VERTEX_ORDER, number).permutation(which, scene.vertices())
@@ -98,8 +132,6 @@ impl Run {
             (0..scene.vertices()).collect()
         };
         sweep(scene, time, &order, &mut self.vertex, &mut self.vertex_velocity);
-        self.lag += if time == scene.time_step { 2 } else { 1 };
-        self.row(number, "drift");
     }
 
     fn force(&mut self, number: u64) {
