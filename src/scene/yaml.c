@@ -25,14 +25,18 @@ static yaml_mark_t mark_of_offset(const char *text, size_t offset)
 }
 
 /* Whether this line begins with a tab, or with spaces and a tab. */
-static bool tab_indents(const char *text, size_t line)
+static bool tab_indents(const char *text, size_t size, size_t line)
 {
-  while (line > 0 && *text)
-    line -= *text++ == '\n';
-  return text[strspn(text, " ")] == '\t';
+  size_t at = 0;
+  while (at < size && line > 0)
+    line -= text[at++] == '\n';
+  while (at < size && text[at] == ' ')
+    at++;
+  return at < size && text[at] == '\t';
 }
 
-static bool refuse_syntax(const yaml_parser_t *parser, const char *path, const char *text, struct message *message)
+static bool refuse_syntax(const yaml_parser_t *parser, const char *path, const char *text, size_t size,
+                          struct message *message)
 {
   bool unreadable = parser->error == YAML_READER_ERROR;
   yaml_mark_t mark = unreadable ? mark_of_offset(text, parser->problem_offset) : parser->problem_mark;
@@ -41,8 +45,8 @@ static bool refuse_syntax(const yaml_parser_t *parser, const char *path, const c
   if (parser->context && !unreadable)
     snprintf(context, sizeof context, "%s (begun in line %zu), ", parser->context, parser->context_mark.line + 1);
   return message_at(message, path, mark.line + 1, mark.column + 1, "not YAML: %s%s; %s", context, problem,
-                    tab_indents(text, mark.line) ? "a tab indents this line: YAML indents by spaces"
-                                                 : "a scene is a YAML mapping in UTF-8");
+                    tab_indents(text, size, mark.line) ? "a tab indents this line: YAML indents by spaces"
+                                                       : "a scene is a YAML mapping in UTF-8");
 }
 
 /* What a scene may not use of YAML in this event; NULL if all is well. */
@@ -160,13 +164,14 @@ static bool add_event(struct builder *b, const yaml_event_t *event)
   }
 }
 
-static bool read_events(struct builder *b, yaml_parser_t *parser, const char *text, struct message *message)
+static bool read_events(struct builder *b, yaml_parser_t *parser, const char *text, size_t size,
+                        struct message *message)
 {
   int documents = 0;
   for (bool end = false; !end;) {
     yaml_event_t event;
     if (!yaml_parser_parse(parser, &event))
-      return refuse_syntax(parser, b->path, text, message);
+      return refuse_syntax(parser, b->path, text, size, message);
     documents += event.type == YAML_DOCUMENT_START_EVENT;
     end = event.type == YAML_STREAM_END_EVENT;
     const char *what = forbidden_feature(&event, documents);
@@ -195,7 +200,7 @@ bool yaml_read(struct tree *tree, const char *path, const char *text, size_t siz
     return message_set(message, "%s: out of memory", path);
   }
   yaml_parser_set_input_string(&parser, (const unsigned char *)text, size);
-  const bool ok = read_events(&builder, &parser, text, message);
+  const bool ok = read_events(&builder, &parser, text, size, message);
   yaml_parser_delete(&parser);
   if (!ok)
     tree_free(tree);
