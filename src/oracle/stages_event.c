@@ -36,10 +36,13 @@ static bool renew_scratch(struct oracle_stage *g)
 static bool find_length(struct oracle_stage *g, const struct vertices *saved, double *dt)
 {
   bool ok = false, memory = true;
-  for (*dt = LONG_DRIFT * g->model->time_step; !ok && memory && *dt > g->model->time_step; *dt *= ok ? 1.0 : 0.5) {
+  *dt = LONG_DRIFT * g->model->time_step;
+  while (!ok && memory && *dt > g->model->time_step) {
     ok = oracle_drift_at_once(g, *dt, -0.5 * *dt, NULL);
     put_back(g, saved);
     memory = ok || (g->work->fault.code == FAULT_VERTEX_MOVE && renew_scratch(g));
+    if (!ok)
+      *dt *= 0.5;
   }
   g->pack->failed |= !memory;
   return memory;

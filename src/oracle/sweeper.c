@@ -164,7 +164,6 @@ static bool is_before(const struct sweep_twist *t, const struct swept_hit *a, co
                            : c == CHOICE_NEAREST  ? h[k]->hit.s
                            : c == CHOICE_FARTHEST ? -h[k]->hit.s
                            : c == CHOICE_NUMBER   ? 0.0
-                           : c == CHOICE_END      ? h[k]->hit.time
                                                   : h[k]->hit.time,
                            c == CHOICE_TIE_STANDING ? h[k]->standing : sign * h[k]->moving,
                            c == CHOICE_TIE_STANDING ? h[k]->moving : sign * h[k]->standing,

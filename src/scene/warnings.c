@@ -27,19 +27,21 @@ static void warn(struct teller *t, const char *format, ...)
     t->tell(t->context, text);
 }
 
-/* A time step of few digits, at most this one, of which the collision interval is a multiple. */
+#define MOST_TIME_STEPS 1e9 /* in a collision interval, as the scene reader allows */
+
+/* A time step of few digits, at most this one if so many are allowed: the collision interval over 2^a 5^b. */
 static double time_step_below(const struct model *m, double most)
 {
   const double interval = model_collides(m) ? model_collision_interval(m) : m->time_step;
-  for (uint64_t n = (uint64_t)ceil(interval / most * (1.0 - 1e-9));; n++) {
-    uint64_t rest = n;
-    while (rest % 2 == 0)
-      rest /= 2;
-    while (rest % 5 == 0)
-      rest /= 5;
-    if (rest == 1)
-      return interval / (double)n;
+  const double wanted = fmin(fmax(interval / most * (1.0 - 1e-9), 1.0), MOST_TIME_STEPS);
+  double best = INFINITY;
+  for (double fives = 1.0; fives < 5.0 * wanted; fives *= 5.0) {
+    double n = fives;
+    while (n < wanted)
+      n *= 2.0;
+    best = fmin(best, n);
   }
+  return interval / best;
 }
 
 static void warn_solvent(struct teller *t, const struct model *m)

@@ -852,6 +852,12 @@ static void warning_of_heat(void **unused)
   all[0] = '\0';
   scene_warnings(&s, collect, all);
   assert_null(strstr(all, "by some "));
+  /* No time step is short enough for the longest run: it is told at once, and is one that a scene may have. */
+  s.steps = INT64_MAX;
+  s.model.time_step = 0.01;
+  all[0] = '\0';
+  scene_warnings(&s, collect, all);
+  assert_true(strtod(strstr(all, "time_step ") + 10, NULL) >= model_collision_interval(&s.model) / 1e9);
   s.model.solvent.thermostat = THERMOSTAT_RESCALE;
   assert_int_equal(scene_warnings(&s, NULL, NULL), 0);
   scene_free(&s);
