@@ -99,7 +99,7 @@ void oracle_put_impulses(struct oracle_stage *g, const struct oracle_impulse *be
     answer[k] = exchange(&e[k], &momentum[k]);
   }
   double *dp = oracle_put_reals(g, "out.momentum", "momentum", n);
-  if (!g->pack->failed) {
+  if (!g->pack->failed && momentum) {
     memcpy(dp, momentum, n * sizeof *dp);
     for (int end = 0; end < 4; end++)
       put_vectors(g, "out.", e, offsetof(struct oracle_impulse, velocity), end, n);

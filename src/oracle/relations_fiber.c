@@ -103,12 +103,10 @@ static struct vec3 bond_pull(const struct fibers *f, const struct bond_twist *t,
   if (t->single)
     r = (struct vec3){single_of(r.x), single_of(r.y), single_of(r.z)};
   const double squared = vec3_dot(r, r), length = t->squared ? squared : sqrt(squared);
-  const double k = (1.0 + t->spring) * constant(f,
-                                                t->spring_of_next  ? (j + 1) % f->n
-                                                : t->spring_of_end ? next
-                                                                   : j,
-                                                SPRING);
-  const double l0 = constant(f, t->rest_of_next ? (j + 1) % f->n : j, REST), rest = (1.0 + t->rest) * l0;
+  const int64_t by_number = j + 1 < f->n ? j + 1 : 0;
+  const int64_t spring_of = t->spring_of_next ? by_number : t->spring_of_end ? next : j;
+  const double k = (1.0 + t->spring) * constant(f, spring_of, SPRING);
+  const double l0 = constant(f, t->rest_of_next ? by_number : j, REST), rest = (1.0 + t->rest) * l0;
   const bool gaussian = constant(f, j, REST) == 0.0 && (t->gaussian_of_rest || constant(f, j, BENDING) == 0.0);
   if ((gaussian && !t->never_gaussian) || t->always_gaussian)
     return vec3_scale(k, r);

@@ -214,7 +214,8 @@ static double bin_coordinate(const struct bin_twist *t, int64_t at, int64_t shif
   if (t->clamped)
     return fmin(fmax((double)cell_of_units(x), 0.0), cells - 1.0);
   if (t->toward_zero) {
-    const double c = fmod((double)(x / LATTICE_CELL), cells);
+    const int64_t cut = x / LATTICE_CELL;
+    const double c = fmod((double)cut, cells);
     return c < 0.0 ? c + cells : c;
   }
   if (t->size)

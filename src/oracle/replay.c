@@ -214,7 +214,8 @@ static const struct sweep_twist twists[] = {
 /* A change of which hits are found says nothing if chance may choose the same ones: few hits, or nearly all. */
 static bool enough_hits(const struct oracle_pair *p)
 {
-  const double tried = (double)(sizeof twists / sizeof *twists) + 64.0;
+  const size_t changes = sizeof twists / sizeof *twists;
+  const double tried = (double)changes + 64.0;
   uint32_t hits, wrong;
   oracle_count_hits(p, &hits, &wrong);
   return wrong == 0 || evidence_ways(hits, wrong) >= EVIDENCE_SURE + log2(tried);

@@ -115,7 +115,7 @@ static double bits_of_choice(const struct units *u)
 {
   const struct evidence *e = u->e;
   const uint32_t per_row = u->values ? u->columns : 1, n = e->part[0].rows * per_row;
-  bool alike = e->parts > 1;
+  bool alike = e->parts > 1 && n > 0;
   double wrong = 0.0, of_first = 0.0;
   for (uint32_t k = 1; k < e->parts; k++)
     alike &= e->part[k].rows == e->part[0].rows;

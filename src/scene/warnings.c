@@ -34,12 +34,13 @@ static double time_step_below(const struct model *m, double most)
 {
   const double interval = model_collides(m) ? model_collision_interval(m) : m->time_step;
   const double wanted = fmin(fmax(interval / most * (1.0 - 1e-9), 1.0), MOST_TIME_STEPS);
-  double best = INFINITY;
-  for (double fives = 1.0; fives < 5.0 * wanted; fives *= 5.0) {
+  double best = INFINITY, fives = 1.0;
+  while (fives < 5.0 * wanted) {
     double n = fives;
     while (n < wanted)
       n *= 2.0;
     best = fmin(best, n);
+    fives *= 5.0;
   }
   return interval / best;
 }

@@ -852,8 +852,10 @@ static void warning_of_heat(void **unused)
   all[0] = '\0';
   scene_warnings(&s, collect, all);
   assert_null(strstr(all, "by some "));
-  /* No time step is short enough for the longest run: it is told at once, and is one that a scene may have. */
+  /* No time step is short enough for the longest run of many fibers: one is told at once, and a scene may have it. */
   s.steps = INT64_MAX;
+  s.model.kind[0].count = 4000000;
+  s.model.vertices = 4000000 * 64;
   s.model.time_step = 0.01;
   all[0] = '\0';
   scene_warnings(&s, collect, all);
