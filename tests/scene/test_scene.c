@@ -859,7 +859,7 @@ static void warning_of_heat(void **unused)
   s.model.time_step = 0.01;
   all[0] = '\0';
   scene_warnings(&s, collect, all);
-  assert_true(strtod(strstr(all, "time_step ") + 10, NULL) >= model_collision_interval(&s.model) / 1e9);
+  assert_true(strtod(strstr(all, "time_step ") + 10, NULL) >= 0.999e-9 * model_collision_interval(&s.model));
   s.model.solvent.thermostat = THERMOSTAT_RESCALE;
   assert_int_equal(scene_warnings(&s, NULL, NULL), 0);
   scene_free(&s);
