@@ -375,12 +375,24 @@ static bool diagnose_sweep(const struct oracle_pair *p, bool beyond, const char 
   return (events && oracle_judge_moves(p, unknown, text)) || search_patterns(oracle_patterns_sweep, p, text) || true;
 }
 
+/* Nothing but last bits: what a bug does here is nothing else than what rounding does, and they cannot be told apart.
+ */
+static bool is_rounding(const struct evidence *e)
+{
+  for (size_t k = 0; k < (size_t)e->rows * e->columns; k++)
+    if (!(fabs(e->theirs[k] - e->ours[k]) <= 0x1p-30 * fabs(e->ours[k])))
+      return false;
+  return e->part[0].pair.ours->real;
+}
+
 void oracle_diagnose(const struct oracle_pair *p, bool beyond, char text[ORACLE_TEXT])
 {
   struct evidence e = {0};
   struct search s = {.e = &e, .text = text};
   const char *const unknown =
-      beyond ? "none of those known" : "as of another order of operations, fused multiply-add, or library functions";
+      beyond ? "none of those known"
+             : "no larger than rounding: another order of operations, fused multiply-add, library functions, or a bug "
+               "whose effect is as small";
   snprintf(text, ORACLE_TEXT, "%s", unknown);
   if (p->ours->columns != p->theirs->columns ||
       (is_for("sweep", NULL, p) && diagnose_sweep(p, beyond, unknown, text)) ||
@@ -388,7 +400,8 @@ void oracle_diagnose(const struct oracle_pair *p, bool beyond, char text[ORACLE_
     return;
   if (evidence_take(p, &e)) {
     char side[RELATION_TEXT];
-    if (search_all_relations(&s) || search_patterns(oracle_patterns_random, p, text) ||
+    const bool may_have_name = beyond || !is_rounding(&e);
+    if ((may_have_name && search_all_relations(&s)) || search_patterns(oracle_patterns_random, p, text) ||
         search_patterns(oracle_patterns_any, p, text))
       say_which_table(p, text);
     else if (beyond)
