@@ -8,8 +8,7 @@
 
 #define FAR 64 /* images */
 
-/* --- tables --------------------------------------------------------------------------------------------------------
- */
+/* --- tables ------------------------------------------------------------------------------------------------------- */
 
 bool flyer_take(const struct oracle_pair *p, struct flyer *f)
 {
@@ -97,8 +96,7 @@ double flyer_constant(const struct flyer *f, int64_t k, uint32_t column)
   return pack_value(f->vertex, (uint32_t)k, column);
 }
 
-/* --- searches ------------------------------------------------------------------------------------------------------
- */
+/* --- searches ----------------------------------------------------------------------------------------------------- */
 
 static struct point image_of(const struct flyer *f, struct point p, const int64_t image[3])
 {

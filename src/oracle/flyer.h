@@ -46,16 +46,16 @@ bool flyer_take(const struct oracle_pair *pair, struct flyer *f);
 bool flyer_begin(struct flyer *f);
 void flyer_finish(struct flyer *f);
 
-/* Displacement in a tick, lattice units. */
-struct point flyer_rate(struct flyer *f, struct vec3 velocity);
+/* Displacement in a tick, lattice units, at a velocity. */
+struct point flyer_rate(struct flyer *f, struct vec3 v);
 
-/* Neighbors of a vertex on its chain, -1 if there is none; columns of in.vertex; its place at a tick. */
-int64_t flyer_next(const struct flyer *f, int64_t vertex);
-int64_t flyer_prev(const struct flyer *f, int64_t vertex);
-double flyer_constant(const struct flyer *f, int64_t vertex, uint32_t column);
-struct point flyer_place(const struct flyer *f, int64_t vertex, int32_t tick);
+/* Of vertex k: its neighbors on the chain, -1 if there is none; columns of in.vertex; its place at a tick. */
+int64_t flyer_next(const struct flyer *f, int64_t k);
+int64_t flyer_prev(const struct flyer *f, int64_t k);
+double flyer_constant(const struct flyer *f, int64_t k, uint32_t column);
+struct point flyer_place(const struct flyer *f, int64_t k, int32_t tick);
 int64_t flyer_axis(struct point p, int axis);
-struct flight_pair flyer_pair(const struct flyer *f, const struct found *contact);
+struct flight_pair flyer_pair(const struct flyer *f, const struct found *e);
 
 /* Searches contacts after a tick, and queues them: bonds that are marked against all others (NULL: all; `near`: the
  * tick from which on they may be near); one pair in one image; those of the vertices of a contact anew. */

@@ -7,8 +7,7 @@
 #include "oracle/patterns.h"
 #include "oracle/replay.h"
 
-/* --- answers -------------------------------------------------------------------------------------------------------
- */
+/* --- answers ------------------------------------------------------------------------------------------------------ */
 
 static void steer(struct flyer *f, int64_t v, struct point rate, int32_t tick)
 {
