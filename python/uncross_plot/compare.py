@@ -42,7 +42,7 @@ def _rows(ours, theirs):
         a, a_error, b, b_error, z, x, count = told
         label = columns.column(name)
         where = "" if x is None else f"at {x:.4g} t0, the largest of {count}"
-        rows.append((label.name, page.plain(label.symbol), _shown(a, a_error), _shown(b, b_error),
+        rows.append((page.plain(label.name), page.plain(label.symbol), _shown(a, a_error), _shown(b, b_error),
                      f"{z:+.1f}" if math.isfinite(z) else "", where))
         if math.isfinite(z):
             found.append((abs(z), f"{columns.title(ours.name)}, {label.name}: {z:+.1f} errors {where}".rstrip() + "."))

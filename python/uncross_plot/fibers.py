@@ -208,7 +208,7 @@ def fiber_colours(structure):
     colours = []
     for fiber, kind in enumerate(kind_of):
         own = _rgb(style.COLORS[kind % len(style.COLORS)])
-        colours.append(_rgb(style.COLORS[1]) if fiber == marked else _mix(own, WHITE, (1.0, 0.62, 0.8)[fiber % 3]))
+        colours.append(_rgb(style.COLORS[1]) if fiber == marked else _mix(own, WHITE, (1.0, 0.68, 0.84)[fiber % 3]))
     return colours
 
 
@@ -235,11 +235,11 @@ def marks(structure, points, camera):
         fiber = structure.fiber[structure.bonds[number, 0]]
         near = piece[:, 3].mean()
         width = max(1.0, thick * piece[:, 2].mean()) * (2.0 if fiber == marked else 1.0)
-        colour = _mix(colours[fiber], WHITE, 1.0 if fiber == marked else 0.3 + 0.7 * near)
+        colour = _mix(colours[fiber], WHITE, 1.0 if fiber == marked else 0.4 + 0.6 * near)
         found.append(Mark(near, tuple(piece[0, :2]), tuple(piece[1, :2]), width, colour, int(number)))
     inside = points[beads] - structure.edges * numpy.floor(points[beads] / structure.edges)
     for place, row in zip(camera(inside) if len(beads) else (), beads):
-        colour = _mix(colours[structure.fiber[row]], WHITE, 0.3 + 0.7 * place[3])
+        colour = _mix(colours[structure.fiber[row]], WHITE, 0.4 + 0.6 * place[3])
         found.append(Mark(place[3], tuple(place[:2]), tuple(place[:2]), max(2.0, 2 * BEAD * place[2]), colour, int(row)))
     return sorted(found, key=lambda mark: mark.near)
 

@@ -69,7 +69,7 @@ def with_error(value, error):
 
 def plain(text):
     """A label without the signs of mathematical text, for words."""
-    for old, new in (("_\\mathrm", "_"), ("\\langle", "⟨"), ("\\rangle", "⟩"), ("\\cos", "cos "), ("\\theta", "θ"),
+    for old, new in (("_\\mathrm", "_"), ("\\langle ", "⟨"), ("\\langle", "⟨"), ("\\rangle", "⟩"), ("\\cos", "cos "), ("\\theta", "θ"),
                      ("\\Delta", "Δ"), ("\\cdot", "·"), ("\\,", " "), ("_0", "0"), ("^2", "²"), ("^{-1}", "⁻¹"), ("$", ""),
                      ("{", ""), ("}", "")):
         text = text.replace(old, new)
@@ -86,7 +86,7 @@ def picture_of(frames, movie=False):
     for kind, name in enumerate(structure.kinds):
         keys.append((style.COLORS[kind % len(style.COLORS)], name))
     if fibers.marked_fiber(structure) >= 0:
-        keys.append((style.COLORS[1], "one of them"))
+        keys.append((style.COLORS[1], "one fiber, marked"))
     last = f"step {frames.steps[-1]}, time {frames.times[-1]:g} t0"
     blocks = [Figure("Fibers at the end", fibers.picture(frames), f"Perspective picture of {shown}, at {last}.",
                      f"{shown[0].upper()}{shown[1:]}, at {last}. A bond that crosses a face of the box comes in again at "
@@ -137,7 +137,7 @@ def figure_of(run, table):
         value, error = table.data[c][0], None if error is None else error[0]
         label = columns.column(c)
         away = f"{(value - exact[c]) / error:+.1f}" if c in exact and error and error > 0 else ""
-        rows.append((label.name, plain(label.symbol), with_error(value, error), plain(label.unit),
+        rows.append((plain(label.name), plain(label.symbol), with_error(value, error), plain(label.unit),
                      f"{exact[c]:.6g}" if c in exact else "", away))
     return [Figure(columns.title(table.name), style.data_uri(tables.single_row(table, exact)), alt, words, table.name),
             Rows(f"{columns.title(table.name)}, in numbers", rows,

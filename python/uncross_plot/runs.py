@@ -281,5 +281,5 @@ def _off_theory(run):
     if series is not None and len(series) and numpy.isfinite(series).all():
         error = tables.blocked_error(series)
         if abs(series.mean() - 1.0) > 5 * error and abs(series.mean() - 1.0) > 0.01:
-            yield (f"temperature: that of the solvent is {series.mean():.4f} ± {error:.1g} kT/kB, and averages of "
-                   "equilibrium at 1 are not to be expected.")
+            yield (f"temperature: that of the solvent is {series.mean():.4f} ± {error:.1g} kT/kB: averages are not "
+                   "those of equilibrium at 1.")
