@@ -290,7 +290,7 @@ def _draw_pair(axes, below, a, b, panel, name, names):
         below.set_ylabel("difference")
     label = columns.column(name)
     axes.set(title=f"{label.name}\n{label.symbol}" if label.symbol else label.name,
-             ylabel=("change" if panel.change else label.symbol or label.name) + (f" / {label.unit}" if label.unit else ""))
+             ylabel=("change" if panel.change else label.symbol or "value") + (f" / {label.unit}" if label.unit else ""))
     below.set_xlabel(columns.LAG_LABEL if panel.log_x else columns.column(a.x).label)
     if names:
         style.legend(axes, fontsize=7)

@@ -215,7 +215,7 @@ class Folder(unittest.TestCase):
         kind = "{http://www.w3.org/2000/svg}"
         pieces = [(int(e.get("data-n")), [float(x) for x in re.findall(r"[-.\d]+", e.get("d"))])
                   for e in root.iter(kind + "path") if e.get("class") == "b"]
-        return pieces, [int(e.get("data-n")) for e in root.iter(kind + "circle")]
+        return pieces, [int(e.get("data-n")) for e in root.iter(kind + "circle") if e.get("data-n")]
 
     def test_all_bonds_and_no_others_are_drawn(self):
         pieces, beads = self.drawn()
