@@ -35,7 +35,7 @@ struct arguments {
   const char *out;
   const char **set; /* [sets] "key=value" */
   size_t sets;
-  bool has_steps, has_seed, resume, quiet, document, decimal, contacts, skip_damaged, help;
+  bool has_steps, has_seed, resume, quiet, document, decimal, contacts, skip_damaged, movie, compare, help;
   uint64_t steps, seed; /* instead of the scene's */
   struct export_options export;
   struct oracle_options oracle;
@@ -54,6 +54,7 @@ enum command_code {
   COMMAND_SCHEMA,
   COMMAND_EXPORT,
   COMMAND_ANALYZE,
+  COMMAND_PLOT,
   COMMAND_EMIT,
   COMMAND_EDGES,
   COMMAND_START,
@@ -72,7 +73,9 @@ struct command {
   unsigned codes;      /* exit codes besides 0, 1 and 2: bit 1 << code */
   const char *summary; /* one line */
   const char *text;    /* more, for its own help; lines of at most 100 characters */
-  enum exit_code (*act)(const struct arguments *arguments);
+  enum exit_code (*act)(const struct arguments *arguments); /* NULL: another program does it */
+  const char *program; /* that one, in PREFIX/libexec/uncross or tools/: it gets the words as they came, and the path of
+                          this program in $UNCROSS; `tools/install-dependencies NAME` installs what it needs */
 };
 extern const struct command commands[COMMANDS];
 
@@ -126,6 +129,9 @@ void help_completion(FILE *out);
 /* Prints to stdout: the effective scene, every derived number of the paper's Tables I and II, what this scene uses and
  * skips, memory, estimated time, warnings. `uncross check`. */
 void scene_report(const struct scene *scene);
+
+/* Becomes the program of a command; words[0] is replaced. Returns if that cannot be, and has said why. */
+enum exit_code outer_run(const struct command *command, char **words);
 
 enum exit_code command_run(const struct arguments *a);
 enum exit_code command_analyze(const struct arguments *a);

@@ -100,6 +100,10 @@ const struct command commands[COMMANDS] = {
     [COMMAND_ANALYZE] = {"analyze", "TRAJECTORY", 1, WRITES,
                          "the observables of a trajectory's scene from its frames, as new tables", NULL,
                          command_analyze},
+    [COMMAND_PLOT] = {"plot", "FOLDER|FILE ...", 1, WRITES,
+                      "a page of a run, table, trajectory or checkpoint: fibers, figures, what to distrust",
+                      "One HTML file that needs no other (docs/plot.md). Nothing is written over.\n", NULL,
+                      .program = "uncross-plot"},
     [COMMAND_EMIT] = {"oracle emit", "SCENE", 1, WRITES,
                       "inputs and outputs of every operator, at two steps, as a pack", NULL, oracle_emit_file},
     [COMMAND_EDGES] = {"oracle edges", "", 0, WRITES,
@@ -136,7 +140,7 @@ static enum exit_code dispatch(enum command_code command, int count, char **word
   if (code == EXIT_DONE && a.help)
     help_command(stdout, command);
   else if (code == EXIT_DONE)
-    code = commands[command].act(&a);
+    code = commands[command].act ? commands[command].act(&a) : outer_run(&commands[command], words);
   const bool words_matter = a.help || command != COMMAND_RUN; /* what a run is for is in its folder */
   arguments_free(&a);
   return words_matter ? told(code) : code;

@@ -21,6 +21,8 @@ const struct option_row option_rows[] = {
      ONLY_VALUE, .text = "the file that is written, which must not exist"},
     {"out", "FILE", OF(EXPORT) | OF(TRACE) | OF(DUMP), 0, OPTION_TEXT, 'o', AT(out), ONLY_VALUE,
      .text = "the file that is written, which must not exist; standard output without it"},
+    {"out", "FILE", OF(PLOT), 0, OPTION_TEXT, 'o', AT(out), ONLY_VALUE,
+     .text = "the page, which must not exist; without it FOLDER/page.html, or FILE with the ending .html"},
     {"out", "FILE", OF(CHECK_PORT), 0, OPTION_TEXT, 'o', AT(out), ONLY_VALUE,
      .text = "a report in JSON, a file that must not exist"},
     {"set", "KEY=VALUE", OF(RUN) | OF(CHECK), 0, OPTION_LIST, 0, AT(set), ONLY_VALUE,
@@ -63,6 +65,10 @@ const struct option_row option_rows[] = {
      .text = "chance that equal codes are found different; 1e-3 without it"},
     {"document", NULL, OF(SCHEMA), 0, OPTION_SWITCH, 0, AT(document), ONLY_VALUE,
      .text = "the tables of docs/scene.md instead, for tools/document-keys"},
+    {"movie", NULL, OF(PLOT), 0, OPTION_SWITCH, 0, AT(movie), ONLY_VALUE,
+     .text = "the frames of the trajectory as an animated picture"},
+    {"compare", NULL, OF(PLOT), 0, OPTION_SWITCH, 0, AT(compare), ONLY_VALUE,
+     .text = "two runs, or two tables, in the same figures, with differences over their errors"},
     {"help", NULL, ALL, 0, OPTION_SWITCH, 'h', AT(help), ONLY_VALUE, .text = "this text"},
 };
 const size_t option_count = sizeof option_rows / sizeof *option_rows;

@@ -1,0 +1,48 @@
+/* Commands that another program does: `uncross plot` is uncross-plot. The table of commands names it. */
+#include <errno.h>
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/text.h"
+#include "cli/command.h"
+
+/* From the folder of this program: where `make install` puts programs, or in the source tree, where BUILD may be a
+ * folder of build/. */
+static const char *const places[] = {"/../libexec/uncross/", "/../tools/", "/../../tools/"};
+
+/* True, and its path, if there is such a program; the path of this one too. */
+static bool find(const char *name, char ours[PATH_MAX - 128], char path[PATH_MAX])
+{
+  const ssize_t length = readlink("/proc/self/exe", ours, PATH_MAX - 129);
+  ours[length > 0 ? length : 0] = '\0';
+  const char *slash = strrchr(ours, '/');
+  const int folder = slash ? (int)(slash - ours) : 0;
+  for (size_t k = 0; k < sizeof places / sizeof *places; k++) {
+    snprintf(path, PATH_MAX, "%.*s%s%s", folder, ours, places[k], name);
+    if (access(path, X_OK) == 0)
+      return true;
+  }
+  return false;
+}
+
+enum exit_code outer_run(const struct command *c, char **words)
+{
+  char ours[PATH_MAX - 128], path[PATH_MAX];
+  if (!find(c->program, ours, path)) {
+    fprintf(stderr, "uncross: %s: there is no program %s in ../libexec/uncross or ../tools beside this one\n", c->name,
+            c->program);
+    return EXIT_TROUBLE;
+  }
+  fflush(NULL);
+  words[0] = path;
+  if (setenv("UNCROSS", ours, 1) == 0)
+    execv(path, words);
+  /* The file is there: so what is missing is the program of its first line. */
+  const bool interpreter = errno == ENOENT;
+  fprintf(stderr, "uncross: %s: cannot run %s: %s%s%s\n", c->name, text_shown(path),
+          interpreter ? "there is no /usr/bin/python3; it comes with `tools/install-dependencies " : strerror(errno),
+          interpreter ? c->name : "", interpreter ? "`" : "");
+  return EXIT_TROUBLE;
+}
