@@ -1,0 +1,154 @@
+"""What the columns of tables are called, and which of them share a panel: the only place where figures take labels from.
+
+docs/observables.md says what each column means. A column or table that is not declared here is drawn all the same, under
+its own name.
+"""
+import dataclasses
+import re
+
+T, A, E, P = "$t_0$", "$a_0$", "$kT$", r"$m\,a_0/t_0$"
+A2 = "$a_0^2$"
+
+
+@dataclasses.dataclass(frozen=True)
+class Column:
+    name: str
+    symbol: str = ""  # in mathematical text
+    unit: str = ""  # 1 if empty
+
+    @property
+    def label(self):
+        """For an axis: name, symbol and unit."""
+        return " ".join(filter(None, (self.name, self.symbol, f"/ {self.unit}" if self.unit else "")))
+
+    @property
+    def short(self):
+        """For a legend."""
+        return ", ".join(filter(None, (self.name, self.symbol)))
+
+
+COLUMNS = {
+    "step": Column("step"),
+    "time": Column("time", "$t$", T),
+    # conserved
+    "solvent_kinetic": Column("kinetic, solvent", r"$E_\mathrm{s}$", E),
+    "vertex_kinetic": Column("kinetic, vertices", r"$E_\mathrm{v}$", E),
+    "bond": Column("bonds", r"$E_\mathrm{bond}$", E),
+    "bend": Column("bends", r"$E_\mathrm{bend}$", E),
+    "total": Column("total energy", "$E$", E),
+    "px": Column("momentum along x", "$P_x$", P),
+    "py": Column("momentum along y", "$P_y$", P),
+    "pz": Column("momentum along z", "$P_z$", P),
+    # temperature
+    "solvent": Column("solvent", r"$T_\mathrm{s}$", "$(kT/k_B)$"),
+    "solvent_x": Column("solvent, x", "$T_x$", "$(kT/k_B)$"),
+    "solvent_y": Column("solvent, y", "$T_y$", "$(kT/k_B)$"),
+    "solvent_z": Column("solvent, z", "$T_z$", "$(kT/k_B)$"),
+    "vertex": Column("vertices", r"$T_\mathrm{v}$", "$(kT/k_B)$"),
+    "vertex_half_step": Column("vertices, half a step ahead", "", "$(kT/k_B)$"),
+    # collisions
+    "moves": Column("moves of vertices"),
+    "possible": Column("contacts found"),
+    "executed": Column("contacts answered"),
+    "negative": Column(r"with $\Delta P < 0$"),
+    "softened": Column("softened rebounds"),
+    "rigid": Column("rigid contacts"),
+    "executed_per_possible": Column("answered per found"),
+    "rate_per_vertex": Column("contacts per vertex and time", "", "$t_0^{-1}$"),
+    "rate_over_theory": Column("rate over kinetic theory"),
+    # statics
+    "l": Column("bond length", r"$\langle l\rangle$", A),
+    "l2": Column("bond length squared", r"$\langle l^2\rangle$", A2),
+    "cos": Column("cosine of a bend", r"$\langle\cos\theta\rangle$"),
+    "bond_energy": Column("energy per bond", "", E),
+    "bend_energy": Column("energy per bend", "", E),
+    "Ree2": Column("end-to-end distance squared", r"$\langle R^2\rangle$", A2),
+    "Rg2": Column("radius of gyration squared", r"$\langle R_g^2\rangle$", A2),
+    "lp": Column("persistence length", "$l_p$", A),
+    "samples": Column("samples"),
+    # dynamics
+    "g": Column("all vertices", "$g(t)$", A2),
+    "g_cm": Column("centres of mass", r"$g_\mathrm{cm}(t)$", A2),
+    "g_middle": Column("middle vertices", r"$g_\mathrm{m}(t)$", A2),
+    "d2": Column("middle vertex to nearest vertex", r"$\langle d^2\rangle(t)$", A2),
+    "d2_contour": Column("middle vertex to contour", r"$\langle d^2\rangle_\mathrm{c}(t)$", A2),
+    "end_to_end": Column("end-to-end vector", r"$\langle R(t)\cdot R(0)\rangle/\langle R^2\rangle$"),
+    "end_to_end_unit": Column("its direction", r"$\langle u(t)\cdot u(0)\rangle$"),
+    "D": Column("diffusion coefficient", r"$D(t) = g_\mathrm{cm}/6t$", r"$(a_0^2/t_0)$"),
+    "intervals": Column("pairs of times compared"),
+}
+
+
+# Sums and counts since the start, and what drifts where a force acts: their mean over time says nothing.
+RUNNING = {"total", "px", "py", "pz", "moves", "possible", "executed", "negative", "softened", "rigid",
+           "executed_per_possible"}
+
+
+@dataclasses.dataclass(frozen=True)
+class Panel:
+    """Columns over one x, with one y axis."""
+    title: str
+    columns: tuple
+    y: str = ""  # label of the y axis; without it that of the first column
+    log_x: bool = False
+    log_y: bool = False
+    change: bool = False  # since the first row
+    level: float = None  # a line to compare with
+    wide: bool = False
+
+
+LAG = {"log_x": True}
+PANELS = {
+    "conserved": (
+        Panel("Change of the total energy", ("total",), "$E(t) - E(0)$ / $kT$", change=True, level=0.0),
+        Panel("Change of its parts", ("solvent_kinetic", "vertex_kinetic", "bond", "bend"), "change since the start / $kT$",
+              change=True),
+        Panel("Total momentum", ("px", "py", "pz"), rf"momentum $P$ / ({P})"),
+    ),
+    "temperature": (
+        Panel("Kinetic temperature", ("solvent", "vertex", "vertex_half_step"), "temperature $T$ / $(kT/k_B)$", level=1.0),
+        Panel("Solvent by component", ("solvent_x", "solvent_y", "solvent_z"), "temperature $T$ / $(kT/k_B)$", level=1.0),
+    ),
+    "collisions": (
+        Panel("Contacts since the start", ("possible", "executed", "negative", "softened", "rigid"), "number"),
+        Panel("Moves since the start", ("moves",)),
+        Panel("Contacts answered per contact found", ("executed_per_possible",)),
+        Panel("Rate since the row before", ("rate_per_vertex",)),
+        Panel("Rate over kinetic theory", ("rate_over_theory",), level=1.0),
+    ),
+    "dynamics": (
+        Panel("Mean square displacements", ("g", "g_cm", "g_middle", "d2", "d2_contour"),
+              "mean square displacement / $a_0^2$", log_y=True, wide=True, **LAG),
+        Panel("Diffusion coefficient", ("D",), r"$D(t) = g_\mathrm{cm}/6t$ / $(a_0^2/t_0)$", log_y=True, **LAG),
+        Panel("Memory of the orientation", ("end_to_end", "end_to_end_unit"), "correlation", **LAG),
+        Panel("What stands behind each point", ("intervals",), log_y=True, **LAG),
+    ),
+}
+LAG_LABEL = "lag $t$ / $t_0$"
+TITLES = {"conserved": "Energy and momentum", "temperature": "Temperature", "collisions": "Contacts of bonds",
+          "statics": "Size and shape", "dynamics": "Motion"}
+
+
+def column(name):
+    return COLUMNS.get(name, Column(name.replace("_", " ")))
+
+
+def split(name):
+    """('dynamics', 'rods') of the table dynamics-rods; the kind is empty where there is none."""
+    match = re.fullmatch(r"(statics|dynamics)-(.*)", name)
+    return match.groups() if match else (name, "")
+
+
+def title(name):
+    sort, kind = split(name)
+    return TITLES.get(sort, name) + (f" of '{kind}'" if kind else "")
+
+
+def panels(name, present):
+    """The panels of a table with these columns (no errors, no x): those declared, and one for each other column."""
+    declared = PANELS.get(split(name)[0], ())
+    shown = [dataclasses.replace(p, columns=tuple(c for c in p.columns if c in present)) for p in declared]
+    known = {c for p in declared for c in p.columns}
+    lag = bool(declared) and declared[0].log_x
+    others = [Panel(column(c).name, (c,), log_x=lag) for c in present if c not in known]
+    return [p for p in shown if p.columns] + others

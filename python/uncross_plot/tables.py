@@ -1,0 +1,312 @@
+"""Tables of observables as figures: points with the errors that a table has, lines where it has none."""
+import csv
+import math
+
+import numpy
+
+from . import columns, style
+
+WIDE = 3  # panels in a row of a comparison
+EXACT = {"l": ("mean bond length", 1), "cos": ("mean cosine of a bend", 1),  # statics: rows of `uncross check`, and powers
+         "lp": ("effective persistence length", 1), "Ree2": ("end-to-end distance, rms", 2)}
+
+
+class Table:
+    """name; data: {column: array}; x: the name of the column that others are drawn over."""
+
+    def __init__(self, name, data):
+        self.name, self.data = name, data
+        self.x = "time" if "time" in data else next(iter(data)) if self.rows > 1 else None
+        self.values = [c for c in data if c not in (self.x, "step") and not self.is_error(c)]
+
+    def is_error(self, name):
+        return name.endswith("_error") and name[:-len("_error")] in self.data
+
+    def errors(self, name):
+        return self.data.get(name + "_error")
+
+    @property
+    def places(self):
+        """The x of each row; 0 for the one row of a table without x."""
+        return self.data[self.x] if self.x else numpy.zeros(self.rows)
+
+    @property
+    def rows(self):
+        return len(next(iter(self.data.values())))
+
+    @property
+    def empty(self):
+        """Columns without a number: nan in every row."""
+        return [c for c in self.values if not numpy.isfinite(self.data[c]).any()]
+
+    @property
+    def has_errors(self):
+        return any(self.is_error(c) for c in self.data)
+
+
+def read(path, name):
+    """A table; ValueError, with file, line and column, if it is none."""
+    with open(path, encoding="utf-8", newline="") as file:
+        try:
+            lines = list(csv.reader(file))
+        except (csv.Error, UnicodeDecodeError) as error:
+            raise ValueError(f"{path}: not a table: {error}") from error
+    if not lines or not lines[0] or len(set(lines[0])) != len(lines[0]) or not all(lines[0]):
+        raise ValueError(f"{path}:1:1: not a table: a first line of column names is needed")
+    rows = []
+    for number, line in enumerate(lines[1:], 2):
+        if len(line) != len(lines[0]):
+            raise ValueError(f"{path}:{number}:1: {len(line)} values for {len(lines[0])} columns")
+        try:
+            rows.append([float(word) for word in line])
+        except ValueError:
+            bad = next(k for k, word in enumerate(line) if not _is_number(word))
+            raise ValueError(f"{path}:{number}:{1 + sum(len(w) + 1 for w in line[:bad])}: '{line[bad][:40]}' is not a "
+                             "number") from None
+    return Table(name, dict(zip(lines[0], numpy.array(rows, float).reshape(-1, len(lines[0])).T)))
+
+
+def _is_number(word):
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return True
+
+
+def blocked_error(series, least=16):
+    """Standard error of the mean of a correlated series (Flyvbjerg and Petersen 1989): the largest over blocks of 1, 2, 4,
+    ... values, of which there are at least `least`; nan for fewer values."""
+    error = math.nan
+    while len(series) >= least:
+        error = numpy.fmax(error, series.std(ddof=1) / math.sqrt(len(series)))
+        series = series[:len(series) // 2 * 2].reshape(-1, 2).mean(axis=1)
+    return float(error)
+
+
+# --- one table ---------------------------------------------------------------------------------------------------------
+
+def _scales(axes, panel, x, ys):
+    """Logarithmic where the panel asks for it and the numbers allow it."""
+    def fits(values):
+        values = values[numpy.isfinite(values)]
+        return len(values) > 1 and values.max() > 1.5 * abs(values.min()) and (values > 0).sum() > 1
+    if panel.log_x and fits(x):
+        axes.set_xscale("log")
+    if panel.log_y and fits(numpy.concatenate(ys)):
+        axes.set_yscale("log", nonpositive="mask")
+
+
+def _draw(axes, table, panel, guides=()):
+    x, drawn = table.data[table.x], []
+    for number, names in enumerate(_alike(table, panel.columns)):
+        y, errors = table.data[names[0]], table.errors(names[0])
+        y = y - y[0] if panel.change else y
+        if panel.log_y:
+            y = numpy.where(y > 0, y, numpy.nan)
+        label = " = ".join(columns.column(c).short if len(names) < 4 else columns.column(c).symbol or c for c in names)
+        if errors is not None or table.rows < 4:
+            style.points(axes, x, y, errors, number, label=label)
+        else:
+            style.line(axes, x, y, number, label=label)
+        drawn.append(y)
+    _scales(axes, panel, x, drawn)
+    _guide(axes, panel, guides, x)
+    axes.set(title=panel.title, xlabel=columns.LAG_LABEL if panel.log_x else columns.column(table.x).label,
+             ylabel=panel.y or columns.column(panel.columns[0]).label)
+    if len(panel.columns) > 1 or len(axes.get_legend_handles_labels()[0]) > 1:
+        style.legend(axes, fontsize=7.5, loc="upper left", bbox_to_anchor=(-0.02, -0.2), borderaxespad=0.0)
+
+
+def _alike(table, names):
+    """Groups of columns with the same numbers: a line drawn over its like would hide it."""
+    groups = []
+    for name in names:
+        for group in groups:
+            if numpy.array_equal(table.data[group[0]], table.data[name], equal_nan=True):
+                group.append(name)
+                break
+        else:
+            groups.append([name])
+    return groups
+
+
+def _guide(axes, panel, guides, x):
+    low, high = axes.get_ylim()
+    if panel.level is not None:
+        axes.axhline(panel.level, color=style.INK, linewidth=0.8, linestyle=(0, (6, 3)), zorder=1)
+    for label, function, stroke in guides if panel.columns[0] == "g" else ():
+        places = numpy.geomspace(x.min(), x.max(), 60) if x.min() > 0 else x
+        y = numpy.array([function(t) for t in places])
+        seen = (y > low / 3) & (y < 3 * high)
+        if seen.any():
+            style.theory(axes, places[seen], y[seen], label=label, linestyle=stroke)
+
+
+def figure(table, guides=(), wide=7.0):
+    """SVG of all panels of a table of several rows."""
+    shown = columns.panels(table.name, [c for c in table.values if c not in table.empty])
+    if not shown:
+        return nothing("No numbers: nan in every row")
+    rows = _rows(shown)
+    heights = [4.2 if row[0].wide else 3.2 for row in rows]
+    with style.styled():
+        drawing = style.pyplot.figure(figsize=(wide, sum(heights)))
+        grid = drawing.add_gridspec(len(rows), 2, height_ratios=heights)
+        for place, row in enumerate(rows):
+            for side, panel in enumerate(row):
+                _draw(drawing.add_subplot(grid[place, :] if len(row) == 1 else grid[place, side]), table, panel, guides)
+        return style.svg(drawing)
+
+
+def _rows(shown):
+    """Panels as they stand in rows: wide ones and one that is left over alone, others in pairs."""
+    narrow = [p for p in shown if not p.wide]
+    odd = len(narrow) % 2
+    return [[p] for p in shown if p.wide] + [[p] for p in narrow[:odd]] + [narrow[k:k + 2] for k in
+                                                                          range(odd, len(narrow), 2)]
+
+
+def nothing(text):
+    """SVG that says why there is no figure."""
+    with style.styled():
+        drawing, axes = style.plain(7.0, 0.7)
+        axes.set_axis_off()
+        axes.text(0.5, 0.5, text, ha="center", va="center", color=style.PALE)
+        return style.svg(drawing)
+
+
+def exact_values(table, derived):
+    """{column: the value that theory gives} of statics of open fibers, from the rows of `uncross check` for this kind."""
+    if columns.split(table.name)[0] != "statics" or table.rows != 1:
+        return {}
+    return {c: derived[row]**power for c, (row, power) in EXACT.items() if row in derived}
+
+
+def single_row(table, exact):
+    """SVG of a table of one row: each value relative to theory where there is one, else its relative error alone."""
+    names = [c for c in table.values if table.errors(c) is not None and numpy.isfinite(table.data[c][0]) and table.data[c][0] != 0]
+    if not names:
+        return nothing("No value with an error differs from 0")
+    with style.styled():
+        drawing, axes = style.plain(7.0, 0.6 + 0.34 * max(3, len(names)))
+        axes.axvline(0.0, color=style.INK, linewidth=0.8)
+        for place, name in enumerate(reversed(names)):
+            value, error = table.data[name][0], table.errors(name)[0]
+            base = exact.get(name, value)
+            number = 0 if name in exact else 1
+            axes.errorbar([100 * (value / base - 1.0) if name in exact else 0.0], [place],
+                          xerr=None if math.isnan(error) else [abs(100 * error / base)], marker=style.MARKERS[number],
+                          color=style.COLORS[number], linestyle="none",
+                          markerfacecolor=style.COLORS[0] if number == 0 else "none")
+        axes.set_yticks(range(len(names)), [columns.column(c).short for c in reversed(names)])
+        axes.set(ylim=(-0.6, max(1, len(names)) - 0.4),
+                 xlabel="filled: difference from theory, open: error alone (no theory) / %")
+        return style.svg(drawing)
+
+
+# --- two tables --------------------------------------------------------------------------------------------------------
+
+def common(a, b):
+    """Rows of a and of b that stand at the same x."""
+    x, y = a.places, b.places
+    if not len(x) or not len(y):
+        return numpy.zeros(0, int), numpy.zeros(0, int)
+    near = numpy.searchsorted(y, x)
+    before, near = (numpy.clip(near + shift, 0, len(y) - 1) for shift in (-1, 0))
+    near = numpy.where(numpy.abs(y[before] - x) < numpy.abs(y[near] - x), before, near)
+    same = numpy.abs(y[near] - x) <= 1e-9 * numpy.maximum(1.0, numpy.abs(x))
+    return numpy.flatnonzero(same), near[same]
+
+
+def difference(a, b, name):
+    """(x, b - a, its error) at the x that both have; the errors are taken to be independent, and nan where there are none."""
+    i, j = common(a, b)
+    ours, theirs = a.errors(name), b.errors(name)
+    error = numpy.full(len(i), math.nan) if ours is None or theirs is None else numpy.hypot(ours[i], theirs[j])
+    return a.places[i], b.data[name][j] - a.data[name][i], error
+
+
+def summary(a, b, name):
+    """(of a, its error, of b, its error, z, x or None, rows or None) of a column: means over the rows of a time series,
+    with errors from blocks; the last values of what runs on, without errors; of a table with errors, the row where z is
+    largest in size."""
+    if a.has_errors:
+        x, gap, error = difference(a, b, name)
+        with numpy.errstate(divide="ignore", invalid="ignore"):
+            z = gap / error
+        if not numpy.isfinite(z).any():
+            return None
+        row = int(numpy.nanargmax(numpy.where(numpy.isfinite(z), numpy.abs(z), -1.0)))
+        i, j = common(a, b)
+        return (a.data[name][i[row]], a.errors(name)[i[row]], b.data[name][j[row]], b.errors(name)[j[row]], z[row],
+                x[row] if a.rows > 1 else None, len(i))
+    ours, theirs = (t.data[name][numpy.isfinite(t.data[name])] for t in (a, b))
+    if not len(ours) or not len(theirs):
+        return None
+    if name in columns.RUNNING:
+        return ours[-1], math.nan, theirs[-1], math.nan, math.nan, None, None
+    errors = blocked_error(ours), blocked_error(theirs)
+    gap, error = theirs.mean() - ours.mean(), math.hypot(*errors)
+    return ours.mean(), errors[0], theirs.mean(), errors[1], gap / error if error > 0 else math.nan, None, None
+
+
+def compare(a, b, names):
+    """SVGs that hold two tables of several rows: for each column both, and below the difference over its error."""
+    shown = [(panel, c) for panel in columns.panels(a.name, [v for v in a.values if v in b.values])
+             for c in panel.columns if numpy.isfinite(a.data[c]).any() or numpy.isfinite(b.data[c]).any()]
+    pictures = []
+    with style.styled():
+        for start in range(0, len(shown), WIDE):
+            row = shown[start:start + WIDE]
+            drawing, grid = style.pyplot.subplots(2, WIDE, figsize=(7.4, 3.7), sharex="col",
+                                                  gridspec_kw={"height_ratios": [1.0, 0.4]})
+            for unused in grid[:, len(row):].flat:
+                unused.remove()
+            for axes, below, (panel, name) in zip(*grid, row):
+                _draw_pair(axes, below, a, b, panel, name, names if name == row[0][1] else None)
+            pictures.append(style.svg(drawing))
+    return pictures
+
+
+def _draw_pair(axes, below, a, b, panel, name, names):
+    for number, table in enumerate((a, b)):
+        y, errors = table.data[name], table.errors(name)
+        draw = style.points if errors is not None or table.rows < 4 else style.line
+        bars = {"errors": errors} if draw is style.points else {}
+        draw(axes, table.data[table.x], y - y[0] if panel.change else y, number=number,
+             label=names[number] if names else None, **bars)
+    _scales(axes, panel, a.data[a.x], [t.data[name] for t in (a, b)])
+    x, gap, error = difference(a, b, name)
+    known = numpy.isfinite(error) & (error > 0)
+    below.axhline(0.0, color=style.INK, linewidth=0.8)
+    if known.any():
+        for z in (-2.0, 2.0):
+            below.axhline(z, color=style.PALE, linewidth=0.8, linestyle=(0, (4, 3)))
+        style.points(below, x[known], gap[known] / error[known], None, 3)
+        below.set_ylabel("difference\n/ its error")
+    else:
+        style.line(below, x, gap, 3)
+        below.set_ylabel("difference")
+    label = columns.column(name)
+    axes.set(title=f"{label.name}\n{label.symbol}" if label.symbol else label.name,
+             ylabel=("change" if panel.change else label.symbol or label.name) + (f" / {label.unit}" if label.unit else ""))
+    below.set_xlabel(columns.LAG_LABEL if panel.log_x else columns.column(a.x).label)
+    if names:
+        style.legend(axes, fontsize=7)
+
+
+def compare_rows(a, b, names):
+    """SVG of two tables of one row: the difference of each value over its error."""
+    told = [(c, summary(a, b, c)) for c in a.values if c in b.values and a.has_errors]
+    told = [(c, t[4]) for c, t in told if t is not None and math.isfinite(t[4])]
+    if not told:
+        return nothing("No value that both have differs from 0 by a known error")
+    with style.styled():
+        drawing, axes = style.plain(7.0, 0.6 + 0.34 * max(3, len(told)))
+        for z in (-2.0, 0.0, 2.0):
+            axes.axvline(z, color=style.PALE if z else style.INK, linewidth=0.8, linestyle=(0, (4, 3)) if z else "-")
+        style.points(axes, [z for _, z in reversed(told)], range(len(told)), None, 3)
+        axes.set_yticks(range(len(told)), [columns.column(c).short for c, _ in reversed(told)])
+        axes.set(ylim=(-0.6, len(told) - 0.4), xlabel=f"{names[1]} minus {names[0]}, over its error")
+        return style.svg(drawing)

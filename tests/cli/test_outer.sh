@@ -1,0 +1,54 @@
+#!/usr/bin/env bash
+# Commands that another program does: where it is found, what it is given, and what is said if it cannot run. Prints TAP.
+# Needs: UNCROSS, the program (default build/uncross). A script stands for the other program, so no Python is needed.
+set -u
+uncross=$(realpath "${UNCROSS:-build/uncross}")
+dir=$(realpath "$(mktemp -d)")
+trap 'rm -rf "$dir"' EXIT
+count=0
+failures=0
+
+ok() { # ok STATUS NAME
+  count=$((count + 1))
+  if [ "$1" = 0 ]; then echo "ok $count - $2"; else echo "not ok $count - $2"; failures=$((failures + 1)); fi
+}
+gives() { # gives CODE TEXT PROGRAM ARGUMENTS ...: the exit code, and a line of standard output or error
+  local wanted=$1 text=$2 code
+  shift 2
+  "$@" >"$dir/out" 2>&1
+  code=$?
+  { [ "$code" = "$wanted" ] && grep -qxF -- "$text" "$dir/out" && [ "$(wc -l <"$dir/out")" = 1 ]; }
+  ok $? "${*//"$dir"\//}: $code, $text"
+}
+
+mkdir -p "$dir/tree/build/other" "$dir/tree/tools" "$dir/prefix/bin" "$dir/prefix/libexec/uncross" "$dir/alone/bin"
+for place in tree/build tree/build/other prefix/bin alone/bin; do cp "$uncross" "$dir/$place/uncross"; done
+script='#!/bin/sh
+echo "$UNCROSS" "$@" /
+exit 7'
+echo "$script" >"$dir/tree/tools/uncross-plot"
+echo "$script" >"$dir/prefix/libexec/uncross/uncross-plot"
+chmod +x "$dir/tree/tools/uncross-plot" "$dir/prefix/libexec/uncross/uncross-plot"
+
+gives 7 "$dir/tree/build/uncross one two words /" "$dir/tree/build/uncross" plot one 'two words'
+gives 7 "$dir/tree/build/other/uncross --movie --out=x one /" "$dir/tree/build/other/uncross" plot one --movie --out=x
+gives 7 "$dir/prefix/bin/uncross --compare -- one -two /" "$dir/prefix/bin/uncross" plot --compare -- one -two
+ln -s "$dir/prefix/bin/uncross" "$dir/alone/link"
+gives 7 "$dir/prefix/bin/uncross one /" "$dir/alone/link" plot one
+gives 1 "uncross: plot: there is no program uncross-plot in ../libexec/uncross or ../tools beside this one" \
+  "$dir/alone/bin/uncross" plot one
+chmod -x "$dir/prefix/libexec/uncross/uncross-plot"
+gives 1 "uncross: plot: there is no program uncross-plot in ../libexec/uncross or ../tools beside this one" \
+  "$dir/prefix/bin/uncross" plot one
+sed -i '1s|.*|#!/nowhere/python3|' "$dir/tree/tools/uncross-plot"
+"$dir/tree/build/uncross" plot one >"$dir/out" 2>&1
+[ $? = 1 ] && grep -qF "there is no /usr/bin/python3; it comes with \`tools/install-dependencies plot\`" "$dir/out"
+ok $? "an interpreter that is not there: 1, and the command that installs it"
+gives 2 "uncross: plot: a file is missing; \`uncross plot --help\` lists what is allowed" "$dir/alone/bin/uncross" plot
+"$dir/alone/bin/uncross" plot one --fly >"$dir/out" 2>&1
+[ $? = 2 ] && grep -q 'wrong options' "$dir/out"
+ok $? "an option that is none: 2, before the other program is looked for"
+"$dir/alone/bin/uncross" plot --help | grep -q '^  --movie '
+ok $? "help needs no other program"
+echo "1..$count"
+exit $((failures > 0))

@@ -1,0 +1,451 @@
+"""Pages of `uncross plot`: a run of rods, rings and single beads under a force.
+
+Needs UNCROSS, the program (default build/uncross). Pictures are held against the bonds that the file lists, pages against
+the files of the folder, numbers against what the files say.
+"""
+import base64
+import contextlib
+import html.parser
+import importlib.machinery
+import importlib.util
+import io
+import json
+import math
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+import unittest.mock
+import xml.etree.ElementTree as xml
+
+import h5py
+import numpy
+from PIL import Image
+
+TOP = pathlib.Path(__file__).resolve().parents[2]
+UNCROSS = pathlib.Path(os.environ.get("UNCROSS", TOP / "build" / "uncross")).resolve()
+os.environ["UNCROSS"] = str(UNCROSS)
+sys.path.insert(0, str(TOP / "python"))
+from uncross_plot import columns, compare, fibers, page, runs, tables  # noqa: E402
+
+SCENE = """box: [8, 8, 10]
+time_step: 0.01
+steps: 200
+seed: 3
+solvent: {per_cell: 3, collision_interval: 0.02}
+fibers:
+  - {name: rods, count: 20, vertices: 12, mass: 5, bond_length: 0.5, spring: 100, persistence_length: 50}
+  - {name: rings, count: 6, vertices: 16, ring: true, mass: 5, bond_length: 0.5, spring: 100, persistence_length: 2}
+  - {name: beads, count: 40, vertices: 1, mass: 5, bond_length: 0.5, spring: 100, force: [0.1, 0, 0]}
+observe: {conserved: {every: 5}, temperature: {every: 5}, collisions: {every: 20}, statics: {every: 5}, dynamics: {every: 5}}
+trajectory: {every: 50}
+"""
+RODS, RINGS, BEADS, BONDS = 20, 6, 40, 20 * 11 + 6 * 16  # from the scene: a ring has as many bonds as vertices
+VOID = {"meta", "img", "br"}
+
+
+def uncross(*words, environment=None):
+    done = subprocess.run([UNCROSS, *map(str, words)], stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False,
+                          env={**os.environ, **(environment or {})})
+    return done.returncode, done.stdout, done.stderr
+
+
+LOADER = importlib.machinery.SourceFileLoader("uncross_plot_program", str(TOP / "tools" / "uncross-plot"))
+program = importlib.util.module_from_spec(importlib.util.spec_from_loader(LOADER.name, LOADER))
+LOADER.exec_module(program)
+
+
+def plot(*words):
+    """(code, standard output, standard error) of `uncross plot`, in this process: its packages take a second to read."""
+    told, error = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(told), contextlib.redirect_stderr(error), unittest.mock.patch.object(
+            sys, "argv", ["uncross plot", *map(str, words)]):
+        code = program.main()
+    return code, told.getvalue(), error.getvalue()
+
+
+class Page(html.parser.HTMLParser):
+    """A page, read strictly: every element is closed in turn."""
+
+    def __init__(self, path):
+        super().__init__()
+        self.open, self.images, self.tables, self.addresses, self.words, self.cells = [], [], [], [], [], []
+        self.text = pathlib.Path(path).read_text(encoding="utf-8")
+        self.feed(self.text)
+        self.close()
+        assert not self.open, self.open
+
+    def handle_starttag(self, tag, attrs):
+        attrs = dict(attrs)
+        if tag not in VOID:
+            self.open.append(tag)
+        if tag == "img":
+            self.images.append(attrs)
+        if "data-table" in attrs:
+            self.tables.append(attrs["data-table"])
+        self.addresses += [attrs[k] for k in ("src", "href", "data", "srcset") if k in attrs]
+        if tag in ("td", "th", "dd", "li", "figcaption", "caption"):
+            self.cells.append("")
+
+    def handle_endtag(self, tag):
+        assert self.open and self.open.pop() == tag, (tag, self.getpos())
+
+    def handle_data(self, data):
+        if "style" not in self.open:
+            self.words.append(data)
+            if self.cells:
+                self.cells[-1] += data
+
+    @property
+    def said(self):
+        return " ".join(" ".join(self.words).split())
+
+    def picture(self, number):
+        return base64.b64decode(self.images[number]["src"].split(",", 1)[1])
+
+
+class Folder(unittest.TestCase):
+    """One run, and its page with a movie."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.dir = pathlib.Path(tempfile.mkdtemp())
+        (cls.dir / "mix.yaml").write_text(SCENE)
+        cls.run_dir = cls.dir / "mix"
+        assert uncross("run", cls.dir / "mix.yaml", "--out", cls.run_dir, "--quiet")[0] == 0
+        cls.code, cls.told, cls.error = uncross("plot", cls.run_dir, "--movie")
+        assert cls.code == 0, cls.error
+        cls.page = Page(cls.run_dir / "page.html")
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.dir)
+
+    def copy(self, name):
+        """A copy of the run to spoil."""
+        where = self.dir / name
+        shutil.copytree(self.run_dir, where, ignore=shutil.ignore_patterns("*.html"))
+        return where
+
+    def record(self, name, **changes):
+        where = self.copy(name)
+        record = json.loads((where / "run.json").read_text())
+        (where / "run.json").write_text(json.dumps({**record, **changes}))
+        return runs.distrust(runs.read(str(where)))
+
+    # --- the page ---
+
+    def test_the_page_is_where_it_says(self):
+        self.assertEqual(self.told, f"{self.run_dir}/page.html\n")
+        self.assertTrue(self.page.text.startswith("<!DOCTYPE html>"))
+
+    def test_the_page_needs_nothing_else(self):
+        for address in self.page.addresses:
+            self.assertRegex(address, "^(data:|#)")
+        self.assertNotRegex(re.sub(r'src="data:[^"]*"', "", self.page.text), r"https?:|file:|url\(|@import|<script|<link")
+        for number, image in enumerate(self.page.images):
+            if image["src"].startswith("data:image/svg"):
+                root = xml.fromstring(self.page.picture(number))
+                for element in root.iter():
+                    for key, value in element.attrib.items():
+                        self.assertTrue(not key.endswith("href") or value.startswith("#"), value)
+
+    def test_every_picture_has_words(self):
+        self.assertGreater(len(self.page.images), 8)
+        for image in self.page.images:
+            self.assertGreater(len(image["alt"]), 15)
+            self.assertTrue(image["title"])
+        figures = [int(n) for n in re.findall(r"Figure (\d+)\.", self.page.said)]
+        self.assertEqual(figures, list(range(1, len(self.page.images) + 1)))
+
+    def test_every_table_has_a_figure(self):
+        names = sorted(p.stem for p in self.run_dir.glob("*.csv"))
+        self.assertEqual(len(names), 9)
+        self.assertEqual(sorted(self.page.tables), names)
+
+    def test_every_column_is_declared_and_documented(self):
+        documented = (TOP / "docs/observables.md").read_text()
+        for path in self.run_dir.glob("*.csv"):
+            table = tables.read(path, path.stem)
+            for name in table.data:
+                if not table.is_error(name):
+                    self.assertIn(name, columns.COLUMNS)
+                    self.assertTrue(name == "step" or f"`{name}`" in documented, name)
+            shown = [c for panel in columns.panels(path.stem, table.values) for c in panel.columns]
+            if table.rows > 1:
+                self.assertEqual(sorted(shown), sorted(table.values))
+
+    def test_error_bars_and_labels(self):
+        svg = self.page.picture([i for i, a in enumerate(self.page.images) if a["title"] == "Motion of 'rods'"][0]).decode()
+        self.assertGreater(svg.count('id="LineCollection_'), 5)  # a collection of bars for each series with errors
+        table = tables.read(self.run_dir / "dynamics-rods.csv", "dynamics-rods")
+        self.assertEqual(columns.column("D").label, r"diffusion coefficient $D(t) = g_\mathrm{cm}/6t$ / $(a_0^2/t_0)$")
+        bare = tables.Table("dynamics-rods", {k: v for k, v in table.data.items() if not k.endswith("_error")})
+        self.assertNotIn('id="LineCollection_', tables.figure(bare))
+
+    def test_what_came_out_and_where_from(self):
+        record = json.loads((self.run_dir / "run.json").read_text())
+        for key in ("version", "commit", "compiler", "flags", "seed", "state_hash", "scene_fingerprint"):
+            self.assertIn(str(record[key]), self.page.said)
+        self.assertIn("Finished: step 200 of 200, 2 t0", self.page.said)
+        self.assertIn(f"{RODS} fibers of 12 vertices ('rods'), {RINGS} rings of 16 vertices ('rings'), {BEADS} single beads "
+                      "('beads') in a periodic box of 8 × 8 × 10 a0.", self.page.said)
+        self.assertIn(" ".join(record["scene"].split()), self.page.said)
+
+    def test_derived_numbers_are_those_of_check(self):
+        told = uncross("check", self.dir / "mix.yaml")[1]
+        heading, wanted = "", []
+        for line in told.splitlines():
+            heading = line if line[:1].strip() else heading
+            value = re.fullmatch(r"\s+(\S.*?)\s{2,}.*?\s([-+.e\d]+)(?: .*)?", line[:63])
+            if value and re.match("Solvent|Fibers|Suspension", heading):
+                wanted.append((value[1], value[2]))
+        found = [(row.name, row.value) for _, rows in runs.read(str(self.run_dir)).derived for row in rows]
+        self.assertGreater(len(found), 60)
+        self.assertEqual(found, wanted)
+
+    # --- the picture ---
+
+    def drawn(self, number=0):
+        root = xml.fromstring(self.page.picture(number))
+        kind = "{http://www.w3.org/2000/svg}"
+        pieces = [(int(e.get("data-n")), [float(x) for x in re.findall(r"[-.\d]+", e.get("d"))])
+                  for e in root.iter(kind + "path") if e.get("class") == "b"]
+        return pieces, [int(e.get("data-n")) for e in root.iter(kind + "circle")]
+
+    def test_all_bonds_and_no_others_are_drawn(self):
+        pieces, beads = self.drawn()
+        with h5py.File(self.run_dir / "trajectory.h5") as file:
+            bonds = file["connectivity/bonds"][:]
+        self.assertEqual(len(bonds), BONDS)
+        self.assertEqual({n for n, _ in pieces}, set(range(BONDS)))
+        self.assertEqual(len(beads), BEADS)
+        self.assertEqual(set(beads) & set(bonds.ravel().tolist()), set())
+        self.assertIn(f"{BONDS} bonds of {RODS + RINGS} fibers and {BEADS} single beads", self.page.said)
+        # The box is some 700 pixels wide and 8 a0; a bond is shorter than 1 a0.
+        self.assertLess(max(math.hypot(x1 - x0, y1 - y0) for _, (x0, y0, x1, y1) in pieces), 110)
+
+    def test_pieces_are_the_bond(self):
+        """Random bonds through faces, edges and corners: lengths add up, pieces lie in the box, ends meet at faces."""
+        random = numpy.random.default_rng(5)
+        edges = numpy.array([4.0, 5.0, 6.0])
+        a = random.uniform(-9, 9, (400, 3))
+        step = random.uniform(-1.9, 1.9, (400, 3))
+        step[:20, 0] = 0.0  # along faces
+        points = numpy.concatenate([a, a + step])
+        bonds = numpy.stack([numpy.arange(400), numpy.arange(400) + 400], 1)
+        structure = fibers.Structure("", edges, ["x"], numpy.zeros(800, int), bonds, numpy.zeros(800, int), "")
+        ends, number = fibers.pieces(structure, points)
+        self.assertGreater(len(ends), 500)
+        self.assertTrue(((ends > -1e-9) & (ends < edges + 1e-9)).all())
+        length = numpy.bincount(number, numpy.linalg.norm(ends[:, 1] - ends[:, 0], axis=1), 400)
+        numpy.testing.assert_allclose(length, numpy.linalg.norm(step, axis=1), rtol=1e-9)
+        middle = (ends.mean(axis=1) - a[number]) / edges  # each piece lies on the bond, up to whole edges
+        along = (middle - numpy.round(middle - step[number] / edges / 2)) * edges
+        cross = numpy.linalg.norm(numpy.cross(along - step[number] / 2, step[number]), axis=1)
+        self.assertLess(numpy.median(cross), 1e-9)
+        folded, order = fibers.pieces(structure, points - edges * numpy.floor(points / edges))
+        numpy.testing.assert_allclose(numpy.bincount(order, numpy.linalg.norm(folded[:, 1] - folded[:, 0], axis=1), 400), length,
+                                      rtol=1e-9)
+
+    def test_a_bond_is_inside_or_leaves(self):
+        structure = fibers.Structure("", numpy.array([4.0, 4.0, 4.0]), ["x"], numpy.zeros(2, int), numpy.array([[0, 1]]),
+                                     numpy.zeros(2, int), "")
+        one = fibers.pieces(structure, numpy.array([[1.0, 1.0, 1.0], [1.5, 1.0, 1.0]]))[0]
+        self.assertEqual(one.tolist(), [[[1, 1, 1], [1.5, 1, 1]]])
+        two = fibers.pieces(structure, numpy.array([[3.75, 1.0, 1.0], [4.5, 1.0, 1.0]]))[0]
+        self.assertEqual(sorted(two.tolist()), [[[0, 1, 1], [0.5, 1, 1]], [[3.75, 1, 1], [4, 1, 1]]])
+
+    def test_kinds_fibers_and_rings(self):
+        for name in ("trajectory.h5", "checkpoint.h5"):
+            with fibers.File(self.run_dir / name) as file:
+                s = file.structure
+                self.assertEqual(s.kinds, ["rods", "rings", "beads"])
+                self.assertEqual([s.kinds[k] for k in s.rings], ["rings"])
+                sizes = numpy.bincount(s.fiber)
+                self.assertEqual(sizes.tolist(), [12] * RODS + [16] * RINGS + [1] * BEADS)
+        with fibers.File(self.run_dir / "trajectory.h5") as a, fibers.File(self.run_dir / "checkpoint.h5") as b:
+            numpy.testing.assert_array_equal(a.positions(-1), b.positions(0))
+
+    def test_the_movie_plays(self):
+        with Image.open(io.BytesIO(self.page.picture(1))) as movie:
+            self.assertEqual((movie.format, movie.n_frames), ("WEBP", 5))
+            frames = []
+            for number in (0, 4):
+                movie.seek(number)
+                frames.append(numpy.asarray(movie.convert("L"), float))
+        self.assertGreater(numpy.abs(frames[0] - frames[1]).mean(), 0.5)
+        self.assertLess(frames[0].min(), 120)
+
+    # --- what to distrust ---
+
+    def test_warnings_are_on_the_front(self):
+        front = self.page.text[self.page.text.index("<dl"):self.page.text.index("</dl>")]
+        self.assertIn("net force of (4, 0, 0)", front)
+        self.assertIn("the run lasted 2 t0, and a fiber turns in", front)
+        self.assertEqual(front.count("<dt>"), 5)
+
+    def test_ends_faults_and_clusters(self):
+        told = self.record("ended", status="stopped", reason="bond 7 is too long", steps=120)
+        self.assertEqual(told[0], "The run did not finish: it is 'stopped' at step 120 of 200: bond 7 is too long.")
+        self.assertIn("'running' at step 0 of 200", self.record("runs", status="running", steps=0)[0])
+        counts = {"executed": 3, "possible": 3, "moves": 9, "negative": 0, "rigid": 2}
+        self.assertTrue(any("2 contacts made bonds move rigidly" in t for t in self.record("rigid", collisions=counts)))
+        self.assertFalse(any("rigid" in t or "finish" in t for t in runs.distrust(runs.read(str(self.run_dir)))))
+
+    def test_a_damaged_file_is_named_and_not_drawn(self):
+        where = self.copy("damaged")
+        for name in ("trajectory.h5", "checkpoint.h5"):
+            data = bytearray((where / name).read_bytes())
+            data[len(data) // 2] ^= 1
+            (where / name).write_bytes(data)
+        run = runs.read(str(where))
+        self.assertIsNone(run.frames)
+        told = " ".join(runs.distrust(run))
+        self.assertRegex(told, r"trajectory\.h5: .*damaged|trajectory\.h5: .*checksum")
+        self.assertRegex(told, r"checkpoint\.h5: ")
+        code, _, error = plot(where / "checkpoint.h5")
+        self.assertEqual(code, 2)
+        self.assertIn("checkpoint.h5: ", error)
+
+    def synthetic(self, name, data):
+        run = runs.Run("nowhere")
+        run.tables.append(tables.Table(name, {k: numpy.array(v, float) for k, v in data.items()}))
+        return runs.distrust(run)
+
+    def test_unsteady_short_and_wrong_averages(self):
+        random = numpy.random.default_rng(1)
+        noise, time = random.normal(1.0, 0.01, 200), numpy.arange(200.0)
+        self.assertEqual(self.synthetic("temperature", {"time": time, "solvent": noise}), [])
+        told = self.synthetic("temperature", {"time": time, "solvent": noise + 0.0004 * (time - 100)})
+        self.assertEqual(len(told), 1)
+        self.assertIn("solvent is not steady", told[0])
+        self.assertIn("not those of equilibrium", self.synthetic("temperature", {"time": time, "solvent": noise + 0.03})[0])
+        told = self.synthetic("dynamics-x", {"time": [1, 2], "g": [1, 2], "g_error": [0.1, math.nan], "intervals": [40, 4]})
+        self.assertIn("too few values for an error of g.", told[0])
+        self.assertIn("from lag 2 t0 on, fewer than 16 pairs", told[1])
+
+    def test_theory_is_held_against_open_fibers(self):
+        run = runs.read(str(self.run_dir))
+        self.assertEqual(run.exact(run.table("statics-rings")), {})
+        exact = run.exact(run.table("statics-rods"))
+        self.assertEqual(sorted(exact), ["Ree2", "cos", "l", "lp"])
+        self.assertAlmostEqual(exact["l"], 0.538462)
+        self.assertAlmostEqual(exact["Ree2"], 5.82559**2, places=3)
+        table = run.table("statics-rods")
+        table.data["l"] = exact["l"] + 6 * table.errors("l")
+        self.assertTrue(any("statics-rods: l = " in text and "6.0 standard errors" in text for text in runs.distrust(run)))
+
+    # --- single files, two runs ---
+
+    def test_a_table_alone(self):
+        code, told, _ = plot(self.run_dir / "statics-rods.csv", "--out", self.dir / "statics.html")
+        self.assertEqual((code, told), (0, f"{self.dir}/statics.html\n"))
+        self.assertEqual(Page(self.dir / "statics.html").tables, ["statics-rods"])
+
+    def test_a_checkpoint_alone(self):
+        shutil.copy(self.run_dir / "checkpoint.h5", self.dir / "state.h5")
+        self.assertEqual(plot(self.dir / "state.h5")[0], 0)
+        alone = Page(self.dir / "state.html")
+        self.assertEqual((len(alone.images), alone.tables), (1, []))
+        self.assertIn("1 frame, to step 200 (2 t0)", alone.said)
+
+    def test_an_unknown_table_is_drawn(self):
+        path = self.dir / "other.csv"
+        path.write_text("density,pressure,pressure_error\n1,2,0.1\n2,3,0.2\n4,nan,nan\n")
+        table = tables.read(path, "other")
+        self.assertEqual((table.x, table.values), ("density", ["pressure"]))
+        self.assertIn("<svg", tables.figure(table))
+
+    def test_compare(self):
+        for name, seed in (("one", 5), ("two", 6)):
+            (self.dir / f"{name}.yaml").write_text(re.sub("observe:.*", "observe: {temperature: {every: 5}, statics: {every: 5}}",
+                                                          SCENE).replace("trajectory: {every: 50}\n", ""))
+            self.assertEqual(uncross("run", self.dir / f"{name}.yaml", "--out", self.dir / name, "--seed", seed, "--quiet")[0], 0)
+        out = self.dir / "both.html"
+        code, _, error = plot("--compare", self.dir / "one", self.dir / "two", "-o", out)
+        self.assertEqual((code, error), (0, ""))
+        both = Page(out)
+        self.assertEqual(sorted(set(both.tables)), ["statics-beads", "statics-rings", "statics-rods", "temperature"])
+        a, b = (tables.read(self.dir / name / "statics-rods.csv", "statics-rods") for name in ("one", "two"))
+        z = (b.data["l"][0] - a.data["l"][0]) / math.hypot(a.data["l_error"][0], b.data["l_error"][0])
+        row = re.search(r"of &#39;rods&#39;, in numbers.*?bond length</td>.*?</tr>", both.text, re.S)[0]
+        self.assertIn(f'<td class="n">{z:+.1f}</td>', row)
+        self.assertNotIn("Both have the seed", both.said)
+        same = runs.read(str(self.dir / "one"))
+        self.assertEqual(compare._kin(same, same)[0][:20], "Both have the seed 5")
+
+    def test_differences_are_of_the_same_place(self):
+        a = tables.Table("dynamics-x", {"time": numpy.array([1.0, 2, 3]), "g": numpy.array([1.0, 4, 9]),
+                                        "g_error": numpy.array([0.3, 0.3, 0.3])})
+        b = tables.Table("dynamics-x", {"time": numpy.array([2.0, 3, 5]), "g": numpy.array([5.0, 7, 1]),
+                                        "g_error": numpy.array([0.4, 0.4, 0.4])})
+        x, gap, error = tables.difference(a, b, "g")
+        self.assertEqual((x.tolist(), gap.tolist()), ([2, 3], [1, -2]))
+        numpy.testing.assert_allclose(error, 0.5)
+        self.assertAlmostEqual(tables.summary(a, b, "g")[4], -4.0)
+        self.assertEqual(tables.difference(b, a, "g")[1].tolist(), [-1, 2])
+
+    def test_numbers_with_errors(self):
+        for value, error, text in ((1.23456, 0.0123, "1.235 ± 0.012"), (123.4, 5.6, "123.4 ± 5.6"), (1234, 56, "1234 ± 56"),
+                                   (1.2e-5, 3e-7, "(1.200 ± 0.030)e-5"), (-2.5, 0.0, "-2.5"), (math.nan, 1, "nan")):
+            self.assertEqual(page.with_error(value, error), text)
+
+    # --- refusals ---
+
+    def test_nothing_is_written_over(self):
+        before = (self.run_dir / "page.html").read_bytes()
+        code, told, error = uncross("plot", self.run_dir)
+        self.assertEqual((code, told), (2, ""))
+        self.assertEqual(error, f"uncross: {self.run_dir}/page.html: is there already, and nothing is written over; "
+                         "--out FILE names another\n")
+        self.assertEqual((self.run_dir / "page.html").read_bytes(), before)
+
+    def refused(self, text, *words, code=2):
+        out = self.dir / "refused.html"
+        found, told, error = plot(*words, *([] if "-o" in words else ["-o", out]))
+        self.assertEqual((found, told), (code, ""), error)
+        self.assertEqual(error.count("\n"), 1, error)
+        self.assertIn(text, error)
+        self.assertFalse(out.exists())
+
+    def test_what_is_refused(self):
+        bad = self.dir / "bad.csv"
+        bad.write_text("time,g\n1,2\n2,two\n")
+        (self.dir / "good.csv").write_text("time,g\n1,2\n2,3\n")
+        empty = self.dir / "empty"
+        empty.mkdir()
+        self.refused("nowhere: No such file or directory", self.dir / "nowhere")
+        self.refused("mix.yaml: neither a folder of a run, nor a table", self.dir / "mix.yaml")
+        self.refused("bad.csv:3:3: 'two' is not a number", bad)
+        self.refused("empty: not the folder of a run", empty)
+        self.refused("give the folder of the run", self.run_dir / "run.json")
+        self.refused("--compare takes two", "--compare", self.run_dir)
+        self.refused("no trajectory of two frames or more for --movie", self.run_dir / "checkpoint.h5", "--movie")
+        self.refused("cannot write: No such file or directory", bad.with_name("good.csv"), "-o", self.dir / "no" / "page.html",
+                     code=4)
+        code, _, error = plot(self.run_dir, self.run_dir)
+        self.assertEqual(code, 2)
+        self.assertIn("--out FILE is missing", error)
+
+    def test_a_missing_package_is_named(self):
+        hidden = self.dir / "hidden"
+        hidden.mkdir()
+        (hidden / "sitecustomize.py").write_text("import importlib.util as u\nfind = u.find_spec\n"
+                                                 "u.find_spec = lambda n, *a: None if n == 'h5py' else find(n, *a)\n")
+        code, told, error = uncross("plot", self.run_dir, "-o", self.dir / "hidden.html",
+                                    environment={"PYTHONPATH": str(hidden), "PATH": "/usr/bin:/bin"})
+        self.assertEqual((code, told), (1, ""))
+        self.assertEqual(error, "uncross: plot: needs python3-h5py; `tools/install-dependencies plot` installs what is missing "
+                         "(apt-get install python3-h5py)\n")
+        group = re.search(r"\[plot\]=\"(.*)\"", (TOP / "tools/install-dependencies").read_text())[1].split()
+        program = (TOP / "tools/uncross-plot").read_text()
+        self.assertEqual(sorted(re.findall(r"python3-\w+", program.split("NEEDED")[1].split("}")[0])), sorted(group[1:]))
+
+
+if __name__ == "__main__":
+    unittest.main()
