@@ -123,8 +123,7 @@ static struct flight_pair make_pair(struct dice *d, const struct search_kind *k)
   return pair;
 }
 
-/* --- what doubles say ----------------------------------------------------------------------------------------------
- */
+/* --- what doubles say --------------------------------------------------------------------------------------------- */
 
 static struct vec3 real_at(struct point at, struct point rate, int32_t tick)
 {

@@ -6,8 +6,7 @@
 #include "contact/determinant.h"
 #include "contact/hull.h"
 
-/* --- the search ----------------------------------------------------------------------------------------------------
- */
+/* --- the search --------------------------------------------------------------------------------------------------- */
 
 struct at_tick {
   struct difference p, q, w;
@@ -142,8 +141,7 @@ int32_t event_search(const struct event_twist *t, const struct flight_pair *pair
   }
 }
 
-/* --- the impulse ---------------------------------------------------------------------------------------------------
- */
+/* --- the impulse -------------------------------------------------------------------------------------------------- */
 
 static double inverse_mass(bool left_out, bool of_first, const struct oracle_impulse *e, int k)
 {
@@ -211,8 +209,7 @@ double event_impulse(const struct event_twist *t, struct oracle_impulse *e, enum
   return impulse;
 }
 
-/* --- guesses -------------------------------------------------------------------------------------------------------
- */
+/* --- guesses ------------------------------------------------------------------------------------------------------ */
 
 const struct event_twist event_search_twists[] = {
     {.search = SEARCH_TICK_LATE, .text = "a contact is answered a tick late: the first tick of the interval counts"},

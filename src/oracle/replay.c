@@ -103,19 +103,20 @@ static bool ends_there(const struct sweeper *s)
 }
 
 /* True if the guess makes their sweep of one step. */
-static bool makes_theirs(const struct oracle_pair *p, const struct sweep_twist *t, double tolerance)
+static bool makes_theirs(const struct oracle_pair *p, const void *twist, double tolerance)
 {
   struct sweeper s;
   if (!sweeper_take(p, &s))
     return false;
-  s.t = t, s.tolerance = tolerance;
+  s.t = twist, s.tolerance = tolerance;
   const bool same = sweeper_begin(&s) && replay_moves(&s) && ends_there(&s);
   sweeper_finish(&s);
   return same;
 }
 
-/* All steps that both have. */
-static bool makes_all(const struct oracle_pair *p, const struct sweep_twist *t, double tolerance)
+bool oracle_makes_all(const struct oracle_pair *p,
+                      bool (*makes)(const struct oracle_pair *step, const void *twist, double tolerance),
+                      const void *twist, double tolerance)
 {
   bool any = false;
   for (size_t k = 0; k < p->pack->count; k++) {
@@ -125,7 +126,7 @@ static bool makes_all(const struct oracle_pair *p, const struct sweep_twist *t, 
         !theirs)
       continue;
     const struct oracle_pair pair = {p->pack, p->pack_theirs, ours, theirs, p->rounding};
-    if (!makes_theirs(&pair, t, tolerance))
+    if (!makes(&pair, twist, tolerance))
       return false;
     any = true;
   }
@@ -232,10 +233,10 @@ static bool name_kind(const struct oracle_pair *p, double tolerance, bool finder
 {
   const struct contact_twist *const list = finders ? contact_test_twists : contact_exchange_twists;
   for (size_t k = 0; k < sizeof twists / sizeof *twists; k++)
-    if (finds_other_hits(&twists[k]) == finders && makes_all(p, &twists[k], tolerance))
+    if (finds_other_hits(&twists[k]) == finders && oracle_makes_all(p, makes_theirs, &twists[k], tolerance))
       oracle_name(text, named, twists[k].text);
   for (const struct contact_twist *c = list; c->text; c++)
-    if (makes_all(p, &(struct sweep_twist){.contact = *c}, tolerance))
+    if (oracle_makes_all(p, makes_theirs, &(struct sweep_twist){.contact = *c}, tolerance))
       oracle_name(text, named, c->text);
   return *named;
 }
@@ -261,7 +262,7 @@ bool oracle_replay(const struct oracle_pair *p, char text[ORACLE_TEXT])
   static const double tolerances[] = {0x1p-40, 0x1p-26};
   static const struct sweep_twist right = {.text = NULL};
   for (int pass = 0; pass < 2; pass++)
-    if (makes_all(p, &right, tolerances[pass]) || name_guesses(p, tolerances[pass], text))
-      return !makes_all(p, &right, tolerances[pass]);
+    if (oracle_makes_all(p, makes_theirs, &right, tolerances[pass]) || name_guesses(p, tolerances[pass], text))
+      return !oracle_makes_all(p, makes_theirs, &right, tolerances[pass]);
   return false;
 }

@@ -8,6 +8,11 @@
 
 #include "oracle/pair.h"
 
+/* True if a guess makes theirs at all steps that both have. */
+bool oracle_makes_all(const struct oracle_pair *pair,
+                      bool (*makes)(const struct oracle_pair *step, const void *twist, double tolerance),
+                      const void *twist, double tolerance);
+
 /* True, and the text, if a guess makes theirs. */
 bool oracle_replay(const struct oracle_pair *pair, char text[ORACLE_TEXT]);
 
@@ -21,7 +26,8 @@ void oracle_count_hits(const struct oracle_pair *pair, uint32_t *hits, uint32_t 
 /* The same where all vertices end as they should: which events are not reported. False if none is missing or invented.
  */
 bool oracle_judge_reports(const struct oracle_pair *pair, char text[ORACLE_TEXT]);
-/* The same for a drift of the rule `event-driven`. */
+
+/* What oracle_replay does, for a drift of the rule `event-driven`. */
 bool oracle_replay_events(const struct oracle_pair *pair, char text[ORACLE_TEXT]);
 
 #endif
