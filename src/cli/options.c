@@ -35,6 +35,8 @@ const struct option_row option_rows[] = {
      .text = "use this seed instead of the scene's"},
     {"resume", NULL, OF(RUN), 0, OPTION_SWITCH, 0, AT(resume), ONLY_VALUE, .text = "go on from DIR/checkpoint.h5"},
     {"quiet", NULL, OF(RUN), 0, OPTION_SWITCH, 0, AT(quiet), ONLY_VALUE, .text = "no progress, no closing words"},
+    {"format", "xyz|lammps|vtf", OF(EXPORT), 0, OPTION_TEXT, 0, AT(export.format), ONLY_VALUE,
+     .text = "extended XYZ (without it), LAMMPS data (one frame, the last), VTF"},
     {"solvent", NULL, OF(EXPORT), 0, OPTION_SWITCH, 0, AT(export.solvent), ONLY_VALUE,
      .text = "with the solvent particles, if the file has them"},
     {"wrapped", NULL, OF(EXPORT), 0, OPTION_SWITCH, 0, AT(export.wrapped), ONLY_VALUE,
