@@ -62,14 +62,16 @@ static uint32_t count(const struct export_view *v, bool (*has)(const struct expo
 /* The mass of a type; 1 if no row has it. */
 static double mass_of(const struct export_view *v, int32_t type, bool *mixed)
 {
-  double mass = 0.0;
+  bool found = false;
+  double mass = 1.0;
   for (uint32_t row = 0; row < v->frames->about.rows; row++)
     if (v->number[row] >= 0 && species_of(v, row) + 1 == type) {
       const double m = structure_mass(&v->frames->structure, row);
-      *mixed |= mass != 0.0 && m != mass;
+      *mixed |= found && m != mass;
       mass = m;
+      found = true;
     }
-  return mass != 0.0 ? mass : 1.0;
+  return mass;
 }
 
 #define MOST_TYPES 4097 /* kinds of a model, and the solvent */
