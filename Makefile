@@ -320,7 +320,7 @@ bench-programs: $(BUILD)/uncross $(BENCH_PROGRAMS)
 # What needs packages asks for them first, then builds in a second make: pkg-config may only now be there.
 .PHONY: check
 check:
-	tools/install-dependencies run test validate
+	tools/install-dependencies run test validate readers
 	$(MAKE) -j2 tests
 	tests/run $(BUILD)
 
