@@ -12,7 +12,7 @@
  * fine and they are asked for, positions and velocities. */
 struct frame_request {
   uint64_t frame;
-  bool rows; /* positions and velocities are wanted too */
+  uint64_t rows; /* 1: positions and velocities are wanted too; as wide as frame, so that no unset byte is sent */
 };
 
 struct frame_moment {

@@ -308,7 +308,7 @@ static void say_size(const struct evidence *e, char *text)
 
 /* Which rows are wrong, by an exact rule if there is one, and what their values are if a relation of any operator is
  * right there. */
-static void describe(struct evidence *e, const char *partial, const char *unknown, char *text)
+static void describe(struct evidence *e, const char *partial, char *text)
 {
   char rows[ROWS_TEXT], side[RELATION_TEXT] = "";
   bool exact = oracle_describe_rows(e, rows);
@@ -321,7 +321,7 @@ static void describe(struct evidence *e, const char *partial, const char *unknow
   }
   if (!*partial)
     oracle_one_sided(e, side);
-  snprintf(text, ORACLE_TEXT, "%s%s%s%s%s", exact ? "" : unknown, exact ? "" : "; ", *partial ? partial : side,
+  snprintf(text, ORACLE_TEXT, "%s%s%s%s%s", exact ? "" : ORACLE_UNKNOWN, exact ? "" : "; ", *partial ? partial : side,
            *partial || *side ? "; " : "", rows);
   if (!exact)
     say_size(e, text);
@@ -330,7 +330,7 @@ static void describe(struct evidence *e, const char *partial, const char *unknow
 /* --- sweeps ------------------------------------------------------------------------------------------------------- */
 
 /* Of a hit, the first row that differs counts: what follows is consequence. */
-static void say_first_hit(const struct oracle_pair *p, const char *unknown, char text[ORACLE_TEXT])
+static void say_first_hit(const struct oracle_pair *p, char text[ORACLE_TEXT])
 {
   bool wrong = false;
   for (uint32_t row = 0; row < oracle_common_rows(p) && !wrong; row++)
@@ -341,7 +341,7 @@ static void say_first_hit(const struct oracle_pair *p, const char *unknown, char
       if (wrong)
         snprintf(text + used, ORACLE_TEXT - used, ", %s", p->ours->component[k]);
       else
-        snprintf(text, ORACLE_TEXT, "%s; the first row that differs, %u, is wrong in %s", unknown, row,
+        snprintf(text, ORACLE_TEXT, "%s; the first row that differs, %u, is wrong in %s", ORACLE_UNKNOWN, row,
                  p->ours->component[k]);
       wrong = true;
     }
@@ -361,7 +361,7 @@ static bool moves_are_right(const struct oracle_pair *p)
 }
 
 /* True if nothing else need be tried. */
-static bool diagnose_sweep(const struct oracle_pair *p, bool beyond, const char *unknown, char text[ORACLE_TEXT])
+static bool diagnose_sweep(const struct oracle_pair *p, bool beyond, char text[ORACLE_TEXT])
 {
   const bool rows_follow = strcmp(p->ours->name, "out.event") == 0 || strcmp(p->ours->name, "out.hit") == 0;
   if (oracle_replay(p, text))
@@ -369,30 +369,42 @@ static bool diagnose_sweep(const struct oracle_pair *p, bool beyond, const char 
   if (!beyond || !rows_follow)
     return false;
   if (moves_are_right(p)) /* then rows can be compared, if there are as many */
-    return p->ours->rows != p->theirs->rows && oracle_judge_reports(p, unknown, text);
-  say_first_hit(p, unknown, text);
+    return p->ours->rows != p->theirs->rows && oracle_judge_reports(p, text);
+  say_first_hit(p, text);
   const bool events = strcmp(p->ours->name, "out.event") == 0;
-  return (events && oracle_judge_moves(p, unknown, text)) || search_patterns(oracle_patterns_sweep, p, text) || true;
+  return (events && oracle_judge_moves(p, text)) || search_patterns(oracle_patterns_sweep, p, text) || true;
+}
+
+#define AS_ROUNDING                                                                                                    \
+  "no larger than rounding: another order of operations, fused multiply-add, library functions, or a bug whose "       \
+  "effect is as small"
+
+/* Nothing but last bits: what a bug does here is nothing else than what rounding does, and they cannot be told apart.
+ */
+static bool is_rounding(const struct evidence *e)
+{
+  for (size_t k = 0; k < (size_t)e->rows * e->columns; k++)
+    if (!(fabs(e->theirs[k] - e->ours[k]) <= 0x1p-30 * fabs(e->ours[k])))
+      return false;
+  return e->part[0].pair.ours->real;
 }
 
 void oracle_diagnose(const struct oracle_pair *p, bool beyond, char text[ORACLE_TEXT])
 {
   struct evidence e = {0};
   struct search s = {.e = &e, .text = text};
-  const char *const unknown =
-      beyond ? "none of those known" : "as of another order of operations, fused multiply-add, or library functions";
-  snprintf(text, ORACLE_TEXT, "%s", unknown);
-  if (p->ours->columns != p->theirs->columns ||
-      (is_for("sweep", NULL, p) && diagnose_sweep(p, beyond, unknown, text)) ||
+  snprintf(text, ORACLE_TEXT, "%s", beyond ? ORACLE_UNKNOWN : AS_ROUNDING);
+  if (p->ours->columns != p->theirs->columns || (is_for("sweep", NULL, p) && diagnose_sweep(p, beyond, text)) ||
       (is_for("event_drift", NULL, p) && oracle_replay_events(p, text)))
     return;
   if (evidence_take(p, &e)) {
     char side[RELATION_TEXT];
-    if (search_all_relations(&s) || search_patterns(oracle_patterns_random, p, text) ||
+    const bool may_have_name = beyond || !is_rounding(&e);
+    if ((may_have_name && search_all_relations(&s)) || search_patterns(oracle_patterns_random, p, text) ||
         search_patterns(oracle_patterns_any, p, text))
       say_which_table(p, text);
     else if (beyond)
-      describe(&e, s.partial, unknown, text);
+      describe(&e, s.partial, text);
     else if (oracle_one_sided(&e, side))
       snprintf(text, ORACLE_TEXT, "%s", side);
   }

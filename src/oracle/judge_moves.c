@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "contact/line.h"
+#include "oracle/patterns.h"
 #include "oracle/replay.h"
 #include "oracle/rows.h"
 #include "oracle/sweeper.h"
@@ -128,7 +129,7 @@ static bool judge_move(struct sweeper *s, uint32_t vertex, struct judged *j)
 }
 
 /* A pack of what was judged, to be described as any other table. */
-static bool describe(const struct oracle_pair *p, const struct judged *j, const char *unknown, char text[ORACLE_TEXT])
+static bool describe(const struct oracle_pair *p, const struct judged *j, char text[ORACLE_TEXT])
 {
   struct pack ours = {0}, theirs = {0};
   struct pack_place place = p->ours->place;
@@ -154,8 +155,9 @@ static bool describe(const struct oracle_pair *p, const struct judged *j, const 
     said = evidence_take(&pair, &e);
     /* Rows are judged hits, which nobody knows by number. */
     const bool exact = said && oracle_describe_rows(&e, rows) && strstr(rows, " where ");
-    snprintf(text, ORACLE_TEXT, "%s%s%u crossings are missed, %u are found that are none: %s", exact ? "" : unknown,
-             exact ? "" : "; ", missed, invented, exact ? rows : "no rule known, what follows may be consequence");
+    snprintf(text, ORACLE_TEXT, "%s%s%u crossings are missed, %u are found that are none: %s",
+             exact ? "" : ORACLE_UNKNOWN, exact ? "" : "; ", missed, invented,
+             exact ? rows : "no rule known, what follows may be consequence");
     evidence_free(&e);
   }
   pack_free(&ours);
@@ -179,10 +181,10 @@ static bool judge_all(const struct oracle_pair *p, struct judged *j)
   return ok;
 }
 
-bool oracle_judge_moves(const struct oracle_pair *p, const char *unknown, char text[ORACLE_TEXT])
+bool oracle_judge_moves(const struct oracle_pair *p, char text[ORACLE_TEXT])
 {
   struct judged j = {0};
-  const bool ok = judge_all(p, &j) && describe(p, &j, unknown, text);
+  const bool ok = judge_all(p, &j) && describe(p, &j, text);
   free(j.fact);
   free(j.found);
   return ok;
@@ -238,7 +240,7 @@ static void put_report(const struct pack_table *t, uint32_t row, int64_t facts[R
     facts[8]++;
 }
 
-bool oracle_judge_reports(const struct oracle_pair *p, const char *unknown, char text[ORACLE_TEXT])
+bool oracle_judge_reports(const struct oracle_pair *p, char text[ORACLE_TEXT])
 {
   const struct pack_table *mine = oracle_sibling(p, "out.event"), *its = oracle_sibling_of_theirs(p, "out.event");
   struct pack ours = {0}, theirs = {0};
@@ -266,8 +268,8 @@ bool oracle_judge_reports(const struct oracle_pair *p, const char *unknown, char
     evidence_free(&e);
   }
   snprintf(text, ORACLE_TEXT,
-           "%s; all vertices end where they should, but %u events are not reported, %u that are none are%s%s", unknown,
-           missed, invented, *rows ? ": " : "", rows);
+           "%s; all vertices end where they should, but %u events are not reported, %u that are none are%s%s",
+           ORACLE_UNKNOWN, missed, invented, *rows ? ": " : "", rows);
   pack_free(&ours);
   pack_free(&theirs);
   return missed + invented > 0;

@@ -20,8 +20,10 @@ bool oracle_guessed(const struct oracle_pair *pair, uint32_t row, uint32_t colum
 /* True if theirs is ours, within tolerance. */
 bool oracle_agrees(const struct oracle_pair *pair, uint32_t row, uint32_t column);
 
+#define ORACLE_UNKNOWN "none of those known"
 #define ORACLE_AS_SINGLE                                                                                               \
-  "right to 5 to 8 digits, with errors of either sign: as of single precision, or of a constant of so few digits"
+  "right to 5 to 8 digits, with errors of either sign: as of single precision, or of a number that is off by so "      \
+  "little"
 
 /* True if the first rows are right to 5 to 8 digits, not better, and the errors scatter about 0. */
 bool oracle_is_single(const struct oracle_pair *pair, uint32_t rows);

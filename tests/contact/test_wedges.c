@@ -169,6 +169,26 @@ static void caught_for_too_long(void **unused)
   assert_true(o.rigid >= 1 && o.most <= 1001);
 }
 
+/* Two such clusters fly at each other, and touch in the same drift: then both move as one. */
+static void clusters_meet(void **unused)
+{
+  (void)unused;
+  const double gap = 0x1p-14;
+  struct bond_by_hand bond[6];
+  for (int k = 0; k < 2; k++) {
+    const double z = k ? 0.01 : 0.0, up = k ? -1.0 : 1.0, x = k ? 0.05 : 0.0, y = k ? 0.03 : 0.0;
+    const struct vec3 low = {0, 0, up + 0.05}, middle = {0, 0, up}, high = {0, 0, up - 0.05};
+    bond[3 * k] = (struct bond_by_hand){65536, {{x - 0.25, y, z}, {x + 0.25, y, z}}, {low, low}};
+    bond[3 * k + 1] =
+        (struct bond_by_hand){0x1p-6, {{x, y - 0.25, z + gap / 3}, {x, y + 0.25, z + gap / 3}}, {middle, middle}};
+    bond[3 * k + 2] =
+        (struct bond_by_hand){65536, {{x - 0.2, y - 0.2, z + gap}, {x + 0.2, y + 0.2, z + gap}}, {high, high}};
+  }
+  const struct outcome o = throw_bonds(6, bond, 1);
+  expect_sound("clusters meet", &o);
+  assert_true(o.rigid >= 3 && o.most <= 1001); /* a contact makes each cluster, another joins them */
+}
+
 /* The same between rods that meet at an angle of 2^-k: a wedge. */
 static void caught_in_a_wedge(void **unused)
 {
@@ -318,13 +338,14 @@ static void folded_chains(void **unused)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(parallel_rods),           cmocka_unit_test(end_on_rod_in_a_plane),
-      cmocka_unit_test(end_on_end_on_a_line),    cmocka_unit_test(three_at_one_tick),
-      cmocka_unit_test(caught_between_two),      cmocka_unit_test(caught_for_too_long),
-      cmocka_unit_test(caught_in_a_wedge),       cmocka_unit_test(touch_at_a_tick),
-      cmocka_unit_test(touching_at_the_start),   cmocka_unit_test(relative_rest),
-      cmocka_unit_test(bounces_do_not_collapse), cmocka_unit_test(hit_from_behind),
-      cmocka_unit_test(thrown_out_of_the_skin),  cmocka_unit_test(folded_chains),
+      cmocka_unit_test(parallel_rods),        cmocka_unit_test(end_on_rod_in_a_plane),
+      cmocka_unit_test(end_on_end_on_a_line), cmocka_unit_test(three_at_one_tick),
+      cmocka_unit_test(caught_between_two),   cmocka_unit_test(caught_for_too_long),
+      cmocka_unit_test(clusters_meet),        cmocka_unit_test(caught_in_a_wedge),
+      cmocka_unit_test(touch_at_a_tick),      cmocka_unit_test(touching_at_the_start),
+      cmocka_unit_test(relative_rest),        cmocka_unit_test(bounces_do_not_collapse),
+      cmocka_unit_test(hit_from_behind),      cmocka_unit_test(thrown_out_of_the_skin),
+      cmocka_unit_test(folded_chains),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -219,6 +219,27 @@ static void coinciding_vertices_stay_finite(void **unused)
   }
 }
 
+/* A ring's closing bond leads to vertex 0 of the first ring: a square of bonds 0.5 a0 longer than at rest, but one. */
+static void energy_of_a_ring(void **unused)
+{
+  (void)unused;
+  struct model m = test_model(8, 8, 8, 0, 0.01, 2);
+  struct fiber_kind *kind = test_add_kind(&m, 1, 4);
+  kind->ring = true;
+  kind->bending = 0.0;
+  const double l0 = kind->bond_length;
+  struct dice d = {1};
+  struct test_run r = dice_run(m, &d);
+  const int64_t side = (int64_t)ldexp(l0 + 0.5, 40), closing = (int64_t)ldexp(l0 + 1.0, 40);
+  r.state.position[0] = (struct point){0, 0, 0};
+  r.state.position[1] = (struct point){side, 0, 0};
+  r.state.position[2] = (struct point){side, side, 0};
+  r.state.position[3] = (struct point){0, closing, 0};
+  const double last = hypot(l0 + 0.5, 0.5) - l0; /* from 2 to 3 */
+  assert_close(fiber_energies(&r.state, &r.model).bond, 0.5 * 100.0 * (0.25 + 0.25 + last * last + 1.0), 1e-9);
+  test_end(&r);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -226,6 +247,7 @@ int main(void)
       cmocka_unit_test(forces_by_hand),
       cmocka_unit_test(long_bonds_are_refused),
       cmocka_unit_test(coinciding_vertices_stay_finite),
+      cmocka_unit_test(energy_of_a_ring),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -341,6 +341,17 @@ static void range_is_checked(void **unused)
   assert_int_equal(r.work.fault.code, FAULT_CELL_MASS);
   assert_int_equal(r.work.fault.entity, cell_by_floor(&r.model.box, r.state.position[0], grid_shift(&r.model, 5)));
   test_end(&r);
+
+  /* 256 of them are 3 m below the limit of 2^24 m: some 100 phantoms are too many. */
+  heavy = bath_model(100.0, 1, 255);
+  heavy.kind[0].mass = heavy.kind[1].mass = 65535.99;
+  r = dice_run(heavy, &d);
+  for (uint32_t v = 0; v < 256; v++)
+    r.state.position[v] = r.state.position[0];
+  assert_false(random_solvent_collide(&r.state, &r.model, &r.work.mpc, 5, &r.work.fault));
+  assert_int_equal(r.work.fault.code, FAULT_CELL_MASS);
+  assert_close(r.work.fault.limit, 0x1p24, 0.0);
+  test_end(&r);
 }
 
 int main(void)
