@@ -12,7 +12,7 @@
 #include "scene/scene.h"
 
 static const struct export_format *const export_formats[] = {&export_xyz, &export_lammps, &export_vtf};
-enum { FORMATS = sizeof export_formats / sizeof *export_formats };
+enum { FORMATS = sizeof export_formats / sizeof export_formats[0] };
 
 static const struct export_format *find_format(const char *name, struct message *message)
 {

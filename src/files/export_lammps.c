@@ -6,6 +6,8 @@
 #include "base/text.h"
 #include "files/export.h"
 
+#define MOST_TYPES 4097 /* kinds of a model, and the solvent */
+
 /* Of a kind in the file's scene; NULL without one. */
 static const struct fiber_kind *kind_of(const struct export_view *v, int32_t species)
 {
@@ -18,7 +20,7 @@ static int32_t species_of(const struct export_view *v, uint32_t row)
 {
   const struct structure *is = &v->frames->structure;
   if (row < is->particles && is->species[row] >= 0)
-    return is->species[row];
+    return is->species[row] < MOST_TYPES ? is->species[row] : MOST_TYPES; /* which is one too many */
   int32_t solvent = is->kinds;
   for (int32_t k = 0; k < is->kinds; k++)
     solvent = structure_is_solvent(is, k) ? k : solvent;
@@ -59,43 +61,47 @@ static uint32_t count(const struct export_view *v, bool (*has)(const struct expo
   return n;
 }
 
-/* The mass of a type; 1 if no row has it. */
-static double mass_of(const struct export_view *v, int32_t type, bool *mixed)
+/* The mass of each type; 1 if no row has it. False, with the species in *odd, if rows of one have several, or one that
+ * LAMMPS does not take. */
+static bool find_masses(const struct export_view *v, double mass[MOST_TYPES], int32_t *odd)
 {
-  bool found = false;
-  double mass = 1.0;
-  for (uint32_t row = 0; row < v->frames->about.rows; row++)
-    if (v->number[row] >= 0 && species_of(v, row) + 1 == type) {
-      const double m = structure_mass(&v->frames->structure, row);
-      *mixed |= found && m != mass;
-      mass = m;
-      found = true;
-    }
-  return mass;
+  for (int32_t k = 0; k < MOST_TYPES; k++)
+    mass[k] = 0.0;
+  for (uint32_t row = 0; row < v->frames->about.rows; row++) {
+    const int32_t species = species_of(v, row);
+    const double m = structure_mass(&v->frames->structure, row);
+    *odd = species;
+    if (v->number[row] >= 0 && !(m > 0.0 && isfinite(m) && (mass[species] == 0.0 || mass[species] == m)))
+      return false;
+    if (v->number[row] >= 0)
+      mass[species] = m;
+  }
+  for (int32_t k = 0; k < MOST_TYPES; k++)
+    mass[k] = mass[k] == 0.0 ? 1.0 : mass[k];
+  return true;
 }
-
-#define MOST_TYPES 4097 /* kinds of a model, and the solvent */
 
 static bool allows(const struct export_view *v, struct message *message)
 {
-  const int32_t n = types(v);
-  if (n > MOST_TYPES)
-    return message_set(message, "%s: %" PRId32 " species: LAMMPS data are made of %d at most", v->frames->path, n,
-                       MOST_TYPES);
-  for (int32_t type = 1; type <= n; type++) {
-    bool mixed = false;
-    const double mass = mass_of(v, type, &mixed);
-    if (mixed || !(mass > 0.0) || !isfinite(mass))
+  double mass[MOST_TYPES];
+  int32_t odd = 0;
+  for (uint32_t row = 0; row < v->frames->about.rows; row++)
+    if (species_of(v, row) >= MOST_TYPES)
       return message_set(message,
-                         "%s: species %" PRId32 ": LAMMPS data have one mass for each, which is above 0; these are not",
-                         v->frames->path, type - 1);
-  }
-  return true;
+                         "%s: the species of row %" PRIu32 " is above %d, the last that LAMMPS data may have here",
+                         v->frames->path, row, MOST_TYPES - 1);
+  return find_masses(v, mass, &odd) ||
+         message_set(message,
+                     "%s: species %" PRId32 ": LAMMPS data have one mass for each, which is above 0; these are not",
+                     v->frames->path, odd);
 }
 
 static void print_head(FILE *out, const struct export_view *v, int32_t n)
 {
   const struct picture *p = &v->frames->picture;
+  double mass[MOST_TYPES];
+  int32_t odd;
+  find_masses(v, mass, &odd);
   const uint32_t bonds = count(v, has_bond), angles = count(v, has_angle);
   fprintf(out, "# uncross: step %" PRIu64 ", time %.17g t0; units lj, atom_style molecular\n\n", p->step,
           text_real(p->time));
@@ -106,8 +112,7 @@ static void print_head(FILE *out, const struct export_view *v, int32_t n)
     fprintf(out, "0 %.17g %clo %chi\n", p->edge[k], "xyz"[k], "xyz"[k]);
   fputs("\nMasses\n\n", out);
   for (int32_t type = 1; type <= n; type++) {
-    bool mixed;
-    fprintf(out, "%" PRId32 " %.17g", type, mass_of(v, type, &mixed));
+    fprintf(out, "%" PRId32 " %.17g", type, mass[type - 1]);
     fputs(type <= v->frames->structure.kinds ? " # " : "", out);
     export_name(out, type <= v->frames->structure.kinds ? v->frames->structure.name[type - 1] : "");
     fputc('\n', out);

@@ -23,7 +23,7 @@ static void print_structure(FILE *out, const struct export_view *v)
     const int32_t kind = row < is->particles ? is->species[row] : -1;
     fprintf(out, "atom %" PRId32 " radius %g name ", v->number[row], solvent ? SOLVENT_RADIUS : VERTEX_RADIUS);
     export_name(out, solvent ? STRUCTURE_SOLVENT : kind >= 0 && kind < is->kinds ? is->name[kind] : "vertex");
-    fprintf(out, " type %" PRId32 " resid %" PRId32 " mass %.17g\n", solvent ? 0 : kind + 1,
+    fprintf(out, " type %" PRId64 " resid %" PRId32 " mass %.17g\n", solvent ? (int64_t)0 : (int64_t)kind + 1,
             solvent ? 0 : v->place[row].fiber + 1, structure_mass(is, row));
   }
   for (uint32_t row = 0; row < is->particles; row++)

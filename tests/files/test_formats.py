@@ -265,6 +265,16 @@ run 0
             else:
                 self.assertEqual(sections(said)[1]["Masses"], [[1, 2 if masses[0] == 2.0 else 1]])
 
+        for species, code in (([0, 4096, 0], 0), ([0, 4097, 0], 2), ([2 ** 31 - 1] * 3, 2), ([-1, 0, 0], 0)):
+            with h5py.File(path, "a") as file:
+                group = file["particles/all"]
+                if "species" in group:
+                    del group["species"]
+                group["species"] = numpy.array(species, dtype=numpy.int32)
+            said = self.export("--format", "lammps", path=path, code=code)
+            self.assertTrue(code == 0 or "species of row" in said, said)
+            self.export("--format", "vtf", path=path)
+
     def test_damaged_mass(self):
         """Its checksum is looked at."""
         path = self.folder / "damaged.h5"
