@@ -1,6 +1,6 @@
 /* Frames of a trajectory or checkpoint as text, from what the file says about itself; its scene, where it holds one,
  * tells which kinds bend. */
-#include "files/export.h"
+#include "files/export_format.h"
 
 #include <errno.h>
 #include <inttypes.h>

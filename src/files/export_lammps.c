@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "base/text.h"
-#include "files/export.h"
+#include "files/export_format.h"
 
 #define MOST_TYPES 4097 /* kinds of a model, and the solvent */
 

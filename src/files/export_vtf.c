@@ -2,7 +2,7 @@
 #include <inttypes.h>
 
 #include "base/text.h"
-#include "files/export.h"
+#include "files/export_format.h"
 
 #define SOLVENT_RADIUS 0.1 /* a0, as shown */
 #define VERTEX_RADIUS 0.25 /* a0: a_h of the paper's Table II */

@@ -2,7 +2,7 @@
 #include <inttypes.h>
 
 #include "base/text.h"
-#include "files/export.h"
+#include "files/export_format.h"
 
 /* Programs that read XYZ want chemical symbols; these stand for the kinds of fiber, one after the other. */
 static const char *const symbols[] = {"C", "N", "O", "F", "P", "S", "B", "Si", "Cl", "Se"};

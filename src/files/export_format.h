@@ -1,7 +1,7 @@
 /* Forms in which frames are printed as text. A form is a row of export_formats (export.c); a new one is a file with its
  * functions, a declaration here, and a row. */
-#ifndef UNCROSS_FILES_EXPORT_H
-#define UNCROSS_FILES_EXPORT_H
+#ifndef UNCROSS_FILES_EXPORT_FORMAT_H
+#define UNCROSS_FILES_EXPORT_FORMAT_H
 
 #include "files/frames.h"
 #include "files/snapshot.h"
