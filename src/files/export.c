@@ -1,7 +1,5 @@
 /* Frames of a trajectory or checkpoint as text, from what the file says about itself; its scene, where it holds one,
  * tells which kinds bend. */
-#include "files/export_format.h"
-
 #include <errno.h>
 #include <inttypes.h>
 #include <math.h>
@@ -9,6 +7,8 @@
 #include <string.h>
 
 #include "base/text.h"
+#include "files/export_format.h"
+#include "files/snapshot.h"
 #include "scene/scene.h"
 
 static const struct export_format *const export_formats[] = {&export_xyz, &export_lammps, &export_vtf};
