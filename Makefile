@@ -141,7 +141,7 @@ DOCUMENTS := $(shell find docs scenes examples -type f -not -path '*/.*' -not -n
 # What `uncross oracle check` holds a port against.
 REFERENCE := $(wildcard $(foreach n,pack.h5 pack.txt.gz start.h5 start.txt.gz trace.csv yaml,reference-data/*.$(n)))
 # Commands that other programs do: src/cli/outer.c finds them.
-OUTER := uncross-plot
+OUTER := uncross-plot uncross-sweep
 define INSTALLED
 755 $(BUILD)/uncross bin/uncross
 $(foreach p,$(OUTER),755 tools/$(p) libexec/uncross/$(p)
@@ -157,7 +157,7 @@ $(foreach h,$(CORE_HEADERS),644 $(h) include/uncross-core/$(h:src/%=%)
 644 $(BUILD)/install/uncross.1 share/man/man1/uncross.1
 644 $(BUILD)/install/completion share/bash-completion/completions/uncross
 644 include/uncross.h lib/python3/dist-packages/uncross/uncross.h
-$(foreach f,$(wildcard python/uncross/*.py python/uncross_plot/*.py python/uncross_plot/*.jinja),644 $(f) lib/python3/dist-packages/$(f:python/%=%)
+$(foreach f,$(wildcard python/uncross/*.py python/uncross_plot/*.py python/uncross_plot/*.jinja python/uncross_sweep/*.*),644 $(f) lib/python3/dist-packages/$(f:python/%=%)
 )
 $(foreach f,$(DOCUMENTS) $(REFERENCE),644 $(f) share/uncross/$(f)
 )

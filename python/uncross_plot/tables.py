@@ -44,11 +44,12 @@ class Table:
         return any(self.is_error(c) for c in self.data)
 
 
-def read(path, name):
-    """A table; ValueError, with file, line and column, if it is none."""
+def read(path, name, growing=False):
+    """A table; ValueError, with file, line and column, if it is none. Of one that is growing the last line may be a part."""
     with open(path, encoding="utf-8", newline="") as file:
         try:
-            lines = list(csv.reader(file))
+            text = file.read()
+            lines = list(csv.reader((text[:text.rfind("\n") + 1] if growing else text).splitlines()))
         except (csv.Error, UnicodeDecodeError) as error:
             raise ValueError(f"{path}: not a table: {error}") from error
     if not lines or not lines[0] or len(set(lines[0])) != len(lines[0]) or not all(lines[0]):

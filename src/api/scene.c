@@ -13,8 +13,13 @@ static struct scene_settings settings_of(const struct uncross_scene *scene)
   return (struct scene_settings){scene->settings, (const char *const *)scene->setting};
 }
 
+/* How a scene is read: see struct scene_source. */
+struct reading {
+  bool numbers_only, look_for_files, open_end;
+};
+
 /* checkpoint: that of the run which the scene is read for; NULL: none. */
-static int read_source(const struct uncross_scene *from, bool numbers_only, bool look_for_files, const char *checkpoint,
+static int read_source(const struct uncross_scene *from, struct reading how, const char *checkpoint,
                        struct scene *scene, uncross_error *error)
 {
   struct message message;
@@ -25,15 +30,15 @@ static int read_source(const struct uncross_scene *from, bool numbers_only, bool
                                       .text = from->text,
                                       .size = from->text ? strlen(from->text) : 0,
                                       .settings = &settings,
-                                      .look_for_files = look_for_files,
-                                      .numbers_only = numbers_only,
+                                      .look_for_files = how.look_for_files,
+                                      .numbers_only = how.numbers_only,
+                                      .open_end = how.open_end,
+                                      .steps = from->has_steps ? &from->steps : NULL,
                                       .fingerprint =
                                           checkpoint && run_fingerprint(checkpoint, &fingerprint) ? &fingerprint : NULL,
                                       .message = &message};
   if (!scene_read_source(&source, scene))
     return fail(error, UNCROSS_BAD_INPUT, message.text, NULL);
-  if (from->has_steps)
-    scene->steps = from->steps;
   if (from->has_seed)
     scene->model.seed = from->seed;
   return UNCROSS_OK;
@@ -41,13 +46,13 @@ static int read_source(const struct uncross_scene *from, bool numbers_only, bool
 
 int handle_read(const struct uncross_scene *from, const char *checkpoint, struct scene *scene, uncross_error *error)
 {
-  return read_source(from, false, false, checkpoint, scene, error);
+  return read_source(from, (struct reading){false, false, false}, checkpoint, scene, error);
 }
 
-static int check(const struct uncross_scene *scene, bool look_for_files, uncross_error *error)
+static int check(const struct uncross_scene *scene, bool look_for_files, bool open_end, uncross_error *error)
 {
   struct scene made;
-  const int code = read_source(scene, true, look_for_files, NULL, &made, error);
+  const int code = read_source(scene, (struct reading){true, look_for_files, open_end}, NULL, &made, error);
   if (code == UNCROSS_OK)
     scene_free(&made);
   return code;
@@ -90,7 +95,7 @@ static uncross_scene *make_with(const char *name, const char *text, size_t size,
   for (size_t k = 0; code == UNCROSS_OK && k < count; k++)
     code = append(scene, strdup(settings[k]), error);
   if (code == UNCROSS_OK)
-    code = check(scene, look_for_files, error);
+    code = check(scene, look_for_files, true, error); /* uncross_scene_set_steps may follow */
   if (code == UNCROSS_OK)
     return scene;
   uncross_scene_free(scene);
@@ -217,7 +222,7 @@ int uncross_scene_check(const uncross_scene *scene, uncross_error *error)
     return fail_null(error, "scene");
   struct call call;
   call_begin(&call, false);
-  const int code = check(scene, true, error);
+  const int code = check(scene, true, false, error);
   call_end(&call);
   return code;
 }

@@ -35,12 +35,14 @@ struct arguments {
   const char *out;
   const char **set; /* [sets] "key=value" */
   size_t sets;
-  bool has_steps, has_seed, resume, quiet, document, decimal, contacts, skip_damaged, movie, compare, help;
+  bool has_steps, has_seed, resume, quiet, document, decimal, contacts, skip_damaged, movie, compare, list, slurm, help;
   uint64_t steps, seed; /* instead of the scene's */
   struct export_options export;
   struct oracle_options oracle;
   double false_alarm;
   const char *packs; /* folder */
+  const char *seeds; /* "1..4" */
+  uint64_t jobs;
   bool text, no_traces;
   uint64_t seconds;
 };
@@ -55,6 +57,7 @@ enum command_code {
   COMMAND_EXPORT,
   COMMAND_ANALYZE,
   COMMAND_PLOT,
+  COMMAND_SWEEP,
   COMMAND_EMIT,
   COMMAND_EDGES,
   COMMAND_START,

@@ -1,5 +1,6 @@
 /* Checkpoints for a model: a process of its own reads them (apart.h), this one checks what it is handed. */
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -37,13 +38,13 @@ static bool fits_model(hid_t file, const char *path, const struct checkpoint_sum
   return true;
 }
 
-/* Earlier checkpoints hold no settings; they are taken to be the scene's. */
+/* Earlier checkpoints hold no settings; they are taken to be the scene's, or 0 if there was no such setting. */
 static bool same_setting(hid_t group, const char *name, const char *path, const struct observe_block *block,
                          struct message *message)
 {
   const hsize_t dims[1] = {1};
   const int64_t wanted = *(const int64_t *)block->data;
-  int64_t stored = wanted;
+  int64_t stored = block->later ? 0 : wanted;
   if (group >= 0 && h5_has(group, name) && !h5_array_read(group, name, H5T_NATIVE_INT64, 1, dims, &stored))
     return message_set(message, "%s: damaged checkpoint: '%s' cannot be read", path, name);
   return stored == wanted ||
@@ -62,6 +63,11 @@ static bool read_block(hid_t group, const char *path, const struct observe_block
   checkpoint_block_name(block, name, sizeof name);
   if (block->setting)
     return same_setting(group, name, path, block, message);
+  if (block->later && group >= 0 && !h5_has(group, name)) {
+    for (size_t k = 0; k < block->count; k++)
+      ((double *)data)[k] = NAN;
+    return true;
+  }
   return (group >= 0 && h5_has(group, name) &&
           h5_array_read(group, name, checkpoint_block_type(block), 1, dims, data)) ||
          message_set(

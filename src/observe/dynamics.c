@@ -8,84 +8,6 @@
 #include "observe/tally.h"
 #include "theory/theory.h"
 
-/* --- one fiber, two times ---------------------------------------------------------------------------------------- */
-
-/* Mean square displacements of vertices, centre of mass and middle vertex: Padding 2009, Eqs. (41) and (42). */
-static void displacements(const struct fiber_kind *kind, const struct point *origin, const struct point *now,
-                          struct vec3 drift, struct fiber_motion *motion)
-{
-  const uint32_t middle = dynamics_middle(kind);
-  struct vec3 sum = {0, 0, 0};
-  double squares = 0.0;
-  for (uint32_t j = 0; j < kind->vertices; j++) {
-    const struct vec3 d = vec3_sub(point_difference(now[j], origin[j]), drift);
-    const double squared = vec3_dot(d, d);
-    sum = vec3_add(sum, d);
-    squares += squared;
-    if (j == middle)
-      motion->middle = squared;
-  }
-  const struct vec3 center = vec3_scale(1.0 / kind->vertices, sum);
-  motion->vertices = squares / kind->vertices;
-  motion->center = vec3_dot(center, center);
-}
-
-/* Squared distance of 0 from the segment (a, b); a and b may coincide. */
-static double squared_distance_to_segment(struct vec3 a, struct vec3 b)
-{
-  const struct vec3 e = vec3_sub(b, a);
-  const double along = -vec3_dot(a, e), squared = vec3_dot(e, e);
-  if (along <= 0.0)
-    return vec3_dot(a, a);
-  if (along >= squared)
-    return vec3_dot(b, b);
-  const struct vec3 nearest = vec3_add_scaled(a, along / squared, e);
-  return vec3_dot(nearest, nearest);
-}
-
-/* d^2 of Padding 2009, Eq. (43): from the middle vertex, now, to the nearest vertex, then; and to the nearest point of
- * the contour, then, which knows no finite distance between vertices. relative: [vertices] scratch. */
-static void tube(const struct fiber_kind *kind, const struct point *origin, struct point middle, struct vec3 drift,
-                 struct vec3 *relative, struct fiber_motion *motion)
-{
-  const uint32_t n = kind->vertices;
-  double nearest = INFINITY, contour;
-  for (uint32_t j = 0; j < n; j++) {
-    relative[j] = vec3_add(point_difference(origin[j], middle), drift);
-    nearest = fmin(nearest, vec3_dot(relative[j], relative[j]));
-  }
-  contour = nearest;
-  for (uint32_t j = 0; j + 1 < n; j++)
-    contour = fmin(contour, squared_distance_to_segment(relative[j], relative[j + 1]));
-  if (kind->ring)
-    contour = fmin(contour, squared_distance_to_segment(relative[n - 1], relative[0]));
-  motion->tube = nearest;
-  motion->tube_contour = contour;
-}
-
-static void end_to_end(const struct fiber_kind *kind, const struct point *origin, const struct point *now,
-                       struct fiber_motion *motion)
-{
-  const uint32_t last = kind->vertices - 1;
-  const struct vec3 then = point_difference(origin[last], origin[0]), here = point_difference(now[last], now[0]);
-  const struct vec3 change = vec3_sub(here, then);
-  const double squares = vec3_dot(then, then) * vec3_dot(here, here);
-  motion->turned = 0.5 * vec3_dot(change, change);
-  motion->square = 0.5 * (vec3_dot(then, then) + vec3_dot(here, here));
-  motion->cosine = squares > 0.0 ? vec3_dot(then, here) / sqrt(squares) : 0.0;
-}
-
-struct fiber_motion fiber_motion(const struct fiber_kind *kind, const struct point *origin, const struct point *now,
-                                 struct vec3 drift, struct vec3 *scratch)
-{
-  struct fiber_motion motion = {.vertices = 0.0};
-  displacements(kind, origin, now, drift, &motion);
-  tube(kind, origin, now[dynamics_middle(kind)], drift, scratch, &motion);
-  if (!kind->ring)
-    end_to_end(kind, origin, now, &motion);
-  return motion;
-}
-
 struct vec3 dynamics_drift(const struct model *model, double from, double to)
 {
   if (model_has_phantoms(model))
@@ -105,16 +27,22 @@ enum {
   QUANTITIES
 };
 
+/* Quantities of the tally of drifts, one sample per interval; and of the tally of rises, one per interval whose middle
+ * was sampled too. `about`: about the mean displacement of the kind. */
+enum { DRIFT_XY, DRIFT_Z_ABOUT, DRIFT_QUANTITIES };
+enum { RISE_AND_ABOUT, RISE_QUANTITIES };
+
 enum {
   LEVELS = 24,               /* of blocks at lag 1; longer lags need fewer to reach as far in time */
   DEFAULT_SAMPLES = 1 << 20, /* longest lag where the plan knows none */
   MAX_LAGS = 80
 };
 
-/* Memory of a lag: for each kind a tally; and 1 + the origin's step (0: none), then the origin's positions. */
+/* Memory of a lag: for each kind a tally, and two that are of drift and of rises; and 1 + the origin's step (0: none),
+ * then the origin's positions. */
 struct lag {
   uint64_t samples;
-  double *real;
+  double *real, *later;
   int64_t *mark;
   struct point *origin;
 };
@@ -128,10 +56,39 @@ static uint32_t count_lags(const struct observer *observer)
   return n;
 }
 
-static struct tally_shape tally_of(const struct fiber_kind *kind, uint32_t lag)
+static struct tally_shape shape_of(const struct fiber_kind *kind, uint32_t lag, uint32_t quantities)
 {
   const uint32_t doublings = (lag + 1) / 2;
-  return (struct tally_shape){kind->count, QUANTITIES, doublings < LEVELS ? LEVELS - doublings : 1};
+  return (struct tally_shape){kind->count, quantities, doublings < LEVELS ? LEVELS - doublings : 1};
+}
+
+static struct tally_shape tally_of(const struct fiber_kind *kind, uint32_t lag)
+{
+  return shape_of(kind, lag, QUANTITIES);
+}
+
+/* The three tallies of a kind, in the memory of a lag. */
+struct tallies {
+  struct tally_shape shape, drift_shape, rise_shape;
+  double *memory, *drift, *rise;
+};
+
+static struct tallies first_tallies(const struct lag *lag, const struct fiber_kind *kind, uint32_t number)
+{
+  struct tallies t = {.shape = tally_of(kind, number),
+                      .drift_shape = shape_of(kind, number, DRIFT_QUANTITIES),
+                      .rise_shape = shape_of(kind, number, RISE_QUANTITIES),
+                      .memory = lag->real,
+                      .drift = lag->later};
+  t.rise = t.drift + tally_size(&t.drift_shape);
+  return t;
+}
+
+/* Those of the next kind. */
+static void next_tallies(struct tallies *t, const struct fiber_kind *kind, uint32_t number)
+{
+  const struct lag next = {.real = t->memory + tally_size(&t->shape), .later = t->rise + tally_size(&t->rise_shape)};
+  *t = first_tallies(&next, kind, number);
 }
 
 static size_t lag_reals(const struct model *model, uint32_t lag)
@@ -144,6 +101,17 @@ static size_t lag_reals(const struct model *model, uint32_t lag)
   return reals;
 }
 
+static size_t lag_later(const struct model *model, uint32_t lag)
+{
+  size_t reals = 0;
+  for (uint32_t k = 0; k < model->kinds; k++) {
+    const struct tally_shape drift = shape_of(&model->kind[k], lag, DRIFT_QUANTITIES);
+    const struct tally_shape rise = shape_of(&model->kind[k], lag, RISE_QUANTITIES);
+    reals += tally_size(&drift) + tally_size(&rise);
+  }
+  return reals;
+}
+
 static size_t lag_integers(const struct model *model)
 {
   return 1 + (size_t)model->vertices * sizeof(struct point) / sizeof(int64_t);
@@ -152,18 +120,19 @@ static size_t lag_integers(const struct model *model)
 static struct lag first_lag(const struct observer *observer)
 {
   int64_t *mark = observer->integer + 1;
-  return (struct lag){dynamics_lag(0), observer->real, mark, (struct point *)(mark + 1)};
+  return (struct lag){dynamics_lag(0), observer->real, observer->later, mark, (struct point *)(mark + 1)};
 }
 
 static void next_lag(struct lag *lag, const struct model *model, uint32_t number)
 {
   lag->samples = dynamics_lag(number + 1);
   lag->real += lag_reals(model, number);
+  lag->later += lag_later(model, number);
   lag->mark += lag_integers(model);
   lag->origin = (struct point *)(lag->mark + 1);
 }
 
-/* Scratch: the sums of a sample, then the contour of a fiber. */
+/* Scratch: the sums of a sample, then the contour of a fiber, then displacements of fibers. */
 static size_t scratch_sums(const struct model *model)
 {
   size_t most = 0;
@@ -175,58 +144,177 @@ static size_t scratch_sums(const struct model *model)
   return most;
 }
 
+static uint32_t longest_fiber(const struct model *model)
+{
+  uint32_t longest = 0;
+  for (uint32_t k = 0; k < model->kinds; k++)
+    longest = model->kind[k].vertices > longest ? model->kind[k].vertices : longest;
+  return longest;
+}
+
+static uint32_t most_fibers(const struct model *model)
+{
+  uint32_t most = 0;
+  for (uint32_t k = 0; k < model->kinds; k++)
+    most = model->kind[k].count > most ? model->kind[k].count : most;
+  return most;
+}
+
 static void size_dynamics(const struct observer *observer, const struct model *model, struct observer_size *size)
 {
   const uint32_t lags = count_lags(observer);
-  uint32_t longest = 0;
-  for (uint32_t n = 0; n < lags; n++)
+  for (uint32_t n = 0; n < lags; n++) {
     size->reals += lag_reals(model, n);
-  for (uint32_t k = 0; k < model->kinds; k++)
-    longest = model->kind[k].vertices > longest ? model->kind[k].vertices : longest;
+    size->later += lag_later(model, n);
+  }
   size->integers += lags * lag_integers(model);
-  size->scratch = scratch_sums(model) + (size_t)longest * sizeof(struct vec3) / sizeof(double);
+  size->scratch = scratch_sums(model) +
+                  (longest_fiber(model) + 2 * (size_t)most_fibers(model)) * (sizeof(struct vec3) / sizeof(double));
+}
+
+/* What is compared when a lag has passed. middle: positions at half the lag, NULL: not sampled. The displacements of
+ * the frame since the origin, and up to the middle. */
+struct interval {
+  const struct point *origin, *middle, *now;
+  struct vec3 drift, drift_to_middle;
+};
+
+/* Displacements of the centres of mass of a kind's fibers over an interval, and over its first half. */
+struct displacements {
+  struct vec3 *whole, *first; /* [count] */
+};
+
+static struct vec3 center_moved(const struct fiber_kind *kind, const struct point *origin, const struct point *now,
+                                struct vec3 drift)
+{
+  struct vec3 sum = {0, 0, 0};
+  for (uint32_t j = 0; j < kind->vertices; j++)
+    sum = vec3_add(sum, point_difference(now[j], origin[j]));
+  return vec3_sub(vec3_scale(1.0 / kind->vertices, sum), drift);
+}
+
+static struct vec3 mean_of(const struct vec3 *of, uint32_t count)
+{
+  struct vec3 sum = {0, 0, 0};
+  for (uint32_t i = 0; i < count; i++)
+    sum = vec3_add(sum, of[i]);
+  return vec3_scale(1.0 / count, sum);
+}
+
+/* |d|^2 - (|d_1|^2 + |d_2|^2)/2 of a displacement d and its two halves: on average g_cm(t) - g_cm(t/2). */
+static double rise(struct vec3 whole, struct vec3 first)
+{
+  const struct vec3 second = vec3_sub(whole, first);
+  return vec3_dot(whole, whole) - 0.5 * (vec3_dot(first, first) + vec3_dot(second, second));
+}
+
+/*
+ * The drift of a kind is the mean displacement d of its n fibers. About it, sum |d_i - d|^2 / (n - 1) is the variance
+ * of independent displacements without bias: the mean, which is estimated from the same fibers, takes 1/n of it away.
+ * For one fiber there is no such number; 0 is kept, and NaN told (fill_row).
+ */
+static void add_drift(const struct fiber_kind *kind, const struct tallies *t, const struct displacements *d,
+                      bool halves, double *sums)
+{
+  const uint32_t n = kind->count;
+  const double unbiased = n > 1 ? n / (n - 1.0) : 0.0;
+  const struct vec3 mean = mean_of(d->whole, n), first = halves ? mean_of(d->first, n) : mean;
+  memset(sums, 0, tally_sums(&t->drift_shape) * sizeof *sums);
+  for (uint32_t i = 0; i < n; i++) {
+    const struct vec3 about = vec3_sub(d->whole[i], mean);
+    double values[DRIFT_QUANTITIES][2] = {
+        [DRIFT_XY] = {d->whole[i].x, d->whole[i].y},
+        [DRIFT_Z_ABOUT] = {d->whole[i].z, unbiased * vec3_dot(about, about)},
+    };
+    tally_fiber(&t->drift_shape, sums, i, values);
+  }
+  tally_add(&t->drift_shape, t->drift, sums);
+  if (!halves)
+    return;
+  memset(sums, 0, tally_sums(&t->rise_shape) * sizeof *sums);
+  for (uint32_t i = 0; i < n; i++) {
+    const double about = unbiased * rise(vec3_sub(d->whole[i], mean), vec3_sub(d->first[i], first));
+    double values[RISE_QUANTITIES][2] = {[RISE_AND_ABOUT] = {rise(d->whole[i], d->first[i]), about}};
+    tally_fiber(&t->rise_shape, sums, i, values);
+  }
+  tally_add(&t->rise_shape, t->rise, sums);
 }
 
 /* Adds what all fibers did since the origin to the tallies of a lag. */
 static void compare(const struct observer *observer, const struct model *model, const struct lag *lag, uint32_t number,
-                    const struct point *now, struct vec3 drift)
+                    const struct interval *interval)
 {
-  double *memory = lag->real, *sums = observer->scratch;
-  struct vec3 *contour = (struct vec3 *)(sums + scratch_sums(model));
-  const struct point *origin = lag->origin;
+  double *sums = observer->scratch;
+  struct vec3 *contour = (struct vec3 *)(sums + scratch_sums(model)), *whole = contour + longest_fiber(model);
+  const struct displacements d = {whole, whole + most_fibers(model)};
+  struct tallies t = first_tallies(lag, &model->kind[0], number);
+  size_t at = 0;
   for (uint32_t k = 0; k < model->kinds; k++) {
     const struct fiber_kind *kind = &model->kind[k];
-    const struct tally_shape shape = tally_of(kind, number);
-    memset(sums, 0, tally_sums(&shape) * sizeof *sums);
-    for (uint32_t fiber = 0; fiber < kind->count; fiber++, origin += kind->vertices, now += kind->vertices) {
-      const struct fiber_motion m = fiber_motion(kind, origin, now, drift, contour);
+    if (k > 0)
+      next_tallies(&t, kind, number);
+    memset(sums, 0, tally_sums(&t.shape) * sizeof *sums);
+    for (uint32_t fiber = 0; fiber < kind->count; fiber++, at += kind->vertices) {
+      const struct point *origin = interval->origin + at;
+      const struct fiber_motion m = fiber_motion(kind, origin, interval->now + at, interval->drift, contour);
       double values[QUANTITIES][2] = {[VERTICES_CENTER] = {m.vertices, m.center},
                                       [TUBE_CONTOUR] = {m.tube, m.tube_contour},
                                       [TURNED_SQUARE] = {m.turned, m.square},
                                       [MIDDLE_COSINE] = {m.middle, m.cosine}};
-      tally_fiber(&shape, sums, fiber, values);
+      tally_fiber(&t.shape, sums, fiber, values);
+      d.whole[fiber] = m.moved;
+      if (interval->middle)
+        d.first[fiber] = center_moved(kind, origin, interval->middle + at, interval->drift_to_middle);
     }
-    if (kind->count)
-      tally_add(&shape, memory, sums);
-    memory += tally_size(&shape);
+    if (kind->count) {
+      tally_add(&t.shape, t.memory, sums);
+      add_drift(kind, &t, &d, interval->middle != NULL, sums);
+    }
   }
 }
 
+/* The lag that is half of lag number n. */
+static uint32_t half_of(uint32_t n)
+{
+  return n == 1 ? 0 : n - 2;
+}
+
+static bool has_half(uint32_t n)
+{
+  return n == 1 || n >= 3;
+}
+
+/* A lag of half the length has its origin in the middle of this one, unless a sample was missed. */
+static struct interval interval_of(const struct observer *observer, const struct model *model, const struct lag *lag,
+                                   const struct lag *half, const struct state *state)
+{
+  const uint64_t from = (uint64_t)*lag->mark - 1, middle = from + lag->samples / 2 * observer->every;
+  const double start = (double)from * model->time_step;
+  const bool halves = half && *half->mark == (int64_t)middle + 1;
+  return (struct interval){lag->origin, halves ? half->origin : NULL, state->position,
+                           dynamics_drift(model, start, (double)state->step * model->time_step),
+                           dynamics_drift(model, start, (double)middle * model->time_step)};
+}
+
 /* A lag whose time has come is compared and begins anew; so does, without comparison, one that missed it: no sample was
- * shown then. */
+ * shown then. The longest comes first: it looks at the origins of shorter ones before they begin anew. */
 static void add_dynamics(struct observer *observer, struct view *view)
 {
   const struct model *model = view->model;
   const uint64_t step = view->state->step;
   const uint32_t lags = count_lags(observer);
-  struct lag lag = first_lag(observer);
-  for (uint32_t n = 0; n < lags; next_lag(&lag, model, n++)) {
-    const uint64_t from = (uint64_t)*lag.mark - 1, due = from + lag.samples * observer->every;
+  struct lag all[MAX_LAGS], lag = first_lag(observer);
+  for (uint32_t n = 0; n < lags; next_lag(&lag, model, n++))
+    all[n] = lag;
+  for (uint32_t n = lags; n-- > 0;) {
+    lag = all[n];
+    const uint64_t due = (uint64_t)*lag.mark - 1 + lag.samples * observer->every;
     if (*lag.mark && step < due)
       continue;
-    if (*lag.mark && step == due) {
-      const struct vec3 drift = dynamics_drift(model, (double)from * model->time_step, (double)step * model->time_step);
-      compare(observer, model, &lag, n, view->state->position, drift);
+    if (*lag.mark && step == due && model->kinds > 0) {
+      const struct interval interval =
+          interval_of(observer, model, &lag, has_half(n) ? &all[half_of(n)] : NULL, view->state);
+      compare(observer, model, &lag, n, &interval);
     }
     *lag.mark = (int64_t)step + 1;
     memcpy(lag.origin, view->state->position, model->vertices * sizeof *lag.origin);
@@ -252,7 +340,21 @@ static const char *const columns[] = {"time",
                                       "end_to_end_unit_error",
                                       "D",
                                       "D_error",
-                                      "intervals"};
+                                      "intervals",
+                                      "g_cm_about_mean",
+                                      "g_cm_about_mean_error",
+                                      "D_about_mean",
+                                      "D_about_mean_error",
+                                      "D_cumulative",
+                                      "D_cumulative_error",
+                                      "D_cumulative_about_mean",
+                                      "D_cumulative_about_mean_error",
+                                      "drift_x",
+                                      "drift_x_error",
+                                      "drift_y",
+                                      "drift_y_error",
+                                      "drift_z",
+                                      "drift_z_error"};
 
 enum { COLUMNS = sizeof columns / sizeof *columns };
 
@@ -278,9 +380,10 @@ static void put_end_to_end(struct cells *c, bool defined)
   *c->next++ = defined ? tally_error(c->shape, c->memory, TURNED_SQUARE, 1.0 / y, -x / (y * y)) : NAN;
 }
 
-static void fill_row(const struct fiber_kind *kind, struct cells c, double time)
+static void fill_row(const struct fiber_kind *kind, const struct tallies *t, double *row, double time)
 {
-  const bool ends = !kind->ring && kind->vertices > 1;
+  const bool ends = !kind->ring && kind->vertices > 1, several = kind->count > 1;
+  struct cells c = {&t->shape, t->memory, row};
   *c.next++ = time;
   put(&c, true, VERTICES_CENTER, 0, 1.0);
   put(&c, true, VERTICES_CENTER, 1, 1.0);
@@ -290,7 +393,17 @@ static void fill_row(const struct fiber_kind *kind, struct cells c, double time)
   put_end_to_end(&c, ends);
   put(&c, ends, MIDDLE_COSINE, 1, 1.0);
   put(&c, true, VERTICES_CENTER, 1, 1.0 / (6.0 * time)); /* D(t) = g_cm(t) / 6t */
-  *c.next = tally_count(c.shape, c.memory);
+  *c.next++ = tally_count(c.shape, c.memory);
+  c = (struct cells){&t->drift_shape, t->drift, c.next};
+  put(&c, several, DRIFT_Z_ABOUT, 1, 1.0);
+  put(&c, several, DRIFT_Z_ABOUT, 1, 1.0 / (6.0 * time));
+  c = (struct cells){&t->rise_shape, t->rise, c.next};
+  put(&c, true, RISE_AND_ABOUT, 0, 1.0 / (3.0 * time)); /* (g_cm(t) - g_cm(t/2)) / 6(t/2) */
+  put(&c, several, RISE_AND_ABOUT, 1, 1.0 / (3.0 * time));
+  c = (struct cells){&t->drift_shape, t->drift, c.next};
+  put(&c, true, DRIFT_XY, 0, 1.0 / time);
+  put(&c, true, DRIFT_XY, 1, 1.0 / time);
+  put(&c, true, DRIFT_Z_ABOUT, 0, 1.0 / time);
 }
 
 /* The table of one kind; its tally follows those of the kinds before it, in each lag. Lags without an interval yet are
@@ -305,16 +418,13 @@ static bool summarise_kind(const struct observer *observer, const struct model *
   const uint32_t lags = count_lags(observer);
   struct lag lag = first_lag(observer);
   for (uint32_t n = 0; n < lags; next_lag(&lag, model, n++)) {
-    const double *memory = lag.real;
-    for (uint32_t k = 0; k < kind; k++) {
-      const struct tally_shape before = tally_of(&model->kind[k], n);
-      memory += tally_size(&before);
-    }
-    const struct tally_shape shape = tally_of(&model->kind[kind], n);
-    const struct cells cells = {&shape, memory, &value[table.rows * COLUMNS]};
-    if (tally_count(&shape, memory) == 0.0)
+    struct tallies t = first_tallies(&lag, &model->kind[0], n);
+    for (uint32_t k = 1; k <= kind; k++)
+      next_tallies(&t, &model->kind[k], n);
+    if (tally_count(&t.shape, t.memory) == 0.0)
       continue;
-    fill_row(&model->kind[kind], cells, (double)(lag.samples * observer->every) * model->time_step);
+    fill_row(&model->kind[kind], &t, &value[table.rows * COLUMNS],
+             (double)(lag.samples * observer->every) * model->time_step);
     table.rows++;
   }
   return to->take(to->context, &table);

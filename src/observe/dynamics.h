@@ -7,6 +7,9 @@
  * Intervals of a lag thus follow each other without overlap, and all lags together cost less than 8/3 comparisons per
  * sample.
  *
+ * The displacement of the centres of mass that all fibers of a kind share is its drift. What is left about it gives a
+ * diffusion coefficient under a force; see measure_drift in dynamics.c.
+ *
  * Displacements are exact differences of lattice points, minus the common displacement of everything (dynamics_drift).
  */
 #ifndef UNCROSS_OBSERVE_DYNAMICS_H
@@ -18,6 +21,7 @@
 struct fiber_motion {
   double vertices;           /* a0^2: squared displacement of its vertices, averaged */
   double center;             /* a0^2: of its centre of mass */
+  struct vec3 moved;         /* a0: displacement of its centre of mass */
   double middle;             /* a0^2: of its middle vertex */
   double tube, tube_contour; /* a0^2: squared distance of the middle vertex now from the nearest vertex, and from the
                                 nearest point of the contour, then */

@@ -18,7 +18,7 @@ const char *const observable_names[OBSERVABLES] = {
     [OBSERVE_DYNAMICS] = "dynamics",   [OBSERVE_COLLISIONS] = "collisions",
 };
 
-enum { MAX_BLOCKS = 4 * OBSERVABLES };
+enum { MAX_BLOCKS = 6 * OBSERVABLES };
 
 struct observers {
   struct observer observer[OBSERVABLES]; /* every = 0: not asked for */
@@ -26,26 +26,29 @@ struct observers {
   struct observe_block block[MAX_BLOCKS];
   char block_name[MAX_BLOCKS][OBSERVER_NAME_SIZE];
   size_t blocks;
+  uint64_t from; /* of the plan */
 };
 
-static void add_block(struct observers *observers, const char *name, const char *suffix, bool integer, size_t count,
-                      void *data)
+static struct observe_block *add_block(struct observers *observers, const char *name, const char *suffix, bool integer,
+                                       size_t count, void *data)
 {
   if (count == 0)
-    return;
+    return NULL;
   char *label = observers->block_name[observers->blocks];
   snprintf(label, OBSERVER_NAME_SIZE, "%s-%s", name, suffix);
-  observers->block[observers->blocks++] =
-      (struct observe_block){.name = label, .integer = integer, .count = count, .data = data};
+  struct observe_block *block = &observers->block[observers->blocks++];
+  *block = (struct observe_block){.name = label, .integer = integer, .count = count, .data = data};
+  return block;
 }
 
-/* A 64-bit number, under the name of its key in scenes. */
-static void add_setting(struct observers *observers, const char *name, const char *key, void *value)
+/* A 64-bit number, under the name of its key in scenes: "dynamics" and ".every", "" and "from". */
+static struct observe_block *add_setting(struct observers *observers, const char *name, const char *key, void *value)
 {
   char *label = observers->block_name[observers->blocks];
-  snprintf(label, OBSERVER_NAME_SIZE, "%s.%s", name, key);
-  observers->block[observers->blocks++] =
-      (struct observe_block){.name = label, .integer = true, .count = 1, .data = value, .setting = true};
+  snprintf(label, OBSERVER_NAME_SIZE, "%s%s", name, key);
+  struct observe_block *block = &observers->block[observers->blocks++];
+  *block = (struct observe_block){.name = label, .integer = true, .count = 1, .data = value, .setting = true};
+  return block;
 }
 
 /* calloc that gives something for nothing. */
@@ -58,7 +61,8 @@ static bool create(struct observers *observers, enum observable which, const str
                    const struct model *model)
 {
   struct observer *o = &observers->observer[which];
-  *o = (struct observer){.type = types[which], .every = plan->every[which], .longest_lag = plan->longest_lag};
+  *o = (struct observer){
+      .type = types[which], .every = plan->every[which], .longest_lag = plan->longest_lag, .from = plan->from};
   if (o->every == 0)
     return true;
   o->size = (struct observer_size){.integers = 1};
@@ -66,15 +70,27 @@ static bool create(struct observers *observers, enum observable which, const str
     o->type->size(o, model, &o->size);
   o->constant = o->type->constant ? o->type->constant(model) : 0.0;
   o->real = zeroed(o->size.reals, sizeof *o->real);
+  o->later = zeroed(o->size.later, sizeof *o->later);
   o->integer = zeroed(o->size.integers, sizeof *o->integer);
   o->scratch = zeroed(o->size.scratch, sizeof *o->scratch);
   if (o->type->add) /* averages are over samples, lags are counted in them; a row of a series stands alone */
-    add_setting(observers, observable_names[which], "every", &o->every);
+    add_setting(observers, observable_names[which], ".every", &o->every);
   if (which == OBSERVE_DYNAMICS)
-    add_setting(observers, observable_names[which], "longest_lag", &o->longest_lag);
+    add_setting(observers, observable_names[which], ".longest_lag", &o->longest_lag);
   add_block(observers, observable_names[which], "reals", false, o->size.reals, o->real);
   add_block(observers, observable_names[which], "integers", true, o->size.integers, o->integer);
-  return o->real && o->integer && o->scratch;
+  struct observe_block *later = add_block(observers, observable_names[which], "later", false, o->size.later, o->later);
+  if (later)
+    later->later = true;
+  return o->real && o->later && o->integer && o->scratch;
+}
+
+static bool has_averages(const struct observe_plan *plan)
+{
+  for (int k = 0; k < OBSERVABLES; k++)
+    if (plan->every[k] > 0 && types[k]->add)
+      return true;
+  return false;
 }
 
 struct observers *observers_create(const struct observe_plan *plan, const struct model *model)
@@ -85,6 +101,9 @@ struct observers *observers_create(const struct observe_plan *plan, const struct
   bool ok = fiber_alloc(&observers->scratch, model);
   for (int k = 0; ok && k < OBSERVABLES; k++)
     ok = create(observers, (enum observable)k, plan, model);
+  observers->from = plan->from;
+  if (has_averages(plan))
+    add_setting(observers, "", "from", &observers->from)->later = true;
   if (!ok) {
     observers_free(observers);
     return NULL;
@@ -98,6 +117,7 @@ void observers_free(struct observers *observers)
     return;
   for (int k = 0; k < OBSERVABLES; k++) {
     free(observers->observer[k].real);
+    free(observers->observer[k].later);
     free(observers->observer[k].integer);
     free(observers->observer[k].scratch);
   }
@@ -107,7 +127,7 @@ void observers_free(struct observers *observers)
 
 static bool due(const struct observer *observer, uint64_t step)
 {
-  return observer->every > 0 && step % observer->every == 0;
+  return observer->every > 0 && step % observer->every == 0 && (!observer->type->add || step >= observer->from);
 }
 
 bool observers_due(const struct observers *observers, uint64_t step)

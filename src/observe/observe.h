@@ -26,6 +26,7 @@ enum observable {
 struct observe_plan {
   uint64_t every[OBSERVABLES]; /* steps between samples; 0: not asked for */
   uint64_t longest_lag;        /* of the dynamics, in steps; 0: 2^20 samples. Decides the size of its memory. */
+  uint64_t from;               /* step from which on averages (statics, dynamics) are made; time series begin at 0 */
 };
 
 /* Names as scenes and files use them: "conserved", "temperature", ... */
@@ -75,6 +76,8 @@ struct observe_block {
   size_t count;
   void *data;   /* double or int64_t [count] */
   bool setting; /* not memory, but a key of the scene that determines the memory: it must be unchanged in a resume */
+  bool later;   /* checkpoints of earlier programs have none: such a setting was 0, such memory (doubles) is unknown,
+                   NaN, as are all columns made of it */
 };
 size_t observers_blocks(struct observers *observers, const struct observe_block **blocks);
 

@@ -12,17 +12,19 @@
 #include "observe/conserved.h"
 #include "observe/observe.h"
 
-/* Doubles and 64-bit integers that an observer remembers, and doubles that it needs while it samples. */
+/* Doubles and 64-bit integers that an observer remembers, and doubles that it needs while it samples. later: doubles
+ * that earlier programs did not remember (struct observe_block). */
 struct observer_size {
-  size_t reals, integers, scratch;
+  size_t reals, later, integers, scratch;
 };
 
 struct observer {
   const struct observer_type *type;
-  uint64_t every, longest_lag; /* of the plan, in steps */
+  uint64_t every, longest_lag, from; /* of the plan, in steps */
   struct observer_size size;
   double constant;  /* of the model: what type->constant gave */
   double *real;     /* [size.reals] zero at first */
+  double *later;    /* [size.later] zero at first */
   int64_t *integer; /* [size.integers] zero at first; [0] is 1 + the last step sampled, 0 if none */
   double *scratch;  /* [size.scratch] undefined between samples */
 };

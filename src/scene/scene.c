@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -72,6 +73,26 @@ static bool check_observables(const struct scene *scene, struct message *message
                          "%" PRIu64 " steps, sampled every %" PRIu64
                          "; allowed: 0 (as long as the run allows), or at least one sample's distance",
                          plan->longest_lag, plan->every[OBSERVE_DYNAMICS]);
+}
+
+/* Averages begin within the run. */
+static bool check_from(const struct scene *scene, struct message *message)
+{
+  const bool as_time = scene_says(scene, "observe.from_time");
+  const char *key = as_time ? "observe.from_time" : "observe.from";
+  return scene->observe.from <= scene->steps ||
+         scene_refuse_at(scene, key, key, message,
+                         "averages would begin at step %" PRIu64 ", after the run's %" PRIu64
+                         " steps; allowed: at most %s",
+                         scene->observe.from, scene->steps, as_time ? "the time of the run" : "`steps`");
+}
+
+/* The first step that is not before a time. A time that is a step but for rounding is that step. */
+static uint64_t step_of_time(double time, double time_step)
+{
+  const double steps = time / time_step, nearest = rint(steps);
+  const double step = fabs(steps - nearest) <= 1e-9 * nearest ? nearest : ceil(steps);
+  return step < 0x1p63 ? (uint64_t)step : INT64_MAX;
 }
 
 static bool check_trajectory(const struct scene *scene, struct message *message)
@@ -192,10 +213,13 @@ static bool read_whole(struct scene *scene, const struct scene_source *r)
   if (!read_tree(r, &scene->tree) || !keys_read(scene->tree.root, r->keys, &gaps, scene, r->message) ||
       !finish_model(scene, r))
     return false;
+  if (scene_says(scene, "observe.from_time"))
+    scene->observe.from = step_of_time(scene->observe_from_time, scene->model.time_step);
   if (!set_text(scene, r, gaps.defaults) || !set_fingerprint(scene, r))
     return message_set(r->message, "%s: out of memory", r->path);
-  return check_observables(scene, r->message) && check_trajectory(scene, r->message) &&
-         (!r->look_for_files || check_snapshot(scene, r->message));
+  scene->steps = r->steps ? *r->steps : scene->steps;
+  return check_observables(scene, r->message) && (r->open_end || check_from(scene, r->message)) &&
+         check_trajectory(scene, r->message) && (!r->look_for_files || check_snapshot(scene, r->message));
 }
 
 static bool read_once(struct scene *scene, const struct scene_source *r)
@@ -239,10 +263,14 @@ void scene_free(struct scene *scene)
 
 bool scene_read_text(const char *path, const char *text, size_t size, struct scene *scene, struct message *message)
 {
-  return scene_read_source(
-      &(struct scene_source){
-          .keys = &scene_keys, .path = path, .text = text, .size = size, .missing = MISSING_ABSENT, .message = message},
-      scene);
+  return scene_read_source(&(struct scene_source){.keys = &scene_keys,
+                                                  .path = path,
+                                                  .text = text,
+                                                  .size = size,
+                                                  .missing = MISSING_ABSENT,
+                                                  .open_end = true,
+                                                  .message = message},
+                           scene);
 }
 
 bool scene_make(const struct scene_settings *settings, struct scene *scene, struct message *message)

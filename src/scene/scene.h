@@ -19,6 +19,7 @@ struct scene {
   char *snapshot; /* start from this file instead of each kind's `start`; NULL: none. As the scene says it: relative to
                      the scene file's folder (scene_snapshot_path). */
   struct observe_plan observe;
+  double observe_from_time;   /* t0; as the scene says it, observe.from is made of it; 0: not said */
   uint64_t trajectory_every;  /* steps between frames; 0: no trajectory */
   bool trajectory_solvent;    /* frames hold the solvent too */
   bool trajectory_velocities; /* frames hold velocities */

@@ -51,6 +51,26 @@ static const struct key_table dynamics_table = {"observe.dynamics", NULL, COUNT(
 static const struct key_table collisions_table = {"observe.collisions", NULL, COUNT(every_keys), every_keys};
 
 static const struct key observe_keys[] = {
+    {.name = "from",
+     .text = "Step at which averages (`statics`, `dynamics`) begin, so that they leave a transient out. Time series "
+             "begin at step 0 all the same. At most `steps`. If absent: 0.",
+     .type = KEY_WHOLE64,
+     .optional = true,
+     .most = INT64_MAX,
+     .offset = IN_SCENE(observe.from),
+     .unit = "steps",
+     .aside = true},
+    {.name = "from_time",
+     .text = "The same as a time: sets `from` to the first step that is not before it.",
+     .type = KEY_NUMBER,
+     .optional = true,
+     .low = 0,
+     .high = 1e18,
+     .offset = IN_SCENE(observe_from_time),
+     .unit = "t0",
+     .excludes = "from",
+     .derives = true,
+     .aside = true},
     {.name = "conserved",
      .text = "Time series of energies and momentum.",
      .type = KEY_SECTION,

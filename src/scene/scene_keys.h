@@ -19,6 +19,8 @@ struct scene_source {
   enum key_missing missing;
   const uint64_t *fingerprint; /* NULL: any; as in scene_read_as */
   bool look_for_files;         /* whether the snapshot can be read */
+  const uint64_t *steps;       /* instead of the scene's; NULL: none */
+  bool open_end;               /* other steps may follow: observe.from is not held against them */
   bool numbers_only;           /* no lists of fibers and vertices: model_finish_numbers */
   struct message *message;
 };

@@ -174,14 +174,31 @@ static void warn_heating(struct teller *t, const struct scene *scene)
          time_step_below(m, m->time_step * pow(MOST_RISE / rise, 1.0 / order)));
 }
 
+/* Forces that pull some particles more than others make kinds drift. */
+static void warn_drift(struct teller *t, const struct scene *scene)
+{
+  const struct model *m = &scene->model;
+  const bool pulls_solvent = model_has_solvent(m) && vec3_norm(m->solvent.acceleration) > 0.0;
+  for (uint32_t k = 0; k < m->kinds; k++)
+    if (scene->observe.every[OBSERVE_DYNAMICS] > 0 && (pulls_solvent || vec3_norm(m->kind[k].force) > 0.0)) {
+      warn(t,
+           "observe.dynamics: a force acts, so fibers drift, and g_cm and D = g_cm/6t of '%s' contain (v t)^2; use %s "
+           "(docs/observables.md)",
+           m->kind[k].name,
+           m->kind[k].count > 1 ? "the columns g_cm_about_mean, D_about_mean and drift_x, drift_y, drift_z"
+                                : "the columns drift_x, drift_y, drift_z, or two fibers or more");
+    }
+}
+
 static void warn_observables(struct teller *t, const struct scene *scene)
 {
   const struct observe_plan *plan = &scene->observe;
-  if (plan->longest_lag > scene->steps / 4)
+  const uint64_t observed = plan->from < scene->steps ? scene->steps - plan->from : 0;
+  if (plan->longest_lag > observed / 4)
     warn(t,
-         "observe.dynamics.longest_lag %" PRIu64 " is more than a quarter of the run's %" PRIu64
+         "observe.dynamics.longest_lag %" PRIu64 " is more than a quarter of the %s%" PRIu64
          " steps: the longest lags will have few samples; use steps: %" PRIu64 " or more",
-         plan->longest_lag, scene->steps, 4 * plan->longest_lag);
+         plan->longest_lag, plan->from ? "observed " : "run's ", observed, plan->from + 4 * plan->longest_lag);
   for (int i = 0; i < OBSERVABLES; i++)
     if (plan->every[i] > scene->steps)
       warn(t, "observe.%s: sampled every %" PRIu64 " steps, but the run has %" PRIu64, observable_names[i],
@@ -206,5 +223,6 @@ int scene_warnings(const struct scene *scene, void (*tell)(void *context, const 
     warn_kind(&t, scene, &m->kind[k]);
   warn_heating(&t, scene);
   warn_observables(&t, scene);
+  warn_drift(&t, scene);
   return t.told;
 }

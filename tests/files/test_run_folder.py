@@ -172,6 +172,10 @@ class RunFolder(unittest.TestCase):
         os.mkfifo(self.run_folder / "conserved.csv")
         self.run_scene(SCENE, "--resume", "--steps", 60, code=2, said="conserved.csv")
 
+    def table(self, name, folder=None):
+        rows = [line.split(",") for line in ((folder or self.run_folder) / f"{name}.csv").read_text().splitlines()]
+        return {key: [float(row[k]) for row in rows[1:]] for k, key in enumerate(rows[0])}
+
     # --- what is resumed is what was
 
     def test_averages_keep_their_cadence(self):
@@ -189,6 +193,45 @@ class RunFolder(unittest.TestCase):
             for key in "dynamics.every", "dynamics.longest_lag", "statics.every":
                 del file["observers"][key]
         self.run_scene(text, "--resume", "--steps", 60)
+
+    def test_averages_keep_their_beginning(self):
+        late = SCENE.replace("observe:", "observe:\n  from: 20")
+        self.run_scene(late)
+        self.assertEqual(self.table("statics-a")["samples"], [21])
+        self.assertEqual(len(self.table("conserved")["step"]), 21)
+        self.refused(SCENE, "observe.from: 0 in the scene, but 20 in the run", "--resume", "--steps", 50)
+        self.refused(late, "observe.from: averages would begin at step 20, after the run's 10 steps", "--resume", "--steps",
+                     10)
+        self.run_scene(late, "--resume", "--steps", 50)
+        resumed = {path.name: path.read_text() for path in self.run_folder.glob("*.csv")}
+        whole = self.dir / "whole"
+        self.run_scene(late, "--steps", 50, folder=whole)
+        self.assertEqual(resumed, {path.name: path.read_text() for path in whole.glob("*.csv")})
+        in_time = late.replace("from: 20", "from_time: 0.195")
+        self.run_scene(in_time, "--steps", 50, folder=self.dir / "in-time")
+        self.assertEqual(resumed["statics-a.csv"], (self.dir / "in-time/statics-a.csv").read_text())
+        short = self.dir / "short"
+        self.run_scene(late.replace("steps: 40", "steps: 10"), "--steps", 50, folder=short)  # the steps that count
+        self.assertEqual(resumed["statics-a.csv"], (short / "statics-a.csv").read_text())
+
+    def test_a_checkpoint_from_before_drifts_were_known(self):
+        """What it knows goes on; what it cannot know is nan, to the end of the run."""
+        self.run_scene(SCENE)
+        with h5py.File(self.run_folder / "checkpoint.h5", "a") as file:
+            file.attrs.modify("format_version", numpy.int32(1))
+            for key in "dynamics-later", "from":
+                del file["observers"][key]
+        self.run_scene(SCENE, "--resume", "--steps", 60)
+        whole = self.dir / "whole"
+        self.run_scene(SCENE, "--steps", 60, folder=whole)
+        before, now = self.table("dynamics-a", whole), self.table("dynamics-a")
+        unknown = [name for name in now if name.startswith("drift") or "about" in name or "cumulative" in name]
+        self.assertEqual(len(unknown), 14)
+        for name, values in now.items():
+            if name in unknown:
+                self.assertTrue(numpy.isnan(values).all(), name)
+            else:
+                numpy.testing.assert_array_equal(values, before[name], name)
 
     def test_an_observable_that_is_new(self):
         """Its averages would be of a part of the run only, and nothing would say so."""

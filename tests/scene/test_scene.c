@@ -160,6 +160,12 @@ static const struct bad bad_scenes[] = {
     {13, "    vertices: 2000000", 13, 15, "make a contour of"},
     {17, "  - {name: a, count: 1, vertices: 1, mass: 1, bond_length: 0, spring: 1}", 17, 12, "'a' is the name of an"},
     {21, "  dynamics: {every: 10, longest_lag: 5}", 21, 38, "5 steps, sampled every 10; allowed: 0"},
+    {21, "  from: 101\n  dynamics: {every: 10}", 21, 9,
+     "observe.from: averages would begin at step 101, after the run's 100 steps; allowed: at most `steps`"},
+    {21, "  from_time: 1.001\n  dynamics: {every: 10}", 21, 14, "observe.from_time: averages would begin at step 101"},
+    {21, "  from_time: 1e17", 21, 14, "observe.from_time: averages would begin at step 9223372036854775807"},
+    {21, "  from: -1", 21, 9, "is not a whole number"},
+    {21, "  from: 10\n  from_time: 0.1", 22, 14, "observe.from_time: from is given too; allowed: one of the two"},
     {18, "start: {snapshot: nowhere.h5}\ncrossing:", 18, 19, "cannot be read: No such file or directory; allowed"},
     {9, "  bath: ghosts", 9, 9, "solvent.bath: 'ghosts' is no choice here; allowed: particles | phantoms"},
     {9, "  bath: phantoms", 9, 9, "phantoms carry no hydrodynamic interactions; allowed with hydrodynamics: false"},
@@ -759,6 +765,10 @@ static void warnings(void **unused)
       {16, "    spring: 0.3\n    start: equilibrium", "are expected to reach half the shortest edge"},
       {21, "  dynamics: {every: 10, longest_lag: 50}", "more than a quarter of the run's 100 steps"},
       {21, "  dynamics: {every: 200}", "sampled every 200 steps, but the run has 100"},
+      {21, "  from: 61\n  dynamics: {every: 10, longest_lag: 10}", "more than a quarter of the observed 39 steps"},
+      {21, "  from: 60\n  dynamics: {every: 10, longest_lag: 10}", NULL},
+      {17, "    force: [0, 0, 1]", "use the columns g_cm_about_mean, D_about_mean"},
+      {12, "    count: 1\n    force: [0, 0, 1]", "use the columns drift_x, drift_y, drift_z, or two fibers"},
       {9, "  hydrodynamics: false\n  bath: phantoms", NULL},
       {19, "  forbidden: false\n# ", NULL},
       {21, "  collisions: {every: 10}\n# ", NULL},
@@ -776,13 +786,18 @@ static void warnings(void **unused)
   struct scene balanced = read_with(17, "    force: [0, 0, 1]"); /* 16 vertices; 20480 particles */
   balanced.model.solvent.thermostat = THERMOSTAT_RESCALE;
   balanced.model.solvent.acceleration.z = -16.0 / 20480.0;
+  char all[8192] = "";
+  assert_int_equal(scene_warnings(&balanced, collect, all), 1);
+  assert_non_null(strstr(all, "contain (v t)^2"));
+  balanced.observe.every[OBSERVE_DYNAMICS] = 0;
   assert_int_equal(scene_warnings(&balanced, NULL, NULL), 0);
   scene_free(&balanced);
   /* A bath takes momentum and heat, and has no mean free path. */
   struct scene bath = read_with(8, "  collision_interval: 0.2\n  hydrodynamics: false\n  bath: phantoms");
   bath.model.kind[0].force.z = 1.0;
   bath.model.scheme = SCHEME_PAPER;
-  char all[8192] = "";
+  bath.observe.every[OBSERVE_DYNAMICS] = 0;
+  all[0] = '\0';
   scene_warnings(&bath, collect, all);
   assert_string_equal(all, "");
   scene_free(&bath);

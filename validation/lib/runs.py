@@ -4,7 +4,6 @@ A run has a folder <work>/<case>/<run>/. The folder of a scene has the files of 
 scene.yaml that it was given. The folder of a program has output.txt. Both have session.json: CPU time, and whether the run
 is finished.
 """
-import csv
 import dataclasses
 import fcntl
 import hashlib
@@ -16,10 +15,12 @@ import re
 import shutil
 import signal
 import subprocess
-
-import numpy
+import sys
 
 TREE = pathlib.Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(TREE / "python"))
+from uncross_sweep.files import columns, duration, read_json, write_json  # noqa: E402
+
 INTERRUPTED = 5  # exit code of `uncross run` after a signal, and of `validation/run one`
 CHECKPOINT_SECONDS = 120
 
@@ -139,34 +140,6 @@ class Result:
         return columns(self.text)
 
 
-def columns(text):
-    """Comma-separated values under a line of names as a dict of arrays, of floats where all are numbers. A last line
-    without its end is yet being written."""
-    whole = text[:text.rfind("\n") + 1]
-    rows = list(csv.reader(line for line in whole.splitlines() if line and not line.startswith("#")))
-    table = {}
-    for k, name in enumerate(rows[0] if rows else []):
-        values = [row[k] for row in rows[1:]]
-        try:
-            table[name] = numpy.array([float(x) for x in values])
-        except ValueError:
-            table[name] = numpy.array(values)
-    return table
-
-
-def read_json(path):
-    try:
-        return json.loads(path.read_text())
-    except FileNotFoundError:
-        return {}
-
-
-def write_json(path, data):
-    aside = path.with_name(path.name + ".part")
-    aside.write_text(json.dumps(data, indent=2, sort_keys=True) + "\n")
-    aside.replace(path)
-
-
 # --- execution --------------------------------------------------------------------------------------------------------
 
 class Refused(Exception):
@@ -279,10 +252,6 @@ def progress(work):
     left = math.fsum(result.run.hours * (1.0 - result.done_fraction) for result in results)
     return (f"{sum(result.finished for result in results)} of {len(results)} runs finished, about {duration(3600.0 * left)} of "
             "CPU time left")
-
-
-def duration(seconds):
-    return f"{seconds / 3600:.1f} h" if seconds >= 5400 else f"{seconds / 60:.0f} min" if seconds >= 90 else f"{seconds:.0f} s"
 
 
 HARVESTED = ("scene.yaml", "run.json", "session.json", "output.txt", "*.csv")

@@ -2,33 +2,20 @@
 correlation, or separate runs. tests/validation/test_stats.py holds each against exact numbers."""
 import dataclasses
 import math
+import pathlib
+import sys
 
 import numpy
 from scipy import stats
 
-
-def mean(values):
-    """(mean, standard error) of independent values; the error of fewer than two is nan."""
-    values = numpy.asarray(values, float)
-    error = values.std(ddof=1) / math.sqrt(len(values)) if len(values) > 1 else math.nan
-    return values.mean(), error
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "python"))
+from uncross_sweep.averages import blocked_mean, mean  # noqa: E402, F401
 
 
 def weighted_mean(values, errors):
     """(mean, standard error, p): of values with known errors; p is the chance of a scatter as large as theirs."""
     f = fit([numpy.ones(len(values))], values, errors)
     return f.value[0], f.error[0], f.p
-
-
-def blocked_mean(series, least=16):
-    """(mean, standard error) of a correlated series: Flyvbjerg and Petersen, J. Chem. Phys. 91, 461 (1989). Blocks of 1,
-    2, 4, ... values; the largest error among levels of at least `least` blocks. nan if there are fewer values."""
-    series = numpy.asarray(series, float)
-    level, error = series, math.nan
-    while len(level) >= least:
-        error = numpy.fmax(error, level.std(ddof=1) / math.sqrt(len(level)))
-        level = level[:len(level) // 2 * 2].reshape(-1, 2).mean(axis=1)
-    return series.mean(), float(error)
 
 
 @dataclasses.dataclass

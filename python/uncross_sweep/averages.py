@@ -1,0 +1,162 @@
+"""Averages over seeds: a table for each table of a point's runs, and one row of final numbers for each point."""
+import csv
+import io
+import math
+
+import numpy
+
+from .files import columns, write_text
+
+LEAST_BLOCKS = 16  # intervals of a lag in each run, for the final numbers
+KEYS = ("step", "time")  # columns that say which row it is
+COUNTS = ("samples", "intervals")  # columns that are added up
+
+
+def blocked_mean(series, least=LEAST_BLOCKS):
+    """(mean, standard error) of a correlated series: Flyvbjerg and Petersen, J. Chem. Phys. 91, 461 (1989). Blocks of 1,
+    2, 4, ... values; the largest error among levels of at least `least` blocks. nan if there are fewer values."""
+    series = numpy.asarray(series, float)
+    level, error = series, math.nan
+    while len(level) >= least:
+        error = numpy.fmax(error, level.std(ddof=1) / math.sqrt(len(level)))
+        level = level[:len(level) // 2 * 2].reshape(-1, 2).mean(axis=1)
+    return series.mean(), float(error)
+
+
+def mean(values):
+    """(mean, standard error) of independent values; the error of fewer than two is nan."""
+    values = numpy.asarray(values, float)
+    error = values.std(ddof=1) / math.sqrt(len(values)) if len(values) > 1 else math.nan
+    return values.mean(), error
+
+
+def over_seeds(values, errors):
+    """(mean, error, block error) of one number of several runs. The error is that of the runs' scatter. The block error
+    is what the runs' own errors give. One run has its own error for both."""
+    value, error = mean(values)
+    pooled = math.sqrt(math.fsum(e * e for e in errors)) / len(errors)
+    return (values[0], errors[0], errors[0]) if len(values) == 1 else (value, error, pooled)
+
+
+def rows_of(table):
+    """Row numbers by step or by lag; a table without such a column has one row."""
+    keys = [name for name in KEYS if name in table]
+    if not keys:
+        return {(): 0} if table and len(next(iter(table.values()))) else {}
+    return {tuple(values): k for k, values in enumerate(zip(*(table[name].tolist() for name in keys)))}
+
+
+def average(tables):
+    """One table of several, of runs that differ by their seed. Columns are matched by name, rows by step or lag; a row has
+    the number of runs that have it in the column `seeds`."""
+    tables = [table for table in tables if table]
+    names = [name for name in tables[0] if all(name in table for table in tables)] if tables else []
+    keys = [name for name in names if name in KEYS]
+    errors = {name for name in names if name.endswith("_error") and name[:-6] in names}
+    rows = [rows_of(table) for table in tables]
+    order = sorted({key for row in rows for key in row})
+    made = {}
+    for name in names:
+        if name in keys:
+            made[name] = [key[keys.index(name)] for key in order]
+        elif name in COUNTS:
+            made[name] = [math.fsum(table[name][row[key]] for table, row in zip(tables, rows) if key in row) for key in order]
+        elif name not in errors:
+            average_column(made, name, name + "_error" in errors, order, list(zip(tables, rows)))
+    if tables:
+        made["seeds"] = [float(sum(key in row for row in rows)) for key in order]
+    return {name: numpy.array(values, float) for name, values in made.items()}
+
+
+def average_column(made, name, has_error, order, runs):
+    parts = [name, name + "_error"] + ([name + "_block_error"] if has_error else [])
+    for part in parts:
+        made[part] = []
+    for key in order:
+        there = [(table, row[key]) for table, row in runs if key in row]
+        found = over_seeds([float(table[name][k]) for table, k in there],
+                           [float(table[name + "_error"][k]) if has_error else math.nan for table, k in there])
+        for part, value in zip(parts, found):
+            made[part].append(value)
+
+
+# --- final numbers ----------------------------------------------------------------------------------------------------
+
+def since(table, name, start, intervals):
+    """A column of a time series from step `start` on. intervals: each row tells of the time since the row before."""
+    first = 1 if intervals else 0
+    steps = table["step"][:-1] if intervals else table["step"]
+    return table[name][first:][steps >= start]
+
+
+SERIES = {  # column of the summary: table, column, whether it tells of intervals
+    "temperature_solvent": ("temperature", "solvent", False),
+    "temperature_vertex": ("temperature", "vertex", False),
+    "collision_rate": ("collisions", "rate_per_vertex", True),
+    "collision_rate_over_theory": ("collisions", "rate_over_theory", True),
+}
+STATICS = ("Ree2", "Rg2", "lp", "bond_energy")
+DYNAMICS = ("D", "D_about_mean", "D_cumulative", "drift_x", "drift_y", "drift_z")
+
+
+def put(row, name, found):
+    for part, value in zip(("", "_error", "_block_error"), found):
+        row[name + part] = value
+
+
+def final_numbers(folders, averages, start):
+    """One row: averages of time series from step `start` on, the table of statics, and the dynamics of the longest lag
+    that has LEAST_BLOCKS intervals in each run. folders: of the runs; averages: their tables, averaged."""
+    row = {}
+    series = {name: [columns((folder / f"{name}.csv").read_text()) for folder in folders]
+              for name in ("temperature", "collisions") if name in averages}
+    for name, (table, column, intervals) in SERIES.items():
+        if table in series and all(column in one for one in series[table]):
+            values = [since(one, column, start, intervals) for one in series[table]]
+            if all(len(one) for one in values):
+                put(row, name, over_seeds(*zip(*map(blocked_mean, values))))
+    for name, table in averages.items():
+        kind = name.partition("-")[2]
+        if name.startswith("statics-"):
+            for column in STATICS:
+                put_cell(row, f"{column}_{kind}", table, column, 0)
+        elif name.startswith("dynamics-") and "intervals" in table:
+            good = numpy.flatnonzero((table["intervals"] >= LEAST_BLOCKS * len(folders)) & (table["seeds"] == len(folders)))
+            if len(good):
+                row[f"lag_{kind}"] = table["time"][good[-1]]
+                for column in DYNAMICS:
+                    put_cell(row, f"{column}_{kind}", table, column, good[-1])
+    return row
+
+
+def put_cell(row, name, table, column, k):
+    if column in table and not math.isnan(table[column][k]):
+        put(row, name, [table[column + part][k] for part in ("", "_error", "_block_error")])
+
+
+# --- files ------------------------------------------------------------------------------------------------------------
+
+def cell(value):
+    if isinstance(value, float):
+        return "nan" if math.isnan(value) else f"{value:.17g}"
+    return value
+
+
+def write_rows(path, names, rows):
+    """Rows are dicts; what a row lacks is nan."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(names)
+    for row in rows:
+        writer.writerow([cell(row.get(name, math.nan)) for name in names])
+    write_text(path, text.getvalue())
+
+
+def write_averages(folder, folders):
+    """Averages the tables of the run folders into `folder`; returns them. Tables that not all runs have are left out."""
+    names = sorted(path.stem for path in folders[0].glob("*.csv") if all((run / path.name).exists() for run in folders))
+    made = {name: average([columns((run / f"{name}.csv").read_text()) for run in folders]) for name in names}
+    for name, table in made.items():
+        rows = [dict(zip(table, map(float, values))) for values in zip(*table.values())]
+        write_rows(folder / f"{name}.csv", list(table), rows)
+    return made

@@ -1,0 +1,113 @@
+"""The command line. The options are declared in src/cli/options.c too, which has looked at them before."""
+import argparse
+import collections
+import pathlib
+import sys
+
+from . import averages, grid, jobs, slurm
+
+DONE, BAD_INPUT, NOT_WRITTEN = 0, 2, 4
+
+
+def read_arguments(words):
+    parser = argparse.ArgumentParser(prog="uncross sweep", allow_abbrev=True)
+    parser.add_argument("scene")
+    parser.add_argument("--out", "-o", type=pathlib.Path, required=True)
+    parser.add_argument("--grid", action="append", default=[], metavar="KEY=V1,V2,...")
+    parser.add_argument("--seeds", metavar="A..B")
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE")
+    parser.add_argument("--steps", type=int)
+    parser.add_argument("--jobs", type=int, default=jobs.processors())
+    for switch in "--resume", "--list", "--slurm", "--quiet":
+        parser.add_argument(switch, action="store_true")
+    return parser.parse_args(words)
+
+
+def make_sweep(options):
+    points = grid.points_of([grid.read_axis(text) for text in options.grid])
+    seeds = None if options.seeds is None else grid.read_seeds(options.seeds)
+    sweep = grid.Sweep(grid.find_program(), options.scene, options.out, points, seeds, tuple(options.set), options.steps)
+    sweep.look()
+    if len(points) * len(seeds or [0]) > grid.MOST_RUNS:
+        raise grid.Refused(f"more than {grid.MOST_RUNS} runs")
+    return sweep
+
+
+def tell_warnings(sweep):
+    told = collections.Counter(warning for point in sweep.points for warning in point.warnings)
+    for warning, count in told.items():
+        where = "" if len(sweep.points) == 1 else f" ({count} of {len(sweep.points)} points)"
+        print(f"uncross: warning: {warning}{where}", file=sys.stderr)
+
+
+def check_folder(sweep, runs, resume):
+    """Nothing is written over: a folder that holds something is gone on with, or left alone."""
+    out = sweep.out
+    if out.exists() and not out.is_dir():
+        raise grid.Refused(f"{out}: is no folder")
+    left = sorted(path.name for path in out.iterdir() if path.name != ".lock") if out.is_dir() else []
+    if left and not resume:
+        raise grid.Refused(f"{out}: holds {left[0]} already; go on with --resume, or name another folder")
+    return [run for run in runs if not jobs.is_finished(run)]
+
+
+def write_results(sweep, runs):
+    """All tables, from the runs that are finished. They depend on the runs alone."""
+    done = {id(run) for run in runs if jobs.is_finished(run)}
+    keys = list(sweep.points[0].values)
+    listed = []
+    for run in runs:
+        status, steps, state = jobs.status_of(run)
+        code = 0 if id(run) in done else "" if run.code is None else run.code
+        listed.append({"folder": run.name, **run.point.values, "seed": run.seed, "exit_code": code, "status": status,
+                       "steps": steps, "state_hash": state, "message": "" if id(run) in done else run.message})
+    averages.write_rows(sweep.out / "runs.csv",
+                        ["folder", *keys, "seed", "exit_code", "status", "steps", "state_hash", "message"], listed)
+    rows = []
+    for point in sweep.points:
+        folders = [run.folder for run in runs if run.point is point and id(run) in done]
+        numbers = {}
+        if folders:
+            tables = averages.write_averages(sweep.out / point.name, folders)
+            numbers = averages.final_numbers(folders, tables, point.start)
+        rows.append({"folder": point.name, **point.values, "seeds": len(folders), **numbers})
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    averages.write_rows(sweep.out / "summary.csv", names, rows)
+    return len(done)
+
+
+def run_all(sweep, options):
+    runs = sweep.runs()
+    with_folder = check_folder(sweep, runs, options.resume)
+    if not options.quiet:
+        tell_warnings(sweep)
+    with jobs.locked(sweep.out) as lock:
+        left = [run for run in with_folder if not jobs.is_finished(run)]
+        pool = jobs.Pool(left, max(options.jobs, 1), lock, jobs.Progress(len(runs), left, max(options.jobs, 1), options.quiet))
+        pool.work()
+        done = write_results(sweep, runs)
+    failed = [run for run in runs if run.code not in (None, 0, jobs.INTERRUPTED) and not (pool.stopped_by and run.code < 0)]
+    if not options.quiet:
+        print(f"{done} of {len(runs)} runs finished\nresults in {sweep.out}/summary.csv")
+        if done < len(runs):
+            print("go on with the same command and --resume")
+    return abs(failed[0].code) if failed else DONE if done == len(runs) else jobs.INTERRUPTED
+
+
+def main(words):
+    options = read_arguments(words)
+    try:
+        sweep = make_sweep(options)
+        if options.list:
+            print("".join(run.words() + "\n" for run in sweep.runs()), end="")
+            return DONE
+        if options.slurm:
+            print(slurm.script(sweep.runs(), sweep.out), end="")
+            return DONE
+        return run_all(sweep, options)
+    except grid.Refused as refused:
+        code, text = BAD_INPUT, refused
+    except (jobs.Busy, OSError) as trouble:
+        code, text = NOT_WRITTEN, trouble
+    print(f"uncross: {text}", file=sys.stderr)
+    return code

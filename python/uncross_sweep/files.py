@@ -1,0 +1,42 @@
+"""Tables and JSON of runs, and words for durations. The campaign (validation/lib/runs.py) uses them too."""
+import csv
+import json
+
+import numpy
+
+
+def columns(text):
+    """Comma-separated values under a line of names as a dict of arrays, of floats where all are numbers. A last line
+    without its end is yet being written."""
+    whole = text[:text.rfind("\n") + 1]
+    rows = list(csv.reader(line for line in whole.splitlines() if line and not line.startswith("#")))
+    table = {}
+    for k, name in enumerate(rows[0] if rows else []):
+        values = [row[k] for row in rows[1:]]
+        try:
+            table[name] = numpy.array([float(x) for x in values])
+        except ValueError:
+            table[name] = numpy.array(values)
+    return table
+
+
+def read_json(path):
+    try:
+        return json.loads(path.read_text())
+    except FileNotFoundError:
+        return {}
+
+
+def write_text(path, text):
+    """In place of an earlier file, at once."""
+    aside = path.with_name(path.name + ".part")
+    aside.write_text(text)
+    aside.replace(path)
+
+
+def write_json(path, data):
+    write_text(path, json.dumps(data, indent=2, sort_keys=True) + "\n")
+
+
+def duration(seconds):
+    return f"{seconds / 3600:.1f} h" if seconds >= 5400 else f"{seconds / 60:.0f} min" if seconds >= 90 else f"{seconds:.0f} s"
