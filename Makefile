@@ -324,7 +324,7 @@ bench-programs: $(BUILD)/uncross $(BENCH_PROGRAMS)
 # What needs packages asks for them first, then builds in a second make: pkg-config may only now be there.
 .PHONY: check
 check:
-	tools/install-dependencies run test plot validate
+	tools/install-dependencies run test plot validate readers
 	$(MAKE) -j2 tests
 	tests/run $(BUILD)
 
