@@ -15,7 +15,7 @@ TREE = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(TREE / "validation"))
 
 from lib import case as cases
-from lib import report
+from lib import figures, report, runs, stats
 
 CAMPAIGN = TREE / "reference-data/campaign"
 CASE = '''
@@ -80,6 +80,14 @@ class Verdicts(unittest.TestCase):
     def test_z(self):
         self.assertAlmostEqual(self.verdict(2.0).z, 2.0, 14)
         self.assertIsNone(self.verdict(None).z)
+
+    def test_a_pass_that_only_an_allowance_explains(self):
+        for measured, covered in ((1.0, False), (1.1, True)):
+            verdict = cases.Verdict("a.b", "", 1.0, "", stats.tolerance(0.01, systematic=0.2), measured=measured, error=0.01)
+            self.assertEqual((verdict.verdict, verdict.allowed, verdict.covered), ("pass", 0.2, covered))
+            self.assertEqual(report.word({"verdict": "pass", "covered": covered}), "within allowance" if covered else "pass")
+        few = cases.Verdict("a.b", "", 1.0, "", stats.tolerance(0.01, values=5), measured=1.05, error=0.01)
+        self.assertEqual((few.verdict, few.covered), ("pass", False))  # so few values explain it
 
     def test_digits(self):
         self.assertEqual(report.plusminus(2.13917, 0.01172), "2.139 ± 0.012")
@@ -156,11 +164,90 @@ class MadeUp(unittest.TestCase):
         self.assertNotRegex(page, r'(src|href)="(http|/)')
 
 
+def campaign_figures(name):
+    """The figures of a case from the committed results."""
+    results = {}
+    for one in (name, *getattr(cases.load(name), "USES", ())):
+        for run in cases.load(one).runs("campaign"):
+            run.case = one
+            result = runs.Result(CAMPAIGN / one / run.name, run)
+            if result.exists:
+                results[run.name if one == name else run.path] = result
+    return cases.load(name).evaluate(results, "campaign").figures if results else []
+
+
+def grey(color):
+    red, green, blue = figures.rgb(color)
+    return 0.2126 * red + 0.7152 * green + 0.0722 * blue
+
+
+def curves(axes):
+    """Lines with a name, of points too."""
+    named = [line for line in axes.get_lines() if not line.get_label().startswith("_")]
+    return named + [bars for bars in axes.containers if bars.get_label() and not bars.get_label().startswith("_")]
+
+
+def defects(figure):
+    """What no picture may have: a name that no legend has; two numbers of an axis that read the same."""
+    figure.canvas.draw()
+    found, shown = [], {text.get_text() for axes in figure.axes if axes.get_legend() for text in axes.get_legend().get_texts()}
+    for axes in figure.axes:
+        found += [f"not in a legend: {one.get_label()}" for one in curves(axes) if one.get_label() not in shown]
+        for axis in (axes.xaxis, axes.yaxis):
+            low, high = sorted(axis.get_view_interval())
+            words = [tick.label1.get_text() for tick in axis.get_major_ticks()
+                     if low <= tick.get_loc() <= high and tick.label1.get_visible() and tick.label1.get_text()]
+            found += [f"twice on an axis: {words}"] if len(set(words)) < len(words) else []
+    return found
+
+
+class Pictures(unittest.TestCase):
+    def test_defects_are_seen(self):
+        with figures.styled():
+            figure, axes = figures.plain()
+            figures.points(axes, [1, 2], [3, 4], [1, 1], label="g")
+            self.assertEqual(defects(figure), ["not in a legend: g"])
+            figures.legend(axes)
+            self.assertEqual(defects(figure), [])
+            axes.set_yticks([3.0, 3.4, 4.0], ["3", "3", "4"])
+            self.assertEqual(len(defects(figure)), 1)
+            figures.svg(figure)
+
+    def test_series_differ_in_grey_or_by_marker(self):
+        looks = list(zip(figures.COLORS, figures.MARKERS))
+        for k, (color, marker) in enumerate(looks):
+            for other, its in looks[:k]:
+                self.assertTrue(marker != its or abs(grey(color) - grey(other)) > 0.15, (color, other))
+
+    def test_one_legend_of_two_panels(self):
+        with figures.styled():
+            figure, (left, right) = figures.plain(columns=2)
+            for number, axes in enumerate((left, right)):
+                figures.points(axes, [1, 2], [3, 4], label="both")
+                figures.points(axes, [1, 2], [3, 4], number=1, label=f"of {number}")
+            figures.legend_above(left, right)
+            self.assertEqual([text.get_text() for text in left.get_legend().get_texts()], ["both", "of 0", "of 1"])
+            self.assertEqual(defects(figure), [])
+            figures.svg(figure)
+
+
 class Campaign(unittest.TestCase):
     def test_differences_are_seen(self):
         self.assertEqual(differences({"a": [1.0, 2.0]}, {"a": [1.0, 2.0 + 1e-9]}), [])
         self.assertEqual(len(differences({"a": [1.0, 2.0]}, {"a": [1.0, 2.001]})), 1)
         self.assertEqual(len(differences({"a": 1}, {"b": 1})), 2)
+
+    def test_what_is_drawn_is_named(self):
+        """Every figure of every case with results, as the committed pictures are made."""
+        found = {}
+        for name in cases.names():
+            with figures.styled():
+                for figure in campaign_figures(name):
+                    drawn = figure.draw()
+                    found[f"{name}-{figure.name}"] = defects(drawn)
+                    figures.svg(drawn)
+        self.assertGreater(len(found), 20)
+        self.assertEqual({name: bad for name, bad in found.items() if bad}, {})
 
     @unittest.skipUnless((CAMPAIGN / "report.json").exists(), "no campaign yet")
     def test_the_committed_report_follows_from_the_committed_results(self):

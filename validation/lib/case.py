@@ -5,6 +5,8 @@ import math
 import pathlib
 import sys
 
+from lib import stats
+
 CASES = pathlib.Path(__file__).resolve().parent.parent / "cases"
 # The order of the report: the solvents, then single vertices and fibers in it, then many fibers.
 ORDER = ("solvent", "andersen", "mobility", "chains", "rods", "galilean", "tube", "msd", "conservation", "cost", "peer")
@@ -63,6 +65,17 @@ class Verdict:
         if self.verdict == "undecided" or not math.isfinite(error) or error == 0.0:
             return None
         return (self.measured - self.expected) / error
+
+    @property
+    def allowed(self):
+        """The part of the tolerance that is no statistics: a stated bound on what theory, or the method, is off by."""
+        return getattr(self.tolerance, "systematic", self.tolerance)
+
+    @property
+    def covered(self):
+        """Does it pass only because of that part? The difference is then larger than errors explain."""
+        return self.verdict == "pass" and self.z is not None and abs(self.z) > stats.SIGMAS and (
+            abs(self.measured - self.expected) > self.tolerance - self.allowed)
 
 
 @dataclasses.dataclass

@@ -27,7 +27,8 @@ def verdict_row(case, verdict):
     return {"id": verdict.id, "claim": case, "statement": verdict.statement, "source": verdict.source,
             "kind": verdict.kind, "verdict": verdict.verdict, "reason": verdict.reason,
             **{key: rounded(getattr(verdict, key)) for key in
-               ("expected", "expected_error", "measured", "error", "tolerance", "z")}, "detects": rounded(verdict.seen)}
+               ("expected", "expected_error", "measured", "error", "tolerance", "allowed", "z")},
+            "detects": rounded(verdict.seen), "covered": bool(verdict.covered)}
 
 
 def provenance_row(result):
@@ -127,6 +128,11 @@ def number(x):
     return f"{x / 10.0**power:.3g}·10{superscript(power)}".replace("-", "−")
 
 
+def word(row):
+    """The verdict as the page says it: a pass that the error bars do not explain is none of the plain ones."""
+    return "within allowance" if row["covered"] else row["verdict"]
+
+
 def superscript(power):
     return str(power).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
 
@@ -140,11 +146,12 @@ def prose(text):
 
 def page(tier, sections):
     environment = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True)
-    environment.filters.update(prose=prose, cpu=runs.duration, number=number, plusminus=plusminus)
+    environment.filters.update(prose=prose, cpu=runs.duration, number=number, plusminus=plusminus, word=word,
+                               badge=lambda row: word(row).split()[0])
     return environment.from_string(TEMPLATE.read_text()).render(
         tier=tier, titles=TITLES, sections=sections, total=math.fsum(part["cpu_seconds"] for part in sections),
-        count={word: sum(row["verdict"] == word for part in sections for row in part["verdicts"])
-               for word in ("pass", "fail", "not reproduced", "undecided")})
+        count={one: sum(word(row) == one for part in sections for row in part["verdicts"])
+               for one in ("pass", "within allowance", "fail", "not reproduced", "undecided")})
 
 
 def summary(tier, sections):

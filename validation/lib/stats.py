@@ -74,12 +74,21 @@ RATE, VERDICTS = 1e-3, 100
 SIGMAS = sigmas(RATE, VERDICTS)  # 4.4
 
 
+class Tolerance(float):
+    """A tolerance that knows which part of it is a stated bound on systematic errors."""
+
+    def __new__(cls, statistical, systematic):
+        made = super().__new__(cls, statistical + systematic)
+        made.systematic = systematic
+        return made
+
+
 def tolerance(error, expected_error=0.0, systematic=0.0, z=SIGMAS, values=None):
     """z standard errors of both numbers, plus a stated bound on systematic errors. values: the number of independent values
     that the error comes from, if they are so few that z must be larger."""
     if values is not None:
         z = sigmas(RATE, VERDICTS, values - 1)
-    return z * math.hypot(error, expected_error) + systematic
+    return Tolerance(z * math.hypot(error, expected_error), systematic)
 
 
 def jackknife(blocks, estimate):

@@ -134,17 +134,17 @@ def equilibrium_verdicts(results, point):
 # --- figures ----------------------------------------------------------------------------------------------------------
 
 def draw_integral(known):
-    figure, axes = figures.plain(width=9.5, height=3.6, columns=len(known))
+    figure, axes = figures.plain(width=9.5, height=4.4, columns=len(known))
     for number, (panel, one) in enumerate(zip(numpy.atleast_1d(axes), known.values())):
         table, (value, error) = one.stress_table, one.waves
         panel.axhspan((value - error) / one.theory, (value + error) / one.theory, color="#999999", alpha=0.5, linewidth=0,
                       label="shear waves")
         figures.points(panel, table["time"], table["eta"] / one.theory, table["eta_error"] / one.theory, number=number,
                        markersize=2.5, label="$C_0/2 + C_1 + \\ldots + C_k$")
-        panel.axvline(MEMORY[one.point] * one.point.dt_c, color="#444444", linewidth=0.8, linestyle=":")
-        panel.axhline(1.0, color="#222222", linewidth=1.1)
-        panel.set(title=one.words, xlabel="lag ($t_0$)", ylim=(0.94, 1.06))
-        figures.legend(panel)
+        panel.axvline(MEMORY[one.point] * one.point.dt_c, color="#444444", linewidth=0.8, linestyle=":", label="read here")
+        panel.axhline(1.0, color=figures.INK, linewidth=1.1, label="molecular chaos")
+        panel.set(title=one.words, xlabel="lag ($t_0$)", ylim=(0.95, 1.09))
+        figures.legend(panel, loc="upper right")
     numpy.atleast_1d(axes)[0].set_ylabel("$\\eta$ over molecular chaos")
     return figure
 

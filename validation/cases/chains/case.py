@@ -300,7 +300,7 @@ def verdicts_with(points, far):
                     reason="Kirkwood's vertices are spheres in Oseen's field; here that field is smeared over the "
                            "collision cells, as wide as a bond is long, and the coil's own vertices make the fluid "
                            "there heavier (chains.cells)"),
-        dilute.held("chains.prefactor", "D eta sqrt(N)/kT in the paper's boxes, eta = 11.18, most of them inferred from "
+        dilute.held("chains.prefactor", "D η √N/kT in the paper's boxes, η = 11.18, most of them inferred from "
                     "smaller ones; mean over lengths", 0.17, "Fig. 2 (the paper's digits allow 0.005)", prefactor, 0.005,
                     kind="paper", reason="chains are slower than Zimm's: see chains.cells; the paper states no errors"),
         same_in_boxes(points), crowding(points)]
@@ -350,7 +350,7 @@ def verdicts_without(results, planned):
             found += [
                 dilute.held(f"chains.rouse-times-N{n}", f"Loose chains (bonds of 5.5 a0) of {n}: Rouse times from the "
                             "turning of the end-to-end vector, over exact ones", 1.0,
-                            "tau_p = zeta/(4 k sin^2(p pi/2N))",
+                            "τ_p = ζ/(4k sin²(pπ/2N))",
                             dilute.over(zeta, (1.0 / chaos, 0.0)) if zeta else None, 0.01),
                 dilute.held(f"chains.rouse-D-N{n}", "The same chains: D N/D_0", 1.0, "D = D_0/N",
                             dilute.over(pair, (chaos / n, 0.0)) if pair else None, 0.01)]
@@ -400,8 +400,8 @@ def draw_lengths(results, points, far):
         if pair:
             figures.points(axes, k, *pair, number=2, label="no hydrodynamics" if i == 0 else None)
             figures.points(below, k, pair[0] / sharing(k)[0] - 1.0, pair[1] / sharing(k)[0], 2)
-    axes.set(xscale="log", yscale="log", ylabel="D, $a_0^2/t_0$", xlim=(4, 200))
-    figures.legend(axes, ncols=2, loc="lower left", fontsize=7.5)
+    axes.set(xscale="log", yscale="log", ylabel="$D$ ($a_0^2/t_0$)", xlim=(4, 200))
+    figures.legend_above(axes)
     below.set(xlabel="N", ylabel="over theory, $-1$", ylim=(-0.2, 0.12))
     return figure
 
@@ -423,7 +423,8 @@ def draw_boxes(points):
         figures.points(axes, share, value * scale, error * scale, number, label=f"N = {n}")
         figures.points(below, share, [p.infinite / mean - 1.0 for p in same], error / mean, number)
     axes.set(ylabel="D $\\eta R_e$/kT, measured $\\eta$", xlim=(0.0, 0.32))
-    figures.legend(axes, ncols=3)
+    figures.named(axes, "one limit for each N, less the images' share", linestyle="-", linewidth=0.8)
+    figures.legend_above(axes, columns=3)
     below.set(xlabel="$R_e/L_b$", ylabel="over line, $-1$", ylim=(-0.12, 0.12))
     return figure
 
@@ -446,8 +447,8 @@ def draw_rouse(results):
         figures.points(axes, t / tau, value, error, number, label=label, **options)
         figures.points(below, t / tau, value / expected - 1.0, error / expected, number, **options)
     axes.set(xscale="log", yscale="log", ylabel="$\\langle|R(t)-R(0)|^2\\rangle/2\\langle R^2\\rangle$")
-    if axes.get_legend_handles_labels()[0]:
-        figures.legend(axes, title="no hydrodynamics; lines: Rouse")
+    figures.named(axes, "Rouse", linestyle="-", linewidth=0.8)
+    figures.legend_above(axes, columns=3)
     below.set(xlabel="$t/\\tau_1$", ylabel="over Rouse, $-1$", ylim=(-0.2, 0.2))
     return figure
 

@@ -249,10 +249,10 @@ def draw_heat(results):
         figures.points(above, [row["dt"] for row in drift], [row["heat"] for row in drift],
                        [row["heat_error"] for row in drift],
                        number, label="c L³ = 1000, stay, drift-split")
-    above.set(xscale="log", yscale="log", ylabel="heat per rejected move, kT")
-    below.set(xscale="log", xlabel="dt, t0", ylabel="over dt²", ylim=(0, 2.5))
-    below.axhline(1.0, color="#444444", linewidth=0.8)
-    figures.legend(above)
+    above.set(xscale="log", yscale="log", ylabel="heat per rejected move ($kT$)")
+    below.set(xscale="log", xlabel="$dt$ ($t_0$)", ylabel="over dt²", ylim=(0, 2.5))
+    below.axhline(1.0, color=figures.INK, linewidth=0.8)
+    figures.legend_above(above)
     return figure
 
 
@@ -270,27 +270,29 @@ def draw_refused(results, tier):
         none = [k for k, m in enumerate(missed) if m == 0]  # less than 3 of them, at 95 %
         axes[0].errorbar([dt[k] for k in none], [3.0 / table[k]["possible"] for k in none],
                          [1.5 / table[k]["possible"] for k in none], uplims=True, linestyle="none", elinewidth=1.0,
-                         color=figures.COLORS[number])
+                         color=figures.COLORS[number], label="none: less than 3, at 95 %" if none and number == len(COUNTS) - 1 else None)
         theory = kinetic_rate(table[0])
         figures.points(axes[1], dt, [row["rate"] / theory for row in table],
-                       [row["rate_error"] / theory for row in table], number)
+                       [row["rate_error"] / theory for row in table], number, markerfacecolor=figures.COLORS[number])
         pairs = [real_rate(row) for row in table]
         figures.points(axes[1], [1.04 * x for x in dt], [pair[0] / theory for pair in pairs],
                        [pair[1] / theory for pair in pairs],
-                       number, markerfacecolor="white")
+                       number, markerfacecolor="none")
     for number, (name, density) in enumerate(SUSPENSIONS[tier].items()):
         seen = counts(results[name]) if name in results else None
         if seen and seen[0] < 1.0:
             figures.points(axes[0], [0.0108], [1.0 - seen[0]], [(1.0 - seen[0]) / math.sqrt((1.0 - seen[0]) * seen[3])],
                            len(COUNTS) + number, label=f"c L³ = {density}, in 32³ cells")
-    axes[0].set(xscale="log", yscale="log", xlabel="dt, t0", ylabel="1 − executed/possible")
-    axes[1].set(xscale="log", xlabel="dt, t0", ylabel="rate over kinetic theory")
-    axes[1].axhline(1.0, color="#222222", linewidth=1)
+    axes[0].set(xscale="log", yscale="log", xlabel="$dt$ ($t_0$)", ylabel="1 − executed/possible")
+    axes[1].set(xscale="log", xlabel="$dt$ ($t_0$)", ylabel="rate over kinetic theory")
+    axes[1].axhline(1.0, color=figures.INK, linewidth=1, label="kinetic theory")
     for panel in axes:
         panel.minorticks_off()
         panel.set_xticks([0.0025, 0.005, 0.01, 0.02], ["0.0025", "0.005", "0.01", "0.02"])
-    axes[0].set_ylim(top=30.0 * axes[0].get_ylim()[1])  # room for the legend
-    figures.legend(axes[0], loc="upper left")
+    figures.named(axes[1], "executed", marker="o")
+    figures.named(axes[1], "less twice the negative", marker="o", markerfacecolor="none")
+    for panel in axes:
+        figures.legend_above(panel, columns=1)
     return figure
 
 

@@ -133,7 +133,7 @@ def draw(table):
         line = (time - bare)[0] * density / density[0]
         figures.theory(above[1], density, line, label="∝ c L³")
         figures.points(below[1], density, (time - bare) / line - 1.0, error / line, 1)
-    for panel, residual, label in zip(above, below, ("volume, a0³", "c L³")):
+    for panel, residual, label in zip(above, below, ("volume ($a_0^3$)", "$cL^3$")):
         panel.set(xscale="log", yscale="log", ylabel="CPU ms per step")
         residual.set(xscale="log", xlabel=label, ylabel="over line − 1")
         figures.legend(panel)

@@ -182,13 +182,12 @@ def draw_displacements(results, system):
         if columns is None:
             continue
         label = f"v = {flow:g} $a_0/t_0$" + (", in its frame, bouncing" if name.startswith("co") else "")
-        for column, fill in (("g", None), ("g_cm", "white")):
+        for column, fill in (("g", figures.COLORS[number]), ("g_cm", "none")):
             figures.points(above, columns["time"] / tau, columns[column] / scale, columns[column + "_error"] / scale,
-                           number,
-                           label=label if column == "g" else None, markersize=3.2, markerfacecolor=fill)
+                           number, label=label if column == "g" else None, markersize=7 - number, markerfacecolor=fill)
         if rest is None or name == "flow00":
             continue
-        for column, fill, line in (("g", None, "--"), ("g_cm", "white", ":")):
+        for column, fill, line in (("g", figures.COLORS[number], "--"), ("g_cm", "none", ":")):
             lags = [t for t in columns["time"] if sd.at(rest, column, t)]
             pairs = [(sd.at(columns, column, t), sd.at(rest, column, t)) for t in lags]
             figures.points(below, numpy.array(lags) / tau, [100 * (a[0] / b[0] - 1) for a, b in pairs],
@@ -197,10 +196,11 @@ def draw_displacements(results, system):
             if flow == 0.54 and name.startswith("flow"):
                 share = refused_share(results[name])
                 figures.theory(below, numpy.array(lags) / tau,
-                               [100 * (share * flow * t)**2 / b[0] for t, (_, b) in zip(lags, pairs)], linestyle=line)
-    above.set(xscale="log", yscale="log", ylabel="g/L² (filled), g_cm/L² (open)")
-    below.set(xscale="log", xlabel="t/τ_r", ylabel="over rest, %", ylim=(-15, 60))
-    figures.legend(above, loc="upper left")
+                               [100 * (share * flow * t)**2 / b[0] for t, (_, b) in zip(lags, pairs)], linestyle=line,
+                               label=f"the lag's share of ${'g_{cm}' if column == 'g_cm' else 'g'}$, v = 0.54")
+    above.set(xscale="log", yscale="log", ylabel="$g/L^2$ (filled), $g_{cm}/L^2$ (open)")
+    below.set(xscale="log", xlabel="$t/\\tau_r$", ylabel="over rest (%)", ylim=(-15, 60))
+    figures.legend_above(above, below)
     return figure
 
 
@@ -215,14 +215,13 @@ def draw_energy(results):
             continue
         label = {"isolated00": "at rest, isolated", "isolated54": "v = 0.54, isolated",
                  "flow54": "v = 0.54, thermostat"}[name]
-        axes[0].plot(table["time"], 100 * (table["total"] / table["total"][0] - 1), color=figures.COLORS[number],
-                     label=label)
+        figures.line(axes[0], table["time"], 100 * (table["total"] / table["total"][0] - 1), number, label=label)
         mass = 2.0 * float(table["vertex_kinetic"][0] + table["solvent_kinetic"][0]) / 3.0
-        axes[1].plot(table["time"], numpy.abs(table["px"] - table["px"][0]) / mass + 1e-17,
-                     color=figures.COLORS[number])
-    axes[0].set(xlabel="t, t0", ylabel="change of total energy, %")
-    axes[1].set(xlabel="t, t0", ylabel="|Δp| over mass, a0/t0", yscale="log")
-    figures.legend(axes[0])
+        figures.line(axes[1], table["time"], numpy.abs(table["px"] - table["px"][0]) / mass + 1e-17, number, label=label)
+    axes[0].set(xlabel="$t$ ($t_0$)", ylabel="change of total energy (%)")
+    axes[1].set(xlabel="$t$ ($t_0$)", ylabel="$|\\Delta p|$ over mass ($a_0/t_0$)", yscale="log")
+    for panel in axes:
+        figures.legend_above(panel, columns=1)
     return figure
 
 

@@ -151,14 +151,14 @@ def verdicts(measured, off, swap):
         dilute.held("mobility.swap", "The same with the paper's swap of velocities: who is near is remembered", 1.02,
                     "docs/accuracy.md, hydrodynamics off", dilute.over(swap, (chaos, 0.0)) if swap else None, 0.01,
                     known=0.003),
-        dilute.held("mobility.images", "Slope of D against the images' share 2.837297 kT/(6 pi eta L)", 1.0,
-                    "images of a periodic box (Hasimoto 1959), eta = 10.74 from shear waves; 0.08 for the choice of lags", slope,
+        dilute.held("mobility.images", "Slope of D against the images' share 2.837297 kT/(6πηL)", 1.0,
+                    "images of a periodic box (Hasimoto 1959), η = 10.74 from shear waves; 0.08 for the choice of lags", slope,
                     0.08),
         dilute.scatter("mobility.lags", "Scatter of D(t) over lags and boxes about one local memory, in standard errors",
                        measured.p if measured else None),
         dilute.held("mobility.D", "D of a vertex in an infinite box", 0.0179, "docs/accuracy.md, another estimator",
                     limit, LAG_BIAS * 0.0179 + 0.0002, known=0.0001),
-        dilute.held("mobility.radius", "a_h = kT/(6 pi eta D), measured eta, against the paper's 'about 0.3'", 0.30,
+        dilute.held("mobility.radius", "a_h = kT/(6πηD), measured η, against the paper's 'about 0.3'", 0.30,
                     "Sec. IV A", radius, 0.05, kind="paper"),
         dilute.held("mobility.radius-table", "a_h against the 0.25 that the aspect ratio of Table II stands for", 0.25,
                     "Table II, p = L/2a_h = 64", radius, LAG_BIAS * 0.27, kind="paper",
@@ -185,9 +185,9 @@ def draw_boxes(measured, off, swap):
     for number, (name, pair, box) in enumerate((("phantoms", off, 64), ("swap", swap, 8)), 1):
         if pair:
             figures.points(axes, 1.0 / box, *pair, number=number, label=f"without, {name}")
-    axes.set(ylabel="D of a vertex, $a_0^2/t_0$", ylim=(0.009, 0.0195))
-    figures.legend(axes, loc="center left", bbox_to_anchor=(0.0, 0.42))
-    below.set(xlabel="$1/L_b$, $1/a_0$", ylabel="over line, $-1$", ylim=(-0.03, 0.03), xlim=(-0.002, 0.132))
+    axes.set(ylabel="$D$ of a vertex ($a_0^2/t_0$)", ylim=(0.009, 0.0195))
+    figures.legend_above(axes)
+    below.set(xlabel="$1/L_b$ ($1/a_0$)", ylabel="over line, $-1$", ylim=(-0.03, 0.03), xlim=(-0.002, 0.132))
     return figure
 
 
@@ -203,12 +203,14 @@ def draw_lags(found, measured):
         kept = (t >= 0.999 * dilute.FIRST_LAG) & (t <= 1.001 * LAST)
         figures.theory(axes, t[late], model[late], color=figures.COLORS[number])
         figures.points(axes, t, table["D"], table["D_error"], number, label=f"L = {key[0]}")
-        for which, fill in ((late & ~kept, "white"), (kept, None)):
+        for which, fill in ((late & ~kept, "none"), (kept, figures.COLORS[number])):
             figures.points(below, t[which], (table["D"] / model - 1.0)[which], (table["D_error"] / model)[which], number,
                            markerfacecolor=fill)
-    axes.set(xscale="log", ylabel="g(t)/6t, $a_0^2/t_0$", ylim=(0.005, 0.019))
-    figures.legend(axes, title="with hydrodynamics; lines: D less its memory")
-    below.set(xlabel="lag t, $t_0$", ylabel="over model, $-1$", ylim=(-0.05, 0.05))
+    axes.set(xscale="log", ylabel="$g(t)/6t$ ($a_0^2/t_0$)", ylim=(0.005, 0.019))
+    figures.named(axes, "$D$ less its memory", linestyle="-", linewidth=1.1)
+    figures.named(below, "lags left out of the fit", marker="o", markerfacecolor="none")
+    figures.legend_above(axes, below, columns=3)
+    below.set(xlabel="lag $t$ ($t_0$)", ylabel="over model, $-1$", ylim=(-0.05, 0.05))
     return figure
 
 

@@ -193,6 +193,7 @@ def order_verdict(curves, tier):
 
 def draw_curves(curves, tier, column):
     figure, above, below = figures.with_residuals(height=6.0)
+    latest = None
     for number, (density, (_, length, box, count)) in enumerate(SYSTEMS[tier].items()):
         columns = curves[density]
         if columns is None:
@@ -203,6 +204,7 @@ def draw_curves(curves, tier, column):
                        label=f"c L³ = {density}" + ("" if tier == "campaign" else f", L = {length:g}"))
         tube = 2.0 * width(length, box, count)**2 / scale
         above.plot([t[-1] / 30, t[-1]], [tube, tube], color=figures.COLORS[number], linestyle="-.", linewidth=1)
+        latest = number
         x, slope, error = sd.exponents(columns, column)
         known = error < 0.1
         figures.points(below, x[known] / tau(length), slope[known], error[known], number, markersize=2.5, linestyle="-",
@@ -218,12 +220,13 @@ def draw_curves(curves, tier, column):
     if hi:
         t = numpy.geomspace(0.5, 6000.0, 30)
         figures.theory(above, t / tau(length), hi[2] * (t / hi[4])**0.75 / length**2, linestyle="--",
-                       label="t^(3/4) through the most dilute")
-    above.set(xscale="log", yscale="log", ylabel="⟨d²⟩/L²" + (", contour" if "contour" in column else ""))
-    below.set(xscale="log", xlabel="t/τ_r", ylabel="local exponent", ylim=(0, 1.1))
-    below.axhline(0.75, color="#222222", linestyle="--", linewidth=1)
-    above.set_ylim(top=30.0 * above.get_ylim()[1])  # room for the legend
-    figures.legend(above, loc="upper left")
+                       label="$t^{3/4}$ through the most dilute")
+    above.set(xscale="log", yscale="log", ylabel="$\\langle d^2\\rangle/L^2$" + (", contour" if "contour" in column else ""))
+    below.set(xscale="log", xlabel="$t/\\tau_r$", ylabel="local exponent", ylim=(0, 1.1))
+    below.axhline(0.75, color=figures.INK, linestyle="--", linewidth=1)
+    if latest is not None:
+        figures.named(above, "$2L_\\perp^2$, Eq. (35), each in its colour", linestyle="-.", linewidth=1)
+    figures.legend_above(above)
     return figure
 
 
@@ -235,15 +238,16 @@ def draw_law(curves, tier):
         expected = sd.free_fiber(t, 64, 100, 32, False)
         figures.theory(above, t, expected, label="straight chain of vertices, nothing fitted")
         figures.theory(above, t, sd.bending_law(t, 1.0 / (sd.VERTEX_DIFFUSION * sd.BOND)), linestyle=":",
-                       label="t^(3/4), vertices that rub alone")
+                       label="$t^{3/4}$, vertices that rub alone")
         for number, column in enumerate(("d2_contour", "d2")):
             figures.points(above, t, columns[column], columns[column + "_error"], number,
                            label="nearest point of the contour" if number == 0 else "nearest vertex (the paper's)")
             figures.points(below, t, columns[column] / expected - 1.0, columns[column + "_error"] / expected, number)
         window = LAW[tier]["off"]
-        below.axvspan(*window, color="#0b5394", alpha=0.08)
-    above.set(xscale="log", yscale="log", ylabel="⟨d²⟩, a0²")
-    below.set(xscale="log", xlabel="t, t0", ylabel="over law − 1", ylim=(-0.8, 0.8))
+        above.axvspan(*window, color=figures.PALE, alpha=0.15, linewidth=0, label="window of the fit")
+        below.axvspan(*window, color=figures.PALE, alpha=0.15, linewidth=0)
+    above.set(xscale="log", yscale="log", ylabel="$\\langle d^2\\rangle$ ($a_0^2$)")
+    below.set(xscale="log", xlabel="$t$ ($t_0$)", ylabel="over law − 1", ylim=(-0.8, 0.8))
     figures.legend(above, loc="upper left")
     return figure
 
@@ -252,15 +256,14 @@ def draw_mesh(bent):
     figure, above, below = figures.with_residuals(height=4.4)
     xi = numpy.geomspace(1.0, 11.0, 50)
     wide = numpy.array([sd.tube_width(x, 32.0, 32.0) for x in xi])
-    figures.theory(above, xi, math.sqrt(2.0) * wide, label="√2 L⊥, Eq. (35), L = 32 a0")
-    figures.theory(above, xi, 2.0 * wide, linestyle=":", label="2 L⊥")
-    for density, (height, error, expected, mesh) in bent.items():
+    figures.theory(above, xi, math.sqrt(2.0) * wide, label="$\\sqrt{2}L_\\perp$, Eq. (35), $L = 32\\,a_0$")
+    figures.theory(above, xi, 2.0 * wide, linestyle=":", label="$2L_\\perp$")
+    for number, (density, (height, error, expected, mesh)) in enumerate(bent.items()):
         y, its = math.sqrt(height), 0.5 * error / math.sqrt(height)
-        figures.points(above, [mesh], [y], [its])
-        above.annotate(f"{density}", (mesh, y), textcoords="offset points", xytext=(6, -10), fontsize=8)
-        figures.points(below, [mesh], [y / expected], [its / expected])
-    above.set(xscale="log", yscale="log", ylabel="√d² at the bend, a0")
-    below.set(xscale="log", xlabel="ξ, a0", ylabel="over L⊥", ylim=(0.0, 3.0))
+        figures.points(above, [mesh], [y], [its], number, label=f"$cL^3$ = {density}")
+        figures.points(below, [mesh], [y / expected], [its / expected], number)
+    above.set(xscale="log", yscale="log", ylabel="$\\sqrt{d^2}$ at the bend ($a_0$)")
+    below.set(xscale="log", xlabel="$\\xi$ ($a_0$)", ylabel="over $L_\\perp$", ylim=(0.0, 3.0))
     figures.legend(above, loc="upper left")
     return figure
 
@@ -287,8 +290,8 @@ def draw_theory(found):
     for number, (name, (t, ratio, error)) in enumerate(found.items()):
         figures.points(axes, t, ratio, error, number, label=name, markersize=3, linestyle="-", linewidth=0.7)
     axes.axhline(1.0, color="#444444", linewidth=0.8)
-    axes.set(xscale="log", xlabel="t, t0", ylabel="d² (contour) over theory", ylim=(0.3, 1.15))
-    figures.legend(axes, loc="lower left", ncols=2)
+    axes.set(xscale="log", xlabel="$t$ ($t_0$)", ylabel="$d^2$ (contour) over theory", ylim=(0.3, 1.15))
+    figures.legend_above(axes, columns=3)
     return figure
 
 
@@ -323,8 +326,7 @@ def evaluate(results, tier):
                             "hydrodynamics.", lambda: draw_theory(theory)))
         words += "\n\n" + theory_words(theory)
         if len(bent) >= 2:
-            found.append(Figure("mesh", "Place of the bend: √d² at a local exponent of 3/8, against mesh size. The numbers "
-                                "are c L³.", lambda: draw_mesh(bent)))
+            found.append(Figure("mesh", "Place of the bend: √d² at a local exponent of 3/8, against mesh size.", lambda: draw_mesh(bent)))
     return Outcome(verdicts, found, words)
 
 

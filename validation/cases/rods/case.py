@@ -287,17 +287,17 @@ def campaign_verdicts(points, far):
     box_prefactor = (rules.in_box.prefactor, rules.in_box.prefactor_error) if rules else None
     box_diameter = (rules.in_box.diameter, rules.in_box.diameter_error) if rules else None
     return [
-        dilute.held("rods.images", "Slope of D against the images' share kT/(6 pi eta L) (2.837297 - ...), N = 10", 1.0,
+        dilute.held("rods.images", "Slope of D against the images' share kT/(6πηL) (2.837297 - ...), N = 10", 1.0,
                     "images of a periodic box (Hasimoto 1959)", image_slope(points), 0.1),
         dilute.held("rods.prefactor", "Prefactor of the joint fit in an infinite box, L = N/2; and of Kirkwood's D",
                     rules.model.prefactor if rules else 0.096, "Kirkwood's sum, the same lengths and weights", prefactor,
                     0.004, rival=PREFACTOR),
-        dilute.held("rods.diameter", "b with the prefactor 1/(3 pi) in an infinite box, over that of Kirkwood's D", 1.0,
+        dilute.held("rods.diameter", "b with the prefactor 1/(3π) in an infinite box, over that of Kirkwood's D", 1.0,
                     "Kirkwood's sum; 4 % of D are 15 % of b",
                     dilute.over(rules.alone, (rules.model_alone[0], 0.0)) if rules else None, 0.15),
-        dilute.held("rods.prefactor-theory", "The joint prefactor in an infinite box, against 1/(3 pi)", PREFACTOR,
+        dilute.held("rods.prefactor-theory", "The joint prefactor in an infinite box, against 1/(3π)", PREFACTOR,
                     "Eq. (40)", prefactor, 0.002, kind="paper", rival=0.094, reason=CONTOUR),
-        dilute.held("rods.prefactor-paper", "Prefactor of the joint fit in the paper's boxes, eta = 11.18", 0.094,
+        dilute.held("rods.prefactor-paper", "Prefactor of the joint fit in the paper's boxes, η = 11.18", 0.094,
                     "Sec. V A", box_prefactor, 0.0005, kind="paper", rival=PREFACTOR,
                     reason="images change b, not the prefactor; the paper's errors are not stated"),
         dilute.held("rods.diameter-paper", "Diameter b of the same fit", 0.6, "Sec. V A", box_diameter, 0.05,
@@ -338,8 +338,8 @@ def draw_lengths(results, points, far):
     for i, (k, pair) in enumerate((k, pair) for k, pair in measured if pair):
         figures.points(axes, k, *pair, number=2, label="no hydrodynamics" if i == 0 else None)
         figures.points(below, k / 1.03, pair[0] / sharing(k)[0] - 1.0, pair[1] / sharing(k)[0], 2)
-    axes.set(xscale="log", yscale="log", ylabel="D, $a_0^2/t_0$", xlim=(8, 75))
-    figures.legend(axes, ncols=2, loc="lower left", fontsize=7.5)
+    axes.set(xscale="log", yscale="log", ylabel="$D$ ($a_0^2/t_0$)", xlim=(8, 75))
+    figures.legend_above(axes)
     below.set(xlabel="N", ylabel="over theory, $-1$", ylim=(-0.15, 0.15), xticks=[10, 15, 20, 30, 45, 60],
               xticklabels=["10", "15", "20", "30", "45", "60"])
     below.minorticks_off()
@@ -360,9 +360,10 @@ def draw_images(points):
         share = [1.0 / p.box for p in same]
         figures.points(axes, share, [p.value for p in same], [p.error for p in same], number, label=f"N = {n}")
         figures.points(below, share, [p.infinite / mean - 1.0 for p in same], [p.error / mean for p in same], number)
-    axes.set(ylabel="D, $a_0^2/t_0$", xlim=(0.0, 0.118), ylim=(0.0, 0.0062))
-    figures.legend(axes, ncols=3)
-    below.set(xlabel="$1/L_b$, $1/a_0$", ylabel="over line, $-1$", ylim=(-0.12, 0.12))
+    axes.set(ylabel="$D$ ($a_0^2/t_0$)", xlim=(0.0, 0.118), ylim=(0.0, 0.0062))
+    figures.named(axes, "one limit for each N, less the images' share", linestyle="-", linewidth=0.8)
+    figures.legend(axes, loc="lower right")
+    below.set(xlabel="$1/L_b$ ($1/a_0$)", ylabel="over line, $-1$", ylim=(-0.12, 0.12))
     return figure
 
 
@@ -371,7 +372,7 @@ def words(points, far):
     slope = image_slope(points)
     if slope:
         parts.append(f"""**Effect of the images**, at N = 10: D against their share has the slope {slope[0]:.2f} ±
-{slope[1]:.2f}; theory has 1. In boxes that grow with the rod they take a constant times kT/(eta L). This makes b larger and
+{slope[1]:.2f}; theory has 1. In boxes that grow with the rod they take a constant times kT/(ηL). This makes b larger and
 does not change the prefactor.""")
     if far:
         parts.append(f"**D in an infinite box**, 10⁻³ a0²/t0: {dilute.listed(far, MODELS)}.")
@@ -383,9 +384,9 @@ does not change the prefactor.""")
                              ("the paper's boxes, the paper's viscosity:", rules.in_box)))
         parts.append(f"""Joint fits of Eq. (40) with L = N/2, prefactor and b (the paper: 0.094 and 0.6): {rows}.
 Kirkwood's D for these rods, without any images, gives {rules.model.prefactor:.4f} and {rules.model.diameter:.2f}. With
-1/(3 pi) held, b = {rules.alone[0]:.3f} ± {rules.alone[1]:.3f}. Prefactor and ln b of one fit are
+1/(3π) held, b = {rules.alone[0]:.3f} ± {rules.alone[1]:.3f}. Prefactor and ln b of one fit are
 correlated almost fully.""")
-        parts.append(f"**Why the prefactor is below 1/(3 pi)**: {CONTOUR}.")
+        parts.append(f"**Why the prefactor is below 1/(3π)**: {CONTOUR}.")
     return "\n\n".join(parts)
 
 

@@ -326,7 +326,8 @@ def draw_chaos(results, known):
             below.minorticks_off()
         below.set_xlabel(name)
     tops[0].set_ylabel("$a_0^2/t_0$")
-    figures.legend(tops[0])
+    figures.named(tops[0], "molecular chaos", linestyle="-", linewidth=1.1)
+    figures.legend_above(tops[0], columns=1)
     belows[0].set_ylabel("over molecular chaos (%)")
     return figure
 
@@ -386,7 +387,10 @@ def draw_tail(results, points):
         figures.points(below, t[late], mean[late] / over, error[late] / over, number=number)
     top.set(xscale="log", yscale="log", ylim=(5e-5, 1.0), ylabel="$C(t)/C(0)$")
     below.set(ylabel="over shear waves'", ylim=(-3.0, 3.0), xlabel="time ($t_0$)")
-    figures.legend(top)
+    figures.named(top, "molecular chaos", linestyle="-", linewidth=0.8)
+    figures.named(top, "shear waves of the box", linestyle="--", linewidth=1.1)
+    figures.named(below, "shear and sound, no width to a cell's", marker="s", markersize=8, alpha=0.3)
+    figures.legend_above(top, below)
     return figure
 
 

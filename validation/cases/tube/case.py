@@ -259,13 +259,13 @@ def draw(curves, system, times, errors, column):
         if columns is None:
             continue
         tau = times[name.split("-")[0]]
+        uncrossable = "entangled" in name  # small filled markers, in the larger open ones of those that may cross
         figures.points(above, columns["time"] / tau, columns[column] / scale, columns[column + "_error"] / scale,
-                       number,
-                       label=LABELS[name], linestyle="-" if "entangled" in name else ":", markersize=3.2,
-                       markerfacecolor=None if "entangled" in name else "white")
+                       number, label=LABELS[name], linestyle="-" if uncrossable else ":", markersize=2.6 if uncrossable else 5.5,
+                       markerfacecolor=figures.COLORS[number] if uncrossable else "none", zorder=3 if uncrossable else 2)
     square = width(system)**2 / scale
-    above.axhline(2 * square, color="#222222", linestyle="-.", linewidth=1.1, label="tube, 2 L⊥², Eq. (35)")
-    above.axhline(4 * square, color="#222222", linestyle=(0, (1, 3)), linewidth=1.1, label="4 L⊥²")
+    above.axhline(2 * square, color=figures.INK, linestyle="-.", linewidth=1.1, label="$2L_\\perp^2$, Eq. (35)")
+    above.axhline(4 * square, color=figures.INK, linestyle=(0, (1, 3)), linewidth=1.1, label="$4L_\\perp^2$")
     for which, line in (("hi", "-"), ("off", "--")) if column == "d2_contour" else ():  # the other has the vertices' floor
         lags = numpy.geomspace(0.5, 0.003 * times[which], 24)
         alone = sd.free_fiber(lags, *size(system), which == "hi")
@@ -280,13 +280,12 @@ def draw(curves, system, times, errors, column):
                        [pair[1] for _, pair in pairs], 2 * number, linestyle="-", markersize=3)
     for number, which in enumerate(("hi", "off")):
         if errors[which]:
-            figures.points(above, [0.1], [3e-6 * 4**number], None, 2 * number, xerr=[0.1 * errors[which]], markersize=0,
-                           label="error of τ_r" if number == 0 else None)
-    above.set(xscale="log", yscale="log", ylabel="⟨d²⟩/L²" + (", contour" if "contour" in column else ""))
-    below.set(xscale="log", xlabel="t/τ_r", ylabel="uncrossable\n/ free", ylim=(0, 1.2))
+            figures.points(above, [0.1], [3e-6 * 4**number], None, 2 * number, xerr=[0.1 * errors[which]], marker="none",
+                           label=f"error of $\\tau_r$, {'on' if which == 'hi' else 'off'}")
+    above.set(xscale="log", yscale="log", ylabel="$\\langle d^2\\rangle/L^2$" + (", contour" if "contour" in column else ""))
+    below.set(xscale="log", xlabel="$t/\\tau_r$", ylabel="uncrossable\nover free", ylim=(0, 1.2))
     below.axhline(1.0, color="#444444", linewidth=0.8)
-    above.set_ylim(top=20.0 * above.get_ylim()[1])  # room for the legend
-    figures.legend(above, ncols=2, loc="upper left")
+    figures.legend_above(above)
     return figure
 
 
@@ -306,7 +305,8 @@ def evaluate(results, tier):
         verdicts.append(normalized_verdict(curves, times, measured))
     caption = (f"c L³ = {system['count']}, L = l_p = {system['length']:g} a0. Filled: crossing forbidden. Open: crossing free. Time is in "
                f"units of the rotation time τ_r of a lone fiber: {words['hi']} with hydrodynamics, {words['off']} without. Below: "
-               "forbidden over free at the same lag. Horizontal bars: the error of τ_r, by which each pair of curves may be shifted sideways.")
+               "forbidden over free at the same lag. 2 L⊥²: the line that the paper draws. 4 L⊥²: where a fixed tube would end, because both positions that d² compares "
+               "fluctuate. The curve passes both: the tube shifts as its neighbors move, and is left by its ends. Horizontal bars: the error of τ_r, by which each pair of curves may be shifted sideways.")
     errors = {which: pair[1] / pair[0] if pair else None for which, pair in measured.items()}
     found = [Figure(f"fig4-{column}", what + caption, lambda column=column: draw(curves, system, times, errors, column))
              for column, what in (("d2", "The paper's d²(t), to the nearest vertex. "),
