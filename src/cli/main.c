@@ -81,29 +81,31 @@ static enum exit_code export_frames(const struct arguments *a)
 
 const struct command commands[COMMANDS] = {
     [COMMAND_CHECK] = {"check", "SCENE", 1, WRITES,
-                       "what a scene says, all its derived numbers, memory, time, warnings", NULL, check},
+                       "what a scene says, all its derived numbers, memory, time, warnings", NULL, check, NULL},
     [COMMAND_RUN] =
         {"run", "SCENE", 1, MAY(EXIT_STOPPED) | WRITES | MAY(EXIT_INTERRUPTED), "runs a scene in a folder",
          "DIR gets checkpoint.h5, run.json, a table for each observable, and trajectory.h5 (docs/files.md).\n"
          "Nothing is written over. SIGINT (Ctrl-C), SIGTERM, SIGHUP, SIGUSR1 and SIGXCPU end the run after the step "
          "at\n"
          "hand, with a checkpoint. A second SIGINT or SIGTERM, a second later, ends it at once, without one.\n",
-         command_run},
+         command_run, NULL},
     [COMMAND_INFO] = {"info", "FILE", 1, WRITES,
-                      "what a file is: scene, checkpoint, trajectory, run.json, table; or a run's folder", NULL, info},
+                      "what a file is: scene, checkpoint, trajectory, run.json, table; or a run's folder", NULL, info,
+                      NULL},
     [COMMAND_VERIFY] = {"verify", "FILE ...", 1, WRITES | MAY(EXIT_DAMAGED),
                         "whether checkpoints, trajectories, packs, tables, folders of runs are whole",
                         "Prints a line for each file: whole, readable (what it carries no checksum of), or damaged.\n",
-                        command_verify},
-    [COMMAND_SCHEMA] = {"schema", "", 0, WRITES, "the JSON schema of scenes, for editors", NULL, schema},
-    [COMMAND_EXPORT] = {"export", "FILE", 1, WRITES, "extended XYZ of a trajectory or checkpoint", NULL, export_frames},
+                        command_verify, NULL},
+    [COMMAND_SCHEMA] = {"schema", "", 0, WRITES, "the JSON schema of scenes, for editors", NULL, schema, NULL},
+    [COMMAND_EXPORT] = {"export", "FILE", 1, WRITES, "extended XYZ of a trajectory or checkpoint", NULL, export_frames,
+                        NULL},
     [COMMAND_ANALYZE] = {"analyze", "TRAJECTORY", 1, WRITES,
                          "the observables of a trajectory's scene from its frames, as new tables", NULL,
-                         command_analyze},
+                         command_analyze, NULL},
     [COMMAND_PLOT] = {"plot", "FOLDER|FILE ...", 1, WRITES,
                       "a page of a run, table, trajectory or checkpoint: fibers, figures, what to distrust",
                       "One HTML file that needs no other (docs/plot.md). Nothing is written over.\n", NULL,
-                      .program = "uncross-plot"},
+                      "uncross-plot"},
     [COMMAND_SWEEP] =
         {"sweep", "SCENE", 1, MAY(EXIT_STOPPED) | WRITES | MAY(EXIT_INTERRUPTED),
          "runs a scene over a grid of values and seeds, and averages",
@@ -114,30 +116,32 @@ const struct command commands[COMMANDS] = {
          "Nothing is written over. The exit code is that of the first run that failed.\n",
          NULL, .program = "uncross-sweep"},
     [COMMAND_EMIT] = {"oracle emit", "SCENE", 1, WRITES,
-                      "inputs and outputs of every operator, at two steps, as a pack", NULL, oracle_emit_file},
+                      "inputs and outputs of every operator, at two steps, as a pack", NULL, oracle_emit_file, NULL},
     [COMMAND_EDGES] = {"oracle edges", "", 0, WRITES,
                        "constructed inputs of operators, and their outputs, as a pack: ties, zeros, faces of cells",
-                       NULL, oracle_edges_file},
+                       NULL, oracle_edges_file, NULL},
     [COMMAND_START] = {"oracle start", "SCENE", 1, WRITES,
-                       "what a run of the scene starts from, as a pack: for ports' traces", NULL, oracle_start_file},
+                       "what a run of the scene starts from, as a pack: for ports' traces", NULL, oracle_start_file,
+                       NULL},
     [COMMAND_TRACE] = {"oracle trace", "SCENE", 1, WRITES,
-                       "state hashes and sums after every stage of the scene's steps, as CSV", NULL, oracle_trace_file},
-    [COMMAND_DUMP] = {"oracle dump", "PACK", 1, WRITES, "a pack as text", NULL, oracle_dump_file},
+                       "state hashes and sums after every stage of the scene's steps, as CSV", NULL, oracle_trace_file,
+                       NULL},
+    [COMMAND_DUMP] = {"oracle dump", "PACK", 1, WRITES, "a pack as text", NULL, oracle_dump_file, NULL},
     [COMMAND_COMPARE] = {"oracle compare", "OURS THEIRS", 2, WRITES | MAY(EXIT_CLOSE) | MAY(EXIT_DIFFERS),
                          "two packs, each HDF5 or text, or two traces: the first difference and what it means", NULL,
-                         oracle_compare_files},
+                         oracle_compare_files, NULL},
     [COMMAND_CHECK_PORT] = {"oracle check", "PORT", 1, WRITES | MAY(EXIT_CLOSE) | MAY(EXIT_DIFFERS),
                             "runs a port over all packs and traces: one table, one exit code",
                             "PORT is a program: `PORT PACK OUT` reads a pack and writes its outputs, `PORT --trace "
                             "START OUT` writes a trace\n"
                             "(docs/porting.md). --single and --only leave the traces out.\n",
-                            oracle_check_port},
+                            oracle_check_port, NULL},
     [COMMAND_JUDGE] =
         {"oracle judge", "OURS THEIRS", 2, WRITES | MAY(EXIT_DIFFERS) | MAY(EXIT_CANNOT_TELL),
          "two tables of observables (docs/judging.md): could both be the same code?",
          "OURS is reference-data/observables.csv. Averages are compared with their errors; energy and momentum must\n"
          "stay within bounds that single precision keeps. 40 blocks (wave: 320) see all that must be seen.\n",
-         oracle_judge_files},
+         oracle_judge_files, NULL},
 };
 
 /* --- which one --------------------------------------------------------------------------------------------------- */
