@@ -45,7 +45,7 @@ COLUMNS = {
     "solvent_y": Column("solvent, y", "$T_y$", "$(kT/k_B)$"),
     "solvent_z": Column("solvent, z", "$T_z$", "$(kT/k_B)$"),
     "vertex": Column("vertices", r"$T_\mathrm{v}$", "$(kT/k_B)$"),
-    "vertex_half_step": Column("vertices, half a step ahead", "", "$(kT/k_B)$"),
+    "vertex_half_step": Column("vertices, half a step ahead", r"$T_\mathrm{v}^{+}$", "$(kT/k_B)$"),
     # collisions
     "moves": Column("moves of vertices"),
     "possible": Column("contacts found"),

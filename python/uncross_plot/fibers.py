@@ -22,6 +22,7 @@ MOST_VECTORS = 8000  # pieces of bonds; more are drawn as pixels
 MOST_FRAMES = 80
 FRAMES_PER_SECOND = 15
 BEAD = 0.28  # a0, about the hydrodynamic radius of a vertex
+CORE = 0.4  # width of a hollow stroke's core
 WHITE = (255, 255, 255)
 
 
@@ -212,6 +213,11 @@ def fiber_colours(structure):
     return colours
 
 
+def is_hollow(kind):
+    """Every second kind has a white core: so kinds differ in grey, too."""
+    return kind % 2 == 1
+
+
 @dataclasses.dataclass
 class Mark:
     """A stroke from a to b, or a disc if they are one; in pixels."""
@@ -221,6 +227,7 @@ class Mark:
     width: float
     colour: tuple
     number: int  # of the bond, or of the bead's row
+    hollow: bool = False
 
 
 def marks(structure, points, camera):
@@ -236,11 +243,13 @@ def marks(structure, points, camera):
         near = piece[:, 3].mean()
         width = max(1.0, thick * piece[:, 2].mean()) * (2.0 if fiber == marked else 1.0)
         colour = _mix(colours[fiber], WHITE, 1.0 if fiber == marked else 0.4 + 0.6 * near)
-        found.append(Mark(near, tuple(piece[0, :2]), tuple(piece[1, :2]), width, colour, int(number)))
+        found.append(Mark(near, tuple(piece[0, :2]), tuple(piece[1, :2]), width, colour, int(number),
+                          is_hollow(structure.kind[structure.bonds[number, 0]])))
     inside = points[beads] - structure.edges * numpy.floor(points[beads] / structure.edges)
     for place, row in zip(camera(inside) if len(beads) else (), beads):
         colour = _mix(colours[structure.fiber[row]], WHITE, 0.4 + 0.6 * place[3])
-        found.append(Mark(place[3], tuple(place[:2]), tuple(place[:2]), max(2.0, 2 * BEAD * place[2]), colour, int(row)))
+        found.append(Mark(place[3], tuple(place[:2]), tuple(place[:2]), max(2.0, 2 * BEAD * place[2]), colour, int(row),
+                          is_hollow(structure.kind[row])))
     return sorted(found, key=lambda mark: mark.near)
 
 
@@ -271,12 +280,14 @@ def draw_svg(structure, found, camera, title):
            f"<title>{title}</title>", f'<rect width="{WIDTH}" height="{HEIGHT}" fill="#ffffff"/>', *frame(back)]
     for m in found:
         if m.a == m.b:
-            out.append(f'<circle cx="{m.a[0]:.1f}" cy="{m.a[1]:.1f}" r="{m.width / 2:.1f}" fill="{_hex(m.colour)}" '
-                       f'stroke="#fff" stroke-width="1.4" data-n="{m.number}"/>')
+            at = f'<circle cx="{m.a[0]:.1f}" cy="{m.a[1]:.1f}" r='
+            out.append(f'{at}"{m.width / 2:.1f}" fill="{_hex(m.colour)}" stroke="#fff" stroke-width="1.4" data-n="{m.number}"/>'
+                       + (f'{at}"{CORE * m.width / 2:.1f}" fill="#fff"/>' if m.hollow else ""))
             continue
         way = f"M{m.a[0]:.1f} {m.a[1]:.1f}L{m.b[0]:.1f} {m.b[1]:.1f}"
         out.append(f'<path d="{way}" stroke="#fff" stroke-width="{m.width + 2:.1f}" stroke-linecap="butt"/>'
-                   f'<path class="b" data-n="{m.number}" d="{way}" stroke="{_hex(m.colour)}" stroke-width="{m.width:.1f}"/>')
+                   f'<path class="b" data-n="{m.number}" d="{way}" stroke="{_hex(m.colour)}" stroke-width="{m.width:.1f}"/>'
+                   + (f'<path d="{way}" stroke="#fff" stroke-width="{CORE * m.width:.1f}"/>' if m.hollow else ""))
     return "\n".join(out + frame(front) + ["</svg>"])
 
 
@@ -300,11 +311,15 @@ def draw_pixels(found, camera, width):
         if m.a == m.b:
             disc(m.a, m.width / 2 + 0.7, WHITE)
             disc(m.a, m.width / 2, m.colour)
+            if m.hollow:
+                disc(m.a, CORE * m.width / 2, WHITE)
         else:
             stroke(m.a, m.b, WHITE, m.width + 2.0)
             stroke(m.a, m.b, m.colour, m.width)
             disc(m.a, m.width / 2, m.colour)
             disc(m.b, m.width / 2, m.colour)
+            if m.hollow:
+                stroke(m.a, m.b, WHITE, CORE * m.width)
     for a, b in front:
         stroke(a, b, BOX, 1.0)
     return image.resize((width, round(width * HEIGHT / WIDTH)), Image.LANCZOS)

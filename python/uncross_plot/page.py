@@ -19,6 +19,7 @@ class Figure:
     caption: str = ""
     name: str = ""  # of the table
     keys: list = dataclasses.field(default_factory=list)  # (colour, text)
+    hollow: tuple = ()  # numbers of keys
     width: int = 0  # pixels, at most; 0: that of the page
 
 
@@ -90,7 +91,8 @@ def picture_of(frames, movie=False):
     last = f"step {frames.steps[-1]}, time {frames.times[-1]:g} t0"
     blocks = [Figure("Fibers at the end", fibers.picture(frames), f"Perspective picture of {shown}, at {last}.",
                      f"{shown[0].upper()}{shown[1:]}, at {last}. A bond that crosses a face of the box comes in again at "
-                     "the opposite one.", keys=keys)]
+                     "the opposite one.", keys=keys,
+                     hollow=tuple(k for k in range(len(structure.kinds)) if fibers.is_hollow(k)))]
     if movie:
         src, numbers = fibers.movie(frames)
         span = f"{frames.times[0]:g} to {frames.times[-1]:g} t0"

@@ -107,10 +107,11 @@ def read_folder(path):
     run = Run(path)
     if "run.json" in names:
         _read_record(run, os.path.join(path, "run.json"))
+    growing = (run.record or {}).get("status") == "running"
     for name in names:
         if name.endswith(".csv"):
             try:
-                run.tables.append(tables.read(os.path.join(path, name), name[:-len(".csv")]))
+                run.tables.append(tables.read(os.path.join(path, name), name[:-len(".csv")], growing))
             except (OSError, ValueError) as error:
                 run.trouble.append(str(error))
     for name in ("trajectory.h5", "checkpoint.h5"):

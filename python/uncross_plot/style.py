@@ -97,6 +97,10 @@ def svg(figure):
     for axes in figure.axes:
         readable(axes.xaxis)
         readable(axes.yaxis)
+    engine = figure.get_layout_engine()
+    if engine is not None:  # once; savefig would do it twice
+        engine.execute(figure)
+        figure.set_layout_engine("none")
     out = io.StringIO()
     figure.savefig(out, format="svg", metadata={"Date": None, "Creator": None})
     pyplot.close(figure)

@@ -44,11 +44,12 @@ class Table:
         return any(self.is_error(c) for c in self.data)
 
 
-def read(path, name):
-    """A table; ValueError, with file, line and column, if it is none."""
+def read(path, name, growing=False):
+    """A table; ValueError, with file, line and column, if it is none. Of one that is growing the last line may be a part."""
     with open(path, encoding="utf-8", newline="") as file:
         try:
-            lines = list(csv.reader(file))
+            text = file.read()
+            lines = list(csv.reader((text[:text.rfind("\n") + 1] if growing else text).splitlines()))
         except (csv.Error, UnicodeDecodeError) as error:
             raise ValueError(f"{path}: not a table: {error}") from error
     if not lines or not lines[0] or len(set(lines[0])) != len(lines[0]) or not all(lines[0]):
@@ -290,7 +291,7 @@ def _draw_pair(axes, below, a, b, panel, name, names):
         below.set_ylabel("difference")
     label = columns.column(name)
     axes.set(title=f"{label.name}\n{label.symbol}" if label.symbol else label.name,
-             ylabel=("change" if panel.change else label.symbol or label.name) + (f" / {label.unit}" if label.unit else ""))
+             ylabel=("change" if panel.change else label.symbol or "value") + (f" / {label.unit}" if label.unit else ""))
     below.set_xlabel(columns.LAG_LABEL if panel.log_x else columns.column(a.x).label)
     if names:
         style.legend(axes, fontsize=7)

@@ -161,6 +161,15 @@ class Installed(unittest.TestCase):
         self.assertEqual(complete("uncross", "oracle", "judge", "--f"), ["--false-alarm"])
         self.assertEqual(complete("uncross", "run", "run/run."), ["run/run.json"])
 
+    def test_a_page(self):
+        """The other program and its modules are found below the prefix, and nothing of the source tree is."""
+        table = self.folder / "moved.csv"
+        table.write_text("time,g,g_error\n1,2,0.1\n2,3,0.1\n")
+        told = call(self.prefix / "bin/uncross", "plot", table, folder=self.folder)
+        self.assertEqual(told, f"{self.folder}/moved.html\n")
+        self.assertTrue((self.prefix / "libexec/uncross/uncross-plot").is_file())
+        self.assertTrue((self.prefix / "lib/python3/dist-packages/uncross_plot/page.html.jinja").is_file())
+
     def test_uninstall_leaves_nothing(self):
         destination = self.folder / "stage"
         destination.mkdir()

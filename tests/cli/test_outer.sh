@@ -23,6 +23,7 @@ gives() { # gives CODE TEXT PROGRAM ARGUMENTS ...: the exit code, and a line of 
 
 mkdir -p "$dir/tree/build/other" "$dir/tree/tools" "$dir/prefix/bin" "$dir/prefix/libexec/uncross" "$dir/alone/bin"
 for place in tree/build tree/build/other prefix/bin alone/bin; do cp "$uncross" "$dir/$place/uncross"; done
+# shellcheck disable=SC2016 # the script expands it
 script='#!/bin/sh
 echo "$UNCROSS" "$@" /
 exit 7'
