@@ -157,7 +157,7 @@ $(foreach h,$(CORE_HEADERS),644 $(h) include/uncross-core/$(h:src/%=%)
 644 $(BUILD)/install/uncross.1 share/man/man1/uncross.1
 644 $(BUILD)/install/completion share/bash-completion/completions/uncross
 644 include/uncross.h lib/python3/dist-packages/uncross/uncross.h
-$(foreach f,$(wildcard python/uncross/*.py python/uncross_plot/*.py python/uncross_plot/*.jinja python/uncross_sweep/*.py python/uncross_sweep/*.sh),644 $(f) lib/python3/dist-packages/$(f:python/%=%)
+$(foreach f,$(wildcard python/uncross/*.py python/uncross_plot/*.py python/uncross_plot/*.jinja python/uncross_sweep/*.*),644 $(f) lib/python3/dist-packages/$(f:python/%=%)
 )
 $(foreach f,$(DOCUMENTS) $(REFERENCE),644 $(f) share/uncross/$(f)
 )
@@ -324,7 +324,7 @@ bench-programs: $(BUILD)/uncross $(BENCH_PROGRAMS)
 # What needs packages asks for them first, then builds in a second make: pkg-config may only now be there.
 .PHONY: check
 check:
-	tools/install-dependencies run test plot validate
+	tools/install-dependencies run test plot validate readers
 	$(MAKE) -j2 tests
 	tests/run $(BUILD)
 

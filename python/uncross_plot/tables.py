@@ -228,14 +228,19 @@ def difference(a, b, name):
     return a.places[i], b.data[name][j] - a.data[name][i], error
 
 
+def in_errors(gap, error):
+    """Differences over their errors; nan where there is none."""
+    with numpy.errstate(divide="ignore", invalid="ignore"):
+        return gap / error
+
+
 def summary(a, b, name):
     """(of a, its error, of b, its error, z, x or None, rows or None) of a column: means over the rows of a time series,
     with errors from blocks; the last values of what runs on, without errors; of a table with errors, the row where z is
     largest in size."""
     if a.has_errors:
         x, gap, error = difference(a, b, name)
-        with numpy.errstate(divide="ignore", invalid="ignore"):
-            z = gap / error
+        z = in_errors(gap, error)
         if not numpy.isfinite(z).any():
             return None
         row = int(numpy.nanargmax(numpy.where(numpy.isfinite(z), numpy.abs(z), -1.0)))
@@ -280,11 +285,12 @@ def _draw_pair(axes, below, a, b, panel, name, names):
     _scales(axes, panel, a.data[a.x], [t.data[name] for t in (a, b)])
     x, gap, error = difference(a, b, name)
     known = numpy.isfinite(error) & (error > 0)
+    z = in_errors(gap, error)
     below.axhline(0.0, color=style.INK, linewidth=0.8)
     if known.any():
-        for z in (-2.0, 2.0):
-            below.axhline(z, color=style.PALE, linewidth=0.8, linestyle=(0, (4, 3)))
-        style.points(below, x[known], gap[known] / error[known], None, 3)
+        for two in (-2.0, 2.0):
+            below.axhline(two, color=style.PALE, linewidth=0.8, linestyle=(0, (4, 3)))
+        style.points(below, x[known], z[known], None, 3)
         below.set_ylabel("difference\n/ its error")
     else:
         style.line(below, x, gap, 3)

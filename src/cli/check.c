@@ -3,62 +3,55 @@
 
 #include "base/text.h"
 #include "cli/command.h"
+#include "cli/sheet.h"
 #include "mpc/rule.h"
 #include "scene/scene.h"
 #include "system/fiber_kind.h"
 #include "theory/theory.h"
 #include "work.h"
 
-/* --- lines ------------------------------------------------------------------------------------------------------- */
-
-static void heading(const char *text)
-{
-  printf("\n%s\n", text);
-}
-
-/* name, symbol, value, unit, and where the number comes from. */
-static void row(const char *name, const char *symbol, double value, const char *unit, const char *source)
-{
-  printf("  %-38s %-9s %12.6g", name, symbol, value);
-  if (*source)
-    printf(" %-9s %s\n", unit, source);
-  else
-    printf("%s%s\n", *unit ? " " : "", unit);
-}
-
 /* --- Table I ----------------------------------------------------------------------------------------------------- */
 
-static void report_kind_parameters(const struct fiber_kind *k)
+static void report_kind_parameters(const struct si_scale *si, const struct fiber_kind *k)
 {
   printf("  fibers '%s'%s\n", text_shown(k->name), k->ring ? ", rings" : "");
-  row("  number of fibers", "N_c", k->count, "", "");
-  row("  vertices of each", "N_v", k->vertices, "", "");
-  row("  mass of a vertex", "M", k->mass, "m", "");
+  sheet_row(si, "  number of fibers", "N_c", k->count, "", "");
+  sheet_row(si, "  vertices of each", "N_v", k->vertices, "", "");
+  sheet_row(si, "  mass of a vertex", "M", k->mass, "m", "");
+  if (vec3_norm(k->force) > 0.0)
+    sheet_row(si, "  force on a vertex", "", vec3_norm(k->force), "kT/a0", "");
   if (k->vertices < 2)
     return;
-  row("  rest length of a bond", "l0", k->bond_length, "a0", "");
-  row("  spring constant", "K/l0", k->spring, "kT/a0^2", "Eq. (1)");
-  row("  elastic modulus", "K", k->spring * k->bond_length, "kT/a0", "");
-  row("  bending constant", "l_p/l0", k->bending, "kT", "Eq. (2)");
-  row("  length", "L", theory_length(k), "a0", k->bond_length > 0.0 ? "N_v l0" : "contour");
-  row("  persistence length", "l_p", theory_persistence(k), "a0", "");
+  sheet_row(si, "  rest length of a bond", "l0", k->bond_length, "a0", "");
+  sheet_row(si, "  spring constant", "K/l0", k->spring, "kT/a0^2", "Eq. (1)");
+  sheet_row(si, "  elastic modulus", "K", k->spring * k->bond_length, "kT/a0", "");
+  sheet_row(si, "  bending constant", "l_p/l0", k->bending, "kT", "Eq. (2)");
+  sheet_row(si, "  length", "L", theory_length(k), "a0", k->bond_length > 0.0 ? "N_v l0" : "contour");
+  sheet_row(si, "  persistence length", "l_p", theory_persistence(k), "a0", "");
 }
 
-static void report_table_1(const struct model *m)
+static void report_table_1(const struct si_scale *si, const struct model *m)
 {
-  heading("Parameters (paper, Table I)");
+  sheet_heading("Parameters (paper, Table I)");
   if (model_collides(m)) {
-    row("particles per cell", "gamma", m->solvent.per_cell, "1/a0^3", "");
+    sheet_row(si, "particles per cell", "gamma", m->solvent.per_cell, "1/a0^3", "");
     if (model_has_solvent(m))
-      row("particles", "N_s", m->solvent.particles, "", "");
-    row("collision interval", "dt_c", model_collision_interval(m), "t0", "");
+      sheet_row(si, "particles", "N_s", m->solvent.particles, "", "");
+    sheet_row(si, "collision interval", "dt_c", model_collision_interval(m), "t0", "");
     if (m->solvent.rule == RULE_SRD)
-      row("rotation angle", "alpha", m->solvent.rotation_angle, "degrees", "");
+      sheet_row(si, "rotation angle", "alpha", m->solvent.rotation_angle, "degrees", "");
   }
   printf("  %-38s %-9s %d x %d x %d a0\n", "box", "L_b", m->box.cells[0], m->box.cells[1], m->box.cells[2]);
-  row("time step", "dt", m->time_step, "t0", "");
+  for (int k = 0; si && k < 3; k++)
+    sheet_row(si, (const char *const[]){"  edge along x", "  edge along y", "  edge along z"}[k], "", m->box.cells[k],
+              "a0", "");
+  sheet_row(si, "time step", "dt", m->time_step, "t0", "");
+  if (vec3_norm(m->flow) > 0.0)
+    sheet_row(si, "flow", "v", vec3_norm(m->flow), "a0/t0", "");
+  if (vec3_norm(m->solvent.acceleration) > 0.0)
+    sheet_row(si, "acceleration of the solvent", "", vec3_norm(m->solvent.acceleration), "a0/t0^2", "");
   for (uint32_t k = 0; k < m->kinds; k++)
-    report_kind_parameters(&m->kind[k]);
+    report_kind_parameters(si, &m->kind[k]);
 }
 
 /* --- what follows from them -------------------------------------------------------------------------------------- */
@@ -68,148 +61,146 @@ static bool is_isothermal(const struct model *m)
   return model_is_isothermal(m);
 }
 
-static double viscosity(const struct model *m)
-{
-  return theory_viscosity(collision_rule_of(m), m->solvent.per_cell, m->solvent.cosine, model_collision_interval(m));
-}
-
-static void report_solvent(const struct model *m)
+static void report_solvent(const struct si_scale *si, const struct model *m)
 {
   const double gamma = m->solvent.per_cell, cosine = m->solvent.cosine, interval = model_collision_interval(m);
   const bool srd = m->solvent.rule == RULE_SRD;
-  heading("Solvent (molecular chaos: some per cent off at a short mean free path)");
-  row("kinetic viscosity", "eta_kin", theory_viscosity_kinetic(collision_rule_of(m), gamma, cosine, interval),
-      "m/a0 t0", srd ? "Eq. (30)" : "");
-  row("collisional viscosity", "eta_col", theory_viscosity_collisional(collision_rule_of(m), gamma, cosine, interval),
-      "m/a0 t0", srd ? "Eq. (31)" : "");
-  row("viscosity", "eta", viscosity(m), "m/a0 t0", "");
-  row("kinematic viscosity", "nu", viscosity(m) / gamma, "a0^2/t0", "");
-  row("self-diffusion coefficient", "D_s", theory_solvent_diffusion(collision_rule_of(m), gamma, cosine, interval),
-      "a0^2/t0", "");
-  row("Schmidt number", "Sc", theory_schmidt(collision_rule_of(m), gamma, cosine, interval), "", "nu/D_s");
-  row("speed of sound", "c_s", theory_sound_speed(is_isothermal(m)), "a0/t0", is_isothermal(m) ? "isothermal" : "");
-  row("mean free path", "", theory_mean_free_path(interval), "a0", "");
+  sheet_heading("Solvent (molecular chaos: some per cent off at a short mean free path)");
+  sheet_row(si, "kinetic viscosity", "eta_kin", theory_viscosity_kinetic(collision_rule_of(m), gamma, cosine, interval),
+            "m/a0 t0", srd ? "Eq. (30)" : "");
+  sheet_row(si, "collisional viscosity", "eta_col",
+            theory_viscosity_collisional(collision_rule_of(m), gamma, cosine, interval), "m/a0 t0",
+            srd ? "Eq. (31)" : "");
+  sheet_row(si, "viscosity", "eta", units_viscosity(m), "m/a0 t0", "");
+  sheet_row(si, "kinematic viscosity", "nu", units_viscosity(m) / gamma, "a0^2/t0", "");
+  sheet_row(si, "self-diffusion coefficient", "D_s",
+            theory_solvent_diffusion(collision_rule_of(m), gamma, cosine, interval), "a0^2/t0", "");
+  sheet_row(si, "Schmidt number", "Sc", theory_schmidt(collision_rule_of(m), gamma, cosine, interval), "", "nu/D_s");
+  sheet_row(si, "speed of sound", "c_s", theory_sound_speed(is_isothermal(m)), "a0/t0",
+            is_isothermal(m) ? "isothermal" : "");
+  sheet_row(si, "mean free path", "", theory_mean_free_path(interval), "a0", "");
 }
 
-static void report_vertex(const struct model *m, const struct fiber_kind *k)
+static void report_vertex(const struct si_scale *si, const struct model *m, const struct fiber_kind *k)
 {
   const double gamma = m->solvent.per_cell, cosine = m->solvent.cosine;
   const double d0 = theory_vertex_diffusion(collision_rule_of(m), k->mass, gamma, cosine, model_collision_interval(m));
-  row("  velocity kept per collision", "c", theory_vertex_retention(collision_rule_of(m), k->mass, gamma, cosine), "",
-      "");
-  row("  vertex diffusion, without HI", "D_0", d0, "a0^2/t0", "");
-  row("  vertex friction, without HI", "kT/D_0", 1.0 / d0, "m/t0", "");
+  sheet_row(si, "  velocity kept per collision", "c",
+            theory_vertex_retention(collision_rule_of(m), k->mass, gamma, cosine), "", "");
+  sheet_row(si, "  vertex diffusion, without HI", "D_0", d0, "a0^2/t0", "");
+  sheet_row(si, "  vertex friction, without HI", "kT/D_0", 1.0 / d0, "m/t0", "");
   if (model_has_solvent(m))
-    row("  hydrodynamic radius, from D_0 alone", "a_h", theory_hydrodynamic_radius(viscosity(m), d0), "a0",
-        "with HI: 0.25 to 0.3");
+    sheet_row(si, "  hydrodynamic radius, from D_0 alone", "a_h", theory_hydrodynamic_radius(units_viscosity(m), d0),
+              "a0", "with HI: 0.25 to 0.3");
   if (k->bending == 0.0 && k->bond_length == 0.0 && !k->ring && k->vertices > 1)
-    row("  slowest Rouse mode, without HI", "tau_1", theory_rouse_time(k, 1.0 / d0), "t0", "");
+    sheet_row(si, "  slowest Rouse mode, without HI", "tau_1", theory_rouse_time(k, 1.0 / d0), "t0", "");
 }
 
-static void report_statics(const struct fiber_kind *k)
+static void report_statics(const struct si_scale *si, const struct fiber_kind *k)
 {
   const double mean = fiber_mean_bond(k);
-  row("  mean bond length", "<l>", mean, "a0", "");
-  row("  contour length", "", fiber_contour(k), "a0", "bonds <l>");
+  sheet_row(si, "  mean bond length", "<l>", mean, "a0", "");
+  sheet_row(si, "  contour length", "", fiber_contour(k), "a0", "bonds <l>");
   if (k->bending > 0.0) {
-    row("  mean cosine of a bend", "<cos>", theory_bend_cosine(k->bending), "", "");
-    row("  effective persistence length", "", theory_effective_persistence(k), "a0", "-<l>/ln<cos>");
+    sheet_row(si, "  mean cosine of a bend", "<cos>", theory_bend_cosine(k->bending), "", "");
+    sheet_row(si, "  effective persistence length", "", theory_effective_persistence(k), "a0", "-<l>/ln<cos>");
   }
   if (!k->ring)
-    row("  end-to-end distance, rms", "R_e", sqrt(theory_end_to_end_square(k)), "a0", "");
+    sheet_row(si, "  end-to-end distance, rms", "R_e", sqrt(theory_end_to_end_square(k)), "a0", "");
 }
 
-static void report_frequencies(const struct model *m, const struct fiber_kind *k)
+static void report_frequencies(const struct si_scale *si, const struct model *m, const struct fiber_kind *k)
 {
   const double omega = fiber_highest_frequency(k);
-  row("  highest frequency, stretching", "", fiber_stretch_frequency(k), "1/t0", "");
-  row("  highest frequency, bending", "", fiber_bend_frequency(k), "1/t0", "straight, at <l>");
-  row("  highest frequency", "omega", omega, "1/t0", "");
-  row("  ... in time steps", "omega dt", omega * m->time_step, "", "unstable from 2 on");
-  row("  energy error of the fastest mode", "", 0.25 * omega * omega * m->time_step * m->time_step, "",
-      "(omega dt)^2/4");
+  sheet_row(si, "  highest frequency, stretching", "", fiber_stretch_frequency(k), "1/t0", "");
+  sheet_row(si, "  highest frequency, bending", "", fiber_bend_frequency(k), "1/t0", "straight, at <l>");
+  sheet_row(si, "  highest frequency", "omega", omega, "1/t0", "");
+  sheet_row(si, "  ... in time steps", "omega dt", omega * m->time_step, "", "unstable from 2 on");
+  sheet_row(si, "  energy error of the fastest mode", "", 0.25 * omega * omega * m->time_step * m->time_step, "",
+            "(omega dt)^2/4");
 }
 
 /* Diffusion of single fibers, far from others and from images. */
-static void report_dilute(const struct model *m, const struct fiber_kind *k)
+static void report_dilute(const struct si_scale *si, const struct model *m, const struct fiber_kind *k)
 {
   const double length = theory_length(k), p = theory_aspect_ratio(length, THEORY_RADIUS);
   if (k->ring)
     return;
   if (k->bending == 0.0)
-    row("  dilute diffusion coefficient", "D", theory_chain_diffusion(viscosity(m), sqrt(theory_end_to_end_square(k))),
-        "a0^2/t0", "Eq. (39)");
+    sheet_row(si, "  dilute diffusion coefficient", "D",
+              theory_chain_diffusion(units_viscosity(m), sqrt(theory_end_to_end_square(k))), "a0^2/t0", "Eq. (39)");
   if (k->bending > 0.0 && p > 2.0) {
-    row("  dilute diffusion coefficient, stiff", "D", theory_rod_diffusion(viscosity(m), length, 0.6), "a0^2/t0",
-        "Eq. (40), b = 0.6");
-    row("  rotational relaxation, stiff", "tau_r", theory_rod_relaxation(viscosity(m), length, p), "t0", "Tirado 1980");
+    sheet_row(si, "  dilute diffusion coefficient, stiff", "D", theory_rod_diffusion(units_viscosity(m), length, 0.6),
+              "a0^2/t0", "Eq. (40), b = 0.6");
+    sheet_row(si, "  rotational relaxation, stiff", "tau_r", theory_rod_relaxation(units_viscosity(m), length, p), "t0",
+              "Tirado 1980");
   }
 }
 
 /* Numbers of Table II that are of one kind of fiber; mesh: mesh size of all kinds together. */
-static void report_table_2(const struct model *m, const struct fiber_kind *k, double mesh)
+static void report_table_2(const struct si_scale *si, const struct model *m, const struct fiber_kind *k, double mesh)
 {
   const double length = theory_length(k), lp = theory_persistence(k);
-  row("  relative persistence length", "l_p*", theory_relative_persistence(lp, length), "", "Eq. (32)");
-  row("  aspect ratio", "p", theory_aspect_ratio(length, THEORY_RADIUS), "", "Eq. (33), 2 a_h = 0.5 a0");
-  row("  density", "c L^3", k->count * length * length * length / box_volume(&m->box), "", "");
-  row("  mesh size", "xi", mesh, "a0", "Eq. (34), all kinds");
-  row("  relative mesh size", "xi*", mesh / length, "", "xi/L");
+  sheet_row(si, "  relative persistence length", "l_p*", theory_relative_persistence(lp, length), "", "Eq. (32)");
+  sheet_row(si, "  aspect ratio", "p", theory_aspect_ratio(length, THEORY_RADIUS), "", "Eq. (33), 2 a_h = 0.5 a0");
+  sheet_row(si, "  density", "c L^3", k->count * length * length * length / box_volume(&m->box), "", "");
+  sheet_row(si, "  mesh size", "xi", mesh, "a0", "Eq. (34), all kinds");
+  sheet_row(si, "  relative mesh size", "xi*", mesh / length, "", "xi/L");
   if (lp <= 0.0 || k->ring || mesh > length)
     return; /* no tube */
   const double tube = theory_tube_diameter(length, lp, mesh);
-  row("  tube diameter", "L_perp", tube, "a0", "Eq. (35)");
-  row("  tube plateau of d^2(t)", "2L_perp^2", 2.0 * tube * tube, "a0^2", "");
-  row("  deflection length", "L_d", theory_deflection_length(length, lp, mesh), "a0", "");
+  sheet_row(si, "  tube diameter", "L_perp", tube, "a0", "Eq. (35)");
+  sheet_row(si, "  tube plateau of d^2(t)", "2L_perp^2", 2.0 * tube * tube, "a0^2", "");
+  sheet_row(si, "  deflection length", "L_d", theory_deflection_length(length, lp, mesh), "a0", "");
 }
 
-static void report_flow(const struct model *m, const struct fiber_kind *k)
+static void report_flow(const struct si_scale *si, const struct model *m, const struct fiber_kind *k)
 {
   const double speed = vec3_norm(m->flow), length = theory_length(k), size = fmax(theory_persistence(k), 0.0);
   if (!(speed > 0.0) || !model_has_solvent(m) || size == 0.0)
     return;
-  row("  Reynolds number of the flow", "Re", theory_reynolds(speed, size, viscosity(m) / m->solvent.per_cell), "",
-      "Eq. (37), R = l_p");
-  row("  Peclet number of the flow", "Pe", theory_peclet(speed, size, theory_rod_diffusion(viscosity(m), length, 0.6)),
-      "", "Eq. (38), R = l_p");
+  sheet_row(si, "  Reynolds number of the flow", "Re",
+            theory_reynolds(speed, size, units_viscosity(m) / m->solvent.per_cell), "", "Eq. (37), R = l_p");
+  sheet_row(si, "  Peclet number of the flow", "Pe",
+            theory_peclet(speed, size, theory_rod_diffusion(units_viscosity(m), length, 0.6)), "", "Eq. (38), R = l_p");
 }
 
-static void report_kind(const struct model *m, const struct fiber_kind *k, double mesh)
+static void report_kind(const struct si_scale *si, const struct model *m, const struct fiber_kind *k, double mesh)
 {
   printf("\nFibers '%s'\n", text_shown(k->name));
   if (model_collides(m))
-    report_vertex(m, k);
+    report_vertex(si, m, k);
   if (k->vertices < 2)
     return;
-  report_statics(k);
-  report_frequencies(m, k);
+  report_statics(si, k);
+  report_frequencies(si, m, k);
   if (model_has_solvent(m))
-    report_dilute(m, k);
-  report_table_2(m, k, mesh);
-  report_flow(m, k);
+    report_dilute(si, m, k);
+  report_table_2(si, m, k, mesh);
+  report_flow(si, m, k);
 }
 
-static void report_suspension(const struct model *m)
+static void report_suspension(const struct si_scale *si, const struct model *m)
 {
-  heading("Suspension");
+  sheet_heading("Suspension");
   const double cells = box_volume(&m->box);
   if (model_has_solvent(m) && vec3_norm(m->flow) > 0.0)
-    row("Mach number of the flow", "Ma", theory_mach(vec3_norm(m->flow), theory_sound_speed(is_isothermal(m))), "",
-        "Eq. (36)");
-  row("vertices", "", m->vertices, "", "");
-  row("bonds", "", m->bonds, "", "");
-  row("vertices per cell", "", m->vertices / cells, "1/a0^3", "");
-  row("mass of vertices per cell", "", (m->total_mass - m->solvent.particles) / cells, "m/a0^3", "");
-  row("fiber length per volume", "c L", theory_line_density(m), "1/a0^2", "");
+    sheet_row(si, "Mach number of the flow", "Ma",
+              theory_mach(vec3_norm(m->flow), theory_sound_speed(is_isothermal(m))), "", "Eq. (36)");
+  sheet_row(si, "vertices", "", m->vertices, "", "");
+  sheet_row(si, "bonds", "", m->bonds, "", "");
+  sheet_row(si, "vertices per cell", "", m->vertices / cells, "1/a0^3", "");
+  sheet_row(si, "mass of vertices per cell", "", (m->total_mass - m->solvent.particles) / cells, "m/a0^3", "");
+  sheet_row(si, "fiber length per volume", "c L", theory_line_density(m), "1/a0^2", "");
   if (!m->crossing.forbidden)
     return;
   double self = 0.0;
   for (uint32_t k = 0; k < m->kinds; k++)
     self += theory_self_collision_rate(&m->kind[k]);
-  row("collisions of bonds", "", theory_collision_rate(m), "1/t0", "ideal gas of bonds");
-  row("... of flexible fibers with themselves", "", self, "1/t0", "Gaussian chains");
-  row("... that the rule answers", "", theory_executed_rate(m), "1/t0",
-      m->crossing.rule == CROSSING_SEQUENTIAL ? "sequential: 1.15 of them" : "");
+  sheet_row(si, "collisions of bonds", "", theory_collision_rate(m), "1/t0", "ideal gas of bonds");
+  sheet_row(si, "... of flexible fibers with themselves", "", self, "1/t0", "Gaussian chains");
+  sheet_row(si, "... that the rule answers", "", theory_executed_rate(m), "1/t0",
+            m->crossing.rule == CROSSING_SEQUENTIAL ? "sequential: 1.15 of them" : "");
 }
 
 /* --- parts, cost ------------------------------------------------------------------------------------------------- */
@@ -268,7 +259,7 @@ static void report_parts(const struct scene *scene)
       {"start from a file", "files/snapshot.c", scene->snapshot != NULL},
       {"trajectory", "files/trajectory.c", scene->trajectory_every > 0},
   };
-  heading("Parts of the program");
+  sheet_heading("Parts of the program");
   for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
     printf("  %-7s %-38s %s\n", parts[i].used ? "used" : "skipped", parts[i].name, parts[i].file);
   for (int i = 0; i < OBSERVABLES; i++)
@@ -290,10 +281,10 @@ static void report_cost(const struct scene *scene)
   const double collisions = model_collides(m) ? 1.0 / m->solvent.interval_steps : 0.0;
   const double phantoms = model_has_phantoms(m) ? phantom_rate * collisions : 0.0;
   const double step = 1e-9 * (solvent_rate * m->solvent.particles * collisions + (vertex + phantoms) * m->vertices);
-  heading("Cost (an estimate, without observables and files)");
-  row("memory", "", (double)work_bytes(m) / 1048576.0, "MiB", "");
-  row("steps per second", "", 1.0 / step, "1/s", "");
-  row("time", "", step * (double)scene->steps, "s", "");
+  sheet_heading("Cost (an estimate, without observables and files)");
+  sheet_row(NULL, "memory", "", (double)work_bytes(m) / 1048576.0, "MiB", "");
+  sheet_row(NULL, "steps per second", "", 1.0 / step, "1/s", "");
+  sheet_row(NULL, "time", "", step * (double)scene->steps, "s", "");
   printf("  from %.0f ns per solvent particle and collision, %.0f ns per vertex and step\n", solvent_rate, vertex);
 }
 
@@ -303,24 +294,26 @@ static void tell_warning(void *context, const char *text)
   printf("  warning: %s\n", text_shown(text));
 }
 
-void scene_report(const struct scene *scene)
+void scene_report(const struct scene *scene, const struct units *units, const struct si_scale *si)
 {
   const struct model *m = &scene->model;
   printf("# The effective scene of %s, every default filled in (fingerprint %016" PRIx64 ")\n\n",
          text_shown(scene->path), scene->fingerprint);
   scene_write(scene, stdout, false);
-  report_table_1(m);
+  report_table_1(si, m);
   if (model_has_solvent(m))
-    report_solvent(m);
+    report_solvent(si, m);
   const double mesh = theory_mesh_size(theory_line_density(m));
   for (uint32_t k = 0; k < m->kinds; k++)
-    report_kind(m, &m->kind[k], mesh);
+    report_kind(si, m, &m->kind[k], mesh);
   if (m->vertices > 0)
-    report_suspension(m);
-  row("simulated time", "", m->time_step * (double)scene->steps, "t0", "");
+    report_suspension(si, m);
+  sheet_row(si, "simulated time", "", m->time_step * (double)scene->steps, "t0", "");
+  if (si)
+    units_report(units, m, si);
   report_parts(scene);
   report_cost(scene);
-  heading("Warnings");
+  sheet_heading("Warnings");
   if (scene_warnings(scene, tell_warning, NULL) == 0)
     printf("  none: within the paper's limits\n");
 }

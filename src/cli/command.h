@@ -8,6 +8,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "cli/units.h"
 #include "files/snapshot.h"
 #include "oracle/oracle.h"
 
@@ -45,11 +46,13 @@ struct arguments {
   uint64_t jobs;
   bool text, no_traces;
   uint64_t seconds;
+  const char *units;
 };
 
 /* Rows of the table of commands, in the order in which help shows them. */
 enum command_code {
   COMMAND_CHECK,
+  COMMAND_MAP,
   COMMAND_RUN,
   COMMAND_INFO,
   COMMAND_VERIFY,
@@ -130,12 +133,14 @@ void help_man(FILE *out);
 void help_completion(FILE *out);
 
 /* Prints to stdout: the effective scene, every derived number of the paper's Tables I and II, what this scene uses and
- * skips, memory, estimated time, warnings. `uncross check`. */
-void scene_report(const struct scene *scene);
+ * skips, memory, estimated time, warnings. `uncross check`. si: the same numbers in SI units, made of `units` (both
+ * NULL without). */
+void scene_report(const struct scene *scene, const struct units *units, const struct si_scale *si);
 
 /* Becomes the program of a command; words[0] is replaced. Returns if that cannot be, and has said why. */
 enum exit_code outer_run(const struct command *command, char **words);
 
+enum exit_code command_map(const struct arguments *a);
 enum exit_code command_run(const struct arguments *a);
 enum exit_code command_analyze(const struct arguments *a);
 enum exit_code command_verify(const struct arguments *a);

@@ -28,14 +28,19 @@ static enum exit_code check(const struct arguments *a)
 {
   const struct scene_settings settings = {a->sets, a->set};
   struct scene scene;
+  struct units units;
+  struct si_scale si;
   struct message message;
-  if (!scene_read_numbers(a->file[0], &settings, &scene, &message)) {
+  bool ok = !a->units || units_read(a->units, &units, &message);
+  const bool read = ok && scene_read_numbers(a->file[0], &settings, &scene, &message);
+  ok = read && (!a->units || units_scale(&units, &scene.model, &si, &message));
+  if (ok)
+    scene_report(&scene, a->units ? &units : NULL, a->units ? &si : NULL);
+  else
     fprintf(stderr, "uncross: %s\n", message.text);
-    return EXIT_BAD_INPUT;
-  }
-  scene_report(&scene);
-  scene_free(&scene);
-  return EXIT_DONE;
+  if (read)
+    scene_free(&scene);
+  return ok ? EXIT_DONE : EXIT_BAD_INPUT;
 }
 
 static enum exit_code schema(const struct arguments *a)
@@ -82,6 +87,11 @@ static enum exit_code export_frames(const struct arguments *a)
 const struct command commands[COMMANDS] = {
     [COMMAND_CHECK] = {"check", "SCENE", 1, WRITES,
                        "what a scene says, all its derived numbers, memory, time, warnings", NULL, check},
+    [COMMAND_MAP] = {"map", "FIBER", 1, WRITES, "the scene of a fiber that is given in SI units (docs/units.md)",
+                     "FIBER is length=10um,persistence=17um, and if known diameter=7nm, mesh=1um (of the network that "
+                     "fills the\n"
+                     "box), vertices=64 (in how many pieces; or a0 in --units).\n",
+                     command_map},
     [COMMAND_RUN] =
         {"run", "SCENE", 1, MAY(EXIT_STOPPED) | WRITES | MAY(EXIT_INTERRUPTED), "runs a scene in a folder",
          "DIR gets checkpoint.h5, run.json, a table for each observable, and trajectory.h5 (docs/files.md).\n"
@@ -96,7 +106,8 @@ const struct command commands[COMMANDS] = {
                         "Prints a line for each file: whole, readable (what it carries no checksum of), or damaged.\n",
                         command_verify},
     [COMMAND_SCHEMA] = {"schema", "", 0, WRITES, "the JSON schema of scenes, for editors", NULL, schema},
-    [COMMAND_EXPORT] = {"export", "FILE", 1, WRITES, "extended XYZ of a trajectory or checkpoint", NULL, export_frames},
+    [COMMAND_EXPORT] = {"export", "FILE", 1, WRITES,
+                        "a trajectory or checkpoint as text: extended XYZ, LAMMPS data, VTF", NULL, export_frames},
     [COMMAND_ANALYZE] = {"analyze", "TRAJECTORY", 1, WRITES,
                          "the observables of a trajectory's scene from its frames, as new tables", NULL,
                          command_analyze},

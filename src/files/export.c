@@ -1,4 +1,5 @@
-/* Extended XYZ of a trajectory or checkpoint, from what the file says about itself: no scene is read. */
+/* Frames of a trajectory or checkpoint as text, from what the file says about itself; its scene, where it holds one,
+ * tells which kinds bend. */
 #include <errno.h>
 #include <inttypes.h>
 #include <math.h>
@@ -6,26 +7,26 @@
 #include <string.h>
 
 #include "base/text.h"
-#include "files/frames.h"
+#include "files/export_format.h"
 #include "files/snapshot.h"
+#include "scene/scene.h"
 
-/* Programs that read XYZ want chemical symbols; these stand for the kinds of fiber, one after the other. */
-static const char *const symbols[] = {"C", "N", "O", "F", "P", "S", "B", "Si", "Cl", "Se"};
-#define SOLVENT_SYMBOL "H"
+static const struct export_format *const export_formats[] = {&export_xyz, &export_lammps, &export_vtf};
+enum { FORMATS = sizeof export_formats / sizeof export_formats[0] };
 
-static const char *symbol_of(int32_t species)
+static const struct export_format *find_format(const char *name, struct message *message)
 {
-  size_t n = sizeof symbols / sizeof *symbols;
-  return symbols[(size_t)(species < 0 ? 0 : species) % n];
+  char allowed[128] = "";
+  for (size_t k = 0, used = 0; k < FORMATS; k++) {
+    if (!name || strcmp(name, export_formats[k]->name) == 0)
+      return export_formats[k];
+    used += (size_t)snprintf(allowed + used, sizeof allowed - used, "%s%s", k > 0 ? ", " : "", export_formats[k]->name);
+  }
+  message_set(message, "--format %s: no such format; there are %s", name, allowed);
+  return NULL;
 }
 
 /* --- fibers ------------------------------------------------------------------------------------------------------ */
-
-/* Where a row stands: in which fiber, counted from 0 in the order of their first vertices, and at which place along
- * it; both -1 for solvent. */
-struct place {
-  int32_t fiber, along;
-};
 
 /* All rows that bonds lead to from this one get their places, in the fiber of this number. In a file of another program
  * bonds may lead anywhere: a row keeps the first place that it gets. */
@@ -74,39 +75,12 @@ static struct place *places_of(const struct structure *s)
   return place;
 }
 
-/* --- printing ---------------------------------------------------------------------------------------------------- */
+/* --- what formats share ------------------------------------------------------------------------------------------- */
 
-static bool row_is_solvent(const struct frames *s, uint32_t row)
+bool export_is_solvent(const struct export_view *v, uint32_t row)
 {
-  const struct structure *is = &s->structure;
+  const struct structure *is = &v->frames->structure;
   return row >= is->particles || structure_is_solvent(is, is->species[row]);
-}
-
-/* Names between quotes in the comment line. */
-static void print_name(FILE *out, const char *name)
-{
-  for (; *name; name++)
-    fputc(strchr("\" \t\r\n=\\:", *name) ? '_' : *name, out);
-}
-
-static void print_comment(FILE *out, const struct frames *s, bool solvent)
-{
-  const struct picture *p = &s->picture;
-  const char *between = "";
-  fprintf(
-      out,
-      "Lattice=\"%.17g 0 0 0 %.17g 0 0 0 %.17g\" Properties=species:S:1:pos:R:3%s:id:I:1:next:I:1:fiber:I:1:place:I:1",
-      p->edge[0], p->edge[1], p->edge[2], p->velocity ? ":velo:R:3" : "");
-  fprintf(out, " pbc=\"T T T\" Step=%" PRIu64 " Time=%.17g kinds=\"", p->step, text_real(p->time));
-  for (int k = 0; k < s->structure.kinds; k++) {
-    bool is_solvent = structure_is_solvent(&s->structure, k);
-    if (is_solvent && !solvent)
-      continue;
-    fprintf(out, "%s%s:", between, is_solvent ? SOLVENT_SYMBOL : symbol_of(k));
-    print_name(out, text_shown(s->structure.name[k]));
-    between = " ";
-  }
-  fputs("\"\n", out);
 }
 
 /* x folded into [0, edge). */
@@ -116,36 +90,25 @@ static double fold(double x, double edge)
   return r < edge ? r : 0.0;
 }
 
-static void print_row(FILE *out, const struct frames *s, const struct place *place, uint32_t row, bool wrapped)
+double export_coordinate(const struct export_view *v, uint32_t row, int axis, double *image)
 {
-  const struct structure *is = &s->structure;
-  const double *x = &s->picture.position[3 * (size_t)row], *edge = s->picture.edge;
-  fputs(row_is_solvent(s, row) ? SOLVENT_SYMBOL : symbol_of(is->species[row]), out);
-  for (int k = 0; k < 3; k++)
-    fprintf(out, " %.17g", text_real(wrapped ? fold(x[k], edge[k]) : x[k]));
-  for (int k = 0; s->picture.velocity && k < 3; k++)
-    fprintf(out, " %.17g", text_real(s->picture.velocity[3 * (size_t)row + (size_t)k]));
-  const struct place none = {-1, -1}, at = row < is->particles ? place[row] : none;
-  fprintf(out, " %" PRIu32 " %" PRId32 " %" PRId32 " %" PRId32 "\n", row, row < is->particles ? is->next[row] : -1,
-          at.fiber, at.along);
+  const double x = v->frames->picture.position[3 * (size_t)row + (size_t)axis], edge = v->frames->picture.edge[axis];
+  const double folded = fold(x, edge);
+  *image = round((x - folded) / edge);
+  return v->wrapped ? folded : x;
 }
 
-static void print_frame(FILE *out, const struct frames *s, const struct place *place,
-                        const struct export_options *options)
+void export_name(FILE *out, const char *name)
 {
-  uint32_t shown = 0;
-  for (uint32_t row = 0; row < s->about.rows; row++)
-    shown += options->solvent || !row_is_solvent(s, row);
-  fprintf(out, "%" PRIu32 "\n", shown);
-  print_comment(out, s, options->solvent);
-  for (uint32_t row = 0; row < s->about.rows; row++)
-    if (options->solvent || !row_is_solvent(s, row))
-      print_row(out, s, place, row, options->wrapped);
+  for (name = text_shown(name); *name; name++)
+    fputc(strchr("\" \t\r\n=\\:", *name) ? '_' : *name, out);
 }
 
-/* True if it can go on: the frame is printed, or it may be left out. */
-static bool show_frame(struct frames *s, const struct place *place, uint64_t frame,
-                       const struct export_options *options, FILE *out, struct message *message)
+/* --- frames ------------------------------------------------------------------------------------------------------- */
+
+/* True if it can go on: the frame is in frames->picture, or it may be left out. */
+static bool fetch(struct frames *s, uint64_t frame, const struct export_options *options, bool *fine,
+                  struct message *message)
 {
   enum frame_verdict verdict = frames_read(s, frame, message);
   if (verdict == FRAME_FINE && !s->picture.has_box) {
@@ -153,17 +116,15 @@ static bool show_frame(struct frames *s, const struct place *place, uint64_t fra
                 frame);
     verdict = FRAME_DAMAGED;
   }
-  if (verdict == FRAME_FINE)
-    print_frame(out, s, place, options);
-  else if (verdict == FRAME_DAMAGED && options->notes)
+  *fine = verdict == FRAME_FINE;
+  if (verdict == FRAME_DAMAGED && options->notes)
     fprintf(options->notes, "uncross: left out: %s\n", message->text);
-  return verdict == FRAME_FINE || (verdict == FRAME_DAMAGED && options->notes);
+  return *fine || (verdict == FRAME_DAMAGED && options->notes);
 }
 
-static bool print_frames(struct frames *s, const struct place *place, const struct export_options *options, FILE *out,
-                         struct message *message)
+static bool choose(const struct frames *s, const struct export_options *options, uint64_t *last,
+                   struct message *message)
 {
-  const uint64_t stride = options->stride ? options->stride : 1;
   if (options->first > options->last)
     return message_set(message, "%s: no frames: the first asked for is %" PRIu64 ", the last %" PRIu64, s->path,
                        options->first, options->last);
@@ -171,28 +132,91 @@ static bool print_frames(struct frames *s, const struct place *place, const stru
     return message_set(message,
                        "%s: first frame %" PRIu64 " asked for; it has frames 0 to %" PRIu64 " (%" PRIu64 " in all)",
                        s->path, options->first, s->about.frames ? s->about.frames - 1 : 0, s->about.frames);
-  uint64_t last = options->last < s->about.frames ? options->last : s->about.frames - 1;
-  for (uint64_t frame = options->first; frame <= last; frame += stride) {
-    if (!show_frame(s, place, frame, options, out, message))
+  *last = options->last < s->about.frames ? options->last : s->about.frames - 1;
+  return true;
+}
+
+static bool print_frames(struct frames *s, const struct export_format *format, const struct export_view *v, FILE *out,
+                         struct message *message)
+{
+  const struct export_options *options = v->options;
+  const uint64_t stride = options->stride ? options->stride : 1;
+  uint64_t last = 0, printed = 0;
+  bool fine;
+  if (!choose(s, options, &last, message) || (format->allows && !format->allows(v, message)))
+    return false;
+  uint64_t frame = format->one_frame ? last - (last - options->first) % stride : options->first;
+  for (;; frame += stride) {
+    if (!fetch(s, frame, options, &fine, message))
       return false;
+    if (fine && printed++ == 0 && format->begin)
+      format->begin(out, v);
+    if (fine)
+      format->frame(out, v);
     if (ferror(out) || last - frame < stride)
       break;
   }
+  if (format->one_frame && printed == 0)
+    return message_set(message, "%s: frame %" PRIu64 " is damaged, and %s hold one frame; choose another with --last",
+                       s->path, frame, format->title);
   if (fflush(out) != 0 || ferror(out))
-    return message_set(message, "%s: extended XYZ could not be written: %s", s->path, strerror(errno));
+    return message_set(message, "%s: %s could not be written: %s", s->path, format->title, strerror(errno));
   return true;
+}
+
+/* --- view --------------------------------------------------------------------------------------------------------- */
+
+/* The scene that the file holds, without a message if it cannot be read. */
+static bool read_model(const struct frames *s, struct scene *scene)
+{
+  struct message ignored;
+  return s->scene && scene_read_text(s->path, s->scene, strlen(s->scene), scene, &ignored);
+}
+
+/* Numbers of the rows that are printed, to be freed; NULL if memory is short. */
+static int32_t *number_rows(struct export_view *v)
+{
+  const uint32_t rows = v->frames->about.rows;
+  int32_t *number = malloc((rows + (size_t)1) * sizeof *number);
+  for (uint32_t row = 0; number && row < rows; row++)
+    number[row] = v->options->solvent || !export_is_solvent(v, row) ? (int32_t)v->shown++ : -1;
+  return number;
+}
+
+static int32_t *bonds_back(const struct structure *s)
+{
+  int32_t *prev = malloc((s->particles + (size_t)1) * sizeof *prev);
+  for (uint32_t row = 0; prev && row < s->particles; row++)
+    prev[row] = -1;
+  for (uint32_t row = 0; prev && row < s->particles; row++)
+    if (s->next[row] >= 0)
+      prev[s->next[row]] = (int32_t)row;
+  return prev;
 }
 
 bool trajectory_export(const char *path, const struct export_options *options, FILE *out, struct message *message)
 {
   enum h5_trouble trouble;
-  struct frames *frames = frames_open(path, &trouble, message);
+  const struct export_format *format = find_format(options->format, message);
+  struct frames *frames = format ? frames_open(path, &trouble, message) : NULL;
   if (!frames)
     return false;
+  struct scene scene;
+  const bool has_scene = read_model(frames, &scene);
   struct place *place = places_of(&frames->structure);
-  const bool ok = place ? print_frames(frames, place, options, out, message)
-                        : message_set(message, "%s: no memory for the places of its particles", path);
+  int32_t *prev = bonds_back(&frames->structure);
+  struct export_view v = {.frames = frames, .options = options, .place = place, .prev = prev};
+  int32_t *number = number_rows(&v);
+  v.number = number;
+  v.model = has_scene ? &scene.model : NULL;
+  v.wrapped = options->wrapped || format->folds;
+  const bool ok = place && prev && number ? print_frames(frames, format, &v, out, message)
+                                          : message_set(message, "%s: no memory for the places of its particles", path);
+  free(number);
+  free(prev);
   free(place);
+  if (has_scene)
+    scene_free(&scene);
   frames_close(frames);
   return ok;
 }

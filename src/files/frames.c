@@ -40,7 +40,7 @@ static void end_text(char *text, size_t size)
 static bool get_structure(struct apart *apart, struct structure *s)
 {
   uint32_t particles;
-  int32_t kinds;
+  int32_t kinds, has_mass = 0;
   if (!apart_get(apart, &particles, sizeof particles) || !apart_get(apart, &kinds, sizeof kinds) ||
       !apart_get(apart, &s->bonds, sizeof s->bonds) || kinds < 0)
     return false;
@@ -51,7 +51,11 @@ static bool get_structure(struct apart *apart, struct structure *s)
   s->name = calloc((size_t)kinds + 1, sizeof *s->name);
   bool ok = s->species && s->next && s->name && apart_get(apart, s->species, particles * sizeof *s->species) &&
             apart_get(apart, s->next, particles * sizeof *s->next) &&
-            apart_get(apart, s->name, (size_t)kinds * sizeof *s->name);
+            apart_get(apart, s->name, (size_t)kinds * sizeof *s->name) && apart_get(apart, &has_mass, sizeof has_mass);
+  if (ok && has_mass) {
+    s->mass = calloc((size_t)particles + 1, sizeof *s->mass);
+    ok = s->mass && apart_get(apart, s->mass, particles * sizeof *s->mass);
+  }
   for (int k = 0; ok && k < kinds; k++)
     end_text(s->name[k], sizeof s->name[k]);
   return ok;

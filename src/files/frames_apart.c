@@ -161,12 +161,13 @@ static enum frame_verdict load(struct source *s, uint64_t frame, struct frame_mo
 
 static bool put_structure(struct apart *link, const struct structure *s)
 {
-  const int32_t kinds = s->kinds;
+  const int32_t kinds = s->kinds, has_mass = s->mass != NULL;
   return apart_put(link, &s->particles, sizeof s->particles) && apart_put(link, &kinds, sizeof kinds) &&
          apart_put(link, &s->bonds, sizeof s->bonds) &&
          apart_put(link, s->species, s->particles * sizeof *s->species) &&
          apart_put(link, s->next, s->particles * sizeof *s->next) &&
-         apart_put(link, s->name, (size_t)s->kinds * sizeof *s->name);
+         apart_put(link, s->name, (size_t)s->kinds * sizeof *s->name) && apart_put(link, &has_mass, sizeof has_mass) &&
+         (!has_mass || apart_put(link, s->mass, s->particles * sizeof *s->mass));
 }
 
 static void answer(struct apart *link, struct source *s, const struct frame_request *request)

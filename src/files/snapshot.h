@@ -105,19 +105,19 @@ bool trajectory_damaged(const struct trajectory *trajectory);
 
 /* --- other forms ------------------------------------------------------------------------------------------------- */
 
-/* Which parts of a file are exported to Extended XYZ. */
+/* Which parts of a file are exported, and how. */
 struct export_options {
-  bool solvent; /* the solvent too, if the file holds it */
-  bool wrapped; /* vertices folded into the box, else unwrapped as stored */
-  FILE *notes;  /* names damaged frames, which are left out; NULL: such a frame is a failure */
+  const char *format; /* a name of export_formats (files/export.c); NULL: the first */
+  bool solvent;       /* the solvent too, if the file holds it */
+  bool wrapped;       /* vertices folded into the box, else unwrapped as stored */
+  FILE *notes;        /* names damaged frames, which are left out; NULL: such a frame is a failure */
   uint64_t first, last,
       stride; /* frames first, first + stride, ... up to last (UINT64_MAX: to the end); stride 0 is 1 */
 };
 
-/* Extended XYZ of a trajectory or checkpoint to a stdio stream (OVITO, ASE): `uncross export`. Columns: a chemical
- * symbol that stands for the kind, position, velocity if stored, id, and the id of the vertex to which a bond goes on
- * (-1: none), the number of the fiber, the place along it. False, with a message, if the file cannot be read or the
- * stream not be written. */
+/* A trajectory or checkpoint as text to a stdio stream: `uncross export`. docs/files.md says what each format holds.
+ * False, with a message, if there is no such format, the file cannot be read or have this form, or the stream not be
+ * written. */
 bool trajectory_export(const char *path, const struct export_options *options, FILE *out, struct message *message);
 
 /* Describes a file in a few lines: `uncross info`. Knows scenes, checkpoints, trajectories, run.json, CSV tables, and

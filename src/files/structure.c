@@ -133,6 +133,25 @@ static bool read_species(hid_t particles, struct structure *s)
   return ok;
 }
 
+/* In files of other programs masses may be missing, or be of another form: they are not stored then. */
+static bool read_mass(hid_t particles, struct structure *s)
+{
+  const hsize_t n = s->particles;
+  hsize_t found = 0;
+  const int there = h5_look(particles, "mass");
+  hid_t object = h5_open_object(particles, "mass");
+  hid_t type = object >= 0 && H5Iget_type(object) == H5I_DATASET ? H5Dget_type(object) : -1;
+  const bool fits = type >= 0 && h5_shape(object, 1, &found) == 1 && found == n && H5Tget_class(type) == H5T_FLOAT;
+  bool ok = there == 0 || object >= 0;
+  if (ok && fits) {
+    s->mass = malloc(((size_t)n + 1) * sizeof *s->mass);
+    ok = s->mass && h5_array_read(particles, "mass", H5T_NATIVE_DOUBLE, 1, &n, s->mass);
+  }
+  h5_close(type);
+  h5_close(object);
+  return ok;
+}
+
 static bool read_bonds(hid_t connectivity, struct structure *s)
 {
   hsize_t dims[2] = {0, 2};
@@ -165,7 +184,7 @@ bool structure_read(hid_t particles, hid_t connectivity, uint32_t rows, struct s
 {
   memset(s, 0, sizeof *s);
   s->particles = rows;
-  bool ok = read_species(particles, s) && read_bonds(connectivity, s);
+  bool ok = read_species(particles, s) && read_mass(particles, s) && read_bonds(connectivity, s);
   if (!ok)
     structure_free(s);
   return ok;
@@ -182,6 +201,7 @@ bool structure_is_of(const struct structure *s, const struct model *model)
 void structure_free(struct structure *s)
 {
   free(s->species);
+  free(s->mass);
   free(s->name);
   free(s->next);
   memset(s, 0, sizeof *s);
@@ -190,4 +210,9 @@ void structure_free(struct structure *s)
 bool structure_is_solvent(const struct structure *s, int32_t species)
 {
   return species >= 0 && species < s->kinds && strcmp(s->name[species], STRUCTURE_SOLVENT) == 0;
+}
+
+double structure_mass(const struct structure *s, uint32_t row)
+{
+  return s->mass && row < s->particles ? s->mass[row] : 1.0;
 }

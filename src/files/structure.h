@@ -27,18 +27,22 @@ struct structure {
   int kinds;                          /* species, the solvent included if it has a name */
   char (*name)[MODEL_NAME_SIZE + 16]; /* [kinds] */
   int32_t *next;                      /* [particles] a bond goes on to this one; -1: none */
+  double *mass;                       /* [particles]; NULL: not stored */
   uint32_t bonds;
   bool stored_bonds; /* the file says which bonds there are, or that there are none */
 };
 
-/* Reads `species` of `particles` and `bonds` of `connectivity` (below 0: there are none), for this number of rows. A
- * file of another program without fixed species has one species without a name. False if they do not fit together or
- * memory is short; nothing needs freeing then. */
+/* Reads `species` and `mass` of `particles`, and `bonds` of `connectivity` (below 0: there are none), for this number
+ * of rows. A file of another program without fixed species has one species without a name. False if they do not fit
+ * together or memory is short; nothing needs freeing then. */
 bool structure_read(hid_t particles, hid_t connectivity, uint32_t rows, struct structure *structure);
 void structure_free(struct structure *structure);
 
 /* True if its bonds are this model's, between its first rows. */
 bool structure_is_of(const struct structure *structure, const struct model *model);
+
+/* Mass of a row, m: as stored, else 1. */
+double structure_mass(const struct structure *structure, uint32_t row);
 
 /* True if rows of this species are solvent. */
 bool structure_is_solvent(const struct structure *structure, int32_t species);

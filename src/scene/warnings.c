@@ -101,6 +101,25 @@ static double bonds_beyond(const struct scene *scene, const struct fiber_kind *k
   return theory_bond_tail(k, limit) * k->count * fiber_bonds(k) * samples;
 }
 
+/* The paper's boxes are as long as its fibers, and eight times as long as R_e of its chains (Sec. V). */
+static void warn_images(struct teller *t, const struct model *m, const struct fiber_kind *k)
+{
+  const double edge = box_shortest_edge(&m->box), reach = theory_reach(k);
+  if (reach <= edge * (1.0 + 1e-9) || !(m->crossing.forbidden || model_has_solvent(m)))
+    return;
+  if (reach > LATTICE_MAX_EDGE)
+    warn(
+        t,
+        "fibers '%s': a fiber can meet its own image: it reaches %.6g a0, and the shortest edge is %.6g a0; no box can "
+        "be so long, use shorter fibers",
+        k->name, reach, edge);
+  else
+    warn(t,
+         "fibers '%s': a fiber can meet its own image: it reaches %.6g a0 (its length, or 2 R_e if that is shorter), "
+         "and the shortest edge is %.6g a0; use edges of %.6g or more",
+         k->name, reach, edge, ceil(reach * (1.0 - 1e-9)));
+}
+
 #define MOST_LONG_BONDS 1e-3
 
 /* A bond that reaches half the shortest edge stops a run. */
@@ -132,9 +151,12 @@ static void warn_kind(struct teller *t, const struct scene *scene, const struct 
   if (k->vertices < 2)
     return;
   if (k->bond_length > 1.0)
-    warn(t,
-         "fibers '%s': bond_length %.6g > 1 a0: the solvent passes between vertices (paper, Sec. IV A); use 1 or less",
-         k->name, k->bond_length);
+    warn(
+        t,
+        "fibers '%s': bond_length %.6g > 1 a0: the solvent passes between vertices, so that a fiber is dragged like "
+        "separate beads and not like a thread; the paper's is 0.5, twice the hydrodynamic radius (Sec. IV A); use 1 or "
+        "less",
+        k->name, k->bond_length);
   if (phase > 0.5)
     warn(t,
          "fibers '%s': omega dt = %.3g: stable below 2, but its energies are off by %.0f %%; with time_step %.6g they "
@@ -146,6 +168,7 @@ static void warn_kind(struct teller *t, const struct scene *scene, const struct 
          "thermostat; kick-split does not",
          k->name);
   warn_long_bonds(t, scene, k);
+  warn_images(t, m, k);
 }
 
 #define MOST_RISE 0.01

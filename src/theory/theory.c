@@ -210,6 +210,12 @@ double theory_end_to_end_square(const struct fiber_kind *kind)
   return n * theory_bond_square(kind) + 2.0 * mean * mean * sum;
 }
 
+double theory_reach(const struct fiber_kind *kind)
+{
+  const double open = fmin(theory_length(kind), 2.0 * sqrt(theory_end_to_end_square(kind)));
+  return kind->ring ? 0.5 * open : open;
+}
+
 double theory_rouse_time(const struct fiber_kind *kind, double friction)
 {
   double sine = sin(0.5 * pi / kind->vertices);

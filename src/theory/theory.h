@@ -120,6 +120,10 @@ double theory_effective_persistence(const struct fiber_kind *kind);
 /* <R^2> between the ends of an open fiber in equilibrium, exact for the phantom chain, a0^2. */
 double theory_end_to_end_square(const struct fiber_kind *kind);
 
+/* A distance that two vertices of a fiber hardly exceed, a0: the length L, or twice R_e where that is shorter (a
+ * Gaussian chain has R > 2 R_e in one of 135 shapes); half of this in a ring. */
+double theory_reach(const struct fiber_kind *kind);
+
 /* Slowest Rouse mode of an open flexible chain without hydrodynamics, t0: zeta/(4 k sin^2(pi/2N_v)), zeta = kT/D_0. */
 double theory_rouse_time(const struct fiber_kind *kind, double friction);
 

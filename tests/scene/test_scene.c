@@ -755,7 +755,12 @@ static void warnings(void **unused)
       {14, "    mass: 11", "mass 11 is far from gamma = 5"},
       {14, "    mass: 2", "mass 2 is far from gamma = 5"},
       {14, "    mass: 10", NULL},
-      {15, "    bond_length: 1.2", "bond_length 1.2 > 1 a0"},
+      {15, "    bond_length: 1.2", "bond_length 1.2 > 1 a0: the solvent passes between vertices"},
+      {13, "    vertices: 32", NULL}, /* L = 32 l0 = 16 a0: as long as the box */
+      {13, "    vertices: 33", "a fiber can meet its own image: it reaches 16.5 a0"},
+      {13, "    vertices: 64\n    ring: true", NULL}, /* half of it goes there, half back */
+      {13, "    vertices: 66\n    ring: true", "a fiber can meet its own image: it reaches 16.5 a0"},
+      {13, "    vertices: 60000", "no box can be so long"},
       {16, "    spring: 1.5e4", "omega dt ="},
       {5, "order: paper", "the order 'paper' heats"},
       {17, "    force: [0, 0, 1]", "a net force of (0, 0, 16)"},
@@ -819,6 +824,8 @@ static void remedies(void **unused)
       {16, "    spring: 0.3\n    start: equilibrium", "half the shortest edge", "use edges of ", 1,
        "box: [%s, 99, 99]"},
       {21, "  dynamics: {every: 10, longest_lag: 50}", "longest_lag", "use steps: ", 3, "steps: %s"},
+      {13, "    vertices: 33", "its own image", "use edges of ", 1, "box: [%s, %s, %s]"},
+      {13, "    vertices: 300\n    ring: true", "its own image", "use edges of ", 1, "box: [%s, %s, %s]"},
   };
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     char all[8192] = "", number[128], line[256], text[4096];
@@ -828,7 +835,7 @@ static void remedies(void **unused)
     assert_non_null(strstr(all, rows[i].warns));
     const char *at = strstr(all, rows[i].number) + strlen(rows[i].number);
     snprintf(number, sizeof number, "%.*s", (int)(*at == '[' ? strcspn(at, "]") + 1 : strcspn(at, " \n")), at);
-    snprintf(line, sizeof line, rows[i].change, number);
+    snprintf(line, sizeof line, rows[i].change, number, number, number);
     size_t used = 0;
     for (size_t k = 0; k < GOOD_LINES; k++)
       used += (size_t)snprintf(text + used, sizeof text - used, "%s\n",

@@ -181,6 +181,20 @@ static void statics(void **unused)
   assert_true(theory_persistence(&k) == 0.0);
 }
 
+/* R_e = sqrt(39) of forty Gaussian springs in a row with <l^2> = 1; stiff fibers reach L. Rings reach half as far. */
+static void reach(void **unused)
+{
+  (void)unused;
+  struct fiber_kind k = chain(40);
+  close_to(theory_reach(&k), 2.0 * sqrt(39.0), 1e-12);
+  k.ring = true;
+  close_to(theory_reach(&k), sqrt(40.0), 1e-12);
+  k = fiber(64, 64.0);
+  close_to(theory_reach(&k), 32.0, 1e-12);
+  k.ring = true;
+  close_to(theory_reach(&k), 16.0, 1e-12);
+}
+
 /* Gaussian springs: P(l > h) = erfc(u) + 2 u exp(-u^2)/sqrt(pi), u = h sqrt(k/2). h = 4, k = 3: math.erfc(u)+...
  * = 1.667e-10. With a rest length, by a sum over a fine grid: python3 -c "from math import *; f=lambda
  * l:l*l*exp(-50*(l-.5)**2); s=[f(i*1e-5) for i in range(200000)]; print(sum(s[80000:])/sum(s))" = 3.47e-3. */
@@ -363,6 +377,7 @@ int main(void)
       cmocka_unit_test(flow),
       cmocka_unit_test(dilute),
       cmocka_unit_test(statics),
+      cmocka_unit_test(reach),
       cmocka_unit_test(long_bonds),
       cmocka_unit_test(frequencies),
       cmocka_unit_test(frequencies_of_the_forces),

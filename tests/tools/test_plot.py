@@ -426,6 +426,9 @@ class Folder(unittest.TestCase):
         self.assertEqual(error, f"uncross: {self.run_dir}/page.html: is there already, and nothing is written over; "
                          "--out FILE names another\n")
         self.assertEqual((self.run_dir / "page.html").read_bytes(), before)
+        with contextlib.redirect_stderr(io.StringIO()):  # one that appears while the page is made
+            self.assertEqual(program.write(str(self.run_dir / "page.html"), "other"), 4)
+        self.assertEqual((self.run_dir / "page.html").read_bytes(), before)
 
     def refused(self, text, *words, code=2):
         out = self.dir / "refused.html"

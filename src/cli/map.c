@@ -1,0 +1,175 @@
+/* `uncross map`: a scene whose fibers are those of an experiment, and what it leaves wrong. docs/units.md explains the
+ * choices, which are those of the paper's scenes. */
+#include <math.h>
+#include <stdio.h>
+
+#include "cli/command.h"
+#include "cli/quantity.h"
+#include "mpc/rule.h"
+#include "system/fiber_kind.h"
+#include "theory/theory.h"
+
+/* What was given, in SI units; 0: not given. */
+struct given {
+  double length, persistence, diameter, mesh, vertices;
+};
+
+#define AT(member) offsetof(struct given, member)
+
+static const struct quantity_row rows[] = {
+    {"length", QUANTITY_LENGTH, AT(length)},     {"persistence", QUANTITY_LENGTH, AT(persistence)},
+    {"diameter", QUANTITY_LENGTH, AT(diameter)}, {"mesh", QUANTITY_LENGTH, AT(mesh)},
+    {"vertices", QUANTITY_NUMBER, AT(vertices)},
+};
+
+/* The paper's: Sec. V A for chains without stiffness, Sec. V B for fibers. */
+#define PAPER_VERTICES 64
+#define PAPER_BOND 0.5     /* l0 of stiff fibers, a0: twice the radius of a vertex */
+#define PAPER_SPRING 100.0 /* of stiff fibers, kT/a0^2 */
+#define PAPER_CHAIN 3.0    /* of chains: <l^2> = 1 a0^2 */
+#define PAPER_DIAMETER 0.6 /* b of Eq. (40), a0 */
+#define PAPER_GAMMA 5.0
+#define PAPER_INTERVAL 0.02 /* t0 */
+#define PAPER_ANGLE 90.0
+#define MOST_VERTICES 1e6
+
+struct mapped {
+  struct fiber_kind kind;
+  double a0;
+  double edge;  /* a0 */
+  double count; /* fibers in the box */
+};
+
+/* The one of vertices and a0 that is not given, so that bonds of the mean length `mean`, a0, make up the fiber. */
+static void divide(double length, double mean, double *vertices, double *a0)
+{
+  if (*a0 > 0.0)
+    *vertices = 1.0 + round(length / (mean * *a0));
+  else
+    *a0 = length / (mean * (*vertices - 1.0));
+}
+
+/* Stiff fibers have the right contour and persistence length. Where a bond is longer than l_p, bonds are springs of no
+ * rest length: their chain has the right <R^2>, and no stiffness. */
+static bool lay_out(const struct given *f, const struct units *u, struct mapped *p, struct message *message)
+{
+  const double square = si_wormlike_square(f->length, f->persistence);
+  double n = f->vertices > 0.0 ? round(f->vertices) : PAPER_VERTICES;
+  p->kind = (struct fiber_kind){.mass = PAPER_GAMMA, .bond_length = PAPER_BOND, .spring = PAPER_SPRING};
+  p->a0 = u->a0;
+  divide(f->length, fiber_mean_bond(&p->kind), &n, &p->a0);
+  const bool stiff = f->persistence > f->length / (n - 1.0);
+  if (!stiff) {
+    p->kind = (struct fiber_kind){.mass = PAPER_GAMMA, .spring = PAPER_CHAIN};
+    p->a0 = u->a0 > 0.0 ? u->a0 : sqrt(square / (n - 1.0));
+    n = u->a0 > 0.0 ? 1.0 + round(square / (u->a0 * u->a0)) : n;
+  }
+  if (!(n >= 3.0 && n <= MOST_VERTICES))
+    return message_set(message, "map: %.6g vertices: a fiber takes 3 to %g of them; choose another %s", n,
+                       MOST_VERTICES, u->a0 > 0.0 ? "a0" : "number");
+  p->kind.vertices = (uint32_t)n;
+  if (stiff)
+    p->kind.bending = si_bending(&p->kind, f->persistence / p->a0);
+  return p->kind.bending < 0.5 * MODEL_MOST_BENDING ||
+         message_set(message, "map: the fiber is too stiff: bending would be above %g kT", MODEL_MOST_BENDING);
+}
+
+/* A box in which no fiber meets its own image, and as many fibers as the mesh asks for: c L = 3/xi^2. */
+static bool fill_box(const struct given *f, struct mapped *p, struct message *message)
+{
+  p->edge = fmax(ceil(theory_reach(&p->kind) * (1.0 - 1e-9)), 4.0);
+  if (p->edge > LATTICE_MAX_EDGE || PAPER_GAMMA * p->edge * p->edge * p->edge > INT32_MAX)
+    return message_set(message, "map: a box of %.0f cells along each edge is too large; use fewer vertices", p->edge);
+  const double mesh = f->mesh / p->a0, volume = p->edge * p->edge * p->edge;
+  p->count = f->mesh > 0.0 ? fmax(round(3.0 / (mesh * mesh) * volume * p->a0 / f->length), 1.0) : 1.0;
+  p->kind.count = (uint32_t)fmin(p->count, UINT32_MAX);
+  return p->count * p->kind.vertices < INT32_MAX ||
+         message_set(message, "map: %.3g fibers of %u vertices are too many; use a wider mesh", p->count,
+                     p->kind.vertices);
+}
+
+static bool must_have(double value, const char *what, struct message *message)
+{
+  return value > 0.0 || message_set(message,
+                                    "map: %s is missing, as in uncross map length=10um,persistence=17um --units "
+                                    "T=300K,eta=1mPas",
+                                    what);
+}
+
+static bool read_all(const struct arguments *a, struct given *f, struct units *u, struct message *message)
+{
+  *f = (struct given){0};
+  return units_read(a->units, u, message) &&
+         quantities_read("map", a->file[0], rows, sizeof rows / sizeof *rows, f, message) &&
+         must_have(f->length, "length", message) && must_have(f->persistence, "persistence", message) &&
+         must_have(u->temperature, "--units T", message) &&
+         (f->vertices == 0.0 || u->a0 == 0.0 ||
+          message_set(message, "map: vertices or --units a0: one follows from the other"));
+}
+
+/* --- printing ----------------------------------------------------------------------------------------------------- */
+
+static void print_head(const struct given *f, const struct units *u, const struct mapped *p)
+{
+  char text[3][64];
+  printf("# A fiber of length %s and persistence length %s at %.6g K, in %u vertices (uncross map, docs/units.md).\n"
+         "# SI units of this scene: --units a0=%.9gnm,T=%.9gK",
+         quantity_text(f->length, "m", true, text[0], sizeof text[0]),
+         quantity_text(f->persistence, "m", true, text[1], sizeof text[1]), u->temperature, p->kind.vertices,
+         1e9 * p->a0, u->temperature);
+  if (u->viscosity > 0.0)
+    printf(",eta=%.9gmPas", 1e3 * u->viscosity);
+  if (u->density > 0.0)
+    printf(",rho=%.9gkg/m3", u->density);
+  if (u->mass > 0.0)
+    printf(",mass=%.9gkg", u->mass);
+  if (u->time > 0.0)
+    printf(",t0=%.9gs", u->time);
+  printf("\n#\n# What differs from the experiment:\n");
+  if (p->kind.bending > 0.0 && f->diameter > 0.0) {
+    const double wrong = PAPER_DIAMETER * p->a0;
+    const double ratio =
+        theory_rod_diffusion(1.0, f->length, wrong) / theory_rod_diffusion(1.0, f->length, f->diameter);
+    printf("# - In the flow the fiber has a diameter of %s (0.6 a0), not %s. A straight one diffuses %.3g times as "
+           "fast.\n",
+           quantity_text(wrong, "m", true, text[0], sizeof text[0]),
+           quantity_text(f->diameter, "m", true, text[1], sizeof text[1]), ratio);
+  }
+  printf("# - The springs are the paper's (%.6g kT/a0^2 = %s), not the fiber's own.\n", p->kind.spring,
+         quantity_text(p->kind.spring * SI_BOLTZMANN * u->temperature / (p->a0 * p->a0), "N/m", true, text[0],
+                       sizeof text[0]));
+  printf("# - Between contacts fibers have no width: no excluded volume.\n");
+  if (p->kind.bending == 0.0)
+    printf("# - A bond is longer than l_p: the chain has no stiffness. Its R_e is that of the wormlike chain, %s.\n",
+           quantity_text(sqrt(si_wormlike_square(f->length, f->persistence)), "m", true, text[0], sizeof text[0]));
+}
+
+static void print_scene(const struct mapped *p)
+{
+  const int edge = (int)p->edge;
+  printf("\nbox: [%d, %d, %d]\ntime_step: 0.01\nsteps: 10000\nseed: 1\n\n"
+         "solvent:\n  per_cell: %g\n  collision_interval: %g\n  rotation_angle: %g\n\n"
+         "fibers:\n  - name: fiber\n    count: %u\n    vertices: %u\n    mass: %g\n    bond_length: %.9g\n    spring: "
+         "%.9g\n",
+         edge, edge, edge, PAPER_GAMMA, PAPER_INTERVAL, PAPER_ANGLE, p->kind.count, p->kind.vertices, p->kind.mass,
+         p->kind.bond_length, p->kind.spring);
+  if (p->kind.bending > 0.0)
+    printf("    bending: %.9g\n", p->kind.bending);
+  printf("\nobserve:\n  conserved: {every: 100}\n  statics: {every: 100}\n  dynamics: {every: 10}\n\n"
+         "trajectory: {every: 100}\n");
+}
+
+enum exit_code command_map(const struct arguments *a)
+{
+  struct given f;
+  struct units u;
+  struct mapped p;
+  struct message message;
+  if (!read_all(a, &f, &u, &message) || !lay_out(&f, &u, &p, &message) || !fill_box(&f, &p, &message)) {
+    fprintf(stderr, "uncross: %s\n", message.text);
+    return EXIT_BAD_INPUT;
+  }
+  print_head(&f, &u, &p);
+  print_scene(&p);
+  return EXIT_DONE;
+}

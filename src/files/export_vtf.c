@@ -1,0 +1,46 @@
+/* VTF, for VMD: https://github.com/olenz/vtfplugin/wiki/VTF-format. Atoms and bonds once, then coordinates. */
+#include <inttypes.h>
+
+#include "base/text.h"
+#include "files/export_format.h"
+
+#define SOLVENT_RADIUS 0.1 /* a0, as shown */
+#define VERTEX_RADIUS 0.25 /* a0: a_h of the paper's Table II */
+
+static void print_cell(FILE *out, const struct picture *p)
+{
+  fprintf(out, "unitcell %.17g %.17g %.17g\n", p->edge[0], p->edge[1], p->edge[2]);
+}
+
+static void print_structure(FILE *out, const struct export_view *v)
+{
+  const struct structure *is = &v->frames->structure;
+  print_cell(out, &v->frames->picture);
+  for (uint32_t row = 0; row < v->frames->about.rows; row++) {
+    if (v->number[row] < 0)
+      continue;
+    const bool solvent = export_is_solvent(v, row);
+    const int32_t kind = row < is->particles ? is->species[row] : -1;
+    fprintf(out, "atom %" PRId32 " radius %g name ", v->number[row], solvent ? SOLVENT_RADIUS : VERTEX_RADIUS);
+    export_name(out, solvent ? STRUCTURE_SOLVENT : kind >= 0 && kind < is->kinds ? is->name[kind] : "vertex");
+    fprintf(out, " type %" PRId64 " resid %" PRId32 " mass %.17g\n", solvent ? (int64_t)0 : (int64_t)kind + 1,
+            solvent ? 0 : v->place[row].fiber + 1, structure_mass(is, row));
+  }
+  for (uint32_t row = 0; row < is->particles; row++)
+    if (is->next[row] >= 0 && v->number[row] >= 0 && v->number[is->next[row]] >= 0)
+      fprintf(out, "bond %" PRId32 ":%" PRId32 "\n", v->number[row], v->number[is->next[row]]);
+}
+
+static void print_frame(FILE *out, const struct export_view *v)
+{
+  const struct picture *p = &v->frames->picture;
+  double image;
+  fprintf(out, "\ntimestep ordered\n# step %" PRIu64 " time %.17g\n", p->step, text_real(p->time));
+  print_cell(out, p);
+  for (uint32_t row = 0; row < v->frames->about.rows; row++)
+    if (v->number[row] >= 0)
+      fprintf(out, "%.17g %.17g %.17g\n", text_real(export_coordinate(v, row, 0, &image)),
+              text_real(export_coordinate(v, row, 1, &image)), text_real(export_coordinate(v, row, 2, &image)));
+}
+
+const struct export_format export_vtf = {"vtf", "VTF", false, false, NULL, print_structure, print_frame};
