@@ -79,9 +79,9 @@ struct command {
   unsigned codes;      /* exit codes besides 0, 1 and 2: bit 1 << code */
   const char *summary; /* one line */
   const char *text;    /* more, for its own help; lines of at most 100 characters */
-  enum exit_code (*act)(const struct arguments *arguments); /* NULL: another program does it */
-  const char *program; /* that one, in PREFIX/libexec/uncross or tools/: it gets the words as they came, and the path of
-                          this program in $UNCROSS; `tools/install-dependencies NAME` installs what it needs */
+  /* NULL: another program does it, uncross-NAME, in PREFIX/libexec/uncross or tools/. It gets the words as they came,
+   * and the path of this program in $UNCROSS; `tools/install-dependencies NAME` installs what it needs. */
+  enum exit_code (*act)(const struct arguments *arguments);
 };
 extern const struct command commands[COMMANDS];
 

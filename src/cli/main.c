@@ -113,8 +113,7 @@ const struct command commands[COMMANDS] = {
                          command_analyze},
     [COMMAND_PLOT] = {"plot", "FOLDER|FILE ...", 1, WRITES,
                       "a page of a run, table, trajectory or checkpoint: fibers, figures, what to distrust",
-                      "One HTML file that needs no other (docs/plot.md). Nothing is written over.\n", NULL,
-                      .program = "uncross-plot"},
+                      "One HTML file that needs no other (docs/plot.md). Nothing is written over.\n", NULL},
     [COMMAND_SWEEP] =
         {"sweep", "SCENE", 1, MAY(EXIT_STOPPED) | WRITES | MAY(EXIT_INTERRUPTED),
          "runs a scene over a grid of values and seeds, and averages",
@@ -123,7 +122,7 @@ const struct command commands[COMMANDS] = {
          "summary.csv with a row for each point of the grid, and runs.csv with the exit code of each run "
          "(docs/sweep.md).\n"
          "Nothing is written over. The exit code is that of the first run that failed.\n",
-         NULL, .program = "uncross-sweep"},
+         NULL},
     [COMMAND_EMIT] = {"oracle emit", "SCENE", 1, WRITES,
                       "inputs and outputs of every operator, at two steps, as a pack", NULL, oracle_emit_file},
     [COMMAND_EDGES] = {"oracle edges", "", 0, WRITES,

@@ -13,14 +13,14 @@
 static const char *const places[] = {"/../libexec/uncross/", "/../tools/", "/../../tools/"};
 
 /* True, and its path, if there is such a program; the path of this one too. */
-static bool find(const char *name, char ours[PATH_MAX - 128], char path[PATH_MAX])
+static bool find(const struct command *c, char ours[PATH_MAX - 128], char path[PATH_MAX])
 {
   const ssize_t length = readlink("/proc/self/exe", ours, PATH_MAX - 129);
   ours[length > 0 ? length : 0] = '\0';
   const char *slash = strrchr(ours, '/');
   const int folder = slash ? (int)(slash - ours) : 0;
   for (size_t k = 0; k < sizeof places / sizeof *places; k++) {
-    snprintf(path, PATH_MAX, "%.*s%s%s", folder, ours, places[k], name);
+    snprintf(path, PATH_MAX, "%.*s%suncross-%s", folder, ours, places[k], c->name);
     if (access(path, X_OK) == 0)
       return true;
   }
@@ -30,9 +30,9 @@ static bool find(const char *name, char ours[PATH_MAX - 128], char path[PATH_MAX
 enum exit_code outer_run(const struct command *c, char **words)
 {
   char ours[PATH_MAX - 128], path[PATH_MAX];
-  if (!find(c->program, ours, path)) {
-    fprintf(stderr, "uncross: %s: there is no program %s in ../libexec/uncross or ../tools beside this one\n", c->name,
-            c->program);
+  if (!find(c, ours, path)) {
+    fprintf(stderr, "uncross: %s: there is no program uncross-%s in ../libexec/uncross or ../tools beside this one\n",
+            c->name, c->name);
     return EXIT_TROUBLE;
   }
   fflush(NULL);
