@@ -210,11 +210,22 @@ def _doubts(found):
     return [f"{len(found)} thing{'s' if len(found) > 1 else ''}:", *found]
 
 
+def _in_si(run):
+    """The run in SI units: units, box and duration."""
+    numbers = {n.name: n for heading, rows in run.derived if heading in ("SI units", "Suspension") for n in rows}
+    words = [f"{numbers[name].symbol.split()[-1]} = {numbers[name].si}" for name in
+             ("unit of length", "unit of time", "unit of mass, a solvent particle") if name in numbers and numbers[name].si]
+    if "simulated time" in numbers and numbers["simulated time"].si:
+        words.append(f"{numbers['simulated time'].value} t0 = {numbers['simulated time'].si}")
+    return ["; ".join(words) + ".", *run.units_words]
+
+
 def front(run):
     where = (f"{len(run.tables)} table{'s' if len(run.tables) != 1 else ''}: {', '.join(t.name for t in run.tables)}"
              if run.tables else "no tables")
     where += f"; {len(run.frames.steps)} frames of a trajectory" if run.moving else ""
     return [("What ran", _what(run)), ("How", _how(run)), ("What came out", _result(run)),
+            *([("In SI units", _in_si(run))] if run.units and run.derived else []),
             ("What is here", where[:1].upper() + where[1:] + "."), ("What to distrust", _doubts(runs.distrust(run)))]
 
 
@@ -236,6 +247,9 @@ def provenance(run):
 
 
 def derived(run):
+    if run.units:
+        return [Rows(heading, [(n.name, n.symbol, n.value, n.unit, n.si, n.source) for n in rows],
+                     ("", "symbol", "value", "unit", "SI", "from"), "", (2, 4)) for heading, rows in run.derived]
     return [Rows(heading, [(n.name, n.symbol, n.value, n.unit, n.source) for n in rows],
                  ("", "symbol", "value", "unit", "from"), "", (2,)) for heading, rows in run.derived]
 

@@ -27,6 +27,7 @@ class Number:
     value: str
     unit: str
     source: str
+    si: str = ""  # value and unit, if asked for
 
 
 @dataclasses.dataclass
@@ -40,6 +41,8 @@ class Run:
     moving: bool = False  # there is a trajectory
     scene: str = ""
     derived: list = dataclasses.field(default_factory=list)  # (heading, [Number])
+    units: str = ""  # that SI values are made of, as `uncross check --units` takes them
+    units_words: list = dataclasses.field(default_factory=list)  # what is right and what is wrong with them
     trouble: list = dataclasses.field(default_factory=list)  # files that are damaged, numbers that are missing
 
     @property
@@ -102,9 +105,9 @@ def _reason(told, path):
     return lines[0].removeprefix("uncross: ").removeprefix(f"{path}: ") if lines else "cannot be read"
 
 
-def read_folder(path):
+def read_folder(path, units=""):
     names = sorted(os.listdir(path))
-    run = Run(path)
+    run = Run(path, units=units)
     if "run.json" in names:
         _read_record(run, os.path.join(path, "run.json"))
     growing = (run.record or {}).get("status") == "running"
@@ -134,8 +137,8 @@ def read_folder(path):
     return run
 
 
-def read_file(path):
-    run = Run(path)
+def read_file(path, units=""):
+    run = Run(path, units=units)
     if path.endswith(".csv"):
         run.tables.append(tables.read(path, os.path.basename(path)[:-len(".csv")]))
         return run
@@ -153,10 +156,10 @@ def read_file(path):
     return run
 
 
-def read(path):
-    """A Run; BadInput if there is nothing to show."""
+def read(path, units=""):
+    """A Run; BadInput if there is nothing to show. units: as of `uncross check --units`, for SI values beside."""
     try:
-        return read_folder(path) if os.path.isdir(path) else read_file(path)
+        return read_folder(path, units) if os.path.isdir(path) else read_file(path, units)
     except OSError as error:
         raise BadInput(f"{path}: {error.strerror or _one_line(error)}") from error
     except ValueError as error:
@@ -174,7 +177,9 @@ def _read_record(run, path):
         run.trouble.append(f"{path}: cannot be read: {_one_line(error)}")
 
 
-ROW = re.compile(r"  (.{38}) (.{9}) +(\S+)(?: (.{9}) (\S.*)| (\S.*))?")  # name, symbol, value, unit, source
+# Name, symbol, value, unit, source; with SI units, name, symbol, value, unit, SI value, source.
+ROW = re.compile(r"  (.{38}) (.{9}) +(\S+)(?: (.{9}) (\S.*)| (\S.*))?")
+ROW_SI = re.compile(r"  (.{38}) (.{9}) +(\S+)(?: (.{9})(?: (.{17}) (\S.*)| (\S.*))?| (\S.*))?")
 
 
 def _derive(run):
@@ -186,7 +191,9 @@ def _derive(run):
         scene = os.path.join(folder, "scene.yaml")
         with open(scene, "w", encoding="utf-8") as file:
             file.write(text)
-        code, told, complaint = call("check", scene)
+        code, told, complaint = call("check", scene, *(("--units", run.units) if run.units else ()))
+    if code and run.units and complaint.startswith("uncross: --units"):
+        raise BadInput(_reason(complaint, scene))
     if code:
         run.trouble.append(f"no derived numbers: {_reason(complaint, scene).replace(scene, 'the scene')}")
         return
@@ -194,12 +201,24 @@ def _derive(run):
     for line in told.splitlines():
         if line and not line[0].isspace():
             heading, rows = line, []
-        match = ROW.fullmatch(line)
-        if match and _is_real(match[3]) and heading.startswith(("Solvent", "Fibers", "Suspension")):
+        if heading.startswith("The solvent beside") and line.startswith(("  right:", "  wrong:")):
+            run.units_words.append(" ".join(line.split()))
+        number = _number(line, bool(run.units))
+        if number and heading.startswith(("Solvent", "Fibers", "Suspension", "SI units")):
             if not rows:
                 run.derived.append((heading, rows))
-            rows.append(Number(match[1].strip(), match[2].strip(), match[3], (match[4] or match[6] or "").strip(),
-                               (match[5] or "").strip()))
+            rows.append(number)
+
+
+def _number(line, has_si):
+    """The Number of a line of `uncross check`, or None."""
+    match = (ROW_SI if has_si else ROW).fullmatch(line)
+    if not match or not _is_real(match[3]):
+        return None
+    cells = [(cell or "").strip() for cell in match.groups()]
+    if not has_si:
+        return Number(*cells[:3], cells[3] or cells[5], cells[4])
+    return Number(*cells[:3], cells[3] or cells[7], cells[5], cells[4] or cells[6])
 
 
 # --- what to distrust --------------------------------------------------------------------------------------------------

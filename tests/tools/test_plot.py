@@ -211,6 +211,23 @@ class Folder(unittest.TestCase):
         self.assertGreater(len(found), 60)
         self.assertEqual(found, wanted)
 
+    def test_si_units(self):
+        """Against arithmetic of its own: a0 = 50 nm, 300 K; a time that is given."""
+        out = self.dir / "si.html"
+        self.assertEqual(uncross("plot", self.run_dir, "--units", "a0=50nm,T=300K,t0=2us", "--out", out)[0], 0)
+        said = Page(out).said
+        self.assertIn("a0 = 50 nm; t0 = 2 us;", said)
+        self.assertIn("2 t0 = 4 us.", said)
+        self.assertIn("wrong:", said)
+        numbers = {row.name: row for _, rows in runs.read(str(self.run_dir), "a0=50nm,T=300K,t0=2us").derived for row in rows}
+        length, unit = numbers["mean bond length"].si.split()
+        self.assertEqual(unit, "nm")
+        self.assertAlmostEqual(float(length), 50.0 * float(numbers["mean bond length"].value), delta=2e-4 * float(length))
+        code, _, told = uncross("plot", self.run_dir, "--units", "a0=50parsec,T=300K", "--out", self.dir / "no.html")
+        self.assertEqual(code, 2)
+        self.assertIn("parsec", told)
+        self.assertFalse((self.dir / "no.html").exists())
+
     # --- the picture ---
 
     def drawn(self, number=0):
