@@ -6,7 +6,7 @@ its own name.
 import dataclasses
 import re
 
-T, A, E, P = "$t_0$", "$a_0$", "$kT$", r"$m\,a_0/t_0$"
+T, A, E, P, V = "$t_0$", "$a_0$", "$kT$", r"$m\,a_0/t_0$", "$(a_0/t_0)$"
 A2 = "$a_0^2$"
 
 
@@ -75,6 +75,14 @@ COLUMNS = {
     "end_to_end": Column("end-to-end vector", r"$\langle R(t)\cdot R(0)\rangle/\langle R^2\rangle$"),
     "end_to_end_unit": Column("its direction", r"$\langle u(t)\cdot u(0)\rangle$"),
     "D": Column("diffusion coefficient", r"$D(t) = g_\mathrm{cm}/6t$", r"$(a_0^2/t_0)$"),
+    "g_cm_about_mean": Column("centres of mass, about their mean", r"$g_\mathrm{cm}'(t)$", A2),
+    "D_about_mean": Column("about the mean displacement", r"$g_\mathrm{cm}'/6t$", r"$(a_0^2/t_0)$"),
+    "D_cumulative": Column("from t/2 to t", r"$(g_\mathrm{cm}(t) - g_\mathrm{cm}(t/2))/3t$", r"$(a_0^2/t_0)$"),
+    "D_cumulative_about_mean": Column("from t/2 to t, about the mean", r"$(g_\mathrm{cm}'(t) - g_\mathrm{cm}'(t/2))/3t$",
+                                      r"$(a_0^2/t_0)$"),
+    "drift_x": Column("drift along x", "$v_x$", V),
+    "drift_y": Column("drift along y", "$v_y$", V),
+    "drift_z": Column("drift along z", "$v_z$", V),
     "intervals": Column("pairs of times compared"),
 }
 
@@ -117,9 +125,11 @@ PANELS = {
         Panel("Rate over kinetic theory", ("rate_over_theory",), level=1.0),
     ),
     "dynamics": (
-        Panel("Mean square displacements", ("g", "g_cm", "g_middle", "d2", "d2_contour"),
+        Panel("Mean square displacements", ("g", "g_cm", "g_cm_about_mean", "g_middle", "d2", "d2_contour"),
               "mean square displacement / $a_0^2$", log_y=True, wide=True, **LAG),
-        Panel("Diffusion coefficient", ("D",), r"$D(t) = g_\mathrm{cm}/6t$ / $(a_0^2/t_0)$", log_y=True, **LAG),
+        Panel("Diffusion coefficient", ("D", "D_about_mean", "D_cumulative", "D_cumulative_about_mean"),
+              r"diffusion coefficient $D$ / $(a_0^2/t_0)$", log_y=True, **LAG),
+        Panel("Mean drift", ("drift_x", "drift_y", "drift_z"), r"mean displacement over $t$ / $(a_0/t_0)$", level=0.0, **LAG),
         Panel("Memory of the orientation", ("end_to_end", "end_to_end_unit"), "correlation", **LAG),
         Panel("What stands behind each point", ("intervals",), log_y=True, **LAG),
     ),
