@@ -81,10 +81,11 @@ static void warn_force(struct teller *t, const struct model *m)
     scale += (double)m->kind[k].count * m->kind[k].vertices * vec3_norm(m->kind[k].force);
   const struct vec3 net = theory_net_force(m), a = m->solvent.acceleration;
   const double n = m->solvent.particles;
-  char remedy[160] = "without a solvent, forces have to balance each other";
+  char remedy[256] = "without a solvent, forces have to balance each other";
   if (n > 0.0)
-    snprintf(remedy, sizeof remedy, "solvent.acceleration: [%.17g, %.17g, %.17g] balances it", a.x - net.x / n,
-             a.y - net.y / n, a.z - net.z / n);
+    snprintf(remedy, sizeof remedy, "solvent.acceleration: [%.17g, %.17g, %.17g] balances it%s", a.x - net.x / n,
+             a.y - net.y / n, a.z - net.z / n,
+             model_is_isothermal(m) ? "" : ", with solvent.thermostat: rescale, since forces do work");
   if (!model_has_phantoms(m) && vec3_norm(net) > 1e-12 * scale) /* a bath takes the momentum up */
     warn(t,
          "a net force of (%.6g, %.6g, %.6g) kT/a0 acts on a periodic system, which accelerates without end by %.3g "
@@ -197,20 +198,28 @@ static void warn_heating(struct teller *t, const struct scene *scene)
          time_step_below(m, m->time_step * pow(MOST_RISE / rise, 1.0 / order)));
 }
 
-/* Forces that pull some particles more than others make kinds drift. */
+/* Forces that pull some particles more than others make kinds drift. One warning is for all of them. */
 static void warn_drift(struct teller *t, const struct scene *scene)
 {
   const struct model *m = &scene->model;
   const bool pulls_solvent = model_has_solvent(m) && vec3_norm(m->solvent.acceleration) > 0.0;
+  uint32_t drifting = 0, first = 0, most = 0;
   for (uint32_t k = 0; k < m->kinds; k++)
-    if (scene->observe.every[OBSERVE_DYNAMICS] > 0 && (pulls_solvent || vec3_norm(m->kind[k].force) > 0.0)) {
-      warn(t,
-           "observe.dynamics: a force acts, so fibers drift, and g_cm and D = g_cm/6t of '%s' contain (v t)^2; use %s "
-           "(docs/observables.md)",
-           m->kind[k].name,
-           m->kind[k].count > 1 ? "the columns g_cm_about_mean, D_about_mean and drift_x, drift_y, drift_z"
-                                : "the columns drift_x, drift_y, drift_z, or two fibers or more");
+    if (pulls_solvent || vec3_norm(m->kind[k].force) > 0.0) {
+      first = drifting++ ? first : k;
+      most = m->kind[k].count > most ? m->kind[k].count : most;
     }
+  if (scene->observe.every[OBSERVE_DYNAMICS] == 0 || drifting == 0)
+    return;
+  char others[48] = "";
+  if (drifting > 1)
+    snprintf(others, sizeof others, " and %" PRIu32 " more kind%s", drifting - 1, drifting > 2 ? "s" : "");
+  warn(t,
+       "observe.dynamics: a force acts, so fibers drift, and g_cm and D = g_cm/6t of '%s'%s contain (v t)^2; use %s "
+       "(docs/observables.md)",
+       m->kind[first].name, others,
+       most > 1 ? "the columns g_cm_about_mean, D_about_mean and drift_x, drift_y, drift_z"
+                : "the columns drift_x, drift_y, drift_z, or two fibers or more");
 }
 
 static void warn_observables(struct teller *t, const struct scene *scene)

@@ -24,13 +24,13 @@ static yaml_mark_t mark_of_offset(const char *text, size_t offset)
   return mark;
 }
 
-/* Whether this line begins with a tab, or with spaces and a tab. */
+/* Whether this line begins with a tab, after spaces and the dashes of lists. */
 static bool tab_indents(const char *text, size_t size, size_t line)
 {
   size_t at = 0;
   while (at < size && line > 0)
     line -= text[at++] == '\n';
-  while (at < size && text[at] == ' ')
+  while (at < size && (text[at] == ' ' || text[at] == '-'))
     at++;
   return at < size && text[at] == '\t';
 }
