@@ -62,14 +62,14 @@ def _section(name, ours, theirs, names):
             alt = f"{columns.title(name)} of {names[0]} and {names[1]}, and their difference."
             blocks.append(page.Figure(title, style.data_uri(svg), alt, words, name))
     else:
-        blocks.append(page.Figure(columns.title(name), style.data_uri(tables.compare_rows(ours, theirs, names)),
-                                  f"{columns.title(name)}: differences over their errors.",
-                                  f"{names[1]} minus {names[0]}, over its error; dashed: two errors.", name))
+        svg = tables.compare_rows(ours, theirs, names)
+        blocks += [page.Figure(columns.title(name), style.data_uri(svg), f"{columns.title(name)}: differences over their errors.",
+                               f"{names[1]} minus {names[0]}, over its error; dashed: two errors.", name)] if svg else []
     if rows:
         caption = ("Where a table has an error for each row, the row where the two differ most." if ours.has_errors else
                    "Means over all rows, errors from blocks of rows. Sums and counts since the start: their last values.")
         blocks.append(page.Rows(f"{columns.title(name)}, in numbers", rows,
-                                ("", "symbol", names[0], names[1], "difference / error", ""), caption, (2, 3, 4)))
+                                ("", "symbol", names[0], names[1], "difference / error", ""), caption, (2, 3, 4), "" if blocks else name))
     return page.Section(columns.title(name), blocks), found
 
 

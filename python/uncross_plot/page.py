@@ -20,6 +20,7 @@ class Figure:
     name: str = ""  # of the table
     keys: list = dataclasses.field(default_factory=list)  # (colour, text)
     hollow: tuple = ()  # numbers of keys
+    round: tuple = ()
     width: int = 0  # pixels, at most; 0: that of the page
 
 
@@ -30,6 +31,7 @@ class Rows:
     head: tuple = ()
     caption: str = ""
     numbers: tuple = ()  # columns that hold numbers
+    name: str = ""  # of the table, if no figure shows it
 
 
 @dataclasses.dataclass
@@ -72,7 +74,7 @@ def plain(text):
     """A label without the signs of mathematical text, for words."""
     for old, new in (("_\\mathrm", "_"), ("\\langle ", "⟨"), ("\\langle", "⟨"), ("\\rangle", "⟩"), ("\\cos", "cos "), ("\\theta", "θ"),
                      ("\\Delta", "Δ"), ("\\cdot", "·"), ("\\,", " "), ("_0", "0"), ("^2", "²"), ("^{-1}", "⁻¹"), ("$", ""),
-                     ("{", ""), ("}", "")):
+                     ("{", ""), ("}", ""), ("R_g", "Rg"), ("l_p", "lp"), ("k_B", "kB")):
         text = text.replace(old, new)
     return text
 
@@ -92,7 +94,8 @@ def picture_of(frames, movie=False):
     blocks = [Figure("Fibers at the end", fibers.picture(frames), f"Perspective picture of {shown}, at {last}.",
                      f"{shown[0].upper()}{shown[1:]}, at {last}. A bond that crosses a face of the box comes in again at "
                      "the opposite one.", keys=keys,
-                     hollow=tuple(k for k in range(len(structure.kinds)) if fibers.is_hollow(k)))]
+                     hollow=tuple(k for k in range(len(structure.kinds)) if fibers.is_hollow(k)),
+                     round=tuple({int(structure.kind[row]) for row in structure.beads}))]
     if movie:
         src, numbers = fibers.movie(frames)
         span = f"{frames.times[0]:g} to {frames.times[-1]:g} t0"
@@ -141,10 +144,12 @@ def figure_of(run, table):
         away = f"{(value - exact[c]) / error:+.1f}" if c in exact and error and error > 0 else ""
         rows.append((plain(label.name), plain(label.symbol), with_error(value, error), plain(label.unit),
                      f"{exact[c]:.6g}" if c in exact else "", away))
-    return [Figure(columns.title(table.name), style.data_uri(tables.single_row(table, exact)), alt, words, table.name),
-            Rows(f"{columns.title(table.name)}, in numbers", rows,
-                 ("", "symbol", "value ± standard error", "unit", "theory", "difference / error"),
-                 "Theory: the phantom chain, from uncross check." if exact else "", (2, 4, 5))]
+    svg = tables.single_row(table, exact)
+    drawn = [Figure(columns.title(table.name), style.data_uri(svg), alt, words, table.name)] if svg else []
+    return drawn + [Rows(f"{columns.title(table.name)}, in numbers", rows,
+                         ("", "symbol", "value ± standard error", "unit", "theory", "difference / error"),
+                         "Theory: the phantom chain, from uncross check." if exact else "", (2, 4, 5),
+                         "" if svg else table.name)]
 
 
 # --- words -------------------------------------------------------------------------------------------------------------
@@ -192,15 +197,24 @@ def _result(run):
     if record.get("collisions", {}).get("executed"):
         words.append(f"{record['collisions']['executed']} contacts answered")
     for table in run.tables:
-        pairs = table.data.get("intervals")
-        if pairs is None or "D" not in table.data or len(words) > 6:
-            continue
-        rows = numpy.flatnonzero((pairs >= 2) & numpy.isfinite(table.data["D"]))
-        if len(rows):
-            row, errors = rows[-1], table.errors("D")
-            value = with_error(table.data["D"][row], None if errors is None else errors[row])
-            words.append(f"D of '{columns.split(table.name)[1]}' {value} a0²/t0 at lag {table.data['time'][row]:.3g} t0")
+        if len(words) <= 6:
+            words += _diffusion(run, table)
     return ("; ".join(words)[:1].upper() + "; ".join(words)[1:] + ".") if words else "No observable was asked for."
+
+
+def _diffusion(run, table):
+    """The diffusion coefficient at the longest lag that enough intervals have; about the drift where a force acts."""
+    drifts = any("contain (v t)^2" in text for text in (run.record or {}).get("warnings", []))
+    column, about = ("D_about_mean", " about its drift") if drifts else ("D", "")
+    pairs, values = table.data.get("intervals"), table.data.get(column)
+    if pairs is None or values is None:
+        return []
+    rows = numpy.flatnonzero((pairs >= runs.LEAST_PAIRS) & numpy.isfinite(values))
+    if not len(rows):
+        return []
+    row, errors = rows[-1], table.errors(column)
+    value = with_error(values[row], None if errors is None else errors[row])
+    return [f"D of '{columns.split(table.name)[1]}'{about} {value} a0²/t0 at lag {table.data['time'][row]:.3g} t0"]
 
 
 def _doubts(found):

@@ -105,6 +105,14 @@ def _reason(told, path):
     return lines[0].removeprefix("uncross: ").removeprefix(f"{path}: ") if lines else "cannot be read"
 
 
+def _of_sweep(path):
+    """What can be shown of a sweep: docs/sweep.md."""
+    folder = path if os.path.isdir(path) else os.path.dirname(path) or "."
+    points = sorted(entry for entry in os.listdir(folder) if os.path.isdir(os.path.join(folder, entry)))
+    return (f"{path}: of a sweep; give the folder of one of its points, whose tables are averages over seeds, or of one "
+            f"of its runs" + (f": {os.path.join(folder, points[0])}" if points else ""))
+
+
 def read_folder(path, units=""):
     names = sorted(os.listdir(path))
     run = Run(path, units=units)
@@ -126,6 +134,8 @@ def read_folder(path, units=""):
                 run.trouble.append(str(error))
             if run.frames is not None and len(run.frames.steps) == 0:
                 run.frames = None
+    if "runs.csv" in names and "summary.csv" in names:
+        raise BadInput(_of_sweep(path))
     if run.record is None and run.frames is None and not run.tables:
         raise BadInput(run.trouble[0] if run.trouble else f"{path}: not the folder of a run: no run.json, table, "
                        "trajectory or checkpoint is in it")
@@ -139,6 +149,8 @@ def read_folder(path, units=""):
 
 def read_file(path, units=""):
     run = Run(path, units=units)
+    if os.path.basename(path) in ("runs.csv", "summary.csv"):
+        raise BadInput(_of_sweep(path))
     if path.endswith(".csv"):
         run.tables.append(tables.read(path, os.path.basename(path)[:-len(".csv")]))
         return run

@@ -150,7 +150,7 @@ def figure(table, guides=(), wide=7.0):
     if not shown:
         return nothing("No numbers: nan in every row")
     rows = _rows(shown)
-    heights = [4.2 if row[0].wide else 3.2 for row in rows]
+    heights = [3.9 if row[0].wide else 2.7 for row in rows]  # inches: those of dynamics together fit on a sheet
     with style.styled():
         drawing = style.pyplot.figure(figsize=(wide, sum(heights)))
         grid = drawing.add_gridspec(len(rows), 2, height_ratios=heights)
@@ -185,10 +185,11 @@ def exact_values(table, derived):
 
 
 def single_row(table, exact):
-    """SVG of a table of one row: each value relative to theory where there is one, else its relative error alone."""
+    """SVG of a table of one row: each value relative to theory where there is one, else its relative error alone. None if
+    nothing has an error, or all is 0, as for single beads."""
     names = [c for c in table.values if table.errors(c) is not None and numpy.isfinite(table.data[c][0]) and table.data[c][0] != 0]
     if not names:
-        return nothing("No value with an error differs from 0")
+        return None
     with style.styled():
         drawing, axes = style.plain(7.0, 0.6 + 0.34 * max(3, len(names)))
         axes.axvline(0.0, color=style.INK, linewidth=0.8)
@@ -304,11 +305,11 @@ def _draw_pair(axes, below, a, b, panel, name, names):
 
 
 def compare_rows(a, b, names):
-    """SVG of two tables of one row: the difference of each value over its error."""
+    """SVG of two tables of one row: the difference of each value over its error. None if no error is known."""
     told = [(c, summary(a, b, c)) for c in a.values if c in b.values and a.has_errors]
     told = [(c, t[4]) for c, t in told if t is not None and math.isfinite(t[4])]
     if not told:
-        return nothing("No value that both have differs from 0 by a known error")
+        return None
     with style.styled():
         drawing, axes = style.plain(7.0, 0.6 + 0.34 * max(3, len(told)))
         for z in (-2.0, 0.0, 2.0):

@@ -383,8 +383,8 @@ static void put_end_to_end(struct cells *c, bool defined)
 static void fill_row(const struct fiber_kind *kind, const struct tallies *t, double *row, double time)
 {
   const bool ends = !kind->ring && kind->vertices > 1, several = kind->count > 1;
-  struct cells c = {&t->shape, t->memory, row};
-  *c.next++ = time;
+  struct cells c = {&t->shape, t->memory, row + 1};
+  row[0] = time;
   put(&c, true, VERTICES_CENTER, 0, 1.0);
   put(&c, true, VERTICES_CENTER, 1, 1.0);
   put(&c, true, MIDDLE_COSINE, 0, 1.0);

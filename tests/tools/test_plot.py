@@ -182,6 +182,30 @@ class Folder(unittest.TestCase):
             if table.rows > 1:
                 self.assertEqual(sorted(shown), sorted(table.values))
 
+    def test_single_beads_have_no_empty_figure(self):
+        self.assertNotIn("Size and shape of 'beads'", [a["title"] for a in self.page.images])
+        self.assertIn("Size and shape of 'beads', in numbers", self.page.said)
+
+    def test_the_diffusion_coefficient_is_about_the_drift(self):
+        """A force acts on the beads: D = g_cm/6t holds their drift."""
+        run = runs.read(str(self.run_dir))
+        self.assertTrue(any("contain (v t)^2" in text for text in run.record["warnings"]))
+        table = run.table("dynamics-beads")
+        rows = numpy.flatnonzero((table.data["intervals"] >= 16) & numpy.isfinite(table.data["D_about_mean"]))
+        value = page.with_error(table.data["D_about_mean"][rows[-1]], table.data["D_about_mean_error"][rows[-1]])
+        self.assertIn(f"D of 'beads' about its drift {value} a0²/t0 at lag {table.data['time'][rows[-1]]:.3g} t0", self.page.said)
+
+    def test_a_sweep_is_told_how(self):
+        folder = self.dir / "swept"
+        (folder / "fibers.rod.count=10/seed-1").mkdir(parents=True)
+        for name in ("runs.csv", "summary.csv"):
+            (folder / name).write_text("run,code\nfibers.rod.count=10/seed-1,0\n")
+        for path in (folder, folder / "summary.csv", folder / "runs.csv"):
+            code, _, error = plot(path)
+            self.assertEqual(code, 2)
+            self.assertIn(f"of a sweep; give the folder of one of its points", error)
+            self.assertIn(f"{folder}/fibers.rod.count=10", error)
+
     def test_error_bars_and_labels(self):
         svg = self.page.picture([i for i, a in enumerate(self.page.images) if a["title"] == "Motion of 'rods'"][0]).decode()
         self.assertGreater(svg.count('id="LineCollection_'), 5)  # a collection of bars for each series with errors
@@ -409,7 +433,7 @@ class Folder(unittest.TestCase):
         code, _, error = plot("--compare", self.dir / "one", self.dir / "two", "-o", out)
         self.assertEqual((code, error), (0, ""))
         both = Page(out)
-        self.assertEqual(sorted(set(both.tables)), ["statics-beads", "statics-rings", "statics-rods", "temperature"])
+        self.assertEqual(sorted(set(both.tables)), ["statics-rings", "statics-rods", "temperature"])
         a, b = (tables.read(self.dir / name / "statics-rods.csv", "statics-rods") for name in ("one", "two"))
         z = (b.data["l"][0] - a.data["l"][0]) / math.hypot(a.data["l_error"][0], b.data["l_error"][0])
         row = re.search(r"of &#39;rods&#39;, in numbers.*?bond length</td>.*?</tr>", both.text, re.S)[0]
