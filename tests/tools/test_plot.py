@@ -201,10 +201,33 @@ class Folder(unittest.TestCase):
         for name in ("runs.csv", "summary.csv"):
             (folder / name).write_text("run,code\nfibers.rod.count=10/seed-1,0\n")
         for path in (folder, folder / "summary.csv", folder / "runs.csv"):
-            code, _, error = plot(path)
+            code, _, error = plot("--compare", path, self.run_dir, "-o", self.dir / "no.html")
             self.assertEqual(code, 2)
-            self.assertIn(f"of a sweep; give the folder of one of its points", error)
+            self.assertIn("of a sweep; give the folder of one of its points", error)
             self.assertIn(f"{folder}/fibers.rod.count=10", error)
+
+    def test_a_sweep_has_a_page(self):
+        folder = self.dir / "grid"
+        folder.mkdir()
+        (folder / "runs.csv").write_text("folder,k,start,seed,exit_code,status,steps,state_hash,message\n" + "".join(
+            f"k={k}_start={s}/seed-1,{k},{s},1,{3 * (k == 40)},x,9,ab,why\n" for k in (10, 20, 40) for s in ("a", "b")))
+        (folder / "summary.csv").write_text(
+            "folder,k,start,seeds,D_about_mean_rod,D_about_mean_rod_error,D_about_mean_rod_block_error,lag_rod\n" + "".join(
+                f"k={k}_start={s},{k},{s},1,{0.5 / k:.17g},nan,0.001,2.5\n" for k in (10, 20, 40) for s in ("a", "b")))
+        code, told, error = plot(folder)
+        self.assertEqual((code, error), (0, ""))
+        made = Page(told.strip())
+        self.assertEqual(made.tables, ["D_about_mean_rod"])
+        self.assertEqual(len(made.images), 1)
+        svg = made.picture(0).decode()
+        self.assertEqual(svg.count('id="LineCollection_'), 4)  # error bars of a series for each start, and of its entry in the legend
+        self.assertIn("6 runs of 6 points; seeds 1.", made.said)
+        self.assertIn("2 things:", made.said)  # two runs have not finished
+        self.assertIn("k=40_start=a/seed-1: exit code 3", made.said)
+        self.assertIn("0.0500 ± 0.0010", made.said)
+        self.assertEqual(plot(folder)[0], 2)  # nothing is written over
+        (folder / "summary.csv").write_text("k,seeds\n1\n")
+        self.assertEqual(plot(folder, "-o", self.dir / "bad.html")[0], 2)
 
     def test_error_bars_and_labels(self):
         svg = self.page.picture([i for i, a in enumerate(self.page.images) if a["title"] == "Motion of 'rods'"][0]).decode()

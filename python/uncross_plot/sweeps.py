@@ -1,0 +1,116 @@
+"""The page of a sweep (docs/sweep.md): final numbers over the values of the grid, with the errors of summary.csv."""
+import csv
+import math
+import os
+
+import numpy
+
+from . import columns, page, style
+
+RESULTS = "seeds"  # columns before it are the grid's, those after it final numbers
+MOST_SERIES = 8
+NAMES = {"temperature_solvent": columns.Column("temperature of the solvent", "", "$(kT/k_B)$"),
+         "temperature_vertex": columns.Column("temperature of the vertices", "", "$(kT/k_B)$"),
+         "collision_rate": columns.COLUMNS["rate_per_vertex"], "collision_rate_over_theory": columns.COLUMNS["rate_over_theory"]}
+
+
+def is_sweep(path):
+    """True for the folder of a sweep, and for its two tables."""
+    folder = path if os.path.isdir(path) else os.path.dirname(path) or "."
+    named = os.path.isdir(path) or os.path.basename(path) in ("runs.csv", "summary.csv")
+    return named and all(os.path.exists(os.path.join(folder, name)) for name in ("runs.csv", "summary.csv"))
+
+
+def _read(path):
+    """[{column: text}] of a table; ValueError if it has no line of names."""
+    with open(path, encoding="utf-8", newline="") as file:
+        rows = list(csv.reader(file))
+    if not rows or any(len(row) != len(rows[0]) for row in rows):
+        raise ValueError(f"{path}: not a table of a sweep: rows of different lengths")
+    return rows[0], [dict(zip(rows[0], row)) for row in rows[1:]]
+
+
+def _number(text):
+    try:
+        return float(text)
+    except ValueError:
+        return math.nan
+
+
+def _error(row, name):
+    """Of the two errors that of blocks, unless there is none: with few seeds it is the better known (docs/sweep.md)."""
+    found = [_number(row.get(f"{name}{part}", "nan")) for part in ("_block_error", "_error")]
+    return next((e for e in found if math.isfinite(e)), math.nan)
+
+
+def _parts(name):
+    """The column that a final number is made of, and its kind: D_about_mean_rod is D_about_mean of 'rod'."""
+    best = max((c for c in columns.COLUMNS if name == c or name.startswith(c + "_")), key=len, default=name)
+    return best, name[len(best) + 1:]
+
+
+def _label(name, short=False):
+    """Of the page; short: of an axis, symbol and unit."""
+    column, kind = _parts(name)
+    found = NAMES.get(name) or columns.column(column)
+    words = f"{found.symbol or found.name} / {found.unit}" if short and found.unit else found.symbol or found.name if short else found.name
+    return words + (f", {kind}" if kind else "")
+
+
+def _places(rows, key):
+    """Numbers of the values of a key, and their words if they are none."""
+    words = list(dict.fromkeys(row[key] for row in rows))
+    if all(math.isfinite(_number(word)) for word in words):
+        return {word: _number(word) for word in words}, None
+    return {word: float(k) for k, word in enumerate(words)}, words
+
+
+def figure(rows, keys, name):
+    """SVG of a final number over the first key of the grid; a series for each combination of the others."""
+    places, words = _places(rows, keys[0])
+    others = list(dict.fromkeys(tuple(row[key] for key in keys[1:]) for row in rows))
+    with style.styled():
+        drawing, axes = style.plain(6.6, 3.4)
+        for number, other in enumerate(others[:MOST_SERIES]):
+            mine = [row for row in rows if tuple(row[key] for key in keys[1:]) == other and math.isfinite(_number(row[name]))]
+            x = [places[row[keys[0]]] for row in mine]
+            errors = numpy.array([_error(row, name) for row in mine])
+            style.points(axes, x, [_number(row[name]) for row in mine], None if numpy.isnan(errors).all() else errors, number,
+                         label=", ".join(f"{key} = {value}" for key, value in zip(keys[1:], other)) or None)
+        axes.set_xlabel(keys[0])
+        axes.set_ylabel(_label(name, short=True))
+        axes.ticklabel_format(axis="y", useOffset=False)
+        if words:
+            axes.set_xticks(range(len(words)), words)
+        if keys[1:]:
+            style.legend(axes)
+        return style.svg(drawing)
+
+
+def page_of(path):
+    """HTML of a sweep's page; ValueError if its tables are none."""
+    folder = path if os.path.isdir(path) else os.path.dirname(path) or "."
+    names, rows = _read(os.path.join(folder, "summary.csv"))
+    _, runs = _read(os.path.join(folder, "runs.csv"))
+    if RESULTS not in names or names.index(RESULTS) < 1:
+        raise ValueError(f"{folder}/summary.csv: not the summary of a sweep: no column {RESULTS}")
+    keys = names[1:names.index(RESULTS)] or [names[0]]
+    results = [name for name in names[names.index(RESULTS) + 1:]
+               if not name.endswith("_error") and any(math.isfinite(_number(row[name])) for row in rows)]
+    unfinished = [run for run in runs if run.get("exit_code") != "0"]
+    front = [("What was swept", ["Each combination of:", *(f"{key}: {', '.join(dict.fromkeys(r[key] for r in rows))}" for key in keys)]),
+             ("How", f"{len(runs)} runs of {len(rows)} points; seeds {', '.join(dict.fromkeys(run['seed'] for run in runs))}."),
+             ("What came out", f"{len(results)} final numbers of each point: summary.csv."),
+             ("What is here", f"Averages over seeds in a folder for each point, such as {rows[0][names[0]]}; "
+              "uncross plot shows them, and each run below it.") if rows else ("What is here", "No point is finished."),
+             ("What to distrust", page._doubts([f"{run['folder']}: exit code {run['exit_code']}, {run['status']}. {run['message']}".strip()
+                                                for run in unfinished]))]
+    shown = [name for name in results if not name.startswith("lag_")]
+    figures = [page.Figure(page.plain(_label(name)), style.data_uri(figure(rows, keys, name)),
+                           f"{page.plain(_label(name))} over {keys[0]}.", f"{name} of summary.csv. Error bars: one standard error, "
+                           "of blocks of the runs where they have one, else of the scatter over seeds.", name) for name in shown]
+    table = page.Rows("Final numbers", [[row[key] for key in keys] + [page.with_error(_number(row[name]), _error(row, name))
+                                                                      for name in results] for row in rows],
+                      (*keys, *results), "docs/sweep.md says how each is made.", tuple(range(len(keys) + len(results))))
+    return page.render(os.path.basename(os.path.abspath(folder)), front,
+                       [page.Section("Final numbers over the grid", figures), page.Section("In numbers", [table])])
