@@ -381,8 +381,9 @@ demo:
 	$(MAKE) -j2 $(BUILD)/uncross
 	tools/demo $(BUILD)/uncross $(BUILD)/demo
 
-# The exact tests under other flags, in folders of their own. Physics tests are long and add nothing here.
-EXACT_TESTS := $(filter-out tests/physics/% tests/stress/% tests/mutants/% tests/tools/% tests/cli/test_bits.sh \
+# The exact tests under other flags, in folders of their own. Physics tests are long and add nothing here; those of
+# validation/ run little but Python.
+EXACT_TESTS := $(filter-out tests/physics/% tests/validation/% tests/stress/% tests/mutants/% tests/tools/% tests/cli/test_bits.sh \
    tests/api/%.py, \
    $(sort $(shell find tests -name 'test_*.c' -o -name 'test_*.py' -o -name 'test_*.sh')))
 .PHONY: exact
