@@ -176,7 +176,7 @@ static void clusters_in_any_order(void **unused)
   print_message("  %d drifts of %d end alike; %lu contacts in %lu clusters\n", alike, drifts, (unsigned long)contacts,
                 (unsigned long)clusters);
   assert_int_equal(alike, drifts);
-  assert_true(clusters > 10 * drifts && contacts > clusters);
+  assert_true(clusters > 10 * (uint64_t)drifts && contacts > clusters);
   /* Contacts that share no vertex, but pull at each other through a bend, have an order. */
   assert_true(clusters_in_any_order_with(0, drifts, &few, &many) < drifts && many > clusters);
 }
