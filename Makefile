@@ -42,7 +42,7 @@ help:
 	@echo 'make counts          instructions of each stage against a table; nothing is done that a scene does not need'
 	@echo 'make counts-baseline writes that table anew (tests/counts/baseline.txt), and the one of docs/speed.md'
 	@echo 'make judge-power     what `uncross oracle judge` makes of codes with planted bugs (twelve minutes)'
-	@echo 'make stress          long runs: exact audit, linking numbers, 10^7 steps (some minutes)'
+	@echo 'make stress          long runs: exact audit, linking numbers, 10^7 steps (half an hour)'
 	@echo 'make lint            formatting, warnings of gcc and clang, static checks, include floors, equation table'
 	@echo 'make port            the port to NumPy: oracle check, fresh packs and traces, bugs planted in it (ports/numpy)'
 	@echo 'make measure         builds the programs behind docs/accuracy.md'
