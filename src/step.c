@@ -133,6 +133,7 @@ bool step_start(struct state *state, const struct model *model, struct work *wor
 {
   state->step = 0;
   state->solvent_lag = 0;
+  state->solvent_time = 0;
   fluid_of(model)->start(state, model);
   fiber_start(state, model);
   set_total_momentum(state, model);

@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "mpc/border.h"
 #include "mpc/cell.h"
 #include "mpc/grid.h"
 #include "mpc/overflow.h"
@@ -67,18 +68,23 @@ bool collide_sum(const struct state *state, const struct model *model, struct mp
 /* Flight of the fluid, grid_bin and collide_sum: the three in one pass, block by block. */
 static bool gather(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step, struct fault *fault)
 {
-  const struct point shift = grid_shift(model, step);
+  const struct border *border = mpc->border;
   uint64_t span = 0;
+  mpc->shift = grid_shift(model, step);
   clear_sums(mpc);
   for (uint32_t i = 0; i < state->solvent.n; i += BLOCK) {
     const uint32_t n = block_size(state->solvent.n, i, BLOCK);
     if (state->solvent_lag > 0 && !mpc->fluid->stream(state, model, i, n, fault))
       return false;
-    grid_bin_particles(state, model, shift, i, n, mpc);
+    border->bin_particles(state, model, i, n, mpc);
+    if (border->enter)
+      border->enter(state, model, i, n, mpc);
     span |= mpc->rule->add_particles(state, model, mpc, step, i, n);
   }
-  state->solvent_lag = 0;
-  grid_bin_vertices(state, model, shift, mpc);
+  state_streamed(state);
+  border->bin_vertices(state, model, mpc);
+  if (border->enter_vertices)
+    border->enter_vertices(state, model, mpc);
   span |= mpc->rule->add_vertices(state, model, mpc, step);
   return overflow_of_momenta(state, model, mpc, span, step, fault);
 }
@@ -104,12 +110,17 @@ void collide_turn(struct state *state, const struct model *model, const struct m
 
 bool mpc_collide(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step, struct fault *fault)
 {
-  if (!gather(state, model, mpc, step, fault))
+  const struct border *border = mpc->border;
+  if (!gather(state, model, mpc, step, fault) || (border->fill && !border->fill(state, model, mpc, step, fault)))
     return false;
   collide_solve(model, mpc, step);
   if (mpc->thermostat && !collide_thermostat(state, model, mpc, mpc->thermostat, step, fault))
     return false;
   collide_turn(state, model, mpc, mpc->thermostat);
+  if (border->account)
+    border->account(state, model, mpc, step);
+  if (border->leave)
+    border->leave(state, model, mpc);
   if (!model->solvent.hydrodynamics)
     mpc_swap_velocities(state, model, mpc, step);
   if (mpc->since_sort++ % COLLISIONS_PER_SORT == 0)

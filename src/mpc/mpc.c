@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "mpc/border.h"
 #include "mpc/rule.h"
 #include "mpc/thermostat.h"
 
@@ -56,6 +57,7 @@ bool mpc_alloc(struct mpc *c, const struct model *m, const struct fluid *fluid, 
   *c = (struct mpc){.rule = collision_rule_of(m),
                     .thermostat = thermostat_of(m->solvent.thermostat),
                     .fluid = fluid,
+                    .border = border_of(m),
                     .cells = (uint32_t)count_cells(m),
                     .table_bits = table_bits(m->vertices)};
   list_needs(c, m, everything, need);

@@ -29,6 +29,8 @@ struct mpc {
   const struct collision_rule *rule;
   const struct thermostat *thermostat; /* NULL: none */
   const struct fluid *fluid;
+  const struct border *border;
+  struct point shift;     /* of the grid (grid_shift), lattice units */
   uint32_t cells;         /* all cells of the box; with a random solvent, those that hold a vertex */
   struct cell_sum *sum;   /* [cells] */
   struct cell_turn *turn; /* [cells] */

@@ -103,7 +103,7 @@ static bool add_phantoms(const struct model *model, struct mpc *c, uint64_t step
     if (!within_range(c, k, &p, step, fault))
       return false;
     if (p.mass > 0.0)
-      c->rule->add_random_solvent(model, c, step, k, p.mass, p.velocity);
+      c->rule->add_virtual(model, c, step, k, &(struct virtual_members){p.mass, p.velocity, model->flow, 0.0, 1.0});
   }
   return true;
 }
@@ -111,7 +111,8 @@ static bool add_phantoms(const struct model *model, struct mpc *c, uint64_t step
 bool random_solvent_collide(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step,
                             struct fault *fault)
 {
-  random_solvent_bin(state, model, grid_shift(model, step), mpc);
+  mpc->shift = grid_shift(model, step);
+  random_solvent_bin(state, model, mpc->shift, mpc);
   if (!collide_sum(state, model, mpc, step, fault) || !add_phantoms(model, mpc, step, fault))
     return false;
   collide_solve(model, mpc, step);

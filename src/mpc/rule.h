@@ -16,7 +16,7 @@
 #ifndef UNCROSS_MPC_RULE_H
 #define UNCROSS_MPC_RULE_H
 
-#include "mpc/mpc.h"
+#include "mpc/border.h"
 
 struct collision_rule {
   const char *name; /* as in scenes */
@@ -33,9 +33,14 @@ struct collision_rule {
   /* Adds all vertices to the sums of their cells. Returns the same. */
   uint64_t (*add_vertices)(const struct state *state, const struct model *model, struct mpc *mpc, uint64_t step);
 
-  /* Adds all particles of a random solvent to the cell at this place in sum, as one member. */
-  void (*add_random_solvent)(const struct model *model, struct mpc *mpc, uint64_t step, uint32_t place, double mass,
-                             struct vec3 velocity);
+  /* Adds virtual particles to the cell at this place in sum. */
+  void (*add_virtual)(const struct model *model, struct mpc *mpc, uint64_t step, uint32_t place,
+                      const struct virtual_members *members);
+
+  /* The momentum that they gain in the collision, m a0/t0, once `turn` is set; `scaled` as in apply. The other members
+   * of the cell lose as much. */
+  struct vec3 (*virtual_gain)(const struct model *model, const struct mpc *mpc, uint64_t step, uint32_t place,
+                              const struct virtual_members *members, bool scaled);
 
   /* Sets `turn` of every cell from its sum, with factor 1. */
   void (*solve)(const struct model *model, struct mpc *mpc, uint64_t step);

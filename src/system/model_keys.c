@@ -8,6 +8,9 @@
 static const char *const scheme_words[] = {"paper", "kick-split", "drift-split", NULL};
 static const char *const rule_words[] = {"srd", "at-a", NULL};
 static const char *const thermostat_words[] = {"none", "rescale", "maxwell-boltzmann", NULL};
+static const char *const profile_words[] = {"uniform", "sine", "reverse", NULL};
+static const char *const wall_words[] = {"no-slip", "slip", NULL};
+static const char *const fill_words[] = {"planar", "paper", "none", NULL};
 static const char *const bath_words[] = {"particles", "phantoms", NULL};
 static const char *const exclusion_words[] = {"shared-vertex", "paper", NULL};
 static const char *const crossing_words[] = {"sequential", "event-driven", NULL};
@@ -94,6 +97,13 @@ static const struct key solvent_keys[] = {
      .unit = "a0/t0^2",
      .symbol = "f/m",
      .first_format = true},
+    {.name = "profile",
+     .text = "Where the acceleration acts. `uniform`: everywhere. `sine`: sin(2 pi y/L) of it at y (Kolmogorov flow). "
+             "`reverse`: all of it below y = L/2, minus that above (two opposite Poiseuille flows).",
+     .type = KEY_CHOICE,
+     .absent = "uniform",
+     .choice = profile_words,
+     .offset = IN_MODEL(solvent.profile)},
 };
 static const struct key_table solvent_table = {"solvent", NULL, COUNT(solvent_keys), solvent_keys};
 
@@ -231,6 +241,101 @@ static const struct key fiber_keys[] = {
 static const struct key_table fiber_table = {"fibers", "A list, one item per kind of fiber.", COUNT(fiber_keys),
                                              fiber_keys};
 
+static const struct key wall_keys[] = {
+    {.name = "kind",
+     .text = "What happens to a particle that hits a wall. `no-slip`: its velocity relative to the wall is reversed, "
+             "and cells that the wall cuts hold virtual particles (`fill`). `slip`: only the velocity's y component is "
+             "reversed.",
+     .type = KEY_CHOICE,
+     .choice = wall_words,
+     .first = WALL_NO_SLIP,
+     .offset = IN_MODEL(walls.kind)},
+    {.name = "fill",
+     .text = "Virtual particles of a cell that a no-slip wall cuts. `planar`: a Poisson number, as if the solvent went "
+             "on beyond the wall. `paper`: `per_cell` less the members of the cell (Tao et al. 2008). `none`: none.",
+     .type = KEY_CHOICE,
+     .absent = "planar",
+     .choice = fill_words,
+     .offset = IN_MODEL(walls.fill)},
+    {.name = "lower",
+     .text = "Velocity of the wall at y = 0, without y component. With a `period`, its amplitude.",
+     .type = KEY_VECTOR,
+     .absent = "[0, 0, 0]",
+     .low = -100,
+     .high = 100,
+     .offset = IN_MODEL(walls.lower),
+     .unit = "a0/t0",
+     .symbol = "v_w"},
+    {.name = "upper",
+     .text = "The same of the wall at y = L.",
+     .type = KEY_VECTOR,
+     .absent = "[0, 0, 0]",
+     .low = -100,
+     .high = 100,
+     .offset = IN_MODEL(walls.upper),
+     .unit = "a0/t0",
+     .symbol = "v_w"},
+    {.name = "shear_rate",
+     .text = "Applied shear rate: sets `lower` and `upper` to -1/2 and 1/2 of it times L, along x.",
+     .type = KEY_NUMBER,
+     .optional = true,
+     .low = -10,
+     .high = 10,
+     .offset = IN_MODEL(walls.shear_rate),
+     .unit = "1/t0",
+     .excludes = "lower",
+     .derives = true},
+    {.name = "strain",
+     .text = "Amplitude of an oscillating strain: sets `shear_rate` to 2 pi/`period` of it.",
+     .type = KEY_NUMBER,
+     .optional = true,
+     .low = 0,
+     .high = 1000,
+     .offset = IN_MODEL(walls.strain),
+     .excludes = "shear_rate",
+     .derives = true},
+    {.name = "period",
+     .text = "Period of the walls' motion, cos(2 pi t/period): a whole number of collision intervals, 4 or more. 0: "
+             "they move at a constant velocity.",
+     .type = KEY_NUMBER,
+     .absent = "0",
+     .low = 0,
+     .high = 1e6,
+     .offset = IN_MODEL(walls.period),
+     .unit = "t0"},
+};
+static const struct key_table wall_table = {"walls", NULL, COUNT(wall_keys), wall_keys};
+
+static const struct key shear_keys[] = {
+    {.name = "rate",
+     .text = "Shear rate dv_x/dy. With a `period`, its amplitude.",
+     .type = KEY_NUMBER,
+     .optional = true,
+     .low = -10,
+     .high = 10,
+     .offset = IN_MODEL(shear.rate),
+     .unit = "1/t0"},
+    {.name = "strain",
+     .text = "Amplitude of an oscillating strain: sets `rate` to 2 pi/`period` of it.",
+     .type = KEY_NUMBER,
+     .optional = true,
+     .low = 0,
+     .high = 1000,
+     .offset = IN_MODEL(shear.strain),
+     .excludes = "rate",
+     .derives = true},
+    {.name = "period",
+     .text = "Period of the rate, cos(2 pi t/period): a whole number of collision intervals, 4 or more. 0: the rate is "
+             "constant.",
+     .type = KEY_NUMBER,
+     .absent = "0",
+     .low = 0,
+     .high = 1e6,
+     .offset = IN_MODEL(shear.period),
+     .unit = "t0"},
+};
+static const struct key_table shear_table = {"shear", NULL, COUNT(shear_keys), shear_keys};
+
 static const struct key crossing_keys[] = {
     {.name = "forbidden",
      .text = "false: fibers pass through each other.",
@@ -287,6 +392,16 @@ static const struct key top_keys[] = {
      .unit = "a0",
      .symbol = "L_b",
      .first_format = true},
+    {.name = "dimensions",
+     .text =
+         "2: everything moves in the plane of x and y. The box is then one cell thick, and fibers pass through each "
+         "other.",
+     .type = KEY_WHOLE32,
+     .absent = "3",
+     .least = 2,
+     .most = 3,
+     .offset = IN_MODEL(dimensions),
+     .symbol = "d"},
     {.name = "time_step",
      .text = "Step of the fibers' motion. `omega dt >= 2` for the fastest vibration of a fiber is an error, above 0.5 "
              "a warning.",
@@ -329,6 +444,16 @@ static const struct key top_keys[] = {
      .type = KEY_SECTION,
      .optional = true,
      .keys = &solvent_table},
+    {.name = "walls",
+     .text = "Walls at y = 0 and y = L; absent: none.",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &wall_table},
+    {.name = "shear",
+     .text = "A shear of the box, by images that slide along x (Lees and Edwards 1972); absent: none.",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &shear_table},
     {.name = "fibers",
      .text = "Kinds of fibers, each with keys of its own; absent: none.",
      .type = KEY_LIST,

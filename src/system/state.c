@@ -71,6 +71,7 @@ void state_solvent_slots(const struct state *s, uint32_t *slot)
 const struct state_number state_numbers[] = {
     {"step", 8, true, false, offsetof(struct state, step)},
     {"solvent_lag", 4, true, false, offsetof(struct state, solvent_lag)},
+    {"solvent_time", 8, false, true, offsetof(struct state, solvent_time)},
     {"moves", 8, false, false, offsetof(struct state, counts.moves)},
     {"possible", 8, false, false, offsetof(struct state, counts.possible)},
     {"executed", 8, false, false, offsetof(struct state, counts.executed)},

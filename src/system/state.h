@@ -41,14 +41,22 @@ struct collision_counts {
 };
 
 struct state {
-  uint64_t step;        /* steps made; time is step * dt */
-  uint32_t solvent_lag; /* half time steps since the solvent was last streamed */
+  uint64_t step;         /* steps made; time is step * dt */
+  uint32_t solvent_lag;  /* half time steps since the solvent was last streamed */
+  uint64_t solvent_time; /* half time steps to which it was streamed; with the lag, the time now */
   struct solvent solvent;
   uint32_t vertices;
   struct point *position; /* [vertices] lattice units, unwrapped */
   struct vec3 *velocity;  /* [vertices] a0/t0, of the half step ahead */
   struct collision_counts counts;
 };
+
+/* The solvent was streamed to now: there is no lag any more. */
+static inline void state_streamed(struct state *state)
+{
+  state->solvent_time += state->solvent_lag;
+  state->solvent_lag = 0;
+}
 
 /* Allocates a state for the model's particles and vertices, zeroed, with ids in order. False if memory is short. */
 bool state_alloc(struct state *state, const struct model *model);

@@ -54,11 +54,28 @@ static uint64_t add_vertices(const struct state *state, const struct model *mode
   return span;
 }
 
-static void add_random_solvent(const struct model *model, struct mpc *c, uint64_t step, uint32_t place, double mass,
-                               struct vec3 velocity)
+/* The mean of the velocities that n virtual particles draw has the variance of one member of mass n. */
+static struct vec3 draw_virtual(const struct model *model, const struct mpc *c, uint64_t step, uint32_t place, double n)
 {
-  const struct vec3 xi = draw(model->seed, RANDOM_ANDERSEN_PHANTOM, step, mpc_cell(c, place), mass);
-  cell_add(&c->sum[place], mass, cell_load(mass), vec3_sub(velocity, xi));
+  return draw(model->seed, RANDOM_ANDERSEN_PHANTOM, step, mpc_cell(c, place), n);
+}
+
+static void add_virtual(const struct model *model, struct mpc *c, uint64_t step, uint32_t place,
+                        const struct virtual_members *members)
+{
+  const struct vec3 xi = draw_virtual(model, c, step, place, members->n);
+  cell_add(&c->sum[place], members->n, cell_load(members->n), vec3_sub(members->velocity, xi));
+}
+
+static struct vec3 virtual_gain(const struct model *model, const struct mpc *c, uint64_t step, uint32_t place,
+                                const struct virtual_members *members, bool scaled)
+{
+  (void)scaled;
+  const struct cell_turn *t = &c->turn[place];
+  if (t->active == 0.0)
+    return (struct vec3){0, 0, 0};
+  const struct vec3 v = vec3_add(t->center, draw_virtual(model, c, step, place, members->n));
+  return vec3_scale(members->n, vec3_sub(v, members->velocity));
 }
 
 /* The centre is the mean of v - xi. */
@@ -105,7 +122,8 @@ const struct collision_rule at_a_rule = {.name = "at-a",
                                          .thermal = true,
                                          .add_particles = add_particles,
                                          .add_vertices = add_vertices,
-                                         .add_random_solvent = add_random_solvent,
+                                         .add_virtual = add_virtual,
+                                         .virtual_gain = virtual_gain,
                                          .solve = solve,
                                          .apply = apply,
                                          .velocity_loss = whole,

@@ -25,11 +25,23 @@ static uint64_t add_vertices(const struct state *state, const struct model *mode
   return span;
 }
 
-static void add_random_solvent(const struct model *model, struct mpc *c, uint64_t step, uint32_t place, double mass,
-                               struct vec3 velocity)
+static void add_virtual(const struct model *model, struct mpc *c, uint64_t step, uint32_t place,
+                        const struct virtual_members *members)
 {
   (void)model, (void)step;
-  cell_add(&c->sum[place], mass, cell_load(mass), velocity);
+  cell_add(&c->sum[place], members->n, cell_load(members->n), members->velocity);
+}
+
+static struct vec3 virtual_gain(const struct model *model, const struct mpc *c, uint64_t step, uint32_t place,
+                                const struct virtual_members *members, bool scaled)
+{
+  (void)step;
+  const struct cell_turn *t = &c->turn[place];
+  const struct solvent_model *rule = &model->solvent;
+  if (t->active == 0.0)
+    return (struct vec3){0, 0, 0};
+  const struct vec3 v = srd_apply(t, members->velocity, rule->cosine == 0.0, rule->cosine, rule->sine, scaled);
+  return vec3_scale(members->n, vec3_sub(v, members->velocity));
 }
 
 /* --- axes -------------------------------------------------------------------------------------------------------- */
@@ -190,7 +202,8 @@ static double handed_on(double cosine)
 const struct collision_rule srd_rule = {.name = "srd",
                                         .add_particles = add_particles,
                                         .add_vertices = add_vertices,
-                                        .add_random_solvent = add_random_solvent,
+                                        .add_virtual = add_virtual,
+                                        .virtual_gain = virtual_gain,
                                         .solve = solve,
                                         .apply = apply,
                                         .velocity_loss = velocity_loss,
