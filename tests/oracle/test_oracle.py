@@ -550,6 +550,18 @@ class OracleTest(unittest.TestCase):
         status, said = run("trace", scene)
         self.assertEqual((status, said.count(",collide,")), (0, 4))
 
+    def test_packs_of_other_boxes(self):
+        """Packs hold the operators of a periodic box in space; traces hold any box."""
+        for key in ("walls: {kind: no-slip}", "shear: {rate: 0.1}"):
+            scene, pack = self.dir / "flow.yaml", self.dir / "flow.h5"
+            scene.write_text("box: [4, 4, 4]\ntime_step: 0.02\nsteps: 4\n"
+                             f"solvent: {{per_cell: 5, collision_interval: 0.02}}\n{key}\n")
+            status, said = run("emit", scene, "-o", pack)
+            self.assertEqual((status, pack.exists()), (2, False))
+            self.assertIn("periodic box", said)
+            status, said = run("trace", scene)
+            self.assertEqual((status, said.count(",collide,")), (0, 4))
+
     def test_other_rules_of_refusal(self):
         """Packs hold the paper's sweeps only; traces hold any."""
         for rule in ("refusal: bounce", "frame: flow"):
