@@ -40,7 +40,8 @@ struct mpc {
   uint32_t *occupied;     /* [vertices] numbers of the cells that hold a vertex; random solvent only, else NULL */
   uint32_t *table;        /* [2^table_bits] hash table: 1 + place in occupied, or 0; random solvent only, else NULL */
   uint32_t table_bits;
-  uint32_t *order;           /* [particles] sorting and velocity swap */
+  uint32_t *order;           /* [particles] sorting and velocity swap; in a collision, who entered (border.h) */
+  uint32_t entered;          /* particles that did */
   uint32_t *slot;            /* [particles] velocity swap only, else NULL */
   int64_t *column;           /* [particles] one column while it is permuted */
   double *drawn[3];          /* [particles] velocities that a thermal rule has drawn, else NULL */
