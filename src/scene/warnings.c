@@ -69,7 +69,7 @@ static void warn_solvent(struct teller *t, const struct model *m)
 /* A flow faster than a tenth of the speed of sound: Padding 2009, Sec. IV B. */
 static void warn_flow(struct teller *t, const struct model *m)
 {
-  const double mach = theory_mach(vec3_norm(m->flow), theory_sound_speed(model_is_isothermal(m)));
+  const double mach = theory_mach(vec3_norm(m->flow), theory_sound_speed(model_is_isothermal(m), m->dimensions));
   if (model_has_solvent(m) && mach > 0.1)
     warn(t, "the flow's Mach number is %.3g > 0.1 (harmless while it is uniform: paper, Sec. V B 1)", mach);
 }

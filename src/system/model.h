@@ -23,7 +23,7 @@ enum scheme { SCHEME_PAPER, SCHEME_KICK_SPLIT, SCHEME_DRIFT_SPLIT, SCHEMES };
 enum thermostat_kind { THERMOSTAT_NONE, THERMOSTAT_RESCALE, THERMOSTAT_MAXWELL_BOLTZMANN, THERMOSTATS };
 
 /* What happens in a collision cell: see mpc/rule.h. */
-enum rule { RULE_SRD, RULE_AT_A, RULES };
+enum rule { RULE_SRD, RULE_AT_A, RULE_AT_PLUS_A, RULES };
 
 /* What vertices collide with. */
 enum bath {
@@ -240,7 +240,7 @@ static inline struct vec3 model_frame_velocity(const struct model *model)
 /* The collision rule draws velocities anew: it is a thermostat by itself (thermal, in mpc/rule.h). */
 static inline bool model_rule_is_thermal(const struct model *model)
 {
-  return model->solvent.rule == RULE_AT_A;
+  return model->solvent.rule == RULE_AT_A || model->solvent.rule == RULE_AT_PLUS_A;
 }
 
 /* Something holds kT = 1: the rule, or a thermostat. */

@@ -6,7 +6,7 @@
 #define IN_KIND(member) offsetof(struct fiber_kind, member)
 
 static const char *const scheme_words[] = {"paper", "kick-split", "drift-split", NULL};
-static const char *const rule_words[] = {"srd", "at-a", NULL};
+static const char *const rule_words[] = {"srd", "at-a", "at+a", NULL};
 static const char *const thermostat_words[] = {"none", "rescale", "maxwell-boltzmann", NULL};
 static const char *const profile_words[] = {"uniform", "sine", "reverse", NULL};
 static const char *const wall_words[] = {"no-slip", "slip", NULL};
@@ -55,8 +55,8 @@ static const struct key solvent_keys[] = {
     {.name = "rule",
      .text = "What happens in a collision cell. `srd`: velocities relative to the cell's centre of mass are turned "
              "about a random axis. `at-a`: they are drawn anew from the Maxwell distribution, with the cell's momentum "
-             "kept (Andersen thermostat without angular momentum; Noguchi et al. 2007); a thermostat by itself, and "
-             "`rotation_angle` has no meaning.",
+             "kept (Andersen thermostat without angular momentum; Noguchi et al. 2007). `at+a`: the same with the cell's "
+             "angular momentum kept too. Both are thermostats by themselves, and `rotation_angle` has no meaning.",
      .type = KEY_CHOICE,
      .absent = "srd",
      .choice = rule_words,

@@ -21,22 +21,22 @@ static void viscosity(void **unused)
 {
   (void)unused;
   close_to(theory_partners(5.0), 4.006737946999085, 1e-14);
-  close_to(theory_viscosity_kinetic(&srd_rule, 5.0, 0.0, 0.02), 0.053991, 1e-5);
-  close_to(theory_viscosity_collisional(&srd_rule, 5.0, 0.0, 0.02), 11.129828, 1e-7);
-  close_to(theory_viscosity(&srd_rule, 5.0, 0.0, 0.02), 11.183819, 1e-7);
-  close_to(theory_viscosity(&srd_rule, 5.0, 0.0, 0.1) / 5.0, 0.4992, 1e-4);
-  close_to(theory_viscosity(&srd_rule, 5.0, 0.0, 0.5) / 5.0, 0.3590, 1e-4);
-  close_to(theory_viscosity(&srd_rule, 10.0, cos(130.0 * acos(-1.0) / 180.0), 0.1) / 10.0, 0.8700, 1e-4);
+  close_to(theory_viscosity_kinetic(&srd_rule, 3, 5.0, 0.0, 0.02), 0.053991, 1e-5);
+  close_to(theory_viscosity_collisional(&srd_rule, 3, 5.0, 0.0, 0.02), 11.129828, 1e-7);
+  close_to(theory_viscosity(&srd_rule, 3, 5.0, 0.0, 0.02), 11.183819, 1e-7);
+  close_to(theory_viscosity(&srd_rule, 3, 5.0, 0.0, 0.1) / 5.0, 0.4992, 1e-4);
+  close_to(theory_viscosity(&srd_rule, 3, 5.0, 0.0, 0.5) / 5.0, 0.3590, 1e-4);
+  close_to(theory_viscosity(&srd_rule, 3, 10.0, cos(130.0 * acos(-1.0) / 180.0), 0.1) / 10.0, 0.8700, 1e-4);
 }
 
 /* D = dt*(3*g/(2*(1-c)*P)-.5); Sc = nu/D; c_s = sqrt(5/3) */
 static void solvent(void **unused)
 {
   (void)unused;
-  close_to(theory_solvent_diffusion(&srd_rule, 5.0, 0.0, 0.02), 0.027437, 2e-5);
-  close_to(theory_schmidt(&srd_rule, 5.0, 0.0, 0.02), 81.5, 1e-3);
-  close_to(theory_sound_speed(false), 1.2909944487358056, 1e-14);
-  assert_true(theory_sound_speed(true) == 1.0);
+  close_to(theory_solvent_diffusion(&srd_rule, 3, 5.0, 0.0, 0.02), 0.027437, 2e-5);
+  close_to(theory_schmidt(&srd_rule, 3, 5.0, 0.0, 0.02), 81.5, 1e-3);
+  close_to(theory_sound_speed(false, 3), 1.2909944487358056, 1e-14);
+  assert_true(theory_sound_speed(true, 3) == 1.0);
   assert_true(theory_mean_free_path(0.02) == 0.02);
 }
 
@@ -46,12 +46,12 @@ static void solvent(void **unused)
 static void andersen(void **unused)
 {
   (void)unused;
-  close_to(theory_viscosity_kinetic(&at_a_rule, 5.0, 0.0, 0.1), 0.373948966234, 1e-11);
-  close_to(theory_viscosity_collisional(&at_a_rule, 5.0, 0.0, 0.1), 3.338948289166, 1e-11);
-  close_to(theory_solvent_diffusion(&at_a_rule, 5.0, 0.0, 0.1), 0.0747897932468, 1e-11);
-  close_to(theory_viscosity_kinetic(&at_a_rule, 10.0, 0.0, 0.02), 0.122221101242, 1e-11);
-  close_to(theory_viscosity_collisional(&at_a_rule, 10.0, 0.0, 0.02), 37.500189166374, 1e-11);
-  close_to(theory_solvent_diffusion(&at_a_rule, 10.0, 0.0, 0.02), 0.0122221101242, 1e-11);
+  close_to(theory_viscosity_kinetic(&at_a_rule, 3, 5.0, 0.0, 0.1), 0.373948966234, 1e-11);
+  close_to(theory_viscosity_collisional(&at_a_rule, 3, 5.0, 0.0, 0.1), 3.338948289166, 1e-11);
+  close_to(theory_solvent_diffusion(&at_a_rule, 3, 5.0, 0.0, 0.1), 0.0747897932468, 1e-11);
+  close_to(theory_viscosity_kinetic(&at_a_rule, 3, 10.0, 0.0, 0.02), 0.122221101242, 1e-11);
+  close_to(theory_viscosity_collisional(&at_a_rule, 3, 10.0, 0.0, 0.02), 37.500189166374, 1e-11);
+  close_to(theory_solvent_diffusion(&at_a_rule, 3, 10.0, 0.0, 0.02), 0.0122221101242, 1e-11);
 }
 
 static void vertex(void **unused)
@@ -66,9 +66,9 @@ static void vertex(void **unused)
   };
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     double cosine = rows[i].angle == 90 ? 0.0 : cos(rows[i].angle * acos(-1.0) / 180.0);
-    assert_close(theory_vertex_retention(&srd_rule, rows[i].mass, rows[i].gamma, cosine), rows[i].retention, 6e-7);
+    assert_close(theory_vertex_retention(&srd_rule, 3, rows[i].mass, rows[i].gamma, cosine), rows[i].retention, 6e-7);
   }
-  close_to(theory_vertex_diffusion(&srd_rule, 5.0, 5.0, 0.0, 0.02), 0.01066200, 5e-7);
+  close_to(theory_vertex_diffusion(&srd_rule, 3, 5.0, 5.0, 0.0, 0.02), 0.01066200, 5e-7);
   close_to(theory_hydrodynamic_radius(11.183819, 0.015812), 0.3, 1e-4);
   close_to(theory_hydrodynamic_radius(11.183819, 0.01066200), 0.445, 1e-3);
 }
@@ -79,8 +79,8 @@ static void vertex_of_mass_1_is_solvent(void **unused)
 {
   (void)unused;
   for (double gamma = 0.5; gamma < 60.0; gamma *= 2.0)
-    close_to(theory_vertex_diffusion(&srd_rule, 1.0, gamma, -0.3, 0.1),
-             theory_solvent_diffusion(&srd_rule, gamma, -0.3, 0.1), 1e-12);
+    close_to(theory_vertex_diffusion(&srd_rule, 3, 1.0, gamma, -0.3, 0.1),
+             theory_solvent_diffusion(&srd_rule, 3, gamma, -0.3, 0.1), 1e-12);
 }
 
 /* L = 32, lp = 32: xi = sqrt(3*32*32/cL3); x = xi/32;
@@ -123,7 +123,7 @@ static void flow(void **unused)
 {
   (void)unused;
   close_to(theory_relative_persistence(64.0, 32.0), 2.0, 1e-15);
-  close_to(theory_mach(0.54, theory_sound_speed(false)), 0.418, 1e-3);
+  close_to(theory_mach(0.54, theory_sound_speed(false, 3)), 0.418, 1e-3);
   close_to(theory_reynolds(0.54, 32.0, 2.236764), 7.72544, 1e-5);
   close_to(theory_peclet(0.54, 32.0, 0.001275), 13552.94, 1e-5);
 }

@@ -6,40 +6,20 @@
  * xi_i normal deviates of variance kT/m_i. So v_i' = xi_i + sum_j m_j (v_j - xi_j) / sum_j m_j: the sum of v - xi is
  * all that a cell needs, and one fixed-point sum keeps momentum whatever the order of the members.
  */
-#include "base/normal.h"
-#include "mpc/cell.h"
-#include "mpc/members.h"
 #include "mpc/rule.h"
-
-enum { BLOCK = 256 }; /* particles worked on at a time */
+#include "mpc/rules/andersen.h"
 
 static uint64_t add_particles(const struct state *state, const struct model *model, struct mpc *c, uint64_t step,
                               uint32_t first, uint32_t n)
 {
-  const struct solvent *s = &state->solvent;
   uint64_t span = 0;
-  for (uint32_t i = first; i < first + n; i += BLOCK) {
-    const uint32_t m = first + n - i < BLOCK ? first + n - i : BLOCK;
-    double *restrict x = &c->drawn[0][i], *restrict y = &c->drawn[1][i], *restrict z = &c->drawn[2][i];
-    const double *restrict vx = &s->vx[i], *restrict vy = &s->vy[i], *restrict vz = &s->vz[i];
-    double ux[BLOCK], uy[BLOCK], uz[BLOCK];
-    random_normal_columns(model->seed, RANDOM_ANDERSEN_PARTICLE, step, &s->id[i], m, x, y, z);
-    for (uint32_t k = 0; k < m; k++) {
-      ux[k] = vx[k] - x[k];
-      uy[k] = vy[k] - y[k];
-      uz[k] = vz[k] - z[k];
-    }
-    span |= members_add(c, i, m, ux, uy, uz);
+  for (uint32_t i = first; i < first + n; i += ANDERSEN_BLOCK) {
+    const uint32_t m = first + n - i < ANDERSEN_BLOCK ? first + n - i : ANDERSEN_BLOCK;
+    struct andersen_change u;
+    andersen_draw_block(&state->solvent, model, c, step, i, m, &u);
+    span |= members_add(c, i, m, u.x, u.y, u.z);
   }
   return span;
-}
-
-/* A velocity from the Maxwell distribution of this mass. */
-static struct vec3 draw(uint64_t seed, enum random_purpose purpose, uint64_t step, uint32_t entity, double mass)
-{
-  double x, y, z;
-  random_normal_columns(seed, purpose, step, &entity, 1, &x, &y, &z);
-  return vec3_scale(1.0 / sqrt(mass), (struct vec3){x, y, z});
 }
 
 static uint64_t add_vertices(const struct state *state, const struct model *model, struct mpc *c, uint64_t step)
@@ -47,7 +27,7 @@ static uint64_t add_vertices(const struct state *state, const struct model *mode
   uint64_t span = 0;
   for (uint32_t v = 0; v < state->vertices; v++) {
     const double mass = model->mass[v];
-    c->drawn_vertex[v] = draw(model->seed, RANDOM_ANDERSEN_VERTEX, step, v, mass);
+    c->drawn_vertex[v] = andersen_draw(model, RANDOM_ANDERSEN_VERTEX, step, v, mass);
     span |=
         cell_add(&c->sum[c->vertex_cell[v]], mass, cell_load(mass), vec3_sub(state->velocity[v], c->drawn_vertex[v]));
   }
@@ -57,7 +37,7 @@ static uint64_t add_vertices(const struct state *state, const struct model *mode
 /* The mean of the velocities that n virtual particles draw has the variance of one member of mass n. */
 static struct vec3 draw_virtual(const struct model *model, const struct mpc *c, uint64_t step, uint32_t place, double n)
 {
-  return draw(model->seed, RANDOM_ANDERSEN_PHANTOM, step, mpc_cell(c, place), n);
+  return andersen_draw(model, RANDOM_ANDERSEN_PHANTOM, step, mpc_cell(c, place), n);
 }
 
 static void add_virtual(const struct model *model, struct mpc *c, uint64_t step, uint32_t place,
@@ -105,17 +85,23 @@ static void apply(struct state *state, const struct model *model, const struct m
   }
 }
 
-/* A member keeps V only: of its own velocity and stress nothing is left. */
-static double whole(double cosine)
+/* A member keeps its share of V only. */
+static double velocity_loss(double cosine, uint32_t d, double mass, uint32_t others)
 {
-  (void)cosine;
-  return 1.0;
+  (void)cosine, (void)d;
+  return others / (mass + others);
 }
 
-static double handed_on(double cosine)
+static double stress_loss(double cosine, uint32_t d, double n)
 {
-  (void)cosine;
-  return 1.0 / 12.0;
+  (void)cosine, (void)d;
+  return rule_partners(n) / n;
+}
+
+static double handed_on(double cosine, uint32_t d, double n)
+{
+  (void)cosine, (void)d;
+  return rule_partners(n) / 12.0;
 }
 
 const struct collision_rule at_a_rule = {.name = "at-a",
@@ -126,6 +112,6 @@ const struct collision_rule at_a_rule = {.name = "at-a",
                                          .virtual_gain = virtual_gain,
                                          .solve = solve,
                                          .apply = apply,
-                                         .velocity_loss = whole,
-                                         .stress_loss = whole,
+                                         .velocity_loss = velocity_loss,
+                                         .stress_loss = stress_loss,
                                          .handed_on = handed_on};

@@ -183,20 +183,23 @@ static void apply(struct state *state, const struct model *model, const struct m
 
 /* --- molecular chaos --------------------------------------------------------------------------------------------- */
 
-static double velocity_loss(double cosine)
+/* In space a third of a velocity is along the axis, and is not turned; in a plane nothing is. */
+static double velocity_loss(double cosine, uint32_t d, double mass, uint32_t others)
 {
-  return 2.0 / 3.0 * (1.0 - cosine);
+  return (d == 2 ? 1.0 : 2.0 / 3.0) * (1.0 - cosine) * others / (mass + others);
 }
 
-/* cos 2 alpha = 2 cos^2 alpha - 1 */
-static double stress_loss(double cosine)
+/* cos 2 alpha = 2 cos^2 alpha - 1. Padding 2009, Eq. (30); in a plane the stress is turned by 2 alpha. */
+static double stress_loss(double cosine, uint32_t d, double n)
 {
-  return (4.0 - 2.0 * cosine - 2.0 * (2.0 * cosine * cosine - 1.0)) / 5.0;
+  const double twice = 2.0 * cosine * cosine - 1.0;
+  return (d == 2 ? 1.0 - twice : (4.0 - 2.0 * cosine - 2.0 * twice) / 5.0) * rule_partners(n) / n;
 }
 
-static double handed_on(double cosine)
+/* Padding 2009, Eq. (31). */
+static double handed_on(double cosine, uint32_t d, double n)
 {
-  return (1.0 - cosine) / 18.0;
+  return (1.0 - cosine) / (d == 2 ? 12.0 : 18.0) * rule_partners(n);
 }
 
 const struct collision_rule srd_rule = {.name = "srd",
