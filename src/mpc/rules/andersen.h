@@ -19,7 +19,7 @@ static inline struct vec3 andersen_draw(const struct model *model, enum random_p
   return vec3_scale(1.0 / sqrt(mass), (struct vec3){x, y, model->dimensions == 2 ? 0.0 : z});
 }
 
-/* v - xi of a block of particles, a column for each component, a0/t0. */
+/* Velocities of a block of particles, or v - xi, a column for each component, a0/t0. */
 struct andersen_change {
   double x[ANDERSEN_BLOCK], y[ANDERSEN_BLOCK], z[ANDERSEN_BLOCK];
 };

@@ -66,18 +66,31 @@ static void solve(const struct model *model, struct mpc *c, uint64_t step)
     cell_solve(&c->sum[k], &c->turn[k]);
 }
 
+/* New velocities are written to columns of their own first, not over the old ones: the loop may then vectorise. */
+static void apply_block(struct solvent *s, const struct mpc *c, uint32_t first, uint32_t n)
+{
+  const uint32_t *cell = &c->solvent_cell[first];
+  const double *vx = &s->vx[first], *vy = &s->vy[first], *vz = &s->vz[first];
+  const double *dx = &c->drawn[0][first], *dy = &c->drawn[1][first], *dz = &c->drawn[2][first];
+  struct andersen_change new;
+  for (uint32_t k = 0; k < n; k++) {
+    const struct cell_turn *t = &c->turn[cell[k]];
+    const bool active = t->active != 0.0;
+    new.x[k] = active ? t->center.x + dx[k] : vx[k];
+    new.y[k] = active ? t->center.y + dy[k] : vy[k];
+    new.z[k] = active ? t->center.z + dz[k] : vz[k];
+  }
+  memcpy(&s->vx[first], new.x, n * sizeof *new.x);
+  memcpy(&s->vy[first], new.y, n * sizeof *new.y);
+  memcpy(&s->vz[first], new.z, n * sizeof *new.z);
+}
+
 static void apply(struct state *state, const struct model *model, const struct mpc *c, bool scaled)
 {
   (void)model, (void)scaled; /* it is a thermostat by itself */
-  struct solvent *s = &state->solvent;
-  const double *const drawn[3] = {c->drawn[0], c->drawn[1], c->drawn[2]};
-  for (uint32_t i = 0; i < s->n; i++) {
-    const struct cell_turn *t = &c->turn[c->solvent_cell[i]];
-    const bool active = t->active != 0.0;
-    s->vx[i] = active ? t->center.x + drawn[0][i] : s->vx[i];
-    s->vy[i] = active ? t->center.y + drawn[1][i] : s->vy[i];
-    s->vz[i] = active ? t->center.z + drawn[2][i] : s->vz[i];
-  }
+  const uint32_t n = state->solvent.n;
+  for (uint32_t i = 0; i < n; i += ANDERSEN_BLOCK)
+    apply_block(&state->solvent, c, i, n - i < ANDERSEN_BLOCK ? n - i : ANDERSEN_BLOCK);
   for (uint32_t v = 0; v < state->vertices; v++) {
     const struct cell_turn *t = &c->turn[c->vertex_cell[v]];
     if (t->active != 0.0)

@@ -16,17 +16,22 @@ static double rotations(uint32_t d, uint32_t members)
   return members < 2 ? 0.0 : members == 2 ? line : all;
 }
 
-/* The squares of what each member has of the d + rotations rigid motions add up to their number. Of a translation it
- * is the share of the mass; of a rotation the share of the moment of inertia, estimated by the means of the squared
- * distances from the centre of mass. Both shares are 1/N where masses are equal. */
+/*
+ * What members keep of their own velocities adds up to the number of rigid motions, over d; members of equal mass have
+ * equal shares. Another mass has its share of the mass in a translation. In a rotation about an axis across the line
+ * to the others' centre it has its share of the moment of inertia, estimated by the means of squared distances, and in
+ * one about the line none.
+ */
 double at_plus_a_velocity_loss(double cosine, uint32_t d, double mass, uint32_t others)
 {
   (void)cosine;
-  const double n = others, all = mass + n;
+  const double n = others, all = mass + n, axes = d - 1.0;
   if (others == 0)
     return 0.0;
-  const double apart = mass * n / all * (1.0 + 1.0 / n); /* of the member and the centre of the others */
-  return 1.0 - mass / all - rotations(d, others + 1) / d * apart * n / all / (n - 1.0 + apart);
+  if (mass == 1.0)
+    return 1.0 - (d + rotations(d, others + 1)) / (d * all);
+  const double apart = mass * n / all * (1.0 + 1.0 / n), rest = (d == 2 ? 1.0 : 2.0 / 3.0) * (n - 1.0);
+  return 1.0 - mass / all - axes / d * apart * n / all / (apart + rest);
 }
 
 enum { TABLE = 8 };
