@@ -92,20 +92,20 @@ static void report_vertex(const struct si_scale *si, const struct model *m, cons
             theory_vertex_retention(collision_rule_of(m), m->dimensions, k->mass, gamma, cosine), "", "");
   sheet_row(si, "  vertex diffusion, without HI", "D_0", d0, "a0^2/t0", "");
   sheet_row(si, "  vertex friction, without HI", "kT/D_0", 1.0 / d0, "m/t0", "");
-  if (model_has_solvent(m))
+  if (model_has_solvent(m) && !model_is_flat(m))
     sheet_row(si, "  hydrodynamic radius, from D_0 alone", "a_h", theory_hydrodynamic_radius(units_viscosity(m), d0),
               "a0", "with HI: 0.25 to 0.3");
   if (k->bending == 0.0 && k->bond_length == 0.0 && !k->ring && k->vertices > 1)
     sheet_row(si, "  slowest Rouse mode, without HI", "tau_1", theory_rouse_time(k, 1.0 / d0), "t0", "");
 }
 
-static void report_statics(const struct si_scale *si, const struct fiber_kind *k)
+static void report_statics(const struct si_scale *si, const struct model *m, const struct fiber_kind *k)
 {
   const double mean = fiber_mean_bond(k);
   sheet_row(si, "  mean bond length", "<l>", mean, "a0", "");
   sheet_row(si, "  contour length", "", fiber_contour(k), "a0", "bonds <l>");
   if (k->bending > 0.0) {
-    sheet_row(si, "  mean cosine of a bend", "<cos>", theory_bend_cosine(k->bending), "", "");
+    sheet_row(si, "  mean cosine of a bend", "<cos>", theory_bend_cosine(k->bending, m->dimensions), "", "");
     sheet_row(si, "  effective persistence length", "", theory_effective_persistence(k), "a0", "-<l>/ln<cos>");
   }
   if (!k->ring)
@@ -175,8 +175,10 @@ static void report_kind(const struct si_scale *si, const struct model *m, const 
     report_vertex(si, m, k);
   if (k->vertices < 2)
     return;
-  report_statics(si, k);
+  report_statics(si, m, k);
   report_frequencies(si, m, k);
+  if (model_is_flat(m))
+    return; /* what follows is of fibers in space */
   if (model_has_solvent(m))
     report_dilute(si, m, k);
   report_table_2(si, m, k, mesh);

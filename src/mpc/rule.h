@@ -67,6 +67,13 @@ struct collision_rule {
 
 extern const struct collision_rule srd_rule, at_a_rule, at_plus_a_rule;
 
+/* The mean velocity of virtual members, a0/t0; in a plane without what was drawn along z. */
+static inline struct vec3 rule_virtual_velocity(const struct model *model, const struct virtual_members *members)
+{
+  const struct vec3 v = members->velocity;
+  return (struct vec3){v.x, v.y, model_is_flat(model) ? 0.0 : v.z};
+}
+
 /* P_n = n - 1 + exp(-n): mean of the members but one over the cells that have any, their number Poisson of mean n. */
 double rule_partners(double n);
 

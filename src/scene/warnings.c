@@ -105,7 +105,7 @@ static double bonds_beyond(const struct scene *scene, const struct fiber_kind *k
 /* The paper's boxes are as long as its fibers, and eight times as long as R_e of its chains (Sec. V). */
 static void warn_images(struct teller *t, const struct model *m, const struct fiber_kind *k)
 {
-  const double edge = box_shortest_edge(&m->box), reach = theory_reach(k);
+  const double edge = 2.0 * model_longest_bond(m), reach = theory_reach(k);
   if (reach <= edge * (1.0 + 1e-9) || !(m->crossing.forbidden || model_has_solvent(m)))
     return;
   if (reach > LATTICE_MAX_EDGE)
@@ -127,7 +127,7 @@ static void warn_images(struct teller *t, const struct model *m, const struct fi
 static void warn_long_bonds(struct teller *t, const struct scene *scene, const struct fiber_kind *k)
 {
   const struct model *m = &scene->model;
-  const double limit = 0.5 * box_shortest_edge(&m->box);
+  const double limit = model_longest_bond(m);
   const double expected = bonds_beyond(scene, k, limit);
   if (!(expected > MOST_LONG_BONDS))
     return;
@@ -188,7 +188,7 @@ static void warn_heating(struct teller *t, const struct scene *scene)
   const double each =
       m->crossing.rule == CROSSING_SEQUENTIAL ? 0.7 * phase * phase : 0.09 * phase * phase * phase * phase;
   const double heat = each * theory_executed_rate(m) * time;
-  const double rise = heat / (1.5 * m->solvent.particles + 3.0 * m->vertices);
+  const double rise = heat / (m->dimensions * (0.5 * m->solvent.particles + m->vertices));
   const double order = m->crossing.rule == CROSSING_SEQUENTIAL ? 2.0 : 4.0; /* of the heat, in the time step */
   if (rise > MOST_RISE)
     warn(t,

@@ -162,7 +162,8 @@ double theory_bond_square(const struct fiber_kind *kind)
 {
   double moment[5];
   bond_moments(kind, 0.0, moment);
-  return moment[4] / moment[2] / kind->spring;
+  const int weight = kind->dimensions == 2 ? 1 : 2; /* p(l) ~ l^weight exp(-k (l-l0)^2/2) */
+  return moment[weight + 2] / moment[weight] / kind->spring;
 }
 
 double theory_bond_tail(const struct fiber_kind *kind, double limit)
@@ -170,11 +171,25 @@ double theory_bond_tail(const struct fiber_kind *kind, double limit)
   double all[5], beyond[5];
   bond_moments(kind, 0.0, all);
   bond_moments(kind, limit * sqrt(kind->spring), beyond);
-  return beyond[2] / all[2];
+  const int weight = kind->dimensions == 2 ? 1 : 2;
+  return beyond[weight] / all[weight];
 }
 
-double theory_bend_cosine(double bending)
+/* I_1/I_0 by its continued fraction, x/(2 + x^2/(4 + x^2/(6 + ...))), from far enough on that the rest is lost. */
+static double bessel_ratio(double x)
 {
+  double ratio = 0.0;
+  if (x > 1e4)
+    return 1.0 - 0.5 / x - 0.125 / (x * x) - 0.125 / (x * x * x);
+  for (double k = 40.0 + 2.0 * ceil(x); k >= 1.0; k--)
+    ratio = x / (2.0 * k + x * ratio);
+  return ratio;
+}
+
+double theory_bend_cosine(double bending, uint32_t d)
+{
+  if (d == 2)
+    return bessel_ratio(bending);
   return bending < 1e-3 ? bending / 3.0 : 1.0 / tanh(bending) - 1.0 / bending;
 }
 
@@ -190,14 +205,14 @@ double theory_persistence(const struct fiber_kind *kind)
 
 double theory_effective_persistence(const struct fiber_kind *kind)
 {
-  return kind->bending > 0.0 ? -fiber_mean_bond(kind) / log(theory_bend_cosine(kind->bending)) : 0.0;
+  return kind->bending > 0.0 ? -fiber_mean_bond(kind) / log(theory_bend_cosine(kind->bending, kind->dimensions)) : 0.0;
 }
 
 /* sum_ij <R_i.R_j> over bonds, whose lengths and directions are independent: (n) <l^2> + 2 <l>^2 sum_d (n-d) <cos>^d.
  */
 double theory_end_to_end_square(const struct fiber_kind *kind)
 {
-  const double mean = fiber_mean_bond(kind), cosine = theory_bend_cosine(kind->bending);
+  const double mean = fiber_mean_bond(kind), cosine = theory_bend_cosine(kind->bending, kind->dimensions);
   const uint32_t n = kind->ring ? kind->vertices : kind->vertices - 1;
   double sum = 0.0, power = cosine;
   for (uint32_t d = 1; d < n && power > 1e-17; d++) {

@@ -109,8 +109,9 @@ double theory_bond_square(const struct fiber_kind *kind);
 /* Chance that a bond in equilibrium is longer than `limit`. */
 double theory_bond_tail(const struct fiber_kind *kind, double limit);
 
-/* <cos theta> = coth kappa - 1/kappa between successive bonds in equilibrium. */
-double theory_bend_cosine(double bending);
+/* <cos theta> between successive bonds in equilibrium: coth kappa - 1/kappa; in a plane, d = 2, I_1(kappa)/I_0(kappa).
+ */
+double theory_bend_cosine(double bending, uint32_t d);
 
 /* L as the paper counts it: N_v l0; the contour length where l0 = 0. */
 double theory_length(const struct fiber_kind *kind);

@@ -44,7 +44,7 @@ static void add_virtual(const struct model *model, struct mpc *c, uint64_t step,
                         const struct virtual_members *members)
 {
   const struct vec3 xi = draw_virtual(model, c, step, place, members->n);
-  cell_add(&c->sum[place], members->n, cell_load(members->n), vec3_sub(members->velocity, xi));
+  cell_add(&c->sum[place], members->n, cell_load(members->n), vec3_sub(rule_virtual_velocity(model, members), xi));
 }
 
 static struct vec3 virtual_gain(const struct model *model, const struct mpc *c, uint64_t step, uint32_t place,
@@ -55,7 +55,7 @@ static struct vec3 virtual_gain(const struct model *model, const struct mpc *c, 
   if (t->active == 0.0)
     return (struct vec3){0, 0, 0};
   const struct vec3 v = vec3_add(t->center, draw_virtual(model, c, step, place, members->n));
-  return vec3_scale(members->n, vec3_sub(v, members->velocity));
+  return vec3_scale(members->n, vec3_sub(v, rule_virtual_velocity(model, members)));
 }
 
 /* The centre is the mean of v - xi. */

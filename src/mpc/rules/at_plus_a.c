@@ -73,7 +73,7 @@ static struct virtual_one draw_virtual(const struct model *model, const struct m
                                        uint32_t number, const struct virtual_members *members)
 {
   const uint32_t cell = mpc_cell(c, place);
-  const bool flat = model->dimensions == 2;
+  const bool flat = model_is_flat(model);
   const struct random_words xz = random_at(model->seed, RANDOM_SPIN_PLACE, 2 * number, step, cell);
   const struct random_words y = random_at(model->seed, RANDOM_SPIN_PLACE, 2 * number + 1, step, cell);
   double a[2], b[2];
