@@ -51,6 +51,8 @@ struct mpc {
   int64_t *column;           /* [particles] one column while it is permuted */
   double *drawn[3];          /* [particles] velocities that a thermal rule has drawn, else NULL */
   struct vec3 *drawn_vertex; /* [vertices] the same */
+  struct cell_spin *spin;    /* [cells] sums of a rule with angular momentum (rules/spin.h), else NULL */
+  struct point *middle;      /* [cells] of the same rule: place in the cell next to its centre of mass, lattice units */
   uint32_t since_sort;       /* collisions since particles were last sorted by cell */
 };
 

@@ -28,7 +28,7 @@ double cell_freedoms(const struct mpc *c, const struct model *model, uint32_t pl
          (members - 1.0 - (cell_mass(sum) - n) / cell_mass(sum)); /* the virtual ones are one member */
 }
 
-/* One factor for all cells: a cell of N members has 3 (N-1) degrees of freedom with kT/2 each
+/* One factor for all cells: a cell of N members has d (N-1) degrees of freedom with kT/2 each
  * (Padding 2009, step 4: "rescale velocities relative to center-of-mass velocity"). */
 static void rescale(struct mpc *c, const struct model *model, uint64_t step)
 {
@@ -53,7 +53,7 @@ static double whole_energy(const struct mpc *c, const struct model *model, uint3
   return v.n == 0.0 ? energy : energy + cell_energy(&c->turn[place], v.n, v.velocity);
 }
 
-/* Canonical: each cell's relative kinetic energy is drawn afresh from its Gamma distribution of 3 (N-1) degrees of
+/* Canonical: each cell's relative kinetic energy is drawn afresh from its Gamma distribution of d (N-1) degrees of
  * freedom, N with virtual particles as one (Huang, Chatterji, Sutmann, Gompper and Winkler, J. Comput. Phys. 229, 168
  * (2010)). */
 static void maxwell_boltzmann(struct mpc *c, const struct model *model, uint64_t step)
@@ -67,9 +67,32 @@ static void maxwell_boltzmann(struct mpc *c, const struct model *model, uint64_t
   }
 }
 
+/* A factor for each row of cells of the shifted grid along y: Tao, Goetze and Gompper, J. Chem. Phys. 128, 144902
+ * (2008). Cell (z Ry + y) Lx + x is in row y. */
+static void rescale_layers(struct mpc *c, const struct model *model, uint64_t step)
+{
+  (void)step;
+  const uint32_t lx = (uint32_t)model->box.rows[0], ly = (uint32_t)model->box.rows[1];
+  for (uint32_t row = 0; row < ly; row++) {
+    double freedoms = 0.0, energy = 0.0;
+    for (uint32_t first = row * lx; first < c->cells; first += ly * lx)
+      for (uint32_t k = first; k < first + lx; k++) {
+        if (c->turn[k].active == 0.0)
+          continue;
+        freedoms += cell_freedoms(c, model, k);
+        energy += (double)c->relative[k] * CELL_ENERGY_UNIT;
+      }
+    const double factor = energy > 0.0 ? sqrt(freedoms / energy) : 1.0;
+    for (uint32_t first = row * lx; first < c->cells; first += ly * lx)
+      for (uint32_t k = first; k < first + lx; k++)
+        c->turn[k].factor = factor;
+  }
+}
+
 static const struct thermostat thermostats[THERMOSTATS] = {
     [THERMOSTAT_RESCALE] = {"rescale", rescale},
     [THERMOSTAT_MAXWELL_BOLTZMANN] = {"maxwell-boltzmann", maxwell_boltzmann},
+    [THERMOSTAT_RESCALE_LAYERS] = {"rescale-layers", rescale_layers},
 };
 
 const struct thermostat *thermostat_of(enum thermostat_kind kind)

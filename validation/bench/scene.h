@@ -17,6 +17,7 @@ struct scene {
   double order;       /* 0 paper, 1 kick-split, 2 drift-split */
   double hydro;       /* 0: velocities of the solvent are swapped */
   double thermostat;  /* 0 none, 1 rescale, 2 maxwell-boltzmann */
+  double rule;        /* 0 srd, 1 at-a, 2 at+a */
   double bond_length; /* a0 */
   double spring;      /* kT/a0^2 */
   double bending;     /* kT */
@@ -24,7 +25,7 @@ struct scene {
 
 static inline struct scene scene_default(void)
 {
-  return (struct scene){32, 5, 0.01, 0, 0, 64, 1, SCHEME_KICK_SPLIT, 1, THERMOSTAT_NONE, 0.5, 100, 64};
+  return (struct scene){32, 5, 0.01, 0, 0, 64, 1, SCHEME_KICK_SPLIT, 1, THERMOSTAT_NONE, RULE_SRD, 0.5, 100, 64};
 }
 
 static const struct scene_key {
@@ -41,6 +42,7 @@ static const struct scene_key {
     {"order", offsetof(struct scene, order)},
     {"hydro", offsetof(struct scene, hydro)},
     {"thermostat", offsetof(struct scene, thermostat)},
+    {"rule", offsetof(struct scene, rule)},
     {"bond_length", offsetof(struct scene, bond_length)},
     {"spring", offsetof(struct scene, spring)},
     {"bending", offsetof(struct scene, bending)},
@@ -84,6 +86,7 @@ static inline struct model scene_model(const struct scene *s)
   m.crossing.rule = (enum crossing_kind)s->crossing;
   m.solvent.hydrodynamics = s->hydro != 0.0;
   m.solvent.thermostat = (enum thermostat_kind)s->thermostat;
+  m.solvent.rule = (enum rule)s->rule;
   if (s->fibers > 0.0) {
     struct fiber_kind *k = add_kind(&m, (uint32_t)s->fibers, (uint32_t)s->vertices);
     k->bond_length = s->bond_length;
