@@ -74,9 +74,9 @@ static void rescale_layers(struct mpc *c, const struct model *model, uint64_t st
 }
 
 static const struct thermostat thermostats[THERMOSTATS] = {
-    [THERMOSTAT_RESCALE] = {"rescale", rescale},
-    [THERMOSTAT_MAXWELL_BOLTZMANN] = {"maxwell-boltzmann", maxwell_boltzmann},
-    [THERMOSTAT_RESCALE_LAYERS] = {"rescale-layers", rescale_layers},
+    [THERMOSTAT_RESCALE] = {.name = "rescale", .factors = rescale},
+    [THERMOSTAT_MAXWELL_BOLTZMANN] = {.name = "maxwell-boltzmann", .factors = maxwell_boltzmann},
+    [THERMOSTAT_RESCALE_LAYERS] = {.name = "rescale-layers", .layered = true, .factors = rescale_layers},
 };
 
 const struct thermostat *thermostat_of(enum thermostat_kind kind)

@@ -7,6 +7,8 @@
 struct thermostat {
   const char *name; /* as in scenes */
 
+  bool layered; /* fixes the energy of each row of cells along y; else that of none, or of all together */
+
   /* Sets the factor of every cell that has members to collide, from the relative kinetic energies (mpc->relative). */
   void (*factors)(struct mpc *mpc, const struct model *model, uint64_t step);
 };
