@@ -79,15 +79,15 @@ static bool gather(struct state *state, const struct model *model, struct mpc *m
     const uint32_t n = block_size(state->solvent.n, i, BLOCK);
     if (state->solvent_lag > 0 && !mpc->fluid->stream(state, model, i, n, fault))
       return false;
-    border->bin_particles(state, model, i, n, mpc);
     if (border->enter)
       border->enter(state, model, i, n, mpc);
+    border->bin_particles(state, model, i, n, mpc);
     span |= mpc->rule->add_particles(state, model, mpc, step, i, n);
   }
   state_streamed(state);
-  border->bin_vertices(state, model, mpc);
   if (border->enter_vertices)
     border->enter_vertices(state, model, mpc);
+  border->bin_vertices(state, model, mpc);
   span |= mpc->rule->add_vertices(state, model, mpc, step);
   return overflow_of_momenta(state, model, mpc, span, step, fault);
 }

@@ -394,16 +394,6 @@ static const struct key top_keys[] = {
      .unit = "a0",
      .symbol = "L_b",
      .first_format = true},
-    {.name = "dimensions",
-     .text =
-         "2: everything moves in the plane of x and y. The box is then one cell thick, and fibers pass through each "
-         "other.",
-     .type = KEY_WHOLE32,
-     .absent = "3",
-     .least = 2,
-     .most = 3,
-     .offset = IN_MODEL(dimensions),
-     .symbol = "d"},
     {.name = "time_step",
      .text = "Step of the fibers' motion. `omega dt >= 2` for the fastest vibration of a fiber is an error, above 0.5 "
              "a warning.",
@@ -441,6 +431,16 @@ static const struct key top_keys[] = {
      .unit = "a0/t0",
      .symbol = "v_flow",
      .first_format = true},
+    {.name = "dimensions",
+     .text =
+         "2: everything moves in the plane of x and y. The box is then one cell thick, and fibers pass through each "
+         "other.",
+     .type = KEY_WHOLE32,
+     .absent = "3",
+     .least = 2,
+     .most = 3,
+     .offset = IN_MODEL(dimensions),
+     .symbol = "d"},
     {.name = "solvent",
      .text = "The SRD solvent; absent: none, and no collisions.",
      .type = KEY_SECTION,
