@@ -3,6 +3,7 @@
 #include "base/normal.h"
 #include "mpc/border.h"
 #include "mpc/cell.h"
+#include "mpc/rule.h"
 
 double thermostat_gamma(uint64_t seed, uint64_t step, uint32_t cell, double shape)
 {
@@ -50,7 +51,7 @@ static double whole_energy(const struct mpc *c, const struct model *model, uint3
 {
   const double energy = (double)c->relative[place] * CELL_ENERGY_UNIT;
   const struct virtual_members v = c->filled ? border_virtual(c, model, place) : (struct virtual_members){0};
-  return v.n == 0.0 ? energy : energy + cell_energy(&c->turn[place], v.n, v.velocity);
+  return v.n == 0.0 ? energy : energy + cell_energy(&c->turn[place], v.n, rule_virtual_velocity(model, &v));
 }
 
 /* Canonical: each cell's relative kinetic energy is drawn afresh from its Gamma distribution of d (N-1) degrees of

@@ -13,9 +13,6 @@ struct thermostat {
   void (*factors)(struct mpc *mpc, const struct model *model, uint64_t step);
 };
 
-/* Degrees of freedom of the velocities relative to v_cm of the cell at this place: d (N - 1) of its N members. */
-double cell_freedoms(const struct mpc *mpc, const struct model *model, uint32_t place);
-
 /* The thermostat of this kind; NULL: none. */
 const struct thermostat *thermostat_of(enum thermostat_kind kind);
 
