@@ -2,6 +2,7 @@
 #include <stdio.h>
 
 #include "base/text.h"
+#include "cli/check_flow.h"
 #include "cli/check_walls.h"
 #include "cli/command.h"
 #include "cli/sheet.h"
@@ -313,6 +314,10 @@ void scene_report(const struct scene *scene, const struct units *units, const st
     report_solvent(si, m);
   if (model_has_walls(m))
     check_walls(si, m);
+  if (model_is_sheared(m))
+    check_shear(si, m);
+  if (m->solvent.profile != PROFILE_UNIFORM)
+    check_drive(si, m);
   const double mesh = theory_mesh_size(theory_line_density(m));
   for (uint32_t k = 0; k < m->kinds; k++)
     report_kind(si, m, &m->kind[k], mesh);

@@ -17,7 +17,7 @@ bool drive_has_affine_kick(const struct model *model)
 }
 
 /* Weights of n particles at heights y. */
-typedef void weigh(const struct model *model, const int64_t *y, uint32_t n, double *weight);
+typedef void profile_weights(const struct model *model, const int64_t *y, uint32_t n, double *weight);
 
 static void weigh_uniform(const struct model *model, const int64_t *y, uint32_t n, double *weight)
 {
@@ -46,7 +46,7 @@ static void weigh_height(const struct model *model, const int64_t *y, uint32_t n
     weight[i] = (double)(y[i] - model->box.edge[1] / 2) * LATTICE_UNIT;
 }
 
-static weigh *const profiles[PROFILES] = {
+static profile_weights *const profiles[PROFILES] = {
     [PROFILE_UNIFORM] = weigh_uniform, [PROFILE_SINE] = weigh_sine, [PROFILE_REVERSE] = weigh_reverse};
 
 /* Adds w[i] k to the velocities of n particles. */
@@ -66,7 +66,7 @@ static uint32_t block_size(uint32_t n, uint32_t first)
 
 /* Mean weight of all particles, where weights are at most 1. The sum is one of integers, so that it does not depend on
  * the order of particles: n of them fit in units of 2^-(62 - bits of n). */
-static double mean_weight(const struct solvent *s, const struct model *model, weigh *weigh)
+static double mean_weight(const struct solvent *s, const struct model *model, profile_weights *weigh)
 {
   double w[BLOCK];
   int bits = 0;
@@ -84,7 +84,7 @@ static double mean_weight(const struct solvent *s, const struct model *model, we
 }
 
 /* Kicks all particles by (weight - less) k. */
-static void kick_by(struct solvent *s, const struct model *model, weigh *weigh, double less, struct vec3 k)
+static void kick_by(struct solvent *s, const struct model *model, profile_weights *weigh, double less, struct vec3 k)
 {
   double w[BLOCK];
   for (uint32_t first = 0; first < s->n; first += BLOCK) {
@@ -99,7 +99,7 @@ static void kick_by(struct solvent *s, const struct model *model, weigh *weigh, 
 void drive_kick(struct state *state, const struct model *model, double part)
 {
   struct solvent *s = &state->solvent;
-  weigh *const weigh = profiles[model->solvent.profile];
+  profile_weights *const weigh = profiles[model->solvent.profile];
   kick_by(s, model, weigh, mean_weight(s, model, weigh),
           vec3_scale(part * model_collision_interval(model), model->solvent.acceleration));
 }
