@@ -7,8 +7,8 @@ static bool read_flow(const char *solvent, const char *more, struct scene *scene
 {
   char text[1024];
   snprintf(text, sizeof text,
-           "box: [6, 8, 6]\ntime_step: 0.1\nsteps: 10\nsolvent:\n  per_cell: 5\n  collision_interval: 0.1\n%s\n%s\n", solvent,
-           more);
+           "box: [6, 8, 6]\ntime_step: 0.1\nsteps: 10\nsolvent:\n  per_cell: 5\n  collision_interval: 0.1\n%s\n%s\n",
+           solvent, more);
   return scene_read_text("flow.yaml", text, strlen(text), scene, message);
 }
 
@@ -92,7 +92,7 @@ static void accepted(void **unused)
 /* --- warnings ---------------------------------------------------------------------------------------------------- */
 
 struct told {
-  int all, rescale, mach, heat, net;
+  int all, rescale, mach, heat, net, strain, shear_heat, drive_mach, unstable;
 };
 
 static void hear(void *context, const char *text)
@@ -103,6 +103,10 @@ static void hear(void *context, const char *text)
   t->mach += strstr(text, "the Mach number between the walls") != NULL;
   t->heat += strstr(text, "the walls heat the solvent") != NULL;
   t->net += strstr(text, "a net force") != NULL;
+  t->strain += strstr(text, "the strain in a collision interval is") != NULL;
+  t->shear_heat += strstr(text, "the shear heats the solvent by") != NULL;
+  t->drive_mach += strstr(text, "the Mach number of the driven flow") != NULL;
+  t->unstable += strstr(text, "the driven flow is expected to be unstable") != NULL;
 }
 
 static struct told warnings_of(const char *solvent, const char *more)
@@ -133,12 +137,38 @@ static void warned(void **unused)
   assert_int_equal(warnings_of("  rule: at-a\n  acceleration: [1, 0, 0]", "walls: {kind: no-slip}").mach, 1);
 }
 
+/* Each warning just above its limit, and none just below it: eta = 3.713, so that heat is 2 eta rate^2/15; 2 pi/L is
+ * 0.785, and v_max = 2.18 g for a sine and 2.15 g for a force that changes sign; v_max/(nu k) = 3.75 g and 3.69 g. */
+static void shear_and_drives_warned(void **unused)
+{
+  (void)unused;
+  const char *at = "  rule: at-a";
+  assert_int_equal(warnings_of(at, "shear: {rate: 0.99}").all, 0);
+  assert_int_equal(warnings_of(at, "shear: {rate: 1.01}").strain, 1);
+  assert_int_equal(warnings_of(at, "shear: {rate: -1.01}").strain, 1);
+  assert_int_equal(warnings_of("", "shear: {rate: 0.04}").shear_heat, 0);
+  assert_int_equal(warnings_of("", "shear: {rate: 0.1}").shear_heat, 1);
+  assert_int_equal(warnings_of("  thermostat: maxwell-boltzmann", "shear: {rate: 0.1}").all, 0);
+  static const char *const names[] = {"sine", "reverse"};
+  for (int k = 0; k < 2; k++) {
+    char slow[128], fast[128], unstable[128];
+    snprintf(slow, sizeof slow, "  rule: at-a\n  acceleration: [0.22, 0, 0]\n  profile: %s", names[k]);
+    snprintf(fast, sizeof fast, "  rule: at-a\n  acceleration: [0, 0, 0.24]\n  profile: %s", names[k]);
+    snprintf(unstable, sizeof unstable, "  rule: at-a\n  acceleration: [0.39, 0, 0]\n  profile: %s", names[k]);
+    assert_int_equal(warnings_of(slow, "").all, 0);
+    assert_int_equal(warnings_of(fast, "").drive_mach, 1);
+    assert_int_equal(warnings_of(fast, "").unstable, 0);
+    assert_int_equal(warnings_of(unstable, "").unstable, 1);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(refused),
       cmocka_unit_test(accepted),
       cmocka_unit_test(warned),
+      cmocka_unit_test(shear_and_drives_warned),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
