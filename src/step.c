@@ -33,6 +33,7 @@
 #include "fiber/start.h"
 #include "fluid/fluid.h"
 #include "mpc/plan.h"
+#include "system/shear.h"
 
 enum action { END, DRIFT, COLLIDE, FORCE, KICK };
 
@@ -139,6 +140,15 @@ static void set_total_momentum(struct state *state, const struct model *model)
     state->velocity[v] = vec3_add(state->velocity[v], change);
 }
 
+/* A sheared box starts with its linear profile: velocities are thermal about it. */
+static void add_shear(struct state *state, const struct model *model)
+{
+  const double rate = model_is_sheared(model) ? shear_rate(model, 0) : 0.0;
+  struct solvent *s = &state->solvent;
+  for (uint32_t i = 0; rate != 0.0 && i < s->n; i++)
+    s->vx[i] += rate * (double)(s->y[i] - model->box.edge[1] / 2) * LATTICE_UNIT;
+}
+
 bool step_start(struct state *state, const struct model *model, struct work *work)
 {
   state->step = 0;
@@ -147,6 +157,7 @@ bool step_start(struct state *state, const struct model *model, struct work *wor
   fluid_of(model)->start(state, model);
   fiber_start(state, model);
   set_total_momentum(state, model);
+  add_shear(state, model);
   if (!fiber_forces(state, model, work->fiber.force, 0, &work->fault))
     return false;
   fiber_kick(state, model, work->fiber.force, 0.5);

@@ -1,10 +1,10 @@
 /*
  * Flights between walls at y = 0 and y = L, which move in their own planes. No force acts along y.
  *
- * A particle that hits a wall of velocity w leaves it with the velocity 2 w - v; at a slip wall only v_y is reversed. It
- * goes on for the rest of the time, and may hit the other wall. Along y that is a reflection of the place where it would
- * be without walls, which is exact in lattice units. The times of hits follow from the same whole numbers: of a flight
- * of length |d| along y, the part y/|d| is before a hit of the lower wall.
+ * A particle that hits a wall of velocity w leaves it with the velocity 2 w - v; at a slip wall only v_y is reversed.
+ * It goes on for the rest of the time, and may hit the other wall. Along y that is a reflection of the place where it
+ * would be without walls, which is exact in lattice units. The times of hits follow from the same whole numbers: of a
+ * flight of length |d| along y, the part y/|d| is before a hit of the lower wall.
  *
  * Without force, and with walls at rest, a particle that is turned around at the end of its flight comes back to the
  * bit: the displacement along x is then v_x t (y' - y)/d, since all components are reversed at the same times.
@@ -25,11 +25,11 @@ struct slit {
 
 static struct slit slit_of(const struct model *model, const struct span *span, struct point *hits)
 {
-  return (struct slit){model,
-                       span,
-                       {shear_wall_velocity(model, WALL_LOWER, span->interval),
-                        shear_wall_velocity(model, WALL_UPPER, span->interval)},
-                       hits};
+  return (struct slit){
+      model,
+      span,
+      {shear_wall_velocity(model, WALL_LOWER, span->interval), shear_wall_velocity(model, WALL_UPPER, span->interval)},
+      hits};
 }
 
 /* A particle on its way: between two hits its velocity is sign v + change, v that at the start of the flight. */

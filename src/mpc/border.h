@@ -2,7 +2,7 @@
  * What a collision does at the boundary of the box along y. This is the contract of the rows in border.c. A step of
  * NULL is left out.
  *
- * The order within a collision: bin_particles, enter (both block by block), bin_vertices, enter_vertices, the rule's
+ * The order within a collision: enter, bin_particles (both block by block), enter_vertices, bin_vertices, the rule's
  * sums, fill, the rule's turns, the thermostat, the new velocities, account, leave.
  *
  * A cell that a wall cuts is filled up with virtual particles, whose velocities are of the Maxwell distribution about
@@ -44,7 +44,7 @@ struct border {
   void (*account)(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step);
 };
 
-extern const struct border border_periodic, border_walls;
+extern const struct border border_periodic, border_walls, border_sheared;
 
 /* The virtual particles of the cell at this place in sum; n is 0 in cells that no wall cuts. */
 struct virtual_members border_virtual(const struct mpc *mpc, const struct model *model, uint32_t place);

@@ -1,8 +1,8 @@
 /*
  * Collisions between walls at y = 0 and y = L (Tao, Goetze and Gompper 2008). The grid is not wrapped along y. With a
- * shift s of the grid, 0 <= s < 1, it has L + 1 rows of cells. Of those in row 0 the part s is beyond the lower wall, of
- * those in row L the part 1 - s is beyond the upper one. In both rows every cell is filled up with virtual particles,
- * whose mean velocity is that of the wall:
+ * shift s of the grid, 0 <= s < 1, it has L + 1 rows of cells. Of those in row 0 the part s is beyond the lower wall,
+ * of those in row L the part 1 - s is beyond the upper one. In both rows every cell is filled up with virtual
+ * particles, whose mean velocity is that of the wall:
  *
  *   planar  a Poisson number of mean gamma times the part beyond the wall: cells are filled as those of the bulk
  *   paper   gamma - N of them where the cell has N < gamma members, else none (the paper's rule)

@@ -7,6 +7,7 @@
 #include "mpc/grid.h"
 #include "mpc/overflow.h"
 #include "mpc/rule.h"
+#include "mpc/rules/spin.h"
 #include "mpc/sort.h"
 
 /* Particles are sorted by cell again after this many collisions. At the paper's mean free path of 0.02 a0, most
@@ -25,6 +26,8 @@ static uint32_t block_size(uint32_t n, uint32_t first, uint32_t most)
 static void clear_sums(struct mpc *c)
 {
   memset(c->sum, 0, (size_t)c->cells * sizeof *c->sum);
+  if (c->rule->spinning)
+    memset(c->spin, 0, (size_t)c->cells * sizeof *c->spin);
 }
 
 /* Unsigned: the sum may wrap. overflow_of_energies finds out afterwards. */
@@ -76,15 +79,15 @@ static bool gather(struct state *state, const struct model *model, struct mpc *m
     const uint32_t n = block_size(state->solvent.n, i, BLOCK);
     if (state->solvent_lag > 0 && !mpc->fluid->stream(state, model, i, n, fault))
       return false;
-    border->bin_particles(state, model, i, n, mpc);
     if (border->enter)
       border->enter(state, model, i, n, mpc);
+    border->bin_particles(state, model, i, n, mpc);
     span |= mpc->rule->add_particles(state, model, mpc, step, i, n);
   }
   state_streamed(state);
-  border->bin_vertices(state, model, mpc);
   if (border->enter_vertices)
     border->enter_vertices(state, model, mpc);
+  border->bin_vertices(state, model, mpc);
   span |= mpc->rule->add_vertices(state, model, mpc, step);
   return overflow_of_momenta(state, model, mpc, span, step, fault);
 }

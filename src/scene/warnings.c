@@ -71,7 +71,7 @@ static void warn_solvent(struct teller *t, const struct model *m)
 /* A flow faster than a tenth of the speed of sound: Padding 2009, Sec. IV B. */
 static void warn_flow(struct teller *t, const struct model *m)
 {
-  const double mach = theory_mach(vec3_norm(m->flow), theory_sound_speed(model_is_isothermal(m)));
+  const double mach = theory_mach(vec3_norm(m->flow), theory_sound_speed(model_is_isothermal(m), m->dimensions));
   if (model_has_solvent(m) && mach > 0.1)
     warn(t, "the flow's Mach number is %.3g > 0.1 (harmless while it is uniform: paper, Sec. V B 1)", mach);
 }
@@ -141,7 +141,7 @@ static double bonds_beyond(const struct scene *scene, const struct fiber_kind *k
 /* The paper's boxes are as long as its fibers, and eight times as long as R_e of its chains (Sec. V). */
 static void warn_images(struct teller *t, const struct model *m, const struct fiber_kind *k)
 {
-  const double edge = box_shortest_edge(&m->box), reach = theory_reach(k);
+  const double edge = 2.0 * model_longest_bond(m), reach = theory_reach(k);
   if (reach <= edge * (1.0 + 1e-9) || !(m->crossing.forbidden || model_has_solvent(m)))
     return;
   if (reach > LATTICE_MAX_EDGE)
@@ -163,7 +163,7 @@ static void warn_images(struct teller *t, const struct model *m, const struct fi
 static void warn_long_bonds(struct teller *t, const struct scene *scene, const struct fiber_kind *k)
 {
   const struct model *m = &scene->model;
-  const double limit = 0.5 * box_shortest_edge(&m->box);
+  const double limit = model_longest_bond(m);
   const double expected = bonds_beyond(scene, k, limit);
   if (!(expected > MOST_LONG_BONDS))
     return;
@@ -224,7 +224,7 @@ static void warn_heating(struct teller *t, const struct scene *scene)
   const double each =
       m->crossing.rule == CROSSING_SEQUENTIAL ? 0.7 * phase * phase : 0.09 * phase * phase * phase * phase;
   const double heat = each * theory_executed_rate(m) * time;
-  const double rise = heat / (1.5 * m->solvent.particles + 3.0 * m->vertices);
+  const double rise = heat / (m->dimensions * (0.5 * m->solvent.particles + m->vertices));
   const double order = m->crossing.rule == CROSSING_SEQUENTIAL ? 2.0 : 4.0; /* of the heat, in the time step */
   if (rise > MOST_RISE)
     warn(t,

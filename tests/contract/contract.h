@@ -584,6 +584,8 @@ static inline void contract_scratch_of(struct model model)
   assert_there(c.slot, particles && !m->solvent.hydrodynamics, "slot");
   for (int k = 0; k < 3; k++)
     assert_there(c.drawn[k], particles && thermal, "drawn");
+  assert_there(c.spin, collides && c.rule->spinning, "spin");
+  assert_there(c.middle, collides && c.rule->spinning, "middle");
   assert_there(c.drawn_vertex, collides && vertices && thermal, "drawn_vertex");
   assert_there(t.order, in_turns, "contact order");
   assert_there(t.rank, in_turns, "rank");

@@ -87,17 +87,22 @@ static void thermal_rules_have_no_thermostat(void **unused)
       assert_true(contract_accepts((struct choice){.rule = rule, .thermostat = k}) == contract_together(rule, k));
 }
 
-/* What theory takes from a row: losses are shares of what is there, and nothing is lost where nothing is turned. */
+/* What theory takes from a row: losses are shares of what is there, in both dimensions. */
 static void losses_are_shares(void **unused)
 {
   (void)unused;
   for (int rule = 0; rule < RULES; rule++)
-    for (double cosine = -1.0; cosine <= 0.99; cosine += 0.01) {
-      const struct collision_rule *row = contract_rule(rule);
-      assert_true(row->velocity_loss(cosine) > 0.0 && row->velocity_loss(cosine) <= 4.0 / 3.0 + 1e-12);
-      assert_true(row->stress_loss(cosine) >= -1e-12 && row->stress_loss(cosine) <= 2.0);
-      assert_true(row->handed_on(cosine) > 0.0 && row->handed_on(cosine) <= 1.0);
-    }
+    for (double cosine = -1.0; cosine <= 0.99; cosine += 0.01)
+      for (uint32_t d = 2; d <= 3; d++)
+        for (double n = 1.0; n <= 16.0; n *= 2.0) {
+          const struct collision_rule *row = contract_rule(rule);
+          assert_true(row->velocity_loss(cosine, d, 2.5, 0) == 0.0);
+          assert_true(row->velocity_loss(cosine, d, 1.0, (uint32_t)n) > 0.0);
+          assert_true(row->velocity_loss(cosine, d, 1.0, (uint32_t)n) <= 2.0);
+          assert_true(row->velocity_loss(cosine, d, 5.0, 3) < row->velocity_loss(cosine, d, 1.0, 3));
+          assert_true(row->stress_loss(cosine, d, n) >= -1e-12 && row->stress_loss(cosine, d, n) <= 2.0);
+          assert_true(row->handed_on(cosine, d, n) > 0.0 && row->handed_on(cosine, d, n) <= n);
+        }
 }
 
 int main(void)

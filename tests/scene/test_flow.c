@@ -7,8 +7,8 @@ static bool read_flow(const char *solvent, const char *more, struct scene *scene
 {
   char text[1024];
   snprintf(text, sizeof text,
-           "box: [6, 8, 6]\ntime_step: 0.1\nsteps: 10\nsolvent:\n  per_cell: 5\n  collision_interval: 0.1\n%s\n%s\n", solvent,
-           more);
+           "box: [6, 8, 6]\ntime_step: 0.1\nsteps: 10\nsolvent:\n  per_cell: 5\n  collision_interval: 0.1\n%s\n%s\n",
+           solvent, more);
   return scene_read_text("flow.yaml", text, strlen(text), scene, message);
 }
 

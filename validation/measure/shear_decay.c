@@ -52,8 +52,9 @@ static void measure_box(const struct question *q, int edge, uint32_t pairs)
     add_kind(&model, (uint32_t)(q->vertices * WIDTH * edge * WIDTH), 1);
   run_start(&run, model, q->seed);
   const double k = shear_wave_number(&run.model);
-  const double theory =
-      theory_viscosity(collision_rule_of(&run.model), q->per_cell, run.model.solvent.cosine, q->interval) / q->per_cell;
+  const double theory = theory_viscosity(collision_rule_of(&run.model), run.model.dimensions, q->per_cell,
+                                         run.model.solvent.cosine, q->interval) /
+                        q->per_cell;
   const double life = 1.0 / (theory * k * k * q->interval); /* collisions to 1/e */
   struct shear_wave wave = {.amplitude = q->amplitude, .expected = theory, .every = 1 + (uint32_t)(life / 25.0)};
   wave.first = (q->skip + wave.every - 1) / wave.every;
