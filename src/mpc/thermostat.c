@@ -3,6 +3,7 @@
 #include "base/normal.h"
 #include "mpc/border.h"
 #include "mpc/cell.h"
+#include "mpc/rule.h"
 
 double thermostat_gamma(uint64_t seed, uint64_t step, uint32_t cell, double shape)
 {
@@ -50,7 +51,7 @@ static double whole_energy(const struct mpc *c, const struct model *model, uint3
 {
   const double energy = (double)c->relative[place] * CELL_ENERGY_UNIT;
   const struct virtual_members v = c->filled ? border_virtual(c, model, place) : (struct virtual_members){0};
-  return v.n == 0.0 ? energy : energy + cell_energy(&c->turn[place], v.n, v.velocity);
+  return v.n == 0.0 ? energy : energy + cell_energy(&c->turn[place], v.n, rule_virtual_velocity(model, &v));
 }
 
 /* Canonical: each cell's relative kinetic energy is drawn afresh from its Gamma distribution of d (N-1) degrees of
@@ -90,9 +91,9 @@ static void rescale_layers(struct mpc *c, const struct model *model, uint64_t st
 }
 
 static const struct thermostat thermostats[THERMOSTATS] = {
-    [THERMOSTAT_RESCALE] = {"rescale", rescale},
-    [THERMOSTAT_MAXWELL_BOLTZMANN] = {"maxwell-boltzmann", maxwell_boltzmann},
-    [THERMOSTAT_RESCALE_LAYERS] = {"rescale-layers", rescale_layers},
+    [THERMOSTAT_RESCALE] = {.name = "rescale", .factors = rescale},
+    [THERMOSTAT_MAXWELL_BOLTZMANN] = {.name = "maxwell-boltzmann", .factors = maxwell_boltzmann},
+    [THERMOSTAT_RESCALE_LAYERS] = {.name = "rescale-layers", .layered = true, .factors = rescale_layers},
 };
 
 const struct thermostat *thermostat_of(enum thermostat_kind kind)

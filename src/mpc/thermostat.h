@@ -7,12 +7,11 @@
 struct thermostat {
   const char *name; /* as in scenes */
 
+  bool layered; /* fixes the energy of each row of cells along y; else that of none, or of all together */
+
   /* Sets the factor of every cell that has members to collide, from the relative kinetic energies (mpc->relative). */
   void (*factors)(struct mpc *mpc, const struct model *model, uint64_t step);
 };
-
-/* Degrees of freedom of the velocities relative to v_cm of the cell at this place: d (N - 1) of its N members. */
-double cell_freedoms(const struct mpc *mpc, const struct model *model, uint32_t place);
 
 /* The thermostat of this kind; NULL: none. */
 const struct thermostat *thermostat_of(enum thermostat_kind kind);

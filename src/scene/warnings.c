@@ -98,7 +98,8 @@ static void warn_force(struct teller *t, const struct model *m)
 
 static double viscosity_of(const struct model *m)
 {
-  return theory_viscosity(collision_rule_of(m), m->solvent.per_cell, m->solvent.cosine, model_collision_interval(m));
+  return theory_viscosity(collision_rule_of(m), m->dimensions, m->solvent.per_cell, m->solvent.cosine,
+                          model_collision_interval(m));
 }
 
 #define MOST_WALL_MACH 0.5
@@ -110,22 +111,27 @@ static void warn_walls(struct teller *t, const struct model *m)
   const double height = m->box.cells[1], eta = viscosity_of(m);
   const struct vec3 slide = vec3_sub(m->walls.upper, m->walls.lower);
   const double rate = m->walls.kind == WALL_NO_SLIP ? vec3_norm(slide) / height : 0.0;
-  const double driven = m->walls.kind == WALL_NO_SLIP
-                            ? theory_poiseuille_speed(m->solvent.per_cell, vec3_norm(m->solvent.acceleration), height, eta, 0.0)
-                            : 0.0;
+  const double driven =
+      m->walls.kind == WALL_NO_SLIP
+          ? theory_poiseuille_speed(m->solvent.per_cell, vec3_norm(m->solvent.acceleration), height, eta, 0.0)
+          : 0.0;
   const double speed = fmax(driven, fmax(vec3_norm(m->walls.lower), vec3_norm(m->walls.upper)));
-  const double mach = theory_mach(speed, theory_sound_speed(model_is_isothermal(m)));
+  const double mach = theory_mach(speed, theory_sound_speed(model_is_isothermal(m), m->dimensions));
   const double heating = theory_flow_heating(eta, rate, m->solvent.per_cell, m->dimensions);
   if (m->solvent.thermostat == THERMOSTAT_RESCALE)
-    warn(t, "thermostat rescale has one factor for the whole box, but flow between walls heats unevenly, and walls hold "
-            "their own temperature; use solvent.thermostat: rescale-layers or maxwell-boltzmann");
+    warn(t,
+         "thermostat rescale has one factor for the whole box, but flow between walls heats unevenly, and walls hold "
+         "their own temperature; use solvent.thermostat: rescale-layers or maxwell-boltzmann");
   if (mach > MOST_WALL_MACH)
-    warn(t, "the Mach number between the walls is expected to be %.3g > %g: the solvent is compressed; use slower walls or "
-            "a smaller acceleration",
-         mach, MOST_WALL_MACH);
+    warn(
+        t,
+        "the Mach number between the walls is expected to be %.3g > %g: the solvent is compressed; use slower walls or "
+        "a smaller acceleration",
+        mach, MOST_WALL_MACH);
   if (!model_is_isothermal(m) && heating > MOST_HEATING)
-    warn(t, "the walls heat the solvent by %.3g kT per t0 until as much heat leaves through them, and no thermostat takes "
-            "it away; use solvent.thermostat: maxwell-boltzmann, or rule: at-a",
+    warn(t,
+         "the walls heat the solvent by %.3g kT per t0 until as much heat leaves through them, and no thermostat takes "
+         "it away; use solvent.thermostat: maxwell-boltzmann, or rule: at-a",
          heating);
 }
 

@@ -176,6 +176,47 @@ static void rate_solves_its_equation(void **unused)
   }
 }
 
+/* Whole collisions: angular momentum of each cell, with places that are found here by division, vertices far outside
+ * the box, in space and in a plane. */
+static void collisions_keep_angular_momentum(void **unused)
+{
+  (void)unused;
+  for (uint32_t k = 0; k < 20; k++) {
+    struct dice d = {dice_seed(2807) + k};
+    struct model model = k % 2 ? test_model(4, 5, 3, 2, 0.1, 1) : test_model(10, 6, 1, 2, 0.1, 1);
+    model.dimensions = k % 2 ? 3 : 2;
+    model.crossing.forbidden = false;
+    model.solvent.rule = RULE_AT_PLUS_A;
+    model.seed = dice_u64(&d);
+    test_add_kind(&model, 40, 1)->mass = 2.7;
+    struct test_run r = dice_run(model, &d);
+    const uint32_t n = r.state.solvent.n, cells = (uint32_t)box_cell_count(&model.box);
+    const struct point shift = grid_shift(&r.model, 3);
+    struct cell *old = calloc(cells, sizeof *old), *new = calloc(cells, sizeof *new);
+    for (int after = 0; after < 2; after++) {
+      for (uint32_t i = 0; i < n + r.state.vertices; i++) {
+        const struct solvent *s = &r.state.solvent;
+        const struct point p = i < n ? (struct point){s->x[i], s->y[i], s->z[i]} : r.state.position[i - n];
+        struct cell *c = &(after ? new : old)[cell_by_floor(&model.box, p, shift)];
+        assert_true(c->n < MOST);
+        c->place[c->n] =
+            (struct point){lattice_fold(p.x + shift.x, LATTICE_CELL), lattice_fold(p.y + shift.y, LATTICE_CELL),
+                           lattice_fold(p.z + shift.z, LATTICE_CELL)};
+        c->mass[c->n] = i < n ? 1.0 : r.model.mass[i - n];
+        c->v[c->n] = i < n ? solvent_velocity(s, i) : r.state.velocity[i - n];
+        c->xi[c->n++] = (struct vec3){5, 5, 5}; /* they are not known here: a size that they do not reach */
+      }
+      if (!after)
+        assert_true(mpc_collide(&r.state, &r.model, &r.work.mpc, 3, &r.work.fault));
+    }
+    for (uint32_t j = 0; j < cells; j++)
+      assert_kept(&old[j], &new[j], "a cell of a box");
+    free(old);
+    free(new);
+    test_end(&r);
+  }
+}
+
 /* A virtual particle drawn here from its address, as docs/conventions.md says. */
 static void draw(const struct test_run *r, uint64_t step, uint32_t cell, uint32_t k, const struct virtual_members *m,
                  struct point *place, struct vec3 *change)
@@ -259,6 +300,7 @@ int main(void)
       cmocka_unit_test(lines_and_points_keep_momenta),
       cmocka_unit_test(one_member_is_left_alone),
       cmocka_unit_test(rate_solves_its_equation),
+      cmocka_unit_test(collisions_keep_angular_momentum),
       cmocka_unit_test(virtual_members_take_part),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -23,6 +23,7 @@ struct scene {
   double bending;     /* kT */
   double walls;       /* 1: between no-slip walls that slide at a shear rate of 0.02 / t0 */
   double fill;        /* enum wall_fill: 0 planar, 1 paper, 2 none */
+  double shear;       /* rate of a sheared box, 1/t0 */
 };
 
 static inline struct scene scene_default(void)
@@ -59,6 +60,7 @@ static const struct scene_key {
     {"bending", offsetof(struct scene, bending)},
     {"walls", offsetof(struct scene, walls)},
     {"fill", offsetof(struct scene, fill)},
+    {"shear", offsetof(struct scene, shear)},
 };
 
 static inline bool scene_set(struct scene *scene, const char *name, size_t length, double value)
@@ -102,6 +104,7 @@ static inline struct model scene_model(const struct scene *s)
   m.solvent.rule = (enum rule)s->rule;
   if (s->walls != 0.0)
     m.walls = (struct wall_model){.kind = WALL_NO_SLIP, .fill = (enum wall_fill)s->fill, .shear_rate = 0.02};
+  m.shear.rate = s->shear;
   if (s->fibers > 0.0) {
     struct fiber_kind *k = add_kind(&m, (uint32_t)s->fibers, (uint32_t)s->vertices);
     k->bond_length = s->bond_length;
