@@ -117,8 +117,8 @@ static struct vec3 conserved_axes(const struct model *model)
                                                                : (struct vec3){along, y, along};
 }
 
-/* Replaces the total momentum of the state by that of the flow: all velocities change by the same amount. Where momentum
- * is not conserved, it stays as it was drawn about the flow. */
+/* Replaces the total momentum of the state by that of the flow: all velocities change by the same amount. Where
+ * momentum is not conserved, it stays as it was drawn about the flow. */
 static void set_total_momentum(struct state *state, const struct model *model)
 {
   struct solvent *s = &state->solvent;
@@ -130,7 +130,8 @@ static void set_total_momentum(struct state *state, const struct model *model)
 
   const struct vec3 axes = conserved_axes(model);
   const double each = model->total_mass > 0.0 ? -1.0 / model->total_mass : 0.0;
-  const struct vec3 change = vec3_add_scaled(model->flow, each, (struct vec3){axes.x * p.x, axes.y * p.y, axes.z * p.z});
+  const struct vec3 change =
+      vec3_add_scaled(model->flow, each, (struct vec3){axes.x * p.x, axes.y * p.y, axes.z * p.z});
   for (uint32_t i = 0; i < s->n; i++) {
     s->vx[i] += change.x;
     s->vy[i] += change.y;

@@ -1,8 +1,8 @@
 /*
  * The account of the walls: the momentum that each wall has given to the solvent since the start, by particles that hit
  * it and by virtual particles in collisions (Tao, Goetze and Gompper 2008). It is kept in integers, in the units of a
- * cell's momentum (mpc/cell.h), so that it does not depend on the order of particles. Sums wrap: differences between two
- * times are right while they are below 2^19 m a0/t0.
+ * cell's momentum (mpc/cell.h), so that it does not depend on the order of particles. Sums wrap: differences between
+ * two times are right while they are below 2^19 m a0/t0.
  */
 #ifndef UNCROSS_SYSTEM_ACCOUNT_H
 #define UNCROSS_SYSTEM_ACCOUNT_H

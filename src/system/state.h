@@ -110,7 +110,7 @@ struct state_field {
 struct state_group {
   uint32_t rows;
   bool optional; /* without rows it is neither in files nor in hashes */
-  uint32_t *id; /* [rows] number of each row in files and hashes; NULL: its place in memory */
+  uint32_t *id;  /* [rows] number of each row in files and hashes; NULL: its place in memory */
   size_t fields;
   struct state_field field[2];
 };

@@ -1,4 +1,5 @@
-/* Files of runs between walls: checkpoints hold the account of the walls, and places on a wall are places in the box. */
+/* Files of runs between walls: checkpoints hold the account of the walls, and places on a wall are places in the box.
+ */
 #include "files/files.h"
 
 #include "files/checkpoint.h"

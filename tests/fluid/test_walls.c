@@ -95,10 +95,8 @@ static void flights_are_those_of_a_plain_simulation(void **unused)
     double *speed = calloc(s->n, sizeof *speed); /* along the walls, as a multiple of that towards them */
     for (uint32_t i = 0; i < s->n; i++) {
       speed[i] = (fabs(s->vx[i]) + fabs(s->vz[i]) + 2.0) / fabs(s->vy[i]);
-      p[i] = (struct plain){{ldexpl(s->x[i], -40), ldexpl(s->y[i], -40), ldexpl(s->z[i], -40)},
-                            {s->vx[i], s->vy[i], s->vz[i]},
-                            {{0}},
-                            0};
+      p[i] = (struct plain){
+          {ldexpl(s->x[i], -40), ldexpl(s->y[i], -40), ldexpl(s->z[i], -40)}, {s->vx[i], s->vy[i], s->vz[i]}, {{0}}, 0};
       plain_fly(&p[i], &r.model);
       hits += p[i].hits;
       several += p[i].hits > 1;
