@@ -26,11 +26,18 @@ static void weigh_uniform(const struct model *model, const int64_t *y, uint32_t 
     weight[i] = 1.0;
 }
 
+/* A whole number in [0, 2^52) as a double. Unlike a conversion this form vectorises on every x86-64. */
+static inline double real_of(int64_t y)
+{
+  const double base = 0x1p52;
+  return elementary_from_bits((uint64_t)y + elementary_bits(base)) - base;
+}
+
 static void weigh_sine(const struct model *model, const int64_t *y, uint32_t n, double *weight)
 {
   const double edge = (double)model->box.edge[1];
   for (uint32_t i = 0; i < n; i++)
-    weight[i] = elementary_circle_turns((double)y[i] / edge).sine;
+    weight[i] = elementary_circle_turns(real_of(y[i]) / edge).sine;
 }
 
 static void weigh_reverse(const struct model *model, const int64_t *y, uint32_t n, double *weight)
@@ -65,11 +72,11 @@ static uint32_t block_size(uint32_t n, uint32_t first)
 }
 
 /* Mean weight of all particles, where weights are at most 1. The sum is one of integers, so that it does not depend on
- * the order of particles: n of them fit in units of 2^-(62 - bits of n). */
+ * the order of particles: n of them fit in units of 2^-(62 - bits of n), and each is in the range of lattice_round. */
 static double mean_weight(const struct solvent *s, const struct model *model, profile_weights *weigh)
 {
   double w[BLOCK];
-  int bits = 0;
+  int bits = 12;
   while (s->n >> bits)
     bits++;
   const double scale = ldexp(1.0, 62 - bits);
@@ -78,7 +85,7 @@ static double mean_weight(const struct solvent *s, const struct model *model, pr
     const uint32_t n = block_size(s->n, first);
     weigh(model, &s->y[first], n, w);
     for (uint32_t i = 0; i < n; i++)
-      sum += llrint(w[i] * scale);
+      sum += lattice_round(w[i] * scale);
   }
   return (double)sum / scale / s->n;
 }
