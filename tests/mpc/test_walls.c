@@ -149,6 +149,32 @@ static void slip_walls_give_nothing_along_them(void **unused)
   test_end(&r);
 }
 
+/* Walls take up momentum, and so the total momentum at the start is a Maxwell variable of variance N about the flow;
+ * between slip walls along y only. */
+static void momentum_starts_as_drawn(void **unused)
+{
+  (void)unused;
+  for (int kind = WALL_NO_SLIP; kind < WALL_KINDS; kind++) {
+    struct tally squares[3] = {{0}};
+    for (uint64_t k = 0; k < 100; k++) {
+      struct model m = walls_model(3, 3, 3, 5.0, RULE_SRD, FILL_PLANAR);
+      m.walls.kind = kind;
+      m.seed = dice_seed(28140) + k;
+      struct test_run r = test_start(m);
+      long double p[3];
+      total_momentum(&r.state, p);
+      for (int j = 0; j < 3; j++)
+        tally_add(&squares[j], (double)(p[j] * p[j]) / r.state.solvent.n);
+      test_end(&r);
+    }
+    for (int j = 0; j < 3; j++)
+      if (kind == WALL_NO_SLIP || j == 1)
+        assert_sigma(tally_mean(&squares[j]), sqrt(2.0 / 100.0), 1.0, 5.0);
+      else
+        assert_close(tally_mean(&squares[j]), 0.0, 1e-24);
+  }
+}
+
 /* --- bits -------------------------------------------------------------------------------------------------------- */
 
 /* The same future for any order in memory, sorted or not. */
@@ -400,6 +426,7 @@ int main(void)
       cmocka_unit_test(rows_do_not_wrap),
       cmocka_unit_test(walls_give_what_the_solvent_gains),
       cmocka_unit_test(slip_walls_give_nothing_along_them),
+      cmocka_unit_test(momentum_starts_as_drawn),
       cmocka_unit_test(memory_does_not_matter),
       cmocka_unit_test(cut_cells_are_filled),
       cmocka_unit_test(a_uniform_flow_is_stopped),
