@@ -407,6 +407,10 @@ class Folder(unittest.TestCase):
     def test_theory_is_held_against_open_fibers(self):
         run = runs.read(str(self.run_dir))
         self.assertEqual(run.exact(run.table("statics-rings")), {})
+        drawn = {figure.name: figure.caption for kind in ("rings", "rods") for figure in page.figure_of(run, run.table(f"statics-{kind}"))
+                 if isinstance(figure, page.Figure)}
+        self.assertIn("No theory for this kind", drawn["statics-rings"])
+        self.assertNotIn("No theory", drawn["statics-rods"])
         exact = run.exact(run.table("statics-rods"))
         self.assertEqual(sorted(exact), ["Ree2", "cos", "l", "lp"])
         self.assertAlmostEqual(exact["l"], 0.538462)
