@@ -150,11 +150,13 @@ class Formats(unittest.TestCase):
         self.assertEqual(header["angles"], [len(angles)])
         for axis, edge in zip("xyz", EDGES):
             self.assertEqual(header[f"{axis}lo {axis}hi"], [0.0, edge])
-        masses = [2, 4, 3, 1.5, 1]
-        self.assertEqual(header["atom types"], [5])
+        solvent = rows > self.vertices
+        masses = [2, 4, 3, 1.5] + [1] * solvent
+        for what in ("atom", "bond", "angle"):
+            self.assertEqual(header[f"{what} types"], [4 + solvent])
         self.assertEqual(found["Masses"], [[k + 1.0, m] for k, m in enumerate(masses)])
-        self.assertEqual(found["Bond Coeffs"][:4], [[k + 1.0, kind[5] / 2, kind[4]] for k, kind in enumerate(KINDS)])
-        self.assertEqual(found["Angle Coeffs"][:4], [[k + 1.0, kind[6]] for k, kind in enumerate(KINDS)])
+        self.assertEqual(found["Bond Coeffs"], [[k + 1.0, kind[5] / 2, kind[4]] for k, kind in enumerate(KINDS)] + [[5, 0, 0]] * solvent)
+        self.assertEqual(found["Angle Coeffs"], [[k + 1.0, kind[6]] for k, kind in enumerate(KINDS)] + [[5, 0]] * solvent)
         atoms = numpy.array(found["Atoms"])
         self.assertEqual(atoms[:, 0].tolist(), list(range(1, rows + 1)))
         molecule = [(number + 1, kind + 1) for number, (kind, v) in enumerate(fibers()) for _ in v]
