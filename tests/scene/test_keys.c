@@ -163,8 +163,9 @@ static void check_rows(const struct key_table *table)
     assert_true(key->text && *key->text);
     assert_true(strlen(key->text) < 1800);
     assert_false(key_is_required(key) && key->fallback);
-    const char *const texts[] = {key->absent, key->fallback};
-    for (int i = 0; i < 2; i++)
+    assert_true(!key->idle_with == !key->idle && (!key->idle || key_is_required(key)));
+    const char *const texts[] = {key->absent, key->fallback, key->idle};
+    for (int i = 0; i < 3; i++)
       if (texts[i] && !key_read_text(key, texts[i], &value))
         fail_msg("%s: '%s' is no value", key->name, texts[i]);
   }
