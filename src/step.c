@@ -108,8 +108,17 @@ bool step_advance(struct state *state, const struct model *model, struct work *w
   return step_advance_watched(state, model, work, log, NULL);
 }
 
-/* Replaces the total momentum of the state by that of the flow: all velocities change by the same amount. With a random
- * solvent the momentum of the fibers is not conserved; there it stays as it was drawn. */
+/* The axes along which the total momentum is conserved. A random solvent and walls take up momentum, slip walls only
+ * along y. */
+static struct vec3 conserved_axes(const struct model *model)
+{
+  const double y = !model_has_walls(model), along = y != 0.0 || model->walls.kind == WALL_SLIP;
+  return model_has_phantoms(model) || model->total_mass == 0.0 ? (struct vec3){0, 0, 0}
+                                                               : (struct vec3){along, y, along};
+}
+
+/* Replaces the total momentum of the state by that of the flow: all velocities change by the same amount. Where momentum
+ * is not conserved, it stays as it was drawn about the flow. */
 static void set_total_momentum(struct state *state, const struct model *model)
 {
   struct solvent *s = &state->solvent;
@@ -119,8 +128,9 @@ static void set_total_momentum(struct state *state, const struct model *model)
   for (uint32_t v = 0; v < state->vertices; v++)
     p = vec3_add_scaled(p, model->mass[v], state->velocity[v]);
 
-  const bool conserved = !model_has_phantoms(model) && model->total_mass > 0.0;
-  struct vec3 change = conserved ? vec3_add_scaled(model->flow, -1.0 / model->total_mass, p) : model->flow;
+  const struct vec3 axes = conserved_axes(model);
+  const double each = model->total_mass > 0.0 ? -1.0 / model->total_mass : 0.0;
+  const struct vec3 change = vec3_add_scaled(model->flow, each, (struct vec3){axes.x * p.x, axes.y * p.y, axes.z * p.z});
   for (uint32_t i = 0; i < s->n; i++) {
     s->vx[i] += change.x;
     s->vy[i] += change.y;

@@ -104,6 +104,15 @@ static inline int64_t lattice_fold(int64_t x, int64_t edge)
   return r < 0 ? r + edge : r;
 }
 
+/* A coordinate brought into the box: folded along a periodic axis; set onto the wall if it is beyond one. */
+static inline int64_t box_inside(const struct box *box, int axis, int64_t x)
+{
+  const int64_t edge = box->edge[axis];
+  if (box->boundary[axis] != BOUNDARY_WALL)
+    return lattice_fold(x, edge);
+  return x < 0 ? 0 : x > edge ? edge : x;
+}
+
 /* How often edge goes into x, rounded down: the image in which x lies. */
 static inline int64_t lattice_image(int64_t x, int64_t edge)
 {

@@ -2,6 +2,7 @@
 #include <stdio.h>
 
 #include "base/text.h"
+#include "cli/check_walls.h"
 #include "cli/command.h"
 #include "cli/sheet.h"
 #include "mpc/rule.h"
@@ -242,7 +243,9 @@ static void report_parts(const struct scene *scene)
   const bool rotates = s->rule == RULE_SRD;
   const struct part parts[] = {
       {"streaming of the solvent", "fluid/points.c", solvent},
+      {"... between walls", "fluid/boundary_walls.c", model_has_walls(m)},
       {"collisions", "mpc/collide.c", collides},
+      {"... in cells that walls cut", "mpc/border_walls.c", model_has_walls(m)},
       {"... with phantoms for a solvent", "mpc/random_solvent.c", model_has_phantoms(m)},
       {"... rotation by 90 degrees", "mpc/rules/srd.h", collides && rotates && quarter},
       {"... rotation by any angle", "mpc/rules/srd.h", collides && rotates && !quarter},
@@ -303,6 +306,8 @@ void scene_report(const struct scene *scene, const struct units *units, const st
   report_table_1(si, m);
   if (model_has_solvent(m))
     report_solvent(si, m);
+  if (model_has_walls(m))
+    check_walls(si, m);
   const double mesh = theory_mesh_size(theory_line_density(m));
   for (uint32_t k = 0; k < m->kinds; k++)
     report_kind(si, m, &m->kind[k], mesh);

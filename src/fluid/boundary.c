@@ -64,7 +64,7 @@ const struct boundary boundary_periodic = {"periodic", fly_periodic, now_periodi
 const struct boundary *boundary_of(const struct box *box)
 {
   static const struct boundary *const boundaries[BOUNDARIES] = {[BOUNDARY_PERIODIC] = &boundary_periodic,
-                                                                [BOUNDARY_WALL] = &boundary_periodic,
+                                                                [BOUNDARY_WALL] = &boundary_walls,
                                                                 [BOUNDARY_SHEAR] = &boundary_sheared};
   return boundaries[box->boundary[1]];
 }

@@ -53,6 +53,6 @@ int64_t boundary_fly_periodic(uint32_t n, int64_t *restrict x, double *restrict 
 bool boundary_fold(struct state *state, const struct model *model, int axis, double t, uint32_t first, uint32_t n,
                    struct fault *fault);
 
-extern const struct boundary boundary_periodic, boundary_sheared;
+extern const struct boundary boundary_periodic, boundary_walls, boundary_sheared;
 
 #endif

@@ -8,6 +8,6 @@ const struct border border_periodic = {
 const struct border *border_of(const struct model *model)
 {
   static const struct border *const borders[BOUNDARIES] = {
-      [BOUNDARY_PERIODIC] = &border_periodic, [BOUNDARY_WALL] = &border_periodic, [BOUNDARY_SHEAR] = &border_sheared};
+      [BOUNDARY_PERIODIC] = &border_periodic, [BOUNDARY_WALL] = &border_walls, [BOUNDARY_SHEAR] = &border_sheared};
   return borders[model->box.boundary[1]];
 }

@@ -32,7 +32,7 @@ void grid_bin_particles(const struct state *state, const struct model *model, ui
 {
   const struct solvent *s = &state->solvent;
   const struct box *box = &model->box;
-  const uint32_t lx = (uint32_t)box->cells[0], ly = (uint32_t)box->cells[1], lz = (uint32_t)box->cells[2];
+  const uint32_t lx = (uint32_t)box->rows[0], ly = (uint32_t)box->rows[1], lz = (uint32_t)box->rows[2];
   const int64_t *restrict x = &s->x[first], *restrict y = &s->y[first], *restrict z = &s->z[first];
   uint32_t *restrict cell = &mpc->solvent_cell[first];
   const struct point shift = mpc->shift;

@@ -22,7 +22,7 @@ static size_t count_cells(const struct model *m)
   return model_has_phantoms(m) ? m->vertices : model_has_solvent(m) ? (size_t)box_cell_count(&m->box) : 0;
 }
 
-enum { NEEDS = 14 };
+enum { NEEDS = 15 };
 
 /* The single list of the scratch that the collisions of a model use. */
 static void list_needs(struct mpc *c, const struct model *m, bool everything, struct memory_need need[NEEDS])
@@ -31,6 +31,7 @@ static void list_needs(struct mpc *c, const struct model *m, bool everything, st
   const size_t colliding = model_collides(m) ? m->vertices : 0, bathed = model_has_phantoms(m) ? m->vertices : 0;
   const size_t thermostatted = everything || m->solvent.thermostat != THERMOSTAT_NONE ? cells : 0;
   const size_t swapped = everything || !m->solvent.hydrodynamics ? particles : 0;
+  const size_t cut = model_has_walls(m) ? 2 * (size_t)m->box.cells[0] * (size_t)m->box.cells[2] : 0;
   const bool drawing = everything || collision_rule_of(m)->thermal;
   const struct memory_need all[NEEDS] = {
       {(void **)&c->sum, cells, sizeof *c->sum},
@@ -40,6 +41,7 @@ static void list_needs(struct mpc *c, const struct model *m, bool everything, st
       {(void **)&c->vertex_cell, colliding, sizeof *c->vertex_cell},
       {(void **)&c->occupied, bathed, sizeof *c->occupied},
       {(void **)&c->table, bathed ? (size_t)1 << table_bits(m->vertices) : 0, sizeof *c->table},
+      {(void **)&c->filled, cut, sizeof *c->filled},
       {(void **)&c->order, particles, sizeof *c->order},
       {(void **)&c->slot, swapped, sizeof *c->slot},
       {(void **)&c->column, particles, sizeof *c->column},

@@ -25,6 +25,8 @@ struct cell_turn {
   double active;      /* 0: fewer than two members, velocities stay as they are */
 };
 
+struct virtual_members;
+
 struct mpc {
   const struct collision_rule *rule;
   const struct thermostat *thermostat; /* NULL: none */
@@ -40,6 +42,8 @@ struct mpc {
   uint32_t *occupied;     /* [vertices] numbers of the cells that hold a vertex; random solvent only, else NULL */
   uint32_t *table;        /* [2^table_bits] hash table: 1 + place in occupied, or 0; random solvent only, else NULL */
   uint32_t table_bits;
+  struct virtual_members *filled; /* [2 Lx Lz] virtual particles of the cells that walls cut, of this collision: the row
+                                   * of y = 0, then that of y = L, cell (z, x) of each at z Lx + x; NULL without walls */
   uint32_t *order;           /* [particles] sorting and velocity swap; in a collision, who entered (border.h) */
   uint32_t entered;          /* particles that did */
   uint32_t *slot;            /* [particles] velocity swap only, else NULL */

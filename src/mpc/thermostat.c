@@ -1,6 +1,7 @@
 #include "mpc/thermostat.h"
 
 #include "base/normal.h"
+#include "mpc/border.h"
 #include "mpc/cell.h"
 
 double thermostat_gamma(uint64_t seed, uint64_t step, uint32_t cell, double shape)
@@ -16,16 +17,26 @@ double thermostat_gamma(uint64_t seed, uint64_t step, uint32_t cell, double shap
   }
 }
 
+double cell_freedoms(const struct mpc *c, const struct model *model, uint32_t place)
+{
+  const struct cell_sum *sum = &c->sum[place];
+  const double n = c->filled ? border_virtual(c, model, place).n : 0.0;
+  const uint32_t members = cell_members(sum);
+  if (n == 0.0)
+    return model->dimensions * (members - 1.0);
+  return model->dimensions * (members - 1.0 - (cell_mass(sum) - n) / cell_mass(sum)); /* the virtual ones are one member */
+}
+
 /* One factor for all cells: a cell of N members has 3 (N-1) degrees of freedom with kT/2 each
  * (Padding 2009, step 4: "rescale velocities relative to center-of-mass velocity"). */
 static void rescale(struct mpc *c, const struct model *model, uint64_t step)
 {
-  (void)model, (void)step;
+  (void)step;
   double freedoms = 0.0, energy = 0.0;
   for (uint32_t k = 0; k < c->cells; k++) {
     if (c->turn[k].active == 0.0)
       continue;
-    freedoms += 3.0 * (cell_members(&c->sum[k]) - 1);
+    freedoms += cell_freedoms(c, model, k);
     energy += (double)c->relative[k] * CELL_ENERGY_UNIT;
   }
   double factor = energy > 0.0 ? sqrt(freedoms / energy) : 1.0;
@@ -33,15 +44,24 @@ static void rescale(struct mpc *c, const struct model *model, uint64_t step)
     c->turn[k].factor = factor;
 }
 
+/* Twice the relative kinetic energy of a cell with its virtual particles, as the one member that they are. */
+static double whole_energy(const struct mpc *c, const struct model *model, uint32_t place)
+{
+  const double energy = (double)c->relative[place] * CELL_ENERGY_UNIT;
+  const struct virtual_members v = c->filled ? border_virtual(c, model, place) : (struct virtual_members){0};
+  return v.n == 0.0 ? energy : energy + cell_energy(&c->turn[place], v.n, v.velocity);
+}
+
 /* Canonical: each cell's relative kinetic energy is drawn afresh from its Gamma distribution of 3 (N-1) degrees of
- * freedom (Huang, Chatterji, Sutmann, Gompper and Winkler, J. Comput. Phys. 229, 168 (2010)). */
+ * freedom, N with virtual particles as one (Huang, Chatterji, Sutmann, Gompper and Winkler, J. Comput. Phys. 229, 168 (2010)). */
 static void maxwell_boltzmann(struct mpc *c, const struct model *model, uint64_t step)
 {
   for (uint32_t k = 0; k < c->cells; k++) {
     if (c->turn[k].active == 0.0)
       continue;
-    double energy = 0.5 * (double)c->relative[k] * CELL_ENERGY_UNIT;
-    double wanted = thermostat_gamma(model->seed, step, k, 1.5 * (cell_members(&c->sum[k]) - 1));
+    double energy = 0.5 * whole_energy(c, model, k);
+    double wanted =
+        thermostat_gamma(model->seed, step, k, 0.5 * model->dimensions * (cell_members(&c->sum[k]) - 1));
     c->turn[k].factor = energy > 0.0 ? sqrt(wanted / energy) : 1.0;
   }
 }

@@ -3,8 +3,10 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+#include "mpc/rule.h"
 #include "scene/scene.h"
 #include "system/fiber_kind.h"
+#include "theory/flow.h"
 #include "theory/theory.h"
 
 struct teller {
@@ -86,11 +88,45 @@ static void warn_force(struct teller *t, const struct model *m)
     snprintf(remedy, sizeof remedy, "solvent.acceleration: [%.17g, %.17g, %.17g] balances it%s", a.x - net.x / n,
              a.y - net.y / n, a.z - net.z / n,
              model_is_isothermal(m) ? "" : ", with solvent.thermostat: rescale, since forces do work");
-  if (!model_has_phantoms(m) && vec3_norm(net) > 1e-12 * scale) /* a bath takes the momentum up */
+  const bool held = model_has_walls(m) && m->walls.kind == WALL_NO_SLIP; /* walls take the momentum up */
+  if (!held && !model_has_phantoms(m) && vec3_norm(net) > 1e-12 * scale) /* a bath takes the momentum up */
     warn(t,
          "a net force of (%.6g, %.6g, %.6g) kT/a0 acts on a periodic system, which accelerates without end by %.3g "
          "a0/t0^2; %s",
          net.x, net.y, net.z, vec3_norm(net) / m->total_mass, remedy);
+}
+
+static double viscosity_of(const struct model *m)
+{
+  return theory_viscosity(collision_rule_of(m), m->solvent.per_cell, m->solvent.cosine, model_collision_interval(m));
+}
+
+#define MOST_WALL_MACH 0.5
+#define MOST_HEATING 1e-3 /* kT/t0 */
+
+/* Flow between walls: the profile of the temperature, compressibility, heat (Tao, Goetze and Gompper 2008). */
+static void warn_walls(struct teller *t, const struct model *m)
+{
+  const double height = m->box.cells[1], eta = viscosity_of(m);
+  const struct vec3 slide = vec3_sub(m->walls.upper, m->walls.lower);
+  const double rate = m->walls.kind == WALL_NO_SLIP ? vec3_norm(slide) / height : 0.0;
+  const double driven = m->walls.kind == WALL_NO_SLIP
+                            ? theory_poiseuille_speed(m->solvent.per_cell, vec3_norm(m->solvent.acceleration), height, eta, 0.0)
+                            : 0.0;
+  const double speed = fmax(driven, fmax(vec3_norm(m->walls.lower), vec3_norm(m->walls.upper)));
+  const double mach = theory_mach(speed, theory_sound_speed(model_is_isothermal(m)));
+  const double heating = theory_flow_heating(eta, rate, m->solvent.per_cell, m->dimensions);
+  if (m->solvent.thermostat == THERMOSTAT_RESCALE)
+    warn(t, "thermostat rescale has one factor for the whole box, but flow between walls heats unevenly, and walls hold "
+            "their own temperature; use solvent.thermostat: rescale-layers or maxwell-boltzmann");
+  if (mach > MOST_WALL_MACH)
+    warn(t, "the Mach number between the walls is expected to be %.3g > %g: the solvent is compressed; use slower walls or "
+            "a smaller acceleration",
+         mach, MOST_WALL_MACH);
+  if (!model_is_isothermal(m) && heating > MOST_HEATING)
+    warn(t, "the walls heat the solvent by %.3g kT per t0 until as much heat leaves through them, and no thermostat takes "
+            "it away; use solvent.thermostat: maxwell-boltzmann, or rule: at-a",
+         heating);
 }
 
 /* Bonds of this kind that are expected to become longer than `limit` in the run. A bond forgets its length in about
@@ -251,6 +287,8 @@ int scene_warnings(const struct scene *scene, void (*tell)(void *context, const 
     warn_solvent(&t, m);
   warn_flow(&t, m);
   warn_force(&t, m);
+  if (model_has_walls(m))
+    warn_walls(&t, m);
   for (uint32_t k = 0; k < m->kinds; k++)
     warn_kind(&t, scene, &m->kind[k]);
   warn_heating(&t, scene);

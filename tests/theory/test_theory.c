@@ -7,6 +7,7 @@
 
 #include "fiber/force.h"
 #include "system/fiber_kind.h"
+#include "theory/flow.h"
 #include "theory/theory.h"
 
 /* |actual/expected - 1| <= tolerance */
@@ -52,6 +53,23 @@ static void andersen(void **unused)
   close_to(theory_viscosity_kinetic(&at_a_rule, 10.0, 0.0, 0.02), 0.122221101242, 1e-11);
   close_to(theory_viscosity_collisional(&at_a_rule, 10.0, 0.0, 0.02), 37.500189166374, 1e-11);
   close_to(theory_solvent_diffusion(&at_a_rule, 10.0, 0.0, 0.02), 0.0122221101242, 1e-11);
+}
+
+/* Flow between walls. The slip length without bounce-back is the integral of the Milne problem, by mpmath's quadrature:
+ * 0.22735077. At n = 10, dt = 0.02 with loss P_n/n = 0.90000454: less 0.7978845608 * 0.02/0.90000454 = 0.017730678. */
+static void flow_between_walls(void **unused)
+{
+  (void)unused;
+  close_to(theory_slip_length(&at_a_rule, 10.0, 0.0, 1e-12), 0.2273508, 1e-6);
+  close_to(theory_slip_length(&at_a_rule, 10.0, 0.0, 0.02), 0.209620, 1e-5);
+  close_to(theory_slip_length(&srd_rule, 10.0, 0.0, 0.02), 0.2273508 - 0.7978845608 * 0.02 / 0.60000303, 1e-6);
+  close_to(theory_couette_rate(0.1, 20.0, 0.2096), 0.0979473, 1e-5);
+  close_to(theory_poiseuille_speed(10.0, 0.001, 20.0, 37.6224, 0.0), 0.0132900, 1e-4);
+  close_to(theory_poiseuille_speed(10.0, 0.001, 20.0, 37.6224, 0.2096), 0.0138471, 1e-4);
+  close_to(theory_flow_relaxation(20.0, 3.76224), 10.7725, 1e-4);
+  close_to(theory_inertia_number(0.05, 10.0, 20.0, 37.6224), 0.664498, 1e-4);
+  close_to(theory_flow_heating(37.6224, 0.1, 10.0, 2), 0.0376224, 1e-9);
+  close_to(theory_flow_heating(37.6224, 0.1, 10.0, 3), 0.0250816, 1e-9);
 }
 
 static void vertex(void **unused)
@@ -384,6 +402,7 @@ int main(void)
       cmocka_unit_test(rouse),
       cmocka_unit_test(collision_rate),
       cmocka_unit_test(self_collisions),
+      cmocka_unit_test(flow_between_walls),
       cmocka_unit_test(net_force),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
