@@ -44,7 +44,7 @@ struct border {
   void (*account)(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step);
 };
 
-extern const struct border border_periodic, border_walls, border_walls, border_sheared;
+extern const struct border border_periodic, border_walls, border_sheared;
 
 /* The virtual particles of the cell at this place in sum; n is 0 in cells that no wall cuts. */
 struct virtual_members border_virtual(const struct mpc *mpc, const struct model *model, uint32_t place);
