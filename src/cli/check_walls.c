@@ -33,7 +33,8 @@ static void report_flows(const struct si_scale *si, const struct model *m, doubl
   if (g > 0.0)
     sheet_row(si, "largest velocity by the force", "v_max", driven, "a0/t0", "rho g L^2/(8 eta) (1 + 4b/L)");
   const double speed = fmax(fastest_wall(m), driven);
-  sheet_row(si, "Mach number", "Ma", theory_mach(speed, theory_sound_speed(model_is_isothermal(m))), "", "");
+  sheet_row(si, "Mach number", "Ma", theory_mach(speed, theory_sound_speed(model_is_isothermal(m), m->dimensions)), "",
+            "");
   sheet_row(si, "Reynolds number", "Re", theory_reynolds(speed, height, eta / gamma), "", "R = L");
 }
 
@@ -41,8 +42,9 @@ void check_walls(const struct si_scale *si, const struct model *m)
 {
   const double height = m->box.cells[1], gamma = m->solvent.per_cell, eta = units_viscosity(m);
   const bool known = slip_is_known(m);
-  const double slip =
-      known ? theory_slip_length(collision_rule_of(m), gamma, m->solvent.cosine, model_collision_interval(m)) : 0.0;
+  const double slip = known ? theory_slip_length(collision_rule_of(m), m->dimensions, gamma, m->solvent.cosine,
+                                                 model_collision_interval(m))
+                            : 0.0;
   sheet_heading("Walls (flow of the solvent between them)");
   sheet_row(si, "distance of the walls", "L", height, "a0", "");
   if (known) {
@@ -54,7 +56,6 @@ void check_walls(const struct si_scale *si, const struct model *m)
     report_flows(si, m, slip);
   sheet_row(si, "time to become steady", "", theory_flow_relaxation(height, eta / gamma), "t0", "L^2/(pi^2 nu)");
   if (m->walls.period > 0.0)
-    sheet_row(si, "inertia number", "",
-              theory_inertia_number(6.283185307179586 / m->walls.period, gamma, height, eta), "",
-              "omega rho L^2/(8 eta)");
+    sheet_row(si, "inertia number", "", theory_inertia_number(6.283185307179586 / m->walls.period, gamma, height, eta),
+              "", "omega rho L^2/(8 eta)");
 }

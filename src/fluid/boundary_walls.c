@@ -1,10 +1,10 @@
 /*
  * Flights between walls at y = 0 and y = L, which move in their own planes. No force acts along y.
  *
- * A particle that hits a wall of velocity w leaves it with the velocity 2 w - v; at a slip wall only v_y is reversed. It
- * goes on for the rest of the time, and may hit the other wall. Along y that is a reflection of the place where it would
- * be without walls, which is exact in lattice units. The times of hits follow from the same whole numbers: of a flight
- * of length |d| along y, the part y/|d| is before a hit of the lower wall.
+ * A particle that hits a wall of velocity w leaves it with the velocity 2 w - v; at a slip wall only v_y is reversed.
+ * It goes on for the rest of the time, and may hit the other wall. Along y that is a reflection of the place where it
+ * would be without walls, which is exact in lattice units. The times of hits follow from the same whole numbers: of a
+ * flight of length |d| along y, the part y/|d| is before a hit of the lower wall.
  *
  * Without force, and with walls at rest, a particle that is turned around at the end of its flight comes back to the
  * bit: the displacement along x is then v_x t (y' - y)/d, since all components are reversed at the same times.
@@ -25,11 +25,11 @@ struct slit {
 
 static struct slit slit_of(const struct model *model, const struct span *span, struct point *hits)
 {
-  return (struct slit){model,
-                       span,
-                       {shear_wall_velocity(model, WALL_LOWER, span->interval),
-                        shear_wall_velocity(model, WALL_UPPER, span->interval)},
-                       hits};
+  return (struct slit){
+      model,
+      span,
+      {shear_wall_velocity(model, WALL_LOWER, span->interval), shear_wall_velocity(model, WALL_UPPER, span->interval)},
+      hits};
 }
 
 /* A particle on its way: between two hits its velocity is sign v + change, v that at the start of the flight. */
@@ -142,16 +142,31 @@ static double rebound(const struct slit *slit, int64_t d, struct point *x, struc
 
 enum { BLOCK = 512 };
 
-/* Moves along y, walls or not. Returns the number of those that end outside, and their places in `outside`. */
-static uint32_t fly_across(uint32_t n, int64_t *restrict y, const double *restrict v, double t, int64_t edge,
-                           uint32_t outside[BLOCK])
+/* Particles looked at together: only few hit a wall, and so there is none among most. */
+enum { GROUP = 32 };
+
+/* Moves along y, walls or not. The sign bit of the result is set if one ends outside. */
+static int64_t move_across(uint32_t n, int64_t *restrict y, const double *restrict v, double t, int64_t edge)
+{
+  int64_t outside = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    y[i] = (int64_t)((uint64_t)y[i] + (uint64_t)boundary_flight(v[i], 0.0, t));
+    outside |= y[i] | (int64_t)((uint64_t)edge - (uint64_t)y[i]);
+  }
+  return outside;
+}
+
+/* The same for a block. Returns the number of those that end outside, and their places in `outside`. */
+static uint32_t fly_across(uint32_t n, int64_t *y, const double *v, double t, int64_t edge, uint32_t outside[BLOCK])
 {
   uint32_t count = 0;
-  for (uint32_t i = 0; i < n; i++)
-    y[i] = (int64_t)((uint64_t)y[i] + (uint64_t)boundary_flight(v[i], 0.0, t));
-  for (uint32_t i = 0; i < n; i++) {
-    outside[count] = i;
-    count += (uint64_t)y[i] > (uint64_t)edge; /* below 0, too */
+  for (uint32_t first = 0; first < n; first += GROUP) {
+    const uint32_t m = n - first < GROUP ? n - first : GROUP;
+    if (move_across(m, &y[first], &v[first], t, edge) >= 0)
+      continue;
+    for (uint32_t i = first; i < first + m; i++)
+      if (y[i] < 0 || y[i] > edge)
+        outside[count++] = i;
   }
   return count;
 }

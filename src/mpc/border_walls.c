@@ -1,8 +1,8 @@
 /*
  * Collisions between walls at y = 0 and y = L (Tao, Goetze and Gompper 2008). The grid is not wrapped along y. With a
- * shift s of the grid, 0 <= s < 1, it has L + 1 rows of cells. Of those in row 0 the part s is beyond the lower wall, of
- * those in row L the part 1 - s is beyond the upper one. In both rows every cell is filled up with virtual particles,
- * whose mean velocity is that of the wall:
+ * shift s of the grid, 0 <= s < 1, it has L + 1 rows of cells. Of those in row 0 the part s is beyond the lower wall,
+ * of those in row L the part 1 - s is beyond the upper one. In both rows every cell is filled up with virtual
+ * particles, whose mean velocity is that of the wall:
  *
  *   planar  a Poisson number of mean gamma times the part beyond the wall: cells are filled as those of the bulk
  *   paper   gamma - N of them where the cell has N < gamma members, else none (the paper's rule)
@@ -89,28 +89,47 @@ static int64_t particle_in(const struct state *state, const struct mpc *c, uint3
   return state->solvent.id[i];
 }
 
+/* Adds virtual particles, not none, to a cut cell. */
+static bool add(const struct state *state, const struct model *model, struct mpc *c, uint64_t step,
+                const struct cut *cut, const struct virtual_members *v, struct fault *fault)
+{
+  if (!virtual_room(&c->sum[cut->place], v->n, step, cut->place, FAULT_SOLVENT_SPEED, fault)) {
+    if (fault->code == FAULT_SOLVENT_SPEED)
+      fault->entity = particle_in(state, c, cut->place);
+    return false;
+  }
+  c->rule->add_virtual(model, c, step, cut->place, v);
+  return true;
+}
+
+enum { BLOCK = 64 }; /* cells worked on at a time */
+
 static bool fill(const struct state *state, const struct model *model, struct mpc *c, uint64_t step,
                  struct fault *fault)
 {
   const uint32_t cuts = cut_cells(model);
   const struct vec3 wall[WALLS] = {velocity_of(model, WALL_LOWER, step), velocity_of(model, WALL_UPPER, step)};
   fill_number *const number = fill_of(model);
-  for (uint32_t k = 0; k < cuts; k++) {
-    const struct cut cut = cut_cell(model, c, k);
-    const bool lower = cut.wall == WALL_LOWER;
-    const double n = number(model, step, &cut);
-    struct virtual_members *v = &c->filled[k];
-    *v = (struct virtual_members){
-        n, wall[cut.wall], wall[cut.wall], lower ? 0.0 : 1.0 - cut.beyond, lower ? cut.beyond : 1.0};
-    if (n == 0.0)
-      continue;
-    v->velocity = virtual_velocity(model, step, cut.place, n, v->flow);
-    if (!virtual_room(&c->sum[cut.place], n, step, cut.place, FAULT_SOLVENT_SPEED, fault)) {
-      if (fault->code == FAULT_SOLVENT_SPEED)
-        fault->entity = particle_in(state, c, cut.place);
-      return false;
+  struct cut cut[BLOCK];
+  struct vec3 normal[BLOCK];
+  uint32_t place[BLOCK];
+  for (uint32_t first = 0; first < cuts; first += BLOCK) {
+    const uint32_t m = cuts - first < BLOCK ? cuts - first : BLOCK;
+    for (uint32_t k = 0; k < m; k++) {
+      cut[k] = cut_cell(model, c, first + k);
+      place[k] = cut[k].place;
     }
-    c->rule->add_virtual(model, c, step, cut.place, v);
+    if (number != none)
+      virtual_normals(model, step, place, m, normal);
+    for (uint32_t k = 0; k < m; k++) {
+      const bool lower = cut[k].wall == WALL_LOWER;
+      const struct vec3 flow = wall[cut[k].wall];
+      const double n = number(model, step, &cut[k]), beyond = cut[k].beyond;
+      c->filled[first + k] = (struct virtual_members){n, n > 0.0 ? virtual_velocity(normal[k], n, flow) : flow, flow,
+                                                      lower ? 0.0 : 1.0 - beyond, lower ? beyond : 1.0};
+      if (n > 0.0 && !add(state, model, c, step, &cut[k], &c->filled[first + k], fault))
+        return false;
+    }
   }
   return true;
 }

@@ -7,6 +7,7 @@
 #include "mpc/grid.h"
 #include "mpc/overflow.h"
 #include "mpc/rule.h"
+#include "mpc/rules/spin.h"
 #include "mpc/sort.h"
 #include "mpc/stress.h"
 
@@ -26,6 +27,8 @@ static uint32_t block_size(uint32_t n, uint32_t first, uint32_t most)
 static void clear_sums(struct mpc *c)
 {
   memset(c->sum, 0, (size_t)c->cells * sizeof *c->sum);
+  if (c->rule->spinning)
+    memset(c->spin, 0, (size_t)c->cells * sizeof *c->spin);
 }
 
 /* Unsigned: the sum may wrap. overflow_of_energies finds out afterwards. */

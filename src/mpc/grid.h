@@ -16,8 +16,8 @@ uint32_t grid_cell_of(const struct box *box, struct point position, struct point
  * this shift. Particles must be in the box. */
 void grid_bin(const struct state *state, const struct model *model, struct point shift, struct mpc *mpc);
 
-/* The same for n particles from place `first` of memory on, and for the vertices, in a box that is periodic or has walls.
- * The shift is mpc->shift. */
+/* The same for n particles from place `first` of memory on, and for the vertices, in a box that is periodic or has
+ * walls. The shift is mpc->shift. */
 void grid_bin_particles(const struct state *state, const struct model *model, uint32_t first, uint32_t n,
                         struct mpc *mpc);
 void grid_bin_vertices(const struct state *state, const struct model *model, struct mpc *mpc);

@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "mpc/border.h"
 #include "mpc/rule.h"
+#include "mpc/rules/spin.h"
 #include "mpc/thermostat.h"
 
 /* Bits of a hash table that is at most half full. */
@@ -22,7 +23,7 @@ static size_t count_cells(const struct model *m)
   return model_has_phantoms(m) ? m->vertices : model_has_solvent(m) ? (size_t)box_cell_count(&m->box) : 0;
 }
 
-enum { NEEDS = 15 };
+enum { NEEDS = 17 };
 
 /* The single list of the scratch that the collisions of a model use. */
 static void list_needs(struct mpc *c, const struct model *m, bool everything, struct memory_need need[NEEDS])
@@ -33,6 +34,7 @@ static void list_needs(struct mpc *c, const struct model *m, bool everything, st
   const size_t swapped = everything || !m->solvent.hydrodynamics ? particles : 0;
   const size_t cut = model_has_walls(m) ? 2 * (size_t)m->box.cells[0] * (size_t)m->box.cells[2] : 0;
   const bool drawing = everything || collision_rule_of(m)->thermal;
+  const size_t spinning = everything || collision_rule_of(m)->spinning ? cells : 0;
   const struct memory_need all[NEEDS] = {
       {(void **)&c->sum, cells, sizeof *c->sum},
       {(void **)&c->turn, cells, sizeof *c->turn},
@@ -49,6 +51,8 @@ static void list_needs(struct mpc *c, const struct model *m, bool everything, st
       {(void **)&c->drawn[1], drawing ? particles : 0, sizeof *c->drawn[1]},
       {(void **)&c->drawn[2], drawing ? particles : 0, sizeof *c->drawn[2]},
       {(void **)&c->drawn_vertex, drawing ? colliding : 0, sizeof *c->drawn_vertex},
+      {(void **)&c->spin, spinning, sizeof *c->spin},
+      {(void **)&c->middle, spinning, sizeof *c->middle},
   };
   memcpy(need, all, sizeof all);
 }

@@ -44,8 +44,9 @@ struct mpc {
   uint32_t *occupied;     /* [vertices] numbers of the cells that hold a vertex; random solvent only, else NULL */
   uint32_t *table;        /* [2^table_bits] hash table: 1 + place in occupied, or 0; random solvent only, else NULL */
   uint32_t table_bits;
-  struct virtual_members *filled; /* [2 Lx Lz] virtual particles of the cells that walls cut, of this collision: the row
-                                   * of y = 0, then that of y = L, cell (z, x) of each at z Lx + x; NULL without walls */
+  struct virtual_members
+      *filled;               /* [2 Lx Lz] virtual particles of the cells that walls cut, of this collision: the row
+                              * of y = 0, then that of y = L, cell (z, x) of each at z Lx + x; NULL without walls */
   uint32_t *order;           /* [particles] sorting and velocity swap; in a collision, who entered (border.h) */
   uint32_t entered;          /* particles that did */
   uint32_t *slot;            /* [particles] velocity swap only, else NULL */
@@ -53,6 +54,8 @@ struct mpc {
   double *drawn[3];          /* [particles] velocities that a thermal rule has drawn, else NULL */
   struct vec3 *drawn_vertex; /* [vertices] the same */
   struct mpc_stress *stress; /* where to sum the stress (stress.h); NULL: nobody asks for it */
+  struct cell_spin *spin;    /* [cells] sums of a rule with angular momentum (rules/spin.h), else NULL */
+  struct point *middle;      /* [cells] of the same rule: place in the cell next to its centre of mass, lattice units */
   uint32_t since_sort;       /* collisions since particles were last sorted by cell */
 };
 

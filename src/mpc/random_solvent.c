@@ -10,7 +10,11 @@
 struct phantoms random_solvent_phantoms(const struct model *model, uint64_t step, uint32_t cell)
 {
   const double n = virtual_number(model, step, cell, model->solvent.per_cell);
-  return (struct phantoms){n, n > 0.0 ? virtual_velocity(model, step, cell, n, model->flow) : model->flow};
+  struct vec3 normal;
+  if (n == 0.0)
+    return (struct phantoms){0.0, model->flow};
+  virtual_normals(model, step, &cell, 1, &normal);
+  return (struct phantoms){n, virtual_velocity(normal, n, model->flow)};
 }
 
 /* The place of this cell in the list of occupied ones; it is appended if it is not there yet. The hash is Fibonacci's

@@ -29,13 +29,19 @@ uint32_t virtual_number(const struct model *model, uint64_t step, uint32_t cell,
   return n;
 }
 
-struct vec3 virtual_velocity(const struct model *model, uint64_t step, uint32_t cell, double n, struct vec3 flow)
+enum { COLUMN = 64 }; /* cells worked on at a time */
+
+void virtual_normals(const struct model *model, uint64_t step, const uint32_t *cell, uint32_t cells,
+                     struct vec3 *normal)
 {
-  double xy[2], z[2];
-  random_normal_pair(random_at(model->seed, RANDOM_PHANTOM_VELOCITY, 0, step, cell), xy);
-  random_normal_pair(random_at(model->seed, RANDOM_PHANTOM_VELOCITY, 1, step, cell), z);
-  const struct vec3 normal = {xy[0], xy[1], model->dimensions == 2 ? 0.0 : z[0]};
-  return vec3_add_scaled(flow, 1.0 / sqrt(n), normal);
+  const double depth = model->dimensions == 2 ? 0.0 : 1.0;
+  double x[COLUMN], y[COLUMN], z[COLUMN];
+  for (uint32_t k = 0; k < cells; k += COLUMN) {
+    const uint32_t n = cells - k < COLUMN ? cells - k : COLUMN;
+    random_normal_columns(model->seed, RANDOM_PHANTOM_VELOCITY, step, &cell[k], n, x, y, z);
+    for (uint32_t i = 0; i < n; i++)
+      normal[k + i] = (struct vec3){x[i], y[i], depth * z[i]};
+  }
 }
 
 bool virtual_room(const struct cell_sum *sum, double n, uint64_t step, uint32_t cell, enum fault_code code,

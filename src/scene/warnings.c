@@ -71,7 +71,7 @@ static void warn_solvent(struct teller *t, const struct model *m)
 /* A flow faster than a tenth of the speed of sound: Padding 2009, Sec. IV B. */
 static void warn_flow(struct teller *t, const struct model *m)
 {
-  const double mach = theory_mach(vec3_norm(m->flow), theory_sound_speed(model_is_isothermal(m)));
+  const double mach = theory_mach(vec3_norm(m->flow), theory_sound_speed(model_is_isothermal(m), m->dimensions));
   if (model_has_solvent(m) && mach > 0.1)
     warn(t, "the flow's Mach number is %.3g > 0.1 (harmless while it is uniform: paper, Sec. V B 1)", mach);
 }
@@ -98,7 +98,8 @@ static void warn_force(struct teller *t, const struct model *m)
 
 static double viscosity_of(const struct model *m)
 {
-  return theory_viscosity(collision_rule_of(m), m->solvent.per_cell, m->solvent.cosine, model_collision_interval(m));
+  return theory_viscosity(collision_rule_of(m), m->dimensions, m->solvent.per_cell, m->solvent.cosine,
+                          model_collision_interval(m));
 }
 
 #define MOST_WALL_MACH 0.5
@@ -110,22 +111,27 @@ static void warn_walls(struct teller *t, const struct model *m)
   const double height = m->box.cells[1], eta = viscosity_of(m);
   const struct vec3 slide = vec3_sub(m->walls.upper, m->walls.lower);
   const double rate = m->walls.kind == WALL_NO_SLIP ? vec3_norm(slide) / height : 0.0;
-  const double driven = m->walls.kind == WALL_NO_SLIP
-                            ? theory_poiseuille_speed(m->solvent.per_cell, vec3_norm(m->solvent.acceleration), height, eta, 0.0)
-                            : 0.0;
+  const double driven =
+      m->walls.kind == WALL_NO_SLIP
+          ? theory_poiseuille_speed(m->solvent.per_cell, vec3_norm(m->solvent.acceleration), height, eta, 0.0)
+          : 0.0;
   const double speed = fmax(driven, fmax(vec3_norm(m->walls.lower), vec3_norm(m->walls.upper)));
-  const double mach = theory_mach(speed, theory_sound_speed(model_is_isothermal(m)));
+  const double mach = theory_mach(speed, theory_sound_speed(model_is_isothermal(m), m->dimensions));
   const double heating = theory_flow_heating(eta, rate, m->solvent.per_cell, m->dimensions);
   if (m->solvent.thermostat == THERMOSTAT_RESCALE)
-    warn(t, "thermostat rescale has one factor for the whole box, but flow between walls heats unevenly, and walls hold "
-            "their own temperature; use solvent.thermostat: rescale-layers or maxwell-boltzmann");
+    warn(t,
+         "thermostat rescale has one factor for the whole box, but flow between walls heats unevenly, and walls hold "
+         "their own temperature; use solvent.thermostat: rescale-layers or maxwell-boltzmann");
   if (mach > MOST_WALL_MACH)
-    warn(t, "the Mach number between the walls is expected to be %.3g > %g: the solvent is compressed; use slower walls or "
-            "a smaller acceleration",
-         mach, MOST_WALL_MACH);
+    warn(
+        t,
+        "the Mach number between the walls is expected to be %.3g > %g: the solvent is compressed; use slower walls or "
+        "a smaller acceleration",
+        mach, MOST_WALL_MACH);
   if (!model_is_isothermal(m) && heating > MOST_HEATING)
-    warn(t, "the walls heat the solvent by %.3g kT per t0 until as much heat leaves through them, and no thermostat takes "
-            "it away; use solvent.thermostat: maxwell-boltzmann, or rule: at-a",
+    warn(t,
+         "the walls heat the solvent by %.3g kT per t0 until as much heat leaves through them, and no thermostat takes "
+         "it away; use solvent.thermostat: maxwell-boltzmann, or rule: at-a",
          heating);
 }
 
@@ -141,7 +147,7 @@ static double bonds_beyond(const struct scene *scene, const struct fiber_kind *k
 /* The paper's boxes are as long as its fibers, and eight times as long as R_e of its chains (Sec. V). */
 static void warn_images(struct teller *t, const struct model *m, const struct fiber_kind *k)
 {
-  const double edge = box_shortest_edge(&m->box), reach = theory_reach(k);
+  const double edge = 2.0 * model_longest_bond(m), reach = theory_reach(k);
   if (reach <= edge * (1.0 + 1e-9) || !(m->crossing.forbidden || model_has_solvent(m)))
     return;
   if (reach > LATTICE_MAX_EDGE)
@@ -163,7 +169,7 @@ static void warn_images(struct teller *t, const struct model *m, const struct fi
 static void warn_long_bonds(struct teller *t, const struct scene *scene, const struct fiber_kind *k)
 {
   const struct model *m = &scene->model;
-  const double limit = 0.5 * box_shortest_edge(&m->box);
+  const double limit = model_longest_bond(m);
   const double expected = bonds_beyond(scene, k, limit);
   if (!(expected > MOST_LONG_BONDS))
     return;
@@ -224,7 +230,7 @@ static void warn_heating(struct teller *t, const struct scene *scene)
   const double each =
       m->crossing.rule == CROSSING_SEQUENTIAL ? 0.7 * phase * phase : 0.09 * phase * phase * phase * phase;
   const double heat = each * theory_executed_rate(m) * time;
-  const double rise = heat / (1.5 * m->solvent.particles + 3.0 * m->vertices);
+  const double rise = heat / (m->dimensions * (0.5 * m->solvent.particles + m->vertices));
   const double order = m->crossing.rule == CROSSING_SEQUENTIAL ? 2.0 : 4.0; /* of the heat, in the time step */
   if (rise > MOST_RISE)
     warn(t,

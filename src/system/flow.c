@@ -74,6 +74,11 @@ static bool check_boundary(const struct model *m, struct model_error *error)
        "a wall that leaves its plane; allowed: velocities with a y component of 0"},
       {walls && m->walls.kind == WALL_SLIP && m->walls.fill != FILL_PLANAR, "walls.fill",
        "slip walls have no virtual particles; allowed: planar, which has no effect there"},
+      {walls && m->walls.fill == FILL_PAPER && m->solvent.rule == RULE_AT_PLUS_A &&
+           m->solvent.per_cell != nearbyint(m->solvent.per_cell),
+       "walls.fill",
+       "per_cell less the members of a cell is not a whole number of virtual particles, and at+a gives each a place; "
+       "allowed with at+a: planar or none, or a whole per_cell"},
   };
   return refuse_first(rows, sizeof rows / sizeof *rows, error);
 }

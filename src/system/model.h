@@ -20,10 +20,16 @@
 /* Where drift, collision and kick stand within a step: see step.c. */
 enum scheme { SCHEME_PAPER, SCHEME_KICK_SPLIT, SCHEME_DRIFT_SPLIT, SCHEMES };
 
-enum thermostat_kind { THERMOSTAT_NONE, THERMOSTAT_RESCALE, THERMOSTAT_MAXWELL_BOLTZMANN, THERMOSTATS };
+enum thermostat_kind {
+  THERMOSTAT_NONE,
+  THERMOSTAT_RESCALE,
+  THERMOSTAT_MAXWELL_BOLTZMANN,
+  THERMOSTAT_RESCALE_LAYERS,
+  THERMOSTATS
+};
 
 /* What happens in a collision cell: see mpc/rule.h. */
-enum rule { RULE_SRD, RULE_AT_A, RULES };
+enum rule { RULE_SRD, RULE_AT_A, RULE_AT_PLUS_A, RULES };
 
 /* What vertices collide with. */
 enum bath {
@@ -107,6 +113,7 @@ struct fiber_kind {
   double persistence_length;  /* l_p, in a0: sets bending to l_p/l0; 0: not given */
   struct vec3 force;          /* constant force on each vertex, in kT/a0 */
   enum fiber_start start;
+  uint32_t dimensions;       /* derived by model_finish: those of the model; 0 is 3 */
   uint32_t placed;           /* number of fibers whose place is given; the others are placed at random */
   struct fiber_place *place; /* [placed], allocated */
 };
@@ -217,9 +224,12 @@ static inline int model_bonds_of(const struct model *model, uint32_t vertex, uin
   return bonds;
 }
 
-/* a0: bonds must be shorter. */
+/* a0: bonds must be shorter. In a plane there are no images along z. */
 static inline double model_longest_bond(const struct model *model)
 {
+  const int *edge = model->box.cells;
+  if (model->dimensions == 2)
+    return 0.5 * (edge[0] < edge[1] ? edge[0] : edge[1]);
   return 0.5 * box_shortest_edge(&model->box);
 }
 
@@ -237,10 +247,16 @@ static inline struct vec3 model_frame_velocity(const struct model *model)
   return model->crossing.frame == FRAME_FLOW ? model->flow : (struct vec3){0, 0, 0};
 }
 
+/* True if everything is in the plane z = 0, where nothing moves along z. */
+static inline bool model_is_flat(const struct model *model)
+{
+  return model->dimensions == 2;
+}
+
 /* The collision rule draws velocities anew: it is a thermostat by itself (thermal, in mpc/rule.h). */
 static inline bool model_rule_is_thermal(const struct model *model)
 {
-  return model->solvent.rule == RULE_AT_A;
+  return model->solvent.rule == RULE_AT_A || model->solvent.rule == RULE_AT_PLUS_A;
 }
 
 /* Something holds kT = 1: the rule, or a thermostat. */

@@ -169,7 +169,7 @@ static bool check_count(const struct look *look, uint64_t *vertices)
 static bool check_extent(const struct look *look)
 {
   const struct fiber_kind *k = look->kind;
-  const double bond = fiber_mean_bond(k), limit = 0.5 * box_shortest_edge(&look->model->box);
+  const double bond = fiber_mean_bond(k), limit = model_longest_bond(look->model);
   if (k->vertices < 2)
     return true;
   if (!(bond < limit))
@@ -250,10 +250,31 @@ static bool find_namesake(const struct model *m, uint32_t *number)
   return true;
 }
 
+/* In a plane nothing moves along z. */
+static bool check_plane(const struct look *look)
+{
+  const struct fiber_kind *k = look->kind;
+  char key[64];
+  if (!model_is_flat(look->model))
+    return true;
+  if (k->force.z != 0.0)
+    return reject_kind(look, "force", "with dimensions: 2 nothing moves along z; allowed: a z component of 0");
+  for (uint32_t i = 0; i < k->placed; i++) {
+    const struct fiber_place *p = &k->place[i];
+    snprintf(key, sizeof key, "places.%" PRIu32 ".%s", i, p->center.z != 0.0 ? "center" : "direction");
+    if (p->center.z != 0.0)
+      return reject_kind(look, key, "with dimensions: 2 everything is at z = 0; allowed: a z component of 0");
+    if (k->ring ? p->direction.x != 0.0 || p->direction.y != 0.0 : p->direction.z != 0.0)
+      return reject_kind(look, key, "out of the plane; allowed with dimensions: 2: %s",
+                         k->ring ? "[0, 0, 1], normal to the plane" : "a z component of 0");
+  }
+  return true;
+}
+
 static bool finish_kind(const struct look *look, uint64_t *vertices)
 {
   return round_mass(look) && derive_bending(look) && check_shape(look) && check_count(look, vertices) &&
-         check_extent(look) && check_places(look) && check_stability(look);
+         check_extent(look) && check_places(look) && check_plane(look) && check_stability(look);
 }
 
 static bool finish_fibers(struct model *m, struct model_error *error)
@@ -269,6 +290,7 @@ static bool finish_fibers(struct model *m, struct model_error *error)
     if (k == namesake)
       return reject_kind(&look, "name", "'%s' is the name of an earlier kind; allowed: a name of its own",
                          look.kind->name);
+    m->kind[k].dimensions = m->dimensions;
     if (!finish_kind(&look, &vertices))
       return false;
   }

@@ -6,8 +6,8 @@
 #define IN_KIND(member) offsetof(struct fiber_kind, member)
 
 static const char *const scheme_words[] = {"paper", "kick-split", "drift-split", NULL};
-static const char *const rule_words[] = {"srd", "at-a", NULL};
-static const char *const thermostat_words[] = {"none", "rescale", "maxwell-boltzmann", NULL};
+static const char *const rule_words[] = {"srd", "at-a", "at+a", NULL};
+static const char *const thermostat_words[] = {"none", "rescale", "maxwell-boltzmann", "rescale-layers", NULL};
 static const char *const profile_words[] = {"uniform", "sine", "reverse", NULL};
 static const char *const wall_words[] = {"no-slip", "slip", NULL};
 static const char *const fill_words[] = {"planar", "paper", "none", NULL};
@@ -53,18 +53,20 @@ static const struct key solvent_keys[] = {
      .symbol = "alpha",
      .first_format = true},
     {.name = "rule",
-     .text = "What happens in a collision cell. `srd`: velocities relative to the cell's centre of mass are turned "
-             "about a random axis. `at-a`: they are drawn anew from the Maxwell distribution, with the cell's momentum "
-             "kept (Andersen thermostat without angular momentum; Noguchi et al. 2007); a thermostat by itself, and "
-             "`rotation_angle` has no meaning.",
+     .text =
+         "What happens in a collision cell. `srd`: velocities relative to the cell's centre of mass are turned "
+         "about a random axis. `at-a`: they are drawn anew from the Maxwell distribution, with the cell's momentum "
+         "kept (Andersen thermostat without angular momentum; Noguchi et al. 2007). `at+a`: the same with the cell's "
+         "angular momentum kept too. Both are thermostats by themselves, and `rotation_angle` has no meaning.",
      .type = KEY_CHOICE,
      .absent = "srd",
      .choice = rule_words,
      .offset = IN_MODEL(solvent.rule)},
     {.name = "thermostat",
-     .text = "`rescale`: one factor for all relative velocities, 3(n-1) degrees of freedom per cell. "
+     .text = "`rescale`: one factor for all relative velocities, d(n-1) degrees of freedom per cell. "
              "`maxwell-boltzmann`: each cell's relative kinetic energy drawn from its canonical distribution (Huang et "
-             "al. 2010).",
+             "al. 2010). `rescale-layers`: as `rescale`, with a factor for each layer of cells along y (Tao et al. "
+             "2008).",
      .type = KEY_CHOICE,
      .absent = "none",
      .choice = thermostat_words,

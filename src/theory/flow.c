@@ -4,9 +4,9 @@
 
 static const double pi = 3.14159265358979323846;
 
-double theory_slip_length(const struct collision_rule *rule, double gamma, double cosine, double interval)
+double theory_slip_length(const struct collision_rule *rule, uint32_t d, double gamma, double cosine, double interval)
 {
-  const double loss = rule->velocity_loss(cosine) * theory_partners(gamma) / gamma;
+  const double loss = 1.0 - theory_vertex_retention(rule, d, 1.0, gamma, cosine);
   return THEORY_MILNE_SLIP - sqrt(2.0 / pi) * interval / loss;
 }
 
