@@ -201,7 +201,7 @@ static void walls_feel_the_stress_of_the_bulk(void **unused)
   assert_true(sample_error(&lower) < 0.02 * bulk.mean && sample_error(&upper) < 0.02 * bulk.mean);
   struct kept *kept = keep_summaries(w.observers, &w.run.model);
   const double rise = kept_value(kept, "profile", 7, "vx") - kept_value(kept, "profile", 2, "vx");
-  const double theory = theory_viscosity(&at_a_rule, 10, w.run.model.solvent.cosine, 0.02);
+  const double theory = theory_viscosity(&at_a_rule, 3, 10, w.run.model.solvent.cosine, 0.02);
   assert_close(bulk.mean / (rise / 5.0), theory, 0.08 * theory);
   free(kept);
   end_watch(&w);
