@@ -2,9 +2,11 @@
 #include <stdio.h>
 
 #include "base/text.h"
+#include "cli/check_flow.h"
 #include "cli/check_walls.h"
 #include "cli/command.h"
 #include "cli/sheet.h"
+#include "mpc/drive.h"
 #include "mpc/rule.h"
 #include "scene/scene.h"
 #include "system/fiber_kind.h"
@@ -249,8 +251,11 @@ static void report_parts(const struct scene *scene)
   const struct part parts[] = {
       {"streaming of the solvent", "fluid/points.c", solvent},
       {"... between walls", "fluid/boundary_walls.c", model_has_walls(m)},
+      {"... in a sheared box", "fluid/boundary_shear.c", model_is_sheared(m)},
       {"collisions", "mpc/collide.c", collides},
       {"... in cells that walls cut", "mpc/border_walls.c", model_has_walls(m)},
+      {"... with images that slide", "mpc/border_shear.c", model_is_sheared(m)},
+      {"kicks that depend on y", "mpc/drive.c", collides && (drive_has_profile(m) || drive_has_affine_kick(m))},
       {"... with phantoms for a solvent", "mpc/random_solvent.c", model_has_phantoms(m)},
       {"... rotation by 90 degrees", "mpc/rules/srd.h", collides && rotates && quarter},
       {"... rotation by any angle", "mpc/rules/srd.h", collides && rotates && !quarter},
@@ -313,6 +318,10 @@ void scene_report(const struct scene *scene, const struct units *units, const st
     report_solvent(si, m);
   if (model_has_walls(m))
     check_walls(si, m);
+  if (model_is_sheared(m))
+    check_shear(si, m);
+  if (m->solvent.profile != PROFILE_UNIFORM)
+    check_drive(si, m);
   const double mesh = theory_mesh_size(theory_line_density(m));
   for (uint32_t k = 0; k < m->kinds; k++)
     report_kind(si, m, &m->kind[k], mesh);

@@ -43,18 +43,35 @@ static int64_t fly_along_y(uint32_t n, int64_t *restrict y, const double *restri
   return outside;
 }
 
+/* True if one of n particles is outside along y. */
+static bool any_outside(const int64_t *y, uint32_t n, int64_t edge)
+{
+  int64_t outside = 0;
+  for (uint32_t i = 0; i < n; i++)
+    outside |= y[i] | (int64_t)((uint64_t)(edge - 1) - (uint64_t)y[i]);
+  return outside < 0;
+}
+
+/* Few are outside, so that most handfuls are passed over without a branch for each particle. */
 static bool bring_all_in(struct state *state, const struct model *model, const struct span *span, uint32_t first,
                          uint32_t n, struct fault *fault)
 {
+  enum { HANDFUL = 32 };
   struct solvent *s = &state->solvent;
   const struct slide slide = slide_at_end(model, span);
-  for (uint32_t i = first; i < first + n; i++) {
-    if ((uint64_t)s->y[i] < (uint64_t)model->box.edge[1])
+  const uint32_t end = first + n;
+  for (uint32_t from = first; from < end; from += HANDFUL) {
+    const uint32_t to = end - from < HANDFUL ? end : from + HANDFUL;
+    if (!any_outside(&s->y[from], to - from, model->box.edge[1]))
       continue;
-    const double move = s->vy[i] * span->time;
-    if (!(fabs(move) < LATTICE_MAX_MOVE))
-      return fault_record(fault, FAULT_SOLVENT_MOVE, state->step + 1, s->id[i], move, LATTICE_MAX_MOVE);
-    bring_in(&model->box, slide, &s->x[i], &s->y[i], &s->vx[i]);
+    for (uint32_t i = from; i < to; i++) {
+      if ((uint64_t)s->y[i] < (uint64_t)model->box.edge[1])
+        continue;
+      const double move = s->vy[i] * span->time;
+      if (!(fabs(move) < LATTICE_MAX_MOVE))
+        return fault_record(fault, FAULT_SOLVENT_MOVE, state->step + 1, s->id[i], move, LATTICE_MAX_MOVE);
+      bring_in(&model->box, slide, &s->x[i], &s->y[i], &s->vx[i]);
+    }
   }
   return true;
 }

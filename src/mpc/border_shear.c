@@ -22,21 +22,41 @@ static struct slide slide_now(const struct state *state, const struct model *mod
   return (struct slide){shear_offset(model, now), shear_rate(model, ended) * model->box.cells[1]};
 }
 
+static void enter_one(struct solvent *s, const struct model *model, struct slide slide, uint32_t i, struct mpc *c)
+{
+  s->x[i] -= slide.offset;
+  s->x[i] += s->x[i] < 0 ? model->box.edge[0] : 0;
+  s->vx[i] -= slide.speed;
+  c->order[c->entered++] = i;
+}
+
+/* True if one of n particles is at `beyond` or above. */
+static bool any_beyond(const int64_t *y, uint32_t n, int64_t beyond)
+{
+  int64_t less = 0;
+  for (uint32_t i = 0; i < n; i++)
+    less |= beyond - 1 - y[i];
+  return less < 0;
+}
+
 /* Particles are in the box: their image is 0, or 1 if the shift takes them beyond y = L. mpc->order lists the latter;
- * it is free until particles are sorted. */
+ * it is free until particles are sorted. They are few, so that most handfuls are passed over without a branch for each
+ * particle. */
 static void enter(struct state *state, const struct model *model, uint32_t first, uint32_t n, struct mpc *c)
 {
+  enum { HANDFUL = 32 };
   struct solvent *s = &state->solvent;
   const struct slide slide = slide_now(state, model);
-  const int64_t *edge = model->box.edge, beyond = edge[1] - c->shift.y;
+  const int64_t beyond = model->box.edge[1] - c->shift.y;
+  const uint32_t end = first + n;
   c->entered = first == 0 ? 0 : c->entered;
-  for (uint32_t i = first; i < first + n; i++) {
-    if (s->y[i] < beyond)
+  for (uint32_t from = first; from < end; from += HANDFUL) {
+    const uint32_t to = end - from < HANDFUL ? end : from + HANDFUL;
+    if (!any_beyond(&s->y[from], to - from, beyond))
       continue;
-    s->x[i] -= slide.offset;
-    s->x[i] += s->x[i] < 0 ? edge[0] : 0;
-    s->vx[i] -= slide.speed;
-    c->order[c->entered++] = i;
+    for (uint32_t i = from; i < to; i++)
+      if (s->y[i] >= beyond)
+        enter_one(s, model, slide, i, c);
   }
 }
 

@@ -16,29 +16,38 @@ bool drive_has_affine_kick(const struct model *model)
   return model_is_sheared(model) && model->wave.intervals > 0;
 }
 
-static double uniform(double turns)
+/* Weights of n particles at heights y. */
+typedef void profile_weights(const struct model *model, const int64_t *y, uint32_t n, double *weight);
+
+static void weigh_uniform(const struct model *model, const int64_t *y, uint32_t n, double *weight)
 {
-  (void)turns;
-  return 1.0;
+  (void)model, (void)y;
+  for (uint32_t i = 0; i < n; i++)
+    weight[i] = 1.0;
 }
 
-static double sine(double turns)
+static void weigh_sine(const struct model *model, const int64_t *y, uint32_t n, double *weight)
 {
-  return elementary_circle_turns(turns).sine;
+  const double edge = (double)model->box.edge[1];
+  for (uint32_t i = 0; i < n; i++)
+    weight[i] = elementary_circle_turns((double)y[i] / edge).sine;
 }
 
-static double reverse(double turns)
+static void weigh_reverse(const struct model *model, const int64_t *y, uint32_t n, double *weight)
 {
-  return turns < 0.5 ? 1.0 : -1.0;
+  for (uint32_t i = 0; i < n; i++)
+    weight[i] = 2 * y[i] < model->box.edge[1] ? 1.0 : -1.0;
 }
 
-static double (*const profiles[PROFILES])(double turns) = {
-    [PROFILE_UNIFORM] = uniform, [PROFILE_SINE] = sine, [PROFILE_REVERSE] = reverse};
-
-double drive_profile(const struct model *model, int64_t y)
+/* a0, from the middle */
+static void weigh_height(const struct model *model, const int64_t *y, uint32_t n, double *weight)
 {
-  return profiles[model->solvent.profile]((double)y / (double)model->box.edge[1]);
+  for (uint32_t i = 0; i < n; i++)
+    weight[i] = (double)(y[i] - model->box.edge[1] / 2) * LATTICE_UNIT;
 }
+
+static profile_weights *const profiles[PROFILES] = {
+    [PROFILE_UNIFORM] = weigh_uniform, [PROFILE_SINE] = weigh_sine, [PROFILE_REVERSE] = weigh_reverse};
 
 /* Adds w[i] k to the velocities of n particles. */
 static void add_kick(struct solvent *s, uint32_t first, uint32_t n, const double *w, struct vec3 k)
@@ -50,50 +59,54 @@ static void add_kick(struct solvent *s, uint32_t first, uint32_t n, const double
   }
 }
 
-typedef double weight_of(const struct model *, int64_t y);
-
-/* Mean weight of all particles. The sum is one of integers, so that it does not depend on the order of particles.
- * Weights are at most 2^9, half the longest edge: n of them fit in units of 2^-(53 - bits of n). */
-static double mean_weight(const struct solvent *s, const struct model *model, weight_of *weight)
+static uint32_t block_size(uint32_t n, uint32_t first)
 {
+  return n - first < BLOCK ? n - first : BLOCK;
+}
+
+/* Mean weight of all particles, where weights are at most 1. The sum is one of integers, so that it does not depend on
+ * the order of particles: n of them fit in units of 2^-(62 - bits of n). */
+static double mean_weight(const struct solvent *s, const struct model *model, profile_weights *weigh)
+{
+  double w[BLOCK];
   int bits = 0;
   while (s->n >> bits)
     bits++;
-  const double unit = ldexp(1.0, bits - 53);
+  const double scale = ldexp(1.0, 62 - bits);
   int64_t sum = 0;
-  for (uint32_t i = 0; i < s->n; i++)
-    sum += llrint(weight(model, s->y[i]) / unit);
-  return (double)sum * unit / s->n;
+  for (uint32_t first = 0; first < s->n; first += BLOCK) {
+    const uint32_t n = block_size(s->n, first);
+    weigh(model, &s->y[first], n, w);
+    for (uint32_t i = 0; i < n; i++)
+      sum += llrint(w[i] * scale);
+  }
+  return (double)sum / scale / s->n;
 }
 
-/* Kicks all particles by weight(y) k, less the mean. */
-static void kick_by(struct state *state, const struct model *model, weight_of *weight, struct vec3 k)
+/* Kicks all particles by (weight - less) k. */
+static void kick_by(struct solvent *s, const struct model *model, profile_weights *weigh, double less, struct vec3 k)
 {
-  struct solvent *s = &state->solvent;
   double w[BLOCK];
-  const double mean = mean_weight(s, model, weight);
   for (uint32_t first = 0; first < s->n; first += BLOCK) {
-    const uint32_t n = s->n - first < BLOCK ? s->n - first : BLOCK;
+    const uint32_t n = block_size(s->n, first);
+    weigh(model, &s->y[first], n, w);
     for (uint32_t i = 0; i < n; i++)
-      w[i] = weight(model, s->y[first + i]) - mean;
+      w[i] -= less;
     add_kick(s, first, n, w, k);
   }
 }
 
 void drive_kick(struct state *state, const struct model *model, double part)
 {
-  kick_by(state, model, drive_profile, vec3_scale(part * model_collision_interval(model), model->solvent.acceleration));
-}
-
-/* a0, from the middle */
-static double height(const struct model *model, int64_t y)
-{
-  return (double)(y - model->box.edge[1] / 2) * LATTICE_UNIT;
+  struct solvent *s = &state->solvent;
+  profile_weights *const weigh = profiles[model->solvent.profile];
+  kick_by(s, model, weigh, mean_weight(s, model, weigh),
+          vec3_scale(part * model_collision_interval(model), model->solvent.acceleration));
 }
 
 void drive_affine_kick(struct state *state, const struct model *model)
 {
   const uint64_t begins = shear_interval(model, state->solvent_time + state->solvent_lag);
   const double change = shear_rate(model, begins) - (begins > 0 ? shear_rate(model, begins - 1) : 0.0);
-  kick_by(state, model, height, (struct vec3){change, 0, 0});
+  kick_by(&state->solvent, model, weigh_height, 0.0, (struct vec3){change, 0, 0});
 }

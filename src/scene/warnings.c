@@ -88,6 +88,8 @@ static void warn_force(struct teller *t, const struct model *m)
     snprintf(remedy, sizeof remedy, "solvent.acceleration: [%.17g, %.17g, %.17g] balances it%s", a.x - net.x / n,
              a.y - net.y / n, a.z - net.z / n,
              model_is_isothermal(m) ? "" : ", with solvent.thermostat: rescale, since forces do work");
+  if (m->solvent.profile != PROFILE_UNIFORM)
+    return;                                                              /* its mean is taken out */
   const bool held = model_has_walls(m) && m->walls.kind == WALL_NO_SLIP; /* walls take the momentum up */
   if (!held && !model_has_phantoms(m) && vec3_norm(net) > 1e-12 * scale) /* a bath takes the momentum up */
     warn(t,
@@ -133,6 +135,45 @@ static void warn_walls(struct teller *t, const struct model *m)
          "the walls heat the solvent by %.3g kT per t0 until as much heat leaves through them, and no thermostat takes "
          "it away; use solvent.thermostat: maxwell-boltzmann, or rule: at-a",
          heating);
+}
+
+#define MOST_STRAIN 0.1 /* in a collision interval */
+
+/* Velocities change by the rate within a cell and an interval. A sheared box may be faster than sound at its boundary,
+ * where nothing is special. */
+static void warn_shear(struct teller *t, const struct model *m)
+{
+  const double rate = fabs(m->shear.rate), strain = rate * model_collision_interval(m);
+  const double heating =
+      theory_flow_heating(viscosity_of(m), theory_mean_shear_rate(m), m->solvent.per_cell, m->dimensions);
+  if (strain > MOST_STRAIN)
+    warn(t,
+         "shear: the strain in a collision interval is %.3g > %g, so that the viscosity depends on the rate; use a "
+         "lower rate or a shorter collision interval",
+         strain, MOST_STRAIN);
+  if (!model_is_isothermal(m) && heating > MOST_HEATING)
+    warn(t,
+         "the shear heats the solvent by %.3g kT per t0, and no thermostat takes it away; use solvent.thermostat: "
+         "maxwell-boltzmann, or rule: at-a",
+         heating);
+}
+
+/* A force with a profile: compressibility, and the instability of Kolmogorov flow. */
+static void warn_profile(struct teller *t, const struct model *m)
+{
+  const double height = m->box.cells[1], gamma = m->solvent.per_cell, eta = viscosity_of(m);
+  const double speed = theory_profile_speed(m->solvent.profile, gamma, vec3_norm(m->solvent.acceleration), height, eta);
+  const double mach = theory_mach(speed, theory_sound_speed(model_is_isothermal(m), m->dimensions));
+  const double reynolds = theory_profile_reynolds(speed, height, eta / gamma);
+  if (mach > MOST_WALL_MACH)
+    warn(t, "the Mach number of the driven flow is expected to be %.3g > %g: use a smaller acceleration", mach,
+         MOST_WALL_MACH);
+  if (reynolds > THEORY_STABLE_REYNOLDS)
+    warn(
+        t,
+        "the driven flow is expected to be unstable: its Reynolds number v_max/(nu k) is %.3g > sqrt(2); use a smaller "
+        "acceleration",
+        reynolds);
 }
 
 /* Bonds of this kind that are expected to become longer than `limit` in the run. A bond forgets its length in about
@@ -295,6 +336,10 @@ int scene_warnings(const struct scene *scene, void (*tell)(void *context, const 
   warn_force(&t, m);
   if (model_has_walls(m))
     warn_walls(&t, m);
+  if (model_is_sheared(m) && model_collides(m))
+    warn_shear(&t, m);
+  if (m->solvent.profile != PROFILE_UNIFORM && model_collides(m))
+    warn_profile(&t, m);
   for (uint32_t k = 0; k < m->kinds; k++)
     warn_kind(&t, scene, &m->kind[k]);
   warn_heating(&t, scene);

@@ -34,3 +34,21 @@ double theory_flow_heating(double viscosity, double rate, double mass_density, u
 {
   return 2.0 * viscosity * rate * rate / (dimensions * mass_density);
 }
+
+double theory_profile_speed(enum force_profile profile, double mass_density, double acceleration, double height,
+                            double viscosity)
+{
+  static const double share[PROFILES] = {
+      [PROFILE_SINE] = 0.02533029591058444 /* 1/(4 pi^2) */, [PROFILE_REVERSE] = 1.0 / 32.0};
+  return share[profile] * mass_density * acceleration * height * height / viscosity;
+}
+
+double theory_profile_reynolds(double speed, double height, double kinematic_viscosity)
+{
+  return speed * height / (6.283185307179586 * kinematic_viscosity);
+}
+
+double theory_mean_shear_rate(const struct model *model)
+{
+  return fabs(model->shear.rate) * (model->shear.period > 0.0 ? sqrt(0.5) : 1.0);
+}

@@ -30,12 +30,25 @@ double theory_couette_rate(double wall_rate, double height, double slip);
 /* Largest velocity of Poiseuille flow under a body force per mass, a0/t0: rho g L^2/(8 eta) (1 + 4b/L). */
 double theory_poiseuille_speed(double mass_density, double acceleration, double height, double viscosity, double slip);
 
+/* Largest velocity, a0/t0, of the flow that a force with a profile drives in a periodic box: rho g/(eta k^2) with
+ * k = 2 pi/L for a sine, rho g L^2/(32 eta) for a force that changes sign at L/2. 0 for a uniform force. */
+double theory_profile_speed(enum force_profile profile, double mass_density, double acceleration, double height,
+                            double viscosity);
+
+/* v_max/(nu k), k = 2 pi/L. Kolmogorov flow is stable below THEORY_STABLE_REYNOLDS, in boxes that are not longer along
+ * the flow than across it (Meshalkin and Sinai, J. Appl. Math. Mech. 25, 1700 (1961)). */
+double theory_profile_reynolds(double speed, double height, double kinematic_viscosity);
+#define THEORY_STABLE_REYNOLDS 1.4142135623730951
+
 /* L^2/(pi^2 nu), t0: in which a flow between walls becomes steady. */
 double theory_flow_relaxation(double height, double kinematic_viscosity);
 
 /* omega rho L^2/(8 eta): where it is not far below 1, an oscillation of the walls does not reach the middle in phase.
  */
 double theory_inertia_number(double frequency, double mass_density, double height, double viscosity);
+
+/* Root mean square of the shear rate of a sheared box over a period, 1/t0. */
+double theory_mean_shear_rate(const struct model *model);
 
 /* dT/dt of an insulated flow, kT/t0: 2 eta rate^2/(d rho), d the number of dimensions. */
 double theory_flow_heating(double viscosity, double rate, double mass_density, uint32_t dimensions);

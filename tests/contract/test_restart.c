@@ -3,9 +3,10 @@
 #include "contract/contract.h"
 #include "files/files.h"
 
-static void restart(struct choice c, const char *path)
+/* Two copies of one model: model_finish allocates. */
+static void restart_model(struct model model, struct model copy, const char *path)
 {
-  struct test_run whole = test_start(contract_scene(c)), second = {.model = contract_scene(c)};
+  struct test_run whole = test_start(model), second = {.model = copy};
   struct checkpoint_head head = {.seed = whole.model.seed, .version = "0"};
   struct message message = {0};
   test_finish(&second.model);
@@ -20,6 +21,11 @@ static void restart(struct choice c, const char *path)
   assert_same_state(&whole, &second, "continued");
   test_end(&whole);
   test_end(&second);
+}
+
+static void restart(struct choice c, const char *path)
+{
+  restart_model(contract_scene(c), contract_scene(c), path);
 }
 
 /* Combinations, and those of them that models reject. */
@@ -79,11 +85,40 @@ static void every_fluid_restarts(void **unused)
   remove_folder(folder);
 }
 
+/* Flows: walls and shear, steady and oscillating, and every profile of a force. */
+static void every_flow_restarts(void **unused)
+{
+  (void)unused;
+  char folder[64];
+  make_folder(folder);
+  const char *path = in_folder(folder, "checkpoint.h5");
+  struct model m = test_model(6, 7, 8, 2, 0.05, 2);
+  m.seed = dice_seed(2703);
+  m.solvent.acceleration.x = 0.1;
+  for (int scheme = 0; scheme < SCHEMES; scheme++) {
+    m.scheme = scheme;
+    for (int oscillates = 0; oscillates < 2; oscillates++) {
+      struct model walled = m, sheared = m;
+      walled.walls = (struct wall_model){.kind = WALL_NO_SLIP, .shear_rate = 0.1, .period = oscillates ? 1.1 : 0.0};
+      sheared.shear = (struct shear_model){.rate = 0.3, .period = oscillates ? 1.1 : 0.0};
+      restart_model(walled, walled, path);
+      restart_model(sheared, sheared, path);
+    }
+    for (int profile = 0; profile < PROFILES; profile++) {
+      struct model driven = m;
+      driven.solvent.profile = profile;
+      restart_model(driven, driven, path);
+    }
+  }
+  remove_folder(folder);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_combination_restarts),
       cmocka_unit_test(every_fluid_restarts),
+      cmocka_unit_test(every_flow_restarts),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

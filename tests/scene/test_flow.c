@@ -92,7 +92,7 @@ static void accepted(void **unused)
 /* --- warnings ---------------------------------------------------------------------------------------------------- */
 
 struct told {
-  int all, rescale, mach, heat, net;
+  int all, rescale, mach, heat, net, strain, shear_heat, drive_mach, unstable;
 };
 
 static void hear(void *context, const char *text)
@@ -103,6 +103,10 @@ static void hear(void *context, const char *text)
   t->mach += strstr(text, "the Mach number between the walls") != NULL;
   t->heat += strstr(text, "the walls heat the solvent") != NULL;
   t->net += strstr(text, "a net force") != NULL;
+  t->strain += strstr(text, "the strain in a collision interval is") != NULL;
+  t->shear_heat += strstr(text, "the shear heats the solvent by") != NULL;
+  t->drive_mach += strstr(text, "the Mach number of the driven flow") != NULL;
+  t->unstable += strstr(text, "the driven flow is expected to be unstable") != NULL;
 }
 
 static struct told warnings_of(const char *solvent, const char *more)
@@ -133,12 +137,44 @@ static void warned(void **unused)
   assert_int_equal(warnings_of("  rule: at-a\n  acceleration: [1, 0, 0]", "walls: {kind: no-slip}").mach, 1);
 }
 
+static struct told driven(const char *profile, double g)
+{
+  char text[128];
+  snprintf(text, sizeof text, "  rule: at-a\n  acceleration: [%g, 0, 0]\n  profile: %s", g, profile);
+  return warnings_of(text, "");
+}
+
+/* Each warning above its limit, and none below it. eta is 3.713 and 2 pi/L 0.785, so that v_max is 2.18 g for a sine
+ * and 2.69 g for a force that changes sign, and v_max/(nu k) 3.74 g and 4.62 g; heat is 2 eta rate^2/15. */
+static void shear_and_drives_warned(void **unused)
+{
+  (void)unused;
+  const char *at = "  rule: at-a";
+  assert_int_equal(warnings_of(at, "shear: {rate: 0.99}").all, 0);
+  assert_int_equal(warnings_of(at, "shear: {rate: 1.01}").strain, 1);
+  assert_int_equal(warnings_of(at, "shear: {rate: -1.01}").strain, 1);
+  assert_int_equal(warnings_of("", "shear: {rate: 0.04}").shear_heat, 0);
+  assert_int_equal(warnings_of("", "shear: {rate: 0.1}").shear_heat, 1);
+  assert_int_equal(warnings_of("  thermostat: maxwell-boltzmann", "shear: {rate: 0.1}").all, 0);
+  static const struct {
+    const char *name;
+    double slow, fast, unstable;
+  } rows[] = {{"sine", 0.22, 0.24, 0.39}, {"reverse", 0.18, 0.19, 0.31}};
+  for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+    assert_int_equal(driven(rows[k].name, rows[k].slow).all, 0);
+    assert_int_equal(driven(rows[k].name, rows[k].fast).drive_mach, 1);
+    assert_int_equal(driven(rows[k].name, rows[k].fast).unstable, 0);
+    assert_int_equal(driven(rows[k].name, rows[k].unstable).unstable, 1);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(refused),
       cmocka_unit_test(accepted),
       cmocka_unit_test(warned),
+      cmocka_unit_test(shear_and_drives_warned),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

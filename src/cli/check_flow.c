@@ -1,0 +1,47 @@
+#include "cli/check_flow.h"
+
+#include <stdio.h>
+
+#include "cli/quantity.h"
+#include "cli/units.h"
+#include "theory/flow.h"
+#include "theory/theory.h"
+
+static void report_period(const struct si_scale *si, const struct model *m)
+{
+  if (m->wave.intervals == 0)
+    return;
+  sheet_row(si, "period", "", m->shear.period, "t0", "");
+  printf("  %-38s %-9s %u collision intervals\n", "", "", m->wave.intervals);
+  sheet_row(si, "amplitude of the strain", "", m->shear.rate * m->shear.period / 6.283185307179586, "", "");
+}
+
+void check_shear(const struct si_scale *si, const struct model *m)
+{
+  const double height = m->box.cells[1], gamma = m->solvent.per_cell, eta = units_viscosity(m), rate = m->shear.rate;
+  const double speed = 0.5 * fabs(rate) * height;
+  sheet_heading("Shear (of the box; linear from the start)");
+  sheet_row(si, "shear rate", "", rate, "1/t0", m->wave.intervals ? "largest" : "");
+  report_period(si, m);
+  sheet_row(si, "rate times collision interval", "", rate * model_collision_interval(m), "", "");
+  sheet_row(si, "velocity at the boundary", "", speed, "a0/t0", "rate L/2");
+  sheet_row(si, "Mach number", "Ma", theory_mach(speed, theory_sound_speed(model_is_isothermal(m), m->dimensions)), "",
+            "");
+  sheet_row(si, "shear stress", "", eta * rate, "kT/a0^3", "eta times rate");
+  sheet_row(si, "heat", "", theory_flow_heating(eta, theory_mean_shear_rate(m), gamma, m->dimensions), "kT/t0",
+            model_is_isothermal(m) ? "the thermostat takes it away" : "2 eta rate^2/(d rho)");
+}
+
+void check_drive(const struct si_scale *si, const struct model *m)
+{
+  const double height = m->box.cells[1], gamma = m->solvent.per_cell, eta = units_viscosity(m);
+  const double speed = theory_profile_speed(m->solvent.profile, gamma, vec3_norm(m->solvent.acceleration), height, eta);
+  const bool isothermal = model_is_isothermal(m);
+  sheet_heading("Flow by a force with a profile");
+  sheet_row(si, "largest velocity", "v_max", speed, "a0/t0",
+            m->solvent.profile == PROFILE_SINE ? "rho g/(eta k^2), k = 2 pi/L" : "rho g L^2/(32 eta)");
+  sheet_row(si, "Mach number", "Ma", theory_mach(speed, theory_sound_speed(isothermal, m->dimensions)), "", "");
+  sheet_row(si, "Reynolds number", "Re", theory_profile_reynolds(speed, height, eta / gamma), "",
+            "v_max/(nu k); stable below sqrt(2)");
+  sheet_row(si, "time to become steady", "", 0.25 * theory_flow_relaxation(height, eta / gamma), "t0", "1/(nu k^2)");
+}

@@ -1,0 +1,14 @@
+/* What `uncross check` says of a sheared box, and of a flow that a force with a profile drives. */
+#ifndef UNCROSS_CLI_CHECK_FLOW_H
+#define UNCROSS_CLI_CHECK_FLOW_H
+
+#include "cli/sheet.h"
+#include "system/model.h"
+
+/* Prints the numbers of the shear. The model must be sheared. */
+void check_shear(const struct si_scale *si, const struct model *model);
+
+/* Prints the numbers of the flow. The model's force must have a profile. */
+void check_drive(const struct si_scale *si, const struct model *model);
+
+#endif
