@@ -10,11 +10,6 @@
 #define OVERLAPS 256 /* collected before they are looked at */
 #define COLUMNS 64   /* looked at together */
 #define FIRST_NEAR 64
-#ifndef LEAD_TIME
-#define LEAD_TIME 0.3
-#endif
-#define LEAD_MOST 0.7
-#define LEAD_NEIGHBORS 2
 #define SEARCH_CELL_A0 1.0 /* least edge of a search cell */
 
 /* --- lists ------------------------------------------------------------------------------------------------------- */
@@ -155,7 +150,7 @@ struct search {
   uint32_t count;
   struct overlap {
     struct grid_bond mine, its; /* in the same cell */
-  } at[OVERLAPS + 1]; /* one that is written, and not taken */
+  } at[OVERLAPS + 1];           /* one that is written, and not taken */
 };
 
 /* A function that handles the entry of a bond in one cell; visit_cells calls it for each cell. */
@@ -322,23 +317,25 @@ static bool enter_cell(struct neighbors *nb, const struct model *model, uint32_t
 /* --- the entrances ----------------------------------------------------------------------------------------------- */
 
 /* Without a solvent vertices keep going, and a reference position serves longer if it stands ahead of its vertex. The
- * velocity that lasts is the mean over a few neighbors, in which the vibrations of bonds cancel. With a solvent there is
- * no lead: velocities change before the vertex gets there. */
+ * velocity that lasts is the mean over a few neighbors, in which the vibrations of bonds cancel. With a solvent there
+ * is no lead: velocities change before the vertex gets there. */
 static struct vec3 lead_of(const struct state *state, const struct model *model, uint32_t vertex, double most)
 {
+  const int on_each_side = 2;
+  const double time = 0.3; /* t0 */
   struct vec3 sum = state->velocity[vertex];
   int32_t before = (int32_t)vertex, after = before;
   double n = 1.0;
   if (model->solvent.particles > 0)
     return (struct vec3){0, 0, 0};
-  for (int k = 0; k < LEAD_NEIGHBORS; k++) {
+  for (int k = 0; k < on_each_side; k++) {
     before = model->prev[before] < 0 ? before : model->prev[before];
     after = model->next[after] < 0 ? after : model->next[after];
     sum = vec3_add_scaled(vec3_add_scaled(sum, 1.0, state->velocity[before]), 1.0, state->velocity[after]);
     n += 2.0;
   }
   const struct vec3 mean = vec3_scale(1.0 / n, sum);
-  const struct vec3 lead = vec3_scale(LEAD_TIME, vec3_sub(mean, model_frame_velocity(model)));
+  const struct vec3 lead = vec3_scale(time, vec3_sub(mean, model_frame_velocity(model)));
   const double length = vec3_norm(lead);
   return length > most ? vec3_scale(most / length, lead) : lead;
 }
@@ -354,7 +351,7 @@ static struct reference_position reference_of_move(const struct state *state, co
   if (length > NEIGHBORS_SKIN) /* from its middle */
     at = (struct point){at.x - d.x / 2, at.y - d.y / 2, at.z - d.z / 2};
   else
-    at = point_move(at, lead_of(state, model, vertex, LEAD_MOST * (NEIGHBORS_SKIN - length)));
+    at = point_move(at, lead_of(state, model, vertex, 0.7 * (NEIGHBORS_SKIN - length)));
   return (struct reference_position){at, fmax(NEIGHBORS_SKIN, 0.5 * length + LATTICE_UNIT)};
 }
 
@@ -380,15 +377,20 @@ static bool fetch_cell(struct neighbors *nb, const struct model *model, uint32_t
   return true;
 }
 
+void neighbors_fetch(struct neighbors *nb, const struct model *model, uint32_t vertex)
+{
+  uint32_t bond[2];
+  const int bonds = model_bonds_of(model, vertex, bond);
+  for (int b = 0; b < bonds; b++)
+    visit_cells(nb, model, bond[b], box_of(nb, model, bond[b]), fetch_cell, NULL);
+}
+
 bool neighbors_renew(const struct state *state, const struct model *model, struct contact *contact, uint32_t n,
                      const uint32_t *vertex, const struct point *from, const struct point *to, struct fault *fault)
 {
   struct neighbors *nb = &contact->neighbors;
   uint32_t bond[2 * NEIGHBORS_AT_ONCE] = {0};
   const uint32_t bonds = model_bonds_at(model, n, vertex, bond);
-  /* Without prefetching, most of the time below is spent waiting for memory. */
-  for (uint32_t k = 0; k < bonds; k++)
-    visit_cells(nb, model, bond[k], box_of(nb, model, bond[k]), fetch_cell, NULL);
   for (uint32_t k = 0; k < bonds; k++) {
     visit_cells(nb, model, bond[k], box_of(nb, model, bond[k]), leave_cell, NULL);
     nb->generation[bond[k]]++;
