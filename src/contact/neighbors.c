@@ -326,7 +326,7 @@ static struct vec3 lead_of(const struct state *state, const struct model *model,
   struct vec3 sum = state->velocity[vertex];
   int32_t before = (int32_t)vertex, after = before;
   double n = 1.0;
-  if (model->solvent.particles > 0)
+  if (model->solvent.per_cell > 0.0)
     return (struct vec3){0, 0, 0};
   for (int k = 0; k < on_each_side; k++) {
     before = model->prev[before] < 0 ? before : model->prev[before];
