@@ -33,6 +33,7 @@
 #include "fiber/start.h"
 #include "fluid/fluid.h"
 #include "mpc/plan.h"
+#include "system/shear.h"
 
 enum action { END, DRIFT, COLLIDE, FORCE, KICK };
 
@@ -107,8 +108,17 @@ bool step_advance(struct state *state, const struct model *model, struct work *w
   return step_advance_watched(state, model, work, log, NULL);
 }
 
-/* Replaces the total momentum of the state by that of the flow: all velocities change by the same amount. With a random
- * solvent the momentum of the fibers is not conserved; there it stays as it was drawn. */
+/* The axes along which the total momentum is conserved. A random solvent and walls take up momentum, slip walls only
+ * along y. */
+static struct vec3 conserved_axes(const struct model *model)
+{
+  const double y = !model_has_walls(model), along = y != 0.0 || model->walls.kind == WALL_SLIP;
+  return model_has_phantoms(model) || model->total_mass == 0.0 ? (struct vec3){0, 0, 0}
+                                                               : (struct vec3){along, y, along};
+}
+
+/* Replaces the total momentum of the state by that of the flow: all velocities change by the same amount. Where
+ * momentum is not conserved, it stays as it was drawn about the flow. */
 static void set_total_momentum(struct state *state, const struct model *model)
 {
   struct solvent *s = &state->solvent;
@@ -118,8 +128,10 @@ static void set_total_momentum(struct state *state, const struct model *model)
   for (uint32_t v = 0; v < state->vertices; v++)
     p = vec3_add_scaled(p, model->mass[v], state->velocity[v]);
 
-  const bool conserved = !model_has_phantoms(model) && model->total_mass > 0.0;
-  struct vec3 change = conserved ? vec3_add_scaled(model->flow, -1.0 / model->total_mass, p) : model->flow;
+  const struct vec3 axes = conserved_axes(model);
+  const double each = model->total_mass > 0.0 ? -1.0 / model->total_mass : 0.0;
+  const struct vec3 change =
+      vec3_add_scaled(model->flow, each, (struct vec3){axes.x * p.x, axes.y * p.y, axes.z * p.z});
   for (uint32_t i = 0; i < s->n; i++) {
     s->vx[i] += change.x;
     s->vy[i] += change.y;
@@ -129,13 +141,24 @@ static void set_total_momentum(struct state *state, const struct model *model)
     state->velocity[v] = vec3_add(state->velocity[v], change);
 }
 
+/* A sheared box starts with its linear profile: velocities are thermal about it. */
+static void add_shear(struct state *state, const struct model *model)
+{
+  const double rate = model_is_sheared(model) ? shear_rate(model, 0) : 0.0;
+  struct solvent *s = &state->solvent;
+  for (uint32_t i = 0; rate != 0.0 && i < s->n; i++)
+    s->vx[i] += rate * (double)(s->y[i] - model->box.edge[1] / 2) * LATTICE_UNIT;
+}
+
 bool step_start(struct state *state, const struct model *model, struct work *work)
 {
   state->step = 0;
   state->solvent_lag = 0;
+  state->solvent_time = 0;
   fluid_of(model)->start(state, model);
   fiber_start(state, model);
   set_total_momentum(state, model);
+  add_shear(state, model);
   if (!fiber_forces(state, model, work->fiber.force, 0, &work->fault))
     return false;
   fiber_kick(state, model, work->fiber.force, 0.5);

@@ -175,10 +175,16 @@ static inline struct test_run dice_run(struct model model, struct dice *d)
     s->vx[i] = v.x;
     s->vy[i] = v.y;
     s->vz[i] = v.z;
+    if (model_is_flat(&r.model)) {
+      s->z[i] = 0;
+      s->vz[i] = 0.0;
+    }
   }
   for (uint32_t v = 0; v < r.state.vertices; v++) {
     r.state.position[v] = dice_point(d, 3 * edge[0], 3 * edge[1], 3 * edge[2]);
     r.state.velocity[v] = dice_vector(d, sqrt(r.model.inverse_mass[v]));
+    if (model_is_flat(&r.model))
+      r.state.position[v].z = 0, r.state.velocity[v].z = 0.0;
   }
   return r;
 }

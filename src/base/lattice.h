@@ -33,19 +33,29 @@ struct point {
   int64_t x, y, z;
 };
 
-/* What is beyond the faces of the box along one axis (fluid/boundary.h). */
-enum boundary_kind { BOUNDARY_PERIODIC, BOUNDARIES };
+/* What is beyond the faces of the box along one axis: its own image; a wall; or an image that slides along x as fast as
+ * the box is sheared (Lees and Edwards 1972). Only y may differ from periodic. */
+enum boundary_kind { BOUNDARY_PERIODIC, BOUNDARY_WALL, BOUNDARY_SHEAR, BOUNDARIES };
 
 /* The box: whole collision cells along each edge. */
 struct box {
   int cells[3];                   /* edge lengths in cells, that is in a0 */
   int64_t edge[3];                /* the same in lattice units */
   enum boundary_kind boundary[3]; /* along each axis */
+  int rows[3];                    /* rows of cells of the shifted grid: between walls one more than cells */
 };
 
 static inline struct box box_of_cells(int lx, int ly, int lz)
 {
-  return (struct box){.cells = {lx, ly, lz}, .edge = {lx * LATTICE_CELL, ly * LATTICE_CELL, lz * LATTICE_CELL}};
+  return (struct box){
+      .cells = {lx, ly, lz}, .edge = {lx * LATTICE_CELL, ly * LATTICE_CELL, lz * LATTICE_CELL}, .rows = {lx, ly, lz}};
+}
+
+/* Gives the box this boundary along an axis. */
+static inline void box_bound(struct box *box, int axis, enum boundary_kind kind)
+{
+  box->boundary[axis] = kind;
+  box->rows[axis] = box->cells[axis] + (kind == BOUNDARY_WALL);
 }
 
 static inline int box_shortest_edge(const struct box *box)
@@ -55,14 +65,16 @@ static inline int box_shortest_edge(const struct box *box)
   return box->cells[2] < s ? box->cells[2] : s;
 }
 
+/* Cells of the shifted grid: numbers of cells are below it. */
 static inline int64_t box_cell_count(const struct box *box)
 {
-  return (int64_t)box->cells[0] * box->cells[1] * box->cells[2];
+  return (int64_t)box->rows[0] * box->rows[1] * box->rows[2];
 }
 
+/* a0^3 */
 static inline double box_volume(const struct box *box)
 {
-  return (double)box_cell_count(box);
+  return (double)((int64_t)box->cells[0] * box->cells[1] * box->cells[2]);
 }
 
 /* 1.5 * 2^52: adding it to x leaves the integer nearest to x in the low bits of the sum. */
@@ -90,6 +102,15 @@ static inline int64_t lattice_fold(int64_t x, int64_t edge)
 {
   int64_t r = x % edge;
   return r < 0 ? r + edge : r;
+}
+
+/* A coordinate brought into the box: folded along a periodic axis; set onto the wall if it is beyond one. */
+static inline int64_t box_inside(const struct box *box, int axis, int64_t x)
+{
+  const int64_t edge = box->edge[axis];
+  if (box->boundary[axis] != BOUNDARY_WALL)
+    return lattice_fold(x, edge);
+  return x < 0 ? 0 : x > edge ? edge : x;
 }
 
 /* How often edge goes into x, rounded down: the image in which x lies. */

@@ -26,6 +26,9 @@ enum random_purpose {
   RANDOM_ANDERSEN_PARTICLE = 8, /* entity = particle id; draw = 0 or 1 */
   RANDOM_ANDERSEN_VERTEX = 9,   /* entity = vertex; draw = 0 or 1 */
   RANDOM_ANDERSEN_PHANTOM = 10, /* entity = cell; draw = 0 or 1 */
+  RANDOM_SPIN_VELOCITY = 13,    /* entity = cell; draw = 2 k and 2 k + 1 of the cell's virtual particle k */
+  RANDOM_SPIN_PLACE = 14,       /* the same */
+  RANDOM_PLANE_TURN = 15,       /* entity = cell: rotation in a plane */
   RANDOM_SOLVENT_POSITION = 16, /* entity = particle id; step 0 from here on: starting states */
   RANDOM_SOLVENT_VELOCITY = 17, /* entity = particle id */
   RANDOM_VERTEX_VELOCITY = 18,  /* entity = vertex */

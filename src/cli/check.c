@@ -2,6 +2,7 @@
 #include <stdio.h>
 
 #include "base/text.h"
+#include "cli/check_walls.h"
 #include "cli/command.h"
 #include "cli/sheet.h"
 #include "mpc/rule.h"
@@ -66,17 +67,19 @@ static void report_solvent(const struct si_scale *si, const struct model *m)
   const double gamma = m->solvent.per_cell, cosine = m->solvent.cosine, interval = model_collision_interval(m);
   const bool srd = m->solvent.rule == RULE_SRD;
   sheet_heading("Solvent (molecular chaos: some per cent off at a short mean free path)");
-  sheet_row(si, "kinetic viscosity", "eta_kin", theory_viscosity_kinetic(collision_rule_of(m), gamma, cosine, interval),
-            "m/a0 t0", srd ? "Eq. (30)" : "");
+  sheet_row(si, "kinetic viscosity", "eta_kin",
+            theory_viscosity_kinetic(collision_rule_of(m), m->dimensions, gamma, cosine, interval), "m/a0 t0",
+            srd ? "Eq. (30)" : "");
   sheet_row(si, "collisional viscosity", "eta_col",
-            theory_viscosity_collisional(collision_rule_of(m), gamma, cosine, interval), "m/a0 t0",
+            theory_viscosity_collisional(collision_rule_of(m), m->dimensions, gamma, cosine, interval), "m/a0 t0",
             srd ? "Eq. (31)" : "");
   sheet_row(si, "viscosity", "eta", units_viscosity(m), "m/a0 t0", "");
   sheet_row(si, "kinematic viscosity", "nu", units_viscosity(m) / gamma, "a0^2/t0", "");
   sheet_row(si, "self-diffusion coefficient", "D_s",
-            theory_solvent_diffusion(collision_rule_of(m), gamma, cosine, interval), "a0^2/t0", "");
-  sheet_row(si, "Schmidt number", "Sc", theory_schmidt(collision_rule_of(m), gamma, cosine, interval), "", "nu/D_s");
-  sheet_row(si, "speed of sound", "c_s", theory_sound_speed(is_isothermal(m)), "a0/t0",
+            theory_solvent_diffusion(collision_rule_of(m), m->dimensions, gamma, cosine, interval), "a0^2/t0", "");
+  sheet_row(si, "Schmidt number", "Sc", theory_schmidt(collision_rule_of(m), m->dimensions, gamma, cosine, interval),
+            "", "nu/D_s");
+  sheet_row(si, "speed of sound", "c_s", theory_sound_speed(is_isothermal(m), m->dimensions), "a0/t0",
             is_isothermal(m) ? "isothermal" : "");
   sheet_row(si, "mean free path", "", theory_mean_free_path(interval), "a0", "");
 }
@@ -84,25 +87,26 @@ static void report_solvent(const struct si_scale *si, const struct model *m)
 static void report_vertex(const struct si_scale *si, const struct model *m, const struct fiber_kind *k)
 {
   const double gamma = m->solvent.per_cell, cosine = m->solvent.cosine;
-  const double d0 = theory_vertex_diffusion(collision_rule_of(m), k->mass, gamma, cosine, model_collision_interval(m));
+  const double d0 =
+      theory_vertex_diffusion(collision_rule_of(m), m->dimensions, k->mass, gamma, cosine, model_collision_interval(m));
   sheet_row(si, "  velocity kept per collision", "c",
-            theory_vertex_retention(collision_rule_of(m), k->mass, gamma, cosine), "", "");
+            theory_vertex_retention(collision_rule_of(m), m->dimensions, k->mass, gamma, cosine), "", "");
   sheet_row(si, "  vertex diffusion, without HI", "D_0", d0, "a0^2/t0", "");
   sheet_row(si, "  vertex friction, without HI", "kT/D_0", 1.0 / d0, "m/t0", "");
-  if (model_has_solvent(m))
+  if (model_has_solvent(m) && !model_is_flat(m))
     sheet_row(si, "  hydrodynamic radius, from D_0 alone", "a_h", theory_hydrodynamic_radius(units_viscosity(m), d0),
               "a0", "with HI: 0.25 to 0.3");
   if (k->bending == 0.0 && k->bond_length == 0.0 && !k->ring && k->vertices > 1)
     sheet_row(si, "  slowest Rouse mode, without HI", "tau_1", theory_rouse_time(k, 1.0 / d0), "t0", "");
 }
 
-static void report_statics(const struct si_scale *si, const struct fiber_kind *k)
+static void report_statics(const struct si_scale *si, const struct model *m, const struct fiber_kind *k)
 {
   const double mean = fiber_mean_bond(k);
   sheet_row(si, "  mean bond length", "<l>", mean, "a0", "");
   sheet_row(si, "  contour length", "", fiber_contour(k), "a0", "bonds <l>");
   if (k->bending > 0.0) {
-    sheet_row(si, "  mean cosine of a bend", "<cos>", theory_bend_cosine(k->bending), "", "");
+    sheet_row(si, "  mean cosine of a bend", "<cos>", theory_bend_cosine(k->bending, m->dimensions), "", "");
     sheet_row(si, "  effective persistence length", "", theory_effective_persistence(k), "a0", "-<l>/ln<cos>");
   }
   if (!k->ring)
@@ -172,8 +176,10 @@ static void report_kind(const struct si_scale *si, const struct model *m, const 
     report_vertex(si, m, k);
   if (k->vertices < 2)
     return;
-  report_statics(si, k);
+  report_statics(si, m, k);
   report_frequencies(si, m, k);
+  if (model_is_flat(m))
+    return; /* what follows is of fibers in space */
   if (model_has_solvent(m))
     report_dilute(si, m, k);
   report_table_2(si, m, k, mesh);
@@ -186,7 +192,7 @@ static void report_suspension(const struct si_scale *si, const struct model *m)
   const double cells = box_volume(&m->box);
   if (model_has_solvent(m) && vec3_norm(m->flow) > 0.0)
     sheet_row(si, "Mach number of the flow", "Ma",
-              theory_mach(vec3_norm(m->flow), theory_sound_speed(is_isothermal(m))), "", "Eq. (36)");
+              theory_mach(vec3_norm(m->flow), theory_sound_speed(is_isothermal(m), m->dimensions)), "", "Eq. (36)");
   sheet_row(si, "vertices", "", m->vertices, "", "");
   sheet_row(si, "bonds", "", m->bonds, "", "");
   sheet_row(si, "vertices per cell", "", m->vertices / cells, "1/a0^3", "");
@@ -242,7 +248,9 @@ static void report_parts(const struct scene *scene)
   const bool rotates = s->rule == RULE_SRD;
   const struct part parts[] = {
       {"streaming of the solvent", "fluid/points.c", solvent},
+      {"... between walls", "fluid/boundary_walls.c", model_has_walls(m)},
       {"collisions", "mpc/collide.c", collides},
+      {"... in cells that walls cut", "mpc/border_walls.c", model_has_walls(m)},
       {"... with phantoms for a solvent", "mpc/random_solvent.c", model_has_phantoms(m)},
       {"... rotation by 90 degrees", "mpc/rules/srd.h", collides && rotates && quarter},
       {"... rotation by any angle", "mpc/rules/srd.h", collides && rotates && !quarter},
@@ -303,6 +311,8 @@ void scene_report(const struct scene *scene, const struct units *units, const st
   report_table_1(si, m);
   if (model_has_solvent(m))
     report_solvent(si, m);
+  if (model_has_walls(m))
+    check_walls(si, m);
   const double mesh = theory_mesh_size(theory_line_density(m));
   for (uint32_t k = 0; k < m->kinds; k++)
     report_kind(si, m, &m->kind[k], mesh);

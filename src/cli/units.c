@@ -20,7 +20,8 @@ static const struct quantity_row rows[] = {
 
 double units_viscosity(const struct model *m)
 {
-  return theory_viscosity(collision_rule_of(m), m->solvent.per_cell, m->solvent.cosine, model_collision_interval(m));
+  return theory_viscosity(collision_rule_of(m), m->dimensions, m->solvent.per_cell, m->solvent.cosine,
+                          model_collision_interval(m));
 }
 
 /* --- what fixes the unit of time ---------------------------------------------------------------------------------- */
@@ -122,15 +123,16 @@ static void report_solvent(const struct model *m, const struct si_scale *s)
   const double gamma = m->solvent.per_cell, interval = model_collision_interval(m);
   const double eta = si_convert(s, (struct si_dimension){-3, 1, 1}, units_viscosity(m));
   const double density = si_convert(s, (struct si_dimension){-5, 1, 2}, gamma);
-  const double sound = si_convert(s, (struct si_dimension){1, 0, -1}, theory_sound_speed(model_is_isothermal(m)));
+  const double sound =
+      si_convert(s, (struct si_dimension){1, 0, -1}, theory_sound_speed(model_is_isothermal(m), m->dimensions));
   const double nu_water = SI_WATER_VISCOSITY / SI_WATER_DENSITY;
   sheet_heading("The solvent beside water at 25 C");
   beside("density", density, SI_WATER_DENSITY, "kg/m^3", false);
   beside("viscosity", eta, SI_WATER_VISCOSITY, "Pa s", true);
   beside("kinematic viscosity", eta / density, nu_water, "m^2/s", false);
   beside("speed of sound", sound, SI_WATER_SOUND, "m/s", true);
-  beside("Schmidt number", theory_schmidt(rule, gamma, m->solvent.cosine, interval), nu_water / SI_WATER_DIFFUSION, "",
-         false);
+  beside("Schmidt number", theory_schmidt(rule, m->dimensions, gamma, m->solvent.cosine, interval),
+         nu_water / SI_WATER_DIFFUSION, "", false);
 }
 
 void units_report(const struct units *u, const struct model *m, const struct si_scale *s)

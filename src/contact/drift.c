@@ -8,7 +8,7 @@ enum { BLOCK = 64 }; /* vertices worked on at a time */
 
 bool drift_legal(const struct state *state, const struct model *model, uint32_t i, struct vec3 d, struct fault *fault)
 {
-  const double limit = 0.5 * box_shortest_edge(&model->box);
+  const double limit = model_longest_bond(model);
   if (fabs(d.x) < limit && fabs(d.y) < limit && fabs(d.z) < limit)
     return true;
   const double far = fmax(fabs(d.x), fmax(fabs(d.y), fabs(d.z)));
@@ -29,7 +29,7 @@ bool drift_displacements(const struct state *state, const struct model *model, d
                          struct vec3 *restrict d, struct fault *fault)
 {
   const struct vec3 *restrict v = &state->velocity[first], frame = model_frame_velocity(model);
-  const double limit = 0.5 * box_shortest_edge(&model->box);
+  const double limit = model_longest_bond(model);
   int64_t beyond = 0;
   for (uint32_t k = 0; k < n; k++) {
     d[k] = drift_displacement(v[k], frame, dt);

@@ -3,17 +3,19 @@
 #include "base/normal.h"
 #include "system/fiber_kind.h"
 
-/* A bond length in equilibrium. The tangent of the log at the mode m bounds 2 log(l) from above, so a Gaussian about m
- * of variance 1/k bounds the distribution: l from it is kept with probability exp(2 (log(l/m) - (l/m - 1))), l > 0. */
+/* A bond length in equilibrium: p(l) ~ l^w exp(-k (l-l0)^2/2), w = d - 1. The tangent of the log at the mode m bounds
+ * w log(l) from above, so a Gaussian about m of variance 1/k bounds the distribution: l from it is kept with
+ * probability exp(w (log(l/m) - (l/m - 1))), l > 0. */
 static double sample_bond_length(const struct model *model, const struct fiber_kind *kind, uint32_t bond)
 {
-  const double l0 = kind->bond_length, mode = 0.5 * (l0 + sqrt(l0 * l0 + 8.0 / kind->spring));
+  const double l0 = kind->bond_length, weight = model->dimensions - 1.0;
+  const double mode = 0.5 * (l0 + sqrt(l0 * l0 + 4.0 * weight / kind->spring));
   for (uint32_t draw = 0;; draw += 2) {
     double normal[2];
     random_normal_pair(random_at(model->seed, RANDOM_BOND_LENGTH, draw, 0, bond), normal);
     double x = 1.0 + normal[0] / (sqrt(kind->spring) * mode);
     double u = random_uniform(random_at(model->seed, RANDOM_BOND_LENGTH, draw + 1, 0, bond), 0);
-    if (x > 0.0 && elementary_log(u) < 2.0 * (elementary_log(x) - (x - 1.0)))
+    if (x > 0.0 && elementary_log(u) < weight * (elementary_log(x) - (x - 1.0)))
       return x * mode;
   }
 }
@@ -36,12 +38,56 @@ static struct vec3 sample_across(const struct model *model, uint32_t vertex, str
   return vec3_scale(1.0 / vec3_norm(n), n);
 }
 
+/* A bend in the plane, as a point of the unit circle: von Mises' distribution, p ~ exp(kappa cos theta), by the
+ * rejection of Best and Fisher (Appl. Statist. 28, 152 (1979)). */
+static struct circle_point sample_turn(const struct model *model, const struct fiber_kind *kind, uint32_t vertex)
+{
+  const double kappa = kind->bending, tau = 1.0 + sqrt(1.0 + 4.0 * kappa * kappa);
+  const double rho = (tau - sqrt(2.0 * tau)) / (2.0 * kappa), r = (1.0 + rho * rho) / (2.0 * rho);
+  if (kappa < 1e-4)
+    return elementary_circle_turns(random_uniform(random_at(model->seed, RANDOM_BEND, 0, 0, vertex), 0));
+  for (uint32_t draw = 0;; draw += 2) {
+    const struct random_words words = random_at(model->seed, RANDOM_BEND, draw, 0, vertex);
+    const struct random_words side = random_at(model->seed, RANDOM_BEND, draw + 1, 0, vertex);
+    const double z = elementary_circle_turns(0.5 * random_uniform(words, 0)).cosine, u = random_uniform(words, 1);
+    const double f = (1.0 + r * z) / (r + z), c = kappa * (r - f);
+    if (c * (2.0 - c) > u || elementary_log(c) - elementary_log(u) + 1.0 - c >= 0.0)
+      return (struct circle_point){f, (side.w[0] & 1 ? 1.0 : -1.0) * sqrt(fmax(0.0, 1.0 - f * f))};
+  }
+}
+
 static struct vec3 random_place(const struct model *model, uint32_t fiber)
 {
   struct random_words xy = random_at(model->seed, RANDOM_FIBER_POSITION, 0, 0, fiber);
   struct random_words z = random_at(model->seed, RANDOM_FIBER_POSITION, 1, 0, fiber);
   return (struct vec3){random_uniform(xy, 0) * model->box.cells[0], random_uniform(xy, 1) * model->box.cells[1],
-                       random_uniform(z, 0) * model->box.cells[2]};
+                       model_is_flat(model) ? 0.0 : random_uniform(z, 0) * model->box.cells[2]};
+}
+
+/* Along a fiber, or normal to a ring: uniform; in a plane uniform within it, or along z. */
+static struct vec3 random_direction(const struct model *model, const struct fiber_kind *kind, uint32_t fiber)
+{
+  if (!model_is_flat(model))
+    return random_axis(model->seed, RANDOM_FIBER_DIRECTION, 0, fiber);
+  const struct random_words r = random_at(model->seed, RANDOM_FIBER_DIRECTION, 0, 0, fiber);
+  const struct circle_point p = elementary_circle_turns(random_uniform(r, 0));
+  return kind->ring ? (struct vec3){0.0, 0.0, 1.0} : (struct vec3){p.cosine, p.sine, 0.0};
+}
+
+/* The direction of the bond after the bend at this vertex, from that before it. */
+static struct vec3 bend_in_plane(const struct model *model, const struct fiber_kind *kind, uint32_t vertex,
+                                 struct vec3 u)
+{
+  const struct circle_point p = sample_turn(model, kind, vertex);
+  return (struct vec3){p.cosine * u.x - p.sine * u.y, p.sine * u.x + p.cosine * u.y, 0.0};
+}
+
+static struct vec3 bend_in_space(const struct model *model, const struct fiber_kind *kind, uint32_t vertex,
+                                 struct vec3 u)
+{
+  double cosine = sample_bend(model, kind, vertex);
+  double sine = sqrt(fmax(0.0, 1.0 - cosine * cosine));
+  return vec3_add(vec3_scale(cosine, u), vec3_scale(sine, sample_across(model, vertex, u)));
 }
 
 /* One fiber to be laid: its first vertex, its place. */
@@ -58,9 +104,7 @@ static void lay_equilibrium(struct point *position, const struct model *model, c
   for (uint32_t i = 1; i < kind->vertices; i++) {
     uint32_t bond = site->first + i - 1;
     if (i > 1) {
-      double cosine = sample_bend(model, kind, bond);
-      double sine = sqrt(fmax(0.0, 1.0 - cosine * cosine));
-      u = vec3_add(vec3_scale(cosine, u), vec3_scale(sine, sample_across(model, bond, u)));
+      u = model_is_flat(model) ? bend_in_plane(model, kind, bond, u) : bend_in_space(model, kind, bond, u);
       u = vec3_scale(1.0 / vec3_norm(u), u);
     }
     position[bond + 1] = point_move(position[bond], vec3_scale(sample_bond_length(model, kind, bond), u));
@@ -108,7 +152,8 @@ static void start_velocities(struct state *state, const struct model *model)
     double a[2], b[2];
     random_normal_pair(random_at(model->seed, RANDOM_VERTEX_VELOCITY, 0, 0, v), a);
     random_normal_pair(random_at(model->seed, RANDOM_VERTEX_VELOCITY, 1, 0, v), b);
-    state->velocity[v] = vec3_scale(sqrt(model->inverse_mass[v]), (struct vec3){a[0], a[1], b[0]});
+    state->velocity[v] =
+        vec3_scale(sqrt(model->inverse_mass[v]), (struct vec3){a[0], a[1], model_is_flat(model) ? 0.0 : b[0]});
   }
 }
 
@@ -120,8 +165,7 @@ void fiber_start(struct state *state, const struct model *model)
       within = 0;
     }
     const struct fiber_kind *kind = &model->kind[k];
-    struct site site = {model->fiber_first[fiber], random_place(model, fiber),
-                        random_axis(model->seed, RANDOM_FIBER_DIRECTION, 0, fiber)};
+    struct site site = {model->fiber_first[fiber], random_place(model, fiber), random_direction(model, kind, fiber)};
     if (within < kind->placed) {
       site.center = kind->place[within].center;
       site.direction = vec3_scale(1.0 / vec3_norm(kind->place[within].direction), kind->place[within].direction);

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "files/structure.h"
+#include "system/account.h"
 #include "system/sound.h"
 
 /* --- the numbers, listed once for writing and reading ------------------------------------------------------------ */
@@ -113,6 +114,11 @@ bool checkpoint_numbers(hid_t group, struct state *numbers, bool write)
   return ok;
 }
 
+bool checkpoint_has_group(const struct state_group *group)
+{
+  return group->rows > 0 || !group->optional;
+}
+
 hid_t checkpoint_field_type(const struct state_field *field)
 {
   return field->integer ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE;
@@ -146,6 +152,7 @@ static bool read_numbers(hid_t file, struct checkpoint_summary *summary)
 {
   hid_t group = h5_open_group(file, "state");
   const bool ok = checkpoint_numbers(group, &summary->numbers, false);
+  summary->wall_rows = ok && h5_has(group, "wall_momentum") ? WALLS * ACCOUNT_SHARES : 0;
   h5_close(group);
   return ok;
 }
@@ -186,22 +193,25 @@ struct model checkpoint_model(const struct checkpoint_summary *s)
   model.solvent.particles = s->particles;
   model.solvent.acceleration = s->acceleration;
   model.vertices = s->vertices;
+  if (s->wall_rows > 0)
+    box_bound(&model.box, 1, BOUNDARY_WALL);
   return model;
 }
 
 /* Looks at the shapes of the arrays; nothing is allocated by a claimed number. */
 static bool has_arrays(hid_t file, const struct checkpoint_summary *summary)
 {
-  const uint32_t claimed[STATE_GROUPS] = {summary->particles, summary->vertices};
+  const uint32_t claimed[STATE_GROUPS] = {summary->particles, summary->vertices, summary->wall_rows};
   struct point nowhere;
   struct vec3 still;
-  const struct state none = {.position = &nowhere, .velocity = &still}; /* only names are looked at */
+  const struct state none = {
+      .position = &nowhere, .velocity = &still, .wall_momentum = &nowhere}; /* only names are looked at */
   struct state_group rows[STATE_GROUPS];
   state_groups(&none, rows);
   hid_t group = h5_open_group(file, "state");
   bool ok = group >= 0;
   for (int g = 0; ok && g < STATE_GROUPS; g++)
-    for (size_t f = 0; ok && f < rows[g].fields; f++) {
+    for (size_t f = 0; ok && f < rows[g].fields && !(rows[g].optional && claimed[g] == 0); f++) {
       const hsize_t dims[2] = {claimed[g], 3};
       ok = h5_array_is(group, rows[g].field[f].name, 2, dims);
     }
@@ -232,7 +242,7 @@ bool checkpoint_each_array(struct state *state, checkpoint_rows *read, void *fro
   state_groups(state, group);
   bool ok = true;
   for (int g = 0; ok && g < STATE_GROUPS; g++)
-    for (size_t f = 0; ok && f < group[g].fields; f++) {
+    for (size_t f = 0; ok && f < group[g].fields && checkpoint_has_group(&group[g]); f++) {
       void *rows = malloc(((size_t)group[g].rows + 1) * 24);
       ok = rows ? read(from, &group[g], &group[g].field[f], rows, message)
                 : message_set(message, "%s: out of memory", path);

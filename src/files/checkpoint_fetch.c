@@ -30,6 +30,9 @@ static bool fits_model(hid_t file, const char *path, const struct checkpoint_sum
                        m->solvent.particles);
   if (s->vertices != m->vertices)
     return message_set(message, "%s: it holds %u fiber vertices, the scene %u", path, s->vertices, m->vertices);
+  if ((s->wall_rows > 0) != model_has_walls(m))
+    return message_set(message, "%s: it is of a box %s walls, the scene's box has %s", path,
+                       s->wall_rows > 0 ? "between" : "without", s->wall_rows > 0 ? "none" : "walls");
   hid_t group = h5_open_group(file, "structure");
   bool same = group >= 0 && structure_same_bonds(group, m);
   h5_close(group);
@@ -84,7 +87,7 @@ static void serve_arrays(struct apart *link, hid_t file, const struct wish *wish
   struct state_group group[STATE_GROUPS];
   state_groups(wish->state, group);
   for (int g = 0; g < STATE_GROUPS; g++)
-    for (size_t f = 0; f < group[g].fields; f++) {
+    for (size_t f = 0; f < group[g].fields && checkpoint_has_group(&group[g]); f++) {
       const size_t bytes = (size_t)group[g].rows * 24;
       void *rows = malloc(bytes + 1);
       const bool ok = rows ? checkpoint_rows_of_file(&from, &group[g], &group[g].field[f], rows, &message)

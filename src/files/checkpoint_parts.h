@@ -12,6 +12,9 @@ bool checkpoint_numbers(hid_t group, struct state *numbers, bool write);
 /* Copies the state's numbers. */
 void checkpoint_take_numbers(struct state *state, const struct state *numbers);
 
+/* True if a file has the arrays of this group. */
+bool checkpoint_has_group(const struct state_group *group);
+
 /* Types in memory; the name of a block as that of a dataset. */
 hid_t checkpoint_field_type(const struct state_field *field);
 hid_t checkpoint_block_type(const struct observe_block *block);

@@ -33,7 +33,7 @@ static bool write_state(hid_t group, const struct state *state)
     ok = slot;
     if (ok)
       state_group_slots(&rows[g], slot);
-    for (size_t f = 0; ok && f < rows[g].fields; f++)
+    for (size_t f = 0; ok && f < rows[g].fields && checkpoint_has_group(&rows[g]); f++)
       ok = write_field(group, &rows[g], &rows[g].field[f], rows[g].id ? slot : NULL);
     free(slot);
   }
@@ -90,7 +90,8 @@ static struct checkpoint_summary summary_of(const struct checkpoint_head *head, 
                                  .time_step = model->time_step,
                                  .acceleration = model->solvent.acceleration,
                                  .particles = state->solvent.n,
-                                 .vertices = state->vertices};
+                                 .vertices = state->vertices,
+                                 .wall_rows = state->wall_rows};
   checkpoint_take_numbers(&s.numbers, state);
   s.head.version[sizeof s.head.version - 1] = '\0';
   memcpy(s.cells, model->box.cells, sizeof s.cells);

@@ -42,6 +42,23 @@ static bool flows_as_said(const struct scene *scene, const struct state *state, 
   return (fabs(off.x) <= most && fabs(off.y) <= most && fabs(off.z) <= most) || refuse_flow(scene, found, message);
 }
 
+/* A scene in a plane takes no snapshot of something in space. */
+static bool is_flat_as_said(const struct scene *scene, const struct state *state, struct message *message)
+{
+  bool flat = true;
+  for (uint32_t i = 0; i < state->solvent.n; i++)
+    flat = flat && state->solvent.z[i] == 0 && state->solvent.vz[i] == 0.0;
+  for (uint32_t v = 0; v < state->vertices; v++)
+    flat = flat && state->position[v].z == 0 && state->velocity[v].z == 0.0;
+  if (flat || !model_is_flat(&scene->model))
+    return true;
+  message_set(
+      message,
+      "'%s' is not in the plane; allowed with dimensions: 2: a snapshot with all z coordinates and velocities 0",
+      scene->snapshot);
+  return false;
+}
+
 bool scene_start(const struct scene *scene, struct state *state, struct work *work, struct message *message)
 {
   const struct model *m = &scene->model;
@@ -52,5 +69,5 @@ bool scene_start(const struct scene *scene, struct state *state, struct work *wo
   bool ok = path && snapshot_read_start(path, m, state, message);
   free(path);
   return ok && (state_sound(state, m, &work->fault) || message_fault(message, &work->fault)) &&
-         flows_as_said(scene, state, work, message);
+         is_flat_as_said(scene, state, message) && flows_as_said(scene, state, work, message);
 }

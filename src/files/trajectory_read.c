@@ -107,7 +107,7 @@ static void take_positions(const struct trajectory *t, const struct model *m, st
   for (uint32_t i = 0; i < p->n; i++, row += 3) {
     p->id[i] = i;
     p->x[i] = lattice_fold(to_lattice(row[0]), m->box.edge[0]);
-    p->y[i] = lattice_fold(to_lattice(row[1]), m->box.edge[1]);
+    p->y[i] = box_inside(&m->box, 1, to_lattice(row[1]));
     p->z[i] = lattice_fold(to_lattice(row[2]), m->box.edge[2]);
   }
 }

@@ -82,12 +82,15 @@ static hid_t add_element(struct trajectory *t, hid_t parent, const char *name, i
   return value;
 }
 
-static bool add_box(struct trajectory *t)
+static bool add_box(struct trajectory *t, const struct model *model)
 {
   const int32_t dimension = 3;
-  const char boundary[3][9] = {"periodic", "periodic", "periodic"};
+  char boundary[3][9] = {"periodic", "periodic", "periodic"};
   const hsize_t dims[3] = {0, 3, 3};
   hid_t type = H5Tcopy(H5T_C_S1);
+  for (int k = 0; k < 3; k++)
+    if (model->box.boundary[k] == BOUNDARY_WALL)
+      memcpy(boundary[k], "none\0\0\0\0", sizeof boundary[k]);
   H5Tset_size(type, sizeof boundary[0]);
   hid_t box = h5_group(t->group, "box");
   bool ok = h5_put(box, "dimension", H5T_NATIVE_INT32, 0, &dimension) && h5_put(box, "boundary", type, 3, boundary);
@@ -114,7 +117,7 @@ static bool create_contents(struct trajectory *t, const struct model *model, con
   t->position = t->group < 0 ? -1 : add_element(t, t->group, "position", 3, dims);
   if (options->velocities && t->position >= 0)
     t->velocity = add_element(t, t->group, "velocity", 3, dims);
-  return t->position >= 0 && (t->velocity >= 0 || !options->velocities) && add_box(t) &&
+  return t->position >= 0 && (t->velocity >= 0 || !options->velocities) && add_box(t, model) &&
          structure_write_particles(t->group, model, t->solvent) && write_h5md(t->file) &&
          write_parameters(t, model, options, scene_text) && write_connectivity(t->file, model) &&
          H5Fflush(t->file, H5F_SCOPE_GLOBAL) >= 0;

@@ -1,6 +1,6 @@
 #include "fluid/boundary.h"
 
-static int64_t fly_periodic(uint32_t n, int64_t *restrict x, double *restrict v, double t, double a, int64_t edge)
+int64_t boundary_fly_periodic(uint32_t n, int64_t *restrict x, double *restrict v, double t, double a, int64_t edge)
 {
   const double gain = a * t;
   int64_t outside = 0;
@@ -17,11 +17,54 @@ static int64_t fly_periodic(uint32_t n, int64_t *restrict x, double *restrict v,
   return outside;
 }
 
-static const struct boundary boundaries[BOUNDARIES] = {
-    [BOUNDARY_PERIODIC] = {"periodic", fly_periodic, lattice_fold},
-};
-
-const struct boundary *boundary_of(const struct box *box, int axis)
+/* Beyond its range, or for a NaN, lattice_round gives an arbitrary integer. So the test uses the velocity, not the
+ * position. */
+bool boundary_fold(struct state *state, const struct model *model, int axis, double t, uint32_t first, uint32_t n,
+                   struct fault *fault)
 {
-  return &boundaries[box->boundary[axis]];
+  struct solvent *s = &state->solvent;
+  int64_t *x[3] = {s->x, s->y, s->z};
+  const double *v[3] = {s->vx, s->vy, s->vz};
+  for (uint32_t i = first; i < first + n; i++) {
+    const double move = v[axis][i] * t;
+    if (!(fabs(move) < LATTICE_MAX_MOVE))
+      return fault_record(fault, FAULT_SOLVENT_MOVE, state->step + 1, s->id[i], move, LATTICE_MAX_MOVE);
+    x[axis][i] = lattice_fold(x[axis][i], model->box.edge[axis]);
+  }
+  return true;
+}
+
+static bool fly_periodic(struct state *state, const struct model *model, const struct span *span, uint32_t first,
+                         uint32_t n, struct fault *fault)
+{
+  struct solvent *s = &state->solvent;
+  const double t = span->time;
+  const struct vec3 a = span->acceleration;
+  const int64_t *edge = model->box.edge;
+  int64_t outside = boundary_fly_periodic(n, &s->x[first], &s->vx[first], t, a.x, edge[0]);
+  outside |= boundary_fly_periodic(n, &s->y[first], &s->vy[first], t, a.y, edge[1]);
+  outside |= boundary_fly_periodic(n, &s->z[first], &s->vz[first], t, a.z, edge[2]);
+  return outside >= 0 ||
+         (boundary_fold(state, model, 0, t, first, n, fault) && boundary_fold(state, model, 1, t, first, n, fault) &&
+          boundary_fold(state, model, 2, t, first, n, fault));
+}
+
+static void now_periodic(const struct model *model, const struct span *span, struct point *x, struct vec3 *v)
+{
+  const struct vec3 a = span->acceleration;
+  const int64_t *edge = model->box.edge;
+  *x = (struct point){lattice_fold(x->x + boundary_flight(v->x, a.x, span->time), edge[0]),
+                      lattice_fold(x->y + boundary_flight(v->y, a.y, span->time), edge[1]),
+                      lattice_fold(x->z + boundary_flight(v->z, a.z, span->time), edge[2])};
+  *v = vec3_add_scaled(*v, span->time, a);
+}
+
+const struct boundary boundary_periodic = {"periodic", fly_periodic, now_periodic};
+
+const struct boundary *boundary_of(const struct box *box)
+{
+  static const struct boundary *const boundaries[BOUNDARIES] = {[BOUNDARY_PERIODIC] = &boundary_periodic,
+                                                                [BOUNDARY_WALL] = &boundary_walls,
+                                                                [BOUNDARY_SHEAR] = &boundary_sheared};
+  return boundaries[box->boundary[1]];
 }

@@ -1,24 +1,39 @@
-/* Boundaries of the box along one axis, for particles in flight. This is the contract of the rows in boundary.c. */
+/*
+ * The boundary of the box, for particles in flight. This is the contract of the rows in boundary.c, one for each kind
+ * of boundary along y; x and z are periodic.
+ *
+ * A flight is that of a particle on its own: Padding 2009, Eq. (3), and whatever happens at the boundary, at the exact
+ * time at which it happens. `fly` and `now` give the same positions and velocities, to the bit.
+ */
 #ifndef UNCROSS_FLUID_BOUNDARY_H
 #define UNCROSS_FLUID_BOUNDARY_H
 
-#include "base/lattice.h"
+#include "system/fault.h"
+#include "system/model.h"
+#include "system/state.h"
+
+/* A span of time for which particles fly. It is within one collision interval. */
+struct span {
+  double time;              /* t0 */
+  uint64_t end;             /* half time steps since the start */
+  uint64_t interval;        /* number of the collision interval (system/shear.h) */
+  struct vec3 acceleration; /* constant, a0/t0^2 */
+};
 
 struct boundary {
   const char *name;
 
-  /* n particles fly for a time t under a constant acceleration a. x: their coordinates, lattice units. v: their
-   * velocities, a0/t0, which grow by a t (Padding 2009, Eq. (7), one Cartesian component). A particle that is less than
-   * one edge outside the box at the end is brought inside. The sign bit of the result is set if a particle is further
-   * outside, or if a flight was beyond the range of lattice_round. */
-  int64_t (*fly)(uint32_t n, int64_t *restrict x, double *restrict v, double t, double a, int64_t edge);
+  /* n particles, from place `first` of memory on, fly for the span and stay in the box. False, with the fault recorded,
+   * if one would move too far. */
+  bool (*fly)(struct state *state, const struct model *model, const struct span *span, uint32_t first, uint32_t n,
+              struct fault *fault);
 
-  /* Brings a coordinate inside that `fly` has left outside. */
-  int64_t (*fold)(int64_t x, int64_t edge);
+  /* Position (lattice units, in the box) and velocity (a0/t0) of one particle after the flight. */
+  void (*now)(const struct model *model, const struct span *span, struct point *position, struct vec3 *velocity);
 };
 
-/* The boundary of an axis. */
-const struct boundary *boundary_of(const struct box *box, int axis);
+/* The boundary of a box along y. */
+const struct boundary *boundary_of(const struct box *box);
 
 /* Displacement of a particle of velocity v in a time t under a constant acceleration a, in lattice units: one component
  * of Padding 2009, Eq. (3). It is exact over any number of time steps, and valid below LATTICE_MAX_MOVE. */
@@ -26,5 +41,18 @@ static inline int64_t boundary_flight(double v, double a, double t)
 {
   return lattice_from_a0(v * t + 0.5 * a * t * t);
 }
+
+/* n particles fly for a time t under a constant acceleration a along a periodic axis. x: their coordinates, lattice
+ * units. v: their velocities, a0/t0, which grow by a t (Padding 2009, Eq. (7), one Cartesian component). A particle
+ * that is less than one edge outside the box at the end is brought inside. The sign bit of the result is set if a
+ * particle is further outside, or if a flight was beyond the range of lattice_round. */
+int64_t boundary_fly_periodic(uint32_t n, int64_t *restrict x, double *restrict v, double t, double a, int64_t edge);
+
+/* Folds the coordinates of these particles along this axis into the box: those that boundary_fly_periodic left outside.
+ * t: the time that they flew. False, with the fault recorded, for a flight out of range. */
+bool boundary_fold(struct state *state, const struct model *model, int axis, double t, uint32_t first, uint32_t n,
+                   struct fault *fault);
+
+extern const struct boundary boundary_periodic, boundary_walls, boundary_sheared;
 
 #endif

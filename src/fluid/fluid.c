@@ -15,7 +15,7 @@ const struct fluid *fluid_of(const struct model *model)
 bool fluid_stream(struct state *state, const struct model *model, struct fault *fault)
 {
   const bool ok = fluid_of(model)->stream(state, model, 0, state->solvent.n, fault);
-  state->solvent_lag = 0;
+  state_streamed(state);
   return ok;
 }
 

@@ -14,9 +14,10 @@
 
 #include "base/random.h"
 #include "mpc/mpc.h"
+#include "system/account.h"
 
-#define CELL_MOMENTUM_SCALE 0x1p44 /* momentum units per m a0/t0 */
-#define CELL_MOMENTUM_UNIT 0x1p-44
+#define CELL_MOMENTUM_SCALE ACCOUNT_SCALE /* momentum units per m a0/t0 */
+#define CELL_MOMENTUM_UNIT ACCOUNT_UNIT
 #define CELL_MEMBER ((uint64_t)1 << 40) /* one member, in cell_sum.load */
 #define CELL_MASS_SCALE 0x1p16          /* mass units per m, in cell_sum.load */
 #define CELL_MASS_UNIT 0x1p-16

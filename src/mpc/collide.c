@@ -2,10 +2,12 @@
 
 #include <string.h>
 
+#include "mpc/border.h"
 #include "mpc/cell.h"
 #include "mpc/grid.h"
 #include "mpc/overflow.h"
 #include "mpc/rule.h"
+#include "mpc/rules/spin.h"
 #include "mpc/sort.h"
 
 /* Particles are sorted by cell again after this many collisions. At the paper's mean free path of 0.02 a0, most
@@ -24,6 +26,8 @@ static uint32_t block_size(uint32_t n, uint32_t first, uint32_t most)
 static void clear_sums(struct mpc *c)
 {
   memset(c->sum, 0, (size_t)c->cells * sizeof *c->sum);
+  if (c->rule->spinning)
+    memset(c->spin, 0, (size_t)c->cells * sizeof *c->spin);
 }
 
 /* Unsigned: the sum may wrap. overflow_of_energies finds out afterwards. */
@@ -67,18 +71,23 @@ bool collide_sum(const struct state *state, const struct model *model, struct mp
 /* Flight of the fluid, grid_bin and collide_sum: the three in one pass, block by block. */
 static bool gather(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step, struct fault *fault)
 {
-  const struct point shift = grid_shift(model, step);
+  const struct border *border = mpc->border;
   uint64_t span = 0;
+  mpc->shift = grid_shift(model, step);
   clear_sums(mpc);
   for (uint32_t i = 0; i < state->solvent.n; i += BLOCK) {
     const uint32_t n = block_size(state->solvent.n, i, BLOCK);
     if (state->solvent_lag > 0 && !mpc->fluid->stream(state, model, i, n, fault))
       return false;
-    grid_bin_particles(state, model, shift, i, n, mpc);
+    if (border->enter)
+      border->enter(state, model, i, n, mpc);
+    border->bin_particles(state, model, i, n, mpc);
     span |= mpc->rule->add_particles(state, model, mpc, step, i, n);
   }
-  state->solvent_lag = 0;
-  grid_bin_vertices(state, model, shift, mpc);
+  state_streamed(state);
+  if (border->enter_vertices)
+    border->enter_vertices(state, model, mpc);
+  border->bin_vertices(state, model, mpc);
   span |= mpc->rule->add_vertices(state, model, mpc, step);
   return overflow_of_momenta(state, model, mpc, span, step, fault);
 }
@@ -104,12 +113,17 @@ void collide_turn(struct state *state, const struct model *model, const struct m
 
 bool mpc_collide(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step, struct fault *fault)
 {
-  if (!gather(state, model, mpc, step, fault))
+  const struct border *border = mpc->border;
+  if (!gather(state, model, mpc, step, fault) || (border->fill && !border->fill(state, model, mpc, step, fault)))
     return false;
   collide_solve(model, mpc, step);
   if (mpc->thermostat && !collide_thermostat(state, model, mpc, mpc->thermostat, step, fault))
     return false;
   collide_turn(state, model, mpc, mpc->thermostat);
+  if (border->account)
+    border->account(state, model, mpc, step);
+  if (border->leave)
+    border->leave(state, model, mpc);
   if (!model->solvent.hydrodynamics)
     mpc_swap_velocities(state, model, mpc, step);
   if (mpc->since_sort++ % COLLISIONS_PER_SORT == 0)

@@ -1,6 +1,7 @@
 #include "mpc/grid.h"
 
 #include "base/random.h"
+#include "mpc/border.h"
 
 struct point grid_shift(const struct model *model, uint64_t step)
 {
@@ -18,33 +19,36 @@ static inline uint32_t cell_index(int64_t x, int64_t shift, uint32_t cells)
 
 uint32_t grid_cell_of(const struct box *box, struct point p, struct point shift)
 {
-  uint32_t lx = (uint32_t)box->cells[0], ly = (uint32_t)box->cells[1], lz = (uint32_t)box->cells[2];
+  uint32_t lx = (uint32_t)box->rows[0], ly = (uint32_t)box->rows[1], lz = (uint32_t)box->rows[2];
+  const bool walls = box->boundary[1] == BOUNDARY_WALL; /* rows are not folded: the last one begins below the wall */
   uint32_t x = cell_index(lattice_fold(p.x, box->edge[0]), shift.x, lx);
-  uint32_t y = cell_index(lattice_fold(p.y, box->edge[1]), shift.y, ly);
+  uint32_t y = cell_index(walls ? p.y : lattice_fold(p.y, box->edge[1]), shift.y, ly);
   uint32_t z = cell_index(lattice_fold(p.z, box->edge[2]), shift.z, lz);
   return (z * ly + y) * lx + x;
 }
 
-void grid_bin_particles(const struct state *state, const struct model *model, struct point shift, uint32_t first,
-                        uint32_t n, struct mpc *mpc)
+void grid_bin_particles(const struct state *state, const struct model *model, uint32_t first, uint32_t n,
+                        struct mpc *mpc)
 {
   const struct solvent *s = &state->solvent;
   const struct box *box = &model->box;
-  const uint32_t lx = (uint32_t)box->cells[0], ly = (uint32_t)box->cells[1], lz = (uint32_t)box->cells[2];
+  const uint32_t lx = (uint32_t)box->rows[0], ly = (uint32_t)box->rows[1], lz = (uint32_t)box->rows[2];
   const int64_t *restrict x = &s->x[first], *restrict y = &s->y[first], *restrict z = &s->z[first];
   uint32_t *restrict cell = &mpc->solvent_cell[first];
+  const struct point shift = mpc->shift;
   for (uint32_t i = 0; i < n; i++)
     cell[i] = (cell_index(z[i], shift.z, lz) * ly + cell_index(y[i], shift.y, ly)) * lx + cell_index(x[i], shift.x, lx);
 }
 
-void grid_bin_vertices(const struct state *state, const struct model *model, struct point shift, struct mpc *mpc)
+void grid_bin_vertices(const struct state *state, const struct model *model, struct mpc *mpc)
 {
   for (uint32_t v = 0; v < state->vertices; v++)
-    mpc->vertex_cell[v] = grid_cell_of(&model->box, state->position[v], shift);
+    mpc->vertex_cell[v] = grid_cell_of(&model->box, state->position[v], mpc->shift);
 }
 
 void grid_bin(const struct state *state, const struct model *model, struct point shift, struct mpc *mpc)
 {
-  grid_bin_particles(state, model, shift, 0, state->solvent.n, mpc);
-  grid_bin_vertices(state, model, shift, mpc);
+  mpc->shift = shift;
+  mpc->border->bin_particles(state, model, 0, state->solvent.n, mpc);
+  mpc->border->bin_vertices(state, model, mpc);
 }

@@ -3,7 +3,9 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "mpc/border.h"
 #include "mpc/rule.h"
+#include "mpc/rules/spin.h"
 #include "mpc/thermostat.h"
 
 /* Bits of a hash table that is at most half full. */
@@ -21,7 +23,7 @@ static size_t count_cells(const struct model *m)
   return model_has_phantoms(m) ? m->vertices : model_has_solvent(m) ? (size_t)box_cell_count(&m->box) : 0;
 }
 
-enum { NEEDS = 14 };
+enum { NEEDS = 17 };
 
 /* The single list of the scratch that the collisions of a model use. */
 static void list_needs(struct mpc *c, const struct model *m, bool everything, struct memory_need need[NEEDS])
@@ -30,7 +32,9 @@ static void list_needs(struct mpc *c, const struct model *m, bool everything, st
   const size_t colliding = model_collides(m) ? m->vertices : 0, bathed = model_has_phantoms(m) ? m->vertices : 0;
   const size_t thermostatted = everything || m->solvent.thermostat != THERMOSTAT_NONE ? cells : 0;
   const size_t swapped = everything || !m->solvent.hydrodynamics ? particles : 0;
+  const size_t cut = model_has_walls(m) ? 2 * (size_t)m->box.cells[0] * (size_t)m->box.cells[2] : 0;
   const bool drawing = everything || collision_rule_of(m)->thermal;
+  const size_t spinning = everything || collision_rule_of(m)->spinning ? cells : 0;
   const struct memory_need all[NEEDS] = {
       {(void **)&c->sum, cells, sizeof *c->sum},
       {(void **)&c->turn, cells, sizeof *c->turn},
@@ -39,6 +43,7 @@ static void list_needs(struct mpc *c, const struct model *m, bool everything, st
       {(void **)&c->vertex_cell, colliding, sizeof *c->vertex_cell},
       {(void **)&c->occupied, bathed, sizeof *c->occupied},
       {(void **)&c->table, bathed ? (size_t)1 << table_bits(m->vertices) : 0, sizeof *c->table},
+      {(void **)&c->filled, cut, sizeof *c->filled},
       {(void **)&c->order, particles, sizeof *c->order},
       {(void **)&c->slot, swapped, sizeof *c->slot},
       {(void **)&c->column, particles, sizeof *c->column},
@@ -46,6 +51,8 @@ static void list_needs(struct mpc *c, const struct model *m, bool everything, st
       {(void **)&c->drawn[1], drawing ? particles : 0, sizeof *c->drawn[1]},
       {(void **)&c->drawn[2], drawing ? particles : 0, sizeof *c->drawn[2]},
       {(void **)&c->drawn_vertex, drawing ? colliding : 0, sizeof *c->drawn_vertex},
+      {(void **)&c->spin, spinning, sizeof *c->spin},
+      {(void **)&c->middle, spinning, sizeof *c->middle},
   };
   memcpy(need, all, sizeof all);
 }
@@ -56,6 +63,7 @@ bool mpc_alloc(struct mpc *c, const struct model *m, const struct fluid *fluid, 
   *c = (struct mpc){.rule = collision_rule_of(m),
                     .thermostat = thermostat_of(m->solvent.thermostat),
                     .fluid = fluid,
+                    .border = border_of(m),
                     .cells = (uint32_t)count_cells(m),
                     .table_bits = table_bits(m->vertices)};
   list_needs(c, m, everything, need);

@@ -25,10 +25,14 @@ struct cell_turn {
   double active;      /* 0: fewer than two members, velocities stay as they are */
 };
 
+struct virtual_members;
+
 struct mpc {
   const struct collision_rule *rule;
   const struct thermostat *thermostat; /* NULL: none */
   const struct fluid *fluid;
+  const struct border *border;
+  struct point shift;     /* of the grid (grid_shift), lattice units */
   uint32_t cells;         /* all cells of the box; with a random solvent, those that hold a vertex */
   struct cell_sum *sum;   /* [cells] */
   struct cell_turn *turn; /* [cells] */
@@ -38,11 +42,17 @@ struct mpc {
   uint32_t *occupied;     /* [vertices] numbers of the cells that hold a vertex; random solvent only, else NULL */
   uint32_t *table;        /* [2^table_bits] hash table: 1 + place in occupied, or 0; random solvent only, else NULL */
   uint32_t table_bits;
-  uint32_t *order;           /* [particles] sorting and velocity swap */
+  struct virtual_members
+      *filled;               /* [2 Lx Lz] virtual particles of the cells that walls cut, of this collision: the row
+                              * of y = 0, then that of y = L, cell (z, x) of each at z Lx + x; NULL without walls */
+  uint32_t *order;           /* [particles] sorting and velocity swap; in a collision, who entered (border.h) */
+  uint32_t entered;          /* particles that did */
   uint32_t *slot;            /* [particles] velocity swap only, else NULL */
   int64_t *column;           /* [particles] one column while it is permuted */
   double *drawn[3];          /* [particles] velocities that a thermal rule has drawn, else NULL */
   struct vec3 *drawn_vertex; /* [vertices] the same */
+  struct cell_spin *spin;    /* [cells] sums of a rule with angular momentum (rules/spin.h), else NULL */
+  struct point *middle;      /* [cells] of the same rule: place in the cell next to its centre of mass, lattice units */
   uint32_t since_sort;       /* collisions since particles were last sorted by cell */
 };
 

@@ -16,7 +16,7 @@
 #ifndef UNCROSS_MPC_RULE_H
 #define UNCROSS_MPC_RULE_H
 
-#include "mpc/mpc.h"
+#include "mpc/border.h"
 
 struct collision_rule {
   const char *name; /* as in scenes */
@@ -24,6 +24,10 @@ struct collision_rule {
   /* True if the rule draws its members' velocities anew. Such a rule keeps kT = 1 by itself and does not conserve
    * energy. It stores the drawn velocities in mpc->drawn and .drawn_vertex, between add and apply. */
   bool thermal;
+
+  /* True if the rule keeps the angular momentum of each cell. It then sums mpc->spin as well, and needs to know where
+   * its virtual members are: their number is whole. */
+  bool spinning;
 
   /* Adds n particles, from place `first` of memory on, to the sums of their cells. Returns a number that is at least
    * the size of each momentum component that was added, in momentum units (cell_add). */
@@ -33,9 +37,14 @@ struct collision_rule {
   /* Adds all vertices to the sums of their cells. Returns the same. */
   uint64_t (*add_vertices)(const struct state *state, const struct model *model, struct mpc *mpc, uint64_t step);
 
-  /* Adds all particles of a random solvent to the cell at this place in sum, as one member. */
-  void (*add_random_solvent)(const struct model *model, struct mpc *mpc, uint64_t step, uint32_t place, double mass,
-                             struct vec3 velocity);
+  /* Adds virtual particles to the cell at this place in sum. */
+  void (*add_virtual)(const struct model *model, struct mpc *mpc, uint64_t step, uint32_t place,
+                      const struct virtual_members *members);
+
+  /* The momentum that they gain in the collision, m a0/t0, once `turn` is set; `scaled` as in apply. The other members
+   * of the cell lose as much. */
+  struct vec3 (*virtual_gain)(const struct model *model, const struct mpc *mpc, uint64_t step, uint32_t place,
+                              const struct virtual_members *members, bool scaled);
 
   /* Sets `turn` of every cell from its sum, with factor 1. */
   void (*solve)(const struct model *model, struct mpc *mpc, uint64_t step);
@@ -44,16 +53,29 @@ struct collision_rule {
    * the thermostat's factor. */
   void (*apply)(struct state *state, const struct model *model, const struct mpc *mpc, bool scaled);
 
-  /* Molecular chaos: averages over cells of Poisson occupation with a mean of n particles, P_n = n - 1 + exp(-n).
-   * velocity_loss and stress_loss: the fraction of a particle's velocity, and of the kinetic stress, that a collision
-   * removes, as multiples of P_n/n. handed_on: the momentum that passes through a cell, as a multiple of P_n (m a0^2).
-   * cosine: of the rotation angle. */
-  double (*velocity_loss)(double cosine);
-  double (*stress_loss)(double cosine);
-  double (*handed_on)(double cosine);
+  /* Molecular chaos, in d dimensions (2 or 3), cosine: of the rotation angle. */
+
+  /* The fraction of its velocity that a member of this mass loses in a collision with so many others of mass 1. */
+  double (*velocity_loss)(double cosine, uint32_t d, double mass, uint32_t others);
+
+  /* Averages over cells of Poisson occupation with a mean of n members of mass 1, weighted by the members.
+   * stress_loss: the fraction of the kinetic stress that a collision removes. handed_on: the momentum that passes
+   * through a cell, m a0^2. Of SRD and AT-a both have the factor P_n = n - 1 + exp(-n). */
+  double (*stress_loss)(double cosine, uint32_t d, double n);
+  double (*handed_on)(double cosine, uint32_t d, double n);
 };
 
-extern const struct collision_rule srd_rule, at_a_rule;
+extern const struct collision_rule srd_rule, at_a_rule, at_plus_a_rule;
+
+/* The mean velocity of virtual members, a0/t0; in a plane without what was drawn along z. */
+static inline struct vec3 rule_virtual_velocity(const struct model *model, const struct virtual_members *members)
+{
+  const struct vec3 v = members->velocity;
+  return (struct vec3){v.x, v.y, model_is_flat(model) ? 0.0 : v.z};
+}
+
+/* P_n = n - 1 + exp(-n): mean of the members but one over the cells that have any, their number Poisson of mean n. */
+double rule_partners(double n);
 
 /* The rule of a model. */
 const struct collision_rule *collision_rule_of(const struct model *model);

@@ -7,12 +7,19 @@
 struct thermostat {
   const char *name; /* as in scenes */
 
+  bool layered; /* fixes the energy of each row of cells along y; else that of none, or of all together */
+
   /* Sets the factor of every cell that has members to collide, from the relative kinetic energies (mpc->relative). */
   void (*factors)(struct mpc *mpc, const struct model *model, uint64_t step);
 };
 
 /* The thermostat of this kind; NULL: none. */
 const struct thermostat *thermostat_of(enum thermostat_kind kind);
+
+/* Degrees of freedom of the members of a cell relative to its v_cm, with kT/2 each: d (N - M/(M + n)) for N members of
+ * mass M, d dimensions, and n virtual particles, which have a share in v_cm. That is d (N - 1) where there are none.
+ * For cells that collide (turn.active). */
+double cell_freedoms(const struct mpc *mpc, const struct model *model, uint32_t place);
 
 /* A Gamma(shape, 1) deviate for this cell and step, shape >= 1 (Marsaglia and Tsang, ACM TOMS 26, 363 (2000)). */
 double thermostat_gamma(uint64_t seed, uint64_t step, uint32_t cell, double shape);

@@ -120,11 +120,12 @@ static double vertex_temperature(const struct vertex_motion *v, double mass, dou
 struct temperatures motion_temperatures(const struct model *model, const struct motion *m)
 {
   const double n = model->solvent.particles, total = model->total_mass, vertices = total - n;
-  /* A box by itself keeps its velocity, which takes three degrees of freedom; a bath of phantoms has the flow's. */
+  /* A box by itself keeps its velocity, which takes a degree of freedom along each axis; a bath of phantoms has the
+   * flow's. */
   const bool kept = !model_has_phantoms(model);
   const struct vec3 u = kept ? vec3_scale(1.0 / total, vec3_add(m->solvent_sum, m->vertex.momentum)) : model->flow;
   const double solvent_freedom = n * (1.0 - 1.0 / total);
-  const double vertex_freedom = 3.0 * (model->vertices - (kept ? vertices / total : 0.0));
+  const double vertex_freedom = model->dimensions * (model->vertices - (kept ? vertices / total : 0.0));
   const struct vec3 squares = {squares_about(m->solvent_squares.x, m->solvent_sum.x, n, u.x),
                                squares_about(m->solvent_squares.y, m->solvent_sum.y, n, u.y),
                                squares_about(m->solvent_squares.z, m->solvent_sum.z, n, u.z)};
@@ -165,7 +166,7 @@ static void temperature_row(struct observer *observer, struct view *view, double
 {
   (void)observer;
   const struct temperatures t = motion_temperatures(view->model, view_motion(view));
-  const double mean = (t.solvent.x + t.solvent.y + t.solvent.z) / 3.0;
+  const double mean = (t.solvent.x + t.solvent.y + t.solvent.z) / view->model->dimensions;
   const double values[] = {view_time(view), mean, t.solvent.x, t.solvent.y, t.solvent.z, t.vertex, t.vertex_half};
   memcpy(row, values, sizeof values);
 }

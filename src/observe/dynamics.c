@@ -383,6 +383,7 @@ static void put_end_to_end(struct cells *c, bool defined)
 static void fill_row(const struct fiber_kind *kind, const struct tallies *t, double *row, double time)
 {
   const bool ends = !kind->ring && kind->vertices > 1, several = kind->count > 1;
+  const double d = kind->dimensions;
   struct cells c = {&t->shape, t->memory, row + 1};
   row[0] = time;
   put(&c, true, VERTICES_CENTER, 0, 1.0);
@@ -392,14 +393,14 @@ static void fill_row(const struct fiber_kind *kind, const struct tallies *t, dou
   put(&c, true, TUBE_CONTOUR, 1, 1.0);
   put_end_to_end(&c, ends);
   put(&c, ends, MIDDLE_COSINE, 1, 1.0);
-  put(&c, true, VERTICES_CENTER, 1, 1.0 / (6.0 * time)); /* D(t) = g_cm(t) / 6t */
+  put(&c, true, VERTICES_CENTER, 1, 1.0 / (2.0 * d * time)); /* D(t) = g_cm(t) / 2 d t */
   *c.next++ = tally_count(c.shape, c.memory);
   c = (struct cells){&t->drift_shape, t->drift, c.next};
   put(&c, several, DRIFT_Z_ABOUT, 1, 1.0);
-  put(&c, several, DRIFT_Z_ABOUT, 1, 1.0 / (6.0 * time));
+  put(&c, several, DRIFT_Z_ABOUT, 1, 1.0 / (2.0 * d * time));
   c = (struct cells){&t->rise_shape, t->rise, c.next};
-  put(&c, true, RISE_AND_ABOUT, 0, 1.0 / (3.0 * time)); /* (g_cm(t) - g_cm(t/2)) / 6(t/2) */
-  put(&c, several, RISE_AND_ABOUT, 1, 1.0 / (3.0 * time));
+  put(&c, true, RISE_AND_ABOUT, 0, 1.0 / (d * time)); /* (g_cm(t) - g_cm(t/2)) / 2d(t/2) */
+  put(&c, several, RISE_AND_ABOUT, 1, 1.0 / (d * time));
   c = (struct cells){&t->drift_shape, t->drift, c.next};
   put(&c, true, DRIFT_XY, 0, 1.0 / time);
   put(&c, true, DRIFT_XY, 1, 1.0 / time);

@@ -8,7 +8,7 @@
  * sample.
  *
  * The displacement of the centres of mass that all fibers of a kind share is its drift. What is left about it gives a
- * diffusion coefficient under a force; see measure_drift in dynamics.c.
+ * diffusion coefficient under a force; see add_drift in dynamics.c.
  *
  * Displacements are exact differences of lattice points, minus the common displacement of everything (dynamics_drift).
  */

@@ -61,8 +61,16 @@ bool oracle_emit(const struct scene *scene, struct pack *pack, struct message *m
   if (model_has_phantoms(model))
     return message_set(message, "%s: solvent.bath: phantoms; packs hold the operators of a solvent of particles only",
                        scene->path);
-  if (model->solvent.rule != RULE_SRD)
-    return message_set(message, "%s: solvent.rule; packs hold the operators of the rule srd only", scene->path);
+  if (model->solvent.rule != RULE_SRD && model->solvent.rule != RULE_AT_A)
+    return message_set(message, "%s: solvent.rule; packs hold the operators of the rules srd and at-a only",
+                       scene->path);
+  if (model->box.boundary[1] != BOUNDARY_PERIODIC || model->dimensions != 3 ||
+      model->solvent.profile != PROFILE_UNIFORM)
+    return message_set(
+        message,
+        "%s: walls, shear, dimensions: 2 or a profile of the acceleration; packs hold the operators of a "
+        "periodic box in space, with a uniform acceleration",
+        scene->path);
   if (model->crossing.rejection != REJECTION_STAY || model->crossing.frame != FRAME_LABORATORY)
     return message_set(
         message, "%s: crossing.refusal or crossing.frame; packs hold drifts by the paper's rule: stay, laboratory",
@@ -115,6 +123,9 @@ static bool put_start(struct oracle_stage *g, const struct scene *scene, uint64_
   to = oracle_has_events(m) ? oracle_put_integers(g, "in.rule", "event_driven", 1) : NULL;
   if (to)
     to[0] = 1;
+  to = m->solvent.rule != RULE_SRD ? oracle_put_integers(g, "in.collision", "rule", 1) : NULL;
+  if (to)
+    to[0] = m->solvent.rule;
   oracle_put_solvent_positions(g, "in.solvent");
   oracle_put_solvent_velocities(g, "in.solvent_velocity");
   oracle_put_points(g, "in.vertex", g->state->position, g->state->vertices);

@@ -10,8 +10,8 @@
 /* The vertex of a row; -1: rows are no vertices. */
 static int64_t vertex_of(const struct evidence_part *part, uint32_t row)
 {
-  static const char *const of_solvent[] = {"random", "stream", "swap",    "shift",
-                                           "sum",    "solve",  "rescale", "maxwell_boltzmann"};
+  static const char *const of_solvent[] = {"random",  "stream",           "swap", "shift", "sum", "solve", "mean",
+                                           "rescale", "maxwell_boltzmann"};
   const struct pack_table *t = part->pair.ours, *chain = oracle_model(&part->pair, "in.chain");
   for (size_t k = 0; k < sizeof of_solvent / sizeof *of_solvent; k++)
     if (strcmp(t->place.operator_name, of_solvent[k]) == 0)

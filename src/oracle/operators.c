@@ -75,7 +75,8 @@ static bool run_random(struct oracle_stage *g)
 
 /* --- all of them ------------------------------------------------------------------------------------------------- */
 
-enum of { OF_FIBERS, OF_TURNS, OF_EVENTS, OF_SOLVENT }; /* OF_TURNS, OF_EVENTS: of one kind of crossing rule */
+/* OF_TURNS, OF_EVENTS: of one kind of crossing rule; OF_SRD, OF_ANDERSEN: of one collision rule */
+enum of { OF_FIBERS, OF_TURNS, OF_EVENTS, OF_SOLVENT, OF_SRD, OF_ANDERSEN };
 
 static const struct operation {
   const char *name;
@@ -101,19 +102,29 @@ static const struct operation {
     {"stream", oracle_run_stream, NULL, OF_SOLVENT},
     {"shift", oracle_run_shift, NULL, OF_SOLVENT},
     {"bin", oracle_run_bin, oracle_edges_bin, OF_SOLVENT},
-    {"sum", oracle_run_sum, NULL, OF_SOLVENT},
-    {"solve", oracle_run_solve, NULL, OF_SOLVENT},
-    {"rescale", oracle_run_rescale, NULL, OF_SOLVENT},
-    {"maxwell_boltzmann", oracle_run_maxwell_boltzmann, NULL, OF_SOLVENT},
-    {"rotate", oracle_run_rotate, NULL, OF_SOLVENT},
+    {"draw", oracle_run_draw, NULL, OF_ANDERSEN},
+    {"sum", oracle_run_sum, NULL, OF_SRD},
+    {"sum", oracle_run_andersen_sum, NULL, OF_ANDERSEN},
+    {"solve", oracle_run_solve, NULL, OF_SRD},
+    {"mean", oracle_run_mean, NULL, OF_ANDERSEN},
+    {"rescale", oracle_run_rescale, NULL, OF_SRD},
+    {"maxwell_boltzmann", oracle_run_maxwell_boltzmann, NULL, OF_SRD},
+    {"rotate", oracle_run_rotate, NULL, OF_SRD},
+    {"give", oracle_run_give, NULL, OF_ANDERSEN},
     {"swap", oracle_run_swap, NULL, OF_SOLVENT},
 };
 
 /* True if a step of this model has the operation. */
 static bool is_of(enum of of, const struct model *m)
 {
-  const bool events = oracle_has_events(m);
-  return of == OF_SOLVENT ? model_has_solvent(m) : of == OF_TURNS ? !events : of == OF_EVENTS ? events : true;
+  const bool events = oracle_has_events(m), solvent = model_has_solvent(m);
+  const bool holds[] = {[OF_FIBERS] = true,
+                        [OF_TURNS] = !events,
+                        [OF_EVENTS] = events,
+                        [OF_SOLVENT] = solvent,
+                        [OF_SRD] = solvent && m->solvent.rule == RULE_SRD,
+                        [OF_ANDERSEN] = solvent && m->solvent.rule == RULE_AT_A};
+  return holds[of];
 }
 
 bool oracle_has_events(const struct model *m)

@@ -444,6 +444,8 @@ const struct relation oracle_relations_sum[] = {
     {"sum", "out.load", loads, false},
     {"solve", "out.active", actives, false},
     {"solve", "out.center", centers, false},
+    {"mean", "out.active", actives, false},
+    {"mean", "out.center", centers, false},
     {"rescale", "out.relative", relatives, false},
     {"maxwell_boltzmann", "out.relative", relatives, false},
     {.make = NULL},

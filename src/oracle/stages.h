@@ -30,6 +30,12 @@ bool oracle_run_maxwell_boltzmann(struct oracle_stage *stage);
 bool oracle_run_rotate(struct oracle_stage *stage);
 bool oracle_run_swap(struct oracle_stage *stage);
 
+/* Of the rule at-a. */
+bool oracle_run_draw(struct oracle_stage *stage);
+bool oracle_run_andersen_sum(struct oracle_stage *stage);
+bool oracle_run_mean(struct oracle_stage *stage);
+bool oracle_run_give(struct oracle_stage *stage);
+
 /* The sweep of this number, for fraction * dt, of the state as it is. */
 bool oracle_sweep_for(struct oracle_stage *stage, double fraction, uint32_t sweep);
 

@@ -369,6 +369,23 @@ static double rotate(const struct oracle_pair *p, uint32_t row, uint32_t column)
          p->rounding;
 }
 
+/* The third normal has the radius of a pair of its own, which is no smaller than it. */
+static double drawn(const struct oracle_pair *p, uint32_t row, uint32_t column)
+{
+  const double x = pack_value(p->ours, row, 0), y = pack_value(p->ours, row, 1), z = pack_value(p->ours, row, 2);
+  const double r = column == 2 ? fabs(z) : hypot(x, y);
+  return 24.0 * 8.6 * p->rounding + (tolerance_single(p) ? fmin(p->rounding / r, sqrt(2.0 * p->rounding)) : 0.0);
+}
+
+static double give(const struct oracle_pair *p, uint32_t row, uint32_t column)
+{
+  (void)row, (void)column;
+  return 2.0 *
+         (velocities(p) + tolerance_size_of(p, "in.center") +
+          fmax(tolerance_size_of(p, "in.solvent_drawn"), tolerance_size_of(p, "in.vertex_drawn"))) *
+         p->rounding;
+}
+
 static const struct {
   const char *operator_name, *table;
   tolerance_rule *tolerance;
@@ -400,8 +417,11 @@ static const struct {
     {"kick", "out.velocity", kick},
     {"stream", "out.position", stream_position},
     {"stream", "out.velocity", stream_velocity},
+    {"draw", "out.solvent", drawn},
+    {"draw", "out.vertex", drawn},
     {"sum", "out.momentum", momentum},
     {"solve", "out.center", center},
+    {"mean", "out.center", center},
     {"solve", "out.axis", axis},
     {"rescale", "out.relative", relative},
     {"rescale", "out.factor", rescale},
@@ -409,6 +429,8 @@ static const struct {
     {"maxwell_boltzmann", "out.factor", boltzmann},
     {"rotate", "out.solvent", rotate},
     {"rotate", "out.vertex", rotate},
+    {"give", "out.solvent", give},
+    {"give", "out.vertex", give},
     {"swap", "out.velocity", copied_velocity},
 };
 

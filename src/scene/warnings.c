@@ -3,8 +3,10 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+#include "mpc/rule.h"
 #include "scene/scene.h"
 #include "system/fiber_kind.h"
+#include "theory/flow.h"
 #include "theory/theory.h"
 
 struct teller {
@@ -69,7 +71,7 @@ static void warn_solvent(struct teller *t, const struct model *m)
 /* A flow faster than a tenth of the speed of sound: Padding 2009, Sec. IV B. */
 static void warn_flow(struct teller *t, const struct model *m)
 {
-  const double mach = theory_mach(vec3_norm(m->flow), theory_sound_speed(model_is_isothermal(m)));
+  const double mach = theory_mach(vec3_norm(m->flow), theory_sound_speed(model_is_isothermal(m), m->dimensions));
   if (model_has_solvent(m) && mach > 0.1)
     warn(t, "the flow's Mach number is %.3g > 0.1 (harmless while it is uniform: paper, Sec. V B 1)", mach);
 }
@@ -86,11 +88,51 @@ static void warn_force(struct teller *t, const struct model *m)
     snprintf(remedy, sizeof remedy, "solvent.acceleration: [%.17g, %.17g, %.17g] balances it%s", a.x - net.x / n,
              a.y - net.y / n, a.z - net.z / n,
              model_is_isothermal(m) ? "" : ", with solvent.thermostat: rescale, since forces do work");
-  if (!model_has_phantoms(m) && vec3_norm(net) > 1e-12 * scale) /* a bath takes the momentum up */
+  const bool held = model_has_walls(m) && m->walls.kind == WALL_NO_SLIP; /* walls take the momentum up */
+  if (!held && !model_has_phantoms(m) && vec3_norm(net) > 1e-12 * scale) /* a bath takes the momentum up */
     warn(t,
          "a net force of (%.6g, %.6g, %.6g) kT/a0 acts on a periodic system, which accelerates without end by %.3g "
          "a0/t0^2; %s",
          net.x, net.y, net.z, vec3_norm(net) / m->total_mass, remedy);
+}
+
+static double viscosity_of(const struct model *m)
+{
+  return theory_viscosity(collision_rule_of(m), m->dimensions, m->solvent.per_cell, m->solvent.cosine,
+                          model_collision_interval(m));
+}
+
+#define MOST_WALL_MACH 0.5
+#define MOST_HEATING 1e-3 /* kT/t0 */
+
+/* Flow between walls: the profile of the temperature, compressibility, heat (Tao, Goetze and Gompper 2008). */
+static void warn_walls(struct teller *t, const struct model *m)
+{
+  const double height = m->box.cells[1], eta = viscosity_of(m);
+  const struct vec3 slide = vec3_sub(m->walls.upper, m->walls.lower);
+  const double rate = m->walls.kind == WALL_NO_SLIP ? vec3_norm(slide) / height : 0.0;
+  const double driven =
+      m->walls.kind == WALL_NO_SLIP
+          ? theory_poiseuille_speed(m->solvent.per_cell, vec3_norm(m->solvent.acceleration), height, eta, 0.0)
+          : 0.0;
+  const double speed = fmax(driven, fmax(vec3_norm(m->walls.lower), vec3_norm(m->walls.upper)));
+  const double mach = theory_mach(speed, theory_sound_speed(model_is_isothermal(m), m->dimensions));
+  const double heating = theory_flow_heating(eta, rate, m->solvent.per_cell, m->dimensions);
+  if (m->solvent.thermostat == THERMOSTAT_RESCALE)
+    warn(t,
+         "thermostat rescale has one factor for the whole box, but flow between walls heats unevenly, and walls hold "
+         "their own temperature; use solvent.thermostat: rescale-layers or maxwell-boltzmann");
+  if (mach > MOST_WALL_MACH)
+    warn(
+        t,
+        "the Mach number between the walls is expected to be %.3g > %g: the solvent is compressed; use slower walls or "
+        "a smaller acceleration",
+        mach, MOST_WALL_MACH);
+  if (!model_is_isothermal(m) && heating > MOST_HEATING)
+    warn(t,
+         "the walls heat the solvent by %.3g kT per t0 until as much heat leaves through them, and no thermostat takes "
+         "it away; use solvent.thermostat: maxwell-boltzmann, or rule: at-a",
+         heating);
 }
 
 /* Bonds of this kind that are expected to become longer than `limit` in the run. A bond forgets its length in about
@@ -105,7 +147,7 @@ static double bonds_beyond(const struct scene *scene, const struct fiber_kind *k
 /* The paper's boxes are as long as its fibers, and eight times as long as R_e of its chains (Sec. V). */
 static void warn_images(struct teller *t, const struct model *m, const struct fiber_kind *k)
 {
-  const double edge = box_shortest_edge(&m->box), reach = theory_reach(k);
+  const double edge = 2.0 * model_longest_bond(m), reach = theory_reach(k);
   if (reach <= edge * (1.0 + 1e-9) || !(m->crossing.forbidden || model_has_solvent(m)))
     return;
   if (reach > LATTICE_MAX_EDGE)
@@ -127,7 +169,7 @@ static void warn_images(struct teller *t, const struct model *m, const struct fi
 static void warn_long_bonds(struct teller *t, const struct scene *scene, const struct fiber_kind *k)
 {
   const struct model *m = &scene->model;
-  const double limit = 0.5 * box_shortest_edge(&m->box);
+  const double limit = model_longest_bond(m);
   const double expected = bonds_beyond(scene, k, limit);
   if (!(expected > MOST_LONG_BONDS))
     return;
@@ -188,7 +230,7 @@ static void warn_heating(struct teller *t, const struct scene *scene)
   const double each =
       m->crossing.rule == CROSSING_SEQUENTIAL ? 0.7 * phase * phase : 0.09 * phase * phase * phase * phase;
   const double heat = each * theory_executed_rate(m) * time;
-  const double rise = heat / (1.5 * m->solvent.particles + 3.0 * m->vertices);
+  const double rise = heat / (m->dimensions * (0.5 * m->solvent.particles + m->vertices));
   const double order = m->crossing.rule == CROSSING_SEQUENTIAL ? 2.0 : 4.0; /* of the heat, in the time step */
   if (rise > MOST_RISE)
     warn(t,
@@ -251,6 +293,8 @@ int scene_warnings(const struct scene *scene, void (*tell)(void *context, const 
     warn_solvent(&t, m);
   warn_flow(&t, m);
   warn_force(&t, m);
+  if (model_has_walls(m))
+    warn_walls(&t, m);
   for (uint32_t k = 0; k < m->kinds; k++)
     warn_kind(&t, scene, &m->kind[k]);
   warn_heating(&t, scene);

@@ -9,7 +9,9 @@ double fiber_bonds(const struct fiber_kind *kind)
   return kind->ring ? kind->vertices : kind->vertices - 1.0;
 }
 
-/* <l> for p(l) ~ l^2 exp(-k (l-l0)^2/2), l > 0. With z = l sqrt(k), c = l0 sqrt(k), and the half-line moments
+/* In d dimensions: <l> for p(l) ~ l^(d-1) exp(-k (l-l0)^2/2), l > 0; in the plane it is I_2/I_1. In space:
+ *
+ * <l> for p(l) ~ l^2 exp(-k (l-l0)^2/2), l > 0. With z = l sqrt(k), c = l0 sqrt(k), and the half-line moments
  * I_n = int_0^inf z^n exp(-(z-c)^2/2) dz: I_{n+1} = c I_n + n I_{n-1} (+ exp(-c^2/2) for n = 0), <z> = I_3/I_2. */
 double fiber_mean_bond(const struct fiber_kind *kind)
 {
@@ -18,7 +20,7 @@ double fiber_mean_bond(const struct fiber_kind *kind)
   const double i1 = c * i0 + elementary_exp(-0.5 * c * c);
   const double i2 = c * i1 + i0;
   const double i3 = c * i2 + 2.0 * i1;
-  return i3 / i2 / root;
+  return kind->dimensions == 2 ? i2 / i1 / root : i3 / i2 / root;
 }
 
 double fiber_contour(const struct fiber_kind *kind)

@@ -1,6 +1,7 @@
 #include "system/keys.h"
 
 #include <inttypes.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -253,6 +254,16 @@ static bool check_table(const struct check *c)
     if (!check_key(c, &c->table->key[k]))
       return false;
   return true;
+}
+
+bool model_reject(struct model_error *error, const char *path, const char *format, ...)
+{
+  va_list arguments;
+  va_start(arguments, format);
+  snprintf(error->path, sizeof error->path, "%s", path);
+  vsnprintf(error->text, sizeof error->text, format, arguments);
+  va_end(arguments);
+  return false;
 }
 
 bool keys_check(const struct key_table *table, const void *from, struct model_error *error)

@@ -109,6 +109,10 @@ struct model_error {
   char text[512];
 };
 
+/* Writes an error. Always returns false. */
+bool model_reject(struct model_error *error, const char *path, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
 /* Checks every value in a filled struct against its row. Sections that are not there are skipped. */
 bool keys_check(const struct key_table *table, const void *from, struct model_error *error);
 

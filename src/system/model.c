@@ -89,5 +89,7 @@ void model_free(struct model *m)
   free(m->prev);
   free(m->mass);
   free(m->inverse_mass);
+  free(m->wave.cosine);
+  free(m->wave.slid);
   memset(m, 0, sizeof *m);
 }

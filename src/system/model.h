@@ -20,16 +20,42 @@
 /* Where drift, collision and kick stand within a step: see step.c. */
 enum scheme { SCHEME_PAPER, SCHEME_KICK_SPLIT, SCHEME_DRIFT_SPLIT, SCHEMES };
 
-enum thermostat_kind { THERMOSTAT_NONE, THERMOSTAT_RESCALE, THERMOSTAT_MAXWELL_BOLTZMANN, THERMOSTATS };
+enum thermostat_kind {
+  THERMOSTAT_NONE,
+  THERMOSTAT_RESCALE,
+  THERMOSTAT_MAXWELL_BOLTZMANN,
+  THERMOSTAT_RESCALE_LAYERS,
+  THERMOSTATS
+};
 
 /* What happens in a collision cell: see mpc/rule.h. */
-enum rule { RULE_SRD, RULE_AT_A, RULES };
+enum rule { RULE_SRD, RULE_AT_A, RULE_AT_PLUS_A, RULES };
 
 /* What vertices collide with. */
 enum bath {
   BATH_PARTICLES, /* the solvent's particles */
   BATH_PHANTOMS,  /* velocities drawn anew at each collision: a heat bath, see mpc/random_solvent.h */
   BATHS
+};
+
+/* Where the body force acts on the solvent, and how much of it: along y, in a box of edge L. */
+enum force_profile {
+  PROFILE_UNIFORM, /* everywhere the same */
+  PROFILE_SINE,    /* sin(2 pi y/L) of it: Kolmogorov flow */
+  PROFILE_REVERSE, /* all of it in the lower half, minus that in the upper: two Poiseuille flows */
+  PROFILES
+};
+
+/* What a wall does to a particle that hits it: its velocity relative to the wall is reversed, or only its component
+ * normal to the wall. */
+enum wall_kind { WALL_ABSENT, WALL_NO_SLIP, WALL_SLIP, WALL_KINDS };
+
+/* The number of virtual particles in a cell that a wall cuts: mpc/border.h. */
+enum wall_fill {
+  FILL_PLANAR, /* Poisson, as many on average as solvent would be in the part beyond the wall */
+  FILL_PAPER,  /* as many as the cell has fewer than gamma (Tao, Goetze and Gompper 2008) */
+  FILL_NONE,
+  FILLS
 };
 
 /* Which bonds a moving bond is not tested against. */
@@ -87,6 +113,7 @@ struct fiber_kind {
   double persistence_length;  /* l_p, in a0: sets bending to l_p/l0; 0: not given */
   struct vec3 force;          /* constant force on each vertex, in kT/a0 */
   enum fiber_start start;
+  uint32_t dimensions;       /* derived by model_finish: those of the model; 0 is 3 */
   uint32_t placed;           /* number of fibers whose place is given; the others are placed at random */
   struct fiber_place *place; /* [placed], allocated */
 };
@@ -104,8 +131,9 @@ struct solvent_model {
   enum rule rule;
   enum thermostat_kind thermostat;
   enum bath bath;
-  bool hydrodynamics;       /* false: particles' velocities are permuted after each collision */
-  struct vec3 acceleration; /* constant body force per mass, in a0/t0^2 */
+  bool hydrodynamics;         /* false: particles' velocities are permuted after each collision */
+  struct vec3 acceleration;   /* constant body force per mass, in a0/t0^2 */
+  enum force_profile profile; /* of the acceleration */
 
   /* Derived by model_finish. */
   uint32_t particles;      /* N_s = gamma x cells; 0: none, or phantoms */
@@ -121,13 +149,40 @@ struct crossing_model {
   enum frame frame;
 };
 
+/* Walls at y = 0 and y = L. */
+struct wall_model {
+  enum wall_kind kind;       /* WALL_ABSENT: none */
+  enum wall_fill fill;       /* of cells that a no-slip wall cuts */
+  struct vec3 lower, upper;  /* velocities, a0/t0, without y component; with a period, their amplitudes */
+  double shear_rate, strain; /* sets both: opposite velocities; 0: not given */
+  double period;             /* t0; 0: the velocities are constant */
+};
+
+/* A shear of the box: its image beyond y = L moves along x at rate L faster. */
+struct shear_model {
+  double rate;   /* dv_x/dy, 1/t0; with a period, its amplitude */
+  double strain; /* amplitude of the strain: sets rate to 2 pi strain/period; 0: not given */
+  double period; /* t0; 0: the rate is constant */
+};
+
+/* The part of a velocity or rate that holds at each half collision interval of a period: system/shear.h. */
+struct wave {
+  uint32_t intervals; /* collision intervals per period; 0: constant */
+  double *cosine;     /* [2 intervals] cos(pi k/intervals), allocated; NULL if constant */
+  uint64_t *slid;     /* [intervals + 1] lattice units by which a sheared image slides in a half step, summed over the
+                       * intervals before each; allocated; NULL if constant */
+};
+
 struct model {
-  struct box box;   /* cells are given; edges are derived */
-  uint64_t seed;    /* key of every random number */
-  double time_step; /* dt, in t0 */
+  uint32_t dimensions; /* 3; 2: everything moves in the plane of x and y */
+  struct box box;      /* cells are given; edges are derived */
+  uint64_t seed;       /* key of every random number */
+  double time_step;    /* dt, in t0 */
   enum scheme scheme;
   struct vec3 flow; /* uniform flow given to everything at the start, in a0/t0 */
   struct solvent_model solvent;
+  struct wall_model walls;
+  struct shear_model shear;
   struct crossing_model crossing;
 
   uint32_t kinds;
@@ -143,6 +198,7 @@ struct model {
   double *inverse_mass;    /* [vertices] 1/M */
   double max_mass;         /* of any member of a collision cell */
   double total_mass;       /* of solvent and vertices */
+  struct wave wave;        /* of the walls' or the shear's motion */
 };
 
 /* Checks the given values, each against its row of model_keys and all of them together, and fills the derived part. On
@@ -168,9 +224,12 @@ static inline int model_bonds_of(const struct model *model, uint32_t vertex, uin
   return bonds;
 }
 
-/* a0: bonds must be shorter. */
+/* a0: bonds must be shorter. In a plane there are no images along z. */
 static inline double model_longest_bond(const struct model *model)
 {
+  const int *edge = model->box.cells;
+  if (model->dimensions == 2)
+    return 0.5 * (edge[0] < edge[1] ? edge[0] : edge[1]);
   return 0.5 * box_shortest_edge(&model->box);
 }
 
@@ -188,16 +247,34 @@ static inline struct vec3 model_frame_velocity(const struct model *model)
   return model->crossing.frame == FRAME_FLOW ? model->flow : (struct vec3){0, 0, 0};
 }
 
+/* True if everything is in the plane z = 0, where nothing moves along z. */
+static inline bool model_is_flat(const struct model *model)
+{
+  return model->dimensions == 2;
+}
+
 /* The collision rule draws velocities anew: it is a thermostat by itself (thermal, in mpc/rule.h). */
 static inline bool model_rule_is_thermal(const struct model *model)
 {
-  return model->solvent.rule == RULE_AT_A;
+  return model->solvent.rule == RULE_AT_A || model->solvent.rule == RULE_AT_PLUS_A;
 }
 
 /* Something holds kT = 1: the rule, or a thermostat. */
 static inline bool model_is_isothermal(const struct model *model)
 {
   return model_rule_is_thermal(model) || model->solvent.thermostat != THERMOSTAT_NONE;
+}
+
+/* True if the box has walls at y = 0 and y = L. */
+static inline bool model_has_walls(const struct model *model)
+{
+  return model->box.boundary[1] == BOUNDARY_WALL;
+}
+
+/* True if the box is sheared. */
+static inline bool model_is_sheared(const struct model *model)
+{
+  return model->box.boundary[1] == BOUNDARY_SHEAR;
 }
 
 static inline bool model_has_phantoms(const struct model *model)

@@ -9,23 +9,11 @@
 
 #include "base/elementary.h"
 #include "system/fiber_kind.h"
+#include "system/flow.h"
 #include "system/model.h"
 #include "system/model_keys.h"
+#include "system/shear.h"
 #include "system/topology.h"
-
-/* Always returns false. */
-static bool reject(struct model_error *error, const char *path, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-
-static bool reject(struct model_error *error, const char *path, const char *format, ...)
-{
-  va_list arguments;
-  va_start(arguments, format);
-  snprintf(error->path, sizeof error->path, "%s", path);
-  vsnprintf(error->text, sizeof error->text, format, arguments);
-  va_end(arguments);
-  return false;
-}
 
 /* --- solvent ----------------------------------------------------------------------------------------------------- */
 
@@ -40,9 +28,10 @@ static bool derive_interval(struct model *m, struct model_error *error)
 {
   const double interval = m->solvent.collision_interval, ratio = interval / m->time_step, whole = nearbyint(ratio);
   if (!(whole >= 1.0 && whole <= 1e9 && fabs(ratio - whole) <= 1e-9 * whole))
-    return reject(error, "solvent.collision_interval",
-                  "%.15g is %.10g time steps of %.15g; allowed: a whole multiple of the time step, 1 to 1e9 of them",
-                  interval, ratio, m->time_step);
+    return model_reject(
+        error, "solvent.collision_interval",
+        "%.15g is %.10g time steps of %.15g; allowed: a whole multiple of the time step, 1 to 1e9 of them", interval,
+        ratio, m->time_step);
   m->solvent.interval_steps = (uint32_t)whole;
   m->solvent.collision_interval = model_collision_interval(m);
   return true;
@@ -67,7 +56,7 @@ static bool check_phantoms(const struct model *m, struct model_error *error)
   };
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
     if (!rows[i].ok)
-      return reject(error, "solvent.bath", "%s", rows[i].why);
+      return model_reject(error, "solvent.bath", "%s", rows[i].why);
   return true;
 }
 
@@ -78,9 +67,9 @@ static bool derive_particles(struct model *m, struct model_error *error)
     return check_phantoms(m, error);
   const double particles = nearbyint(m->solvent.per_cell * box_volume(&m->box));
   if (!(particles >= 1.0 && particles < 2147483648.0))
-    return reject(error, "solvent.per_cell",
-                  "%.15g in a box of %.0f cells makes %.0f particles; allowed: 1 to 2147483647", m->solvent.per_cell,
-                  box_volume(&m->box), particles);
+    return model_reject(error, "solvent.per_cell",
+                        "%.15g in a box of %.0f cells makes %.0f particles; allowed: 1 to 2147483647",
+                        m->solvent.per_cell, box_volume(&m->box), particles);
   m->solvent.particles = (uint32_t)particles;
   return true;
 }
@@ -91,12 +80,12 @@ static bool finish_solvent(struct model *m, struct model_error *error)
   if (m->solvent.collision_interval != 0.0 && !derive_interval(m, error))
     return false;
   if (model_rule_is_thermal(m) && m->solvent.thermostat != THERMOSTAT_NONE)
-    return reject(error, "solvent.thermostat",
-                  "the collision rule holds the temperature by itself; allowed with it: none");
+    return model_reject(error, "solvent.thermostat",
+                        "the collision rule holds the temperature by itself; allowed with it: none");
   if (m->solvent.per_cell != 0.0)
     return derive_particles(m, error);
   return !model_has_phantoms(m) ||
-         reject(error, "solvent.bath", "phantoms without a per_cell; allowed with a per_cell above 0");
+         model_reject(error, "solvent.bath", "phantoms without a per_cell; allowed with a per_cell above 0");
 }
 
 /* --- fibers ------------------------------------------------------------------------------------------------------ */
@@ -180,7 +169,7 @@ static bool check_count(const struct look *look, uint64_t *vertices)
 static bool check_extent(const struct look *look)
 {
   const struct fiber_kind *k = look->kind;
-  const double bond = fiber_mean_bond(k), limit = 0.5 * box_shortest_edge(&look->model->box);
+  const double bond = fiber_mean_bond(k), limit = model_longest_bond(look->model);
   if (k->vertices < 2)
     return true;
   if (!(bond < limit))
@@ -228,10 +217,11 @@ static bool check_stability(const struct look *look)
 {
   const double dt = look->model->time_step, omega = fiber_highest_frequency(look->kind);
   return omega * dt < 2.0 ||
-         reject(look->error, "time_step",
-                "%.15g is unstable for the fibers '%s', whose highest frequency is %.6g / t0; allowed: below %.6g, and "
-                "a tenth of that for accuracy",
-                dt, look->kind->name, omega, 2.0 / omega);
+         model_reject(
+             look->error, "time_step",
+             "%.15g is unstable for the fibers '%s', whose highest frequency is %.6g / t0; allowed: below %.6g, and "
+             "a tenth of that for accuracy",
+             dt, look->kind->name, omega, 2.0 / omega);
 }
 
 static int compare_names(const void *a, const void *b)
@@ -260,10 +250,31 @@ static bool find_namesake(const struct model *m, uint32_t *number)
   return true;
 }
 
+/* In a plane nothing moves along z. */
+static bool check_plane(const struct look *look)
+{
+  const struct fiber_kind *k = look->kind;
+  char key[64];
+  if (!model_is_flat(look->model))
+    return true;
+  if (k->force.z != 0.0)
+    return reject_kind(look, "force", "with dimensions: 2 nothing moves along z; allowed: a z component of 0");
+  for (uint32_t i = 0; i < k->placed; i++) {
+    const struct fiber_place *p = &k->place[i];
+    snprintf(key, sizeof key, "places.%" PRIu32 ".%s", i, p->center.z != 0.0 ? "center" : "direction");
+    if (p->center.z != 0.0)
+      return reject_kind(look, key, "with dimensions: 2 everything is at z = 0; allowed: a z component of 0");
+    if (k->ring ? p->direction.x != 0.0 || p->direction.y != 0.0 : p->direction.z != 0.0)
+      return reject_kind(look, key, "out of the plane; allowed with dimensions: 2: %s",
+                         k->ring ? "[0, 0, 1], normal to the plane" : "a z component of 0");
+  }
+  return true;
+}
+
 static bool finish_kind(const struct look *look, uint64_t *vertices)
 {
   return round_mass(look) && derive_bending(look) && check_shape(look) && check_count(look, vertices) &&
-         check_extent(look) && check_places(look) && check_stability(look);
+         check_extent(look) && check_places(look) && check_plane(look) && check_stability(look);
 }
 
 static bool finish_fibers(struct model *m, struct model_error *error)
@@ -271,14 +282,15 @@ static bool finish_fibers(struct model *m, struct model_error *error)
   uint64_t vertices = 0;
   uint32_t namesake;
   if (m->kinds > MODEL_MOST_KINDS)
-    return reject(error, "fibers", "%" PRIu32 " kinds; allowed: at most %d", m->kinds, MODEL_MOST_KINDS);
+    return model_reject(error, "fibers", "%" PRIu32 " kinds; allowed: at most %d", m->kinds, MODEL_MOST_KINDS);
   if (!find_namesake(m, &namesake))
-    return reject(error, "", "out of memory");
+    return model_reject(error, "", "out of memory");
   for (uint32_t k = 0; k < m->kinds; k++) {
     const struct look look = {m, &m->kind[k], k, error};
     if (k == namesake)
       return reject_kind(&look, "name", "'%s' is the name of an earlier kind; allowed: a name of its own",
                          look.kind->name);
+    m->kind[k].dimensions = m->dimensions;
     if (!finish_kind(&look, &vertices))
       return false;
   }
@@ -307,7 +319,7 @@ static bool check_crossing(const struct model *m, struct model_error *error)
   };
   for (size_t i = 0; i < sizeof rows / sizeof *rows && c->rule == CROSSING_EVENT_DRIVEN; i++)
     if (!rows[i].ok)
-      return reject(error, rows[i].path, "%s", rows[i].why);
+      return model_reject(error, rows[i].path, "%s", rows[i].why);
   return true;
 }
 
@@ -317,18 +329,21 @@ bool model_finish_numbers(struct model *m, struct model_error *error)
 {
   if (m->crossing.rule == CROSSING_FREE) /* a model built by hand that leaves it open */
     m->crossing.rule = CROSSING_SEQUENTIAL;
+  if (m->dimensions == 0) /* the same */
+    m->dimensions = 3;
   if (!keys_check(&model_keys, m, error))
     return false;
   m->box = box_of_cells(m->box.cells[0], m->box.cells[1], m->box.cells[2]);
-  if (!finish_solvent(m, error) || !finish_fibers(m, error) || !check_crossing(m, error))
+  if (!finish_solvent(m, error) || !flow_finish(m, error) || !finish_fibers(m, error) || !check_crossing(m, error))
     return false;
   if (!model_collides(m) && m->kinds == 0)
-    return reject(error, "", "there is nothing to simulate; a scene has a 'solvent', 'fibers', or both");
+    return model_reject(error, "", "there is nothing to simulate; a scene has a 'solvent', 'fibers', or both");
   model_count(m);
   return true;
 }
 
 bool model_finish(struct model *m, struct model_error *error)
 {
-  return model_finish_numbers(m, error) && (model_lay(m) || reject(error, "", "out of memory for this many vertices"));
+  return model_finish_numbers(m, error) &&
+         ((model_lay(m) && shear_finish(m)) || model_reject(error, "", "out of memory for this many vertices"));
 }

@@ -6,8 +6,11 @@
 #define IN_KIND(member) offsetof(struct fiber_kind, member)
 
 static const char *const scheme_words[] = {"paper", "kick-split", "drift-split", NULL};
-static const char *const rule_words[] = {"srd", "at-a", NULL};
-static const char *const thermostat_words[] = {"none", "rescale", "maxwell-boltzmann", NULL};
+static const char *const rule_words[] = {"srd", "at-a", "at+a", NULL};
+static const char *const thermostat_words[] = {"none", "rescale", "maxwell-boltzmann", "rescale-layers", NULL};
+static const char *const profile_words[] = {"uniform", "sine", "reverse", NULL};
+static const char *const wall_words[] = {"no-slip", "slip", NULL};
+static const char *const fill_words[] = {"planar", "paper", "none", NULL};
 static const char *const bath_words[] = {"particles", "phantoms", NULL};
 static const char *const exclusion_words[] = {"shared-vertex", "paper", NULL};
 static const char *const crossing_words[] = {"sequential", "event-driven", NULL};
@@ -50,18 +53,20 @@ static const struct key solvent_keys[] = {
      .symbol = "alpha",
      .first_format = true},
     {.name = "rule",
-     .text = "What happens in a collision cell. `srd`: velocities relative to the cell's centre of mass are turned "
-             "about a random axis. `at-a`: they are drawn anew from the Maxwell distribution, with the cell's momentum "
-             "kept (Andersen thermostat without angular momentum; Noguchi et al. 2007); a thermostat by itself, and "
-             "`rotation_angle` has no meaning.",
+     .text =
+         "What happens in a collision cell. `srd`: velocities relative to the cell's centre of mass are turned "
+         "about a random axis. `at-a`: they are drawn anew from the Maxwell distribution, with the cell's momentum "
+         "kept (Andersen thermostat without angular momentum; Noguchi et al. 2007). `at+a`: the same with the cell's "
+         "angular momentum kept too. Both are thermostats by themselves, and `rotation_angle` has no meaning.",
      .type = KEY_CHOICE,
      .absent = "srd",
      .choice = rule_words,
      .offset = IN_MODEL(solvent.rule)},
     {.name = "thermostat",
-     .text = "`rescale`: one factor for all relative velocities, 3(n-1) degrees of freedom per cell. "
+     .text = "`rescale`: one factor for all relative velocities, d(n-1) degrees of freedom per cell. "
              "`maxwell-boltzmann`: each cell's relative kinetic energy drawn from its canonical distribution (Huang et "
-             "al. 2010).",
+             "al. 2010). `rescale-layers`: as `rescale`, with a factor for each layer of cells along y (Tao et al. "
+             "2008).",
      .type = KEY_CHOICE,
      .absent = "none",
      .choice = thermostat_words,
@@ -94,6 +99,13 @@ static const struct key solvent_keys[] = {
      .unit = "a0/t0^2",
      .symbol = "f/m",
      .first_format = true},
+    {.name = "profile",
+     .text = "Where the acceleration acts. `uniform`: everywhere. `sine`: sin(2 pi y/L) of it at y (Kolmogorov flow). "
+             "`reverse`: all of it below y = L/2, minus that above (two opposite Poiseuille flows).",
+     .type = KEY_CHOICE,
+     .absent = "uniform",
+     .choice = profile_words,
+     .offset = IN_MODEL(solvent.profile)},
 };
 static const struct key_table solvent_table = {"solvent", NULL, COUNT(solvent_keys), solvent_keys};
 
@@ -231,6 +243,101 @@ static const struct key fiber_keys[] = {
 static const struct key_table fiber_table = {"fibers", "A list, one item per kind of fiber.", COUNT(fiber_keys),
                                              fiber_keys};
 
+static const struct key wall_keys[] = {
+    {.name = "kind",
+     .text = "What happens to a particle that hits a wall. `no-slip`: its velocity relative to the wall is reversed, "
+             "and cells that the wall cuts hold virtual particles (`fill`). `slip`: only the velocity's y component is "
+             "reversed.",
+     .type = KEY_CHOICE,
+     .choice = wall_words,
+     .first = WALL_NO_SLIP,
+     .offset = IN_MODEL(walls.kind)},
+    {.name = "fill",
+     .text = "Virtual particles of a cell that a no-slip wall cuts. `planar`: a Poisson number, as if the solvent went "
+             "on beyond the wall. `paper`: `per_cell` less the members of the cell (Tao et al. 2008). `none`: none.",
+     .type = KEY_CHOICE,
+     .absent = "planar",
+     .choice = fill_words,
+     .offset = IN_MODEL(walls.fill)},
+    {.name = "lower",
+     .text = "Velocity of the wall at y = 0, without y component. With a `period`, its amplitude.",
+     .type = KEY_VECTOR,
+     .absent = "[0, 0, 0]",
+     .low = -100,
+     .high = 100,
+     .offset = IN_MODEL(walls.lower),
+     .unit = "a0/t0",
+     .symbol = "v_w"},
+    {.name = "upper",
+     .text = "The same of the wall at y = L.",
+     .type = KEY_VECTOR,
+     .absent = "[0, 0, 0]",
+     .low = -100,
+     .high = 100,
+     .offset = IN_MODEL(walls.upper),
+     .unit = "a0/t0",
+     .symbol = "v_w"},
+    {.name = "shear_rate",
+     .text = "Applied shear rate: sets `lower` and `upper` to -1/2 and 1/2 of it times L, along x.",
+     .type = KEY_NUMBER,
+     .optional = true,
+     .low = -10,
+     .high = 10,
+     .offset = IN_MODEL(walls.shear_rate),
+     .unit = "1/t0",
+     .excludes = "lower",
+     .derives = true},
+    {.name = "strain",
+     .text = "Amplitude of an oscillating strain: sets `shear_rate` to 2 pi/`period` of it.",
+     .type = KEY_NUMBER,
+     .optional = true,
+     .low = 0,
+     .high = 1000,
+     .offset = IN_MODEL(walls.strain),
+     .excludes = "shear_rate",
+     .derives = true},
+    {.name = "period",
+     .text = "Period of the walls' motion, cos(2 pi t/period): a whole number of collision intervals, 4 or more. 0: "
+             "they move at a constant velocity.",
+     .type = KEY_NUMBER,
+     .absent = "0",
+     .low = 0,
+     .high = 1e6,
+     .offset = IN_MODEL(walls.period),
+     .unit = "t0"},
+};
+static const struct key_table wall_table = {"walls", NULL, COUNT(wall_keys), wall_keys};
+
+static const struct key shear_keys[] = {
+    {.name = "rate",
+     .text = "Shear rate dv_x/dy. With a `period`, its amplitude.",
+     .type = KEY_NUMBER,
+     .optional = true,
+     .low = -10,
+     .high = 10,
+     .offset = IN_MODEL(shear.rate),
+     .unit = "1/t0"},
+    {.name = "strain",
+     .text = "Amplitude of an oscillating strain: sets `rate` to 2 pi/`period` of it.",
+     .type = KEY_NUMBER,
+     .optional = true,
+     .low = 0,
+     .high = 1000,
+     .offset = IN_MODEL(shear.strain),
+     .excludes = "rate",
+     .derives = true},
+    {.name = "period",
+     .text = "Period of the rate, cos(2 pi t/period): a whole number of collision intervals, 4 or more. 0: the rate is "
+             "constant.",
+     .type = KEY_NUMBER,
+     .absent = "0",
+     .low = 0,
+     .high = 1e6,
+     .offset = IN_MODEL(shear.period),
+     .unit = "t0"},
+};
+static const struct key_table shear_table = {"shear", NULL, COUNT(shear_keys), shear_keys};
+
 static const struct key crossing_keys[] = {
     {.name = "forbidden",
      .text = "false: fibers pass through each other.",
@@ -324,11 +431,31 @@ static const struct key top_keys[] = {
      .unit = "a0/t0",
      .symbol = "v_flow",
      .first_format = true},
+    {.name = "dimensions",
+     .text =
+         "2: everything moves in the plane of x and y. The box is then one cell thick, and fibers pass through each "
+         "other.",
+     .type = KEY_WHOLE32,
+     .absent = "3",
+     .least = 2,
+     .most = 3,
+     .offset = IN_MODEL(dimensions),
+     .symbol = "d"},
     {.name = "solvent",
      .text = "The SRD solvent; absent: none, and no collisions.",
      .type = KEY_SECTION,
      .optional = true,
      .keys = &solvent_table},
+    {.name = "walls",
+     .text = "Walls at y = 0 and y = L; absent: none.",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &wall_table},
+    {.name = "shear",
+     .text = "A shear of the box, by images that slide along x (Lees and Edwards 1972); absent: none.",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &shear_table},
     {.name = "fibers",
      .text = "Kinds of fibers, each with keys of its own; absent: none.",
      .type = KEY_LIST,

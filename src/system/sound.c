@@ -54,7 +54,7 @@ static bool solvent_sound(const struct state *s, const struct model *m, struct f
   const double a[3] = {m->solvent.acceleration.x, m->solvent.acceleration.y, m->solvent.acceleration.z};
   for (uint32_t i = 0; i < p->n; i++)
     for (int k = 0; k < 3; k++) {
-      if (at[k][i] < 0 || at[k][i] >= m->box.edge[k])
+      if (at[k][i] < 0 || at[k][i] >= m->box.edge[k] + (m->box.boundary[k] == BOUNDARY_WALL)) /* on a wall is inside */
         return fault_record(fault, FAULT_SOLVENT_PLACE, s->step, p->id[i], (double)at[k][i] * LATTICE_UNIT,
                             m->box.cells[k]);
       if (!isfinite(v[k][i]) || !(flight(v[k][i], a[k], t) < LATTICE_MAX_MOVE))

@@ -6,6 +6,7 @@
 #include <xxhash.h>
 
 #include "base/memory.h"
+#include "system/account.h"
 
 bool state_alloc(struct state *s, const struct model *model)
 {
@@ -13,6 +14,7 @@ bool state_alloc(struct state *s, const struct model *model)
   size_t n = model->solvent.particles ? model->solvent.particles : 1, v = model->vertices ? model->vertices : 1;
   s->solvent.n = model->solvent.particles;
   s->vertices = model->vertices;
+  s->wall_rows = model_has_walls(model) ? WALLS * ACCOUNT_SHARES : 0;
   int64_t **lattice[] = {&s->solvent.x, &s->solvent.y, &s->solvent.z};
   double **real[] = {&s->solvent.vx, &s->solvent.vy, &s->solvent.vz};
   bool ok = true;
@@ -23,6 +25,7 @@ bool state_alloc(struct state *s, const struct model *model)
   ok &= (s->solvent.id = memory_alloc(n, sizeof *s->solvent.id)) != NULL;
   ok &= (s->position = memory_alloc(v, sizeof *s->position)) != NULL;
   ok &= (s->velocity = memory_alloc(v, sizeof *s->velocity)) != NULL;
+  ok &= (s->wall_momentum = memory_alloc(WALLS * ACCOUNT_SHARES, sizeof *s->wall_momentum)) != NULL;
   if (!ok) {
     state_free(s);
     return false;
@@ -43,6 +46,7 @@ void state_free(struct state *s)
   free(s->solvent.id);
   free(s->position);
   free(s->velocity);
+  free(s->wall_momentum);
   memset(s, 0, sizeof *s);
 }
 
@@ -71,6 +75,7 @@ void state_solvent_slots(const struct state *s, uint32_t *slot)
 const struct state_number state_numbers[] = {
     {"step", 8, true, false, offsetof(struct state, step)},
     {"solvent_lag", 4, true, false, offsetof(struct state, solvent_lag)},
+    {"solvent_time", 8, false, true, offsetof(struct state, solvent_time)},
     {"moves", 8, false, false, offsetof(struct state, counts.moves)},
     {"possible", 8, false, false, offsetof(struct state, counts.possible)},
     {"executed", 8, false, false, offsetof(struct state, counts.executed)},
@@ -85,17 +90,21 @@ void state_groups(const struct state *s, struct state_group group[STATE_GROUPS])
   const struct solvent *p = &s->solvent;
   struct point *r = s->position;
   struct vec3 *v = s->velocity;
+  struct point *w = s->wall_momentum;
   const struct state_group groups[STATE_GROUPS] = {
       {p->n,
+       false,
        p->id,
        2,
        {{"solvent_position", true, {p->x, p->y, p->z}, sizeof *p->x},
         {"solvent_velocity", false, {p->vx, p->vy, p->vz}, sizeof *p->vx}}},
       {s->vertices,
+       false,
        NULL,
        2,
        {{"vertex_position", true, {&r->x, &r->y, &r->z}, sizeof *r},
         {"vertex_velocity", false, {&v->x, &v->y, &v->z}, sizeof *v}}},
+      {s->wall_rows, true, NULL, 1, {{"wall_momentum", true, {&w->x, &w->y, &w->z}, sizeof *w}}},
   };
   memcpy(group, groups, sizeof groups);
 }
@@ -143,7 +152,8 @@ static void hash_numbers(XXH64_state_t *hash, const struct state *s, const struc
   }
   for (int g = 0; g < STATE_GROUPS; g++) {
     const uint64_t rows = group[g].rows;
-    XXH64_update(hash, &rows, sizeof rows);
+    if (rows > 0 || !group[g].optional)
+      XXH64_update(hash, &rows, sizeof rows);
   }
 }
 

@@ -40,15 +40,28 @@ struct collision_counts {
   uint64_t rigid;    /* contacts that no impulse answers: their bonds moved rigidly for the rest of the drift */
 };
 
+/* By what a wall gives momentum to the solvent. */
+enum account_share { ACCOUNT_HITS, ACCOUNT_COLLISIONS, ACCOUNT_SHARES };
+
 struct state {
-  uint64_t step;        /* steps made; time is step * dt */
-  uint32_t solvent_lag; /* half time steps since the solvent was last streamed */
+  uint64_t step;         /* steps made; time is step * dt */
+  uint32_t solvent_lag;  /* half time steps since the solvent was last streamed */
+  uint64_t solvent_time; /* half time steps to which it was streamed; with the lag, the time now */
   struct solvent solvent;
   uint32_t vertices;
   struct point *position; /* [vertices] lattice units, unwrapped */
   struct vec3 *velocity;  /* [vertices] a0/t0, of the half step ahead */
   struct collision_counts counts;
+  uint32_t wall_rows;          /* 4 between walls, else 0 */
+  struct point *wall_momentum; /* [wall_rows] the account of the walls: system/account.h */
 };
+
+/* The solvent was streamed to now: there is no lag any more. */
+static inline void state_streamed(struct state *state)
+{
+  state->solvent_time += state->solvent_lag;
+  state->solvent_lag = 0;
+}
 
 /* Allocates a state for the model's particles and vertices, zeroed, with ids in order. False if memory is short. */
 bool state_alloc(struct state *state, const struct model *model);
@@ -96,12 +109,13 @@ struct state_field {
 /* Things of one kind (solvent particles, vertices), one row each. */
 struct state_group {
   uint32_t rows;
-  uint32_t *id; /* [rows] number of each row in files and hashes; NULL: its place in memory */
+  bool optional; /* without rows it is neither in files nor in hashes */
+  uint32_t *id;  /* [rows] number of each row in files and hashes; NULL: its place in memory */
   size_t fields;
   struct state_field field[2];
 };
 
-enum { STATE_GROUPS = 2 };
+enum { STATE_GROUPS = 3 };
 
 /* The groups of this state, in the order in which they are hashed. */
 void state_groups(const struct state *state, struct state_group group[STATE_GROUPS]);

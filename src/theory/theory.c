@@ -10,7 +10,7 @@ static const double pi = 3.14159265358979323846;
 
 double theory_partners(double gamma)
 {
-  return gamma + expm1(-gamma);
+  return rule_partners(gamma);
 }
 
 /* D or eta_kin of whatever keeps the share `retention` per collision: the Green-Kubo sum 1/2 + c + c^2 + ... */
@@ -19,42 +19,39 @@ static double green_kubo(double retention)
   return 1.0 / (1.0 - retention) - 0.5;
 }
 
-/* P_n/n: the share of a particle's collisions in which it has partners, weighted by them. */
-static double partners_share(double gamma)
+double theory_viscosity_kinetic(const struct collision_rule *rule, uint32_t d, double gamma, double cosine,
+                                double interval)
 {
-  return theory_partners(gamma) / gamma;
+  return gamma * interval * green_kubo(1.0 - rule->stress_loss(cosine, d, gamma));
 }
 
-double theory_viscosity_kinetic(const struct collision_rule *rule, double gamma, double cosine, double interval)
+double theory_viscosity_collisional(const struct collision_rule *rule, uint32_t d, double gamma, double cosine,
+                                    double interval)
 {
-  return gamma * interval * green_kubo(1.0 - rule->stress_loss(cosine) * partners_share(gamma));
+  return rule->handed_on(cosine, d, gamma) / interval;
 }
 
-double theory_viscosity_collisional(const struct collision_rule *rule, double gamma, double cosine, double interval)
+double theory_viscosity(const struct collision_rule *rule, uint32_t d, double gamma, double cosine, double interval)
 {
-  return rule->handed_on(cosine) * theory_partners(gamma) / interval;
+  return theory_viscosity_kinetic(rule, d, gamma, cosine, interval) +
+         theory_viscosity_collisional(rule, d, gamma, cosine, interval);
 }
 
-double theory_viscosity(const struct collision_rule *rule, double gamma, double cosine, double interval)
+double theory_solvent_diffusion(const struct collision_rule *rule, uint32_t d, double gamma, double cosine,
+                                double interval)
 {
-  return theory_viscosity_kinetic(rule, gamma, cosine, interval) +
-         theory_viscosity_collisional(rule, gamma, cosine, interval);
+  return theory_vertex_diffusion(rule, d, 1.0, gamma, cosine, interval);
 }
 
-double theory_solvent_diffusion(const struct collision_rule *rule, double gamma, double cosine, double interval)
+double theory_schmidt(const struct collision_rule *rule, uint32_t d, double gamma, double cosine, double interval)
 {
-  return interval * green_kubo(1.0 - rule->velocity_loss(cosine) * partners_share(gamma));
+  return theory_viscosity(rule, d, gamma, cosine, interval) / gamma /
+         theory_solvent_diffusion(rule, d, gamma, cosine, interval);
 }
 
-double theory_schmidt(const struct collision_rule *rule, double gamma, double cosine, double interval)
+double theory_sound_speed(bool isothermal, uint32_t d)
 {
-  return theory_viscosity(rule, gamma, cosine, interval) / gamma /
-         theory_solvent_diffusion(rule, gamma, cosine, interval);
-}
-
-double theory_sound_speed(bool isothermal)
-{
-  return isothermal ? 1.0 : sqrt(5.0 / 3.0);
+  return isothermal ? 1.0 : sqrt((d + 2.0) / d);
 }
 
 double theory_mean_free_path(double interval)
@@ -64,19 +61,19 @@ double theory_mean_free_path(double interval)
 
 /* --- a single vertex --------------------------------------------------------------------------------------------- */
 
-double theory_vertex_retention(const struct collision_rule *rule, double mass, double gamma, double cosine)
+double theory_vertex_retention(const struct collision_rule *rule, uint32_t d, double mass, double gamma, double cosine)
 {
   const int last = (int)(gamma + 40.0 * sqrt(gamma) + 40.0);
-  double mean = 0.0;
+  double loss = 0.0;
   for (int n = 1; n <= last; n++)
-    mean += exp(n * log(gamma) - gamma - lgamma(n + 1.0)) * n / (mass + n);
-  return 1.0 - rule->velocity_loss(cosine) * mean;
+    loss += exp(n * log(gamma) - gamma - lgamma(n + 1.0)) * rule->velocity_loss(cosine, d, mass, (uint32_t)n);
+  return 1.0 - loss;
 }
 
-double theory_vertex_diffusion(const struct collision_rule *rule, double mass, double gamma, double cosine,
+double theory_vertex_diffusion(const struct collision_rule *rule, uint32_t d, double mass, double gamma, double cosine,
                                double interval)
 {
-  return interval / mass * green_kubo(theory_vertex_retention(rule, mass, gamma, cosine));
+  return interval / mass * green_kubo(theory_vertex_retention(rule, d, mass, gamma, cosine));
 }
 
 double theory_hydrodynamic_radius(double viscosity, double diffusion)
@@ -165,7 +162,8 @@ double theory_bond_square(const struct fiber_kind *kind)
 {
   double moment[5];
   bond_moments(kind, 0.0, moment);
-  return moment[4] / moment[2] / kind->spring;
+  const int weight = kind->dimensions == 2 ? 1 : 2; /* p(l) ~ l^weight exp(-k (l-l0)^2/2) */
+  return moment[weight + 2] / moment[weight] / kind->spring;
 }
 
 double theory_bond_tail(const struct fiber_kind *kind, double limit)
@@ -173,11 +171,25 @@ double theory_bond_tail(const struct fiber_kind *kind, double limit)
   double all[5], beyond[5];
   bond_moments(kind, 0.0, all);
   bond_moments(kind, limit * sqrt(kind->spring), beyond);
-  return beyond[2] / all[2];
+  const int weight = kind->dimensions == 2 ? 1 : 2;
+  return beyond[weight] / all[weight];
 }
 
-double theory_bend_cosine(double bending)
+/* I_1/I_0 by its continued fraction, x/(2 + x^2/(4 + x^2/(6 + ...))), from far enough on that the rest is lost. */
+static double bessel_ratio(double x)
 {
+  double ratio = 0.0;
+  if (x > 1e4)
+    return 1.0 - 0.5 / x - 0.125 / (x * x) - 0.125 / (x * x * x);
+  for (double k = 40.0 + 2.0 * ceil(x); k >= 1.0; k--)
+    ratio = x / (2.0 * k + x * ratio);
+  return ratio;
+}
+
+double theory_bend_cosine(double bending, uint32_t d)
+{
+  if (d == 2)
+    return bessel_ratio(bending);
   return bending < 1e-3 ? bending / 3.0 : 1.0 / tanh(bending) - 1.0 / bending;
 }
 
@@ -193,14 +205,14 @@ double theory_persistence(const struct fiber_kind *kind)
 
 double theory_effective_persistence(const struct fiber_kind *kind)
 {
-  return kind->bending > 0.0 ? -fiber_mean_bond(kind) / log(theory_bend_cosine(kind->bending)) : 0.0;
+  return kind->bending > 0.0 ? -fiber_mean_bond(kind) / log(theory_bend_cosine(kind->bending, kind->dimensions)) : 0.0;
 }
 
 /* sum_ij <R_i.R_j> over bonds, whose lengths and directions are independent: (n) <l^2> + 2 <l>^2 sum_d (n-d) <cos>^d.
  */
 double theory_end_to_end_square(const struct fiber_kind *kind)
 {
-  const double mean = fiber_mean_bond(kind), cosine = theory_bend_cosine(kind->bending);
+  const double mean = fiber_mean_bond(kind), cosine = theory_bend_cosine(kind->bending, kind->dimensions);
   const uint32_t n = kind->ring ? kind->vertices : kind->vertices - 1;
   double sum = 0.0, power = cosine;
   for (uint32_t d = 1; d < n && power > 1e-17; d++) {

@@ -3,8 +3,8 @@
  * exact averages of a phantom chain, frequencies, rates. One function per equation.
  *
  * Units a0 = kT = m = 1. `cosine` is that of the rotation angle alpha; `gamma` the mean number of solvent particles per
- * cell; `interval` is dt_c. Formulas of the solvent assume molecular chaos; at a mean free path of 0.02 a0 they are
- * some per cent off (docs/accuracy.md).
+ * cell; `interval` is dt_c; d is 2 or 3, the number of dimensions (model->dimensions). Formulas of the solvent assume
+ * molecular chaos; at a mean free path of 0.02 a0 they are some per cent off (docs/accuracy.md).
  */
 #ifndef UNCROSS_THEORY_THEORY_H
 #define UNCROSS_THEORY_THEORY_H
@@ -21,24 +21,28 @@ double theory_partners(double gamma);
 
 /* Kinetic viscosity, m/(a0 t0): gamma dt_c [1/(1 - c) - 1/2], where the fraction c of the kinetic stress remains after
  * a collision (rule->stress_loss). For SRD: Padding 2009, Eq. (30). */
-double theory_viscosity_kinetic(const struct collision_rule *rule, double gamma, double cosine, double interval);
+double theory_viscosity_kinetic(const struct collision_rule *rule, uint32_t d, double gamma, double cosine,
+                                double interval);
 
 /* Collisional viscosity, m/(a0 t0): the momentum that a collision hands on (rule->handed_on), divided by dt_c.
  * For SRD: Padding 2009, Eq. (31). */
-double theory_viscosity_collisional(const struct collision_rule *rule, double gamma, double cosine, double interval);
+double theory_viscosity_collisional(const struct collision_rule *rule, uint32_t d, double gamma, double cosine,
+                                    double interval);
 
 /* eta: the sum of both. nu = eta / (m gamma) is the kinematic viscosity (Padding 2009, below Eq. 31). */
-double theory_viscosity(const struct collision_rule *rule, double gamma, double cosine, double interval);
+double theory_viscosity(const struct collision_rule *rule, uint32_t d, double gamma, double cosine, double interval);
 
 /* Self-diffusion coefficient of a solvent particle, a0^2/t0: D = kT dt_c/m [1/(1-c) - 1/2], where the fraction c of its
- * velocity remains after a collision (rule->velocity_loss). */
-double theory_solvent_diffusion(const struct collision_rule *rule, double gamma, double cosine, double interval);
+ * velocity remains after a collision: that of a vertex of mass 1. */
+double theory_solvent_diffusion(const struct collision_rule *rule, uint32_t d, double gamma, double cosine,
+                                double interval);
 
 /* Sc = nu / D of the solvent: the ratio of the diffusion of momentum to that of particles (Padding 2009, Sec. IV A). */
-double theory_schmidt(const struct collision_rule *rule, double gamma, double cosine, double interval);
+double theory_schmidt(const struct collision_rule *rule, uint32_t d, double gamma, double cosine, double interval);
 
-/* c_s, a0/t0: sqrt(5/3) where energy is conserved (Padding 2009, below Eq. 36), 1 where a thermostat holds kT. */
-double theory_sound_speed(bool isothermal);
+/* c_s, a0/t0: sqrt((d + 2)/d) where energy is conserved (Padding 2009, below Eq. 36, for d = 3), 1 where a thermostat
+ * holds kT. */
+double theory_sound_speed(bool isothermal, uint32_t d);
 
 /* Mean free path: distance of a solvent particle between two collisions, dt_c sqrt(kT/m), a0. */
 double theory_mean_free_path(double interval);
@@ -46,11 +50,11 @@ double theory_mean_free_path(double interval);
 /* --- a single vertex --------------------------------------------------------------------------------------------- */
 
 /* Fraction c of its velocity that a vertex of this mass keeps in a collision, alone among n solvent particles, n
- * Poisson: c = 1 - velocity_loss <n m/(M + n m)>. */
-double theory_vertex_retention(const struct collision_rule *rule, double mass, double gamma, double cosine);
+ * Poisson: c = 1 - <velocity_loss>; for SRD in space 1 - (2/3)(1 - cos alpha) <n m/(M + n m)>. */
+double theory_vertex_retention(const struct collision_rule *rule, uint32_t d, double mass, double gamma, double cosine);
 
 /* D_0 = kT dt_c/M [1/(1-c) - 1/2], a0^2/t0: diffusion without hydrodynamic correlations. */
-double theory_vertex_diffusion(const struct collision_rule *rule, double mass, double gamma, double cosine,
+double theory_vertex_diffusion(const struct collision_rule *rule, uint32_t d, double mass, double gamma, double cosine,
                                double interval);
 
 /* a_h = kT/(6 pi eta D), a0 (Padding 2009, Sec. IV A). */
@@ -105,8 +109,9 @@ double theory_bond_square(const struct fiber_kind *kind);
 /* Chance that a bond in equilibrium is longer than `limit`. */
 double theory_bond_tail(const struct fiber_kind *kind, double limit);
 
-/* <cos theta> = coth kappa - 1/kappa between successive bonds in equilibrium. */
-double theory_bend_cosine(double bending);
+/* <cos theta> between successive bonds in equilibrium: coth kappa - 1/kappa; in a plane, d = 2, I_1(kappa)/I_0(kappa).
+ */
+double theory_bend_cosine(double bending, uint32_t d);
 
 /* L as the paper counts it: N_v l0; the contour length where l0 = 0. */
 double theory_length(const struct fiber_kind *kind);

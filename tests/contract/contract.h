@@ -27,6 +27,7 @@ struct choice {
   enum scheme scheme;
   enum fluid_kind fluid;
   enum crossing_kind crossing;
+  bool flat;     /* in two dimensions */
   bool permuted; /* velocities of the solvent, after each collision: no hydrodynamic interactions */
 };
 
@@ -35,6 +36,10 @@ struct choice {
 /* The one place that says how a model takes a row. Rows that no key chooses yet are compared in contract_taken. */
 static inline void contract_choose(struct model *m, struct choice c)
 {
+  if (c.flat) { /* as many cells, one of them thick */
+    m->box = box_of_cells(2 * m->box.cells[0], m->box.cells[1] * m->box.cells[2] / 2, 1);
+    m->dimensions = 2;
+  }
   m->scheme = c.scheme;
   m->solvent.rule = c.rule;
   m->solvent.thermostat = c.thermostat;
@@ -224,8 +229,9 @@ struct one_collision {
 };
 
 /* Of a state by dice, everybody moving on at `flow`; a round of its own. */
-static inline struct one_collision collide_once(struct choice c, uint64_t round, struct vec3 flow)
+static inline struct one_collision collide_once(struct choice c, uint64_t round, struct vec3 velocity)
 {
+  const struct vec3 flow = {velocity.x, velocity.y, c.flat ? 0.0 : velocity.z};
   struct dice d = {dice_seed(2703) + round};
   struct model m = contract_scene(c);
   m.seed = dice_u64(&d);
@@ -356,7 +362,7 @@ static inline void contract_lone(struct choice c)
 static inline void contract_galilean(struct choice c)
 {
   for (uint64_t k = 0; k < CONTRACT_ROUNDS; k++) {
-    const struct vec3 none = {0, 0, 0}, u = {3.0 / 7.0, -5.0 / 3.0, 7.0 / 9.0};
+    const struct vec3 none = {0, 0, 0}, u = {3.0 / 7.0, -5.0 / 3.0, c.flat ? 0.0 : 7.0 / 9.0};
     struct one_collision x = collide_once(c, k, none), y = collide_once(c, k, u);
     for (uint32_t i = 0; i < contract_count(&x.run); i++) {
       const struct vec3 a = x.after[i].velocity, b = y.after[i].velocity, off = vec3_sub(vec3_sub(b, a), u);
@@ -415,7 +421,7 @@ static inline void start_unequal(struct test_run *r, double temperature)
     set_solvent_v(&r->state, i, vec3_add(change, solvent_v(&r->state, i)));
   for (uint32_t v = 0; v < r->state.vertices; v++)
     r->state.velocity[v] = vec3_add(change, r->state.velocity[v]);
-  const double wanted = 3.0 * temperature * (contract_count(r) - 1.0);
+  const double wanted = r->model.dimensions * temperature * (contract_count(r) - 1.0);
   (void)kinetic_of_all(r, sqrt(wanted / kinetic_of_all(r, 1.0)));
 }
 
@@ -424,11 +430,11 @@ struct moments {
   double mass, n, second, fourth;
 };
 
-static inline void add_moments(struct moments *s, double mass, struct vec3 v)
+static inline void add_moments(struct moments *s, const struct model *m, double mass, struct vec3 v)
 {
   const double x = mass * v.x * v.x, y = mass * v.y * v.y, z = mass * v.z * v.z;
   s->mass = mass;
-  s->n += 3.0;
+  s->n += m->dimensions; /* z is 0 in a plane */
   s->second += x + y + z;
   s->fourth += x * x + y * y + z * z;
 }
@@ -438,7 +444,8 @@ static inline void add_moments(struct moments *s, double mass, struct vec3 v)
  * m/M, where the total momentum is kept (M: mass of all), else 1; <(m v_x^2)^2> = 3 of its square. Where the energy is
  * kept, 1 is what it was set to; else the start is at kT = 2. Means over blocks of 100 collisions, much longer than the
  * memory of a velocity (ten collisions for the heaviest). Allowed: five standard errors (1 false alarm in 5e5 numbers),
- * and 4/N for N members, since ensembles that differ in what they keep differ by that order.
+ * and 4/N for the N members whose energy is fixed together, since ensembles that differ in what they keep differ by
+ * that order.
  */
 static inline void contract_equipartition(struct choice c)
 {
@@ -454,9 +461,9 @@ static inline void contract_equipartition(struct choice c)
     for (int k = 0; k < BLOCK_STEPS; k++) {
       test_steps(&r, 1);
       for (uint32_t i = 0; i < r.state.solvent.n; i++)
-        add_moments(&s[0], 1.0, solvent_v(&r.state, i));
+        add_moments(&s[0], &r.model, 1.0, solvent_v(&r.state, i));
       for (uint32_t v = 0; v < r.state.vertices; v++)
-        add_moments(&s[1 + r.model.fiber_kind_of[r.model.fiber_of[v]]], r.model.mass[v], r.state.velocity[v]);
+        add_moments(&s[1 + r.model.fiber_kind_of[r.model.fiber_of[v]]], &r.model, r.model.mass[v], r.state.velocity[v]);
     }
     for (int k = 0; k < SPECIES && s[k].n >= 0.0; k++) {
       if (s[k].n == 0.0)
@@ -466,7 +473,9 @@ static inline void contract_equipartition(struct choice c)
       mass[k] = s[k].mass;
     }
   }
-  const double finite = 4.0 / contract_count(&r);
+  const struct thermostat *thermostat = r.work.mpc.thermostat;
+  const double together = contract_count(&r) / (thermostat && thermostat->layered ? r.model.box.rows[1] : 1.0);
+  const double finite = 4.0 / together;
   for (int k = 0; k < SPECIES; k++) {
     if (second[k].n == 0.0)
       continue;
@@ -584,6 +593,8 @@ static inline void contract_scratch_of(struct model model)
   assert_there(c.slot, particles && !m->solvent.hydrodynamics, "slot");
   for (int k = 0; k < 3; k++)
     assert_there(c.drawn[k], particles && thermal, "drawn");
+  assert_there(c.spin, collides && c.rule->spinning, "spin");
+  assert_there(c.middle, collides && c.rule->spinning, "middle");
   assert_there(c.drawn_vertex, collides && vertices && thermal, "drawn_vertex");
   assert_there(t.order, in_turns, "contact order");
   assert_there(t.rank, in_turns, "rank");

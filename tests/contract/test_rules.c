@@ -6,6 +6,8 @@ static void over_rules(void (*check)(struct choice))
   for (int rule = 0; rule < RULES; rule++) {
     print_message("  %s\n", contract_rule(rule)->name);
     check((struct choice){.rule = rule});
+    print_message("  %s in a plane\n", contract_rule(rule)->name);
+    check((struct choice){.rule = rule, .flat = true});
   }
 }
 
@@ -78,6 +80,21 @@ static void scratch_is_what_is_used(void **unused)
   over_rules(contract_scratch);
 }
 
+/* In a plane nothing leaves it. */
+static void plane_is_kept(void **unused)
+{
+  (void)unused;
+  for (int rule = 0; rule < RULES; rule++) {
+    struct test_run r = test_start(contract_scene((struct choice){.rule = rule, .flat = true}));
+    test_steps(&r, 20);
+    for (uint32_t i = 0; i < r.state.solvent.n; i++)
+      assert_true(r.state.solvent.z[i] == 0 && r.state.solvent.vz[i] == 0.0 && !signbit(r.state.solvent.vz[i]));
+    for (uint32_t v = 0; v < r.state.vertices; v++)
+      assert_true(r.state.position[v].z == 0 && r.state.velocity[v].z == 0.0);
+    test_end(&r);
+  }
+}
+
 /* A thermal rule is a thermostat. */
 static void thermal_rules_have_no_thermostat(void **unused)
 {
@@ -87,17 +104,22 @@ static void thermal_rules_have_no_thermostat(void **unused)
       assert_true(contract_accepts((struct choice){.rule = rule, .thermostat = k}) == contract_together(rule, k));
 }
 
-/* What theory takes from a row: losses are shares of what is there, and nothing is lost where nothing is turned. */
+/* What theory takes from a row: losses are shares of what is there, in both dimensions. */
 static void losses_are_shares(void **unused)
 {
   (void)unused;
   for (int rule = 0; rule < RULES; rule++)
-    for (double cosine = -1.0; cosine <= 0.99; cosine += 0.01) {
-      const struct collision_rule *row = contract_rule(rule);
-      assert_true(row->velocity_loss(cosine) > 0.0 && row->velocity_loss(cosine) <= 4.0 / 3.0 + 1e-12);
-      assert_true(row->stress_loss(cosine) >= -1e-12 && row->stress_loss(cosine) <= 2.0);
-      assert_true(row->handed_on(cosine) > 0.0 && row->handed_on(cosine) <= 1.0);
-    }
+    for (double cosine = -1.0; cosine <= 0.99; cosine += 0.01)
+      for (uint32_t d = 2; d <= 3; d++)
+        for (double n = 1.0; n <= 16.0; n *= 2.0) {
+          const struct collision_rule *row = contract_rule(rule);
+          assert_true(row->velocity_loss(cosine, d, 2.5, 0) == 0.0);
+          assert_true(row->velocity_loss(cosine, d, 1.0, (uint32_t)n) > 0.0);
+          assert_true(row->velocity_loss(cosine, d, 1.0, (uint32_t)n) <= 2.0);
+          assert_true(row->velocity_loss(cosine, d, 5.0, 3) < row->velocity_loss(cosine, d, 1.0, 3));
+          assert_true(row->stress_loss(cosine, d, n) >= -1e-12 && row->stress_loss(cosine, d, n) <= 2.0);
+          assert_true(row->handed_on(cosine, d, n) > 0.0 && row->handed_on(cosine, d, n) <= n);
+        }
 }
 
 int main(void)
@@ -112,6 +134,7 @@ int main(void)
       cmocka_unit_test(temperature_is_one),
       cmocka_unit_test(bits_are_the_same),
       cmocka_unit_test(scratch_is_what_is_used),
+      cmocka_unit_test(plane_is_kept),
       cmocka_unit_test(thermal_rules_have_no_thermostat),
       cmocka_unit_test(losses_are_shares),
   };

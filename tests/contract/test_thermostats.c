@@ -8,6 +8,8 @@ static void over_thermostats(void (*check)(struct choice))
       if (contract_together(rule, k)) {
         print_message("  %s, %s\n", contract_rule(rule)->name, thermostat_of(k) ? thermostat_of(k)->name : "none");
         check((struct choice){.rule = rule, .thermostat = k});
+        print_message("  the same in a plane\n");
+        check((struct choice){.rule = rule, .thermostat = k, .flat = true});
       }
 }
 

@@ -94,6 +94,45 @@ static void rescale_sets_the_sum(void **unused)
   }
 }
 
+/* Tao, Goetze and Gompper 2008: in each row of cells along y sum m (v - v_cm)^2 = kT d sum (N - 1), here with rows that
+ * differ in temperature, with cells that are empty or have one member, in space and in a plane. */
+static void layers_have_their_own_sums(void **unused)
+{
+  (void)unused;
+  for (uint32_t d = 2; d <= 3; d++)
+    for (uint64_t seed = 1; seed <= 20; seed++) {
+      struct dice dice = {dice_seed(2820) + seed};
+      struct model m = d == 3 ? test_model(8, 6, 7, 1.5, 0.01, 2) : test_model(40, 9, 1, 1.5, 0.01, 2);
+      m.dimensions = d;
+      m.solvent.thermostat = THERMOSTAT_RESCALE_LAYERS;
+      m.seed = dice_u64(&dice);
+      m.crossing.forbidden = false;
+      test_add_kind(&m, 70, 1);
+      struct test_run r = dice_run(m, &dice);
+      struct solvent *s = &r.state.solvent;
+      for (uint32_t i = 0; i < s->n; i++) /* hotter higher up, and sheared */
+        set_solvent_v(&r.state, i,
+                      vec3_add_scaled((struct vec3){0.2 * (double)s->y[i] * LATTICE_UNIT, 0, 0},
+                                      0.5 + 0.3 * (double)s->y[i] * LATTICE_UNIT, solvent_v(&r.state, i)));
+      assert_true(mpc_collide(&r.state, &r.model, &r.work.mpc, 5, &r.work.fault));
+      struct cell_state *cell = cell_states(&r, 5);
+      const uint32_t lx = (uint32_t)m.box.cells[0], ly = (uint32_t)m.box.cells[1];
+      for (uint32_t row = 0; row < ly; row++) {
+        double energy = 0.0, freedoms = 0.0;
+        for (uint32_t k = 0; k < box_cell_count(&m.box); k++)
+          if (k / lx % ly == row && cell[k].n > 1) {
+            energy += cell[k].relative;
+            freedoms += d * (cell[k].n - 1.0);
+          }
+        assert_true(freedoms > 0.0);
+        /* energies are summed in units of 2^-32 kT, one rounding for each member */
+        assert_close(energy / freedoms, 1.0, 0x1p-32 * (freedoms + lx * ly) / freedoms);
+      }
+      free(cell);
+      test_end(&r);
+    }
+}
+
 /* The canonical thermostat draws each cell's relative kinetic energy from Gamma(3(N-1)/2), whatever it was before:
  * Kolmogorov-Smirnov over all cells of many collisions; momenta are kept, lone members are not touched. */
 static void canonical_energies_are_gamma(void **unused)
@@ -314,15 +353,11 @@ static void equilibrium_is_maxwellian(void **unused)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(rescale_sets_the_sum),
-      cmocka_unit_test(canonical_energies_are_gamma),
-      cmocka_unit_test(gamma_deviates),
-      cmocka_unit_test(gamma_deviates_have_addresses),
-      cmocka_unit_test(cold_cells_stay_finite),
-      cmocka_unit_test(energy_range_faults),
-      cmocka_unit_test(lone_members_have_no_energy),
-      cmocka_unit_test(hot_boxes_are_cooled),
-      cmocka_unit_test(equilibrium_is_maxwellian),
+      cmocka_unit_test(rescale_sets_the_sum),          cmocka_unit_test(layers_have_their_own_sums),
+      cmocka_unit_test(canonical_energies_are_gamma),  cmocka_unit_test(gamma_deviates),
+      cmocka_unit_test(gamma_deviates_have_addresses), cmocka_unit_test(cold_cells_stay_finite),
+      cmocka_unit_test(energy_range_faults),           cmocka_unit_test(lone_members_have_no_energy),
+      cmocka_unit_test(hot_boxes_are_cooled),          cmocka_unit_test(equilibrium_is_maxwellian),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

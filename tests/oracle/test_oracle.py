@@ -13,7 +13,7 @@ import unittest
 TOP = pathlib.Path(__file__).resolve().parents[2]
 DATA = TOP / "reference-data"
 UNCROSS = os.environ.get("UNCROSS", str(TOP / "build/uncross"))
-SCENES = ("dense", "mixed", "coarse", "events")
+SCENES = ("dense", "mixed", "coarse", "events", "andersen")
 CELL = 1 << 40  # lattice units
 
 # What uses log, exp, sin or cos: these bits belong to the C library.
@@ -108,7 +108,7 @@ class OracleTest(unittest.TestCase):
             self.assertEqual(status, 0, said)
 
     def test_traces_are_those_of_this_code(self):
-        for name in ("dense", "coarse", "events"):
+        for name in ("dense", "coarse", "events", "andersen"):
             status, said = run("trace", DATA / f"{name}.yaml")
             self.assertEqual(status, 0, said)
             self.assertEqual(said.splitlines(), (DATA / f"{name}.trace.csv").read_text().splitlines())
@@ -540,15 +540,30 @@ class OracleTest(unittest.TestCase):
         self.assertEqual(run("trace", scene)[0], 0)
 
     def test_packs_of_other_collision_rules(self):
-        """Packs hold the operators of srd only; traces hold any rule."""
-        scene, pack = self.dir / "andersen.yaml", self.dir / "andersen.h5"
+        """A pack of the rule at-a has its own operators, in place of those of srd."""
+        scene, pack = self.dir / "anew.yaml", self.dir / "anew.h5"
         scene.write_text("box: [4, 4, 4]\ntime_step: 0.02\nsteps: 4\n"
                          "solvent: {per_cell: 5, collision_interval: 0.02, rule: at-a}\n")
-        status, said = run("emit", scene, "-o", pack)
-        self.assertEqual((status, pack.exists()), (2, False))
-        self.assertIn("solvent.rule", said)
+        self.assertEqual(run("emit", scene, "-o", pack), (0, ""))
+        status, said = run("dump", pack)
+        operators = {line.split()[0] for line in said.splitlines() if not line.startswith("#")}
+        self.assertEqual(status, 0)
+        self.assertLessEqual({"draw", "sum", "mean", "give"}, operators)
+        self.assertFalse(operators & {"solve", "rotate", "rescale", "maxwell_boltzmann"})
         status, said = run("trace", scene)
         self.assertEqual((status, said.count(",collide,")), (0, 4))
+
+    def test_packs_of_other_boxes(self):
+        """Packs hold the operators of a periodic box in space; traces hold any box."""
+        for key in ("walls: {kind: no-slip}", "shear: {rate: 0.1}"):
+            scene, pack = self.dir / "flow.yaml", self.dir / "flow.h5"
+            scene.write_text("box: [4, 4, 4]\ntime_step: 0.02\nsteps: 4\n"
+                             f"solvent: {{per_cell: 5, collision_interval: 0.02}}\n{key}\n")
+            status, said = run("emit", scene, "-o", pack)
+            self.assertEqual((status, pack.exists()), (2, False))
+            self.assertIn("periodic box", said)
+            status, said = run("trace", scene)
+            self.assertEqual((status, said.count(",collide,")), (0, 4))
 
     def test_other_rules_of_refusal(self):
         """Packs hold the paper's sweeps only; traces hold any."""

@@ -72,7 +72,7 @@ static void among_phantoms_of_the_andersen_rule_too(void **unused)
   test_add_kind(&m, 128, 1);
   struct test_run r = test_start(m);
   struct sample d;
-  const double chaos = theory_vertex_diffusion(&at_a_rule, 5.0, 5.0, 0.0, 0.02);
+  const double chaos = theory_vertex_diffusion(&at_a_rule, 3, 5.0, 5.0, 0.0, 0.02);
   assert_close(chaos, 0.00644133, 1e-8);
   assert_true(diffusion_run(&r.model, &r.state, &r.work, 30, 1603, (uint32_t[]){1, 3}, &d));
   assert_true(sample_error(&d) < 0.005 * chaos);

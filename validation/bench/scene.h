@@ -17,14 +17,27 @@ struct scene {
   double order;       /* 0 paper, 1 kick-split, 2 drift-split */
   double hydro;       /* 0: velocities of the solvent are swapped */
   double thermostat;  /* 0 none, 1 rescale, 2 maxwell-boltzmann */
+  double rule;        /* 0 srd, 1 at-a, 2 at+a */
   double bond_length; /* a0 */
   double spring;      /* kT/a0^2 */
   double bending;     /* kT */
+  double walls;       /* 1: between no-slip walls that slide at a shear rate of 0.02 / t0 */
+  double fill;        /* enum wall_fill: 0 planar, 1 paper, 2 none */
+  double shear;       /* rate of a sheared box, 1/t0 */
 };
 
 static inline struct scene scene_default(void)
 {
-  return (struct scene){32, 5, 0.01, 0, 0, 64, 1, SCHEME_KICK_SPLIT, 1, THERMOSTAT_NONE, 0.5, 100, 64};
+  return (struct scene){.cells = 32,
+                        .per_cell = 5,
+                        .dt = 0.01,
+                        .vertices = 64,
+                        .crossing = 1,
+                        .order = SCHEME_KICK_SPLIT,
+                        .hydro = 1,
+                        .bond_length = 0.5,
+                        .spring = 100,
+                        .bending = 64};
 }
 
 static const struct scene_key {
@@ -41,9 +54,13 @@ static const struct scene_key {
     {"order", offsetof(struct scene, order)},
     {"hydro", offsetof(struct scene, hydro)},
     {"thermostat", offsetof(struct scene, thermostat)},
+    {"rule", offsetof(struct scene, rule)},
     {"bond_length", offsetof(struct scene, bond_length)},
     {"spring", offsetof(struct scene, spring)},
     {"bending", offsetof(struct scene, bending)},
+    {"walls", offsetof(struct scene, walls)},
+    {"fill", offsetof(struct scene, fill)},
+    {"shear", offsetof(struct scene, shear)},
 };
 
 static inline bool scene_set(struct scene *scene, const char *name, size_t length, double value)
@@ -84,6 +101,10 @@ static inline struct model scene_model(const struct scene *s)
   m.crossing.rule = (enum crossing_kind)s->crossing;
   m.solvent.hydrodynamics = s->hydro != 0.0;
   m.solvent.thermostat = (enum thermostat_kind)s->thermostat;
+  m.solvent.rule = (enum rule)s->rule;
+  if (s->walls != 0.0)
+    m.walls = (struct wall_model){.kind = WALL_NO_SLIP, .fill = (enum wall_fill)s->fill, .shear_rate = 0.02};
+  m.shear.rate = s->shear;
   if (s->fibers > 0.0) {
     struct fiber_kind *k = add_kind(&m, (uint32_t)s->fibers, (uint32_t)s->vertices);
     k->bond_length = s->bond_length;

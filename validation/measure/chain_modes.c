@@ -32,7 +32,7 @@ static double weight(uint32_t p, uint32_t i, uint32_t n)
 static void expect(const struct fiber_kind *k, double *of)
 {
   const uint32_t n = k->vertices;
-  const double c = theory_bend_cosine(k->bending), mean = fiber_mean_bond(k), square = theory_bond_square(k);
+  const double c = theory_bend_cosine(k->bending, 3), mean = fiber_mean_bond(k), square = theory_bond_square(k);
   of[0] = mean;
   of[1] = square;
   of[2] = c;

@@ -96,8 +96,8 @@ int main(int argc, char **argv)
   }
 
   const double scale = 1.0 / (box_volume(&run.model.box) * model_collision_interval(&run.model));
-  const double theory =
-      theory_viscosity(collision_rule_of(&run.model), q.per_cell, run.model.solvent.cosine, q.interval);
+  const double theory = theory_viscosity(collision_rule_of(&run.model), run.model.dimensions, q.per_cell,
+                                         run.model.solvent.cosine, q.interval);
   printf("lag,time,correlation,correlation_error,eta,eta_error,theory,kT,kT_error,momentum\n");
   for (uint32_t k = 0; k <= q.lags; k++)
     printf("%u,%.8g,%.8g,%.3g,%.8g,%.3g,%.8g,%.8g,%.3g,%.3g\n", k, k * q.interval, scale * g.c[k].mean,

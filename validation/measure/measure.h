@@ -43,7 +43,9 @@ static inline struct model turned_model(int lx, int ly, int lz, double per_cell,
 /* The collision rule from a program's argument: `at-a`, or SRD by its angle in degrees. */
 static inline void set_rule(struct model *m, const char *word)
 {
-  m->solvent.rule = strcmp(word, "at-a") == 0 ? RULE_AT_A : RULE_SRD;
+  m->solvent.rule = strncmp(word, "at-a", 4) == 0   ? RULE_AT_A
+                    : strncmp(word, "at+a", 4) == 0 ? RULE_AT_PLUS_A
+                                                    : RULE_SRD;
   m->solvent.rotation_angle = m->solvent.rule == RULE_SRD ? atof(word) : 90.0;
 }
 

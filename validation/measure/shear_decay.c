@@ -4,7 +4,7 @@
  * paper's mass, 5, go along with the fluid and make it heavier and more viscous.
  *
  * Output: comma-separated, a row per box; nu(k) = rate/k^2. Theory: Padding 2009, Eqs. (30), (31), for k -> 0;
- * for MPC-AT-a the same average.
+ * for other rules the same average. In two dimensions the box is 8 x EDGE x 1, and the wave has its x component alone.
  */
 #include "measure.h"
 #include "shear_wave.h"
@@ -14,7 +14,7 @@
 
 struct question {
   double per_cell, interval;
-  const char *rule;   /* `at-a`, or SRD's angle */
+  const char *rule;   /* `at-a`, `at+a`, or SRD's angle; with `,plane` in two dimensions */
   double vertices;    /* per cell */
   double amplitude;   /* A, a0/t0 */
   uint32_t skip;      /* collisions left out while correlations build up */
@@ -27,7 +27,8 @@ struct question {
 static struct question read_question(int argc, const char **argv)
 {
   if (argc < 9) {
-    fprintf(stderr, "usage: %s PER_CELL[:VERTICES] DT_C ANGLE|at-a AMPLITUDE SKIP PAIRS SEED EDGE ...\n", argv[0]);
+    fprintf(stderr, "usage: %s PER_CELL[:VERTICES] DT_C ANGLE|at-a|at+a[,plane] AMPLITUDE SKIP PAIRS SEED EDGE ...\n",
+            argv[0]);
     exit(2);
   }
   const char *vertices = strchr(argv[1], ':');
@@ -48,12 +49,18 @@ static void measure_box(const struct question *q, int edge, uint32_t pairs)
   struct run run;
   struct model model = standard_model(WIDTH, edge, WIDTH, q->per_cell, q->interval, 1);
   set_rule(&model, q->rule);
+  if (strstr(q->rule, ",plane")) {
+    model.dimensions = 2;
+    model.box = box_of_cells(WIDTH, edge, 1);
+    model.crossing.forbidden = false;
+  }
   if (q->vertices > 0.0)
     add_kind(&model, (uint32_t)(q->vertices * WIDTH * edge * WIDTH), 1);
   run_start(&run, model, q->seed);
   const double k = shear_wave_number(&run.model);
-  const double theory =
-      theory_viscosity(collision_rule_of(&run.model), q->per_cell, run.model.solvent.cosine, q->interval) / q->per_cell;
+  const double theory = theory_viscosity(collision_rule_of(&run.model), run.model.dimensions, q->per_cell,
+                                         run.model.solvent.cosine, q->interval) /
+                        q->per_cell;
   const double life = 1.0 / (theory * k * k * q->interval); /* collisions to 1/e */
   struct shear_wave wave = {.amplitude = q->amplitude, .expected = theory, .every = 1 + (uint32_t)(life / 25.0)};
   wave.first = (q->skip + wave.every - 1) / wave.every;

@@ -79,6 +79,8 @@ static inline bool shear_wave_run(const struct model *model, struct state *state
   if (!step_start(state, model, work))
     return false;
   shear_wave_add(state, k, sign * wave->amplitude);
+  for (uint32_t i = 0; i < state->solvent.n && model_is_flat(model); i++)
+    state->solvent.vz[i] = 0.0;
   for (uint32_t n = 0;; n++) {
     amplitude[n] += 0.5 * sign * shear_wave_amplitude(model, state, k);
     if (n == wave->last)

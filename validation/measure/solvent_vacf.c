@@ -127,7 +127,7 @@ static void print_answer(const struct question *q, const struct answer *a, doubl
          q->per_cell, q->interval, q->angle, q->windows, q->length, (unsigned long long)q->seed);
   printf("# kT %.6f; molecular chaos: c = %.6f, D = %.6f kT; %.0f s of CPU time\n", kt,
          1.0 - 2.0 / 3.0 * (1.0 - cosine) * theory_partners(q->per_cell) / q->per_cell,
-         theory_solvent_diffusion(&srd_rule, q->per_cell, cosine, q->interval), cpu);
+         theory_solvent_diffusion(&srd_rule, 3, q->per_cell, cosine, q->interval), cpu);
   printf("collisions,time,vacf,vacf_error,D,D_error\n");
   for (uint32_t k = 0; k < q->length; k++)
     printf("%u,%.8g,%.8e,%.2e,%.8e,%.2e\n", k, k * q->interval, a->vacf[k].mean, sample_error(&a->vacf[k]),

@@ -151,6 +151,26 @@ def rotate(model, step, given):
     }
 
 
+KINDS = "solvent", "vertex"
+
+
+def draw(model, step, given):
+    return dict(zip(KINDS, solvent.draw(model, step)))
+
+
+def mean(model, step, given):
+    active, center = solvent.mean(model, given["momentum"], given["load"])
+    return {"active": column(active.astype(np.int64)), "center": center}
+
+
+def give(model, step, given):
+    active, center = given["active"][:, 0] != 0, given["center"]
+    return {
+        kind: solvent.give(given[f"{kind}_cell"][:, 0], given[kind], active, center, given[f"{kind}_drawn"])
+        for kind in KINDS
+    }
+
+
 def swap(model, step, given):
     permutation = solvent.swap_order(model, step, len(given["velocity"]))
     return {"order": column(permutation), "velocity": given["velocity"][permutation]}
@@ -175,11 +195,14 @@ OPERATORS = {
     "stream": stream,
     "shift": shift,
     "bin": bin_operator,
+    "draw": draw,
     "sum": sum_operator,
     "solve": solve,
+    "mean": mean,
     "rescale": rescale,
     "maxwell_boltzmann": maxwell_boltzmann,
     "rotate": rotate,
+    "give": give,
     "swap": swap,
 }
 

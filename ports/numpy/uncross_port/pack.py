@@ -37,6 +37,7 @@ COLUMNS |= {
     "tau": "tau",
     "answer": "answer",
     "rule": "event_driven",
+    "collision": "rule",
 }
 COLUMNS_AT = {
     ("swap", "out.order"): "particle",

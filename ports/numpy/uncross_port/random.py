@@ -8,6 +8,7 @@ from . import elementary
 
 # Purposes. The names are those of the address book.
 GRID_SHIFT, AXIS, VERTEX_ORDER, VELOCITY_SWAP, THERMOSTAT = 1, 2, 3, 4, 5
+ANDERSEN_PARTICLE, ANDERSEN_VERTEX = 8, 9
 
 ROUNDS = 10
 LOW = np.uint64(0xFFFFFFFF)

@@ -37,11 +37,16 @@ def sum_cells(model, cell, mass, velocity):
     return momentum, load
 
 
-def solve(model, step, momentum, load):
-    """Which cells collide, their center-of-mass velocities, and their axes; zeros where a cell does not collide."""
-    active = load[:, 0] >= 2
-    center, axis = np.zeros((model.cells, 3)), np.zeros((model.cells, 3))
+def mean(model, momentum, load):
+    """Which cells collide, and their momentum over their mass; zeros where a cell does not collide."""
+    active, center = load[:, 0] >= 2, np.zeros((model.cells, 3))
     center[active] = momentum[active] * (2.0**-44 / (load[active, 1:] * 2.0**-16))
+    return active, center
+
+
+def solve(model, step, momentum, load):
+    """The same, and the axes of cells that collide."""
+    (active, center), axis = mean(model, momentum, load), np.zeros((model.cells, 3))
     axis[active] = random.axes(model.seed, random.AXIS, step, np.flatnonzero(active))
     return active, center, axis
 
@@ -85,6 +90,18 @@ def rotate(model, cell, velocity, active, center, axis, factor):
     """New velocities of one kind of particle."""
     turned = center[cell] + factor[cell, None] * turn(model, velocity - center[cell], axis[cell])
     return np.where(active[cell, None], turned, velocity)
+
+
+def draw(model, step):
+    """The rule at-a: Maxwell velocities of the solvent and of the vertices, drawn anew."""
+    solvent = random.normals(model.seed, random.ANDERSEN_PARTICLE, step, np.arange(model.particles)).T
+    vertex = random.normals(model.seed, random.ANDERSEN_VERTEX, step, np.arange(len(model.mass))).T
+    return solvent, vertex * (1.0 / np.sqrt(model.mass))[:, None]
+
+
+def give(cell, velocity, active, center, drawn):
+    """New velocities of one kind of particle by the rule at-a."""
+    return np.where(active[cell, None], center[cell] + drawn, velocity)
 
 
 def swap_order(model, step, particles):

@@ -48,6 +48,7 @@ class System:
         self.finished, self.lag = (int(x) for x in start["counters"][0])
         self.force = None
         self.event_driven = bool(start["rule"].any())
+        self.andersen = bool(start["collision"].any())
         self.contacts = []  # rows of events since the last row of the trace
 
     def stream(self):
@@ -76,6 +77,23 @@ class System:
         self.stream()
         shift = solvent.grid_shift(model, step)
         cells = solvent.cell_of(model, self.solvent, shift), solvent.cell_of(model, self.vertex, shift)
+        if self.andersen:
+            self.collide_andersen(step, cells)
+        else:
+            self.collide_srd(step, cells)
+        if not self.scene.hydrodynamics:
+            self.solvent_velocity = self.solvent_velocity[solvent.swap_order(model, step, model.particles)]
+
+    def collide_andersen(self, step, cells):
+        model, velocity = self.model, (self.solvent_velocity, self.vertex_velocity)
+        drawn = solvent.draw(model, step)
+        members = solvent.members(model, *cells, velocity[0] - drawn[0], velocity[1] - drawn[1])
+        turn = solvent.mean(model, *solvent.sum_cells(model, *members))
+        self.solvent_velocity = solvent.give(cells[0], velocity[0], *turn, drawn[0])
+        self.vertex_velocity = solvent.give(cells[1], velocity[1], *turn, drawn[1])
+
+    def collide_srd(self, step, cells):
+        model = self.model
         members = solvent.members(model, *cells, self.solvent_velocity, self.vertex_velocity)
         momentum, load = solvent.sum_cells(model, *members)
         active, center, axis = solvent.solve(model, step, momentum, load)
@@ -83,8 +101,6 @@ class System:
         turn = active, center, axis, factor
         self.solvent_velocity = solvent.rotate(model, cells[0], self.solvent_velocity, *turn)
         self.vertex_velocity = solvent.rotate(model, cells[1], self.vertex_velocity, *turn)
-        if not self.scene.hydrodynamics:
-            self.solvent_velocity = self.solvent_velocity[solvent.swap_order(model, step, model.particles)]
 
     def thermostat(self, step, members, center, load):
         if self.scene.thermostat == "none":

@@ -1,7 +1,9 @@
 //! The solvent and the collision, operator by operator: docs/porting.md, "The operators", "Rotation", "Thermostats".
 
 use crate::elementary::log;
-use crate::random::{normal, uniform, Source, AXIS, GRID_SHIFT, SWAP, THERMOSTAT};
+use crate::random::{
+    normal, uniform, Source, ANDERSEN_PARTICLE, ANDERSEN_VERTEX, AXIS, GRID_SHIFT, SWAP, THERMOSTAT,
+};
 use crate::scene::Scene;
 use crate::vector::*;
 
@@ -166,6 +168,32 @@ pub fn rotate(scene: &Scene, cells: &Cells, factor: &[f64], cell_of: &[usize], v
         if cells.active[cell] {
             let w = subtract(*v, cells.center[cell]);
             *v = add(cells.center[cell], scale(factor[cell], turn(scene, cells.axis[cell], w)));
+        }
+    }
+}
+
+/// The rule at-a: three normal deviates for each of these entities, draw 0 and the first of draw 1.
+fn normals(source: &Source, count: usize) -> Vec<Vector> {
+    let drawn = |entity: u32| {
+        let (x, y) = normal(source.words(0, entity));
+        [x, y, normal(source.words(1, entity)).0]
+    };
+    (0..count as u32).map(drawn).collect()
+}
+
+/// The velocities that solvent and vertices draw.
+pub fn draw(scene: &Scene, step: u64, particles: usize) -> (Vec<Vector>, Vec<Vector>) {
+    let vertex = normals(&scene.source(ANDERSEN_VERTEX, step), scene.vertices());
+    let over_root = |(v, mass): (&Vector, &f64)| scale(1.0 / mass.sqrt(), *v);
+    let vertex = vertex.iter().zip(&scene.mass).map(over_root).collect();
+    (normals(&scene.source(ANDERSEN_PARTICLE, step), particles), vertex)
+}
+
+/// v' = center + the drawn velocity
+pub fn give(cells: &Cells, cell_of: &[usize], drawn: &[Vector], velocity: &mut [Vector]) {
+    for ((v, &cell), xi) in velocity.iter_mut().zip(cell_of).zip(drawn) {
+        if cells.active[cell] {
+            *v = add(cells.center[cell], *xi);
         }
     }
 }

@@ -40,9 +40,11 @@ fn one(scene: &Scene, operator: &str, step: u64, group: &Group, out: &mut Writer
         "shift" => out.triple(0, "shift", mpc::shift(scene, step)),
         "bin" => bin(scene, group, out),
         "sum" => sum(scene, group, out),
-        "solve" => solve(scene, step, group, out),
+        "draw" => draw(scene, step, scene.particles, out),
+        "solve" | "mean" => solve(scene, operator, step, group, out),
         "rescale" | "maxwell_boltzmann" => thermostat(scene, operator, step, group, out),
         "rotate" => rotate(scene, group, out),
+        "give" => give(group, out),
         "swap" => swap(scene, step, group, out),
         other => return Err(format!("unknown operator {}", other)),
     }
@@ -246,13 +248,32 @@ fn sums_of(group: &Group) -> Sums {
     Sums { momentum: group.points("momentum"), members, mass }
 }
 
-fn solve(scene: &Scene, step: u64, group: &Group, out: &mut Writer) {
+fn solve(scene: &Scene, operator: &str, step: u64, group: &Group, out: &mut Writer) {
     let cells = mpc::solve(scene, step, &sums_of(group));
     for (cell, active) in cells.active.iter().enumerate() {
         out.value(cell, "active", "active", i64::from(*active));
     }
     out.triples("center", &cells.center);
-    out.triples("axis", &cells.axis);
+    if operator == "solve" {
+        out.triples("axis", &cells.axis);
+    }
+}
+
+fn draw(scene: &Scene, step: u64, particles: usize, out: &mut Writer) {
+    let (solvent, vertex) = mpc::draw(scene, step, particles);
+    out.triples("solvent", &solvent);
+    out.triples("vertex", &vertex);
+}
+
+fn give(group: &Group, out: &mut Writer) {
+    let active = group.integers("active", "active").iter().map(|&active| active != 0).collect();
+    let cells = Cells { active, center: group.vectors("center"), axis: Vec::new() };
+    for table in ["solvent", "vertex"] {
+        let mut velocity = group.vectors(table);
+        let cell_of = cells_of(group, &format!("{}_cell", table));
+        mpc::give(&cells, &cell_of, &group.vectors(&format!("{}_drawn", table)), &mut velocity);
+        out.triples(table, &velocity);
+    }
 }
 
 fn thermostat(scene: &Scene, operator: &str, step: u64, group: &Group, out: &mut Writer) {

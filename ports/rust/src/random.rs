@@ -9,6 +9,8 @@ pub const AXIS: u32 = 2;
 pub const VERTEX_ORDER: u32 = 3;
 pub const SWAP: u32 = 4;
 pub const THERMOSTAT: u32 = 5;
+pub const ANDERSEN_PARTICLE: u32 = 8;
+pub const ANDERSEN_VERTEX: u32 = 9;
 
 /// All but the entity and the draw of an address.
 #[derive(Clone, Copy)]

@@ -25,6 +25,8 @@ struct Run {
     vertex_velocity: Vec<Vector>,
     force: Vec<Vector>,
     event_driven: bool,
+    /// The collision rule is at-a.
+    andersen: bool,
     /// Bond, other, image and tick of the contacts since the last row.
     contacts: Vec<[i64; 6]>,
     table: String,
@@ -45,6 +47,7 @@ pub fn trace(pack: &Pack) -> Result<String, String> {
         vertex_velocity: start.vectors("vertex_velocity"),
         force: Vec::new(),
         event_driven: start.integers("rule", "event_driven").first() == Some(&1),
+        andersen: start.integers("collision", "rule").first() == Some(&1),
         contacts: Vec::new(),
         table: "step,stage,state_hash".to_string(),
     };
@@ -156,9 +159,35 @@ impl Run {
         let shift = mpc::shift(scene, number);
         let solvent_cell = mpc::bin(scene, shift, &self.solvent);
         let vertex_cell = mpc::bin(scene, shift, &self.vertex);
+        if self.andersen {
+            self.collide_andersen(number, &solvent_cell, &vertex_cell);
+        } else {
+            self.collide_srd(number, &solvent_cell, &vertex_cell);
+        }
+        if !self.hydrodynamics {
+            mpc::swap(&self.scene, number, &mut self.solvent_velocity);
+        }
+        self.row(number, "collide");
+    }
+
+    /// The rule at-a: `sum` takes velocities less the drawn ones.
+    fn collide_andersen(&mut self, number: u64, solvent_cell: &[usize], vertex_cell: &[usize]) {
+        let scene = &self.scene;
+        let (solvent_drawn, vertex_drawn) = mpc::draw(scene, number, self.solvent.len());
+        let less = |v: &[Vector], xi: &[Vector]| v.iter().zip(xi).map(|(v, xi)| subtract(*v, *xi)).collect::<Vec<_>>();
+        let solvent = less(&self.solvent_velocity, &solvent_drawn);
+        let vertex = less(&self.vertex_velocity, &vertex_drawn);
+        let members = Members { solvent_cell, vertex_cell, solvent: &solvent, vertex: &vertex };
+        let cells = mpc::solve(scene, number, &mpc::sum(scene, &members));
+        mpc::give(&cells, solvent_cell, &solvent_drawn, &mut self.solvent_velocity);
+        mpc::give(&cells, vertex_cell, &vertex_drawn, &mut self.vertex_velocity);
+    }
+
+    fn collide_srd(&mut self, number: u64, solvent_cell: &[usize], vertex_cell: &[usize]) {
+        let scene = &self.scene;
         let members = Members {
-            solvent_cell: &solvent_cell,
-            vertex_cell: &vertex_cell,
+            solvent_cell,
+            vertex_cell,
             solvent: &self.solvent_velocity,
             vertex: &self.vertex_velocity,
         };
@@ -170,12 +199,8 @@ impl Run {
             1 => mpc::rescale(&sums, &relative()),
             _ => mpc::maxwell_boltzmann(scene, number, &sums, &relative()),
         };
-        mpc::rotate(scene, &cells, &factor, &solvent_cell, &mut self.solvent_velocity);
-        mpc::rotate(scene, &cells, &factor, &vertex_cell, &mut self.vertex_velocity);
-        if !self.hydrodynamics {
-            mpc::swap(scene, number, &mut self.solvent_velocity);
-        }
-        self.row(number, "collide");
+        mpc::rotate(scene, &cells, &factor, solvent_cell, &mut self.solvent_velocity);
+        mpc::rotate(scene, &cells, &factor, vertex_cell, &mut self.vertex_velocity);
     }
 
     /// The state hash: XXH64 with seed 0.

@@ -6,40 +6,20 @@
  * xi_i normal deviates of variance kT/m_i. So v_i' = xi_i + sum_j m_j (v_j - xi_j) / sum_j m_j: the sum of v - xi is
  * all that a cell needs, and one fixed-point sum keeps momentum whatever the order of the members.
  */
-#include "base/normal.h"
-#include "mpc/cell.h"
-#include "mpc/members.h"
 #include "mpc/rule.h"
-
-enum { BLOCK = 256 }; /* particles worked on at a time */
+#include "mpc/rules/andersen.h"
 
 static uint64_t add_particles(const struct state *state, const struct model *model, struct mpc *c, uint64_t step,
                               uint32_t first, uint32_t n)
 {
-  const struct solvent *s = &state->solvent;
   uint64_t span = 0;
-  for (uint32_t i = first; i < first + n; i += BLOCK) {
-    const uint32_t m = first + n - i < BLOCK ? first + n - i : BLOCK;
-    double *restrict x = &c->drawn[0][i], *restrict y = &c->drawn[1][i], *restrict z = &c->drawn[2][i];
-    const double *restrict vx = &s->vx[i], *restrict vy = &s->vy[i], *restrict vz = &s->vz[i];
-    double ux[BLOCK], uy[BLOCK], uz[BLOCK];
-    random_normal_columns(model->seed, RANDOM_ANDERSEN_PARTICLE, step, &s->id[i], m, x, y, z);
-    for (uint32_t k = 0; k < m; k++) {
-      ux[k] = vx[k] - x[k];
-      uy[k] = vy[k] - y[k];
-      uz[k] = vz[k] - z[k];
-    }
-    span |= members_add(c, i, m, ux, uy, uz);
+  for (uint32_t i = first; i < first + n; i += ANDERSEN_BLOCK) {
+    const uint32_t m = first + n - i < ANDERSEN_BLOCK ? first + n - i : ANDERSEN_BLOCK;
+    struct andersen_change u;
+    andersen_draw_block(&state->solvent, model, c, step, i, m, &u);
+    span |= members_add(c, i, m, u.x, u.y, u.z);
   }
   return span;
-}
-
-/* A velocity from the Maxwell distribution of this mass. */
-static struct vec3 draw(uint64_t seed, enum random_purpose purpose, uint64_t step, uint32_t entity, double mass)
-{
-  double x, y, z;
-  random_normal_columns(seed, purpose, step, &entity, 1, &x, &y, &z);
-  return vec3_scale(1.0 / sqrt(mass), (struct vec3){x, y, z});
 }
 
 static uint64_t add_vertices(const struct state *state, const struct model *model, struct mpc *c, uint64_t step)
@@ -47,18 +27,35 @@ static uint64_t add_vertices(const struct state *state, const struct model *mode
   uint64_t span = 0;
   for (uint32_t v = 0; v < state->vertices; v++) {
     const double mass = model->mass[v];
-    c->drawn_vertex[v] = draw(model->seed, RANDOM_ANDERSEN_VERTEX, step, v, mass);
+    c->drawn_vertex[v] = andersen_draw(model, RANDOM_ANDERSEN_VERTEX, step, v, mass);
     span |=
         cell_add(&c->sum[c->vertex_cell[v]], mass, cell_load(mass), vec3_sub(state->velocity[v], c->drawn_vertex[v]));
   }
   return span;
 }
 
-static void add_random_solvent(const struct model *model, struct mpc *c, uint64_t step, uint32_t place, double mass,
-                               struct vec3 velocity)
+/* The mean of the velocities that n virtual particles draw has the variance of one member of mass n. */
+static struct vec3 draw_virtual(const struct model *model, const struct mpc *c, uint64_t step, uint32_t place, double n)
 {
-  const struct vec3 xi = draw(model->seed, RANDOM_ANDERSEN_PHANTOM, step, mpc_cell(c, place), mass);
-  cell_add(&c->sum[place], mass, cell_load(mass), vec3_sub(velocity, xi));
+  return andersen_draw(model, RANDOM_ANDERSEN_PHANTOM, step, mpc_cell(c, place), n);
+}
+
+static void add_virtual(const struct model *model, struct mpc *c, uint64_t step, uint32_t place,
+                        const struct virtual_members *members)
+{
+  const struct vec3 xi = draw_virtual(model, c, step, place, members->n);
+  cell_add(&c->sum[place], members->n, cell_load(members->n), vec3_sub(rule_virtual_velocity(model, members), xi));
+}
+
+static struct vec3 virtual_gain(const struct model *model, const struct mpc *c, uint64_t step, uint32_t place,
+                                const struct virtual_members *members, bool scaled)
+{
+  (void)scaled;
+  const struct cell_turn *t = &c->turn[place];
+  if (t->active == 0.0)
+    return (struct vec3){0, 0, 0};
+  const struct vec3 v = vec3_add(t->center, draw_virtual(model, c, step, place, members->n));
+  return vec3_scale(members->n, vec3_sub(v, rule_virtual_velocity(model, members)));
 }
 
 /* The centre is the mean of v - xi. */
@@ -69,18 +66,31 @@ static void solve(const struct model *model, struct mpc *c, uint64_t step)
     cell_solve(&c->sum[k], &c->turn[k]);
 }
 
+/* New velocities are written to columns of their own first, not over the old ones: the loop may then vectorise. */
+static void apply_block(struct solvent *s, const struct mpc *c, uint32_t first, uint32_t n)
+{
+  const uint32_t *cell = &c->solvent_cell[first];
+  const double *vx = &s->vx[first], *vy = &s->vy[first], *vz = &s->vz[first];
+  const double *dx = &c->drawn[0][first], *dy = &c->drawn[1][first], *dz = &c->drawn[2][first];
+  struct andersen_change new;
+  for (uint32_t k = 0; k < n; k++) {
+    const struct cell_turn *t = &c->turn[cell[k]];
+    const bool active = t->active != 0.0;
+    new.x[k] = active ? t->center.x + dx[k] : vx[k];
+    new.y[k] = active ? t->center.y + dy[k] : vy[k];
+    new.z[k] = active ? t->center.z + dz[k] : vz[k];
+  }
+  memcpy(&s->vx[first], new.x, n * sizeof *new.x);
+  memcpy(&s->vy[first], new.y, n * sizeof *new.y);
+  memcpy(&s->vz[first], new.z, n * sizeof *new.z);
+}
+
 static void apply(struct state *state, const struct model *model, const struct mpc *c, bool scaled)
 {
   (void)model, (void)scaled; /* it is a thermostat by itself */
-  struct solvent *s = &state->solvent;
-  const double *const drawn[3] = {c->drawn[0], c->drawn[1], c->drawn[2]};
-  for (uint32_t i = 0; i < s->n; i++) {
-    const struct cell_turn *t = &c->turn[c->solvent_cell[i]];
-    const bool active = t->active != 0.0;
-    s->vx[i] = active ? t->center.x + drawn[0][i] : s->vx[i];
-    s->vy[i] = active ? t->center.y + drawn[1][i] : s->vy[i];
-    s->vz[i] = active ? t->center.z + drawn[2][i] : s->vz[i];
-  }
+  const uint32_t n = state->solvent.n;
+  for (uint32_t i = 0; i < n; i += ANDERSEN_BLOCK)
+    apply_block(&state->solvent, c, i, n - i < ANDERSEN_BLOCK ? n - i : ANDERSEN_BLOCK);
   for (uint32_t v = 0; v < state->vertices; v++) {
     const struct cell_turn *t = &c->turn[c->vertex_cell[v]];
     if (t->active != 0.0)
@@ -88,26 +98,33 @@ static void apply(struct state *state, const struct model *model, const struct m
   }
 }
 
-/* A member keeps V only: of its own velocity and stress nothing is left. */
-static double whole(double cosine)
+/* A member keeps its share of V only. */
+static double velocity_loss(double cosine, uint32_t d, double mass, uint32_t others)
 {
-  (void)cosine;
-  return 1.0;
+  (void)cosine, (void)d;
+  return others / (mass + others);
 }
 
-static double handed_on(double cosine)
+static double stress_loss(double cosine, uint32_t d, double n)
 {
-  (void)cosine;
-  return 1.0 / 12.0;
+  (void)cosine, (void)d;
+  return rule_partners(n) / n;
+}
+
+static double handed_on(double cosine, uint32_t d, double n)
+{
+  (void)cosine, (void)d;
+  return rule_partners(n) / 12.0;
 }
 
 const struct collision_rule at_a_rule = {.name = "at-a",
                                          .thermal = true,
                                          .add_particles = add_particles,
                                          .add_vertices = add_vertices,
-                                         .add_random_solvent = add_random_solvent,
+                                         .add_virtual = add_virtual,
+                                         .virtual_gain = virtual_gain,
                                          .solve = solve,
                                          .apply = apply,
-                                         .velocity_loss = whole,
-                                         .stress_loss = whole,
+                                         .velocity_loss = velocity_loss,
+                                         .stress_loss = stress_loss,
                                          .handed_on = handed_on};

@@ -25,11 +25,24 @@ static uint64_t add_vertices(const struct state *state, const struct model *mode
   return span;
 }
 
-static void add_random_solvent(const struct model *model, struct mpc *c, uint64_t step, uint32_t place, double mass,
-                               struct vec3 velocity)
+static void add_virtual(const struct model *model, struct mpc *c, uint64_t step, uint32_t place,
+                        const struct virtual_members *members)
 {
-  (void)model, (void)step;
-  cell_add(&c->sum[place], mass, cell_load(mass), velocity);
+  (void)step;
+  cell_add(&c->sum[place], members->n, cell_load(members->n), rule_virtual_velocity(model, members));
+}
+
+static struct vec3 virtual_gain(const struct model *model, const struct mpc *c, uint64_t step, uint32_t place,
+                                const struct virtual_members *members, bool scaled)
+{
+  (void)step;
+  const struct cell_turn *t = &c->turn[place];
+  const struct solvent_model *rule = &model->solvent;
+  if (t->active == 0.0)
+    return (struct vec3){0, 0, 0};
+  const struct vec3 old = rule_virtual_velocity(model, members);
+  const struct vec3 new = srd_apply(t, old, rule->cosine == 0.0, rule->cosine, rule->sine, scaled);
+  return vec3_scale(members->n, vec3_sub(new, old));
 }
 
 /* --- axes -------------------------------------------------------------------------------------------------------- */
@@ -46,8 +59,19 @@ static void draw_axes(const struct model *model, struct mpc *c, uint64_t step, c
     c->turn[place[k]].axis = axis[k];
 }
 
+/* In a plane: by +alpha or -alpha about z, word 0 of the cell's number says which. */
+static void draw_signs(const struct model *model, struct mpc *c, uint64_t step, const uint32_t *place, uint32_t n)
+{
+  for (uint32_t k = 0; k < n; k++) {
+    const struct random_words r = random_at(model->seed, RANDOM_PLANE_TURN, 0, step, mpc_cell(c, place[k]));
+    c->turn[place[k]].axis = (struct vec3){0.0, 0.0, r.w[0] & 1 ? 1.0 : -1.0};
+  }
+}
+
 static void solve(const struct model *model, struct mpc *c, uint64_t step)
 {
+  typedef void draw(const struct model *, struct mpc *, uint64_t, const uint32_t *, uint32_t);
+  draw *const draw_some = model_is_flat(model) ? draw_signs : draw_axes;
   const uint32_t cells = c->cells;
   uint32_t active[RANDOM_AXES] = {0}, n = 0;
   for (uint32_t k = 0; k < cells; k++) {
@@ -55,11 +79,11 @@ static void solve(const struct model *model, struct mpc *c, uint64_t step)
     if (c->turn[k].active != 0.0)
       active[n++] = k;
     if (n == RANDOM_AXES) {
-      draw_axes(model, c, step, active, n);
+      draw_some(model, c, step, active, n);
       n = 0;
     }
   }
-  draw_axes(model, c, step, active, n);
+  draw_some(model, c, step, active, n);
 }
 
 /* --- turns ------------------------------------------------------------------------------------------------------- */
@@ -171,26 +195,30 @@ static void apply(struct state *state, const struct model *model, const struct m
 
 /* --- molecular chaos --------------------------------------------------------------------------------------------- */
 
-static double velocity_loss(double cosine)
+/* In space a third of a velocity is along the axis, and is not turned; in a plane nothing is. */
+static double velocity_loss(double cosine, uint32_t d, double mass, uint32_t others)
 {
-  return 2.0 / 3.0 * (1.0 - cosine);
+  return (d == 2 ? 1.0 : 2.0 / 3.0) * (1.0 - cosine) * others / (mass + others);
 }
 
-/* cos 2 alpha = 2 cos^2 alpha - 1 */
-static double stress_loss(double cosine)
+/* cos 2 alpha = 2 cos^2 alpha - 1. Padding 2009, Eq. (30); in a plane the stress is turned by 2 alpha. */
+static double stress_loss(double cosine, uint32_t d, double n)
 {
-  return (4.0 - 2.0 * cosine - 2.0 * (2.0 * cosine * cosine - 1.0)) / 5.0;
+  const double twice = 2.0 * cosine * cosine - 1.0;
+  return (d == 2 ? 1.0 - twice : (4.0 - 2.0 * cosine - 2.0 * twice) / 5.0) * rule_partners(n) / n;
 }
 
-static double handed_on(double cosine)
+/* Padding 2009, Eq. (31). */
+static double handed_on(double cosine, uint32_t d, double n)
 {
-  return (1.0 - cosine) / 18.0;
+  return (1.0 - cosine) / (d == 2 ? 12.0 : 18.0) * rule_partners(n);
 }
 
 const struct collision_rule srd_rule = {.name = "srd",
                                         .add_particles = add_particles,
                                         .add_vertices = add_vertices,
-                                        .add_random_solvent = add_random_solvent,
+                                        .add_virtual = add_virtual,
+                                        .virtual_gain = virtual_gain,
                                         .solve = solve,
                                         .apply = apply,
                                         .velocity_loss = velocity_loss,

@@ -1,0 +1,43 @@
+/* What the rules that draw velocities anew (at_a.c, at_plus_a.c) have in common: the drawn velocities xi. */
+#ifndef UNCROSS_MPC_RULES_ANDERSEN_H
+#define UNCROSS_MPC_RULES_ANDERSEN_H
+
+#include <string.h>
+
+#include "base/normal.h"
+#include "mpc/cell.h"
+#include "mpc/members.h"
+
+enum { ANDERSEN_BLOCK = 256 }; /* particles worked on at a time */
+
+/* A velocity from the Maxwell distribution of this mass, a0/t0. */
+static inline struct vec3 andersen_draw(const struct model *model, enum random_purpose purpose, uint64_t step,
+                                        uint32_t entity, double mass)
+{
+  double x, y, z;
+  random_normal_columns(model->seed, purpose, step, &entity, 1, &x, &y, &z);
+  return vec3_scale(1.0 / sqrt(mass), (struct vec3){x, y, model_is_flat(model) ? 0.0 : z});
+}
+
+/* Velocities of a block of particles, or v - xi, a column for each component, a0/t0. */
+struct andersen_change {
+  double x[ANDERSEN_BLOCK], y[ANDERSEN_BLOCK], z[ANDERSEN_BLOCK];
+};
+
+/* Draws xi of m particles, from place i of memory on, into mpc->drawn, and sets the columns of `change`. */
+static inline void andersen_draw_block(const struct solvent *s, const struct model *model, struct mpc *c, uint64_t step,
+                                       uint32_t i, uint32_t m, struct andersen_change *change)
+{
+  double *restrict x = &c->drawn[0][i], *restrict y = &c->drawn[1][i], *restrict z = &c->drawn[2][i];
+  const double *restrict vx = &s->vx[i], *restrict vy = &s->vy[i], *restrict vz = &s->vz[i];
+  random_normal_columns(model->seed, RANDOM_ANDERSEN_PARTICLE, step, &s->id[i], m, x, y, z);
+  if (model_is_flat(model))
+    memset(z, 0, m * sizeof *z);
+  for (uint32_t k = 0; k < m; k++) {
+    change->x[k] = vx[k] - x[k];
+    change->y[k] = vy[k] - y[k];
+    change->z[k] = vz[k] - z[k];
+  }
+}
+
+#endif

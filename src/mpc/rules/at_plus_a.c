@@ -1,0 +1,152 @@
+/*
+ * The Andersen collision rule that keeps angular momentum, MPC-AT+a (Noguchi, Kikuchi and Gompper, EPL 78, 10005
+ * (2007)): as MPC-AT-a (at_a.c), and then the cell is turned so that its angular momentum is what it was,
+ *
+ *   v_i' = V + xi_i - sum_j m_j xi_j / sum_j m_j + Omega x (y_i - X),
+ *   Omega = Pi^-1 sum_j m_j (y_j - X) x (v_j - xi_j),    Pi = sum_j m_j [(y_j - X)^2 - (y_j - X)(y_j - X)],
+ *
+ * with X the centre of mass and y_i the places in the cell. Sums and Omega are in spin.h.
+ */
+#include "mpc/rule.h"
+#include "mpc/rules/andersen.h"
+#include "mpc/rules/at_plus_a_theory.h"
+#include "mpc/rules/spin.h"
+
+/* Places, as they are when the collision takes place: those of images where a border has moved members there. */
+static struct point place_of(const struct mpc *c, const struct solvent *s, uint32_t i)
+{
+  return spin_place((struct point){s->x[i], s->y[i], s->z[i]}, c->shift);
+}
+
+static void add_spins(const struct solvent *s, struct mpc *c, uint32_t first, uint32_t n,
+                      const struct andersen_change *u)
+{
+  for (uint32_t k = 0; k < n && members_out_of_cache(c); k++)
+    __builtin_prefetch(&c->spin[c->solvent_cell[first + k]], 1);
+  for (uint32_t k = 0; k < n; k++)
+    spin_add_particle(&c->spin[c->solvent_cell[first + k]], place_of(c, s, first + k),
+                      (struct vec3){u->x[k], u->y[k], u->z[k]});
+}
+
+static uint64_t add_particles(const struct state *state, const struct model *model, struct mpc *c, uint64_t step,
+                              uint32_t first, uint32_t n)
+{
+  uint64_t span = 0;
+  for (uint32_t i = first; i < first + n; i += ANDERSEN_BLOCK) {
+    const uint32_t m = first + n - i < ANDERSEN_BLOCK ? first + n - i : ANDERSEN_BLOCK;
+    struct andersen_change u;
+    andersen_draw_block(&state->solvent, model, c, step, i, m, &u);
+    span |= members_add(c, i, m, u.x, u.y, u.z);
+    add_spins(&state->solvent, c, i, m, &u);
+  }
+  return span;
+}
+
+static uint64_t add_vertices(const struct state *state, const struct model *model, struct mpc *c, uint64_t step)
+{
+  uint64_t span = 0;
+  for (uint32_t v = 0; v < state->vertices; v++) {
+    const double mass = model->mass[v];
+    c->drawn_vertex[v] = andersen_draw(model, RANDOM_ANDERSEN_VERTEX, step, v, mass);
+    const struct vec3 u = vec3_sub(state->velocity[v], c->drawn_vertex[v]);
+    span |= cell_add(&c->sum[c->vertex_cell[v]], mass, cell_load(mass), u);
+    spin_add(&c->spin[c->vertex_cell[v]], spin_place(state->position[v], c->shift), mass, u);
+  }
+  return span;
+}
+
+/* One virtual particle: its place, and v - xi. Its velocity and the one drawn for it are independent, so v - xi has
+ * twice the variance of each. */
+struct virtual_one {
+  struct point place;
+  struct vec3 change;
+};
+
+/* A coordinate in the cell that is uniform from low to high, 0 to 1, relative to the middle of the cell. */
+static int64_t place_between(double low, double high, double uniform)
+{
+  const int64_t y = (int64_t)((low + (high - low) * uniform) * LATTICE_PER_A0);
+  return (y < LATTICE_CELL ? y : LATTICE_CELL - 1) - LATTICE_CELL / 2;
+}
+
+static struct virtual_one draw_virtual(const struct model *model, const struct mpc *c, uint64_t step, uint32_t place,
+                                       uint32_t number, const struct virtual_members *members)
+{
+  const uint32_t cell = mpc_cell(c, place);
+  const bool flat = model_is_flat(model);
+  const struct random_words xz = random_at(model->seed, RANDOM_SPIN_PLACE, 2 * number, step, cell);
+  const struct random_words y = random_at(model->seed, RANDOM_SPIN_PLACE, 2 * number + 1, step, cell);
+  double a[2], b[2];
+  random_normal_pair(random_at(model->seed, RANDOM_SPIN_VELOCITY, 2 * number, step, cell), a);
+  random_normal_pair(random_at(model->seed, RANDOM_SPIN_VELOCITY, 2 * number + 1, step, cell), b);
+  return (struct virtual_one){
+      {place_between(0.0, 1.0, random_uniform(xz, 0)), place_between(members->low, members->high, random_uniform(y, 0)),
+       flat ? spin_place((struct point){0, 0, 0}, c->shift).z : place_between(0.0, 1.0, random_uniform(xz, 1))},
+      vec3_add_scaled(members->flow, sqrt(2.0), (struct vec3){a[0], a[1], flat ? 0.0 : b[0]})};
+}
+
+static void add_virtual(const struct model *model, struct mpc *c, uint64_t step, uint32_t place,
+                        const struct virtual_members *members)
+{
+  for (uint32_t k = 0; k < members->n; k++) {
+    const struct virtual_one one = draw_virtual(model, c, step, place, k, members);
+    cell_add(&c->sum[place], 1.0, cell_load(1.0), one.change);
+    spin_add_particle(&c->spin[place], one.place, one.change);
+  }
+}
+
+static struct vec3 virtual_gain(const struct model *model, const struct mpc *c, uint64_t step, uint32_t place,
+                                const struct virtual_members *members, bool scaled)
+{
+  (void)scaled;
+  const struct cell_turn *t = &c->turn[place];
+  struct vec3 gain = {0, 0, 0};
+  for (uint32_t k = 0; k < members->n && t->active != 0.0; k++) {
+    const struct virtual_one one = draw_virtual(model, c, step, place, k, members);
+    gain = vec3_add(gain, vec3_sub(spin_velocity(t, c->middle[place], one.place), one.change));
+  }
+  return gain;
+}
+
+static void solve(const struct model *model, struct mpc *c, uint64_t step)
+{
+  (void)model, (void)step;
+  for (uint32_t k = 0; k < c->cells; k++)
+    spin_solve(&c->sum[k], &c->spin[k], &c->turn[k], &c->middle[k]);
+}
+
+static void apply(struct state *state, const struct model *model, const struct mpc *c, bool scaled)
+{
+  (void)model, (void)scaled; /* it is a thermostat by itself */
+  struct solvent *s = &state->solvent;
+  for (uint32_t i = 0; i < s->n; i++) {
+    const uint32_t cell = c->solvent_cell[i];
+    const struct cell_turn *t = &c->turn[cell];
+    if (t->active == 0.0)
+      continue;
+    const struct vec3 v = spin_velocity(t, c->middle[cell], place_of(c, s, i));
+    s->vx[i] = v.x + c->drawn[0][i];
+    s->vy[i] = v.y + c->drawn[1][i];
+    s->vz[i] = v.z + c->drawn[2][i];
+  }
+  for (uint32_t v = 0; v < state->vertices; v++) {
+    const uint32_t cell = c->vertex_cell[v];
+    const struct cell_turn *t = &c->turn[cell];
+    const struct point y = spin_place(state->position[v], c->shift);
+    if (t->active != 0.0)
+      state->velocity[v] = vec3_add(spin_velocity(t, c->middle[cell], y), c->drawn_vertex[v]);
+  }
+}
+
+const struct collision_rule at_plus_a_rule = {.name = "at+a",
+                                              .thermal = true,
+                                              .spinning = true,
+                                              .add_particles = add_particles,
+                                              .add_vertices = add_vertices,
+                                              .add_virtual = add_virtual,
+                                              .virtual_gain = virtual_gain,
+                                              .solve = solve,
+                                              .apply = apply,
+                                              .velocity_loss = at_plus_a_velocity_loss,
+                                              .stress_loss = at_plus_a_stress_loss,
+                                              .handed_on = at_plus_a_handed_on};

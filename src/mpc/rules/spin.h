@@ -1,0 +1,104 @@
+/*
+ * Angular momentum of one collision cell: its sums, and the rotation that a change of velocity by u makes of them.
+ *
+ *   spin_add    adds a member to the sums
+ *   spin_solve  Omega and the centre, so that a member at y changes its velocity to center + Omega x (y - middle) + xi
+ *
+ * The place y of a member is relative to the middle of its cell, in lattice units, |y| <= 2^39 for each component.
+ * Every sum is exact: products of integers, in words of 128 bits. So sums do not depend on the order of the members,
+ * and two members that nearly coincide lose no digits when the sums are moved to the centre of mass.
+ *
+ *   sum          of           unit                    largest
+ *   angular[3]   y x p        2^-84 m a0^2/t0         2^104, with momenta that overflow_of_momenta lets pass
+ *   first[3]     m y          2^-56 m a0              2^79, with masses that it lets pass (2^40 in units of 2^-16 m)
+ *   second[6]    m y y        2^-96 m a0^2            2^118; the order is xx, yy, zz, yz, zx, xy
+ *
+ * p is the member's momentum as cell_add rounds it, so momentum and angular momentum are sums of the same numbers.
+ */
+#ifndef UNCROSS_MPC_RULES_SPIN_H
+#define UNCROSS_MPC_RULES_SPIN_H
+
+#include "mpc/cell.h"
+
+__extension__ typedef __int128 spin_wide;
+__extension__ typedef unsigned __int128 spin_word; /* unsigned: sums may wrap, see overflow.h */
+
+struct cell_spin {
+  spin_word angular[3], first[3], second[6];
+};
+
+/* Where a lattice point is in its cell, relative to the middle of the cell, lattice units. */
+static inline struct point spin_place(struct point p, struct point shift)
+{
+  const uint64_t within = (uint64_t)LATTICE_CELL - 1;
+  const int64_t half = LATTICE_CELL / 2;
+  return (struct point){(int64_t)(((uint64_t)p.x + (uint64_t)shift.x) & within) - half,
+                        (int64_t)(((uint64_t)p.y + (uint64_t)shift.y) & within) - half,
+                        (int64_t)(((uint64_t)p.z + (uint64_t)shift.z) & within) - half};
+}
+
+static inline spin_word spin_product(int64_t a, int64_t b)
+{
+  return (spin_word)((spin_wide)a * b);
+}
+
+/* Adds y x p. */
+static inline void spin_add_momentum(struct cell_spin *s, struct point y, double mass, struct vec3 u)
+{
+  const double scale = mass * CELL_MOMENTUM_SCALE;
+  const int64_t px = llrint(scale * u.x), py = llrint(scale * u.y), pz = llrint(scale * u.z);
+  s->angular[0] += spin_product(y.y, pz) - spin_product(y.z, py);
+  s->angular[1] += spin_product(y.z, px) - spin_product(y.x, pz);
+  s->angular[2] += spin_product(y.x, py) - spin_product(y.y, px);
+}
+
+/* Adds a member of any mass whose momentum changes by mass u, u in a0/t0. */
+static inline void spin_add(struct cell_spin *s, struct point y, double mass, struct vec3 u)
+{
+  const spin_word m = (spin_word)(mass * CELL_MASS_SCALE + 0.5);
+  spin_add_momentum(s, y, mass, u);
+  s->first[0] += m * (spin_word)y.x;
+  s->first[1] += m * (spin_word)y.y;
+  s->first[2] += m * (spin_word)y.z;
+  s->second[0] += m * spin_product(y.x, y.x);
+  s->second[1] += m * spin_product(y.y, y.y);
+  s->second[2] += m * spin_product(y.z, y.z);
+  s->second[3] += m * spin_product(y.y, y.z);
+  s->second[4] += m * spin_product(y.z, y.x);
+  s->second[5] += m * spin_product(y.x, y.y);
+}
+
+/* The same for a mass of 1, which is 2^16 mass units: 55 bits hold it times a coordinate. */
+static inline void spin_add_particle(struct cell_spin *s, struct point y, struct vec3 u)
+{
+  const int64_t unit = (int64_t)CELL_MASS_SCALE;
+  const struct point m = {unit * y.x, unit * y.y, unit * y.z};
+  spin_add_momentum(s, y, 1.0, u);
+  s->first[0] += (spin_word)m.x;
+  s->first[1] += (spin_word)m.y;
+  s->first[2] += (spin_word)m.z;
+  s->second[0] += spin_product(m.x, y.x);
+  s->second[1] += spin_product(m.y, y.y);
+  s->second[2] += spin_product(m.z, y.z);
+  s->second[3] += spin_product(m.y, y.z);
+  s->second[4] += spin_product(m.z, y.x);
+  s->second[5] += spin_product(m.x, y.y);
+}
+
+/* Omega = Pi^-1 L, 1/t0, Pi = tr C - C, from C = sum m (y - X)(y - X), in the order of `second`, and the angular
+ * momentum L about X. Where all members are on one line (always, if there are two) Pi has no inverse; there the part of
+ * Omega along the line is set to 0: it would turn nothing. That is if the least eigenvalue is below 1e-12 of the
+ * trace. 0 if all members are at one place. */
+struct vec3 spin_rate(const double c[6], struct vec3 angular);
+
+/* Sets center, axis (Omega, 1/t0) and factor of a cell's turn, and the middle: the lattice point next to the centre of
+ * mass. A member that is alone keeps its velocity. */
+void spin_solve(const struct cell_sum *sum, const struct cell_spin *spin, struct cell_turn *turn, struct point *middle);
+
+/* center + Omega x (y - middle), a0/t0: the new velocity of the member at y, less the velocity drawn for it. */
+static inline struct vec3 spin_velocity(const struct cell_turn *turn, struct point middle, struct point y)
+{
+  return vec3_add(turn->center, vec3_cross(turn->axis, point_difference(y, middle)));
+}
+
+#endif

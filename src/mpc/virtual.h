@@ -1,0 +1,30 @@
+/*
+ * Virtual particles of mass 1 that stand in a cell for solvent that is not simulated: the phantoms of a random solvent,
+ * and the solvent beyond a wall. Both kinds use the same addresses of random numbers; no scene has both.
+ */
+#ifndef UNCROSS_MPC_VIRTUAL_H
+#define UNCROSS_MPC_VIRTUAL_H
+
+#include "mpc/border.h"
+
+/* A Poisson number of this mean for a cell. */
+uint32_t virtual_number(const struct model *model, uint64_t step, uint32_t cell, double mean);
+
+/* The normal deviates of the mean velocities of `cells` cells. */
+void virtual_normals(const struct model *model, uint64_t step, const uint32_t *cell, uint32_t cells,
+                     struct vec3 *normal);
+
+/* The mean velocity of n particles of a cell (n > 0, need not be whole) whose velocities are of the Maxwell
+ * distribution about `flow`: flow + N(0,1)/sqrt(n) in each component, a0/t0. normal: of this cell. */
+static inline struct vec3 virtual_velocity(struct vec3 normal, double n, struct vec3 flow)
+{
+  return vec3_add_scaled(flow, 1.0 / sqrt(n), normal);
+}
+
+/* Half of the range of a cell's sums is reserved for virtual particles, of which there are 1000 at most on average, in
+ * flows of at most 100 a0/t0 (system/model_finish.c). True if the other members leave them that room, and the mass
+ * stays in its range. If not, the fault is recorded: a momentum with this code, and without its entity. */
+bool virtual_room(const struct cell_sum *sum, double n, uint64_t step, uint32_t cell, enum fault_code code,
+                  struct fault *fault);
+
+#endif

@@ -1,0 +1,43 @@
+/*
+ * Flow between two walls a distance L apart, and what its slip does to it. Units a0 = kT = m = 1; `gamma`, `cosine` and
+ * `interval` as in theory.h, `mass_density` is gamma with m = 1.
+ *
+ * Walls that reverse velocities and fill cut cells with virtual particles slip nevertheless: near a wall, the mean
+ * velocity of a cell is an average over both rows of cells that its members visit, which obeys a Milne equation with a
+ * triangular kernel. Extrapolated from the bulk, the flow has the wall's velocity at a distance b behind it.
+ */
+#ifndef UNCROSS_THEORY_FLOW_H
+#define UNCROSS_THEORY_FLOW_H
+
+#include "mpc/rule.h"
+
+/* b of the Milne problem, a0, planar fill, at a mean free path of 0:
+ * b = -1/pi int_0^inf dk k^-2 ln{12 [1 - (sin(k/2)/(k/2))^2]/k^2}. It is the same for all gamma, angles, and
+ * dimensions. */
+#define THEORY_MILNE_SLIP 0.2273508
+
+/* Time between collisions below which the slip length is that of the Milne problem, t0. */
+#define THEORY_MOST_SLIP_INTERVAL 0.3
+
+/* Slip length of no-slip walls with planar fill, a0: b minus what bounce-back stops, sqrt(2/pi) dt_c/(1 - c), where the
+ * fraction c of a particle's velocity remains after a collision. The paper's fill (gamma - N) slips 1 % more at gamma
+ * 5, and 7 % more at gamma 3. For dt_c below THEORY_MOST_SLIP_INTERVAL. */
+double theory_slip_length(const struct collision_rule *rule, uint32_t d, double gamma, double cosine, double interval);
+
+/* Shear rate in the bulk of Couette flow, 1/t0: that of the walls over 1 + 2b/L. */
+double theory_couette_rate(double wall_rate, double height, double slip);
+
+/* Largest velocity of Poiseuille flow under a body force per mass, a0/t0: rho g L^2/(8 eta) (1 + 4b/L). */
+double theory_poiseuille_speed(double mass_density, double acceleration, double height, double viscosity, double slip);
+
+/* L^2/(pi^2 nu), t0: in which a flow between walls becomes steady. */
+double theory_flow_relaxation(double height, double kinematic_viscosity);
+
+/* omega rho L^2/(8 eta): where it is not far below 1, an oscillation of the walls does not reach the middle in phase.
+ */
+double theory_inertia_number(double frequency, double mass_density, double height, double viscosity);
+
+/* dT/dt of an insulated flow, kT/t0: 2 eta rate^2/(d rho), d the number of dimensions. */
+double theory_flow_heating(double viscosity, double rate, double mass_density, uint32_t dimensions);
+
+#endif

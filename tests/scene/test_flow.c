@@ -1,0 +1,144 @@
+/* What scenes of a flow may not say (system/flow.c), and what they are warned of. */
+#include "scene/scene.h"
+#include "support.h"
+
+/* A solvent, with further lines. */
+static bool read_flow(const char *solvent, const char *more, struct scene *scene, struct message *message)
+{
+  char text[1024];
+  snprintf(text, sizeof text,
+           "box: [6, 8, 6]\ntime_step: 0.1\nsteps: 10\nsolvent:\n  per_cell: 5\n  collision_interval: 0.1\n%s\n%s\n",
+           solvent, more);
+  return scene_read_text("flow.yaml", text, strlen(text), scene, message);
+}
+
+static const struct refusal {
+  const char *solvent, *more, *says;
+} refusals[] = {
+    {"", "walls: {kind: no-slip}\nshear: {rate: 0.1}", "walls and shear are both along y"},
+    {"", "walls: {kind: no-slip}\nfibers: [{name: a, count: 1, vertices: 4, mass: 5, bond_length: 0.5, spring: 100}]",
+     "fibers between walls or under shear are not modelled yet"},
+    {"", "shear: {rate: 0.1}\nfibers: [{name: a, count: 1, vertices: 4, mass: 5, bond_length: 0.5, spring: 100}]",
+     "fibers between walls or under shear are not modelled yet"},
+    {"  hydrodynamics: false", "walls: {kind: no-slip}", "velocities that are permuted have no profile"},
+    {"  hydrodynamics: false", "shear: {rate: 0.1}", "velocities that are permuted have no profile"},
+    {"", "walls: {kind: no-slip}\nflow: [0.1, 0.1, 0]", "a flow across walls or shear"},
+    {"", "shear: {rate: 0.1}\nflow: [0, 0.1, 0]", "a flow across walls or shear"},
+    {"", "walls: {kind: no-slip, lower: [0, 0.1, 0]}", "a wall that leaves its plane"},
+    {"", "walls: {kind: no-slip, upper: [0, -0.1, 0]}", "a wall that leaves its plane"},
+    {"", "walls: {kind: slip, fill: none}", "slip walls have no virtual particles"},
+    {"  acceleration: [0, 0.1, 0]", "walls: {kind: no-slip}", "the solvent would be pressed against a wall"},
+    {"  acceleration: [0, 0.1, 0]", "shear: {rate: 0.1}", "the solvent would be moved across the shear"},
+    {"  acceleration: [0.1, 0, 0]\n  profile: sine", "walls: {kind: no-slip}", "the profile repeats with the box"},
+    {"  acceleration: [0.1, 0, 0]\n  profile: sine", "shear: {rate: 0.1}", "the profile repeats with the box"},
+    {"  acceleration: [0.1, 0.1, 0]\n  profile: sine", "", "compresses the solvent"},
+    {"", "walls: {kind: no-slip, lower: [1, 0, 0]}", "a wall at 1 a0/t0; allowed: below the speed of sound"},
+    {"", "walls: {kind: no-slip, upper: [0, 0, -2]}", "a wall at 2 a0/t0; allowed: below the speed of sound"},
+    {"", "walls: {kind: no-slip, shear_rate: 0.25}", "a wall at 1 a0/t0; allowed: below the speed of sound"},
+    {"", "walls: {kind: no-slip, shear_rate: 0.1, upper: [0.1, 0, 0]}", "allowed: one of the two"},
+    {"", "walls: {kind: no-slip, strain: 1, upper: [0.1, 0, 0], period: 10}", "allowed: one of the two"},
+    {"", "walls: {kind: no-slip, strain: 1}", "a strain without a period"},
+    {"", "walls: {kind: no-slip, shear_rate: 0.1, period: 0.25}", "is 2.5 collision intervals of 0.1"},
+    {"", "walls: {kind: no-slip, shear_rate: 0.1, period: 0.3}", "is 3 collision intervals of 0.1"},
+    {"", "shear: {rate: 2}", "shear.rate: 2 / t0; allowed: below 2 / t0"},
+    {"", "shear: {strain: 1}", "a strain without a period"},
+    {"", "shear: {period: 10}", "a period without a rate or strain"},
+    {"", "shear: {rate: 0.1, period: 1.05}", "is 10.5 collision intervals of 0.1"},
+};
+
+static void refused(void **unused)
+{
+  (void)unused;
+  int wrong = 0;
+  for (size_t k = 0; k < sizeof refusals / sizeof *refusals; k++) {
+    const struct refusal *r = &refusals[k];
+    struct scene scene;
+    struct message message = {""};
+    if (read_flow(r->solvent, r->more, &scene, &message)) {
+      scene_free(&scene);
+      print_error("read, not refused: %s %s\n", r->solvent, r->more);
+      wrong++;
+    } else if (!strstr(message.text, r->says)) {
+      print_error("%s %s: should say '%s', but is\n  %s\n", r->solvent, r->more, r->says, message.text);
+      wrong++;
+    }
+  }
+  assert_int_equal(wrong, 0);
+}
+
+/* What is allowed; and walls without a solvent are refused. */
+static void accepted(void **unused)
+{
+  (void)unused;
+  static const char *const good[] = {"walls: {kind: no-slip, fill: none}",
+                                     "walls: {kind: no-slip, fill: paper, lower: [-0.5, 0, 0.5], upper: [0.9, 0, 0]}",
+                                     "walls: {kind: slip}\nflow: [0.1, 0, 0.2]",
+                                     "walls: {kind: no-slip, shear_rate: 0.1, period: 0.4}",
+                                     "walls: {kind: no-slip, strain: 0.25, period: 10}"};
+  struct scene scene;
+  struct message message = {""};
+  for (size_t k = 0; k < sizeof good / sizeof *good; k++) {
+    if (!read_flow("  acceleration: [0.1, 0, -0.1]", good[k], &scene, &message))
+      fail_msg("%s", message.text);
+    assert_true(model_has_walls(&scene.model));
+    scene_free(&scene);
+  }
+  static const char bare[] = "box: [6, 6, 6]\ntime_step: 0.1\nsteps: 1\nwalls: {kind: no-slip}\n"
+                             "fibers: [{name: a, count: 1, vertices: 1, mass: 5, bond_length: 0.5, spring: 1}]\n";
+  assert_false(scene_read_text("bare.yaml", bare, strlen(bare), &scene, &message));
+  assert_non_null(strstr(message.text, "they act on the solvent, and there is none"));
+}
+
+/* --- warnings ---------------------------------------------------------------------------------------------------- */
+
+struct told {
+  int all, rescale, mach, heat, net;
+};
+
+static void hear(void *context, const char *text)
+{
+  struct told *t = context;
+  t->all++;
+  t->rescale += strstr(text, "rescale has one factor") != NULL;
+  t->mach += strstr(text, "the Mach number between the walls") != NULL;
+  t->heat += strstr(text, "the walls heat the solvent") != NULL;
+  t->net += strstr(text, "a net force") != NULL;
+}
+
+static struct told warnings_of(const char *solvent, const char *more)
+{
+  struct scene scene;
+  struct message message = {""};
+  struct told told = {0};
+  if (!read_flow(solvent, more, &scene, &message))
+    fail_msg("%s", message.text);
+  scene_warnings(&scene, hear, &told);
+  scene_free(&scene);
+  return told;
+}
+
+static void warned(void **unused)
+{
+  (void)unused;
+  const char *at = "  rule: at-a";
+  assert_int_equal(warnings_of(at, "walls: {kind: no-slip, shear_rate: 0.1}").all, 0);
+  assert_int_equal(warnings_of("  rule: at-a\n  acceleration: [0.01, 0, 0]", "walls: {kind: no-slip}").all, 0);
+  assert_int_equal(warnings_of("  rule: at-a\n  acceleration: [0.01, 0, 0]", "walls: {kind: slip}").net, 1);
+  assert_int_equal(warnings_of("  thermostat: rescale", "walls: {kind: no-slip}").rescale, 1);
+  assert_int_equal(warnings_of("  thermostat: maxwell-boltzmann", "walls: {kind: no-slip}").rescale, 0);
+  assert_int_equal(warnings_of("", "walls: {kind: no-slip, shear_rate: 0.1}").heat, 1);
+  assert_int_equal(warnings_of("", "walls: {kind: no-slip, lower: [0.1, 0, 0], upper: [0.1, 0, 0]}").heat, 0);
+  assert_int_equal(warnings_of(at, "walls: {kind: no-slip, shear_rate: 0.1}").mach, 0);
+  assert_int_equal(warnings_of(at, "walls: {kind: no-slip, shear_rate: 0.2}").mach, 1);
+  assert_int_equal(warnings_of("  rule: at-a\n  acceleration: [1, 0, 0]", "walls: {kind: no-slip}").mach, 1);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(refused),
+      cmocka_unit_test(accepted),
+      cmocka_unit_test(warned),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
