@@ -8,6 +8,7 @@ import re
 
 T, A, E, P, V = "$t_0$", "$a_0$", "$kT$", r"$m\,a_0/t_0$", "$(a_0/t_0)$"
 A2 = "$a_0^2$"
+S = r"$(kT/a_0^3)$"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -84,6 +85,23 @@ COLUMNS = {
     "drift_y": Column("drift along y", "$v_y$", V),
     "drift_z": Column("drift along z", "$v_z$", V),
     "intervals": Column("pairs of times compared"),
+    # profile
+    "y": Column("place across the flow", "$y$", A),
+    "density": Column("density of the solvent", r"$\rho$", r"$(m/a_0^3)$"),
+    "vx": Column("velocity along x", r"$\langle v_x\rangle$", V),
+    "vy": Column("velocity along y", r"$\langle v_y\rangle$", V),
+    "vz": Column("velocity along z", r"$\langle v_z\rangle$", V),
+    "temperature": Column("temperature", "$T$", "$(kT/k_B)$"),
+    "vx_in_phase": Column("in phase", r"$v_x^{\prime}$", V),
+    "vx_out_of_phase": Column("out of phase", r"$v_x^{\prime\prime}$", V),
+    # stress
+    "sigma_xy": Column("bulk", r"$\sigma_{xy}$", S),
+    "sigma_xy_kinetic": Column("bulk, kinetic", r"$\sigma_{xy}^\mathrm{kin}$", S),
+    "sigma_xy_collisional": Column("bulk, collisional", r"$\sigma_{xy}^\mathrm{col}$", S),
+    "sigma_lower": Column("lower wall", "", S),
+    "sigma_upper": Column("upper wall", "", S),
+    "N1": Column("first normal stress difference", "$N_1$", S),
+    "pressure": Column("pressure", "$p$", S),
 }
 
 
@@ -133,10 +151,24 @@ PANELS = {
         Panel("Memory of the orientation", ("end_to_end", "end_to_end_unit"), "correlation", **LAG),
         Panel("What stands behind each point", ("intervals",), log_y=True, **LAG),
     ),
+    "profile": (
+        Panel("Flow", ("vx",), f"velocity $v_x$ / {V}"),
+        Panel("Velocities across the flow", ("vy", "vz"), f"velocity / {V}", level=0.0),
+        Panel("First harmonic of the flow", ("vx_in_phase", "vx_out_of_phase"), f"amplitude / {V}"),
+        Panel("Density", ("density",)),
+        Panel("Temperature", ("temperature",), level=1.0),
+        Panel("Samples", ("samples",)),
+    ),
+    "stress": (
+        Panel("Shear stress", ("sigma_xy", "sigma_lower", "sigma_upper"), rf"stress $\sigma_{{xy}}$ / {S}"),
+        Panel("Its parts in the bulk", ("sigma_xy_kinetic", "sigma_xy_collisional"), rf"stress $\sigma_{{xy}}$ / {S}"),
+        Panel("Normal stress difference", ("N1",), level=0.0),
+        Panel("Pressure", ("pressure",)),
+    ),
 }
 LAG_LABEL = "lag $t$ / $t_0$"
 TITLES = {"conserved": "Energy and momentum", "temperature": "Temperature", "collisions": "Contacts of bonds",
-          "statics": "Size and shape", "dynamics": "Motion"}
+          "statics": "Size and shape", "dynamics": "Motion", "profile": "Profile across the flow", "stress": "Stress"}
 
 
 def column(name):

@@ -144,6 +144,7 @@ def figure_of(run, table):
         away = f"{(value - exact[c]) / error:+.1f}" if c in exact and error and error > 0 else ""
         rows.append((plain(label.name), plain(label.symbol), with_error(value, error), plain(label.unit),
                      f"{exact[c]:.6g}" if c in exact else "", away))
+    words += "" if exact else " No theory for this kind: only errors are drawn."
     svg = tables.single_row(table, exact)
     drawn = [Figure(columns.title(table.name), style.data_uri(svg), alt, words, table.name)] if svg else []
     return drawn + [Rows(f"{columns.title(table.name)}, in numbers", rows,

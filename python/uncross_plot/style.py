@@ -11,13 +11,18 @@ Series are told apart three times over: by colour (of different lightness, and d
 and by the stroke of the line. So they can be told apart in grey, too.
 """
 import base64
+import functools
 import io
 import re
 
 import matplotlib
 import numpy
 matplotlib.use("svg")
-from matplotlib import pyplot, ticker  # noqa: E402
+from matplotlib import pyplot, textpath, ticker  # noqa: E402
+
+# Matplotlib makes a parser of formulas for each figure, which reads the same labels again. All figures share one, and its cache.
+if hasattr(textpath, "MathTextParser"):
+    textpath.MathTextParser = functools.lru_cache(textpath.MathTextParser)
 
 COLORS = ("#004488", "#d55e00", "#009e73", "#882255", "#b8860b", "#56a0d9", "#6d4c41", "#777777")
 MARKERS = "os^DvP*X"
@@ -102,7 +107,9 @@ def svg(figure):
         engine.execute(figure)
         figure.set_layout_engine("none")
     out = io.StringIO()
-    figure.savefig(out, format="svg", metadata={"Date": None, "Creator": None})
+    figure.set_dpi(pyplot.rcParams["savefig.dpi"])
+    # Not savefig, which draws everything once more beforehand.
+    figure.canvas.print_svg(out, metadata={"Date": None, "Creator": None})
     pyplot.close(figure)
     text = out.getvalue()
     text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.S)

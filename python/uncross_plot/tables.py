@@ -185,8 +185,8 @@ def exact_values(table, derived):
 
 
 def single_row(table, exact):
-    """SVG of a table of one row: each value relative to theory where there is one, else its relative error alone. None if
-    nothing has an error, or all is 0, as for single beads."""
+    """SVG of a table of one row: each value relative to theory where there is one, else its relative error alone, without a
+    point. None if nothing has an error, or all is 0, as for single beads."""
     names = [c for c in table.values if table.errors(c) is not None and numpy.isfinite(table.data[c][0]) and table.data[c][0] != 0]
     if not names:
         return None
@@ -196,14 +196,17 @@ def single_row(table, exact):
         for place, name in enumerate(reversed(names)):
             value, error = table.data[name][0], table.errors(name)[0]
             base = exact.get(name, value)
-            number = 0 if name in exact else 1
-            axes.errorbar([100 * (value / base - 1.0) if name in exact else 0.0], [place],
-                          xerr=None if math.isnan(error) else [abs(100 * error / base)], marker=style.MARKERS[number],
-                          color=style.COLORS[number], linestyle="none",
-                          markerfacecolor=style.COLORS[0] if number == 0 else "none")
+            known = name in exact
+            axes.errorbar([100 * (value / base - 1.0) if known else 0.0], [place],
+                          xerr=None if math.isnan(error) else [abs(100 * error / base)], linestyle="none",
+                          marker=style.MARKERS[0] if known else "none", color=style.COLORS[0 if known else 1])
+            if not known:  # a point on the line would look like agreement
+                axes.text(1.0, place, "no theory", transform=axes.get_yaxis_transform(), ha="right", va="center",
+                          color=style.PALE)
         axes.set_yticks(range(len(names)), [columns.column(c).short for c in reversed(names)])
         axes.set(ylim=(-0.6, max(1, len(names)) - 0.4),
-                 xlabel="filled: difference from theory, open: error alone (no theory) / %")
+                 xlabel="difference from theory / %; without a point: error alone" if exact else "error / %: no theory")
+        axes.margins(x=0.2)
         return style.svg(drawing)
 
 

@@ -30,6 +30,7 @@ enum exit_code {
 
 /* Files and options of a command, as read from the command line. */
 struct arguments {
+  const char *program; /* as it was typed */
   const char *file[2];
   char **all_files; /* [files] */
   size_t files;

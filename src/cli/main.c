@@ -152,10 +152,11 @@ const struct command commands[COMMANDS] = {
 
 /* --- which one --------------------------------------------------------------------------------------------------- */
 
-static enum exit_code dispatch(enum command_code command, int count, char **words)
+static enum exit_code dispatch(const char *program, enum command_code command, int count, char **words)
 {
   struct arguments a;
   enum exit_code code = arguments_read(command, count, words, &a);
+  a.program = program;
   if (code == EXIT_DONE && a.help)
     help_command(stdout, command);
   else if (code == EXIT_DONE)
@@ -187,7 +188,7 @@ static bool asks_help(const char *word)
   return strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0 || strcmp(word, "help") == 0;
 }
 
-static enum exit_code oracle(int count, char **words)
+static enum exit_code oracle(const char *program, int count, char **words)
 {
   const char *action = count > 1 ? words[1] : "";
   if (asks_help(action)) {
@@ -195,7 +196,7 @@ static enum exit_code oracle(int count, char **words)
     return told(EXIT_DONE);
   }
   const enum command_code command = find_command("oracle", action);
-  return command < COMMANDS ? dispatch(command, count - 1, words + 1)
+  return command < COMMANDS ? dispatch(program, command, count - 1, words + 1)
                             : usage_error("oracle", "oracle: no such action: %s", action[0] ? action : "(none given)");
 }
 
@@ -249,7 +250,8 @@ int main(int count, char **words)
   if (strcmp(words[1], "--version") == 0)
     return told(version());
   if (strcmp(words[1], "oracle") == 0)
-    return oracle(count - 1, words + 1);
+    return oracle(words[0], count - 1, words + 1);
   const enum command_code command = find_command(words[1], NULL);
-  return command < COMMANDS ? dispatch(command, count - 1, words + 1) : usage_error("", "unknown command %s", words[1]);
+  return command < COMMANDS ? dispatch(words[0], command, count - 1, words + 1)
+                            : usage_error("", "unknown command %s", words[1]);
 }

@@ -119,7 +119,9 @@ static void print_word(const char *word)
 /* The command that continues this run. */
 static void tell_resume(const struct arguments *a)
 {
-  printf("go on with:  uncross run");
+  printf("go on with: ");
+  print_word(a->program);
+  printf(" run");
   print_word(a->file[0]);
   printf(" --out");
   print_word(a->out);

@@ -64,8 +64,10 @@ enum { NEIGHBORS_FIRST_ENTRIES = 15 };
 /* A bond that touches a search cell. */
 struct grid_entry {
   uint64_t key; /* the part of the box around the bond that lies in the cell: contact/neighbors.c */
-  int32_t bond;
-  int8_t image[3]; /* of the bond that lies there; 0: the image of its first end's reference position */
+  struct grid_bond {
+    int32_t bond;
+    int8_t image[3]; /* of the bond that lies there; 0: the image of its first end's reference position */
+  } is;
 };
 
 /* Bonds that touch a search cell. The first few stand in the row itself: four cache lines in all. */

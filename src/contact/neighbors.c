@@ -7,20 +7,10 @@
 #include "contact/capsule.h"
 #include "contact/pairs.h"
 
-#define OVERLAPS 256 /* looked at together */
+#define OVERLAPS 256 /* collected before they are looked at */
+#define COLUMNS 64   /* looked at together */
 #define FIRST_NEAR 64
 #define SEARCH_CELL_A0 1.0 /* least edge of a search cell */
-
-/* --- capsules ---------------------------------------------------------------------------------------------------- */
-
-/* The capsule in which a bond stays until one of its ends takes a new reference position. */
-static struct capsule capsule_of(const struct neighbors *nb, const struct model *model, uint32_t bond,
-                                 struct point origin)
-{
-  const struct reference_position *a = &nb->reference[bond], *b = &nb->reference[model->next[bond]];
-  return (struct capsule){point_difference(a->at, origin), point_difference(b->at, origin),
-                          capsule_most(a->skin, b->skin)};
-}
 
 /* --- lists ------------------------------------------------------------------------------------------------------- */
 
@@ -153,16 +143,14 @@ static inline bool overlap(struct probe mine, uint64_t its)
 
 /* --- visits to cells --------------------------------------------------------------------------------------------- */
 
-/* Pairs of bonds whose boxes overlap, before the distance is tested. image: of the other bond, counted as in
- * grid_entry. near: if not NULL, the other bonds are listed there; if NULL, pairs whose capsules are not apart enter
- * the pair list. */
+/* Pairs of bonds whose boxes overlap, before the distance is tested. near: if not NULL, the other bonds are listed
+ * there; if NULL, pairs whose capsules are not apart enter the pair list. */
 struct search {
   struct neighbor_list *near;
   uint32_t count;
   struct overlap {
-    uint32_t bond, other;
-    int32_t image[3];
-  } at[OVERLAPS];
+    struct grid_bond mine, its; /* in the same cell */
+  } at[OVERLAPS + 1];           /* one that is written, and not taken */
 };
 
 /* A function that handles the entry of a bond in one cell; visit_cells calls it for each cell. */
@@ -172,7 +160,7 @@ typedef bool visit(struct neighbors *, const struct model *, uint32_t cell, cons
 static inline bool visit_cells(struct neighbors *nb, const struct model *model, uint32_t bond, struct capsule_box box,
                                visit *what, struct search *found)
 {
-  struct grid_entry e = {.bond = (int32_t)bond};
+  struct grid_entry e = {.is = {.bond = (int32_t)bond}};
   const struct image home = image_of(nb, nb->reference[bond].at, &model->box);
   struct walk z = walk_from(box.low.z, box.high.z, nb, 2, home.k[2]);
   const struct walk y_start = walk_from(box.low.y, box.high.y, nb, 1, home.k[1]),
@@ -180,14 +168,14 @@ static inline bool visit_cells(struct neighbors *nb, const struct model *model, 
   do {
     struct walk y = y_start;
     const uint64_t key_z = key_of_axis(&z, nb, 2);
-    e.image[2] = (int8_t)z.image;
+    e.is.image[2] = (int8_t)z.image;
     do {
       struct walk x = x_start;
       const uint64_t key_yz = key_z | key_of_axis(&y, nb, 1);
-      e.image[1] = (int8_t)y.image;
+      e.is.image[1] = (int8_t)y.image;
       do {
         e.key = key_yz | key_of_axis(&x, nb, 0);
-        e.image[0] = (int8_t)x.image;
+        e.is.image[0] = (int8_t)x.image;
         if (!what(nb, model, (uint32_t)((z.cell * nb->cells[1] + y.cell) * nb->cells[0] + x.cell), &e, found))
           return false;
       } while (walk_on(&x, nb, 0));
@@ -202,7 +190,7 @@ static bool leave_cell(struct neighbors *nb, const struct model *model, uint32_t
   (void)model, (void)found;
   struct grid_row *row = &nb->entries[cell];
   uint32_t k = 0;
-  while (k < row->count && !(row->at[k].bond == e->bond && memcmp(row->at[k].image, e->image, sizeof e->image) == 0))
+  while (k < row->count && memcmp(&row->at[k].is, &e->is, sizeof e->is) != 0)
     k++;
   if (k < row->count)
     row->at[k] = row->at[--row->count];
@@ -214,54 +202,108 @@ static bool share_vertex(const struct model *model, uint32_t a, uint32_t b)
   return a == b || model->next[a] == (int32_t)b || model->next[b] == (int32_t)a;
 }
 
+/* Pairs whose distances are computed together, in columns. p, q: both bond vectors between reference positions; w:
+ * from the first end of p to that of q; reach: of both; all in a0. */
+struct columns {
+  uint32_t count;
+  uint32_t bond[COLUMNS];
+  struct neighbor other[COLUMNS];
+  double p[3][COLUMNS], q[3][COLUMNS], w[3][COLUMNS], reach[COLUMNS];
+};
+
+/* Which image of the other bond overlaps. home: image of the box in which the first end of `mine` lies. */
+static struct neighbor neighbor_of(const struct neighbors *nb, const struct model *model, const struct overlap *c,
+                                   const struct image *home)
+{
+  const struct image its_home = image_of(nb, nb->reference[c->its.bond].at, &model->box);
+  struct neighbor n = {.bond = c->its.bond};
+  for (int axis = 0; axis < 3; axis++)
+    n.image[axis] = home->k[axis] - its_home.k[axis] + c->mine.image[axis] - c->its.image[axis];
+  return n;
+}
+
+static void fill_column(const struct neighbors *nb, const struct model *model, uint32_t bond, struct neighbor n,
+                        struct columns *s)
+{
+  const uint32_t k = s->count;
+  const struct reference_position *a = &nb->reference[bond], *b = &nb->reference[model->next[bond]],
+                                  *c = &nb->reference[n.bond], *d = &nb->reference[model->next[n.bond]];
+  const struct vec3 p = point_difference(b->at, a->at), q = point_difference(d->at, c->at),
+                    w = point_difference(point_image(c->at, n.image, &model->box), a->at);
+  s->bond[k] = bond, s->other[k] = n;
+  s->p[0][k] = p.x, s->p[1][k] = p.y, s->p[2][k] = p.z;
+  s->q[0][k] = q.x, s->q[1][k] = q.y, s->q[2][k] = q.z;
+  s->w[0][k] = w.x, s->w[1][k] = w.y, s->w[2][k] = w.z;
+  s->reach[k] = capsule_most(a->skin, b->skin) + capsule_most(c->skin, d->skin) + CAPSULE_SLACK;
+}
+
+/* Adds those pairs to the pair list whose capsules are not apart. */
+static bool add_pairs(struct neighbors *nb, const struct columns *restrict s)
+{
+  int64_t apart[COLUMNS];
+  for (uint32_t k = 0; k < s->count; k++) {
+    const struct vec3 p = {s->p[0][k], s->p[1][k], s->p[2][k]}, q = {s->q[0][k], s->q[1][k], s->q[2][k]},
+                      w = {s->w[0][k], s->w[1][k], s->w[2][k]};
+    apart[k] = capsule_distance(p, q, w) > s->reach[k];
+  }
+  for (uint32_t k = 0; k < s->count; k++)
+    if (!apart[k] && !pairs_add(nb, s->bond[k], s->other[k]))
+      return false;
+  return true;
+}
+
 /* Empties the list of overlaps: into `near` or the pair list, see struct search. */
 static bool settle(struct neighbors *nb, const struct model *model, struct search *found)
 {
   struct image home = {{0, 0, 0}};
+  struct columns s;
+  s.count = 0;
   for (uint32_t k = 0; k < found->count; k++) {
     const struct overlap *c = &found->at[k];
-    const struct point mine_at = nb->reference[c->bond].at;
-    if (k == 0 || c->bond != c[-1].bond)
-      home = image_of(nb, mine_at, &model->box);
-    if (share_vertex(model, c->bond, c->other))
-      continue;
-    const struct image its_home = image_of(nb, nb->reference[c->other].at, &model->box);
-    struct neighbor n = {.bond = (int32_t)c->other};
-    for (int axis = 0; axis < 3; axis++)
-      n.image[axis] = home.k[axis] - its_home.k[axis] + c->image[axis];
+    const uint32_t bond = (uint32_t)c->mine.bond;
+    if (k == 0 || c->mine.bond != c[-1].mine.bond)
+      home = image_of(nb, nb->reference[bond].at, &model->box);
+    const bool apart = share_vertex(model, bond, (uint32_t)c->its.bond);
+    const struct neighbor n = neighbor_of(nb, model, c, &home);
     if (found->near) {
-      if (!add_near(found->near, n))
+      if (!apart && !add_near(found->near, n))
         return false;
       continue;
     }
-    const int32_t back[3] = {-n.image[0], -n.image[1], -n.image[2]};
-    const struct capsule mine = capsule_of(nb, model, c->bond, mine_at),
-                         its = capsule_of(nb, model, c->other, point_image(mine_at, back, &model->box));
-    if (!capsules_apart(&mine, &its) && !pairs_add(nb, c->bond, n))
-      return false;
+    fill_column(nb, model, bond, n, &s);
+    s.count += !apart;
+    if (s.count == COLUMNS) {
+      if (!add_pairs(nb, &s))
+        return false;
+      s.count = 0;
+    }
   }
   found->count = 0;
-  return true;
+  return add_pairs(nb, &s);
 }
 
-/* Collects the bonds of a cell whose boxes overlap with this one's. */
+/* Collects the bonds of a cell whose boxes overlap with this one's. Each entry is written to the list, and stays there
+ * if it overlaps: a branch would be mispredicted too often. */
 static bool look_into_cell(struct neighbors *nb, const struct model *model, uint32_t cell,
                            const struct grid_entry *mine, struct search *found)
 {
   const struct grid_row *row = &nb->entries[cell];
   const struct probe probe = probe_of(mine->key);
-  for (uint32_t k = 0; k < row->count; k++) {
-    const struct grid_entry *e = &row->at[k];
-    if (!overlap(probe, e->key))
-      continue;
-    if (found->count == OVERLAPS && !settle(nb, model, found))
+  for (uint32_t first = 0; first < row->count; first += COLUMNS) {
+    const uint32_t left = row->count - first, n = left < COLUMNS ? left : COLUMNS;
+    if (found->count + n > OVERLAPS && !settle(nb, model, found))
       return false;
-    __builtin_prefetch(&nb->reference[e->bond]);
-    __builtin_prefetch(&model->next[e->bond]);
-    found->at[found->count++] =
-        (struct overlap){(uint32_t)mine->bond,
-                         (uint32_t)e->bond,
-                         {mine->image[0] - e->image[0], mine->image[1] - e->image[1], mine->image[2] - e->image[2]}};
+    uint32_t count = found->count;
+    for (const struct grid_entry *e = &row->at[first]; e < &row->at[first + n]; e++) {
+      found->at[count] = (struct overlap){mine->is, e->is};
+      count += overlap(probe, e->key);
+    }
+    for (uint32_t k = found->count; k < count; k++) {
+      __builtin_prefetch(&nb->reference[found->at[k].its.bond]);
+      __builtin_prefetch(&nb->reference[found->at[k].its.bond + 1]);
+      __builtin_prefetch(&model->next[found->at[k].its.bond]);
+    }
+    found->count = count;
   }
   return true;
 }
@@ -274,14 +316,42 @@ static bool enter_cell(struct neighbors *nb, const struct model *model, uint32_t
 
 /* --- the entrances ----------------------------------------------------------------------------------------------- */
 
+/* Without a solvent vertices keep going, and a reference position serves longer if it stands ahead of its vertex. The
+ * velocity that lasts is the mean over a few neighbors, in which the vibrations of bonds cancel. With a solvent there
+ * is no lead: velocities change before the vertex gets there. */
+static struct vec3 lead_of(const struct state *state, const struct model *model, uint32_t vertex, double most)
+{
+  const int on_each_side = 2;
+  const double time = 0.3; /* t0 */
+  struct vec3 sum = state->velocity[vertex];
+  int32_t before = (int32_t)vertex, after = before;
+  double n = 1.0;
+  if (model->solvent.per_cell > 0.0)
+    return (struct vec3){0, 0, 0};
+  for (int k = 0; k < on_each_side; k++) {
+    before = model->prev[before] < 0 ? before : model->prev[before];
+    after = model->next[after] < 0 ? after : model->next[after];
+    sum = vec3_add_scaled(vec3_add_scaled(sum, 1.0, state->velocity[before]), 1.0, state->velocity[after]);
+    n += 2.0;
+  }
+  const struct vec3 mean = vec3_scale(1.0 / n, sum);
+  const struct vec3 lead = vec3_scale(time, vec3_sub(mean, model_frame_velocity(model)));
+  const double length = vec3_norm(lead);
+  return length > most ? vec3_scale(most / length, lead) : lead;
+}
+
 /* A reference position and a skin that contain both ends of a move, whether it is made or rejected. */
-static struct reference_position reference_of_move(const struct neighbors *nb, struct point from, struct point to)
+static struct reference_position reference_of_move(const struct state *state, const struct model *model,
+                                                   struct point moved, uint32_t vertex, struct point from,
+                                                   struct point to)
 {
   const struct point d = point_minus(to, from);
   const double length = vec3_norm(point_difference(to, from));
-  struct point at = point_minus(to, nb->moved);
+  struct point at = point_minus(to, moved);
   if (length > NEIGHBORS_SKIN) /* from its middle */
     at = (struct point){at.x - d.x / 2, at.y - d.y / 2, at.z - d.z / 2};
+  else
+    at = point_move(at, lead_of(state, model, vertex, 0.7 * (NEIGHBORS_SKIN - length)));
   return (struct reference_position){at, fmax(NEIGHBORS_SKIN, 0.5 * length + LATTICE_UNIT)};
 }
 
@@ -307,21 +377,26 @@ static bool fetch_cell(struct neighbors *nb, const struct model *model, uint32_t
   return true;
 }
 
+void neighbors_fetch(struct neighbors *nb, const struct model *model, uint32_t vertex)
+{
+  uint32_t bond[2];
+  const int bonds = model_bonds_of(model, vertex, bond);
+  for (int b = 0; b < bonds; b++)
+    visit_cells(nb, model, bond[b], box_of(nb, model, bond[b]), fetch_cell, NULL);
+}
+
 bool neighbors_renew(const struct state *state, const struct model *model, struct contact *contact, uint32_t n,
                      const uint32_t *vertex, const struct point *from, const struct point *to, struct fault *fault)
 {
   struct neighbors *nb = &contact->neighbors;
   uint32_t bond[2 * NEIGHBORS_AT_ONCE] = {0};
   const uint32_t bonds = model_bonds_at(model, n, vertex, bond);
-  /* Without prefetching, most of the time below is spent waiting for memory. */
-  for (uint32_t k = 0; k < bonds; k++)
-    visit_cells(nb, model, bond[k], box_of(nb, model, bond[k]), fetch_cell, NULL);
   for (uint32_t k = 0; k < bonds; k++) {
     visit_cells(nb, model, bond[k], box_of(nb, model, bond[k]), leave_cell, NULL);
     nb->generation[bond[k]]++;
   }
   for (uint32_t k = 0; k < n; k++) {
-    nb->reference[vertex[k]] = reference_of_move(nb, from[k], to[k]);
+    nb->reference[vertex[k]] = reference_of_move(state, model, nb->moved, vertex[k], from[k], to[k]);
     nb->hold[vertex[k]] = nb->path[vertex[k]];
   }
   nb->renewed += n;

@@ -17,8 +17,7 @@
  * Partners are found in a grid of search cells. A cell lists every bond whose capsule's box touches it, with the image
  * of the bond that lies there and, roughly, the part of the box that lies in the cell. So most bonds of a cell are
  * skipped without reading their positions. The grid works for bonds of any length, in boxes of any size down to one
- * cell. A search mostly waits for memory. Therefore reference positions are renewed several at a time, and memory is
- * prefetched.
+ * cell. A search mostly waits for memory; contact/renewals.h prefetches it.
  *
  * Two bonds that share a vertex are never partners, and neither are a bond and its own image: every bond is shorter
  * than half a box edge, so they cannot cross. The length of bonds is checked where forces are computed, once in a step.
@@ -45,6 +44,10 @@ bool neighbors_build(const struct state *state, const struct model *model, struc
  * fault recorded, if memory is short. */
 bool neighbors_renew(const struct state *state, const struct model *model, struct contact *contact, uint32_t n,
                      const uint32_t *vertex, const struct point *from, const struct point *to, struct fault *fault);
+
+/* Prefetches the search cells that neighbors_renew will visit for this vertex. Without it, most of the time there is
+ * spent waiting for memory. */
+void neighbors_fetch(struct neighbors *nb, const struct model *model, uint32_t vertex);
 
 /* Lists in `near` all bonds that bond `bond` may touch if its ends stay within `range` (a0) of end[0] and end[1], while
  * the vertices of the others stay within their skins. The list may hold a few bonds more. False, with the fault

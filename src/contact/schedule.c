@@ -5,7 +5,7 @@
 #include "contact/candidates.h"
 #include "contact/capsule.h"
 #include "contact/drift.h"
-#include "contact/neighbors.h"
+#include "contact/renewals.h"
 
 enum { BLOCK = 64 }; /* vertices worked on at a time */
 
@@ -27,8 +27,8 @@ static bool prepare(const struct state *state, const struct model *model, struct
 {
   struct vec3 d[BLOCK];
   int64_t late[BLOCK];
-  uint32_t vertex[NEIGHBORS_AT_ONCE], count = 0;
-  struct point from[NEIGHBORS_AT_ONCE], to[NEIGHBORS_AT_ONCE];
+  struct renewals r;
+  r.count = 0;
   for (uint32_t first = 0; first < state->vertices; first += BLOCK) {
     const uint32_t n = state->vertices - first < BLOCK ? state->vertices - first : BLOCK;
     if (!drift_displacements(state, model, dt, first, n, d, fault))
@@ -38,19 +38,12 @@ static bool prepare(const struct state *state, const struct model *model, struct
       range[k] = candidates_units(vec3_norm(d[k]));
     find_late(state, &contact->neighbors, first, n, d, late);
     for (uint32_t k = 0; k < n; k++) {
-      if (!late[k])
-        continue;
-      vertex[count] = first + k;
-      from[count] = state->position[first + k];
-      to[count++] = point_move(state->position[first + k], d[k]);
-      if (count == NEIGHBORS_AT_ONCE) {
-        if (!neighbors_renew(state, model, contact, count, vertex, from, to, fault))
-          return false;
-        count = 0;
-      }
+      const struct point from = state->position[first + k];
+      if (late[k] && !renewals_add(state, model, contact, &r, first + k, from, point_move(from, d[k]), fault))
+        return false;
     }
   }
-  return count == 0 || neighbors_renew(state, model, contact, count, vertex, from, to, fault);
+  return renewals_end(state, model, contact, &r, fault);
 }
 
 /* --- the plan ---------------------------------------------------------------------------------------------------- */

@@ -7,7 +7,7 @@
 #include "contact/takeoff.h"
 
 #include "contact/candidates.h"
-#include "contact/neighbors.h"
+#include "contact/renewals.h"
 
 enum { BLOCK = 64 }; /* vertices worked on at a time */
 
@@ -18,32 +18,6 @@ static void ranges_of(const struct vec3 *restrict displacement, uint32_t n, uint
 {
   for (uint32_t k = 0; k < n; k++)
     range[k] = candidates_units(vec3_norm(displacement[k]) + FLIGHT_ROUNDING);
-}
-
-/* Vertices that are about to leave their skins. */
-struct renewal {
-  uint32_t count, vertex[NEIGHBORS_AT_ONCE];
-  struct point from[NEIGHBORS_AT_ONCE], to[NEIGHBORS_AT_ONCE];
-};
-
-/* The vertex ends its flight at `to`, within its skin. If its flight bends, or its reference position is renewed,
- * `hold` is set anew. */
-static void hold_until(struct neighbors *nb, uint32_t i, struct point to)
-{
-  const double off = vec3_norm(point_difference(to, point_plus(nb->reference[i].at, nb->moved)));
-  const double left = fmin(fmax(nb->reference[i].skin - off, 0.0), 1.0);
-  nb->hold[i] = nb->path[i] + (uint32_t)(int32_t)(left * (1 << CANDIDATES_UNITS));
-}
-
-static bool renew(const struct state *state, const struct model *model, struct contact *contact, struct renewal *r,
-                  struct fault *fault)
-{
-  if (r->count > 0 && !neighbors_renew(state, model, contact, r->count, r->vertex, r->from, r->to, fault))
-    return false;
-  for (uint32_t k = 0; k < r->count; k++)
-    hold_until(&contact->neighbors, r->vertex[k], r->to[k]);
-  r->count = 0;
-  return true;
 }
 
 /* Vertices whose skins have to be looked at. */
@@ -76,9 +50,10 @@ static bool renew_late(const struct state *state, const struct model *model, str
 {
   const struct vec3 frame = model_frame_velocity(model);
   struct neighbors *nb = &contact->neighbors;
-  struct renewal r = {.count = 0};
+  struct renewals r;
   struct due due[2] = {{0, {0}}, {0, {0}}};
   uint32_t now = 0;
+  r.count = 0;
   list_due(state, contact, 0, &due[now]);
   for (uint32_t first = 0; first < state->vertices; first += BLOCK, now = !now) {
     list_due(state, contact, first + BLOCK, &due[!now]);
@@ -86,16 +61,13 @@ static bool renew_late(const struct state *state, const struct model *model, str
       const uint32_t i = due[now].vertex[k];
       const struct point from = state->position[i],
                          to = flight_place(from, takeoff_rate(state->velocity[i], frame, dt), FLIGHT_TICKS);
-      if (neighbors_hold(nb, i, to)) {
-        hold_until(nb, i, to);
-        continue;
-      }
-      r.vertex[r.count] = i, r.from[r.count] = from, r.to[r.count++] = to;
-      if (r.count == NEIGHBORS_AT_ONCE && !renew(state, model, contact, &r, fault))
+      if (neighbors_hold(nb, i, to))
+        renewals_hold_until(nb, i, to);
+      else if (!renewals_add(state, model, contact, &r, i, from, to, fault))
         return false;
     }
   }
-  return renew(state, model, contact, &r, fault);
+  return renewals_end(state, model, contact, &r, fault);
 }
 
 bool take_off(const struct state *state, const struct model *model, struct contact *contact, double dt,

@@ -27,10 +27,13 @@ static int32_t species_of(const struct export_view *v, uint32_t row)
   return solvent;
 }
 
-/* Types of atoms, from 1: kinds in the file's order; one more for rows of no kind. */
+/* Types of atoms, from 1: kinds in the file's order. The solvent, and a type for rows of no kind, only if they are
+ * shown. */
 static int32_t types(const struct export_view *v)
 {
-  int32_t most = v->frames->structure.kinds;
+  int32_t most = 0;
+  for (int32_t k = 0; k < v->frames->structure.kinds; k++)
+    most = structure_is_solvent(&v->frames->structure, k) ? most : k + 1;
   for (uint32_t row = 0; row < v->frames->about.rows; row++)
     if (v->number[row] >= 0 && species_of(v, row) + 1 > most)
       most = species_of(v, row) + 1;

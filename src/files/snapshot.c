@@ -79,6 +79,7 @@ bool snapshot_read_start(const char *path, const struct model *model, struct sta
     return false;
   state->step = 0;
   state->solvent_lag = 0;
+  state->solvent_time = 0;
   state->counts = (struct collision_counts){0};
   return true;
 }

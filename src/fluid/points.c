@@ -36,13 +36,18 @@ static void start_points(struct state *state, const struct model *model)
 
 /* --- flight ------------------------------------------------------------------------------------------------------ */
 
+static bool boundaries_move(const struct model *model)
+{
+  return (model_has_walls(model) || model_is_sheared(model)) && model->solvent.interval_steps > 0;
+}
+
 /* The span by which the solvent is late. A force with a profile acts at collisions (mpc/), not in flight. */
 static struct span lag_span(const struct state *state, const struct model *model)
 {
   const bool uniform = model->solvent.profile == PROFILE_UNIFORM;
   return (struct span){.time = 0.5 * state->solvent_lag * model->time_step,
                        .end = state->solvent_time + state->solvent_lag,
-                       .interval = model_collides(model) ? shear_interval(model, state->solvent_time) : 0,
+                       .interval = boundaries_move(model) ? shear_interval(model, state->solvent_time) : 0,
                        .acceleration = uniform ? model->solvent.acceleration : (struct vec3){0, 0, 0}};
 }
 

@@ -9,6 +9,7 @@
 #include "mpc/rule.h"
 #include "mpc/rules/spin.h"
 #include "mpc/sort.h"
+#include "mpc/stress.h"
 
 /* Particles are sorted by cell again after this many collisions. At the paper's mean free path of 0.02 a0, most
  * neighbors in memory are still neighbors in space after them. */
@@ -116,10 +117,14 @@ bool mpc_collide(struct state *state, const struct model *model, struct mpc *mpc
   const struct border *border = mpc->border;
   if (!gather(state, model, mpc, step, fault) || (border->fill && !border->fill(state, model, mpc, step, fault)))
     return false;
+  if (mpc->stress)
+    stress_before(state, model, mpc);
   collide_solve(model, mpc, step);
   if (mpc->thermostat && !collide_thermostat(state, model, mpc, mpc->thermostat, step, fault))
     return false;
   collide_turn(state, model, mpc, mpc->thermostat);
+  if (mpc->stress)
+    stress_after(state, model, mpc);
   if (border->account)
     border->account(state, model, mpc, step);
   if (border->leave)

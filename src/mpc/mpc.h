@@ -27,6 +27,8 @@ struct cell_turn {
 
 struct virtual_members;
 
+struct mpc_stress;
+
 struct mpc {
   const struct collision_rule *rule;
   const struct thermostat *thermostat; /* NULL: none */
@@ -51,6 +53,7 @@ struct mpc {
   int64_t *column;           /* [particles] one column while it is permuted */
   double *drawn[3];          /* [particles] velocities that a thermal rule has drawn, else NULL */
   struct vec3 *drawn_vertex; /* [vertices] the same */
+  struct mpc_stress *stress; /* where to sum the stress (stress.h); NULL: nobody asks for it */
   struct cell_spin *spin;    /* [cells] sums of a rule with angular momentum (rules/spin.h), else NULL */
   struct point *middle;      /* [cells] of the same rule: place in the cell next to its centre of mass, lattice units */
   uint32_t since_sort;       /* collisions since particles were last sorted by cell */

@@ -5,17 +5,20 @@
 #include <string.h>
 
 #include "fiber/force.h"
+#include "mpc/stress.h"
 #include "observe/observer.h"
 
 static const struct observer_type *const types[OBSERVABLES] = {
     [OBSERVE_CONSERVED] = &conserved_observer,   [OBSERVE_TEMPERATURE] = &temperature_observer,
     [OBSERVE_STATICS] = &statics_observer,       [OBSERVE_DYNAMICS] = &dynamics_observer,
-    [OBSERVE_COLLISIONS] = &collisions_observer,
+    [OBSERVE_COLLISIONS] = &collisions_observer, [OBSERVE_PROFILE] = &profile_observer,
+    [OBSERVE_STRESS] = &stress_observer,
 };
 
 const char *const observable_names[OBSERVABLES] = {
     [OBSERVE_CONSERVED] = "conserved", [OBSERVE_TEMPERATURE] = "temperature", [OBSERVE_STATICS] = "statics",
-    [OBSERVE_DYNAMICS] = "dynamics",   [OBSERVE_COLLISIONS] = "collisions",
+    [OBSERVE_DYNAMICS] = "dynamics",   [OBSERVE_COLLISIONS] = "collisions",   [OBSERVE_PROFILE] = "profile",
+    [OBSERVE_STRESS] = "stress",
 };
 
 enum { MAX_BLOCKS = 6 * OBSERVABLES };
@@ -61,8 +64,11 @@ static bool create(struct observers *observers, enum observable which, const str
                    const struct model *model)
 {
   struct observer *o = &observers->observer[which];
-  *o = (struct observer){
-      .type = types[which], .every = plan->every[which], .longest_lag = plan->longest_lag, .from = plan->from};
+  *o = (struct observer){.type = types[which],
+                         .every = plan->every[which],
+                         .longest_lag = plan->longest_lag,
+                         .from = plan->from,
+                         .slabs = plan->slabs};
   if (o->every == 0)
     return true;
   o->size = (struct observer_size){.integers = 1};
@@ -77,6 +83,8 @@ static bool create(struct observers *observers, enum observable which, const str
     add_setting(observers, observable_names[which], ".every", &o->every);
   if (which == OBSERVE_DYNAMICS)
     add_setting(observers, observable_names[which], ".longest_lag", &o->longest_lag);
+  if (which == OBSERVE_PROFILE)
+    add_setting(observers, observable_names[which], ".slabs", &o->slabs);
   add_block(observers, observable_names[which], "reals", false, o->size.reals, o->real);
   add_block(observers, observable_names[which], "integers", true, o->size.integers, o->integer);
   struct observe_block *later = add_block(observers, observable_names[which], "later", false, o->size.later, o->later);
@@ -123,6 +131,12 @@ void observers_free(struct observers *observers)
   }
   fiber_free(&observers->scratch);
   free(observers);
+}
+
+struct mpc_stress *observers_stress(struct observers *observers)
+{
+  const struct observer *o = &observers->observer[OBSERVE_STRESS];
+  return o->every > 0 ? (struct mpc_stress *)o->real : NULL;
 }
 
 static bool due(const struct observer *observer, uint64_t step)

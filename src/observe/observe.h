@@ -19,6 +19,8 @@ enum observable {
   OBSERVE_STATICS,     /* averages per kind of fiber: bonds, bends, end-to-end distance */
   OBSERVE_DYNAMICS,    /* against lag, per kind: g(t), g_cm(t), d^2(t), end-to-end correlation, diffusion coefficient */
   OBSERVE_COLLISIONS,  /* time series: crossings possible, executed, negative, and their rates */
+  OBSERVE_PROFILE,     /* averages in slabs along y: density, velocity, temperature */
+  OBSERVE_STRESS,      /* time series: stress of the solvent in the bulk, and on walls */
   OBSERVABLES
 };
 
@@ -26,7 +28,8 @@ enum observable {
 struct observe_plan {
   uint64_t every[OBSERVABLES]; /* steps between samples; 0: not asked for */
   uint64_t longest_lag;        /* of the dynamics, in steps; 0: 2^20 samples. Decides the size of its memory. */
-  uint64_t from;               /* step from which on averages (statics, dynamics) are made; time series begin at 0 */
+  uint64_t slabs;              /* of the profile */
+  uint64_t from; /* step from which on averages (statics, dynamics, profile) are made; time series begin at 0 */
 };
 
 /* Names as scenes and files use them: "conserved", "temperature", ... */
@@ -51,6 +54,12 @@ struct observe_sink {
 /* Observers for this plan; NULL if memory is short. */
 struct observers *observers_create(const struct observe_plan *plan, const struct model *model);
 void observers_free(struct observers *observers);
+
+struct mpc_stress;
+
+/* Where collisions are to sum the stress (mpc->stress, mpc/stress.h): the observer's own memory. NULL if the plan does
+ * not ask for it. */
+struct mpc_stress *observers_stress(struct observers *observers);
 
 /* True if an observer is due at this step. */
 bool observers_due(const struct observers *observers, uint64_t step);

@@ -21,6 +21,7 @@ struct observer_size {
 struct observer {
   const struct observer_type *type;
   uint64_t every, longest_lag, from; /* of the plan, in steps */
+  uint64_t slabs;                    /* of the plan */
   struct observer_size size;
   double constant;  /* of the model: what type->constant gave */
   double *real;     /* [size.reals] zero at first */
@@ -67,7 +68,7 @@ struct observer_type {
 enum { OBSERVER_MAX_COLUMNS = 32, OBSERVER_NAME_SIZE = MODEL_NAME_SIZE + 32 };
 
 extern const struct observer_type conserved_observer, temperature_observer, statics_observer, dynamics_observer,
-    collisions_observer;
+    collisions_observer, profile_observer, stress_observer;
 
 /* Time of a state, in t0. */
 static inline double view_time(const struct view *view)

@@ -20,6 +20,7 @@ static void write_row(FILE *f, const struct key *key)
   fprintf(f, " | %s%s%s | %s | %s | ", quote,
           fallback        ? fallback
           : key->optional ? "none"
+          : key->idle     ? "required for bonds"
                           : "required",
           quote, key->unit ? key->unit : "", key->symbol ? key->symbol : "");
   write_cell(f, key->text);

@@ -298,10 +298,23 @@ static bool read_given(const struct reading *r, const struct node *mapping)
   return readers[r->key->type](r);
 }
 
+/* Whether the key has no meaning here, because of another key's value, which has been read. */
+static bool is_idle(const struct reading *r)
+{
+  for (size_t k = 0; r->key->idle_with && k < r->table->count; k++) {
+    const struct key *other = &r->table->key[k];
+    if (strcmp(other->name, r->key->idle_with) == 0)
+      return *(const uint32_t *)key_at(other, r->from) == 1;
+  }
+  return false;
+}
+
 /* What a key means that is not there: scalars only, for sections say it themselves. */
 static bool read_missing(const struct reading *r, const struct node *mapping)
 {
   const struct key *key = r->key;
+  if (mapping && is_idle(r))
+    return key_read_text(key, key->idle, r->to) || message_set(r->message, "%s: out of memory", r->source);
   if (mapping && key_is_required(key)) {
     char allowed[512];
     key_describe(key, allowed, sizeof allowed);

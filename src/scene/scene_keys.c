@@ -44,15 +44,34 @@ static const struct key dynamics_keys[] = {
      .unit = "steps",
      .symbol = "t"},
 };
+static const struct key profile_keys[] = {
+    {.name = "every",
+     .text = "Steps between samples.",
+     .type = KEY_WHOLE64,
+     .least = 1,
+     .most = INT64_MAX,
+     .offset = IN_SCENE(observe.every[OBSERVE_PROFILE]),
+     .unit = "steps"},
+    {.name = "slabs",
+     .text = "Slabs of equal thickness, from y = 0 to y = L.",
+     .type = KEY_WHOLE64,
+     .least = 1,
+     .most = 8192,
+     .offset = IN_SCENE(observe.slabs)},
+};
 static const struct key_table conserved_table = {"observe.conserved", NULL, COUNT(every_keys), every_keys};
 static const struct key_table temperature_table = {"observe.temperature", NULL, COUNT(every_keys), every_keys};
 static const struct key_table statics_table = {"observe.statics", NULL, COUNT(every_keys), every_keys};
 static const struct key_table dynamics_table = {"observe.dynamics", NULL, COUNT(dynamics_keys), dynamics_keys};
 static const struct key_table collisions_table = {"observe.collisions", NULL, COUNT(every_keys), every_keys};
 
+static const struct key_table profile_table = {"observe.profile", NULL, COUNT(profile_keys), profile_keys};
+static const struct key_table stress_table = {"observe.stress", NULL, COUNT(every_keys), every_keys};
+
 static const struct key observe_keys[] = {
     {.name = "from",
-     .text = "Step at which averages (`statics`, `dynamics`) begin, so that they leave a transient out. Time series "
+     .text = "Step at which averages (`statics`, `dynamics`, `profile`) begin, so that they leave a transient out. "
+             "Time series "
              "begin at step 0 all the same. At most `steps`. If absent: 0.",
      .type = KEY_WHOLE64,
      .optional = true,
@@ -104,6 +123,19 @@ static const struct key observe_keys[] = {
      .optional = true,
      .keys = &collisions_table,
      .offset = IN_SCENE(observe.every[OBSERVE_COLLISIONS]),
+     .line = true},
+    {.name = "profile",
+     .text = "Averages in slabs along y: density, velocity, temperature of the solvent.",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &profile_table,
+     .line = true},
+    {.name = "stress",
+     .text = "Time series of the solvent's stress: in the bulk, and on walls.",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &stress_table,
+     .offset = IN_SCENE(observe.every[OBSERVE_STRESS]),
      .line = true},
 };
 static const struct key_table observe_table = {"observe", NULL, COUNT(observe_keys), observe_keys};

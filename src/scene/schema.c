@@ -129,12 +129,29 @@ static size_t write_required(FILE *f, const struct key_table *table, size_t writ
     const struct key *key = &table->key[k];
     if (key->type == KEY_INCLUDE) {
       written = write_required(f, key->keys, written);
-    } else if (key_is_required(key)) {
+    } else if (key_is_required(key) && !key->idle) {
       fputs(written++ ? ", " : "", f);
       write_string(f, key->name);
     }
   }
   return written;
+}
+
+/* Keys that are required unless another key is 1. */
+static void write_idle(FILE *f, const struct key_table *table)
+{
+  const char *other = NULL;
+  for (size_t k = 0; k < table->count; k++) {
+    const struct key *key = &table->key[k];
+    if (!key->idle)
+      continue;
+    if (!other)
+      fprintf(f, "\"if\": {\"not\": {\"properties\": {\"%s\": {\"const\": 1}}}}, \"then\": {\"required\": [",
+              key->idle_with);
+    fprintf(f, "%s\"%s\"", other ? ", " : "", key->name);
+    other = key->idle_with;
+  }
+  fputs(other ? "]}, " : "", f);
 }
 
 /* Pairs of keys that are not given together. */
@@ -154,6 +171,7 @@ static void write_mapping(FILE *f, const struct key_table *table, int indent)
 {
   fputs("\"type\": \"object\", \"additionalProperties\": false, ", f);
   write_exclusions(f, table);
+  write_idle(f, table);
   fputs("\"required\": [", f);
   write_required(f, table, 0);
   fputs("], \"properties\": {", f);

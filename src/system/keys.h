@@ -39,6 +39,10 @@ struct key {
   const char *absent;
   const char *fallback; /* the default: the value in a new scene without the key; NULL: as `absent` */
 
+  /* Of a required key that has no meaning where another key of the same mapping is 1: that key, a KEY_WHOLE32 which
+   * stands earlier in the table, and the value that is stored if this one is missing there. NULL: always required. */
+  const char *idle_with, *idle;
+
   double low, high;             /* numbers */
   uint64_t least, most;         /* whole numbers */
   const char *const *choice;    /* words, ended by NULL */

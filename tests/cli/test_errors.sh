@@ -129,11 +129,11 @@ gives 2 'no memory of the observable' run "$dir/other.yaml" --out "$run" --resum
 sleep 0.4
 kill -INT $!
 wait $!
-[ $? = 5 ] && grep -q '^go on with:  uncross run ' "$dir/out"
+[ $? = 5 ] && grep -qF "go on with:  $uncross run " "$dir/out"
 ok $? "SIGINT: exit code 5, and what to do next"
-next=$(sed -n 's/^go on with:  uncross //p' "$dir/out")
-eval "timeout -s INT 0.4 \"$uncross\" $next" >"$dir/out" 2>&1
-[ $? = 124 ] && grep -q '^go on with:  uncross run ' "$dir/out"
+next=$(sed -n 's/^go on with:  //p' "$dir/out")
+eval "timeout -s INT 0.4 $next" >"$dir/out" 2>&1
+[ $? = 124 ] && grep -q '^go on with:  .* run ' "$dir/out"
 ok $? "what is printed is the whole command, as a shell takes it"
 "$uncross" info "$dir/stop'd here" >"$dir/out" && grep -q 'run.json: record of a run' "$dir/out" && grep -q 'checkpoint.h5: checkpoint of' "$dir/out"
 ok $? "info of a run's folder"

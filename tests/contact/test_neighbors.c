@@ -244,12 +244,50 @@ static void anchors_hold_within_the_margin(void **unused)
   assert_true(renew(&r, 1, far));
   assert_close(nb->reference[1].skin, 1.0, 1e-11);
   assert_true(neighbors_hold(nb, 1, far) && neighbors_hold(nb, 1, a) && !neighbors_hold(nb, 1, further));
-  /* a short one: the anchor stands where the vertex goes */
+  /* a short one: the anchor stands where a vertex goes that is at rest */
+  r.state.velocity[0] = r.state.velocity[1] = (struct vec3){0, 0, 0};
   const struct point near = {a.x + margin / 2, a.y, a.z};
   assert_true(renew(&r, 1, near));
   assert_true(nb->reference[1].at.x == near.x && nb->reference[1].at.y == near.y && neighbors_hold(nb, 1, a));
   assert_close(nb->reference[1].skin, NEIGHBORS_SKIN, 1e-11);
   check_lists(&r, 3);
+  test_end(&r);
+}
+
+/* Without a solvent the anchor of a short move stands ahead, by 0.3 t0 times the mean velocity of five vertices; beyond
+ * an end, the end counts again. Both ends of the move stay within the margin: the lead is at most 0.7 of what the move
+ * leaves of it. With a solvent, particles or not, there is no lead. */
+static void anchors_lead_without_a_solvent(void **unused)
+{
+  (void)unused;
+  struct dice d = {7};
+  struct test_run r = random_bonds(6, 6, 6, 10, &d);
+  struct neighbors *nb = &r.work.contact.neighbors;
+  assert_true(neighbors_build(&r.state, &r.model, &r.work.contact, &r.work.fault));
+  const struct point a = r.state.position[1], near = {a.x + lattice_from_a0(0.05), a.y, a.z};
+  r.state.velocity[0] = (struct vec3){0, 0, -0.1}; /* the dumbbell's other end: twice; vertex 1 itself: three times */
+  r.state.velocity[1] = (struct vec3){0, 0.2, 0};
+  assert_true(renew(&r, 1, near));
+  struct vec3 lead = point_difference(nb->reference[1].at, near);
+  assert_close(lead.x, 0.0, 1e-11);
+  assert_close(lead.y, 0.036, 1e-11);
+  assert_close(lead.z, -0.012, 1e-11);
+  r.state.velocity[0] = r.state.velocity[1] = (struct vec3){300.0, 0, -400.0};
+  assert_true(renew(&r, 1, near));
+  lead = point_difference(nb->reference[1].at, near);
+  assert_close(lead.x, 0.6 * 0.7 * (NEIGHBORS_SKIN - 0.05), 1e-11);
+  assert_close(lead.z, -0.8 * 0.7 * (NEIGHBORS_SKIN - 0.05), 1e-11);
+  assert_true(neighbors_hold(nb, 1, a) && neighbors_hold(nb, 1, near));
+  const uint32_t middle = r.state.vertices - 3; /* of the last fiber, of five */
+  for (uint32_t k = 0; k < 5; k++)
+    r.state.velocity[middle - 2 + k] = (struct vec3){0, 0.01 * (1u << k), 0}; /* mean 0.062 */
+  const struct point here = r.state.position[middle];
+  assert_true(renew(&r, middle, here));
+  assert_close(point_difference(nb->reference[middle].at, here).y, 0.0186, 1e-11);
+  r.model.solvent.per_cell = 5.0;
+  assert_true(renew(&r, 1, near));
+  assert_true(nb->reference[1].at.x == near.x && nb->reference[1].at.y == near.y && nb->reference[1].at.z == near.z);
+  check_lists(&r, 7);
   test_end(&r);
 }
 
@@ -322,8 +360,11 @@ static void distances_of_bonds(void **unused)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(lists_are_complete_after_a_build), cmocka_unit_test(lists_stay_complete_under_moves),
-      cmocka_unit_test(anchors_hold_within_the_margin),   cmocka_unit_test(distances_of_bonds),
+      cmocka_unit_test(lists_are_complete_after_a_build),
+      cmocka_unit_test(lists_stay_complete_under_moves),
+      cmocka_unit_test(anchors_hold_within_the_margin),
+      cmocka_unit_test(anchors_lead_without_a_solvent),
+      cmocka_unit_test(distances_of_bonds),
       cmocka_unit_test(endless_bonds_are_a_fault),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -5,14 +5,18 @@ keeps what is damaged without a word. An isolated process that dies of a damage 
 program, but is counted.
 """
 import collections
-import os
 import pathlib
 import random
 import re
 import shutil
 import subprocess
+import sys
 
 import h5py
+
+sys.dont_write_bytecode = True  # nothing is left in the source tree
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from support import UNCROSS  # noqa: E402
 
 SCENE = """box: [4, 4, 4]
 time_step: 0.01
@@ -38,8 +42,8 @@ UNCHECKED = ("port",)  # what a port writes carries no checksum: it may be read 
 class Bench:
     """A finished run and a pack, and what each reader makes of the whole files."""
 
-    def __init__(self, uncross, folder):
-        self.uncross, self.folder = os.path.abspath(uncross), pathlib.Path(folder)
+    def __init__(self, folder):
+        self.folder = pathlib.Path(folder)
         self.counts = collections.Counter()
         (self.folder / "s.yaml").write_text(SCENE)
         start = SCENE.replace("steps: 20", "steps: 2").replace("seed: 1\n", "seed: 1\nstart: {snapshot: victim.h5}\n")
@@ -69,7 +73,7 @@ class Bench:
     def run(self, *words):
         """Exit code, standard output, standard error. A code below 0 is a death, None a hang."""
         try:
-            done = subprocess.run([self.uncross, *words], cwd=self.folder, capture_output=True, timeout=LIMIT,
+            done = subprocess.run([UNCROSS, *words], cwd=self.folder, capture_output=True, timeout=LIMIT,
                                   check=False)
         except subprocess.TimeoutExpired:
             return None, b"", b""

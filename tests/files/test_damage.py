@@ -1,6 +1,5 @@
 """Damaged files, through every reader: a small part of tests/stress/stress_damage.py; and how damaged frames are named.
 Needs UNCROSS."""
-import os
 import struct
 import tempfile
 import unittest
@@ -8,9 +7,6 @@ import unittest
 import h5py
 
 import damage
-
-
-UNCROSS = os.environ.get("UNCROSS", "build/uncross")
 
 # What of frame 2 (step 10) is changed, and how it is called.
 TABLES = [("particles/trajectory/position/value", (2, 7, 1), b"positions"),
@@ -21,14 +17,14 @@ TABLES = [("particles/trajectory/position/value", (2, 7, 1), b"positions"),
 class Damage(unittest.TestCase):
     def test_no_damage_is_taken_for_good(self):
         with tempfile.TemporaryDirectory() as folder:
-            bench = damage.Bench(UNCROSS, folder)
+            bench = damage.Bench(folder)
             wrong = bench.attack(48, 12, 14)
             print(f"# {dict(bench.counts)}")
             self.assertFalse(wrong, "\n".join(wrong))
 
     def test_a_damaged_frame_is_named_and_left_out_if_told(self):
         with tempfile.TemporaryDirectory() as folder:
-            bench = damage.Bench(UNCROSS, folder)
+            bench = damage.Bench(folder)
             whole = bench.data["trajectory"]
             frames = bench.right["trajectory", "export"].split(b"\n202\n")
             for path, place, name in TABLES:
@@ -62,7 +58,7 @@ class Damage(unittest.TestCase):
     def test_old_trajectories_are_read(self):
         """Version 1: no checksums, and it is said."""
         with tempfile.TemporaryDirectory() as folder:
-            bench = damage.Bench(UNCROSS, folder)
+            bench = damage.Bench(folder)
             with h5py.File(bench.folder / "run/trajectory.h5", "r+") as file:
                 own = file["parameters/uncross"]
                 own.attrs.modify("format_version", 1)

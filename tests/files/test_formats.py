@@ -13,14 +13,17 @@ import pathlib
 import re
 import shutil
 import subprocess
+import sys
 import tempfile
 import unittest
 
 import h5py
 import numpy
 
-TOP = pathlib.Path(__file__).resolve().parents[2]
-UNCROSS = pathlib.Path(os.environ.get("UNCROSS", TOP / "build/uncross")).resolve()
+sys.dont_write_bytecode = True  # nothing is left in the source tree
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from support import TOP, uncross  # noqa: E402
+
 EDGES = (6.0, 5.0, 7.0)
 SCENE = """box: [6, 5, 7]
 time_step: 0.01
@@ -125,7 +128,7 @@ class Formats(unittest.TestCase):
         cls.temporary = tempfile.TemporaryDirectory()
         cls.folder = pathlib.Path(cls.temporary.name)
         (cls.folder / "scene.yaml").write_text(SCENE)
-        subprocess.run([UNCROSS, "run", "scene.yaml", "--out", "run1", "--quiet"], cwd=cls.folder, check=True)
+        uncross("run", "scene.yaml", "--out", "run1", "--quiet", cwd=cls.folder, check=True)
         cls.path = cls.folder / "run1/trajectory.h5"
         with h5py.File(cls.path) as file:
             group = file["particles/trajectory"]
@@ -138,7 +141,7 @@ class Formats(unittest.TestCase):
         cls.temporary.cleanup()
 
     def export(self, *words, path=None, code=0):
-        done = subprocess.run([UNCROSS, "export", path or self.path, *words], capture_output=True, text=True, check=False)
+        done = uncross("export", path or self.path, *words)
         self.assertEqual(done.returncode, code, done.stderr)
         return done.stdout if code == 0 else done.stderr
 
@@ -150,11 +153,13 @@ class Formats(unittest.TestCase):
         self.assertEqual(header["angles"], [len(angles)])
         for axis, edge in zip("xyz", EDGES):
             self.assertEqual(header[f"{axis}lo {axis}hi"], [0.0, edge])
-        masses = [2, 4, 3, 1.5, 1]
-        self.assertEqual(header["atom types"], [5])
+        solvent = rows > self.vertices
+        masses = [2, 4, 3, 1.5] + [1] * solvent
+        for what in ("atom", "bond", "angle"):
+            self.assertEqual(header[f"{what} types"], [4 + solvent])
         self.assertEqual(found["Masses"], [[k + 1.0, m] for k, m in enumerate(masses)])
-        self.assertEqual(found["Bond Coeffs"][:4], [[k + 1.0, kind[5] / 2, kind[4]] for k, kind in enumerate(KINDS)])
-        self.assertEqual(found["Angle Coeffs"][:4], [[k + 1.0, kind[6]] for k, kind in enumerate(KINDS)])
+        self.assertEqual(found["Bond Coeffs"], [[k + 1.0, kind[5] / 2, kind[4]] for k, kind in enumerate(KINDS)] + [[5, 0, 0]] * solvent)
+        self.assertEqual(found["Angle Coeffs"], [[k + 1.0, kind[6]] for k, kind in enumerate(KINDS)] + [[5, 0]] * solvent)
         atoms = numpy.array(found["Atoms"])
         self.assertEqual(atoms[:, 0].tolist(), list(range(1, rows + 1)))
         molecule = [(number + 1, kind + 1) for number, (kind, v) in enumerate(fibers()) for _ in v]

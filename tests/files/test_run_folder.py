@@ -7,6 +7,7 @@ import re
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
@@ -14,8 +15,11 @@ import unittest
 import h5py
 import numpy
 
-UNCROSS = os.environ.get("UNCROSS", "build/uncross")
-FAULTS = os.environ.get("BUILD", "build") + "/uncross-faults"  # tests/faults/inject.h
+sys.dont_write_bytecode = True  # nothing is left in the source tree
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from support import BUILD, UNCROSS, FolderTest, uncross  # noqa: E402
+
+FAULTS = BUILD / "uncross-faults"  # tests/faults/inject.h
 SCENE = """box: [4, 4, 4]
 time_step: 0.01
 steps: 40
@@ -37,11 +41,9 @@ def without_checksums(file):
     file["parameters/uncross"].attrs.modify("format_version", numpy.int32(1))
 
 
-class RunFolder(unittest.TestCase):
+class RunFolder(FolderTest):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.dir = pathlib.Path(folder.name)
+        super().setUp()
         self.run_folder = self.dir / "r"
 
     def scene(self, text, name="scene.yaml"):
@@ -50,7 +52,7 @@ class RunFolder(unittest.TestCase):
 
     def uncross(self, *words, code=0, said=""):
         """What the program says, after its exit code and a part of its words were looked at."""
-        done = subprocess.run([UNCROSS, *map(str, words)], capture_output=True, text=True, check=False, timeout=120)
+        done = uncross(*words, timeout=120)
         self.assertEqual(done.returncode, code, done.stderr)
         self.assertIn(said, done.stdout + done.stderr)
         return done.stdout + done.stderr

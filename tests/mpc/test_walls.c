@@ -89,7 +89,7 @@ static void walls_give_what_the_solvent_gains(void **unused)
       for (int rule = 0; rule < RULES; rule++)
         for (int thermostat = 0; thermostat < THERMOSTATS; thermostat++)
           for (int motion = 0; motion < 3; motion++) {
-            struct model m = walls_model(4, 3, 4, rule == RULE_AT_PLUS_A ? 5.0 : 4.5, rule, fill);
+            struct model m = walls_model(4, 3, 4, fill == FILL_PAPER && rule == RULE_AT_PLUS_A ? 4.0 : 4.5, rule, fill);
             if (model_rule_is_thermal(&m) && thermostat != THERMOSTAT_NONE)
               continue;
             m.seed = dice_u64(&d);

@@ -21,7 +21,7 @@ static struct model suspension(void)
   return m;
 }
 
-static const struct observe_plan everything = {.every = {2, 3, 2, 2, 5}, .longest_lag = 64};
+static const struct observe_plan everything = {.every = {2, 3, 2, 2, 5, 2, 3}, .longest_lag = 64, .slabs = 4};
 
 /* --- conserved ---------------------------------------------------------------------------------------------------- */
 
@@ -217,7 +217,7 @@ static void restore_blocks(struct observers *observers, const struct saved *save
 /* New observers that take over from the old ones, as a resumed run does. */
 static struct observers *checkpoint(struct observers *old, const struct model *model)
 {
-  struct saved saved[16];
+  struct saved saved[24];
   const size_t n = save_blocks(old, saved);
   observers_free(old);
   struct observers *new = observers_create(&everything, model);
@@ -252,6 +252,7 @@ static struct outcome observed_run(uint64_t stop)
   struct outcome o = {.rows = calloc(1, sizeof *o.rows)};
   struct observers *observers = observers_create(&everything, &r.model);
   const struct observe_sink sink = {keep_row, o.rows};
+  r.work.mpc.stress = observers_stress(observers);
   for (uint64_t step = 0;; step++) {
     if (observers_due(observers, step))
       assert_true(observers_sample(observers, &r.model, &r.state, &sink));
@@ -259,6 +260,7 @@ static struct outcome observed_run(uint64_t stop)
       break;
     if (step == stop && stop > 0) {
       observers = checkpoint(observers, &r.model);
+      r.work.mpc.stress = observers_stress(observers);
       put_in_id_order(&r.state);
     }
     test_steps(&r, 1);
@@ -275,7 +277,7 @@ static void interrupted_run_gives_the_same_tables(void **unused)
 {
   (void)unused;
   struct outcome whole = observed_run(0);
-  assert_int_equal(whole.kept->tables, 4);
+  assert_int_equal(whole.kept->tables, 5);
   for (uint64_t stop = 76; stop <= 78; stop++) {
     struct outcome parts = observed_run(stop);
     assert_same_outcome(&whole, &parts);
@@ -302,7 +304,8 @@ static void cadence(void **unused)
   assert_int_equal(rows[OBSERVE_CONSERVED], 76);
   assert_int_equal(rows[OBSERVE_TEMPERATURE], 51);
   assert_int_equal(rows[OBSERVE_COLLISIONS], 31);
-  assert_int_equal(rows[OBSERVE_STATICS] + rows[OBSERVE_DYNAMICS], 0);
+  assert_int_equal(rows[OBSERVE_STRESS], 51);
+  assert_int_equal(rows[OBSERVE_PROFILE] + rows[OBSERVE_STATICS] + rows[OBSERVE_DYNAMICS], 0);
   assert_close(kept_value(o.kept, "statics-kind1", 0, "samples"), 76, 0);
   assert_close(kept_value(o.kept, "dynamics-kind2", 0, "intervals"), 75, 0);
   end_outcome(&o);
@@ -345,7 +348,7 @@ static void repeated_and_refused_samples(void **unused)
   const struct observe_sink good = {keep_row, rows}, bad = {refuse, NULL};
   assert_true(observers_sample(observers, &r.model, &r.state, &good));
   assert_true(observers_sample(observers, &r.model, &r.state, &good));
-  assert_int_equal(rows->rows, 3);
+  assert_int_equal(rows->rows, 4);
   struct kept *kept = keep_summaries(observers, &r.model);
   assert_close(kept_value(kept, "statics-kind1", 0, "samples"), 1, 0);
   test_steps(&r, 2);

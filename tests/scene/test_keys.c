@@ -135,14 +135,15 @@ static void absent_values_stay(void **unused)
   assert_true(scene_write(&s, stream, false));
   fclose(stream);
   assert_string_equal(
-      said, "box: [9, 9, 9]\ntime_step: 0.01\nseed: 1\norder: kick-split\nflow: [0, 0, 0]\nsolvent:\n"
-            "  per_cell: 3\n  collision_interval: 0.01\n  rotation_angle: 90\n  rule: srd\n  thermostat: none\n"
-            "  hydrodynamics: true\n  bath: particles\n  acceleration: [0, 0, 0]\nfibers:\n  - name: a\n"
-            "    count: 1\n    vertices: 8\n    ring: false\n    mass: 5\n    bond_length: 0.5\n"
-            "    spring: 100\n    bending: 0\n    force: [0, 0, 0]\n    start: equilibrium\ncrossing:\n"
-            "  forbidden: true\n  rule: sequential\n  exclusion: shared-vertex\n  refusal: stay\n  frame: laboratory\n"
-            "steps: 0\nobserve:\n  dynamics: {every: 1, longest_lag: 0}\n"
-            "trajectory: {every: 1, solvent: false, velocities: true}\ncheckpoint:\n  seconds: 300\n");
+      said,
+      "box: [9, 9, 9]\ntime_step: 0.01\nseed: 1\norder: kick-split\nflow: [0, 0, 0]\ndimensions: 3\nsolvent:\n"
+      "  per_cell: 3\n  collision_interval: 0.01\n  rotation_angle: 90\n  rule: srd\n  thermostat: none\n"
+      "  hydrodynamics: true\n  bath: particles\n  acceleration: [0, 0, 0]\n  profile: uniform\nfibers:\n  - name: a\n"
+      "    count: 1\n    vertices: 8\n    ring: false\n    mass: 5\n    bond_length: 0.5\n"
+      "    spring: 100\n    bending: 0\n    force: [0, 0, 0]\n    start: equilibrium\ncrossing:\n"
+      "  forbidden: true\n  rule: sequential\n  exclusion: shared-vertex\n  refusal: stay\n  frame: laboratory\n"
+      "steps: 0\nobserve:\n  dynamics: {every: 1, longest_lag: 0}\n"
+      "trajectory: {every: 1, solvent: false, velocities: true}\ncheckpoint:\n  seconds: 300\n");
   free(said);
   scene_free(&s);
 }
@@ -163,8 +164,9 @@ static void check_rows(const struct key_table *table)
     assert_true(key->text && *key->text);
     assert_true(strlen(key->text) < 1800);
     assert_false(key_is_required(key) && key->fallback);
-    const char *const texts[] = {key->absent, key->fallback};
-    for (int i = 0; i < 2; i++)
+    assert_true(!key->idle_with == !key->idle && (!key->idle || key_is_required(key)));
+    const char *const texts[] = {key->absent, key->fallback, key->idle};
+    for (int i = 0; i < 3; i++)
       if (texts[i] && !key_read_text(key, texts[i], &value))
         fail_msg("%s: '%s' is no value", key->name, texts[i]);
   }

@@ -79,7 +79,12 @@ static const struct bad bad_scenes[] = {
     {17, "    mass: 6", 17, 5, "key 'mass' is given twice, first in line 14"},
     {3, "", 1, 1, "key 'steps' is missing; allowed: whole number 0 .."},
     {7, "", 8, 3, "solvent: key 'per_cell' is missing; allowed: number > 0"},
-    {16, "", 11, 5, "fibers: key 'spring' is missing"},
+    {16, "", 11, 5, "fibers: key 'spring' is missing; allowed: number > 0, <= 1000000000"},
+    {15, "", 11, 5, "fibers: key 'bond_length' is missing; allowed: number >= 0, <= 512"},
+    {17, "  - {name: b, count: 1, vertices: 2, mass: 1}", 17, 5, "fibers: key 'bond_length' is missing"},
+    {17, "  - {name: b, count: 1, vertices: 0, mass: 1}", 17, 35, "'0' is out of range"},
+    {17, "  - {name: b, count: 1, vertices: 1, mass: 1, spring: 0}", 17, 55, "'0' is out of range"},
+    {17, "  - {name: b, count: 1, vertices: 1}", 17, 5, "fibers: key 'mass' is missing"},
     {21, "  dynamics: {longest_lag: 10}", 21, 13, "observe.dynamics: key 'every' is missing"},
     {4, "[1, 2]: 3", 4, 1, "a key must be a word"},
     /* types */
@@ -442,6 +447,24 @@ static void effective_scene_reads_back(void **unused)
     scene_free(&again);
     scene_free(&s);
   }
+}
+
+/* A bead has no bonds, so their keys may be missing. The effective scene has a rest length of 0 and a spring of 1. */
+static void beads_need_no_bonds(void **unused)
+{
+  (void)unused;
+  struct scene bare = read_with(17, "  - {name: b, count: 1, vertices: 1, mass: 1}");
+  struct scene full = read_with(17, "  - {name: b, count: 1, vertices: 1, mass: 1, bond_length: 0, spring: 1}");
+  struct scene other = read_with(17, "  - {name: b, count: 1, vertices: 1, mass: 1, bond_length: 0.5, spring: 1}");
+  assert_true(bare.model.kind[1].bond_length == 0.0 && bare.model.kind[1].spring == 1.0);
+  assert_true(bare.fingerprint == full.fingerprint && bare.fingerprint != other.fingerprint);
+  char *ours = written(&bare), *theirs = written(&full);
+  assert_string_equal(ours, theirs);
+  free(theirs);
+  free(ours);
+  scene_free(&other);
+  scene_free(&full);
+  scene_free(&bare);
 }
 
 static void fingerprints(void **unused)
@@ -1057,7 +1080,7 @@ static void keys_are_documented(void **unused)
     free(table);
     at = end;
   }
-  assert_int_equal(tables, 14);
+  assert_int_equal(tables, 16);
   for (const char *at = said; (at = strstr(at, "\n| `")) != NULL; at++)
     written++;
   for (const char *at = text; (at = strstr(at, "\n| `")) != NULL; at++)
@@ -1108,6 +1131,7 @@ int main(void)
       cmocka_unit_test(snapshot_path),
       cmocka_unit_test(stability_limit),
       cmocka_unit_test(effective_scene_reads_back),
+      cmocka_unit_test(beads_need_no_bonds),
       cmocka_unit_test(fingerprints),
       cmocka_unit_test(fingerprints_stay),
       cmocka_unit_test(settings_are_as_the_file),

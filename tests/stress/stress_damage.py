@@ -2,7 +2,6 @@
 
 usage: stress_damage.py [FLIPS CUTS SEED]      needs UNCROSS; prints one line of counts
 """
-import os
 import pathlib
 import sys
 import tempfile
@@ -14,7 +13,7 @@ import damage  # noqa: E402  (found by the line above)
 def main():
     flips, cuts, seed = (int(word) for word in sys.argv[1:4]) if len(sys.argv) > 3 else (2700, 675, 2026)
     with tempfile.TemporaryDirectory() as folder:
-        bench = damage.Bench(os.environ.get("UNCROSS", "build/uncross"), folder)
+        bench = damage.Bench(folder)
         wrong = bench.attack(flips, cuts, seed)
     for line in wrong[:50]:
         print(line)

@@ -1,25 +1,14 @@
 #!/usr/bin/python3
 """Each exercise of docs/course.md has its scene and its line, and the program takes the scene with and without the
 change."""
-import importlib.machinery
-import importlib.util
-import os
 import pathlib
-import subprocess
 import sys
 import tempfile
 import unittest
 
-sys.dont_write_bytecode = True
-TOP = pathlib.Path(__file__).resolve().parents[2]
-UNCROSS = pathlib.Path(os.environ.get("UNCROSS", TOP / "build/uncross")).resolve()
-
-
-def load(path):
-    loader = importlib.machinery.SourceFileLoader(path.name, str(path))
-    module = importlib.util.module_from_spec(importlib.util.spec_from_loader(path.name, loader))
-    loader.exec_module(module)
-    return module
+sys.dont_write_bytecode = True  # nothing is left in the source tree
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from support import TOP, load, uncross  # noqa: E402
 
 
 class Exercises(unittest.TestCase):
@@ -31,7 +20,7 @@ class Exercises(unittest.TestCase):
                 with self.subTest(exercise=name, line=new), tempfile.TemporaryDirectory() as folder:
                     path = pathlib.Path(folder) / "scene.yaml"
                     path.write_text(text.replace(old, new, 1), encoding="utf-8")
-                    done = subprocess.run([UNCROSS, "check", path], capture_output=True, text=True, check=False)
+                    done = uncross("check", path)
                     self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_lines_stand_in_the_course(self):

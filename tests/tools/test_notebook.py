@@ -7,11 +7,13 @@ import pathlib
 import re
 import shutil
 import subprocess
-import tempfile
+import sys
 import unittest
 
-TOP = pathlib.Path(__file__).resolve().parents[2]
-UNCROSS = pathlib.Path(os.environ.get("UNCROSS", TOP / "build/uncross")).resolve()
+sys.dont_write_bytecode = True  # nothing is left in the source tree
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from support import TOP, FolderTest, uncross  # noqa: E402
+
 NOTEBOOK = TOP / "examples/python/look_at_a_run.ipynb"
 SCENE = """box: [8, 8, 8]
 time_step: 0.01
@@ -27,7 +29,7 @@ trajectory: {every: 20, solvent: true}
 """
 
 
-class Notebook(unittest.TestCase):
+class Notebook(FolderTest):
     def test_is_committed_without_results(self):
         for cell in json.loads(NOTEBOOK.read_text(encoding="utf-8"))["cells"]:
             self.assertFalse(cell.get("outputs"))
@@ -36,28 +38,27 @@ class Notebook(unittest.TestCase):
     def test_runs(self):
         if not shutil.which("jupyter-nbconvert"):
             self.skipTest("no jupyter-nbconvert (tools/install-dependencies readers)")
-        with tempfile.TemporaryDirectory() as name:
-            folder = pathlib.Path(name)
-            (folder / "scene.yaml").write_text(SCENE)
-            subprocess.run([UNCROSS, "run", "scene.yaml", "--out", "run1", "--quiet"], cwd=folder, check=True)
-            shutil.copy(NOTEBOOK, folder)
-            environment = {**os.environ, "PATH": "/usr/bin:" + os.environ["PATH"], "HOME": name}
-            environment.pop("MPLBACKEND", None)
-            done = subprocess.run(["jupyter-nbconvert", "--to", "notebook", "--execute", "--output", "done.ipynb",
-                                   "--ExecutePreprocessor.shutdown_kernel=immediate", NOTEBOOK.name], cwd=folder, env=environment, capture_output=True, text=True, check=False)
-            self.assertEqual(done.returncode, 0, done.stderr[-3000:])
-            cells = json.loads((folder / "done.ipynb").read_text())["cells"]
-            outputs = [output for cell in cells for output in cell.get("outputs", [])]
-            said = "".join("".join(output["text"]) for output in outputs if output["output_type"] == "stream"
-                           and output["name"] == "stdout")
-            self.assertEqual(sum("image/png" in output.get("data", {}) for output in outputs), 3)
-            self.assertEqual([output["text"] for output in outputs if output.get("name") == "stderr"], [])
-            run = json.loads((folder / "run1/run.json").read_text())
-            self.assertIn(run["state_hash"], said)
-            with open(folder / "run1/statics-ring.csv", encoding="utf-8") as file:
-                row = next(csv.DictReader(file))
-            shape = re.search(r"\nring\n  l +(\S+) \+- (\S+)\n", said)
-            self.assertAlmostEqual(float(shape[1]), float(row["l"]), 4)
+        folder = self.dir
+        (folder / "scene.yaml").write_text(SCENE)
+        uncross("run", "scene.yaml", "--out", "run1", "--quiet", cwd=folder, check=True)
+        shutil.copy(NOTEBOOK, folder)
+        environment = {**os.environ, "PATH": "/usr/bin:" + os.environ["PATH"], "HOME": str(folder)}
+        environment.pop("MPLBACKEND", None)
+        done = subprocess.run(["jupyter-nbconvert", "--to", "notebook", "--execute", "--output", "done.ipynb",
+                               "--ExecutePreprocessor.shutdown_kernel=immediate", NOTEBOOK.name], cwd=folder, env=environment, capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr[-3000:])
+        cells = json.loads((folder / "done.ipynb").read_text())["cells"]
+        outputs = [output for cell in cells for output in cell.get("outputs", [])]
+        said = "".join("".join(output["text"]) for output in outputs if output["output_type"] == "stream"
+                       and output["name"] == "stdout")
+        self.assertEqual(sum("image/png" in output.get("data", {}) for output in outputs), 3)
+        self.assertEqual([output["text"] for output in outputs if output.get("name") == "stderr"], [])
+        run = json.loads((folder / "run1/run.json").read_text())
+        self.assertIn(run["state_hash"], said)
+        with open(folder / "run1/statics-ring.csv", encoding="utf-8") as file:
+            row = next(csv.DictReader(file))
+        shape = re.search(r"\nring\n  l +(\S+) \+- (\S+)\n", said)
+        self.assertAlmostEqual(float(shape[1]), float(row["l"]), 4)
 
 
 if __name__ == "__main__":

@@ -6,8 +6,6 @@ the files of the folder, numbers against what the files say.
 import base64
 import contextlib
 import html.parser
-import importlib.machinery
-import importlib.util
 import io
 import json
 import math
@@ -15,7 +13,6 @@ import os
 import pathlib
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
 import unittest
@@ -26,8 +23,11 @@ import h5py
 import numpy
 from PIL import Image
 
-TOP = pathlib.Path(__file__).resolve().parents[2]
-UNCROSS = pathlib.Path(os.environ.get("UNCROSS", TOP / "build" / "uncross")).resolve()
+sys.dont_write_bytecode = True  # nothing is left in the source tree
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import support  # noqa: E402
+from support import TOP, UNCROSS, load  # noqa: E402
+
 os.environ["UNCROSS"] = str(UNCROSS)
 sys.path.insert(0, str(TOP / "python"))
 from uncross_plot import columns, compare, fibers, page, runs, tables  # noqa: E402
@@ -49,14 +49,11 @@ VOID = {"meta", "img", "br"}
 
 
 def uncross(*words, environment=None):
-    done = subprocess.run([UNCROSS, *map(str, words)], stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False,
-                          env={**os.environ, **(environment or {})})
+    done = support.uncross(*words, env={**os.environ, **(environment or {})})
     return done.returncode, done.stdout, done.stderr
 
 
-LOADER = importlib.machinery.SourceFileLoader("uncross_plot_program", str(TOP / "tools" / "uncross-plot"))
-program = importlib.util.module_from_spec(importlib.util.spec_from_loader(LOADER.name, LOADER))
-LOADER.exec_module(program)
+program = load(TOP / "tools" / "uncross-plot")
 
 
 def plot(*words):
@@ -407,6 +404,10 @@ class Folder(unittest.TestCase):
     def test_theory_is_held_against_open_fibers(self):
         run = runs.read(str(self.run_dir))
         self.assertEqual(run.exact(run.table("statics-rings")), {})
+        drawn = {figure.name: figure.caption for kind in ("rings", "rods") for figure in page.figure_of(run, run.table(f"statics-{kind}"))
+                 if isinstance(figure, page.Figure)}
+        self.assertIn("No theory for this kind", drawn["statics-rings"])
+        self.assertNotIn("No theory", drawn["statics-rods"])
         exact = run.exact(run.table("statics-rods"))
         self.assertEqual(sorted(exact), ["Ree2", "cos", "l", "lp"])
         self.assertAlmostEqual(exact["l"], 0.538462)

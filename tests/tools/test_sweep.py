@@ -8,14 +8,16 @@ import pathlib
 import shutil
 import signal
 import subprocess
-import tempfile
+import sys
 import time
 import unittest
 
 import numpy
 
-TOP = pathlib.Path(__file__).resolve().parents[2]
-UNCROSS = os.environ.get("UNCROSS", str(TOP / "build/uncross"))
+sys.dont_write_bytecode = True  # nothing is left in the source tree
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from support import UNCROSS, FolderTest  # noqa: E402
+
 SCENE = """box: [5, 5, 5]
 time_step: 0.02
 steps: 1000
@@ -47,11 +49,9 @@ def tables(folder):
     return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*.csv"))}
 
 
-class SweepTest(unittest.TestCase):
+class SweepTest(FolderTest):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.dir = pathlib.Path(folder.name)
+        super().setUp()
         self.scene = self.dir / "scene.yaml"
         self.scene.write_text(SCENE)
         self.out = self.dir / "out"

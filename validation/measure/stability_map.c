@@ -1,5 +1,6 @@
 /* Where a run is stable, and how far its energies are off: the time step against the stiffness of springs and of bends,
- * order kick-split, no thermostat, crossings free. Prints a table for docs/pictures/stability.gnuplot.
+ * order kick-split, no thermostat, crossings free. Prints docs/pictures/stability.tsv, which
+ * docs/pictures/draw-measured draws.
  *
  * Springs: dumbbells without rest length, M = 5; k <r^2>/3 over kT, which is 1/(1 - (omega dt/2)^2) for a leap-frog
  * whose on-step velocities have kT. Bends: fibers of 8 vertices, k = 100, l0 = 0.5; the mean bend energy over its exact
