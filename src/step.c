@@ -145,9 +145,10 @@ static void set_total_momentum(struct state *state, const struct model *model)
 static void add_shear(struct state *state, const struct model *model)
 {
   const double rate = model_is_sheared(model) ? shear_rate(model, 0) : 0.0;
+  const int64_t middle = model->box.edge[1] / 2;
   struct solvent *s = &state->solvent;
   for (uint32_t i = 0; rate != 0.0 && i < s->n; i++)
-    s->vx[i] += rate * (double)(s->y[i] - model->box.edge[1] / 2) * LATTICE_UNIT;
+    s->vx[i] += rate * (double)(s->y[i] - middle) * LATTICE_UNIT;
 }
 
 bool step_start(struct state *state, const struct model *model, struct work *work)

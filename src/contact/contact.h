@@ -67,6 +67,7 @@ struct grid_entry {
   struct grid_bond {
     int32_t bond;
     int8_t image[3]; /* of the bond that lies there; 0: the image of its first end's reference position */
+    int8_t zero;     /* no hole in the struct: entries are compared as a whole */
   } is;
 };
 

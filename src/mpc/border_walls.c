@@ -54,7 +54,7 @@ static struct cut cut_cell(const struct model *model, const struct mpc *c, uint3
   const struct box *box = &model->box;
   const uint32_t lx = (uint32_t)box->rows[0], ry = (uint32_t)box->rows[1], each = lx * (uint32_t)box->rows[2];
   const enum wall wall = k < each ? WALL_LOWER : WALL_UPPER;
-  const uint32_t in_row = k % each, row = wall == WALL_LOWER ? 0 : ry - 1;
+  const uint32_t in_row = k < each ? k : k - each, row = wall == WALL_LOWER ? 0 : ry - 1;
   const uint32_t place = (in_row / lx * ry + row) * lx + in_row % lx;
   const double s = (double)c->shift.y * LATTICE_UNIT;
   return (struct cut){wall, place, wall == WALL_LOWER ? s : 1.0 - s, cell_members(&c->sum[place])};

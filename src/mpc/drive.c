@@ -49,8 +49,9 @@ static void weigh_reverse(const struct model *model, const int64_t *y, uint32_t 
 /* a0, from the middle */
 static void weigh_height(const struct model *model, const int64_t *y, uint32_t n, double *weight)
 {
+  const int64_t middle = model->box.edge[1] / 2;
   for (uint32_t i = 0; i < n; i++)
-    weight[i] = (double)(y[i] - model->box.edge[1] / 2) * LATTICE_UNIT;
+    weight[i] = (double)(y[i] - middle) * LATTICE_UNIT;
 }
 
 static profile_weights *const profiles[PROFILES] = {

@@ -213,7 +213,7 @@ static bool read_list(const struct reading *r)
   return true;
 }
 
-static bool (*const readers[])(const struct reading *) = {
+static bool (*const readers[KEY_INCLUDE + 1])(const struct reading *) = {
     [KEY_WHOLE64] = read_whole64, [KEY_WHOLE32] = read_whole32, [KEY_NUMBER] = read_a_number,
     [KEY_VECTOR] = read_vector,   [KEY_CELLS] = read_cells,     [KEY_SWITCH] = read_switch,
     [KEY_CHOICE] = read_choice,   [KEY_NAME] = read_name,       [KEY_TEXT] = read_text,
@@ -281,7 +281,7 @@ bool key_read_text(const struct key *key, const char *text, void *to)
   struct message ignored;
   struct reading r = {.table = &none, .key = key, .to = to, .message = &ignored};
   r.node = value_read(&tree, key->name, text, &ignored);
-  const bool ok = r.node && readers[key->type](&r);
+  const bool ok = r.node && key->type != KEY_INCLUDE && readers[key->type](&r);
   tree_free(&tree);
   return ok;
 }

@@ -334,7 +334,7 @@ static const struct key shear_keys[] = {
      .text = "Period of the rate, cos(2 pi t/period): a whole number of collision intervals, 4 or more. 0: the rate is "
              "constant.",
      .type = KEY_NUMBER,
-     .absent = "0",
+     .optional = true,
      .low = 0,
      .high = 1e6,
      .offset = IN_MODEL(shear.period),

@@ -181,7 +181,7 @@ static double bessel_ratio(double x)
   double ratio = 0.0;
   if (x > 1e4)
     return 1.0 - 0.5 / x - 0.125 / (x * x) - 0.125 / (x * x * x);
-  for (double k = 40.0 + 2.0 * ceil(x); k >= 1.0; k--)
+  for (int k = 40 + 2 * (int)ceil(x); k >= 1; k--)
     ratio = x / (2.0 * k + x * ratio);
   return ratio;
 }

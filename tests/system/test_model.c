@@ -50,7 +50,7 @@ CHANGE(uneven_interval, m->solvent.collision_interval = 0.025)
 CHANGE(short_interval, m->solvent.collision_interval = 0.005)
 CHANGE(no_angle, m->solvent.rotation_angle = 0.0)
 CHANGE(wide_angle, m->solvent.rotation_angle = 180.5)
-CHANGE(no_thermostat, m->solvent.thermostat = (enum thermostat_kind)3)
+CHANGE(no_thermostat, m->solvent.thermostat = THERMOSTATS)
 CHANGE(no_bath, m->solvent.bath = (enum bath)2)
 CHANGE(fast_acceleration, m->solvent.acceleration.y = 101.0)
 CHANGE(few_particles, m->solvent.per_cell = 1e-5)
@@ -132,8 +132,8 @@ static const struct bound bounds[] = {
     {no_angle, "solvent.rotation_angle", "0 is out of range; allowed: number > 0, <= 180"},
     {wide_angle, "solvent.rotation_angle", "180.5 is out of range"},
     {thermal_thermostat, "solvent.thermostat", "holds the temperature by itself"},
-    {no_rule, "solvent.rule", "2 is out of range"},
-    {no_thermostat, "solvent.thermostat", "3 is out of range"},
+    {no_rule, "solvent.rule", "3 is out of range"},
+    {no_thermostat, "solvent.thermostat", "4 is out of range"},
     {no_bath, "solvent.bath", "2 is out of range"},
     {fast_acceleration, "solvent.acceleration", "101 is out of range"},
     {few_particles, "solvent.per_cell", "makes 0 particles; allowed: 1 to 2147483647"},

@@ -78,7 +78,7 @@ class PortCiTest(unittest.TestCase):
             done = self.run_step(name)
             self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         report = json.loads((self.dir / "oracle.json").read_text())
-        self.assertEqual((report["verdict"], len(report["checks"])), ("same", 6))
+        self.assertEqual((report["verdict"], len(report["checks"])), ("same", 7))
         (self.dir / "oracle.json").unlink()
         self.port("exit 1")
         self.assertEqual(self.run_step("Check").returncode, 7)

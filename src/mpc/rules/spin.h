@@ -86,10 +86,10 @@ static inline void spin_add_particle(struct cell_spin *s, struct point y, struct
 }
 
 /* Omega = Pi^-1 L, 1/t0, Pi = tr C - C, from C = sum m (y - X)(y - X), in the order of `second`, and the angular
- * momentum L about X. Where all members are on one line (always, if there are two) Pi has no inverse; there the part of
- * Omega along the line is set to 0: it would turn nothing. That is if the least eigenvalue is below 1e-12 of the
- * trace. 0 if all members are at one place. */
-struct vec3 spin_rate(const double c[6], struct vec3 angular);
+ * momentum L (l) about X. Where all members are on one line (always, if there are two) Pi has no inverse; there the
+ * part of Omega along the line is set to 0: it would turn nothing. That is if the least eigenvalue is below 1e-12 of
+ * the trace. 0 if all members are at one place. */
+struct vec3 spin_rate(const double c[6], struct vec3 l);
 
 /* Sets center, axis (Omega, 1/t0) and factor of a cell's turn, and the middle: the lattice point next to the centre of
  * mass. A member that is alone keeps its velocity. */

@@ -201,14 +201,14 @@ static double velocity_loss(double cosine, uint32_t d, double mass, uint32_t oth
   return (d == 2 ? 1.0 : 2.0 / 3.0) * (1.0 - cosine) * others / (mass + others);
 }
 
-/* cos 2 alpha = 2 cos^2 alpha - 1. Padding 2009, Eq. (30); in a plane the stress is turned by 2 alpha. */
+/* cos 2 alpha = 2 cos^2 alpha - 1. Of theory_viscosity_kinetic; in a plane the stress is turned by 2 alpha. */
 static double stress_loss(double cosine, uint32_t d, double n)
 {
   const double twice = 2.0 * cosine * cosine - 1.0;
   return (d == 2 ? 1.0 - twice : (4.0 - 2.0 * cosine - 2.0 * twice) / 5.0) * rule_partners(n) / n;
 }
 
-/* Padding 2009, Eq. (31). */
+/* Of theory_viscosity_collisional. */
 static double handed_on(double cosine, uint32_t d, double n)
 {
   return (1.0 - cosine) / (d == 2 ? 12.0 : 18.0) * rule_partners(n);
