@@ -79,7 +79,10 @@ static hid_t add_element(struct trajectory *t, hid_t parent, const char *name, i
     H5Olink(t->time, element, "time", H5P_DEFAULT, H5P_DEFAULT);
   }
   h5_close(element);
-  return value;
+  if (t->step >= 0 && t->time >= 0)
+    return value;
+  h5_close(value); /* else a further element would make them anew */
+  return -1;
 }
 
 static bool add_box(struct trajectory *t, const struct model *model)
