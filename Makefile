@@ -15,6 +15,8 @@ WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prot
 INCLUDES  = -Isrc -Iinclude $(patsubst -I%,-isystem %,$(shell pkg-config --cflags-only-I hdf5))
 CFLAGS   ?= -g
 ALL_CFLAGS = $(STRICT) $(OPTIMIZE) $(WARNINGS) $(INCLUDES) $(CFLAGS)
+# The headers of a target, whether BUILD is given as a relative path or as an absolute one.
+DEPENDENCIES = -MMD -MP $(addprefix -MT ,$(sort $@ $(abspath $@) $(patsubst $(CURDIR)/%,%,$(abspath $@))))
 LIBS      = $(shell pkg-config --libs hdf5 yaml-0.1 jansson libxxhash) -lm
 TEST_LIBS = -lcmocka -lgsl -lgslcblas -lmpfr -lgmp
 
@@ -78,7 +80,7 @@ $(LIBRARY): $(filter-out $(TOP),$(OBJECTS))
 $(BUILD)/%.o: %.c Makefile
 	@mkdir -p $(@D)
 	@echo '  CC $<'
-	@$(CC) $(ALL_CFLAGS) -MMD -MP -c $< -o $@
+	@$(CC) $(ALL_CFLAGS) $(DEPENDENCIES) -c $< -o $@
 
 # --- libraries to link (docs/library.md) ------------------------------------------------------------------------------
 
@@ -101,7 +103,7 @@ libraries: $(LIBRARIES)
 $(BUILD)/lib/src/%.o: src/%.c Makefile
 	@mkdir -p $(@D)
 	@echo '  CC $< (library)'
-	@$(CC) $(ALL_CFLAGS) -fPIC -fvisibility=hidden -MMD -MP -c $< -o $@
+	@$(CC) $(ALL_CFLAGS) -fPIC -fvisibility=hidden $(DEPENDENCIES) -c $< -o $@
 
 $(BUILD)/lib/$(SONAME): $(LINKED_OBJECTS)
 	@echo '  LD $@'
@@ -198,19 +200,19 @@ $(BUILD)/install/%.pc: tools/%.pc.in force
 $(BUILD)/tests/%: tests/%.c $(LIBRARY) Makefile
 	@mkdir -p $(@D)
 	@echo '  CC $<'
-	@$(CC) $(ALL_CFLAGS) -Itests -MMD -MP $< $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
+	@$(CC) $(ALL_CFLAGS) -Itests $(DEPENDENCIES) $< $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
 
 # Tests of the public interface see nothing else: they are linked with the shared library.
 $(BUILD)/tests/api/test_%: tests/api/test_%.c $(BUILD)/lib/libuncross.so Makefile
 	@mkdir -p $(@D)
 	@echo '  CC $<'
-	@$(CC) $(filter-out -Isrc,$(ALL_CFLAGS)) -Itests -MMD -MP $< -L$(BUILD)/lib -Wl,-rpath,'$$ORIGIN/../../lib' -luncross -lcmocka -lm -o $@
+	@$(CC) $(filter-out -Isrc,$(ALL_CFLAGS)) -Itests $(DEPENDENCIES) $< -L$(BUILD)/lib -Wl,-rpath,'$$ORIGIN/../../lib' -luncross -lcmocka -lm -o $@
 
 # No file of the core needs HDF5, YAML or jansson: all of them are linked, whether used or not.
 $(BUILD)/tests/api/test_core: tests/api/test_core.c $(BUILD)/lib/libuncross-core.a Makefile
 	@mkdir -p $(@D)
 	@echo '  CC $<'
-	@$(CC) $(ALL_CFLAGS) -MMD -MP $< -Wl,--whole-archive $(BUILD)/lib/libuncross-core.a -Wl,--no-whole-archive \
+	@$(CC) $(ALL_CFLAGS) $(DEPENDENCIES) $< -Wl,--whole-archive $(BUILD)/lib/libuncross-core.a -Wl,--no-whole-archive \
 	   -lcmocka -lxxhash -lm -o $@
 
 # Memory, files and HDF5 that fail on demand (tests/faults/inject.h): the program, and the tests of tests/faults.
@@ -225,12 +227,12 @@ $(BUILD)/uncross-faults: $(TOP) $(LIBRARY) $(INJECTOR)
 $(BUILD)/tests/faults/test_%: tests/faults/test_%.c $(LIBRARY) $(INJECTOR) Makefile
 	@mkdir -p $(@D)
 	@echo '  CC $<'
-	@$(CC) $(ALL_CFLAGS) -Itests -MMD -MP $< $(INJECT) $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
+	@$(CC) $(ALL_CFLAGS) -Itests $(DEPENDENCIES) $< $(INJECT) $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
 
 $(BUILD)/validation/%: validation/%.c $(LIBRARY) Makefile
 	@mkdir -p $(@D)
 	@echo '  CC $<'
-	@$(CC) $(ALL_CFLAGS) -Itests -MMD -MP $< $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
+	@$(CC) $(ALL_CFLAGS) -Itests $(DEPENDENCIES) $< $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
 
 .PHONY: tests
 tests: $(BUILD)/uncross $(BUILD)/uncross-faults $(LIBRARIES) $(TEST_PROGRAMS) $(BENCH_PROGRAMS)
@@ -283,7 +285,7 @@ $(BUILD)/validation/measure/solvent_vacf_box_axes: validation/measure/solvent_va
    $(BUILD)/$(PEER)/box_axes.o $(LIBRARY)
 	@mkdir -p $(@D)
 	@echo '  CC $<'
-	@$(CC) $(ALL_CFLAGS) -Itests -MMD -MP $< $(BUILD)/$(PEER)/box_axes.o -Wl,--wrap=random_axes $(LIBRARY) $(LIBS) -o $@
+	@$(CC) $(ALL_CFLAGS) -Itests $(DEPENDENCIES) $< $(BUILD)/$(PEER)/box_axes.o -Wl,--wrap=random_axes $(LIBRARY) $(LIBS) -o $@
 
 $(BUILD)/validation/measure/solvent_lammps: $(PEER)/solvent_lammps $(PEER)/solvent.lammps
 	@mkdir -p $(@D)

@@ -19,23 +19,25 @@ struct field {
   size_t count; /* 0: a scalar */
   size_t offset;
   double least, most; /* when read; a real number is finite in any case */
+  bool late;          /* earlier checkpoints lack it: 0 */
 };
 
 #define AT(member) offsetof(struct checkpoint_summary, member)
 #define ANY -HUGE_VAL, HUGE_VAL
 
 static const struct field fields[] = {
-    {"head", "fingerprint", U64, 0, AT(head.fingerprint), ANY},
-    {"head", "seed", U64, 0, AT(head.seed), ANY},
-    {"head", "state_hash", U64, 0, AT(head.state_hash), ANY},
-    {"head", "wall_seconds", REAL, 0, AT(head.wall_seconds), 0.0, 1e12},
-    {"head", "start_energy", REAL, 0, AT(head.start_energy), ANY},
-    {"head", "start_momentum", REAL, 3, AT(head.start_momentum), ANY},
-    {"structure", "cells", I32, 3, AT(cells), 1.0, LATTICE_MAX_EDGE},
-    {"structure", "time_step", REAL, 0, AT(time_step), 1e-300, 1e300},
-    {"structure", "acceleration", REAL, 3, AT(acceleration), ANY},
-    {"structure", "particles", U32, 0, AT(particles), 0.0, INT32_MAX},
-    {"structure", "vertices", U32, 0, AT(vertices), 0.0, INT32_MAX},
+    {"head", "fingerprint", U64, 0, AT(head.fingerprint), ANY, false},
+    {"head", "seed", U64, 0, AT(head.seed), ANY, false},
+    {"head", "state_hash", U64, 0, AT(head.state_hash), ANY, false},
+    {"head", "wall_seconds", REAL, 0, AT(head.wall_seconds), 0.0, 1e12, false},
+    {"head", "start_energy", REAL, 0, AT(head.start_energy), ANY, false},
+    {"head", "start_momentum", REAL, 3, AT(head.start_momentum), ANY, false},
+    {"structure", "cells", I32, 3, AT(cells), 1.0, LATTICE_MAX_EDGE, false},
+    {"structure", "time_step", REAL, 0, AT(time_step), 1e-300, 1e300, false},
+    {"structure", "acceleration", REAL, 3, AT(acceleration), ANY, false},
+    {"structure", "particles", U32, 0, AT(particles), 0.0, INT32_MAX, false},
+    {"structure", "vertices", U32, 0, AT(vertices), 0.0, INT32_MAX, false},
+    {"structure", "dimensions", U32, 0, AT(dimensions), 0.0, 3.0, true},
 };
 
 static hid_t type_of(const struct field *field)
@@ -52,8 +54,10 @@ bool checkpoint_fields(hid_t file, struct checkpoint_summary *summary, bool writ
     const struct field *f = &fields[k];
     char *at = (char *)summary + f->offset;
     hid_t group = h5_open_group(file, f->group);
-    ok = group >= 0 &&
-         (write ? h5_put(group, f->name, type_of(f), f->count, at) : h5_get(group, f->name, type_of(f), f->count, at));
+    const bool absent = !write && f->late && group >= 0 && H5Aexists(group, f->name) == 0;
+    ok = group >= 0 && (absent  ? true
+                        : write ? h5_put(group, f->name, type_of(f), f->count, at)
+                                : h5_get(group, f->name, type_of(f), f->count, at));
     h5_close(group);
   }
   return ok;
@@ -189,7 +193,9 @@ static bool read_summary(hid_t file, const char *path, bool sealed, struct check
 
 struct model checkpoint_model(const struct checkpoint_summary *s)
 {
-  struct model model = {.box = box_of_cells(s->cells[0], s->cells[1], s->cells[2]), .time_step = s->time_step};
+  struct model model = {.box = box_of_cells(s->cells[0], s->cells[1], s->cells[2]),
+                        .dimensions = s->dimensions,
+                        .time_step = s->time_step};
   model.solvent.particles = s->particles;
   model.solvent.acceleration = s->acceleration;
   model.vertices = s->vertices;

@@ -18,6 +18,7 @@ struct checkpoint_summary {
   struct checkpoint_head head;
   int32_t version;
   int cells[3];
+  uint32_t dimensions; /* 2: of a plane */
   double time_step;
   struct vec3 acceleration; /* of the solvent, in a0/t0^2 */
   uint32_t particles, vertices;
@@ -25,8 +26,8 @@ struct checkpoint_summary {
   struct state numbers; /* only what state_numbers lists */
 };
 
-/* A model with the box, the numbers of particles and vertices, the time step and the body force of a summary: enough
- * for a state. */
+/* A model with the box, its dimensions, the numbers of particles and vertices, the time step and the body force of a
+ * summary: enough for a state. */
 struct model checkpoint_model(const struct checkpoint_summary *summary);
 
 /* --- within a process of its own (apart.h) ----------------------------------------------------------------------- */

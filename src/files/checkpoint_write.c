@@ -87,6 +87,7 @@ static struct checkpoint_summary summary_of(const struct checkpoint_head *head, 
                                             const struct state *state)
 {
   struct checkpoint_summary s = {.head = *head,
+                                 .dimensions = model->dimensions,
                                  .time_step = model->time_step,
                                  .acceleration = model->solvent.acceleration,
                                  .particles = state->solvent.n,

@@ -128,6 +128,39 @@ static void parts_may_be_missing(void **unused)
 }
 
 /* Everything of one solvent particle trades places in memory with everything of another. */
+/* In a plane bonds may be longer than half the edge along z, which is one cell. */
+static void a_plane_comes_back(void **unused)
+{
+  (void)unused;
+  char folder[64];
+  make_folder(folder);
+  const char *path = in_folder(folder, "checkpoint.h5");
+  struct message message = {""};
+  struct model m = test_model(8, 8, 1, 5.0, 0.05, 2);
+  m.dimensions = 2;
+  m.crossing.forbidden = false;
+  test_add_kind(&m, 2, 4)->bond_length = 1.0;
+  struct test_run r = test_start(m);
+  struct checkpoint_head head = {.seed = r.model.seed, .version = "0.1.0"};
+  if (!checkpoint_write(path, &head, &r.model, &r.state, NULL, 0, "", &message))
+    fail_msg("%s", message.text);
+  const uint64_t hash = state_hash(&r.state);
+  if (!checkpoint_read(path, &r.model, &head, &r.state, NULL, 0, &message))
+    fail_msg("%s", message.text);
+  assert_true(state_hash(&r.state) == hash);
+
+  /* without this number it is a box of three dimensions */
+  hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT), group = H5Gopen2(file, "structure", H5P_DEFAULT);
+  uint32_t dimensions = 0;
+  hid_t number = H5Aopen(group, "dimensions", H5P_DEFAULT);
+  assert_true(H5Aread(number, H5T_NATIVE_UINT32, &dimensions) >= 0 && dimensions == 2);
+  H5Aclose(number);
+  H5Gclose(group);
+  H5Fclose(file);
+  test_end(&r);
+  remove_folder(folder);
+}
+
 static void trade_places(struct solvent *p, uint32_t a, uint32_t b)
 {
   int64_t *lattice[] = {p->x, p->y, p->z};
@@ -491,6 +524,6 @@ int main(void)
       cmocka_unit_test(the_old_one_survives),        cmocka_unit_test(damage_is_found),
       cmocka_unit_test(flipped_memory_is_found),     cmocka_unit_test(foreign_files_are_refused),
       cmocka_unit_test(other_observers_are_refused), cmocka_unit_test(unsound_states_are_refused),
-      cmocka_unit_test(an_endless_lag_is_refused)};
+      cmocka_unit_test(an_endless_lag_is_refused),   cmocka_unit_test(a_plane_comes_back)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
