@@ -5,7 +5,9 @@ import numpy
 
 from lib import figures, flow, stats, theory
 from lib.case import Figure, Outcome, Verdict
-from lib.flow_runs import HEAT_ACCELERATION, HEAT_POINT, HEAT_RATE, PERIODS, POINTS, RATE, RULES, SPEED, runs  # noqa: F401
+from lib.flow_estimates import (KEY, POWERS, conductivity, couette, driven, fluctuations, heat, heated_flow, oscillation, poiseuille,
+                                quotient, sheared, sheared_by_walls, wall_stress, waves)
+from lib.flow_runs import HEAT_POINT, HEAT_RATE, PERIODS, POINTS, RATE, RULES, SPEED, runs  # noqa: F401
 
 TITLE = "The solvent in flow: shear, walls, forces, oscillation, heat"
 PAPER = "not in the paper; Tao, Götze and Gompper (2008)"
@@ -13,11 +15,12 @@ USES = ("solvent", "andersen")  # shear waves of both rules in three dimensions
 
 CHAOS = {3: 0.30}  # what molecular chaos may be off by, by particles per cell; else:
 CHAOS_DENSE = 0.08
-MARGIN = 1.0  # a0 from the walls in which a profile is not fitted: the solution of Milne's problem nears its line as exp(-4.5 y)
 NAMES = {"srd": "SRD", "at-a": "MPC-AT-a", "at+a": "MPC-AT+a"}
-KEY = {"srd": "srd", "at-a": "at-a", "at+a": "atpa"}  # in names of runs
-GREEN_KUBO_LAG = 15  # collisions, as in case andersen
-WIDTH = {"srd": 30.0, "at-a": 30.0, "at+a": 60.0}  # eta_col(k) = eta_col (1 - k^2/WIDTH): see the README
+
+
+COUETTE = {"planar-L10": ("srd", "planar"), "paper-L10": ("srd", "paper"), "planar-L20": ("srd", "planar"), "paper-L20": ("srd", "paper"),
+           "planar-L20-at-a": ("at-a", "planar")}
+QUICK_COUETTE = ("planar-L10", "paper-L10")
 
 
 def words(name):
@@ -30,12 +33,6 @@ def within(error, agreed):
     return agreed if error < 0.25 * agreed else stats.tolerance(error)
 
 
-def quotient(a, b):
-    """(a/b, error) of two numbers with errors."""
-    value = a[0] / b[0]
-    return value, abs(value) * math.hypot(a[1] / a[0], b[1] / b[0])
-
-
 def filled(verdict, pair, agreed=None, systematic=0.0, error=0.0):
     """The verdict with (value, error) and a tolerance: `agreed`, see within(), or errors and a systematic part."""
     if pair is not None:
@@ -46,62 +43,6 @@ def filled(verdict, pair, agreed=None, systematic=0.0, error=0.0):
 
 
 # --- viscosities ------------------------------------------------------------------------------------------------------
-
-def sheared(results, name, rule, suffix="", rate=RATE):
-    """(eta, error) of a sheared box: stress over rate."""
-    run = f"shear-{name}-{KEY[rule]}{suffix}"
-    if run not in results:
-        return None
-    sigma, error = flow.stress(results[run], "sigma_xy")
-    return sigma / rate, error / rate
-
-
-def driven(results, name, rule, kind="kolmogorov"):
-    """(eta for k -> 0, error): from the amplitude of the first harmonic. Collisions see velocities half a kick ahead of the samples'."""
-    run = f"{kind}-{name}-{KEY[rule]}"
-    if run not in results:
-        return None
-    point, profile = POINTS[name], flow.Profile(results[run], POINTS[name])
-    g = flow.scene_of(results[run])["solvent"]["acceleration"][0]
-    k = 2.0 * math.pi / profile.height
-    half = 0.5 * k * profile.thickness
-    share = 4.0 / math.pi if kind == "reverse" else 1.0  # of a force +-g, the sine
-    eta = sum(flow.viscosity(point, rule))
-    fit = flow.generalised([numpy.sin(k * profile.y) * math.sin(half) / half], profile.table["vx"],
-                           profile.covariance(flow.periodic(profile.y, profile.height, eta)))
-    amplitude, error = fit.value[0] + 0.5 * share * g * point.dt, fit.error[0]
-    kinetic, collisional = flow.viscosity(point, rule)
-    value = share * g * point.n / (amplitude * k * k) / (1.0 - collisional / (kinetic + collisional) * k * k / WIDTH[rule])
-    return value, value * error / amplitude
-
-
-def poiseuille(results, name):
-    """((eta, error), (b, error), stats.Fit, Profile): parabola of the bulk. Collisions see velocities a kick ahead of the samples'."""
-    run = f"poiseuille-{name}"
-    if run not in results:
-        return None
-    point, profile = POINTS[name], flow.Profile(results[run], POINTS[name], MARGIN)
-    g, height, y = flow.scene_of(results[run])["solvent"]["acceleration"][0], profile.height, profile.y
-    response = flow.between_walls(y, height, sum(flow.viscosity(point, "at-a")), flow.slip_length(point, "at-a"))
-    parabola = y * (height - y) - profile.thickness**2 / 12.0  # mean over a slab
-    fit = flow.generalised([parabola, numpy.ones(len(y))], profile.table["vx"] + g * point.dt, profile.covariance(response))
-    (bend, shift), c = fit.value, fit.covariance
-    eta = point.n * g / (2.0 * bend)
-    slip = shift / (bend * height)
-    slip_error = abs(slip) * math.sqrt(c[1, 1] / shift**2 + c[0, 0] / bend**2 - 2.0 * c[0, 1] / (shift * bend))
-    return (eta, eta * fit.error[0] / bend), (slip, slip_error), fit, profile
-
-
-def waves(results, path, point, parts):
-    return flow.from_waves(results[path].columns, point.n, *parts) if path in results else None
-
-
-def fluctuations(results, path):
-    if path not in results:
-        return None
-    table = results[path].columns
-    return table["eta"][GREEN_KUBO_LAG], table["eta_error"][GREEN_KUBO_LAG]
-
 
 def others(results, tier):
     """(point, rule, word, what it is, value, agreed) of each value of a viscosity that no sheared box made."""
@@ -119,6 +60,8 @@ def others(results, tier):
                                                                                    theory.andersen_viscosity(10, 0.02)), None),
                   ("3d-n5", "at+a", "stress", "fluctuations in equilibrium", fluctuations(results, "stress-3d-n5-atpa"), None),
                   ("2d-n10", "at-a", "reverse", "reverse Poiseuille flow", driven(results, "2d-n10", "at-a", "reverse"), 0.015)]
+        found += [("2d-n10", rule, "couette-" + name, f"Couette flow, {name}", sheared_by_walls(results, name), 0.02)
+                  for name, (rule, _) in COUETTE.items()]
     found += [(name, rule, "kolmogorov", "Kolmogorov flow", driven(results, name, rule), 0.015) for name, rule in kolmogorov]
     for name in ("2d-n10",) if tier == "quick" else ("2d-n10", "3d-n5"):
         known = poiseuille(results, name)
@@ -164,39 +107,35 @@ def straight_verdict(results, tier):
 
 # --- walls ------------------------------------------------------------------------------------------------------------
 
-COUETTE = {"planar-L10": ("srd", "planar"), "paper-L10": ("srd", "paper"), "planar-L20": ("srd", "planar"), "paper-L20": ("srd", "paper"),
-           "planar-L20-at-a": ("at-a", "planar")}
-QUICK_COUETTE = ("planar-L10", "paper-L10")
+def slip_words(name):
+    rule, fill = COUETTE[name]
+    return f"{NAMES[rule]}, fill {fill}, {words('2d-n10')}, L {20 if 'L20' in name else 10}"
 
 
-def couette(results, name, rule, slip):
-    """((slope, error), Profile, Fit) of the bulk between sliding walls."""
-    point = POINTS["2d-n10"]
-    profile = flow.Profile(results[f"couette-{name}"], point, MARGIN)
-    response = flow.between_walls(profile.y, profile.height, sum(flow.viscosity(point, rule)), slip)
-    fit = flow.generalised([profile.y - 0.5 * profile.height, numpy.ones(len(profile.y))], profile.table["vx"], profile.covariance(response))
-    return (fit.value[0], fit.error[0]), profile, fit
+MILNE_SOURCE = "Milne's problem less bounce-back, Eqs. (2.41), (2.42)"
 
 
-def slip_verdicts(results, name, quick):
-    """b from the slope in the bulk, and, in the campaign, from the stress on the walls and the viscosity of a sheared box."""
+def slip_verdict(results, name):
+    """b from the slope in the bulk."""
     rule, fill = COUETTE[name]
     expected = flow.slip_length(POINTS["2d-n10"], rule, fill)
-    text = f"{NAMES[rule]}, fill {fill}, {words('2d-n10')}, L {20 if 'L20' in name else 10}"
-    source = "Milne's problem less bounce-back, Eqs. (2.41), (2.42)"
-    by_slope = Verdict(f"flow.slip.{name}", f"slip length from the shear rate of the bulk, {text}", expected, source, 0.03)
-    by_stress = Verdict(f"flow.slip-stress.{name}", f"slip length from the stress on the walls and η of the sheared box, {text}", expected, source, 0.03)
-    if f"couette-{name}" not in results:
-        return [by_slope] if quick else [by_slope, by_stress]
-    (slope, error), profile, _ = couette(results, name, rule, expected)
-    half = 0.5 * profile.height
-    filled(by_slope, (SPEED / slope - half, SPEED / slope * error / slope), agreed=0.03)
+    verdict = Verdict(f"flow.slip.{name}", f"slip length from the shear rate of the bulk, {slip_words(name)}", expected, MILNE_SOURCE, 0.03)
+    if f"couette-{name}" in results:
+        (slope, error), profile, _ = couette(results, name, rule, expected)
+        filled(verdict, (SPEED / slope - 0.5 * profile.height, SPEED / slope * error / slope), agreed=0.03)
+    return verdict
+
+
+def slip_by_stress_verdict(results, name):
+    """b from the stress on the walls and the viscosity of a sheared box: V eta/sigma - L/2."""
+    rule, fill = COUETTE[name]
+    verdict = Verdict(f"flow.slip-stress.{name}", f"slip length from the stress on the walls and η of the sheared box, {slip_words(name)}",
+                      flow.slip_length(POINTS["2d-n10"], rule, fill), MILNE_SOURCE, 0.03)
     box = sheared(results, "2d-n10", rule)
-    if box:
-        sigma = flow.stress(results[f"couette-{name}"], "sigma_lower", "sigma_upper")
-        ratio, ratio_error = quotient((box[0], box[1]), (0.5 * sigma[0], 0.5 * sigma[1]))
-        filled(by_stress, (SPEED * ratio - half, SPEED * ratio_error), agreed=0.03)
-    return [by_slope] if quick else [by_slope, by_stress]
+    if f"couette-{name}" in results and box:
+        ratio, error = quotient(box, wall_stress(results, name))
+        filled(verdict, (SPEED * ratio - 0.5 * flow.scene_of(results[f"couette-{name}"])["box"][1], SPEED * error), agreed=0.03)
+    return verdict
 
 
 FREE_MOST = 6.0  # a0 beyond eta/xi: "several" of the theory
@@ -222,12 +161,10 @@ def heated_slip_verdict(results):
     expected = flow.slip_length(HEAT_POINT, "srd")
     verdict = Verdict("flow.slip.dt0.1", f"slip length from the shear rate of the bulk, SRD, fill planar, 2D, n {HEAT_POINT.n}, dt_c {HEAT_POINT.dt:g}, L 10",
                       expected, "Milne's problem less bounce-back, to first order in dt_c, Eqs. (2.41), (2.42)", 0.03)
-    if "heat-couette" in results:
-        profile = flow.Profile(results["heat-couette"], HEAT_POINT, MARGIN)
-        response = flow.between_walls(profile.y, profile.height, sum(flow.viscosity(HEAT_POINT, "srd")), expected)
-        fit = flow.generalised([profile.y - 0.5 * profile.height, numpy.ones(len(profile.y))], profile.table["vx"], profile.covariance(response))
-        half, slope = 0.5 * profile.height, fit.value[0]
-        filled(verdict, (HEAT_RATE * half / slope - half, HEAT_RATE * half / slope * fit.error[0] / slope), agreed=0.03)
+    known = heated_flow(results)
+    if known:
+        half, (slope, error) = 5.0, known[0]
+        filled(verdict, (HEAT_RATE * half / slope - half, HEAT_RATE * half / slope * error / slope), agreed=0.03)
     return verdict
 
 
@@ -254,23 +191,6 @@ def poiseuille_verdict(results, name):
 
 # --- oscillation ------------------------------------------------------------------------------------------------------
 
-def oscillation(results, name):
-    """(amplitude over theory's, phase after theory's in degrees, error of the amplitude's ratio, Profile, measured v, theory's v)."""
-    run, box = f"oscillation-{name}", sheared(results, "2d-n10", "at-a")
-    if run not in results or not box:
-        return None
-    point, period = POINTS["2d-n10"], PERIODS[name]
-    profile = flow.Profile(results[run], point, MARGIN)
-    slip, rho_omega = flow.slip_length(point, "at-a"), point.n * 2.0 * math.pi / period
-    theirs = SPEED * flow.oscillating(profile.y, profile.height, box[0], slip, rho_omega)
-    ours = profile.table["vx_in_phase"] - 1j * profile.table["vx_out_of_phase"]  # v = Re[v exp(i omega t)]
-    time = math.floor(profile.time / period + 1e-6) * period
-    each = 2.0 * profile.covariance(flow.between_walls(profile.y, profile.height, box[0], slip, rho_omega), time=time)
-    norm = float((abs(theirs)**2).sum())
-    ratio = (ours @ theirs.conj()) / norm
-    return abs(ratio), math.degrees(numpy.angle(ratio)), math.sqrt((theirs.conj() @ each @ theirs).real) / norm, profile, ours, theirs
-
-
 def oscillation_verdicts(results, name):
     text = f"v(y) between oscillating walls, period {PERIODS[name]} t0, MPC-AT-a, {words('2d-n10')}"
     source = "Stokes' problem in a gap with η of the sheared box and b of theory, Eq. (2.56)"
@@ -285,36 +205,6 @@ def oscillation_verdicts(results, name):
 
 # --- heat -------------------------------------------------------------------------------------------------------------
 
-POWERS = {"couette": 2, "poiseuille": 4}
-
-
-def heat(results, name):
-    """(parameters, covariance, Profile): T = T_mid - drop |2z/L|^power, fitted in the bulk."""
-    if f"heat-{name}" not in results:
-        return None
-    point = HEAT_POINT
-    profile = flow.Profile(results[f"heat-{name}"], point, 1.0)
-    z = abs(2.0 * profile.y / profile.height - 1.0)
-    response = flow.between_walls(profile.y, profile.height, sum(flow.heat_conductivity(point)), 0.5)
-    covariance = profile.covariance(response, noise=2.0 / point.d)
-    p, c = flow.curve(lambda p: p[0] - p[1] * z**p[2], (1.1, 0.1, POWERS[name]), profile.table["temperature"], covariance)
-    fixed = flow.generalised([numpy.ones(len(z)), -z**POWERS[name]], profile.table["temperature"], covariance)
-    return p, c, profile, fixed
-
-
-def conductivity(results, name):
-    """(kappa, error) from the drop of the temperature towards the walls and the work of the flow."""
-    known = heat(results, name)
-    if not known:
-        return None
-    drop, error = known[3].value[1], known[3].error[1]
-    eta, height = sum(flow.viscosity(HEAT_POINT, "srd")), known[2].height
-    if name == "couette":
-        rate = HEAT_RATE / (1.0 + 2.0 * flow.slip_length(HEAT_POINT, "srd") / height)
-        power = eta * rate**2 * height**2 / 8.0
-    else:
-        power = (HEAT_POINT.n * HEAT_ACCELERATION)**2 / (12.0 * eta) * (0.5 * height)**4
-    return power / drop, power / drop * error / drop
 
 
 def heat_verdicts(results, tier):
@@ -333,15 +223,171 @@ def heat_verdicts(results, tier):
     return found
 
 
+# --- errors -----------------------------------------------------------------------------------------------------------
+
+def error_verdict(results, tier):
+    """Are the errors right? Blocks of each slab know nothing of hydrodynamics."""
+    found = []
+    for name in (name for name in ("planar-L10", "paper-L10", "planar-L20", "paper-L20") if f"couette-{name}" in results):
+        rule, fill = COUETTE[name]
+        slip = flow.slip_length(POINTS["2d-n10"], rule, fill)
+        _, profile, _ = couette(results, name, rule, slip)
+        response = flow.between_walls(profile.y, profile.height, sum(flow.viscosity(POINTS["2d-n10"], rule)), slip)
+        found.append(profile.surprise(profile.covariance(response)))
+    return Verdict("flow.errors", "variance of v(y) by blocks over that of fluctuating hydrodynamics, Couette flow, mean over slabs and runs", 1.0,
+                   "Landau and Lifshitz; blocks of 16 and more know a variance to some 20 %", 0.35,
+                   measured=float(numpy.mean(found)) if found else None)
+
+
+# --- figures ----------------------------------------------------------------------------------------------------------
+
+MARKS = {"waves": "shear waves", "stress": "fluctuations", "kolmogorov": "Kolmogorov", "reverse": "reverse Poiseuille", "poiseuille": "Poiseuille", "couette": "Couette"}
+
+
+def draw_viscosities(results, tier):
+    figure, panel = figures.plain(width=9.5, height=4.4)
+    places = {one: k for k, one in enumerate(sheared_points(tier))}
+    rows = {"sheared box": [(one, sheared(results, *one)) for one in places]}
+    for name, rule, word, _, value, _ in others(results, tier):
+        rows.setdefault(MARKS[word.partition("-")[0]], []).append(((name, rule), value))
+    for number, (text, row) in enumerate(rows.items()):
+        known = [(places[one] + 0.12 * (number - 2), *numpy.array(value) / sum(flow.viscosity(POINTS[one[0]], one[1]))) for one, value in row if value]
+        if known:
+            figures.points(panel, *zip(*known), number=number, label=text, markersize=4)
+    panel.axhline(1.0, color=figures.INK, linewidth=1.1)
+    panel.set_xticks(list(places.values()), [f"{NAMES[rule].replace('MPC-', '')}\n{words(name).replace(', dt', chr(10) + 'dt')}" for name, rule in places],
+                     fontsize=7)
+    panel.set_ylabel("$\\eta$ over molecular chaos")
+    figures.legend(panel)
+    return figure
+
+
+def draw_slip(results):
+    """v - v_wall near the walls, over the shear rate of the bulk, both walls averaged: y + b."""
+    figure, panel = figures.plain()
+    names = [name for name in ("planar-L10", "paper-L10", "planar-L20") if f"couette-{name}" in results]
+    for number, name in enumerate(names):
+        rule, fill = COUETTE[name]
+        (slope, _), profile, _ = couette(results, name, rule, flow.slip_length(POINTS["2d-n10"], rule, fill))
+        whole = flow.Profile(results[f"couette-{name}"], POINTS["2d-n10"])
+        y, v = whole.y, (whole.table["vx"] - whole.table["vx"][::-1]) / 2.0
+        near = y < 4.0
+        figures.points(panel, y[near], (v[near] + SPEED) / slope - y[near], whole.table["vx_error"][near] / math.sqrt(2.0) / slope, number=number,
+                       label=f"fill {fill}, L {profile.height:g}")
+    panel.axhline(flow.slip_length(POINTS["2d-n10"], "srd"), color=figures.INK, linewidth=1.1, label="planar: Milne less bounce-back")
+    panel.axhline(0.0, color=figures.INK, linewidth=0.8, linestyle=":")
+    panel.set(xlabel="distance from the wall ($a_0$)", ylabel="$(v - v_w)/\\dot\\gamma - y$ ($a_0$)", ylim=(-0.05, 0.35))
+    figures.legend(panel)
+    return figure
+
+
+def draw_poiseuille(results, names):
+    figure, tops, belows = figures.with_residuals(width=9.5, height=4.8, columns=2, share=0.4)
+    for top, below, name in zip(tops, belows, names):
+        known = poiseuille(results, name)
+        if known is None:
+            continue
+        (eta, _), (slip, _), fit, profile = known
+        whole = flow.Profile(results[f"poiseuille-{name}"], POINTS[name])
+        g = flow.scene_of(results[f"poiseuille-{name}"])["solvent"]["acceleration"][0]
+
+        def parabola(y):
+            return fit.value[0] * (y * (profile.height - y) - profile.thickness**2 / 12.0) + fit.value[1] - g * POINTS[name].dt
+        figures.theory(top, whole.y, parabola(whole.y), label="parabola, fitted")
+        figures.points(top, whole.y, whole.table["vx"], whole.table["vx_error"], label=words(name))
+        figures.points(below, whole.y, whole.table["vx"] - parabola(whole.y), whole.table["vx_error"])
+        below.set_xlabel("y ($a_0$)")
+        top.set_title(f"$\\eta$ {eta:.3g}, b {slip:.2f} $a_0$")
+        figures.legend(top, loc="lower center")
+    tops[0].set_ylabel("$v_x$ ($a_0/t_0$)")
+    belows[0].set_ylabel("difference")
+    return figure
+
+
+def draw_oscillation(results, names):
+    figure, panels = figures.plain(width=9.5, height=4.4, columns=2)
+    for panel, name in zip(panels, names):
+        known = oscillation(results, name)
+        if known is None:
+            continue
+        _, _, _, profile, ours, theirs = known
+        figures.theory(panel, profile.y, theirs.real, label="Stokes in a gap")
+        figures.theory(panel, profile.y, -theirs.imag)
+        figures.points(panel, profile.y, ours.real, profile.table["vx_in_phase_error"], label="in phase with the walls")
+        figures.points(panel, profile.y, -ours.imag, profile.table["vx_out_of_phase_error"], number=1, label="out of phase")
+        panel.set(title=f"period {PERIODS[name]} $t_0$", xlabel="y ($a_0$)")
+        figures.legend(panel)
+    panels[0].set_ylabel("$v_x$ ($a_0/t_0$)")
+    return figure
+
+
+def draw_heat(results):
+    figure, panel = figures.plain()
+    for number, name in enumerate(name for name in POWERS if f"heat-{name}" in results):
+        _, _, profile, fixed = heat(results, name)
+        whole = flow.Profile(results[f"heat-{name}"], HEAT_POINT)
+        z = numpy.linspace(-1.0, 1.0, 101)
+        figures.theory(panel, 0.5 * profile.height * (1.0 + z), fixed.value[0] - fixed.value[1] * abs(z)**POWERS[name],
+                       label="parabola, quartic: height and drop fitted" if number == 0 else None)
+        figures.points(panel, whole.y, whole.table["temperature"], whole.table["temperature_error"], number=number, label=f"{name.capitalize()} flow")
+    panel.axhline(1.0, color=figures.INK, linewidth=0.8, linestyle=":")
+    panel.set(xlabel="y ($a_0$)", ylabel="temperature ($kT$)")
+    figures.legend(panel)
+    return figure
+
+
+def figures_of(results, tier):
+    found = []
+    if any(name.startswith("shear-") for name in results):
+        found.append(Figure("viscosities", "Viscosities over molecular chaos, by point and rule. A sheared box is read by its stress, forces and decaying "
+                            "waves by the flow that they make.", lambda: draw_viscosities(results, tier)))
+    if "couette-planar-L10" in results:
+        found.append(Figure("slip", "Couette flow near a wall: the velocity relative to the wall over the shear rate of the bulk, less the distance from "
+                            "the wall. This is the slip length b as soon as the boundary layer ends, within one cell. Both walls averaged; slabs are correlated.",
+                            lambda: draw_slip(results)))
+    names = [name for name in ("2d-n10", "3d-n5") if f"poiseuille-{name}" in results]
+    if names:
+        found.append(Figure("poiseuille", "Poiseuille flow and the parabola that is fitted beyond 1 a0 from the walls. Slabs are correlated.",
+                            lambda names=names: draw_poiseuille(results, names)))
+    names = [name for name in PERIODS if oscillation(results, name)]
+    if names:
+        found.append(Figure("oscillation", "Velocity between oscillating walls, by its parts in phase and a quarter of a period behind. Line: theory with "
+                            "the viscosity of the sheared box and the slip length of theory; nothing is fitted.",
+                            lambda names=names: draw_oscillation(results, names)))
+    if "heat-couette" in results:
+        found.append(Figure("heat", "Temperature between walls at kT = 1 without a thermostat. The flow heats, and the virtual particles take the heat away.",
+                            lambda: draw_heat(results)))
+    return found
+
+
+def percent(pair, expected):
+    return f"{100.0 * (pair[0] / expected - 1.0):+.1f} ± {100.0 * pair[1] / expected:.1f} %"
+
+
+def prose(results, tier):
+    known = [(name, rule, sheared(results, name, rule)) for name, rule in sheared_points(tier)]
+    lines = [f"{NAMES[rule]}, {words(name)}: η {eta[0]:.3f} ± {eta[1]:.3f}, {percent(eta, sum(flow.viscosity(POINTS[name], rule)))} of molecular chaos."
+             for name, rule, eta in known if eta]
+    text = "Sheared boxes. " + " ".join(lines) if lines else "No sheared box yet."
+    rates = [(rate, sheared(results, "2d-n10", "at-a", suffix, rate)) for suffix, rate in (("-slow", 0.04), ("", RATE), ("-fast", 0.16))]
+    if all(eta for _, eta in rates):
+        text += "\n\nDependence on the rate, MPC-AT-a, " + words("2d-n10") + ": " + ", ".join(
+            f"η {eta[0]:.2f} ± {eta[1]:.2f} at {rate:g}/t0" for rate, eta in rates) + "."
+    return text
+
+
 def evaluate(results, tier):
+    results = {name: result for name, result in results.items() if result.run.program or result.tables()}
     quick = tier == "quick"
     verdicts = [theory_verdict(results, *one) for one in sheared_points(tier)] + [straight_verdict(results, tier)]
     verdicts += [ways_verdict(results, *one) for one in others(results, tier)]
-    verdicts += [verdict for name in (QUICK_COUETTE if quick else COUETTE) for verdict in slip_verdicts(results, name, quick)]
+    verdicts += [slip_verdict(results, name) for name in (QUICK_COUETTE if quick else COUETTE)]
+    verdicts += [] if quick else [slip_by_stress_verdict(results, "planar-L10")]
     verdicts.append(free_verdict(results))
     for name in ("2d-n10",) if quick else ("2d-n10", "3d-n5"):
         verdicts += [balance_verdict(results, name)] + ([] if quick else [poiseuille_verdict(results, name)])
     for name in ("fast",) if quick else PERIODS:
         verdicts += oscillation_verdicts(results, name)
     verdicts += heat_verdicts(results, tier) + ([] if quick else [heated_slip_verdict(results)])
-    return Outcome(verdicts)
+    verdicts.append(error_verdict(results, tier))
+    return Outcome(verdicts, figures_of(results, tier), prose(results, tier))
