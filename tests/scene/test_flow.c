@@ -89,6 +89,36 @@ static void accepted(void **unused)
   assert_non_null(strstr(message.text, "they act on the solvent, and there is none"));
 }
 
+/* The effective scene says the same flow: run.json has it, and fingerprints are made of it. */
+static void written_and_read_again(void **unused)
+{
+  (void)unused;
+  static const char *const flows[] = {"shear: {rate: 0.1}", "shear: {rate: -0.1, period: 20}",
+                                      "shear: {strain: 0.5, period: 20}", "walls: {kind: slip}",
+                                      "walls: {kind: no-slip, fill: paper, shear_rate: 0.1, period: 20}"};
+  for (size_t k = 0; k < sizeof flows / sizeof *flows; k++) {
+    struct scene scene, again;
+    struct message message = {""};
+    char *text = NULL;
+    size_t size = 0;
+    if (!read_flow("", flows[k], &scene, &message))
+      fail_msg("%s", message.text);
+    FILE *f = open_memstream(&text, &size);
+    assert_true(f && scene_write(&scene, f, false));
+    fclose(f);
+    if (!scene_read_text("again.yaml", text, size, &again, &message))
+      fail_msg("%s", message.text);
+    assert_true(scene.model.shear.rate == again.model.shear.rate &&
+                scene.model.shear.period == again.model.shear.period);
+    assert_true(scene.model.walls.kind == again.model.walls.kind &&
+                scene.model.walls.upper.x == again.model.walls.upper.x);
+    assert_true(scene.model.wave.intervals == again.model.wave.intervals);
+    free(text);
+    scene_free(&scene);
+    scene_free(&again);
+  }
+}
+
 /* --- warnings ---------------------------------------------------------------------------------------------------- */
 
 struct told {
@@ -173,6 +203,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(refused),
       cmocka_unit_test(accepted),
+      cmocka_unit_test(written_and_read_again),
       cmocka_unit_test(warned),
       cmocka_unit_test(shear_and_drives_warned),
   };
