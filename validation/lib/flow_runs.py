@@ -83,7 +83,7 @@ def quick():
         couette("none-L20", "srd", 20, "none", 30000, 200.0),
         poiseuille("2d-n10", 0.03, (20, 20, 1), 60000, 60.0),
         profiled("2d-n10", "at-a", "kolmogorov", 0.15, 20, 40000, 15.0),
-        oscillating("fast", 30), heated("couette", 60000)]
+        oscillating("fast", 30)]
 
 
 def campaign():
