@@ -8,6 +8,7 @@
 #include "../../validation/measure/green_kubo.h"
 #include "fluid/fluid.h"
 #include "mpc/stress.h"
+#include "system/account.h"
 #include "theory/theory.h"
 
 /* Columns of stress, as kept_rows has them: the observable's number first. */
@@ -212,6 +213,41 @@ static void walls_feel_the_stress_of_the_bulk(void **unused)
   end_watch(&w);
 }
 
+/* Rows do not depend on what the account was before, though its sums wrap between two rows, upward and downward. And a
+ * difference may be beyond the range of a sum. */
+static void sums_may_wrap(void **unused)
+{
+  (void)unused;
+  enum { STEPS = 40, EVERY = 20 };
+  struct watched w[3];
+  for (int k = 0; k < 3; k++) {
+    struct model m = test_model(8, 4, 8, 5, 0.1, 1);
+    m.walls.kind = WALL_NO_SLIP;
+    m.walls.shear_rate = 0.4;
+    w[k] = watch(m, stress_every(EVERY));
+    for (uint32_t row = 0; row < 4; row++)
+      w[k].run.state.wall_momentum[row].x = k == 0 ? 0 : k == 1 ? INT64_MAX : INT64_MIN;
+    go(&w[k], STEPS);
+  }
+  for (size_t row = 1; row <= STEPS / EVERY; row++)
+    for (int k = 1; k < 3; k++) {
+      assert_true(fabs(stress_of(&w[0], row, LOWER)) > 0.1);
+      assert_true(stress_of(&w[k], row, LOWER) == stress_of(&w[0], row, LOWER));
+      assert_true(stress_of(&w[k], row, UPPER) == stress_of(&w[0], row, UPPER));
+    }
+  for (int k = 0; k < 3; k++)
+    end_watch(&w[k]);
+
+  struct point sum = {-7, 0, 0};
+  uint64_t turns = 0;
+  for (int k = 0; k < 1000; k++)
+    account_add(&sum, &turns, (struct vec3){0x1p18, 0, 0});
+  assert_true(account_along(-7, 0, sum.x, turns) == 1000 * 0x1p18);
+  for (int k = 0; k < 3000; k++)
+    account_add(&sum, &turns, (struct vec3){-0x1p18, 0, 0});
+  assert_true(account_along(-7, 0, sum.x, turns) == -2000 * 0x1p18);
+}
+
 /* --- profile ----------------------------------------------------------------------------------------------------- */
 
 /* Against sums by hand, at a time between collisions. A sheared flow, so that slabs differ. */
@@ -312,6 +348,7 @@ int main(void)
       cmocka_unit_test(pressure_of_equilibrium),
       cmocka_unit_test(heating_is_stress_times_rate),
       cmocka_unit_test(walls_feel_the_stress_of_the_bulk),
+      cmocka_unit_test(sums_may_wrap),
       cmocka_unit_test(profile_by_hand),
       cmocka_unit_test(profile_in_phase),
       cmocka_unit_test(harmonics_are_of_whole_periods),
