@@ -8,7 +8,7 @@ import time
 import jinja2
 import numpy
 
-from . import columns, fibers, runs, style, tables
+from . import columns, fibers, flow, runs, style, tables
 
 
 @dataclasses.dataclass
@@ -121,6 +121,26 @@ def guides(run, kind):
     return found
 
 
+def flow_guides(run):
+    """The profile that theory expects of a steady flow."""
+    found = flow.Flow(run)
+    y = None if not found.kind else numpy.linspace(0.0, found.edge, 200)
+    expected = None if y is None else found.expected(y)
+    return [] if expected is None else [("theory", lambda t: float(numpy.interp(t, y, expected)), "--")]
+
+
+def measured_flow(run):
+    """Viscosity, slip and the like of a flow, beside theory."""
+    rows = []
+    for m in flow.Flow(run).measured():
+        known = math.isfinite(m.theory)
+        away = f"{(m.value - m.theory) / m.error:+.1f}" if known and m.error > 0 else ""
+        rows.append((m.name, with_error(m.value, m.error), m.unit, f"{m.theory:.6g}" if known else "", away, m.source))
+    return [Rows("The flow, measured", rows, ("", "value ± error", "unit", "theory", "difference / error", "from"),
+                 "Of profile.csv and stress.csv. Errors of fits are bounds: those of slabs are added as if all went the same way. "
+                 "Theory: molecular chaos, some per cent off at a short mean free path; it is no exact number.", (1, 3, 4))] if rows else []
+
+
 def figure_of(run, table):
     """The figure of a table; with it, for a single row, the numbers."""
     name, kind = columns.split(table.name)
@@ -133,7 +153,7 @@ def figure_of(run, table):
     if table.rows == 0:
         return [Figure(columns.title(table.name), style.data_uri(tables.nothing("No row yet")), alt, words, table.name)]
     if table.rows > 1:
-        svg = tables.figure(table, guides(run, kind) if name == "dynamics" else ())
+        svg = tables.figure(table, guides(run, kind) if name == "dynamics" else flow_guides(run) if name == "profile" else ())
         return [Figure(columns.title(table.name), style.data_uri(svg), alt, words, table.name)]
     exact = run.exact(table)
     rows = []
@@ -274,6 +294,7 @@ def sections_of(run, movie=False):
     return pictures + [
         Section("Observables", [block for table in run.tables for block in figure_of(run, table)],
                 "docs/observables.md says how each column is measured."),
+        Section("Flow", measured_flow(run), "docs/walls.md and docs/observables.md have the formulas."),
         Section("Derived numbers", derived(run), "What uncross check computes from the scene alone."),
         Section("Provenance", provenance(run) + ([Text("The scene", run.scene)] if run.scene else []))]
 

@@ -89,10 +89,40 @@ static void accepted(void **unused)
   assert_non_null(strstr(message.text, "they act on the solvent, and there is none"));
 }
 
+/* The effective scene says the same flow: run.json has it, and fingerprints are made of it. */
+static void written_and_read_again(void **unused)
+{
+  (void)unused;
+  static const char *const flows[] = {"shear: {rate: 0.1}", "shear: {rate: -0.1, period: 20}",
+                                      "shear: {strain: 0.5, period: 20}", "walls: {kind: slip}",
+                                      "walls: {kind: no-slip, fill: paper, shear_rate: 0.1, period: 20}"};
+  for (size_t k = 0; k < sizeof flows / sizeof *flows; k++) {
+    struct scene scene, again;
+    struct message message = {""};
+    char *text = NULL;
+    size_t size = 0;
+    if (!read_flow("", flows[k], &scene, &message))
+      fail_msg("%s", message.text);
+    FILE *f = open_memstream(&text, &size);
+    assert_true(f && scene_write(&scene, f, false));
+    fclose(f);
+    if (!scene_read_text("again.yaml", text, size, &again, &message))
+      fail_msg("%s", message.text);
+    assert_true(scene.model.shear.rate == again.model.shear.rate &&
+                scene.model.shear.period == again.model.shear.period);
+    assert_true(scene.model.walls.kind == again.model.walls.kind &&
+                scene.model.walls.upper.x == again.model.walls.upper.x);
+    assert_true(scene.model.wave.intervals == again.model.wave.intervals);
+    free(text);
+    scene_free(&scene);
+    scene_free(&again);
+  }
+}
+
 /* --- warnings ---------------------------------------------------------------------------------------------------- */
 
 struct told {
-  int all, rescale, mach, heat, net, strain, shear_heat, drive_mach, unstable;
+  int all, rescale, mach, heat, net, strain, shear_heat, drive_mach, unstable, idle, unseen;
 };
 
 static void hear(void *context, const char *text)
@@ -106,6 +136,8 @@ static void hear(void *context, const char *text)
   t->strain += strstr(text, "the strain in a collision interval is") != NULL;
   t->shear_heat += strstr(text, "the shear heats the solvent by") != NULL;
   t->drive_mach += strstr(text, "the Mach number of the driven flow") != NULL;
+  t->idle += strstr(text, "slip walls pull nothing") != NULL;
+  t->unseen += strstr(text, "there are no solvent particles") != NULL;
   t->unstable += strstr(text, "the driven flow is expected to be unstable") != NULL;
 }
 
@@ -134,6 +166,9 @@ static void warned(void **unused)
   assert_int_equal(warnings_of("", "walls: {kind: no-slip, lower: [0.1, 0, 0], upper: [0.1, 0, 0]}").heat, 0);
   assert_int_equal(warnings_of(at, "walls: {kind: no-slip, shear_rate: 0.1}").mach, 0);
   assert_int_equal(warnings_of(at, "walls: {kind: no-slip, shear_rate: 0.2}").mach, 1);
+  assert_int_equal(warnings_of(at, "walls: {kind: slip, lower: [0.1, 0, 0]}").idle, 1);
+  assert_int_equal(warnings_of(at, "walls: {kind: slip}").idle, 0);
+  assert_int_equal(warnings_of(at, "observe: {profile: {every: 1, slabs: 8}, stress: {every: 1}}").unseen, 0);
   assert_int_equal(warnings_of("  rule: at-a\n  acceleration: [1, 0, 0]", "walls: {kind: no-slip}").mach, 1);
 }
 
@@ -173,6 +208,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(refused),
       cmocka_unit_test(accepted),
+      cmocka_unit_test(written_and_read_again),
       cmocka_unit_test(warned),
       cmocka_unit_test(shear_and_drives_warned),
   };
