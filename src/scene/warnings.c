@@ -330,9 +330,9 @@ static void warn_observables(struct teller *t, const struct scene *scene)
     warn(t, "observe.profile: there are no solvent particles to observe");
   if (plan->every[OBSERVE_STRESS] > 0 && !model_has_solvent(&scene->model))
     warn(t, "observe.stress: there are no solvent particles to observe");
-  if (plan->every[OBSERVE_STRESS] > 0 && model_has_walls(&scene->model) && scene->model.box.cells[1] < 2)
-    warn(t,
-         "observe.stress: walls cut every cell here, so there is no stress of the bulk; use a distance of 2 or more");
+  if (plan->every[OBSERVE_STRESS] > 0 && model_has_walls(&scene->model) && scene->model.box.cells[1] < 3)
+    warn(t, "observe.stress: the bulk is what is 1 a0 and more from both walls, and nothing is here; use a distance of "
+            "3 or more");
 }
 
 #define MOST_START 0.01 /* of a mean over the observed time */

@@ -122,7 +122,7 @@ static void written_and_read_again(void **unused)
 /* --- warnings ---------------------------------------------------------------------------------------------------- */
 
 struct told {
-  int all, rescale, mach, heat, net, strain, shear_heat, drive_mach, unstable, idle, unseen, early;
+  int all, rescale, mach, heat, net, strain, shear_heat, drive_mach, unstable, idle, unseen, early, narrow;
 };
 
 static void hear(void *context, const char *text)
@@ -138,6 +138,7 @@ static void hear(void *context, const char *text)
   t->drive_mach += strstr(text, "the Mach number of the driven flow") != NULL;
   t->idle += strstr(text, "slip walls pull nothing") != NULL;
   t->unseen += strstr(text, "there are no solvent particles") != NULL;
+  t->narrow += strstr(text, "the bulk is what is 1 a0 and more from both walls") != NULL;
   t->early += strstr(text, "the flow starts at rest") != NULL;
   t->unstable += strstr(text, "the driven flow is expected to be unstable") != NULL;
 }
@@ -190,6 +191,27 @@ static int early(const char *flow, int steps, int from)
   scene_warnings(&scene, hear, &told);
   scene_free(&scene);
   return told.early;
+}
+
+/* The kinetic stress is that of particles 1 a0 and more from both walls. */
+static void narrow_gap_warned(void **unused)
+{
+  (void)unused;
+  for (int height = 1; height < 5; height++) {
+    char text[512];
+    struct scene scene;
+    struct message message = {""};
+    struct told told = {0};
+    snprintf(text, sizeof text,
+             "box: [4, %d, 4]\ntime_step: 0.1\nsteps: 10\nsolvent: {per_cell: 5, collision_interval: 0.1}\n"
+             "walls: {kind: no-slip}\nobserve: {stress: {every: 5}}\n",
+             height);
+    if (!scene_read_text("flow.yaml", text, strlen(text), &scene, &message))
+      fail_msg("%s", message.text);
+    scene_warnings(&scene, hear, &told);
+    scene_free(&scene);
+    assert_int_equal(told.narrow, height < 3);
+  }
 }
 
 static void start_warned(void **unused)
@@ -251,6 +273,7 @@ int main(void)
       cmocka_unit_test(written_and_read_again),
       cmocka_unit_test(warned),
       cmocka_unit_test(start_warned),
+      cmocka_unit_test(narrow_gap_warned),
       cmocka_unit_test(shear_and_drives_warned),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
