@@ -145,7 +145,7 @@ class Flow:
                                         "stress on the walls over the rate in the bulk"))
                 found.append(self._over(self.mean_stress("sigma_xy"), slope, "viscosity",
                                         "stress in the bulk over the rate in the bulk"))
-        return found + self._normal()
+        return found + ([] if self.force else self._normal())  # stress.csv is relative to a linear flow
 
     def _shear(self):
         about = self.profile.data["y"] - 0.5 * self.edge

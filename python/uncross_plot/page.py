@@ -175,6 +175,11 @@ def figure_of(run, table):
 
 # --- words -------------------------------------------------------------------------------------------------------------
 
+SHOWN = ("viscosity", "slip length")  # of a flow, on top of the page
+PLACES = {"Walls": " between two walls, in a box", "Shear": " in a sheared box",  # sections of `uncross check`
+          "Flow by": ", driven by a force with a profile, in a periodic box"}
+
+
 def _what(run):
     structure = run.frames.structure if run.frames else None
     parts = []
@@ -184,8 +189,10 @@ def _what(run):
         each = int(rows.sum()) // max(1, count)
         what = "single beads" if each == 1 else f"rings of {each} vertices" if ring else f"fibers of {each} vertices"
         parts.append(f"{count} {what} ('{name}')")
-    box = f" in a periodic box of {' × '.join(f'{e:g}' for e in structure.edges)} a0" if structure else ""
-    return (", ".join(parts) or "A run") + box + "."
+    edges = f" of {' × '.join(f'{e:g}' for e in structure.edges)} a0" if structure else ""
+    moved = next((words for start, words in PLACES.items() if any(heading.startswith(start) for heading, _ in run.derived)),
+                 " in a periodic box")
+    return (", ".join(parts) or "The solvent") + (moved + edges if structure else "") + "."
 
 
 def _how(run):
@@ -220,6 +227,9 @@ def _result(run):
     for table in run.tables:
         if len(words) <= 6:
             words += _diffusion(run, table)
+    for m in flow.Flow(run).measured():
+        if m.name in SHOWN and math.isfinite(m.value) and math.isfinite(m.error):
+            words.append(f"{m.name} {with_error(m.value, m.error)} {m.unit}, theory {m.theory:.4g} ({m.source})")
     return ("; ".join(words)[:1].upper() + "; ".join(words)[1:] + ".") if words else "No observable was asked for."
 
 
@@ -290,7 +300,7 @@ def derived(run):
 
 
 def sections_of(run, movie=False):
-    pictures = [] if run.frames is None else [picture_of(run.frames, movie)]
+    pictures = [picture_of(run.frames, movie)] if run.frames and run.frames.structure.kinds else []
     return pictures + [
         Section("Observables", [block for table in run.tables for block in figure_of(run, table)],
                 "docs/observables.md says how each column is measured."),

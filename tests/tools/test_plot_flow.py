@@ -6,6 +6,7 @@ import json
 import math
 import os
 import pathlib
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -97,8 +98,9 @@ class Flows(unittest.TestCase):
     def test_poiseuille(self):
         force = RHO * 0.02
         found = self.found(SOLVENT % (", acceleration: [0.02, 0, 0]", "walls: {kind: no-slip}"),
-                           profile(lambda y: force / (2 * ETA) * (y * (EDGE - y) + SLIP * EDGE)))
+                           profile(lambda y: force / (2 * ETA) * (y * (EDGE - y) + SLIP * EDGE)), stress(0.0))
         self.near(self.one(found, "viscosity", "curvature"), ETA)
+        self.assertEqual([m for m in found if "normal" in m.name], [])
         self.near(self.one(found, "slip length", "where"), math.sqrt(EDGE**2 / 4 + SLIP * EDGE) - EDGE / 2)
         self.near(self.one(found, "largest velocity by the force", "parabola"), force / (2 * ETA) * (EDGE**2 / 4 + SLIP * EDGE))
 
@@ -148,6 +150,25 @@ class Flows(unittest.TestCase):
             measured = self.one(found, name)
             self.near(measured, measured.theory)
         self.assertGreater(self.one(found, "its phase lag").value, 10.0)
+
+    def test_top_of_the_page(self):
+        """What was measured stands there beside theory."""
+        with tempfile.TemporaryDirectory() as folder:
+            tell(pathlib.Path(folder), SOLVENT % ("", "shear: {rate: 0.1}"), profile(lambda y: 0.1 * (y - EDGE / 2)),
+                 {**stress(0.0), "sigma_xy": [3.0 + 0.01 * (-1)**k for k in range(64)]})
+            front = dict(page.front(runs.read(folder)))
+        self.assertRegex(str(front["What came out"]), r"Viscosity 30\.\d* ± 0\.\d+ m/a0 t0, theory 37\.62 \(stress over the rate\)")
+
+    def test_box_of_a_flow(self):
+        """A flow has its own box, and no picture of fibers where there are none."""
+        scene = (SOLVENT % ("", "walls: {kind: no-slip, shear_rate: 0.05}")).replace("box: [8, 20, 1]", "box: [2, 4, 1]")
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder)
+            (path / "scene.yaml").write_text(scene, encoding="utf-8")
+            subprocess.run([str(UNCROSS), "run", str(path / "scene.yaml"), "--out", str(path / "run"), "--quiet"], check=True)
+            run = runs.read(str(path / "run"))
+            self.assertEqual(dict(page.front(run))["What ran"], "The solvent between two walls, in a box of 2 × 4 × 1 a0.")
+            self.assertNotIn("Fibers", [section.title for section in page.sections_of(run)])
 
     def test_no_flow(self):
         self.assertEqual(self.found(SOLVENT % ("", ""), profile(lambda y: 0.0), stress(0.0)), [])
