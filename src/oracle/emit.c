@@ -65,12 +65,14 @@ bool oracle_emit(const struct scene *scene, struct pack *pack, struct message *m
     return message_set(message, "%s: solvent.rule; packs hold the operators of the rules srd and at-a only",
                        scene->path);
   if (model->dimensions != 3 || model->solvent.profile != PROFILE_UNIFORM)
-    return message_set(message,
-                       "%s: dimensions: 2 or a profile of the acceleration; packs hold the operators of a box in space, "
-                       "with a uniform acceleration",
-                       scene->path);
+    return message_set(
+        message,
+        "%s: dimensions: 2 or a profile of the acceleration; packs hold the operators of a box in space, "
+        "with a uniform acceleration",
+        scene->path);
   if (model_has_walls(model) && model->solvent.rule != RULE_SRD)
-    return message_set(message, "%s: solvent.rule; packs of walls hold the operators of the rule srd only", scene->path);
+    return message_set(message, "%s: solvent.rule; packs of walls hold the operators of the rule srd only",
+                       scene->path);
   if (model->crossing.rejection != REJECTION_STAY || model->crossing.frame != FRAME_LABORATORY)
     return message_set(
         message, "%s: crossing.refusal or crossing.frame; packs hold drifts by the paper's rule: stay, laboratory",

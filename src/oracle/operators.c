@@ -194,10 +194,11 @@ int oracle_operator_rank(const char *name)
 /* Tables of one operator, each made of those before it; what is not here comes last. */
 static int table_rank(const char *name)
 {
-  static const char *const names[] = {
-      "out.word", "out.uniform",  "out.normal", "out.filled", "out.active",  "out.center", "out.axis",     "out.crosses",
-      "out.tick", "out.answer",   "out.event",  "out.hit",     "out.order",  "out.position", "out.momentum",
-      "out.load", "out.relative", "out.factor", "out.solvent", "out.vertex", "out.force",    "out.velocity"};
+  static const char *const names[] = {"out.word",   "out.uniform",  "out.normal",  "out.filled",   "out.active",
+                                      "out.center", "out.axis",     "out.crosses", "out.tick",     "out.answer",
+                                      "out.event",  "out.hit",      "out.order",   "out.position", "out.momentum",
+                                      "out.load",   "out.relative", "out.factor",  "out.solvent",  "out.vertex",
+                                      "out.force",  "out.velocity"};
   int rank = 0;
   while (rank < (int)(sizeof names / sizeof *names) && strcmp(names[rank], name) != 0)
     rank++;
