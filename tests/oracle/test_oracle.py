@@ -13,6 +13,7 @@ import unittest
 TOP = pathlib.Path(__file__).resolve().parents[2]
 DATA = TOP / "reference-data"
 UNCROSS = os.environ.get("UNCROSS", str(TOP / "build/uncross"))
+FLOWS = ("walls", "paper", "slip", "shear", "wave")
 SCENES = ("dense", "mixed", "coarse", "events", "andersen")
 CELL = 1 << 40  # lattice units
 
@@ -117,6 +118,47 @@ class OracleTest(unittest.TestCase):
         wanted = (DATA / "mixed.trace.csv").read_text().splitlines()
         until = next(k for k, line in enumerate(wanted) if ",collide," in line)
         self.assertEqual(said.splitlines()[:until], wanted[:until])
+
+    def test_packs_of_flows_are_those_of_this_code(self):
+        for name in FLOWS:
+            pack = self.dir / f"{name}.h5"
+            self.assertEqual(run("emit", DATA / f"flow/{name}.yaml", "-o", pack), (0, ""))
+            status, said = run("compare", DATA / f"flow/{name}.pack.h5", pack)
+            self.assertIn(status, (0, 6), said)
+            if name != "paper":  # it turns by 130 degrees: bits of the C library
+                self.assertEqual(status, 0, said)
+                status, said = run("trace", DATA / f"flow/{name}.yaml")
+                self.assertEqual(status, 0, said)
+                self.assertEqual(said.splitlines(), (DATA / f"flow/{name}.trace.csv").read_text().splitlines())
+
+    def test_packs_of_flows_show_what_matters(self):
+        """Hits of both walls, lone members in cut cells, changes of image, particles that enter."""
+        for name in ("walls", "paper", "slip"):
+            port = Port(run("dump", DATA / f"flow/{name}.pack.h5")[1])
+            hits = [v for place, t in port.places.items() if place[0] == "wall_stream"
+                    for (_, c), v in t.items() if c == "out.given.y"]
+            self.assertTrue(any(v > 0 for v in hits) and any(v < 0 for v in hits), name)
+        walls = Port(run("dump", DATA / "flow/walls.pack.h5")[1])
+        for (operator, step), table in walls.places.items():
+            if operator == "fill":
+                cut = [k for k in range(64) if k // 4 % 4 in (0, 3)]
+                lone = [k for k in cut if table[k, "in.load.members"] == 1 and table[k, "out.load.members"] == 2]
+                self.assertGreater(len(lone), 2, step)
+        shear = Port(run("dump", DATA / "flow/shear.pack.h5")[1])
+        for operator in ("shear_stream", "enter"):
+            moved = 0
+            for (name, _), table in shear.places.items():
+                if name == operator:
+                    moved += sum(abs(table[k, "out.velocity.x"] - v) > 1 for (k, c), v in table.items() if c == "in.velocity.x")
+            self.assertGreater(moved, 2, operator)
+
+    def test_packs_refuse_what_they_lack(self):
+        scene = self.dir / "refused.yaml"
+        text = (DATA / "flow/walls.yaml").read_text().split("start:")[0]
+        scene.write_text(text.replace("thermostat: rescale-layers", "rule: at-a"))
+        status, said = run("emit", scene, "-o", self.dir / "refused.h5")
+        self.assertEqual(status, 2, said)
+        self.assertIn("rule srd only", said)
 
     def test_packs_show_what_matters(self):
         """Crossings through faces, several hits of a move, negative dP, and cells of one member and of none."""
