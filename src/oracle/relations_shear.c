@@ -1,5 +1,6 @@
 /* The solvent in a sheared box, made with one thing changed; and the thermostat of layers. */
 #include "mpc/cell.h"
+#include "oracle/relations.h"
 #include "oracle/relations_flow.h"
 
 /* --- images of a sheared box -------------------------------------------------------------------------------------- */

@@ -2,6 +2,7 @@
 #include "base/normal.h"
 #include "mpc/cell.h"
 #include "mpc/virtual.h"
+#include "oracle/relations.h"
 #include "oracle/relations_flow.h"
 #include "system/account.h"
 
