@@ -41,6 +41,8 @@ def run_of(row):
 class System:
     """A state and the stages that change it. Positions in lattice units; `lag`: half steps the solvent is behind."""
 
+    account = None  # what walls have given: in hits, in collisions
+
     def __init__(self, model, start):
         self.model, self.scene = model, run_of(start["run"][0])
         self.solvent, self.solvent_velocity = start["solvent"], start["solvent_velocity"]
@@ -51,7 +53,8 @@ class System:
         self.andersen = bool(start["collision"].any())
         self.contacts = []  # rows of events since the last row of the trace
         self.streamed = 0  # half steps that the solvent has flown
-        self.account = np.zeros((4, 3), np.int64)  # what walls have given: in hits, in collisions
+        if model.flow is not None and model.flow.walls:
+            self.account = np.zeros((4, 3), np.int64)
 
     def stream(self):
         model, particles = self.model, (self.solvent, self.solvent_velocity)
@@ -169,7 +172,7 @@ class System:
 
     def state_hash(self):
         counts = self.finished, self.lag, len(self.solvent), len(self.vertex)
-        walls = self.model.flow is not None and self.model.flow.walls
+        walls = self.account is not None
         digest = xxhash.xxh64(struct.pack("<4Q", *counts) + (struct.pack("<Q", 4) if walls else b""))
         for position, velocity in ((self.solvent, self.solvent_velocity), (self.vertex, self.vertex_velocity)):
             digest.update(np.hstack([position, velocity.view(np.int64)]).astype("<i8").tobytes())
