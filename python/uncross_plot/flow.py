@@ -4,6 +4,7 @@ Formulas: docs/walls.md and docs/observables.md. Theory is that of `uncross chec
 """
 import dataclasses
 import math
+import re
 
 import numpy
 
@@ -40,6 +41,8 @@ class Flow:
             self.kind = ""
             return
         places = self.profile.data["y"]
+        begins = re.search(r"(?m)^ +from: (\d+)", run.scene)
+        self.begins = int(begins[1]) if begins else 0  # the step at which averages begin
         self.edge = places[-1] + places[0]
         self.oscillates = "vx_in_phase" in self.profile.data
         self.eta = self.numbers["viscosity"]
@@ -96,8 +99,8 @@ class Flow:
         return [(float(w @ values), float(abs(w) @ errors)) for w in weights]
 
     def mean_stress(self, *names):
-        """Mean over the rows, and its error."""
-        rows = numpy.mean([self.stress.data[n] for n in names], axis=0)
+        """Mean over the rows from `observe: from` on, and its error."""
+        rows = numpy.mean([self.stress.data[n] for n in names], axis=0)[self.stress.data["step"] > self.begins]
         rows = rows[numpy.isfinite(rows)]
         return (rows.mean(), tables.blocked_error(rows)) if len(rows) else (math.nan, math.nan)
 
@@ -202,7 +205,7 @@ class Flow:
         period, time = self.numbers["period"], self.stress.data["time"]
         every = time[1] - time[0] if len(time) > 1 else period
         rows, omega = round(period / every), 2.0 * math.pi / period
-        good = numpy.isfinite(self.stress.data["sigma_xy"])
+        good = numpy.isfinite(self.stress.data["sigma_xy"]) & (self.stress.data["step"] > self.begins)
         time, sigma = time[good] - 0.5 * every, self.stress.data["sigma_xy"][good]  # a row is the mean since the one before
         count = len(time) // rows if rows >= 8 and abs(rows * every - period) < 1e-6 * period else 0
         if count < 2:

@@ -124,6 +124,8 @@ static void warn_walls(struct teller *t, const struct model *m)
     warn(t,
          "thermostat rescale has one factor for the whole box, but flow between walls heats unevenly, and walls hold "
          "their own temperature; use solvent.thermostat: rescale-layers or maxwell-boltzmann");
+  if (m->walls.kind == WALL_SLIP && vec3_norm(m->walls.lower) + vec3_norm(m->walls.upper) > 0.0)
+    warn(t, "slip walls pull nothing along: their motion has no effect; use walls.kind: no-slip");
   if (mach > MOST_WALL_MACH)
     warn(
         t,
@@ -324,6 +326,13 @@ static void warn_observables(struct teller *t, const struct scene *scene)
     warn(t, "observe.dynamics: there are no fibers to observe");
   if (plan->every[OBSERVE_STATICS] > 0 && scene->model.vertices == 0)
     warn(t, "observe.statics: there are no fibers to observe");
+  if (plan->every[OBSERVE_PROFILE] > 0 && !model_has_solvent(&scene->model))
+    warn(t, "observe.profile: there are no solvent particles to observe");
+  if (plan->every[OBSERVE_STRESS] > 0 && !model_has_solvent(&scene->model))
+    warn(t, "observe.stress: there are no solvent particles to observe");
+  if (plan->every[OBSERVE_STRESS] > 0 && model_has_walls(&scene->model) && scene->model.box.cells[1] < 2)
+    warn(t,
+         "observe.stress: walls cut every cell here, so there is no stress of the bulk; use a distance of 2 or more");
 }
 
 int scene_warnings(const struct scene *scene, void (*tell)(void *context, const char *text), void *context)

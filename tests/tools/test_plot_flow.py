@@ -22,7 +22,7 @@ ETA, SLIP, EDGE, RHO = 30.0, 0.4, 20, 10.0
 SOLVENT = """box: [8, 20, 1]
 dimensions: 2
 time_step: 0.02
-steps: 10
+steps: 1000
 solvent: {per_cell: 10, collision_interval: 0.02, rule: at-a%s}
 %s
 """
@@ -76,6 +76,14 @@ class Flows(unittest.TestCase):
         self.near(self.one(found, "viscosity", "stress in the bulk"), 1.5 * ETA)
         self.near(self.one(found, "first normal stress difference", "mean"), 0.25)
         self.assertAlmostEqual(self.one(found, "slip length", "L/2").theory, 0.2096, delta=1e-3)
+
+    def test_stress_of_a_transient_is_left_out(self):
+        rate, table = 0.05, stress(1.0, 1.0, 1.0)
+        for name in ("sigma_xy", "sigma_lower", "sigma_upper"):
+            table[name] = [9.0] * 32 + [ETA * rate] * 32
+        found = self.found(SOLVENT % ("", "walls: {kind: no-slip, shear_rate: 0.05}\nobserve:\n  from: 320"),
+                           profile(lambda y: rate * (y - EDGE / 2)), table)
+        self.near(self.one(found, "viscosity", "stress on the walls"), ETA)
 
     def test_errors_of_slabs_add_up(self):
         """The bound of a slope is that of slabs that move together on each side of the middle."""
