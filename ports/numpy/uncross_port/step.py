@@ -59,7 +59,8 @@ class System:
     def stream(self):
         model, particles = self.model, (self.solvent, self.solvent_velocity)
         if self.lag:
-            time, end = self.lag * (0.5 * model.dt), self.streamed + self.lag
+            time = self.lag * (0.5 * self.model.dt)
+            end = self.streamed + self.lag
             if model.flow is None:
                 particles = solvent.stream(model, *particles, time)
             elif model.flow.walls:
