@@ -147,8 +147,12 @@ static void add_shear(struct state *state, const struct model *model)
   const double rate = model_is_sheared(model) ? shear_rate(model, 0) : 0.0;
   const int64_t middle = model->box.edge[1] / 2;
   struct solvent *s = &state->solvent;
-  for (uint32_t i = 0; rate != 0.0 && i < s->n; i++)
+  if (rate == 0.0)
+    return;
+  for (uint32_t i = 0; i < s->n; i++)
     s->vx[i] += rate * (double)(s->y[i] - middle) * LATTICE_UNIT;
+  for (uint32_t v = 0; v < state->vertices; v++)
+    state->velocity[v].x += rate * (double)(state->position[v].y - middle) * LATTICE_UNIT;
 }
 
 bool step_start(struct state *state, const struct model *model, struct work *work)

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "contact/drift.h"
 #include "contact/rule.h"
 #include "system/plan.h"
 
@@ -66,6 +67,7 @@ void contact_free(struct contact *c)
   free(c->candidates.at);
   free(c->near.at);
   free(c->flights.bends.at);
+  free(c->bounces.at);
   free(c->flights.queue.at);
   free_neighbors(&c->neighbors);
   memset(c, 0, sizeof *c);
@@ -112,15 +114,69 @@ static bool look_how_far(const struct state *state, struct contact *contact, uin
                       (double)LATTICE_REACH * LATTICE_UNIT);
 }
 
+/* Fibers of a sheared box whose middle is so far outside of it along y are taken back into it. */
+#define FURTHEST_OUT 0.25
+
+static int64_t image_of_fiber(const struct state *state, const struct model *model, uint32_t fiber)
+{
+  const uint32_t first = model->fiber_first[fiber], last = model->fiber_first[fiber + 1] - 1;
+  const double edge = (double)model->box.edge[1];
+  const double middle = 0.5 * ((double)state->position[first].y + (double)state->position[last].y) / edge;
+  return middle < -FURTHEST_OUT || middle > 1.0 + FURTHEST_OUT ? (int64_t)floor(middle) : 0;
+}
+
+/* A fiber beyond the box is replaced by its image in the box, which is at rest relative to the sheared box: else its
+ * velocity would grow with its height. */
+static void take_back_fibers(struct state *state, const struct model *model, struct contact *contact)
+{
+  const struct drift_frame *f = &contact->frame;
+  for (uint32_t fiber = 0; fiber < model->fibers; fiber++) {
+    const int64_t image = image_of_fiber(state, model, fiber);
+    if (image == 0)
+      continue;
+    for (uint32_t i = model->fiber_first[fiber]; i < model->fiber_first[fiber + 1]; i++) {
+      state->position[i].x -= image * f->slides;
+      state->position[i].y -= image * f->edge;
+      state->velocity[i].x -= (double)image * f->image_speed;
+    }
+    contact->neighbors.built = false;
+  }
+}
+
+/* Vertices are in sheared coordinates until leave_sheared. If the strain does not go on from where it was, which image
+ * of a bond is which has changed. */
+static void enter_sheared(struct state *state, struct contact *contact, int64_t slid_before)
+{
+  if (contact->frame.slid != slid_before)
+    contact->neighbors.built = false;
+  for (uint32_t i = 0; i < state->vertices; i++)
+    state->position[i] = drift_enter(&contact->frame, state->position[i]);
+}
+
+static void leave_sheared(struct state *state, const struct contact *contact)
+{
+  for (uint32_t i = 0; i < state->vertices; i++)
+    state->position[i] = drift_leave(&contact->frame, state->position[i]);
+}
+
 bool contact_drift(struct state *state, const struct model *model, struct contact *contact, double fraction,
                    uint64_t step, uint32_t drift, const struct contact_log *log, struct fault *fault)
 {
-  const double dt = fraction * model->time_step;
-  if ((step % STEPS_PER_LOOK == 0 && !look_how_far(state, contact, step, fault)) ||
-      !crossing_rule_of(model)->drift(state, model, contact, dt, step, drift, log, fault))
+  const struct crossing_rule *rule = crossing_rule_of(model);
+  const int64_t slid_before = contact->frame.slides;
+  if (step % STEPS_PER_LOOK == 0 && !look_how_far(state, contact, step, fault))
     return false;
-  follow_frame(state, model, &contact->neighbors, dt);
-  return true;
+  contact->frame = drift_frame_now(state, model, fraction, drift, rule->forbids);
+  if (contact->frame.sheared)
+    enter_sheared(state, contact, slid_before);
+  const bool ok = rule->drift(state, model, contact, step, drift, log, fault);
+  if (ok)
+    follow_frame(state, model, &contact->neighbors, contact->frame.time);
+  if (contact->frame.sheared)
+    leave_sheared(state, contact);
+  if (model_is_sheared(model))
+    take_back_fibers(state, model, contact);
+  return ok;
 }
 
 static bool act_drift(void *room, const struct moment *now, const struct stage *stage)

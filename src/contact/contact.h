@@ -9,7 +9,20 @@
 #include "contact/line.h"
 #include "system/fault.h"
 #include "system/model.h"
+#include "system/shear.h"
 #include "system/state.h"
+
+/* What a drift's moves refer to: see contact/drift.h. */
+struct drift_frame {
+  double time, start;      /* t0: of the drift; from the middle of the step to its beginning */
+  struct vec3 velocity;    /* of the frame of the moves, a0/t0 */
+  struct vec3 wall[WALLS]; /* velocities of the walls, a0/t0 */
+  double image_speed;    /* along x, of the image beyond y = L relative to the box, a0/t0; 0: the box is not sheared */
+  bool sheared;          /* moves are made in sheared coordinates; else the rest is not used */
+  double strain, growth; /* at the end of the drift; by which it has grown in the drift */
+  int64_t slid, slides;  /* of the image beyond y = L, at the start and the end, lattice units, from -Lx/2 on */
+  int64_t edge, middle;  /* of the box along y, lattice units */
+};
 
 /* Another bond that may be touched: its number, and which periodic image of it, in box edges. */
 struct neighbor {
@@ -103,7 +116,8 @@ struct bend_in_path {
   uint32_t vertex;
   struct point start; /* its place at the start of the drift */
   struct point rate;  /* its displacement in a tick, lattice units */
-  uint32_t contacts;  /* number of contacts of its bonds that were answered in this drift */
+  struct point end;   /* its place at the end, once the drift has ended */
+  uint32_t contacts;  /* number of contacts of its bonds, and of its hits of walls, that were answered in this drift */
   uint32_t cluster;   /* of a rigid cluster: the number of its first member in the list, + 1; else 0 */
 };
 
@@ -117,7 +131,6 @@ struct bend_list {
 struct flights {
   uint32_t *version;      /* [vertices] of bond j: number of changes of the flights of its ends */
   uint32_t *bend_of;      /* [vertices] 1 + its place in `bends`, or 0 */
-  double time;            /* t0: of the drift */
   struct bend_list bends; /* kept until the next drift begins, for tests */
   struct event_queue queue;
 };
@@ -126,8 +139,23 @@ struct flights {
 typedef struct vec3 contact_force(const struct model *model, uint32_t vertex,
                                   struct point (*place)(const void *context, uint32_t vertex), const void *context);
 
+/* A vertex that hits a wall in a drift in which vertices move freely (contact/wall.h). */
+struct wall_bounce {
+  uint32_t vertex;
+  enum wall wall;
+  struct point end;     /* its place at the end of the drift */
+  struct vec3 velocity; /* after the hit, a0/t0 */
+};
+
+struct wall_bounces {
+  uint32_t count, room;
+  struct wall_bounce *at;
+};
+
 struct contact {
-  contact_force *force;   /* given by the caller of contact_alloc */
+  contact_force *force;     /* given by the caller of contact_alloc */
+  struct drift_frame frame; /* of the drift at hand, or the last one */
+  struct wall_bounces bounces;
   struct flights flights; /* rules that move all at once, else NULL */
   uint32_t *order;        /* [vertices] in which vertices move in this drift */
   uint32_t *rank;  /* [vertices] order[rank[i]] = i. Order, rank, queue, waits: rules that move in turns, else NULL */

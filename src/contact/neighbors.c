@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "contact/capsule.h"
+#include "contact/drift.h"
 #include "contact/pairs.h"
 
 #define OVERLAPS 256 /* collected before they are looked at */
@@ -202,6 +203,12 @@ static bool share_vertex(const struct model *model, uint32_t a, uint32_t b)
   return a == b || model->next[a] == (int32_t)b || model->next[b] == (int32_t)a;
 }
 
+/* Between walls there are no images along y. */
+static bool is_beyond_wall(const struct model *model, const struct neighbor *n)
+{
+  return n->image[1] != 0 && model_has_walls(model);
+}
+
 /* Pairs whose distances are computed together, in columns. p, q: both bond vectors between reference positions; w:
  * from the first end of p to that of q; reach: of both; all in a0. */
 struct columns {
@@ -263,8 +270,8 @@ static bool settle(struct neighbors *nb, const struct model *model, struct searc
     const uint32_t bond = (uint32_t)c->mine.bond;
     if (k == 0 || c->mine.bond != c[-1].mine.bond)
       home = image_of(nb, nb->reference[bond].at, &model->box);
-    const bool apart = share_vertex(model, bond, (uint32_t)c->its.bond);
     const struct neighbor n = neighbor_of(nb, model, c, &home);
+    const bool apart = share_vertex(model, bond, (uint32_t)n.bond) || is_beyond_wall(model, &n);
     if (found->near) {
       if (!apart && !add_near(found->near, n))
         return false;
@@ -319,7 +326,8 @@ static bool enter_cell(struct neighbors *nb, const struct model *model, uint32_t
 /* Without a solvent vertices keep going, and a reference position serves longer if it stands ahead of its vertex. The
  * velocity that lasts is the mean over a few neighbors, in which the vibrations of bonds cancel. With a solvent there
  * is no lead: velocities change before the vertex gets there. */
-static struct vec3 lead_of(const struct state *state, const struct model *model, uint32_t vertex, double most)
+static struct vec3 lead_of(const struct state *state, const struct model *model, const struct drift_frame *frame,
+                           uint32_t vertex, double most)
 {
   const int on_each_side = 2;
   const double time = 0.3; /* t0 */
@@ -335,23 +343,25 @@ static struct vec3 lead_of(const struct state *state, const struct model *model,
     n += 2.0;
   }
   const struct vec3 mean = vec3_scale(1.0 / n, sum);
-  const struct vec3 lead = vec3_scale(time, vec3_sub(mean, model_frame_velocity(model)));
+  const struct vec3 lead =
+      frame->sheared ? vec3_scale(time / frame->time, drift_displacement(frame, mean, state->position[vertex].y))
+                     : vec3_scale(time, vec3_sub(mean, frame->velocity));
   const double length = vec3_norm(lead);
   return length > most ? vec3_scale(most / length, lead) : lead;
 }
 
 /* A reference position and a skin that contain both ends of a move, whether it is made or rejected. */
 static struct reference_position reference_of_move(const struct state *state, const struct model *model,
-                                                   struct point moved, uint32_t vertex, struct point from,
+                                                   const struct contact *contact, uint32_t vertex, struct point from,
                                                    struct point to)
 {
   const struct point d = point_minus(to, from);
   const double length = vec3_norm(point_difference(to, from));
-  struct point at = point_minus(to, moved);
+  struct point at = point_minus(to, contact->neighbors.moved);
   if (length > NEIGHBORS_SKIN) /* from its middle */
     at = (struct point){at.x - d.x / 2, at.y - d.y / 2, at.z - d.z / 2};
   else
-    at = point_move(at, lead_of(state, model, vertex, 0.7 * (NEIGHBORS_SKIN - length)));
+    at = point_move(at, lead_of(state, model, &contact->frame, vertex, 0.7 * (NEIGHBORS_SKIN - length)));
   return (struct reference_position){at, fmax(NEIGHBORS_SKIN, 0.5 * length + LATTICE_UNIT)};
 }
 
@@ -396,7 +406,7 @@ bool neighbors_renew(const struct state *state, const struct model *model, struc
     nb->generation[bond[k]]++;
   }
   for (uint32_t k = 0; k < n; k++) {
-    nb->reference[vertex[k]] = reference_of_move(state, model, nb->moved, vertex[k], from[k], to[k]);
+    nb->reference[vertex[k]] = reference_of_move(state, model, contact, vertex[k], from[k], to[k]);
     nb->hold[vertex[k]] = nb->path[vertex[k]];
   }
   nb->renewed += n;

@@ -15,13 +15,13 @@ struct crossing_rule {
   /* True: vertices move one after the other, in random order. False: all move at once. */
   bool in_turns;
 
-  /* Moves all vertices for a time dt, in the frame of the moves (model_frame_velocity). Every rule guarantees: an
+  /* Moves all vertices for the time of contact->frame, in that frame. Every rule guarantees: an
    * exchange conserves momentum to rounding; the bits do not depend on the order of lists; and, if it `forbids`
    * crossing, no bond passes through another. An exchange of a rule in turns conserves kinetic energy to rounding; one
    * of a rule that moves all at once, the energy of the leap-frog to first order in the time step. False, with the
    * fault recorded, as contact_drift. */
-  bool (*drift)(struct state *state, const struct model *model, struct contact *contact, double dt, uint64_t step,
-                uint32_t drift, const struct contact_log *log, struct fault *fault);
+  bool (*drift)(struct state *state, const struct model *model, struct contact *contact, uint64_t step, uint32_t drift,
+                const struct contact_log *log, struct fault *fault);
 };
 
 /* Vertices move freely; bonds may cross. */

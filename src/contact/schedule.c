@@ -6,6 +6,7 @@
 #include "contact/capsule.h"
 #include "contact/drift.h"
 #include "contact/renewals.h"
+#include "contact/wall.h"
 
 enum { BLOCK = 64 }; /* vertices worked on at a time */
 
@@ -22,8 +23,7 @@ static void find_late(const struct state *state, const struct neighbors *nb, uin
 }
 
 /* Ranges of all vertices, and new reference positions for those that are about to leave theirs. */
-static bool prepare(const struct state *state, const struct model *model, struct contact *contact, double dt,
-                    struct fault *fault)
+static bool prepare(const struct state *state, const struct model *model, struct contact *contact, struct fault *fault)
 {
   struct vec3 d[BLOCK];
   int64_t late[BLOCK];
@@ -31,7 +31,7 @@ static bool prepare(const struct state *state, const struct model *model, struct
   r.count = 0;
   for (uint32_t first = 0; first < state->vertices; first += BLOCK) {
     const uint32_t n = state->vertices - first < BLOCK ? state->vertices - first : BLOCK;
-    if (!drift_displacements(state, model, dt, first, n, d, fault))
+    if (!drift_displacements(state, model, &contact->frame, first, n, d, fault))
       return false;
     uint32_t *restrict range = &contact->range[first];
     for (uint32_t k = 0; k < n; k++)
@@ -79,28 +79,50 @@ static void join_queue(struct contact *contact, uint32_t i)
   contact->queue[k] = i;
 }
 
-/* Moves all vertices that need not wait. */
-static void move_others(struct state *state, const struct model *model, const struct contact *contact, double dt)
+/* Those that would be beyond a wall wait, too: what they do there is a matter of their turns. */
+static void let_wait_at_walls(const struct state *state, const struct model *model, struct contact *contact)
 {
-  const struct vec3 *restrict v = state->velocity, frame = model_frame_velocity(model);
-  struct point *restrict p = state->position;
   for (uint32_t i = 0; i < state->vertices; i++) {
-    const double time = contact->waits[i] ? 0.0 : dt;
-    p[i] = point_move(p[i], drift_displacement(v[i], frame, time));
+    const struct point p = state->position[i];
+    const struct vec3 d = drift_displacement(&contact->frame, state->velocity[i], p.y);
+    contact->waits[i] |= wall_is_beyond(&model->box, point_move(p, d).y);
   }
 }
 
-bool schedule_plan(struct state *state, const struct model *model, struct contact *contact, double dt,
-                   struct fault *fault)
+/* Moves all vertices that need not wait. */
+static void move_others(struct state *state, const struct contact *contact)
 {
-  if (!prepare(state, model, contact, dt, fault))
+  const struct vec3 *restrict v = state->velocity, frame = contact->frame.velocity;
+  struct point *restrict p = state->position;
+  for (uint32_t i = 0; i < state->vertices; i++) {
+    const double time = contact->waits[i] ? 0.0 : contact->frame.time;
+    p[i] = point_move(p[i], vec3_scale(time, vec3_sub(v[i], frame)));
+  }
+}
+
+static void move_others_sheared(struct state *state, const struct contact *contact)
+{
+  struct point *restrict p = state->position;
+  for (uint32_t i = 0; i < state->vertices; i++)
+    if (!contact->waits[i])
+      p[i] = point_move(p[i], drift_displacement(&contact->frame, state->velocity[i], p[i].y));
+}
+
+bool schedule_plan(struct state *state, const struct model *model, struct contact *contact, struct fault *fault)
+{
+  if (!prepare(state, model, contact, fault))
     return false;
   candidates_lengthen(model, contact);
   if (!candidates_find(state, model, contact, fault))
     return false;
   let_wait(model, contact);
+  if (model_has_walls(model))
+    let_wait_at_walls(state, model, contact);
   queue_up(state, contact);
-  move_others(state, model, contact, dt);
+  if (contact->frame.sheared)
+    move_others_sheared(state, contact);
+  else
+    move_others(state, contact);
   return true;
 }
 
@@ -112,20 +134,22 @@ static bool moved_early(const struct contact *contact, uint32_t i, uint32_t now)
 
 /* The place of the vertex before it moved early; its present place, if it has not. Its velocity is still that of the
  * early move: only bonds in a candidate contact are hit, and their ends wait or have been called back. */
-static struct point standing_place(const struct state *state, const struct model *model, const struct contact *contact,
-                                   uint32_t i, double dt, uint32_t now)
+static struct point standing_place(const struct state *state, const struct contact *contact, uint32_t i, uint32_t now)
 {
-  const struct vec3 back = drift_displacement(state->velocity[i], model_frame_velocity(model), -dt);
-  return moved_early(contact, i, now) ? point_move(state->position[i], back) : state->position[i];
+  const struct drift_frame *f = &contact->frame;
+  const struct point here = state->position[i];
+  if (!moved_early(contact, i, now))
+    return here;
+  const int64_t y = here.y - lattice_from_a0(f->time * (state->velocity[i].y - f->velocity.y));
+  return point_move(here, vec3_scale(-1.0, drift_displacement(f, state->velocity[i], y)));
 }
 
 /* Calls back a vertex that has moved early: it returns to its former place and waits for its turn. */
-static void call_back(struct state *state, const struct model *model, struct contact *contact, uint32_t i, double dt,
-                      uint32_t now)
+static void call_back(struct state *state, struct contact *contact, uint32_t i, uint32_t now)
 {
   if (!moved_early(contact, i, now))
     return;
-  state->position[i] = standing_place(state, model, contact, i, dt, now);
+  state->position[i] = standing_place(state, contact, i, now);
   contact->waits[i] = 1;
   join_queue(contact, i);
   contact->called_back++;
@@ -138,12 +162,11 @@ struct standing_bond {
 };
 
 static struct standing_bond standing_bond(const struct state *state, const struct model *model,
-                                          const struct contact *contact, uint32_t bond, double dt, uint32_t now)
+                                          const struct contact *contact, uint32_t bond, uint32_t now)
 {
   const uint32_t end = (uint32_t)model->next[bond];
-  return (struct standing_bond){
-      {standing_place(state, model, contact, bond, dt, now), standing_place(state, model, contact, end, dt, now)},
-      candidates_range(model, contact, bond)};
+  return (struct standing_bond){{standing_place(state, contact, bond, now), standing_place(state, contact, end, now)},
+                                candidates_range(model, contact, bond)};
 }
 
 static bool may_touch(const struct standing_bond *mine, const struct standing_bond *its, const int32_t image[3],
@@ -159,45 +182,46 @@ static bool may_touch(const struct standing_bond *mine, const struct standing_bo
 /* Adds the bonds that bond `bond` may touch now to its candidates. The ends of all of them are called back if they have
  * moved early. */
 static bool look_around_bond(struct state *state, const struct model *model, struct contact *contact, uint32_t bond,
-                             double dt, uint32_t now, struct fault *fault)
+                             uint32_t now, struct fault *fault)
 {
   struct neighbor_list *near = &contact->near;
-  const struct standing_bond mine = standing_bond(state, model, contact, bond, dt, now);
+  const struct standing_bond mine = standing_bond(state, model, contact, bond, now);
   if (!neighbors_near(state, model, contact, bond, mine.end, mine.range, near, fault))
     return false;
   for (uint32_t k = 0; k < near->count; k++) {
     const struct neighbor *n = &near->at[k];
-    const struct standing_bond its = standing_bond(state, model, contact, (uint32_t)n->bond, dt, now);
+    const struct standing_bond its = standing_bond(state, model, contact, (uint32_t)n->bond, now);
     if (!may_touch(&mine, &its, n->image, &model->box))
       continue;
     if (!candidates_add(state, contact, bond, n, fault))
       return false;
     const int32_t ends[4] = {(int32_t)bond, model->next[bond], n->bond, model->next[n->bond]};
     for (int e = 0; e < 4; e++)
-      call_back(state, model, contact, (uint32_t)ends[e], dt, now);
+      call_back(state, contact, (uint32_t)ends[e], now);
   }
   return true;
 }
 
 bool schedule_look_around(struct state *state, const struct model *model, struct contact *contact, uint32_t i,
-                          double dt, uint32_t now, struct fault *fault)
+                          uint32_t now, struct fault *fault)
 {
   uint32_t bond[2];
   const int bonds = model_bonds_of(model, i, bond);
   for (int b = 0; b < bonds; b++)
-    if (!look_around_bond(state, model, contact, bond[b], dt, now, fault))
+    if (!look_around_bond(state, model, contact, bond[b], now, fault))
       return false;
   return true;
 }
 
-bool schedule_reconsider(struct state *state, const struct model *model, struct contact *contact, uint32_t i, double dt,
+bool schedule_reconsider(struct state *state, const struct model *model, struct contact *contact, uint32_t i,
                          uint32_t now, struct fault *fault)
 {
   const double furthest = box_shortest_edge(&model->box); /* a longer move is a fault */
-  const uint32_t range = candidates_units(
-      fmin(vec3_norm(drift_displacement(state->velocity[i], model_frame_velocity(model), dt)), furthest));
+  const int64_t y = standing_place(state, contact, i, now).y;
+  const uint32_t range =
+      candidates_units(fmin(vec3_norm(drift_displacement(&contact->frame, state->velocity[i], y)), furthest));
   if (contact->rank[i] < now || range <= contact->range[i])
     return true;
   candidates_widen(model, contact, i, range);
-  return schedule_look_around(state, model, contact, i, dt, now, fault);
+  return schedule_look_around(state, model, contact, i, now, fault);
 }

@@ -22,18 +22,17 @@
  * and fills contact->candidates (all pairs of bonds that may touch), contact->waits (1: the vertex waits for its turn)
  * and contact->queue (the vertices that wait). All other vertices are moved. False, with the fault recorded, as
  * drift_trial and neighbors_renew. */
-bool schedule_plan(struct state *state, const struct model *model, struct contact *contact, double dt,
-                   struct fault *fault);
+bool schedule_plan(struct state *state, const struct model *model, struct contact *contact, struct fault *fault);
 
 /* Vertex i has a new velocity since the turn of rank `now`. If it may now move further than before, its bonds search
  * for new candidates. False, with the fault recorded, if memory is short. */
-bool schedule_reconsider(struct state *state, const struct model *model, struct contact *contact, uint32_t i, double dt,
+bool schedule_reconsider(struct state *state, const struct model *model, struct contact *contact, uint32_t i,
                          uint32_t now, struct fault *fault);
 
 /* Vertex i, whose turn has the rank `now`, has a new reference position, and so may leave the skin of the old one. The
  * pair list was complete only within the old skin, so its bonds search for candidates again. False as
  * schedule_reconsider. */
 bool schedule_look_around(struct state *state, const struct model *model, struct contact *contact, uint32_t i,
-                          double dt, uint32_t now, struct fault *fault);
+                          uint32_t now, struct fault *fault);
 
 #endif

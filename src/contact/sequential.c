@@ -5,13 +5,13 @@
 #include "contact/impulse.h"
 #include "contact/neighbors.h"
 #include "contact/schedule.h"
+#include "contact/wall.h"
 
 enum { AHEAD = 6 }; /* turns ahead for which candidates are prefetched; vertices, twice as many */
 
 /* One trial move: vertex i from its place to `to`. */
 struct trial {
   uint32_t vertex;
-  double dt;
   struct point to;
   uint32_t hits;
   struct contact_event first;
@@ -90,20 +90,41 @@ static struct impulse_end end_of(struct state *state, const struct model *model,
   return (struct impulse_end){&state->velocity[vertex], model->inverse_mass[vertex]};
 }
 
+/* Gives both ends of a bond this velocity along x in addition. */
+static void add_along_x(struct state *state, const struct model *model, uint32_t bond, double speed)
+{
+  state->velocity[bond].x += speed;
+  state->velocity[model->next[bond]].x += speed;
+}
+
+/* The bonds exchange momentum. The velocity of an image in a sheared box is that of the bond and the image's own. */
+static void exchange(struct state *state, const struct model *model, const struct drift_frame *frame,
+                     struct contact_event *e)
+{
+  const uint32_t pivot = e->moving_bond == e->vertex ? (uint32_t)model->next[e->vertex] : e->moving_bond;
+  const struct impulse_end moving[2] = {end_of(state, model, e->vertex), end_of(state, model, pivot)};
+  const struct impulse_end standing[2] = {end_of(state, model, e->standing_bond),
+                                          end_of(state, model, (uint32_t)model->next[e->standing_bond])};
+  const double speed = e->image[1] * frame->image_speed;
+  e->hit.normal = drift_normal(frame, e->hit.normal);
+  if (speed != 0.0)
+    add_along_x(state, model, e->standing_bond, speed);
+  e->impulse = impulse_exchange(moving, standing, e->hit.s, e->hit.s_standing, e->hit.normal);
+  if (speed != 0.0)
+    add_along_x(state, model, e->standing_bond, -speed);
+}
+
 /* Answers the first hit: the bonds exchange momentum, and the vertex stays where it is. False, with the fault
  * recorded, if memory is short. */
 static bool execute(struct state *state, const struct model *model, struct contact *contact, struct trial *t,
                     struct fault *fault)
 {
   struct contact_event *e = &t->first;
-  uint32_t pivot = e->moving_bond == t->vertex ? (uint32_t)model->next[t->vertex] : e->moving_bond;
-  const struct impulse_end moving[2] = {end_of(state, model, t->vertex), end_of(state, model, pivot)};
-  const struct impulse_end standing[2] = {end_of(state, model, e->standing_bond),
-                                          end_of(state, model, (uint32_t)model->next[e->standing_bond])};
-  e->impulse = impulse_exchange(moving, standing, e->hit.s, e->hit.s_standing, e->hit.normal);
+  const uint32_t pivot = e->moving_bond == t->vertex ? (uint32_t)model->next[t->vertex] : e->moving_bond;
   const uint32_t changed[3] = {pivot, e->standing_bond, (uint32_t)model->next[e->standing_bond]};
+  exchange(state, model, &contact->frame, e);
   for (int k = 0; k < 3; k++)
-    if (!schedule_reconsider(state, model, contact, changed[k], t->dt, contact->rank[t->vertex], fault))
+    if (!schedule_reconsider(state, model, contact, changed[k], contact->rank[t->vertex], fault))
       return false;
   e->executed = true;
   record(t->log, e);
@@ -122,7 +143,7 @@ static bool find_hits(struct state *state, const struct model *model, struct con
   const int32_t before = model->prev[i];
   if (!neighbors_hold(&contact->neighbors, i, t->to) &&
       (!neighbors_renew(state, model, contact, 1, &i, &state->position[i], &t->to, fault) ||
-       !schedule_look_around(state, model, contact, i, t->dt, contact->rank[i], fault)))
+       !schedule_look_around(state, model, contact, i, contact->rank[i], fault)))
     return false;
   if (before >= 0)
     test_bond(state, model, &contact->candidates, (uint32_t)before, t);
@@ -138,14 +159,17 @@ static bool bounce(struct state *state, const struct model *model, struct contac
                    struct vec3 before, struct fault *fault)
 {
   const uint32_t i = hit->vertex;
+  const struct drift_frame *frame = &contact->frame;
   const double time = hit->first.hit.time;
-  struct trial t = {.vertex = i, .dt = hit->dt};
-  const struct vec3 after = vec3_sub(state->velocity[i], model_frame_velocity(model));
-  const struct vec3 d = vec3_add_scaled(vec3_scale(time * t.dt, vec3_sub(before, model_frame_velocity(model))),
-                                        (1.0 - time) * t.dt, after);
+  struct trial t = {.vertex = i};
+  const struct vec3 first = drift_displacement(frame, before, state->position[i].y),
+                    rest = drift_displacement(frame, state->velocity[i], state->position[i].y),
+                    d = vec3_add_scaled(vec3_scale(time, first), 1.0 - time, rest);
   t.to = point_move(state->position[i], d);
+  if (wall_is_beyond(&model->box, t.to.y))
+    return true;
   if (!drift_legal(state, model, i, d, fault) ||
-      !schedule_reconsider(state, model, contact, i, t.dt, contact->rank[i], fault) ||
+      !schedule_reconsider(state, model, contact, i, contact->rank[i], fault) ||
       !find_hits(state, model, contact, &t, fault))
     return false;
   if (t.hits == 0)
@@ -165,6 +189,32 @@ static bool try_move(struct state *state, const struct model *model, struct cont
   }
   return execute(state, model, contact, t, fault) &&
          (model->crossing.rejection == REJECTION_STAY || bounce(state, model, contact, t, before, fault));
+}
+
+/* A move that ends beyond a wall has two parts: to the wall, and with the velocity after the hit from there. Each is
+ * tested. Where a bond is in the way, the vertex stays at its old place; it has met the wall if that was first. */
+static bool try_move_at_wall(struct state *state, const struct model *model, struct contact *contact, struct trial *t,
+                             struct fault *fault)
+{
+  const uint32_t i = t->vertex;
+  const struct point from = state->position[i];
+  const struct wall_meeting m = wall_meet(&model->box, from, t->to);
+  struct trial rest = {.vertex = i, .log = t->log};
+  t->to = m.at;
+  if (!try_move(state, model, contact, t, fault))
+    return false;
+  if (t->hits > 0)
+    return true;
+  const struct vec3 at_rest = {0, 0, 0};
+  wall_hit(state, model, &contact->frame, m.wall, i, at_rest, 0.0);
+  const struct vec3 d = drift_displacement(&contact->frame, state->velocity[i], from.y);
+  rest.to = wall_inside(&model->box, point_move(m.at, vec3_scale(1.0 - m.part, d)));
+  if (!drift_legal(state, model, i, d, fault) ||
+      !schedule_reconsider(state, model, contact, i, contact->rank[i], fault) ||
+      !find_hits(state, model, contact, &rest, fault))
+    return false;
+  state->position[i] = rest.hits > 0 ? from : rest.to;
+  return rest.hits == 0 || execute(state, model, contact, &rest, fault);
 }
 
 static void draw_order(const struct state *state, const struct model *model, struct contact *contact, uint64_t step,
@@ -200,21 +250,23 @@ static void fetch_candidates(const struct state *state, const struct model *mode
     }
 }
 
-static bool drift_sequential(struct state *state, const struct model *model, struct contact *contact, double dt,
-                             uint64_t step, uint32_t drift, const struct contact_log *log, struct fault *fault)
+static bool drift_sequential(struct state *state, const struct model *model, struct contact *contact, uint64_t step,
+                             uint32_t drift, const struct contact_log *log, struct fault *fault)
 {
   if (!contact->neighbors.built && !neighbors_build(state, model, contact, fault))
     return false;
   draw_order(state, model, contact, step, drift);
-  if (!schedule_plan(state, model, contact, dt, fault))
+  if (!schedule_plan(state, model, contact, fault))
     return false;
   for (uint32_t k = 0; k < contact->queued; k++) {
     if (k + 2 * AHEAD < contact->queued)
       fetch_vertex(state, model, contact, contact->queue[k + 2 * AHEAD]);
     if (k + AHEAD < contact->queued)
       fetch_candidates(state, model, contact, contact->queue[k + AHEAD]);
-    struct trial t = {.vertex = contact->queue[k], .dt = dt, .log = log};
-    if (!drift_trial(state, model, t.vertex, dt, &t.to, fault) || !try_move(state, model, contact, &t, fault))
+    struct trial t = {.vertex = contact->queue[k], .log = log};
+    if (!drift_trial(state, model, &contact->frame, t.vertex, &t.to, fault))
+      return false;
+    if (!(wall_is_beyond(&model->box, t.to.y) ? try_move_at_wall : try_move)(state, model, contact, &t, fault))
       return false;
   }
   contact->waited += contact->queued;

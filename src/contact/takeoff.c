@@ -45,10 +45,9 @@ static void list_due(const struct state *state, const struct contact *contact, u
 }
 
 /* New reference positions for those that need them. */
-static bool renew_late(const struct state *state, const struct model *model, struct contact *contact, double dt,
+static bool renew_late(const struct state *state, const struct model *model, struct contact *contact,
                        struct fault *fault)
 {
-  const struct vec3 frame = model_frame_velocity(model);
   struct neighbors *nb = &contact->neighbors;
   struct renewals r;
   struct due due[2] = {{0, {0}}, {0, {0}}};
@@ -59,8 +58,8 @@ static bool renew_late(const struct state *state, const struct model *model, str
     list_due(state, contact, first + BLOCK, &due[!now]);
     for (uint32_t k = 0; k < due[now].count; k++) {
       const uint32_t i = due[now].vertex[k];
-      const struct point from = state->position[i],
-                         to = flight_place(from, takeoff_rate(state->velocity[i], frame, dt), FLIGHT_TICKS);
+      const struct point from = state->position[i], rate = takeoff_rate(&contact->frame, state->velocity[i], from.y),
+                         to = flight_place(from, rate, FLIGHT_TICKS);
       if (neighbors_hold(nb, i, to))
         renewals_hold_until(nb, i, to);
       else if (!renewals_add(state, model, contact, &r, i, from, to, fault))
@@ -70,16 +69,15 @@ static bool renew_late(const struct state *state, const struct model *model, str
   return renewals_end(state, model, contact, &r, fault);
 }
 
-bool take_off(const struct state *state, const struct model *model, struct contact *contact, double dt,
-              struct fault *fault)
+bool take_off(const struct state *state, const struct model *model, struct contact *contact, struct fault *fault)
 {
   struct vec3 displacement[BLOCK];
   for (uint32_t first = 0; first < state->vertices; first += BLOCK) {
     const uint32_t n = state->vertices - first < BLOCK ? state->vertices - first : BLOCK;
-    if (!drift_displacements(state, model, dt, first, n, displacement, fault))
+    if (!drift_displacements(state, model, &contact->frame, first, n, displacement, fault))
       return false;
     ranges_of(displacement, n, &contact->range[first]);
   }
   candidates_lengthen(model, contact);
-  return renew_late(state, model, contact, dt, fault);
+  return renew_late(state, model, contact, fault);
 }

@@ -6,24 +6,25 @@
 /* A bond length in equilibrium: p(l) ~ l^w exp(-k (l-l0)^2/2), w = d - 1. The tangent of the log at the mode m bounds
  * w log(l) from above, so a Gaussian about m of variance 1/k bounds the distribution: l from it is kept with
  * probability exp(w (log(l/m) - (l/m - 1))), l > 0. */
-static double sample_bond_length(const struct model *model, const struct fiber_kind *kind, uint32_t bond)
+static double sample_bond_length(const struct model *model, const struct fiber_kind *kind, uint64_t attempt,
+                                 uint32_t bond)
 {
   const double l0 = kind->bond_length, weight = model->dimensions - 1.0;
   const double mode = 0.5 * (l0 + sqrt(l0 * l0 + 4.0 * weight / kind->spring));
   for (uint32_t draw = 0;; draw += 2) {
     double normal[2];
-    random_normal_pair(random_at(model->seed, RANDOM_BOND_LENGTH, draw, 0, bond), normal);
+    random_normal_pair(random_at(model->seed, RANDOM_BOND_LENGTH, draw, attempt, bond), normal);
     double x = 1.0 + normal[0] / (sqrt(kind->spring) * mode);
-    double u = random_uniform(random_at(model->seed, RANDOM_BOND_LENGTH, draw + 1, 0, bond), 0);
+    double u = random_uniform(random_at(model->seed, RANDOM_BOND_LENGTH, draw + 1, attempt, bond), 0);
     if (x > 0.0 && elementary_log(u) < weight * (elementary_log(x) - (x - 1.0)))
       return x * mode;
   }
 }
 
 /* cos(theta) from p ~ exp(kappa cos) on [-1,1], by inversion. */
-static double sample_bend(const struct model *model, const struct fiber_kind *kind, uint32_t vertex)
+static double sample_bend(const struct model *model, const struct fiber_kind *kind, uint64_t attempt, uint32_t vertex)
 {
-  double u = random_uniform(random_at(model->seed, RANDOM_BEND, 0, 0, vertex), 0);
+  double u = random_uniform(random_at(model->seed, RANDOM_BEND, 0, attempt, vertex), 0);
   if (kind->bending < 1e-8)
     return 2.0 * u - 1.0;
   double c = 1.0 + elementary_log(u + (1.0 - u) * elementary_exp(-2.0 * kind->bending)) / kind->bending;
@@ -31,24 +32,25 @@ static double sample_bend(const struct model *model, const struct fiber_kind *ki
 }
 
 /* A unit vector across u, of uniform azimuth: the part across u of a uniform direction. */
-static struct vec3 sample_across(const struct model *model, uint32_t vertex, struct vec3 u)
+static struct vec3 sample_across(const struct model *model, uint64_t attempt, uint32_t vertex, struct vec3 u)
 {
-  struct vec3 n = random_axis(model->seed, RANDOM_BEND_AZIMUTH, 0, vertex);
+  struct vec3 n = random_axis(model->seed, RANDOM_BEND_AZIMUTH, attempt, vertex);
   n = vec3_add_scaled(n, -vec3_dot(n, u), u);
   return vec3_scale(1.0 / vec3_norm(n), n);
 }
 
 /* A bend in the plane, as a point of the unit circle: von Mises' distribution, p ~ exp(kappa cos theta), by the
  * rejection of Best and Fisher (Appl. Statist. 28, 152 (1979)). */
-static struct circle_point sample_turn(const struct model *model, const struct fiber_kind *kind, uint32_t vertex)
+static struct circle_point sample_turn(const struct model *model, const struct fiber_kind *kind, uint64_t attempt,
+                                       uint32_t vertex)
 {
   const double kappa = kind->bending, tau = 1.0 + sqrt(1.0 + 4.0 * kappa * kappa);
   const double rho = (tau - sqrt(2.0 * tau)) / (2.0 * kappa), r = (1.0 + rho * rho) / (2.0 * rho);
   if (kappa < 1e-4)
-    return elementary_circle_turns(random_uniform(random_at(model->seed, RANDOM_BEND, 0, 0, vertex), 0));
+    return elementary_circle_turns(random_uniform(random_at(model->seed, RANDOM_BEND, 0, attempt, vertex), 0));
   for (uint32_t draw = 0;; draw += 2) {
-    const struct random_words words = random_at(model->seed, RANDOM_BEND, draw, 0, vertex);
-    const struct random_words side = random_at(model->seed, RANDOM_BEND, draw + 1, 0, vertex);
+    const struct random_words words = random_at(model->seed, RANDOM_BEND, draw, attempt, vertex);
+    const struct random_words side = random_at(model->seed, RANDOM_BEND, draw + 1, attempt, vertex);
     const double z = elementary_circle_turns(0.5 * random_uniform(words, 0)).cosine, u = random_uniform(words, 1);
     const double f = (1.0 + r * z) / (r + z), c = kappa * (r - f);
     if (c * (2.0 - c) > u || elementary_log(c) - elementary_log(u) + 1.0 - c >= 0.0)
@@ -56,43 +58,45 @@ static struct circle_point sample_turn(const struct model *model, const struct f
   }
 }
 
-static struct vec3 random_place(const struct model *model, uint32_t fiber)
+static struct vec3 random_place(const struct model *model, uint64_t attempt, uint32_t fiber)
 {
-  struct random_words xy = random_at(model->seed, RANDOM_FIBER_POSITION, 0, 0, fiber);
-  struct random_words z = random_at(model->seed, RANDOM_FIBER_POSITION, 1, 0, fiber);
+  struct random_words xy = random_at(model->seed, RANDOM_FIBER_POSITION, 0, attempt, fiber);
+  struct random_words z = random_at(model->seed, RANDOM_FIBER_POSITION, 1, attempt, fiber);
   return (struct vec3){random_uniform(xy, 0) * model->box.cells[0], random_uniform(xy, 1) * model->box.cells[1],
                        model_is_flat(model) ? 0.0 : random_uniform(z, 0) * model->box.cells[2]};
 }
 
 /* Along a fiber, or normal to a ring: uniform; in a plane uniform within it, or along z. */
-static struct vec3 random_direction(const struct model *model, const struct fiber_kind *kind, uint32_t fiber)
+static struct vec3 random_direction(const struct model *model, const struct fiber_kind *kind, uint64_t attempt,
+                                    uint32_t fiber)
 {
   if (!model_is_flat(model))
-    return random_axis(model->seed, RANDOM_FIBER_DIRECTION, 0, fiber);
-  const struct random_words r = random_at(model->seed, RANDOM_FIBER_DIRECTION, 0, 0, fiber);
+    return random_axis(model->seed, RANDOM_FIBER_DIRECTION, attempt, fiber);
+  const struct random_words r = random_at(model->seed, RANDOM_FIBER_DIRECTION, 0, attempt, fiber);
   const struct circle_point p = elementary_circle_turns(random_uniform(r, 0));
   return kind->ring ? (struct vec3){0.0, 0.0, 1.0} : (struct vec3){p.cosine, p.sine, 0.0};
 }
 
 /* The direction of the bond after the bend at this vertex, from that before it. */
-static struct vec3 bend_in_plane(const struct model *model, const struct fiber_kind *kind, uint32_t vertex,
-                                 struct vec3 u)
+static struct vec3 bend_in_plane(const struct model *model, const struct fiber_kind *kind, uint64_t attempt,
+                                 uint32_t vertex, struct vec3 u)
 {
-  const struct circle_point p = sample_turn(model, kind, vertex);
+  const struct circle_point p = sample_turn(model, kind, attempt, vertex);
   return (struct vec3){p.cosine * u.x - p.sine * u.y, p.sine * u.x + p.cosine * u.y, 0.0};
 }
 
-static struct vec3 bend_in_space(const struct model *model, const struct fiber_kind *kind, uint32_t vertex,
-                                 struct vec3 u)
+static struct vec3 bend_in_space(const struct model *model, const struct fiber_kind *kind, uint64_t attempt,
+                                 uint32_t vertex, struct vec3 u)
 {
-  double cosine = sample_bend(model, kind, vertex);
+  double cosine = sample_bend(model, kind, attempt, vertex);
   double sine = sqrt(fmax(0.0, 1.0 - cosine * cosine));
-  return vec3_add(vec3_scale(cosine, u), vec3_scale(sine, sample_across(model, vertex, u)));
+  return vec3_add(vec3_scale(cosine, u), vec3_scale(sine, sample_across(model, attempt, vertex, u)));
 }
 
-/* One fiber to be laid: its first vertex, its place. */
+/* One fiber to be laid: its first vertex, its place. attempt: number of the attempt to lay it, for random numbers. */
 struct site {
   uint32_t first;
+  uint64_t attempt;
   struct vec3 center, direction;
 };
 
@@ -104,10 +108,12 @@ static void lay_equilibrium(struct point *position, const struct model *model, c
   for (uint32_t i = 1; i < kind->vertices; i++) {
     uint32_t bond = site->first + i - 1;
     if (i > 1) {
-      u = model_is_flat(model) ? bend_in_plane(model, kind, bond, u) : bend_in_space(model, kind, bond, u);
+      u = model_is_flat(model) ? bend_in_plane(model, kind, site->attempt, bond, u)
+                               : bend_in_space(model, kind, site->attempt, bond, u);
       u = vec3_scale(1.0 / vec3_norm(u), u);
     }
-    position[bond + 1] = point_move(position[bond], vec3_scale(sample_bond_length(model, kind, bond), u));
+    position[bond + 1] =
+        point_move(position[bond], vec3_scale(sample_bond_length(model, kind, site->attempt, bond), u));
   }
 }
 
@@ -157,6 +163,30 @@ static void start_velocities(struct state *state, const struct model *model)
   }
 }
 
+/* True if a fiber is between the walls, or if there are none. */
+static bool between_walls(const struct point *position, const struct model *model, const struct fiber_kind *kind,
+                          uint32_t first)
+{
+  for (uint32_t i = first; model_has_walls(model) && i < first + kind->vertices; i++)
+    if (box_inside(&model->box, 1, position[i].y) != position[i].y)
+      return false;
+  return true;
+}
+
+/* Lays a fiber at random. A fiber that would be beyond a wall is drawn anew, shape and place: what is kept is in
+ * equilibrium between the walls. */
+static void lay_at_random(struct state *state, const struct model *model, const struct fiber_kind *kind, uint32_t fiber)
+{
+  const uint32_t first = model->fiber_first[fiber];
+  uint64_t attempt = 0;
+  do {
+    const struct site site = {first, attempt, random_place(model, attempt, fiber),
+                              random_direction(model, kind, attempt, fiber)};
+    layings[kind->start](state->position, model, kind, &site);
+    attempt++;
+  } while (!between_walls(state->position, model, kind, first));
+}
+
 void fiber_start(struct state *state, const struct model *model)
 {
   for (uint32_t fiber = 0, k = 0, within = 0; fiber < model->fibers; fiber++, within++) {
@@ -165,11 +195,13 @@ void fiber_start(struct state *state, const struct model *model)
       within = 0;
     }
     const struct fiber_kind *kind = &model->kind[k];
-    struct site site = {model->fiber_first[fiber], random_place(model, fiber), random_direction(model, kind, fiber)};
-    if (within < kind->placed) {
-      site.center = kind->place[within].center;
-      site.direction = vec3_scale(1.0 / vec3_norm(kind->place[within].direction), kind->place[within].direction);
+    if (within >= kind->placed) {
+      lay_at_random(state, model, kind, fiber);
+      continue;
     }
+    const struct fiber_place *place = &kind->place[within];
+    const struct site site = {model->fiber_first[fiber], 0, place->center,
+                              vec3_scale(1.0 / vec3_norm(place->direction), place->direction)};
     layings[kind->start](state->position, model, kind, &site);
   }
   start_velocities(state, model);

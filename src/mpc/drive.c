@@ -116,5 +116,8 @@ void drive_affine_kick(struct state *state, const struct model *model)
 {
   const uint64_t begins = shear_interval(model, state->solvent_time + state->solvent_lag);
   const double change = shear_rate(model, begins) - (begins > 0 ? shear_rate(model, begins - 1) : 0.0);
+  const int64_t middle = model->box.edge[1] / 2;
   kick_by(&state->solvent, model, weigh_height, 0.0, (struct vec3){change, 0, 0});
+  for (uint32_t v = 0; v < state->vertices; v++)
+    state->velocity[v].x += change * ((double)(state->position[v].y - middle) * LATTICE_UNIT);
 }

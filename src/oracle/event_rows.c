@@ -137,8 +137,7 @@ static double condition_of(const struct oracle_stage *g, const struct contact_ev
                             (uint32_t)m->next[v->standing_bond]};
   struct point at[4];
   for (int k = 0; k < 4; k++)
-    at[k] = flight_place(g->state->position[four[k]], takeoff_rate_now(g->state, m, &g->work->contact.flights, four[k]),
-                         tick);
+    at[k] = flight_place(g->state->position[four[k]], takeoff_rate_now(g->state, &g->work->contact, four[k]), tick);
   const struct vec3 p = point_difference(at[1], at[0]), q = point_difference(at[3], at[2]);
   const double parallel = vec3_norm(p) * vec3_norm(q) / vec3_norm(vec3_cross(p, q));
   return parallel * parallel * (1.0 + (vec3_norm(p) + vec3_norm(q)) / fmin(vec3_norm(p), vec3_norm(q)));
@@ -156,12 +155,10 @@ static void take_event(void *context, const struct contact_event *v)
   e->at[e->count++] = (struct oracle_event){*v, tick, condition_of(e->stage, v, tick)};
 }
 
-/* The first drift of a step begins half a time step before its middle. So here a step has twice this length. */
 bool oracle_drift_at_once(struct oracle_stage *g, double dt, double start, const struct contact_log *log)
 {
-  struct model m = *g->model;
-  m.time_step = -2.0 * start;
-  return event_driven_rule.drift(g->state, &m, &g->work->contact, dt, g->place.step, 0, log, &g->work->fault);
+  g->work->contact.frame = (struct drift_frame){.time = dt, .start = start};
+  return event_driven_rule.drift(g->state, g->model, &g->work->contact, g->place.step, 0, log, &g->work->fault);
 }
 
 bool oracle_event_drift_for(struct oracle_stage *g, double dt, double start)

@@ -107,7 +107,7 @@ struct at_tick {
 
 static struct point rate_of(const struct oracle_stage *g, uint32_t vertex)
 {
-  return takeoff_rate_now(g->state, g->model, &g->work->contact.flights, vertex);
+  return takeoff_rate_now(g->state, &g->work->contact, vertex);
 }
 
 static struct point place_at_tick(const void *context, uint32_t vertex)

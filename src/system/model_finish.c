@@ -271,10 +271,36 @@ static bool check_plane(const struct look *look)
   return true;
 }
 
+/* Between walls a fiber must have room in any direction, and a place that is given must be between them. */
+static bool check_gap(const struct look *look)
+{
+  const struct fiber_kind *k = look->kind;
+  const double gap = look->model->box.cells[1], contour = k->vertices > 1 ? fiber_contour(k) : 0.0;
+  const double most = k->ring ? contour / 3.141592653589793 : contour;
+  char key[64];
+  if (look->model->walls.kind == WALL_ABSENT)
+    return true;
+  if (!(most < gap))
+    return reject_kind(look, "vertices",
+                       "%" PRIu32 " of them span %.6g a0, and the walls are %.6g a0 apart; allowed: "
+                       "less than that",
+                       k->vertices, most, gap);
+  for (uint32_t i = 0; i < k->placed; i++) {
+    const struct fiber_place *p = &k->place[i];
+    const double along = fabs(p->direction.y) / vec3_norm(p->direction);
+    const double half = 0.5 * most * (k->ring ? sqrt(fmax(0.0, 1.0 - along * along)) : along);
+    snprintf(key, sizeof key, "places.%" PRIu32 ".center", i);
+    if (!(p->center.y - half >= 0.0 && p->center.y + half <= gap))
+      return reject_kind(look, key, "this fiber reaches from y = %.6g to %.6g a0, beyond a wall; allowed: 0 to %.6g a0",
+                         p->center.y - half, p->center.y + half, gap);
+  }
+  return true;
+}
+
 static bool finish_kind(const struct look *look, uint64_t *vertices)
 {
   return round_mass(look) && derive_bending(look) && check_shape(look) && check_count(look, vertices) &&
-         check_extent(look) && check_places(look) && check_plane(look) && check_stability(look);
+         check_extent(look) && check_places(look) && check_plane(look) && check_gap(look) && check_stability(look);
 }
 
 static bool finish_fibers(struct model *m, struct model_error *error)

@@ -10,9 +10,10 @@ static uint64_t early(const struct model *m)
   return m->scheme == SCHEME_DRIFT_SPLIT;
 }
 
+/* Without a solvent there are no collisions, and a motion is constant: any number will do. */
 static uint64_t half_steps_per_interval(const struct model *m)
 {
-  return 2 * (uint64_t)m->solvent.interval_steps;
+  return m->solvent.interval_steps > 0 ? 2 * (uint64_t)m->solvent.interval_steps : 2;
 }
 
 uint64_t shear_interval(const struct model *m, uint64_t half_steps)

@@ -31,6 +31,9 @@ static bool vertices_sound(const struct state *s, const struct model *m, struct 
   for (uint32_t j = 0; j < s->vertices; j++) {
     if (!finite(s->velocity[j], &component))
       return fault_record(fault, FAULT_VERTEX_MOVE, s->step, j, component * m->time_step, limit);
+    if (model_has_walls(m) && box_inside(&m->box, 1, s->position[j].y) != s->position[j].y)
+      return fault_record(fault, FAULT_VERTEX_WALL, s->step, j, (double)s->position[j].y * LATTICE_UNIT,
+                          m->box.cells[1]);
     if (!m->next || m->next[j] < 0)
       continue;
     const double length = vec3_norm(point_difference(s->position[m->next[j]], s->position[j]));
