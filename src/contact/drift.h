@@ -50,7 +50,7 @@ static inline struct vec3 drift_true(const struct drift_frame *f, struct vec3 r,
 /* The unit normal, in space, of a plane whose normal is n in sheared coordinates, at the end of the drift. */
 static inline struct vec3 drift_normal(const struct drift_frame *f, struct vec3 n)
 {
-  if (!f->sheared)
+  if (!f->sheared || f->strain == 0.0) /* the same bits as in a periodic box */
     return n;
   n.y -= f->strain * n.x;
   return vec3_scale(1.0 / vec3_norm(n), n);

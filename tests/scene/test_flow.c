@@ -16,10 +16,14 @@ static const struct refusal {
   const char *solvent, *more, *says;
 } refusals[] = {
     {"", "walls: {kind: no-slip}\nshear: {rate: 0.1}", "walls and shear are both along y"},
-    {"", "walls: {kind: no-slip}\nfibers: [{name: a, count: 1, vertices: 4, mass: 5, bond_length: 0.5, spring: 100}]",
-     "fibers between walls or under shear are not modelled yet"},
+    {"", "walls: {kind: no-slip}\nfibers: [{name: a, count: 1, vertices: 20, mass: 5, bond_length: 0.5, spring: 100}]",
+     "flow.yaml:9:40: fibers.vertices: 20 of them span 10.2308 a0, and the walls are 8 a0 apart"},
+    {"",
+     "walls: {kind: no-slip}\nfibers: [{name: a, count: 1, vertices: 4, mass: 5, bond_length: 0.5, spring: 100, "
+     "start: straight, places: [{center: [1, 0.5, 1], direction: [0, 1, 0]}]}]",
+     "this fiber reaches from y ="},
     {"", "shear: {rate: 0.1}\nfibers: [{name: a, count: 1, vertices: 4, mass: 5, bond_length: 0.5, spring: 100}]",
-     "fibers between walls or under shear are not modelled yet"},
+     "the edge along x is a whole multiple of that along y"},
     {"  hydrodynamics: false", "walls: {kind: no-slip}", "velocities that are permuted have no profile"},
     {"  hydrodynamics: false", "shear: {rate: 0.1}", "velocities that are permuted have no profile"},
     {"", "walls: {kind: no-slip}\nflow: [0.1, 0.1, 0]", "a flow across walls or shear"},
@@ -66,7 +70,7 @@ static void refused(void **unused)
   assert_int_equal(wrong, 0);
 }
 
-/* What is allowed; and walls without a solvent are refused. */
+/* What is allowed; and walls with nothing between them are refused. */
 static void accepted(void **unused)
 {
   (void)unused;
@@ -83,10 +87,15 @@ static void accepted(void **unused)
     assert_true(model_has_walls(&scene.model));
     scene_free(&scene);
   }
-  static const char bare[] = "box: [6, 6, 6]\ntime_step: 0.1\nsteps: 1\nwalls: {kind: no-slip}\n"
-                             "fibers: [{name: a, count: 1, vertices: 1, mass: 5, bond_length: 0.5, spring: 1}]\n";
-  assert_false(scene_read_text("bare.yaml", bare, strlen(bare), &scene, &message));
-  assert_non_null(strstr(message.text, "they act on the solvent, and there is none"));
+  static const char bare[] = "box: [6, 6, 6]\ntime_step: 0.1\nsteps: 1\nwalls: {kind: no-slip}\n%s";
+  char text[512];
+  snprintf(text, sizeof text, bare,
+           "fibers: [{name: a, count: 1, vertices: 1, mass: 5, bond_length: 0.5, spring: 1}]\n");
+  assert_true(scene_read_text("bare.yaml", text, strlen(text), &scene, &message));
+  scene_free(&scene);
+  snprintf(text, sizeof text, bare, "");
+  assert_false(scene_read_text("bare.yaml", text, strlen(text), &scene, &message));
+  assert_non_null(strstr(message.text, "there are none"));
 }
 
 /* The effective scene says the same flow: run.json has it, and fingerprints are made of it. */
