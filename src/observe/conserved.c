@@ -49,8 +49,44 @@ static void solvent_component(const struct state *state, const double *velocity,
   *squares = bad ? NAN : exact_value(&s2);
 }
 
+/* Where velocities change in flight by more than the body force, they are those of now. */
+static bool flies_freely(const struct model *model, const struct state *state)
+{
+  return state->solvent_lag == 0 || !(model_has_walls(model) || model_is_sheared(model) || model_has_dumbbells(model));
+}
+
+enum { SOME = 256 };
+
+static void measure_solvent_now(const struct model *model, const struct state *state, struct motion *m)
+{
+  struct exact_sum s[3] = {{0, 0}}, s2[3] = {{0, 0}};
+  bool bad = false;
+  for (uint32_t first = 0; first < state->solvent.n; first += SOME) {
+    struct vec3 now[SOME];
+    const uint32_t n = state->solvent.n - first < SOME ? state->solvent.n - first : SOME;
+    fluid_of(model)->now(state, model, first, n, NULL, now);
+    for (uint32_t i = 0; i < n; i++) {
+      const double v[3] = {now[i].x, now[i].y, now[i].z};
+      for (int k = 0; k < 3; k++) {
+        const bool wild = !(fabs(v[k]) < LARGEST_VELOCITY);
+        bad |= wild;
+        exact_add(&s[k], wild ? 0.0 : v[k]);
+        exact_add(&s2[k], wild ? 0.0 : v[k] * v[k]);
+      }
+    }
+  }
+  m->solvent_sum =
+      bad ? (struct vec3){NAN, NAN, NAN} : (struct vec3){exact_value(&s[0]), exact_value(&s[1]), exact_value(&s[2])};
+  m->solvent_squares =
+      bad ? (struct vec3){NAN, NAN, NAN} : (struct vec3){exact_value(&s2[0]), exact_value(&s2[1]), exact_value(&s2[2])};
+}
+
 static void measure_solvent(const struct model *model, const struct state *state, struct motion *m)
 {
+  if (!flies_freely(model, state)) {
+    measure_solvent_now(model, state, m);
+    return;
+  }
   const struct vec3 gain = fluid_gain(state, model);
   solvent_component(state, state->solvent.vx, gain.x, &m->solvent_sum.x, &m->solvent_squares.x);
   solvent_component(state, state->solvent.vy, gain.y, &m->solvent_sum.y, &m->solvent_squares.y);
@@ -84,6 +120,8 @@ struct motion motion_measure(const struct model *model, const struct state *stat
   struct motion m = {.bond = 0.0};
   measure_solvent(model, state, &m);
   measure_vertices(model, state, force, &m);
+  if (model_has_dumbbells(model))
+    m.bond += fluid_dumbbell_energy(state, model);
   return m;
 }
 

@@ -23,6 +23,7 @@ static const struct {
     [FAULT_VERTEX_MOVE] = {"vertex", "moves too far in one time step:", "a0"},
     [FAULT_VERTEX_PLACE] = {"vertex", "is too far from the origin, unwrapped:", "a0"},
     [FAULT_SOLVENT_PLACE] = {"solvent particle", "is not in the box:", "a0"},
+    [FAULT_DUMBBELL] = {"dumbbell", "has a spring that is too long, or does not fit its two particles:", "a0"},
     [FAULT_BOND_TOO_LONG] = {"bond", "is longer than half the shortest box edge:", "a0"},
     [FAULT_NO_MEMORY] = {"", "", ""},
 };
@@ -33,8 +34,8 @@ void fault_describe(const struct fault *fault, char *text, size_t size)
     snprintf(text, size, "step %" PRIu64 ": memory is short for the lists of bonds that may touch", fault->step);
     return;
   }
-  const bool heated =
-      fault->code != FAULT_NONE && fault->code != FAULT_VERTEX_PLACE && fault->code != FAULT_SOLVENT_PLACE;
+  const bool heated = fault->code != FAULT_NONE && fault->code != FAULT_VERTEX_PLACE &&
+                      fault->code != FAULT_SOLVENT_PLACE && fault->code != FAULT_DUMBBELL;
   const char *hint = !heated ? "" : " (a time step that is too large, or a heated system, is the usual cause)";
   snprintf(text, size, "step %" PRIu64 ": %s %" PRId64 " %s %.8g %s; at most %.8g is allowed%s", fault->step,
            wording[fault->code].entity, fault->entity, wording[fault->code].what, text_real(fault->value),

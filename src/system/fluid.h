@@ -12,6 +12,10 @@
 struct fluid {
   const char *name;
 
+  /* Particles that stand side by side in memory, from the first on: ranges that are streamed begin at a multiple of it,
+   * and end at one or with the last particle. 0: each stands alone. */
+  uint32_t together;
+
   /* Positions and velocities at step 0: exact samples of equilibrium at kT = 1. The total momentum is taken out later
    * (step_start). */
   void (*start)(struct state *state, const struct model *model);
