@@ -112,7 +112,7 @@ static void height(const struct course *c, const struct slit *slit, int i, enum 
 /* The first time up to `left` at which particle i reaches the wall; `left` if it does not. */
 static double time_of_hit(const struct course *c, const struct slit *slit, int i, enum wall wall, double left)
 {
-  const double least = 0x1p-30 * left;
+  const double least = 0x1p-44 * left; /* where height and rate are 0 */
   double t = 0.0;
   while (t < left) {
     double f, rate;
