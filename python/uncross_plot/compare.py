@@ -93,7 +93,7 @@ def page_of(a, b, movie=False):
              ("What came out", [came + (":" if found else "."), *(far[:8] or [text for _, text in found[:1]])]),
              ("What to distrust", page._doubts(
                  [f"{name}: {text}" for name, run in zip(names, (a, b)) for text in runs.distrust(run)] + _kin(a, b)))]
-    pictures = [page.picture_of(run.frames, movie and run.moving) for run in (a, b) if run.frames is not None]
+    pictures = [page.picture_of(run.frames, movie and run.moving) for run in (a, b) if run.frames and run.frames.structure.kinds]
     for section, name in zip(pictures, [n for n, run in zip(names, (a, b)) if run.frames is not None]):
         section.title = f"Fibers of {name}"
     return page.render(f"{names[0]} and {names[1]}", front, pictures + sections + [

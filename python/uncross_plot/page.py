@@ -8,7 +8,7 @@ import time
 import jinja2
 import numpy
 
-from . import columns, fibers, runs, style, tables
+from . import columns, fibers, flow, runs, style, tables
 
 
 @dataclasses.dataclass
@@ -121,6 +121,26 @@ def guides(run, kind):
     return found
 
 
+def flow_guides(run):
+    """The profile that theory expects of a steady flow."""
+    found = flow.Flow(run)
+    y = None if not found.kind else numpy.linspace(0.0, found.edge, 200)
+    expected = None if y is None else found.expected(y)
+    return [] if expected is None else [("theory", lambda t: float(numpy.interp(t, y, expected)), "--")]
+
+
+def measured_flow(run):
+    """Viscosity, slip and the like of a flow, beside theory."""
+    rows = []
+    for m in flow.Flow(run).measured():
+        known = math.isfinite(m.theory)
+        away = f"{(m.value - m.theory) / m.error:+.1f}" if known and m.error > 0 else ""
+        rows.append((m.name, with_error(m.value, m.error), m.unit, f"{m.theory:.6g}" if known else "", away, m.source))
+    return [Rows("The flow, measured", rows, ("", "value ± error", "unit", "theory", "difference / error", "from"),
+                 "Of profile.csv and stress.csv. Errors of fits are bounds: those of slabs are added as if all went the same way. "
+                 "Theory: molecular chaos, some per cent off at a short mean free path; it is no exact number.", (1, 3, 4))] if rows else []
+
+
 def figure_of(run, table):
     """The figure of a table; with it, for a single row, the numbers."""
     name, kind = columns.split(table.name)
@@ -133,7 +153,7 @@ def figure_of(run, table):
     if table.rows == 0:
         return [Figure(columns.title(table.name), style.data_uri(tables.nothing("No row yet")), alt, words, table.name)]
     if table.rows > 1:
-        svg = tables.figure(table, guides(run, kind) if name == "dynamics" else ())
+        svg = tables.figure(table, guides(run, kind) if name == "dynamics" else flow_guides(run) if name == "profile" else ())
         return [Figure(columns.title(table.name), style.data_uri(svg), alt, words, table.name)]
     exact = run.exact(table)
     rows = []
@@ -155,6 +175,11 @@ def figure_of(run, table):
 
 # --- words -------------------------------------------------------------------------------------------------------------
 
+SHOWN = ("viscosity", "slip length")  # of a flow, on top of the page
+PLACES = {"Walls": " between two walls, in a box", "Shear": " in a sheared box",  # sections of `uncross check`
+          "Flow by": ", driven by a force with a profile, in a periodic box"}
+
+
 def _what(run):
     structure = run.frames.structure if run.frames else None
     parts = []
@@ -164,8 +189,10 @@ def _what(run):
         each = int(rows.sum()) // max(1, count)
         what = "single beads" if each == 1 else f"rings of {each} vertices" if ring else f"fibers of {each} vertices"
         parts.append(f"{count} {what} ('{name}')")
-    box = f" in a periodic box of {' × '.join(f'{e:g}' for e in structure.edges)} a0" if structure else ""
-    return (", ".join(parts) or "A run") + box + "."
+    edges = f" of {' × '.join(f'{e:g}' for e in structure.edges)} a0" if structure else ""
+    moved = next((words for start, words in PLACES.items() if any(heading.startswith(start) for heading, _ in run.derived)),
+                 " in a periodic box")
+    return (", ".join(parts) or "The solvent") + (moved + edges if structure else "") + "."
 
 
 def _how(run):
@@ -200,6 +227,9 @@ def _result(run):
     for table in run.tables:
         if len(words) <= 6:
             words += _diffusion(run, table)
+    for m in flow.Flow(run).measured():
+        if m.name in SHOWN and math.isfinite(m.value) and math.isfinite(m.error):
+            words.append(f"{m.name} {with_error(m.value, m.error)} {m.unit}, theory {m.theory:.4g} ({m.source})")
     return ("; ".join(words)[:1].upper() + "; ".join(words)[1:] + ".") if words else "No observable was asked for."
 
 
@@ -270,10 +300,11 @@ def derived(run):
 
 
 def sections_of(run, movie=False):
-    pictures = [] if run.frames is None else [picture_of(run.frames, movie)]
+    pictures = [picture_of(run.frames, movie)] if run.frames and run.frames.structure.kinds else []
     return pictures + [
         Section("Observables", [block for table in run.tables for block in figure_of(run, table)],
                 "docs/observables.md says how each column is measured."),
+        Section("Flow", measured_flow(run), "docs/walls.md and docs/observables.md have the formulas."),
         Section("Derived numbers", derived(run), "What uncross check computes from the scene alone."),
         Section("Provenance", provenance(run) + ([Text("The scene", run.scene)] if run.scene else []))]
 

@@ -216,7 +216,7 @@ def _derive(run):
         if heading.startswith("The solvent beside") and line.startswith(("  right:", "  wrong:")):
             run.units_words.append(" ".join(line.split()))
         number = _number(line, bool(run.units))
-        if number and heading.startswith(("Solvent", "Fibers", "Suspension", "SI units")):
+        if number and heading.startswith(("Solvent", "Walls", "Shear", "Flow by", "Fibers", "Suspension", "SI units")):
             if not rows:
                 run.derived.append((heading, rows))
             rows.append(number)

@@ -67,7 +67,8 @@ def points(axes, x, y, errors=None, number=0, **options):
     color = options.get("color", COLORS[number % len(COLORS)])
     look = {"color": color, "marker": MARKERS[number % len(MARKERS)], "linestyle": "none", "elinewidth": 1.0,
             "markerfacecolor": color if number % 2 == 0 else "none"}
-    bars = None if errors is None else numpy.abs(errors)  # relative to something that came out negative, they may be, too
+    known = errors is not None and numpy.isfinite(errors).any()
+    bars = numpy.abs(errors) if known else None  # relative to something that came out negative, they may be, too
     return axes.errorbar(x, y, yerr=bars, **{**look, **options})
 
 

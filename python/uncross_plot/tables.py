@@ -136,10 +136,10 @@ def _guide(axes, panel, guides, x):
     low, high = axes.get_ylim()
     if panel.level is not None:
         axes.axhline(panel.level, color=style.INK, linewidth=0.8, linestyle=(0, (6, 3)), zorder=1)
-    for label, function, stroke in guides if panel.columns[0] == "g" else ():
-        places = numpy.geomspace(x.min(), x.max(), 60) if x.min() > 0 else x
+    for label, function, stroke in guides if panel.columns[0] in ("g", "vx") else ():
+        places = numpy.geomspace(x.min(), x.max(), 60) if panel.log_x and x.min() > 0 else numpy.linspace(x.min(), x.max(), 120)
         y = numpy.array([function(t) for t in places])
-        seen = (y > low / 3) & (y < 3 * high)
+        seen = (y > low / 3) & (y < 3 * high) if panel.log_y else numpy.isfinite(y)
         if seen.any():
             style.theory(axes, places[seen], y[seen], label=label, linestyle=stroke)
 

@@ -26,7 +26,7 @@ void check_shear(const struct si_scale *si, const struct model *m)
   sheet_row(si, "rate times collision interval", "", rate * model_collision_interval(m), "", "");
   sheet_row(si, "velocity at the boundary", "", speed, "a0/t0", "rate L/2");
   sheet_row(si, "Mach number", "Ma", theory_mach(speed, theory_sound_speed(model_is_isothermal(m), m->dimensions)), "",
-            "");
+            "of this velocity; harmless, since nothing is there");
   sheet_row(si, "shear stress", "", eta * rate, "kT/a0^3", "eta times rate");
   sheet_row(si, "heat", "", theory_flow_heating(eta, theory_mean_shear_rate(m), gamma, m->dimensions), "kT/t0",
             model_is_isothermal(m) ? "the thermostat takes it away" : "2 eta rate^2/(d rho)");
@@ -40,8 +40,10 @@ void check_drive(const struct si_scale *si, const struct model *m)
   sheet_heading("Flow by a force with a profile");
   sheet_row(si, "largest velocity", "v_max", speed, "a0/t0",
             m->solvent.profile == PROFILE_SINE ? "rho g/(eta k^2), k = 2 pi/L" : "rho g L^2/(32 eta)");
-  sheet_row(si, "Mach number", "Ma", theory_mach(speed, theory_sound_speed(isothermal, m->dimensions)), "", "");
+  sheet_row(si, "Mach number", "Ma", theory_mach(speed, theory_sound_speed(isothermal, m->dimensions)), "",
+            "v_max/c_s; keep below 0.5");
   sheet_row(si, "Reynolds number", "Re", theory_profile_reynolds(speed, height, eta / gamma), "",
             "v_max/(nu k); stable below sqrt(2)");
-  sheet_row(si, "time to become steady", "", 0.25 * theory_flow_relaxation(height, eta / gamma), "t0", "1/(nu k^2)");
+  sheet_row(si, "time to become steady", "", theory_flow_transient(m, eta / gamma), "t0",
+            "1/(nu k^2): the start falls to 1/e; observe from 5 of these on");
 }

@@ -25,17 +25,35 @@ static void report_flows(const struct si_scale *si, const struct model *m, doubl
   const double height = m->box.cells[1], gamma = m->solvent.per_cell, eta = units_viscosity(m);
   const double rate = vec3_norm(vec3_sub(m->walls.upper, m->walls.lower)) / height;
   const double g = vec3_norm(m->solvent.acceleration);
+  const double bulk = theory_couette_rate(rate, height, slip);
   const double driven = g > 0.0 ? theory_poiseuille_speed(gamma, g, height, eta, slip) : 0.0;
   if (rate > 0.0) {
-    sheet_row(si, "shear rate of the walls", "", rate, "1/t0", "");
-    sheet_row(si, "effective shear rate", "", theory_couette_rate(rate, height, slip), "1/t0", "over 1 + 2b/L");
+    sheet_row(si, "shear rate of the walls", "", rate, "1/t0", m->walls.period > 0.0 ? "largest" : "");
+    sheet_row(si, "effective shear rate", "", bulk, "1/t0", "over 1 + 2b/L");
+    sheet_row(si, "shear stress", "", eta * bulk, "kT/a0^3", "eta times effective rate");
   }
-  if (g > 0.0)
+  if (g > 0.0) {
     sheet_row(si, "largest velocity by the force", "v_max", driven, "a0/t0", "rho g L^2/(8 eta) (1 + 4b/L)");
+    sheet_row(si, "velocity at the walls by the force", "", 0.5 * gamma * g * height * slip / eta, "a0/t0",
+              "slip: rho g L b/(2 eta)");
+    sheet_row(si, "stress on each wall by the force", "", 0.5 * gamma * g * height, "kT/a0^3", "rho g L/2, exact");
+  }
   const double speed = fmax(fastest_wall(m), driven);
   sheet_row(si, "Mach number", "Ma", theory_mach(speed, theory_sound_speed(model_is_isothermal(m), m->dimensions)), "",
-            "");
-  sheet_row(si, "Reynolds number", "Re", theory_reynolds(speed, height, eta / gamma), "", "R = L");
+            "largest velocity/c_s; keep below 0.5");
+  sheet_row(si, "Reynolds number", "Re", theory_reynolds(speed, height, eta / gamma), "", "largest velocity L/nu");
+}
+
+/* Of walls that oscillate. */
+static void report_wave(const struct si_scale *si, const struct model *m)
+{
+  const double height = m->box.cells[1], gamma = m->solvent.per_cell, eta = units_viscosity(m);
+  const double frequency = 6.283185307179586 / m->walls.period;
+  sheet_row(si, "period", "", m->walls.period, "t0", "");
+  sheet_row(si, "penetration depth", "delta", theory_penetration_depth(frequency, eta / gamma), "a0",
+            "sqrt(2 nu/omega)");
+  sheet_row(si, "inertia number", "", theory_inertia_number(frequency, gamma, height, eta), "",
+            "omega rho L^2/(8 eta); below 0.05 the shear is uniform");
 }
 
 void check_walls(const struct si_scale *si, const struct model *m)
@@ -54,8 +72,11 @@ void check_walls(const struct si_scale *si, const struct model *m)
     printf("  %-38s %-9s not known: to be measured; taken as 0 below\n", "slip length", "b");
   if (m->walls.kind == WALL_NO_SLIP)
     report_flows(si, m, slip);
-  sheet_row(si, "time to become steady", "", theory_flow_relaxation(height, eta / gamma), "t0", "L^2/(pi^2 nu)");
+  const double transient = theory_flow_transient(m, eta / gamma);
+  if (transient > 0.0)
+    sheet_row(si, "time to become steady", "", transient, "t0", "the start falls to 1/e; observe from 5 of these on");
+  if (m->walls.kind == WALL_SLIP)
+    printf("  %-38s %-9s the solvent slides along: walls do not drag it\n", "slip walls", "");
   if (m->walls.period > 0.0)
-    sheet_row(si, "inertia number", "", theory_inertia_number(6.283185307179586 / m->walls.period, gamma, height, eta),
-              "", "omega rho L^2/(8 eta)");
+    report_wave(si, m);
 }

@@ -92,7 +92,7 @@ static bool add_box(struct trajectory *t, const struct model *model)
   const hsize_t dims[3] = {0, 3, 3};
   hid_t type = H5Tcopy(H5T_C_S1);
   for (int k = 0; k < 3; k++)
-    if (model->box.boundary[k] == BOUNDARY_WALL)
+    if (model->box.boundary[k] != BOUNDARY_PERIODIC) /* H5MD has no word for images that slide */
       memcpy(boundary[k], "none\0\0\0\0", sizeof boundary[k]);
   H5Tset_size(type, sizeof boundary[0]);
   hid_t box = h5_group(t->group, "box");

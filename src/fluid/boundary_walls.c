@@ -21,15 +21,17 @@ struct slit {
   const struct span *span;
   struct vec3 wall[WALLS]; /* velocities, a0/t0 */
   struct point *hits;      /* [WALLS] the account of hits, or NULL */
+  uint64_t *turns;         /* [WALLS] of the same */
 };
 
-static struct slit slit_of(const struct model *model, const struct span *span, struct point *hits)
+static struct slit slit_of(const struct model *model, const struct span *span, struct point *hits, uint64_t *turns)
 {
   return (struct slit){
       model,
       span,
       {shear_wall_velocity(model, WALL_LOWER, span->interval), shear_wall_velocity(model, WALL_UPPER, span->interval)},
-      hits};
+      hits,
+      turns};
 }
 
 /* A particle on its way: between two hits its velocity is sign v + change, v that at the start of the flight. */
@@ -50,7 +52,7 @@ static void go_on(struct way *way, const struct slit *slit, double time)
 static void enter_hit(const struct slit *slit, enum wall wall, struct vec3 gain)
 {
   if (slit->hits)
-    account_add(&slit->hits[wall], gain);
+    account_add(&slit->hits[wall], &slit->turns[wall], gain);
 }
 
 static void hit_no_slip(struct way *way, const struct slit *slit, enum wall wall, struct vec3 v)
@@ -212,7 +214,8 @@ static bool fly_block(struct state *state, const struct slit *slit, uint32_t fir
 static bool fly_walls(struct state *state, const struct model *model, const struct span *span, uint32_t first,
                       uint32_t n, struct fault *fault)
 {
-  const struct slit slit = slit_of(model, span, &state->wall_momentum[account_row(ACCOUNT_HITS, WALL_LOWER)]);
+  const uint32_t row = account_row(ACCOUNT_HITS, WALL_LOWER);
+  const struct slit slit = slit_of(model, span, &state->wall_momentum[row], &state->wall_turns[row]);
   bool ok = true;
   for (uint32_t i = 0; ok && i < n; i += BLOCK)
     ok = fly_block(state, &slit, first + i, n - i < BLOCK ? n - i : BLOCK, fault);
@@ -221,7 +224,7 @@ static bool fly_walls(struct state *state, const struct model *model, const stru
 
 static void now_walls(const struct model *model, const struct span *span, struct point *x, struct vec3 *v)
 {
-  const struct slit slit = slit_of(model, span, NULL);
+  const struct slit slit = slit_of(model, span, NULL, NULL);
   const int64_t d = boundary_flight(v->y, 0.0, span->time), y = (int64_t)((uint64_t)x->y + (uint64_t)d);
   if (y < 0 || y > model->box.edge[1]) {
     rebound(&slit, d, x, v);

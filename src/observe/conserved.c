@@ -49,42 +49,76 @@ static void solvent_component(const struct state *state, const double *velocity,
   *squares = bad ? NAN : exact_value(&s2);
 }
 
-/* Where velocities change in flight by more than the body force, they are those of now. */
-static bool flies_freely(const struct model *model, const struct state *state)
+/* Walls, shear or a force make the mean velocity depend on y. */
+static bool flows(const struct model *model)
 {
-  return state->solvent_lag == 0 || !(model_has_walls(model) || model_is_sheared(model) || model_has_dumbbells(model));
+  return model_has_walls(model) || model_is_sheared(model) || model->solvent.profile != PROFILE_UNIFORM;
+}
+
+/* Sums over particles, in one slab or in all. */
+struct slab {
+  uint32_t n;
+  struct exact_sum v[3], squares[3];
+};
+
+static void slab_add(struct slab *slab, struct vec3 velocity)
+{
+  const double v[3] = {velocity.x, velocity.y, velocity.z};
+  slab->n++;
+  for (int k = 0; k < 3; k++) {
+    exact_add(&slab->v[k], v[k]);
+    exact_add(&slab->squares[k], v[k] * v[k]);
+  }
+}
+
+/* Sum of the squares about the mean, of one component. */
+static double slab_within(const struct slab *slab, int k)
+{
+  const double sum = exact_value(&slab->v[k]);
+  return exact_value(&slab->squares[k]) - sum * sum / slab->n;
 }
 
 enum { SOME = 256 };
 
-static void measure_solvent_now(const struct model *model, const struct state *state, struct motion *m)
+/* Where the solvent flows, or is not free between collisions: positions and velocities of now, and slabs along y. */
+static void measure_now(const struct model *model, const struct state *state, struct motion *m)
 {
-  struct exact_sum s[3] = {{0, 0}}, s2[3] = {{0, 0}};
+  const int64_t cells = model->box.cells[1];
+  struct slab slab[LATTICE_MAX_EDGE] = {{0}}, all = {0};
   bool bad = false;
   for (uint32_t first = 0; first < state->solvent.n; first += SOME) {
-    struct vec3 now[SOME];
     const uint32_t n = state->solvent.n - first < SOME ? state->solvent.n - first : SOME;
-    fluid_of(model)->now(state, model, first, n, NULL, now);
+    struct point at[SOME];
+    struct vec3 v[SOME];
+    fluid_of(model)->now(state, model, first, n, at, v);
     for (uint32_t i = 0; i < n; i++) {
-      const double v[3] = {now[i].x, now[i].y, now[i].z};
-      for (int k = 0; k < 3; k++) {
-        const bool wild = !(fabs(v[k]) < LARGEST_VELOCITY);
-        bad |= wild;
-        exact_add(&s[k], wild ? 0.0 : v[k]);
-        exact_add(&s2[k], wild ? 0.0 : v[k] * v[k]);
-      }
+      const int64_t row = at[i].y >> LATTICE_BITS;
+      const bool wild =
+          !(fabs(v[i].x) < LARGEST_VELOCITY && fabs(v[i].y) < LARGEST_VELOCITY && fabs(v[i].z) < LARGEST_VELOCITY);
+      const struct vec3 tame = wild ? (struct vec3){0, 0, 0} : v[i];
+      bad |= wild;
+      slab_add(&slab[row < cells ? row : cells - 1], tame); /* on the upper wall */
+      slab_add(&all, tame);
     }
   }
-  m->solvent_sum =
-      bad ? (struct vec3){NAN, NAN, NAN} : (struct vec3){exact_value(&s[0]), exact_value(&s[1]), exact_value(&s[2])};
-  m->solvent_squares =
-      bad ? (struct vec3){NAN, NAN, NAN} : (struct vec3){exact_value(&s2[0]), exact_value(&s2[1]), exact_value(&s2[2])};
+  double sum[3], squares[3], within[3] = {0};
+  for (int k = 0; k < 3; k++) {
+    sum[k] = bad ? NAN : exact_value(&all.v[k]);
+    squares[k] = bad ? NAN : exact_value(&all.squares[k]);
+    for (int64_t row = 0; row < cells; row++)
+      within[k] += bad ? NAN : slab[row].n > 0 ? slab_within(&slab[row], k) : 0.0;
+  }
+  for (int64_t row = 0; row < cells && flows(model); row++)
+    m->slabs += slab[row].n > 0;
+  m->solvent_sum = (struct vec3){sum[0], sum[1], sum[2]};
+  m->solvent_squares = (struct vec3){squares[0], squares[1], squares[2]};
+  m->slab_squares = (struct vec3){within[0], within[1], within[2]};
 }
 
 static void measure_solvent(const struct model *model, const struct state *state, struct motion *m)
 {
-  if (!flies_freely(model, state)) {
-    measure_solvent_now(model, state, m);
+  if (flows(model) || model_has_dumbbells(model)) {
+    measure_now(model, state, m);
     return;
   }
   const struct vec3 gain = fluid_gain(state, model);
@@ -167,8 +201,9 @@ struct temperatures motion_temperatures(const struct model *model, const struct 
   const struct vec3 squares = {squares_about(m->solvent_squares.x, m->solvent_sum.x, n, u.x),
                                squares_about(m->solvent_squares.y, m->solvent_sum.y, n, u.y),
                                squares_about(m->solvent_squares.z, m->solvent_sum.z, n, u.z)};
-  return (struct temperatures){vec3_scale(1.0 / solvent_freedom, squares),
-                               vertex_temperature(&m->vertex, vertices, vertex_freedom, u),
+  const struct vec3 solvent =
+      m->slabs > 0 ? vec3_scale(1.0 / (n - m->slabs), m->slab_squares) : vec3_scale(1.0 / solvent_freedom, squares);
+  return (struct temperatures){solvent, vertex_temperature(&m->vertex, vertices, vertex_freedom, u),
                                vertex_temperature(&m->vertex_half, vertices, vertex_freedom, u)};
 }
 

@@ -23,6 +23,8 @@ struct vertex_motion {
 struct motion {
   struct vec3 solvent_sum;                  /* of v, a0/t0 */
   struct vec3 solvent_squares;              /* of v_x^2, v_y^2, v_z^2, (a0/t0)^2 */
+  struct vec3 slab_squares;                 /* the same about the mean of each slab, one cell thick along y */
+  uint32_t slabs;                           /* that hold particles; 0: the solvent does not flow */
   struct vertex_motion vertex, vertex_half; /* with velocities of the step, and of the half step ahead */
   double bond, bend;                        /* kT */
 };
@@ -33,8 +35,9 @@ struct motion motion_measure(const struct model *model, const struct state *stat
 
 /* Temperatures relative to the velocity of the centre of mass of everything, in kT. Where total momentum is fixed, a
  * particle of mass m has m <(v - v_cm)^2> = 3 kT (1 - m/M_total), not 3 kT: each sum is divided accordingly, so that
- * the mean is 1 at any system size. In a bath of phantoms they are relative to the flow, and nothing is fixed. NaN
- * where there is nothing to measure. */
+ * the mean is 1 at any system size. Where walls, shear or a force with a profile make the solvent flow, its temperature
+ * is relative to the mean velocity of slabs, one cell thick along y. In a bath of phantoms they are relative to the
+ * flow, and nothing is fixed. NaN where there is nothing to measure. */
 struct temperatures {
   struct vec3 solvent;        /* by component */
   double vertex, vertex_half; /* mass-weighted over all vertices, with velocities of the step, and of the half step */

@@ -9,7 +9,8 @@
 #include "observe/observer.h"
 #include "system/account.h"
 
-enum { MARK, LAST_STEP, LAST_ACCOUNT, ROWS = WALLS * ACCOUNT_SHARES, INTEGERS = LAST_ACCOUNT + ROWS };
+enum { ROWS = WALLS * ACCOUNT_SHARES };
+enum { MARK, LAST_STEP, LAST_ACCOUNT, LAST_TURNS = LAST_ACCOUNT + ROWS, INTEGERS = LAST_TURNS + ROWS };
 
 static void size_stress(const struct observer *observer, const struct model *model, struct observer_size *size)
 {
@@ -25,8 +26,8 @@ static double given(const struct observer *o, const struct state *state, enum wa
   double sum = 0.0;
   for (int share = 0; share < ACCOUNT_SHARES; share++) {
     const uint32_t row = account_row((enum account_share)share, wall);
-    const struct point before = {o->integer[LAST_ACCOUNT + row], 0, 0};
-    sum += account_between(before, state->wall_momentum[row]).x;
+    sum += account_along(o->integer[LAST_ACCOUNT + row], (uint64_t)o->integer[LAST_TURNS + row],
+                         state->wall_momentum[row].x, state->wall_turns[row]);
   }
   return sum;
 }
@@ -57,8 +58,10 @@ static void stress_row(struct observer *o, struct view *view, double *row)
   memcpy(row, values, sizeof values);
   memset(s, 0, sizeof *s);
   o->integer[LAST_STEP] = (int64_t)state->step;
-  for (uint32_t k = 0; k < (model_has_walls(model) ? ROWS : 0); k++)
+  for (uint32_t k = 0; k < (model_has_walls(model) ? ROWS : 0); k++) {
     o->integer[LAST_ACCOUNT + k] = state->wall_momentum[k].x;
+    o->integer[LAST_TURNS + k] = (int64_t)state->wall_turns[k];
+  }
 }
 
 static const char *const columns[] = {"time", "sigma_xy", "sigma_xy_kinetic", "sigma_xy_collisional",

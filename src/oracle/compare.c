@@ -88,6 +88,18 @@ static void print_number(FILE *out, const struct pack_table *t, uint32_t row, ui
 static const char *entity_of(const struct pack_table *t)
 {
   static const char *const words[][3] = {{"stream", "", "particle"},
+                                         {"wall_motion", "", "interval"},
+                                         {"shear_motion", "", "row"},
+                                         {"wall_stream", "out.given", "wall"},
+                                         {"wall_stream", "", "particle"},
+                                         {"shear_stream", "", "particle"},
+                                         {"wall_bin", "", "particle"},
+                                         {"enter", "", "particle"},
+                                         {"leave", "", "particle"},
+                                         {"affine_kick", "", "particle"},
+                                         {"fill", "", "cell"},
+                                         {"account", "", "wall"},
+                                         {"rescale_layers", "", "cell"},
                                          {"swap", "", "particle"},
                                          {"bin", "out.solvent", "particle"},
                                          {"rotate", "out.solvent", "particle"},

@@ -245,7 +245,7 @@ static bool search_all_relations(struct search *s)
   static const struct relation *const lists[] = {
       oracle_relations_random,   oracle_relations_permutation, oracle_relations_contact, oracle_relations_fiber,
       oracle_relations_event,    oracle_relations_grid,        oracle_relations_sum,     oracle_relations_rotate,
-      oracle_relations_andersen, oracle_relations_thermostat};
+      oracle_relations_andersen, oracle_relations_walls,       oracle_relations_shear,   oracle_relations_thermostat};
   for (size_t k = 0; k < sizeof lists / sizeof lists[0] && !s->named; k++)
     search_relations(s, lists[k], false);
   if (!s->named)
@@ -401,7 +401,7 @@ void oracle_diagnose(const struct oracle_pair *p, bool beyond, char text[ORACLE_
     char side[RELATION_TEXT];
     const bool may_have_name = beyond || !is_rounding(&e);
     if ((may_have_name && search_all_relations(&s)) || search_patterns(oracle_patterns_random, p, text) ||
-        search_patterns(oracle_patterns_any, p, text))
+        search_patterns(oracle_patterns_flow, p, text) || search_patterns(oracle_patterns_any, p, text))
       say_which_table(p, text);
     else if (beyond)
       describe(&e, s.partial, text);

@@ -64,13 +64,15 @@ bool oracle_emit(const struct scene *scene, struct pack *pack, struct message *m
   if (model->solvent.rule != RULE_SRD && model->solvent.rule != RULE_AT_A)
     return message_set(message, "%s: solvent.rule; packs hold the operators of the rules srd and at-a only",
                        scene->path);
-  if (model->box.boundary[1] != BOUNDARY_PERIODIC || model->dimensions != 3 ||
-      model->solvent.profile != PROFILE_UNIFORM)
+  if (model->dimensions != 3 || model->solvent.profile != PROFILE_UNIFORM)
     return message_set(
         message,
-        "%s: walls, shear, dimensions: 2 or a profile of the acceleration; packs hold the operators of a "
-        "periodic box in space, with a uniform acceleration",
+        "%s: dimensions: 2 or a profile of the acceleration; packs hold the operators of a box in space, "
+        "with a uniform acceleration",
         scene->path);
+  if (model_has_walls(model) && model->solvent.rule != RULE_SRD)
+    return message_set(message, "%s: solvent.rule; packs of walls hold the operators of the rule srd only",
+                       scene->path);
   if (model->crossing.rejection != REJECTION_STAY || model->crossing.frame != FRAME_LABORATORY)
     return message_set(
         message, "%s: crossing.refusal or crossing.frame; packs hold drifts by the paper's rule: stay, laboratory",

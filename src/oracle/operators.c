@@ -75,8 +75,24 @@ static bool run_random(struct oracle_stage *g)
 
 /* --- all of them ------------------------------------------------------------------------------------------------- */
 
-/* OF_TURNS, OF_EVENTS: of one kind of crossing rule; OF_SRD, OF_ANDERSEN: of one collision rule */
-enum of { OF_FIBERS, OF_TURNS, OF_EVENTS, OF_SOLVENT, OF_SRD, OF_ANDERSEN };
+/* OF_TURNS, OF_EVENTS: of one kind of crossing rule; OF_SRD, OF_ANDERSEN: of one collision rule; OF_PERIODIC,
+ * OF_WALLS, OF_SHEAR: of one boundary along y; OF_WAVE: of an oscillating shear */
+enum of {
+  OF_ALL,
+  OF_FIBERS,
+  OF_TURNS,
+  OF_EVENTS,
+  OF_SOLVENT,
+  OF_SRD,
+  OF_ANDERSEN,
+  OF_PERIODIC,
+  OF_CELLS,
+  OF_WALLS,
+  OF_SHEAR,
+  OF_WAVE,
+  OF_FLOW,
+  OF_HOMOGENEOUS
+};
 
 static const struct operation {
   const char *name;
@@ -84,7 +100,7 @@ static const struct operation {
   bool (*edges)(struct oracle_stage *); /* of constructed inputs; NULL: none */
   enum of of;
 } operations[] = {
-    {"random", run_random, NULL, OF_FIBERS},
+    {"random", run_random, NULL, OF_ALL},
     {"permutation", NULL, oracle_edges_permutation, OF_TURNS},
     {"order", oracle_run_order, NULL, OF_TURNS},
     {"crossing", oracle_run_crossing, oracle_edges_crossing, OF_TURNS},
@@ -99,29 +115,49 @@ static const struct operation {
     {"bend_force", oracle_run_bend_force, NULL, OF_FIBERS},
     {"force", oracle_run_force, NULL, OF_FIBERS},
     {"kick", oracle_run_kick, NULL, OF_FIBERS},
-    {"stream", oracle_run_stream, NULL, OF_SOLVENT},
+    {"wall_motion", oracle_run_wall_motion, NULL, OF_WALLS},
+    {"shear_motion", oracle_run_shear_motion, NULL, OF_SHEAR},
+    {"stream", oracle_run_stream, NULL, OF_PERIODIC},
+    {"wall_stream", oracle_run_wall_stream, NULL, OF_WALLS},
+    {"shear_stream", oracle_run_shear_stream, NULL, OF_SHEAR},
     {"shift", oracle_run_shift, NULL, OF_SOLVENT},
-    {"bin", oracle_run_bin, oracle_edges_bin, OF_SOLVENT},
+    {"enter", oracle_run_enter, NULL, OF_SHEAR},
+    {"bin", oracle_run_bin, oracle_edges_bin, OF_CELLS},
+    {"wall_bin", oracle_run_wall_bin, NULL, OF_WALLS},
     {"draw", oracle_run_draw, NULL, OF_ANDERSEN},
     {"sum", oracle_run_sum, NULL, OF_SRD},
     {"sum", oracle_run_andersen_sum, NULL, OF_ANDERSEN},
+    {"fill", oracle_run_fill, NULL, OF_WALLS},
     {"solve", oracle_run_solve, NULL, OF_SRD},
     {"mean", oracle_run_mean, NULL, OF_ANDERSEN},
-    {"rescale", oracle_run_rescale, NULL, OF_SRD},
-    {"maxwell_boltzmann", oracle_run_maxwell_boltzmann, NULL, OF_SRD},
+    {"rescale", oracle_run_rescale, NULL, OF_HOMOGENEOUS},
+    {"maxwell_boltzmann", oracle_run_maxwell_boltzmann, NULL, OF_HOMOGENEOUS},
+    {"rescale_layers", oracle_run_rescale_layers, NULL, OF_FLOW},
     {"rotate", oracle_run_rotate, NULL, OF_SRD},
     {"give", oracle_run_give, NULL, OF_ANDERSEN},
-    {"swap", oracle_run_swap, NULL, OF_SOLVENT},
+    {"account", oracle_run_account, NULL, OF_WALLS},
+    {"leave", oracle_run_leave, NULL, OF_SHEAR},
+    {"affine_kick", oracle_run_affine_kick, NULL, OF_WAVE},
+    {"swap", oracle_run_swap, NULL, OF_PERIODIC},
 };
 
 /* True if a step of this model has the operation. */
 static bool is_of(enum of of, const struct model *m)
 {
   const bool events = oracle_has_events(m), solvent = model_has_solvent(m);
-  const bool holds[] = {[OF_FIBERS] = true,
-                        [OF_TURNS] = !events,
+  const bool walls = model_has_walls(m), shear = model_is_sheared(m), periodic = !walls && !shear;
+  const bool holds[] = {[OF_ALL] = true,
+                        [OF_FIBERS] = periodic,
+                        [OF_TURNS] = periodic && !events,
                         [OF_EVENTS] = events,
                         [OF_SOLVENT] = solvent,
+                        [OF_PERIODIC] = solvent && periodic,
+                        [OF_CELLS] = solvent && !walls,
+                        [OF_WALLS] = solvent && walls,
+                        [OF_SHEAR] = solvent && shear,
+                        [OF_WAVE] = solvent && shear && m->wave.intervals > 0,
+                        [OF_FLOW] = solvent && !periodic && m->solvent.rule == RULE_SRD,
+                        [OF_HOMOGENEOUS] = solvent && periodic && m->solvent.rule == RULE_SRD,
                         [OF_SRD] = solvent && m->solvent.rule == RULE_SRD,
                         [OF_ANDERSEN] = solvent && m->solvent.rule == RULE_AT_A};
   return holds[of];
@@ -158,10 +194,11 @@ int oracle_operator_rank(const char *name)
 /* Tables of one operator, each made of those before it; what is not here comes last. */
 static int table_rank(const char *name)
 {
-  static const char *const names[] = {
-      "out.word", "out.uniform",  "out.normal", "out.active",  "out.center", "out.axis",     "out.crosses",
-      "out.tick", "out.answer",   "out.event",  "out.hit",     "out.order",  "out.position", "out.momentum",
-      "out.load", "out.relative", "out.factor", "out.solvent", "out.vertex", "out.force",    "out.velocity"};
+  static const char *const names[] = {"out.word",   "out.uniform",  "out.normal",  "out.filled",   "out.active",
+                                      "out.center", "out.axis",     "out.crosses", "out.tick",     "out.answer",
+                                      "out.event",  "out.hit",      "out.order",   "out.position", "out.momentum",
+                                      "out.load",   "out.relative", "out.factor",  "out.solvent",  "out.vertex",
+                                      "out.force",  "out.velocity"};
   int rank = 0;
   while (rank < (int)(sizeof names / sizeof *names) && strcmp(names[rank], name) != 0)
     rank++;
@@ -196,7 +233,7 @@ static void put_vertices(struct oracle_stage *g, const struct model *m)
 
 void oracle_put_model(struct pack *pack, const struct model *m)
 {
-  struct oracle_stage g = {.pack = pack, .place = {"model", 0}};
+  struct oracle_stage g = {.model = m, .pack = pack, .place = {"model", 0}};
   int64_t *box = oracle_put_integers(&g, "in.box", "x y z", 1);
   for (int k = 0; box && k < 3; k++)
     box[k] = m->box.cells[k];
@@ -213,4 +250,6 @@ void oracle_put_model(struct pack *pack, const struct model *m)
   if (reals)
     memcpy(reals, r, sizeof r);
   put_vertices(&g, m);
+  if (model_has_walls(m) || model_is_sheared(m))
+    oracle_put_flow(&g);
 }

@@ -12,7 +12,8 @@ struct oracle_pattern {
 };
 
 /* Each list ends with one without a meaning; the first pattern that fits is told. */
-extern const struct oracle_pattern oracle_patterns_random[], oracle_patterns_sweep[], oracle_patterns_any[];
+extern const struct oracle_pattern oracle_patterns_random[], oracle_patterns_sweep[], oracle_patterns_flow[],
+    oracle_patterns_any[];
 
 /* True if theirs is this guess, within tolerance. */
 bool oracle_guessed(const struct oracle_pair *pair, uint32_t row, uint32_t column, double guess);

@@ -36,6 +36,25 @@ bool oracle_run_andersen_sum(struct oracle_stage *stage);
 bool oracle_run_mean(struct oracle_stage *stage);
 bool oracle_run_give(struct oracle_stage *stage);
 
+/* Of walls and of shear (stages_flow.c). */
+bool oracle_run_wall_motion(struct oracle_stage *stage);
+bool oracle_run_wall_stream(struct oracle_stage *stage);
+bool oracle_run_wall_bin(struct oracle_stage *stage);
+bool oracle_run_fill(struct oracle_stage *stage);
+bool oracle_run_account(struct oracle_stage *stage);
+bool oracle_run_shear_motion(struct oracle_stage *stage);
+bool oracle_run_shear_stream(struct oracle_stage *stage);
+bool oracle_run_enter(struct oracle_stage *stage);
+bool oracle_run_leave(struct oracle_stage *stage);
+bool oracle_run_affine_kick(struct oracle_stage *stage);
+bool oracle_run_rescale_layers(struct oracle_stage *stage);
+
+/* A thermostat on the cells as they are; its factors are not used further on. */
+bool oracle_run_thermostat(struct oracle_stage *stage, enum thermostat_kind kind);
+
+/* Tables of the model that only scenes with walls or shear have. */
+void oracle_put_flow(struct oracle_stage *stage);
+
 /* The sweep of this number, for fraction * dt, of the state as it is. */
 bool oracle_sweep_for(struct oracle_stage *stage, double fraction, uint32_t sweep);
 

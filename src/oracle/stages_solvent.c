@@ -55,8 +55,8 @@ bool oracle_run_solve(struct oracle_stage *g)
   return true;
 }
 
-/* Both thermostats are run on the same input; their factors are not used further on. */
-static bool run_thermostat(struct oracle_stage *g, enum thermostat_kind kind)
+/* All thermostats are run on the same input. */
+bool oracle_run_thermostat(struct oracle_stage *g, enum thermostat_kind kind)
 {
   const uint32_t cells = oracle_cells(g);
   struct mpc *c = &g->work->mpc;
@@ -76,12 +76,12 @@ static bool run_thermostat(struct oracle_stage *g, enum thermostat_kind kind)
 
 bool oracle_run_rescale(struct oracle_stage *g)
 {
-  return run_thermostat(g, THERMOSTAT_RESCALE);
+  return oracle_run_thermostat(g, THERMOSTAT_RESCALE);
 }
 
 bool oracle_run_maxwell_boltzmann(struct oracle_stage *g)
 {
-  return run_thermostat(g, THERMOSTAT_MAXWELL_BOLTZMANN);
+  return oracle_run_thermostat(g, THERMOSTAT_MAXWELL_BOLTZMANN);
 }
 
 /* Factors of its own, so that a port that forgets them is found: 1, 1 + 1/64, ... exact in binary. */

@@ -55,7 +55,7 @@ double tolerance_lightest(const struct oracle_pair *p)
   return smallest(of_model(p, "in.vertex"), MASS);
 }
 
-static double velocities(const struct oracle_pair *p)
+double tolerance_velocities(const struct oracle_pair *p)
 {
   return fmax(tolerance_size_of(p, "in.velocity"),
               fmax(tolerance_size_of(p, "in.solvent"), tolerance_size_of(p, "in.vertex")));
@@ -79,7 +79,7 @@ static double uniform(const struct oracle_pair *p, uint32_t row, uint32_t column
 static double copied_velocity(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
   (void)row, (void)column;
-  return tolerance_single(p) ? p->rounding * velocities(p) : 0.0;
+  return tolerance_single(p) ? p->rounding * tolerance_velocities(p) : 0.0;
 }
 
 /* Rounding the uniform u changes -2 ln u by 2u, and its root r by u/r, or sqrt(2u) where r is small. */
@@ -302,11 +302,12 @@ static double kick(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
   (void)row, (void)column;
   return 8.0 *
-         (velocities(p) + tolerance_size_of(p, "in.time") * tolerance_size_of(p, "in.force") / tolerance_lightest(p)) *
+         (tolerance_velocities(p) +
+          tolerance_size_of(p, "in.time") * tolerance_size_of(p, "in.force") / tolerance_lightest(p)) *
          p->rounding;
 }
 
-static double acceleration(const struct oracle_pair *p)
+double tolerance_acceleration(const struct oracle_pair *p)
 {
   return tolerance_largest(of_model(p, "in.reals"), 3, 6);
 }
@@ -314,14 +315,15 @@ static double acceleration(const struct oracle_pair *p)
 static double stream_velocity(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
   (void)row, (void)column;
-  return 4.0 * (velocities(p) + acceleration(p) * tolerance_size_of(p, "in.time")) * p->rounding;
+  return 4.0 * (tolerance_velocities(p) + tolerance_acceleration(p) * tolerance_size_of(p, "in.time")) * p->rounding;
 }
 
 static double stream_position(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
   const double t = tolerance_size_of(p, "in.time");
   (void)row, (void)column;
-  return 1.0 + LATTICE_PER_A0 * 10.0 * (velocities(p) * t + 0.5 * acceleration(p) * t * t) * p->rounding;
+  return 1.0 +
+         LATTICE_PER_A0 * 10.0 * (tolerance_velocities(p) * t + 0.5 * tolerance_acceleration(p) * t * t) * p->rounding;
 }
 
 static double members(const struct oracle_pair *p)
@@ -334,7 +336,8 @@ static double momentum(const struct oracle_pair *p, uint32_t row, uint32_t colum
 {
   const double n = members(p);
   (void)row, (void)column;
-  return 0.5 * n + 1.0 + CELL_MOMENTUM_SCALE * n * (n + 1.0) * tolerance_heaviest(p) * velocities(p) * p->rounding;
+  return 0.5 * n + 1.0 +
+         CELL_MOMENTUM_SCALE * n * (n + 1.0) * tolerance_heaviest(p) * tolerance_velocities(p) * p->rounding;
 }
 
 static double center(const struct oracle_pair *p, uint32_t row, uint32_t column)
@@ -345,7 +348,7 @@ static double center(const struct oracle_pair *p, uint32_t row, uint32_t column)
 
 static double relative(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
-  const double n = members(p), w = velocities(p) + tolerance_size_of(p, "in.center");
+  const double n = members(p), w = tolerance_velocities(p) + tolerance_size_of(p, "in.center");
   (void)row, (void)column;
   return 0.5 * n + 1.0 + 0x1p32 * n * (n + 16.0) * 3.0 * tolerance_heaviest(p) * w * w * p->rounding;
 }
@@ -365,8 +368,8 @@ static double boltzmann(const struct oracle_pair *p, uint32_t row, uint32_t colu
 static double rotate(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
   (void)row, (void)column;
-  return 24.0 * 3.0 * tolerance_size_of(p, "in.factor") * (velocities(p) + tolerance_size_of(p, "in.center")) *
-         p->rounding;
+  return 24.0 * 3.0 * tolerance_size_of(p, "in.factor") *
+         (tolerance_velocities(p) + tolerance_size_of(p, "in.center")) * p->rounding;
 }
 
 /* The third normal has the radius of a pair of its own, which is no smaller than it. */
@@ -381,7 +384,7 @@ static double give(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
   (void)row, (void)column;
   return 2.0 *
-         (velocities(p) + tolerance_size_of(p, "in.center") +
+         (tolerance_velocities(p) + tolerance_size_of(p, "in.center") +
           fmax(tolerance_size_of(p, "in.solvent_drawn"), tolerance_size_of(p, "in.vertex_drawn"))) *
          p->rounding;
 }
@@ -390,6 +393,22 @@ static const struct {
   const char *operator_name, *table;
   tolerance_rule *tolerance;
 } rules[] = {
+    {"wall_motion", "out.flight", tolerance_motion},
+    {"wall_motion", "out.end", tolerance_motion},
+    {"shear_motion", "out.rate", tolerance_motion},
+    {"wall_stream", "out.position", tolerance_wall_position},
+    {"wall_stream", "out.velocity", tolerance_wall_velocity},
+    {"wall_stream", "out.given", tolerance_wall_given},
+    {"shear_stream", "out.position", tolerance_wall_position},
+    {"shear_stream", "out.velocity", tolerance_slid},
+    {"enter", "out.velocity", tolerance_slid},
+    {"leave", "out.velocity", tolerance_slid},
+    {"affine_kick", "out.velocity", tolerance_affine},
+    {"fill", "out.filled", tolerance_filled},
+    {"fill", "out.momentum", tolerance_filled_momentum},
+    {"account", "out.given", tolerance_account_given},
+    {"rescale_layers", "out.relative", relative},
+    {"rescale_layers", "out.factor", rescale},
     {"random", "out.uniform", uniform},
     {"random", "out.normal", normal_pair},
     {"random", "out.axis", axis},

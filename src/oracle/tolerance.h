@@ -15,6 +15,10 @@ double tolerance_heaviest(const struct oracle_pair *pair);
 double tolerance_lightest(const struct oracle_pair *pair);
 double tolerance_strongest(const struct oracle_pair *pair);
 
+/* The largest component of the velocities that went in; that of the acceleration. */
+double tolerance_velocities(const struct oracle_pair *pair);
+double tolerance_acceleration(const struct oracle_pair *pair);
+
 /* Ours is of doubles in any case, so in single precision only one side rounds to 24 bits, inputs included. */
 static inline bool tolerance_single(const struct oracle_pair *p)
 {
@@ -25,5 +29,9 @@ static inline bool tolerance_single(const struct oracle_pair *p)
 typedef double tolerance_rule(const struct oracle_pair *pair, uint32_t row, uint32_t column);
 tolerance_rule tolerance_impulse_answer, tolerance_impulse_momentum, tolerance_impulse_velocity, tolerance_event_hit,
     tolerance_event_velocity, tolerance_event_position;
+
+/* The same for those of walls and of shear (tolerance_flow.c). */
+tolerance_rule tolerance_motion, tolerance_wall_velocity, tolerance_wall_position, tolerance_wall_given, tolerance_slid,
+    tolerance_affine, tolerance_filled, tolerance_filled_momentum, tolerance_account_given;
 
 #endif

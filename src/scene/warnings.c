@@ -124,6 +124,8 @@ static void warn_walls(struct teller *t, const struct model *m)
     warn(t,
          "thermostat rescale has one factor for the whole box, but flow between walls heats unevenly, and walls hold "
          "their own temperature; use solvent.thermostat: rescale-layers or maxwell-boltzmann");
+  if (m->walls.kind == WALL_SLIP && vec3_norm(m->walls.lower) + vec3_norm(m->walls.upper) > 0.0)
+    warn(t, "slip walls pull nothing along: their motion has no effect; use walls.kind: no-slip");
   if (mach > MOST_WALL_MACH)
     warn(
         t,
@@ -324,6 +326,37 @@ static void warn_observables(struct teller *t, const struct scene *scene)
     warn(t, "observe.dynamics: there are no fibers to observe");
   if (plan->every[OBSERVE_STATICS] > 0 && scene->model.vertices == 0)
     warn(t, "observe.statics: there are no fibers to observe");
+  if (plan->every[OBSERVE_PROFILE] > 0 && !model_has_solvent(&scene->model))
+    warn(t, "observe.profile: there are no solvent particles to observe");
+  if (plan->every[OBSERVE_STRESS] > 0 && !model_has_solvent(&scene->model))
+    warn(t, "observe.stress: there are no solvent particles to observe");
+  if (plan->every[OBSERVE_STRESS] > 0 && model_has_walls(&scene->model) && scene->model.box.cells[1] < 3)
+    warn(t, "observe.stress: the bulk is what is 1 a0 and more from both walls, and nothing is here; use a distance of "
+            "3 or more");
+}
+
+#define MOST_START 0.01 /* of a mean over the observed time */
+
+/* A flow between walls or by a force starts at rest. The share of the start in means of the observed time is that of an
+ * exponential. */
+static void warn_transient(struct teller *t, const struct scene *scene)
+{
+  const struct model *m = &scene->model;
+  const struct observe_plan *plan = &scene->observe;
+  const double tau = theory_flow_transient(m, viscosity_of(m) / m->solvent.per_cell);
+  const double from = (double)plan->from * m->time_step, end = (double)scene->steps * m->time_step;
+  if (tau == 0.0 || end <= from || (plan->every[OBSERVE_PROFILE] == 0 && plan->every[OBSERVE_STRESS] == 0))
+    return;
+  const double share = tau / (end - from) * (exp(-from / tau) - exp(-end / tau));
+  const double steps = ceil(5.0 * tau / m->time_step);
+  char longer[64] = "";
+  if (2.0 * steps > (double)scene->steps)
+    snprintf(longer, sizeof longer, " and steps: %.0f or more", 2.0 * steps);
+  if (share > MOST_START)
+    warn(t,
+         "observe.from %" PRIu64 ": the flow starts at rest and needs %.3g t0 for each factor of e, so that the means "
+         "of the observed time hold %.2g %% of the start; use observe.from: %.0f%s",
+         plan->from, tau, 100.0 * share, steps, longer);
 }
 
 int scene_warnings(const struct scene *scene, void (*tell)(void *context, const char *text), void *context)
@@ -344,6 +377,8 @@ int scene_warnings(const struct scene *scene, void (*tell)(void *context, const 
     warn_kind(&t, scene, &m->kind[k]);
   warn_heating(&t, scene);
   warn_observables(&t, scene);
+  if (model_has_solvent(m) && scene->snapshot == NULL)
+    warn_transient(&t, scene);
   warn_drift(&t, scene);
   return t.told;
 }

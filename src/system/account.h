@@ -1,8 +1,8 @@
 /*
  * The account of the walls: the momentum that each wall has given to the solvent since the start, by particles that hit
  * it and by virtual particles in collisions (Tao, Goetze and Gompper 2008). It is kept in integers, in the units of a
- * cell's momentum (mpc/cell.h), so that it does not depend on the order of particles. Sums wrap: differences between
- * two times are right while they are below 2^19 m a0/t0.
+ * cell's momentum (mpc/cell.h), so that it does not depend on the order of particles. Sums wrap, at 2^19 m a0/t0. Along
+ * x, the direction of the shear stress, it is counted how often, so that differences between any two times are right.
  */
 #ifndef UNCROSS_SYSTEM_ACCOUNT_H
 #define UNCROSS_SYSTEM_ACCOUNT_H
@@ -21,15 +21,27 @@ static inline uint32_t account_row(enum account_share share, enum wall wall)
   return (uint32_t)share * WALLS + (uint32_t)wall;
 }
 
-/* Adds a momentum, m a0/t0, to a sum in momentum units. */
-static inline void account_add(struct point *sum, struct vec3 momentum)
+__extension__ typedef __int128 account_wide;
+
+/* Adds a momentum, m a0/t0, below 2^19 in size, to a sum in momentum units. turns: how often x has passed the upper end
+ * of its range, less how often the lower one; a signed number in two's complement. */
+static inline void account_add(struct point *sum, uint64_t *turns, struct vec3 momentum)
 {
-  sum->x = (int64_t)((uint64_t)sum->x + (uint64_t)llrint(ACCOUNT_SCALE * momentum.x));
+  const int64_t x = sum->x, gain = llrint(ACCOUNT_SCALE * momentum.x);
+  sum->x = (int64_t)((uint64_t)x + (uint64_t)gain);
+  *turns += (uint64_t)((gain > 0 && sum->x < x) - (gain < 0 && sum->x > x));
   sum->y = (int64_t)((uint64_t)sum->y + (uint64_t)llrint(ACCOUNT_SCALE * momentum.y));
   sum->z = (int64_t)((uint64_t)sum->z + (uint64_t)llrint(ACCOUNT_SCALE * momentum.z));
 }
 
-/* What came in between two sums, m a0/t0. */
+/* What came in along x, m a0/t0, between two sums and their turns. */
+static inline double account_along(int64_t before, uint64_t turns_before, int64_t after, uint64_t turns_after)
+{
+  const int64_t turns = (int64_t)(turns_after - turns_before);
+  return (double)((account_wide)after - before + turns * ((account_wide)1 << 64)) * ACCOUNT_UNIT;
+}
+
+/* What came in between two sums, m a0/t0, right below 2^19. */
 static inline struct vec3 account_between(struct point before, struct point after)
 {
   return (struct vec3){(double)(int64_t)((uint64_t)after.x - (uint64_t)before.x) * ACCOUNT_UNIT,

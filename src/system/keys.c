@@ -127,7 +127,8 @@ bool keys_are_there(const struct key_table *table, const void *from)
     const struct key *key = &table->key[k];
     if (key_is_required(key))
       return key_is_set(key, from);
-    any = any || (key->type != KEY_SECTION ? !key->optional : keys_are_there(key->keys, key_at(key, from)));
+    any = any || (key->type == KEY_SECTION ? keys_are_there(key->keys, key_at(key, from))
+                                           : !key->optional || key_is_set(key, from));
   }
   return any;
 }

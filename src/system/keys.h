@@ -93,7 +93,8 @@ size_t key_size(const struct key *key);
 bool key_is_set(const struct key *key, const void *from);
 
 /* Whether the mapping of this table is there, in a struct that it describes: its first required key is not zero;
- * without such a key, if it has values of its own or one of its sections is there. */
+ * without such a key, if it has values of its own, one of its optional values is not zero, or one of its sections is
+ * there. */
 bool keys_are_there(const struct key_table *table, const void *from);
 
 /* Writes which values this key takes, e.g. "number > 0, <= 1", "whole number 1 .. 1024", "none | rescale". */

@@ -94,6 +94,10 @@ const struct state_number state_numbers[] = {
     {"negative", 8, false, false, offsetof(struct state, counts.negative)},
     {"softened", 8, false, true, offsetof(struct state, counts.softened)},
     {"rigid", 8, false, true, offsetof(struct state, counts.rigid)},
+    {"wall_turns_0", 8, false, true, offsetof(struct state, wall_turns[0])},
+    {"wall_turns_1", 8, false, true, offsetof(struct state, wall_turns[1])},
+    {"wall_turns_2", 8, false, true, offsetof(struct state, wall_turns[2])},
+    {"wall_turns_3", 8, false, true, offsetof(struct state, wall_turns[3])},
 };
 const size_t state_number_count = sizeof state_numbers / sizeof *state_numbers;
 

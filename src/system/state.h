@@ -69,6 +69,7 @@ struct state {
   struct collision_counts counts;
   uint32_t wall_rows;          /* 4 between walls, else 0 */
   struct point *wall_momentum; /* [wall_rows] the account of the walls: system/account.h */
+  uint64_t wall_turns[4];      /* how often the x of each has wrapped */
 };
 
 /* The solvent was streamed to now: there is no lag any more. */

@@ -25,6 +25,24 @@ double theory_flow_relaxation(double height, double kinematic_viscosity)
   return height * height / (pi * pi * kinematic_viscosity);
 }
 
+double theory_flow_transient(const struct model *model, double kinematic_viscosity)
+{
+  const struct vec3 sum = vec3_add(model->walls.lower, model->walls.upper);
+  const bool pulled = vec3_norm(model->solvent.acceleration) > 0.0;
+  const bool slides = vec3_norm(model->walls.lower) + vec3_norm(model->walls.upper) > 0.0;
+  const double even = theory_flow_relaxation(model->box.cells[1], kinematic_viscosity), odd = 0.25 * even;
+  if (model->solvent.profile != PROFILE_UNIFORM)
+    return odd;
+  if (model->walls.kind != WALL_NO_SLIP || !(pulled || slides))
+    return 0.0;
+  return pulled || vec3_norm(sum) > 0.0 ? even : odd;
+}
+
+double theory_penetration_depth(double frequency, double kinematic_viscosity)
+{
+  return sqrt(2.0 * kinematic_viscosity / frequency);
+}
+
 double theory_inertia_number(double frequency, double mass_density, double height, double viscosity)
 {
   return frequency * mass_density * height * height / (8.0 * viscosity);

@@ -43,6 +43,15 @@ double theory_profile_reynolds(double speed, double height, double kinematic_vis
 /* L^2/(pi^2 nu), t0: in which a flow between walls becomes steady. */
 double theory_flow_relaxation(double height, double kinematic_viscosity);
 
+/* Time in which the slowest part of what the start still differs from a steady flow falls to 1/e, t0. Between walls
+ * L^2/(pi^2 nu), a quarter of it where opposite velocities of the walls alone drive the flow: then it is odd about the
+ * middle. A force with a profile: 1/(nu k^2), k = 2 pi/L. 0 where nothing flows, and in a sheared box, whose profile is
+ * linear from the start. */
+double theory_flow_transient(const struct model *model, double kinematic_viscosity);
+
+/* sqrt(2 nu/omega), a0: in which the wave that goes out from an oscillating wall falls to 1/e. */
+double theory_penetration_depth(double frequency, double kinematic_viscosity);
+
 /* omega rho L^2/(8 eta): where it is not far below 1, an oscillation of the walls does not reach the middle in phase.
  */
 double theory_inertia_number(double frequency, double mass_density, double height, double viscosity);

@@ -25,6 +25,7 @@ static void checkpoints_hold_the_account(void **unused)
   struct message message = {""};
   struct test_run r = test_start(between_walls());
   test_steps(&r, 13);
+  r.state.wall_turns[2] = (uint64_t)-3;
   r.state.solvent.y[0] = 0;
   r.state.solvent.y[1] = r.model.box.edge[1];
   assert_true(r.state.solvent_lag > 0 && r.state.wall_momentum[0].y != 0 && r.state.wall_momentum[3].x != 0);
@@ -38,6 +39,7 @@ static void checkpoints_hold_the_account(void **unused)
   if (!checkpoint_read(path, &back.model, &head, &back.state, NULL, 0, &message))
     fail_msg("%s", message.text);
   assert_memory_equal(back.state.wall_momentum, r.state.wall_momentum, 4 * sizeof *r.state.wall_momentum);
+  assert_memory_equal(back.state.wall_turns, r.state.wall_turns, sizeof r.state.wall_turns);
   assert_true(state_hash(&back.state) == state_hash(&r.state));
   test_steps(&r, 20);
   test_steps(&back, 20);

@@ -329,8 +329,20 @@ static void virtual_particles_follow_the_time(void **unused)
   }
 }
 
-/* Equilibrium between walls: everywhere T = 1, Gaussian velocities and a flat density; hits press with n kT, virtual
- * particles do not press. Replicas of 40 t0, 10 t0 apart from their start, which is in equilibrium as well. */
+/* How often the particles hit walls in their next flight of a time t: the number of walls, L apart, that a straight
+ * flight along y crosses. */
+static double hits_ahead(const struct test_run *r, double t)
+{
+  const struct solvent *s = &r->state.solvent;
+  double hits = 0.0;
+  for (uint32_t i = 0; i < s->n; i++)
+    hits += fabs(floor((ldexp((double)s->y[i], -40) + s->vy[i] * t) / r->model.box.cells[1]));
+  return hits;
+}
+
+/* Equilibrium between walls: everywhere T = 1, Gaussian velocities and a flat density; n/sqrt(2 pi) hits per area and
+ * time, which press with n kT; virtual particles do not press. Replicas of 40 t0, 10 t0 apart from their start, which
+ * is in equilibrium as well. */
 static void walls_keep_equilibrium(void **unused)
 {
   (void)unused;
@@ -349,12 +361,13 @@ static void walls_keep_equilibrium(void **unused)
       {WALL_NO_SLIP, FILL_PLANAR, RULE_SRD, THERMOSTAT_MAXWELL_BOLTZMANN},
       {WALL_NO_SLIP, FILL_PLANAR, RULE_AT_A, THERMOSTAT_NONE},
       {WALL_NO_SLIP, FILL_PAPER, RULE_AT_A, THERMOSTAT_NONE},
+      {WALL_NO_SLIP, FILL_PLANAR, RULE_AT_PLUS_A, THERMOSTAT_NONE},
       {WALL_SLIP, FILL_PLANAR, RULE_SRD, THERMOSTAT_NONE},
   };
   enum { REPLICAS = 24, STEPS = 500, BEFORE = 100 };
   for (size_t c = 0; c < sizeof settings / sizeof *settings; c++) {
     const struct setting *g = &settings[c];
-    struct tally near = {0}, heat[3] = {{0}}, fourth[3] = {{0}}, pressure = {0}, virtual_pressure = {0};
+    struct tally near = {0}, heat[3] = {{0}}, fourth[3] = {{0}}, pressure = {0}, virtual_pressure = {0}, rate = {0};
     print_message("  kind %d, fill %d, rule %d, thermostat %d\n", g->kind, g->fill, g->rule, g->thermostat);
     for (uint64_t k = 0; k < REPLICAS; k++) {
       struct model m = walls_model(6, 4, 6, 3.0, g->rule, g->fill);
@@ -364,10 +377,11 @@ static void walls_keep_equilibrium(void **unused)
       struct test_run r = test_start(m);
       const struct solvent *s = &r.state.solvent;
       struct point before[4];
-      double count = 0.0, squares[3] = {0}, fourths[3] = {0};
+      double count = 0.0, hits = 0.0, squares[3] = {0}, fourths[3] = {0};
       test_steps(&r, BEFORE);
       memcpy(before, r.state.wall_momentum, sizeof before);
       for (int step = BEFORE; step < STEPS; step++) {
+        hits += hits_ahead(&r, 0.1);
         test_steps(&r, 1);
         for (uint32_t i = 0; i < s->n; i++) {
           if (s->y[i] > LATTICE_CELL / 2 && s->y[i] < r.model.box.edge[1] - LATTICE_CELL / 2)
@@ -381,6 +395,7 @@ static void walls_keep_equilibrium(void **unused)
       const double steps = STEPS - BEFORE, time = 0.1 * steps, area = 36.0;
       const struct point *now = r.state.wall_momentum;
       tally_add(&near, count / steps / s->n);
+      tally_add(&rate, hits / (2.0 * area * time));
       for (int j = 0; j < 3; j++) {
         tally_add(&heat[j], squares[j] / count);
         tally_add(&fourth[j], fourths[j] / count);
@@ -397,6 +412,7 @@ static void walls_keep_equilibrium(void **unused)
       assert_sigma(tally_mean(&fourth[j]), tally_error(&fourth[j]), 3.0, 5.5);
     }
     assert_sigma(tally_mean(&pressure), tally_error(&pressure), 3.0, 5.5);
+    assert_sigma(tally_mean(&rate), tally_error(&rate), 3.0 / sqrt(2.0 * acos(-1.0)), 5.5);
     if (g->kind == WALL_NO_SLIP && g->fill != FILL_NONE)
       assert_sigma(tally_mean(&virtual_pressure), tally_error(&virtual_pressure), 0.0, 5.5);
   }

@@ -89,10 +89,40 @@ static void accepted(void **unused)
   assert_non_null(strstr(message.text, "they act on the solvent, and there is none"));
 }
 
+/* The effective scene says the same flow: run.json has it, and fingerprints are made of it. */
+static void written_and_read_again(void **unused)
+{
+  (void)unused;
+  static const char *const flows[] = {"shear: {rate: 0.1}", "shear: {rate: -0.1, period: 20}",
+                                      "shear: {strain: 0.5, period: 20}", "walls: {kind: slip}",
+                                      "walls: {kind: no-slip, fill: paper, shear_rate: 0.1, period: 20}"};
+  for (size_t k = 0; k < sizeof flows / sizeof *flows; k++) {
+    struct scene scene, again;
+    struct message message = {""};
+    char *text = NULL;
+    size_t size = 0;
+    if (!read_flow("", flows[k], &scene, &message))
+      fail_msg("%s", message.text);
+    FILE *f = open_memstream(&text, &size);
+    assert_true(f && scene_write(&scene, f, false));
+    fclose(f);
+    if (!scene_read_text("again.yaml", text, size, &again, &message))
+      fail_msg("%s", message.text);
+    assert_true(scene.model.shear.rate == again.model.shear.rate &&
+                scene.model.shear.period == again.model.shear.period);
+    assert_true(scene.model.walls.kind == again.model.walls.kind &&
+                scene.model.walls.upper.x == again.model.walls.upper.x);
+    assert_true(scene.model.wave.intervals == again.model.wave.intervals);
+    free(text);
+    scene_free(&scene);
+    scene_free(&again);
+  }
+}
+
 /* --- warnings ---------------------------------------------------------------------------------------------------- */
 
 struct told {
-  int all, rescale, mach, heat, net, strain, shear_heat, drive_mach, unstable;
+  int all, rescale, mach, heat, net, strain, shear_heat, drive_mach, unstable, idle, unseen, early, narrow;
 };
 
 static void hear(void *context, const char *text)
@@ -106,6 +136,10 @@ static void hear(void *context, const char *text)
   t->strain += strstr(text, "the strain in a collision interval is") != NULL;
   t->shear_heat += strstr(text, "the shear heats the solvent by") != NULL;
   t->drive_mach += strstr(text, "the Mach number of the driven flow") != NULL;
+  t->idle += strstr(text, "slip walls pull nothing") != NULL;
+  t->unseen += strstr(text, "there are no solvent particles") != NULL;
+  t->narrow += strstr(text, "the bulk is what is 1 a0 and more from both walls") != NULL;
+  t->early += strstr(text, "the flow starts at rest") != NULL;
   t->unstable += strstr(text, "the driven flow is expected to be unstable") != NULL;
 }
 
@@ -134,7 +168,70 @@ static void warned(void **unused)
   assert_int_equal(warnings_of("", "walls: {kind: no-slip, lower: [0.1, 0, 0], upper: [0.1, 0, 0]}").heat, 0);
   assert_int_equal(warnings_of(at, "walls: {kind: no-slip, shear_rate: 0.1}").mach, 0);
   assert_int_equal(warnings_of(at, "walls: {kind: no-slip, shear_rate: 0.2}").mach, 1);
+  assert_int_equal(warnings_of(at, "walls: {kind: slip, lower: [0.1, 0, 0]}").idle, 1);
+  assert_int_equal(warnings_of(at, "walls: {kind: slip}").idle, 0);
+  assert_int_equal(warnings_of(at, "observe: {profile: {every: 1, slabs: 8}, stress: {every: 1}}").unseen, 0);
   assert_int_equal(warnings_of("  rule: at-a\n  acceleration: [1, 0, 0]", "walls: {kind: no-slip}").mach, 1);
+}
+
+/* Is a run of this length warned that it observes the start of its flow? nu is 0.7426 and L 8, so that the start falls
+ * to 1/e in 8.73 t0 where the flow is even about the middle, and in 2.18 t0 where it is odd. */
+static int early(const char *flow, int steps, int from)
+{
+  char text[1024];
+  struct scene scene;
+  struct message message = {""};
+  struct told told = {0};
+  snprintf(text, sizeof text,
+           "box: [6, 8, 6]\ntime_step: 0.1\nsteps: %d\nsolvent: {per_cell: 5, collision_interval: 0.1, rule: at-a%s\n"
+           "observe: {from: %d, profile: {every: 1, slabs: 8}}\n",
+           steps, flow, from);
+  if (!scene_read_text("flow.yaml", text, strlen(text), &scene, &message))
+    fail_msg("%s", message.text);
+  scene_warnings(&scene, hear, &told);
+  scene_free(&scene);
+  return told.early;
+}
+
+/* The kinetic stress is that of particles 1 a0 and more from both walls. */
+static void narrow_gap_warned(void **unused)
+{
+  (void)unused;
+  for (int height = 1; height < 5; height++) {
+    char text[512];
+    struct scene scene;
+    struct message message = {""};
+    struct told told = {0};
+    snprintf(text, sizeof text,
+             "box: [4, %d, 4]\ntime_step: 0.1\nsteps: 10\nsolvent: {per_cell: 5, collision_interval: 0.1}\n"
+             "walls: {kind: no-slip}\nobserve: {stress: {every: 5}}\n",
+             height);
+    if (!scene_read_text("flow.yaml", text, strlen(text), &scene, &message))
+      fail_msg("%s", message.text);
+    scene_warnings(&scene, hear, &told);
+    scene_free(&scene);
+    assert_int_equal(told.narrow, height < 3);
+  }
+}
+
+static void start_warned(void **unused)
+{
+  (void)unused;
+  const char *odd[] = {"}\nwalls: {kind: no-slip, shear_rate: 0.1}", ", acceleration: [0.1, 0, 0], profile: sine}"};
+  const char *even[] = {", acceleration: [0.01, 0, 0]}\nwalls: {kind: no-slip}",
+                        "}\nwalls: {kind: no-slip, lower: [0.1, 0, 0], upper: [0.1, 0, 0]}"};
+  const char *still[] = {"}", "}\nwalls: {kind: no-slip}", "}\nwalls: {kind: slip}", "}\nshear: {rate: 0.1}"};
+  for (size_t k = 0; k < 2; k++) {
+    assert_int_equal(early(odd[k], 2200, 0), 0);
+    assert_int_equal(early(odd[k], 2100, 0), 1);
+    assert_int_equal(early(even[k], 8800, 0), 0);
+    assert_int_equal(early(even[k], 8600, 0), 1);
+    assert_int_equal(early(even[k], 600, 200), 1); /* 8.73/40 exp(-20/8.73) = 0.022 */
+    assert_int_equal(early(even[k], 600, 280), 1); /* 0.0108 */
+    assert_int_equal(early(even[k], 600, 300), 0); /* 0.0091 */
+  }
+  for (size_t k = 0; k < 4; k++)
+    assert_int_equal(early(still[k], 100, 0), 0);
 }
 
 static struct told driven(const char *profile, double g)
@@ -173,7 +270,10 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(refused),
       cmocka_unit_test(accepted),
+      cmocka_unit_test(written_and_read_again),
       cmocka_unit_test(warned),
+      cmocka_unit_test(start_warned),
+      cmocka_unit_test(narrow_gap_warned),
       cmocka_unit_test(shear_and_drives_warned),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

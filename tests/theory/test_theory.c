@@ -124,6 +124,7 @@ static void flow_between_walls(void **unused)
   close_to(theory_poiseuille_speed(10.0, 0.001, 20.0, 37.6224, 0.0), 0.0132900, 1e-4);
   close_to(theory_poiseuille_speed(10.0, 0.001, 20.0, 37.6224, 0.2096), 0.0138471, 1e-4);
   close_to(theory_flow_relaxation(20.0, 3.76224), 10.7725, 1e-4);
+  close_to(theory_penetration_depth(0.2, 3.6), 6.0, 1e-12);
   close_to(theory_inertia_number(0.05, 10.0, 20.0, 37.6224), 0.664498, 1e-4);
   close_to(theory_flow_heating(37.6224, 0.1, 10.0, 2), 0.0376224, 1e-9);
   close_to(theory_flow_heating(37.6224, 0.1, 10.0, 3), 0.0250816, 1e-9);

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from . import flow as flows
+
 
 @dataclass
 class Model:
@@ -27,10 +29,16 @@ class Model:
     spring: np.ndarray
     bending: np.ndarray
     constant_force: np.ndarray
+    flow: flows.Flow | None = None  # walls or shear
+
+    @property
+    def rows(self):
+        """Of cells along y: between walls one more than the box has cells."""
+        return int(self.box[1]) + (self.flow is not None and self.flow.walls)
 
     @property
     def cells(self):
-        return int(np.prod(self.box))
+        return int(self.box[0]) * self.rows * int(self.box[2])
 
     @property
     def bonds(self):
@@ -61,4 +69,5 @@ def from_tables(tables):
         spring=vertex[:, 2],
         bending=vertex[:, 3],
         constant_force=vertex[:, 4:7],
+        flow=flows.from_tables(tables),
     )

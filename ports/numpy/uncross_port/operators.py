@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from . import events, fiber, random, solvent
+from . import events, fiber, flow, random, solvent
 from . import model as models
 from . import sweep as sweeps
 from .pack import Tables
@@ -118,9 +118,8 @@ def bin_operator(model, step, given):
 
 
 def members(model, given):
-    return solvent.members(
-        model, given["solvent_cell"][:, 0], given["vertex_cell"][:, 0], given["solvent"], given["vertex"]
-    )
+    cells = given["solvent_cell"][:, 0], given["vertex_cell"][:, 0]
+    return solvent.members(model, *cells, given["solvent"], given["vertex"])
 
 
 def sum_operator(model, step, given):
@@ -176,7 +175,80 @@ def swap(model, step, given):
     return {"order": column(permutation), "velocity": given["velocity"][permutation]}
 
 
+def wall_motion(model, step, given):
+    halves = [[half(int(k)) for k in given["interval"][:, 0]] for half in (flow.during, flow.end_of)]
+    flight, end = (np.array([flow.wall_velocity(model.flow, h).ravel() for h in row]) for row in halves)
+    return {"flight": flight, "end": end}
+
+
+def shear_motion(model, step, given):
+    rate = [flow.shear_rate(model.flow, int(k)) for k in given["interval"][:, 0]]
+    offset = [flow.shear_offset(model, int(k)) for k in given["half_steps"][:, 0]]
+    return {"rate": column(rate), "offset": column(np.array(offset, np.int64))}
+
+
+def wall_stream(model, step, given):
+    place = given["wall"], given["position"], given["velocity"], scalar(given["time"])
+    return dict(zip(("position", "velocity", "given"), flow.wall_stream(model, *place)))
+
+
+def wall_bin(model, step, given):
+    return {"solvent": column(flow.wall_cells(model, given["solvent"], given["shift"][0]))}
+
+
+def fill(model, step, given):
+    out = flow.fill(model, step, given["shift"][0], given["wall"], given["momentum"], given["load"])
+    return dict(zip(("filled", "momentum", "load"), out))
+
+
+def account(model, step, given):
+    turn = given["active"][:, 0] != 0, given["center"], given["axis"], given["factor"][:, 0]
+    return {"given": flow.account(model, given["filled"], *turn)}
+
+
+def sliding(change):
+    def run(model, step, given):
+        first = given["shift"][0] if len(given["shift"]) else None
+        slide = int(scalar(given["offset"])), float(scalar(given["speed"])), given["position"], given["velocity"]
+        return dict(zip(("position", "velocity"), change(model, first, *slide, given["time"])))
+
+    return run
+
+
+def shear_stream(model, shift, offset, speed, position, velocity, time):
+    return flow.shear_stream(model, offset, speed, position, velocity, scalar(time))
+
+
+def enter(model, shift, offset, speed, position, velocity, time):
+    return flow.enter(model, shift, offset, speed, position, velocity)
+
+
+def leave(model, shift, offset, speed, position, velocity, time):
+    return flow.leave(model, shift, offset, speed, position, velocity)
+
+
+def affine_kick(model, step, given):
+    return {"velocity": flow.affine_kick(model, scalar(given["change"]), given["position"], given["velocity"])}
+
+
+def rescale_layers(model, step, given):
+    relative = solvent.relative_energy(model, *members(model, given), given["center"], given["load"])
+    factor = flow.rescale_layers(model, given["load"], relative, given["filled"])
+    return {"relative": column(relative), "factor": column(factor)}
+
+
 OPERATORS = {
+    "wall_motion": wall_motion,
+    "shear_motion": shear_motion,
+    "wall_stream": wall_stream,
+    "shear_stream": sliding(shear_stream),
+    "enter": sliding(enter),
+    "wall_bin": wall_bin,
+    "fill": fill,
+    "account": account,
+    "leave": sliding(leave),
+    "affine_kick": affine_kick,
+    "rescale_layers": rescale_layers,
     "random": random_operator,
     "permutation": permutation,
     "order": order,

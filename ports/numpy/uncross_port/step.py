@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import xxhash
 
-from . import events, fiber, operators, solvent, sweep
+from . import events, fiber, flow, operators, solvent, sweep
 from .lattice import UNIT, dot
 
 # Stages of a step: name and duration in steps. A collision has none; other steps are drift, force, kick.
@@ -17,7 +17,7 @@ COLLIDING = {
     "kick-split": [("drift", 1.0), ("force", None), ("kick", 0.5), ("collide", None), ("kick", 0.5)],
     "drift-split": [("drift", 0.5), ("collide", None), ("drift", 0.5), ("force", None), ("kick", 1.0)],
 }
-THERMOSTATS = ["none", "rescale", "maxwell-boltzmann"]
+THERMOSTATS = ["none", "rescale", "maxwell-boltzmann", "rescale-layers"]
 CONTACT_COLUMNS = ["contacts", "contacts_hash"]
 COLUMNS = "momentum_x momentum_y momentum_z solvent_kinetic vertex_kinetic bond bend".split()
 
@@ -41,6 +41,8 @@ def run_of(row):
 class System:
     """A state and the stages that change it. Positions in lattice units; `lag`: half steps the solvent is behind."""
 
+    account = None  # what walls have given: in hits, in collisions
+
     def __init__(self, model, start):
         self.model, self.scene = model, run_of(start["run"][0])
         self.solvent, self.solvent_velocity = start["solvent"], start["solvent_velocity"]
@@ -50,12 +52,29 @@ class System:
         self.event_driven = bool(start["rule"].any())
         self.andersen = bool(start["collision"].any())
         self.contacts = []  # rows of events since the last row of the trace
+        self.streamed = 0  # half steps that the solvent has flown
+        if model.flow is not None and model.flow.walls:
+            self.account = np.zeros((4, 3), np.int64)
 
     def stream(self):
+        model, particles = self.model, (self.solvent, self.solvent_velocity)
         if self.lag:
             time = self.lag * (0.5 * self.model.dt)
-            self.solvent, self.solvent_velocity = solvent.stream(self.model, self.solvent, self.solvent_velocity, time)
-            self.lag = 0
+            end = self.streamed + self.lag
+            if model.flow is None:
+                particles = solvent.stream(model, *particles, time)
+            elif model.flow.walls:
+                wall = flow.wall_velocity(model.flow, flow.during(flow.interval_at(model, self.streamed)))
+                *particles, given = flow.wall_stream(model, wall, *particles, time)
+                self.account[:2] += given
+            else:
+                slide = flow.shear_offset(model, end), self.slide_speed(flow.interval_at(model, self.streamed))
+                particles = flow.shear_stream(model, *slide, *particles, time)
+            self.solvent, self.solvent_velocity = particles
+            self.lag, self.streamed = 0, end
+
+    def slide_speed(self, interval):
+        return flow.shear_rate(self.model.flow, interval) * float(self.model.box[1])
 
     def drift(self, share, sweep_number):
         self.lag += int(2 * share)
@@ -76,13 +95,28 @@ class System:
         model, step = self.model, self.finished + 1
         self.stream()
         shift = solvent.grid_shift(model, step)
-        cells = solvent.cell_of(model, self.solvent, shift), solvent.cell_of(model, self.vertex, shift)
+        sheared = model.flow is not None and not model.flow.walls
+        if sheared:
+            self.change_image(flow.enter, shift)
+        bin_cells = flow.wall_cells if model.flow is not None and model.flow.walls else solvent.cell_of
+        cells = bin_cells(model, self.solvent, shift), bin_cells(model, self.vertex, shift)
         if self.andersen:
             self.collide_andersen(step, cells)
         else:
-            self.collide_srd(step, cells)
+            self.collide_srd(step, cells, shift)
+        if sheared:
+            self.change_image(flow.leave, shift)
+        if sheared and model.flow.intervals:
+            begins = flow.interval_at(model, self.streamed)
+            change = flow.shear_rate(model.flow, begins) - (flow.shear_rate(model.flow, begins - 1) if begins else 0.0)
+            self.solvent_velocity = flow.affine_kick(model, change, self.solvent, self.solvent_velocity)
         if not self.scene.hydrodynamics:
             self.solvent_velocity = self.solvent_velocity[solvent.swap_order(model, step, model.particles)]
+
+    def change_image(self, change, shift):
+        ended = max(flow.interval_at(self.model, self.streamed) - 1, 0)
+        slide = flow.shear_offset(self.model, self.streamed), self.slide_speed(ended)
+        self.solvent, self.solvent_velocity = change(self.model, shift, *slide, self.solvent, self.solvent_velocity)
 
     def collide_andersen(self, step, cells):
         model, velocity = self.model, (self.solvent_velocity, self.vertex_velocity)
@@ -92,22 +126,29 @@ class System:
         self.solvent_velocity = solvent.give(cells[0], velocity[0], *turn, drawn[0])
         self.vertex_velocity = solvent.give(cells[1], velocity[1], *turn, drawn[1])
 
-    def collide_srd(self, step, cells):
-        model = self.model
+    def collide_srd(self, step, cells, shift):
+        model, filled = self.model, np.zeros((0, 4))
         members = solvent.members(model, *cells, self.solvent_velocity, self.vertex_velocity)
         momentum, load = solvent.sum_cells(model, *members)
+        if model.flow is not None and model.flow.walls:
+            wall = flow.wall_velocity(model.flow, flow.end_of(step // model.interval - 1))
+            filled, momentum, load = flow.fill(model, step, shift, wall, momentum, load)
         active, center, axis = solvent.solve(model, step, momentum, load)
-        factor = self.thermostat(step, members, center, load)
+        factor = self.thermostat(step, members, center, load, filled)
         turn = active, center, axis, factor
+        if len(filled):
+            self.account[2:] += flow.account(model, filled, *turn)
         self.solvent_velocity = solvent.rotate(model, cells[0], self.solvent_velocity, *turn)
         self.vertex_velocity = solvent.rotate(model, cells[1], self.vertex_velocity, *turn)
 
-    def thermostat(self, step, members, center, load):
+    def thermostat(self, step, members, center, load, filled):
         if self.scene.thermostat == "none":
             return np.ones(self.model.cells)
         relative = solvent.relative_energy(self.model, *members, center, load)
         if self.scene.thermostat == "rescale":
             return solvent.rescale(self.model, load, relative)
+        if self.scene.thermostat == "rescale-layers":
+            return flow.rescale_layers(self.model, load, relative, filled)
         return solvent.maxwell_boltzmann(self.model, step, load, relative)
 
     def step(self):
@@ -132,9 +173,12 @@ class System:
 
     def state_hash(self):
         counts = self.finished, self.lag, len(self.solvent), len(self.vertex)
-        digest = xxhash.xxh64(struct.pack("<4Q", *counts))
+        walls = self.account is not None
+        digest = xxhash.xxh64(struct.pack("<4Q", *counts) + (struct.pack("<Q", 4) if walls else b""))
         for position, velocity in ((self.solvent, self.solvent_velocity), (self.vertex, self.vertex_velocity)):
             digest.update(np.hstack([position, velocity.view(np.int64)]).astype("<i8").tobytes())
+        if walls:
+            digest.update(self.account.astype("<i8").tobytes())
         return digest.hexdigest()
 
     def take_contacts(self):

@@ -18,14 +18,25 @@ static struct point place_of(const struct mpc *c, const struct solvent *s, uint3
   return spin_place((struct point){s->x[i], s->y[i], s->z[i]}, c->shift);
 }
 
+/* The sums of all cells are three cache lines each: of 32^3 cells they do not fit the second level of a cache. So the
+ * lines of a member are asked for while those before it are summed. */
+enum { AHEAD = 12 }; /* members */
+
+static inline void prefetch_spin(const struct cell_spin *s)
+{
+  const char *line = (const char *)s;
+  for (size_t k = 0; k < sizeof *s; k += 64)
+    __builtin_prefetch(line + k, 1);
+}
+
 static void add_spins(const struct solvent *s, struct mpc *c, uint32_t first, uint32_t n,
                       const struct andersen_change *u)
 {
-  for (uint32_t k = 0; k < n && members_out_of_cache(c); k++)
-    __builtin_prefetch(&c->spin[c->solvent_cell[first + k]], 1);
-  for (uint32_t k = 0; k < n; k++)
-    spin_add_particle(&c->spin[c->solvent_cell[first + k]], place_of(c, s, first + k),
-                      (struct vec3){u->x[k], u->y[k], u->z[k]});
+  const uint32_t *cell = &c->solvent_cell[first];
+  for (uint32_t k = 0; k < n; k++) {
+    prefetch_spin(&c->spin[cell[k + AHEAD < n ? k + AHEAD : n - 1]]);
+    spin_add_particle(&c->spin[cell[k]], place_of(c, s, first + k), (struct vec3){u->x[k], u->y[k], u->z[k]});
+  }
 }
 
 static uint64_t add_particles(const struct state *state, const struct model *model, struct mpc *c, uint64_t step,
@@ -115,20 +126,32 @@ static void solve(const struct model *model, struct mpc *c, uint64_t step)
     spin_solve(&c->sum[k], &c->spin[k], &c->turn[k], &c->middle[k]);
 }
 
+/* New velocities of a block of particles, without a branch, and written to columns of their own first (at_a.c). */
+static void apply_block(struct solvent *s, const struct mpc *c, uint32_t first, uint32_t n)
+{
+  const uint32_t *cell = &c->solvent_cell[first];
+  const double *vx = &s->vx[first], *vy = &s->vy[first], *vz = &s->vz[first];
+  const double *dx = &c->drawn[0][first], *dy = &c->drawn[1][first], *dz = &c->drawn[2][first];
+  struct andersen_change new;
+  for (uint32_t k = 0; k < n; k++) {
+    const struct cell_turn *t = &c->turn[cell[k]];
+    const bool active = t->active != 0.0;
+    const struct vec3 v = spin_velocity(t, c->middle[cell[k]], place_of(c, s, first + k));
+    new.x[k] = active ? v.x + dx[k] : vx[k];
+    new.y[k] = active ? v.y + dy[k] : vy[k];
+    new.z[k] = active ? v.z + dz[k] : vz[k];
+  }
+  memcpy(&s->vx[first], new.x, n * sizeof *new.x);
+  memcpy(&s->vy[first], new.y, n * sizeof *new.y);
+  memcpy(&s->vz[first], new.z, n * sizeof *new.z);
+}
+
 static void apply(struct state *state, const struct model *model, const struct mpc *c, bool scaled)
 {
   (void)model, (void)scaled; /* it is a thermostat by itself */
   struct solvent *s = &state->solvent;
-  for (uint32_t i = 0; i < s->n; i++) {
-    const uint32_t cell = c->solvent_cell[i];
-    const struct cell_turn *t = &c->turn[cell];
-    if (t->active == 0.0)
-      continue;
-    const struct vec3 v = spin_velocity(t, c->middle[cell], place_of(c, s, i));
-    s->vx[i] = v.x + c->drawn[0][i];
-    s->vy[i] = v.y + c->drawn[1][i];
-    s->vz[i] = v.z + c->drawn[2][i];
-  }
+  for (uint32_t i = 0; i < s->n; i += ANDERSEN_BLOCK)
+    apply_block(s, c, i, s->n - i < ANDERSEN_BLOCK ? s->n - i : ANDERSEN_BLOCK);
   for (uint32_t v = 0; v < state->vertices; v++) {
     const uint32_t cell = c->vertex_cell[v];
     const struct cell_turn *t = &c->turn[cell];

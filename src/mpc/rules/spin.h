@@ -18,6 +18,7 @@
 #ifndef UNCROSS_MPC_RULES_SPIN_H
 #define UNCROSS_MPC_RULES_SPIN_H
 
+#include "base/elementary.h"
 #include "mpc/cell.h"
 
 __extension__ typedef __int128 spin_wide;
@@ -95,10 +96,19 @@ struct vec3 spin_rate(const double c[6], struct vec3 l);
  * mass. A member that is alone keeps its velocity. */
 void spin_solve(const struct cell_sum *sum, const struct cell_spin *spin, struct cell_turn *turn, struct point *middle);
 
+/* a - b in a0, exact below 2^51 lattice units; point_difference in a form that vectorises before AVX-512. */
+static inline double spin_difference(int64_t a, int64_t b)
+{
+  const uint64_t bits = elementary_bits(LATTICE_ROUND_MAGIC) + (uint64_t)(a - b);
+  return (elementary_from_bits(bits) - LATTICE_ROUND_MAGIC) * LATTICE_UNIT;
+}
+
 /* center + Omega x (y - middle), a0/t0: the new velocity of the member at y, less the velocity drawn for it. */
 static inline struct vec3 spin_velocity(const struct cell_turn *turn, struct point middle, struct point y)
 {
-  return vec3_add(turn->center, vec3_cross(turn->axis, point_difference(y, middle)));
+  const struct vec3 r = {spin_difference(y.x, middle.x), spin_difference(y.y, middle.y),
+                         spin_difference(y.z, middle.z)};
+  return vec3_add(turn->center, vec3_cross(turn->axis, r));
 }
 
 #endif

@@ -4,7 +4,7 @@ import math
 
 import numpy
 
-from lib import figures, stats, theory
+from lib import figures, flow, stats, theory
 from lib.case import Figure, Outcome, Verdict
 from lib.runs import Run
 
@@ -42,13 +42,6 @@ def runs(tier):
 
 # --- what runs say ----------------------------------------------------------------------------------------------------
 
-def from_waves(table, gamma, kinetic, collisional):
-    """(eta, error) for k -> 0: each box's nu(k) over 1 - (share of the collisional part) k^2/30, the width of a cell."""
-    width = 1.0 - collisional / (kinetic + collisional) * table["k"]**2 / 30.0
-    nu, error, _ = stats.weighted_mean(table["nu"] / width, table["nu_error"] / width)
-    return gamma * nu, gamma * error
-
-
 def from_stress(table, point):
     """(eta, error): the integral of the stress's autocorrelation up to MEMORY."""
     row = MEMORY[point]
@@ -61,7 +54,7 @@ class Measured:
     def __init__(self, name, words, point, parts, waves, stress):
         self.name, self.words, self.point, self.parts, self.stress_table = name, words, point, parts, stress.columns
         self.theory = sum(parts)
-        self.waves = from_waves(waves.columns, point.gamma, *parts)
+        self.waves = flow.from_waves(waves.columns, point.gamma, *parts)
         self.stress = from_stress(self.stress_table, point)
 
     @property

@@ -1,0 +1,89 @@
+/* Tolerances of the operators of walls and of shear: docs/porting.md. */
+#include <math.h>
+
+#include "base/lattice.h"
+#include "mpc/cell.h"
+#include "oracle/tolerance.h"
+
+static double fastest(const struct oracle_pair *p)
+{
+  return tolerance_velocities(p) + tolerance_size_of(p, "in.wall") + tolerance_size_of(p, "in.speed") +
+         tolerance_acceleration(p) * tolerance_size_of(p, "in.time");
+}
+
+double tolerance_motion(const struct oracle_pair *p, uint32_t row, uint32_t column)
+{
+  (void)row, (void)column;
+  return 4.0 * tolerance_largest(p->ours, 0, PACK_COLUMNS) * p->rounding;
+}
+
+/* A flight has at most LATTICE_MAX_MOVE/1 hits; packs have one or two, and each adds 2 w. */
+double tolerance_wall_velocity(const struct oracle_pair *p, uint32_t row, uint32_t column)
+{
+  (void)row, (void)column;
+  return 32.0 * fastest(p) * p->rounding;
+}
+
+double tolerance_wall_position(const struct oracle_pair *p, uint32_t row, uint32_t column)
+{
+  (void)row, (void)column;
+  return 1.0 + LATTICE_PER_A0 * 40.0 * fastest(p) * tolerance_size_of(p, "in.time") * p->rounding;
+}
+
+/* Each hit is rounded once to the unit of the sum. */
+double tolerance_wall_given(const struct oracle_pair *p, uint32_t row, uint32_t column)
+{
+  const struct pack_table *particles = oracle_sibling(p, "in.position");
+  const double n = particles ? particles->rows : 0.0;
+  (void)row, (void)column;
+  return n + CELL_MOMENTUM_SCALE * n * 64.0 * fastest(p) * p->rounding;
+}
+
+double tolerance_slid(const struct oracle_pair *p, uint32_t row, uint32_t column)
+{
+  (void)row, (void)column;
+  return 4.0 * fastest(p) * p->rounding;
+}
+
+double tolerance_affine(const struct oracle_pair *p, uint32_t row, uint32_t column)
+{
+  (void)row, (void)column;
+  return 4.0 *
+         (tolerance_velocities(p) +
+          tolerance_size_of(p, "in.position") * LATTICE_UNIT * tolerance_size_of(p, "in.change")) *
+         p->rounding;
+}
+
+static double most_virtual(const struct oracle_pair *p)
+{
+  const struct pack_table *out = oracle_sibling(p, "out.filled");
+  return fmax(1.0, tolerance_largest(out ? out : oracle_sibling(p, "in.filled"), 0, 1));
+}
+
+static double virtual_speed(const struct oracle_pair *p)
+{
+  const struct pack_table *out = oracle_sibling(p, "out.filled");
+  return 9.0 + tolerance_size_of(p, "in.wall") + tolerance_largest(out ? out : oracle_sibling(p, "in.filled"), 1, 4);
+}
+
+/* Numbers are whole, or multiples of 2^-16: exact. Velocities have the tolerance of a normal deviate. */
+double tolerance_filled(const struct oracle_pair *p, uint32_t row, uint32_t column)
+{
+  (void)row;
+  return column == 0 ? 0.0 : 24.0 * virtual_speed(p) * (p->rounding + (tolerance_single(p) ? sqrt(p->rounding) : 0.0));
+}
+
+double tolerance_filled_momentum(const struct oracle_pair *p, uint32_t row, uint32_t column)
+{
+  return 1.0 + CELL_MOMENTUM_SCALE * most_virtual(p) *
+                   (tolerance_filled(p, row, column + 1) + 4.0 * virtual_speed(p) * p->rounding);
+}
+
+double tolerance_account_given(const struct oracle_pair *p, uint32_t row, uint32_t column)
+{
+  const struct pack_table *cells = oracle_sibling(p, "in.filled");
+  const double n = cells ? cells->rows : 0.0;
+  (void)row, (void)column;
+  return n + CELL_MOMENTUM_SCALE * n * most_virtual(p) * 100.0 * tolerance_size_of(p, "in.factor") *
+                 (virtual_speed(p) + tolerance_size_of(p, "in.center")) * p->rounding;
+}

@@ -1,0 +1,178 @@
+#!/usr/bin/python3
+"""What `uncross plot` reads from tables of a flow. The tables are made here, from solutions of the Stokes equation with a
+viscosity and slip that are not those of theory, so that what is found is known."""
+import cmath
+import json
+import math
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.dont_write_bytecode = True  # nothing is left in the source tree
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from support import TOP, UNCROSS  # noqa: E402
+
+os.environ["UNCROSS"] = str(UNCROSS)
+sys.path.insert(0, str(TOP / "python"))
+from uncross_plot import flow, page, runs  # noqa: E402
+
+ETA, SLIP, EDGE, RHO = 30.0, 0.4, 20, 10.0
+SOLVENT = """box: [8, 20, 1]
+dimensions: 2
+time_step: 0.02
+steps: 1000
+solvent: {per_cell: 10, collision_interval: 0.02, rule: at-a%s}
+%s
+"""
+
+
+def tell(folder, scene, profile, stress=None):
+    """A folder as a run leaves it: {column: values} of each table."""
+    (folder / "run.json").write_text('{"scene": %s}' % json.dumps(scene), encoding="utf-8")
+    for name, table in (("profile", profile), ("stress", stress)):
+        if table:
+            lines = [",".join(table), *(",".join(repr(float(v)) for v in row) for row in zip(*table.values()))]
+            (folder / f"{name}.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def profile(velocity, error=1e-9, **more):
+    y = [k + 0.5 for k in range(EDGE)]
+    return {"y": y, "vx": [velocity(v) for v in y], "vx_error": [error] * EDGE,
+            **{name: [f(v) for v in y] for name, f in more.items()}}
+
+
+def stress(xy, lower=math.nan, upper=math.nan, rows=64):
+    time = [0.2 * k for k in range(1, rows + 1)]
+    return {"step": [10 * k for k in range(1, rows + 1)], "time": time, "sigma_xy": [xy] * rows, "N1": [0.25] * rows,
+            "sigma_lower": [lower] * rows, "sigma_upper": [upper] * rows}
+
+
+class Flows(unittest.TestCase):
+    def found(self, scene, *tables):
+        with tempfile.TemporaryDirectory() as folder:
+            tell(pathlib.Path(folder), scene, *tables)
+            run = runs.read(folder)
+            self.assertEqual(run.trouble, [])
+            page.measured_flow(run)
+            return flow.Flow(run).measured()
+
+    def one(self, found, name, source=""):
+        fits = [m for m in found if m.name == name and m.source.startswith(source)]
+        self.assertEqual(len(fits), 1, found)
+        return fits[0]
+
+    def near(self, measured, value, relative=1e-3):
+        self.assertAlmostEqual(measured.value, value, delta=relative * abs(value))
+
+    def test_couette(self):
+        rate = 0.05 / (1.0 + 2.0 * SLIP / EDGE)
+        found = self.found(SOLVENT % ("", "walls: {kind: no-slip, shear_rate: 0.05}"),
+                           profile(lambda y: rate * (y - EDGE / 2)), stress(ETA * rate * 1.5, 0.9 * ETA * rate, 1.1 * ETA * rate))
+        self.near(self.one(found, "shear rate in the bulk", "slope"), rate)
+        self.near(self.one(found, "slip length", "L/2"), SLIP)
+        self.near(self.one(found, "viscosity", "stress on the walls"), ETA)
+        self.near(self.one(found, "viscosity", "stress in the bulk"), 1.5 * ETA)
+        self.near(self.one(found, "first normal stress difference", "mean"), 0.25)
+        self.assertAlmostEqual(self.one(found, "slip length", "L/2").theory, 0.2096, delta=1e-3)
+
+    def test_stress_of_a_transient_is_left_out(self):
+        rate, table = 0.05, stress(1.0, 1.0, 1.0)
+        for name in ("sigma_xy", "sigma_lower", "sigma_upper"):
+            table[name] = [9.0] * 32 + [ETA * rate] * 32
+        found = self.found(SOLVENT % ("", "walls: {kind: no-slip, shear_rate: 0.05}\nobserve:\n  from: 320"),
+                           profile(lambda y: rate * (y - EDGE / 2)), table)
+        self.near(self.one(found, "viscosity", "stress on the walls"), ETA)
+
+    def test_errors_of_slabs_add_up(self):
+        """The bound of a slope is that of slabs that move together on each side of the middle."""
+        error, rate = 0.01, 0.05
+        found = self.found(SOLVENT % ("", "walls: {kind: no-slip, shear_rate: 0.05}"),
+                           profile(lambda y: rate * (y - EDGE / 2), error), stress(1.0, 1.0, 1.0))
+        about = [y + 0.5 - EDGE / 2 for y in range(EDGE) if abs(y + 0.5 - EDGE / 2) < 0.3 * EDGE]
+        bound = error * sum(abs(y) for y in about) / sum(y * y for y in about)
+        self.assertAlmostEqual(self.one(found, "shear rate in the bulk").error, bound, delta=1e-9)
+
+    def test_poiseuille(self):
+        force = RHO * 0.02
+        found = self.found(SOLVENT % (", acceleration: [0.02, 0, 0]", "walls: {kind: no-slip}"),
+                           profile(lambda y: force / (2 * ETA) * (y * (EDGE - y) + SLIP * EDGE)), stress(0.0))
+        self.near(self.one(found, "viscosity", "curvature"), ETA)
+        self.assertEqual([m for m in found if "normal" in m.name], [])
+        self.near(self.one(found, "slip length", "where"), math.sqrt(EDGE**2 / 4 + SLIP * EDGE) - EDGE / 2)
+        self.near(self.one(found, "largest velocity by the force", "parabola"), force / (2 * ETA) * (EDGE**2 / 4 + SLIP * EDGE))
+
+    def test_forces_with_a_profile(self):
+        force, k = RHO * 0.02, 2.0 * math.pi / EDGE
+        sine = self.found(SOLVENT % (", acceleration: [0.02, 0, 0], profile: sine", ""),
+                          profile(lambda y: force / (ETA * k * k) * math.sin(k * y)))
+        self.near(self.one(sine, "viscosity", "force"), ETA)
+        half = EDGE / 2
+        reverse = self.found(SOLVENT % (", acceleration: [0.02, 0, 0], profile: reverse", ""),
+                             profile(lambda y: (1 if y < half else -1) * force / (2 * ETA) * (y % half) * (half - y % half)))
+        self.near(self.one(reverse, "viscosity", "force"), ETA)
+
+    def test_sheared(self):
+        found = self.found(SOLVENT % ("", "shear: {rate: 0.1}"), profile(lambda y: 0.1 * (y - EDGE / 2)), stress(0.1 * ETA))
+        self.near(self.one(found, "slope of the profile", "all"), 0.1)
+        self.near(self.one(found, "viscosity", "stress"), ETA)
+
+    def test_moduli(self):
+        """A stress of G' = 3 and G'' = 7 times the strain, and its mean over the time since the row before."""
+        period, rate, storage, loss = 4.0, 0.1, 3.0, 7.0
+        omega = 2 * math.pi / period
+        def mean(begin, end):  # of strain (G' sin + G'' cos)
+            strain = rate / omega
+            return strain * (storage * (math.cos(omega * begin) - math.cos(omega * end)) +
+                             loss * (math.sin(omega * end) - math.sin(omega * begin))) / (omega * (end - begin))
+        table = stress(0.0, rows=200)
+        table["sigma_xy"] = [mean(t - 0.2, t) for t in table["time"]]
+        found = self.found(SOLVENT % ("", "shear: {rate: 0.1, period: 4}"),
+                           profile(lambda y: 0.0, vx_in_phase=lambda y: 0.1 * (y - EDGE / 2), vx_in_phase_error=lambda y: 1e-9,
+                                   vx_out_of_phase=lambda y: 0.0, vx_out_of_phase_error=lambda y: 1e-9), table)
+        self.near(self.one(found, "loss modulus G''", "stress"), loss)
+        self.near(self.one(found, "storage modulus G'", "stress"), storage)
+        self.near(self.one(found, "rate in the middle over that applied", "first"), 1.0)
+
+    def test_oscillating_walls(self):
+        """The viscous waves of two walls; that of theory has the viscosity and slip of `uncross check`."""
+        period, slip, eta = 30.0, 0.20962, 37.6224
+        wave = cmath.sqrt(2j * math.pi / period * RHO / eta)
+        def velocity(y):
+            about = y - EDGE / 2
+            return 0.05 * EDGE / 2 * cmath.sinh(wave * about) / (cmath.sinh(wave * EDGE / 2) + slip * wave * cmath.cosh(wave * EDGE / 2))
+        found = self.found(SOLVENT % ("", "walls: {kind: no-slip, shear_rate: 0.05, period: 30}"),
+                           profile(lambda y: 0.0, vx_in_phase=lambda y: velocity(y).real, vx_in_phase_error=lambda y: 1e-9,
+                                   vx_out_of_phase=lambda y: -velocity(y).imag, vx_out_of_phase_error=lambda y: 1e-9))
+        for name in ("rate in the middle over that applied", "its phase lag"):
+            measured = self.one(found, name)
+            self.near(measured, measured.theory)
+        self.assertGreater(self.one(found, "its phase lag").value, 10.0)
+
+    def test_top_of_the_page(self):
+        """What was measured stands there beside theory."""
+        with tempfile.TemporaryDirectory() as folder:
+            tell(pathlib.Path(folder), SOLVENT % ("", "shear: {rate: 0.1}"), profile(lambda y: 0.1 * (y - EDGE / 2)),
+                 {**stress(0.0), "sigma_xy": [3.0 + 0.01 * (-1)**k for k in range(64)]})
+            front = dict(page.front(runs.read(folder)))
+        self.assertRegex(str(front["What came out"]), r"Viscosity 30\.\d* ± 0\.\d+ m/a0 t0, theory 37\.62 \(stress over the rate\)")
+
+    def test_box_of_a_flow(self):
+        """A flow has its own box, and no picture of fibers where there are none."""
+        scene = (SOLVENT % ("", "walls: {kind: no-slip, shear_rate: 0.05}")).replace("box: [8, 20, 1]", "box: [2, 4, 1]")
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder)
+            (path / "scene.yaml").write_text(scene, encoding="utf-8")
+            subprocess.run([str(UNCROSS), "run", str(path / "scene.yaml"), "--out", str(path / "run"), "--quiet"], check=True)
+            run = runs.read(str(path / "run"))
+            self.assertEqual(dict(page.front(run))["What ran"], "The solvent between two walls, in a box of 2 × 4 × 1 a0.")
+            self.assertNotIn("Fibers", [section.title for section in page.sections_of(run)])
+
+    def test_no_flow(self):
+        self.assertEqual(self.found(SOLVENT % ("", ""), profile(lambda y: 0.0), stress(0.0)), [])
+
+
+if __name__ == "__main__":
+    unittest.main()
