@@ -50,9 +50,10 @@ int64_t pairs_fly(const struct pairs *pairs, int axis, const struct swing *swing
 struct dumbbell_boundary {
   const char *name;
 
-  /* hits: [WALLS] the account of hits (system/account.h), or NULL. Not 0 if a flight was out of range. */
+  /* hits, turns: [WALLS] the account of hits and its turns (system/account.h), or NULL. Not 0 if a flight was out of
+   * range. */
   int64_t (*fly)(const struct pairs *pairs, const struct model *model, const struct span *span,
-                 const struct swing *swing, struct point *hits);
+                 const struct swing *swing, struct point *hits, uint64_t *turns);
 };
 
 extern const struct dumbbell_boundary dumbbells_periodic, dumbbells_between_walls, dumbbells_sheared;

@@ -31,10 +31,11 @@ struct slit {
   double reach, pull;        /* of the potential: a0; acceleration towards the wall, a0/t0^2 */
   struct vec3 wall[WALLS];   /* velocities, a0/t0 */
   struct point *hits;        /* [WALLS] the account of hits, or NULL */
+  uint64_t *turns;           /* [WALLS] of the same */
 };
 
 static struct slit slit_of(const struct model *model, const struct span *span, const struct swing *swing,
-                           struct point *hits)
+                           struct point *hits, uint64_t *turns)
 {
   const struct dumbbell_model *d = &model->dumbbells;
   const double reach = d->depth != 0.0 ? d->range / sqrt(d->spring) : 0.0;
@@ -46,7 +47,8 @@ static struct slit slit_of(const struct model *model, const struct span *span, c
       reach,
       reach > 0.0 ? 0.5 * d->depth / reach : 0.0, /* a dumbbell has the mass 2 */
       {shear_wall_velocity(model, WALL_LOWER, span->interval), shear_wall_velocity(model, WALL_UPPER, span->interval)},
-      hits};
+      hits,
+      turns};
 }
 
 /* One dumbbell. */
@@ -169,7 +171,7 @@ static double time_of_exit(const struct slit *slit, const struct course *c, enum
 static void enter(const struct slit *slit, enum wall wall, struct vec3 gain)
 {
   if (slit->hits)
-    account_add(&slit->hits[wall], gain);
+    account_add(&slit->hits[wall], &slit->turns[wall], gain);
 }
 
 static void hit(const struct slit *slit, struct couple *c, int i, enum wall wall)
@@ -283,9 +285,9 @@ static int64_t fly_block(const struct pairs *pairs, const struct slit *slit)
 }
 
 static int64_t fly_walls(const struct pairs *pairs, const struct model *model, const struct span *span,
-                         const struct swing *swing, struct point *hits)
+                         const struct swing *swing, struct point *hits, uint64_t *turns)
 {
-  const struct slit slit = slit_of(model, span, swing, hits);
+  const struct slit slit = slit_of(model, span, swing, hits, turns);
   int64_t far = 0;
   for (uint32_t p = 0; p < pairs->n && !far; p += BLOCK)
     far = fly_block(&(struct pairs){pairs->n - p < BLOCK ? pairs->n - p : BLOCK,

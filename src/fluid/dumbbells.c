@@ -101,10 +101,11 @@ static bool stream_dumbbells(struct state *state, const struct model *model, uin
   if (first < end) {
     const struct swing swing = swing_for(model->dumbbells.frequency, span.time);
     const struct pairs pairs = pairs_of(state, first / 2, (end - first) / 2);
-    struct point *hits = model_has_walls(model) ? &state->wall_momentum[account_row(ACCOUNT_HITS, WALL_LOWER)] : NULL;
+    const uint32_t row = account_row(ACCOUNT_HITS, WALL_LOWER);
     if (!speeds_fit(state, &span, first, end - first, fault))
       return false;
-    if (dumbbell_boundary_of(&model->box)->fly(&pairs, model, &span, &swing, hits))
+    if (dumbbell_boundary_of(&model->box)
+            ->fly(&pairs, model, &span, &swing, &state->wall_momentum[row], &state->wall_turns[row]))
       return too_long(state, first / 2, pairs.n, fault);
   }
   const uint32_t alone = first > paired ? first : paired;
@@ -125,7 +126,7 @@ static void fly_one(const struct state *state, const struct model *model, const 
     r[k] = all.apart[k][0];
   }
   const struct pairs one = {1, {x[0], x[1], x[2]}, {w[0], w[1], w[2]}, {&r[0], &r[1], &r[2]}};
-  dumbbell_boundary_of(&model->box)->fly(&one, model, span, swing, NULL);
+  dumbbell_boundary_of(&model->box)->fly(&one, model, span, swing, NULL, NULL);
   *at = (struct point){x[0][i % 2], x[1][i % 2], x[2][i % 2]};
   *v = (struct vec3){w[0][i % 2], w[1][i % 2], w[2][i % 2]};
   *apart = point_in_a0((struct point){r[0], r[1], r[2]});
