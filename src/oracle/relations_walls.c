@@ -115,10 +115,12 @@ static bool fly(const struct evidence_part *part, const struct wall_twist *t, ui
   double y = x[1], left = fabs(d);
   bool down = d < 0.0;
   const bool hits = (free_end < 0.0 || free_end > edge) && !t->periodic;
-  for (double reach = down ? y : edge - y; hits && left > reach; reach = edge) {
+  double reach = down ? y : edge - y;
+  while (hits && left > reach) {
     go_on(way, a, time * (reach / fabs(d)));
     meet(way, t, slip, down ? 0 : 1, wall, v);
     left -= reach, y = down ? 0.0 : edge, down = !down;
+    reach = edge;
   }
   if (hits)
     go_on(way, a, time * (left / fabs(d)));

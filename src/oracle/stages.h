@@ -53,7 +53,7 @@ bool oracle_run_rescale_layers(struct oracle_stage *stage);
 bool oracle_run_thermostat(struct oracle_stage *stage, enum thermostat_kind kind);
 
 /* Tables of the model that only scenes with walls or shear have. */
-void oracle_put_flow(struct oracle_stage *stage);
+void oracle_put_flow(struct oracle_stage *g);
 
 /* The sweep of this number, for fraction * dt, of the state as it is. */
 bool oracle_sweep_for(struct oracle_stage *stage, double fraction, uint32_t sweep);
