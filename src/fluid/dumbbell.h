@@ -12,6 +12,7 @@
 
 #include "base/elementary.h"
 #include "fluid/boundary.h"
+#include "system/fluid.h"
 
 /* What the flights of all dumbbells for a time have in common. */
 struct swing {
@@ -64,5 +65,9 @@ const struct dumbbell_boundary *dumbbell_boundary_of(const struct box *box);
 /* The potential energy of the center of a dumbbell, kT, at a height y above the lower wall: 0 without such a
  * potential. */
 double dumbbell_wall_energy(const struct model *model, double y);
+
+/* The stress that dumbbells carry in flight: `flux` of struct fluid. */
+void dumbbells_flux(const struct state *state, const struct model *model, const struct flux_frame *frame,
+                    struct flux_sum *sum);
 
 #endif

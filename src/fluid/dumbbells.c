@@ -181,4 +181,10 @@ double fluid_dumbbell_energy(const struct state *state, const struct model *mode
 }
 
 const struct fluid fluid_dumbbells = {
-    .name = "dumbbells", .together = 2, .start = start_dumbbells, .stream = stream_dumbbells, .now = dumbbells_now};
+    .name = "dumbbells",
+    .together = 2,
+    .start = start_dumbbells,
+    .stream = stream_dumbbells,
+    .now = dumbbells_now,
+    .flux = dumbbells_flux,
+};

@@ -57,6 +57,7 @@ struct observer_type {
   /* A time series: its columns, and the function that fills a row. */
   const char *const *column;
   size_t columns;
+  size_t of_dumbbells; /* the last of these columns, that only a model with dumbbells has */
   void (*row)(struct observer *observer, struct view *view, double *row);
 
   /* A summary: the function that adds a sample, and the one that makes a table for each kind of fiber. NULL for time
