@@ -8,16 +8,11 @@
 #include "files/trajectory.h"
 
 /* Streams the solvent to where it is now. */
-static bool make_up_lag(struct state *state, const struct model *model, const char *path, struct message *message)
+static bool make_up_lag(struct state *state, const struct model *model, struct message *message)
 {
   struct fault fault = {.code = FAULT_NONE};
-  char text[512];
-  if (model_has_dumbbells(model)) { /* two particles move together, and their vector with them */
-    if (fluid_stream(state, model, &fault))
-      return true;
-    fault_describe(&fault, text, sizeof text);
-    return message_set(message, "%s: %s", path, text);
-  }
+  if (model_has_dumbbells(model)) /* two particles move together, and their vector with them */
+    return fluid_stream(state, model, &fault) || message_fault(message, &fault);
 
   struct solvent *p = &state->solvent;
   for (uint32_t i = 0; state->solvent_lag > 0 && i < p->n; i++) {
@@ -39,7 +34,7 @@ static bool start_from_checkpoint(const char *path, const struct model *model, s
   struct model then = *model;
   then.time_step = summary.time_step;
   then.solvent.acceleration = summary.acceleration;
-  return make_up_lag(state, &then, path, message);
+  return make_up_lag(state, &then, message);
 }
 
 /* Rows must be in the scene's order: vertices fiber by fiber, then solvent. */

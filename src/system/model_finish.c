@@ -74,6 +74,8 @@ static bool derive_particles(struct model *m, struct model_error *error)
   return true;
 }
 
+#define LOOSEST 1e-4 /* kT/a0^2: twenty standard deviations are below LATTICE_MAX_MOVE */
+
 /* Dumbbells are as many as there are pairs among their share of the particles. */
 static bool finish_dumbbells(struct model *m, struct model_error *error)
 {
@@ -87,6 +89,10 @@ static bool finish_dumbbells(struct model *m, struct model_error *error)
   if (!m->solvent.hydrodynamics)
     return model_reject(error, "solvent.hydrodynamics",
                         "velocities that are permuted are not those of springs; allowed with dumbbells: true");
+  if (d->spring < LOOSEST)
+    return model_reject(error, "dumbbells.spring",
+                        "%.6g makes dumbbells of %.3g a0 along each axis, too long for a flight; allowed: %g and more",
+                        d->spring, 1.0 / sqrt(d->spring), LOOSEST);
   d->pairs = (uint32_t)(0.5 * d->fraction * m->solvent.particles);
   d->frequency = sqrt(2.0 * d->spring);
   if (d->pairs == 0)
