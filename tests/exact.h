@@ -180,6 +180,13 @@ static inline struct test_run dice_run(struct model model, struct dice *d)
       s->vz[i] = 0.0;
     }
   }
+  struct dumbbells *b = &r.state.dumbbells;
+  for (uint32_t p = 0; p < b->n; p++) {
+    const int64_t image = dice_integer(d, -1, 1);
+    b->x[p] = s->x[2 * p] - s->x[2 * p + 1] + image * edge[0];
+    b->y[p] = s->y[2 * p] - s->y[2 * p + 1] + (model_has_walls(&r.model) ? 0 : image * edge[1]);
+    b->z[p] = s->z[2 * p] - s->z[2 * p + 1];
+  }
   for (uint32_t v = 0; v < r.state.vertices; v++) {
     r.state.position[v] = dice_point(d, 3 * edge[0], 3 * edge[1], 3 * edge[2]);
     r.state.velocity[v] = dice_vector(d, sqrt(r.model.inverse_mass[v]));
@@ -202,24 +209,43 @@ static inline void set_solvent_v(struct state *state, uint32_t i, struct vec3 v)
 }
 
 /* Solvent particles of a state moved to other places in memory; physically the same state. */
+static inline void swap_particles(struct solvent *s, uint32_t k, uint32_t j)
+{
+  int64_t *lattice[] = {s->x, s->y, s->z};
+  double *real[] = {s->vx, s->vy, s->vz};
+  const uint32_t id = s->id[k];
+  for (int c = 0; c < 3; c++) {
+    int64_t p = lattice[c][k];
+    double v = real[c][k];
+    lattice[c][k] = lattice[c][j];
+    lattice[c][j] = p;
+    real[c][k] = real[c][j];
+    real[c][j] = v;
+  }
+  s->id[k] = s->id[j];
+  s->id[j] = id;
+}
+
+/* Dumbbells stay before the other particles, and their particles together. */
 static inline void shuffle_memory(struct state *state, struct dice *d)
 {
   struct solvent *s = &state->solvent;
-  for (uint32_t k = s->n; k-- > 1;) {
-    uint32_t j = (uint32_t)dice_integer(d, 0, k), id = s->id[k];
-    int64_t *lattice[] = {s->x, s->y, s->z};
-    double *real[] = {s->vx, s->vy, s->vz};
+  struct dumbbells *b = &state->dumbbells;
+  for (uint32_t k = b->n; k-- > 1;) {
+    const uint32_t j = (uint32_t)dice_integer(d, 0, k), id = b->id[k];
+    int64_t *r[] = {b->x, b->y, b->z};
     for (int c = 0; c < 3; c++) {
-      int64_t p = lattice[c][k];
-      double v = real[c][k];
-      lattice[c][k] = lattice[c][j];
-      lattice[c][j] = p;
-      real[c][k] = real[c][j];
-      real[c][j] = v;
+      const int64_t apart = r[c][k];
+      r[c][k] = r[c][j];
+      r[c][j] = apart;
     }
-    s->id[k] = s->id[j];
-    s->id[j] = id;
+    b->id[k] = b->id[j];
+    b->id[j] = id;
+    swap_particles(s, 2 * k, 2 * j);
+    swap_particles(s, 2 * k + 1, 2 * j + 1);
   }
+  for (uint32_t k = s->n; k-- > 2 * b->n + 1;)
+    swap_particles(s, k, (uint32_t)dice_integer(d, 2 * b->n, k));
 }
 
 /* Cell number (z Ly + y) Lx + x of a point on a shifted grid, by floor divisions. */

@@ -102,6 +102,16 @@ COLUMNS = {
     "sigma_upper": Column("upper wall", "", S),
     "N1": Column("first normal stress difference", "$N_1$", S),
     "pressure": Column("pressure", "$p$", S),
+    "sigma_xy_spring": Column("bulk, springs", r"$\sigma_{xy}^\mathrm{spr}$", S),
+    "N1_spring": Column("springs", r"$N_1^\mathrm{spr}$", S),
+    # dumbbells
+    "r2": Column("length squared", r"$\langle r^2\rangle$", A2),
+    "rxrx": Column("along the flow", r"$\langle r_x r_x\rangle$", A2),
+    "ryry": Column("across the flow", r"$\langle r_y r_y\rangle$", A2),
+    "rzrz": Column("along the vorticity", r"$\langle r_z r_z\rangle$", A2),
+    "rxry": Column("correlation", r"$\langle r_x r_y\rangle$", A2),
+    "extension": Column("extension", "$R/R_0$"),
+    "chi": Column("angle with the flow", r"$\chi$", "degrees"),
 }
 
 
@@ -161,14 +171,15 @@ PANELS = {
     ),
     "stress": (
         Panel("Shear stress", ("sigma_xy", "sigma_lower", "sigma_upper"), rf"stress $\sigma_{{xy}}$ / {S}"),
-        Panel("Its parts in the bulk", ("sigma_xy_kinetic", "sigma_xy_collisional"), rf"stress $\sigma_{{xy}}$ / {S}"),
-        Panel("Normal stress difference", ("N1",), level=0.0),
+        Panel("Its parts in the bulk", ("sigma_xy_kinetic", "sigma_xy_collisional", "sigma_xy_spring"), rf"stress $\sigma_{{xy}}$ / {S}"),
+        Panel("Normal stress difference", ("N1", "N1_spring"), level=0.0),
         Panel("Pressure", ("pressure",)),
     ),
 }
 LAG_LABEL = "lag $t$ / $t_0$"
 TITLES = {"conserved": "Energy and momentum", "temperature": "Temperature", "collisions": "Contacts of bonds",
-          "statics": "Size and shape", "dynamics": "Motion", "profile": "Profile across the flow", "stress": "Stress"}
+          "statics": "Size and shape", "dynamics": "Motion", "profile": "Profile across the flow", "stress": "Stress",
+          "dumbbells": "Shape of dumbbells"}
 
 
 def column(name):

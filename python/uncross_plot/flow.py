@@ -31,12 +31,12 @@ class Flow:
     def __init__(self, run):
         self.numbers, self.sources, self.kind = {}, {}, ""
         for heading, rows in run.derived:
-            if heading.startswith(("Solvent", "Walls", "Shear", "Flow by")):
+            if heading.startswith(("Solvent", "Dumbbells", "Walls", "Shear", "Flow by")):
                 self.numbers.update({row.name: float(row.value) for row in rows})
                 self.sources.update({row.name: row.source for row in rows})
             if heading.startswith(("Walls", "Shear", "Flow by")):
                 self.kind = heading.split()[0].lower()
-        self.profile, self.stress = run.table("profile"), run.table("stress")
+        self.profile, self.stress, self.shape_of_dumbbells = run.table("profile"), run.table("stress"), run.table("dumbbells")
         if self.profile is None or self.profile.rows < 4 or "viscosity" not in self.numbers:
             self.kind = ""
             return
@@ -154,7 +154,7 @@ class Flow:
         found = [Measured("slope of the profile", *slope, "1/t0", rate, "all slabs")]
         if self.stress is not None:
             found.append(self._over(self.mean_stress("sigma_xy"), (rate, 0.0), "viscosity", "stress over the rate"))
-        return found + self._normal()
+        return found + self._normal() + self._dumbbells(rate)
 
     def _driven(self):
         amplitude, error = self.fit([self.shape(self.profile.data["y"])])[0]
@@ -167,7 +167,21 @@ class Flow:
     def _normal(self):
         if self.stress is None:
             return []
-        return [Measured("first normal stress difference", *self.mean_stress("N1"), "kT/a0³", math.nan, "mean in time")]
+        return [Measured("first normal stress difference", *self.mean_stress("N1"), "kT/a0³",
+                         self.numbers.get("first normal stress difference", math.nan), "mean in time")]
+
+    def _dumbbells(self, rate):
+        """Springs of a sheared box: their part of the viscosity, and their shape."""
+        found = []
+        if self.stress is not None and "sigma_xy_spring" in self.stress.data:
+            value, error = self.mean_stress("sigma_xy_spring")
+            found.append(Measured("viscosity of the springs", value / rate, error / abs(rate), "m/a0 t0",
+                                  self.numbers.get("viscosity of the springs", math.nan), "their stress over the rate"))
+        if self.shape_of_dumbbells is not None:
+            for column, name, unit in (("extension", "extension", ""), ("chi", "angle with the flow", "degrees")):
+                found.append(Measured(name, float(self.shape_of_dumbbells.data[column][0]), float(self.shape_of_dumbbells.errors(column)[0]),
+                                      unit, self.numbers.get(name, math.nan), "mean over dumbbells and time"))
+        return found
 
     # --- oscillation ---
 
@@ -212,9 +226,10 @@ class Flow:
             return []
         smooth = 0.5 * omega * every / math.sin(0.5 * omega * every)
         found = []
-        for name, wave, theory in (("loss modulus G''", numpy.cos, omega * self.eta), ("storage modulus G'", numpy.sin, 0.0)):
+        for name, wave, theory in (("loss modulus G''", numpy.cos, self.numbers.get("loss modulus", omega * self.eta)),
+                                   ("storage modulus G'", numpy.sin, self.numbers.get("storage modulus", 0.0))):
             parts = [2.0 * (sigma[k:k + rows] * wave(omega * time[k:k + rows])).mean() for k in range(0, count * rows, rows)]
             scale = omega / self.numbers["shear rate"] * smooth
             found.append(Measured(name, scale * numpy.mean(parts), scale * numpy.std(parts, ddof=1) / math.sqrt(count), "kT/a0³",
-                                  theory, f"stress of {count} periods; theory: without memory"))
+                                  theory, f"stress of {count} periods" + ("" if "loss modulus" in self.numbers else "; theory: without memory")))
         return found

@@ -149,7 +149,9 @@ static bool make_series(struct uncross_sim *sim)
 {
   for (int k = 0; k < OBSERVABLES; k++) {
     const char *const *names;
-    const size_t columns = sim->scene.observe.every[k] > 0 ? observe_series_columns((enum observable)k, &names) : 0;
+    const struct scene *scene = &sim->scene;
+    const size_t columns =
+        scene->observe.every[k] > 0 ? observe_series_columns(&scene->model, (enum observable)k, &names) : 0;
     if (columns > 0 && !table_make(&sim->series[k], observable_names[k], "step", names, columns))
       return false;
   }

@@ -97,6 +97,13 @@ static inline int64_t lattice_from_a0(double x)
   return lattice_round(x * LATTICE_PER_A0);
 }
 
+/* A uniform coordinate along an edge of `cells` cells, from 64 random bits. */
+static inline int64_t lattice_uniform(uint64_t r, int cells)
+{
+  int64_t within = (int64_t)(r & (uint64_t)(LATTICE_CELL - 1));
+  return (int64_t)(((r >> LATTICE_BITS) * (uint64_t)cells) >> (64 - LATTICE_BITS)) * LATTICE_CELL + within;
+}
+
 /* x folded into [0, edge), all in lattice units. */
 static inline int64_t lattice_fold(int64_t x, int64_t edge)
 {

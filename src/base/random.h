@@ -36,7 +36,9 @@ enum random_purpose {
   RANDOM_FIBER_DIRECTION = 20,  /* entity = fiber; draw = attempt */
   RANDOM_BOND_LENGTH = 21,      /* entity = bond (its first vertex); draw = attempt */
   RANDOM_BEND = 22,             /* entity = vertex */
-  RANDOM_BEND_AZIMUTH = 23      /* entity = vertex; draw = attempt */
+  RANDOM_BEND_AZIMUTH = 23,     /* entity = vertex; draw = attempt */
+  RANDOM_DUMBBELL_CENTER = 24,  /* entity = dumbbell; draw = 2 attempt: x, y; + 1: z, and a uniform number */
+  RANDOM_DUMBBELL_VECTOR = 25   /* the same: components along x, y; z */
 };
 
 struct random_words {

@@ -22,14 +22,19 @@ static uint64_t least_common_multiple(uint64_t a, uint64_t b)
 }
 
 /* What the frames can show of what the scene asked for: only steps that were stored, energies and temperatures only if
- * solvent and velocities were, and neither counts of crossings nor stresses, which are not in frames. */
+ * solvent and velocities were, and neither counts of crossings nor stresses nor springs of dumbbells, which are not in
+ * frames. */
 static void fit_plan(struct scene *scene, const struct trajectory *frames)
 {
   const bool everything = trajectory_has_velocities(frames) && trajectory_has_solvent(frames, &scene->model);
-  const bool possible[OBSERVABLES] = {
-      [OBSERVE_CONSERVED] = everything, [OBSERVE_TEMPERATURE] = everything, [OBSERVE_STATICS] = true,
-      [OBSERVE_DYNAMICS] = true,        [OBSERVE_COLLISIONS] = false,       [OBSERVE_PROFILE] = everything,
-      [OBSERVE_STRESS] = false};
+  const bool possible[OBSERVABLES] = {[OBSERVE_CONSERVED] = everything && !model_has_dumbbells(&scene->model),
+                                      [OBSERVE_TEMPERATURE] = everything,
+                                      [OBSERVE_STATICS] = true,
+                                      [OBSERVE_DYNAMICS] = true,
+                                      [OBSERVE_COLLISIONS] = false,
+                                      [OBSERVE_PROFILE] = everything,
+                                      [OBSERVE_STRESS] = false,
+                                      [OBSERVE_DUMBBELLS] = false};
   for (int k = 0; k < OBSERVABLES; k++) {
     uint64_t *every = &scene->observe.every[k];
     if (*every > 0 && !possible[k])

@@ -2,6 +2,7 @@
 #include <stdio.h>
 
 #include "base/text.h"
+#include "cli/check_dumbbells.h"
 #include "cli/check_flow.h"
 #include "cli/check_walls.h"
 #include "cli/command.h"
@@ -75,7 +76,8 @@ static void report_solvent(const struct si_scale *si, const struct model *m)
   sheet_row(si, "collisional viscosity", "eta_col",
             theory_viscosity_collisional(collision_rule_of(m), m->dimensions, gamma, cosine, interval), "m/a0 t0",
             srd ? "Eq. (31)" : "");
-  sheet_row(si, "viscosity", "eta", units_viscosity(m), "m/a0 t0", "");
+  sheet_row(si, "viscosity", "eta", units_viscosity(m), "m/a0 t0",
+            model_has_dumbbells(m) ? "with that of springs" : "");
   sheet_row(si, "kinematic viscosity", "nu", units_viscosity(m) / gamma, "a0^2/t0", "");
   sheet_row(si, "self-diffusion coefficient", "D_s",
             theory_solvent_diffusion(collision_rule_of(m), m->dimensions, gamma, cosine, interval), "a0^2/t0", "");
@@ -250,6 +252,7 @@ static void report_parts(const struct scene *scene)
   const bool rotates = s->rule == RULE_SRD;
   const struct part parts[] = {
       {"streaming of the solvent", "fluid/points.c", solvent},
+      {"... of dumbbells", "fluid/dumbbells.c", model_has_dumbbells(m)},
       {"... between walls", "fluid/boundary_walls.c", model_has_walls(m)},
       {"... in a sheared box", "fluid/boundary_shear.c", model_is_sheared(m)},
       {"collisions", "mpc/collide.c", collides},
@@ -316,6 +319,8 @@ void scene_report(const struct scene *scene, const struct units *units, const st
   report_table_1(si, m);
   if (model_has_solvent(m))
     report_solvent(si, m);
+  if (model_has_dumbbells(m))
+    check_dumbbells(si, m);
   if (model_has_walls(m))
     check_walls(si, m);
   if (model_is_sheared(m))

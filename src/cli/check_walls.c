@@ -10,7 +10,7 @@
 /* Is the slip length that of theory_slip_length? */
 static bool slip_is_known(const struct model *m)
 {
-  return m->walls.kind == WALL_NO_SLIP && m->walls.fill != FILL_NONE &&
+  return m->walls.kind == WALL_NO_SLIP && !model_has_dumbbells(m) && m->walls.fill != FILL_NONE &&
          model_collision_interval(m) < THEORY_MOST_SLIP_INTERVAL;
 }
 

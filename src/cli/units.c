@@ -5,6 +5,7 @@
 #include "cli/quantity.h"
 #include "cli/sheet.h"
 #include "mpc/rule.h"
+#include "theory/dumbbell.h"
 #include "theory/theory.h"
 
 #define AT(member) offsetof(struct units, member)
@@ -20,8 +21,7 @@ static const struct quantity_row rows[] = {
 
 double units_viscosity(const struct model *m)
 {
-  return theory_viscosity(collision_rule_of(m), m->dimensions, m->solvent.per_cell, m->solvent.cosine,
-                          model_collision_interval(m));
+  return theory_model_viscosity(m);
 }
 
 /* --- what fixes the unit of time ---------------------------------------------------------------------------------- */

@@ -21,7 +21,7 @@ bool units_scale(const struct units *units, const struct model *model, struct si
 /* Prints the units, how far the solvent is from water, and what follows for a run. */
 void units_report(const struct units *units, const struct model *model, const struct si_scale *scale);
 
-/* The model's viscosity in m/(a0 t0); it has a solvent. */
+/* The model's viscosity in m/(a0 t0), at low frequencies; it has a solvent. */
 double units_viscosity(const struct model *model);
 
 #endif

@@ -38,6 +38,7 @@ static const struct field fields[] = {
     {"structure", "particles", U32, 0, AT(particles), 0.0, INT32_MAX, false},
     {"structure", "vertices", U32, 0, AT(vertices), 0.0, INT32_MAX, false},
     {"structure", "dimensions", U32, 0, AT(dimensions), 0.0, 3.0, true},
+    {"structure", "dumbbells", U32, 0, AT(dumbbells), 0.0, INT32_MAX, true},
 };
 
 static hid_t type_of(const struct field *field)
@@ -199,6 +200,7 @@ struct model checkpoint_model(const struct checkpoint_summary *s)
   model.solvent.particles = s->particles;
   model.solvent.acceleration = s->acceleration;
   model.vertices = s->vertices;
+  model.dumbbells.pairs = s->dumbbells;
   if (s->wall_rows > 0)
     box_bound(&model.box, 1, BOUNDARY_WALL);
   return model;
@@ -207,7 +209,8 @@ struct model checkpoint_model(const struct checkpoint_summary *s)
 /* Looks at the shapes of the arrays; nothing is allocated by a claimed number. */
 static bool has_arrays(hid_t file, const struct checkpoint_summary *summary)
 {
-  const uint32_t claimed[STATE_GROUPS] = {summary->particles, summary->vertices, summary->wall_rows};
+  const uint32_t claimed[STATE_GROUPS] = {summary->particles, summary->vertices, summary->dumbbells,
+                                          summary->wall_rows};
   struct point nowhere;
   struct vec3 still;
   const struct state none = {

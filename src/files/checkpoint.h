@@ -21,7 +21,7 @@ struct checkpoint_summary {
   uint32_t dimensions; /* 2: of a plane */
   double time_step;
   struct vec3 acceleration; /* of the solvent, in a0/t0^2 */
-  uint32_t particles, vertices;
+  uint32_t particles, vertices, dumbbells;
   uint32_t wall_rows;   /* of the account of the walls: system/state.h */
   struct state numbers; /* only what state_numbers lists */
 };

@@ -30,6 +30,8 @@ static bool fits_model(hid_t file, const char *path, const struct checkpoint_sum
                        m->solvent.particles);
   if (s->vertices != m->vertices)
     return message_set(message, "%s: it holds %u fiber vertices, the scene %u", path, s->vertices, m->vertices);
+  if (s->dumbbells != m->dumbbells.pairs)
+    return message_set(message, "%s: it holds %u dumbbells, the scene %u", path, s->dumbbells, m->dumbbells.pairs);
   if ((s->wall_rows > 0) != model_has_walls(m))
     return message_set(message, "%s: it is of a box %s walls, the scene's box has %s", path,
                        s->wall_rows > 0 ? "between" : "without", s->wall_rows > 0 ? "none" : "walls");

@@ -92,6 +92,7 @@ static struct checkpoint_summary summary_of(const struct checkpoint_head *head, 
                                  .acceleration = model->solvent.acceleration,
                                  .particles = state->solvent.n,
                                  .vertices = state->vertices,
+                                 .dumbbells = state->dumbbells.n,
                                  .wall_rows = state->wall_rows};
   checkpoint_take_numbers(&s.numbers, state);
   s.head.version[sizeof s.head.version - 1] = '\0';

@@ -3,10 +3,11 @@
 #include <inttypes.h>
 #include <stdio.h>
 
-/* Columns of the time series that the plan asks for, 0 if it does not or this is none. */
-static size_t wanted_columns(const struct observe_plan *plan, int which, const char *const **names)
+/* Columns of the time series that the scene asks for, 0 if it does not or this is none. */
+static size_t wanted_columns(const struct scene *scene, int which, const char *const **names)
 {
-  return plan->every[which] > 0 ? observe_series_columns((enum observable)which, names) : 0;
+  const bool wanted = scene->observe.every[which] > 0;
+  return wanted ? observe_series_columns(&scene->model, (enum observable)which, names) : 0;
 }
 
 /* --- what is there already --------------------------------------------------------------------------------------- */
@@ -33,7 +34,7 @@ bool output_left(const struct scene *scene, const struct observers *observers, c
   struct search search = {folder, name};
   const char *const *names;
   for (int k = 0; k < OBSERVABLES; k++)
-    if (wanted_columns(&scene->observe, k, &names) > 0 && !is_absent(&search, observable_names[k]))
+    if (wanted_columns(scene, k, &names) > 0 && !is_absent(&search, observable_names[k]))
       return true;
   return !observers_summaries(observers, &scene->model, take_absent, &search);
 }
@@ -52,7 +53,7 @@ void output_remove(const struct scene *scene, const struct observers *observers,
   struct search search = {folder, &name};
   const char *const *names;
   for (int k = 0; k < OBSERVABLES; k++)
-    if (wanted_columns(&scene->observe, k, &names) > 0)
+    if (wanted_columns(scene, k, &names) > 0)
       remove_table(&search, &(struct observe_table){.name = observable_names[k]});
   observers_summaries(observers, &scene->model, remove_table, &search);
   if (scene->trajectory_every > 0)
@@ -82,7 +83,7 @@ bool output_whole(const struct scene *scene, const struct observers *observers, 
     const uint64_t end = observers_end(observers, (enum observable)k);
     char file[64];
     snprintf(file, sizeof file, "%s.csv", observable_names[k]);
-    const size_t columns = wanted_columns(&scene->observe, k, &names);
+    const size_t columns = wanted_columns(scene, k, &names);
     if (columns > 0 &&
         !(series_find_end(folder, observable_names[k], columns, names, end, &found, message) &&
           same_end(folder, file, found, end, "resume without this table in the scene's `observe`", message)))
@@ -97,12 +98,12 @@ bool output_whole(const struct scene *scene, const struct observers *observers, 
 /* --- what a run writes ------------------------------------------------------------------------------------------- */
 
 /* again: the run is resumed at step 0, whose samples are not in the checkpoint; its tables begin anew. */
-static bool open_series(struct output *o, const struct observe_plan *plan, const struct observers *observers,
-                        bool again, struct message *message)
+static bool open_series(struct output *o, const struct scene *scene, const struct observers *observers, bool again,
+                        struct message *message)
 {
   for (int k = 0; k < OBSERVABLES; k++) {
     const char *const *names;
-    size_t columns = wanted_columns(plan, k, &names);
+    size_t columns = wanted_columns(scene, k, &names);
     const uint64_t end = observers_end(observers, (enum observable)k);
     char file[64];
     snprintf(file, sizeof file, "%s.csv", observable_names[k]);
@@ -150,7 +151,7 @@ bool output_open(struct output *o, const struct scene *scene, const struct obser
   *o = (struct output){.folder = folder, .trajectory_every = scene->trajectory_every};
   message_set(message, "%s", "");
   return (o->trajectory_every == 0 || open_trajectory(o, scene, resume, frames_end, step, message)) &&
-         open_series(o, &scene->observe, observers, resume && step == 0, message);
+         open_series(o, scene, observers, resume && step == 0, message);
 }
 
 struct row_context {

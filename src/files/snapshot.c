@@ -8,8 +8,12 @@
 #include "files/trajectory.h"
 
 /* Streams the solvent to where it is now. */
-static void make_up_lag(struct state *state, const struct model *model)
+static bool make_up_lag(struct state *state, const struct model *model, struct message *message)
 {
+  struct fault fault = {.code = FAULT_NONE};
+  if (model_has_dumbbells(model)) /* two particles move together, and their vector with them */
+    return fluid_stream(state, model, &fault) || message_fault(message, &fault);
+
   struct solvent *p = &state->solvent;
   for (uint32_t i = 0; state->solvent_lag > 0 && i < p->n; i++) {
     const struct point r = fluid_position_now(state, model, i);
@@ -17,6 +21,7 @@ static void make_up_lag(struct state *state, const struct model *model)
     p->x[i] = r.x, p->y[i] = r.y, p->z[i] = r.z;
     p->vx[i] = v.x, p->vy[i] = v.y, p->vz[i] = v.z;
   }
+  return true;
 }
 
 static bool start_from_checkpoint(const char *path, const struct model *model, struct state *state,
@@ -29,8 +34,7 @@ static bool start_from_checkpoint(const char *path, const struct model *model, s
   struct model then = *model;
   then.time_step = summary.time_step;
   then.solvent.acceleration = summary.acceleration;
-  make_up_lag(state, &then);
-  return true;
+  return make_up_lag(state, &then, message);
 }
 
 /* Rows must be in the scene's order: vertices fiber by fiber, then solvent. */
@@ -48,6 +52,8 @@ static bool last_frame(struct trajectory *t, const char *path, const struct mode
     return message_set(message, "%s: a trajectory without frames", path);
   if (!trajectory_has_velocities(t))
     return message_set(message, "%s: its frames hold no velocities; a start needs them", path);
+  if (model_has_dumbbells(model))
+    return message_set(message, "%s: its frames hold no springs of dumbbells; a start needs a checkpoint", path);
   if (model_has_solvent(model) && !trajectory_has_solvent(t, model))
     return message_set(message, "%s: its frames hold %u particles; a start needs %u vertices and %u solvent particles",
                        path, t->particles, model->vertices, model->solvent.particles);

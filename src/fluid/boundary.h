@@ -15,6 +15,7 @@
 /* A span of time for which particles fly. It is within one collision interval. */
 struct span {
   double time;              /* t0 */
+  uint64_t begin;           /* half time steps since the start */
   uint64_t end;             /* half time steps since the start */
   uint64_t interval;        /* number of the collision interval (system/shear.h) */
   struct vec3 acceleration; /* constant, a0/t0^2 */
@@ -52,6 +53,30 @@ int64_t boundary_fly_periodic(uint32_t n, int64_t *restrict x, double *restrict 
  * t: the time that they flew. False, with the fault recorded, for a flight out of range. */
 bool boundary_fold(struct state *state, const struct model *model, int axis, double t, uint32_t first, uint32_t n,
                    struct fault *fault);
+
+/* The span by which the solvent is late. A force with a profile acts at collisions (mpc/), not in flight. */
+struct span boundary_lag(const struct state *state, const struct model *model);
+
+/* How the next image along y of a sheared box differs from the box. */
+struct slide {
+  int64_t offset; /* along x, lattice units in [0, edge) */
+  double speed;   /* along x, a0/t0 */
+};
+
+/* At a time, in half time steps since the start, within this collision interval. */
+struct slide boundary_slide(const struct model *model, uint64_t half_steps, uint64_t interval);
+
+/* Replaces a particle that may be outside along y by its image in the box. An image is at most LATTICE_MAX_MOVE away,
+ * and an offset is below 2^50 lattice units: their product fits. */
+static inline void boundary_bring_in(const struct box *box, struct slide slide, int64_t *x, int64_t *y, double *vx)
+{
+  if ((uint64_t)*y < (uint64_t)box->edge[1])
+    return;
+  const int64_t image = lattice_image(*y, box->edge[1]);
+  *y -= image * box->edge[1];
+  *x = lattice_fold(*x - image * slide.offset, box->edge[0]);
+  *vx -= (double)image * slide.speed;
+}
 
 extern const struct boundary boundary_periodic, boundary_walls, boundary_sheared;
 

@@ -8,27 +8,14 @@
 #include "fluid/boundary.h"
 #include "system/shear.h"
 
-/* How the next image along y differs from the box. */
-struct slide {
-  int64_t offset; /* along x, lattice units in [0, edge) */
-  double speed;   /* along x, a0/t0 */
-};
+struct slide boundary_slide(const struct model *model, uint64_t half_steps, uint64_t interval)
+{
+  return (struct slide){shear_offset(model, half_steps), shear_rate(model, interval) * model->box.cells[1]};
+}
 
 static struct slide slide_at_end(const struct model *model, const struct span *span)
 {
-  return (struct slide){shear_offset(model, span->end), shear_rate(model, span->interval) * model->box.cells[1]};
-}
-
-/* Replaces a particle that may be outside along y by its image in the box. An image is at most LATTICE_MAX_MOVE away,
- * and an offset is below 2^50 lattice units: their product fits. */
-static void bring_in(const struct box *box, struct slide slide, int64_t *x, int64_t *y, double *vx)
-{
-  const int64_t image = lattice_image(*y, box->edge[1]);
-  if (image == 0)
-    return;
-  *y -= image * box->edge[1];
-  *x = lattice_fold(*x - image * slide.offset, box->edge[0]);
-  *vx -= (double)image * slide.speed;
+  return boundary_slide(model, span->end, span->interval);
 }
 
 /* Adds the flights. The sign bit of the result is set if a particle is outside. Nothing accelerates along y. */
@@ -70,7 +57,7 @@ static bool bring_all_in(struct state *state, const struct model *model, const s
       const double move = s->vy[i] * span->time;
       if (!(fabs(move) < LATTICE_MAX_MOVE))
         return fault_record(fault, FAULT_SOLVENT_MOVE, state->step + 1, s->id[i], move, LATTICE_MAX_MOVE);
-      bring_in(&model->box, slide, &s->x[i], &s->y[i], &s->vx[i]);
+      boundary_bring_in(&model->box, slide, &s->x[i], &s->y[i], &s->vx[i]);
     }
   }
   return true;
@@ -99,7 +86,7 @@ static void now_sheared(const struct model *model, const struct span *span, stru
   x->z = lattice_fold(x->z + boundary_flight(v->z, a.z, span->time), edge[2]);
   x->y += boundary_flight(v->y, 0.0, span->time);
   *v = vec3_add_scaled(*v, span->time, a);
-  bring_in(&model->box, slide_at_end(model, span), &x->x, &x->y, &v->x);
+  boundary_bring_in(&model->box, slide_at_end(model, span), &x->x, &x->y, &v->x);
 }
 
 const struct boundary boundary_sheared = {"shear", fly_sheared, now_sheared};

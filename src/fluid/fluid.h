@@ -7,7 +7,10 @@
 /* Independent particles. */
 extern const struct fluid fluid_points;
 
-enum fluid_kind { FLUID_POINTS, FLUIDS };
+/* Pairs of particles with a spring, and independent ones. */
+extern const struct fluid fluid_dumbbells;
+
+enum fluid_kind { FLUID_POINTS, FLUID_DUMBBELLS, FLUIDS };
 
 /* The fluid of this kind. */
 const struct fluid *fluid_row(enum fluid_kind kind);
@@ -21,6 +24,12 @@ bool fluid_stream(struct state *state, const struct model *model, struct fault *
 /* Position and velocity now of the particle at place i of memory, as `now` of struct fluid. */
 struct point fluid_position_now(const struct state *state, const struct model *model, uint32_t i);
 struct vec3 fluid_velocity_now(const struct state *state, const struct model *model, uint32_t i);
+
+/* The vector of the dumbbell at place p of the list, now; a0. */
+struct vec3 fluid_dumbbell_now(const struct state *state, const struct model *model, uint32_t p);
+
+/* The energy of all springs now, and that of dumbbells in the potential of walls; kT. */
+double fluid_dumbbell_energy(const struct state *state, const struct model *model);
 
 /* The velocity that the body force has added to each particle since it was last streamed. */
 struct vec3 fluid_gain(const struct state *state, const struct model *model);

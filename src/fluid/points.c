@@ -2,16 +2,8 @@
 #include "base/normal.h"
 #include "fluid/boundary.h"
 #include "fluid/fluid.h"
-#include "system/shear.h"
 
 /* --- start ------------------------------------------------------------------------------------------------------- */
-
-/* A uniform lattice coordinate along an edge of `cells` cells, from 64 random bits. */
-static int64_t uniform_coordinate(uint64_t r, int cells)
-{
-  int64_t within = (int64_t)(r & (uint64_t)(LATTICE_CELL - 1));
-  return (int64_t)(((r >> LATTICE_BITS) * (uint64_t)cells) >> (64 - LATTICE_BITS)) * LATTICE_CELL + within;
-}
 
 /* Uniform positions, Maxwell velocities. In a plane, at z = 0. */
 static void start_points(struct state *state, const struct model *model)
@@ -22,9 +14,9 @@ static void start_points(struct state *state, const struct model *model)
     uint32_t id = s->id[i];
     struct random_words xy = random_at(model->seed, RANDOM_SOLVENT_POSITION, 0, 0, id);
     struct random_words z = random_at(model->seed, RANDOM_SOLVENT_POSITION, 1, 0, id);
-    s->x[i] = uniform_coordinate(random_u64(xy, 0), model->box.cells[0]);
-    s->y[i] = uniform_coordinate(random_u64(xy, 1), model->box.cells[1]);
-    s->z[i] = flat ? 0 : uniform_coordinate(random_u64(z, 0), model->box.cells[2]);
+    s->x[i] = lattice_uniform(random_u64(xy, 0), model->box.cells[0]);
+    s->y[i] = lattice_uniform(random_u64(xy, 1), model->box.cells[1]);
+    s->z[i] = flat ? 0 : lattice_uniform(random_u64(z, 0), model->box.cells[2]);
     double a[2], b[2];
     random_normal_pair(random_at(model->seed, RANDOM_SOLVENT_VELOCITY, 0, 0, id), a);
     random_normal_pair(random_at(model->seed, RANDOM_SOLVENT_VELOCITY, 1, 0, id), b);
@@ -36,39 +28,18 @@ static void start_points(struct state *state, const struct model *model)
 
 /* --- flight ------------------------------------------------------------------------------------------------------ */
 
-static bool boundaries_move(const struct model *model)
-{
-  return (model_has_walls(model) || model_is_sheared(model)) && model->solvent.interval_steps > 0;
-}
-
-/* The span by which the solvent is late. A force with a profile acts at collisions (mpc/), not in flight. */
-static struct span lag_span(const struct state *state, const struct model *model)
-{
-  const bool uniform = model->solvent.profile == PROFILE_UNIFORM;
-  return (struct span){.time = 0.5 * state->solvent_lag * model->time_step,
-                       .end = state->solvent_time + state->solvent_lag,
-                       .interval = boundaries_move(model) ? shear_interval(model, state->solvent_time) : 0,
-                       .acceleration = uniform ? model->solvent.acceleration : (struct vec3){0, 0, 0}};
-}
-
 static bool stream_points(struct state *state, const struct model *model, uint32_t first, uint32_t n,
                           struct fault *fault)
 {
-  const struct span span = lag_span(state, model);
+  const struct span span = boundary_lag(state, model);
   return boundary_of(&model->box)->fly(state, model, &span, first, n, fault);
-}
-
-struct vec3 fluid_gain(const struct state *state, const struct model *model)
-{
-  const struct span span = lag_span(state, model);
-  return vec3_scale(span.time, span.acceleration);
 }
 
 static void points_now(const struct state *state, const struct model *model, uint32_t first, uint32_t n,
                        struct point *position, struct vec3 *velocity)
 {
   const struct solvent *s = &state->solvent;
-  const struct span span = lag_span(state, model);
+  const struct span span = boundary_lag(state, model);
   const struct boundary *boundary = boundary_of(&model->box);
   for (uint32_t k = 0, i = first; k < n; k++, i++) {
     struct point x = {s->x[i], s->y[i], s->z[i]};

@@ -27,33 +27,56 @@ void mpc_swap_velocities(struct state *state, const struct model *model, struct 
   permute(s->vz, from, s->n, c->column);
 }
 
-void mpc_sort(struct state *state, const struct model *model, struct mpc *c)
+/* Orders the particles first to end - 1 by cell; `together` of them, from the first on, go with their first one.
+ * Counting sort; the cell sums are free to hold the counts. */
+static void order_range(const struct state *state, const struct model *model, struct mpc *c, uint32_t first,
+                        uint32_t end, uint32_t together)
 {
-  struct solvent *s = &state->solvent;
+  const struct solvent *s = &state->solvent;
   const struct point unshifted = {0, 0, 0};
   const int64_t cells = box_cell_count(&model->box);
-  /* Counting sort; the cell sums are free to hold the counts. */
   memset(c->sum, 0, (size_t)cells * sizeof *c->sum);
-  for (uint32_t i = 0; i < s->n; i++) {
+  for (uint32_t i = first; i < end; i += together) {
     c->solvent_cell[i] = grid_cell_of(&model->box, (struct point){s->x[i], s->y[i], s->z[i]}, unshifted);
-    c->sum[c->solvent_cell[i]].load++;
+    c->sum[c->solvent_cell[i]].load += together;
   }
-  uint64_t start = 0;
+  uint64_t start = first;
   for (int64_t k = 0; k < cells; k++) {
     uint64_t here = c->sum[k].load;
     c->sum[k].load = start;
     start += here;
   }
-  for (uint32_t i = 0; i < s->n; i++)
-    c->order[c->sum[c->solvent_cell[i]].load++] = i;
+  for (uint32_t i = first; i < end; i += together)
+    for (uint32_t k = 0; k < together; k++)
+      c->order[c->sum[c->solvent_cell[i]].load++] = i + k;
+}
 
+static void permute_ids(uint32_t *id, const uint32_t *order, uint32_t n, int64_t *scratch)
+{
+  memcpy(scratch, id, (size_t)n * sizeof *id);
+  for (uint32_t k = 0; k < n; k++)
+    id[k] = ((const uint32_t *)scratch)[order[k]];
+}
+
+void mpc_sort(struct state *state, const struct model *model, struct mpc *c)
+{
+  struct solvent *s = &state->solvent;
+  struct dumbbells *d = &state->dumbbells;
+  order_range(state, model, c, 0, 2 * d->n, 2);
+  order_range(state, model, c, 2 * d->n, s->n, 1);
   permute(s->x, c->order, s->n, c->column);
   permute(s->y, c->order, s->n, c->column);
   permute(s->z, c->order, s->n, c->column);
   permute(s->vx, c->order, s->n, c->column);
   permute(s->vy, c->order, s->n, c->column);
   permute(s->vz, c->order, s->n, c->column);
-  memcpy(c->column, s->id, (size_t)s->n * sizeof *s->id);
-  for (uint32_t k = 0; k < s->n; k++)
-    s->id[k] = ((const uint32_t *)c->column)[c->order[k]];
+  permute_ids(s->id, c->order, s->n, c->column);
+  if (d->n == 0)
+    return;
+  for (uint32_t p = 0; p < d->n; p++)
+    c->order[p] = c->order[2 * p] / 2;
+  permute(d->x, c->order, d->n, c->column);
+  permute(d->y, c->order, d->n, c->column);
+  permute(d->z, c->order, d->n, c->column);
+  permute_ids(d->id, c->order, d->n, c->column);
 }

@@ -80,8 +80,8 @@ static double slab_within(const struct slab *slab, int k)
 
 enum { SOME = 256 };
 
-/* Where the solvent flows: positions and velocities of now, and slabs along y. */
-static void measure_flow(const struct model *model, const struct state *state, struct motion *m)
+/* Where the solvent flows, or is not free between collisions: positions and velocities of now, and slabs along y. */
+static void measure_now(const struct model *model, const struct state *state, struct motion *m)
 {
   const int64_t cells = model->box.cells[1];
   struct slab slab[LATTICE_MAX_EDGE] = {{0}}, all = {0};
@@ -108,7 +108,7 @@ static void measure_flow(const struct model *model, const struct state *state, s
     for (int64_t row = 0; row < cells; row++)
       within[k] += bad ? NAN : slab[row].n > 0 ? slab_within(&slab[row], k) : 0.0;
   }
-  for (int64_t row = 0; row < cells; row++)
+  for (int64_t row = 0; row < cells && flows(model); row++)
     m->slabs += slab[row].n > 0;
   m->solvent_sum = (struct vec3){sum[0], sum[1], sum[2]};
   m->solvent_squares = (struct vec3){squares[0], squares[1], squares[2]};
@@ -117,8 +117,8 @@ static void measure_flow(const struct model *model, const struct state *state, s
 
 static void measure_solvent(const struct model *model, const struct state *state, struct motion *m)
 {
-  if (flows(model)) {
-    measure_flow(model, state, m);
+  if (flows(model) || model_has_dumbbells(model)) {
+    measure_now(model, state, m);
     return;
   }
   const struct vec3 gain = fluid_gain(state, model);
@@ -154,6 +154,8 @@ struct motion motion_measure(const struct model *model, const struct state *stat
   struct motion m = {.bond = 0.0};
   measure_solvent(model, state, &m);
   measure_vertices(model, state, force, &m);
+  if (model_has_dumbbells(model))
+    m.bond += fluid_dumbbell_energy(state, model);
   return m;
 }
 

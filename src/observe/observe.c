@@ -12,13 +12,13 @@ static const struct observer_type *const types[OBSERVABLES] = {
     [OBSERVE_CONSERVED] = &conserved_observer,   [OBSERVE_TEMPERATURE] = &temperature_observer,
     [OBSERVE_STATICS] = &statics_observer,       [OBSERVE_DYNAMICS] = &dynamics_observer,
     [OBSERVE_COLLISIONS] = &collisions_observer, [OBSERVE_PROFILE] = &profile_observer,
-    [OBSERVE_STRESS] = &stress_observer,
+    [OBSERVE_STRESS] = &stress_observer,         [OBSERVE_DUMBBELLS] = &dumbbells_observer,
 };
 
 const char *const observable_names[OBSERVABLES] = {
     [OBSERVE_CONSERVED] = "conserved", [OBSERVE_TEMPERATURE] = "temperature", [OBSERVE_STATICS] = "statics",
     [OBSERVE_DYNAMICS] = "dynamics",   [OBSERVE_COLLISIONS] = "collisions",   [OBSERVE_PROFILE] = "profile",
-    [OBSERVE_STRESS] = "stress",
+    [OBSERVE_STRESS] = "stress",       [OBSERVE_DUMBBELLS] = "dumbbells",
 };
 
 enum { MAX_BLOCKS = 6 * OBSERVABLES };
@@ -152,6 +152,11 @@ bool observers_due(const struct observers *observers, uint64_t step)
   return any;
 }
 
+static size_t columns_of(const struct observer_type *type, const struct model *model)
+{
+  return type->columns - (model_has_dumbbells(model) ? 0 : type->of_dumbbells);
+}
+
 static bool sample(struct observer *o, enum observable which, struct view *view, const struct observe_sink *sink)
 {
   double row[OBSERVER_MAX_COLUMNS];
@@ -164,7 +169,7 @@ static bool sample(struct observer *o, enum observable which, struct view *view,
     return true;
   }
   o->type->row(o, view, row);
-  return !sink || sink->row(sink->context, which, o->type->columns, row);
+  return !sink || sink->row(sink->context, which, columns_of(o->type, view->model), row);
 }
 
 bool observers_sample(struct observers *observers, const struct model *model, const struct state *state,
@@ -178,10 +183,10 @@ bool observers_sample(struct observers *observers, const struct model *model, co
   return ok;
 }
 
-size_t observe_series_columns(enum observable which, const char *const **names)
+size_t observe_series_columns(const struct model *model, enum observable which, const char *const **names)
 {
   *names = types[which]->column;
-  return types[which]->columns;
+  return columns_of(types[which], model);
 }
 
 bool observers_summaries(const struct observers *observers, const struct model *model,

@@ -21,6 +21,7 @@ enum observable {
   OBSERVE_COLLISIONS,  /* time series: crossings possible, executed, negative, and their rates */
   OBSERVE_PROFILE,     /* averages in slabs along y: density, velocity, temperature */
   OBSERVE_STRESS,      /* time series: stress of the solvent in the bulk, and on walls */
+  OBSERVE_DUMBBELLS,   /* averages: second moments of the vectors of dumbbells */
   OBSERVABLES
 };
 
@@ -29,7 +30,7 @@ struct observe_plan {
   uint64_t every[OBSERVABLES]; /* steps between samples; 0: not asked for */
   uint64_t longest_lag;        /* of the dynamics, in steps; 0: 2^20 samples. Decides the size of its memory. */
   uint64_t slabs;              /* of the profile */
-  uint64_t from; /* step from which on averages (statics, dynamics, profile) are made; time series begin at 0 */
+  uint64_t from; /* step from which on averages (statics, dynamics, profile, dumbbells) are made; time series begin at 0 */
 };
 
 /* Names as scenes and files use them: "conserved", "temperature", ... */
@@ -70,8 +71,8 @@ bool observers_due(const struct observers *observers, uint64_t step);
 bool observers_sample(struct observers *observers, const struct model *model, const struct state *state,
                       const struct observe_sink *sink);
 
-/* Column names of a time series, for its file's first line; 0 if `which` is not a time series. */
-size_t observe_series_columns(enum observable which, const char *const **names);
+/* Column names of a time series of this model, for its file's first line; 0 if `which` is not a time series. */
+size_t observe_series_columns(const struct model *model, enum observable which, const char *const **names);
 
 /* Summaries as they stand now. Each is given to `take`, then freed. */
 bool observers_summaries(const struct observers *observers, const struct model *model,

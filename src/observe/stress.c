@@ -15,8 +15,7 @@ enum { MARK, LAST_STEP, LAST_ACCOUNT, LAST_TURNS = LAST_ACCOUNT + ROWS, INTEGERS
 static void size_stress(const struct observer *observer, const struct model *model, struct observer_size *size)
 {
   (void)observer;
-  (void)model;
-  size->reals = STRESS_DOUBLES;
+  size->reals = stress_doubles(model);
   size->integers = INTEGERS;
 }
 
@@ -40,11 +39,14 @@ static void stress_row(struct observer *o, struct view *view, double *row)
   const double area = (double)model->box.cells[0] * model->box.cells[2], n = s->collisions;
   const double passed = (double)((int64_t)state->step - o->integer[LAST_STEP]) * model->time_step;
   const bool walls = model_has_walls(model) && passed > 0.0;
-  double kinetic[STRESS_COMPONENTS], collisional[STRESS_COMPONENTS], total[STRESS_COMPONENTS];
+  double kinetic[STRESS_COMPONENTS], collisional[STRESS_COMPONENTS], spring[STRESS_COMPONENTS] = {0};
+  double total[STRESS_COMPONENTS];
   for (int k = 0; k < STRESS_COMPONENTS; k++) {
     kinetic[k] = n > 0.0 ? -s->kinetic[k] / n : NAN;
     collisional[k] = n > 0.0 ? -s->collisional[k] / (n * model_collision_interval(model)) : NAN;
-    total[k] = kinetic[k] + collisional[k];
+    if (model_has_dumbbells(model))
+      spring[k] = n > 0.0 ? s->spring[k] / n : NAN;
+    total[k] = kinetic[k] + collisional[k] + spring[k];
   }
   const double trace = total[STRESS_XX] + total[STRESS_YY] + (model->dimensions > 2 ? total[STRESS_ZZ] : 0.0);
   const double values[] = {view_time(view),
@@ -54,9 +56,11 @@ static void stress_row(struct observer *o, struct view *view, double *row)
                            total[STRESS_XX] - total[STRESS_YY],
                            -trace / model->dimensions,
                            walls ? -given(o, state, WALL_LOWER) / (area * passed) : NAN,
-                           walls ? given(o, state, WALL_UPPER) / (area * passed) : NAN};
+                           walls ? given(o, state, WALL_UPPER) / (area * passed) : NAN,
+                           spring[STRESS_XY],
+                           spring[STRESS_XX] - spring[STRESS_YY]};
   memcpy(row, values, sizeof values);
-  memset(s, 0, sizeof *s);
+  memset(s, 0, stress_doubles(model) * sizeof(double));
   o->integer[LAST_STEP] = (int64_t)state->step;
   for (uint32_t k = 0; k < (model_has_walls(model) ? ROWS : 0); k++) {
     o->integer[LAST_ACCOUNT + k] = state->wall_momentum[k].x;
@@ -64,12 +68,14 @@ static void stress_row(struct observer *o, struct view *view, double *row)
   }
 }
 
-static const char *const columns[] = {"time", "sigma_xy", "sigma_xy_kinetic", "sigma_xy_collisional",
-                                      "N1",   "pressure", "sigma_lower",      "sigma_upper"};
+static const char *const columns[] = {
+    "time",     "sigma_xy",    "sigma_xy_kinetic", "sigma_xy_collisional", "N1",
+    "pressure", "sigma_lower", "sigma_upper",      "sigma_xy_spring",      "N1_spring"};
 
 const struct observer_type stress_observer = {
     .column = columns,
     .columns = sizeof columns / sizeof *columns,
+    .of_dumbbells = 2,
     .size = size_stress,
     .row = stress_row,
 };

@@ -68,9 +68,12 @@ static const struct key_table collisions_table = {"observe.collisions", NULL, CO
 static const struct key_table profile_table = {"observe.profile", NULL, COUNT(profile_keys), profile_keys};
 static const struct key_table stress_table = {"observe.stress", NULL, COUNT(every_keys), every_keys};
 
+static const struct key_table shape_table = {"observe.dumbbells", NULL, COUNT(every_keys), every_keys};
+
 static const struct key observe_keys[] = {
     {.name = "from",
-     .text = "Step at which averages (`statics`, `dynamics`, `profile`) begin, so that they leave a transient out. "
+     .text = "Step at which averages (`statics`, `dynamics`, `profile`, `dumbbells`) begin, so that they leave a "
+             "transient out. "
              "Time series "
              "begin at step 0 all the same. At most `steps`. If absent: 0.",
      .type = KEY_WHOLE64,
@@ -136,6 +139,13 @@ static const struct key observe_keys[] = {
      .optional = true,
      .keys = &stress_table,
      .offset = IN_SCENE(observe.every[OBSERVE_STRESS]),
+     .line = true},
+    {.name = "dumbbells",
+     .text = "Averages of the second moments of the vectors of dumbbells: their extension and angle.",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &shape_table,
+     .offset = IN_SCENE(observe.every[OBSERVE_DUMBBELLS]),
      .line = true},
 };
 static const struct key_table observe_table = {"observe", NULL, COUNT(observe_keys), observe_keys};

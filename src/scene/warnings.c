@@ -6,6 +6,7 @@
 #include "mpc/rule.h"
 #include "scene/scene.h"
 #include "system/fiber_kind.h"
+#include "theory/dumbbell.h"
 #include "theory/flow.h"
 #include "theory/theory.h"
 
@@ -98,19 +99,13 @@ static void warn_force(struct teller *t, const struct model *m)
          net.x, net.y, net.z, vec3_norm(net) / m->total_mass, remedy);
 }
 
-static double viscosity_of(const struct model *m)
-{
-  return theory_viscosity(collision_rule_of(m), m->dimensions, m->solvent.per_cell, m->solvent.cosine,
-                          model_collision_interval(m));
-}
-
 #define MOST_WALL_MACH 0.5
 #define MOST_HEATING 1e-3 /* kT/t0 */
 
 /* Flow between walls: the profile of the temperature, compressibility, heat (Tao, Goetze and Gompper 2008). */
 static void warn_walls(struct teller *t, const struct model *m)
 {
-  const double height = m->box.cells[1], eta = viscosity_of(m);
+  const double height = m->box.cells[1], eta = theory_model_viscosity(m);
   const struct vec3 slide = vec3_sub(m->walls.upper, m->walls.lower);
   const double rate = m->walls.kind == WALL_NO_SLIP ? vec3_norm(slide) / height : 0.0;
   const double driven =
@@ -147,7 +142,7 @@ static void warn_shear(struct teller *t, const struct model *m)
 {
   const double rate = fabs(m->shear.rate), strain = rate * model_collision_interval(m);
   const double heating =
-      theory_flow_heating(viscosity_of(m), theory_mean_shear_rate(m), m->solvent.per_cell, m->dimensions);
+      theory_flow_heating(theory_model_viscosity(m), theory_mean_shear_rate(m), m->solvent.per_cell, m->dimensions);
   if (strain > MOST_STRAIN)
     warn(t,
          "shear: the strain in a collision interval is %.3g > %g, so that the viscosity depends on the rate; use a "
@@ -163,7 +158,7 @@ static void warn_shear(struct teller *t, const struct model *m)
 /* A force with a profile: compressibility, and the instability of Kolmogorov flow. */
 static void warn_profile(struct teller *t, const struct model *m)
 {
-  const double height = m->box.cells[1], gamma = m->solvent.per_cell, eta = viscosity_of(m);
+  const double height = m->box.cells[1], gamma = m->solvent.per_cell, eta = theory_model_viscosity(m);
   const double speed = theory_profile_speed(m->solvent.profile, gamma, vec3_norm(m->solvent.acceleration), height, eta);
   const double mach = theory_mach(speed, theory_sound_speed(model_is_isothermal(m), m->dimensions));
   const double reynolds = theory_profile_reynolds(speed, height, eta / gamma);
@@ -307,6 +302,29 @@ static void warn_drift(struct teller *t, const struct scene *scene)
                 : "the columns drift_x, drift_y, drift_z, or two fibers or more");
 }
 
+#define MOST_SWING 3.14159265358979324 /* radians: half a period */
+
+/* Dumbbells: their images, and how far they swing between collisions. */
+static void warn_dumbbells(struct teller *t, const struct model *m)
+{
+  const double size = theory_dumbbell_size(m->dumbbells.spring, 1),
+               angle = m->dumbbells.frequency * model_collision_interval(m);
+  const double edge = model_is_flat(m) ? fmin(m->box.cells[0], m->box.cells[1])
+                                       : fmin(m->box.cells[0], fmin(m->box.cells[1], m->box.cells[2]));
+  if (4.0 * size > edge)
+    warn(t,
+         "dumbbells.spring: a dumbbell of %.3g a0 along each axis meets its own image, or fills the gap, in a box with "
+         "an edge of %.6g "
+         "a0; use edges of %.6g or more",
+         size, edge, ceil(4.0 * size));
+  if (angle > 0.5 * MOST_SWING)
+    warn(t,
+         "dumbbells.spring: springs swing by %.3g radians between two collisions, so that collisions meet them in "
+         "phase; "
+         "use spring: %.3g or less, or a shorter collision interval",
+         angle, m->dumbbells.spring * 0.25 * MOST_SWING * MOST_SWING / (angle * angle));
+}
+
 static void warn_observables(struct teller *t, const struct scene *scene)
 {
   const struct observe_plan *plan = &scene->observe;
@@ -330,6 +348,8 @@ static void warn_observables(struct teller *t, const struct scene *scene)
     warn(t, "observe.profile: there are no solvent particles to observe");
   if (plan->every[OBSERVE_STRESS] > 0 && !model_has_solvent(&scene->model))
     warn(t, "observe.stress: there are no solvent particles to observe");
+  if (plan->every[OBSERVE_DUMBBELLS] > 0 && !model_has_dumbbells(&scene->model))
+    warn(t, "observe.dumbbells: there are no dumbbells to observe");
   if (plan->every[OBSERVE_STRESS] > 0 && model_has_walls(&scene->model) && scene->model.box.cells[1] < 3)
     warn(t, "observe.stress: the bulk is what is 1 a0 and more from both walls, and nothing is here; use a distance of "
             "3 or more");
@@ -343,7 +363,7 @@ static void warn_transient(struct teller *t, const struct scene *scene)
 {
   const struct model *m = &scene->model;
   const struct observe_plan *plan = &scene->observe;
-  const double tau = theory_flow_transient(m, viscosity_of(m) / m->solvent.per_cell);
+  const double tau = theory_flow_transient(m, theory_model_viscosity(m) / m->solvent.per_cell);
   const double from = (double)plan->from * m->time_step, end = (double)scene->steps * m->time_step;
   if (tau == 0.0 || end <= from || (plan->every[OBSERVE_PROFILE] == 0 && plan->every[OBSERVE_STRESS] == 0))
     return;
@@ -375,6 +395,8 @@ int scene_warnings(const struct scene *scene, void (*tell)(void *context, const 
     warn_profile(&t, m);
   for (uint32_t k = 0; k < m->kinds; k++)
     warn_kind(&t, scene, &m->kind[k]);
+  if (model_has_dumbbells(m) && model_collides(m))
+    warn_dumbbells(&t, m);
   warn_heating(&t, scene);
   warn_observables(&t, scene);
   if (model_has_solvent(m) && scene->snapshot == NULL)

@@ -12,20 +12,22 @@ static const char momentum_beyond[] = "has a momentum beyond the range of its ce
 
 static const struct {
   const char *entity, *what, *unit;
+  bool heated; /* it happens where something has become too hot */
 } wording[] = {
-    [FAULT_NONE] = {"", "nothing wrong", ""},
-    [FAULT_SOLVENT_MOVE] = {"solvent particle", "moves too far in one collision interval:", "a0"},
-    [FAULT_SOLVENT_SPEED] = {"solvent particle", momentum_beyond, "m a0/t0"},
-    [FAULT_VERTEX_SPEED] = {"vertex", momentum_beyond, "m a0/t0"},
-    [FAULT_SOLVENT_ENERGY] = {"solvent particle", energy_beyond, "m a0^2/t0^2"},
-    [FAULT_VERTEX_ENERGY] = {"vertex", energy_beyond, "m a0^2/t0^2"},
-    [FAULT_CELL_MASS] = {"collision cell", "holds more mass than its sum can:", "m"},
-    [FAULT_VERTEX_MOVE] = {"vertex", "moves too far in one time step:", "a0"},
-    [FAULT_VERTEX_PLACE] = {"vertex", "is too far from the origin, unwrapped:", "a0"},
-    [FAULT_SOLVENT_PLACE] = {"solvent particle", "is not in the box:", "a0"},
-    [FAULT_VERTEX_WALL] = {"vertex", "is beyond a wall, at y =", "a0"},
-    [FAULT_BOND_TOO_LONG] = {"bond", "is longer than half the shortest box edge:", "a0"},
-    [FAULT_NO_MEMORY] = {"", "", ""},
+    [FAULT_NONE] = {"", "nothing wrong", "", false},
+    [FAULT_SOLVENT_MOVE] = {"solvent particle", "moves too far in one collision interval:", "a0", true},
+    [FAULT_SOLVENT_SPEED] = {"solvent particle", momentum_beyond, "m a0/t0", true},
+    [FAULT_VERTEX_SPEED] = {"vertex", momentum_beyond, "m a0/t0", true},
+    [FAULT_SOLVENT_ENERGY] = {"solvent particle", energy_beyond, "m a0^2/t0^2", true},
+    [FAULT_VERTEX_ENERGY] = {"vertex", energy_beyond, "m a0^2/t0^2", true},
+    [FAULT_CELL_MASS] = {"collision cell", "holds more mass than its sum can:", "m", true},
+    [FAULT_VERTEX_MOVE] = {"vertex", "moves too far in one time step:", "a0", true},
+    [FAULT_VERTEX_PLACE] = {"vertex", "is too far from the origin, unwrapped:", "a0", false},
+    [FAULT_SOLVENT_PLACE] = {"solvent particle", "is not in the box:", "a0", false},
+    [FAULT_VERTEX_WALL] = {"vertex", "is beyond a wall, at y =", "a0", false},
+    [FAULT_DUMBBELL] = {"dumbbell", "has a spring that is too long, or does not fit its two particles:", "a0", false},
+    [FAULT_BOND_TOO_LONG] = {"bond", "is longer than half the shortest box edge:", "a0", true},
+    [FAULT_NO_MEMORY] = {"", "", "", false},
 };
 
 void fault_describe(const struct fault *fault, char *text, size_t size)
@@ -34,9 +36,8 @@ void fault_describe(const struct fault *fault, char *text, size_t size)
     snprintf(text, size, "step %" PRIu64 ": memory is short for the lists of bonds that may touch", fault->step);
     return;
   }
-  const bool heated = fault->code != FAULT_NONE && fault->code != FAULT_VERTEX_PLACE &&
-                      fault->code != FAULT_SOLVENT_PLACE && fault->code != FAULT_VERTEX_WALL;
-  const char *hint = !heated ? "" : " (a time step that is too large, or a heated system, is the usual cause)";
+  const char *hint =
+      !wording[fault->code].heated ? "" : " (a time step that is too large, or a heated system, is the usual cause)";
   snprintf(text, size, "step %" PRIu64 ": %s %" PRId64 " %s %.8g %s; at most %.8g is allowed%s", fault->step,
            wording[fault->code].entity, fault->entity, wording[fault->code].what, text_real(fault->value),
            wording[fault->code].unit, fault->limit, hint);

@@ -20,6 +20,7 @@ enum fault_code {
   FAULT_VERTEX_PLACE,   /* a vertex is further from the origin than LATTICE_REACH, unwrapped */
   FAULT_SOLVENT_PLACE,  /* a solvent particle is not in the box (in a file: a run keeps them there) */
   FAULT_VERTEX_WALL,    /* a vertex is beyond a wall (in a file: a run keeps them between) */
+  FAULT_DUMBBELL,       /* the vector of a dumbbell is not that between its particles (in a file) */
   FAULT_BOND_TOO_LONG,  /* a bond is longer than half the shortest edge */
   FAULT_NO_MEMORY       /* a list of neighbor bonds could not grow */
 };

@@ -78,6 +78,13 @@ static bool check_boundary(const struct model *m, struct model_error *error)
        "a wall that leaves its plane; allowed: velocities with a y component of 0"},
       {walls && m->walls.kind == WALL_SLIP && m->walls.fill != FILL_PLANAR, "walls.fill",
        "slip walls have no virtual particles; allowed: planar, which has no effect there"},
+      {walls && m->dumbbells.spring != 0.0 && 4.0 > m->dumbbells.spring * m->box.cells[1] * m->box.cells[1],
+       "dumbbells.spring",
+       "a dumbbell at rest is longer than half of the gap; allowed between walls: sqrt(kT/spring) up to L/2"},
+      {m->dumbbells.depth != 0.0 && !walls, "dumbbells.depth",
+       "a potential of walls, and there are none; allowed with walls"},
+      {m->dumbbells.depth != 0.0 && 2.0 * m->dumbbells.range > m->box.cells[1] * sqrt(m->dumbbells.spring),
+       "dumbbells.range", "the potentials of the two walls overlap; allowed: range/sqrt(spring) up to half of L"},
       {walls && m->walls.fill == FILL_PAPER && m->solvent.rule == RULE_AT_PLUS_A &&
            m->solvent.per_cell != nearbyint(m->solvent.per_cell),
        "walls.fill",

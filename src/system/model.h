@@ -149,6 +149,22 @@ struct crossing_model {
   enum frame frame;
 };
 
+/* Dumbbells in the solvent: pairs of its particles with a harmonic spring (Tao, Goetze and Gompper, J. Chem. Phys. 128,
+ * 144902 (2008)). */
+struct dumbbell_model {
+  double spring;   /* K, kT/a0^2; 0: none */
+  double fraction; /* of the solvent's particles that are in dumbbells */
+
+  /* Between walls, the potential of the center of a dumbbell at the distance Y from one: -depth (1 - Y/reach) below
+   * the reach, else 0. */
+  double depth; /* kT; 0: no potential */
+  double range; /* reach in units of sqrt(kT/K) */
+
+  /* Derived by model_finish. */
+  uint32_t pairs;
+  double frequency; /* sqrt(2 K/m), 1/t0 */
+};
+
 /* Walls at y = 0 and y = L. */
 struct wall_model {
   enum wall_kind kind;       /* WALL_ABSENT: none */
@@ -181,6 +197,7 @@ struct model {
   enum scheme scheme;
   struct vec3 flow; /* uniform flow given to everything at the start, in a0/t0 */
   struct solvent_model solvent;
+  struct dumbbell_model dumbbells;
   struct wall_model walls;
   struct shear_model shear;
   struct crossing_model crossing;
@@ -275,6 +292,11 @@ static inline bool model_has_walls(const struct model *model)
 static inline bool model_is_sheared(const struct model *model)
 {
   return model->box.boundary[1] == BOUNDARY_SHEAR;
+}
+
+static inline bool model_has_dumbbells(const struct model *model)
+{
+  return model->dumbbells.pairs > 0;
 }
 
 static inline bool model_has_phantoms(const struct model *model)

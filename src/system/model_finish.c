@@ -74,6 +74,33 @@ static bool derive_particles(struct model *m, struct model_error *error)
   return true;
 }
 
+#define LOOSEST 1e-4 /* kT/a0^2: twenty standard deviations are below LATTICE_MAX_MOVE */
+
+/* Dumbbells are as many as there are pairs among their share of the particles. */
+static bool finish_dumbbells(struct model *m, struct model_error *error)
+{
+  struct dumbbell_model *d = &m->dumbbells;
+  if (d->spring == 0.0)
+    return true;
+  if (!model_has_solvent(m))
+    return model_reject(error, "dumbbells",
+                        "they are pairs of solvent particles, and there are none; allowed with a "
+                        "solvent of particles");
+  if (!m->solvent.hydrodynamics)
+    return model_reject(error, "solvent.hydrodynamics",
+                        "velocities that are permuted are not those of springs; allowed with dumbbells: true");
+  if (d->spring < LOOSEST)
+    return model_reject(error, "dumbbells.spring",
+                        "%.6g makes dumbbells of %.3g a0 along each axis, too long for a flight; allowed: %g and more",
+                        d->spring, 1.0 / sqrt(d->spring), LOOSEST);
+  d->pairs = (uint32_t)(0.5 * d->fraction * m->solvent.particles);
+  d->frequency = sqrt(2.0 * d->spring);
+  if (d->pairs == 0)
+    return model_reject(error, "dumbbells.fraction", "%.6g of %" PRIu32 " particles are less than two; allowed: more",
+                        d->fraction, m->solvent.particles);
+  return true;
+}
+
 static bool finish_solvent(struct model *m, struct model_error *error)
 {
   derive_rotation(&m->solvent);
@@ -357,10 +384,15 @@ bool model_finish_numbers(struct model *m, struct model_error *error)
     m->crossing.rule = CROSSING_SEQUENTIAL;
   if (m->dimensions == 0) /* the same */
     m->dimensions = 3;
+  if (m->dumbbells.spring != 0.0) {
+    m->dumbbells.fraction = m->dumbbells.fraction == 0.0 ? 1.0 : m->dumbbells.fraction;
+    m->dumbbells.range = m->dumbbells.range == 0.0 ? 1.2 : m->dumbbells.range;
+  }
   if (!keys_check(&model_keys, m, error))
     return false;
   m->box = box_of_cells(m->box.cells[0], m->box.cells[1], m->box.cells[2]);
-  if (!finish_solvent(m, error) || !flow_finish(m, error) || !finish_fibers(m, error) || !check_crossing(m, error))
+  if (!finish_solvent(m, error) || !finish_dumbbells(m, error) || !flow_finish(m, error) || !finish_fibers(m, error) ||
+      !check_crossing(m, error))
     return false;
   if (!model_collides(m) && m->kinds == 0)
     return model_reject(error, "", "there is nothing to simulate; a scene has a 'solvent', 'fibers', or both");

@@ -312,6 +312,44 @@ static const struct key wall_keys[] = {
 };
 static const struct key_table wall_table = {"walls", NULL, COUNT(wall_keys), wall_keys};
 
+static const struct key dumbbell_keys[] = {
+    {.name = "spring",
+     .text = "Constant K of the spring between the two particles of a dumbbell: the energy is K r^2/2 at a distance r.",
+     .type = KEY_NUMBER,
+     .low = 0,
+     .above = true,
+     .high = 1e6,
+     .offset = IN_MODEL(dumbbells.spring),
+     .unit = "kT/a0^2",
+     .symbol = "K"},
+    {.name = "fraction",
+     .text = "Share of the solvent's particles that are in dumbbells; the others are independent.",
+     .type = KEY_NUMBER,
+     .absent = "1",
+     .low = 0,
+     .above = true,
+     .high = 1,
+     .offset = IN_MODEL(dumbbells.fraction)},
+    {.name = "depth",
+     .text = "Between walls: the centers of dumbbells are attracted by each wall, with the energy -`depth` at the wall "
+             "that rises to 0 in a straight line (2 c_2 of Tao et al. 2008).",
+     .type = KEY_NUMBER,
+     .absent = "0",
+     .low = 0,
+     .high = 100,
+     .offset = IN_MODEL(dumbbells.depth),
+     .unit = "kT"},
+    {.name = "range",
+     .text = "Reach of this attraction, in units of sqrt(kT/K) (c_1).",
+     .type = KEY_NUMBER,
+     .absent = "1.2",
+     .low = 0,
+     .above = true,
+     .high = 100,
+     .offset = IN_MODEL(dumbbells.range)},
+};
+static const struct key_table dumbbell_table = {"dumbbells", NULL, COUNT(dumbbell_keys), dumbbell_keys};
+
 static const struct key shear_keys[] = {
     {.name = "rate",
      .text = "Shear rate dv_x/dy. With a `period`, its amplitude.",
@@ -450,6 +488,11 @@ static const struct key top_keys[] = {
      .type = KEY_SECTION,
      .optional = true,
      .keys = &solvent_table},
+    {.name = "dumbbells",
+     .text = "Pairs of solvent particles with a harmonic spring (Tao, Goetze and Gompper 2008); absent: none.",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &dumbbell_table},
     {.name = "walls",
      .text = "Walls at y = 0 and y = L; absent: none.",
      .type = KEY_SECTION,

@@ -67,7 +67,26 @@ static bool solvent_sound(const struct state *s, const struct model *m, struct f
   return true;
 }
 
+/* The vector of a dumbbell leads from the second particle to the first, or to one of its images. Along x the images of
+ * a sheared box are anywhere. */
+static bool dumbbells_sound(const struct state *s, const struct model *m, struct fault *fault)
+{
+  const struct dumbbells *d = &s->dumbbells;
+  const int64_t *at[3] = {s->solvent.x, s->solvent.y, s->solvent.z}, *apart[3] = {d->x, d->y, d->z};
+  const int64_t longest = (int64_t)LATTICE_MAX_MOVE * LATTICE_CELL;
+  for (uint32_t p = 0; p < d->n; p++)
+    for (int k = 0; k < 3; k++) {
+      const int64_t r = apart[k][p], between = at[k][2 * p] - at[k][2 * p + 1];
+      const bool wall = m->box.boundary[k] == BOUNDARY_WALL, slides = k == 0 && m->box.boundary[1] == BOUNDARY_SHEAR;
+      if (r < -longest || r > longest || (wall && r != between) ||
+          (!wall && !slides && lattice_fold(r, m->box.edge[k]) != lattice_fold(between, m->box.edge[k])))
+        return fault_record(fault, FAULT_DUMBBELL, s->step, d->id[p], (double)r * LATTICE_UNIT, LATTICE_MAX_MOVE);
+    }
+  return true;
+}
+
 bool state_sound(const struct state *state, const struct model *model, struct fault *fault)
 {
-  return vertices_sound(state, model, fault) && solvent_sound(state, model, fault);
+  return vertices_sound(state, model, fault) && solvent_sound(state, model, fault) &&
+         dumbbells_sound(state, model, fault);
 }

@@ -9,9 +9,10 @@
 #include "system/state.h"
 
 /* True if vertices are within LATTICE_REACH, bonds shorter than half the shortest edge, solvent particles in the box,
- * all velocities finite, and no solvent particle has flown LATTICE_MAX_MOVE or further in the time by which it lags.
- * Otherwise the fault says what is wrong first. Every state that step_advance leaves passes, unless its next step would
- * find the same fault. Of the model: box, time step, acceleration, and bonds if `next` is not NULL. */
+ * springs of dumbbells between their particles, all velocities finite, and no solvent particle has flown
+ * LATTICE_MAX_MOVE or further in the time by which it lags. Otherwise the fault says what is wrong first. Every state
+ * that step_advance leaves passes, unless its next step would find the same fault. Of the model: box, time step,
+ * acceleration, and bonds if `next` is not NULL. */
 bool state_sound(const struct state *state, const struct model *model, struct fault *fault);
 
 #endif

@@ -11,17 +11,22 @@
 bool state_alloc(struct state *s, const struct model *model)
 {
   memset(s, 0, sizeof *s);
-  size_t n = model->solvent.particles ? model->solvent.particles : 1, v = model->vertices ? model->vertices : 1;
+  size_t n = model->solvent.particles ? model->solvent.particles : 1, v = model->vertices ? model->vertices : 1,
+         pairs = model->dumbbells.pairs ? model->dumbbells.pairs : 1;
   s->solvent.n = model->solvent.particles;
   s->vertices = model->vertices;
+  s->dumbbells.n = model->dumbbells.pairs;
   s->wall_rows = model_has_walls(model) ? WALLS * ACCOUNT_SHARES : 0;
   int64_t **lattice[] = {&s->solvent.x, &s->solvent.y, &s->solvent.z};
+  int64_t **spring[] = {&s->dumbbells.x, &s->dumbbells.y, &s->dumbbells.z};
   double **real[] = {&s->solvent.vx, &s->solvent.vy, &s->solvent.vz};
   bool ok = true;
   for (int k = 0; k < 3; k++) {
     ok &= (*lattice[k] = memory_alloc(n, sizeof **lattice[k])) != NULL;
     ok &= (*real[k] = memory_alloc(n, sizeof **real[k])) != NULL;
+    ok &= (*spring[k] = memory_alloc(pairs, sizeof **spring[k])) != NULL;
   }
+  ok &= (s->dumbbells.id = memory_alloc(pairs, sizeof *s->dumbbells.id)) != NULL;
   ok &= (s->solvent.id = memory_alloc(n, sizeof *s->solvent.id)) != NULL;
   ok &= (s->position = memory_alloc(v, sizeof *s->position)) != NULL;
   ok &= (s->velocity = memory_alloc(v, sizeof *s->velocity)) != NULL;
@@ -32,6 +37,8 @@ bool state_alloc(struct state *s, const struct model *model)
   }
   for (uint32_t i = 0; i < s->solvent.n; i++)
     s->solvent.id[i] = i;
+  for (uint32_t p = 0; p < s->dumbbells.n; p++)
+    s->dumbbells.id[p] = p;
   return true;
 }
 
@@ -44,6 +51,10 @@ void state_free(struct state *s)
   free(s->solvent.vy);
   free(s->solvent.vz);
   free(s->solvent.id);
+  free(s->dumbbells.x);
+  free(s->dumbbells.y);
+  free(s->dumbbells.z);
+  free(s->dumbbells.id);
   free(s->position);
   free(s->velocity);
   free(s->wall_momentum);
@@ -53,6 +64,7 @@ void state_free(struct state *s)
 uint64_t state_bytes(const struct model *model)
 {
   return (uint64_t)model->solvent.particles * (6 * sizeof(double) + sizeof(uint32_t)) +
+         (uint64_t)model->dumbbells.pairs * (3 * sizeof(int64_t) + sizeof(uint32_t)) +
          (uint64_t)model->vertices * (sizeof(struct point) + sizeof(struct vec3));
 }
 
@@ -92,6 +104,7 @@ const size_t state_number_count = sizeof state_numbers / sizeof *state_numbers;
 void state_groups(const struct state *s, struct state_group group[STATE_GROUPS])
 {
   const struct solvent *p = &s->solvent;
+  const struct dumbbells *d = &s->dumbbells;
   struct point *r = s->position;
   struct vec3 *v = s->velocity;
   struct point *w = s->wall_momentum;
@@ -108,6 +121,7 @@ void state_groups(const struct state *s, struct state_group group[STATE_GROUPS])
        2,
        {{"vertex_position", true, {&r->x, &r->y, &r->z}, sizeof *r},
         {"vertex_velocity", false, {&v->x, &v->y, &v->z}, sizeof *v}}},
+      {d->n, true, d->id, 1, {{"dumbbell_vector", true, {d->x, d->y, d->z}, sizeof *d->x}}},
       {s->wall_rows, true, NULL, 1, {{"wall_momentum", true, {&w->x, &w->y, &w->z}, sizeof *w}}},
   };
   memcpy(group, groups, sizeof groups);

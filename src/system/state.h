@@ -24,6 +24,20 @@ struct solvent {
   uint32_t *id;         /* 0 .. n-1, each once */
 };
 
+/*
+ * Dumbbells: pairs of solvent particles with a spring between them (Tao, Goetze and Gompper 2008). Particles 2k and
+ * 2k + 1 are dumbbell k. The dumbbells stand before all other particles in memory: that at place p of this list has
+ * the places 2p and 2p + 1 of the solvent.
+ *
+ * A spring may be longer than the box, so its vector is part of the state: position of the first particle less that of
+ * the second, before both were brought into the box.
+ */
+struct dumbbells {
+  uint32_t n;
+  uint32_t *id;       /* 0 .. n-1, each once */
+  int64_t *x, *y, *z; /* lattice units */
+};
+
 /* Velocity of the particle at place i of memory, at the time to which it was last streamed. */
 static inline struct vec3 solvent_velocity(const struct solvent *s, uint32_t i)
 {
@@ -48,6 +62,7 @@ struct state {
   uint32_t solvent_lag;  /* half time steps since the solvent was last streamed */
   uint64_t solvent_time; /* half time steps to which it was streamed; with the lag, the time now */
   struct solvent solvent;
+  struct dumbbells dumbbells;
   uint32_t vertices;
   struct point *position; /* [vertices] lattice units, unwrapped */
   struct vec3 *velocity;  /* [vertices] a0/t0, of the half step ahead */
@@ -116,7 +131,7 @@ struct state_group {
   struct state_field field[2];
 };
 
-enum { STATE_GROUPS = 3 };
+enum { STATE_GROUPS = 4 };
 
 /* The groups of this state, in the order in which they are hashed. */
 void state_groups(const struct state *state, struct state_group group[STATE_GROUPS]);

@@ -1,5 +1,6 @@
 #include "theory/flow.h"
 
+#include "theory/dumbbell.h"
 #include "theory/theory.h"
 
 static const double pi = 3.14159265358979323846;
@@ -25,7 +26,8 @@ double theory_flow_relaxation(double height, double kinematic_viscosity)
   return height * height / (pi * pi * kinematic_viscosity);
 }
 
-double theory_flow_transient(const struct model *model, double kinematic_viscosity)
+/* Of momentum alone. */
+static double transient_of_flow(const struct model *model, double kinematic_viscosity)
 {
   const struct vec3 sum = vec3_add(model->walls.lower, model->walls.upper);
   const bool pulled = vec3_norm(model->solvent.acceleration) > 0.0;
@@ -36,6 +38,13 @@ double theory_flow_transient(const struct model *model, double kinematic_viscosi
   if (model->walls.kind != WALL_NO_SLIP || !(pulled || slides))
     return 0.0;
   return pulled || vec3_norm(sum) > 0.0 ? even : odd;
+}
+
+double theory_flow_transient(const struct model *model, double kinematic_viscosity)
+{
+  const double flow = transient_of_flow(model, kinematic_viscosity);
+  const bool stretches = model_has_dumbbells(model) && (flow > 0.0 || model_is_sheared(model));
+  return stretches ? fmax(flow, 1.0 / theory_model_dumbbell_rate(model)) : flow;
 }
 
 double theory_penetration_depth(double frequency, double kinematic_viscosity)

@@ -46,7 +46,7 @@ double theory_flow_relaxation(double height, double kinematic_viscosity);
 /* Time in which the slowest part of what the start still differs from a steady flow falls to 1/e, t0. Between walls
  * L^2/(pi^2 nu), a quarter of it where opposite velocities of the walls alone drive the flow: then it is odd about the
  * middle. A force with a profile: 1/(nu k^2), k = 2 pi/L. 0 where nothing flows, and in a sheared box, whose profile is
- * linear from the start. */
+ * linear from the start. With dumbbells at least 1/omega_H, in a sheared box too. */
 double theory_flow_transient(const struct model *model, double kinematic_viscosity);
 
 /* sqrt(2 nu/omega), a0: in which the wave that goes out from an oscillating wall falls to 1/e. */

@@ -44,6 +44,8 @@ static inline void contract_choose(struct model *m, struct choice c)
   m->solvent.rule = c.rule;
   m->solvent.thermostat = c.thermostat;
   m->solvent.bath = c.bath;
+  if (c.fluid == FLUID_DUMBBELLS)
+    m->dumbbells = (struct dumbbell_model){.spring = 3.0, .fraction = 0.75};
   m->solvent.hydrodynamics = !c.permuted && !model_has_phantoms(m);
   m->crossing.forbidden = crossing_rule_row(c.crossing)->forbids;
   m->crossing.rule = c.crossing;
@@ -452,6 +454,8 @@ static inline void contract_equipartition(struct choice c)
   static const char *const names[SPECIES] = {"solvent", "light", "heavy"};
   struct dice d = {dice_seed(2704)};
   struct test_run r = dice_run(contract_gas(c), &d);
+  if (model_has_dumbbells(&r.model)) /* springs in equilibrium */
+    fluid_of(&r.model)->start(&r.state, &r.model);
   start_unequal(&r, contract_keeps_energy(c) ? 1.0 : 2.0);
   test_steps(&r, WARM_UP);
   struct sample second[SPECIES] = {{0}}, fourth[SPECIES] = {{0}};

@@ -292,11 +292,12 @@ static void cadence(void **unused)
 {
   (void)unused;
   struct outcome o = observed_run(0);
+  const struct model model = suspension();
   size_t rows[OBSERVABLES] = {0}, at = 0;
   while (at < o.rows->count) {
     const enum observable which = (enum observable)o.rows->value[at];
     const char *const *names;
-    const size_t columns = observe_series_columns(which, &names);
+    const size_t columns = observe_series_columns(&model, which, &names);
     assert_true(columns > 0 && strcmp(names[0], "time") == 0);
     assert_close(o.rows->value[at + 1], 0.01 * (double)(rows[which]++ * everything.every[which]), 1e-12);
     at += columns + 1;
@@ -322,7 +323,7 @@ static void nobody_asked(void **unused)
   assert_false(observers_due(observers, 0));
   assert_true(observers_sample(observers, &r.model, &r.state, NULL));
   assert_int_equal(observers_blocks(observers, &block), 0);
-  assert_int_equal(observe_series_columns(OBSERVE_STATICS, &names), 0);
+  assert_int_equal(observe_series_columns(&r.model, OBSERVE_STATICS, &names), 0);
   struct kept *kept = keep_summaries(observers, &r.model);
   assert_int_equal(kept->tables, 0);
   free(kept);

@@ -1,0 +1,11 @@
+/* What `uncross check` says of a fluid of dumbbells. */
+#ifndef UNCROSS_CLI_CHECK_DUMBBELLS_H
+#define UNCROSS_CLI_CHECK_DUMBBELLS_H
+
+#include "cli/sheet.h"
+#include "system/model.h"
+
+/* Prints the numbers of dumbbells. The model must have some. */
+void check_dumbbells(const struct si_scale *si, const struct model *model);
+
+#endif
