@@ -34,7 +34,8 @@ static void fit_plan(struct scene *scene, const struct trajectory *frames)
                                       [OBSERVE_COLLISIONS] = false,
                                       [OBSERVE_PROFILE] = everything,
                                       [OBSERVE_STRESS] = false,
-                                      [OBSERVE_DUMBBELLS] = false};
+                                      [OBSERVE_DUMBBELLS] = false,
+                                      [OBSERVE_ORIENTATION] = true};
   for (int k = 0; k < OBSERVABLES; k++) {
     uint64_t *every = &scene->observe.every[k];
     if (*every > 0 && !possible[k])

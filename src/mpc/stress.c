@@ -75,7 +75,8 @@ static void add_places(const struct state *state, const struct model *model, str
     if (in_whole_cell(model, c, s->y[i]))
       add_place(sum, model, c, (struct point){s->x[i], s->y[i], s->z[i]}, 1.0, solvent_velocity(s, i));
   for (uint32_t v = 0; v < state->vertices; v++)
-    add_place(sum, model, c, state->position[v], model->mass[v], state->velocity[v]);
+    if (in_whole_cell(model, c, state->position[v].y))
+      add_place(sum, model, c, state->position[v], model->mass[v], state->velocity[v]);
   for (int k = 0; k < STRESS_COMPONENTS; k++)
     c->stress->collisional[k] += sign * FLUX_UNIT * (double)sum[k] * edge / (height[k] * box_volume(&model->box));
 }

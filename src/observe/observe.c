@@ -9,16 +9,17 @@
 #include "observe/observer.h"
 
 static const struct observer_type *const types[OBSERVABLES] = {
-    [OBSERVE_CONSERVED] = &conserved_observer,   [OBSERVE_TEMPERATURE] = &temperature_observer,
-    [OBSERVE_STATICS] = &statics_observer,       [OBSERVE_DYNAMICS] = &dynamics_observer,
-    [OBSERVE_COLLISIONS] = &collisions_observer, [OBSERVE_PROFILE] = &profile_observer,
-    [OBSERVE_STRESS] = &stress_observer,         [OBSERVE_DUMBBELLS] = &dumbbells_observer,
+    [OBSERVE_CONSERVED] = &conserved_observer,     [OBSERVE_TEMPERATURE] = &temperature_observer,
+    [OBSERVE_STATICS] = &statics_observer,         [OBSERVE_DYNAMICS] = &dynamics_observer,
+    [OBSERVE_COLLISIONS] = &collisions_observer,   [OBSERVE_PROFILE] = &profile_observer,
+    [OBSERVE_STRESS] = &stress_observer,           [OBSERVE_DUMBBELLS] = &dumbbells_observer,
+    [OBSERVE_ORIENTATION] = &orientation_observer,
 };
 
 const char *const observable_names[OBSERVABLES] = {
     [OBSERVE_CONSERVED] = "conserved", [OBSERVE_TEMPERATURE] = "temperature", [OBSERVE_STATICS] = "statics",
     [OBSERVE_DYNAMICS] = "dynamics",   [OBSERVE_COLLISIONS] = "collisions",   [OBSERVE_PROFILE] = "profile",
-    [OBSERVE_STRESS] = "stress",       [OBSERVE_DUMBBELLS] = "dumbbells",
+    [OBSERVE_STRESS] = "stress",       [OBSERVE_DUMBBELLS] = "dumbbells",     [OBSERVE_ORIENTATION] = "orientation",
 };
 
 enum { MAX_BLOCKS = 6 * OBSERVABLES };
@@ -152,9 +153,11 @@ bool observers_due(const struct observers *observers, uint64_t step)
   return any;
 }
 
+/* Columns that a model lacks are left out from the end. */
 static size_t columns_of(const struct observer_type *type, const struct model *model)
 {
-  return type->columns - (model_has_dumbbells(model) ? 0 : type->of_dumbbells);
+  const bool fibers = model->kinds > 0, dumbbells = fibers || model_has_dumbbells(model);
+  return type->columns - (fibers ? 0 : type->of_fibers) - (dumbbells ? 0 : type->of_dumbbells);
 }
 
 static bool sample(struct observer *o, enum observable which, struct view *view, const struct observe_sink *sink)

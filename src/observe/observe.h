@@ -20,8 +20,9 @@ enum observable {
   OBSERVE_DYNAMICS,    /* against lag, per kind: g(t), g_cm(t), d^2(t), end-to-end correlation, diffusion coefficient */
   OBSERVE_COLLISIONS,  /* time series: crossings possible, executed, negative, and their rates */
   OBSERVE_PROFILE,     /* averages in slabs along y: density, velocity, temperature */
-  OBSERVE_STRESS,      /* time series: stress of the solvent in the bulk, and on walls */
+  OBSERVE_STRESS,      /* time series: stress of the solvent in the bulk, of fibers, and on walls */
   OBSERVE_DUMBBELLS,   /* averages: second moments of the vectors of dumbbells */
+  OBSERVE_ORIENTATION, /* averages per kind of fiber: second moments of end-to-end vectors and of directions of bonds */
   OBSERVABLES
 };
 
@@ -30,7 +31,8 @@ struct observe_plan {
   uint64_t every[OBSERVABLES]; /* steps between samples; 0: not asked for */
   uint64_t longest_lag;        /* of the dynamics, in steps; 0: 2^20 samples. Decides the size of its memory. */
   uint64_t slabs;              /* of the profile */
-  uint64_t from; /* step from which on averages (statics, dynamics, profile, dumbbells) are made; time series begin at 0 */
+  uint64_t from; /* step from which on averages (statics, dynamics, profile, dumbbells, orientation) are made; time
+                    series begin at 0 */
 };
 
 /* Names as scenes and files use them: "conserved", "temperature", ... */

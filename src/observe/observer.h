@@ -57,7 +57,8 @@ struct observer_type {
   /* A time series: its columns, and the function that fills a row. */
   const char *const *column;
   size_t columns;
-  size_t of_dumbbells; /* the last of these columns, that only a model with dumbbells has */
+  size_t of_fibers;    /* the last of these columns, that only a model with fibers has */
+  size_t of_dumbbells; /* those before them, that one with dumbbells has; with fibers alone they are 0 */
   void (*row)(struct observer *observer, struct view *view, double *row);
 
   /* A summary: the function that adds a sample, and the one that makes a table for each kind of fiber. NULL for time
@@ -69,7 +70,7 @@ struct observer_type {
 enum { OBSERVER_MAX_COLUMNS = 32, OBSERVER_NAME_SIZE = MODEL_NAME_SIZE + 32 };
 
 extern const struct observer_type conserved_observer, temperature_observer, statics_observer, dynamics_observer,
-    collisions_observer, profile_observer, stress_observer, dumbbells_observer;
+    collisions_observer, profile_observer, stress_observer, dumbbells_observer, orientation_observer;
 
 /* Time of a state, in t0. */
 static inline double view_time(const struct view *view)

@@ -1,13 +1,20 @@
 /*
- * The stress of the solvent, averaged over the collisions since the row before (mpc/stress.h), and the stress on walls,
- * from the momentum that they have given since then (system/account.h).
+ * The stress of the solvent, averaged over the collisions since the row before (mpc/stress.h); that of fibers at the
+ * step of the row; and the stress on walls, from the momentum that they have given since the row before
+ * (system/account.h).
+ *
+ * Fibers: -(1/volume) sum of M w_a w_b + F_a r_b, w being the velocity of a vertex relative to the applied flow, F the
+ * force of its bonds and bends, and r its place. These forces have no sum within a fiber, so the origin does not
+ * matter. At a contact both bonds are at one place and get opposite impulses: contacts add nothing.
  */
 #include <math.h>
 #include <string.h>
 
+#include "fiber/force.h"
 #include "mpc/stress.h"
 #include "observe/observer.h"
 #include "system/account.h"
+#include "system/shear.h"
 
 enum { ROWS = WALLS * ACCOUNT_SHARES };
 enum { MARK, LAST_STEP, LAST_ACCOUNT, LAST_TURNS = LAST_ACCOUNT + ROWS, INTEGERS = LAST_TURNS + ROWS };
@@ -31,6 +38,54 @@ static double given(const struct observer *o, const struct state *state, enum wa
   return sum;
 }
 
+/* --- fibers ------------------------------------------------------------------------------------------------------ */
+
+/* The flow that the boundary asks for, at a height y, a0; now. */
+static struct vec3 applied_flow(const struct view *view, double y)
+{
+  const struct model *model = view->model;
+  const uint64_t interval = shear_interval(model, view->state->solvent_time + view->state->solvent_lag);
+  const double edge = model->box.cells[1];
+  if (model_has_walls(model)) {
+    const struct vec3 low = shear_wall_velocity(model, WALL_LOWER, interval);
+    return vec3_add_scaled(low, y / edge, vec3_sub(shear_wall_velocity(model, WALL_UPPER, interval), low));
+  }
+  return vec3_add(model->flow, (struct vec3){shear_rate(model, interval) * (y - 0.5 * edge), 0, 0});
+}
+
+static void add_products(double sum[STRESS_COMPONENTS], double factor, struct vec3 a, struct vec3 b)
+{
+  sum[STRESS_XY] += factor * a.x * b.y;
+  sum[STRESS_XX] += factor * a.x * b.x;
+  sum[STRESS_YY] += factor * a.y * b.y;
+  sum[STRESS_ZZ] += factor * a.z * b.z;
+}
+
+/* Sums over all vertices. Velocities are those of half a step ahead: they are taken back to now. */
+static void fiber_stress(const struct view *view, double stress[STRESS_COMPONENTS])
+{
+  const struct model *model = view->model;
+  const struct state *state = view->state;
+  const double half = 0.5 * model->time_step, scale = -1.0 / box_volume(&model->box);
+  struct fault ignored = {.code = FAULT_NONE}; /* a bond too long for the box stops the run, not its observers */
+  double sum[STRESS_COMPONENTS] = {0};
+  if (state->vertices > 0)
+    fiber_forces(state, model, view->force, state->step, &ignored);
+  for (uint32_t i = 0; i < state->vertices; i++) {
+    const uint32_t fiber = model->fiber_of[i];
+    const struct point at = state->position[i];
+    const struct vec3 force = view->force[i], outer = model->kind[model->fiber_kind_of[fiber]].force,
+                      v = vec3_add_scaled(state->velocity[i], -half * model->inverse_mass[i], force),
+                      w = vec3_sub(v, applied_flow(view, (double)at.y * LATTICE_UNIT));
+    add_products(sum, model->mass[i], w, w);
+    add_products(sum, 1.0, vec3_sub(force, outer), point_difference(at, state->position[model->fiber_first[fiber]]));
+  }
+  for (int k = 0; k < STRESS_COMPONENTS; k++)
+    stress[k] = scale * sum[k];
+}
+
+/* --- a row ------------------------------------------------------------------------------------------------------- */
+
 static void stress_row(struct observer *o, struct view *view, double *row)
 {
   const struct model *model = view->model;
@@ -40,13 +95,14 @@ static void stress_row(struct observer *o, struct view *view, double *row)
   const double passed = (double)((int64_t)state->step - o->integer[LAST_STEP]) * model->time_step;
   const bool walls = model_has_walls(model) && passed > 0.0;
   double kinetic[STRESS_COMPONENTS], collisional[STRESS_COMPONENTS], spring[STRESS_COMPONENTS] = {0};
-  double total[STRESS_COMPONENTS];
+  double total[STRESS_COMPONENTS], fibers[STRESS_COMPONENTS];
+  fiber_stress(view, fibers);
   for (int k = 0; k < STRESS_COMPONENTS; k++) {
     kinetic[k] = n > 0.0 ? -s->kinetic[k] / n : NAN;
     collisional[k] = n > 0.0 ? -s->collisional[k] / (n * model_collision_interval(model)) : NAN;
     if (model_has_dumbbells(model))
       spring[k] = n > 0.0 ? s->spring[k] / n : NAN;
-    total[k] = kinetic[k] + collisional[k] + spring[k];
+    total[k] = (model_has_solvent(model) ? kinetic[k] + collisional[k] + spring[k] : 0.0) + fibers[k];
   }
   const double trace = total[STRESS_XX] + total[STRESS_YY] + (model->dimensions > 2 ? total[STRESS_ZZ] : 0.0);
   const double values[] = {view_time(view),
@@ -58,7 +114,9 @@ static void stress_row(struct observer *o, struct view *view, double *row)
                            walls ? -given(o, state, WALL_LOWER) / (area * passed) : NAN,
                            walls ? given(o, state, WALL_UPPER) / (area * passed) : NAN,
                            spring[STRESS_XY],
-                           spring[STRESS_XX] - spring[STRESS_YY]};
+                           spring[STRESS_XX] - spring[STRESS_YY],
+                           fibers[STRESS_XY],
+                           fibers[STRESS_XX] - fibers[STRESS_YY]};
   memcpy(row, values, sizeof values);
   memset(s, 0, stress_doubles(model) * sizeof(double));
   o->integer[LAST_STEP] = (int64_t)state->step;
@@ -69,12 +127,13 @@ static void stress_row(struct observer *o, struct view *view, double *row)
 }
 
 static const char *const columns[] = {
-    "time",     "sigma_xy",    "sigma_xy_kinetic", "sigma_xy_collisional", "N1",
-    "pressure", "sigma_lower", "sigma_upper",      "sigma_xy_spring",      "N1_spring"};
+    "time",        "sigma_xy",        "sigma_xy_kinetic", "sigma_xy_collisional", "N1",       "pressure", "sigma_lower",
+    "sigma_upper", "sigma_xy_spring", "N1_spring",        "sigma_xy_fibers",      "N1_fibers"};
 
 const struct observer_type stress_observer = {
     .column = columns,
     .columns = sizeof columns / sizeof *columns,
+    .of_fibers = 2,
     .of_dumbbells = 2,
     .size = size_stress,
     .row = stress_row,

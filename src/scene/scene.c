@@ -67,6 +67,11 @@ bool scene_says(const struct scene *scene, const char *path)
 static bool check_observables(const struct scene *scene, struct message *message)
 {
   const struct observe_plan *plan = &scene->observe;
+  if (plan->every[OBSERVE_DYNAMICS] > 0 && scene->model.shear.rate != 0.0)
+    return refuse_key(
+        scene, "observe.dynamics", message,
+        "a fiber that leaves a sheared box is replaced by an image, which moves at another speed, so it has "
+        "no displacement; allowed without shear");
   if (plan->longest_lag == 0 || plan->longest_lag >= plan->every[OBSERVE_DYNAMICS])
     return true;
   return scene_refuse_at(scene, "observe.dynamics.longest_lag", "observe.dynamics.longest_lag", message,

@@ -70,12 +70,15 @@ static const struct key_table stress_table = {"observe.stress", NULL, COUNT(ever
 
 static const struct key_table shape_table = {"observe.dumbbells", NULL, COUNT(every_keys), every_keys};
 
+static const struct key_table orientation_table = {"observe.orientation", NULL, COUNT(every_keys), every_keys};
+
 static const struct key observe_keys[] = {
     {.name = "from",
-     .text = "Step at which averages (`statics`, `dynamics`, `profile`, `dumbbells`) begin, so that they leave a "
-             "transient out. "
-             "Time series "
-             "begin at step 0 all the same. At most `steps`. If absent: 0.",
+     .text =
+         "Step at which averages (`statics`, `dynamics`, `profile`, `dumbbells`, `orientation`) begin, so that they "
+         "leave a transient out. "
+         "Time series "
+         "begin at step 0 all the same. At most `steps`. If absent: 0.",
      .type = KEY_WHOLE64,
      .optional = true,
      .most = INT64_MAX,
@@ -134,7 +137,7 @@ static const struct key observe_keys[] = {
      .keys = &profile_table,
      .line = true},
     {.name = "stress",
-     .text = "Time series of the solvent's stress: in the bulk, and on walls.",
+     .text = "Time series of the stress: of the solvent in the bulk, of fibers, and on walls.",
      .type = KEY_SECTION,
      .optional = true,
      .keys = &stress_table,
@@ -146,6 +149,13 @@ static const struct key observe_keys[] = {
      .optional = true,
      .keys = &shape_table,
      .offset = IN_SCENE(observe.every[OBSERVE_DUMBBELLS]),
+     .line = true},
+    {.name = "orientation",
+     .text = "Averages of the second moments of fibers' end-to-end vectors and of the directions of their bonds.",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &orientation_table,
+     .offset = IN_SCENE(observe.every[OBSERVE_ORIENTATION]),
      .line = true},
 };
 static const struct key_table observe_table = {"observe", NULL, COUNT(observe_keys), observe_keys};

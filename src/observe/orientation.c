@@ -1,0 +1,144 @@
+/*
+ * How fibers lie in space, averaged over the run: second moments of the end-to-end vector R, and of the directions u of
+ * bonds. A table "orientation-KIND" with one row for each kind of fiber with bonds. In a flow along x these moments
+ * tell how fibers are stretched and turned into the flow.
+ */
+#include <math.h>
+#include <stdio.h>
+
+#include "fiber/force.h"
+#include "observe/block.h"
+#include "observe/observer.h"
+
+/* Quantities, each a pair (x, y). */
+enum {
+  ENDS_ALONG,  /* R_x R_x, R_y R_y */
+  ENDS_ACROSS, /* R_x R_y, R_z R_z */
+  BONDS_ALONG, /* u_x u_x, u_y u_y */
+  BONDS_ACROSS,
+  BONDS_ANGLE, /* u_x u_y, u_x u_x - u_y u_y: together they make the angle */
+  QUANTITIES
+};
+
+enum { LEVELS = 24 };
+
+static void size_orientation(const struct observer *observer, const struct model *model, struct observer_size *size)
+{
+  (void)observer;
+  size->reals = (size_t)model->kinds * QUANTITIES * LEVELS * BLOCK_LEVEL_DOUBLES;
+}
+
+static struct block_level *blocks_of(const struct observer *o, uint32_t kind, int quantity)
+{
+  return (struct block_level *)o->real + ((size_t)kind * QUANTITIES + (size_t)quantity) * LEVELS;
+}
+
+struct moments {
+  double xx, yy, zz, xy;
+};
+
+static void add_vector(struct moments *m, struct vec3 r, double weight)
+{
+  m->xx += weight * r.x * r.x;
+  m->yy += weight * r.y * r.y;
+  m->zz += weight * r.z * r.z;
+  m->xy += weight * r.x * r.y;
+}
+
+static bool is_bonded(const struct fiber_kind *kind)
+{
+  return kind->count > 0 && kind->vertices > 1;
+}
+
+/* One sample of a kind whose vertices begin at `first`: means over its fibers, and over its bonds. */
+static void add_kind(struct observer *o, const struct view *view, uint32_t k, uint32_t first)
+{
+  const struct model *model = view->model;
+  const struct fiber_kind *kind = &model->kind[k];
+  const uint32_t bonds = kind->vertices - !kind->ring;
+  struct moments ends = {0, 0, 0, 0}, directions = {0, 0, 0, 0};
+  for (uint32_t fiber = 0; fiber < kind->count; fiber++, first += kind->vertices) {
+    for (uint32_t j = first; j < first + bonds; j++) {
+      const struct vec3 r = fiber_bond(view->state, model, j);
+      const double square = vec3_dot(r, r);
+      add_vector(&directions, r, square > 0.0 ? 1.0 / (square * bonds * kind->count) : 0.0);
+    }
+    const struct point last = view->state->position[first + kind->vertices - 1];
+    add_vector(&ends, point_difference(last, view->state->position[first]), 1.0 / kind->count);
+  }
+  block_add(blocks_of(o, k, ENDS_ALONG), LEVELS, ends.xx, ends.yy);
+  block_add(blocks_of(o, k, ENDS_ACROSS), LEVELS, ends.xy, ends.zz);
+  block_add(blocks_of(o, k, BONDS_ALONG), LEVELS, directions.xx, directions.yy);
+  block_add(blocks_of(o, k, BONDS_ACROSS), LEVELS, directions.xy, directions.zz);
+  block_add(blocks_of(o, k, BONDS_ANGLE), LEVELS, directions.xy, directions.xx - directions.yy);
+}
+
+static void add_orientation(struct observer *o, struct view *view)
+{
+  uint32_t first = 0;
+  for (uint32_t k = 0; k < view->model->kinds; k++) {
+    const struct fiber_kind *kind = &view->model->kind[k];
+    if (is_bonded(kind))
+      add_kind(o, view, k, first);
+    first += kind->count * kind->vertices;
+  }
+}
+
+/* --- the table --------------------------------------------------------------------------------------------------- */
+
+static const char *const columns[] = {
+    "RxRx", "RxRx_error", "RyRy", "RyRy_error", "RzRz", "RzRz_error", "RxRy", "RxRy_error", "uxux",    "uxux_error",
+    "uyuy", "uyuy_error", "uzuz", "uzuz_error", "uxuy", "uxuy_error", "chi",  "chi_error",  "samples",
+};
+
+enum { COLUMNS = sizeof columns / sizeof *columns };
+
+static double *put_mean(double *cell, const struct block_level *level, int part, bool there)
+{
+  cell[0] = there && level->count > 0.0 ? level->mean[part] : NAN;
+  cell[1] = there ? block_error(level, LEVELS, part == 0 ? 1.0 : 0.0, part == 0 ? 0.0 : 1.0) : NAN;
+  return cell + 2;
+}
+
+static void fill_row(const struct observer *o, const struct model *model, uint32_t k, double *cell)
+{
+  const bool open = !model->kind[k].ring;
+  const double degrees = 57.29577951308232;
+  const struct block_level *angle = blocks_of(o, k, BONDS_ANGLE);
+  cell = put_mean(cell, blocks_of(o, k, ENDS_ALONG), 0, open);
+  cell = put_mean(cell, blocks_of(o, k, ENDS_ALONG), 1, open);
+  cell = put_mean(cell, blocks_of(o, k, ENDS_ACROSS), 1, open);
+  cell = put_mean(cell, blocks_of(o, k, ENDS_ACROSS), 0, open);
+  cell = put_mean(cell, blocks_of(o, k, BONDS_ALONG), 0, true);
+  cell = put_mean(cell, blocks_of(o, k, BONDS_ALONG), 1, true);
+  cell = put_mean(cell, blocks_of(o, k, BONDS_ACROSS), 1, true);
+  cell = put_mean(cell, blocks_of(o, k, BONDS_ACROSS), 0, true);
+  /* tan 2 chi = 2 <xy>/<xx - yy> */
+  const double xy = angle->mean[0], difference = angle->mean[1], square = difference * difference + 4.0 * xy * xy;
+  const bool any = angle->count > 0.0;
+  *cell++ = any ? 0.5 * degrees * atan2(2.0 * xy, difference) : NAN;
+  *cell++ = any ? block_error(angle, LEVELS, degrees * difference / square, -degrees * xy / square) : NAN;
+  *cell = angle->count;
+}
+
+static bool summarise_orientation(const struct observer *o, const struct model *model, const struct observer_take *to)
+{
+  bool ok = true;
+  for (uint32_t k = 0; ok && k < model->kinds; k++) {
+    double row[COLUMNS];
+    char name[OBSERVER_NAME_SIZE];
+    if (!is_bonded(&model->kind[k]))
+      continue;
+    snprintf(name, sizeof name, "orientation-%s", model->kind[k].name);
+    const struct observe_table table = {name, columns, COLUMNS, 1, row};
+    fill_row(o, model, k, row);
+    ok = to->take(to->context, &table);
+  }
+  return ok;
+}
+
+const struct observer_type orientation_observer = {
+    .size = size_orientation,
+    .add = add_orientation,
+    .summarise = summarise_orientation,
+};
