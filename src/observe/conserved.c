@@ -6,6 +6,7 @@
 #include "fiber/force.h"
 #include "fluid/fluid.h"
 #include "observe/observer.h"
+#include "system/shear.h"
 
 /* A sum that does not depend on the order of its terms: each is split into a multiple of 2^-16 and a multiple of 2^-50
  * (rounded), and integers are summed. Terms below 2^34; 2^29 terms. */
@@ -80,8 +81,39 @@ static double slab_within(const struct slab *slab, int k)
 
 enum { SOME = 256 };
 
+/* M w^2/2 of a vertex, w: relative to the mean velocity of the solvent in its slab. That mean has a variance itself, as
+ * if the n particles were one of mass n, which is taken out. A vertex beyond a sheared box has the velocity of its
+ * image in the box. */
+static double kinetic_in_slab(const struct model *model, const struct state *state, const struct slab *slab, uint32_t i,
+                              struct vec3 v)
+{
+  const int64_t y = state->position[i].y, image = lattice_image(y, model->box.edge[1]),
+                row = box_inside(&model->box, 1, y) >> LATTICE_BITS, cells = model->box.cells[1];
+  const struct slab *s = &slab[row < cells ? row : cells - 1];
+  if (model_is_sheared(model))
+    v.x -= (double)image * shear_rate(model, shear_interval(model, state->solvent_time + state->solvent_lag)) *
+           model->box.cells[1];
+  const double n = s->n > 0 ? 1.0 / s->n : 0.0, mass = model->mass[i];
+  const struct vec3 sum = {exact_value(&s->v[0]), exact_value(&s->v[1]), exact_value(&s->v[2])},
+                    w = vec3_add_scaled(v, -n, sum);
+  return 0.5 * mass * vec3_dot(w, w) / (1.0 + mass * n);
+}
+
+static void measure_vertices_in_slabs(const struct model *model, const struct state *state, const struct vec3 *force,
+                                      const struct slab *slab, struct motion *m)
+{
+  const double half = 0.5 * model->time_step;
+  for (uint32_t i = 0; i < state->vertices; i++) {
+    const struct vec3 ahead = state->velocity[i],
+                      now = vec3_add_scaled(ahead, -half * model->inverse_mass[i], force[i]);
+    m->vertex.in_slabs += kinetic_in_slab(model, state, slab, i, now);
+    m->vertex_half.in_slabs += kinetic_in_slab(model, state, slab, i, ahead);
+  }
+}
+
 /* Where the solvent flows, or is not free between collisions: positions and velocities of now, and slabs along y. */
-static void measure_now(const struct model *model, const struct state *state, struct motion *m)
+static void measure_now(const struct model *model, const struct state *state, const struct vec3 *force,
+                        struct motion *m)
 {
   const int64_t cells = model->box.cells[1];
   struct slab slab[LATTICE_MAX_EDGE] = {{0}}, all = {0};
@@ -110,15 +142,18 @@ static void measure_now(const struct model *model, const struct state *state, st
   }
   for (int64_t row = 0; row < cells && flows(model); row++)
     m->slabs += slab[row].n > 0;
+  if (m->slabs > 0)
+    measure_vertices_in_slabs(model, state, force, slab, m);
   m->solvent_sum = (struct vec3){sum[0], sum[1], sum[2]};
   m->solvent_squares = (struct vec3){squares[0], squares[1], squares[2]};
   m->slab_squares = (struct vec3){within[0], within[1], within[2]};
 }
 
-static void measure_solvent(const struct model *model, const struct state *state, struct motion *m)
+static void measure_solvent(const struct model *model, const struct state *state, const struct vec3 *force,
+                            struct motion *m)
 {
   if (flows(model) || model_has_dumbbells(model)) {
-    measure_now(model, state, m);
+    measure_now(model, state, force, m);
     return;
   }
   const struct vec3 gain = fluid_gain(state, model);
@@ -152,8 +187,8 @@ static void measure_vertices(const struct model *model, const struct state *stat
 struct motion motion_measure(const struct model *model, const struct state *state, struct vec3 *force)
 {
   struct motion m = {.bond = 0.0};
-  measure_solvent(model, state, &m);
   measure_vertices(model, state, force, &m);
+  measure_solvent(model, state, force, &m);
   if (model_has_dumbbells(model))
     m.bond += fluid_dumbbell_energy(state, model);
   return m;
@@ -183,9 +218,13 @@ static double squares_about(double squares, double sum, double n, double u)
   return squares - 2.0 * u * sum + n * u * u;
 }
 
-/* Temperature of vertices whose total mass is m, of n degrees of freedom, about u. */
-static double vertex_temperature(const struct vertex_motion *v, double mass, double freedom, struct vec3 u)
+/* Temperature of vertices whose total mass is m, of n degrees of freedom, about u; where the solvent flows, about the
+ * mean of its slabs. */
+static double vertex_temperature(const struct motion *m, const struct vertex_motion *v, double mass, double freedom,
+                                 struct vec3 u)
 {
+  if (m->slabs > 0)
+    return 2.0 * v->in_slabs / freedom;
   return 2.0 * (v->kinetic - vec3_dot(u, v->momentum) + 0.5 * mass * vec3_dot(u, u)) / freedom;
 }
 
@@ -197,14 +236,15 @@ struct temperatures motion_temperatures(const struct model *model, const struct 
   const bool kept = !model_has_phantoms(model);
   const struct vec3 u = kept ? vec3_scale(1.0 / total, vec3_add(m->solvent_sum, m->vertex.momentum)) : model->flow;
   const double solvent_freedom = n * (1.0 - 1.0 / total);
-  const double vertex_freedom = model->dimensions * (model->vertices - (kept ? vertices / total : 0.0));
+  const double vertex_freedom =
+      model->dimensions * (model->vertices - (kept && m->slabs == 0 ? vertices / total : 0.0));
   const struct vec3 squares = {squares_about(m->solvent_squares.x, m->solvent_sum.x, n, u.x),
                                squares_about(m->solvent_squares.y, m->solvent_sum.y, n, u.y),
                                squares_about(m->solvent_squares.z, m->solvent_sum.z, n, u.z)};
   const struct vec3 solvent =
       m->slabs > 0 ? vec3_scale(1.0 / (n - m->slabs), m->slab_squares) : vec3_scale(1.0 / solvent_freedom, squares);
-  return (struct temperatures){solvent, vertex_temperature(&m->vertex, vertices, vertex_freedom, u),
-                               vertex_temperature(&m->vertex_half, vertices, vertex_freedom, u)};
+  return (struct temperatures){solvent, vertex_temperature(m, &m->vertex, vertices, vertex_freedom, u),
+                               vertex_temperature(m, &m->vertex_half, vertices, vertex_freedom, u)};
 }
 
 /* --- the observers ----------------------------------------------------------------------------------------------- */

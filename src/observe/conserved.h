@@ -17,6 +17,7 @@
 /* Sums over vertices. */
 struct vertex_motion {
   double kinetic;       /* kT */
+  double in_slabs;      /* the same about the mean velocity of the solvent in slabs, where it flows */
   struct vec3 momentum; /* m a0/t0 */
 };
 
@@ -35,9 +36,9 @@ struct motion motion_measure(const struct model *model, const struct state *stat
 
 /* Temperatures relative to the velocity of the centre of mass of everything, in kT. Where total momentum is fixed, a
  * particle of mass m has m <(v - v_cm)^2> = 3 kT (1 - m/M_total), not 3 kT: each sum is divided accordingly, so that
- * the mean is 1 at any system size. Where walls, shear or a force with a profile make the solvent flow, its temperature
- * is relative to the mean velocity of slabs, one cell thick along y. In a bath of phantoms they are relative to the
- * flow, and nothing is fixed. NaN where there is nothing to measure. */
+ * the mean is 1 at any system size. Where walls, shear or a force with a profile make the solvent flow, temperatures
+ * are relative to the mean velocity of its slabs, one cell thick along y. In a bath of phantoms they are relative to
+ * the flow, and nothing is fixed. NaN where there is nothing to measure. */
 struct temperatures {
   struct vec3 solvent;        /* by component */
   double vertex, vertex_half; /* mass-weighted over all vertices, with velocities of the step, and of the half step */
