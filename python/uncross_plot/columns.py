@@ -104,6 +104,17 @@ COLUMNS = {
     "pressure": Column("pressure", "$p$", S),
     "sigma_xy_spring": Column("bulk, springs", r"$\sigma_{xy}^\mathrm{spr}$", S),
     "N1_spring": Column("springs", r"$N_1^\mathrm{spr}$", S),
+    "sigma_xy_fibers": Column("fibers", r"$\sigma_{xy}^\mathrm{fib}$", S),
+    "N1_fibers": Column("fibers", r"$N_1^\mathrm{fib}$", S),
+    # orientation
+    "RxRx": Column("along the flow", r"$\langle R_x R_x\rangle$", A2),
+    "RyRy": Column("across the flow", r"$\langle R_y R_y\rangle$", A2),
+    "RzRz": Column("along the vorticity", r"$\langle R_z R_z\rangle$", A2),
+    "RxRy": Column("correlation", r"$\langle R_x R_y\rangle$", A2),
+    "uxux": Column("bonds along the flow", r"$\langle u_x u_x\rangle$"),
+    "uyuy": Column("bonds across the flow", r"$\langle u_y u_y\rangle$"),
+    "uzuz": Column("bonds along the vorticity", r"$\langle u_z u_z\rangle$"),
+    "uxuy": Column("correlation of bonds", r"$\langle u_x u_y\rangle$"),
     # dumbbells
     "r2": Column("length squared", r"$\langle r^2\rangle$", A2),
     "rxrx": Column("along the flow", r"$\langle r_x r_x\rangle$", A2),
@@ -171,15 +182,15 @@ PANELS = {
     ),
     "stress": (
         Panel("Shear stress", ("sigma_xy", "sigma_lower", "sigma_upper"), rf"stress $\sigma_{{xy}}$ / {S}"),
-        Panel("Its parts in the bulk", ("sigma_xy_kinetic", "sigma_xy_collisional", "sigma_xy_spring"), rf"stress $\sigma_{{xy}}$ / {S}"),
-        Panel("Normal stress difference", ("N1", "N1_spring"), level=0.0),
+        Panel("Its parts in the bulk", ("sigma_xy_kinetic", "sigma_xy_collisional", "sigma_xy_spring", "sigma_xy_fibers"), rf"stress $\sigma_{{xy}}$ / {S}"),
+        Panel("Normal stress difference", ("N1", "N1_spring", "N1_fibers"), level=0.0),
         Panel("Pressure", ("pressure",)),
     ),
 }
 LAG_LABEL = "lag $t$ / $t_0$"
 TITLES = {"conserved": "Energy and momentum", "temperature": "Temperature", "collisions": "Contacts of bonds",
           "statics": "Size and shape", "dynamics": "Motion", "profile": "Profile across the flow", "stress": "Stress",
-          "dumbbells": "Shape of dumbbells"}
+          "dumbbells": "Shape of dumbbells", "orientation": "Orientation"}
 
 
 def column(name):
