@@ -138,7 +138,8 @@ static struct point standing_place(const struct state *state, const struct conta
 {
   const struct drift_frame *f = &contact->frame;
   const struct point here = state->position[i];
-  if (!moved_early(contact, i, now))
+  const bool early = moved_early(contact, i, now);
+  if (!early)
     return here;
   const int64_t y = here.y - lattice_from_a0(f->time * (state->velocity[i].y - f->velocity.y));
   return point_move(here, vec3_scale(-1.0, drift_displacement(f, state->velocity[i], y)));

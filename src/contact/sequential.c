@@ -209,8 +209,9 @@ static bool try_move_at_wall(struct state *state, const struct model *model, str
   wall_hit(state, model, &contact->frame, m.wall, i, at_rest, 0.0);
   const struct vec3 d = drift_displacement(&contact->frame, state->velocity[i], from.y);
   rest.to = wall_inside(&model->box, point_move(m.at, vec3_scale(1.0 - m.part, d)));
-  if (!drift_legal(state, model, i, d, fault) ||
-      !schedule_reconsider(state, model, contact, i, contact->rank[i], fault) ||
+  if (!drift_legal(state, model, i, d, fault))
+    return false;
+  if (!schedule_reconsider(state, model, contact, i, contact->rank[i], fault) ||
       !find_hits(state, model, contact, &rest, fault))
     return false;
   state->position[i] = rest.hits > 0 ? from : rest.to;
