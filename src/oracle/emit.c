@@ -73,6 +73,9 @@ bool oracle_emit(const struct scene *scene, struct pack *pack, struct message *m
   if (model_has_walls(model) && model->solvent.rule != RULE_SRD)
     return message_set(message, "%s: solvent.rule; packs of walls hold the operators of the rule srd only",
                        scene->path);
+  if ((model_has_walls(model) || model_is_sheared(model)) && model->kinds > 0)
+    return message_set(message, "%s: fibers; packs of walls and of shear hold the operators of a solvent only",
+                       scene->path);
   if (model->crossing.rejection != REJECTION_STAY || model->crossing.frame != FRAME_LABORATORY)
     return message_set(
         message, "%s: crossing.refusal or crossing.frame; packs hold drifts by the paper's rule: stay, laboratory",
