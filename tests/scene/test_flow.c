@@ -24,6 +24,7 @@ static const struct refusal {
      "this fiber reaches from y ="},
     {"", "shear: {rate: 0.1}\nfibers: [{name: a, count: 1, vertices: 4, mass: 5, bond_length: 0.5, spring: 100}]",
      "the edge along x is a whole multiple of that along y"},
+    {"", "shear: {rate: 0.1}\nobserve: {dynamics: {every: 10}}", "so it has no displacement; allowed without shear"},
     {"  hydrodynamics: false", "walls: {kind: no-slip}", "velocities that are permuted have no profile"},
     {"  hydrodynamics: false", "shear: {rate: 0.1}", "velocities that are permuted have no profile"},
     {"", "walls: {kind: no-slip}\nflow: [0.1, 0.1, 0]", "a flow across walls or shear"},
