@@ -346,7 +346,7 @@ def prose(results):
 
 
 def evaluate(results, tier):
-    results = {name: result for name, result in results.items() if result.tables()}
+    results = {name: result for name, result in results.items() if "dumbbells" in result.tables()}
     quick = tier == "quick"
     springs = (0.3, 1, 5) if quick else [spring for spring in RATES if spring <= 20]
     verdicts = [spring_verdict(results, spring) for spring in springs] + [identity_verdict(results, 1)]
