@@ -82,8 +82,9 @@ static void stretched(void **unused)
   close_to(theory_dumbbell_size(0.5, 2), 2.0, 1e-15);
 }
 
-/* One wall: (1 + erf(y sqrt(K/2)))/2. With the potential A = 0.95, c1 = 1.2 numbers of the closed form, in Python. K = 4
- * halves all lengths. The integral of the density is a second way: the excess is made from pairs, not from particles. */
+/* One wall: (1 + erf(y sqrt(K/2)))/2. With the potential A = 0.95, c1 = 1.2 numbers of the closed form, in Python. K =
+ * 4 halves all lengths. The integral of the density is a second way: the excess is made from pairs, not from particles.
+ */
 static void density_at_walls(void **unused)
 {
   (void)unused;
