@@ -80,7 +80,7 @@ def rules_verdicts(results):
 def linear_verdict(results):
     """The paper: eta is linear in 1/K."""
     known = [(spring, fluid.sheared(results, spring)) for spring in RATES if spring <= 20]
-    known = [(spring, box.springs) for spring, box in known if box]
+    known = [(spring, box.springs) for spring, box in known if box and math.isfinite(box.springs[1])]
     verdict = Verdict("dumbbells.linear", f"exponent of η_p against K, K from {known[0][0] if known else 0.3:g} to {known[-1][0] if known else 20:g}, {WORDS}", -1.0,
                       "Tao et al.: η is linear in 1/K; partners in one cell take ω_H down by 13 % at K 20 (THEORY, Eq. 2.55)", 0.05, kind="paper",
                       reason="Stiff dumbbells share a cell, and then their spring relaxes more slowly.")
@@ -233,7 +233,8 @@ def poiseuille_verdict(results):
 
 def draw_viscosity(results):
     figure, panel = figures.plain()
-    known = [(spring, box) for spring, box in ((spring, fluid.sheared(results, spring)) for spring in RATES if spring <= 20) if box]
+    known = [(spring, box) for spring, box in ((spring, fluid.sheared(results, spring)) for spring in RATES if spring <= 20)
+             if box and math.isfinite(box.eta[1] + box.springs[1])]
     x = numpy.array([1.0 / spring for spring, _ in known])
     grid = numpy.linspace(0.0, 1.05 * x.max(), 50)
     for number, (part, label, least) in enumerate((("eta", "all", 1.0), ("springs", "of springs", 0.0))):
@@ -334,8 +335,8 @@ def figures_of(results):
 def prose(results):
     lines = []
     for spring in RATES:
-        box = fluid.sheared(results, spring)
-        if box:
+        box = fluid.sheared(results, spring) if spring <= 20 else None
+        if box and math.isfinite(box.eta[1] + box.springs[1] + box.omega[1]):
             lines.append(f"K {spring:g}: η {box.eta[0]:.2f} ± {box.eta[1]:.2f}, springs {box.springs[0]:.2f} ± {box.springs[1]:.2f}, "
                          f"ω_H {box.omega[0]:.5f} ± {box.omega[1]:.5f} (molecular chaos {fluid.rate_of_relaxation(spring):.5f}).")
     for word in PERIODS:
