@@ -302,6 +302,7 @@ def draw_walls(results):
 def draw_shape(results):
     figure, panels = figures.plain(width=9.5, height=4.4, columns=2)
     boxes = [fluid.Sheared(results[name]) for name in sorted(results) if name.startswith(("shear-", "wi-")) and "K1000" not in name]
+    boxes = [box for box in boxes if math.isfinite(box.weissenberg[0] + box.weissenberg[1])]
     boxes.sort(key=lambda box: box.weissenberg[0])
     wi = numpy.array([box.weissenberg[0] for box in boxes])
     grid = numpy.geomspace(0.7 * wi.min(), 1.4 * wi.max(), 100)
