@@ -32,15 +32,16 @@ int64_t pairs_fly(const struct pairs *pairs, int axis, const struct swing *swing
   double *restrict v = pairs->v[axis];
   const struct swing s = *swing;
   const double free = 0.5 * a * s.time * s.time, gain = a * s.time;
+  const size_t n = pairs->n;
   int64_t outside = 0, far = 0;
-  for (uint32_t p = 0; p < pairs->n; p++) {
-    const double r = (double)apart[p] * LATTICE_UNIT, u = v[2 * p] - v[2 * p + 1];
+  for (size_t p = 0; p < n; p++) {
+    const double r = pairs_real(apart[p]) * LATTICE_UNIT, u = v[2 * p] - v[2 * p + 1];
     const double mean = 0.5 * (v[2 * p] + v[2 * p + 1]), center = mean * s.time + free;
     const double half = s.return_r * r + s.advance_u * u;
     const int64_t d0 = lattice_from_a0(center + half), d1 = lattice_from_a0(center - half);
     const double change = s.pull_r * r + s.keep_u * u, after = mean + gain;
     const int64_t x0 = one_edge_in(moved(x[2 * p], d0), edge), x1 = one_edge_in(moved(x[2 * p + 1], d1), edge);
-    far |= !(fabs(center) + fabs(half) < LATTICE_MAX_MOVE);
+    far |= (fabs(center) + fabs(half) < LATTICE_MAX_MOVE ? 0 : 1) | ((apart[p] + LONGEST) & ~(2 * LONGEST - 1));
     outside |= x0 | x1 | moved(edge - 1, -x0) | moved(edge - 1, -x1);
     apart[p] = moved(apart[p], moved(d0, -d1));
     x[2 * p] = x0, x[2 * p + 1] = x1;
@@ -73,7 +74,8 @@ const struct dumbbell_boundary dumbbells_periodic = {"periodic", fly_periodic};
  * number of that image along y; 0 for most dumbbells. */
 static inline int64_t second_image(const struct pairs *pairs, uint32_t p, int64_t edge)
 {
-  return (pairs->at[1][2 * p] - pairs->apart[1][p] - pairs->at[1][2 * p + 1]) / edge;
+  const int64_t apart = pairs->at[1][2 * p] - pairs->apart[1][p] - pairs->at[1][2 * p + 1];
+  return apart == 0 ? 0 : apart / edge;
 }
 
 /* Moves the second particles of dumbbells across the boundary to the images next to the first ones, as far as x and v_x

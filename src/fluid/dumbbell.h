@@ -40,6 +40,16 @@ struct pairs {
   int64_t *apart[3]; /* [n] r, lattice units */
 };
 
+/* The longest vector and place of a dumbbell along an axis, lattice units: 2048 a0. */
+#define LONGEST ((int64_t)1 << 51)
+
+/* Lattice units as a double, below LONGEST either way. Unlike a conversion this form vectorises on every x86-64. */
+static inline double pairs_real(int64_t x)
+{
+  const double magic = LATTICE_ROUND_MAGIC;
+  return elementary_from_bits((uint64_t)x + elementary_bits(magic)) - magic;
+}
+
 /* The dumbbells at places first to first + n - 1 of the list. */
 struct pairs pairs_of(const struct state *state, uint32_t first, uint32_t n);
 

@@ -60,10 +60,11 @@ static struct swinging swinging_at(const struct state *state, const struct model
   int64_t y[2];
   for (int i = 0; i < 2; i++)
     y[i] = s->y[2 * p + i] - (s->y[2 * p + i] >= frame->beyond ? edge : 0);
-  const double image = (double)((y[0] - d->y[p] - y[1]) / edge); /* of the second */
+  const int64_t image = (y[0] - d->y[p] - y[1]) / edge; /* of the second */
   const double w = model->dumbbells.frequency, per = 1.0 / w;
   const struct vec3 r = point_in_a0((struct point){d->x[p], d->y[p], d->z[p]}), v = solvent_velocity(s, 2 * p);
-  const struct vec3 other = vec3_add_scaled(solvent_velocity(s, 2 * p + 1), image * model->box.cells[1], frame->rate);
+  const struct vec3 other =
+      vec3_add_scaled(solvent_velocity(s, 2 * p + 1), (double)image * model->box.cells[1], frame->rate);
   const struct vec3 u = vec3_sub(v, other), g = frame->rate;
   return (struct swinging){
       (double)y[0] * LATTICE_UNIT - 0.5 * r.y,

@@ -243,15 +243,20 @@ enum { BLOCK = 256 };
 static uint32_t find_near(const struct pairs *pairs, const struct slit *slit, uint32_t near[BLOCK])
 {
   const double margin = 1e-6, t = slit->span->time, per = 1.0 / slit->swing->frequency;
+  const int64_t *y = pairs->at[1], *apart = pairs->apart[1];
+  const double *v = pairs->v[1];
+  int64_t far[BLOCK]; /* 1: nothing can happen */
+  for (size_t p = 0; p < pairs->n; p++) {
+    const double r = pairs_real(apart[p]) * LATTICE_UNIT, u = (v[2 * p] - v[2 * p + 1]) * per;
+    const double middle = 0.5 * (pairs_real(y[2 * p]) + pairs_real(y[2 * p + 1])) * LATTICE_UNIT;
+    const double other = slit->edge - middle, near_wall = middle < other ? middle : other;
+    const double low = near_wall - fabs(0.5 * (v[2 * p] + v[2 * p + 1])) * t - margin;
+    far[p] = (low > slit->reach ? 1 : 0) & (low > 0.0 ? 1 : 0) & (4.0 * low * low > r * r + u * u ? 1 : 0);
+  }
   uint32_t count = 0;
   for (uint32_t p = 0; p < pairs->n; p++) {
-    const int64_t *y = &pairs->at[1][2 * p];
-    const double *v = &pairs->v[1][2 * p];
-    const double r = (double)pairs->apart[1][p] * LATTICE_UNIT, u = (v[0] - v[1]) * per;
-    const double middle = 0.5 * (double)(y[0] + y[1]) * LATTICE_UNIT, moves = fabs(0.5 * (v[0] + v[1])) * t + margin;
-    const double low = fmin(middle, slit->edge - middle) - moves;
-    if (!(low > 0.5 * sqrt(r * r + u * u) && low > slit->reach))
-      near[count++] = p;
+    near[count] = p;
+    count += far[p] == 0;
   }
   return count;
 }

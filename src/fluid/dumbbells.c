@@ -93,21 +93,29 @@ static bool too_long(const struct state *state, uint32_t first, uint32_t n, stru
   return fault_record(fault, FAULT_DUMBBELL, state->step + 1, d->id[who], most, LATTICE_MAX_MOVE);
 }
 
+/* Pairs that fly together: few enough for their velocities to stay in the cache between the look and the flight. */
+enum { FLOCK = 512 };
+
+static bool fly_flock(struct state *state, const struct model *model, const struct span *span,
+                      const struct swing *swing, uint32_t first, uint32_t n, struct fault *fault)
+{
+  const struct pairs pairs = pairs_of(state, first, n);
+  const uint32_t row = account_row(ACCOUNT_HITS, WALL_LOWER);
+  return speeds_fit(state, span, 2 * first, 2 * n, fault) &&
+         (!dumbbell_boundary_of(&model->box)
+               ->fly(&pairs, model, span, swing, &state->wall_momentum[row], &state->wall_turns[row]) ||
+          too_long(state, first, n, fault));
+}
+
 static bool stream_dumbbells(struct state *state, const struct model *model, uint32_t first, uint32_t n,
                              struct fault *fault)
 {
   const struct span span = boundary_lag(state, model);
   const uint32_t paired = 2 * state->dumbbells.n, last = first + n, end = last < paired ? last : paired;
-  if (first < end) {
-    const struct swing swing = swing_for(model->dumbbells.frequency, span.time);
-    const struct pairs pairs = pairs_of(state, first / 2, (end - first) / 2);
-    const uint32_t row = account_row(ACCOUNT_HITS, WALL_LOWER);
-    if (!speeds_fit(state, &span, first, end - first, fault))
+  const struct swing swing = swing_for(model->dumbbells.frequency, span.time);
+  for (uint32_t p = first / 2; p < end / 2; p += FLOCK)
+    if (!fly_flock(state, model, &span, &swing, p, end / 2 - p < FLOCK ? end / 2 - p : FLOCK, fault))
       return false;
-    if (dumbbell_boundary_of(&model->box)
-            ->fly(&pairs, model, &span, &swing, &state->wall_momentum[row], &state->wall_turns[row]))
-      return too_long(state, first / 2, pairs.n, fault);
-  }
   const uint32_t alone = first > paired ? first : paired;
   return last <= alone || boundary_of(&model->box)->fly(state, model, &span, alone, last - alone, fault);
 }

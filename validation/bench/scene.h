@@ -24,6 +24,7 @@ struct scene {
   double walls;       /* 1: between no-slip walls that slide at a shear rate of 0.02 / t0 */
   double fill;        /* enum wall_fill: 0 planar, 1 paper, 2 none */
   double shear;       /* rate of a sheared box, 1/t0 */
+  double pairs;       /* spring constant of dumbbells, kT/a0^2; 0: independent particles */
 };
 
 static inline struct scene scene_default(void)
@@ -61,6 +62,7 @@ static const struct scene_key {
     {"walls", offsetof(struct scene, walls)},
     {"fill", offsetof(struct scene, fill)},
     {"shear", offsetof(struct scene, shear)},
+    {"pairs", offsetof(struct scene, pairs)},
 };
 
 static inline bool scene_set(struct scene *scene, const char *name, size_t length, double value)
@@ -105,6 +107,8 @@ static inline struct model scene_model(const struct scene *s)
   if (s->walls != 0.0)
     m.walls = (struct wall_model){.kind = WALL_NO_SLIP, .fill = (enum wall_fill)s->fill, .shear_rate = 0.02};
   m.shear.rate = s->shear;
+  if (s->pairs > 0.0)
+    m.dumbbells = (struct dumbbell_model){.spring = s->pairs, .fraction = 1.0};
   if (s->fibers > 0.0) {
     struct fiber_kind *k = add_kind(&m, (uint32_t)s->fibers, (uint32_t)s->vertices);
     k->bond_length = s->bond_length;
