@@ -216,6 +216,70 @@ static void links_are_kept_between_walls(void **unused)
   }
 }
 
+/* Places the vertices of a run, all at rest. */
+static void place(struct test_run *r, const struct vec3 *at)
+{
+  for (uint32_t i = 0; i < r->state.vertices; i++) {
+    r->state.position[i] = point_move((struct point){0, 0, 0}, at[i]);
+    r->state.velocity[i] = (struct vec3){0, 0, 0};
+  }
+}
+
+/* A vertex is carried along by the wall that it hits: its bond would pass through another one only after the hit. */
+static void bonds_are_met_after_a_hit(void **unused)
+{
+  (void)unused;
+  const struct vec3 at[4] = {{1.0, 0.002, 2.0}, {1.0, 1.0, 2.0}, {1.03, 0.01, 1.5}, {1.03, 0.01, 2.5}};
+  for (int k = 0; k < 2; k++)
+    for (int mirrored = 0; mirrored < 2; mirrored++) {
+      struct model m = test_model(4, 4, 4, 0, 0.05, 2);
+      struct fiber_kind *kind = test_add_kind(&m, 2, 2);
+      kind->bond_length = 1.0;
+      m.solvent.collision_interval = 0.0;
+      m.walls.kind = WALL_NO_SLIP;
+      m.walls.lower.x = m.walls.upper.x = 0.9;
+      struct test_run r = test_start(in_flow(m, forbidding[k], 1));
+      struct vec3 there[4];
+      for (int i = 0; i < 4; i++)
+        there[i] = (struct vec3){at[i].x, mirrored ? 4.0 - at[i].y : at[i].y, at[i].z};
+      place(&r, there);
+      r.state.velocity[0].y = mirrored ? 0.2 : -0.2; /* on the wall after a fifth of the drift, then at 1.8 along x */
+      assert_true(contact_drift(&r.state, &r.model, &r.work.contact, 1.0, 1, 0, NULL, &r.work.fault));
+      assert_int_equal(r.state.counts.executed, 1);
+      assert_true(r.state.position[0].x < r.state.position[2].x + LATTICE_CELL / 10);
+      const struct vec3 p = point_difference(r.state.position[1], r.state.position[0]),
+                        q = point_difference(r.state.position[3], r.state.position[2]),
+                        w = point_difference(r.state.position[2], r.state.position[0]);
+      const double volume = vec3_dot(vec3_cross(p, q), w);
+      assert_true(mirrored ? volume < 0.0 : volume > 0.0); /* the other bond is still ahead */
+      test_end(&r);
+    }
+}
+
+/* A vertex that reaches a wall in the last tick of a drift, all at once, does not end beyond it. */
+static void the_last_tick_counts(void **unused)
+{
+  (void)unused;
+  struct model m = test_model(4, 4, 4, 0, 0.01, 2);
+  struct fiber_kind *kind = test_add_kind(&m, 64, 1);
+  kind->mass = 1.0;
+  test_add_kind(&m, 1, 2);
+  m.solvent.collision_interval = 0.0;
+  m.walls.kind = WALL_SLIP;
+  struct test_run r = test_start(in_flow(m, CROSSING_EVENT_DRIVEN, 1));
+  for (uint32_t i = 0; i < 64; i++) {
+    const struct point rate = flight_rate((struct vec3){0.0, -0.01, 0.0});
+    const int64_t y = -rate.y * (FLIGHT_TICKS - 1) + (int64_t)i * (-rate.y / 64);
+    r.state.position[i].y = i % 2 ? y : r.model.box.edge[1] - y;
+    r.state.velocity[i] = (struct vec3){0.0, i % 2 ? -1.0 : 1.0, 0.0};
+  }
+  assert_true(contact_drift(&r.state, &r.model, &r.work.contact, 1.0, 1, 0, NULL, &r.work.fault));
+  assert_between_walls(&r);
+  for (uint32_t i = 0; i < 64; i++)
+    assert_true(r.state.velocity[i].y == (i % 2 ? 1.0 : -1.0));
+  test_end(&r);
+}
+
 /* --- energy ------------------------------------------------------------------------------------------------------ */
 
 /* Energy at the time of the positions: velocities are those of half a step ahead. */
@@ -505,6 +569,8 @@ int main(void)
       cmocka_unit_test(phantoms_lose_their_links),
       cmocka_unit_test(momentum_is_balanced),
       cmocka_unit_test(links_are_kept_between_walls),
+      cmocka_unit_test(bonds_are_met_after_a_hit),
+      cmocka_unit_test(the_last_tick_counts),
       cmocka_unit_test(hits_do_not_heat),
       cmocka_unit_test(rods_start_in_equilibrium),
       cmocka_unit_test(no_shear_is_periodic),
