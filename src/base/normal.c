@@ -48,3 +48,91 @@ void random_normal_columns(uint64_t seed, enum random_purpose purpose, uint64_t 
     firsts(radius, u[3], m, z + first);
   }
 }
+
+/* --- three of one draw -------------------------------------------------------------------------------------------- */
+
+#define ONE 0x3ff0000000000000 /* the bits of 1; 52 bits of a fraction come after it */
+
+/* -ln u, to 2e-12 of it: u = (k + 1/2) 2^-40, k the 32 bits of `high` and then the first 8 of `low`. Only the low
+ * halves of both count. As elementary_log, without what is lost in rounding: ln m = 2 artanh s. */
+static inline double minus_log(uint64_t high, uint64_t low)
+{
+  const uint64_t root_half = 0x3fe6a09e667f3bcd;
+  const uint64_t fraction = (high & 0xffffffff) << 20 | (low & 0xff000000) >> 12;
+  const double u = elementary_from_bits(ONE | fraction) - (1.0 - 0x1p-41);
+  const uint64_t t = elementary_bits(u) + (ONE - root_half);
+  const double e = elementary_from_bits((t >> 52) | 0x4330000000000000) - (0x1p52 + 1023.0);
+  const double f = elementary_from_bits((t & 0x000fffffffffffff) + root_half) - 1.0;
+  const double s = f / (2.0 + f), w = s * s, q = w * w;
+  const double odd = 2.0 / 3.0 + q * (2.0 / 7.0 + q * (2.0 / 11.0));
+  const double even = 2.0 + q * (2.0 / 5.0 + q * (2.0 / 9.0 + q * (2.0 / 13.0)));
+  return -(e * 0x1.62e42fefa39efp-1) - s * (even + w * odd);
+}
+
+/* x and y, of word 1 and root = sqrt(-ln u). */
+static inline void first_two(uint64_t word, double root, double *x, double *y)
+{
+  const double turn = elementary_from_bits(ONE | (word & 0x3fffff) << 30) - (1.5 - 0x1p-23);
+  const double a = turn * 0x1.921fb54442d18p+0, w = a * a, q = w * w; /* pi/2 */
+  const double s0 = 1.0 + q * (1.0 / 120.0 + q * (1.0 / 362880.0 + q * (1.0 / 6227020800.0)));
+  const double s1 = -1.0 / 6.0 + q * (-1.0 / 5040.0 + q * (-1.0 / 39916800.0));
+  const double c0 = 1.0 + q * (1.0 / 24.0 + q * (1.0 / 40320.0 + q * (1.0 / 479001600.0)));
+  const double c1 = -1.0 / 2.0 + q * (-1.0 / 720.0 + q * (-1.0 / 3628800.0));
+  const double sine = a * (s0 + w * s1), cosine = c0 + w * c1;
+  const uint64_t sign = 0x8000000000000000;
+  *x = elementary_from_bits(elementary_bits(root * (cosine - sine)) ^ (word << 40 & sign));
+  *y = elementary_from_bits(elementary_bits(root * (cosine + sine)) ^ (word << 41 & sign));
+}
+
+/* z, of word 3 and radius = sqrt(-2 ln u'). */
+static inline double third(uint64_t word, double radius)
+{
+  const double turn = elementary_from_bits(ONE | (word & 0xffffff) << 28) - (1.5 - 0x1p-25);
+  const double b = turn * 0x1.921fb54442d18p+1, w = b * b, q = w * w; /* pi */
+  const double s0 =
+      1.0 + q * (1.0 / 120.0 + q * (1.0 / 362880.0 + q * (1.0 / 6227020800.0 + q * (1.0 / 355687428096000.0))));
+  const double s1 = -1.0 / 6.0 + q * (-1.0 / 5040.0 + q * (-1.0 / 39916800.0 + q * (-1.0 / 1307674368000.0)));
+  return radius * (b * (s0 + w * s1));
+}
+
+void random_normal_three(struct random_words r, double out[3])
+{
+  first_two(r.w[1], sqrt(minus_log(r.w[0], r.w[1])), &out[0], &out[1]);
+  out[2] = third(r.w[3], sqrt(2.0 * minus_log(r.w[2], r.w[3])));
+}
+
+static void roots(const uint64_t *restrict high, const uint64_t *restrict low, double times, uint32_t n,
+                  double *restrict root)
+{
+  for (uint32_t k = 0; k < n; k++)
+    root[k] = sqrt(times * minus_log(high[k], low[k]));
+}
+
+static void first_two_of_each(const uint64_t *restrict word, const double *restrict root, uint32_t n,
+                              double *restrict x, double *restrict y)
+{
+  for (uint32_t k = 0; k < n; k++)
+    first_two(word[k], root[k], &x[k], &y[k]);
+}
+
+static void third_of_each(const uint64_t *restrict word, const double *restrict radius, uint32_t n, double *restrict z)
+{
+  for (uint32_t k = 0; k < n; k++)
+    z[k] = third(word[k], radius[k]);
+}
+
+void random_normal_three_columns(uint64_t seed, enum random_purpose purpose, uint32_t draw, uint64_t step,
+                                 const uint32_t *entity, uint32_t n, double *restrict x, double *restrict y,
+                                 double *restrict z)
+{
+  uint64_t word[4][RANDOM_UNIFORMS];
+  double root[RANDOM_UNIFORMS];
+  for (uint32_t first = 0; first < n; first += RANDOM_UNIFORMS) {
+    const uint32_t m = n - first < RANDOM_UNIFORMS ? n - first : RANDOM_UNIFORMS;
+    random_wide_columns(seed, purpose, draw, step, entity + first, m, word);
+    roots(word[0], word[1], 1.0, m, root);
+    first_two_of_each(word[1], root, m, x + first, y + first);
+    roots(word[2], word[3], 2.0, m, root);
+    third_of_each(word[3], root, m, z + first);
+  }
+}

@@ -23,11 +23,11 @@ enum random_purpose {
   RANDOM_THERMOSTAT = 5,        /* entity = cell; draw = attempt */
   RANDOM_PHANTOM_NUMBER = 6,    /* entity = cell; draw = part/2 */
   RANDOM_PHANTOM_VELOCITY = 7,  /* entity = cell; draw = 0 or 1 */
-  RANDOM_ANDERSEN_PARTICLE = 8, /* entity = particle id; draw = 0 or 1 */
-  RANDOM_ANDERSEN_VERTEX = 9,   /* entity = vertex; draw = 0 or 1 */
-  RANDOM_ANDERSEN_PHANTOM = 10, /* entity = cell; draw = 0 or 1 */
-  RANDOM_SPIN_VELOCITY = 13,    /* entity = cell; draw = 2 k and 2 k + 1 of the cell's virtual particle k */
-  RANDOM_SPIN_PLACE = 14,       /* the same */
+  RANDOM_ANDERSEN_PARTICLE = 8, /* entity = particle id */
+  RANDOM_ANDERSEN_VERTEX = 9,   /* entity = vertex */
+  RANDOM_ANDERSEN_PHANTOM = 10, /* entity = cell */
+  RANDOM_SPIN_VELOCITY = 13,    /* entity = cell; draw = k, the cell's virtual particle */
+  RANDOM_SPIN_PLACE = 14,       /* entity = cell; draw = 2 k and 2 k + 1 of the same */
   RANDOM_PLANE_TURN = 15,       /* entity = cell: rotation in a plane */
   RANDOM_SOLVENT_POSITION = 16, /* entity = particle id; step 0 from here on: starting states */
   RANDOM_SOLVENT_VELOCITY = 17, /* entity = particle id */
@@ -54,13 +54,19 @@ static inline struct random_words random_at(uint64_t seed, enum random_purpose p
   return (struct random_words){{r.v[0], r.v[1], r.v[2], r.v[3]}};
 }
 
+#define RANDOM_UNIFORMS 64 /* entities that the functions with columns of fixed length take */
+
 /* The words of n entities, a column for each word: [4][n]. The same as random_at, in a form that vectorises. */
 void random_columns(uint64_t seed, enum random_purpose purpose, uint32_t draw, uint64_t step, const uint32_t *entity,
                     uint32_t n, uint32_t *restrict column[4]);
 
+/* The words of n entities, n <= RANDOM_UNIFORMS, each in the low half of 64 bits; what is in the high half does not
+ * matter. The same as random_columns, without narrowing. */
+void random_wide_columns(uint64_t seed, enum random_purpose purpose, uint32_t draw, uint64_t step,
+                         const uint32_t *entity, uint32_t n, uint64_t word[4][RANDOM_UNIFORMS]);
+
 /* Uniform deviates 0 and 1 of draw 0, then those of draw 1, of n entities, n <= RANDOM_UNIFORMS: the same as
  * random_uniform of random_at, in a form that vectorises. Both draws at once: of twenty rounds three are shared. */
-#define RANDOM_UNIFORMS 64
 void random_uniform_columns(uint64_t seed, enum random_purpose purpose, uint64_t step, const uint32_t *entity,
                             uint32_t n, double u[4][RANDOM_UNIFORMS]);
 

@@ -283,11 +283,15 @@ static void report_parts(const struct scene *scene)
 }
 
 /* Rates measured on one core of an x86-64 of the 2020s, in ns: good for a guess within a factor of 2. */
-static const double solvent_rate = 15.0;           /* per particle and collision */
+static const double solvent_rate = 15.0;           /* per particle and collision, by SRD in a periodic box */
 static const double phantom_rate = 170.0;          /* per vertex and collision, phantoms for a solvent */
 static const double vertex_rate = 25.0;            /* per vertex and step, crossable fibers */
 static const double crossing_rate = 140.0;         /* per vertex and step, with the search for crossings ... */
 static const double crossing_density_rate = 135.0; /* ... and more for each unit of fiber length per volume */
+
+/* Times that rate: docs/speed.md, *Collision rules and boundaries*. */
+static const double rule_cost[] = {[RULE_SRD] = 1.0, [RULE_AT_A] = 2.0, [RULE_AT_PLUS_A] = 5.0};
+static const double boundary_cost[] = {[BOUNDARY_PERIODIC] = 1.0, [BOUNDARY_WALL] = 1.2, [BOUNDARY_SHEAR] = 1.1};
 
 static void report_cost(const struct scene *scene)
 {
@@ -296,12 +300,13 @@ static void report_cost(const struct scene *scene)
   const double vertex = search ? crossing_rate + crossing_density_rate * theory_line_density(m) : vertex_rate;
   const double collisions = model_collides(m) ? 1.0 / m->solvent.interval_steps : 0.0;
   const double phantoms = model_has_phantoms(m) ? phantom_rate * collisions : 0.0;
-  const double step = 1e-9 * (solvent_rate * m->solvent.particles * collisions + (vertex + phantoms) * m->vertices);
+  const double solvent = solvent_rate * rule_cost[m->solvent.rule] * boundary_cost[m->box.boundary[1]];
+  const double step = 1e-9 * (solvent * m->solvent.particles * collisions + (vertex + phantoms) * m->vertices);
   sheet_heading("Cost (an estimate, without observables and files)");
   sheet_row(NULL, "memory", "", (double)work_bytes(m) / 1048576.0, "MiB", "");
   sheet_row(NULL, "steps per second", "", 1.0 / step, "1/s", "");
   sheet_row(NULL, "time", "", step * (double)scene->steps, "s", "");
-  printf("  from %.0f ns per solvent particle and collision, %.0f ns per vertex and step\n", solvent_rate, vertex);
+  printf("  from %.0f ns per solvent particle and collision, %.0f ns per vertex and step\n", solvent, vertex);
 }
 
 static void tell_warning(void *context, const char *text)

@@ -18,7 +18,8 @@ static bool is_vertex(const struct evidence_part *part)
 struct draw_twist {
   int later, draw, entity, purpose; /* more than it should be */
   double power;                     /* of the mass; -1/2 */
-  bool of_other, third_from_first, sine_of_second, by_component, exchanged_pairs;
+  bool of_other, of_pairs, without_signs;
+  int place; /* of the number that is taken, after its own */
   const char *text;
 };
 
@@ -30,14 +31,17 @@ static double draw_value(const struct evidence_part *part, uint32_t row, uint32_
   const uint64_t step = part->pair.ours->place.step + (uint64_t)(int64_t)t->later, seed = oracle_seed(&part->pair);
   const enum random_purpose own = vertex ? RANDOM_ANDERSEN_VERTEX : RANDOM_ANDERSEN_PARTICLE;
   const enum random_purpose purpose = t->purpose ? (enum random_purpose)t->purpose : own;
-  double pair[2];
-  uint32_t draw = t->by_component ? column : (uint32_t)(column == 2) ^ (uint32_t)t->exchanged_pairs;
-  uint32_t place = t->by_component ? 0 : column == 2 ? (uint32_t)t->sine_of_second : column;
-  if (t->third_from_first && column == 2)
-    draw = 0, place = 0;
-  random_normal_pair(random_at(seed, purpose, draw + (uint32_t)t->draw, step, row + (uint32_t)t->entity), pair);
+  const uint32_t entity = row + (uint32_t)t->entity;
+  double three[4];
+  if (t->of_pairs) {
+    random_normal_pair(random_at(seed, purpose, 0, step, entity), three);
+    random_normal_pair(random_at(seed, purpose, 1, step, entity), &three[2]);
+  } else {
+    random_normal_three(random_at(seed, purpose, (uint32_t)t->draw, step, entity), three);
+  }
   const double mass = is_vertex(part) && masses ? pack_value(masses, row, 0) : 1.0;
-  return pair[place] * pow(mass, t->power);
+  const double number = three[(column + (uint32_t)t->place) % 3];
+  return (t->without_signs && column < 2 ? fabs(number) : number) * pow(mass, t->power);
 }
 
 static bool draws(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
@@ -45,13 +49,13 @@ static bool draws(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
   static const struct draw_twist known[] = {
       {.later = -1, .power = -0.5, .text = "random address: the velocities of the step before"},
       {.later = 1, .power = -0.5, .text = "random address: the velocities of the step after"},
-      {.draw = 1, .power = -0.5, .text = "random address: draws 1 and 2: they are 0 and 1"},
+      {.draw = 1, .power = -0.5, .text = "random address: draw 1: it is 0"},
       {.entity = 1, .power = -0.5, .text = "random address: the velocities of the next entity"},
       {.of_other = true, .power = -0.5, .text = "random address: purposes of particles and vertices exchanged"},
-      {.exchanged_pairs = true, .power = -0.5, .text = "random address: draws 0 and 1 exchanged"},
-      {.by_component = true, .power = -0.5, .text = "random address: a draw for each component: x and y are of draw 0"},
-      {.third_from_first = true, .power = -0.5, .text = "z is x: it is the first of draw 1"},
-      {.sine_of_second = true, .power = -0.5, .text = "z is the second of draw 1: it is the first"},
+      {.of_pairs = true, .power = -0.5, .text = "normal pairs of draws 0 and 1: all three are of draw 0"},
+      {.without_signs = true, .power = -0.5, .text = "x and y without their signs, bits 23 and 22 of word 1"},
+      {.place = 1, .power = -0.5, .text = "the three numbers in another order: y, z, x"},
+      {.place = 2, .power = -0.5, .text = "the three numbers in another order: z, x, y"},
       {.power = 0.0, .text = "velocities without the mass: they are over its root"},
       {.power = -1.0, .text = "velocities over the mass: over its root"},
       {.power = 0.5, .text = "velocities times the root of the mass: over it"},

@@ -425,7 +425,7 @@ static double golden_argument(int function, uint64_t r, int k)
 static const struct {
   const char *name;
   uint64_t hash;
-} golden[FUNCTIONS + 1] = {
+} golden[FUNCTIONS + 2] = {
     {"log", 0xe1bd1b39893d79a0},
     {"exp", 0x81e2a043b8e7a65c},
     {"turns cosine", 0x22f99b2f8f8fdc92},
@@ -434,7 +434,24 @@ static const struct {
     {"degrees sine", 0x8c1b121c3ffec114},
     {"erf", 0xc143c465bf2eb8f7},
     {"normals", 0x576ac4e2d8cd3c0c},
+    {"three normals", 0x118fad1452bb7bf9},
 };
+
+static void of_two_draws(uint64_t seed, uint64_t step, const uint32_t *entity, uint32_t n, double *x, double *y,
+                         double *z)
+{
+  random_normal_columns(seed, RANDOM_SOLVENT_VELOCITY, step, entity, n, x, y, z);
+}
+
+static void of_one_draw(uint64_t seed, uint64_t step, const uint32_t *entity, uint32_t n, double *x, double *y,
+                        double *z)
+{
+  random_normal_three_columns(seed, RANDOM_SOLVENT_VELOCITY, 0, step, entity, n, x, y, z);
+}
+
+/* Three columns of normal deviates, of two draws and of one. */
+static void (*const normals_of[2])(uint64_t, uint64_t, const uint32_t *, uint32_t, double *, double *,
+                                   double *) = {of_two_draws, of_one_draw};
 
 static void golden_outputs(void **unused)
 {
@@ -442,17 +459,17 @@ static void golden_outputs(void **unused)
   static double out[3 * GOLDEN];
   static uint32_t entity[GOLDEN];
   int wrong = 0;
-  for (int function = 0; function <= FUNCTIONS; function++) {
+  for (int function = 0; function <= FUNCTIONS + 1; function++) {
     struct dice d = {1};
     size_t n = GOLDEN;
     for (int k = 0; k < GOLDEN && function < FUNCTIONS; k++)
       out[k] = functions[function].ours(golden_argument(function, dice_u64(&d), k));
-    if (function == FUNCTIONS) {
+    if (function >= FUNCTIONS) {
       n = 3 * GOLDEN;
       for (uint32_t k = 0; k < GOLDEN; k++)
         entity[k] = 7 * k;
-      random_normal_columns(0x123456789abcdef0, RANDOM_SOLVENT_VELOCITY, (uint64_t)1 << 40, entity, GOLDEN, out,
-                            out + GOLDEN, out + 2 * GOLDEN);
+      normals_of[function - FUNCTIONS](0x123456789abcdef0, (uint64_t)1 << 40, entity, GOLDEN, out, out + GOLDEN,
+                                       out + 2 * GOLDEN);
     }
     const uint64_t hash = XXH64(out, n * sizeof *out, 0);
     print_message("  {\"%s\", 0x%016llx}\n", golden[function].name, (unsigned long long)hash);
@@ -569,18 +586,17 @@ static void normal_pair_is_as_defined(void **unused)
 
 /* Distribution, moments, tails, independence of the three columns. False alarms: 10^-6 for each of three distances and
  * twelve counts, 6 10^-7 (5 sigma) for each of nineteen means. Moments of a standard normal deviate: 0, 1, 0, 3, 15. */
-static void normals_are_normal(void **unused)
+static void columns_are_normal(int kind)
 {
-  (void)unused;
   enum { N = 400000 };
-  const uint64_t seed = dice_seed(172);
+  const uint64_t seed = dice_seed(172 + (uint64_t)kind);
   double *z[3], *p = malloc(N * sizeof *p);
   uint32_t *entity = malloc(N * sizeof *entity);
   for (int c = 0; c < 3; c++)
     z[c] = malloc(N * sizeof *z[c]);
   for (uint32_t k = 0; k < N; k++)
     entity[k] = k;
-  random_normal_columns(seed, RANDOM_SOLVENT_VELOCITY, 0, entity, N, z[0], z[1], z[2]);
+  normals_of[kind](seed, 0, entity, N, z[0], z[1], z[2]);
   for (int c = 0; c < 3; c++) {
     struct tally mean = {0}, square = {0}, cube = {0}, fourth = {0}, product = {0}, squares = {0};
     unsigned beyond[2][2] = {{0}};
@@ -623,14 +639,111 @@ static void normals_are_normal(void **unused)
   free(entity);
 }
 
+static void normals_are_normal(void **unused)
+{
+  (void)unused;
+  columns_are_normal(0);
+}
+
+static void three_of_one_draw_are_normal(void **unused)
+{
+  (void)unused;
+  columns_are_normal(1);
+}
+
+/* Signs of the three numbers and the sizes of the first two are of different bits of two words: the octants, and which
+ * is larger, are equally likely. 16 counts of 400 000, false alarms 10^-6 for all. */
+static void octants_are_alike(void **unused)
+{
+  (void)unused;
+  enum { N = 400000 };
+  unsigned count[16] = {0};
+  const uint64_t seed = dice_seed(174);
+  for (uint32_t k = 0; k < N; k++) {
+    double x[3];
+    random_normal_three(random_at(seed, RANDOM_SOLVENT_VELOCITY, 0, 0, k), x);
+    count[(x[0] > 0) + 2 * (x[1] > 0) + 4 * (x[2] > 0) + 8 * (fabs(x[0]) > fabs(x[1]))]++;
+  }
+  double square = 0.0;
+  for (int k = 0; k < 16; k++)
+    square += (count[k] - N / 16.0) * (count[k] - N / 16.0) / (N / 16.0);
+  assert_true(gsl_cdf_chisq_Q(square, 15.0) > LEAST_CHANCE);
+}
+
+/* The definition in MPFR, from the words, to 2e-12 of the radius; at the ends of the words, too. The largest magnitude
+ * is sqrt(2 41 ln 2); every radius has it in reach. One draw and columns have the same bits. */
+static void three_normals_are_as_defined(void **unused)
+{
+  (void)unused;
+  struct dice d = {dice_seed(173)};
+  mpfr_t radius, turn, exact;
+  mpfr_inits2(PRECISION, radius, turn, exact, (mpfr_ptr)NULL);
+  double worst = 0.0;
+  for (int k = 0; k < 20000; k++) {
+    struct random_words r;
+    for (int i = 0; i < 4; i++)
+      r.w[i] = k < 16 ? (k >> i & 1 ? ~0u : 0u) : (uint32_t)dice_u64(&d);
+    double out[3], wanted[3];
+    random_normal_three(r, out);
+    for (int i = 0; i < 3; i++) {
+      const uint64_t word = (uint64_t)r.w[i == 2 ? 2 : 0] << 32 | r.w[i == 2 ? 3 : 1]; /* 40 bits, signs, angle */
+      mpfr_set_d(radius, ldexp((double)(word >> 24) + 0.5, -40), MPFR_RNDN);
+      mpfr_log(radius, radius, MPFR_RNDN);
+      mpfr_mul_si(radius, radius, -2, MPFR_RNDN);
+      mpfr_sqrt(radius, radius, MPFR_RNDN);
+      const double v = i == 2 ? ldexp((double)(word % 16777216) + 0.5, -25) - 0.25 /* turns: -1/4 to 1/4 */
+                              : ldexp((double)(word % 4194304) + 0.5, -24);        /* 0 to 1/4 */
+      mpfr_set_d(turn, v, MPFR_RNDN);
+      (i == 0 ? mpfr_cosu : mpfr_sinu)(exact, turn, 1, MPFR_RNDN);
+      mpfr_mul(exact, exact, radius, MPFR_RNDN);
+      wanted[i] = mpfr_get_d(exact, MPFR_RNDN) * (i < 2 && word >> (23 - i) & 1 ? -1.0 : 1.0);
+      worst = fmax(worst, fabs(out[i] - wanted[i]) / mpfr_get_d(radius, MPFR_RNDN));
+      assert_true(fabs(out[i]) < 7.54);
+    }
+  }
+  mpfr_clears(radius, turn, exact, (mpfr_ptr)NULL);
+  print_message("  three normals: %.3g of the radius\n", worst);
+  assert_true(worst <= 2e-12);
+  const struct random_words steep = {{0, 0x3fffff, 0, 0xffffff}};
+  double out[3];
+  random_normal_three(steep, out);
+  assert_close(out[1], 7.5391, 1e-4); /* sqrt(2 41 ln 2) */
+  assert_close(out[2], 7.5391, 1e-4);
+}
+
+static void three_normals_of_columns_are_the_same(void **unused)
+{
+  (void)unused;
+  enum { MOST = 200 };
+  struct dice d = {dice_seed(175)};
+  uint32_t entity[MOST];
+  double x[MOST + 1], y[MOST + 1], z[MOST + 1];
+  for (uint32_t n = 0; n <= MOST; n++) {
+    const uint64_t seed = dice_u64(&d), step = dice_u64(&d);
+    const uint32_t draw = n % 3;
+    for (uint32_t k = 0; k < n; k++)
+      entity[k] = (uint32_t)dice_u64(&d);
+    x[n] = y[n] = z[n] = 77.0;
+    random_normal_three_columns(seed, RANDOM_ANDERSEN_PARTICLE, draw, step, entity, n, x, y, z);
+    assert_true(x[n] == 77.0 && y[n] == 77.0 && z[n] == 77.0); /* nothing is written beyond the end */
+    for (uint32_t k = 0; k < n; k++) {
+      double a[3];
+      random_normal_three(random_at(seed, RANDOM_ANDERSEN_PARTICLE, draw, step, entity[k]), a);
+      assert_true(is_bits(x[k], a[0]) && is_bits(y[k], a[1]) && is_bits(z[k], a[2]));
+    }
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(error_is_as_stated),         cmocka_unit_test(error_at_the_ends),
-      cmocka_unit_test(constants_are_exact),        cmocka_unit_test(exact_values),
-      cmocka_unit_test(symmetries_hold_to_the_bit), cmocka_unit_test(golden_outputs),
-      cmocka_unit_test(columns_are_the_same),       cmocka_unit_test(normal_columns_are_the_same),
-      cmocka_unit_test(normal_pair_is_as_defined),  cmocka_unit_test(normals_are_normal),
+      cmocka_unit_test(error_is_as_stated),           cmocka_unit_test(error_at_the_ends),
+      cmocka_unit_test(constants_are_exact),          cmocka_unit_test(exact_values),
+      cmocka_unit_test(symmetries_hold_to_the_bit),   cmocka_unit_test(golden_outputs),
+      cmocka_unit_test(columns_are_the_same),         cmocka_unit_test(normal_columns_are_the_same),
+      cmocka_unit_test(normal_pair_is_as_defined),    cmocka_unit_test(normals_are_normal),
+      cmocka_unit_test(three_of_one_draw_are_normal), cmocka_unit_test(octants_are_alike),
+      cmocka_unit_test(three_normals_are_as_defined), cmocka_unit_test(three_normals_of_columns_are_the_same),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
 /* MPC-AT+a in one cell: momentum, angular momentum about any point, members in special places, virtual members. */
+#include "base/normal.h"
 #include "exact.h"
 #include "mpc/border.h"
 #include "mpc/collide.h"
@@ -223,16 +224,13 @@ static void draw(const struct test_run *r, uint64_t step, uint32_t cell, uint32_
 {
   const struct random_words xz = random_at(r->model.seed, 14, 2 * k, step, cell);
   const struct random_words y = random_at(r->model.seed, 14, 2 * k + 1, step, cell);
-  const struct random_words a = random_at(r->model.seed, 13, 2 * k, step, cell);
-  const struct random_words b = random_at(r->model.seed, 13, 2 * k + 1, step, cell);
-  const double height = m->low + (m->high - m->low) * random_uniform(y, 0), turn = 6.283185307179586;
-  const double ra = sqrt(-4.0 * log(random_uniform(a, 0))), rb = sqrt(-4.0 * log(random_uniform(b, 0)));
+  const double height = m->low + (m->high - m->low) * random_uniform(y, 0);
+  double xi[3];
+  random_normal_three(random_at(r->model.seed, 13, k, step, cell), xi);
   *place = (struct point){(int64_t)(random_uniform(xz, 0) * 0x1p40) - LATTICE_CELL / 2,
                           (int64_t)(height * 0x1p40) - LATTICE_CELL / 2,
                           (int64_t)(random_uniform(xz, 1) * 0x1p40) - LATTICE_CELL / 2};
-  *change = (struct vec3){m->flow.x + ra * cos(turn * random_uniform(a, 1)),
-                          m->flow.y + ra * sin(turn * random_uniform(a, 1)),
-                          m->flow.z + rb * cos(turn * random_uniform(b, 1))};
+  *change = vec3_add_scaled(m->flow, sqrt(2.0), (struct vec3){xi[0], xi[1], xi[2]});
 }
 
 /* With virtual members in a cell: momentum is kept with that which they gain, and so is angular momentum with their

@@ -60,6 +60,52 @@ def normals(seed, purpose, step, entities):
     return np.stack([first[:, 0], first[:, 1], second[:, 0]])
 
 
+def minus_log(high, low):
+    """-ln u of u of 40 bits, 32 of the word `high` and the first 8 of `low`: docs/elementary.md, *Three of one draw*."""
+    one, root_half = np.uint64(0x3FF0000000000000), np.uint64(0x3FE6A09E667F3BCD)
+    u = (one | high << np.uint64(20) | (low & np.uint64(0xFF000000)) >> np.uint64(12)).view(float) - (1.0 - 2.0**-41)
+    t = u.view(np.uint64) + (one - root_half)
+    e = (t >> np.uint64(52)).astype(float) - 1023.0
+    f = ((t & np.uint64(0x000FFFFFFFFFFFFF)) + root_half).view(float) - 1.0
+    s = f / (2.0 + f)
+    w = s * s
+    q = w * w
+    odd = 2.0 / 3.0 + q * (2.0 / 7.0 + q * (2.0 / 11.0))
+    even = 2.0 + q * (2.0 / 5.0 + q * (2.0 / 9.0 + q * (2.0 / 13.0)))
+    return -(e * math.log(2.0)) - s * (even + w * odd)
+
+
+def three_normals(word):
+    """Three normal deviates from the words of each address: [..., 4] in, [..., 3] out."""
+    one = np.uint64(0x3FF0000000000000)
+    bits = [np.ascontiguousarray(word[..., k]) for k in range(4)]
+    a = ((one | (bits[1] & np.uint64(0x3FFFFF)) << np.uint64(30)).view(float) - (1.5 - 2.0**-23)) * (math.pi / 2)
+    w = a * a
+    q = w * w
+    s0 = 1.0 + q * (1 / 120 + q * (1 / 362880 + q * (1 / 6227020800)))
+    s1 = -1 / 6 + q * (-1 / 5040 + q * (-1 / 39916800))
+    c0 = 1.0 + q * (1 / 24 + q * (1 / 40320 + q * (1 / 479001600)))
+    c1 = -1 / 2 + q * (-1 / 720 + q * (-1 / 3628800))
+    sine, cosine = a * (s0 + w * s1), c0 + w * c1
+    root = np.sqrt(minus_log(bits[0], bits[1]))
+    x_sign, y_sign = (1.0 - 2.0 * (bits[1] >> np.uint64(place) & np.uint64(1)).astype(float) for place in (23, 22))
+
+    b = ((one | (bits[3] & np.uint64(0xFFFFFF)) << np.uint64(28)).view(float) - (1.5 - 2.0**-25)) * math.pi
+    w = b * b
+    q = w * w
+    s0 = 1.0 + q * (1 / 120 + q * (1 / 362880 + q * (1 / 6227020800 + q * (1 / 355687428096000))))
+    s1 = -1 / 6 + q * (-1 / 5040 + q * (-1 / 39916800 + q * (-1 / 1307674368000)))
+    radius = np.sqrt(2.0 * minus_log(bits[2], bits[3]))
+    return np.stack(
+        [x_sign * (root * (cosine - sine)), y_sign * (root * (cosine + sine)), radius * (b * (s0 + w * s1))], axis=-1
+    )
+
+
+def drawn(seed, purpose, step, entities):
+    """Three normal deviates of one draw for each entity: [n, 3]."""
+    return three_normals(words(seed, purpose, 0, step, entities))
+
+
 def axes(seed, purpose, step, entities):
     """A unit vector for each entity, uniform on the sphere (Marsaglia 1972): [n, 3]."""
     entities = np.asarray(entities)

@@ -94,8 +94,8 @@ def rotate(model, cell, velocity, active, center, axis, factor):
 
 def draw(model, step):
     """The rule at-a: Maxwell velocities of the solvent and of the vertices, drawn anew."""
-    solvent = random.normals(model.seed, random.ANDERSEN_PARTICLE, step, np.arange(model.particles)).T
-    vertex = random.normals(model.seed, random.ANDERSEN_VERTEX, step, np.arange(len(model.mass))).T
+    solvent = random.drawn(model.seed, random.ANDERSEN_PARTICLE, step, np.arange(model.particles))
+    vertex = random.drawn(model.seed, random.ANDERSEN_VERTEX, step, np.arange(len(model.mass)))
     return solvent, vertex * (1.0 / np.sqrt(model.mass))[:, None]
 
 

@@ -2,7 +2,7 @@
 
 use crate::elementary::log;
 use crate::random::{
-    normal, uniform, Source, ANDERSEN_PARTICLE, ANDERSEN_VERTEX, AXIS, GRID_SHIFT, SWAP, THERMOSTAT,
+    normal, three_normals, uniform, Source, ANDERSEN_PARTICLE, ANDERSEN_VERTEX, AXIS, GRID_SHIFT, SWAP, THERMOSTAT,
 };
 use crate::scene::Scene;
 use crate::vector::*;
@@ -172,13 +172,9 @@ pub fn rotate(scene: &Scene, cells: &Cells, factor: &[f64], cell_of: &[usize], v
     }
 }
 
-/// The rule at-a: three normal deviates for each of these entities, draw 0 and the first of draw 1.
+/// The rule at-a: three normal deviates for each of these entities, of draw 0.
 fn normals(source: &Source, count: usize) -> Vec<Vector> {
-    let drawn = |entity: u32| {
-        let (x, y) = normal(source.words(0, entity));
-        [x, y, normal(source.words(1, entity)).0]
-    };
-    (0..count as u32).map(drawn).collect()
+    (0..count as u32).map(|entity| three_normals(source.words(0, entity))).collect()
 }
 
 /// The velocities that solvent and vertices draw.

@@ -83,6 +83,53 @@ pub fn normal(words: Words) -> (f64, f64) {
     (radius * cosine, radius * sine)
 }
 
+/// -ln u, u of 40 bits: docs/elementary.md, "Three of one draw".
+fn minus_log(high: u32, low: u32) -> f64 {
+    const ONE: u64 = 0x3ff0000000000000;
+    const ROOT_HALF: u64 = 0x3fe6a09e667f3bcd;
+    let fraction = u64::from(high) << 20 | u64::from(low >> 24) << 12;
+    let u = f64::from_bits(ONE | fraction) - (1.0 - 1.0 / (1u64 << 41) as f64);
+    let t = u.to_bits() + (ONE - ROOT_HALF);
+    let e = (t >> 52) as f64 - 1023.0;
+    let f = f64::from_bits((t & 0x000fffffffffffff) + ROOT_HALF) - 1.0;
+    let s = f / (2.0 + f);
+    let w = s * s;
+    let q = w * w;
+    let odd = 2.0 / 3.0 + q * (2.0 / 7.0 + q * (2.0 / 11.0));
+    let even = 2.0 + q * (2.0 / 5.0 + q * (2.0 / 9.0 + q * (2.0 / 13.0)));
+    -(e * std::f64::consts::LN_2) - s * (even + w * odd)
+}
+
+/// A uniform number about 0, |t| < 1/2, of so many low bits of a word.
+fn centered(word: u32, bits: u32) -> f64 {
+    let k = word & ((1 << bits) - 1);
+    (f64::from(k) + 0.5) / f64::from(1u32 << bits) - 0.5
+}
+
+/// Three normal deviates of one draw.
+pub fn three_normals(words: Words) -> Vector {
+    let a = centered(words[1], 22) * std::f64::consts::FRAC_PI_2;
+    let w = a * a;
+    let q = w * w;
+    let s0 = 1.0 + q * (1.0 / 120.0 + q * (1.0 / 362880.0 + q * (1.0 / 6227020800.0)));
+    let s1 = -1.0 / 6.0 + q * (-1.0 / 5040.0 + q * (-1.0 / 39916800.0));
+    let c0 = 1.0 + q * (1.0 / 24.0 + q * (1.0 / 40320.0 + q * (1.0 / 479001600.0)));
+    let c1 = -1.0 / 2.0 + q * (-1.0 / 720.0 + q * (-1.0 / 3628800.0));
+    let (sine, cosine) = (a * (s0 + w * s1), c0 + w * c1);
+    let root = minus_log(words[0], words[1]).sqrt();
+    let signed = |place: u32, x: f64| if words[1] >> place & 1 == 1 { -x } else { x };
+
+    let b = centered(words[3], 24) * std::f64::consts::PI;
+    let w = b * b;
+    let q = w * w;
+    let s0 = 1.0 / 362880.0 + q * (1.0 / 6227020800.0 + q * (1.0 / 355687428096000.0));
+    let s0 = 1.0 + q * (1.0 / 120.0 + q * s0);
+    let s1 = -1.0 / 5040.0 + q * (-1.0 / 39916800.0 + q * (-1.0 / 1307674368000.0));
+    let s1 = -1.0 / 6.0 + q * s1;
+    let radius = (2.0 * minus_log(words[2], words[3])).sqrt();
+    [signed(23, root * (cosine - sine)), signed(22, root * (cosine + sine)), radius * (b * (s0 + w * s1))]
+}
+
 fn axis_of(pair: [u32; 2]) -> Option<Vector> {
     let [u, v] = pair.map(|word| (f64::from(word as i32) + 0.5) / (1u64 << 31) as f64);
     let q = u * u + v * v;

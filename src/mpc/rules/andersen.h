@@ -14,9 +14,9 @@ enum { ANDERSEN_BLOCK = 256 }; /* particles worked on at a time */
 static inline struct vec3 andersen_draw(const struct model *model, enum random_purpose purpose, uint64_t step,
                                         uint32_t entity, double mass)
 {
-  double x, y, z;
-  random_normal_columns(model->seed, purpose, step, &entity, 1, &x, &y, &z);
-  return vec3_scale(1.0 / sqrt(mass), (struct vec3){x, y, model_is_flat(model) ? 0.0 : z});
+  double x[3];
+  random_normal_three(random_at(model->seed, purpose, 0, step, entity), x);
+  return vec3_scale(1.0 / sqrt(mass), (struct vec3){x[0], x[1], model_is_flat(model) ? 0.0 : x[2]});
 }
 
 /* Velocities of a block of particles, or v - xi, a column for each component, a0/t0. */
@@ -30,7 +30,7 @@ static inline void andersen_draw_block(const struct solvent *s, const struct mod
 {
   double *restrict x = &c->drawn[0][i], *restrict y = &c->drawn[1][i], *restrict z = &c->drawn[2][i];
   const double *restrict vx = &s->vx[i], *restrict vy = &s->vy[i], *restrict vz = &s->vz[i];
-  random_normal_columns(model->seed, RANDOM_ANDERSEN_PARTICLE, step, &s->id[i], m, x, y, z);
+  random_normal_three_columns(model->seed, RANDOM_ANDERSEN_PARTICLE, 0, step, &s->id[i], m, x, y, z);
   if (model_is_flat(model))
     memset(z, 0, m * sizeof *z);
   for (uint32_t k = 0; k < m; k++) {

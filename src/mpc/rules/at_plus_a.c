@@ -87,13 +87,12 @@ static struct virtual_one draw_virtual(const struct model *model, const struct m
   const bool flat = model_is_flat(model);
   const struct random_words xz = random_at(model->seed, RANDOM_SPIN_PLACE, 2 * number, step, cell);
   const struct random_words y = random_at(model->seed, RANDOM_SPIN_PLACE, 2 * number + 1, step, cell);
-  double a[2], b[2];
-  random_normal_pair(random_at(model->seed, RANDOM_SPIN_VELOCITY, 2 * number, step, cell), a);
-  random_normal_pair(random_at(model->seed, RANDOM_SPIN_VELOCITY, 2 * number + 1, step, cell), b);
+  double a[3];
+  random_normal_three(random_at(model->seed, RANDOM_SPIN_VELOCITY, number, step, cell), a);
   return (struct virtual_one){
       {place_between(0.0, 1.0, random_uniform(xz, 0)), place_between(members->low, members->high, random_uniform(y, 0)),
        flat ? spin_place((struct point){0, 0, 0}, c->shift).z : place_between(0.0, 1.0, random_uniform(xz, 1))},
-      vec3_add_scaled(members->flow, sqrt(2.0), (struct vec3){a[0], a[1], flat ? 0.0 : b[0]})};
+      vec3_add_scaled(members->flow, sqrt(2.0), (struct vec3){a[0], a[1], flat ? 0.0 : a[2]})};
 }
 
 static void add_virtual(const struct model *model, struct mpc *c, uint64_t step, uint32_t place,
