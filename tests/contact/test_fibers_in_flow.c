@@ -95,7 +95,7 @@ static void links_are_kept_in_shear(void **unused)
       m.shear.rate = oscillates ? -0.3 : 0.3;
       struct test_run d = test_start(m);
       assert_int_equal(changed_links(&d, 1500), 0);
-      assert_true(d.state.counts.executed > 1000);
+      assert_true(d.state.counts.executed > 300);
       test_end(&d);
     }
 }
@@ -263,7 +263,7 @@ static void the_last_tick_counts(void **unused)
   struct model m = test_model(4, 4, 4, 0, 0.01, 2);
   struct fiber_kind *kind = test_add_kind(&m, 64, 1);
   kind->mass = 1.0;
-  test_add_kind(&m, 1, 2);
+  test_add_kind(&m, 2, 3); /* bonds that could meet: else vertices move freely */
   m.solvent.collision_interval = 0.0;
   m.walls.kind = WALL_SLIP;
   struct test_run r = test_start(in_flow(m, CROSSING_EVENT_DRIVEN, 1));

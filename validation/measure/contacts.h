@@ -120,8 +120,7 @@ struct contact_at {
 /* The place of a vertex at a tick of the drift at hand. */
 static inline struct point contact_place(const struct run *r, uint32_t v, int64_t tick)
 {
-  const struct point p = r->state.position[v],
-                     rate = takeoff_rate_now(&r->state, &r->work.contact, v);
+  const struct point p = r->state.position[v], rate = takeoff_rate_now(&r->state, &r->work.contact, v);
   return (struct point){p.x + rate.x * tick, p.y + rate.y * tick, p.z + rate.z * tick};
 }
 
