@@ -40,8 +40,7 @@ static struct vec3 after_hit(const struct model *model, enum wall wall, struct v
 static void enter(struct state *state, const struct model *model, enum wall wall, uint32_t i, struct vec3 before,
                   struct vec3 after)
 {
-  const uint32_t row = account_row(ACCOUNT_HITS, wall);
-  account_add(&state->wall_momentum[row], &state->wall_turns[row], vec3_scale(model->mass[i], vec3_sub(after, before)));
+  account_enter(account_of(state, ACCOUNT_HITS), wall, vec3_scale(model->mass[i], vec3_sub(after, before)));
 }
 
 void wall_hit(struct state *state, const struct model *model, const struct drift_frame *frame, enum wall wall,

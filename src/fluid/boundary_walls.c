@@ -20,18 +20,16 @@ struct slit {
   const struct model *model;
   const struct span *span;
   struct vec3 wall[WALLS]; /* velocities, a0/t0 */
-  struct point *hits;      /* [WALLS] the account of hits, or NULL */
-  uint64_t *turns;         /* [WALLS] of the same */
+  struct account account;  /* of hits */
 };
 
-static struct slit slit_of(const struct model *model, const struct span *span, struct point *hits, uint64_t *turns)
+static struct slit slit_of(const struct model *model, const struct span *span, struct account account)
 {
   return (struct slit){
       model,
       span,
       {shear_wall_velocity(model, WALL_LOWER, span->interval), shear_wall_velocity(model, WALL_UPPER, span->interval)},
-      hits,
-      turns};
+      account};
 }
 
 /* A particle on its way: between two hits its velocity is sign v + change, v that at the start of the flight. */
@@ -49,23 +47,17 @@ static void go_on(struct way *way, const struct slit *slit, double time)
   way->change = vec3_add_scaled(way->change, time, a);
 }
 
-static void enter_hit(const struct slit *slit, enum wall wall, struct vec3 gain)
-{
-  if (slit->hits)
-    account_add(&slit->hits[wall], &slit->turns[wall], gain);
-}
-
 static void hit_no_slip(struct way *way, const struct slit *slit, enum wall wall, struct vec3 v)
 {
   const struct vec3 w = slit->wall[wall], before = vec3_add_scaled(way->change, way->sign, v);
-  enter_hit(slit, wall, vec3_scale(2.0, vec3_sub(w, before)));
+  account_enter(slit->account, wall, vec3_scale(2.0, vec3_sub(w, before)));
   way->change = vec3_sub(vec3_scale(2.0, w), way->change);
   way->sign = -way->sign;
 }
 
 static void hit_slip(struct way *way, const struct slit *slit, enum wall wall, struct vec3 v)
 {
-  enter_hit(slit, wall, (struct vec3){0.0, -2.0 * way->sign * v.y, 0.0});
+  account_enter(slit->account, wall, (struct vec3){0.0, -2.0 * way->sign * v.y, 0.0});
   way->sign = -way->sign;
 }
 
@@ -214,8 +206,7 @@ static bool fly_block(struct state *state, const struct slit *slit, uint32_t fir
 static bool fly_walls(struct state *state, const struct model *model, const struct span *span, uint32_t first,
                       uint32_t n, struct fault *fault)
 {
-  const uint32_t row = account_row(ACCOUNT_HITS, WALL_LOWER);
-  const struct slit slit = slit_of(model, span, &state->wall_momentum[row], &state->wall_turns[row]);
+  const struct slit slit = slit_of(model, span, account_of(state, ACCOUNT_HITS));
   bool ok = true;
   for (uint32_t i = 0; ok && i < n; i += BLOCK)
     ok = fly_block(state, &slit, first + i, n - i < BLOCK ? n - i : BLOCK, fault);
@@ -224,7 +215,7 @@ static bool fly_walls(struct state *state, const struct model *model, const stru
 
 static void now_walls(const struct model *model, const struct span *span, struct point *x, struct vec3 *v)
 {
-  const struct slit slit = slit_of(model, span, NULL, NULL);
+  const struct slit slit = slit_of(model, span, (struct account){NULL, NULL});
   const int64_t d = boundary_flight(v->y, 0.0, span->time), y = (int64_t)((uint64_t)x->y + (uint64_t)d);
   if (y < 0 || y > model->box.edge[1]) {
     rebound(&slit, d, x, v);

@@ -55,10 +55,9 @@ int64_t pairs_fly(const struct pairs *pairs, int axis, const struct swing *swing
 /* --- periodic ---------------------------------------------------------------------------------------------------- */
 
 static int64_t fly_periodic(const struct pairs *pairs, const struct model *model, const struct span *span,
-                            const struct swing *swing, struct point *hits, uint64_t *turns)
+                            const struct swing *swing, struct account account)
 {
-  (void)hits;
-  (void)turns;
+  (void)account;
   const double a[3] = {span->acceleration.x, span->acceleration.y, span->acceleration.z};
   int64_t far = 0;
   for (int k = 0; k < 3; k++)
@@ -93,10 +92,9 @@ static void change_images(const struct pairs *pairs, const struct box *box, stru
 }
 
 static int64_t fly_sheared(const struct pairs *pairs, const struct model *model, const struct span *span,
-                           const struct swing *swing, struct point *hits, uint64_t *turns)
+                           const struct swing *swing, struct account account)
 {
-  (void)hits;
-  (void)turns;
+  (void)account;
   const struct vec3 a = span->acceleration;
   const struct box *box = &model->box;
   const struct slide end = boundary_slide(model, span->end, span->interval);

@@ -12,6 +12,7 @@
 
 #include "base/elementary.h"
 #include "fluid/boundary.h"
+#include "system/account.h"
 #include "system/fluid.h"
 
 /* What the flights of all dumbbells for a time have in common. */
@@ -61,10 +62,9 @@ int64_t pairs_fly(const struct pairs *pairs, int axis, const struct swing *swing
 struct dumbbell_boundary {
   const char *name;
 
-  /* hits, turns: [WALLS] the account of hits and its turns (system/account.h), or NULL. Not 0 if a flight was out of
-   * range. */
+  /* account: of hits. Not 0 if a flight was out of range. */
   int64_t (*fly)(const struct pairs *pairs, const struct model *model, const struct span *span,
-                 const struct swing *swing, struct point *hits, uint64_t *turns);
+                 const struct swing *swing, struct account account);
 };
 
 extern const struct dumbbell_boundary dumbbells_periodic, dumbbells_between_walls, dumbbells_sheared;

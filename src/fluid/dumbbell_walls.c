@@ -30,12 +30,11 @@ struct slit {
   double edge;               /* a0 */
   double reach, pull;        /* of the potential: a0; acceleration towards the wall, a0/t0^2 */
   struct vec3 wall[WALLS];   /* velocities, a0/t0 */
-  struct point *hits;        /* [WALLS] the account of hits, or NULL */
-  uint64_t *turns;           /* [WALLS] of the same */
+  struct account account;    /* of hits */
 };
 
 static struct slit slit_of(const struct model *model, const struct span *span, const struct swing *swing,
-                           struct point *hits, uint64_t *turns)
+                           struct account account)
 {
   const struct dumbbell_model *d = &model->dumbbells;
   const double reach = d->depth != 0.0 ? d->range / sqrt(d->spring) : 0.0;
@@ -47,8 +46,7 @@ static struct slit slit_of(const struct model *model, const struct span *span, c
       reach,
       reach > 0.0 ? 0.5 * d->depth / reach : 0.0, /* a dumbbell has the mass 2 */
       {shear_wall_velocity(model, WALL_LOWER, span->interval), shear_wall_velocity(model, WALL_UPPER, span->interval)},
-      hits,
-      turns};
+      account};
 }
 
 /* One dumbbell. */
@@ -168,19 +166,13 @@ static double time_of_exit(const struct slit *slit, const struct course *c, enum
   return fmax(t, 0.0);
 }
 
-static void enter(const struct slit *slit, enum wall wall, struct vec3 gain)
-{
-  if (slit->hits)
-    account_add(&slit->hits[wall], &slit->turns[wall], gain);
-}
-
 static void hit(const struct slit *slit, struct couple *c, int i, enum wall wall)
 {
   const struct vec3 w = slit->wall[wall], v = {c->v[0][i], c->v[1][i], c->v[2][i]};
   const bool slip = slit->model->walls.kind == WALL_SLIP;
   const struct vec3 after =
       slip ? (struct vec3){v.x, -v.y, v.z} : (struct vec3){2.0 * w.x - v.x, -v.y, 2.0 * w.z - v.z};
-  enter(slit, wall, vec3_sub(after, v));
+  account_enter(slit->account, wall, vec3_sub(after, v));
   c->v[0][i] = after.x, c->v[1][i] = after.y, c->v[2][i] = after.z;
   c->at[1][i] = wall == WALL_LOWER ? 0 : slit->model->box.edge[1];
   c->apart[1] = c->at[1][0] - c->at[1][1];
@@ -224,7 +216,8 @@ static int64_t follow(const struct slit *slit, struct couple *c)
     if (go_on(slit, c, t, acceleration))
       return 1;
     if (acceleration != 0.0)
-      enter(slit, acceleration < 0.0 ? WALL_LOWER : WALL_UPPER, (struct vec3){0.0, 2.0 * acceleration * t, 0.0});
+      account_enter(slit->account, acceleration < 0.0 ? WALL_LOWER : WALL_UPPER,
+                    (struct vec3){0.0, 2.0 * acceleration * t, 0.0});
     if (who >= 0)
       hit(slit, c, who, wall);
     left -= t;
@@ -290,9 +283,9 @@ static int64_t fly_block(const struct pairs *pairs, const struct slit *slit)
 }
 
 static int64_t fly_walls(const struct pairs *pairs, const struct model *model, const struct span *span,
-                         const struct swing *swing, struct point *hits, uint64_t *turns)
+                         const struct swing *swing, struct account account)
 {
-  const struct slit slit = slit_of(model, span, swing, hits, turns);
+  const struct slit slit = slit_of(model, span, swing, account);
   int64_t far = 0;
   for (uint32_t p = 0; p < pairs->n && !far; p += BLOCK)
     far = fly_block(&(struct pairs){pairs->n - p < BLOCK ? pairs->n - p : BLOCK,

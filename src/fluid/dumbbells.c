@@ -100,10 +100,8 @@ static bool fly_flock(struct state *state, const struct model *model, const stru
                       const struct swing *swing, uint32_t first, uint32_t n, struct fault *fault)
 {
   const struct pairs pairs = pairs_of(state, first, n);
-  const uint32_t row = account_row(ACCOUNT_HITS, WALL_LOWER);
   return speeds_fit(state, span, 2 * first, 2 * n, fault) &&
-         (!dumbbell_boundary_of(&model->box)
-               ->fly(&pairs, model, span, swing, &state->wall_momentum[row], &state->wall_turns[row]) ||
+         (!dumbbell_boundary_of(&model->box)->fly(&pairs, model, span, swing, account_of(state, ACCOUNT_HITS)) ||
           too_long(state, first, n, fault));
 }
 
@@ -134,7 +132,7 @@ static void fly_one(const struct state *state, const struct model *model, const 
     r[k] = all.apart[k][0];
   }
   const struct pairs one = {1, {x[0], x[1], x[2]}, {w[0], w[1], w[2]}, {&r[0], &r[1], &r[2]}};
-  dumbbell_boundary_of(&model->box)->fly(&one, model, span, swing, NULL, NULL);
+  dumbbell_boundary_of(&model->box)->fly(&one, model, span, swing, (struct account){NULL, NULL});
   *at = (struct point){x[0][i % 2], x[1][i % 2], x[2][i % 2]};
   *v = (struct vec3){w[0][i % 2], w[1][i % 2], w[2][i % 2]};
   *apart = point_in_a0((struct point){r[0], r[1], r[2]});

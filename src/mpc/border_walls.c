@@ -140,10 +140,9 @@ static void account(struct state *state, const struct model *model, struct mpc *
   for (uint32_t k = 0; k < cuts; k++) {
     const struct virtual_members *v = &c->filled[k];
     const struct cut cut = cut_cell(model, c, k);
-    const uint32_t row = account_row(ACCOUNT_COLLISIONS, cut.wall);
     if (v->n > 0.0)
-      account_add(&state->wall_momentum[row], &state->wall_turns[row],
-                  vec3_scale(-1.0, c->rule->virtual_gain(model, c, step, cut.place, v, c->thermostat != NULL)));
+      account_enter(account_of(state, ACCOUNT_COLLISIONS), cut.wall,
+                    vec3_scale(-1.0, c->rule->virtual_gain(model, c, step, cut.place, v, c->thermostat != NULL)));
   }
 }
 

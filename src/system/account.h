@@ -34,6 +34,24 @@ static inline void account_add(struct point *sum, uint64_t *turns, struct vec3 m
   sum->z = (int64_t)((uint64_t)sum->z + (uint64_t)llrint(ACCOUNT_SCALE * momentum.z));
 }
 
+/* The rows of one share, by wall; without sums: nobody keeps it. */
+struct account {
+  struct point *sums; /* [WALLS] */
+  uint64_t *turns;    /* [WALLS] */
+};
+
+static inline struct account account_of(struct state *state, enum account_share share)
+{
+  const uint32_t row = account_row(share, WALL_LOWER);
+  return (struct account){&state->wall_momentum[row], &state->wall_turns[row]};
+}
+
+static inline void account_enter(struct account account, enum wall wall, struct vec3 momentum)
+{
+  if (account.sums)
+    account_add(&account.sums[wall], &account.turns[wall], momentum);
+}
+
 /* What came in along x, m a0/t0, between two sums and their turns. */
 static inline double account_along(int64_t before, uint64_t turns_before, int64_t after, uint64_t turns_after)
 {
