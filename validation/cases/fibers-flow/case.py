@@ -94,7 +94,7 @@ def orientation(results, run, kind):
 
 
 def pair(row, name, scale=1.0):
-    return scale * row[name], scale * row[name + "_error"]
+    return scale * row[name], abs(scale) * row[name + "_error"]
 
 
 def filled(verdict, value, systematic=0.0, error=0.0):
