@@ -111,6 +111,7 @@ COLUMNS = {
     "RyRy": Column("across the flow", r"$\langle R_y R_y\rangle$", A2),
     "RzRz": Column("along the vorticity", r"$\langle R_z R_z\rangle$", A2),
     "RxRy": Column("correlation", r"$\langle R_x R_y\rangle$", A2),
+    "turning": Column("turning in the plane of flow", r"$\langle\dot\varphi\rangle$", r"$(1/t_0)$"),
     "uxux": Column("bonds along the flow", r"$\langle u_x u_x\rangle$"),
     "uyuy": Column("bonds across the flow", r"$\langle u_y u_y\rangle$"),
     "uzuz": Column("bonds along the vorticity", r"$\langle u_z u_z\rangle$"),

@@ -2,19 +2,34 @@
 
 #include <string.h>
 
+#include "mpc/border.h"
 #include "mpc/collide.h"
 #include "mpc/grid.h"
 #include "mpc/rule.h"
 #include "mpc/virtual.h"
+#include "system/shear.h"
+
+/* The flow about which the phantoms of a cell are drawn; in a sheared box, that of the height of its middle. */
+static struct vec3 flow_of(const struct model *model, uint64_t step, uint32_t cell)
+{
+  if (!model_is_sheared(model))
+    return model->flow;
+  const uint32_t row = cell / (uint32_t)model->box.rows[0] % (uint32_t)model->box.rows[1];
+  const double shift = (double)grid_shift(model, step).y * LATTICE_UNIT,
+               y = row + 0.5 - shift - 0.5 * model->box.cells[1],
+               rate = shear_rate(model, step / model->solvent.interval_steps - 1);
+  return vec3_add(model->flow, (struct vec3){rate * y, 0, 0});
+}
 
 struct phantoms random_solvent_phantoms(const struct model *model, uint64_t step, uint32_t cell)
 {
   const double n = virtual_number(model, step, cell, model->solvent.per_cell);
+  const struct vec3 flow = flow_of(model, step, cell);
   struct vec3 normal;
   if (n == 0.0)
-    return (struct phantoms){0.0, model->flow};
+    return (struct phantoms){0.0, flow};
   virtual_normals(model, step, &cell, 1, &normal);
-  return (struct phantoms){n, virtual_velocity(normal, n, model->flow)};
+  return (struct phantoms){n, virtual_velocity(normal, n, flow)};
 }
 
 /* The place of this cell in the list of occupied ones; it is appended if it is not there yet. The hash is Fibonacci's
@@ -60,7 +75,9 @@ static bool add_phantoms(const struct model *model, struct mpc *c, uint64_t step
       return false;
     }
     if (p.mass > 0.0)
-      c->rule->add_virtual(model, c, step, k, &(struct virtual_members){p.mass, p.velocity, model->flow, 0.0, 1.0});
+      c->rule->add_virtual(
+          model, c, step, k,
+          &(struct virtual_members){p.mass, p.velocity, flow_of(model, step, c->occupied[k]), 0.0, 1.0});
   }
   return true;
 }
@@ -68,11 +85,17 @@ static bool add_phantoms(const struct model *model, struct mpc *c, uint64_t step
 bool random_solvent_collide(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step,
                             struct fault *fault)
 {
+  const struct border *border = mpc->border;
   mpc->shift = grid_shift(model, step);
+  mpc->entered = 0;
+  if (border->enter_vertices)
+    border->enter_vertices(state, model, mpc);
   random_solvent_bin(state, model, mpc->shift, mpc);
   if (!collide_sum(state, model, mpc, step, fault) || !add_phantoms(model, mpc, step, fault))
     return false;
   collide_solve(model, mpc, step);
   collide_turn(state, model, mpc, false);
+  if (border->leave)
+    border->leave(state, model, mpc);
   return true;
 }

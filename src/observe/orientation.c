@@ -2,6 +2,8 @@
  * How fibers lie in space, averaged over the run: second moments of the end-to-end vector R, and of the directions u of
  * bonds. A table "orientation-KIND" with one row for each kind of fiber with bonds. In a flow along x these moments
  * tell how fibers are stretched and turned into the flow.
+ * And how fast the end-to-end vector turns in the plane of x and y, from sample to sample: in shear a fiber tumbles,
+ * and pi over this rate is the time of a half turn.
  */
 #include <math.h>
 #include <stdio.h>
@@ -17,15 +19,24 @@ enum {
   BONDS_ALONG, /* u_x u_x, u_y u_y */
   BONDS_ACROSS,
   BONDS_ANGLE, /* u_x u_y, u_x u_x - u_y u_y: together they make the angle */
+  TURNING,     /* change of the angle of R in the plane of x and y since the sample before, radians; 0 */
   QUANTITIES
 };
 
 enum { LEVELS = 24 };
+enum { MARK, SEEN, INTEGERS }; /* SEEN: 1 after the first sample */
 
 static void size_orientation(const struct observer *observer, const struct model *model, struct observer_size *size)
 {
   (void)observer;
-  size->reals = (size_t)model->kinds * QUANTITIES * LEVELS * BLOCK_LEVEL_DOUBLES;
+  size->reals = (size_t)model->kinds * QUANTITIES * LEVELS * BLOCK_LEVEL_DOUBLES + 2 * (size_t)model->fibers;
+  size->integers = INTEGERS;
+}
+
+/* R_x and R_y of each fiber at the sample before. */
+static double *before_of(const struct observer *o, const struct model *model)
+{
+  return o->real + (size_t)model->kinds * QUANTITIES * LEVELS * BLOCK_LEVEL_DOUBLES;
 }
 
 static struct block_level *blocks_of(const struct observer *o, uint32_t kind, int quantity)
@@ -50,13 +61,23 @@ static bool is_bonded(const struct fiber_kind *kind)
   return kind->count > 0 && kind->vertices > 1;
 }
 
-/* One sample of a kind whose vertices begin at `first`: means over its fibers, and over its bonds. */
-static void add_kind(struct observer *o, const struct view *view, uint32_t k, uint32_t first)
+/* By how much the projection of a vector has turned. before: of the same, replaced. */
+static double turned(struct vec3 r, double before[2])
+{
+  const double angle = atan2(before[0] * r.y - before[1] * r.x, before[0] * r.x + before[1] * r.y);
+  before[0] = r.x, before[1] = r.y;
+  return angle;
+}
+
+/* One sample of a kind whose vertices begin at `first`, and its fibers at number `number`: means over its fibers, and
+ * over its bonds. */
+static void add_kind(struct observer *o, const struct view *view, uint32_t k, uint32_t first, uint32_t number)
 {
   const struct model *model = view->model;
   const struct fiber_kind *kind = &model->kind[k];
   const uint32_t bonds = kind->vertices - !kind->ring;
   struct moments ends = {0, 0, 0, 0}, directions = {0, 0, 0, 0};
+  double *before = before_of(o, model) + 2 * (size_t)number, turning = 0.0;
   for (uint32_t fiber = 0; fiber < kind->count; fiber++, first += kind->vertices) {
     for (uint32_t j = first; j < first + bonds; j++) {
       const struct vec3 r = fiber_bond(view->state, model, j);
@@ -64,31 +85,38 @@ static void add_kind(struct observer *o, const struct view *view, uint32_t k, ui
       add_vector(&directions, r, square > 0.0 ? 1.0 / (square * bonds * kind->count) : 0.0);
     }
     const struct point last = view->state->position[first + kind->vertices - 1];
-    add_vector(&ends, point_difference(last, view->state->position[first]), 1.0 / kind->count);
+    const struct vec3 r = point_difference(last, view->state->position[first]);
+    add_vector(&ends, r, 1.0 / kind->count);
+    turning += turned(r, &before[2 * (size_t)fiber]) / kind->count;
   }
   block_add(blocks_of(o, k, ENDS_ALONG), LEVELS, ends.xx, ends.yy);
   block_add(blocks_of(o, k, ENDS_ACROSS), LEVELS, ends.xy, ends.zz);
   block_add(blocks_of(o, k, BONDS_ALONG), LEVELS, directions.xx, directions.yy);
   block_add(blocks_of(o, k, BONDS_ACROSS), LEVELS, directions.xy, directions.zz);
   block_add(blocks_of(o, k, BONDS_ANGLE), LEVELS, directions.xy, directions.xx - directions.yy);
+  if (o->integer[SEEN])
+    block_add(blocks_of(o, k, TURNING), LEVELS, turning, 0.0);
 }
 
 static void add_orientation(struct observer *o, struct view *view)
 {
-  uint32_t first = 0;
+  uint32_t first = 0, number = 0;
   for (uint32_t k = 0; k < view->model->kinds; k++) {
     const struct fiber_kind *kind = &view->model->kind[k];
     if (is_bonded(kind))
-      add_kind(o, view, k, first);
+      add_kind(o, view, k, first, number);
     first += kind->count * kind->vertices;
+    number += kind->count;
   }
+  o->integer[SEEN] = 1;
 }
 
 /* --- the table --------------------------------------------------------------------------------------------------- */
 
 static const char *const columns[] = {
-    "RxRx", "RxRx_error", "RyRy", "RyRy_error", "RzRz", "RzRz_error", "RxRy", "RxRy_error", "uxux",    "uxux_error",
-    "uyuy", "uyuy_error", "uzuz", "uzuz_error", "uxuy", "uxuy_error", "chi",  "chi_error",  "samples",
+    "RxRx",       "RxRx_error", "RyRy",       "RyRy_error", "RzRz",       "RzRz_error",    "RxRy",
+    "RxRy_error", "uxux",       "uxux_error", "uyuy",       "uyuy_error", "uzuz",          "uzuz_error",
+    "uxuy",       "uxuy_error", "chi",        "chi_error",  "turning",    "turning_error", "samples",
 };
 
 enum { COLUMNS = sizeof columns / sizeof *columns };
@@ -118,6 +146,10 @@ static void fill_row(const struct observer *o, const struct model *model, uint32
   const bool any = angle->count > 0.0;
   *cell++ = any ? 0.5 * degrees * atan2(2.0 * xy, difference) : NAN;
   *cell++ = any ? block_error(angle, LEVELS, degrees * difference / square, -degrees * xy / square) : NAN;
+  const struct block_level *turning = blocks_of(o, k, TURNING);
+  const double each = 1.0 / ((double)o->every * model->time_step); /* 1/t0 */
+  *cell++ = open && turning->count > 0.0 ? each * turning->mean[0] : NAN;
+  *cell++ = open ? block_error(turning, LEVELS, each, 0.0) : NAN;
   *cell = angle->count;
 }
 

@@ -64,14 +64,14 @@ static bool check_boundary(const struct model *m, struct model_error *error)
   const bool walls = m->walls.kind != WALL_ABSENT, shear = m->shear.rate != 0.0, any = walls || shear;
   const struct refusal rows[] = {
       {walls && shear, "shear", "walls and shear are both along y; allowed: one of the two"},
-      {any && model_has_phantoms(m), walls ? "walls" : "shear",
+      {walls && model_has_phantoms(m), "walls",
        "phantoms are drawn about the same velocity everywhere; allowed with bath: particles"},
       {any && !model_has_solvent(m) && m->kinds == 0, walls ? "walls" : "shear",
        "they act on solvent and fibers, and there are none; allowed with solvent particles or fibers"},
       {shear && m->kinds > 0 && m->crossing.forbidden && m->box.cells[0] % m->box.cells[1] != 0, "box",
        "with shear and bonds that must not cross, the edge along x is a whole multiple of that along y, so that images "
        "stay on the lattice; allowed: [2, 1, 1] times any number, for example"},
-      {any && !m->solvent.hydrodynamics, "solvent.hydrodynamics",
+      {any && !m->solvent.hydrodynamics && !model_has_phantoms(m), "solvent.hydrodynamics",
        "velocities that are permuted have no profile; allowed between walls and with shear: true"},
       {any && m->flow.y != 0.0, "flow", "a flow across walls or shear; allowed: a y component of 0"},
       {walls && (m->walls.lower.y != 0.0 || m->walls.upper.y != 0.0), "walls",

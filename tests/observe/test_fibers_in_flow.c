@@ -131,11 +131,42 @@ static void moments_by_hand(void **unused)
   test_end(&r);
 }
 
+/* Two rods that are turned by hand by 0.3 and -0.1 radians from sample to sample. */
+static void turning_by_hand(void **unused)
+{
+  (void)unused;
+  struct model m = test_model(8, 8, 8, 0, 0.01, 2);
+  struct fiber_kind *k = test_add_kind(&m, 2, 2);
+  k->bond_length = 1.0;
+  k->spring = 1e4;
+  m.solvent.collision_interval = 0.0;
+  m.time_step = 1e-3;
+  struct test_run r = test_start(m);
+  struct observe_plan plan = {0};
+  plan.every[OBSERVE_ORIENTATION] = 10;
+  struct observers *o = observers_create(&plan, &r.model);
+  for (int sample = 0; sample < 40; sample++) {
+    const double angle[2] = {0.3 * sample, 2.0 - 0.1 * sample};
+    for (int f = 0; f < 2; f++)
+      r.state.position[2 * f + 1] =
+          point_move(r.state.position[2 * f], (struct vec3){cos(angle[f]), sin(angle[f]), 0.5});
+    r.state.step = 10 * (uint64_t)sample;
+    assert_true(observers_sample(o, &r.model, &r.state, NULL));
+  }
+  struct kept *kept = keep_summaries(o, &r.model);
+  assert_close(kept_value(kept, "orientation-kind1", 0, "turning"), 0.5 * (0.3 - 0.1) / (10 * 1e-3), 1e-8);
+  assert_close(kept_value(kept, "orientation-kind1", 0, "samples"), 40, 0);
+  free(kept);
+  observers_free(o);
+  test_end(&r);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(stress_makes_heat),
       cmocka_unit_test(moments_by_hand),
+      cmocka_unit_test(turning_by_hand),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,93 @@
+"""Fibers in shear: a thin rod (Fokker-Planck) and a Gaussian chain without hydrodynamic interactions (Rouse). Units a0 = kT = m = 1."""
+import functools
+import math
+
+import numpy
+from scipy.linalg import solve_continuous_lyapunov
+from scipy.special import roots_legendre, sph_harm
+
+# --- a thin rod -------------------------------------------------------------------------------------------------------
+
+class RodBasis:
+    """Real spherical harmonics that are even under u -> -u and z -> -z, up to l = most, and what a linear flow along x does to them."""
+
+    def __init__(self, most):
+        x, weight = roots_legendre(2 * most + 6)
+        phi = 2.0 * math.pi * numpy.arange(4 * most + 8) / (4 * most + 8)
+        self.cosine, self.phi = (grid.ravel() for grid in numpy.meshgrid(x, phi, indexing="ij"))
+        self.sine, self.theta = numpy.sqrt(1.0 - self.cosine**2), numpy.arccos(self.cosine)
+        self.weight = numpy.repeat(weight, len(phi)) * 2.0 * math.pi / len(phi)
+        self.pairs = [(l, m) for l in range(0, most + 1, 2) for m in range(-l, l + 1, 2)]
+        turn, dip = -numpy.sin(self.phi)**2, self.sine * self.cosine * numpy.sin(self.phi) * numpy.cos(self.phi)
+        step = 1e-5
+        values, flown = [], []
+        for l, m in self.pairs:
+            values.append(self.harmonic(l, m, 0.0, 0.0))
+            by_theta = (self.harmonic(l, m, step, 0.0) - self.harmonic(l, m, -step, 0.0)) / (2.0 * step)
+            by_phi = (self.harmonic(l, m, 0.0, step) - self.harmonic(l, m, 0.0, -step)) / (2.0 * step)
+            flown.append(dip * by_theta + turn * by_phi)
+        self.values = numpy.array(values)
+        self.flow = (numpy.array(flown) * self.weight) @ self.values.T
+        self.diffusion = numpy.diag([-l * (l + 1.0) for l, _ in self.pairs])
+
+    def harmonic(self, l, m, theta, phi):
+        y = sph_harm(abs(m), l, self.phi + phi, self.theta + theta)
+        return y.real if m == 0 else math.sqrt(2.0) * (y.real if m > 0 else y.imag)
+
+
+@functools.lru_cache
+def rod_basis(most):
+    return RodBasis(most)
+
+
+@functools.lru_cache
+def rod(peclet, most=None):
+    """Moments of the direction u of a thin rod in steady shear, at Pe = rate/D_r: xx, yy, zz, xy, and `turning`, the mean of
+    sin^2 phi = u_y^2/(u_x^2 + u_y^2), so that it turns by -rate * turning per time. D_r lap psi = div(psi u'), u' = rate (1 - uu) e_x u_y."""
+    basis = rod_basis(most or (12 if peclet <= 2 else 30 if peclet <= 20 else 44))
+    matrix = basis.diffusion + peclet * basis.flow
+    coefficients = numpy.zeros(len(basis.pairs))
+    coefficients[0] = 1.0 / math.sqrt(4.0 * math.pi)
+    coefficients[1:] = numpy.linalg.solve(matrix[1:, 1:], -matrix[1:, 0] * coefficients[0])
+    density = basis.weight * (coefficients @ basis.values)
+    ux, uy, uz = basis.sine * numpy.cos(basis.phi), basis.sine * numpy.sin(basis.phi), basis.cosine
+    return {"xx": float(density @ ux**2), "yy": float(density @ uy**2), "zz": float(density @ uz**2), "xy": float(density @ (ux * uy)),
+            "turning": float(density @ numpy.sin(basis.phi)**2)}
+
+
+# --- a Gaussian chain -------------------------------------------------------------------------------------------------
+
+def retention(per_cell, mass):
+    """What a collision by 90 degrees with a Poisson number of phantoms leaves of the velocity of a vertex alone in its cell."""
+    share, total, k = math.exp(-per_cell), 0.0, 0
+    while k < 20 * per_cell + 20:
+        total += share * (mass + k / 3.0) / (mass + k)
+        k += 1
+        share *= per_cell / k
+    return total
+
+
+def friction(per_cell, mass, interval):
+    """kT over the diffusion coefficient of a vertex alone in its cells: D = (kT dt/M) [1/(1 - c) - 1/2]."""
+    kept = retention(per_cell, mass)
+    return mass / (interval * (1.0 / (1.0 - kept) - 0.5))
+
+
+def chain(vertices, spring, mass, drag, rate):
+    """Stationary moments of a Gaussian chain in shear, each vertex with its own friction (Rouse), with inertia: second moments of the end-to-end
+    vector, and its part of the stress, N1 and the shear stress per chain and volume."""
+    matrix = numpy.zeros((vertices, vertices))
+    for i in range(vertices - 1):
+        matrix[i:i + 2, i:i + 2] += spring * numpy.array([[1.0, -1.0], [-1.0, 1.0]])
+    stiffness, modes = numpy.linalg.eigh(matrix)
+    found = {"RxRx": 0.0, "RyRy": 0.0, "RzRz": 0.0, "RxRy": 0.0, "stress": 0.0, "N1": 0.0}
+    for k, ends in zip(stiffness[1:], modes[-1, 1:] - modes[0, 1:]):
+        drift = numpy.array([[0, rate, 1, 0], [0, 0, 0, 1], [-k / mass, 0, -drag / mass, -rate], [0, -k / mass, 0, -drag / mass]])
+        c = solve_continuous_lyapunov(drift, -numpy.diag([0, 0, 2 * drag / mass**2, 2 * drag / mass**2]))
+        found["RxRx"] += ends**2 * c[0, 0]
+        found["RyRy"] += ends**2 * c[1, 1]
+        found["RzRz"] += ends**2 / k
+        found["RxRy"] += ends**2 * c[0, 1]
+        found["stress"] += k * c[0, 1] - mass * c[2, 3]
+        found["N1"] += k * (c[0, 0] - c[1, 1]) - mass * (c[2, 2] - c[3, 3])
+    return found
