@@ -11,6 +11,7 @@
 #include "oracle/edges.h"
 #include "oracle/operators.h"
 #include "oracle/oracle.h"
+#include "oracle/stages.h"
 #include "step.h"
 
 /* --- packs ------------------------------------------------------------------------------------------------------- */
@@ -133,6 +134,8 @@ static bool put_start(struct oracle_stage *g, const struct scene *scene, uint64_
     to[0] = m->solvent.rule;
   oracle_put_solvent_positions(g, "in.solvent");
   oracle_put_solvent_velocities(g, "in.solvent_velocity");
+  if (model_has_dumbbells(m))
+    oracle_put_springs(g, "in.vector", g->state);
   oracle_put_points(g, "in.vertex", g->state->position, g->state->vertices);
   oracle_put_vectors(g, "in.vertex_velocity", g->state->velocity, g->state->vertices);
   return true;

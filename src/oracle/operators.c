@@ -75,8 +75,8 @@ static bool run_random(struct oracle_stage *g)
 
 /* --- all of them ------------------------------------------------------------------------------------------------- */
 
-/* OF_TURNS, OF_EVENTS: of one kind of crossing rule; OF_SRD, OF_ANDERSEN: of one collision rule; OF_PERIODIC,
- * OF_WALLS, OF_SHEAR: of one boundary along y; OF_WAVE: of an oscillating shear */
+/* OF_TURNS, OF_EVENTS: of one kind of crossing rule; OF_SRD, OF_ANDERSEN: of one collision rule; OF_PERIODIC_POINTS,
+ * OF_WALLS, OF_SHEAR: of one boundary along y; OF_WAVE: of an oscillating shear; POINTS, DUMBBELLS: of one fluid */
 enum of {
   OF_ALL,
   OF_FIBERS,
@@ -85,13 +85,19 @@ enum of {
   OF_SOLVENT,
   OF_SRD,
   OF_ANDERSEN,
-  OF_PERIODIC,
+  OF_PERIODIC_POINTS,
   OF_CELLS,
   OF_WALLS,
   OF_SHEAR,
   OF_WAVE,
   OF_FLOW,
-  OF_HOMOGENEOUS
+  OF_HOMOGENEOUS,
+  OF_WALL_POINTS,
+  OF_SHEAR_POINTS,
+  OF_DUMBBELLS,
+  OF_PERIODIC_DUMBBELLS,
+  OF_WALL_DUMBBELLS,
+  OF_SHEAR_DUMBBELLS
 };
 
 static const struct operation {
@@ -117,9 +123,13 @@ static const struct operation {
     {"kick", oracle_run_kick, NULL, OF_FIBERS},
     {"wall_motion", oracle_run_wall_motion, NULL, OF_WALLS},
     {"shear_motion", oracle_run_shear_motion, NULL, OF_SHEAR},
-    {"stream", oracle_run_stream, NULL, OF_PERIODIC},
-    {"wall_stream", oracle_run_wall_stream, NULL, OF_WALLS},
-    {"shear_stream", oracle_run_shear_stream, NULL, OF_SHEAR},
+    {"dumbbell_start", oracle_run_dumbbell_start, NULL, OF_DUMBBELLS},
+    {"stream", oracle_run_stream, NULL, OF_PERIODIC_POINTS},
+    {"wall_stream", oracle_run_wall_stream, NULL, OF_WALL_POINTS},
+    {"shear_stream", oracle_run_shear_stream, NULL, OF_SHEAR_POINTS},
+    {"dumbbell_stream", oracle_run_dumbbell_stream, NULL, OF_PERIODIC_DUMBBELLS},
+    {"dumbbell_wall_stream", oracle_run_dumbbell_wall_stream, NULL, OF_WALL_DUMBBELLS},
+    {"dumbbell_shear_stream", oracle_run_dumbbell_shear_stream, NULL, OF_SHEAR_DUMBBELLS},
     {"shift", oracle_run_shift, NULL, OF_SOLVENT},
     {"enter", oracle_run_enter, NULL, OF_SHEAR},
     {"bin", oracle_run_bin, oracle_edges_bin, OF_CELLS},
@@ -138,7 +148,7 @@ static const struct operation {
     {"account", oracle_run_account, NULL, OF_WALLS},
     {"leave", oracle_run_leave, NULL, OF_SHEAR},
     {"affine_kick", oracle_run_affine_kick, NULL, OF_WAVE},
-    {"swap", oracle_run_swap, NULL, OF_PERIODIC},
+    {"swap", oracle_run_swap, NULL, OF_PERIODIC_POINTS},
 };
 
 /* True if a step of this model has the operation. */
@@ -146,12 +156,19 @@ static bool is_of(enum of of, const struct model *m)
 {
   const bool events = oracle_has_events(m), solvent = model_has_solvent(m);
   const bool walls = model_has_walls(m), shear = model_is_sheared(m), periodic = !walls && !shear;
+  const bool dumbbells = model_has_dumbbells(m);
   const bool holds[] = {[OF_ALL] = true,
                         [OF_FIBERS] = periodic,
                         [OF_TURNS] = periodic && !events,
                         [OF_EVENTS] = events,
                         [OF_SOLVENT] = solvent,
-                        [OF_PERIODIC] = solvent && periodic,
+                        [OF_PERIODIC_POINTS] = solvent && periodic && !dumbbells,
+                        [OF_WALL_POINTS] = solvent && walls && !dumbbells,
+                        [OF_SHEAR_POINTS] = solvent && shear && !dumbbells,
+                        [OF_DUMBBELLS] = dumbbells,
+                        [OF_PERIODIC_DUMBBELLS] = dumbbells && periodic,
+                        [OF_WALL_DUMBBELLS] = dumbbells && walls,
+                        [OF_SHEAR_DUMBBELLS] = dumbbells && shear,
                         [OF_CELLS] = solvent && !walls,
                         [OF_WALLS] = solvent && walls,
                         [OF_SHEAR] = solvent && shear,
@@ -194,11 +211,11 @@ int oracle_operator_rank(const char *name)
 /* Tables of one operator, each made of those before it; what is not here comes last. */
 static int table_rank(const char *name)
 {
-  static const char *const names[] = {"out.word",   "out.uniform",  "out.normal",  "out.filled",   "out.active",
-                                      "out.center", "out.axis",     "out.crosses", "out.tick",     "out.answer",
-                                      "out.event",  "out.hit",      "out.order",   "out.position", "out.momentum",
-                                      "out.load",   "out.relative", "out.factor",  "out.solvent",  "out.vertex",
-                                      "out.force",  "out.velocity"};
+  static const char *const names[] = {"out.word",     "out.uniform", "out.normal",   "out.filled",   "out.active",
+                                      "out.center",   "out.axis",    "out.crosses",  "out.tick",     "out.answer",
+                                      "out.event",    "out.hit",     "out.order",    "out.position", "out.vector",
+                                      "out.momentum", "out.load",    "out.relative", "out.factor",   "out.solvent",
+                                      "out.vertex",   "out.force",   "out.velocity"};
   int rank = 0;
   while (rank < (int)(sizeof names / sizeof *names) && strcmp(names[rank], name) != 0)
     rank++;
@@ -252,4 +269,6 @@ void oracle_put_model(struct pack *pack, const struct model *m)
   put_vertices(&g, m);
   if (model_has_walls(m) || model_is_sheared(m))
     oracle_put_flow(&g);
+  if (model_has_dumbbells(m))
+    oracle_put_dumbbells(&g);
 }

@@ -49,11 +49,21 @@ bool oracle_run_leave(struct oracle_stage *stage);
 bool oracle_run_affine_kick(struct oracle_stage *stage);
 bool oracle_run_rescale_layers(struct oracle_stage *stage);
 
+/* Of dumbbells (stages_flow.c). */
+bool oracle_run_dumbbell_start(struct oracle_stage *stage);
+bool oracle_run_dumbbell_stream(struct oracle_stage *stage);
+bool oracle_run_dumbbell_wall_stream(struct oracle_stage *stage);
+bool oracle_run_dumbbell_shear_stream(struct oracle_stage *stage);
+
 /* A thermostat on the cells as they are; its factors are not used further on. */
 bool oracle_run_thermostat(struct oracle_stage *stage, enum thermostat_kind kind);
 
 /* Tables of the model that only scenes with walls or shear have. */
 void oracle_put_flow(struct oracle_stage *g);
+
+/* Of the model and of a start, where there are dumbbells. */
+void oracle_put_dumbbells(struct oracle_stage *g);
+void oracle_put_springs(struct oracle_stage *g, const char *name, const struct state *state);
 
 /* The sweep of this number, for fraction * dt, of the state as it is. */
 bool oracle_sweep_for(struct oracle_stage *stage, double fraction, uint32_t sweep);

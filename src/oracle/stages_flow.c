@@ -1,5 +1,5 @@
-/* The operators of a solvent between walls and in a sheared box, each alone: docs/porting.md, *Walls* and *Shear*. Such
- * scenes have no fibers. */
+/* The operators of a solvent between walls and in a sheared box, each alone, and those of dumbbells: docs/porting.md,
+ * *Walls and shear* and *Dumbbells*. Scenes of walls and shear have no fibers. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -219,6 +219,83 @@ bool oracle_run_affine_kick(struct oracle_stage *g)
   drive_affine_kick(g->state, g->model);
   oracle_put_solvent_velocities(g, "out.velocity");
   return true;
+}
+
+/* --- dumbbells ---------------------------------------------------------------------------------------------------- */
+
+/* Vectors of dumbbells, by number. */
+void oracle_put_springs(struct oracle_stage *g, const char *name, const struct state *state)
+{
+  const struct dumbbells *d = &state->dumbbells;
+  int64_t *to = oracle_put_integers(g, name, "x y z", d->n);
+  for (uint32_t p = 0; to && p < d->n; p++) {
+    int64_t *row = &to[3 * (size_t)d->id[p]];
+    row[0] = d->x[p], row[1] = d->y[p], row[2] = d->z[p];
+  }
+}
+
+/* A state of its own: particles stand in the order of their numbers. */
+bool oracle_run_dumbbell_start(struct oracle_stage *g)
+{
+  struct state fresh = {0};
+  if (!state_alloc(&fresh, g->model))
+    return fault_no_memory(&g->work->fault, g->state->step + 1);
+  fluid_of(g->model)->start(&fresh, g->model);
+  const uint32_t n = 2 * fresh.dumbbells.n;
+  int64_t *to = oracle_put_integers(g, "out.position", "x y z", n);
+  for (uint32_t i = 0; to && i < n; i++)
+    to[3 * i] = fresh.solvent.x[i], to[3 * i + 1] = fresh.solvent.y[i], to[3 * i + 2] = fresh.solvent.z[i];
+  oracle_put_springs(g, "out.vector", &fresh);
+  state_free(&fresh);
+  return true;
+}
+
+static bool fly_dumbbells(struct oracle_stage *g)
+{
+  state_solvent_slots(g->state, g->slot);
+  oracle_put_number(g, "in.time", "dt", 0.5 * g->state->solvent_lag * g->model->time_step);
+  put_particles(g, "in.position", "in.velocity");
+  oracle_put_springs(g, "in.vector", g->state);
+  const bool ok = fluid_stream(g->state, g->model, &g->work->fault);
+  put_particles(g, "out.position", "out.velocity");
+  oracle_put_springs(g, "out.vector", g->state);
+  return ok;
+}
+
+bool oracle_run_dumbbell_stream(struct oracle_stage *g)
+{
+  return fly_dumbbells(g);
+}
+
+bool oracle_run_dumbbell_wall_stream(struct oracle_stage *g)
+{
+  const struct point *account = &g->state->wall_momentum[account_row(ACCOUNT_HITS, WALL_LOWER)];
+  const struct point before[WALLS] = {account[WALL_LOWER], account[WALL_UPPER]};
+  put_walls(g, shear_wall_velocity, interval_now(g));
+  const bool ok = fly_dumbbells(g);
+  put_given(g, ACCOUNT_HITS, before);
+  return ok;
+}
+
+bool oracle_run_dumbbell_shear_stream(struct oracle_stage *g)
+{
+  int64_t *begin = oracle_put_integers(g, "in.begin", "offset", 1);
+  if (begin)
+    *begin = shear_offset(g->model, g->state->solvent_time);
+  put_slide(g, g->state->solvent_time + g->state->solvent_lag, interval_now(g));
+  return fly_dumbbells(g);
+}
+
+void oracle_put_dumbbells(struct oracle_stage *g)
+{
+  const struct dumbbell_model *d = &g->model->dumbbells;
+  int64_t *number = oracle_put_integers(g, "in.dumbbells", "number", 1);
+  if (number)
+    *number = d->pairs;
+  double *to = oracle_put_reals(g, "in.spring", "spring frequency depth range", 1);
+  const double spring[4] = {d->spring, d->frequency, d->depth, d->range};
+  if (to)
+    memcpy(to, spring, sizeof spring);
 }
 
 /* --- layers ------------------------------------------------------------------------------------------------------- */

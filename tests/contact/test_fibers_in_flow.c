@@ -1,6 +1,6 @@
 /* Fibers between walls and in a sheared box (contact/drift.h, contact/wall.h), under every crossing rule. */
 #include "contact/drift.h"
-#include "contact/rings.h"
+#include "contact/rings_in_flow.h"
 #include "contact/rule.h"
 #include "contact/takeoff.h"
 #include "fiber/force.h"
@@ -8,40 +8,6 @@
 #include "system/account.h"
 
 /* --- links ------------------------------------------------------------------------------------------------------- */
-
-/* The state of a sheared run in sheared coordinates, in which images are the box's own. */
-static struct test_run in_sheared_coordinates(const struct test_run *r)
-{
-  struct test_run copy = *r;
-  const struct drift_frame f = drift_frame_now(&r->state, &r->model, 1.0, 0, true);
-  copy.state.position = malloc(r->state.vertices * sizeof *copy.state.position);
-  for (uint32_t i = 0; i < r->state.vertices; i++)
-    copy.state.position[i] = f.sheared ? drift_enter(&f, r->state.position[i]) : r->state.position[i];
-  return copy;
-}
-
-/* Of each pair of rings: number of images in which they are linked, and the sum of their linking numbers and of the
- * squares. Which image is which changes as fibers are taken back into the box. */
-struct bonds_of_rings {
-  int64_t of[20][20][3];
-  uint32_t links;
-};
-
-static void judge_links(const struct test_run *r, struct exact_test *x, struct bonds_of_rings *sums)
-{
-  struct test_run straight = in_sheared_coordinates(r);
-  struct links *links = malloc(sizeof *links);
-  memset(sums, 0, sizeof *sums);
-  find_links(&straight, x, links);
-  for (uint32_t k = 0; k < links->n; k++) {
-    const struct link *l = &links->link[k];
-    int64_t *of = sums->of[l->ring][l->other];
-    of[0]++, of[1] += l->twice, of[2] += l->twice * l->twice;
-  }
-  sums->links = links->n;
-  free(links);
-  free(straight.state.position);
-}
 
 /* Number of looks, one after each 50 steps, at which links had changed. */
 static uint32_t changed_links(struct test_run *r, uint64_t steps)

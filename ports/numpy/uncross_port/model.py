@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from . import dumbbells as pairs
 from . import flow as flows
 
 
@@ -30,6 +31,7 @@ class Model:
     bending: np.ndarray
     constant_force: np.ndarray
     flow: flows.Flow | None = None  # walls or shear
+    dumbbells: pairs.Dumbbells | None = None
 
     @property
     def rows(self):
@@ -70,4 +72,5 @@ def from_tables(tables):
         bending=vertex[:, 3],
         constant_force=vertex[:, 4:7],
         flow=flows.from_tables(tables),
+        dumbbells=pairs.from_tables(tables),
     )

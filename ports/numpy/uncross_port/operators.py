@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from . import events, fiber, flow, random, solvent
+from . import dumbbells, events, fiber, flow, random, solvent
 from . import model as models
 from . import sweep as sweeps
 from .pack import Tables
@@ -231,6 +231,30 @@ def affine_kick(model, step, given):
     return {"velocity": flow.affine_kick(model, scalar(given["change"]), given["position"], given["velocity"])}
 
 
+def dumbbell_start(model, step, given):
+    return dict(zip(("position", "vector"), dumbbells.start(model)))
+
+
+def pairs_of(given):
+    return (given["position"], given["velocity"], given["vector"]), scalar(given["time"])
+
+
+MOVED = "position", "velocity", "vector"
+
+
+def dumbbell_stream(model, step, given):
+    return dict(zip(MOVED, dumbbells.stream(model, *pairs_of(given), solvent.stream)))
+
+
+def dumbbell_wall_stream(model, step, given):
+    return dict(zip((*MOVED, "given"), dumbbells.wall_stream(model, given["wall"], *pairs_of(given))))
+
+
+def dumbbell_shear_stream(model, step, given):
+    slide = int(scalar(given["begin"])), int(scalar(given["offset"])), float(scalar(given["speed"]))
+    return dict(zip(MOVED, dumbbells.shear_stream(model, *slide, *pairs_of(given))))
+
+
 def rescale_layers(model, step, given):
     relative = solvent.relative_energy(model, *members(model, given), given["center"], given["load"])
     factor = flow.rescale_layers(model, given["load"], relative, given["filled"])
@@ -238,6 +262,10 @@ def rescale_layers(model, step, given):
 
 
 OPERATORS = {
+    "dumbbell_start": dumbbell_start,
+    "dumbbell_stream": dumbbell_stream,
+    "dumbbell_wall_stream": dumbbell_wall_stream,
+    "dumbbell_shear_stream": dumbbell_shear_stream,
     "wall_motion": wall_motion,
     "shear_motion": shear_motion,
     "wall_stream": wall_stream,

@@ -50,6 +50,9 @@ COLUMNS |= {
     "offset": "offset",
     "speed": "speed",
     "change": "rate",
+    "dumbbells": "number",
+    "spring": "spring frequency depth range",
+    "begin": "offset",
 }
 COLUMNS_AT = {
     ("swap", "out.order"): "particle",

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import xxhash
 
-from . import events, fiber, flow, operators, solvent, sweep
+from . import dumbbells, events, fiber, flow, operators, solvent, sweep
 from .lattice import UNIT, dot
 
 # Stages of a step: name and duration in steps. A collision has none; other steps are drift, force, kick.
@@ -48,6 +48,7 @@ class System:
         self.solvent, self.solvent_velocity = start["solvent"], start["solvent_velocity"]
         self.vertex, self.vertex_velocity = start["vertex"], start["vertex_velocity"]
         self.finished, self.lag = (int(x) for x in start["counters"][0])
+        self.vector = start["vector"] if model.dumbbells else None
         self.force = None
         self.event_driven = bool(start["rule"].any())
         self.andersen = bool(start["collision"].any())
@@ -58,7 +59,9 @@ class System:
 
     def stream(self):
         model, particles = self.model, (self.solvent, self.solvent_velocity)
-        if self.lag:
+        if self.lag and model.dumbbells:
+            self.stream_dumbbells()
+        elif self.lag:
             time = self.lag * (0.5 * self.model.dt)
             end = self.streamed + self.lag
             if model.flow is None:
@@ -72,6 +75,22 @@ class System:
                 particles = flow.shear_stream(model, *slide, *particles, time)
             self.solvent, self.solvent_velocity = particles
             self.lag, self.streamed = 0, end
+
+    def stream_dumbbells(self):
+        model, given = self.model, (self.solvent, self.solvent_velocity, self.vector)
+        time, end = self.lag * (0.5 * self.model.dt), self.streamed + self.lag
+        if model.flow is None:
+            moved = dumbbells.stream(model, given, time, solvent.stream)
+        elif model.flow.walls:
+            wall = flow.wall_velocity(model.flow, flow.during(flow.interval_at(model, self.streamed)))
+            *moved, gain = dumbbells.wall_stream(model, wall, given, time)
+            self.account[:2] += gain
+        else:
+            offsets = (flow.shear_offset(model, at) for at in (self.streamed, end))
+            speed = self.slide_speed(flow.interval_at(model, self.streamed))
+            moved = dumbbells.shear_stream(model, *offsets, speed, given, time)
+        self.solvent, self.solvent_velocity, self.vector = moved
+        self.lag, self.streamed = 0, end
 
     def slide_speed(self, interval):
         return flow.shear_rate(self.model.flow, interval) * float(self.model.box[1])
@@ -174,9 +193,13 @@ class System:
     def state_hash(self):
         counts = self.finished, self.lag, len(self.solvent), len(self.vertex)
         walls = self.account is not None
-        digest = xxhash.xxh64(struct.pack("<4Q", *counts) + (struct.pack("<Q", 4) if walls else b""))
+        optional = [len(self.vector)] if self.vector is not None else []
+        optional += [4] if walls else []
+        digest = xxhash.xxh64(struct.pack(f"<{4 + len(optional)}Q", *counts, *optional))
         for position, velocity in ((self.solvent, self.solvent_velocity), (self.vertex, self.vertex_velocity)):
             digest.update(np.hstack([position, velocity.view(np.int64)]).astype("<i8").tobytes())
+        if self.vector is not None:
+            digest.update(self.vector.astype("<i8").tobytes())
         if walls:
             digest.update(self.account.astype("<i8").tobytes())
         return digest.hexdigest()
