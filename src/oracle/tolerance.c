@@ -393,6 +393,18 @@ static const struct {
   const char *operator_name, *table;
   tolerance_rule *tolerance;
 } rules[] = {
+    {"dumbbell_start", "out.position", tolerance_drawn_place},
+    {"dumbbell_start", "out.vector", tolerance_drawn_place},
+    {"dumbbell_stream", "out.position", tolerance_swing_position},
+    {"dumbbell_stream", "out.velocity", tolerance_swing_velocity},
+    {"dumbbell_stream", "out.vector", tolerance_swing_position},
+    {"dumbbell_wall_stream", "out.position", tolerance_swing_position},
+    {"dumbbell_wall_stream", "out.velocity", tolerance_swing_velocity},
+    {"dumbbell_wall_stream", "out.vector", tolerance_swing_position},
+    {"dumbbell_wall_stream", "out.given", tolerance_swing_given},
+    {"dumbbell_shear_stream", "out.position", tolerance_swing_position},
+    {"dumbbell_shear_stream", "out.velocity", tolerance_swing_velocity},
+    {"dumbbell_shear_stream", "out.vector", tolerance_swing_position},
     {"wall_motion", "out.flight", tolerance_motion},
     {"wall_motion", "out.end", tolerance_motion},
     {"shear_motion", "out.rate", tolerance_motion},

@@ -1,8 +1,9 @@
-/* Tolerances of the operators of walls and of shear: docs/porting.md. */
+/* Tolerances of the operators of walls, of shear and of dumbbells: docs/porting.md. */
 #include <math.h>
 
 #include "base/lattice.h"
 #include "mpc/cell.h"
+#include "oracle/patterns.h"
 #include "oracle/tolerance.h"
 
 static double fastest(const struct oracle_pair *p)
@@ -86,4 +87,54 @@ double tolerance_account_given(const struct oracle_pair *p, uint32_t row, uint32
   (void)row, (void)column;
   return n + CELL_MOMENTUM_SCALE * n * most_virtual(p) * 100.0 * tolerance_size_of(p, "in.factor") *
                  (virtual_speed(p) + tolerance_size_of(p, "in.center")) * p->rounding;
+}
+
+/* --- dumbbells ---------------------------------------------------------------------------------------------------- */
+
+static double longest_vector(const struct oracle_pair *p)
+{
+  return tolerance_size_of(p, "in.vector") * LATTICE_UNIT;
+}
+
+/* Speeds that occur in a flight: w times the vector is one. */
+static double fastest_swing(const struct oracle_pair *p)
+{
+  const double pull = tolerance_largest(oracle_model(p, "in.spring"), 1, 3) * tolerance_size_of(p, "in.time");
+  return fastest(p) + tolerance_largest(oracle_model(p, "in.spring"), 1, 2) * longest_vector(p) + pull;
+}
+
+/* A hit may be found a few lattice units early or late: a port may look for it in its own way. Its time is then off by
+ * that over the rate at which the particle comes, and the velocity by the acceleration times it. */
+static double hit_units(const struct oracle_pair *p)
+{
+  return oracle_sibling(p, "in.wall") ? 4096.0 : 0.0;
+}
+
+/* Each component is a normal deviate of at most 9 over sqrt(K), halved, and two roundings. */
+double tolerance_drawn_place(const struct oracle_pair *p, uint32_t row, uint32_t column)
+{
+  const double spring = tolerance_largest(oracle_model(p, "in.spring"), 0, 1);
+  (void)row, (void)column;
+  return 2.0 + LATTICE_PER_A0 * 48.0 * 9.0 / sqrt(fmax(spring, 0x1p-40)) * p->rounding;
+}
+
+double tolerance_swing_position(const struct oracle_pair *p, uint32_t row, uint32_t column)
+{
+  const double path = longest_vector(p) + fastest_swing(p) * tolerance_size_of(p, "in.time");
+  (void)row, (void)column;
+  return 2.0 + hit_units(p) + LATTICE_PER_A0 * 64.0 * path * p->rounding;
+}
+
+double tolerance_swing_velocity(const struct oracle_pair *p, uint32_t row, uint32_t column)
+{
+  const double frequency = tolerance_largest(oracle_model(p, "in.spring"), 1, 2);
+  (void)row, (void)column;
+  return 64.0 * fastest_swing(p) * p->rounding + frequency * hit_units(p) * LATTICE_UNIT;
+}
+
+double tolerance_swing_given(const struct oracle_pair *p, uint32_t row, uint32_t column)
+{
+  const struct pack_table *particles = oracle_sibling(p, "in.position");
+  const double n = particles ? particles->rows : 0.0;
+  return 4.0 * n * (1.0 + CELL_MOMENTUM_SCALE * tolerance_swing_velocity(p, row, column));
 }

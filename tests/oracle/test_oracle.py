@@ -13,7 +13,8 @@ import unittest
 TOP = pathlib.Path(__file__).resolve().parents[2]
 DATA = TOP / "reference-data"
 UNCROSS = os.environ.get("UNCROSS", str(TOP / "build/uncross"))
-FLOWS = ("walls", "paper", "slip", "shear", "wave")
+FLOWS = tuple(f"flow/{name}" for name in ("walls", "paper", "slip", "shear", "wave"))
+DUMBBELLS = tuple(f"dumbbells/{name}" for name in ("periodic", "walls", "slip", "shear"))
 SCENES = ("dense", "mixed", "coarse", "events", "andersen")
 CELL = 1 << 40  # lattice units
 
