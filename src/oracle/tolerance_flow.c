@@ -96,11 +96,16 @@ static double longest_vector(const struct oracle_pair *p)
   return tolerance_size_of(p, "in.vector") * LATTICE_UNIT;
 }
 
-/* Speeds that occur in a flight: w times the vector is one. */
+static double of_spring(const struct oracle_pair *p, uint32_t column)
+{
+  return tolerance_largest(oracle_model(p, "in.spring"), column, column + 1);
+}
+
+/* Speeds that occur in a flight: w times the vector is one, and what the potential of the walls adds. */
 static double fastest_swing(const struct oracle_pair *p)
 {
-  const double pull = tolerance_largest(oracle_model(p, "in.spring"), 1, 3) * tolerance_size_of(p, "in.time");
-  return fastest(p) + tolerance_largest(oracle_model(p, "in.spring"), 1, 2) * longest_vector(p) + pull;
+  const double pull = 0.5 * of_spring(p, 2) * sqrt(of_spring(p, 0)) / fmax(of_spring(p, 3), 0x1p-40);
+  return fastest(p) + of_spring(p, 1) * longest_vector(p) + pull * tolerance_size_of(p, "in.time");
 }
 
 /* A hit may be found a few lattice units early or late: a port may look for it in its own way. Its time is then off by
@@ -113,7 +118,7 @@ static double hit_units(const struct oracle_pair *p)
 /* Each component is a normal deviate of at most 9 over sqrt(K), halved, and two roundings. */
 double tolerance_drawn_place(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
-  const double spring = tolerance_largest(oracle_model(p, "in.spring"), 0, 1);
+  const double spring = of_spring(p, 0);
   (void)row, (void)column;
   return 2.0 + LATTICE_PER_A0 * 48.0 * 9.0 / sqrt(fmax(spring, 0x1p-40)) * p->rounding;
 }
@@ -127,9 +132,8 @@ double tolerance_swing_position(const struct oracle_pair *p, uint32_t row, uint3
 
 double tolerance_swing_velocity(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
-  const double frequency = tolerance_largest(oracle_model(p, "in.spring"), 1, 2);
   (void)row, (void)column;
-  return 64.0 * fastest_swing(p) * p->rounding + frequency * hit_units(p) * LATTICE_UNIT;
+  return 64.0 * fastest_swing(p) * p->rounding + of_spring(p, 1) * hit_units(p) * LATTICE_UNIT;
 }
 
 double tolerance_swing_given(const struct oracle_pair *p, uint32_t row, uint32_t column)

@@ -42,13 +42,15 @@ class System:
     """A state and the stages that change it. Positions in lattice units; `lag`: half steps the solvent is behind."""
 
     account = None  # what walls have given: in hits, in collisions
+    vector = None  # of dumbbells
 
     def __init__(self, model, start):
         self.model, self.scene = model, run_of(start["run"][0])
         self.solvent, self.solvent_velocity = start["solvent"], start["solvent_velocity"]
         self.vertex, self.vertex_velocity = start["vertex"], start["vertex_velocity"]
         self.finished, self.lag = (int(x) for x in start["counters"][0])
-        self.vector = start["vector"] if model.dumbbells else None
+        if model.dumbbells is not None:
+            self.vector = start["vector"]
         self.force = None
         self.event_driven = bool(start["rule"].any())
         self.andersen = bool(start["collision"].any())
