@@ -276,6 +276,8 @@ bool checkpoint_check(const struct state *state, const struct checkpoint_summary
 {
   struct model then = checkpoint_model(summary);
   then.next = next;
+  if (then.box.boundary[1] == BOUNDARY_PERIODIC) /* a file does not say whether images slide: vectors may lead to any */
+    box_bound(&then.box, 1, BOUNDARY_SHEAR);
   struct fault fault = {.code = FAULT_NONE};
   char why[512];
   const uint64_t hash = state_hash(state);

@@ -215,6 +215,16 @@ same 0 "$code" "a bath of phantoms takes any snapshot along"
 for example in "$top"/scenes/*.yaml; do
   "$uncross" check "$example" >"$dir/out" 2>"$dir/err"
   ok $? "check scenes/${example##*/}"
+
+  # Each goes on from a checkpoint as if it had not stopped.
+  name=$(basename "$example" .yaml)
+  short=(--set observe.from=0 --quiet)
+  "$uncross" run "$example" --out "$dir/$name" "${short[@]}" --steps 24 &&
+    "$uncross" run "$example" --out "$dir/$name-parts" "${short[@]}" --steps 13 &&
+    "$uncross" run "$example" --out "$dir/$name-parts" "${short[@]}" --steps 24 --resume
+  ok $? "scenes/${example##*/} goes on"
+  same "$(hash_of "$dir/$name")" "$(hash_of "$dir/$name-parts")" "scenes/${example##*/} in two parts"
+  rm -rf "${dir:?}/$name" "$dir/$name-parts"
 done
 for command in "info $dir/plain/checkpoint.h5" "info $dir/observed/trajectory.h5" "info $dir/plain/run.json" \
   "info $dir/observed/conserved.csv" "export $dir/observed/trajectory.h5" "--help" "--version"; do

@@ -292,7 +292,7 @@ static void cadence(void **unused)
 {
   (void)unused;
   struct outcome o = observed_run(0);
-  const struct model model = suspension();
+  struct model model = suspension();
   size_t rows[OBSERVABLES] = {0}, at = 0;
   while (at < o.rows->count) {
     const enum observable which = (enum observable)o.rows->value[at];
@@ -310,6 +310,7 @@ static void cadence(void **unused)
   assert_close(kept_value(o.kept, "statics-kind1", 0, "samples"), 76, 0);
   assert_close(kept_value(o.kept, "dynamics-kind2", 0, "intervals"), 75, 0);
   end_outcome(&o);
+  model_free(&model);
 }
 
 static void nobody_asked(void **unused)
