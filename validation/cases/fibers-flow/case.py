@@ -23,7 +23,7 @@ fibers:
 crossing: {{forbidden: false}}
 observe: {{from: 10000, orientation: {{every: 20}}, stress: {{every: 20}}}}
 """
-CHAIN_RATES = {"campaign": (0.003, 0.01, 0.03), "quick": (0.01,)}
+CHAIN_RATES = {"campaign": (0.003, 0.006, 0.01), "quick": (0.01,)}
 
 ROD_SCENE = """box: [12, 12, 12]
 time_step: 0.01
@@ -87,7 +87,8 @@ def runs(tier):
         found += [Run("rest-free", scene=REST_SCENE, steps=1000000, hours=1000000 * 150e-6 / 3600.0)]
         found += [suspension(density, SUSPENSION_RATES[0], forbidden, 40.0) for density in SUSPENSIONS for forbidden in (True, False)]
         for run in found:
-            run.goals, run.priority = ((run.steps // 4, 0),), 1  # all coarse before one is fine
+            first = int(run.scene.split("{from: ")[1].split(",")[0]) if "{from: " in run.scene else 0
+            run.goals, run.priority = ((first + (run.steps - first) // 4, 0),), 1  # all coarse before one is fine
     for number, run in enumerate(found):
         run.seed = {"quick": 500, "campaign": 600}[tier] + number
     return found
