@@ -27,14 +27,15 @@ CHAIN_RATES = {"campaign": (0.003, 0.006, 0.01), "quick": (0.01,)}
 
 ROD_SCENE = """box: [12, 12, 12]
 time_step: 0.01
-solvent: {{per_cell: 5, collision_interval: 0.02, rule: at-a}}
+solvent: {{per_cell: 5, collision_interval: 0.02, rule: {rule}}}
 {shear}
 fibers:
   - {{name: rod, count: 16, vertices: 8, mass: 5, bond_length: 0.5, spring: 400, bending: 100}}
 crossing: {{forbidden: false}}
 observe: {{from: 30000, {observers}}}
 """
-ROD_RATES = {"1": 0.00124, "10": 0.0124, "50": 0.062}  # 1/t0, by the Peclet number that is aimed at
+ROD_RATES = {"1": 0.00124, "10": 0.0124, "50": 0.062}  # 1/t0, by the Peclet number that is aimed at; at-a
+ROD_RATES_PLUS = {"10": 0.028, "50": 0.14}  # the same for at+a
 
 SUSPENSION_SCENE = """box: [16, 16, 16]
 time_step: 0.01
@@ -62,10 +63,12 @@ def chain(rate, steps):
     return Run(f"chain-{rate:g}", scene=text, steps=steps, hours=steps * 1200 * 300e-9 / 3600.0)
 
 
-def rod(peclet, steps):
-    shear = f"shear: {{rate: {ROD_RATES[peclet]}}}" if peclet else ""
+def rod(peclet, steps, rule="at-a"):
+    plus = rule == "at+a"
+    shear = f"shear: {{rate: {(ROD_RATES_PLUS if plus else ROD_RATES)[peclet]}}}" if peclet else ""
     observers = "orientation: {every: 20}" if peclet else "orientation: {every: 50}, dynamics: {every: 100, longest_lag: 100000}"
-    return Run(f"rod-{peclet or 'rest'}", scene=ROD_SCENE.format(shear=shear, observers=observers), steps=steps, hours=steps * 150e-6 / 3600.0)
+    return Run(f"rod-{peclet or 'rest'}{'-plus' if plus else ''}", scene=ROD_SCENE.format(shear=shear, observers=observers, rule=rule), steps=steps,
+               hours=steps * (350e-6 if plus else 150e-6) / 3600.0)
 
 
 def suspension(density, rate, forbidden, strain):
@@ -79,13 +82,14 @@ def suspension(density, rate, forbidden, strain):
 
 def runs(tier):
     if tier == "quick":
-        found = [chain(rate, 40000) for rate in CHAIN_RATES["quick"]] + [rod(None, 120000), rod("10", 120000)]
+        found = [chain(rate, 40000) for rate in CHAIN_RATES["quick"]] + [rod(None, 70000, "at+a"), rod("10", 70000, "at+a")]
     else:
         found = [chain(rate, 600000) for rate in CHAIN_RATES["campaign"]]
         found += [rod(None, 4000000)] + [rod(peclet, 3000000) for peclet in ROD_RATES]
         found += [suspension(density, rate, forbidden, 40.0) for density in SUSPENSIONS for rate in SUSPENSION_RATES[1:] for forbidden in (True, False)]
         found += [Run("rest-free", scene=REST_SCENE, steps=1000000, hours=1000000 * 150e-6 / 3600.0)]
         found += [suspension(density, SUSPENSION_RATES[0], forbidden, 40.0) for density in SUSPENSIONS for forbidden in (True, False)]
+        found += [rod(None, 3000000, "at+a")] + [rod(peclet, 3000000, "at+a") for peclet in ROD_RATES_PLUS]
         for run in found:
             first = int(run.scene.split("{from: ")[1].split(",")[0]) if "{from: " in run.scene else 0
             run.goals, run.priority = ((first + (run.steps - first) // 4, 0),), 1  # all coarse before one is fine
@@ -149,13 +153,16 @@ def rotation(results, run="rod-rest", kind="rod", first=50.0, last=100.0):
     return float(-math.log(c[best]) / (2.0 * t[best])), float(error[best] / (2.0 * c[best] * t[best]))
 
 
-def rod_verdicts(results, peclet):
+def rod_verdicts(results, peclet, rule):
     """The orientation of a thin rod at Pe = rate/D_r with the D_r of the run at rest. 3 % for a rod that bends, has a width for the flow, and inertia."""
-    rate, known, row = ROD_RATES[peclet], rotation(results), orientation(results, f"rod-{peclet}", "rod")
+    plus = rule == "at+a"
+    rate, suffix = (ROD_RATES_PLUS if plus else ROD_RATES)[peclet], "-plus" if plus else ""
+    known, row = rotation(results, f"rod-rest{suffix}"), orientation(results, f"rod-{peclet}{suffix}", "rod")
     found = []
     for part, label in (("uxux", "⟨u_x²⟩"), ("uyuy", "⟨u_y²⟩"), ("uxuy", "⟨u_x u_y⟩"), ("turning", "turns per rate")):
-        verdict = Verdict(f"fibers-flow.rod.{part}.{peclet}", f"{label} of a stiff rod of 8 vertices, rate {rate:g}, Pe about {peclet}", theory.rod(float(peclet))[PART[part]],
-                          "Fokker-Planck equation of a thin rod, D_r of the run at rest; 3 %", 0.0)
+        verdict = Verdict(f"fibers-flow.rod{suffix}.{part}.{peclet}", f"{label} of a stiff rod of 8 vertices, rate {rate:g}, Pe about {peclet}, {NAMES[rule]}",
+                          theory.rod(float(peclet))[PART[part]], "Fokker-Planck equation of a thin rod, D_r of the run at rest; 3 %", 0.0,
+                          kind="gate" if plus else "paper", reason="" if plus else NO_SPIN)
         if known and row:
             number = rate / known[0]
             value = theory.rod(number)[PART[part]]
@@ -166,6 +173,8 @@ def rod_verdicts(results, peclet):
     return found
 
 
+NAMES = {"at-a": "MPC-AT-a", "at+a": "MPC-AT+a"}
+NO_SPIN = "This rule does not conserve angular momentum: its stress has an antisymmetric part, which turns a body back."
 PART = {"uxux": "xx", "uyuy": "yy", "uxuy": "xy", "turning": "turning"}
 
 # --- figures ----------------------------------------------------------------------------------------------------------
@@ -237,25 +246,30 @@ def draw_suspension(results):
 
 
 def draw_rods(results):
-    figure, panel = figures.plain()
+    figure, panels = figures.plain(9.5, 4.2, columns=2)
     grid = numpy.geomspace(0.3, 80.0, 40)
     moments = [theory.rod(float(x), 44 if x > 20 else 30) for x in grid]
-    known = rotation(results)
-    for number, (part, label) in enumerate((("uxux", "$u_x^2$"), ("uyuy", "$u_y^2$"), ("uxuy", "$u_x u_y$"))):
-        figures.theory(panel, grid, [m[PART[part]] for m in moments], label="thin rod" if number == 0 else None)
-        rows = [(ROD_RATES[pe] / known[0], orientation(results, f"rod-{pe}", "rod")) for pe in ROD_RATES]
-        rows = [(x, *pair(row, part)) for x, row in rows if row]
-        if rows:
-            figures.points(panel, *numpy.array(rows).T, number=number, label=label)
-    panel.set(xlabel="$\\dot\\gamma/D_r$", ylabel="mean", xscale="log")
-    figures.legend(panel)
+    number = 0
+    for panel, parts, label in ((panels[0], (("uxux", "$\\langle u_x^2\\rangle$"), ("uyuy", "$\\langle u_y^2\\rangle$"), ("uxuy", "$\\langle u_x u_y\\rangle$")), "mean"),
+                                (panels[1], (("turning", "turning"),), "rotation per $\\dot\\gamma$")):
+        for part, name in parts:
+            figures.theory(panel, grid, [m[PART[part]] for m in moments], label="thin rod" if part in ("uxux", "turning") else None)
+            for rule, rates, suffix in (("at+a", ROD_RATES_PLUS, "-plus"), ("at-a", ROD_RATES, "")):
+                known = rotation(results, f"rod-rest{suffix}")
+                rows = [(rates[pe], orientation(results, f"rod-{pe}{suffix}", "rod")) for pe in rates] if known else []
+                rows = [(rate / known[0], *pair(row, part, -1.0 / rate if part == "turning" else 1.0)) for rate, row in rows if row]
+                if rows:
+                    figures.points(panel, *numpy.array(rows).T, number=number, label=f"{name}, {NAMES[rule]}")
+                number += 1
+        panel.set(xlabel="$\\mathrm{Pe}=\\dot\\gamma/D_r$", ylabel=label, xscale="log")
+        figures.legend(panel)
     return figure
 
 
 def figures_of(results):
     found = []
-    if rotation(results) and any(orientation(results, f"rod-{pe}", "rod") for pe in ROD_RATES):
-        found.append(Figure("rods", "Orientation of a stiff rod in shear. Lines: the Fokker-Planck equation of a thin rod.", lambda: draw_rods(results)))
+    if any(f"rod-{pe}{suffix}" in results for pe in ROD_RATES for suffix in ("", "-plus")):
+        found.append(Figure("rods", "Orientation of a stiff rod in shear, and how fast it turns. Lines: the Fokker-Planck equation of a thin rod.", lambda: draw_rods(results)))
     if any(suspension_points(results, density, forbidden, SUSPENSION_PANELS[0][0]).size for density in SUSPENSIONS for forbidden in (True, False)):
         found.append(Figure("suspension", "Suspensions of fibers of 32 vertices in steady shear, noncrossing and free: viscosity and first normal stress coefficient of the fibers, their orientation, and contacts of bonds.",
                             lambda: draw_suspension(results)))
@@ -264,9 +278,10 @@ def figures_of(results):
 
 def prose(results):
     lines = []
-    known = rotation(results)
-    if known:
-        lines.append(f"D_r of the rod at rest: {known[0]:.5f} ± {known[1]:.5f} per t0.")
+    for rule, run in (("at+a", "rod-rest-plus"), ("at-a", "rod-rest")):
+        known = rotation(results, run)
+        if known:
+            lines.append(f"D_r of the rod at rest, {NAMES[rule]}: {known[0]:.5f} ± {known[1]:.5f} per t0.")
     tau = relaxation(results)
     if tau:
         lines.append(f"Free fibers at rest forget their direction in τ = {tau:.0f} t0.")
@@ -279,5 +294,7 @@ def prose(results):
 
 def evaluate(results, tier):
     verdicts = [verdict for rate in CHAIN_RATES[tier] for verdict in chain_verdicts(results, rate)]
-    verdicts += [verdict for peclet in (("10",) if tier == "quick" else ROD_RATES) for verdict in rod_verdicts(results, peclet)]
+    verdicts += [verdict for peclet in (("10",) if tier == "quick" else ROD_RATES_PLUS) for verdict in rod_verdicts(results, peclet, "at+a")]
+    if tier != "quick":
+        verdicts += [verdict for peclet in ROD_RATES for verdict in rod_verdicts(results, peclet, "at-a")]
     return Outcome(verdicts, figures_of(results), prose(results))
