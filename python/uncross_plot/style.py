@@ -47,9 +47,9 @@ def styled():
     return matplotlib.rc_context(STYLE)
 
 
-def plain(width=6.6, height=4.0, columns=1):
-    """(figure, axes): a row of panels, or one."""
-    return pyplot.subplots(1, columns, figsize=(width, height))
+def plain(width=6.6, height=4.0, columns=1, rows=1):
+    """(figure, axes): a row of panels, rows of them, or one."""
+    return pyplot.subplots(rows, columns, figsize=(width, height))
 
 
 def with_residuals(width=6.6, height=5.0, columns=1, share=0.3):

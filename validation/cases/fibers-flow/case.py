@@ -23,18 +23,19 @@ fibers:
 crossing: {{forbidden: false}}
 observe: {{from: 10000, orientation: {{every: 20}}, stress: {{every: 20}}}}
 """
-CHAIN_RATES = {"campaign": (0.003, 0.01, 0.03), "quick": (0.01,)}
+CHAIN_RATES = {"campaign": (0.003, 0.006, 0.01), "quick": (0.01,)}
 
 ROD_SCENE = """box: [12, 12, 12]
 time_step: 0.01
-solvent: {{per_cell: 5, collision_interval: 0.02, rule: at-a}}
+solvent: {{per_cell: 5, collision_interval: 0.02, rule: {rule}}}
 {shear}
 fibers:
   - {{name: rod, count: 16, vertices: 8, mass: 5, bond_length: 0.5, spring: 400, bending: 100}}
 crossing: {{forbidden: false}}
 observe: {{from: 30000, {observers}}}
 """
-ROD_RATES = {"1": 0.00124, "10": 0.0124, "50": 0.062}  # 1/t0, by the Peclet number that is aimed at
+ROD_RATES = {"1": 0.00124, "10": 0.0124, "50": 0.062}  # 1/t0, by the Peclet number that is aimed at; at-a
+ROD_RATES_PLUS = {"10": 0.028, "50": 0.14}  # the same for at+a
 
 SUSPENSION_SCENE = """box: [16, 16, 16]
 time_step: 0.01
@@ -46,7 +47,15 @@ crossing: {{forbidden: {forbidden}, rule: event-driven}}
 observe: {{from: {start}, orientation: {{every: 50}}, stress: {{every: 10}}, collisions: {{every: 1000}}, temperature: {{every: 200}}}}
 """
 SUSPENSIONS = {100: 110, 400: 440}  # fibers, by cL^3
-SUSPENSION_RATES = (0.01, 0.03, 0.1, 0.3)  # 1/t0
+SUSPENSION_RATES = (0.003, 0.01, 0.03, 0.1, 0.3)  # 1/t0
+REST_SCENE = """box: [16, 16, 16]
+time_step: 0.01
+solvent: {per_cell: 5, collision_interval: 0.1, rule: at-a}
+fibers:
+  - {name: fiber, count: 110, vertices: 32, mass: 5, bond_length: 0.5, spring: 100, persistence_length: 32}
+crossing: {forbidden: false}
+observe: {dynamics: {every: 100, longest_lag: 100000}}
+"""
 
 
 def chain(rate, steps):
@@ -54,10 +63,12 @@ def chain(rate, steps):
     return Run(f"chain-{rate:g}", scene=text, steps=steps, hours=steps * 1200 * 300e-9 / 3600.0)
 
 
-def rod(peclet, steps):
-    shear = f"shear: {{rate: {ROD_RATES[peclet]}}}" if peclet else ""
+def rod(peclet, steps, rule="at-a"):
+    plus = rule == "at+a"
+    shear = f"shear: {{rate: {(ROD_RATES_PLUS if plus else ROD_RATES)[peclet]}}}" if peclet else ""
     observers = "orientation: {every: 20}" if peclet else "orientation: {every: 50}, dynamics: {every: 100, longest_lag: 100000}"
-    return Run(f"rod-{peclet or 'rest'}", scene=ROD_SCENE.format(shear=shear, observers=observers), steps=steps, hours=steps * 150e-6 / 3600.0)
+    return Run(f"rod-{peclet or 'rest'}{'-plus' if plus else ''}", scene=ROD_SCENE.format(shear=shear, observers=observers, rule=rule), steps=steps,
+               hours=steps * (350e-6 if plus else 150e-6) / 3600.0)
 
 
 def suspension(density, rate, forbidden, strain):
@@ -71,13 +82,17 @@ def suspension(density, rate, forbidden, strain):
 
 def runs(tier):
     if tier == "quick":
-        found = [chain(rate, 40000) for rate in CHAIN_RATES["quick"]] + [rod(None, 120000), rod("10", 120000)]
+        found = [chain(rate, 40000) for rate in CHAIN_RATES["quick"]] + [rod(None, 70000, "at+a"), rod("10", 70000, "at+a")]
     else:
         found = [chain(rate, 600000) for rate in CHAIN_RATES["campaign"]]
         found += [rod(None, 4000000)] + [rod(peclet, 3000000) for peclet in ROD_RATES]
-        found += [suspension(density, rate, forbidden, 40.0) for density in SUSPENSIONS for rate in SUSPENSION_RATES for forbidden in (True, False)]
+        found += [suspension(density, rate, forbidden, 40.0) for density in SUSPENSIONS for rate in SUSPENSION_RATES[1:] for forbidden in (True, False)]
+        found += [Run("rest-free", scene=REST_SCENE, steps=1000000, hours=1000000 * 150e-6 / 3600.0)]
+        found += [suspension(density, SUSPENSION_RATES[0], forbidden, 40.0) for density in SUSPENSIONS for forbidden in (True, False)]
+        found += [rod(None, 3000000, "at+a")] + [rod(peclet, 3000000, "at+a") for peclet in ROD_RATES_PLUS]
         for run in found:
-            run.goals, run.priority = ((run.steps // 4, 0),), 1  # all coarse before one is fine
+            first = int(run.scene.split("{from: ")[1].split(",")[0]) if "{from: " in run.scene else 0
+            run.goals, run.priority = ((first + (run.steps - first) // 4, 0),), 1  # all coarse before one is fine
     for number, run in enumerate(found):
         run.seed = {"quick": 500, "campaign": 600}[tier] + number
     return found
@@ -125,12 +140,12 @@ def chain_verdicts(results, rate):
     return found
 
 
-def rotation(results):
-    """(D_r, error) of the rod at rest: -ln C/2t, C(t) of the direction of the end-to-end vector, at lags from 50 to 100 t0."""
-    if "rod-rest" not in results or not "dynamics-rod" in results["rod-rest"].tables():
+def rotation(results, run="rod-rest", kind="rod", first=50.0, last=100.0):
+    """(D_r, error) of fibers at rest: -ln C/2t, C(t) of the direction of the end-to-end vector, at the best lag between two."""
+    if run not in results or not f"dynamics-{kind}" in results[run].tables():
         return None
-    table = results["rod-rest"].table("dynamics-rod")
-    inside = (table["time"] >= 50.0) & (table["time"] <= 100.0) & (table["end_to_end_unit"] > 0.0)
+    table = results[run].table(f"dynamics-{kind}")
+    inside = (table["time"] >= first) & (table["time"] <= last) & (table["end_to_end_unit"] > 0.0)
     if not inside.any():
         return None
     t, c, error = (table[name][inside] for name in ("time", "end_to_end_unit", "end_to_end_unit_error"))
@@ -138,13 +153,16 @@ def rotation(results):
     return float(-math.log(c[best]) / (2.0 * t[best])), float(error[best] / (2.0 * c[best] * t[best]))
 
 
-def rod_verdicts(results, peclet):
+def rod_verdicts(results, peclet, rule):
     """The orientation of a thin rod at Pe = rate/D_r with the D_r of the run at rest. 3 % for a rod that bends, has a width for the flow, and inertia."""
-    rate, known, row = ROD_RATES[peclet], rotation(results), orientation(results, f"rod-{peclet}", "rod")
+    plus = rule == "at+a"
+    rate, suffix = (ROD_RATES_PLUS if plus else ROD_RATES)[peclet], "-plus" if plus else ""
+    known, row = rotation(results, f"rod-rest{suffix}"), orientation(results, f"rod-{peclet}{suffix}", "rod")
     found = []
     for part, label in (("uxux", "⟨u_x²⟩"), ("uyuy", "⟨u_y²⟩"), ("uxuy", "⟨u_x u_y⟩"), ("turning", "turns per rate")):
-        verdict = Verdict(f"fibers-flow.rod.{part}.{peclet}", f"{label} of a stiff rod of 8 vertices, rate {rate:g}, Pe about {peclet}", theory.rod(float(peclet))[PART[part]],
-                          "Fokker-Planck equation of a thin rod, D_r of the run at rest; 3 %", 0.0)
+        verdict = Verdict(f"fibers-flow.rod{suffix}.{part}.{peclet}", f"{label} of a stiff rod of 8 vertices, rate {rate:g}, Pe about {peclet}, {NAMES[rule]}",
+                          theory.rod(float(peclet))[PART[part]], "Fokker-Planck equation of a thin rod, D_r of the run at rest; 3 %", 0.0,
+                          kind="gate" if plus else "paper", reason="" if plus else NO_SPIN)
         if known and row:
             number = rate / known[0]
             value = theory.rod(number)[PART[part]]
@@ -155,79 +173,128 @@ def rod_verdicts(results, peclet):
     return found
 
 
+NAMES = {"at-a": "MPC-AT-a", "at+a": "MPC-AT+a"}
+NO_SPIN = "This rule does not conserve angular momentum: its stress has an antisymmetric part, which turns a body back."
 PART = {"uxux": "xx", "uyuy": "yy", "uxuy": "xy", "turning": "turning"}
 
 # --- figures ----------------------------------------------------------------------------------------------------------
 
-def suspension_points(results, density, forbidden, column):
-    """Rates, and (mean, error) of a column of the stress at each."""
+def relaxation(results):
+    """tau, t0: in which free fibers of a suspension at rest forget their direction, 1/(2 D_r). The Weissenberg number is rate tau."""
+    known = rotation(results, "rest-free", "fiber", 100.0, 1000.0)
+    return known and 0.5 / known[0]
+
+
+def of_stress(column, power):
+    def read(result, rate):
+        value, error = flow.stress(result, column)
+        return value / rate**power, error / rate**power
+    return read, "stress"
+
+
+def of_orientation(column):
+    def read(result, _):
+        table = result.table("orientation-fiber")
+        return float(table[column][0]), float(table[column + "_error"][0])
+    return read, "orientation-fiber"
+
+
+def contacts_over_theory(result, _):
+    """Contacts over those of kinetic theory for bonds in all directions, after the first part; the error is that of a tenth of the run each."""
+    table = result.table("collisions")
+    rows = table["rate_over_theory"][1 + len(table["time"]) // 4:]
+    parts = [part.mean() for part in numpy.array_split(rows, 10) if len(part)]
+    return float(numpy.mean(parts)), float(numpy.std(parts, ddof=1) / math.sqrt(len(parts)))
+
+
+# What is drawn of suspensions: (what is read, its table), label, logarithmic, only where fibers cannot cross
+SUSPENSION_PANELS = (
+    (of_stress("sigma_xy_fibers", 1), "$\\eta_f=\\sigma_{xy}^{f}/\\dot\\gamma$ ($m/a_0 t_0$)", True, False),
+    (of_stress("N1_fibers", 2), "$\\Psi_1^{f}=N_1^{f}/\\dot\\gamma^2$ ($m/a_0$)", True, False),
+    (of_orientation("uxux"), "$\\langle u_x^2\\rangle$ of end-to-end vectors", False, False),
+    ((contacts_over_theory, "collisions"), "contacts over kinetic theory at rest", False, True),
+)
+
+
+def suspension_points(results, density, forbidden, quantity):
+    """[3][n] rates, means and errors of what is there."""
+    read, table = quantity
     found = []
     for rate in SUSPENSION_RATES:
         name = f"c{density}-{rate:g}-{'tight' if forbidden else 'free'}"
-        if name in results and "stress" in results[name].tables():
-            found.append((rate, *flow.stress(results[name], column)))
-    return numpy.array(found).T if found else None
+        if name in results and table in results[name].tables():
+            point = (rate, *read(results[name], rate))
+            if all(math.isfinite(x) for x in point):
+                found.append(point)
+    return numpy.array(found).reshape(-1, 3).T
 
 
 def draw_suspension(results):
-    figure, panels = figures.plain(width=9.5, height=4.4, columns=2)
-    number = 0
-    for density in SUSPENSIONS:
-        for forbidden in (True, False):
-            label = f"cL³ = {density}, {'noncrossing' if forbidden else 'free'}"
-            for panel, column, power in ((panels[0], "sigma_xy_fibers", 1), (panels[1], "N1_fibers", 2)):
-                known = suspension_points(results, density, forbidden, column)
-                if known is not None:
-                    rate, value, error = known
-                    figures.points(panel, rate, value / rate**power, error / rate**power, number=number, label=label)
-            number += 1
-    panels[0].set(xlabel="$\\dot\\gamma$ ($1/t_0$)", ylabel="$\\sigma_{xy}^{fib}/\\dot\\gamma$ ($m/a_0 t_0$)", xscale="log", yscale="log")
-    panels[1].set(xlabel="$\\dot\\gamma$ ($1/t_0$)", ylabel="$N_1^{fib}/\\dot\\gamma^2$ ($m/a_0$)", xscale="log", yscale="log")
-    figures.legend(panels[0])
+    tau = relaxation(results)
+    figure, panels = figures.plain(9.5, 7.4, columns=2, rows=2)
+    for panel, (quantity, label, logarithmic, only_tight) in zip(panels.flat, SUSPENSION_PANELS):
+        number = 0
+        for density in SUSPENSIONS:
+            for forbidden in (True, False):
+                rate, value, error = suspension_points(results, density, forbidden, quantity)
+                if len(rate) and (forbidden or not only_tight):
+                    figures.points(panel, rate * (tau or 1.0), value, error, number=number, label=f"cL³ = {density}, {'noncrossing' if forbidden else 'free'}")
+                number += 1
+        panel.set(xlabel="$\\mathrm{Wi}=\\dot\\gamma\\tau$" if tau else "$\\dot\\gamma$ ($1/t_0$)", ylabel=label, xscale="log", yscale="log" if logarithmic else "linear")
+    figures.legend(panels[0][0])
     return figure
 
 
 def draw_rods(results):
-    figure, panel = figures.plain()
+    figure, panels = figures.plain(9.5, 4.2, columns=2)
     grid = numpy.geomspace(0.3, 80.0, 40)
     moments = [theory.rod(float(x), 44 if x > 20 else 30) for x in grid]
-    known = rotation(results)
-    for number, (part, label) in enumerate((("uxux", "$u_x^2$"), ("uyuy", "$u_y^2$"), ("uxuy", "$u_x u_y$"))):
-        figures.theory(panel, grid, [m[PART[part]] for m in moments], label="thin rod" if number == 0 else None)
-        rows = [(ROD_RATES[pe] / known[0], orientation(results, f"rod-{pe}", "rod")) for pe in ROD_RATES]
-        rows = [(x, *pair(row, part)) for x, row in rows if row]
-        if rows:
-            figures.points(panel, *numpy.array(rows).T, number=number, label=label)
-    panel.set(xlabel="$\\dot\\gamma/D_r$", ylabel="mean", xscale="log")
-    figures.legend(panel)
+    number = 0
+    for panel, parts, label in ((panels[0], (("uxux", "$\\langle u_x^2\\rangle$"), ("uyuy", "$\\langle u_y^2\\rangle$"), ("uxuy", "$\\langle u_x u_y\\rangle$")), "mean"),
+                                (panels[1], (("turning", "turning"),), "rotation per $\\dot\\gamma$")):
+        for part, name in parts:
+            figures.theory(panel, grid, [m[PART[part]] for m in moments], label="thin rod" if part in ("uxux", "turning") else None)
+            for rule, rates, suffix in (("at+a", ROD_RATES_PLUS, "-plus"), ("at-a", ROD_RATES, "")):
+                known = rotation(results, f"rod-rest{suffix}")
+                rows = [(rates[pe], orientation(results, f"rod-{pe}{suffix}", "rod")) for pe in rates] if known else []
+                rows = [(rate / known[0], *pair(row, part, -1.0 / rate if part == "turning" else 1.0)) for rate, row in rows if row]
+                if rows:
+                    figures.points(panel, *numpy.array(rows).T, number=number, label=f"{name}, {NAMES[rule]}")
+                number += 1
+        panel.set(xlabel="$\\mathrm{Pe}=\\dot\\gamma/D_r$", ylabel=label, xscale="log")
+        figures.legend(panel)
     return figure
 
 
 def figures_of(results):
     found = []
-    if rotation(results) and any(orientation(results, f"rod-{pe}", "rod") for pe in ROD_RATES):
-        found.append(Figure("rods", "Orientation of a stiff rod in shear. Lines: the Fokker-Planck equation of a thin rod.", lambda: draw_rods(results)))
-    if any(suspension_points(results, density, forbidden, "sigma_xy_fibers") is not None for density in SUSPENSIONS for forbidden in (True, False)):
-        found.append(Figure("suspension", "Viscosity and first normal stress difference of the fibers of a suspension, over rate and rate squared, noncrossing and free.",
+    if any(f"rod-{pe}{suffix}" in results for pe in ROD_RATES for suffix in ("", "-plus")):
+        found.append(Figure("rods", "Orientation of a stiff rod in shear, and how fast it turns. Lines: the Fokker-Planck equation of a thin rod.", lambda: draw_rods(results)))
+    if any(suspension_points(results, density, forbidden, SUSPENSION_PANELS[0][0]).size for density in SUSPENSIONS for forbidden in (True, False)):
+        found.append(Figure("suspension", "Suspensions of fibers of 32 vertices in steady shear, noncrossing and free: viscosity and first normal stress coefficient of the fibers, their orientation, and contacts of bonds.",
                             lambda: draw_suspension(results)))
     return found
 
 
 def prose(results):
     lines = []
-    known = rotation(results)
-    if known:
-        lines.append(f"D_r of the rod at rest: {known[0]:.5f} ± {known[1]:.5f} per t0.")
+    for rule, run in (("at+a", "rod-rest-plus"), ("at-a", "rod-rest")):
+        known = rotation(results, run)
+        if known:
+            lines.append(f"D_r of the rod at rest, {NAMES[rule]}: {known[0]:.5f} ± {known[1]:.5f} per t0.")
+    tau = relaxation(results)
+    if tau:
+        lines.append(f"Free fibers at rest forget their direction in τ = {tau:.0f} t0.")
     for density in SUSPENSIONS:
         for forbidden in (True, False):
-            points = suspension_points(results, density, forbidden, "sigma_xy_fibers")
-            for rate, value, error in points.T if points is not None else ():
-                if math.isfinite(value + error):
-                    lines.append(f"cL³ {density}, {'noncrossing' if forbidden else 'free'}, rate {rate:g}: η of the fibers {value / rate:.2f} ± {error / rate:.2f}.")
+            for rate, value, error in suspension_points(results, density, forbidden, SUSPENSION_PANELS[0][0]).T:
+                lines.append(f"cL³ {density}, {'noncrossing' if forbidden else 'free'}, rate {rate:g}: η of the fibers {value:.2f} ± {error:.2f}.")
     return " ".join(lines) or "No run yet."
 
 
 def evaluate(results, tier):
     verdicts = [verdict for rate in CHAIN_RATES[tier] for verdict in chain_verdicts(results, rate)]
-    verdicts += [verdict for peclet in (("10",) if tier == "quick" else ROD_RATES) for verdict in rod_verdicts(results, peclet)]
+    verdicts += [verdict for peclet in (("10",) if tier == "quick" else ROD_RATES_PLUS) for verdict in rod_verdicts(results, peclet, "at+a")]
+    if tier != "quick":
+        verdicts += [verdict for peclet in ROD_RATES for verdict in rod_verdicts(results, peclet, "at-a")]
     return Outcome(verdicts, figures_of(results), prose(results))
