@@ -391,12 +391,14 @@ EXACT_TESTS := $(filter-out tests/physics/% tests/validation/% tests/stress/% te
 .PHONY: exact
 exact: $(BUILD)/uncross $(BUILD)/uncross-faults $(LIBRARIES) $(patsubst %.c,$(BUILD)/%,$(filter %.c,$(EXACT_TESTS)))
 
+# Long statistics, of code that other tests and the scenes reach here, too.
+STATISTICS := tests/fluid/test_dumbbell_stress.c tests/contract/test_thermostats.c
 .PHONY: sanitize
 sanitize:
 	tools/install-dependencies run hard
 	$(MAKE) -j2 CC=gcc BUILD=build/sanitize OPTIMIZE=-O1 \
 	   CFLAGS='-g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all' exact
-	tools/sanitize build/sanitize $(EXACT_TESTS)
+	tools/sanitize build/sanitize $(filter-out $(STATISTICS),$(EXACT_TESTS))
 
 .PHONY: coverage
 coverage:

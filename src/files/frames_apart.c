@@ -7,6 +7,7 @@
 
 #include "files/frames.h"
 #include "files/trajectory.h"
+#include "scene/scene.h"
 
 #define LOST_NUMBER 2 /* verdicts that are sent are not negative */
 
@@ -121,12 +122,32 @@ static bool make_room(struct source *s, struct message *message)
   return (s->position && (s->velocity || !s->about.velocities)) || message_set(message, "%s: out of memory", s->path);
 }
 
+/* The model of the scene that a checkpoint holds: walls, shear and springs say where particles are between collisions.
+ * False if it cannot be read, or is of other numbers. */
+static bool read_model(const struct source *s, struct scene *scene)
+{
+  const struct checkpoint_summary *summary = &s->about.summary;
+  struct message ignored;
+  if (!scene_read_text(s->path, s->scene, strlen(s->scene), scene, &ignored))
+    return false;
+  const struct model *m = &scene->model;
+  if (m->solvent.particles == summary->particles && m->vertices == summary->vertices &&
+      m->dumbbells.pairs == summary->dumbbells && memcmp(m->box.cells, summary->cells, sizeof summary->cells) == 0)
+    return true;
+  scene_free(scene);
+  return false;
+}
+
 static enum frame_verdict load_checkpoint(struct source *s, struct frame_moment *moment, struct message *message)
 {
   const struct checkpoint_summary *summary = &s->about.summary;
-  struct model model = checkpoint_model(summary);
+  struct scene scene;
+  const bool known = read_model(s, &scene);
+  const struct model model = known ? scene.model : checkpoint_model(summary);
   struct state state;
   if (!state_alloc(&state, &model)) {
+    if (known)
+      scene_free(&scene);
     message_set(message, "%s: out of memory", s->path);
     return FRAME_LOST;
   }
@@ -136,6 +157,8 @@ static enum frame_verdict load_checkpoint(struct source *s, struct frame_moment 
     frame_velocities(&state, &model, state.solvent.id, s->velocity);
   }
   state_free(&state);
+  if (known)
+    scene_free(&scene);
   *moment = (struct frame_moment){summary->numbers.step, (double)summary->numbers.step * summary->time_step, true, {0}};
   for (int k = 0; k < 3; k++)
     moment->edge[k] = summary->cells[k];

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # The same bits from gcc and clang, for any processor or this one: state hashes of short runs of several scenes, and packs
-# of every operator alone.
-# Needs: UNCROSS, the program (default build/uncross); builds two more into its build folder. Prints TAP.
+# of every operator alone. The one other program is clang's for any processor: it differs in both from gcc's for this one.
+# With BITS=all (tests/stress/stress_bits.sh), gcc's for any and clang's for this processor are compared, too.
+# Needs: UNCROSS, the program (default build/uncross); builds the others into its build folder. Prints TAP.
 set -u
 uncross=$(realpath "${UNCROSS:-build/uncross}")
 top=$(cd "$(dirname "$0")/../.." && pwd)
@@ -66,7 +67,9 @@ for scene in dense mixed events; do
 done
 
 wanted=$(hashes "$uncross")
-for variant in "gcc x86-64" "clang native"; do
+variants=("clang x86-64")
+if [ "${BITS:-}" = all ]; then variants+=("gcc x86-64" "clang native"); fi
+for variant in "${variants[@]}"; do
   read -r compiler march <<<"$variant"
   folder=$build/bits-$compiler-$march
   rm -f "$folder/uncross"

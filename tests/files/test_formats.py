@@ -37,6 +37,15 @@ fibers:
   - {name: chain, count: 2, vertices: 4, mass: 1.5, bond_length: 0, spring: 3}
 trajectory: {every: 10, velocities: true, solvent: true}
 """
+BETWEEN_COLLISIONS = """box: [4, 4, 1]
+dimensions: 2
+time_step: 0.02
+steps: 20
+solvent: {per_cell: 10, collision_interval: 0.06, rule: at-a}
+dumbbells: {spring: 2}
+shear: {rate: 0.1}
+trajectory: {every: 20, solvent: true}
+"""
 # of each kind: fibers, vertices, ring, mass, l0, k, kappa
 KINDS = [(3, 5, False, 2, 0.5, 100, 20), (2, 6, True, 4, 0.5, 50, 3), (4, 1, False, 3, 0, 1, 0), (2, 4, False, 1.5, 0, 3, 0)]
 
@@ -237,6 +246,16 @@ run 0
     def test_formats(self):
         self.assertEqual(self.export(), self.export("--format", "xyz"))
         self.assertIn("--format pdb: no such format; there are xyz, lammps, vtf", self.export("--format", "pdb", code=2))
+
+    def test_checkpoint_between_collisions(self):
+        """What is between collisions flies as the scene says, with springs and in the shear, from a checkpoint as in the frame of the same step."""
+        with tempfile.TemporaryDirectory() as folder:
+            (pathlib.Path(folder) / "scene.yaml").write_text(BETWEEN_COLLISIONS)
+            uncross("run", f"{folder}/scene.yaml", "--out", f"{folder}/r")
+            rows = [uncross("export", f"{folder}/r/{name}.h5", "--solvent").stdout.splitlines()[-160:] for name in ("checkpoint", "trajectory")]
+        self.assertEqual(len(rows[0]), 160)
+        for kept, shown in zip(*([[float(x) for x in row.split()[1:7]] for row in lines] for lines in rows)):
+            numpy.testing.assert_allclose(kept, shown, rtol=0, atol=1e-12)
 
     def test_foreign(self):
         """Of a file without masses, kinds and scene: one species of mass 1, all of its bonds, no angles."""

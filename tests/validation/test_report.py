@@ -12,6 +12,8 @@ import unittest
 import unittest.mock
 import xml.etree.ElementTree as xml
 
+from matplotlib import pyplot
+
 sys.dont_write_bytecode = True
 TREE = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(TREE / "validation"))
@@ -236,11 +238,11 @@ class Campaign(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.drawn, cls.again = [], None
-        usual = figures.svg
 
         def look(drawn):
             cls.drawn.append(defects(drawn))
-            return usual(drawn)
+            pyplot.close(drawn)
+            return "<svg/>"  # the page is not looked at here
 
         with tempfile.TemporaryDirectory() as folder, unittest.mock.patch.object(figures, "svg", look), \
                 contextlib.redirect_stdout(io.StringIO()):

@@ -14,8 +14,9 @@ class RodBasis:
     def __init__(self, most):
         x, weight = roots_legendre(2 * most + 6)
         phi = 2.0 * math.pi * numpy.arange(4 * most + 8) / (4 * most + 8)
+        self.polar, self.around = numpy.arccos(x), phi
         self.cosine, self.phi = (grid.ravel() for grid in numpy.meshgrid(x, phi, indexing="ij"))
-        self.sine, self.theta = numpy.sqrt(1.0 - self.cosine**2), numpy.arccos(self.cosine)
+        self.sine = numpy.sqrt(1.0 - self.cosine**2)
         self.weight = numpy.repeat(weight, len(phi)) * 2.0 * math.pi / len(phi)
         self.pairs = [(l, m) for l in range(0, most + 1, 2) for m in range(-l, l + 1, 2)]
         turn, dip = -numpy.sin(self.phi)**2, self.sine * self.cosine * numpy.sin(self.phi) * numpy.cos(self.phi)
@@ -31,8 +32,9 @@ class RodBasis:
         self.diffusion = numpy.diag([-l * (l + 1.0) for l, _ in self.pairs])
 
     def harmonic(self, l, m, theta, phi):
-        y = sph_harm(abs(m), l, self.phi + phi, self.theta + theta)
-        return y.real if m == 0 else math.sqrt(2.0) * (y.real if m > 0 else y.imag)
+        wave = numpy.exp(1j * abs(m) * (self.around + phi))
+        y = numpy.outer(sph_harm(abs(m), l, 0.0, self.polar + theta).real, wave.real if m >= 0 else wave.imag).ravel()
+        return y if m == 0 else math.sqrt(2.0) * y
 
 
 @functools.lru_cache

@@ -1,7 +1,10 @@
 """The report: report.html, report.json, report.xml, from the results of runs. The same data make the same bytes."""
+import concurrent.futures
+import functools
 import html
 import json
 import math
+import multiprocessing
 import pathlib
 import re
 import traceback
@@ -220,10 +223,19 @@ def write_standing(summed, page):
     page.write_text(standing(json.loads(summed.read_text())))
 
 
-def make(tier, all_runs, names, work, out):
+def all_sections(names, tier, results, jobs):
+    """The sections in their order, made by so many processes. Each process takes the next case when it has time."""
+    make_one = functools.partial(section, tier=tier, every=results)
+    if jobs == 1:
+        return list(map(make_one, names))
+    with concurrent.futures.ProcessPoolExecutor(jobs, multiprocessing.get_context("fork")) as pool:
+        return list(pool.map(make_one, names))
+
+
+def make(tier, all_runs, names, work, out, jobs=1):
     """Writes the three files into `out`; 1 if a gate failed, or, in the quick tier, if something was not measured."""
     results = runs.results_of(all_runs, work)
-    sections = [section(name, tier, results) for name in names]
+    sections = all_sections(names, tier, results, jobs)
     sections = [part for part in sections if part["verdicts"] or part["runs"]]
     out = pathlib.Path(out)
     out.mkdir(parents=True, exist_ok=True)

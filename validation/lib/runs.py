@@ -244,11 +244,16 @@ def write_plan(runs, work):
     write_json(work / "plan.json", [dataclasses.asdict(run) for run in runs])
 
 
+def planned(work):
+    """The runs of the plan of this folder; none without a plan."""
+    return [Run(**run) for run in read_json(pathlib.Path(work) / "plan.json")]
+
+
 def progress(work):
     """How far the plan of this folder has come, in words; nothing without a plan."""
-    if not (work / "plan.json").exists():
+    results = results_of(planned(work), work)
+    if not results:
         return ""
-    results = results_of([Run(**run) for run in read_json(work / "plan.json")], work)
     left = math.fsum(result.run.hours * (1.0 - result.done_fraction) for result in results)
     return (f"{sum(result.finished for result in results)} of {len(results)} runs finished, about {duration(3600.0 * left)} of "
             "CPU time left")

@@ -39,7 +39,7 @@ def quick():
              for k, (name, values) in enumerate(QUICK.items())]
     found.append(Run("isolated54", steps=3000, hours=0.001, seed=350,
                      scene=sd.scene(flow=0.54, solvent=sd.FREE_SOLVENT, **common)))
-    found.append(Run("lag", hours=0.014, program=["refused_moves", 16, 208, 38, 0.54, 192, 351, "kick-split", 0.01,
+    found.append(Run("lag", hours=0.007, program=["refused_moves", 16, 208, 38, 0.54, 96, 351, "kick-split", 0.01,
                                                   "--",
                                                   "stay", "bounce-flow"]))
     return found

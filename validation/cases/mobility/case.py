@@ -47,9 +47,9 @@ def campaign():
 
 def quick():
     return [vertices("phantoms-L64", 64, 128, 1500, bath="phantoms"),
-            vertices("swap-L8", 8, 4, 10000, bath="swap"),
-            vertices("L8-s1", 8, 8, 25000, seed=801), vertices("L12-s1", 12, 27, 7500, seed=1201),
-            vertices("L16-s1", 16, 64, 4000, seed=1601)]
+            vertices("swap-L8", 8, 4, 6000, bath="swap"),
+            vertices("L8-s1", 8, 8, 25000, seed=801), vertices("L12-s1", 12, 27, 5000, seed=1201),
+            vertices("L16-s1", 16, 64, 2500, seed=1601)]
 
 
 def runs(tier):

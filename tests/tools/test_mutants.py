@@ -1,0 +1,41 @@
+"""The share of the planted bugs that a submission sees."""
+import importlib.machinery
+import pathlib
+import sys
+import types
+import unittest
+
+sys.dont_write_bytecode = True
+TREE = pathlib.Path(__file__).resolve().parents[2]
+loader = importlib.machinery.SourceFileLoader("mutants", str(TREE / "tools/mutants"))
+mutants = types.ModuleType(loader.name)
+mutants.__file__ = loader.path
+loader.exec_module(mutants)
+
+
+class Share(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.bugs = mutants.read_bugs(TREE / "tests/mutants/mutants.txt")
+
+    def share(self, commit, changed=()):
+        return mutants.share(self.bugs, 4, commit, set(changed))
+
+    def test_commits_see_all_bugs_in_turn(self):
+        shares = [self.share(f"commit {k}") for k in range(40)]
+        self.assertEqual({bug.name for one in shares for bug in one}, {bug.name for bug in self.bugs})
+        for one in shares:
+            self.assertTrue(0.15 < len(one) / len(self.bugs) < 0.35, len(one))
+
+    def test_what_changed_is_seen_at_once(self):
+        bug = self.bugs[0]
+        for changed in bug.file, f"tests/{bug.tests[0]}.c":
+            for k in range(8):
+                self.assertIn(bug, self.share(f"commit {k}", [changed]))
+
+    def test_without_a_commit_all_are_seen(self):
+        self.assertEqual(self.share(""), self.bugs)
+
+
+if __name__ == "__main__":
+    unittest.main()
