@@ -4,6 +4,7 @@ import math
 
 import numpy
 from scipy.linalg import solve_continuous_lyapunov
+from scipy.optimize import least_squares
 from scipy.special import roots_legendre, sph_harm
 
 # --- a thin rod -------------------------------------------------------------------------------------------------------
@@ -19,16 +20,18 @@ class RodBasis:
         self.sine = numpy.sqrt(1.0 - self.cosine**2)
         self.weight = numpy.repeat(weight, len(phi)) * 2.0 * math.pi / len(phi)
         self.pairs = [(l, m) for l in range(0, most + 1, 2) for m in range(-l, l + 1, 2)]
-        turn, dip = -numpy.sin(self.phi)**2, self.sine * self.cosine * numpy.sin(self.phi) * numpy.cos(self.phi)
+        # Jeffery: u' = W u + B (E u - (u E u) u); the parts without and with the shape factor B
+        turn, dip = 0.5 * numpy.cos(2.0 * self.phi), self.sine * self.cosine * numpy.sin(self.phi) * numpy.cos(self.phi)
         step = 1e-5
-        values, flown = [], []
+        values, rotated, strained = [], [], []
         for l, m in self.pairs:
             values.append(self.harmonic(l, m, 0.0, 0.0))
             by_theta = (self.harmonic(l, m, step, 0.0) - self.harmonic(l, m, -step, 0.0)) / (2.0 * step)
             by_phi = (self.harmonic(l, m, 0.0, step) - self.harmonic(l, m, 0.0, -step)) / (2.0 * step)
-            flown.append(dip * by_theta + turn * by_phi)
+            rotated.append(-0.5 * by_phi)
+            strained.append(dip * by_theta + turn * by_phi)
         self.values = numpy.array(values)
-        self.flow = (numpy.array(flown) * self.weight) @ self.values.T
+        self.rotation, self.strain = ((numpy.array(part) * self.weight) @ self.values.T for part in (rotated, strained))
         self.diffusion = numpy.diag([-l * (l + 1.0) for l, _ in self.pairs])
 
     def harmonic(self, l, m, theta, phi):
@@ -43,18 +46,38 @@ def rod_basis(most):
 
 
 @functools.lru_cache
-def rod(peclet, most=None):
-    """Moments of the direction u of a thin rod in steady shear, at Pe = rate/D_r: xx, yy, zz, xy, and `turning`, the mean of
-    sin^2 phi = u_y^2/(u_x^2 + u_y^2), so that it turns by -rate * turning per time. D_r lap psi = div(psi u'), u' = rate (1 - uu) e_x u_y."""
+def rod(peclet, most=None, spin=1.0, shape=1.0):
+    """Moments of the direction u of a rod in steady shear, at Pe = rate/D_r: xx, yy, zz, xy, and `turning`, the mean of
+    (w - B cos 2 phi)/2: it turns by -rate * turning per time. D_r lap psi = div(psi u'), u' = w W u + B (E u - (u E u) u), W and E the
+    rotation and the strain of the flow. shape: B, 1 for a thin rod, (p^2 - 1)/(p^2 + 1) for a spheroid of aspect ratio p (Jeffery).
+    spin: w, 1 unless the fluid exerts a torque on a body that rotates with it."""
     basis = rod_basis(most or (12 if peclet <= 2 else 30 if peclet <= 20 else 44))
-    matrix = basis.diffusion + peclet * basis.flow
+    matrix = basis.diffusion + peclet * (spin * basis.rotation + shape * basis.strain)
     coefficients = numpy.zeros(len(basis.pairs))
     coefficients[0] = 1.0 / math.sqrt(4.0 * math.pi)
     coefficients[1:] = numpy.linalg.solve(matrix[1:, 1:], -matrix[1:, 0] * coefficients[0])
     density = basis.weight * (coefficients @ basis.values)
     ux, uy, uz = basis.sine * numpy.cos(basis.phi), basis.sine * numpy.sin(basis.phi), basis.cosine
     return {"xx": float(density @ ux**2), "yy": float(density @ uy**2), "zz": float(density @ uz**2), "xy": float(density @ (ux * uy)),
-            "turning": float(density @ numpy.sin(basis.phi)**2)}
+            "turning": float(density @ (0.5 * spin - 0.5 * shape * numpy.cos(2.0 * basis.phi)))}
+
+
+@functools.lru_cache
+def rod_fit(known, measured):
+    """(w, error), (B, error), chi^2, degrees of freedom, from measured moments of rods. known: (D_r, error), fitted along.
+    measured: ((rate, ((moment, (value, error)), ...)), ...), moments as `rod` has them."""
+    def deviations(x):
+        found = [(x[2] - 1.0) * known[0] / known[1]]
+        for rate, moments in measured:
+            expected = rod(rate / (known[0] * x[2]), None, x[0], x[1])
+            found += [(value - expected[name]) / error for name, (value, error) in moments]
+        return numpy.array(found)
+
+    fit = least_squares(deviations, (1.0, 0.95, 1.0), diff_step=1e-4)
+    free = len(fit.fun) - 3
+    chi2 = 2.0 * fit.cost
+    errors = numpy.sqrt(numpy.diag(numpy.linalg.inv(fit.jac.T @ fit.jac)) * max(1.0, chi2 / free))
+    return (fit.x[0], errors[0]), (fit.x[1], errors[1]), chi2, free
 
 
 # --- a Gaussian chain -------------------------------------------------------------------------------------------------
