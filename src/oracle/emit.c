@@ -62,9 +62,6 @@ bool oracle_emit(const struct scene *scene, struct pack *pack, struct message *m
   if (model_has_phantoms(model))
     return message_set(message, "%s: solvent.bath: phantoms; packs hold the operators of a solvent of particles only",
                        scene->path);
-  if (model->solvent.rule != RULE_SRD && model->solvent.rule != RULE_AT_A)
-    return message_set(message, "%s: solvent.rule; packs hold the operators of the rules srd and at-a only",
-                       scene->path);
   if (model->dimensions != 3 || model->solvent.profile != PROFILE_UNIFORM)
     return message_set(
         message,

@@ -75,7 +75,7 @@ static bool run_random(struct oracle_stage *g)
 
 /* --- all of them ------------------------------------------------------------------------------------------------- */
 
-/* OF_TURNS, OF_EVENTS: of one kind of crossing rule; OF_SRD, OF_ANDERSEN: of one collision rule; OF_PERIODIC_POINTS,
+/* OF_TURNS, OF_EVENTS: of one kind of crossing rule; OF_SRD, OF_ANDERSEN, OF_SPIN: of one collision rule, OF_ANDERSENS: of at-a and at+a; OF_PERIODIC_POINTS,
  * OF_WALLS, OF_SHEAR: of one boundary along y; OF_WAVE: of an oscillating shear; POINTS, DUMBBELLS: of one fluid */
 enum of {
   OF_ALL,
@@ -84,7 +84,9 @@ enum of {
   OF_EVENTS,
   OF_SOLVENT,
   OF_SRD,
+  OF_ANDERSENS,
   OF_ANDERSEN,
+  OF_SPIN,
   OF_PERIODIC_POINTS,
   OF_CELLS,
   OF_WALLS,
@@ -134,17 +136,20 @@ static const struct operation {
     {"enter", oracle_run_enter, NULL, OF_SHEAR},
     {"bin", oracle_run_bin, oracle_edges_bin, OF_CELLS},
     {"wall_bin", oracle_run_wall_bin, NULL, OF_WALLS},
-    {"draw", oracle_run_draw, NULL, OF_ANDERSEN},
+    {"draw", oracle_run_draw, NULL, OF_ANDERSENS},
     {"sum", oracle_run_sum, NULL, OF_SRD},
-    {"sum", oracle_run_andersen_sum, NULL, OF_ANDERSEN},
+    {"sum", oracle_run_andersen_sum, NULL, OF_ANDERSENS},
     {"fill", oracle_run_fill, NULL, OF_WALLS},
     {"solve", oracle_run_solve, NULL, OF_SRD},
     {"mean", oracle_run_mean, NULL, OF_ANDERSEN},
+    {"moments", oracle_run_moments, NULL, OF_SPIN},
+    {"spin", oracle_run_spin, NULL, OF_SPIN},
     {"rescale", oracle_run_rescale, NULL, OF_HOMOGENEOUS},
     {"maxwell_boltzmann", oracle_run_maxwell_boltzmann, NULL, OF_HOMOGENEOUS},
     {"rescale_layers", oracle_run_rescale_layers, NULL, OF_FLOW},
     {"rotate", oracle_run_rotate, NULL, OF_SRD},
     {"give", oracle_run_give, NULL, OF_ANDERSEN},
+    {"give_spin", oracle_run_give_spin, NULL, OF_SPIN},
     {"account", oracle_run_account, NULL, OF_WALLS},
     {"leave", oracle_run_leave, NULL, OF_SHEAR},
     {"affine_kick", oracle_run_affine_kick, NULL, OF_WAVE},
@@ -176,7 +181,9 @@ static bool is_of(enum of of, const struct model *m)
                         [OF_FLOW] = solvent && !periodic && m->solvent.rule == RULE_SRD,
                         [OF_HOMOGENEOUS] = solvent && periodic && m->solvent.rule == RULE_SRD,
                         [OF_SRD] = solvent && m->solvent.rule == RULE_SRD,
-                        [OF_ANDERSEN] = solvent && m->solvent.rule == RULE_AT_A};
+                        [OF_ANDERSENS] = solvent && m->solvent.rule != RULE_SRD,
+                        [OF_ANDERSEN] = solvent && m->solvent.rule == RULE_AT_A,
+                        [OF_SPIN] = solvent && m->solvent.rule == RULE_AT_PLUS_A};
   return holds[of];
 }
 

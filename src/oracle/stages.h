@@ -36,6 +36,11 @@ bool oracle_run_andersen_sum(struct oracle_stage *stage);
 bool oracle_run_mean(struct oracle_stage *stage);
 bool oracle_run_give(struct oracle_stage *stage);
 
+/* Of the rule at+a, beside `draw` and `sum` of at-a. */
+bool oracle_run_moments(struct oracle_stage *stage);
+bool oracle_run_spin(struct oracle_stage *stage);
+bool oracle_run_give_spin(struct oracle_stage *stage);
+
 /* Of walls and of shear (stages_flow.c). */
 bool oracle_run_wall_motion(struct oracle_stage *stage);
 bool oracle_run_wall_stream(struct oracle_stage *stage);

@@ -462,6 +462,14 @@ static const struct {
     {"rotate", "out.vertex", rotate},
     {"give", "out.solvent", give},
     {"give", "out.vertex", give},
+    {"moments", "out.middle", tolerance_spin_middle},
+    {"moments", "out.beyond", tolerance_spin_beyond},
+    {"moments", "out.second", tolerance_spin_second},
+    {"moments", "out.angular", tolerance_spin_angular},
+    {"spin", "out.center", tolerance_spin_center},
+    {"spin", "out.omega", tolerance_spin_rate},
+    {"give_spin", "out.solvent", tolerance_give_spin},
+    {"give_spin", "out.vertex", tolerance_give_spin},
     {"swap", "out.velocity", copied_velocity},
 };
 

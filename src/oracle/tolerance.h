@@ -34,6 +34,10 @@ tolerance_rule tolerance_impulse_answer, tolerance_impulse_momentum, tolerance_i
 tolerance_rule tolerance_motion, tolerance_wall_velocity, tolerance_wall_position, tolerance_wall_given, tolerance_slid,
     tolerance_affine, tolerance_filled, tolerance_filled_momentum, tolerance_account_given;
 
+/* The same for those of the rule at+a (tolerance_spin.c). */
+tolerance_rule tolerance_spin_middle, tolerance_spin_beyond, tolerance_spin_second, tolerance_spin_angular,
+    tolerance_spin_rate, tolerance_spin_center, tolerance_give_spin;
+
 /* The same for those of dumbbells (tolerance_flow.c). */
 tolerance_rule tolerance_drawn_place, tolerance_swing_position, tolerance_swing_velocity, tolerance_swing_given;
 

@@ -170,6 +170,28 @@ def give(model, step, given):
     }
 
 
+def moments(model, step, given):
+    place = np.concatenate([given["solvent_place"], given["vertex_place"]])
+    found = solvent.moments(model, *members(model, given), place, given["load"])
+    return dict(zip(("middle", "beyond", "second", "angular"), found))
+
+
+def spin(model, step, given):
+    tables = (given[name] for name in ("momentum", "load", "beyond", "second", "angular"))
+    active, center, rate = solvent.spin(model, *tables)
+    return {"active": column(active.astype(np.int64)), "center": center, "omega": rate}
+
+
+def give_spin(model, step, given):
+    turn = given["active"][:, 0] != 0, given["center"], given["omega"], given["middle"]
+    return {
+        kind: solvent.give_spin(
+            given[f"{kind}_cell"][:, 0], given[kind], given[f"{kind}_place"], *turn, given[f"{kind}_drawn"]
+        )
+        for kind in KINDS
+    }
+
+
 def swap(model, step, given):
     permutation = solvent.swap_order(model, step, len(given["velocity"]))
     return {"order": column(permutation), "velocity": given["velocity"][permutation]}
@@ -303,6 +325,9 @@ OPERATORS = {
     "maxwell_boltzmann": maxwell_boltzmann,
     "rotate": rotate,
     "give": give,
+    "moments": moments,
+    "spin": spin,
+    "give_spin": give_spin,
     "swap": swap,
 }
 

@@ -53,6 +53,7 @@ COLUMNS |= {
     "dumbbells": "number",
     "spring": "spring frequency depth range",
     "begin": "offset",
+    "second": "xx yy zz yz zx xy",
 }
 COLUMNS_AT = {
     ("swap", "out.order"): "particle",

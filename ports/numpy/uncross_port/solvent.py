@@ -104,5 +104,102 @@ def give(cell, velocity, active, center, drawn):
     return np.where(active[cell, None], center[cell] + drawn, velocity)
 
 
+def places(position, shift):
+    """Places in their cells, relative to the middle of the cell, lattice units."""
+    return (position + shift) % CELL - CELL // 2
+
+
+def double(whole):
+    """A whole number of up to 118 bits as a double, in the order of docs/porting.md, *The rule at+a*."""
+    size = abs(whole)
+    value = float(size >> 64) * 2.0**64 + float(size >> 32 & 0xFFFFFFFF) * 2.0**32 + float(size & 0xFFFFFFFF)
+    return -value if whole < 0 else value
+
+
+PAIRS = (0, 0), (1, 1), (2, 2), (1, 2), (2, 0), (0, 1)
+
+
+def cell_moments(place, mass, momentum):
+    """Of one cell: middle, beyond, second moments and angular momentum about the centre of mass; in whole numbers first.
+
+    place: [members][3]; mass, in 2^-16 m, and momentum, in 2^-44, of each member: lists of int."""
+    total = sum(mass)
+    first = [sum(m * y[k] for m, y in zip(mass, place)) for k in range(3)]
+    middle = [round(float(f) / float(total)) for f in first]
+    rest = [f - total * x for f, x in zip(first, middle)]
+    off, inverse = [float(r) for r in rest], 1.0 / float(total)
+    second = []
+    for a, b in PAIRS:
+        moved = sum(m * y[a] * y[b] for m, y in zip(mass, place))
+        moved += -middle[a] * rest[b] - middle[b] * rest[a] - total * middle[a] * middle[b]
+        second.append(2.0**-96 * (double(moved) - inverse * off[a] * off[b]))
+    beyond = np.array([2.0**-40 * inverse * x for x in off])
+    whole = [sum(p[k] for p in momentum) for k in range(3)]
+    about = []
+    for k in range(3):
+        a, b = (k + 1) % 3, (k + 2) % 3
+        spin = sum(y[a] * p[b] - y[b] * p[a] for y, p in zip(place, momentum))
+        about.append(2.0**-84 * double(spin - middle[a] * whole[b] + middle[b] * whole[a]))
+    center = np.array(whole) * (2.0**-44 / (total * 2.0**-16))
+    return middle, beyond, second, np.array(about) - cross(beyond, total * 2.0**-16 * center)
+
+
+def moments(model, cell, mass, velocity, place, load):
+    """The same of all cells that collide, zeros elsewhere: middle, beyond, second, angular."""
+    found = np.zeros((model.cells, 3), np.int64), *(np.zeros((model.cells, n)) for n in (3, 6, 3))
+    momentum = np.rint(mass[:, None] * 2.0**44 * velocity).astype(np.int64)
+    heavy = (mass * 2**16).astype(np.int64)
+    for k in np.flatnonzero(load[:, 0] >= 2):
+        inside = cell == k
+        for table, values in zip(found, cell_moments(*(x[inside].tolist() for x in (place, heavy, momentum)))):
+            table[k] = values
+    return found
+
+
+def rate_of_line(second, trace, angular):
+    """All members on one line, along the largest column of C."""
+    xx, yy, zz, yz, zx, xy = second
+    largest = max(range(3), key=lambda k: second[k])
+    along = np.array(((xx, xy, zx), (xy, yy, yz), (zx, yz, zz))[largest])
+    along = 1.0 / np.sqrt(dot(along, along)) * along
+    return 1.0 / trace * (angular + -dot(along, angular) * along)
+
+
+def spin_rate(second, angular):
+    """Omega of Pi Omega = L, Pi = tr C - C; without the part along a line on which all members are."""
+    trace = second[0] + second[1] + second[2]
+    xx, yy, zz = second[1] + second[2], second[2] + second[0], second[0] + second[1]
+    yz, zx, xy = -second[3], -second[4], -second[5]
+    minors = yy * zz - yz * yz, zz * xx - zx * zx, xx * yy - xy * xy
+    determinant = xx * minors[0] + xy * (yz * zx - xy * zz) + zx * (xy * yz - yy * zx)
+    if not trace > 0:
+        return np.zeros(3)
+    if not determinant > 1e-12 * 2.0 * trace * (minors[0] + minors[1] + minors[2]):
+        return rate_of_line(second, trace, angular)
+    t21, t31 = xy / xx, zx / xx
+    d2, below = yy - t21 * xy, yz - t21 * zx
+    t32 = below / d2
+    d3 = zz - t31 * zx - t32 * below
+    b2 = angular[1] - t21 * angular[0]
+    b3 = angular[2] - t31 * angular[0] - t32 * b2
+    z = b3 / d3
+    y = b2 / d2 - t32 * z
+    return np.array([angular[0] / xx - t21 * y - t31 * z, y, z])
+
+
+def spin(model, momentum, load, beyond, second, angular):
+    """Which cells collide; the mean velocity at their middle, and the rate at which they turn."""
+    (active, center), rate = mean(model, momentum, load), np.zeros((model.cells, 3))
+    for k in np.flatnonzero(active):
+        rate[k] = spin_rate(second[k].tolist(), angular[k])
+    return active, center - cross(rate, beyond), rate
+
+
+def give_spin(cell, velocity, place, active, center, rate, middle, drawn):
+    """New velocities of one kind of particle by the rule at+a."""
+    turned = center[cell] + cross(rate[cell], (place - middle[cell]) * 2.0**-40)
+    return np.where(active[cell, None], turned + drawn, velocity)
+
+
 def swap_order(model, step, particles):
     return random.permutation(model.seed, random.VELOCITY_SWAP, 0, step, particles)

@@ -53,7 +53,7 @@ class System:
             self.vector = start["vector"]
         self.force = None
         self.event_driven = bool(start["rule"].any())
-        self.andersen = bool(start["collision"].any())
+        self.rule = int(start["collision"].sum())  # 0 srd, 1 at-a, 2 at+a
         self.contacts = []  # rows of events since the last row of the trace
         self.streamed = 0  # half steps that the solvent has flown
         if model.flow is not None and model.flow.walls:
@@ -121,8 +121,8 @@ class System:
             self.change_image(flow.enter, shift)
         bin_cells = flow.wall_cells if model.flow is not None and model.flow.walls else solvent.cell_of
         cells = bin_cells(model, self.solvent, shift), bin_cells(model, self.vertex, shift)
-        if self.andersen:
-            self.collide_andersen(step, cells)
+        if self.rule:
+            (self.collide_andersen if self.rule == 1 else self.collide_spin)(step, cells, shift)
         else:
             self.collide_srd(step, cells, shift)
         if sheared:
@@ -139,13 +139,24 @@ class System:
         slide = flow.shear_offset(self.model, self.streamed), self.slide_speed(ended)
         self.solvent, self.solvent_velocity = change(self.model, shift, *slide, self.solvent, self.solvent_velocity)
 
-    def collide_andersen(self, step, cells):
+    def collide_andersen(self, step, cells, shift):
         model, velocity = self.model, (self.solvent_velocity, self.vertex_velocity)
         drawn = solvent.draw(model, step)
         members = solvent.members(model, *cells, velocity[0] - drawn[0], velocity[1] - drawn[1])
         turn = solvent.mean(model, *solvent.sum_cells(model, *members))
         self.solvent_velocity = solvent.give(cells[0], velocity[0], *turn, drawn[0])
         self.vertex_velocity = solvent.give(cells[1], velocity[1], *turn, drawn[1])
+
+    def collide_spin(self, step, cells, shift):
+        model, velocity = self.model, (self.solvent_velocity, self.vertex_velocity)
+        drawn = solvent.draw(model, step)
+        changes = solvent.members(model, *cells, *(old - new for old, new in zip(velocity, drawn)))
+        momentum, load = solvent.sum_cells(model, *changes)
+        places = solvent.places(self.solvent, shift), solvent.places(self.vertex, shift)
+        middle, *about = solvent.moments(model, *changes, np.concatenate(places), load)
+        turn = *solvent.spin(model, momentum, load, *about), middle
+        self.solvent_velocity = solvent.give_spin(cells[0], velocity[0], places[0], *turn, drawn[0])
+        self.vertex_velocity = solvent.give_spin(cells[1], velocity[1], places[1], *turn, drawn[1])
 
     def collide_srd(self, step, cells, shift):
         model, filled = self.model, np.zeros((0, 4))

@@ -52,15 +52,13 @@ struct vec3 spin_rate(const double c[6], struct vec3 l)
 
 /* Sums are moved to a lattice point next to the centre of mass in integers, and from there to the centre in doubles:
  * what is subtracted last is smaller than half a lattice unit. */
-void spin_solve(const struct cell_sum *sum, const struct cell_spin *s, struct cell_turn *turn, struct point *middle)
+void spin_moments(const struct cell_sum *sum, const struct cell_spin *s, struct vec3 center,
+                  struct spin_moments *moments)
 {
-  cell_solve(sum, turn);
-  if (turn->active == 0.0)
-    return;
   const int64_t mass = (int64_t)(sum->load & (CELL_MEMBER - 1)), p[3] = {sum->px, sum->py, sum->pz};
   static const int row[6] = {0, 1, 2, 1, 2, 0}, column[6] = {0, 1, 2, 2, 0, 1};
   int64_t x[3], rest[3]; /* the centre of mass is at x + rest / mass, |rest| <= mass */
-  double off[3], c[6], l[3];
+  double off[3], l[3];
   for (int k = 0; k < 3; k++) {
     x[k] = llrint(first_in_double(s->first[k]) / (double)mass);
     rest[k] = (int64_t)(uint64_t)(s->first[k] - spin_product(mass, x[k])); /* mass units times lattice units */
@@ -71,15 +69,27 @@ void spin_solve(const struct cell_sum *sum, const struct cell_spin *s, struct ce
     const int a = row[k], b = column[k];
     const spin_word moved = s->second[k] - spin_product(x[a], rest[b]) - spin_product(x[b], rest[a]) -
                             (uint64_t)mass * spin_product(x[a], x[b]);
-    c[k] = 0x1p-96 * (in_double(moved) - inverse * off[a] * off[b]);
+    moments->second[k] = 0x1p-96 * (in_double(moved) - inverse * off[a] * off[b]);
   }
   const struct vec3 beyond = vec3_scale(LATTICE_UNIT * inverse, (struct vec3){off[0], off[1], off[2]});
   for (int k = 0; k < 3; k++) {
     const int a = (k + 1) % 3, b = (k + 2) % 3;
     l[k] = 0x1p-84 * in_double(s->angular[k] - spin_product(x[a], p[b]) + spin_product(x[b], p[a]));
   }
-  const struct vec3 momentum = vec3_scale(cell_mass(sum), turn->center);
-  turn->axis = spin_rate(c, vec3_sub((struct vec3){l[0], l[1], l[2]}, vec3_cross(beyond, momentum)));
-  turn->center = vec3_sub(turn->center, vec3_cross(turn->axis, beyond));
-  *middle = (struct point){x[0], x[1], x[2]};
+  const struct vec3 momentum = vec3_scale(cell_mass(sum), center);
+  moments->angular = vec3_sub((struct vec3){l[0], l[1], l[2]}, vec3_cross(beyond, momentum));
+  moments->beyond = beyond;
+  moments->middle = (struct point){x[0], x[1], x[2]};
+}
+
+void spin_solve(const struct cell_sum *sum, const struct cell_spin *s, struct cell_turn *turn, struct point *middle)
+{
+  struct spin_moments about;
+  cell_solve(sum, turn);
+  if (turn->active == 0.0)
+    return;
+  spin_moments(sum, s, turn->center, &about);
+  turn->axis = spin_rate(about.second, about.angular);
+  turn->center = vec3_sub(turn->center, vec3_cross(turn->axis, about.beyond));
+  *middle = about.middle;
 }

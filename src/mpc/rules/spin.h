@@ -92,6 +92,18 @@ static inline void spin_add_particle(struct cell_spin *s, struct point y, struct
  * the trace. 0 if all members are at one place. */
 struct vec3 spin_rate(const double c[6], struct vec3 l);
 
+/* Moments of a cell's members about its centre of mass, which is at middle + beyond. */
+struct spin_moments {
+  struct point middle; /* the lattice point next to the centre of mass, relative to the middle of the cell */
+  struct vec3 beyond;  /* a0 */
+  double second[6];    /* C, m a0^2, in the order of `second` above */
+  struct vec3 angular; /* L, m a0^2/t0 */
+};
+
+/* center: the mean velocity of the members, a0/t0. Of cells with two members or more. */
+void spin_moments(const struct cell_sum *sum, const struct cell_spin *spin, struct vec3 center,
+                  struct spin_moments *moments);
+
 /* Sets center, axis (Omega, 1/t0) and factor of a cell's turn, and the middle: the lattice point next to the centre of
  * mass. A member that is alone keeps its velocity. */
 void spin_solve(const struct cell_sum *sum, const struct cell_spin *spin, struct cell_turn *turn, struct point *middle);
