@@ -75,8 +75,9 @@ static bool run_random(struct oracle_stage *g)
 
 /* --- all of them ------------------------------------------------------------------------------------------------- */
 
-/* OF_TURNS, OF_EVENTS: of one kind of crossing rule; OF_SRD, OF_ANDERSEN, OF_SPIN: of one collision rule, OF_ANDERSENS: of at-a and at+a; OF_PERIODIC_POINTS,
- * OF_WALLS, OF_SHEAR: of one boundary along y; OF_WAVE: of an oscillating shear; POINTS, DUMBBELLS: of one fluid */
+/* OF_TURNS, OF_EVENTS: of one kind of crossing rule; OF_SRD, OF_ANDERSEN, OF_SPIN: of one collision rule, OF_ANDERSENS:
+ * of at-a and at+a; OF_PERIODIC_POINTS, OF_WALLS, OF_SHEAR: of one boundary along y; OF_WAVE: of an oscillating shear;
+ * POINTS, DUMBBELLS: of one fluid */
 enum of {
   OF_ALL,
   OF_FIBERS,
@@ -218,11 +219,11 @@ int oracle_operator_rank(const char *name)
 /* Tables of one operator, each made of those before it; what is not here comes last. */
 static int table_rank(const char *name)
 {
-  static const char *const names[] = {"out.word",     "out.uniform", "out.normal",   "out.filled",   "out.active",
-                                      "out.center",   "out.axis",    "out.crosses",  "out.tick",     "out.answer",
-                                      "out.event",    "out.hit",     "out.order",    "out.position", "out.vector",
-                                      "out.momentum", "out.load",    "out.relative", "out.factor",   "out.solvent",
-                                      "out.vertex",   "out.force",   "out.velocity"};
+  static const char *const names[] = {
+      "out.word",   "out.uniform",  "out.normal", "out.filled",  "out.active",   "out.second",  "out.angular",
+      "out.middle", "out.beyond",   "out.omega",  "out.center",  "out.axis",     "out.crosses", "out.tick",
+      "out.answer", "out.event",    "out.hit",    "out.order",   "out.position", "out.vector",  "out.momentum",
+      "out.load",   "out.relative", "out.factor", "out.solvent", "out.vertex",   "out.force",   "out.velocity"};
   int rank = 0;
   while (rank < (int)(sizeof names / sizeof *names) && strcmp(names[rank], name) != 0)
     rank++;

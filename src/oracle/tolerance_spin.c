@@ -1,5 +1,5 @@
-/* Tolerances of the operators of the rule at+a: docs/porting.md. A port may make the sums of a cell in doubles, about the
- * middle of the cell, where places are at most 1/2 a0 off along each axis. */
+/* Tolerances of the operators of the rule at+a: docs/porting.md. A port may make the sums of a cell in doubles, about
+ * the middle of the cell, where places are at most 1/2 a0 off along each axis. */
 #include <math.h>
 #include <string.h>
 
@@ -69,8 +69,7 @@ double tolerance_give_spin(const struct oracle_pair *p, uint32_t row, uint32_t c
 {
   const bool vertex = strcmp(p->ours->name, "out.vertex") == 0;
   const struct pack_table *rate = oracle_sibling(p, "in.omega");
-  const uint32_t cell =
-      (uint32_t)pack_value(oracle_sibling(p, vertex ? "in.vertex_cell" : "in.solvent_cell"), row, 0);
+  const uint32_t cell = (uint32_t)pack_value(oracle_sibling(p, vertex ? "in.vertex_cell" : "in.solvent_cell"), row, 0);
   double turning = 0.0;
   (void)column;
   for (uint32_t k = 0; k < 3; k++)
