@@ -2,16 +2,20 @@
 
 #define LEAST_SHARE 1e-12 /* of the trace: an eigenvalue below it is taken as 0 */
 
-/* A sum as a double, to a relative 2^-51. The compiler's own conversion calls a function that takes three times as
- * long; a cell needs nine. The sign is put on without a branch: nobody could predict it. */
+/* A sum that is not negative as a double, to a relative 2^-51. The compiler's own conversion calls a function that
+ * takes three times as long; a cell needs nine. */
+static inline double size_in_double(spin_word size)
+{
+  return (double)(int64_t)(uint64_t)(size >> 64) * 0x1p64 +
+         (double)(int64_t)(uint64_t)(size >> 32 & 0xffffffff) * 0x1p32 + (double)(int64_t)(uint64_t)(size & 0xffffffff);
+}
+
+/* The same of any sum. The sign is put on without a branch: nobody could predict it. */
 static inline double in_double(spin_word sum)
 {
   const uint64_t sign = 0 - (uint64_t)(sum >> 127);
   const spin_word wide = (spin_word)(spin_wide)(int64_t)sign, size = (sum ^ wide) - wide;
-  const double value = (double)(int64_t)(uint64_t)(size >> 64) * 0x1p64 +
-                       (double)(int64_t)(uint64_t)(size >> 32 & 0xffffffff) * 0x1p32 +
-                       (double)(int64_t)(uint64_t)(size & 0xffffffff);
-  return elementary_from_bits(elementary_bits(value) | (sign & 0x8000000000000000));
+  return elementary_from_bits(elementary_bits(size_in_double(size)) | (sign & 0x8000000000000000));
 }
 
 /* The same of a sum whose size is below 2^85, correctly rounded, as in_double's then is. */
@@ -71,7 +75,8 @@ void spin_solve(const struct cell_sum *sum, const struct cell_spin *s, struct ce
     const int a = row[k], b = column[k];
     const spin_word moved = s->second[k] - spin_product(x[a], rest[b]) - spin_product(x[b], rest[a]) -
                             (uint64_t)mass * spin_product(x[a], x[b]);
-    c[k] = 0x1p-96 * (in_double(moved) - inverse * off[a] * off[b]);
+    const double spread = a == b ? size_in_double(moved) : in_double(moved); /* sum m (y - x)^2 is not negative */
+    c[k] = 0x1p-96 * (spread - inverse * off[a] * off[b]);
   }
   const struct vec3 beyond = vec3_scale(LATTICE_UNIT * inverse, (struct vec3){off[0], off[1], off[2]});
   for (int k = 0; k < 3; k++) {
