@@ -2,16 +2,20 @@
 
 #define LEAST_SHARE 1e-12 /* of the trace: an eigenvalue below it is taken as 0 */
 
-/* A sum as a double, to a relative 2^-51. The compiler's own conversion calls a function that takes three times as
- * long; a cell needs nine. The sign is put on without a branch: nobody could predict it. */
+/* A sum that is not negative as a double, to a relative 2^-51. The compiler's own conversion calls a function that
+ * takes three times as long; a cell needs nine. */
+static inline double size_in_double(spin_word size)
+{
+  return (double)(int64_t)(uint64_t)(size >> 64) * 0x1p64 +
+         (double)(int64_t)(uint64_t)(size >> 32 & 0xffffffff) * 0x1p32 + (double)(int64_t)(uint64_t)(size & 0xffffffff);
+}
+
+/* The same of any sum. The sign is put on without a branch: nobody could predict it. */
 static inline double in_double(spin_word sum)
 {
   const uint64_t sign = 0 - (uint64_t)(sum >> 127);
   const spin_word wide = (spin_word)(spin_wide)(int64_t)sign, size = (sum ^ wide) - wide;
-  const double value = (double)(int64_t)(uint64_t)(size >> 64) * 0x1p64 +
-                       (double)(int64_t)(uint64_t)(size >> 32 & 0xffffffff) * 0x1p32 +
-                       (double)(int64_t)(uint64_t)(size & 0xffffffff);
-  return elementary_from_bits(elementary_bits(value) | (sign & 0x8000000000000000));
+  return elementary_from_bits(elementary_bits(size_in_double(size)) | (sign & 0x8000000000000000));
 }
 
 /* The same of a sum whose size is below 2^85, correctly rounded, as in_double's then is. */
@@ -52,8 +56,8 @@ struct vec3 spin_rate(const double c[6], struct vec3 l)
 
 /* Sums are moved to a lattice point next to the centre of mass in integers, and from there to the centre in doubles:
  * what is subtracted last is smaller than half a lattice unit. */
-void spin_moments(const struct cell_sum *sum, const struct cell_spin *s, struct vec3 center,
-                  struct spin_moments *moments)
+static inline void moments_of(const struct cell_sum *sum, const struct cell_spin *s, struct vec3 center,
+                              struct spin_moments *moments)
 {
   const int64_t mass = (int64_t)(sum->load & (CELL_MEMBER - 1)), p[3] = {sum->px, sum->py, sum->pz};
   static const int row[6] = {0, 1, 2, 1, 2, 0}, column[6] = {0, 1, 2, 2, 0, 1};
@@ -69,7 +73,8 @@ void spin_moments(const struct cell_sum *sum, const struct cell_spin *s, struct 
     const int a = row[k], b = column[k];
     const spin_word moved = s->second[k] - spin_product(x[a], rest[b]) - spin_product(x[b], rest[a]) -
                             (uint64_t)mass * spin_product(x[a], x[b]);
-    moments->second[k] = 0x1p-96 * (in_double(moved) - inverse * off[a] * off[b]);
+    const double spread = a == b ? size_in_double(moved) : in_double(moved); /* sum m (y - x)^2 is not negative */
+    moments->second[k] = 0x1p-96 * (spread - inverse * off[a] * off[b]);
   }
   const struct vec3 beyond = vec3_scale(LATTICE_UNIT * inverse, (struct vec3){off[0], off[1], off[2]});
   for (int k = 0; k < 3; k++) {
@@ -82,13 +87,19 @@ void spin_moments(const struct cell_sum *sum, const struct cell_spin *s, struct 
   moments->middle = (struct point){x[0], x[1], x[2]};
 }
 
+void spin_moments(const struct cell_sum *sum, const struct cell_spin *s, struct vec3 center,
+                  struct spin_moments *moments)
+{
+  moments_of(sum, s, center, moments);
+}
+
 void spin_solve(const struct cell_sum *sum, const struct cell_spin *s, struct cell_turn *turn, struct point *middle)
 {
   struct spin_moments about;
   cell_solve(sum, turn);
   if (turn->active == 0.0)
     return;
-  spin_moments(sum, s, turn->center, &about);
+  moments_of(sum, s, turn->center, &about);
   turn->axis = spin_rate(about.second, about.angular);
   turn->center = vec3_sub(turn->center, vec3_cross(turn->axis, about.beyond));
   *middle = about.middle;
