@@ -27,8 +27,9 @@ static uint32_t block_size(uint32_t n, uint32_t first, uint32_t most)
 static void clear_sums(struct mpc *c)
 {
   memset(c->sum, 0, (size_t)c->cells * sizeof *c->sum);
-  if (c->rule->spinning)
+  if (c->rule->spinning && !c->spin_is_clear)
     memset(c->spin, 0, (size_t)c->cells * sizeof *c->spin);
+  c->spin_is_clear = false;
 }
 
 /* Unsigned: the sum may wrap. overflow_of_energies finds out afterwards. */

@@ -55,6 +55,7 @@ struct mpc {
   struct vec3 *drawn_vertex; /* [vertices] the same */
   struct mpc_stress *stress; /* where to sum the stress (stress.h); NULL: nobody asks for it */
   struct cell_spin *spin;    /* [cells] sums of a rule with angular momentum (rules/spin.h), else NULL */
+  bool spin_is_clear;        /* all of `spin` is 0: the rule clears each cell when it has solved it */
   struct point *middle;      /* [cells] of the same rule: place in the cell next to its centre of mass, lattice units */
   uint32_t since_sort;       /* collisions since particles were last sorted by cell */
 };

@@ -47,7 +47,7 @@ static struct cell collide_cell(const struct cell *old)
     const struct vec3 u = vec3_sub(old->v[i], old->xi[i]);
     cell_add(&sum, old->mass[i], cell_load(old->mass[i]), u);
     if (old->mass[i] == 1.0 && i % 2)
-      spin_add_particle(&spin, old->place[i], u);
+      spin_add_particle(&spin, old->place[i], spin_momentum(1.0, u));
     else
       spin_add(&spin, old->place[i], old->mass[i], u);
   }

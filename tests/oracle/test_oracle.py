@@ -580,18 +580,20 @@ class OracleTest(unittest.TestCase):
         self.assertEqual(run("trace", scene)[0], 0)
 
     def test_packs_of_other_collision_rules(self):
-        """A pack of the rule at-a has its own operators, in place of those of srd."""
-        scene, pack = self.dir / "anew.yaml", self.dir / "anew.h5"
-        scene.write_text("box: [4, 4, 4]\ntime_step: 0.02\nsteps: 4\n"
-                         "solvent: {per_cell: 5, collision_interval: 0.02, rule: at-a}\n")
-        self.assertEqual(run("emit", scene, "-o", pack), (0, ""))
-        status, said = run("dump", pack)
-        operators = {line.split()[0] for line in said.splitlines() if not line.startswith("#")}
-        self.assertEqual(status, 0)
-        self.assertLessEqual({"draw", "sum", "mean", "give"}, operators)
-        self.assertFalse(operators & {"solve", "rotate", "rescale", "maxwell_boltzmann"})
-        status, said = run("trace", scene)
-        self.assertEqual((status, said.count(",collide,")), (0, 4))
+        """A pack of the rules at-a and at+a has its own operators, in place of those of srd."""
+        for rule, own, others in (("at-a", {"mean", "give"}, {"moments", "spin", "give_spin"}),
+                                  ("at+a", {"moments", "spin", "give_spin"}, {"mean", "give"})):
+            scene, pack = self.dir / f"{rule}.yaml", self.dir / f"{rule}.h5"
+            scene.write_text("box: [4, 4, 4]\ntime_step: 0.02\nsteps: 4\n"
+                             f"solvent: {{per_cell: 5, collision_interval: 0.02, rule: {rule}}}\n")
+            self.assertEqual(run("emit", scene, "-o", pack), (0, ""))
+            status, said = run("dump", pack)
+            operators = {line.split()[0] for line in said.splitlines() if not line.startswith("#")}
+            self.assertEqual(status, 0)
+            self.assertLessEqual({"draw", "sum"} | own, operators)
+            self.assertFalse(operators & (others | {"solve", "rotate", "rescale", "maxwell_boltzmann"}))
+            status, said = run("trace", scene)
+            self.assertEqual((status, said.count(",collide,")), (0, 4))
 
     def test_packs_of_other_boxes(self):
         """Packs hold the operators of a box in space, with a uniform acceleration; traces hold any box."""

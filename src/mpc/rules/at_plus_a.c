@@ -29,13 +29,38 @@ static inline void prefetch_spin(const struct cell_spin *s)
     __builtin_prefetch(line + k, 1);
 }
 
-static void add_spins(const struct solvent *s, struct mpc *c, uint32_t first, uint32_t n,
-                      const struct andersen_change *u)
+/* Places in their cells, and momenta, of a block of particles: lattice units, 2^-44 m a0/t0. */
+struct spin_block {
+  int64_t x[ANDERSEN_BLOCK], y[ANDERSEN_BLOCK], z[ANDERSEN_BLOCK];
+  int64_t px[ANDERSEN_BLOCK], py[ANDERSEN_BLOCK], pz[ANDERSEN_BLOCK];
+};
+
+/* In columns, which vectorise; `slow`: all momenta are in the range of lattice_round. */
+static void fill_block(const struct solvent *s, const struct mpc *c, uint32_t first, uint32_t n,
+                       const struct andersen_change *u, bool slow, struct spin_block *b)
+{
+  for (uint32_t k = 0; k < n; k++) {
+    const struct point y = place_of(c, s, first + k);
+    b->x[k] = y.x, b->y[k] = y.y, b->z[k] = y.z;
+  }
+  for (uint32_t k = 0; slow && k < n; k++) {
+    b->px[k] = lattice_round(CELL_MOMENTUM_SCALE * u->x[k]);
+    b->py[k] = lattice_round(CELL_MOMENTUM_SCALE * u->y[k]);
+    b->pz[k] = lattice_round(CELL_MOMENTUM_SCALE * u->z[k]);
+  }
+  for (uint32_t k = 0; !slow && k < n; k++) {
+    const struct point p = spin_momentum(1.0, (struct vec3){u->x[k], u->y[k], u->z[k]});
+    b->px[k] = p.x, b->py[k] = p.y, b->pz[k] = p.z;
+  }
+}
+
+static void add_spins(struct mpc *c, uint32_t first, uint32_t n, const struct spin_block *b)
 {
   const uint32_t *cell = &c->solvent_cell[first];
   for (uint32_t k = 0; k < n; k++) {
     prefetch_spin(&c->spin[cell[k + AHEAD < n ? k + AHEAD : n - 1]]);
-    spin_add_particle(&c->spin[cell[k]], place_of(c, s, first + k), (struct vec3){u->x[k], u->y[k], u->z[k]});
+    spin_add_particle(&c->spin[cell[k]], (struct point){b->x[k], b->y[k], b->z[k]},
+                      (struct point){b->px[k], b->py[k], b->pz[k]});
   }
 }
 
@@ -46,9 +71,12 @@ static uint64_t add_particles(const struct state *state, const struct model *mod
   for (uint32_t i = first; i < first + n; i += ANDERSEN_BLOCK) {
     const uint32_t m = first + n - i < ANDERSEN_BLOCK ? first + n - i : ANDERSEN_BLOCK;
     struct andersen_change u;
+    struct spin_block b;
     andersen_draw_block(&state->solvent, model, c, step, i, m, &u);
-    span |= members_add(c, i, m, u.x, u.y, u.z);
-    add_spins(&state->solvent, c, i, m, &u);
+    const uint64_t reach = members_add(c, i, m, u.x, u.y, u.z);
+    fill_block(&state->solvent, c, i, m, &u, reach != UINT64_MAX, &b);
+    add_spins(c, i, m, &b);
+    span |= reach;
   }
   return span;
 }
@@ -101,7 +129,7 @@ static void add_virtual(const struct model *model, struct mpc *c, uint64_t step,
   for (uint32_t k = 0; k < members->n; k++) {
     const struct virtual_one one = draw_virtual(model, c, step, place, k, members);
     cell_add(&c->sum[place], 1.0, cell_load(1.0), one.change);
-    spin_add_particle(&c->spin[place], one.place, one.change);
+    spin_add_particle(&c->spin[place], one.place, spin_momentum(1.0, one.change));
   }
 }
 
@@ -121,8 +149,11 @@ static struct vec3 virtual_gain(const struct model *model, const struct mpc *c, 
 static void solve(const struct model *model, struct mpc *c, uint64_t step)
 {
   (void)model, (void)step;
-  for (uint32_t k = 0; k < c->cells; k++)
+  for (uint32_t k = 0; k < c->cells; k++) {
     spin_solve(&c->sum[k], &c->spin[k], &c->turn[k], &c->middle[k]);
+    memset(&c->spin[k], 0, sizeof c->spin[k]); /* for the next collision, while it is in the cache */
+  }
+  c->spin_is_clear = !c->occupied; /* else the next collision has other cells */
 }
 
 /* New velocities of a block of particles, without a branch, and written to columns of their own first (at_a.c). */

@@ -43,21 +43,26 @@ static inline spin_word spin_product(int64_t a, int64_t b)
   return (spin_word)((spin_wide)a * b);
 }
 
-/* Adds y x p. */
-static inline void spin_add_momentum(struct cell_spin *s, struct point y, double mass, struct vec3 u)
+/* A member's momentum as cell_add rounds it, 2^-44 m a0/t0. */
+static inline struct point spin_momentum(double mass, struct vec3 u)
 {
   const double scale = mass * CELL_MOMENTUM_SCALE;
-  const int64_t px = llrint(scale * u.x), py = llrint(scale * u.y), pz = llrint(scale * u.z);
-  s->angular[0] += spin_product(y.y, pz) - spin_product(y.z, py);
-  s->angular[1] += spin_product(y.z, px) - spin_product(y.x, pz);
-  s->angular[2] += spin_product(y.x, py) - spin_product(y.y, px);
+  return (struct point){llrint(scale * u.x), llrint(scale * u.y), llrint(scale * u.z)};
+}
+
+/* Adds y x p. */
+static inline void spin_add_momentum(struct cell_spin *s, struct point y, struct point p)
+{
+  s->angular[0] += spin_product(y.y, p.z) - spin_product(y.z, p.y);
+  s->angular[1] += spin_product(y.z, p.x) - spin_product(y.x, p.z);
+  s->angular[2] += spin_product(y.x, p.y) - spin_product(y.y, p.x);
 }
 
 /* Adds a member of any mass whose momentum changes by mass u, u in a0/t0. */
 static inline void spin_add(struct cell_spin *s, struct point y, double mass, struct vec3 u)
 {
   const spin_word m = (spin_word)(mass * CELL_MASS_SCALE + 0.5);
-  spin_add_momentum(s, y, mass, u);
+  spin_add_momentum(s, y, spin_momentum(mass, u));
   s->first[0] += m * (spin_word)y.x;
   s->first[1] += m * (spin_word)y.y;
   s->first[2] += m * (spin_word)y.z;
@@ -69,12 +74,12 @@ static inline void spin_add(struct cell_spin *s, struct point y, double mass, st
   s->second[5] += m * spin_product(y.x, y.y);
 }
 
-/* The same for a mass of 1, which is 2^16 mass units: 55 bits hold it times a coordinate. */
-static inline void spin_add_particle(struct cell_spin *s, struct point y, struct vec3 u)
+/* The same for a mass of 1, which is 2^16 mass units: 55 bits hold it times a coordinate. p: spin_momentum. */
+static inline void spin_add_particle(struct cell_spin *s, struct point y, struct point p)
 {
   const int64_t unit = (int64_t)CELL_MASS_SCALE;
   const struct point m = {unit * y.x, unit * y.y, unit * y.z};
-  spin_add_momentum(s, y, 1.0, u);
+  spin_add_momentum(s, y, p);
   s->first[0] += (spin_word)m.x;
   s->first[1] += (spin_word)m.y;
   s->first[2] += (spin_word)m.z;
