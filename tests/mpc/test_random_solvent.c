@@ -347,7 +347,8 @@ static void vertices_take_the_baths_temperature(void **unused)
 
 /* Vertices are carried along by the flow of their height: what is left of v_x has no mean and no slope in the height
  * within the box, of which all are equally likely. The vertices cross the boundary many times. Blocks of 50 collisions
- * are longer than the memory of velocities, so that 5 errors of 400 blocks are a false alarm once in 10^6. */
+ * are longer than the memory of velocities. But slopes of 146 seeds scatter by 1.25 times the error that their blocks
+ * give, for a reason that is not known. So 5 errors are 4 standard deviations, a false alarm once in 16,000 seeds. */
 static void vertices_take_the_flow_of_a_sheared_box(void **unused)
 {
   (void)unused;
