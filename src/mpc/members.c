@@ -43,7 +43,7 @@ static void add_slow_particles(uint32_t n, const double *restrict vx, const doub
 uint64_t members_add(struct mpc *c, uint32_t first, uint32_t n, const double *vx, const double *vy, const double *vz)
 {
   const uint32_t *cell = &c->solvent_cell[first];
-  for (uint32_t k = 0; k < n && members_out_of_cache(c); k++)
+  for (uint32_t k = 0; c->prefetch && k < n; k++)
     __builtin_prefetch(&c->sum[cell[k]], 1);
   uint64_t span = momentum_span(vx, n) | momentum_span(vy, n) | momentum_span(vz, n);
   if (span != UINT64_MAX) {

@@ -8,11 +8,11 @@
  * (mpc->solvent_cell). Returns the bitwise or of what cell_add returns for each. */
 uint64_t members_add(struct mpc *mpc, uint32_t first, uint32_t n, const double *vx, const double *vy, const double *vz);
 
-/* True if the sums and turns of all cells do not fit the caches. Prefetching them then saves 17 % of the time (100^3
- * cells). With 32^3 cells it would cost 0.9 ns of 7. */
-static inline bool members_out_of_cache(const struct mpc *mpc)
+/* Asks for the turns of the cells of particles first .. first + n - 1, if mpc->prefetch says that it helps. */
+static inline void members_prefetch_turns(const struct mpc *mpc, uint32_t first, uint32_t n)
 {
-  return mpc->cells > 1 << 16;
+  for (uint32_t i = first; mpc->prefetch && i < first + n; i++)
+    __builtin_prefetch(&mpc->turn[mpc->solvent_cell[i]]);
 }
 
 #endif

@@ -57,6 +57,14 @@ static void list_needs(struct mpc *c, const struct model *m, bool everything, st
   memcpy(need, all, sizeof all);
 }
 
+/* More cells than this do not fit the caches. Asking for their sums and turns ahead then saves 17 % of the time (points
+ * in 100^3 cells). With points in 32^3 cells it would cost 0.9 ns of 7: neighbours in memory are in the same cells.
+ * Dumbbells are sorted by their first particles, so the second ones are anywhere near: it saves them 20 % there. */
+static bool cells_are_far(const struct model *m)
+{
+  return count_cells(m) > (model_has_dumbbells(m) ? 1 << 13 : 1 << 16);
+}
+
 bool mpc_alloc(struct mpc *c, const struct model *m, const struct fluid *fluid, bool everything)
 {
   struct memory_need need[NEEDS];
@@ -65,6 +73,7 @@ bool mpc_alloc(struct mpc *c, const struct model *m, const struct fluid *fluid, 
                     .fluid = fluid,
                     .border = border_of(m),
                     .cells = (uint32_t)count_cells(m),
+                    .prefetch = cells_are_far(m),
                     .table_bits = table_bits(m->vertices)};
   list_needs(c, m, everything, need);
   return memory_take(need, NEEDS);

@@ -89,8 +89,11 @@ static void apply(struct state *state, const struct model *model, const struct m
 {
   (void)model, (void)scaled; /* it is a thermostat by itself */
   const uint32_t n = state->solvent.n;
-  for (uint32_t i = 0; i < n; i += ANDERSEN_BLOCK)
-    apply_block(&state->solvent, c, i, n - i < ANDERSEN_BLOCK ? n - i : ANDERSEN_BLOCK);
+  for (uint32_t i = 0; i < n; i += ANDERSEN_BLOCK) {
+    const uint32_t m = n - i < ANDERSEN_BLOCK ? n - i : ANDERSEN_BLOCK;
+    members_prefetch_turns(c, i, m);
+    apply_block(&state->solvent, c, i, m);
+  }
   for (uint32_t v = 0; v < state->vertices; v++) {
     const struct cell_turn *t = &c->turn[c->vertex_cell[v]];
     if (t->active != 0.0)

@@ -133,20 +133,19 @@ static inline __attribute__((always_inline)) void turn_sparse(struct solvent *s,
   }
 }
 
-static void prefetch_turns(const struct solvent *s, const struct mpc *c, uint32_t first)
+static uint32_t block_from(const struct solvent *s, uint32_t first)
 {
-  for (uint32_t i = first; i < s->n && i < first + TURNED && members_out_of_cache(c); i++)
-    __builtin_prefetch(&c->turn[c->solvent_cell[i]]);
+  return first >= s->n ? 0 : s->n - first < TURNED ? s->n - first : TURNED;
 }
 
 static inline __attribute__((always_inline)) void turn_dense(struct solvent *s, const struct mpc *c,
                                                              const struct solvent_model *rule, const bool quarter,
                                                              const bool scaled)
 {
-  prefetch_turns(s, c, 0);
+  members_prefetch_turns(c, 0, block_from(s, 0));
   for (uint32_t i = 0; i < s->n; i += TURNED) {
-    prefetch_turns(s, c, i + TURNED);
-    turn_block(s, c, rule, i, s->n - i < TURNED ? s->n - i : TURNED, quarter, scaled);
+    members_prefetch_turns(c, i + TURNED, block_from(s, i + TURNED));
+    turn_block(s, c, rule, i, block_from(s, i), quarter, scaled);
   }
 }
 
