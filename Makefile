@@ -121,6 +121,7 @@ $(BUILD)/lib/libuncross.a: $(LINKED_OBJECTS)
 	@ar rcs $@ $(BUILD)/lib/uncross.o
 
 $(BUILD)/lib/libuncross-core.a: $(CORE_SOURCES:%.c=$(BUILD)/%.o)
+	@mkdir -p $(@D)
 	@rm -f $@
 	@ar rcs $@ $^
 
