@@ -167,6 +167,17 @@ class Runs(unittest.TestCase):
         self.assertTrue(runs.harvest(self.scene(100), self.work, self.work / "kept"))
         self.assertEqual((self.work / "kept/made-up/a/conserved.csv").read_text(), rows)
 
+    def test_long_series_are_thinned(self):
+        """Rows of equal intervals: the mean stays, the row before the first interval goes, and step and time are the ends."""
+        self.work.mkdir(parents=True, exist_ok=True)
+        path = self.work / "stress.csv"
+        steps = range(0, 50, 10)
+        path.write_text("step,time,sigma\n" + "".join(f"{k},{0.1 * k},{k if k else 'nan'}\n" for k in steps))
+        runs.thin(path, most=2)
+        self.assertEqual(path.read_text(), "step,time,sigma\n20,2,15\n40,4,35\n")
+        runs.thin(path, most=2)
+        self.assertEqual(path.read_text(), "step,time,sigma\n20,2,15\n40,4,35\n")
+
 
 if __name__ == "__main__":
     unittest.main()

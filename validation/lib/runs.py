@@ -17,6 +17,8 @@ import signal
 import subprocess
 import sys
 
+import numpy
+
 TREE = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(TREE / "python"))
 from uncross_sweep.files import columns, duration, read_json, write_json  # noqa: E402
@@ -274,4 +276,22 @@ def harvest(run, work, kept):
     for path in target.glob("*.csv"):  # of a run that goes on: whole lines
         rows = path.read_bytes()
         path.write_bytes(rows[:rows.rfind(b"\n") + 1])
+    if (target / "stress.csv").is_file():
+        thin(target / "stress.csv")
     return True
+
+
+def thin(path, most=2000):
+    """Averages neighboring rows of a series, as many as leave at most `most` rows: step and time are those of the last one. Each
+    row of stress.csv is a mean over its own interval, so that no mean changes but for the rows at the end that fill no block."""
+    head = path.read_text().partition("\n")[0]
+    rows = numpy.genfromtxt(path, delimiter=",", skip_header=1, ndmin=2)
+    names = head.split(",")
+    rows = rows[1:] if len(rows) and numpy.isnan(rows[0, 2:]).all() else rows  # the first row has no interval before it
+    together = -(-len(rows) // most)
+    if together < 2:
+        return
+    blocks = rows[:len(rows) // together * together].reshape(-1, together, len(names))
+    short = blocks.mean(axis=1)
+    short[:, :2] = blocks[:, -1, :2]
+    path.write_text("\n".join([head, *(",".join(f"{x:.17g}" for x in row) for row in short)]) + "\n")
