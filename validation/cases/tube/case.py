@@ -119,7 +119,7 @@ def expected_rotation(which, system):
 
 def rotation(results, which):
     """(tau_r, error, intercept), or None."""
-    return sd.rotation_time(sd.table(results.get("rotation-" + which), least=2), *ROTATION[which])
+    return sd.rotation_time([sd.table(results.get(name), least=2) for name in AXIS[which]], *ROTATION[which])
 
 
 def ratio(one, other, name, time):
