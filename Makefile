@@ -241,7 +241,7 @@ $(BUILD)/tests/api/test_core: tests/api/test_core.c $(BUILD)/lib/libuncross-core
 
 # Holds all kernels against the plain one, whether the program has them or not.
 ROWS := $(if $(KERNELS),$(BUILD)/src/kernel/rows.o $(KERNELS:%=$(BUILD)/src/kernel/%.o))
-$(BUILD)/tests/kernel/test_%: tests/kernel/test_%.c $(ROWS) $(LIBRARY) Makefile
+$(filter $(BUILD)/tests/kernel/%,$(TEST_PROGRAMS)): $(BUILD)/%: %.c $(ROWS) $(LIBRARY) Makefile
 	@mkdir -p $(@D)
 	@echo '  CC $<'
 	@$(CC) $(ALL_CFLAGS) -Itests $(DEPENDENCIES) $(filter-out Makefile,$^) $(TEST_LIBS) $(LIBS) -o $@
