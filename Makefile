@@ -463,4 +463,4 @@ $(BUILD)/readers: $(BUILD)/tests/fuzz/fuzz_readers.o $(LIBRARY)
 clean:
 	rm -rf $(BUILD)
 
--include $(OBJECTS:.o=.d) $(LINKED_OBJECTS:.o=.d) $(TEST_PROGRAMS:=.d) $(STRESS_PROGRAMS:=.d) $(MEASURE_PROGRAMS:=.d) $(BENCH_PROGRAMS:=.d)
+-include $(OBJECTS:.o=.d) $(ROWS:.o=.d) $(LINKED_OBJECTS:.o=.d) $(TEST_PROGRAMS:=.d) $(STRESS_PROGRAMS:=.d) $(MEASURE_PROGRAMS:=.d) $(BENCH_PROGRAMS:=.d)
