@@ -22,7 +22,10 @@ class Verdict:
     kind "gate": a disagreement is our bug. kind "paper": a disagreement is a finding, and `reason` explains it, if known.
 
     `rival`, where given, is another value that the measured number must be told from. The verdict stays "undecided" while
-    the measurement is too rough: while `detects` is larger than the expected number, or the rival agrees, too."""
+    the measurement is too rough: while `detects` is larger than the expected number, or the rival agrees, too.
+
+    `power`, where given, is the wrong effect that the verdict is there to see. While `detects` is larger, nothing that agrees
+    is a pass: it stays "undecided"."""
     id: str
     statement: str
     expected: float
@@ -35,6 +38,7 @@ class Verdict:
     kind: str = "gate"
     reason: str = ""
     rival: float = None
+    power: float = None
 
     @property
     def verdict(self):
@@ -54,6 +58,8 @@ class Verdict:
     @property
     def blind(self):
         """Is the measurement too rough: would an effect as large as the expected number be missed, or does the rival agree, too?"""
+        if self.power is not None and max(self.seen, self.tolerance) > self.power:
+            return True
         if self.rival is not None and abs(self.measured - self.rival) <= self.tolerance:
             return True
         return self.expected != 0.0 and max(self.seen, self.tolerance) > abs(self.expected)

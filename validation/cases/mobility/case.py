@@ -58,7 +58,7 @@ def runs(tier):
 
 # --- what they say ----------------------------------------------------------------------------------------------------
 
-LAST = 25.6  # longest lag, t0
+LAST = 51.2  # longest lag, t0
 LAG_BIAS = 0.008  # of D: by how much later first lags and shortest waves move it
 
 
