@@ -102,7 +102,7 @@ def per_length(lengths, values, covariance, theory):
     """{N: (D, error, p)} of several boxes, and the covariance of ln D; p: the chance that boxes differ as much as they do."""
     sizes = sorted(set(lengths))
     scale = numpy.array([theory(n) for n in lengths])
-    relative = covariance / numpy.outer(values, values)
+    relative = covariance / numpy.outer(values, values) * (values / scale).mean()**2
     basis = [numpy.array([float(n == one) for n in lengths]) for one in sizes]
     f = stats.fit_correlated(basis, values / scale, relative)
     found, logs = {}, f.covariance / numpy.outer(f.value, f.value)
