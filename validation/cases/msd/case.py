@@ -280,7 +280,7 @@ def against_theory(results, curves):
     """The campaign's curves with the theory that has nothing to fit: label -> (t, ratio, error)."""
     rows = {f"c L³ = {density}": (curves[density], count, True) for density, (_, _, _, count) in SYSTEMS["campaign"].items()}
     rows["c L³ = 1000, free"] = (curve(results, "tube/hi-free"), 1000, True)
-    rows["four fibers, free"] = (sd.table(results.get("tube/rotation-hi"), least=2), 4, True)
+    rows["four fibers, free"] = (sd.table(results.get("tube/axis-hi-1"), least=2), 4, True)
     rows["c L³ = 100, free, off"] = (curves["off"], 100, False)
     return {name: over_theory(columns, 64, count, 32, on) for name, (columns, count, on) in rows.items() if columns is not None}
 
