@@ -8,9 +8,7 @@
 INLINE void words_of(uint64_t seed, enum random_purpose purpose, uint32_t draw, uint64_t step,
                      const uint32_t entity[LANES], words w[4])
 {
-  narrow low;
-  memcpy(&low, entity, sizeof low);
-  philox_words(seed, purpose, draw, step, __builtin_convertvector(low, words), w);
+  philox_words(seed, purpose, draw, step, load_low(entity), w);
 }
 
 enum { BLOCK = 64 }; /* entities worked on at a time */
@@ -61,6 +59,22 @@ void random_wide_columns(uint64_t seed, enum random_purpose purpose, uint32_t dr
       memcpy(&word[i][k], &w[i], sizeof w[i]);
       memcpy(&word[i][k + LANES], &next[i], sizeof next[i]);
     }
+  }
+}
+
+void random_wide_pair_columns(uint64_t seed, enum random_purpose purpose, uint64_t step, const uint32_t *entity,
+                              const uint32_t *draw, uint32_t n, uint64_t word[4][RANDOM_UNIFORMS])
+{
+  uint32_t first[BLOCK], second[BLOCK];
+  const words zero = {0};
+  take_block(entity, n, first);
+  take_block(draw, n, second);
+  for (uint32_t k = 0; k < n; k += LANES) {
+    words w[4] = {load_low(&first[k]), (load_low(&second[k]) << 8) + (uint32_t)purpose, zero + (uint32_t)step,
+                  zero + (step >> 32)};
+    philox_rounds(seed, w);
+    for (int i = 0; i < 4; i++)
+      memcpy(&word[i][k], &w[i], sizeof w[i]);
   }
 }
 

@@ -64,6 +64,13 @@ INLINE void store_words(int64_t *p, words x)
   memcpy(p, &x, sizeof x);
 }
 
+INLINE words load_low(const uint32_t *p)
+{
+  narrow low;
+  memcpy(&low, p, sizeof low);
+  return __builtin_convertvector(low, words);
+}
+
 /* The low half of each word. */
 INLINE void store_narrow(uint32_t *p, words x)
 {
