@@ -10,6 +10,7 @@
 #include "base/elementary.h"
 #include "system/fiber_kind.h"
 #include "system/flow.h"
+#include "system/medium.h"
 #include "system/model.h"
 #include "system/model_keys.h"
 #include "system/shear.h"
@@ -410,7 +411,7 @@ bool model_finish_numbers(struct model *m, struct model_error *error)
   if (!keys_check(&model_keys, m, error))
     return false;
   m->box = box_of_cells(m->box.cells[0], m->box.cells[1], m->box.cells[2]);
-  if (!finish_solvent(m, error) || !finish_dumbbells(m, error) || !flow_finish(m, error) || !finish_fibers(m, error) ||
+  if (!medium_finish(m, error) || !finish_solvent(m, error) || !finish_dumbbells(m, error) || !flow_finish(m, error) || !finish_fibers(m, error) ||
       !check_crossing(m, error))
     return false;
   if (!model_collides(m) && m->kinds == 0)
