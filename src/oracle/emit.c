@@ -80,6 +80,8 @@ bool oracle_emit(const struct scene *scene, struct pack *pack, struct message *m
     return message_set(
         message, "%s: crossing.refusal or crossing.frame; packs hold drifts by the paper's rule: stay, laboratory",
         scene->path);
+  if (model->frozen > 0)
+    return message_set(message, "%s: fibers.frozen; packs hold the operators of fibers that move", scene->path);
   if (last == 0)
     return message_set(message, "%s: no collision within its %" PRIu64 " steps; a pack needs one", scene->path,
                        scene->steps);

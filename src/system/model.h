@@ -120,6 +120,7 @@ struct fiber_kind {
   uint32_t count;             /* fibers of this kind */
   uint32_t vertices;          /* N_v, per fiber */
   bool ring;                  /* the last vertex is bonded to the first */
+  bool frozen;                /* they stand still, but take part in collisions: contact/frozen.h */
   double mass;                /* M, in m; effective: rounded to a multiple of MODEL_MASS_UNIT */
   double bond_length;         /* l0, in a0 */
   double spring;              /* k = K/l0, in kT/a0^2: Eq. (1) */
@@ -231,12 +232,13 @@ struct model {
 
   /* Derived by model_finish. Vertices are numbered fiber by fiber, fibers kind by kind; bond j joins j and next[j]. */
   uint32_t fibers, vertices, bonds;
+  uint32_t frozen;         /* of the vertices */
   uint32_t *fiber_first;   /* [fibers + 1]: first vertex of each fiber */
   uint32_t *fiber_kind_of; /* [fibers] */
   uint32_t *fiber_of;      /* [vertices] */
   int32_t *next, *prev;    /* [vertices]: bonded neighbors along the fiber, -1 at an open end */
   double *mass;            /* [vertices] M */
-  double *inverse_mass;    /* [vertices] 1/M */
+  double *inverse_mass;    /* [vertices] 1/M; 0 if frozen: no force and no contact moves it */
   double max_mass;         /* of any member of a collision cell */
   double total_mass;       /* of solvent and vertices */
   struct wave wave;        /* of the walls' or the shear's motion */

@@ -185,6 +185,25 @@ static bool check_shape(const struct look *look)
   return true;
 }
 
+/* What would move a frozen fiber, or what it would stand still in. */
+static bool check_frozen(const struct look *look)
+{
+  const struct model *m = look->model;
+  const struct fiber_kind *k = look->kind;
+  const struct {
+    bool is;
+    const char *what;
+  } rows[] = {{k->force.x != 0.0 || k->force.y != 0.0 || k->force.z != 0.0, "a force"},
+              {m->flow.x != 0.0 || m->flow.y != 0.0 || m->flow.z != 0.0, "a flow"},
+              {m->walls.kind != WALL_ABSENT, "walls"},
+              {model_is_sheared(m), "shear"}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows && k->frozen; i++)
+    if (rows[i].is)
+      return reject_kind(look, "frozen", "frozen fibers together with %s; allowed: false, or a periodic box at rest",
+                         rows[i].what);
+  return true;
+}
+
 static bool check_count(const struct look *look, uint64_t *vertices)
 {
   *vertices += (uint64_t)look->kind->count * look->kind->vertices;
@@ -328,7 +347,7 @@ static bool check_gap(const struct look *look)
 static bool finish_kind(const struct look *look, uint64_t *vertices)
 {
   return round_mass(look) && derive_bending(look) && check_shape(look) && check_count(look, vertices) &&
-         check_extent(look) && check_places(look) && check_plane(look) && check_gap(look) && check_stability(look);
+         check_frozen(look) && check_extent(look) && check_places(look) && check_plane(look) && check_gap(look) && check_stability(look);
 }
 
 static bool finish_fibers(struct model *m, struct model_error *error)

@@ -214,6 +214,12 @@ static const struct key fiber_keys[] = {
      .absent = "false",
      .offset = IN_KIND(ring),
      .first_format = true},
+    {.name = "frozen",
+     .text = "true: these fibers stand still. In collisions their vertices take part as those of other fibers do, with "
+             "velocities of their own, which move nothing; a moving fiber meets them as if they were infinitely heavy.",
+     .type = KEY_SWITCH,
+     .absent = "false",
+     .offset = IN_KIND(frozen)},
     {.name = "mass",
      .text = "Mass of a vertex, rounded to a multiple of 2^-16 m (1.5e-5), so that the mass of a cell is summed "
              "exactly. Should be about `per_cell`; a warning beyond a factor of 2.",
