@@ -347,7 +347,8 @@ static bool check_gap(const struct look *look)
 static bool finish_kind(const struct look *look, uint64_t *vertices)
 {
   return round_mass(look) && derive_bending(look) && check_shape(look) && check_count(look, vertices) &&
-         check_frozen(look) && check_extent(look) && check_places(look) && check_plane(look) && check_gap(look) && check_stability(look);
+         check_frozen(look) && check_extent(look) && check_places(look) && check_plane(look) && check_gap(look) &&
+         check_stability(look);
 }
 
 static bool finish_fibers(struct model *m, struct model_error *error)
