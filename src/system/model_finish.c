@@ -347,7 +347,8 @@ static bool check_gap(const struct look *look)
 static bool finish_kind(const struct look *look, uint64_t *vertices)
 {
   return round_mass(look) && derive_bending(look) && check_shape(look) && check_count(look, vertices) &&
-         check_frozen(look) && check_extent(look) && check_places(look) && check_plane(look) && check_gap(look) && check_stability(look);
+         check_frozen(look) && check_extent(look) && check_places(look) && check_plane(look) && check_gap(look) &&
+         check_stability(look);
 }
 
 static bool finish_fibers(struct model *m, struct model_error *error)
@@ -411,8 +412,8 @@ bool model_finish_numbers(struct model *m, struct model_error *error)
   if (!keys_check(&model_keys, m, error))
     return false;
   m->box = box_of_cells(m->box.cells[0], m->box.cells[1], m->box.cells[2]);
-  if (!medium_finish(m, error) || !finish_solvent(m, error) || !finish_dumbbells(m, error) || !flow_finish(m, error) || !finish_fibers(m, error) ||
-      !check_crossing(m, error))
+  if (!medium_finish(m, error) || !finish_solvent(m, error) || !finish_dumbbells(m, error) || !flow_finish(m, error) ||
+      !finish_fibers(m, error) || !check_crossing(m, error))
     return false;
   if (!model_collides(m) && m->kinds == 0)
     return model_reject(error, "", "there is nothing to simulate; a scene has a 'solvent', 'fibers', or both");
