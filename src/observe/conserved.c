@@ -231,9 +231,9 @@ static double vertex_temperature(const struct motion *m, const struct vertex_mot
 struct temperatures motion_temperatures(const struct model *model, const struct motion *m)
 {
   const double n = model->solvent.particles, total = model->total_mass, vertices = total - n;
-  /* A box by itself keeps its velocity, which takes a degree of freedom along each axis; a bath of phantoms has the
-   * flow's. */
-  const bool kept = !model_has_phantoms(model);
+  /* A box by itself keeps its velocity, which takes a degree of freedom along each axis; a bath that takes momentum
+   * up has the flow's. */
+  const bool kept = model_keeps_momentum(model);
   const struct vec3 u = kept ? vec3_scale(1.0 / total, vec3_add(m->solvent_sum, m->vertex.momentum)) : model->flow;
   const double solvent_freedom = n * (1.0 - 1.0 / total);
   const double vertex_freedom =
