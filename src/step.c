@@ -117,7 +117,7 @@ static struct vec3 conserved_axes(const struct model *model)
 {
   const double y = !model_has_walls(model), along = y != 0.0 || model->walls.kind == WALL_SLIP;
   return !model_keeps_momentum(model) || model->total_mass == 0.0 ? (struct vec3){0, 0, 0}
-                                                               : (struct vec3){along, y, along};
+                                                                  : (struct vec3){along, y, along};
 }
 
 /* Replaces the total momentum of the state by that of the flow: all velocities change by the same amount. Where

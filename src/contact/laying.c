@@ -41,8 +41,8 @@ struct cells {
 static struct cells cells_of(const struct laying *l, const struct point *position, uint32_t bond)
 {
   const struct point a = position[bond], b = position[l->model->next[bond]];
-  const int64_t reach = l->model->thickness / 2 + 1, low[3] = {a.x < b.x ? a.x : b.x, a.y < b.y ? a.y : b.y,
-                                                               a.z < b.z ? a.z : b.z},
+  const int64_t reach = l->model->thickness / 2 + 1,
+                low[3] = {a.x < b.x ? a.x : b.x, a.y < b.y ? a.y : b.y, a.z < b.z ? a.z : b.z},
                 high[3] = {a.x > b.x ? a.x : b.x, a.y > b.y ? a.y : b.y, a.z > b.z ? a.z : b.z};
   struct cells c;
   for (int k = 0; k < 3; k++) {

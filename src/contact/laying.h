@@ -19,8 +19,8 @@ struct laying_entry {
 struct laying {
   const struct model *model;
   int32_t cells[3];
-  int64_t edge[3];     /* of a cell, lattice units */
-  uint32_t *first;     /* [cells] as `next` */
+  int64_t edge[3]; /* of a cell, lattice units */
+  uint32_t *first; /* [cells] as `next` */
   uint32_t count, room;
   struct laying_entry *at;
   uint32_t bond, other; /* the last two that were found to overlap */

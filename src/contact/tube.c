@@ -2,8 +2,8 @@
 
 #include "contact/capsule.h"
 
-/* The axes at one tick, a0, exact; n: of length 1 to rounding, along the shortest line from the first to the other, or 0
- * where they meet. */
+/* The axes at one tick, a0, exact; n: of length 1 to rounding, along the shortest line from the first to the other, or
+ * 0 where they meet. */
 struct knot {
   struct vec3 p, q, w, n;
 };

@@ -181,8 +181,8 @@ static enum fiber_verdict judge(const struct fiber_room *room, const struct stat
 static const enum fiber_start_end ends[] = {
     [FIBER_STAYS] = FIBERS_LAID, [FIBER_OVERLAPS] = FIBERS_OVERLAP, [FIBER_NO_MEMORY] = FIBERS_NO_MEMORY};
 
-/* Lays a fiber at random. A fiber that would be beyond a wall, or that overlaps, is drawn anew, shape and place: what is
- * kept is in equilibrium between the walls. */
+/* Lays a fiber at random. A fiber that would be beyond a wall, or that overlaps, is drawn anew, shape and place: what
+ * is kept is in equilibrium between the walls. */
 static enum fiber_start_end lay_at_random(struct state *state, const struct model *model, uint32_t fiber,
                                           const struct fiber_room *room)
 {
@@ -222,9 +222,8 @@ static enum fiber_start_end lay_fibers(struct state *state, const struct model *
     for (uint32_t within = 0; within < model->kind[k].count; within++, fiber++) {
       if ((within < model->kind[k].placed) != placed)
         continue;
-      const enum fiber_start_end end = placed
-                                           ? lay_at_place(state, model, fiber, &model->kind[k].place[within], room)
-                                           : lay_at_random(state, model, fiber, room);
+      const enum fiber_start_end end = placed ? lay_at_place(state, model, fiber, &model->kind[k].place[within], room)
+                                              : lay_at_random(state, model, fiber, room);
       *stuck = fiber;
       if (end != FIBERS_LAID)
         return end;

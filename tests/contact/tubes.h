@@ -1,9 +1,9 @@
 /*
  * Pairs of tubes in straight flight, made to be hard to judge, and the audit of the search for their contacts
  * (contact/tube.h). The reference shares nothing with it: distances of axes are the least of nine (line and line, end
- * and line, end and end) in long doubles, and a march in continuous time that never goes further than the distance left
- * allows: two axes approach by at most the fastest corner of the parallelogram between them. So it sees every overlap
- * that is deeper than its rounding, 1e-15 a0; a lattice unit is 9e-13 a0.
+ * and line, end and end) in long doubles, and a march in continuous time. Two axes approach by at most the fastest
+ * corner of the parallelogram between them, so steps over wide gaps are safe; narrow gaps are sampled, and the least of
+ * each dip is searched. It tells overlaps from 1e-15 a0 on; a lattice unit is 9e-13 a0.
  */
 #ifndef UNCROSS_TESTS_TUBES_H
 #define UNCROSS_TESTS_TUBES_H
@@ -90,24 +90,40 @@ static inline long double fastest_corner(const struct flight_pair *pair)
   return sqrtl(most);
 }
 
-/* The least of distance - reach (a0) between two times, in ticks, to within `fine`: never above the true one by more.
- * Ends early where it is below `enough`. */
-static inline long double least_gap(const struct flight_pair *pair, long double reach, long double from, long double to,
-                                    long double fine, long double enough)
+enum { LEAST_STEPS = 256, NARROWINGS = 48 };
+
+/* The least of distance - reach (a0) near a time that is as near or nearer than those `step` before and after. */
+static inline long double least_gap_around(const struct flight_pair *pair, long double reach, long double from,
+                                           long double to)
 {
-  const long double speed = fastest_corner(pair);
-  long double least = axes_distance(pair, to) - reach;
-  for (long double t = from; t < to;) {
-    const long double gap = axes_distance(pair, t) - reach;
-    least = gap < least ? gap : least;
-    if (least < enough)
-      return least;
-    const long double ahead = gap > fine ? gap : fine;
-    if (!(speed * (to - t) > ahead))
-      break;
-    t += ahead / speed;
+  long double least = LDBL_MAX;
+  for (int k = 0; k < NARROWINGS; k++) {
+    const long double a = from + 0.382L * (to - from), b = to - 0.382L * (to - from),
+                      at_a = axes_distance(pair, a) - reach, at_b = axes_distance(pair, b) - reach;
+    *(at_a < at_b ? &to : &from) = at_a < at_b ? b : a;
+    least = fminl(least, fminl(at_a, at_b));
   }
   return least;
+}
+
+/* The least of distance - reach (a0) between two times, in ticks. Ends early where it is below `enough`. Where the gap
+ * is wide, a step is as long as the gap allows. Where it is narrow, a step is a part of the interval, and the least
+ * between two steps is searched where it is less than on both sides. */
+static inline long double least_gap(const struct flight_pair *pair, long double reach, long double from, long double to,
+                                    long double enough)
+{
+  const long double speed = fastest_corner(pair), fine = speed * (to - from) / LEAST_STEPS;
+  long double before = from, last = from, gap_before = LDBL_MAX, gap_last = axes_distance(pair, from) - reach,
+              least = gap_last;
+  while (last < to && least >= enough) {
+    const long double step = speed > 0.0L ? (gap_last > fine ? gap_last : fine) / speed : to - last,
+                      now = last + step < to ? last + step : to, gap = axes_distance(pair, now) - reach;
+    if (gap_last <= gap_before && gap_last <= gap)
+      least = fminl(least, least_gap_around(pair, reach, before, now));
+    least = fminl(least, gap);
+    before = last, gap_before = gap_last, last = now, gap_last = gap;
+  }
+  return gap_last <= gap_before && least >= enough ? fminl(least, least_gap_around(pair, reach, before, to)) : least;
 }
 
 /* --- pairs -------------------------------------------------------------------------------------------------------- */
@@ -137,9 +153,9 @@ enum tube_kind {
   TUBE_KINDS
 };
 
-static const char *const tube_kinds[] = {"any",      "sides", "end on side", "end on end", "parallel",
-                                         "nearly",   "collinear", "grazing", "rolling",    "deep",
-                                         "slow",     "resting",   "short",   "far",        "at rest"};
+static const char *const tube_kinds[] = {"any",    "sides",     "end on side", "end on end", "parallel",
+                                         "nearly", "collinear", "grazing",     "rolling",    "deep",
+                                         "slow",   "resting",   "short",       "far",        "at rest"};
 
 static inline struct vec3 any_unit(struct dice *d)
 {
@@ -271,15 +287,14 @@ static inline void audit_tubes(const struct tube_query *k, tube_search *search, 
     return;
   const int32_t tick = search(&k->pair, k->reach, k->from);
   t->queries++;
-  const double left = (double)least_gap(&k->pair, reach, k->from, tick, 0x1p-52L, -rounding);
+  const double left = (double)least_gap(&k->pair, reach, k->from, tick, -rounding);
   t->missed += left < -(double)rounding;
   t->overlap = fmax(t->overlap, -left);
   if (tick == FLIGHT_TICKS)
     return;
   t->answers++;
   const double doubt = tube_doubt(k);
-  const double apart = (double)least_gap(&k->pair, reach, tick, (long double)tick + 1.0L, 0.25L * (long double)doubt,
-                                         0.75L * (long double)doubt);
+  const double apart = (double)least_gap(&k->pair, reach, tick, (long double)tick + 1.0L, 0.0L);
   t->invented += apart > doubt;
   t->early = fmax(t->early, apart / doubt);
 }
