@@ -59,7 +59,8 @@ static struct meeting meeting_of(const struct event_drift *d, const struct event
                     q = in_space(d, flight_place(pair.q, pair.q_rate, e->tick), e->tick),
                     w = in_space(d, flight_place(pair.w, pair.w_rate, e->tick), e->tick);
   double s, t;
-  capsule_closest(p, q, w, &s, &t);
+  const struct bond_shape *shape = bond_shape_of(model_reach(d->model, e->bond, e->other));
+  shape->points(p, q, w, &s, &t);
   const double lever[4] = {1.0 - s, s, t - 1.0, -t};
   struct vec3 velocity = {0, 0, 0};
   for (int k = 0; k < 4; k++)
@@ -67,7 +68,6 @@ static struct meeting meeting_of(const struct event_drift *d, const struct event
   velocity.x -= image_speed(d, e); /* the levers of the other bond have the sum -1 */
   m.geometry.s = s, m.geometry.t = t;
   const struct shape_contact at = {p, q, capsule_between(p, q, w, s, t), velocity};
-  const struct bond_shape *shape = bond_shape_of(model_reach(d->model, e->bond, e->other));
   m.touching = !shape->normal(&pair, e->tick, &at, &m.geometry.normal);
   return m;
 }

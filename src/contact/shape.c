@@ -1,5 +1,6 @@
 #include "contact/shape.h"
 
+#include "contact/capsule.h"
 #include "contact/determinant.h"
 #include "contact/tube.h"
 
@@ -9,6 +10,11 @@ static int32_t line_contact(const struct flight_pair *pair, int64_t reach, int32
 {
   (void)reach;
   return flight_contact(pair, from);
+}
+
+static void line_points(struct vec3 p, struct vec3 q, struct vec3 w, double *s, double *t)
+{
+  capsule_closest(p, q, w, s, t);
 }
 
 /* (p x q).w at a tick, with its exact sign. */
@@ -42,9 +48,24 @@ static bool line_normal(const struct flight_pair *pair, int32_t tick, const stru
   return volume != 0.0 || !(vec3_norm(at->gap) < 0.25 * LATTICE_UNIT);
 }
 
-const struct bond_shape line_shape = {"line", line_contact, line_normal};
+const struct bond_shape line_shape = {"line", line_contact, line_points, line_normal};
 
 /* --- tubes -------------------------------------------------------------------------------------------------------- */
+
+#define PARALLEL 1e-12 /* an angle: that of a lattice unit over a bond */
+
+/* Parallel tubes that lie side by side touch along a line: its middle. */
+static void tube_points(struct vec3 p, struct vec3 q, struct vec3 w, double *s, double *t)
+{
+  const struct vec3 n = vec3_cross(p, q);
+  const double pp = vec3_dot(p, p), qq = vec3_dot(q, q), a = vec3_dot(w, p) / pp, b = vec3_dot(vec3_add(w, q), p) / pp,
+               from = fmax(0.0, fmin(a, b)), to = fmin(1.0, fmax(a, b));
+  capsule_closest(p, q, w, s, t);
+  if (!(from < to) || vec3_dot(n, n) > PARALLEL * PARALLEL * pp * qq)
+    return;
+  *s = 0.5 * (from + to);
+  *t = capsule_within_one((*s - a) / (b - a));
+}
 
 /* Along the line of nearest points, so that the exchange of momentum keeps the angular momentum. */
 static bool tube_normal(const struct flight_pair *pair, int32_t tick, const struct shape_contact *at,
@@ -56,4 +77,4 @@ static bool tube_normal(const struct flight_pair *pair, int32_t tick, const stru
   return size > 0.0;
 }
 
-const struct bond_shape tube_shape = {"tube", tube_contact, tube_normal};
+const struct bond_shape tube_shape = {"tube", tube_contact, tube_points, tube_normal};

@@ -18,6 +18,10 @@ struct bond_shape {
    * their axes at a contact, lattice units; 0 for lines. Never late. */
   int32_t (*contact)(const struct flight_pair *pair, int64_t reach, int32_t from);
 
+  /* The points where two bonds p and q touch, w from the first end of p to that of q: s along p, t along q, from 0
+   * to 1. */
+  void (*points)(struct vec3 p, struct vec3 q, struct vec3 w, double *s, double *t);
+
   /* The unit vector along which they push each other, from the first to the other. False if they have no gap at all, as
    * at no tick of a drift that began with bonds apart. */
   bool (*normal)(const struct flight_pair *pair, int32_t tick, const struct shape_contact *at, struct vec3 *n);
