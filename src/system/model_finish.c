@@ -344,9 +344,8 @@ static bool check_gap(const struct look *look)
   return true;
 }
 
-#define THINNEST_TUBE                                                                                                  \
-  1e-4 /* a0: far above the motion in a tick, which turns the normal by its part of the diameter                       \
-        */
+/* a0: far above the motion in a tick, which turns the normal by its part of the diameter. */
+#define THINNEST_TUBE 1e-4
 
 /* What a scene with tubes must be. */
 static bool check_tube_scene(const struct look *look)
