@@ -276,6 +276,17 @@ static const struct key fiber_keys[] = {
      .symbol = "l_p",
      .excludes = "bending",
      .derives = true},
+    {.name = "diameter",
+     .text = "Diameter of the tube around each bond, with half spheres at its ends; 0: a thin line. From 0.0001 to the "
+             "mean length of a bond. Needs `crossing: {rule: event-driven}` and two or more vertices; see "
+             "[thick.md](thick.md).",
+     .type = KEY_NUMBER,
+     .absent = "0",
+     .low = 0,
+     .high = 512,
+     .offset = IN_KIND(diameter),
+     .unit = "a0",
+     .symbol = "D"},
     {.name = "force",
      .text = "Constant force on each vertex. A net force on the whole is a warning.",
      .type = KEY_VECTOR,
