@@ -86,6 +86,8 @@ static bool gather(struct state *state, const struct model *model, struct mpc *m
     border->bin_particles(state, model, i, n, mpc);
     span |= mpc->rule->add_particles(state, model, mpc, step, i, n);
   }
+  if (border->rebound && !border->rebound(state, model, mpc, step, &span, fault))
+    return false;
   state_streamed(state);
   if (border->enter_vertices)
     border->enter_vertices(state, model, mpc);

@@ -1,5 +1,6 @@
 #include "mpc/mpc.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -23,7 +24,7 @@ static size_t count_cells(const struct model *m)
   return model_has_phantoms(m) ? m->vertices : model_has_solvent(m) ? (size_t)box_cell_count(&m->box) : 0;
 }
 
-enum { NEEDS = 17 };
+enum { NEEDS = 18 };
 
 /* The single list of the scratch that the collisions of a model use. */
 static void list_needs(struct mpc *c, const struct model *m, bool everything, struct memory_need need[NEEDS])
@@ -53,6 +54,7 @@ static void list_needs(struct mpc *c, const struct model *m, bool everything, st
       {(void **)&c->drawn_vertex, drawing ? colliding : 0, sizeof *c->drawn_vertex},
       {(void **)&c->spin, spinning, sizeof *c->spin},
       {(void **)&c->middle, spinning, sizeof *c->middle},
+      {(void **)&c->bead.mask, model_has_bead(m) ? cells : 0, sizeof *c->bead.mask},
   };
   memcpy(need, all, sizeof all);
 }
@@ -85,6 +87,8 @@ void mpc_free(struct mpc *c)
   const struct model nothing = {0};
   list_needs(c, &nothing, false, need);
   memory_release(need, NEEDS);
+  free(c->bead.meetings.at);
+  free(c->bead.cut);
   memset(c, 0, sizeof *c);
 }
 

@@ -165,6 +165,13 @@ struct dumbbell_model {
   double frequency; /* sqrt(2 K/m), 1/t0 */
 };
 
+/* A sphere in the solvent: system/bead.h. */
+struct bead_model {
+  double radius;      /* R, a0; 0: none */
+  double mass;        /* M, m; effective: that of the solvent it displaces, if 0 was given */
+  struct vec3 center; /* at the start, a0 */
+};
+
 /* Walls at y = 0 and y = L. */
 struct wall_model {
   enum wall_kind kind;       /* WALL_ABSENT: none */
@@ -198,6 +205,7 @@ struct model {
   struct vec3 flow; /* uniform flow given to everything at the start, in a0/t0 */
   struct solvent_model solvent;
   struct dumbbell_model dumbbells;
+  struct bead_model bead;
   struct wall_model walls;
   struct shear_model shear;
   struct crossing_model crossing;
@@ -214,7 +222,7 @@ struct model {
   double *mass;            /* [vertices] M */
   double *inverse_mass;    /* [vertices] 1/M */
   double max_mass;         /* of any member of a collision cell */
-  double total_mass;       /* of solvent and vertices */
+  double total_mass;       /* of solvent and vertices, without a bead */
   struct wave wave;        /* of the walls' or the shear's motion */
 };
 
@@ -297,6 +305,11 @@ static inline bool model_is_sheared(const struct model *model)
 static inline bool model_has_dumbbells(const struct model *model)
 {
   return model->dumbbells.pairs > 0;
+}
+
+static inline bool model_has_bead(const struct model *model)
+{
+  return model->bead.radius > 0.0;
 }
 
 static inline bool model_has_phantoms(const struct model *model)
