@@ -20,8 +20,17 @@ DEPENDENCIES = -MMD -MP $(addprefix -MT ,$(sort $@ $(abspath $@) $(patsubst $(CU
 LIBS      = $(shell pkg-config --libs hdf5 yaml-0.1 jansson libxxhash) -lm
 TEST_LIBS = -lcmocka -lgsl -lgslcblas -lmpfr -lgmp
 
-SOURCES := $(sort $(shell find src -name '*.c'))
-OBJECTS := $(SOURCES:%.c=$(BUILD)/%.o)
+# Fast kernels (src/kernel): one source, an object for each instruction set of x86-64. PLAIN=1 leaves them out, and so do
+# other processors: same results. Tests compare them with the plain kernel in either case.
+PLAIN      ?= $(if $(filter x86_64%,$(shell $(CC) -dumpmachine)),,1)
+KERNELS    := $(if $(filter x86_64%,$(shell $(CC) -dumpmachine)),sse2 avx2 avx512)
+FAST       := $(if $(PLAIN),,$(KERNELS))
+sse2_FLAGS := -msse2
+avx2_FLAGS := -mavx2
+avx512_FLAGS := -mavx512f -mavx512dq -mavx512vl
+
+SOURCES := $(filter-out src/kernel/solvent.c src/kernel/$(if $(PLAIN),rows,none).c,$(sort $(shell find src -name '*.c')))
+OBJECTS := $(SOURCES:%.c=$(BUILD)/%.o) $(FAST:%=$(BUILD)/src/kernel/%.o)
 LIBRARY := $(BUILD)/everything.a
 TESTS   := $(sort $(shell find tests -name 'test_*.c'))
 TEST_PROGRAMS    := $(TESTS:%.c=$(BUILD)/%)
@@ -62,7 +71,7 @@ help:
 	@echo 'make libraries       libuncross.so, libuncross.a, libuncross-core.a in $(BUILD)/lib (docs/library.md)'
 	@echo 'make install         PREFIX=$(PREFIX) DESTDIR=$(DESTDIR); make uninstall removes it'
 	@echo 'make clean           removes $(BUILD)'
-	@echo 'variables            CC=gcc|clang  MARCH=native|x86-64|...  BUILD=folder'
+	@echo 'variables            CC=gcc|clang  MARCH=native|x86-64|...  BUILD=folder  PLAIN=1 (no fast kernels, same results)'
 
 # --- program and library ----------------------------------------------------------------------------------------------
 
@@ -82,6 +91,14 @@ $(BUILD)/%.o: %.c Makefile
 	@echo '  CC $<'
 	@$(CC) $(ALL_CFLAGS) $(DEPENDENCIES) -c $< -o $@
 
+# Whatever OPTIMIZE asks for, of the processor a kernel may only use what its name says.
+KERNEL_CFLAGS = $(filter-out -march=% -mtune=%,$(ALL_CFLAGS)) -march=x86-64 $($*_FLAGS) -DKERNEL=kernel_$* -DKERNEL_NAME='"$*"'
+
+$(KERNELS:%=$(BUILD)/src/kernel/%.o): $(BUILD)/src/kernel/%.o: src/kernel/solvent.c Makefile
+	@mkdir -p $(@D)
+	@echo '  CC $< ($*)'
+	@$(CC) $(KERNEL_CFLAGS) $(DEPENDENCIES) -c $< -o $@
+
 # --- libraries to link (docs/library.md) ------------------------------------------------------------------------------
 
 INTERFACE := $(shell sed -n 's/^.define UNCROSS_INTERFACE \([0-9]*\)$$/\1/p' include/uncross.h 2>/dev/null)
@@ -90,12 +107,13 @@ SONAME    := libuncross.so.$(INTERFACE)
 LIBRARIES := $(addprefix $(BUILD)/lib/,libuncross.so libuncross.a libuncross-core.a)
 
 # Rooms without files: they need the C library and xxHash only.
-CORE_ROOMS   := base system mpc fluid wall bath fiber contact theory observe
+CORE_ROOMS   := base system mpc fluid wall bath fiber contact kernel theory observe
 CORE_SOURCES := $(filter src/step.c src/work.c $(CORE_ROOMS:%=src/%/%),$(SOURCES))
 CORE_HEADERS := $(filter src/step.h src/work.h $(CORE_ROOMS:%=src/%/%),$(sort $(shell find src -name '*.h')))
 
 # Objects that fit into programs at any address, and show what UNCROSS_API marks only. What prints stays outside.
-LINKED_OBJECTS := $(patsubst %.c,$(BUILD)/lib/%.o,$(filter-out src/cli/% src/oracle/% src/files/info.c,$(SOURCES)))
+LINKED_OBJECTS := $(patsubst %.c,$(BUILD)/lib/%.o,$(filter-out src/cli/% src/oracle/% src/files/info.c,$(SOURCES))) \
+   $(FAST:%=$(BUILD)/lib/src/kernel/%.o)
 
 .PHONY: libraries
 libraries: $(LIBRARIES)
@@ -104,6 +122,11 @@ $(BUILD)/lib/src/%.o: src/%.c Makefile
 	@mkdir -p $(@D)
 	@echo '  CC $< (library)'
 	@$(CC) $(ALL_CFLAGS) -fPIC -fvisibility=hidden $(DEPENDENCIES) -c $< -o $@
+
+$(KERNELS:%=$(BUILD)/lib/src/kernel/%.o): $(BUILD)/lib/src/kernel/%.o: src/kernel/solvent.c Makefile
+	@mkdir -p $(@D)
+	@echo '  CC $< ($*, library)'
+	@$(CC) $(KERNEL_CFLAGS) -fPIC -fvisibility=hidden $(DEPENDENCIES) -c $< -o $@
 
 $(BUILD)/lib/$(SONAME): $(LINKED_OBJECTS)
 	@echo '  LD $@'
@@ -120,7 +143,7 @@ $(BUILD)/lib/libuncross.a: $(LINKED_OBJECTS)
 	@rm -f $@
 	@ar rcs $@ $(BUILD)/lib/uncross.o
 
-$(BUILD)/lib/libuncross-core.a: $(CORE_SOURCES:%.c=$(BUILD)/%.o)
+$(BUILD)/lib/libuncross-core.a: $(CORE_SOURCES:%.c=$(BUILD)/%.o) $(FAST:%=$(BUILD)/src/kernel/%.o)
 	@mkdir -p $(@D)
 	@rm -f $@
 	@ar rcs $@ $^
@@ -215,6 +238,13 @@ $(BUILD)/tests/api/test_core: tests/api/test_core.c $(BUILD)/lib/libuncross-core
 	@echo '  CC $<'
 	@$(CC) $(ALL_CFLAGS) $(DEPENDENCIES) $< -Wl,--whole-archive $(BUILD)/lib/libuncross-core.a -Wl,--no-whole-archive \
 	   -lcmocka -lxxhash -lm -o $@
+
+# Holds all kernels against the plain one, whether the program has them or not.
+ROWS := $(if $(KERNELS),$(BUILD)/src/kernel/rows.o $(KERNELS:%=$(BUILD)/src/kernel/%.o))
+$(BUILD)/tests/kernel/test_%: tests/kernel/test_%.c $(ROWS) $(LIBRARY) Makefile
+	@mkdir -p $(@D)
+	@echo '  CC $<'
+	@$(CC) $(ALL_CFLAGS) -Itests $(DEPENDENCIES) $(filter-out Makefile,$^) $(TEST_LIBS) $(LIBS) -o $@
 
 # Memory, files and HDF5 that fail on demand (tests/faults/inject.h): the program, and the tests of tests/faults.
 INJECTOR := $(BUILD)/tests/faults/inject.o

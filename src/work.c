@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "fluid/fluid.h"
+#include "kernel/choose.h"
 #include "step.h"
 
 bool work_alloc(struct work *w, const struct model *m)
@@ -13,6 +14,7 @@ bool work_alloc(struct work *w, const struct model *m)
     work_free(w);
     return false;
   }
+  w->mpc.kernel = kernel_choose(m);
   step_plan(w, m);
   return true;
 }
@@ -27,6 +29,7 @@ bool work_add_everything(struct work *w, const struct model *m)
     mpc_free(&mpc);
     return false;
   }
+  mpc.kernel = w->mpc.kernel;
   mpc_free(&w->mpc);
   contact_free(&w->contact);
   w->mpc = mpc;

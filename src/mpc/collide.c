@@ -70,6 +70,37 @@ bool collide_sum(const struct state *state, const struct model *model, struct mp
   return overflow_of_momenta(state, model, mpc, span, step, fault);
 }
 
+/* Cells of n particles, and their sums. */
+static uint64_t bin_and_add(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step,
+                            uint32_t first, uint32_t n)
+{
+  if (mpc->border->enter)
+    mpc->border->enter(state, model, first, n, mpc);
+  mpc->border->bin_particles(state, model, first, n, mpc);
+  return mpc->rule->add_particles(state, model, mpc, step, first, n);
+}
+
+static bool plain_gather(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step, uint32_t first,
+                         uint32_t n, uint64_t *span, struct fault *fault)
+{
+  if (!mpc->fluid->stream(state, model, first, n, fault))
+    return false;
+  *span |= bin_and_add(state, model, mpc, step, first, n);
+  return true;
+}
+
+static void plain_solve(const struct model *model, struct mpc *mpc, uint64_t step)
+{
+  mpc->rule->solve(model, mpc, step);
+}
+
+static void plain_turn(struct state *state, const struct model *model, const struct mpc *mpc, bool scaled)
+{
+  mpc->rule->apply(state, model, mpc, scaled);
+}
+
+const struct kernel kernel_plain = {.name = "plain", .gather = plain_gather, .solve = plain_solve, .turn = plain_turn};
+
 /* Flight of the fluid, grid_bin and collide_sum: the three in one pass, block by block. */
 static bool gather(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step, struct fault *fault)
 {
@@ -79,12 +110,10 @@ static bool gather(struct state *state, const struct model *model, struct mpc *m
   clear_sums(mpc);
   for (uint32_t i = 0; i < state->solvent.n; i += BLOCK) {
     const uint32_t n = block_size(state->solvent.n, i, BLOCK);
-    if (state->solvent_lag > 0 && !mpc->fluid->stream(state, model, i, n, fault))
+    if (state->solvent_lag == 0)
+      span |= bin_and_add(state, model, mpc, step, i, n);
+    else if (!mpc->kernel.gather(state, model, mpc, step, i, n, &span, fault))
       return false;
-    if (border->enter)
-      border->enter(state, model, i, n, mpc);
-    border->bin_particles(state, model, i, n, mpc);
-    span |= mpc->rule->add_particles(state, model, mpc, step, i, n);
   }
   if (border->rebound && !border->rebound(state, model, mpc, step, &span, fault))
     return false;
@@ -98,7 +127,7 @@ static bool gather(struct state *state, const struct model *model, struct mpc *m
 
 void collide_solve(const struct model *model, struct mpc *mpc, uint64_t step)
 {
-  mpc->rule->solve(model, mpc, step);
+  mpc->kernel.solve(model, mpc, step);
 }
 
 bool collide_thermostat(const struct state *state, const struct model *model, struct mpc *mpc,
@@ -112,7 +141,7 @@ bool collide_thermostat(const struct state *state, const struct model *model, st
 
 void collide_turn(struct state *state, const struct model *model, const struct mpc *mpc, bool scaled)
 {
-  mpc->rule->apply(state, model, mpc, scaled);
+  mpc->kernel.turn(state, model, mpc, scaled);
 }
 
 bool mpc_collide(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step, struct fault *fault)

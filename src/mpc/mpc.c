@@ -74,6 +74,7 @@ bool mpc_alloc(struct mpc *c, const struct model *m, const struct fluid *fluid, 
                     .thermostat = thermostat_of(m->solvent.thermostat),
                     .fluid = fluid,
                     .border = border_of(m),
+                    .kernel = kernel_plain,
                     .cells = (uint32_t)count_cells(m),
                     .prefetch = cells_are_far(m),
                     .table_bits = table_bits(m->vertices)};

@@ -5,6 +5,7 @@
 #ifndef UNCROSS_MPC_MPC_H
 #define UNCROSS_MPC_MPC_H
 
+#include "mpc/kernel.h"
 #include "system/fluid.h"
 #include "system/model.h"
 #include "system/state.h"
@@ -42,6 +43,7 @@ struct mpc {
   const struct thermostat *thermostat; /* NULL: none */
   const struct fluid *fluid;
   const struct border *border;
+  struct kernel kernel;   /* the plain one, unless work_alloc has a faster one for this scene */
   struct point shift;     /* of the grid (grid_shift), lattice units */
   uint32_t cells;         /* all cells of the box; with a random solvent, those that hold a vertex */
   struct cell_sum *sum;   /* [cells] */

@@ -24,6 +24,7 @@ enum {
   TUBE_CONTOUR,
   TURNED_SQUARE, /* their ratio makes the end-to-end correlation */
   MIDDLE_COSINE,
+  THIRD_AXIS,
   QUANTITIES
 };
 
@@ -260,7 +261,8 @@ static void compare(const struct observer *observer, const struct model *model, 
       double values[QUANTITIES][2] = {[VERTICES_CENTER] = {m.vertices, m.center},
                                       [TUBE_CONTOUR] = {m.tube, m.tube_contour},
                                       [TURNED_SQUARE] = {m.turned, m.square},
-                                      [MIDDLE_COSINE] = {m.middle, m.cosine}};
+                                      [MIDDLE_COSINE] = {m.middle, m.cosine},
+                                      [THIRD_AXIS] = {m.tube_third, m.axis}};
       tally_fiber(&t.shape, sums, fiber, values);
       d.whole[fiber] = m.moved;
       if (interval->middle)
@@ -354,7 +356,11 @@ static const char *const columns[] = {"time",
                                       "drift_y",
                                       "drift_y_error",
                                       "drift_z",
-                                      "drift_z_error"};
+                                      "drift_z_error",
+                                      "d2_third",
+                                      "d2_third_error",
+                                      "axis_unit",
+                                      "axis_unit_error"};
 
 enum { COLUMNS = sizeof columns / sizeof *columns };
 
@@ -405,6 +411,9 @@ static void fill_row(const struct fiber_kind *kind, const struct tallies *t, dou
   put(&c, true, DRIFT_XY, 0, 1.0 / time);
   put(&c, true, DRIFT_XY, 1, 1.0 / time);
   put(&c, true, DRIFT_Z_ABOUT, 0, 1.0 / time);
+  c = (struct cells){&t->shape, t->memory, c.next};
+  put(&c, true, THIRD_AXIS, 0, 1.0);
+  put(&c, ends, THIRD_AXIS, 1, 1.0);
 }
 
 /* The table of one kind; its tally follows those of the kinds before it, in each lag. Lags without an interval yet are

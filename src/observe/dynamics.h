@@ -25,9 +25,11 @@ struct fiber_motion {
   double middle;             /* a0^2: of its middle vertex */
   double tube, tube_contour; /* a0^2: squared distance of the middle vertex now from the nearest vertex, and from the
                                 nearest point of the contour, then */
+  double tube_third;         /* a0^2: tube_contour averaged over vertices of the middle third */
   double turned; /* a0^2: |R(t) - R(0)|^2 / 2 of the end-to-end vector R; open fibers only, as the following */
   double square; /* a0^2: (R(0)^2 + R(t)^2) / 2, so that R(0).R(t) = square - turned */
   double cosine; /* of the angle between R(0) and R(t) */
+  double axis; /* of the angle by which the regression axis sum (j - (n - 1)/2) r_j has turned; small bends leave it */
 };
 
 /* Measures the motion of a fiber. origin, now: [vertices]; drift: displacement of the frame, a0; scratch: [vertices].
@@ -40,6 +42,21 @@ struct fiber_motion fiber_motion(const struct fiber_kind *kind, const struct poi
 static inline uint32_t dynamics_middle(const struct fiber_kind *kind)
 {
   return (kind->vertices - 1) / 2;
+}
+
+/* Vertices that stand for the middle third of a fiber: at most 8, and at least 1. Its neighborhood changes over some
+ * entanglement lengths, so more would say little more. */
+static inline uint32_t dynamics_third(const struct fiber_kind *kind)
+{
+  const uint32_t third = kind->vertices / 3;
+  return third > 8 ? 8 : third > 0 ? third : 1;
+}
+
+/* Vertex number k of them, counted from 0; they are spread evenly. */
+static inline uint32_t dynamics_third_vertex(const struct fiber_kind *kind, uint32_t k)
+{
+  const uint32_t third = kind->vertices / 3;
+  return third + (2 * k + 1) * third / (2 * dynamics_third(kind));
 }
 
 /* Displacement of the center of mass of everything between two times (t0), in a0: the flow of the start, and half the

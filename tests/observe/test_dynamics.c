@@ -66,8 +66,10 @@ static void free_flight(void **unused)
     assert_close(kept_value(kept, table, row, "g_middle"), g, 1e-13 * g);
     assert_close(kept_value(kept, table, row, "d2"), g, 1e-13 * g);
     assert_close(kept_value(kept, table, row, "d2_contour"), g, 1e-13 * g);
+    assert_close(kept_value(kept, table, row, "d2_third"), g, 1e-13 * g);
     assert_close(kept_value(kept, table, row, "D"), g / (6 * t), 1e-13 * g / t);
     assert_true(isnan(kept_value(kept, table, row, "end_to_end")));
+    assert_true(isnan(kept_value(kept, table, row, "axis_unit")));
   }
   free(kept);
   puppet_end(&p);
@@ -99,6 +101,8 @@ static void rigid_translation(void **unused)
   assert_close(m.middle, square, 1e-15);
   assert_close(m.tube, square, 1e-15);
   assert_close(m.tube_contour, square, 1e-15);
+  assert_close(m.tube_third, square, 1e-15);
+  assert_close(m.axis, 1, 1e-15);
   assert_close(m.turned, 0, 0);
   assert_close(m.square, 31.5 * 31.5, 0);
   assert_close(m.cosine, 1, 1e-15);
@@ -134,6 +138,62 @@ static void reptation_along_a_straight_line(void **unused)
                1e-12);
 }
 
+/* A straight fiber of 64 vertices that is bent across by f(j). */
+static struct fiber_motion straight_bent(double (*f)(double j))
+{
+  const struct fiber_kind kind = {.vertices = 64};
+  struct point then[64], now[64];
+  struct vec3 scratch[64];
+  for (uint32_t j = 0; j < 64; j++) {
+    then[j] = point_move((struct point){0, 0, 0}, (struct vec3){0.5 * j, 0, 0});
+    now[j] = point_move(then[j], (struct vec3){0, f(j), 0});
+  }
+  return fiber_motion(&kind, then, now, (struct vec3){0, 0, 0}, scratch);
+}
+
+static double slope(double j)
+{
+  return j / 64;
+}
+
+/* The third power without its part along j - 31.5: sum x^4/sum x^2 = (3 n^2 - 7)/20 of n = 64 numbers about 0. */
+static double wave(double j)
+{
+  const double x = j - 31.5;
+  return 1e-4 * x * (x * x - (3 * 64 * 64 - 7) / 20.0);
+}
+
+/* The vertices of 0..63 that stand for the middle third are 22, 24, 27, 30, 32, 35, 38 and 40, 8 of 21..42 spread
+ * evenly. Each is f(j) away from the contour that it left. */
+static void middle_third_is_averaged(void **unused)
+{
+  (void)unused;
+  const double j[8] = {22, 24, 27, 30, 32, 35, 38, 40};
+  double mean = 0;
+  for (int k = 0; k < 8; k++)
+    mean += slope(j[k]) * slope(j[k]) / 8;
+  assert_close(straight_bent(slope).tube_third, mean, 1e-12);
+  /* A fiber of one to three vertices has one of them. */
+  for (uint32_t n = 1; n < 4; n++) {
+    const struct fiber_kind kind = {.vertices = n};
+    assert_int_equal(dynamics_third(&kind), 1);
+    assert_int_equal(dynamics_third_vertex(&kind, 0), dynamics_middle(&kind));
+  }
+}
+
+/* A tilt turns both vectors by the same angle. A bend without tilt turns the end-to-end vector and leaves the
+ * regression axis where it was. */
+static void bends_do_not_turn_the_regression_axis(void **unused)
+{
+  (void)unused;
+  const struct fiber_motion tilted = straight_bent(slope), bent = straight_bent(wave);
+  assert_close(tilted.axis, cos(atan(1.0 / 32)), 1e-12);
+  assert_close(tilted.cosine, cos(atan(1.0 / 32)), 1e-12);
+  assert_close(bent.axis, 1, 1e-15);
+  assert_close(bent.cosine, cos(atan(2 * wave(63) / 31.5)), 1e-12);
+  assert_true(bent.cosine < 1 - 1e-4);
+}
+
 /* A square ring, 3 a0 wide, of 4 vertices: the middle one (number 1) moves to the middle of the closing bond. */
 static void closing_bond_belongs_to_the_contour(void **unused)
 {
@@ -148,7 +208,7 @@ static void closing_bond_belongs_to_the_contour(void **unused)
   struct fiber_motion m = fiber_motion(&kind, then, now, (struct vec3){0, 0, 0}, scratch);
   assert_close(m.tube, 0.25 + 2.25, 1e-14);
   assert_close(m.tube_contour, 0.25, 1e-14);
-  assert_close(m.turned + m.square + m.cosine, 0, 0);
+  assert_close(m.turned + m.square + m.cosine + m.axis, 0, 0);
   kind.ring = false;
   m = fiber_motion(&kind, then, now, (struct vec3){0, 0, 0}, scratch);
   assert_close(m.tube_contour, 2.25, 1e-14);
@@ -178,6 +238,7 @@ static void end_to_end_vector_turns(void **unused)
       const double lag = (double)dynamics_lag(k), c = cos(30 * degrees * lag);
       assert_close(at(kept, 0.5 * lag, "end_to_end"), still ? (c + 9) / 10 : c, 1e-11);
       assert_close(at(kept, 0.5 * lag, "end_to_end_unit"), still ? (c + 1) / 2 : c, 1e-11);
+      assert_close(at(kept, 0.5 * lag, "axis_unit"), still ? (c + 1) / 2 : c, 1e-11);
     }
     free(kept);
     puppet_end(&p);
@@ -357,6 +418,8 @@ int main(void)
       cmocka_unit_test(free_flight),
       cmocka_unit_test(rigid_translation),
       cmocka_unit_test(reptation_along_a_straight_line),
+      cmocka_unit_test(middle_third_is_averaged),
+      cmocka_unit_test(bends_do_not_turn_the_regression_axis),
       cmocka_unit_test(closing_bond_belongs_to_the_contour),
       cmocka_unit_test(end_to_end_vector_turns),
       cmocka_unit_test(error_of_the_ratio_knows_both_parts),

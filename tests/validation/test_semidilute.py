@@ -147,15 +147,37 @@ class Curves(unittest.TestCase):
 
     def test_rotation(self):
         t = numpy.array([100.0, 200.0, 400.0, 800.0, 1600.0, 3200.0])
-        made = self.table(t, end_to_end_unit=0.98 * numpy.exp(-t / 5e4))
-        tau, _, height = sd.rotation_time(made, 150.0, 4000.0, 4)
+        made = self.table(t, axis_unit=0.98 * numpy.exp(-t / 5e4), intervals=32000.0 / t)
+        tau, _, height = sd.rotation_time([made, None], 150.0, 4000.0, 4)
         self.assertAlmostEqual(tau, 5e4, 3)
         self.assertAlmostEqual(height, 0.98, 9)
-        made["end_to_end_unit_error"][:] = numpy.nan  # a table of few intervals
-        again, error, _ = sd.rotation_time(made, 150.0, 4000.0, 4)
-        self.assertAlmostEqual(again, 5e4, 3)
-        self.assertGreater(error, 0.0)
-        self.assertIsNone(sd.rotation_time(made, 150.0, 500.0, 4))
+        self.assertIsNone(sd.rotation_time([made], 150.0, 500.0, 4))
+        self.assertIsNone(sd.rotation_time([None], 150.0, 4000.0, 4))
+        # two runs are pooled by their intervals, and halve the error's square
+        other = self.table(t, axis_unit=0.96 * numpy.exp(-t / 5e4), intervals=96000.0 / t)
+        both = sd.rotation_time([made, other], 150.0, 4000.0, 4)
+        self.assertAlmostEqual(both[2], 0.965, 9)
+        one, four = (sd.rotation_time([made] * n, 150.0, 4000.0, 4)[1] for n in (1, 4))
+        self.assertAlmostEqual(one / four, 2.0, 6)
+
+    def test_error_of_rotation(self):
+        """Rotors that turn by small angles about two axes, with bends that tilt them anew every time: the scatter of tau_r
+        is its error. 300 sets: 4.1 % of the scatter; the 5 errors of the test are one false alarm in 10^6."""
+        random = numpy.random.Generator(numpy.random.PCG64(7))
+        lags, samples, fibers, sets = [10, 12, 16, 24, 32, 48, 64, 96], 1000, 16, 300
+        step, tilt = math.sqrt(1.0 / 5000.0), 0.01  # of one angle per sample: tau_r = 5000 samples
+        found = []
+        for _ in range(sets):
+            angles = numpy.cumsum(random.normal(0.0, step, (samples, fibers, 2)), axis=0)
+            angles += random.normal(0.0, tilt, angles.shape)
+            turned = [0.5 * numpy.mean(numpy.diff(angles[::lag], axis=0)**2) * 2.0 for lag in lags]
+            made = {"time": numpy.array(lags, float), "axis_unit": 1.0 - numpy.array(turned),
+                    "intervals": numpy.array([(samples - 1) // lag for lag in lags], float)}
+            tau, error, _ = sd.rotation_time([made], 10.0, 96.0, fibers)
+            found.append((1.0 / tau, error / tau**2))
+        rate, error = numpy.array(found).T
+        self.assertLess(abs(rate.mean() * 5000.0 - 1.0), 5.0 * rate.std() * 5000.0 / math.sqrt(sets) + 0.01)
+        self.assertAlmostEqual(rate.std() / error.mean(), 1.0, delta=5.0 * 0.041)
 
     def test_joined(self):
         short = self.table(numpy.array([1.0, 2.0, 4.0]), g=numpy.array([1.0, 2.0, 3.0]))

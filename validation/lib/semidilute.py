@@ -174,21 +174,35 @@ def bend(columns, name="d2_contour", half=0.375):
     return height, half * apart * height, math.exp(at)
 
 
-def rotation_time(columns, shortest, longest, fibers, least=4):
-    """(tau_r, error, intercept) from <u(0).u(t)> = A exp(-t/tau_r), lags shortest to longest: bends tilt the end-to-end
-    vector by a fixed angle soon (A), rotation goes on. tau_r = 1/(2 D_r). Few intervals of few fibers have no error in the
-    table; then 1 - cos, a sum of two squares, has the relative error of so many. Lags count as independent, and the error
-    is raised by a fifth for it: rotors that turn at random, taken at these lags, scatter by so much more."""
-    if columns is None:
+def turning(tables, fibers):
+    """(t, <a(0).a(t)>, its error) of the regression axis at the lags of all runs, pooled by intervals. 1 - cos of a small
+    angle is a sum of two squares, so its mean over n intervals of `fibers` fibers has the relative error 1/sqrt(n fibers)."""
+    lags = sorted(set.intersection(*(set(one["time"]) for one in tables)))
+    rows = [[(one["axis_unit"][k], one["intervals"][k]) for one in tables for k in numpy.flatnonzero(one["time"] == t)]
+            for t in lags]
+    cosine = numpy.array([sum(c * n for c, n in row) / sum(n for _, n in row) for row in rows])
+    count = numpy.array([fibers * sum(n for _, n in row) for row in rows])
+    return numpy.array(lags), cosine, (1.0 - cosine) / numpy.sqrt(count)
+
+
+def rotation_time(tables, shortest, longest, fibers, least=4):
+    """(tau_r, error, intercept) from <a(0).a(t)> = A exp(-t/tau_r), tau_r = 1/(2 D_r), lags shortest to longest, of runs of
+    the same system. Bends hardly tilt the regression axis; A has what they do. The angles of a random walk at two lags have
+    the correlation sqrt(shorter/longer), as short intervals are parts of long ones: generalized least squares."""
+    tables = [one for one in tables if one is not None and "axis_unit" in one]
+    if not tables:
         return None
-    t, c, error = columns["time"], columns["end_to_end_unit"], columns["end_to_end_unit_error"]
-    error = numpy.where(error > 0.0, error, (1.0 - c) / numpy.sqrt(columns["intervals"] * fibers))
+    t, c, error = turning(tables, fibers)
     keep = (t >= shortest) & (t <= longest) & (c > 0.1)
     if keep.sum() < least:
         return None
-    fit = stats.line(t[keep], numpy.log(c[keep]), error[keep] / c[keep])
-    rate = -fit.value[1]
-    return (1.0 / rate, 1.2 * fit.error[1] / rate**2, math.exp(fit.value[0])) if rate > 0 else None
+    t, c, error = t[keep], c[keep], error[keep] / c[keep]
+    covariance = numpy.outer(error, error) * numpy.sqrt(numpy.minimum.outer(t, t) / numpy.maximum.outer(t, t))
+    basis = numpy.column_stack([numpy.ones_like(t), t])
+    weighted = numpy.linalg.solve(covariance, numpy.column_stack([basis, -numpy.log(c)]))
+    inverse = numpy.linalg.inv(basis.T @ weighted[:, :2])
+    intercept, rate = inverse @ basis.T @ weighted[:, 2]
+    return (1.0 / rate, math.sqrt(inverse[1, 1]) / rate**2, math.exp(-intercept)) if rate > 0 else None
 
 
 def first_rate(t, y):

@@ -119,10 +119,10 @@ static inline __attribute__((always_inline)) void turn_block(struct solvent *s, 
 /* The same, particle by particle: faster for a thin solvent, where most members are alone in their cells and keep their
  * velocities. */
 static inline __attribute__((always_inline)) void turn_sparse(struct solvent *s, const struct mpc *c,
-                                                              const struct solvent_model *rule, const bool quarter,
-                                                              const bool scaled)
+                                                              const struct solvent_model *rule, uint32_t first,
+                                                              const bool quarter, const bool scaled)
 {
-  for (uint32_t i = 0; i < s->n; i++) {
+  for (uint32_t i = first; i < s->n; i++) {
     const struct cell_turn *t = &c->turn[c->solvent_cell[i]];
     if (t->active == 0.0)
       continue;
@@ -139,25 +139,26 @@ static uint32_t block_from(const struct solvent *s, uint32_t first)
 }
 
 static inline __attribute__((always_inline)) void turn_dense(struct solvent *s, const struct mpc *c,
-                                                             const struct solvent_model *rule, const bool quarter,
-                                                             const bool scaled)
+                                                             const struct solvent_model *rule, uint32_t first,
+                                                             const bool quarter, const bool scaled)
 {
-  members_prefetch_turns(c, 0, block_from(s, 0));
-  for (uint32_t i = 0; i < s->n; i += TURNED) {
+  members_prefetch_turns(c, first, block_from(s, first));
+  for (uint32_t i = first; i < s->n; i += TURNED) {
     members_prefetch_turns(c, i + TURNED, block_from(s, i + TURNED));
     turn_block(s, c, rule, i, block_from(s, i), quarter, scaled);
   }
 }
 
-/* Velocities of all members of all cells; inlined four times, with `quarter` and `scaled` constants in each. */
-static inline __attribute__((always_inline)) void
-turn_members(struct state *state, const struct model *model, const struct mpc *c, const bool quarter, const bool scaled)
+/* Velocities of members of all cells; inlined four times, with `quarter` and `scaled` constants in each. */
+static inline __attribute__((always_inline)) void turn_members(struct state *state, const struct model *model,
+                                                               const struct mpc *c, uint32_t first, const bool quarter,
+                                                               const bool scaled)
 {
   const struct solvent_model *rule = &model->solvent;
   if (state->solvent.n < c->cells)
-    turn_sparse(&state->solvent, c, rule, quarter, scaled);
+    turn_sparse(&state->solvent, c, rule, first, quarter, scaled);
   else
-    turn_dense(&state->solvent, c, rule, quarter, scaled);
+    turn_dense(&state->solvent, c, rule, first, quarter, scaled);
   for (uint32_t v = 0; v < state->vertices; v++) {
     const struct cell_turn *t = &c->turn[c->vertex_cell[v]];
     if (t->active != 0.0)
@@ -165,31 +166,36 @@ turn_members(struct state *state, const struct model *model, const struct mpc *c
   }
 }
 
-static void turn_quarter(struct state *state, const struct model *model, const struct mpc *c)
+static void turn_quarter(struct state *state, const struct model *model, const struct mpc *c, uint32_t first)
 {
-  turn_members(state, model, c, true, false);
+  turn_members(state, model, c, first, true, false);
 }
 
-static void turn_quarter_scaled(struct state *state, const struct model *model, const struct mpc *c)
+static void turn_quarter_scaled(struct state *state, const struct model *model, const struct mpc *c, uint32_t first)
 {
-  turn_members(state, model, c, true, true);
+  turn_members(state, model, c, first, true, true);
 }
 
-static void turn_by_angle(struct state *state, const struct model *model, const struct mpc *c)
+static void turn_by_angle(struct state *state, const struct model *model, const struct mpc *c, uint32_t first)
 {
-  turn_members(state, model, c, false, false);
+  turn_members(state, model, c, first, false, false);
 }
 
-static void turn_by_angle_scaled(struct state *state, const struct model *model, const struct mpc *c)
+static void turn_by_angle_scaled(struct state *state, const struct model *model, const struct mpc *c, uint32_t first)
 {
-  turn_members(state, model, c, false, true);
+  turn_members(state, model, c, first, false, true);
+}
+
+void srd_turn_from(struct state *state, const struct model *model, const struct mpc *c, uint32_t first, bool scaled)
+{
+  typedef void turn(struct state *, const struct model *, const struct mpc *, uint32_t);
+  static turn *const turns[2][2] = {{turn_by_angle, turn_by_angle_scaled}, {turn_quarter, turn_quarter_scaled}};
+  turns[model->solvent.cosine == 0.0][scaled](state, model, c, first);
 }
 
 static void apply(struct state *state, const struct model *model, const struct mpc *c, bool scaled)
 {
-  typedef void turn(struct state *, const struct model *, const struct mpc *);
-  static turn *const turns[2][2] = {{turn_by_angle, turn_by_angle_scaled}, {turn_quarter, turn_quarter_scaled}};
-  turns[model->solvent.cosine == 0.0][scaled](state, model, c);
+  srd_turn_from(state, model, c, 0, scaled);
 }
 
 /* --- molecular chaos --------------------------------------------------------------------------------------------- */

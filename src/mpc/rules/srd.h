@@ -31,4 +31,8 @@ static inline struct vec3 srd_apply(const struct cell_turn *turn, struct vec3 v,
   return scaled ? vec3_add_scaled(turn->center, turn->factor, turned) : vec3_add(turn->center, turned);
 }
 
+/* Changes the velocities of the particles from place `first` of memory on, and those of all vertices, by the turns of
+ * their cells. scaled: as in srd_apply. */
+void srd_turn_from(struct state *state, const struct model *model, const struct mpc *mpc, uint32_t first, bool scaled);
+
 #endif

@@ -1,0 +1,197 @@
+/*
+ * As many 64-bit numbers as a register holds, in the vectors of gcc and clang: 8 with AVX-512, 4 with AVX2, else 2.
+ * Which of them is known when a file is compiled. + - * / & | ^ ~ << >> act on each number; a comparison gives all ones
+ * for true, 0 for false. For the fast kernels (kernel/), which are compiled for each.
+ */
+#ifndef UNCROSS_BASE_REGISTERS_H
+#define UNCROSS_BASE_REGISTERS_H
+
+#include <stdint.h>
+#include <string.h>
+
+#if defined __AVX512F__
+#define LANES 8
+#elif defined __AVX2__
+#define LANES 4
+#else
+#define LANES 2
+#endif
+
+typedef double reals __attribute__((vector_size(LANES * 8)));
+typedef int64_t wholes __attribute__((vector_size(LANES * 8)));
+typedef uint64_t words __attribute__((vector_size(LANES * 8)));
+typedef uint32_t halves __attribute__((vector_size(LANES * 8)));
+typedef uint32_t narrow __attribute__((vector_size(LANES * 4)));
+
+#define INLINE static inline __attribute__((always_inline))
+
+/* Loops over lanes are written out, at any level of optimisation: their vectors are then registers, not memory. */
+#ifdef __clang__
+#define UNROLL _Pragma("unroll")
+#define SHUFFLE(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
+#else
+#define UNROLL _Pragma("GCC unroll 8")
+#define SHUFFLE(a, b, ...) __builtin_shuffle(a, b, (wholes){__VA_ARGS__})
+#endif
+
+INLINE reals load_reals(const double *p)
+{
+  reals x;
+  memcpy(&x, p, sizeof x);
+  return x;
+}
+
+INLINE words load_words(const int64_t *p)
+{
+  words x;
+  memcpy(&x, p, sizeof x);
+  return x;
+}
+
+INLINE void store_reals(double *p, reals x)
+{
+  memcpy(p, &x, sizeof x);
+}
+
+INLINE void store_words(int64_t *p, words x)
+{
+  memcpy(p, &x, sizeof x);
+}
+
+/* The low half of each word. */
+INLINE void store_narrow(uint32_t *p, words x)
+{
+  const narrow low = __builtin_convertvector(x, narrow);
+  memcpy(p, &low, sizeof low);
+}
+
+/* All ones where the sign bit is set, 0 elsewhere: by what each set has instructions for. */
+INLINE words negative(words x)
+{
+#if LANES == 2
+  typedef int32_t quarters __attribute__((vector_size(16)));
+  const quarters sign = (quarters)x >> 31;
+#ifdef __clang__
+  return (words)__builtin_shufflevector(sign, sign, 1, 1, 3, 3);
+#else
+  return (words)__builtin_shuffle(sign, (quarters){1, 1, 3, 3});
+#endif
+#elif LANES == 4
+  return (words)((wholes)x < 0);
+#else
+  return (words)((wholes)x >> 63);
+#endif
+}
+
+/* Each word times m, both below 2^32 with a product below 2^32. */
+INLINE words multiply(words x, uint32_t m)
+{
+  return (words)((halves)x * m);
+}
+
+/* a where the mask is all ones, b where it is 0. */
+INLINE reals choose(wholes mask, reals a, reals b)
+{
+  return (reals)(((wholes)a & mask) | ((wholes)b & ~mask));
+}
+
+/* The bitwise or of all lanes. */
+INLINE uint64_t any(words x)
+{
+  uint64_t all = 0;
+  for (int k = 0; k < LANES; k++)
+    all |= x[k];
+  return all;
+}
+
+/* Of two rows: blocks of one lane, then of two, of four, change places across the diagonal. */
+#define EXCHANGE(a, b, low, high)                                                                                      \
+  do {                                                                                                                 \
+    const reals first = SHUFFLE(a, b, low), second = SHUFFLE(a, b, high);                                              \
+    (a) = first;                                                                                                       \
+    (b) = second;                                                                                                      \
+  } while (0)
+#if LANES == 8
+#define LOW_1 0, 8, 2, 10, 4, 12, 6, 14
+#define HIGH_1 1, 9, 3, 11, 5, 13, 7, 15
+#define LOW_2 0, 1, 8, 9, 4, 5, 12, 13
+#define HIGH_2 2, 3, 10, 11, 6, 7, 14, 15
+#define LOW_4 0, 1, 2, 3, 8, 9, 10, 11
+#define HIGH_4 4, 5, 6, 7, 12, 13, 14, 15
+#elif LANES == 4
+#define LOW_1 0, 4, 2, 6
+#define HIGH_1 1, 5, 3, 7
+#define LOW_2 0, 1, 4, 5
+#define HIGH_2 2, 3, 6, 7
+#else
+#define LOW_1 0, 2
+#define HIGH_1 1, 3
+#endif
+
+/* Transposes squares of LANES/2 (four rows), or of LANES (as many rows); row r of column k becomes row k, column r. */
+INLINE void exchange_rows(reals *r, int rows)
+{
+  UNROLL
+  for (int k = 0; k < rows; k += 2)
+    EXCHANGE(r[k], r[k + 1], LOW_1, HIGH_1);
+#if LANES >= 4
+  UNROLL
+  for (int k = 0; k < rows; k += 4) {
+    EXCHANGE(r[k], r[k + 2], LOW_2, HIGH_2);
+    EXCHANGE(r[k + 1], r[k + 3], LOW_2, HIGH_2);
+  }
+#endif
+#if LANES == 8
+  if (rows == 8) {
+    UNROLL
+    for (int k = 0; k < 4; k++)
+      EXCHANGE(r[k], r[k + 4], LOW_4, HIGH_4);
+  }
+#endif
+}
+
+/* The opposite, for four columns: LANES records of four, that of lane slot_lane[k] at place k. */
+#if LANES == 8
+static const uint32_t slot_lane[LANES] = {0, 4, 1, 5, 2, 6, 3, 7};
+#elif LANES == 4
+static const uint32_t slot_lane[LANES] = {0, 1, 2, 3};
+#else
+static const uint32_t slot_lane[LANES] = {0, 1};
+#endif
+
+INLINE void store_records(double *records, reals column[4])
+{
+  exchange_rows(column, 4);
+  UNROLL
+  for (int k = 0; k < 4; k++)
+    store_reals(records + k * LANES, column[LANES == 2 ? k / 2 + 2 * (k % 2) : k]);
+}
+
+/* Adds a record of four words to another one, in one or two registers. */
+typedef uint64_t part __attribute__((vector_size(LANES > 2 ? 32 : 16)));
+
+INLINE void add_record(uint64_t *to, const double *record)
+{
+  UNROLL
+  for (size_t k = 0; k < 32 / sizeof(part); k++) {
+    part sum, addend;
+    memcpy(&sum, (char *)to + k * sizeof sum, sizeof sum);
+    memcpy(&addend, (const char *)record + k * sizeof addend, sizeof addend);
+    sum += addend;
+    memcpy((char *)to + k * sizeof sum, &sum, sizeof sum);
+  }
+}
+
+/* Columns of records of eight doubles: column[c] holds entry c of the records with these numbers. */
+INLINE void load_columns(const double *records, const uint32_t number[LANES], reals column[8])
+{
+  UNROLL
+  for (int c = 0; c < 8; c += LANES) {
+    UNROLL
+    for (int k = 0; k < LANES; k++)
+      column[c + k] = load_reals(records + (size_t)8 * number[k] + c);
+    exchange_rows(&column[c], LANES);
+  }
+}
+
+#endif

@@ -1,0 +1,34 @@
+#include "kernel/choose.h"
+
+/* Flights, by boundary along y. Between walls a particle may hit them, and in a sheared box it may take the velocity
+ * of an image: their flights are those of the plain kernel. Dumbbells do not fly alone. */
+static const bool free_flight[BOUNDARIES] = {[BOUNDARY_PERIODIC] = true};
+
+/* Sums and turns, by collision rule. Within a cell SRD does not know of boundaries or dumbbells. */
+static const bool turns[RULES] = {[RULE_SRD] = true};
+
+struct kernel_parts kernel_parts_for(const struct model *m)
+{
+  const bool particles = model_has_solvent(m) && turns[m->solvent.rule];
+  const bool thin = m->solvent.particles < (uint64_t)box_cell_count(&m->box); /* most are alone, and are not turned */
+  return (struct kernel_parts){.gather = particles && free_flight[m->box.boundary[1]] && !model_has_dumbbells(m),
+                               .turn = particles && !thin};
+}
+
+struct kernel kernel_mix(const struct kernel *fast, const struct model *model)
+{
+  const struct kernel_parts parts = kernel_parts_for(model);
+  return (struct kernel){.name = fast->name,
+                         .gather = parts.gather ? fast->gather : kernel_plain.gather,
+                         .solve = kernel_plain.solve,
+                         .turn = parts.turn ? fast->turn : kernel_plain.turn};
+}
+
+struct kernel kernel_choose(const struct model *model)
+{
+  const struct kernel *best = &kernel_plain;
+  for (size_t k = 0; k < kernel_row_count; k++)
+    if (kernel_rows[k].runs())
+      best = kernel_rows[k].kernel;
+  return kernel_mix(best, model);
+}

@@ -1,0 +1,224 @@
+/*
+ * The fast kernel: points in a periodic flight, SRD. One source; the Makefile compiles it once for each instruction set
+ * (base/registers.h), and choose.c takes the best one that the processor has. Each function names the plain one whose
+ * bits it gives. What is rare goes to the plain ones: flights beyond the next image of the box, momenta beyond the
+ * range of lattice_round, and the last particles if they do not fill a register.
+ */
+#include "base/registers.h"
+#include "fluid/boundary.h"
+#include "kernel/choose.h"
+#include "mpc/border.h"
+#include "mpc/cell.h"
+#include "mpc/members.h"
+#include "mpc/rule.h"
+#include "mpc/rules/srd.h"
+
+#ifndef KERNEL /* the Makefile names them */
+#define KERNEL kernel_sse2
+#define KERNEL_NAME "sse2"
+#endif
+
+/* --- flight, cells, sums ----------------------------------------------------------------------------------------- */
+
+/* What one axis of the flight needs. Lengths are in lattice units: a scale of 2^40 does not change how a product
+ * rounds.
+ */
+struct axis {
+  int64_t *x;
+  double *v;
+  double time; /* of the flight, in lattice units per a0/t0 */
+  double fall; /* a t^2/2 of the acceleration a */
+  double gain; /* a t, a0/t0; if there is none -0.0, which changes no number that it is added to */
+  uint64_t edge;
+  uint64_t shift; /* of the grid */
+  uint32_t cells;
+};
+
+static struct axis axis_of(const struct state *state, const struct model *model, const struct mpc *c, int axis)
+{
+  const struct solvent *s = &state->solvent;
+  const struct span span = boundary_lag(state, model);
+  const struct vec3 accelerations = span.acceleration;
+  const double t = span.time, a = (const double[]){accelerations.x, accelerations.y, accelerations.z}[axis];
+  return (struct axis){.x = (int64_t *[]){s->x, s->y, s->z}[axis],
+                       .v = (double *[]){s->vx, s->vy, s->vz}[axis],
+                       .time = t * LATTICE_PER_A0,
+                       .fall = 0.5 * a * t * t * LATTICE_PER_A0,
+                       .gain = a * t != 0.0 ? a * t : -0.0,
+                       .edge = (uint64_t)model->box.edge[axis],
+                       .shift = (uint64_t)(const int64_t[]){c->shift.x, c->shift.y, c->shift.z}[axis],
+                       .cells = (uint32_t)model->box.rows[axis]};
+}
+
+INLINE words round_to_words(reals x)
+{
+  const reals magic = (reals){0} + LATTICE_ROUND_MAGIC;
+  return (words)(x + magic) - (words)magic;
+}
+
+/* The flight of LANES particles from place i on, and their cells along the axis: boundary_fly_periodic, which says what
+ * goes into `outside`, and cell_index of mpc/grid.c. *v: their velocities after it. */
+INLINE words fly(const struct axis *a, uint32_t i, const bool accelerated, reals *v, words *outside)
+{
+  const reals before = load_reals(&a->v[i]);
+  words p = load_words(&a->x[i]) + round_to_words(before * a->time + a->fall);
+  p += negative(p) & a->edge;
+  p -= negative(a->edge - 1 - p) & a->edge;
+  *outside |= p | (a->edge - 1 - p);
+  store_words(&a->x[i], p);
+  *v = accelerated ? before + a->gain : before;
+  if (accelerated)
+    store_reals(&a->v[i], *v);
+  const words cell = (p + a->shift) >> LATTICE_BITS;
+  return cell & negative(cell - a->cells);
+}
+
+/* Momenta of particles of mass 1, in units of the sums, and their size: cell_add, where they are below 2^51. If one is
+ * not, its sum with the magic number has another exponent, and the size comes out as 2^51 or more. */
+INLINE reals momenta(reals v, words *span)
+{
+  const words p = round_to_words(CELL_MOMENTUM_SCALE * v);
+  *span |= p ^ negative(p);
+  return (reals)p;
+}
+
+#define MOST_MOMENTUM ((uint64_t)1 << 51)
+
+/* Particles whose flight comes before their sums: all of it stays in the nearest cache. */
+enum { CHUNK = 256 };
+
+/* For a chunk: flight, cells, and what each particle adds to the sums of its cell, in the order of store_records. The
+ * sign bit of the result is set as that of boundary_fly_periodic. */
+INLINE uint64_t fly_chunk(const struct axis axis[3], uint32_t *cell, uint32_t first, uint32_t n, const bool accelerated,
+                          double *record, uint64_t *span)
+{
+  const struct axis x = axis[0], y = axis[1], z = axis[2];
+  words outside = {0}, size = {0};
+  for (uint32_t k = 0; k < n; k += LANES) {
+    const uint32_t i = first + k;
+    reals v[3];
+    const words cx = fly(&x, i, accelerated, &v[0], &outside), cy = fly(&y, i, accelerated, &v[1], &outside),
+                cz = fly(&z, i, accelerated, &v[2], &outside);
+    store_narrow(&cell[i], multiply(multiply(cz, y.cells) + cy, x.cells) + cx);
+    reals column[4] = {momenta(v[0], &size), momenta(v[1], &size), momenta(v[2], &size),
+                       (reals)((words){0} + cell_load(1.0))};
+    store_records(&record[(size_t)4 * k], column);
+  }
+  *span = any(size);
+  return any(outside);
+}
+
+static void add_records(struct cell_sum *sum, const uint32_t *cell, uint32_t n, const double *record)
+{
+  for (uint32_t k = 0; k < n; k += LANES) {
+    UNROLL
+    for (uint32_t slot = 0; slot < LANES; slot++)
+      add_record((uint64_t *)&sum[cell[k + slot_lane[slot]]], &record[(size_t)4 * (k + slot)]);
+  }
+}
+
+/* Particles first to first + n - 1 have flown, one of them more than an edge out of the box. The others up to `end`
+ * follow, and all from `begin` on are looked at, as fly_periodic does with a block: so the fault is the same. */
+static bool fly_far(struct state *state, const struct model *model, struct axis axis[3], uint32_t begin, uint32_t flown,
+                    uint32_t end, struct fault *fault)
+{
+  const struct span span = boundary_lag(state, model);
+  const double a[3] = {span.acceleration.x, span.acceleration.y, span.acceleration.z};
+  for (int k = 0; k < 3; k++)
+    boundary_fly_periodic(end - flown, &axis[k].x[flown], &axis[k].v[flown], span.time, a[k], model->box.edge[k]);
+  for (int k = 0; k < 3; k++)
+    if (!boundary_fold(state, model, k, span.time, begin, end - begin, fault))
+      return false;
+  return true;
+}
+
+static bool gather_fast(struct state *state, const struct model *model, struct mpc *c, uint64_t step, uint32_t first,
+                        uint32_t n, uint64_t *span, struct fault *fault)
+{
+  struct axis axis[3] = {axis_of(state, model, c, 0), axis_of(state, model, c, 1), axis_of(state, model, c, 2)};
+  const bool accelerated = axis[0].gain != 0.0 || axis[1].gain != 0.0 || axis[2].gain != 0.0;
+  const uint32_t end = first + n, whole = end - n % LANES;
+  double record[4 * CHUNK];
+  for (uint32_t i = first; i < whole; i += CHUNK) {
+    const uint32_t m = whole - i < CHUNK ? whole - i : CHUNK;
+    uint64_t size;
+    const uint64_t outside = accelerated ? fly_chunk(axis, c->solvent_cell, i, m, true, record, &size)
+                                         : fly_chunk(axis, c->solvent_cell, i, m, false, record, &size);
+    if ((int64_t)outside < 0) {
+      const bool ok = fly_far(state, model, axis, first, i + m, end, fault);
+      if (ok) {
+        c->border->bin_particles(state, model, i, end - i, c);
+        *span |= c->rule->add_particles(state, model, c, step, i, end - i);
+      }
+      return ok;
+    }
+    for (uint32_t k = i; c->prefetch && k < i + m; k++)
+      __builtin_prefetch(&c->sum[c->solvent_cell[k]], 1);
+    if (size < MOST_MOMENTUM)
+      add_records(c->sum, &c->solvent_cell[i], m, record);
+    else
+      size = c->rule->add_particles(state, model, c, step, i, m);
+    *span |= size;
+  }
+  return whole == end || kernel_plain.gather(state, model, c, step, whole, end - whole, span, fault);
+}
+
+/* --- turns ------------------------------------------------------------------------------------------------------- */
+
+/* New velocities of LANES particles from place i on: srd_apply, but a member that is alone keeps its velocity. The
+ * columns are those of struct cell_turn. */
+INLINE void turn_lanes(const struct solvent *s, uint32_t i, const reals turn[8], const double cosine, const double sine,
+                       const bool quarter, const bool scaled)
+{
+  const reals vx = load_reals(&s->vx[i]), vy = load_reals(&s->vy[i]), vz = load_reals(&s->vz[i]);
+  const reals nx = turn[3], ny = turn[4], nz = turn[5];
+  const reals wx = vx - turn[0], wy = vy - turn[1], wz = vz - turn[2];
+  const reals dot = nx * wx + ny * wy + nz * wz, along = quarter ? dot : (1.0 - cosine) * dot;
+  reals x = along * nx, y = along * ny, z = along * nz;
+  reals cx = ny * wz - nz * wy, cy = nz * wx - nx * wz, cz = nx * wy - ny * wx;
+  if (!quarter) {
+    x = cosine * wx + x, y = cosine * wy + y, z = cosine * wz + z;
+    cx = sine * cx, cy = sine * cy, cz = sine * cz;
+  }
+  x += cx, y += cy, z += cz;
+  if (scaled)
+    x *= turn[6], y *= turn[6], z *= turn[6];
+  const wholes active = turn[7] != 0.0;
+  store_reals(&s->vx[i], choose(active, turn[0] + x, vx));
+  store_reals(&s->vy[i], choose(active, turn[1] + y, vy));
+  store_reals(&s->vz[i], choose(active, turn[2] + z, vz));
+}
+
+INLINE void turn_whole(struct state *state, const struct model *model, const struct mpc *c, const bool quarter,
+                       const bool scaled)
+{
+  const struct solvent *s = &state->solvent;
+  const double cosine = model->solvent.cosine, sine = model->solvent.sine;
+  const uint32_t whole = s->n - s->n % LANES;
+  for (uint32_t first = 0; first < whole; first += CHUNK) {
+    const uint32_t end = whole - first < CHUNK ? whole : first + CHUNK;
+    members_prefetch_turns(c, end, s->n - end < CHUNK ? s->n - end : CHUNK);
+    for (uint32_t i = first; i < end; i += LANES) {
+      reals column[8];
+      load_columns((const double *)c->turn, &c->solvent_cell[i], column);
+      turn_lanes(s, i, column, cosine, sine, quarter, scaled);
+    }
+  }
+}
+
+static void turn_fast(struct state *state, const struct model *model, const struct mpc *c, bool scaled)
+{
+  const bool quarter = model->solvent.cosine == 0.0;
+  const uint32_t n = state->solvent.n;
+  if (quarter && scaled)
+    turn_whole(state, model, c, true, true);
+  else if (quarter)
+    turn_whole(state, model, c, true, false);
+  else if (scaled)
+    turn_whole(state, model, c, false, true);
+  else
+    turn_whole(state, model, c, false, false);
+  srd_turn_from(state, model, c, n - n % LANES, scaled);
+}
+
+const struct kernel KERNEL = {.name = KERNEL_NAME, .gather = gather_fast, .turn = turn_fast};

@@ -1,0 +1,33 @@
+/*
+ * How a collision goes through many solvent particles and cells: the contract of the rows in src/kernel/. The plain
+ * kernel, in collide.c, calls the functions of the scene's fluid, border and rule one after the other. A fast kernel
+ * does some of this at once, for several particles in one register. It gives the same bits: positions, velocities,
+ * sums, turns and faults are those of the plain one (tests/kernel/).
+ */
+#ifndef UNCROSS_MPC_KERNEL_H
+#define UNCROSS_MPC_KERNEL_H
+
+#include "system/fault.h"
+#include "system/model.h"
+#include "system/state.h"
+
+struct mpc;
+
+struct kernel {
+  const char *name;
+
+  /* n particles, from place `first` of memory on, fly for the time by which the solvent is late, which is not 0. They
+   * get their cells (mpc->solvent_cell, on the grid of mpc->shift) and are added to the sums there. The bitwise or of
+   * what add_particles of struct collision_rule returns goes into *span. False, with the fault recorded, if one would
+   * move too far. */
+  bool (*gather)(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step, uint32_t first,
+                 uint32_t n, uint64_t *span, struct fault *fault);
+
+  /* solve and apply of struct collision_rule. Cells with fewer than two members get any finite center, and any axis. */
+  void (*solve)(const struct model *model, struct mpc *mpc, uint64_t step);
+  void (*turn)(struct state *state, const struct model *model, const struct mpc *mpc, bool scaled);
+};
+
+extern const struct kernel kernel_plain;
+
+#endif

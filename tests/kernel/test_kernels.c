@@ -1,0 +1,403 @@
+/* Every fast kernel gives the bits of the plain one: state, cells, sums, turns, faults. Each test runs for each kernel
+ * that this processor can run, in the same program as the plain one; it fails if it cannot run any of those compiled.
+ * States are thrown by dice. There is no tolerance, so there are no false alarms. */
+#include "exact.h"
+#include "kernel/choose.h"
+#include "mpc/cell.h"
+#include "mpc/collide.h"
+#include "mpc/mpc.h"
+
+enum { STEP = 4 };
+
+/* Two runs in the same state: the first collides by the plain kernel, the second by a fast one. */
+struct pair {
+  struct test_run plain, fast;
+};
+
+static void copy_state(struct state *to, const struct state *from)
+{
+  const struct solvent *s = &from->solvent;
+  const struct solvent *t = &to->solvent;
+  memcpy(t->x, s->x, s->n * sizeof *s->x);
+  memcpy(t->y, s->y, s->n * sizeof *s->y);
+  memcpy(t->z, s->z, s->n * sizeof *s->z);
+  memcpy(t->vx, s->vx, s->n * sizeof *s->vx);
+  memcpy(t->vy, s->vy, s->n * sizeof *s->vy);
+  memcpy(t->vz, s->vz, s->n * sizeof *s->vz);
+  to->solvent_lag = from->solvent_lag;
+  to->solvent_time = from->solvent_time;
+}
+
+/* The model of both runs must be made twice: a run owns what it allocates. */
+static struct pair start(struct model (*make)(void), const struct kernel *kernel, uint64_t seed)
+{
+  struct dice d = {seed}, same = {seed};
+  struct pair p = {.plain = dice_run(make(), &d), .fast = dice_run(make(), &same)};
+  struct test_run *runs[] = {&p.plain, &p.fast};
+  for (int k = 0; k < 2; k++) {
+    runs[k]->state.solvent_lag = 2 * runs[k]->model.solvent.interval_steps;
+    runs[k]->work.mpc.since_sort = 1; /* a sort would overwrite cells and sums */
+  }
+  p.plain.work.mpc.kernel = kernel_plain;
+  p.fast.work.mpc.kernel = kernel_mix(kernel, &p.fast.model);
+  return p;
+}
+
+static void end(struct pair *p)
+{
+  test_end(&p->plain);
+  test_end(&p->fast);
+}
+
+#define assert_bits(a, b, n, what)                                                                                     \
+  do {                                                                                                                 \
+    if ((n) > 0 && memcmp(a, b, (size_t)(n) * sizeof *(a)) != 0)                                                       \
+      fail_msg("%s: %s differ from those of the plain kernel", name, what);                                            \
+  } while (0)
+
+static void assert_same_turns(const struct mpc *a, const struct mpc *b, const char *name)
+{
+  for (uint32_t k = 0; k < a->cells; k++) {
+    const struct cell_turn *t = &a->turn[k], *u = &b->turn[k];
+    assert_bits(&t->active, &u->active, 1, "flags of cells");
+    if (t->active == 0.0) {
+      assert_true(isfinite(u->center.x + u->center.y + u->center.z));
+      continue;
+    }
+    assert_bits(&t->center, &u->center, 1, "centers");
+    assert_bits(&t->axis, &u->axis, 1, "axes");
+    assert_bits(&t->factor, &u->factor, 1, "factors");
+  }
+}
+
+/* In the order of memory, which is the same for both. */
+static void assert_same(const struct pair *p, const char *name)
+{
+  const struct state *a = &p->plain.state, *b = &p->fast.state;
+  const struct solvent *s = &a->solvent, *t = &b->solvent;
+  const struct mpc *c = &p->plain.work.mpc, *d = &p->fast.work.mpc;
+  assert_bits(s->x, t->x, s->n, "x");
+  assert_bits(s->y, t->y, s->n, "y");
+  assert_bits(s->z, t->z, s->n, "z");
+  assert_bits(s->vx, t->vx, s->n, "v_x");
+  assert_bits(s->vy, t->vy, s->n, "v_y");
+  assert_bits(s->vz, t->vz, s->n, "v_z");
+  assert_bits(a->velocity, b->velocity, a->vertices, "velocities of vertices");
+  assert_bits(c->solvent_cell, d->solvent_cell, s->n, "cells");
+  assert_bits(c->sum, d->sum, c->cells, "sums");
+  assert_same_turns(c, d, name);
+  assert_true(state_hash(a) == state_hash(b));
+}
+
+static bool collide(struct test_run *r, uint64_t step)
+{
+  r->work.fault = (struct fault){0};
+  return mpc_collide(&r->state, &r->model, &r->work.mpc, step, &r->work.fault);
+}
+
+static void assert_same_collision(struct pair *p, uint64_t step, const char *name)
+{
+  const bool plain = collide(&p->plain, step), fast = collide(&p->fast, step);
+  const struct fault *a = &p->plain.work.fault, *b = &p->fast.work.fault;
+  if (plain != fast || a->code != b->code || a->entity != b->entity || a->step != b->step)
+    fail_msg("%s: fault %d of %lld, plain: %d of %lld", name, (int)b->code, (long long)b->entity, (int)a->code,
+             (long long)a->entity);
+  if (plain)
+    assert_same(p, name);
+}
+
+/* --- kernels and scenes ------------------------------------------------------------------------------------------ */
+
+static void for_each_kernel(void (*test)(const struct kernel *))
+{
+  uint32_t tried = 0;
+  for (size_t k = 0; k < kernel_row_count; k++)
+    if (kernel_rows[k].runs()) {
+      test(kernel_rows[k].kernel);
+      tried++;
+    }
+  assert_true(tried > 0 || kernel_row_count == 0);
+}
+
+/* 1223 particles: no multiple of any register, and more than four chunks. */
+static struct model dense(void)
+{
+  struct model m = test_model(5, 7, 6, 5.0, 0.01, 2);
+  test_particles(&m, 1223);
+  m.seed = 77;
+  return m;
+}
+
+static struct model accelerated(void)
+{
+  struct model m = dense();
+  m.solvent.acceleration = (struct vec3){0.3, 0.0, -0.7};
+  return m;
+}
+
+static struct model turned_by(double degrees)
+{
+  struct model m = dense();
+  m.solvent.rotation_angle = degrees;
+  return m;
+}
+
+static struct model by_130(void)
+{
+  return turned_by(130.0);
+}
+
+static struct model by_minus_60(void)
+{
+  return turned_by(60.0);
+}
+
+static struct model kept(enum thermostat_kind kind, double degrees)
+{
+  struct model m = turned_by(degrees);
+  m.solvent.thermostat = kind;
+  return m;
+}
+
+static struct model rescaled(void)
+{
+  return kept(THERMOSTAT_RESCALE, 90.0);
+}
+
+static struct model canonical(void)
+{
+  return kept(THERMOSTAT_MAXWELL_BOLTZMANN, 130.0);
+}
+
+static struct model layered(void)
+{
+  return kept(THERMOSTAT_RESCALE_LAYERS, 90.0);
+}
+
+static struct model thin(void)
+{
+  struct model m = dense();
+  test_particles(&m, 101);
+  return m;
+}
+
+static struct model few(void)
+{
+  struct model m = dense();
+  test_particles(&m, 3);
+  return m;
+}
+
+static struct model between_walls(void)
+{
+  struct model m = dense();
+  m.walls = (struct wall_model){.kind = WALL_NO_SLIP, .fill = FILL_PLANAR, .shear_rate = 0.1};
+  return m;
+}
+
+static struct model sheared(void)
+{
+  struct model m = dense();
+  m.shear.rate = 0.05;
+  return m;
+}
+
+static struct model springs(void)
+{
+  struct model m = dense();
+  test_particles(&m, 1222);
+  m.dumbbells = (struct dumbbell_model){.spring = 1.0, .fraction = 0.5};
+  return m;
+}
+
+static struct model swapped(void)
+{
+  struct model m = dense();
+  m.solvent.hydrodynamics = false;
+  return m;
+}
+
+static struct model with_fibers(void)
+{
+  struct model m = dense();
+  test_add_kind(&m, 5, 9);
+  return m;
+}
+
+static struct model longest(void)
+{
+  struct model m = test_model(1024, 2, 3, 5.0, 0.01, 2);
+  test_particles(&m, 30011);
+  return m;
+}
+
+static struct model driven(void)
+{
+  struct model m = accelerated();
+  m.solvent.profile = PROFILE_SINE;
+  m.solvent.acceleration = (struct vec3){0.3, 0.0, 0.0};
+  return m;
+}
+
+static const struct scene {
+  const char *name;
+  struct model (*make)(void);
+} scenes[] = {
+    {"dense", dense},      {"accelerated", accelerated},     {"130 degrees", by_130}, {"60 degrees", by_minus_60},
+    {"rescale", rescaled}, {"maxwell-boltzmann", canonical}, {"layers", layered},     {"thin", thin},
+    {"few", few},          {"walls", between_walls},         {"sheared", sheared},    {"dumbbells", springs},
+    {"swap", swapped},     {"fibers", with_fibers},          {"1024 cells", longest}, {"driven", driven}};
+
+/* --- tests ------------------------------------------------------------------------------------------------------- */
+
+/* Ten collisions of each scene, with a new lag before each. */
+static void all_scenes(const struct kernel *kernel)
+{
+  for (size_t k = 0; k < sizeof scenes / sizeof *scenes; k++) {
+    struct pair p = start(scenes[k].make, kernel, dice_seed(800) + k);
+    char name[96];
+    snprintf(name, sizeof name, "%s, %s", kernel->name, scenes[k].name);
+    for (uint64_t step = 2; step <= 20; step += 2) {
+      assert_same_collision(&p, step, name);
+      p.plain.state.solvent_lag = p.fast.state.solvent_lag = 2 * p.plain.model.solvent.interval_steps;
+    }
+    end(&p);
+  }
+}
+
+static void bits_of_all_scenes(void **unused)
+{
+  (void)unused;
+  for_each_kernel(all_scenes);
+}
+
+/* Cells are far in memory only where there are many; what is then asked for ahead must not change anything. */
+static void prefetched(const struct kernel *kernel)
+{
+  struct pair p = start(dense, kernel, dice_seed(820));
+  p.fast.work.mpc.prefetch = true;
+  assert_same_collision(&p, STEP, kernel->name);
+  end(&p);
+}
+
+static void asking_ahead_changes_nothing(void **unused)
+{
+  (void)unused;
+  for_each_kernel(prefetched);
+}
+
+/* Places at the edges of box and cells, velocities that round at the half, zeros of both signs. */
+static void edges(const struct kernel *kernel)
+{
+  static struct model (*const makes[])(void) = {dense, accelerated};
+  static const double fixed[] = {0.0, -0.0, 0x1p-46, -0x1p-46, 0x1.8p-45, 0x1p-1060, 31.25, -31.25, 50.0, -50.0};
+  for (uint64_t k = 0; k < 40; k++) {
+    struct pair p = start(makes[k % 2], kernel, dice_seed(830) + k);
+    struct dice d = {dice_seed(831) + k};
+    struct solvent *s = &p.plain.state.solvent;
+    int64_t *x[3] = {s->x, s->y, s->z};
+    double *v[3] = {s->vx, s->vy, s->vz};
+    for (uint32_t i = 0; i < s->n; i++)
+      for (int a = 0; a < 3; a++) {
+        const int64_t cells = p.plain.model.box.cells[a], edge = p.plain.model.box.edge[a];
+        const int64_t near = dice_integer(&d, 0, cells) * LATTICE_CELL + dice_integer(&d, -2, 1);
+        x[a][i] = near < 0 ? 0 : near >= edge ? edge - 1 : near;
+        if (dice_integer(&d, 0, 1))
+          v[a][i] = fixed[dice_integer(&d, 0, (int64_t)(sizeof fixed / sizeof *fixed) - 1)];
+      }
+    copy_state(&p.fast.state, &p.plain.state);
+    assert_same_collision(&p, STEP + k, kernel->name);
+    end(&p);
+  }
+}
+
+static void bits_at_edges(void **unused)
+{
+  (void)unused;
+  for_each_kernel(edges);
+}
+
+/* Some particles with velocities beyond what a register takes: flights over several boxes, up to LATTICE_MAX_MOVE and
+ * beyond; momenta beyond lattice_round; infinities and NaN. Same state, or the same fault. */
+static void wild(const struct kernel *kernel)
+{
+  static const double wild_speeds[] = {400.0,       -400.0,  1500.0, 2.0e3, -9.0e4, 1.1e5,    -1.1e5,
+                                       0x1p52,      -0x1p60, 1e300,  0x1p8, 63.9,   INFINITY, -INFINITY,
+                                       (double)NAN, 0x1p7,   -0x1p7, 0x1p6, -0x1p6, 300.0};
+  const int64_t kinds = sizeof wild_speeds / sizeof *wild_speeds;
+  uint32_t faults = 0, fine = 0;
+  for (uint64_t k = 0; k < 400; k++) {
+    struct pair p = start(k % 3 ? dense : accelerated, kernel, dice_seed(840) + k);
+    struct dice d = {dice_seed(841) + k};
+    struct solvent *s = &p.plain.state.solvent;
+    double *v[3] = {s->vx, s->vy, s->vz};
+    for (int64_t n = dice_integer(&d, 1, 3); n > 0; n--) {
+      const int64_t i = dice_integer(&d, 0, 3) ? dice_integer(&d, 0, s->n - 1) : s->n - dice_integer(&d, 1, 9);
+      v[dice_integer(&d, 0, 2)][i] = wild_speeds[k % 2 ? dice_integer(&d, 0, kinds - 1) : dice_integer(&d, 0, 2)];
+    }
+    if (k % 5 == 0) /* a flight so long that velocities in the range of momenta come back to the box from afar */
+      p.plain.state.solvent_lag = 2 * (uint32_t)dice_integer(&d, 1, 2000);
+    copy_state(&p.fast.state, &p.plain.state);
+    assert_same_collision(&p, STEP, kernel->name);
+    faults += p.plain.work.fault.code != FAULT_NONE;
+    fine += p.plain.work.fault.code == FAULT_NONE;
+    end(&p);
+  }
+  assert_true(faults > 40 && fine > 40);
+}
+
+static void far_flights_and_faults_are_the_same(void **unused)
+{
+  (void)unused;
+  for_each_kernel(wild);
+}
+
+/* The table of what a kernel does, written out once more. */
+static void parts_by_scene(void **unused)
+{
+  (void)unused;
+  static const struct {
+    struct model (*make)(void);
+    bool gather, turn;
+  } wanted[] = {{dense, true, true},          {accelerated, true, true}, {by_130, true, true},   {rescaled, true, true},
+                {thin, true, false},          {swapped, true, true},     {sheared, false, true}, {springs, false, true},
+                {between_walls, false, true}, {with_fibers, true, true}};
+  for (size_t k = 0; k < sizeof wanted / sizeof *wanted; k++) {
+    struct model m = wanted[k].make();
+    test_finish(&m);
+    const struct kernel_parts parts = kernel_parts_for(&m);
+    assert_int_equal(parts.gather, wanted[k].gather);
+    assert_int_equal(parts.turn, wanted[k].turn);
+    model_free(&m);
+  }
+  struct model m = dense();
+  m.solvent.rule = RULE_AT_A;
+  test_finish(&m);
+  assert_false(kernel_parts_for(&m).gather || kernel_parts_for(&m).turn);
+  model_free(&m);
+}
+
+/* Runs get what the table says, of the last row that the processor runs. */
+static void runs_get_the_best(void **unused)
+{
+  (void)unused;
+  const struct kernel *best = &kernel_plain;
+  for (size_t k = 0; k < kernel_row_count; k++)
+    best = kernel_rows[k].runs() ? kernel_rows[k].kernel : best;
+  struct test_run r = test_start(dense());
+  assert_ptr_equal(r.work.mpc.kernel.gather, best->gather);
+  assert_ptr_equal(r.work.mpc.kernel.turn, best->turn);
+  assert_true(work_add_everything(&r.work, &r.model));
+  assert_ptr_equal(r.work.mpc.kernel.gather, best->gather);
+  test_end(&r);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(bits_of_all_scenes), cmocka_unit_test(asking_ahead_changes_nothing),
+      cmocka_unit_test(bits_at_edges),      cmocka_unit_test(far_flights_and_faults_are_the_same),
+      cmocka_unit_test(parts_by_scene),     cmocka_unit_test(runs_get_the_best),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
