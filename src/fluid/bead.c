@@ -41,8 +41,8 @@ static wide gap_at(const struct gap *g, int64_t tick)
   return g->start + (2 * g->along + g->square * tick) * tick;
 }
 
-/* The gap falls from tick 0, where it is not negative, to tick `inside`, where it is. The root in doubles is next to the
- * tick in nearly all cases. */
+/* The gap falls from tick 0, where it is not negative, to tick `inside`, where it is. The root in doubles is next to
+ * the tick in nearly all cases. */
 static int64_t last_outside(const struct gap *g, int64_t inside)
 {
   enum { STEPS = 4 };
@@ -95,7 +95,7 @@ static struct point later(struct point at, struct point rate, int64_t ticks)
   return (struct point){at.x + rate.x * ticks, at.y + rate.y * ticks, at.z + rate.z * ticks};
 }
 
-/* The bead on its way; `at` and clock as in struct meeting. */
+/* The bead on its way; `at` and clock as in struct encounter. */
 struct way {
   double time, mass; /* of the flight, t0; of the bead, m */
   int64_t radius, clock;
@@ -104,7 +104,7 @@ struct way {
 };
 
 /* The next hit of a particle, from the bead's clock on. */
-static int64_t next_hit(const struct way *bead, const struct meeting *m)
+static int64_t next_hit(const struct way *bead, const struct encounter *m)
 {
   const struct approach a = {point_minus(later(m->at, m->rate, bead->clock - m->clock), bead->at),
                              point_minus(m->rate, bead->rate)};
@@ -113,9 +113,10 @@ static int64_t next_hit(const struct way *bead, const struct meeting *m)
 }
 
 /* Both at the tick of their hit. */
-static void bounce(struct way *bead, struct meeting *m)
+static void bounce(struct way *bead, struct encounter *m)
 {
-  const struct vec3 center = vec3_scale(1.0 / (1.0 + bead->mass), vec3_add_scaled(m->velocity, bead->mass, bead->velocity));
+  const struct vec3 center =
+      vec3_scale(1.0 / (1.0 + bead->mass), vec3_add_scaled(m->velocity, bead->mass, bead->velocity));
   const struct vec3 after = vec3_sub(vec3_scale(2.0, center), m->velocity);
   bead->velocity = vec3_add_scaled(bead->velocity, -1.0 / bead->mass, vec3_sub(after, m->velocity));
   bead->rate = rate_of(bead->velocity, bead->time);
@@ -125,7 +126,7 @@ static void bounce(struct way *bead, struct meeting *m)
 
 enum { MOST_AT_A_TICK = 8 }; /* hits of one particle: a pair that is at rest to rounding may go on for ever */
 
-static void answer(struct way *bead, struct meetings *all, struct meeting *m)
+static void answer(struct way *bead, struct encounters *all, struct encounter *m)
 {
   const int64_t now = m->due;
   m->again = m->clock == now ? m->again + 1 : 0;
@@ -141,10 +142,10 @@ static void answer(struct way *bead, struct meetings *all, struct meeting *m)
 }
 
 /* The first that is due, of the smallest id among those of the same tick. */
-static struct meeting *first_due(struct meetings *all, const uint32_t *id)
+static struct encounter *first_due(struct encounters *all, const uint32_t *id)
 {
-  struct meeting *first = all->at;
-  for (struct meeting *m = all->at; m < all->at + all->n; m++)
+  struct encounter *first = all->at;
+  for (struct encounter *m = all->at; m < all->at + all->n; m++)
     if (m->due < first->due || (m->due == first->due && id[m->place] < id[first->place]))
       first = m;
   return first;
@@ -162,7 +163,7 @@ static bool comes_within(struct vec3 apart, struct vec3 go, double distance)
   return !(vec3_dot(nearest, nearest) > distance * distance);
 }
 
-static bool take(struct meetings *all, struct meeting m, uint64_t step, struct fault *fault)
+static bool take(struct encounters *all, struct encounter m, uint64_t step, struct fault *fault)
 {
   if (all->n == all->room && !memory_double((void **)&all->at, &all->room, 64, sizeof *all->at))
     return fault_no_memory(fault, step);
@@ -173,7 +174,7 @@ static bool take(struct meetings *all, struct meeting m, uint64_t step, struct f
 #define ROUNDING 1e-6 /* a0: more than what ticks and doubles round */
 
 static bool find_meetings(const struct state *state, const struct model *model, const struct span *span,
-                          const uint32_t *near, uint32_t n, double slack, struct meetings *all, struct fault *fault)
+                          const uint32_t *near, uint32_t n, double slack, struct encounters *all, struct fault *fault)
 {
   const struct solvent *s = &state->solvent;
   const struct bead *bead = state->bead;
@@ -186,7 +187,8 @@ static bool find_meetings(const struct state *state, const struct model *model, 
     const struct point at = bead_to_image(&model->box, bead->position, start);
     if (!comes_within(point_in_a0(at), vec3_scale(t, vec3_sub(v, bead->velocity)), reach))
       continue;
-    if (!take(all, (struct meeting){.place = i, .at = at, .rate = rate_of(v, t), .velocity = v}, state->step + 1, fault))
+    if (!take(all, (struct encounter){.place = i, .at = at, .rate = rate_of(v, t), .velocity = v}, state->step + 1,
+              fault))
       return false;
   }
   return true;
@@ -195,13 +197,13 @@ static bool find_meetings(const struct state *state, const struct model *model, 
 /* --- the flight -------------------------------------------------------------------------------------------------- */
 
 /* Answers all hits. False if the bead is off its free flight by more than the slack. */
-static bool fly(struct way *bead, struct meetings *all, const uint32_t *id, double slack)
+static bool fly(struct way *bead, struct encounters *all, const uint32_t *id, double slack)
 {
   const struct vec3 free = bead->velocity;
   for (;;) {
-    for (struct meeting *m = all->at; m < all->at + all->n; m++)
+    for (struct encounter *m = all->at; m < all->at + all->n; m++)
       m->due = next_hit(bead, m);
-    struct meeting *const m = first_due(all, id);
+    struct encounter *const m = first_due(all, id);
     if (all->n == 0 || m->due == BEAD_TICKS)
       return true;
     answer(bead, all, m);
@@ -211,10 +213,10 @@ static bool fly(struct way *bead, struct meetings *all, const uint32_t *id, doub
 }
 
 /* Where particles and bead are at the end. */
-static void land(const struct way *bead, const struct model *model, const struct state *state, struct meetings *all)
+static void land(const struct way *bead, const struct model *model, const struct state *state, struct encounters *all)
 {
   const struct point end = later(bead->at, bead->rate, BEAD_TICKS - bead->clock), origin = state->bead->position;
-  for (struct meeting *m = all->at; m < all->at + all->n; m++) {
+  for (struct encounter *m = all->at; m < all->at + all->n; m++) {
     const struct point at = m->rigid ? point_plus(end, m->at) : later(m->at, m->rate, BEAD_TICKS - m->clock);
     m->at = (struct point){lattice_fold(origin.x + at.x, model->box.edge[0]),
                            lattice_fold(origin.y + at.y, model->box.edge[1]),
@@ -225,7 +227,7 @@ static void land(const struct way *bead, const struct model *model, const struct
 }
 
 bool bead_meet(const struct state *state, const struct model *model, const uint32_t *near, uint32_t n, double slack,
-               struct meetings *all, struct fault *fault)
+               struct encounters *all, struct fault *fault)
 {
   const struct span span = boundary_lag(state, model);
   struct way bead = {.time = span.time,
@@ -249,7 +251,6 @@ void bead_start(struct state *state, const struct model *model)
   const struct vec3 c = model->bead.center;
   double v[3];
   random_normal_three(random_at(model->seed, RANDOM_BEAD_REST, 0, 0, 0), v);
-  *state->bead = (struct bead){
-      .position = {lattice_from_a0(c.x), lattice_from_a0(c.y), lattice_from_a0(c.z)},
-      .velocity = vec3_scale(1.0 / sqrt(model->bead.mass), (struct vec3){v[0], v[1], v[2]})};
+  *state->bead = (struct bead){.position = {lattice_from_a0(c.x), lattice_from_a0(c.y), lattice_from_a0(c.z)},
+                               .velocity = vec3_scale(1.0 / sqrt(model->bead.mass), (struct vec3){v[0], v[1], v[2]})};
 }

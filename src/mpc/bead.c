@@ -154,7 +154,7 @@ static void take_out(struct cell_sum *sum, struct cell_sum share)
 }
 
 static void write_flight(struct state *state, const struct model *model, struct mpc *c, uint64_t step,
-                         const struct meeting *m, uint64_t *span)
+                         const struct encounter *m, uint64_t *span)
 {
   struct solvent *s = &state->solvent;
   const uint32_t i = m->place;
@@ -194,8 +194,8 @@ static double reach_of(const struct state *state, const struct model *model, dou
   return model->bead.radius + slack + time * (speed + vec3_norm(state->bead->velocity)) + 1e-3;
 }
 
-/* Who meets the bead if it is off its free flight by `slack` at most. False, with the fault recorded, if an image may be
- * met as well. */
+/* Who meets the bead if it is off its free flight by `slack` at most. False, with the fault recorded, if an image may
+ * be met as well. */
 static bool meet(const struct state *state, const struct model *model, struct mpc *c, uint64_t step, double slack,
                  double speed, struct fault *fault)
 {
@@ -215,7 +215,7 @@ static bool meet(const struct state *state, const struct model *model, struct mp
 static bool rebound(struct state *state, const struct model *model, struct mpc *c, uint64_t step, uint64_t *span,
                     struct fault *fault)
 {
-  struct meetings *all = &c->bead.meetings;
+  struct encounters *all = &c->bead.meetings;
   const double speed = fastest(c, *span), time = 0.5 * state->solvent_lag * model->time_step;
   double slack = SLACK * time;
   do {
@@ -223,7 +223,7 @@ static bool rebound(struct state *state, const struct model *model, struct mpc *
       return false;
     slack *= 2.0;
   } while (!all->enough);
-  for (const struct meeting *m = all->at; m < all->at + all->n; m++)
+  for (const struct encounter *m = all->at; m < all->at + all->n; m++)
     write_flight(state, model, c, step, m, span);
   *state->bead = all->bead;
   return true;
@@ -340,8 +340,8 @@ static bool fill(const struct state *state, const struct model *model, struct mp
   return true;
 }
 
-/* The bead takes the momentum that its virtual particles gain. They keep the energy that they have gained: what the bead
- * gains beyond that is heat from its matter. */
+/* The bead takes the momentum that its virtual particles gain. They keep the energy that they have gained: what the
+ * bead gains beyond that is heat from its matter. */
 static void account(struct state *state, const struct model *model, struct mpc *c, uint64_t step)
 {
   struct point sum = {0, 0, 0};

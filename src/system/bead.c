@@ -30,10 +30,11 @@ bool bead_fits(const struct model *m, struct model_error *error)
   if (!model_has_bead(m))
     return true;
   return m->bead.radius + beside <= half ||
-         model_reject(error, "bead.radius",
-                      "%.6g a0 in a box whose shortest edge is %d a0; allowed: at most %.6g a0, half the edge less 2 a0 "
-                      "and 20 collision intervals",
-                      m->bead.radius, box_shortest_edge(&m->box), fmax(0.0, half - beside));
+         model_reject(
+             error, "bead.radius",
+             "%.6g a0 in a box whose shortest edge is %d a0; allowed: at most %.6g a0, half the edge less 2 a0 "
+             "and 20 collision intervals",
+             m->bead.radius, box_shortest_edge(&m->box), fmax(0.0, half - beside));
 }
 
 static bool check_company(const struct model *m, struct model_error *error)
@@ -53,8 +54,9 @@ static bool check_company(const struct model *m, struct model_error *error)
        "virtual particles of a bead have no angular momentum; allowed with a bead: srd | at-a"},
       {s->thermostat == THERMOSTAT_NONE, "solvent.thermostat",
        "its factors do not know the bead's virtual particles; allowed with a bead: none (rule: at-a holds kT = 1)"},
-      {s->hydrodynamics, "solvent.hydrodynamics", "velocities that are permuted drag no bead; allowed with a bead: "
-                                                  "true"},
+      {s->hydrodynamics, "solvent.hydrodynamics",
+       "velocities that are permuted drag no bead; allowed with a bead: "
+       "true"},
       {vec3_norm(s->acceleration) == 0.0, "solvent.acceleration",
        "the solvent around a bead is not accelerated; allowed with a bead: [0, 0, 0]"},
       {m->solvent.interval_steps == 1, "time_step",

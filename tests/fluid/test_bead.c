@@ -1,8 +1,8 @@
 /*
  * Flights around a bead.
  *
- * Times of hits: exact rationals (GMP). Flights: a plain simulation in long doubles of all particles and the bead, which
- * looks for the next hit of all and flies there. It shares no cells, no ticks and no lists with the program.
+ * Times of hits: exact rationals (GMP). Flights: a plain simulation in long doubles of all particles and the bead,
+ * which looks for the next hit of all and flies there. It shares no cells, no ticks and no lists with the program.
  */
 #include "exact.h"
 #include "fluid/bead.h"
@@ -38,12 +38,10 @@ static int gap_sign(const struct approach *a, int64_t radius, int64_t tick)
  * distance falls until then, which one look at the tick before shows, as it is convex. */
 static void check_touch(const struct approach *a, int64_t radius, int64_t most, int64_t tick, long *touches)
 {
-  const wide along = (wide)a->apart.x * a->rate.x + (wide)a->apart.y * a->rate.y +
-                         (wide)a->apart.z * a->rate.z;
+  const wide along = (wide)a->apart.x * a->rate.x + (wide)a->apart.y * a->rate.y + (wide)a->apart.z * a->rate.z;
   if (tick < 0) {
     /* none: nothing inside at the two ticks around the nearest point, or at the last one */
-    const wide square = (wide)a->rate.x * a->rate.x + (wide)a->rate.y * a->rate.y +
-                            (wide)a->rate.z * a->rate.z;
+    const wide square = (wide)a->rate.x * a->rate.x + (wide)a->rate.y * a->rate.y + (wide)a->rate.z * a->rate.z;
     const int64_t lowest = along >= 0 ? 0 : -along / square < most ? (int64_t)(-along / square) : most;
     if (along < 0)
       assert_true(gap_sign(a, radius, lowest) >= 0 && (lowest == most || gap_sign(a, radius, lowest + 1) >= 0));
@@ -165,7 +163,7 @@ static struct model bead_model(struct dice *d, double mass_over_displaced)
 /* The flight alone, of all particles: what a collision does before it adds virtual particles. */
 static void fly_all(struct test_run *r)
 {
-  struct meetings all = {0};
+  struct encounters all = {0};
   uint32_t *everyone = malloc(r->state.solvent.n * sizeof *everyone);
   struct solvent *s = &r->state.solvent;
   double slack = 0.01;
@@ -177,7 +175,7 @@ static void fly_all(struct test_run *r)
     assert_true(fluid_points.meet(&r->state, &r->model, everyone, s->n, slack, &all, &r->work.fault));
     slack *= 2.0;
   } while (!all.enough);
-  for (const struct meeting *m = all.at; m < all.at + all.n; m++) {
+  for (const struct encounter *m = all.at; m < all.at + all.n; m++) {
     s->x[m->place] = m->at.x, s->y[m->place] = m->at.y, s->z[m->place] = m->at.z;
     set_solvent_v(&r->state, m->place, m->velocity);
   }

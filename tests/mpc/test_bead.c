@@ -119,8 +119,8 @@ static void the_solvent_starts_outside(void **unused)
   assert_sigma(shell.mean, sample_error(&shell), 4.0 * 4.1887902047863909846 * 56.0, 4.0);
 }
 
-/* The velocity of the bead in equilibrium: kT/M per component, and Gaussian (fourth moment 3), with the total momentum 0:
- * M <V^2> = kT (1 - M/(M + N)). Temperature of the solvent as well. Two rules, light and heavy beads. */
+/* The velocity of the bead in equilibrium: kT/M per component, and Gaussian (fourth moment 3), with the total momentum
+ * 0: M <V^2> = kT (1 - M/(M + N)). Temperature of the solvent as well. Two rules, light and heavy beads. */
 static void the_bead_is_thermal(void **unused)
 {
   (void)unused;
