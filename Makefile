@@ -107,7 +107,7 @@ SONAME    := libuncross.so.$(INTERFACE)
 LIBRARIES := $(addprefix $(BUILD)/lib/,libuncross.so libuncross.a libuncross-core.a)
 
 # Rooms without files: they need the C library and xxHash only.
-CORE_ROOMS   := base system mpc fluid wall bath fiber contact kernel theory observe
+CORE_ROOMS   := base system mpc fluid medium fiber contact kernel theory observe
 CORE_SOURCES := $(filter src/step.c src/work.c $(CORE_ROOMS:%=src/%/%),$(SOURCES))
 CORE_HEADERS := $(filter src/step.h src/work.h $(CORE_ROOMS:%=src/%/%),$(sort $(shell find src -name '*.h')))
 
@@ -241,7 +241,7 @@ $(BUILD)/tests/api/test_core: tests/api/test_core.c $(BUILD)/lib/libuncross-core
 
 # Holds all kernels against the plain one, whether the program has them or not.
 ROWS := $(if $(KERNELS),$(BUILD)/src/kernel/rows.o $(KERNELS:%=$(BUILD)/src/kernel/%.o))
-$(BUILD)/tests/kernel/test_%: tests/kernel/test_%.c $(ROWS) $(LIBRARY) Makefile
+$(filter $(BUILD)/tests/kernel/%,$(TEST_PROGRAMS)): $(BUILD)/%: %.c $(ROWS) $(LIBRARY) Makefile
 	@mkdir -p $(@D)
 	@echo '  CC $<'
 	@$(CC) $(ALL_CFLAGS) -Itests $(DEPENDENCIES) $(filter-out Makefile,$^) $(TEST_LIBS) $(LIBS) -o $@

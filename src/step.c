@@ -32,6 +32,7 @@
 
 #include "fiber/start.h"
 #include "fluid/fluid.h"
+#include "medium/plan.h"
 #include "mpc/plan.h"
 #include "system/shear.h"
 
@@ -69,6 +70,7 @@ static void plan_actions(struct plan *plan, const struct part *part, const struc
       break;
     case COLLIDE:
       mpc_plan_collision(plan, m, offsetof(struct work, mpc), "collide");
+      medium_plan_collision(plan, m, offsetof(struct work, medium), "collide");
       break;
     case FORCE:
       fiber_plan_forces(plan, m, offsetof(struct work, fiber), "force");
@@ -113,7 +115,7 @@ bool step_advance(struct state *state, const struct model *model, struct work *w
 static struct vec3 conserved_axes(const struct model *model)
 {
   const double y = !model_has_walls(model), along = y != 0.0 || model->walls.kind == WALL_SLIP;
-  return model_has_phantoms(model) || model->total_mass == 0.0 ? (struct vec3){0, 0, 0}
+  return !model_keeps_momentum(model) || model->total_mass == 0.0 ? (struct vec3){0, 0, 0}
                                                                : (struct vec3){along, y, along};
 }
 

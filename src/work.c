@@ -10,7 +10,7 @@ bool work_alloc(struct work *w, const struct model *m)
 {
   memset(w, 0, sizeof *w);
   if (!mpc_alloc(&w->mpc, m, fluid_of(m), false) || !contact_alloc(&w->contact, m, fiber_force_at, false) ||
-      !fiber_alloc(&w->fiber, m)) {
+      !fiber_alloc(&w->fiber, m) || !medium_alloc(&w->medium, m, fluid_of(m))) {
     work_free(w);
     return false;
   }
@@ -42,10 +42,11 @@ void work_free(struct work *w)
   mpc_free(&w->mpc);
   contact_free(&w->contact);
   fiber_free(&w->fiber);
+  medium_free(&w->medium);
   memset(w, 0, sizeof *w);
 }
 
 uint64_t work_bytes(const struct model *m)
 {
-  return state_bytes(m) + mpc_bytes(m) + contact_bytes(m) + fiber_bytes(m);
+  return state_bytes(m) + mpc_bytes(m) + contact_bytes(m) + fiber_bytes(m) + medium_bytes(m);
 }

@@ -8,6 +8,7 @@
 
 #include "contact/contact.h"
 #include "fiber/force.h"
+#include "medium/medium.h"
 #include "mpc/mpc.h"
 #include "system/plan.h"
 
@@ -15,6 +16,7 @@ struct work {
   struct mpc mpc;
   struct contact contact;
   struct fiber fiber;
+  struct medium medium;
   struct plan plan[2]; /* [0]: of a step without a collision, [1]: with one */
   struct fault fault;  /* code FAULT_NONE while all is well */
 };

@@ -136,3 +136,11 @@ void random_normal_three_columns(uint64_t seed, enum random_purpose purpose, uin
     third_of_each(word[3], root, m, z + first);
   }
 }
+
+void random_normal_third_column(const uint64_t *restrict word2, const uint64_t *restrict word3, uint32_t n,
+                                double *restrict z)
+{
+  double root[RANDOM_UNIFORMS];
+  roots(word2, word3, 2.0, n, root);
+  third_of_each(word3, root, n, z);
+}

@@ -86,6 +86,25 @@ void random_wide_columns(uint64_t seed, enum random_purpose purpose, uint32_t dr
   }
 }
 
+void random_wide_pair_columns(uint64_t seed, enum random_purpose purpose, uint64_t step, const uint32_t *entity,
+                              const uint32_t *draw, uint32_t n, uint64_t word[4][RANDOM_UNIFORMS])
+{
+  uint32_t first[BLOCK], second[BLOCK];
+  const lanes zero = {0};
+  take_block(entity, n, first);
+  take_block(draw, n, second);
+  for (uint32_t k = 0; k < n; k += LANES) {
+    lanes w[4] = {{first[k], first[k + 1], first[k + 2], first[k + 3]},
+                  {second[k], second[k + 1], second[k + 2], second[k + 3]},
+                  zero + (uint32_t)step,
+                  zero + (step >> 32)};
+    w[1] = (w[1] << 8) + (uint32_t)purpose;
+    philox(seed, w);
+    for (int i = 0; i < 4; i++)
+      memcpy(&word[i][k], &w[i], sizeof w[i]);
+  }
+}
+
 /* random_uniform of words (low, high), through bits: before AVX-512 there is no vector conversion of 64-bit integers.
  * Bits 0x3ff before 52 bits k are the number 1 + k 2^-52; the difference is exact. */
 static inline __attribute__((always_inline)) void uniforms_from(const lanes *low, const lanes *high, double u[LANES])

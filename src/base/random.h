@@ -26,6 +26,8 @@ enum random_purpose {
   RANDOM_ANDERSEN_PARTICLE = 8, /* entity = particle id */
   RANDOM_ANDERSEN_VERTEX = 9,   /* entity = vertex */
   RANDOM_ANDERSEN_PHANTOM = 10, /* entity = cell */
+  RANDOM_BATH_VERTEX = 11,      /* entity = vertex; draw 0: normals; 1: word 0 chooses */
+  RANDOM_BATH_PAIR = 12,        /* entity = smaller number of the pair; draw = larger: word 0 chooses, 1 orders */
   RANDOM_SPIN_VELOCITY = 13,    /* entity = cell; draw = k, the cell's virtual particle */
   RANDOM_SPIN_PLACE = 14,       /* entity = cell; draw = 2 k and 2 k + 1 of the same */
   RANDOM_PLANE_TURN = 15,       /* entity = cell: rotation in a plane */
@@ -66,6 +68,11 @@ void random_columns(uint64_t seed, enum random_purpose purpose, uint32_t draw, u
  * matter. The same as random_columns, without narrowing. */
 void random_wide_columns(uint64_t seed, enum random_purpose purpose, uint32_t draw, uint64_t step,
                          const uint32_t *entity, uint32_t n, uint64_t word[4][RANDOM_UNIFORMS]);
+
+/* The same of n pairs, each with its own draw: below RANDOM_DRAWS. */
+#define RANDOM_DRAWS (1u << 24)
+void random_wide_pair_columns(uint64_t seed, enum random_purpose purpose, uint64_t step, const uint32_t *entity,
+                              const uint32_t *draw, uint32_t n, uint64_t word[4][RANDOM_UNIFORMS]);
 
 /* Uniform deviates 0 and 1 of draw 0, then those of draw 1, of n entities, n <= RANDOM_UNIFORMS: the same as
  * random_uniform of random_at, in a form that vectorises. Both draws at once: of twenty rounds three are shared. */

@@ -4,6 +4,7 @@
 #include "base/text.h"
 #include "cli/check_dumbbells.h"
 #include "cli/check_flow.h"
+#include "cli/check_medium.h"
 #include "cli/check_walls.h"
 #include "cli/command.h"
 #include "cli/sheet.h"
@@ -37,7 +38,7 @@ static void report_kind_parameters(const struct si_scale *si, const struct fiber
 static void report_table_1(const struct si_scale *si, const struct model *m)
 {
   sheet_heading("Parameters (paper, Table I)");
-  if (model_collides(m)) {
+  if (model_has_cells(m)) {
     sheet_row(si, "particles per cell", "gamma", m->solvent.per_cell, "1/a0^3", "");
     if (model_has_solvent(m))
       sheet_row(si, "particles", "N_s", m->solvent.particles, "", "");
@@ -168,7 +169,7 @@ static void report_flow(const struct si_scale *si, const struct model *m, const 
   if (!(speed > 0.0) || !model_has_solvent(m) || size == 0.0)
     return;
   sheet_row(si, "  Reynolds number of the flow", "Re",
-            theory_reynolds(speed, size, units_viscosity(m) / m->solvent.per_cell), "", "Eq. (37), R = l_p");
+            theory_reynolds(speed, size, units_viscosity(m) / model_solvent_density(m)), "", "Eq. (37), R = l_p");
   sheet_row(si, "  Peclet number of the flow", "Pe",
             theory_peclet(speed, size, theory_rod_diffusion(units_viscosity(m), length, 0.6)), "", "Eq. (38), R = l_p");
 }
@@ -176,8 +177,10 @@ static void report_flow(const struct si_scale *si, const struct model *m, const 
 static void report_kind(const struct si_scale *si, const struct model *m, const struct fiber_kind *k, double mesh)
 {
   printf("\nFibers '%s'\n", text_shown(k->name));
-  if (model_collides(m))
+  if (model_has_cells(m))
     report_vertex(si, m, k);
+  else if (model_collides(m))
+    check_medium_vertex(si, m, k);
   if (k->vertices < 2)
     return;
   report_statics(si, m, k);
@@ -248,7 +251,7 @@ static void report_parts(const struct scene *scene)
 {
   const struct model *m = &scene->model;
   const struct solvent_model *s = &m->solvent;
-  const bool solvent = model_has_solvent(m), collides = model_collides(m), quarter = s->cosine == 0.0;
+  const bool solvent = model_has_solvent(m), collides = model_has_cells(m), quarter = s->cosine == 0.0;
   const bool rotates = s->rule == RULE_SRD;
   const struct part parts[] = {
       {"streaming of the solvent", "fluid/points.c", solvent},
@@ -263,8 +266,10 @@ static void report_parts(const struct scene *scene)
       {"... rotation by 90 degrees", "mpc/rules/srd.h", collides && rotates && quarter},
       {"... rotation by any angle", "mpc/rules/srd.h", collides && rotates && !quarter},
       {"... velocities drawn anew", "mpc/rules/at_a.c", collides && s->rule == RULE_AT_A},
+      {"private baths of vertices", "medium/private.c", m->medium.kind == MEDIUM_PRIVATE},
+      {"baths of pairs", "medium/pairs.c", m->medium.kind == MEDIUM_PAIRS},
       {"thermostat's sums and factors", "mpc/thermostat.c", solvent && s->thermostat != THERMOSTAT_NONE},
-      {"permuted velocities", "mpc/sort.c", solvent && !s->hydrodynamics},
+      {"permuted velocities", "mpc/sort.c", solvent && collides && !s->hydrodynamics},
       {"moves of vertices", "contact/rule.c", m->vertices > 0},
       {"search for crossings",
        m->crossing.rule == CROSSING_SEQUENTIAL ? "contact/neighbors.c, line.c" : "contact/neighbors.c, flight.c",
@@ -300,7 +305,8 @@ static void report_cost(const struct scene *scene)
   const double vertex = search ? crossing_rate + crossing_density_rate * theory_line_density(m) : vertex_rate;
   const double collisions = model_collides(m) ? 1.0 / m->solvent.interval_steps : 0.0;
   const double phantoms = model_has_phantoms(m) ? phantom_rate * collisions : 0.0;
-  const double solvent = solvent_rate * rule_cost[m->solvent.rule] * boundary_cost[m->box.boundary[1]];
+  const double cells = solvent_rate * rule_cost[m->solvent.rule] * boundary_cost[m->box.boundary[1]];
+  const double solvent = model_in_cells(m) ? cells : check_medium_cost(m);
   const double step = 1e-9 * (solvent * m->solvent.particles * collisions + (vertex + phantoms) * m->vertices);
   sheet_heading("Cost (an estimate, without observables and files)");
   sheet_row(NULL, "memory", "", (double)work_bytes(m) / 1048576.0, "MiB", "");
@@ -322,8 +328,10 @@ void scene_report(const struct scene *scene, const struct units *units, const st
          text_shown(scene->path), scene->fingerprint);
   scene_write(scene, stdout, false);
   report_table_1(si, m);
-  if (model_has_solvent(m))
+  if (model_has_solvent(m) && model_in_cells(m))
     report_solvent(si, m);
+  if (!model_in_cells(m))
+    check_medium(si, m);
   if (model_has_dumbbells(m))
     check_dumbbells(si, m);
   if (model_has_walls(m))

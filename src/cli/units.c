@@ -33,7 +33,7 @@ static double time_of_viscosity(const struct units *u, const struct model *m, co
 
 static double time_of_density(const struct units *u, const struct model *m, const struct si_scale *scale)
 {
-  return si_time_of_density(scale, u->density, m->solvent.per_cell);
+  return si_time_of_density(scale, u->density, model_solvent_density(m));
 }
 
 static double time_of_mass(const struct units *u, const struct model *m, const struct si_scale *scale)
@@ -119,8 +119,7 @@ static void beside(const char *name, double ours, double water, const char *unit
 
 static void report_solvent(const struct model *m, const struct si_scale *s)
 {
-  const struct collision_rule *rule = collision_rule_of(m);
-  const double gamma = m->solvent.per_cell, interval = model_collision_interval(m);
+  const double gamma = model_solvent_density(m);
   const double eta = si_convert(s, (struct si_dimension){-3, 1, 1}, units_viscosity(m));
   const double density = si_convert(s, (struct si_dimension){-5, 1, 2}, gamma);
   const double sound =
@@ -131,7 +130,7 @@ static void report_solvent(const struct model *m, const struct si_scale *s)
   beside("viscosity", eta, SI_WATER_VISCOSITY, "Pa s", true);
   beside("kinematic viscosity", eta / density, nu_water, "m^2/s", false);
   beside("speed of sound", sound, SI_WATER_SOUND, "m/s", true);
-  beside("Schmidt number", theory_schmidt(rule, m->dimensions, gamma, m->solvent.cosine, interval),
+  beside("Schmidt number", theory_model_schmidt(m),
          nu_water / SI_WATER_DIFFUSION, "", false);
 }
 

@@ -167,6 +167,7 @@ struct contact {
   struct candidate_list candidates;
   struct neighbor_list near; /* scratch */
   struct neighbors neighbors;
+  struct vec3 *aside; /* [vertices] models with frozen fibers, else NULL: contact/frozen.h */
   uint64_t waited,
       called_back; /* number of moves so far that waited for their turn; of these, called back. For benchmarks */
 };

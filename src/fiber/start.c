@@ -159,7 +159,7 @@ static void start_velocities(struct state *state, const struct model *model)
     random_normal_pair(random_at(model->seed, RANDOM_VERTEX_VELOCITY, 0, 0, v), a);
     random_normal_pair(random_at(model->seed, RANDOM_VERTEX_VELOCITY, 1, 0, v), b);
     state->velocity[v] =
-        vec3_scale(sqrt(model->inverse_mass[v]), (struct vec3){a[0], a[1], model_is_flat(model) ? 0.0 : b[0]});
+        vec3_scale(sqrt(1.0 / model->mass[v]), (struct vec3){a[0], a[1], model_is_flat(model) ? 0.0 : b[0]});
   }
 }
 

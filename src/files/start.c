@@ -33,7 +33,7 @@ static bool flows_as_said(const struct scene *scene, const struct state *state, 
                           struct message *message)
 {
   const struct model *m = &scene->model;
-  if (model_has_phantoms(m))
+  if (!model_keeps_momentum(m))
     return true;
   const struct motion motion = motion_measure(m, state, work->fiber.force);
   const double mass = m->total_mass + m->bead.mass;

@@ -95,7 +95,7 @@ static struct point later(struct point at, struct point rate, int64_t ticks)
   return (struct point){at.x + rate.x * ticks, at.y + rate.y * ticks, at.z + rate.z * ticks};
 }
 
-/* The bead on its way; `at` and clock as in struct encounter. */
+/* The bead on its way; `at` and clock as in struct bead_visit. */
 struct way {
   double time, mass; /* of the flight, t0; of the bead, m */
   int64_t radius, clock;
@@ -104,7 +104,7 @@ struct way {
 };
 
 /* The next hit of a particle, from the bead's clock on. */
-static int64_t next_hit(const struct way *bead, const struct encounter *m)
+static int64_t next_hit(const struct way *bead, const struct bead_visit *m)
 {
   const struct approach a = {point_minus(later(m->at, m->rate, bead->clock - m->clock), bead->at),
                              point_minus(m->rate, bead->rate)};
@@ -113,7 +113,7 @@ static int64_t next_hit(const struct way *bead, const struct encounter *m)
 }
 
 /* Both at the tick of their hit. */
-static void bounce(struct way *bead, struct encounter *m)
+static void bounce(struct way *bead, struct bead_visit *m)
 {
   const struct vec3 center =
       vec3_scale(1.0 / (1.0 + bead->mass), vec3_add_scaled(m->velocity, bead->mass, bead->velocity));
@@ -126,7 +126,7 @@ static void bounce(struct way *bead, struct encounter *m)
 
 enum { MOST_AT_A_TICK = 8 }; /* hits of one particle: a pair that is at rest to rounding may go on for ever */
 
-static void answer(struct way *bead, struct encounters *all, struct encounter *m)
+static void answer(struct way *bead, struct bead_visits *all, struct bead_visit *m)
 {
   const int64_t now = m->due;
   m->again = m->clock == now ? m->again + 1 : 0;
@@ -142,10 +142,10 @@ static void answer(struct way *bead, struct encounters *all, struct encounter *m
 }
 
 /* The first that is due, of the smallest id among those of the same tick. */
-static struct encounter *first_due(struct encounters *all, const uint32_t *id)
+static struct bead_visit *first_due(struct bead_visits *all, const uint32_t *id)
 {
-  struct encounter *first = all->at;
-  for (struct encounter *m = all->at; m < all->at + all->n; m++)
+  struct bead_visit *first = all->at;
+  for (struct bead_visit *m = all->at; m < all->at + all->n; m++)
     if (m->due < first->due || (m->due == first->due && id[m->place] < id[first->place]))
       first = m;
   return first;
@@ -163,7 +163,7 @@ static bool comes_within(struct vec3 apart, struct vec3 go, double distance)
   return !(vec3_dot(nearest, nearest) > distance * distance);
 }
 
-static bool take(struct encounters *all, struct encounter m, uint64_t step, struct fault *fault)
+static bool take(struct bead_visits *all, struct bead_visit m, uint64_t step, struct fault *fault)
 {
   if (all->n == all->room && !memory_double((void **)&all->at, &all->room, 64, sizeof *all->at))
     return fault_no_memory(fault, step);
@@ -174,7 +174,7 @@ static bool take(struct encounters *all, struct encounter m, uint64_t step, stru
 #define ROUNDING 1e-6 /* a0: more than what ticks and doubles round */
 
 static bool find_meetings(const struct state *state, const struct model *model, const struct span *span,
-                          const uint32_t *near, uint32_t n, double slack, struct encounters *all, struct fault *fault)
+                          const uint32_t *near, uint32_t n, double slack, struct bead_visits *all, struct fault *fault)
 {
   const struct solvent *s = &state->solvent;
   const struct bead *bead = state->bead;
@@ -187,7 +187,7 @@ static bool find_meetings(const struct state *state, const struct model *model, 
     const struct point at = bead_to_image(&model->box, bead->position, start);
     if (!comes_within(point_in_a0(at), vec3_scale(t, vec3_sub(v, bead->velocity)), reach))
       continue;
-    if (!take(all, (struct encounter){.place = i, .at = at, .rate = rate_of(v, t), .velocity = v}, state->step + 1,
+    if (!take(all, (struct bead_visit){.place = i, .at = at, .rate = rate_of(v, t), .velocity = v}, state->step + 1,
               fault))
       return false;
   }
@@ -197,13 +197,13 @@ static bool find_meetings(const struct state *state, const struct model *model, 
 /* --- the flight -------------------------------------------------------------------------------------------------- */
 
 /* Answers all hits. False if the bead is off its free flight by more than the slack. */
-static bool fly(struct way *bead, struct encounters *all, const uint32_t *id, double slack)
+static bool fly(struct way *bead, struct bead_visits *all, const uint32_t *id, double slack)
 {
   const struct vec3 free = bead->velocity;
   for (;;) {
-    for (struct encounter *m = all->at; m < all->at + all->n; m++)
+    for (struct bead_visit *m = all->at; m < all->at + all->n; m++)
       m->due = next_hit(bead, m);
-    struct encounter *const m = first_due(all, id);
+    struct bead_visit *const m = first_due(all, id);
     if (all->n == 0 || m->due == BEAD_TICKS)
       return true;
     answer(bead, all, m);
@@ -213,10 +213,10 @@ static bool fly(struct way *bead, struct encounters *all, const uint32_t *id, do
 }
 
 /* Where particles and bead are at the end. */
-static void land(const struct way *bead, const struct model *model, const struct state *state, struct encounters *all)
+static void land(const struct way *bead, const struct model *model, const struct state *state, struct bead_visits *all)
 {
   const struct point end = later(bead->at, bead->rate, BEAD_TICKS - bead->clock), origin = state->bead->position;
-  for (struct encounter *m = all->at; m < all->at + all->n; m++) {
+  for (struct bead_visit *m = all->at; m < all->at + all->n; m++) {
     const struct point at = m->rigid ? point_plus(end, m->at) : later(m->at, m->rate, BEAD_TICKS - m->clock);
     m->at = (struct point){lattice_fold(origin.x + at.x, model->box.edge[0]),
                            lattice_fold(origin.y + at.y, model->box.edge[1]),
@@ -227,7 +227,7 @@ static void land(const struct way *bead, const struct model *model, const struct
 }
 
 bool bead_meet(const struct state *state, const struct model *model, const uint32_t *near, uint32_t n, double slack,
-               struct encounters *all, struct fault *fault)
+               struct bead_visits *all, struct fault *fault)
 {
   const struct span span = boundary_lag(state, model);
   struct way bead = {.time = span.time,

@@ -22,6 +22,6 @@ void bead_start(struct state *state, const struct model *model);
 
 /* `meet` of struct fluid. */
 bool bead_meet(const struct state *state, const struct model *model, const uint32_t *near, uint32_t n, double slack,
-               struct encounters *meetings, struct fault *fault);
+               struct bead_visits *meetings, struct fault *fault);
 
 #endif

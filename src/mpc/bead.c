@@ -154,7 +154,7 @@ static void take_out(struct cell_sum *sum, struct cell_sum share)
 }
 
 static void write_flight(struct state *state, const struct model *model, struct mpc *c, uint64_t step,
-                         const struct encounter *m, uint64_t *span)
+                         const struct bead_visit *m, uint64_t *span)
 {
   struct solvent *s = &state->solvent;
   const uint32_t i = m->place;
@@ -215,7 +215,7 @@ static bool meet(const struct state *state, const struct model *model, struct mp
 static bool rebound(struct state *state, const struct model *model, struct mpc *c, uint64_t step, uint64_t *span,
                     struct fault *fault)
 {
-  struct encounters *all = &c->bead.meetings;
+  struct bead_visits *all = &c->bead.meetings;
   const double speed = fastest(c, *span), time = 0.5 * state->solvent_lag * model->time_step;
   double slack = SLACK * time;
   do {
@@ -223,7 +223,7 @@ static bool rebound(struct state *state, const struct model *model, struct mpc *
       return false;
     slack *= 2.0;
   } while (!all->enough);
-  for (const struct encounter *m = all->at; m < all->at + all->n; m++)
+  for (const struct bead_visit *m = all->at; m < all->at + all->n; m++)
     write_flight(state, model, c, step, m, span);
   *state->bead = all->bead;
   return true;

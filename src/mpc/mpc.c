@@ -21,7 +21,8 @@ static uint32_t table_bits(uint32_t entries)
 /* Entries of the cells' sums. */
 static size_t count_cells(const struct model *m)
 {
-  return model_has_phantoms(m) ? m->vertices : model_has_solvent(m) ? (size_t)box_cell_count(&m->box) : 0;
+  const size_t cells = model_has_phantoms(m) ? m->vertices : (size_t)box_cell_count(&m->box);
+  return model_has_cells(m) ? cells : 0;
 }
 
 enum { NEEDS = 18 };
@@ -29,8 +30,8 @@ enum { NEEDS = 18 };
 /* The single list of the scratch that the collisions of a model use. */
 static void list_needs(struct mpc *c, const struct model *m, bool everything, struct memory_need need[NEEDS])
 {
-  const size_t cells = count_cells(m), particles = m->solvent.particles;
-  const size_t colliding = model_collides(m) ? m->vertices : 0, bathed = model_has_phantoms(m) ? m->vertices : 0;
+  const size_t cells = count_cells(m), particles = model_in_cells(m) ? m->solvent.particles : 0;
+  const size_t colliding = model_has_cells(m) ? m->vertices : 0, bathed = model_has_phantoms(m) ? m->vertices : 0;
   const size_t thermostatted = everything || m->solvent.thermostat != THERMOSTAT_NONE ? cells : 0;
   const size_t swapped = everything || !m->solvent.hydrodynamics ? particles : 0;
   const size_t cut = model_has_walls(m) ? 2 * (size_t)m->box.cells[0] * (size_t)m->box.cells[2] : 0;

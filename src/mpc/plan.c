@@ -49,7 +49,7 @@ static act *const collisions[BATHS] = {[BATH_PARTICLES] = collide_particles, [BA
 void mpc_plan_collision(struct plan *plan, const struct model *m, size_t room, const char *name)
 {
   const bool profile = drive_has_profile(m), affine = drive_has_affine_kick(m);
-  if (!model_collides(m))
+  if (!model_has_cells(m))
     return;
   if (profile)
     plan_append(plan, (struct stage){.act = stream, .room = room});

@@ -238,12 +238,11 @@ static double vertex_temperature(const struct motion *m, const struct vertex_mot
 struct temperatures motion_temperatures(const struct model *model, const struct motion *m)
 {
   const double n = model->solvent.particles, total = model->total_mass, vertices = total - n;
-  /* A box by itself keeps its velocity, which takes a degree of freedom along each axis; a bath of phantoms has the
-   * flow's. */
-  const bool kept = !model_has_phantoms(model);
+  /* A box by itself keeps its velocity, which takes a degree of freedom along each axis; a bath that takes momentum
+   * up has the flow's. */
+  const bool kept = model_keeps_momentum(model);
   const double moving = total + model->bead.mass; /* with a bead */
-  const struct vec3 momentum = conserved_of(m).momentum;
-  const struct vec3 u = kept ? vec3_scale(1.0 / moving, momentum) : model->flow;
+  const struct vec3 u = kept ? vec3_scale(1.0 / moving, conserved_of(m).momentum) : model->flow;
   const double solvent_freedom = n * (1.0 - 1.0 / moving);
   const double vertex_freedom =
       model->dimensions * (model->vertices - (kept && m->slabs == 0 ? vertices / total : 0.0));

@@ -10,7 +10,7 @@
 
 struct vec3 dynamics_drift(const struct model *model, double from, double to)
 {
-  if (model_has_phantoms(model))
+  if (!model_keeps_momentum(model))
     return vec3_scale(to - from, model->flow);
   const double half_squares = 0.5 * (to - from) * (to + from) / model->total_mass;
   return vec3_add_scaled(vec3_scale(to - from, model->flow), half_squares, theory_net_force(model));

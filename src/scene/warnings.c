@@ -92,7 +92,7 @@ static void warn_force(struct teller *t, const struct model *m)
   if (m->solvent.profile != PROFILE_UNIFORM)
     return;                                                              /* its mean is taken out */
   const bool held = model_has_walls(m) && m->walls.kind == WALL_NO_SLIP; /* walls take the momentum up */
-  if (!held && !model_has_phantoms(m) && vec3_norm(net) > 1e-12 * scale) /* a bath takes the momentum up */
+  if (!held && model_keeps_momentum(m) && vec3_norm(net) > 1e-12 * scale) /* a bath takes the momentum up */
     warn(t,
          "a net force of (%.6g, %.6g, %.6g) kT/a0 acts on a periodic system, which accelerates without end by %.3g "
          "a0/t0^2; %s",
@@ -224,7 +224,7 @@ static void warn_kind(struct teller *t, const struct scene *scene, const struct 
 {
   const struct model *m = &scene->model;
   const double gamma = m->solvent.per_cell, phase = fiber_highest_frequency(k) * m->time_step;
-  if (model_collides(m) && (k->mass > 2.0 * gamma || k->mass < 0.5 * gamma))
+  if (model_has_cells(m) && (k->mass > 2.0 * gamma || k->mass < 0.5 * gamma))
     warn(t,
          "fibers '%s': mass %.6g is far from gamma = %.6g, the mass of the solvent in a cell (paper, Sec. IV A); use "
          "%.6g to %.6g",
@@ -259,7 +259,7 @@ static void warn_kind(struct teller *t, const struct scene *scene, const struct 
 static void warn_heating(struct teller *t, const struct scene *scene)
 {
   const struct model *m = &scene->model;
-  if (!m->crossing.forbidden || model_is_isothermal(m) || model_has_phantoms(m) || m->bonds == 0)
+  if (!m->crossing.forbidden || model_is_isothermal(m) || !model_keeps_momentum(m) || m->bonds == 0)
     return;
   double phase = 0.0;
   for (uint32_t k = 0; k < m->kinds; k++)
@@ -383,7 +383,7 @@ int scene_warnings(const struct scene *scene, void (*tell)(void *context, const 
 {
   struct teller t = {tell, context, 0};
   const struct model *m = &scene->model;
-  if (model_collides(m))
+  if (model_has_cells(m))
     warn_solvent(&t, m);
   warn_flow(&t, m);
   warn_force(&t, m);
@@ -399,7 +399,7 @@ int scene_warnings(const struct scene *scene, void (*tell)(void *context, const 
     warn_dumbbells(&t, m);
   warn_heating(&t, scene);
   warn_observables(&t, scene);
-  if (model_has_solvent(m) && scene->snapshot == NULL)
+  if (model_has_solvent(m) && model_in_cells(m) && scene->snapshot == NULL)
     warn_transient(&t, scene);
   warn_drift(&t, scene);
   return t.told;

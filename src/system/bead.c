@@ -46,6 +46,7 @@ static bool check_company(const struct model *m, struct model_error *error)
   } rows[] = {
       {model_has_solvent(m), "bead", "it needs solvent particles, and there are none; allowed with a solvent"},
       {m->dimensions == 3, "dimensions", "a sphere is not in a plane; allowed with a bead: 3"},
+      {m->medium.kind == 0, "medium", "its pairs do not know the bead; allowed with a bead: no medium"},
       {m->kinds == 0, "fibers", "a bead does not touch fibers yet; allowed with a bead: no fibers"},
       {m->walls.kind == WALL_ABSENT, "walls", "a bead does not touch walls; allowed with a bead: no walls"},
       {m->shear.rate == 0.0, "shear", "a bead has no image that moves; allowed with a bead: no shear"},

@@ -37,7 +37,7 @@ static inline int64_t flux_fixed(double x)
 }
 
 /* A particle that may have met the bead in its flight: fluid/bead.c. */
-struct encounter {
+struct bead_visit {
   uint32_t place;        /* in memory */
   bool rigid;            /* it goes with the bead for the rest of the flight, at this place relative to it */
   uint32_t again;        /* hits at the tick of its last one, less 1 */
@@ -47,8 +47,8 @@ struct encounter {
 };
 
 /* Those of one flight. */
-struct encounters {
-  struct encounter *at;
+struct bead_visits {
+  struct bead_visit *at;
   uint32_t n, room;
   bool enough;      /* none is missing: the bead has kept to the slack that was allowed for */
   struct bead bead; /* after the flight */
@@ -85,7 +85,7 @@ struct fluid {
    * `velocity` its velocity then. The state is left as it is. near: all particles within reach. slack: a0, how far the
    * bead may be off its free flight. False, with the fault recorded, if memory is short. NULL: no bead. */
   bool (*meet)(const struct state *state, const struct model *model, const uint32_t *near, uint32_t n, double slack,
-               struct encounters *meetings, struct fault *fault);
+               struct bead_visits *meetings, struct fault *fault);
 };
 
 #endif

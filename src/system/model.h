@@ -38,6 +38,20 @@ enum bath {
   BATHS
 };
 
+/* With whom a bath mixes velocities: the rows of medium/medium.c. */
+enum medium_kind {
+  MEDIUM_CELLS,   /* with the members of a collision cell: the solvent's keys */
+  MEDIUM_PRIVATE, /* each vertex with a bath of its own: Langevin, Andersen */
+  MEDIUM_PAIRS,   /* two members that are near each other: Lowe-Andersen, Peters, Shardlow */
+  MEDIA
+};
+
+/* How a bath draws a velocity anew: the rows of medium/bath.c. */
+enum medium_draw { DRAW_REPLACE, DRAW_RELAX, DRAW_CAYLEY, MEDIUM_DRAWS };
+
+/* How the rate of a pair depends on its distance: the rows of medium/bath.c. */
+enum medium_weight { WEIGHT_HAT, WEIGHT_QUADRATIC, MEDIUM_WEIGHTS };
+
 /* Where the body force acts on the solvent, and how much of it: along y, in a box of edge L. */
 enum force_profile {
   PROFILE_UNIFORM, /* everywhere the same */
@@ -106,6 +120,7 @@ struct fiber_kind {
   uint32_t count;             /* fibers of this kind */
   uint32_t vertices;          /* N_v, per fiber */
   bool ring;                  /* the last vertex is bonded to the first */
+  bool frozen;                /* they stand still, but take part in collisions: contact/frozen.h */
   double mass;                /* M, in m; effective: rounded to a multiple of MODEL_MASS_UNIT */
   double bond_length;         /* l0, in a0 */
   double spring;              /* k = K/l0, in kT/a0^2: Eq. (1) */
@@ -139,6 +154,15 @@ struct solvent_model {
   uint32_t particles;      /* N_s = gamma x cells; 0: none, or phantoms */
   uint32_t interval_steps; /* dt_c / dt: a collision every so many steps; 0 without a collision_interval */
   double cosine, sine;     /* of alpha; exact at 90 and 180 degrees */
+};
+
+/* A bath other than that of collision cells. It acts once in each time step. */
+struct medium_model {
+  enum medium_kind kind;
+  double rate; /* 1/t0: at which a velocity, or the relative one of a pair at weight 1, is forgotten */
+  enum medium_draw draw;
+  enum medium_weight weight; /* of pairs */
+  double density;            /* of pairs: particles of mass 1 per a0^3 */
 };
 
 struct crossing_model {
@@ -204,6 +228,7 @@ struct model {
   enum scheme scheme;
   struct vec3 flow; /* uniform flow given to everything at the start, in a0/t0 */
   struct solvent_model solvent;
+  struct medium_model medium;
   struct dumbbell_model dumbbells;
   struct bead_model bead;
   struct wall_model walls;
@@ -215,12 +240,13 @@ struct model {
 
   /* Derived by model_finish. Vertices are numbered fiber by fiber, fibers kind by kind; bond j joins j and next[j]. */
   uint32_t fibers, vertices, bonds;
+  uint32_t frozen;         /* of the vertices */
   uint32_t *fiber_first;   /* [fibers + 1]: first vertex of each fiber */
   uint32_t *fiber_kind_of; /* [fibers] */
   uint32_t *fiber_of;      /* [vertices] */
   int32_t *next, *prev;    /* [vertices]: bonded neighbors along the fiber, -1 at an open end */
   double *mass;            /* [vertices] M */
-  double *inverse_mass;    /* [vertices] 1/M */
+  double *inverse_mass;    /* [vertices] 1/M; 0 if frozen: no force and no contact moves it */
   double max_mass;         /* of any member of a collision cell */
   double total_mass;       /* of solvent and vertices, without a bead */
   struct wave wave;        /* of the walls' or the shear's motion */
@@ -284,10 +310,16 @@ static inline bool model_rule_is_thermal(const struct model *model)
   return model->solvent.rule == RULE_AT_A || model->solvent.rule == RULE_AT_PLUS_A;
 }
 
-/* Something holds kT = 1: the rule, or a thermostat. */
+/* Collisions happen in cells, if there are any. */
+static inline bool model_in_cells(const struct model *model)
+{
+  return model->medium.kind == MEDIUM_CELLS;
+}
+
+/* Something holds kT = 1: the rule, a thermostat, or a bath. */
 static inline bool model_is_isothermal(const struct model *model)
 {
-  return model_rule_is_thermal(model) || model->solvent.thermostat != THERMOSTAT_NONE;
+  return model_rule_is_thermal(model) || model->solvent.thermostat != THERMOSTAT_NONE || !model_in_cells(model);
 }
 
 /* True if the box has walls at y = 0 and y = L. */
@@ -317,10 +349,28 @@ static inline bool model_has_phantoms(const struct model *model)
   return model->solvent.bath == BATH_PHANTOMS;
 }
 
-/* True if the model has solvent or phantoms; without them there are no collisions. */
+/* m/a0^3: of the solvent's particles, or of phantoms. */
+static inline double model_solvent_density(const struct model *model)
+{
+  return model_in_cells(model) ? model->solvent.per_cell : model->medium.density;
+}
+
+/* False if a bath takes up the momentum of vertices. */
+static inline bool model_keeps_momentum(const struct model *model)
+{
+  return !model_has_phantoms(model) && model->medium.kind != MEDIUM_PRIVATE;
+}
+
+/* True if the model has solvent, phantoms or another bath; without them there are no collisions. */
 static inline bool model_collides(const struct model *model)
 {
-  return model_has_solvent(model) || model_has_phantoms(model);
+  return model_has_solvent(model) || model_has_phantoms(model) || !model_in_cells(model);
+}
+
+/* True if these collisions are those of cells. */
+static inline bool model_has_cells(const struct model *model)
+{
+  return model_in_cells(model) && model_collides(model);
 }
 
 static inline double model_collision_interval(const struct model *model)

@@ -11,6 +11,7 @@
 #include "system/bead.h"
 #include "system/fiber_kind.h"
 #include "system/flow.h"
+#include "system/medium.h"
 #include "system/model.h"
 #include "system/model_keys.h"
 #include "system/shear.h"
@@ -185,6 +186,25 @@ static bool check_shape(const struct look *look)
   return true;
 }
 
+/* What would move a frozen fiber, or what it would stand still in. */
+static bool check_frozen(const struct look *look)
+{
+  const struct model *m = look->model;
+  const struct fiber_kind *k = look->kind;
+  const struct {
+    bool is;
+    const char *what;
+  } rows[] = {{k->force.x != 0.0 || k->force.y != 0.0 || k->force.z != 0.0, "a force"},
+              {m->flow.x != 0.0 || m->flow.y != 0.0 || m->flow.z != 0.0, "a flow"},
+              {m->walls.kind != WALL_ABSENT, "walls"},
+              {model_is_sheared(m), "shear"}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows && k->frozen; i++)
+    if (rows[i].is)
+      return reject_kind(look, "frozen", "frozen fibers together with %s; allowed: false, or a periodic box at rest",
+                         rows[i].what);
+  return true;
+}
+
 static bool check_count(const struct look *look, uint64_t *vertices)
 {
   *vertices += (uint64_t)look->kind->count * look->kind->vertices;
@@ -328,7 +348,7 @@ static bool check_gap(const struct look *look)
 static bool finish_kind(const struct look *look, uint64_t *vertices)
 {
   return round_mass(look) && derive_bending(look) && check_shape(look) && check_count(look, vertices) &&
-         check_extent(look) && check_places(look) && check_plane(look) && check_gap(look) && check_stability(look);
+         check_frozen(look) && check_extent(look) && check_places(look) && check_plane(look) && check_gap(look) && check_stability(look);
 }
 
 static bool finish_fibers(struct model *m, struct model_error *error)
@@ -392,8 +412,8 @@ bool model_finish_numbers(struct model *m, struct model_error *error)
   if (!keys_check(&model_keys, m, error))
     return false;
   m->box = box_of_cells(m->box.cells[0], m->box.cells[1], m->box.cells[2]);
-  if (!bead_fits(m, error) || !finish_solvent(m, error) || !finish_dumbbells(m, error) || !flow_finish(m, error) ||
-      !finish_fibers(m, error) || !bead_finish(m, error) || !check_crossing(m, error))
+  if (!medium_finish(m, error) || !bead_fits(m, error) || !finish_solvent(m, error) || !finish_dumbbells(m, error) ||
+      !flow_finish(m, error) || !finish_fibers(m, error) || !bead_finish(m, error) || !check_crossing(m, error))
     return false;
   if (!model_collides(m) && m->kinds == 0)
     return model_reject(error, "", "there is nothing to simulate; a scene has a 'solvent', 'fibers', or both");

@@ -12,6 +12,9 @@ static const char *const profile_words[] = {"uniform", "sine", "reverse", NULL};
 static const char *const wall_words[] = {"no-slip", "slip", NULL};
 static const char *const fill_words[] = {"planar", "paper", "none", NULL};
 static const char *const bath_words[] = {"particles", "phantoms", NULL};
+static const char *const medium_words[] = {"private", "pairs", NULL};
+static const char *const draw_words[] = {"replace", "relax", "cayley", NULL};
+static const char *const weight_words[] = {"hat", "quadratic", NULL};
 static const char *const exclusion_words[] = {"shared-vertex", "paper", NULL};
 static const char *const crossing_words[] = {"sequential", "event-driven", NULL};
 static const char *const rejection_words[] = {"stay", "bounce", NULL};
@@ -109,6 +112,54 @@ static const struct key solvent_keys[] = {
 };
 static const struct key_table solvent_table = {"solvent", NULL, COUNT(solvent_keys), solvent_keys};
 
+static const struct key medium_keys[] = {
+    {.name = "kind",
+     .text = "With whom velocities mix, once in each time step. `private`: each vertex with a bath of its own (Langevin, "
+             "Andersen), without solvent particles. `pairs`: any two members nearer than 1 a0, by the component of their "
+             "relative velocity along the line between them; members are vertices and particles of mass 1 "
+             "(Lowe-Andersen, Peters, Shardlow). See [media.md](media.md).",
+     .type = KEY_CHOICE,
+     .choice = medium_words,
+     .first = MEDIUM_PRIVATE,
+     .offset = IN_MODEL(medium.kind)},
+    {.name = "rate",
+     .text = "Rate at which a velocity is forgotten: that of a vertex, or the relative one of a pair at weight 1. The "
+             "friction of a private bath is M times it; gamma of DPD is the reduced mass times it. With `draw: replace` "
+             "at most 1/`time_step`.",
+     .type = KEY_NUMBER,
+     .low = 0,
+     .above = true,
+     .high = 1e6,
+     .offset = IN_MODEL(medium.rate),
+     .unit = "1/t0",
+     .symbol = "Gamma"},
+    {.name = "draw",
+     .text = "`replace`: with the probability rate times dt the velocity is drawn anew (Andersen, Lowe-Andersen). "
+             "`relax`: it keeps exp(-rate dt) of itself (Langevin, Peters). `cayley`: it keeps (1 - e)/(1 + e), e = rate "
+             "dt/2 (Shardlow).",
+     .type = KEY_CHOICE,
+     .absent = "replace",
+     .choice = draw_words,
+     .offset = IN_MODEL(medium.draw)},
+    {.name = "weight",
+     .text = "Of pairs: how the rate depends on the distance r. `hat`: not at all below 1 a0. `quadratic`: as (1 - r)^2.",
+     .type = KEY_CHOICE,
+     .absent = "hat",
+     .choice = weight_words,
+     .offset = IN_MODEL(medium.weight)},
+    {.name = "density",
+     .text = "Of pairs: particles of mass 1 per volume. Times the volume, rounded, it is their number; with the vertices "
+             "at most 16777216.",
+     .type = KEY_NUMBER,
+     .optional = true,
+     .low = 0,
+     .high = 100,
+     .offset = IN_MODEL(medium.density),
+     .unit = "1/a0^3",
+     .symbol = "rho"},
+};
+static const struct key_table medium_table = {"medium", NULL, COUNT(medium_keys), medium_keys};
+
 static const struct key place_keys[] = {
     {.name = "center",
      .text = "Middle of the straight fiber, or of the circle.",
@@ -158,6 +209,12 @@ static const struct key fiber_keys[] = {
      .absent = "false",
      .offset = IN_KIND(ring),
      .first_format = true},
+    {.name = "frozen",
+     .text = "true: these fibers stand still. In collisions their vertices take part as those of other fibers do, with "
+             "velocities of their own, which move nothing; a moving fiber meets them as if they were infinitely heavy.",
+     .type = KEY_SWITCH,
+     .absent = "false",
+     .offset = IN_KIND(frozen)},
     {.name = "mass",
      .text = "Mass of a vertex, rounded to a multiple of 2^-16 m (1.5e-5), so that the mass of a cell is summed "
              "exactly. Should be about `per_cell`; a warning beyond a factor of 2.",
@@ -518,6 +575,11 @@ static const struct key top_keys[] = {
      .type = KEY_SECTION,
      .optional = true,
      .keys = &solvent_table},
+    {.name = "medium",
+     .text = "A bath instead of an SRD solvent; absent: none.",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &medium_table},
     {.name = "dumbbells",
      .text = "Pairs of solvent particles with a harmonic spring (Tao, Goetze and Gompper 2008); absent: none.",
      .type = KEY_SECTION,

@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "theory/medium.h"
 #include "theory/theory.h"
 
 double theory_dumbbell_size(double spring, uint32_t d)
@@ -34,8 +35,18 @@ double theory_model_viscosity_of_solvent(const struct model *m)
 
 double theory_model_viscosity(const struct model *m)
 {
+  if (!model_in_cells(m))
+    return theory_medium_viscosity_kinetic(m) + theory_medium_viscosity_collisional(m);
   const double springs = model_has_dumbbells(m) ? theory_model_dumbbells(m) / theory_model_dumbbell_rate(m) : 0.0;
   return theory_model_viscosity_of_solvent(m) + springs;
+}
+
+double theory_model_schmidt(const struct model *m)
+{
+  if (!model_in_cells(m))
+    return theory_model_viscosity(m) / (m->medium.density * theory_medium_diffusion(m, 1.0));
+  return theory_schmidt(collision_rule_of(m), m->dimensions, m->solvent.per_cell, m->solvent.cosine,
+                        model_collision_interval(m));
 }
 
 double complex theory_dumbbell_modulus(double viscosity_of_solvent, double number, double rate, double frequency)

@@ -26,6 +26,9 @@ double theory_model_dumbbells(const struct model *model);
 double theory_model_viscosity_of_solvent(const struct model *model);
 double theory_model_viscosity(const struct model *model);
 
+/* Sc = nu/D of the solvent's particles, without springs. */
+double theory_model_schmidt(const struct model *model);
+
 /* G* = G' + i G'' at a frequency: G' = n_d x^2/(1 + x^2), G'' = eta_0 omega + n_d x/(1 + x^2), x = omega/omega_H. */
 double complex theory_dumbbell_modulus(double viscosity_of_solvent, double number, double rate, double frequency);
 

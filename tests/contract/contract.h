@@ -29,6 +29,10 @@ struct choice {
   enum crossing_kind crossing;
   bool flat;     /* in two dimensions */
   bool permuted; /* velocities of the solvent, after each collision: no hydrodynamic interactions */
+
+  enum medium_kind medium; /* instead of collisions in cells */
+  enum medium_draw draw;
+  enum medium_weight weight;
 };
 
 /* --- models ------------------------------------------------------------------------------------------------------ */
@@ -49,6 +53,11 @@ static inline void contract_choose(struct model *m, struct choice c)
   m->solvent.hydrodynamics = !c.permuted && !model_has_phantoms(m);
   m->crossing.forbidden = crossing_rule_row(c.crossing)->forbids;
   m->crossing.rule = c.crossing;
+  if (c.medium != MEDIUM_CELLS) {
+    const double density = c.medium == MEDIUM_PAIRS ? m->solvent.per_cell : 0.0;
+    m->medium = (struct medium_model){c.medium, 0.4 / m->time_step, c.draw, c.weight, density};
+    m->solvent.per_cell = m->solvent.collision_interval = 0.0;
+  }
 }
 
 /* The model took the rows that it was to take. */
@@ -302,7 +311,7 @@ static inline void contract_momentum(struct choice c)
 static inline bool contract_keeps_energy(struct choice c)
 {
   struct model m = {.solvent.bath = c.bath};
-  return !contract_rule(c.rule)->thermal && c.thermostat == THERMOSTAT_NONE && !model_has_phantoms(&m);
+  return c.medium == MEDIUM_CELLS && !contract_rule(c.rule)->thermal && c.thermostat == THERMOSTAT_NONE && !model_has_phantoms(&m);
 }
 
 static inline void contract_energy(struct choice c)
@@ -483,7 +492,7 @@ static inline void contract_equipartition(struct choice c)
   for (int k = 0; k < SPECIES; k++) {
     if (second[k].n == 0.0)
       continue;
-    const double expected = model_has_phantoms(&r.model) ? 1.0 : 1.0 - mass[k] / r.model.total_mass;
+    const double expected = !model_keeps_momentum(&r.model) ? 1.0 : 1.0 - mass[k] / r.model.total_mass;
     print_message("  %-8s <m v^2> %.4f +- %.4f, <(m v^2)^2>/3 %.4f +- %.4f, expected %.4f\n", names[k], second[k].mean,
                   sample_error(&second[k]), fourth[k].mean / 3.0, sample_error(&fourth[k]) / 3.0, expected);
     assert_close(second[k].mean, expected, 5.0 * sample_error(&second[k]) + finite);
@@ -583,7 +592,8 @@ static inline void contract_scratch_of(struct model model)
   assert_true(fiber_alloc(&f, m));
   assert_bytes(fiber_bytes(m), "fiber");
 
-  const bool particles = model_has_solvent(m), bathed = model_has_phantoms(m), collides = model_collides(m);
+  const bool particles = model_has_solvent(m) && model_in_cells(m), bathed = model_has_phantoms(m);
+  const bool collides = model_has_cells(m), pairs = m->medium.kind == MEDIUM_PAIRS;
   const bool vertices = m->vertices > 0, thermal = c.rule->thermal;
   assert_there(c.sum, collides, "sum");
   assert_there(c.turn, collides, "turn");
@@ -609,6 +619,17 @@ static inline void contract_scratch_of(struct model model)
   assert_there(t.flights.bend_of, forbids && !in_turns, "flights.bend_of");
   assert_there(t.candidates.first, forbids, "candidates.first");
   assert_there(f.force, vertices, "force");
+  struct medium b;
+  contract_taken_memory.bytes = contract_taken_memory.arrays = 0;
+  assert_true(medium_alloc(&b, m, fluid_of(m)));
+  assert_bytes(medium_bytes(m), "medium");
+  assert_there(b.cell, pairs, "cell");
+  assert_there(b.first, pairs, "first");
+  assert_there(b.x, pairs, "x");
+  assert_there(b.number, pairs, "number");
+  assert_there(b.mover, pairs, "mover");
+  assert_there(b.encounter, false, "encounter");
+  medium_free(&b);
   mpc_free(&c);
   contact_free(&t);
   fiber_free(&f);

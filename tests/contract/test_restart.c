@@ -85,6 +85,18 @@ static void every_fluid_restarts(void **unused)
   remove_folder(folder);
 }
 
+static void every_medium_restarts(void **unused)
+{
+  (void)unused;
+  char folder[64];
+  make_folder(folder);
+  for (int medium = MEDIUM_PRIVATE; medium < MEDIA; medium++)
+    for (int draw = 0; draw < MEDIUM_DRAWS; draw++)
+      for (int scheme = 0; scheme < SCHEMES; scheme++)
+        restart((struct choice){.medium = medium, .draw = draw, .scheme = scheme}, in_folder(folder, "checkpoint.h5"));
+  remove_folder(folder);
+}
+
 /* Flows: walls and shear, steady and oscillating, and every profile of a force. */
 static void every_flow_restarts(void **unused)
 {
@@ -118,6 +130,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_combination_restarts),
       cmocka_unit_test(every_fluid_restarts),
+      cmocka_unit_test(every_medium_restarts),
       cmocka_unit_test(every_flow_restarts),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -163,7 +163,7 @@ static struct model bead_model(struct dice *d, double mass_over_displaced)
 /* The flight alone, of all particles: what a collision does before it adds virtual particles. */
 static void fly_all(struct test_run *r)
 {
-  struct encounters all = {0};
+  struct bead_visits all = {0};
   uint32_t *everyone = malloc(r->state.solvent.n * sizeof *everyone);
   struct solvent *s = &r->state.solvent;
   double slack = 0.01;
@@ -175,7 +175,7 @@ static void fly_all(struct test_run *r)
     assert_true(fluid_points.meet(&r->state, &r->model, everyone, s->n, slack, &all, &r->work.fault));
     slack *= 2.0;
   } while (!all.enough);
-  for (const struct encounter *m = all.at; m < all.at + all.n; m++) {
+  for (const struct bead_visit *m = all.at; m < all.at + all.n; m++) {
     s->x[m->place] = m->at.x, s->y[m->place] = m->at.y, s->z[m->place] = m->at.z;
     set_solvent_v(&r->state, m->place, m->velocity);
   }

@@ -146,8 +146,9 @@ class Estimates(unittest.TestCase):
         self.assertLess(abs(numpy.std(pulls) - 1.0), 0.12)
 
     def test_lags(self):
-        """Three octaves at least; in a box of 71 a0 twice the time of its longest wave, L^2/(4 pi^2 nu) = 59.4 t0."""
-        self.assertAlmostEqual(dilute.last_lag(16), 25.6, 12)
+        """Two octaves at least; in a box of 71 a0 twice the time of its longest wave, L^2/(4 pi^2 nu) = 59.4 t0."""
+        self.assertAlmostEqual(dilute.last_lag(16), 51.2, 12)
+        self.assertAlmostEqual(dilute.last_lag(16, 3.2), 12.8, 12)
         self.assertAlmostEqual(dilute.last_lag(71), 2.0 * 59.44, 1)
 
     def test_scatter(self):

@@ -6,7 +6,7 @@ present shape, with the velocity A = (1/N) sum_ij mu_ij F_j, and D(t) = D_K - in
 1983). Oseen's tensor, smeared over collision cells as in lib/dilute.py, is positive and has no divergence, so Ermak and
 McCammon's step needs no drift: x(t + dt) = x + mu F dt + sqrt(2 dt) L w, L L^T = mu.
 
-usage: validation/lib/brownian.py N CHAINS TIME     prints the share of D_K lost at some times, with errors
+usage: validation/lib/brownian.py N CHAINS TIME     prints the share of D_K lost at some lags t: of dg/6dt, with its error, and of g/6t
 """
 import math
 import sys
@@ -63,16 +63,20 @@ def slowing(vertices, chains, time, alone, eta, spread, spring=3.0, dt=0.25, see
     return dt * numpy.arange(half), lost.mean(axis=1), lost.std(axis=1, ddof=1) / math.sqrt(chains), size
 
 
+LAGS = (1.6, 3.2, 6.4, 12.8, 25.6, 51.2, 102.4)
+
+
 def main():
     from lib import case, dilute
     vertices, chains, time = (int(word) for word in sys.argv[1:4])
     alone = vertices * case.load("chains").sharing(vertices)[0]
     times, lost, error, size = slowing(vertices, chains, time, alone, dilute.ETA, dilute.CELL_SPREAD)
     print(f"N = {vertices}; <R^2> over exact: {size:.3f}")
-    for t in (1.0, 6.5, 13.0, 26.0, 52.0, 104.0):
+    summed = numpy.concatenate([[0.0], numpy.cumsum(0.5 * (lost[1:] + lost[:-1]))]) * times[1]  # g(t) is its integral
+    for t in LAGS:
         if t <= times[-1]:
-            k = round(t / times[1])
-            print(f"{t:6.1f} t0   {lost[k]:.4f} +- {error[k]:.4f}")
+            now, off = (float(numpy.interp(t, times, y)) for y in (lost, error))
+            print(f"{t:6.1f} t0   {now:.4f} +- {off:.4f}   {float(numpy.interp(t, times, summed)) / t:.4f}", flush=True)
 
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@ CASES = pathlib.Path(__file__).resolve().parent.parent / "cases"
 # The order of the report: the solvents, then single vertices and fibers in it, then many fibers.
 ORDER = ("solvent", "andersen", "flow", "dumbbells", "mobility", "chains", "rods", "fibers-flow", "galilean", "tube", "msd", "conservation", "cost", "peer")
 TIERS = ("quick", "campaign")
+VERDICTS = ("pass", "within allowance", "fail", "not reproduced", "undecided")
 
 
 @dataclasses.dataclass
@@ -22,7 +23,10 @@ class Verdict:
     kind "gate": a disagreement is our bug. kind "paper": a disagreement is a finding, and `reason` explains it, if known.
 
     `rival`, where given, is another value that the measured number must be told from. The verdict stays "undecided" while
-    the measurement is too rough: while `detects` is larger than the expected number, or the rival agrees, too."""
+    the measurement is too rough: while `detects` is larger than the expected number, or the rival agrees, too.
+
+    `power`, where given, is the wrong effect that the verdict is there to see. While `detects` is larger, nothing that agrees
+    is a pass: it stays "undecided"."""
     id: str
     statement: str
     expected: float
@@ -35,13 +39,14 @@ class Verdict:
     kind: str = "gate"
     reason: str = ""
     rival: float = None
+    power: float = None
 
     @property
     def verdict(self):
         if self.measured is None or not math.isfinite(self.measured):
             return "undecided"
         if abs(self.measured - self.expected) <= self.tolerance:
-            return "undecided" if self.blind else "pass"
+            return "undecided" if self.blind else "within allowance" if self.covered else "pass"
         return "fail" if self.kind == "gate" else "not reproduced"
 
     @property
@@ -54,6 +59,8 @@ class Verdict:
     @property
     def blind(self):
         """Is the measurement too rough: would an effect as large as the expected number be missed, or does the rival agree, too?"""
+        if self.power is not None and max(self.seen, self.tolerance) > self.power:
+            return True
         if self.rival is not None and abs(self.measured - self.rival) <= self.tolerance:
             return True
         return self.expected != 0.0 and max(self.seen, self.tolerance) > abs(self.expected)
@@ -61,10 +68,13 @@ class Verdict:
     @property
     def z(self):
         """Difference in standard errors of both; None where there are none."""
+        return None if self.verdict == "undecided" else self.off
+
+    @property
+    def off(self):
+        """The same, whatever the verdict."""
         error = math.hypot(self.error or 0.0, self.expected_error or 0.0)
-        if self.verdict == "undecided" or not math.isfinite(error) or error == 0.0:
-            return None
-        return (self.measured - self.expected) / error
+        return (self.measured - self.expected) / error if math.isfinite(error) and error > 0.0 else None
 
     @property
     def allowed(self):
@@ -73,9 +83,9 @@ class Verdict:
 
     @property
     def covered(self):
-        """Does it pass only because of that part? The difference is then larger than errors explain."""
-        return self.verdict == "pass" and self.z is not None and abs(self.z) > stats.SIGMAS and (
-            abs(self.measured - self.expected) > self.tolerance - self.allowed)
+        """Does it agree only because of that part? The difference is then larger than errors explain, and it is no pass."""
+        return self.off is not None and abs(self.off) > stats.SIGMAS and (
+            self.tolerance - self.allowed < abs(self.measured - self.expected) <= self.tolerance)
 
 
 @dataclasses.dataclass

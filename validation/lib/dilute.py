@@ -18,15 +18,14 @@ ETA = PER_CELL * NU
 D_VERTEX, D_VERTEX_ERROR = 0.0179, 0.0001  # of one vertex in an infinite box: docs/accuracy.md, and the case `mobility`
 DAMPING = 1.2  # of sound, Gamma in exp(-Gamma k^2 t): [nu + (2/3) D_T]/2
 SHORTEST_WAVE = 2.0  # k a0; waves shorter than 3 cells have left their mark within 0.2 t0
-# Lags from here on, t0: the first octave from which one local memory, c/t, describes vertices in all boxes. From 3.2 t0 on it
-# does not (p = 8e-5), and D comes out 1.2 % larger; from 12.8 t0 on it does as well, and D is 0.4(5) % larger. (Chosen with
-# the campaign's first runs at hand: their own p says little. Later ones', and chains' and rods', do.)
-FIRST_LAG = 6.4
+# Lags from here on, t0: the first octave that passes the rule of lib/lags.py for chains and for rods of the campaign. From 6.4 t0
+# on one local memory, c/t, still describes vertices in all boxes, but chains and rods come out 1 to 2 % larger.
+FIRST_LAG = 12.8
 
 
-def last_lag(box):
+def last_lag(box, first=FIRST_LAG):
     """The longest lag of a fit: the longest memory of the box, 2/nu k^2 of its longest wave, but at least two octaves of lags."""
-    return max(4.0 * FIRST_LAG, 2.0 * box ** 2 / (4.0 * math.pi ** 2 * NU))
+    return max(4.0 * first, 2.0 * box ** 2 / (4.0 * math.pi ** 2 * NU))
 
 
 # Seconds of one core, estimated: per solvent particle and collision, growing with the box out of the cache, and per
@@ -346,9 +345,9 @@ class Limit:
         return numpy.sqrt(self.covariance.diagonal())
 
 
-def long_time(systems, first, last):
+def long_time(systems, first, last, scales=None):
     """D of systems (table, correction) that share one local memory: D(t) + correction(t) = D - c/t, by least squares
-    over lags from `first` to `last` (one for each system).
+    over lags from `first` to `last` (one for each system). scales: the local memory of each is so many times c (1).
 
     c stands for what has decayed before `first`: the memory of the velocity, and waves shorter than SHORTEST_WAVE.
     Intervals of lag 2t are pairs of those of lag t. For independent increments D(2t) is D(t) plus independent noise, so
@@ -362,7 +361,7 @@ def long_time(systems, first, last):
         variance = numpy.maximum.accumulate(error ** 2)
         noise = numpy.sqrt(numpy.maximum(numpy.diff(variance, prepend=0.0), 0.05 * variance))
         basis = numpy.zeros((len(t), len(systems) + 1))
-        basis[:, i], basis[:, -1] = 1.0, -1.0 / t
+        basis[:, i], basis[:, -1] = 1.0, -(scales[i] if scales else 1.0) / t
         rows.append(numpy.diff(basis, axis=0, prepend=numpy.zeros((1, basis.shape[1]))) / noise[:, None])
         values.append(numpy.diff(y + correction(t), prepend=0.0) / noise)
     design, value = numpy.concatenate(rows), numpy.concatenate(values)
@@ -385,16 +384,22 @@ def scatter(name, statement, p):
                    None if p is None else stats.normal(p), 1.0)
 
 
-def worst(chances):
-    """The probability that the worst of so many fits is as bad as it is; None without any."""
-    return min(1.0, len(chances) * min(chances)) if chances else None
+KIRKWOOD = 0.005  # of Kirkwood's short-time D of chains and of rods: the quadrature, and the field's images in the mean
+
+
+def kirkwood_held(case, pair, share):
+    """A finding about Kirkwood's sum, the same for chains and rods. share: of D that is in proportion to a vertex' own."""
+    known = math.hypot(share * D_VERTEX_ERROR / D_VERTEX, NU_ERROR / NU)
+    return held(f"{case}.kirkwood", "Short-time D in an infinite box over Kirkwood's sum, mean over lengths", 1.0,
+                "Kirkwood's sum over shapes of the exact distribution, spheres of the a_h of the claim mobility", pair, KIRKWOOD, known,
+                kind="paper",
+                reason="Kirkwood's vertices are spheres in Oseen's field; here that field is smeared over the "
+                       f"collision cells, as wide as a bond is long, and the solute's own vertices make the fluid heavier ({case}.cells).")
 
 
 def fair_mean(values, errors):
-    """(mean, error, p), weighted with the relative errors: those of diffusion coefficients grow with the values, and
-    weights from errors as they are would favor small ones."""
-    values, errors = numpy.asarray(values, float), numpy.asarray(errors, float)
-    return stats.weighted_mean(values, errors / values * values.mean())
+    """stats.fair_mean of independent values."""
+    return stats.fair_mean(values, numpy.diag(numpy.asarray(errors, float)**2))
 
 
 def mean_ratio(pairs, expected):

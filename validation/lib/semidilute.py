@@ -157,8 +157,9 @@ def last_exponent(columns, name="d2_contour", span=8.0):
 
 def bend(columns, name="d2_contour", half=0.375):
     """(height, error, lag) where the local exponent falls to half of 3/4: the size of a tube, up to a factor that is the
-    same at all densities: by a line through the exponents within a factor of 4 of where they are first below. None if
-    none is below by twice its error."""
+    same at all densities: by a line through the exponents within a factor of 4 of where they are first below. Exponents over a
+    factor of 4 share lags with their neighbors, so that only as many count as fit side by side; and the error is enlarged by
+    as much as they scatter about the line more than they should. None if none is below by twice its error."""
     if columns is None:
         return None
     t, found, errors = exponents(columns, name)
@@ -169,7 +170,9 @@ def bend(columns, name="d2_contour", half=0.375):
     fit = stats.line(numpy.log(t[near]), found[near], numpy.maximum(errors[near], 1e-9))
     at = (half - fit.value[0]) / fit.value[1]
     spread = fit.covariance[0, 0] + 2.0 * at * fit.covariance[0, 1] + at**2 * fit.covariance[1, 1]  # of the line, there
-    apart = math.sqrt(spread) / abs(fit.value[1])
+    beside = max(2.0, 1.0 + math.log(t[near][-1] / t[near][0]) / math.log(4.0))
+    worse = max(1.0, fit.chi2 / max(fit.freedom, 1)) * max(1.0, near.sum() / beside)
+    apart = math.sqrt(worse * spread) / abs(fit.value[1])
     height = math.exp(numpy.interp(at, numpy.log(columns["time"]), numpy.log(columns[name])))
     return height, half * apart * height, math.exp(at)
 

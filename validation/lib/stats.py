@@ -46,6 +46,27 @@ def fit(basis, y, errors):
     return Fit(value, numpy.sqrt(covariance.diagonal()), covariance, float(residual @ residual), len(y) - len(basis))
 
 
+def fit_correlated(basis, y, covariance):
+    """The same of correlated values."""
+    half = numpy.linalg.cholesky(numpy.asarray(covariance, float))
+    white = numpy.linalg.solve(half, numpy.array([numpy.asarray(f, float) for f in basis] + [numpy.asarray(y, float)]).T)
+    return fit(list(white.T[:-1]), white.T[-1], numpy.ones(len(white)))
+
+
+def fair_mean(values, covariance):
+    """(mean, error, p) of correlated values, with weights from relative errors: those of diffusion coefficients grow with the
+    values, and errors as they are would favor small ones."""
+    values = numpy.asarray(values, float)
+    relative = numpy.asarray(covariance, float) / numpy.outer(values, values)
+    f = fit_correlated([numpy.ones(len(values))], values, relative * values.mean()**2)
+    return float(f.value[0]), float(f.error[0]), f.p
+
+
+def fisher(chances):
+    """Fisher's combined p of independent tests."""
+    return float(stats.chi2.sf(-2.0 * sum(math.log(max(p, 1e-300)) for p in chances), 2 * len(chances))) if chances else None
+
+
 def line(x, y, errors):
     """y = value[0] + value[1] x."""
     x = numpy.asarray(x, float)

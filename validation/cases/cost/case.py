@@ -69,26 +69,25 @@ def short_rotation_time():
 def evaluate(results, tier):
     table = rows(results)
     volume = Verdict("cost.volume", "exponent of CPU time per step against volume, c L³ = 100", 1.0,
-                     "every stage is a loop over particles or cells; 0.3: larger boxes outgrow caches", 0.3,
-                     detects=0.6)
+                     "paper: proportional to the volume; every stage is a loop over particles or cells", 0.05, kind="paper",
+                     reason="Larger boxes outgrow the caches.")
     density = Verdict("cost.density", "exponent of the fibers' share of CPU time against c L³, upper half of the "
                                       "densities", 1.0,
-                      "paper: rate “scales approximately inversely linear with … c L³”; tests of pairs grow faster: 1 "
-                      "to 2", 0.5,
-                      kind="paper", detects=1.0,
+                      "paper: rate “scales approximately inversely linear with … c L³”; tests of pairs grow faster", 0.05,
+                      kind="paper",
                       reason="The number of pairs of bonds that come near each other grows as the square of the "
                              "density.")
     prose = PROSE
     if len(by_volume(table)) >= 3:
         chosen = by_volume(table)
-        volume.measured, volume.error = exponent([row["cells"]**3 for row in chosen],
-                                                 [row["milliseconds"] for row in chosen])
+        sd.measured(volume, exponent([row["cells"]**3 for row in chosen],
+                                     [row["milliseconds"] for row in chosen]), 0.05)
     chosen = by_density(table)
     if len(chosen) >= 3:
         bare = min(row["milliseconds"] for row in chosen)
         upper = sorted((row for row in chosen if row["fibers"] > 0), key=lambda row: row["cL3"])[-3:]
-        density.measured, density.error = exponent([row["cL3"] for row in upper],
-                                                   [row["milliseconds"] - bare for row in upper])
+        sd.measured(density, exponent([row["cL3"] for row in upper],
+                                      [row["milliseconds"] - bare for row in upper]), 0.05)
     standard = next((row for row in table if row["cells"] == 32 and row["fibers"] == 100 and row["vertices"] == 64), None)
     if standard:
         ms = standard["milliseconds"]

@@ -1,0 +1,82 @@
+#include "cli/check_medium.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "cli/units.h"
+#include "medium/bath.h"
+#include "theory/dumbbell.h"
+#include "theory/medium.h"
+#include "theory/theory.h"
+
+static const double pi = 3.14159265358979323846;
+
+static double pairs_per_particle(const struct model *m)
+{
+  return 2.0 / 3.0 * pi * m->medium.density;
+}
+
+static void report_pairs(const struct si_scale *si, const struct model *m)
+{
+  const double rho = m->medium.density, eta = units_viscosity(m);
+  sheet_row(si, "particles", "N_s", m->solvent.particles, "", "");
+  sheet_row(si, "density", "rho", rho, "1/a0^3", "");
+  sheet_row(si, "pairs per particle", "", pairs_per_particle(m), "", "2 pi rho/3");
+  sheet_row(si, "mean free path", "Lambda", 1.0 / m->medium.rate, "a0", "sqrt(kT/m)/Gamma; below 1 a liquid");
+  sheet_row(si, "kinetic viscosity", "eta_kin", theory_medium_viscosity_kinetic(m), "m/a0 t0", "molecular chaos");
+  sheet_row(si, "collisional viscosity", "eta_col", theory_medium_viscosity_collisional(m), "m/a0 t0",
+            "molecular chaos");
+  sheet_row(si, "viscosity", "eta", eta, "m/a0 t0", "too high where Lambda < 1");
+  sheet_row(si, "kinematic viscosity", "nu", eta / rho, "a0^2/t0", "");
+  sheet_row(si, "self-diffusion coefficient", "D_s", theory_medium_diffusion(m, 1.0), "a0^2/t0",
+            "molecular chaos; too low where Lambda < 1");
+  sheet_row(si, "Schmidt number", "Sc", theory_model_schmidt(m), "", "nu/D_s");
+  sheet_row(si, "speed of sound", "c_s", theory_sound_speed(true, 3), "a0/t0", "ideal gas, isothermal");
+}
+
+void check_medium(const struct si_scale *si, const struct model *m)
+{
+  const bool pairs = m->medium.kind == MEDIUM_PAIRS;
+  sheet_heading(pairs ? "Medium: a bath of pairs" : "Medium: a private bath of each vertex, no hydrodynamics");
+  sheet_row(si, "rate", "Gamma", m->medium.rate, "1/t0", "");
+  sheet_row(si, "... in a time step", "Gamma dt", m->medium.rate * m->time_step, "", "");
+  if (pairs)
+    report_pairs(si, m);
+}
+
+/* Times for the length l: of sound, of momentum, of diffusion. A fluid that is hardly compressible, and whose flow
+ * follows the vertices at once, has t_s << t_H << t_D. */
+static void report_times(const struct si_scale *si, const struct model *m, double l, double diffusion)
+{
+  const double nu = units_viscosity(m) / m->medium.density;
+  sheet_row(si, "  time of sound, over a bond", "t_s", l / theory_sound_speed(true, 3), "t0", "l/c_s");
+  sheet_row(si, "  time of momentum", "t_H", l * l / nu, "t0", "l^2/nu");
+  sheet_row(si, "  time of diffusion", "t_D", l * l / diffusion, "t0", "l^2/D_0; wanted: t_s < t_H << t_D");
+}
+
+void check_medium_vertex(const struct si_scale *si, const struct model *m, const struct fiber_kind *k)
+{
+  const double loss = theory_medium_loss(m, k->mass), d0 = theory_medium_diffusion(m, k->mass);
+  const double bond = sqrt(theory_bond_square(k));
+  sheet_row(si, "  velocity kept per step", "c", 1.0 - loss, "", "");
+  sheet_row(si, "  memory of the velocity", "", m->time_step / loss, "t0", "");
+  sheet_row(si, "  vertex diffusion, without HI", "D_0", d0, "a0^2/t0", "");
+  sheet_row(si, "  vertex friction, without HI", "kT/D_0", 1.0 / d0, "m/t0", "");
+  if (k->bending == 0.0 && k->bond_length == 0.0 && !k->ring && k->vertices > 1)
+    sheet_row(si, "  slowest Rouse mode, without HI", "tau_1", theory_rouse_time(k, 1.0 / d0), "t0", "");
+  if (m->medium.kind != MEDIUM_PAIRS)
+    return;
+  const double radius = theory_hydrodynamic_radius(units_viscosity(m), d0);
+  sheet_row(si, "  hydrodynamic radius, from D_0 alone", "a_h", radius, "a0", "");
+  if (k->vertices < 2)
+    return;
+  sheet_row(si, "  ... over the rms bond", "a/b", radius / bond, "", "1/4: D of a chain scales from few vertices on");
+  report_times(si, m, bond, d0);
+}
+
+double check_medium_cost(const struct model *m)
+{
+  const double pairs = pairs_per_particle(m);
+  const double chosen = bath_draw_of(m->medium.draw)->chooses ? m->medium.rate * m->time_step : 1.0;
+  return m->medium.kind == MEDIUM_PAIRS ? 150.0 + pairs * (20.0 + 15.0 * chosen) : 0.0;
+}

@@ -1,0 +1,17 @@
+/* What `uncross check` says of a bath other than that of collision cells. */
+#ifndef UNCROSS_CLI_CHECK_MEDIUM_H
+#define UNCROSS_CLI_CHECK_MEDIUM_H
+
+#include "cli/sheet.h"
+#include "system/model.h"
+
+/* Prints the numbers of the bath. The model must have one. */
+void check_medium(const struct si_scale *si, const struct model *model);
+
+/* The same of a vertex of this kind in it. */
+void check_medium_vertex(const struct si_scale *si, const struct model *model, const struct fiber_kind *kind);
+
+/* Time per particle and step, ns, measured on one core of an x86-64 of the 2020s: for a guess within a factor of 2. */
+double check_medium_cost(const struct model *model);
+
+#endif

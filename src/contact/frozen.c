@@ -1,0 +1,17 @@
+#include "contact/frozen.h"
+
+void frozen_set_aside(struct state *state, const struct model *model, struct vec3 *aside)
+{
+  for (uint32_t v = 0; v < state->vertices; v++)
+    if (model->inverse_mass[v] == 0.0) {
+      aside[v] = state->velocity[v];
+      state->velocity[v] = (struct vec3){0, 0, 0};
+    }
+}
+
+void frozen_give_back(struct state *state, const struct model *model, const struct vec3 *aside)
+{
+  for (uint32_t v = 0; v < state->vertices; v++)
+    if (model->inverse_mass[v] == 0.0)
+      state->velocity[v] = aside[v];
+}

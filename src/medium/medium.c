@@ -1,0 +1,76 @@
+/* The media's scratch, and their part of a plan. */
+#include "medium/medium.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "medium/plan.h"
+
+enum { NEEDS = 7 };
+
+static void list_needs(struct medium *b, const struct model *m, struct memory_need need[NEEDS])
+{
+  const bool pairs = m->medium.kind == MEDIUM_PAIRS;
+  const size_t members = pairs ? (size_t)m->solvent.particles + m->vertices : 0;
+  const struct memory_need all[NEEDS] = {
+      {(void **)&b->cell, members, sizeof *b->cell},
+      {(void **)&b->first, pairs ? (size_t)box_cell_count(&m->box) + 1 : 0, sizeof *b->first},
+      {(void **)&b->x, members, sizeof *b->x},
+      {(void **)&b->y, members, sizeof *b->y},
+      {(void **)&b->z, members, sizeof *b->z},
+      {(void **)&b->number, members, sizeof *b->number},
+      {(void **)&b->mover, members, sizeof *b->mover},
+  };
+  memcpy(need, all, sizeof all);
+}
+
+bool medium_alloc(struct medium *b, const struct model *m, const struct fluid *fluid)
+{
+  struct memory_need need[NEEDS];
+  *b = (struct medium){.fluid = fluid, .members = m->solvent.particles + m->vertices};
+  list_needs(b, m, need);
+  return memory_take(need, NEEDS);
+}
+
+void medium_free(struct medium *b)
+{
+  struct memory_need need[NEEDS];
+  const struct model nothing = {0};
+  list_needs(b, &nothing, need);
+  memory_release(need, NEEDS);
+  free(b->encounter);
+  free(b->key);
+  free(b->spare);
+  memset(b, 0, sizeof *b);
+}
+
+uint64_t medium_bytes(const struct model *m)
+{
+  struct medium b = {0};
+  struct memory_need need[NEEDS];
+  list_needs(&b, m, need);
+  return memory_bytes(need, NEEDS);
+}
+
+static bool act_private(void *room, const struct moment *now, const struct stage *stage)
+{
+  (void)stage;
+  return private_collide(now->state, now->model, room, now->step, now->fault);
+}
+
+static bool act_pairs(void *room, const struct moment *now, const struct stage *stage)
+{
+  (void)stage;
+  return pairs_collide(now->state, now->model, room, now->step, now->fault);
+}
+
+typedef bool act(void *, const struct moment *, const struct stage *);
+
+static act *const baths[MEDIA] = {[MEDIUM_PRIVATE] = act_private, [MEDIUM_PAIRS] = act_pairs};
+
+void medium_plan_collision(struct plan *plan, const struct model *m, size_t room, const char *name)
+{
+  if (baths[m->medium.kind])
+    plan_append(plan, (struct stage){.name = name, .act = baths[m->medium.kind], .room = room});
+}

@@ -1,0 +1,78 @@
+/*
+ * Baths other than that of collision cells (mpc/), the same one operator (bath.h) with two choices of partner:
+ *
+ *   private   private.c: each component of a vertex's velocity, about the flow
+ *   pairs     encounters.c finds all pairs of members that are nearer than 1 a0; pairs.c acts on one after the other, in a
+ *             random order, on the component of their relative velocity along the line between them
+ *
+ * Members are solvent particles and vertices: particle id i has the number i, vertex v the number particles + v. All
+ * random numbers of a pair are addressed by its two numbers, so nothing depends on the order in memory, to the bit.
+ */
+#ifndef UNCROSS_MEDIUM_MEDIUM_H
+#define UNCROSS_MEDIUM_MEDIUM_H
+
+#include "medium/bath.h"
+#include "system/fault.h"
+#include "system/fluid.h"
+#include "system/state.h"
+
+struct mover {
+  struct vec3 velocity; /* a0/t0 */
+  double mass;          /* m */
+};
+
+/* A pair on which the bath acts. */
+struct encounter {
+  struct vec3 along; /* unit vector from b to a, or from a to b: the result is the same to the bit */
+  double loss;       /* 1 - c */
+  double noise;      /* a0/t0: amplitude times a normal number */
+  uint32_t a, b;     /* places of the members */
+};
+
+/* Scratch. Members are sorted by cell: the cells of edge 1 a0 of the grid without shift, (z Ly + y) Lx + x. */
+struct medium {
+  const struct fluid *fluid;
+  uint32_t members;
+  uint32_t *cell;      /* [members] in the order of the state: particles as they stand in memory, then vertices */
+  uint32_t *first;     /* [cells + 1] place of the first member of each cell */
+  double *x, *y, *z;   /* [members] a0, in the box, exact */
+  uint32_t *number;    /* [members] */
+  struct mover *mover; /* [members] */
+
+  struct encounter *encounter; /* [room] */
+  uint64_t *key, *spare;       /* [room] order 2^32 + place in encounter */
+  uint32_t encounters, room;
+};
+
+/* Allocates what this model's medium uses; nothing without one. False if memory is short. */
+bool medium_alloc(struct medium *medium, const struct model *model, const struct fluid *fluid);
+void medium_free(struct medium *medium);
+
+/* Bytes that medium_alloc allocates, before lists grow. */
+uint64_t medium_bytes(const struct model *model);
+
+/* The bath's action of step number `step`. Particles are streamed before. False, with the fault recorded, if a flight is
+ * too far or memory is short. */
+bool private_collide(struct state *state, const struct model *model, struct medium *medium, uint64_t step,
+                     struct fault *fault);
+bool pairs_collide(struct state *state, const struct model *model, struct medium *medium, uint64_t step,
+                   struct fault *fault);
+
+/* --- parts of pairs_collide, for tests --- */
+
+/* Fills the members' columns, sorted by cell, from the state. Particles must be in the box, and not late. */
+void members_gather(const struct state *state, const struct model *model, struct medium *medium);
+
+/* Writes velocities back; particles are then in memory as the members are. */
+void members_scatter(struct state *state, const struct medium *medium);
+
+/* Lists all pairs on which the bath acts in this step, in no particular order. False if memory is short. */
+bool encounters_find(const struct model *model, struct medium *medium, uint64_t step);
+
+/* Sorts the keys by the random order of pairs; where two are equal, by the numbers of the members. */
+void encounters_order(struct medium *medium);
+
+/* The change of the velocities of both members. */
+void encounter_act(const struct encounter *encounter, struct mover *mover);
+
+#endif

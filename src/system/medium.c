@@ -1,0 +1,92 @@
+#include "system/medium.h"
+
+#include <math.h>
+
+/* A row per thing that a medium cannot do. */
+struct refusal {
+  bool ok;
+  const char *path, *why;
+};
+
+static bool refuse_first(const struct refusal *rows, size_t count, struct model_error *error)
+{
+  for (size_t k = 0; k < count; k++)
+    if (!rows[k].ok)
+      return model_reject(error, rows[k].path, "%s", rows[k].why);
+  return true;
+}
+
+static bool check_company(const struct model *m, struct model_error *error)
+{
+  const bool alone = m->solvent.per_cell == 0.0 && m->solvent.collision_interval == 0.0;
+  const struct refusal rows[] = {
+      {alone, "medium", "there is a solvent of collision cells too; allowed: one of the two"},
+      {m->dumbbells.spring == 0.0, "dumbbells",
+       "only a solvent of collision cells has springs; allowed without a medium"},
+      {m->walls.kind == WALL_ABSENT, "walls",
+       "only a solvent of collision cells has rules for walls; allowed without a medium"},
+      {m->shear.rate == 0.0 && m->shear.strain == 0.0, "shear",
+       "only a solvent of collision cells has rules for images that slide; allowed without a medium"},
+  };
+  return refuse_first(rows, sizeof rows / sizeof *rows, error);
+}
+
+static bool check_rate(const struct model *m, struct model_error *error)
+{
+  const struct medium_model *b = &m->medium;
+  return b->draw != DRAW_REPLACE || b->rate * m->time_step <= 1.0 + 1e-12 ||
+         model_reject(error, "medium.rate",
+                      "%.15g times the time step %.15g is %.6g, which is no probability; allowed with draw: replace: up "
+                      "to %.15g",
+                      b->rate, m->time_step, b->rate * m->time_step, 1.0 / m->time_step);
+}
+
+static bool finish_private(struct model *m, struct model_error *error)
+{
+  const struct refusal rows[] = {
+      {m->kinds > 0, "medium.kind", "a private bath is one of vertices, and there are no fibers; allowed: pairs"},
+      {m->medium.density == 0.0, "medium.density", "a private bath has no particles; allowed with kind: pairs"},
+      {m->medium.weight == WEIGHT_HAT, "medium.weight",
+       "a private bath knows no distances; allowed: hat, which has no effect there"},
+  };
+  return refuse_first(rows, sizeof rows / sizeof *rows, error);
+}
+
+static double count_vertices(const struct model *m)
+{
+  double vertices = 0.0;
+  for (uint32_t k = 0; k < m->kinds; k++)
+    vertices += (double)m->kind[k].count * m->kind[k].vertices;
+  return vertices;
+}
+
+/* The pairs are found in cells of edge 1 a0 and their neighbors: three along each edge, so that no pair is met twice. */
+static bool finish_pairs(struct model *m, struct model_error *error)
+{
+  const double particles = nearbyint(m->medium.density * box_volume(&m->box)), members = particles + count_vertices(m);
+  const struct refusal rows[] = {
+      {m->dimensions == 3, "dimensions", "pairs are in space; allowed with this medium: 3"},
+      {box_shortest_edge(&m->box) >= 3, "box",
+       "pairs up to 1 a0 apart, and an edge of the box is less than 3 a0; allowed with this medium: 3 and more"},
+      {m->medium.density > 0.0, "medium.kind", "pairs without a density; allowed with a density above 0"},
+  };
+  if (!refuse_first(rows, sizeof rows / sizeof *rows, error))
+    return false;
+  if (!(particles >= 1.0 && members <= MEDIUM_MOST_MEMBERS))
+    return model_reject(error, "medium.density",
+                        "%.15g in a box of %.0f a0^3 makes %.0f particles, with vertices %.0f; allowed: 1 particle, up "
+                        "to %.0f in all",
+                        m->medium.density, box_volume(&m->box), particles, members, MEDIUM_MOST_MEMBERS);
+  m->solvent.particles = (uint32_t)particles;
+  return true;
+}
+
+bool medium_finish(struct model *m, struct model_error *error)
+{
+  static bool (*const finish[MEDIA])(struct model *, struct model_error *) = {
+      [MEDIUM_PRIVATE] = finish_private, [MEDIUM_PAIRS] = finish_pairs};
+  if (model_in_cells(m))
+    return true;
+  m->solvent.interval_steps = 1;
+  return check_company(m, error) && check_rate(m, error) && finish[m->medium.kind](m, error);
+}

@@ -1,0 +1,24 @@
+/*
+ * What follows from a bath of vertices or of pairs (medium/bath.h), in molecular chaos: partners that have not met
+ * before. Exact for the private bath. For pairs it is good where a particle flies 1 a0 and more between two collisions,
+ * rate below 1; at rate 10 and density 3 diffusion is faster and viscosity lower by tens of per cent.
+ * Units a0 = kT = m = 1.
+ */
+#ifndef UNCROSS_THEORY_MEDIUM_H
+#define UNCROSS_THEORY_MEDIUM_H
+
+#include "system/model.h"
+
+/* The part of its velocity that a member of this mass loses in a time step. Private: <1 - c>. Pairs:
+ *   (4 pi/3) rho (mu/M) int_0^1 r^2 <1 - c(r)> dr,   mu = M/(1 + M). */
+double theory_medium_loss(const struct model *model, double mass);
+
+/* D = (kT dt/M) [1/loss - 1/2], a0^2/t0. */
+double theory_medium_diffusion(const struct model *model, double mass);
+
+/* eta of pairs, m/(a0 t0), 0 of the private bath. Kinetic: rho dt [1/loss - 1/2] of the kinetic stress, of which a
+ * step takes the part 4 pi rho int r^2 [<1 - c>/3 - <(1 - c)^2>/15] dr. Collisional: (pi/15) rho^2 int r^4 <1 - c>/dt dr. */
+double theory_medium_viscosity_kinetic(const struct model *model);
+double theory_medium_viscosity_collisional(const struct model *model);
+
+#endif

@@ -1,0 +1,60 @@
+/* Every medium keeps what all baths promise: the Maxwell distribution at kT = 1 for all masses, and the same bits
+ * whatever the order in memory. With every draw, and every weight that it takes. */
+#include "contract/contract.h"
+
+static void over_media(void (*check)(struct choice))
+{
+  for (int medium = MEDIUM_PRIVATE; medium < MEDIA; medium++)
+    for (int draw = 0; draw < MEDIUM_DRAWS; draw++)
+      for (int weight = 0; weight < (medium == MEDIUM_PAIRS ? MEDIUM_WEIGHTS : 1); weight++) {
+        print_message("  medium %d, draw %d, weight %d\n", medium, draw, weight);
+        check((struct choice){.medium = medium, .draw = draw, .weight = weight});
+      }
+}
+
+static void every_row_has_a_word(void **unused)
+{
+  (void)unused;
+  int words;
+  for (int medium = MEDIUM_PRIVATE; medium < MEDIA; medium++)
+    assert_non_null(contract_word("medium", "kind", medium, &words));
+  assert_int_equal(words, MEDIA - MEDIUM_PRIVATE);
+  for (int draw = 0; draw < MEDIUM_DRAWS; draw++)
+    assert_string_equal(contract_word("medium", "draw", draw, &words), bath_draw_of((enum medium_draw)draw)->name);
+  assert_int_equal(words, MEDIUM_DRAWS);
+  for (int weight = 0; weight < MEDIUM_WEIGHTS; weight++)
+    assert_non_null(contract_word("medium", "weight", weight, &words));
+  assert_int_equal(words, MEDIUM_WEIGHTS);
+}
+
+static void temperature_is_one(void **unused)
+{
+  (void)unused;
+  over_media(contract_equipartition);
+}
+
+static void bits_are_the_same(void **unused)
+{
+  (void)unused;
+  over_media(contract_bits);
+}
+
+static void scratch_is_what_is_used(void **unused)
+{
+  (void)unused;
+  for (int medium = MEDIUM_PRIVATE; medium < MEDIA; medium++) {
+    contract_scratch_of(contract_scene((struct choice){.medium = medium}));
+    contract_scratch_of(contract_gas((struct choice){.medium = medium}));
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_row_has_a_word),
+      cmocka_unit_test(temperature_is_one),
+      cmocka_unit_test(bits_are_the_same),
+      cmocka_unit_test(scratch_is_what_is_used),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
