@@ -313,10 +313,10 @@ peer:
 	validation/run harvest peer --tier campaign --build $(BUILD)
 
 $(BUILD)/validation/measure/solvent_vacf_box_axes: validation/measure/solvent_vacf.c \
-   $(BUILD)/$(PEER)/box_axes.o $(LIBRARY)
+   $(BUILD)/$(PEER)/box_axes.o $(BUILD)/src/kernel/none.o $(LIBRARY)
 	@mkdir -p $(@D)
 	@echo '  CC $<'
-	@$(CC) $(ALL_CFLAGS) -Itests $(DEPENDENCIES) $< $(BUILD)/$(PEER)/box_axes.o -Wl,--wrap=random_axes $(LIBRARY) $(LIBS) -o $@
+	@$(CC) $(ALL_CFLAGS) -Itests $(DEPENDENCIES) $< $(BUILD)/$(PEER)/box_axes.o $(BUILD)/src/kernel/none.o -Wl,--wrap=random_axes $(LIBRARY) $(LIBS) -o $@
 
 $(BUILD)/validation/measure/solvent_lammps: $(PEER)/solvent_lammps $(PEER)/solvent.lammps
 	@mkdir -p $(@D)
@@ -463,4 +463,4 @@ $(BUILD)/readers: $(BUILD)/tests/fuzz/fuzz_readers.o $(LIBRARY)
 clean:
 	rm -rf $(BUILD)
 
--include $(OBJECTS:.o=.d) $(LINKED_OBJECTS:.o=.d) $(TEST_PROGRAMS:=.d) $(STRESS_PROGRAMS:=.d) $(MEASURE_PROGRAMS:=.d) $(BENCH_PROGRAMS:=.d)
+-include $(OBJECTS:.o=.d) $(ROWS:.o=.d) $(LINKED_OBJECTS:.o=.d) $(TEST_PROGRAMS:=.d) $(STRESS_PROGRAMS:=.d) $(MEASURE_PROGRAMS:=.d) $(BENCH_PROGRAMS:=.d)

@@ -2,37 +2,13 @@
 
 #include <string.h>
 
-#include "base/lanes.h"
-
-/* Philox 4x32-10 once more (random_at has Random123's), of LANES counters at once. Two of the counter's words are
- * multiplied in each round; the high halves meet the other two and the key, the low halves take their places. A word is
- * the low half of its lane; what is in the high half does not matter. */
-static inline __attribute__((always_inline)) void philox(uint64_t seed, lanes w[4])
-{
-  uint32_t key0 = (uint32_t)seed, key1 = (uint32_t)(seed >> 32);
-  for (int round = 0; round < PHILOX4x32_DEFAULT_ROUNDS; round++) {
-    lanes p, q;
-    lanes_multiply(&p, &w[0], PHILOX_M4x32_0);
-    lanes_multiply(&q, &w[2], PHILOX_M4x32_1);
-    w[0] = (q >> 32) ^ (w[1] ^ key0);
-    w[1] = q;
-    w[2] = (p >> 32) ^ (w[3] ^ key1);
-    w[3] = p;
-    key0 += PHILOX_W32_0;
-    key1 += PHILOX_W32_1;
-  }
-}
+#include "base/philox.h"
 
 /* The words of LANES entities. */
-static inline __attribute__((always_inline)) void words_of(uint64_t seed, enum random_purpose purpose, uint32_t draw,
-                                                           uint64_t step, const uint32_t entity[LANES], lanes w[4])
+INLINE void words_of(uint64_t seed, enum random_purpose purpose, uint32_t draw, uint64_t step,
+                     const uint32_t entity[LANES], words w[4])
 {
-  const lanes zero = {0};
-  w[0] = (lanes){entity[0], entity[1], entity[2], entity[3]};
-  w[1] = zero + ((uint32_t)purpose + 256 * draw);
-  w[2] = zero + (uint32_t)step;
-  w[3] = zero + (step >> 32);
-  philox(seed, w);
+  philox_words(seed, purpose, draw, step, load_low(entity), w);
 }
 
 enum { BLOCK = 64 }; /* entities worked on at a time */
@@ -44,7 +20,7 @@ static void take_block(const uint32_t *entity, uint32_t n, uint32_t some[BLOCK])
   memset(&some[n], 0, (BLOCK - n) * sizeof *some);
 }
 
-static void narrow(const uint64_t *restrict wide, uint32_t n, uint32_t *restrict word)
+static void keep_low(const uint64_t *restrict wide, uint32_t n, uint32_t *restrict word)
 {
   for (uint32_t k = 0; k < n; k++)
     word[k] = (uint32_t)wide[k];
@@ -59,13 +35,13 @@ void random_columns(uint64_t seed, enum random_purpose purpose, uint32_t draw, u
     const uint32_t m = n - first < BLOCK ? n - first : BLOCK;
     take_block(&entity[first], m, some);
     for (uint32_t k = 0; k < m; k += LANES) {
-      lanes w[4];
+      words w[4];
       words_of(seed, purpose, draw, step, &some[k], w);
       for (int i = 0; i < 4; i++)
         memcpy(&wide[i][k], &w[i], sizeof w[i]);
     }
     for (int i = 0; i < 4; i++)
-      narrow(wide[i], m, &column[i][first]);
+      keep_low(wide[i], m, &column[i][first]);
   }
 }
 
@@ -76,7 +52,7 @@ void random_wide_columns(uint64_t seed, enum random_purpose purpose, uint32_t dr
   uint32_t some[BLOCK];
   take_block(entity, n, some);
   for (uint32_t k = 0; k < n; k += 2 * LANES) {
-    lanes w[4], next[4];
+    words w[4], next[4];
     words_of(seed, purpose, draw, step, &some[k], w);
     words_of(seed, purpose, draw, step, &some[k + LANES], next);
     for (int i = 0; i < 4; i++) {
@@ -90,16 +66,13 @@ void random_wide_pair_columns(uint64_t seed, enum random_purpose purpose, uint64
                               const uint32_t *draw, uint32_t n, uint64_t word[4][RANDOM_UNIFORMS])
 {
   uint32_t first[BLOCK], second[BLOCK];
-  const lanes zero = {0};
+  const words zero = {0};
   take_block(entity, n, first);
   take_block(draw, n, second);
   for (uint32_t k = 0; k < n; k += LANES) {
-    lanes w[4] = {{first[k], first[k + 1], first[k + 2], first[k + 3]},
-                  {second[k], second[k + 1], second[k + 2], second[k + 3]},
-                  zero + (uint32_t)step,
+    words w[4] = {load_low(&first[k]), (load_low(&second[k]) << 8) + (uint32_t)purpose, zero + (uint32_t)step,
                   zero + (step >> 32)};
-    w[1] = (w[1] << 8) + (uint32_t)purpose;
-    philox(seed, w);
+    philox_rounds(seed, w);
     for (int i = 0; i < 4; i++)
       memcpy(&word[i][k], &w[i], sizeof w[i]);
   }
@@ -107,10 +80,10 @@ void random_wide_pair_columns(uint64_t seed, enum random_purpose purpose, uint64
 
 /* random_uniform of words (low, high), through bits: before AVX-512 there is no vector conversion of 64-bit integers.
  * Bits 0x3ff before 52 bits k are the number 1 + k 2^-52; the difference is exact. */
-static inline __attribute__((always_inline)) void uniforms_from(const lanes *low, const lanes *high, double u[LANES])
+INLINE void uniforms_from(const words *low, const words *high, double u[LANES])
 {
-  const lanes fraction = (*high << 20 & 0x000fffffffffffff) | (*low & 0xffffffff) >> 12;
-  const double_lanes uniform = (double_lanes)(fraction | 0x3ff0000000000000) - (1.0 - 0x1p-53);
+  const words fraction = (*high << 20 & 0x000fffffffffffff) | (*low & 0xffffffff) >> 12;
+  const reals uniform = (reals)(fraction | 0x3ff0000000000000) - (1.0 - 0x1p-53);
   memcpy(u, &uniform, sizeof uniform);
 }
 
@@ -121,7 +94,7 @@ void random_uniform_columns(uint64_t seed, enum random_purpose purpose, uint64_t
   _Static_assert(RANDOM_UNIFORMS == BLOCK, "one block");
   take_block(entity, n, some);
   for (uint32_t first = 0; first < n; first += LANES) {
-    lanes w[4], next[4];
+    words w[4], next[4];
     words_of(seed, purpose, 0, step, &some[first], w);
     words_of(seed, purpose, 1, step, &some[first], next);
     uniforms_from(&w[0], &w[1], &u[0][first]);

@@ -1,13 +1,19 @@
 /*
  * As many 64-bit numbers as a register holds, in the vectors of gcc and clang: 8 with AVX-512, 4 with AVX2, else 2.
  * Which of them is known when a file is compiled. + - * / & | ^ ~ << >> act on each number; a comparison gives all ones
- * for true, 0 for false. For the fast kernels (kernel/), which are compiled for each.
+ * for true, 0 for false. What they have no operator for is here. For random numbers, and for the fast kernels
+ * (kernel/), which are compiled for each.
  */
 #ifndef UNCROSS_BASE_REGISTERS_H
 #define UNCROSS_BASE_REGISTERS_H
 
+#include <math.h>
 #include <stdint.h>
 #include <string.h>
+
+#ifdef __SSE2__
+#include <immintrin.h>
+#endif
 
 #if defined __AVX512F__
 #define LANES 8
@@ -58,6 +64,13 @@ INLINE void store_words(int64_t *p, words x)
   memcpy(p, &x, sizeof x);
 }
 
+INLINE words load_low(const uint32_t *p)
+{
+  narrow low;
+  memcpy(&low, p, sizeof low);
+  return __builtin_convertvector(low, words);
+}
+
 /* The low half of each word. */
 INLINE void store_narrow(uint32_t *p, words x)
 {
@@ -87,6 +100,55 @@ INLINE words negative(words x)
 INLINE words multiply(words x, uint32_t m)
 {
   return (words)((halves)x * m);
+}
+
+/* The low half of each word times m: all 64 bits. One instruction, but gcc does not find it: it multiplies 64 bits by
+ * 64, or adds shifted words, at more than twice the cost of a whole Philox. */
+INLINE words multiply_low(words x, uint32_t m)
+{
+#if defined __AVX512F__
+  return (words)_mm512_mul_epu32((__m512i)x, _mm512_set1_epi64(m));
+#elif defined __AVX2__
+  return (words)_mm256_mul_epu32((__m256i)x, _mm256_set1_epi64x(m));
+#elif defined __SSE2__
+  return (words)_mm_mul_epu32((__m128i)x, _mm_set1_epi64x(m));
+#else
+  return (x & 0xffffffff) * m;
+#endif
+}
+
+INLINE reals square_root(reals x)
+{
+#if defined __AVX512F__
+  return (reals)_mm512_sqrt_pd((__m512d)x);
+#elif defined __AVX2__
+  return (reals)_mm256_sqrt_pd((__m256d)x);
+#elif defined __SSE2__
+  return (reals)_mm_sqrt_pd((__m128d)x);
+#else
+  for (int k = 0; k < LANES; k++)
+    x[k] = sqrt(x[k]);
+  return x;
+#endif
+}
+
+/* The double nearest to each word, taken as a signed integer. Bits 0x433 before 52 bits k are the number 2^52 + k; the
+ * high halves come as 2^84 + 2^32 (k + 2^31). Only the last sum rounds. */
+INLINE reals reals_from_signed(words x)
+{
+  const reals high = (reals)(x >> 32 ^ 0x4530000080000000), low = (reals)((x & 0xffffffff) | 0x4330000000000000);
+  return (high - 0x1.00000801p84) + low;
+}
+
+/* The same for words below 2^52, without a sign; and for low halves, taken as signed integers of 32 bits. */
+INLINE reals reals_from_small(words x)
+{
+  return (reals)(x | 0x4330000000000000) - 0x1p52;
+}
+
+INLINE reals reals_from_low(words x)
+{
+  return (reals)((x & 0xffffffff) ^ 0x4330000080000000) - (0x1p52 + 0x1p31);
 }
 
 /* a where the mask is all ones, b where it is 0. */
@@ -179,6 +241,35 @@ INLINE void add_record(uint64_t *to, const double *record)
     memcpy(&addend, (const char *)record + k * sizeof addend, sizeof addend);
     sum += addend;
     memcpy((char *)to + k * sizeof sum, &sum, sizeof sum);
+  }
+}
+
+/* Columns of LANES records of four, of which column lane k is from record lane_record[k]. */
+#if LANES == 8
+static const uint32_t lane_record[LANES] = {0, 2, 4, 6, 1, 3, 5, 7};
+#elif LANES == 4
+static const uint32_t lane_record[LANES] = {0, 1, 2, 3};
+#else
+static const uint32_t lane_record[LANES] = {0, 1};
+#endif
+
+INLINE void load_records(const void *records, reals column[4])
+{
+  UNROLL
+  for (int k = 0; k < 4; k++)
+    memcpy(&column[LANES == 2 ? k / 2 + 2 * (k % 2) : k], (const double *)records + k * LANES, sizeof *column);
+  exchange_rows(column, 4);
+}
+
+/* Stores columns as records of eight doubles; that of lane k has the number first + lane_record[k]. */
+INLINE void store_columns(double *records, uint32_t first, reals column[8])
+{
+  UNROLL
+  for (int c = 0; c < 8; c += LANES) {
+    exchange_rows(&column[c], LANES);
+    UNROLL
+    for (int k = 0; k < LANES; k++)
+      store_reals(records + (size_t)8 * (first + lane_record[k]) + c, column[c + k]);
   }
 }
 

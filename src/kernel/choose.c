@@ -11,7 +11,9 @@ struct kernel_parts kernel_parts_for(const struct model *m)
 {
   const bool particles = model_has_solvent(m) && turns[m->solvent.rule];
   const bool thin = m->solvent.particles < (uint64_t)box_cell_count(&m->box); /* most are alone, and are not turned */
+  const bool enough = box_cell_count(&m->box) >= 8;                           /* cells for a register */
   return (struct kernel_parts){.gather = particles && free_flight[m->box.boundary[1]] && !model_has_dumbbells(m),
+                               .solve = particles && enough && !model_is_flat(m),
                                .turn = particles && !thin};
 }
 
@@ -20,7 +22,7 @@ struct kernel kernel_mix(const struct kernel *fast, const struct model *model)
   const struct kernel_parts parts = kernel_parts_for(model);
   return (struct kernel){.name = fast->name,
                          .gather = parts.gather ? fast->gather : kernel_plain.gather,
-                         .solve = kernel_plain.solve,
+                         .solve = parts.solve ? fast->solve : kernel_plain.solve,
                          .turn = parts.turn ? fast->turn : kernel_plain.turn};
 }
 

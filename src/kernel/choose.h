@@ -18,7 +18,7 @@ extern const size_t kernel_row_count;
 
 /* Which parts of a fast kernel a scene can use. The others are done by the plain one. */
 struct kernel_parts {
-  bool gather, turn;
+  bool gather, solve, turn;
 };
 
 struct kernel_parts kernel_parts_for(const struct model *model);

@@ -4,7 +4,7 @@
  * bits it gives. What is rare goes to the plain ones: flights beyond the next image of the box, momenta beyond the
  * range of lattice_round, and the last particles if they do not fill a register.
  */
-#include "base/registers.h"
+#include "base/philox.h"
 #include "fluid/boundary.h"
 #include "kernel/choose.h"
 #include "mpc/border.h"
@@ -163,6 +163,62 @@ static bool gather_fast(struct state *state, const struct model *model, struct m
   return whole == end || kernel_plain.gather(state, model, c, step, whole, end - whole, span, fault);
 }
 
+/* --- centers and axes -------------------------------------------------------------------------------------------- */
+
+/* The axes of LANES cells, as random_axis. In lanes where both pairs of words are outside the unit disk, z <= -1. */
+INLINE void draw_axes(const struct model *model, uint64_t step, words cell, reals axis[3])
+{
+  words w[4];
+  philox_words(model->seed, RANDOM_ROTATION_AXIS, 0, step, cell, w);
+  const reals u0 = (reals_from_low(w[0]) + 0.5) * 0x1p-31, v0 = (reals_from_low(w[1]) + 0.5) * 0x1p-31;
+  const reals u1 = (reals_from_low(w[2]) + 0.5) * 0x1p-31, v1 = (reals_from_low(w[3]) + 0.5) * 0x1p-31;
+  const reals s0 = u0 * u0 + v0 * v0, s1 = u1 * u1 + v1 * v1;
+  const wholes first = s0 < 1.0;
+  const reals u = choose(first, u0, u1), v = choose(first, v0, v1), s = choose(first, s0, s1);
+  const reals root = square_root(1.0 - s);
+  axis[0] = 2.0 * u * root;
+  axis[1] = 2.0 * v * root;
+  axis[2] = 1.0 - 2.0 * s;
+}
+
+/* cell_solve, and the axis, of LANES cells. */
+INLINE void solve_lanes(const struct model *model, struct mpc *c, uint64_t step, uint32_t first, words lane_cell)
+{
+  reals p[4], turn[8];
+  load_records(&c->sum[first], p);
+  const words load = (words)p[3], two = ~negative((load >> 40) - 2);
+  if (any(two) == 0) {
+    for (uint32_t k = first; k < first + LANES; k++)
+      c->turn[k].active = 0.0, c->turn[k].factor = 1.0;
+    return;
+  }
+  const reals scale = CELL_MOMENTUM_UNIT / (reals_from_small(load & (CELL_MEMBER - 1)) * CELL_MASS_UNIT);
+  for (int k = 0; k < 3; k++)
+    turn[k] = (reals)((words)(reals_from_signed((words)p[k]) * scale) & two);
+  draw_axes(model, step, lane_cell + first, &turn[3]);
+  const words rest = (words)((turn[5] <= -1.0) & (wholes)two);
+  turn[6] = (reals){0} + 1.0;
+  turn[7] = (reals)((words)turn[6] & two);
+  store_columns((double *)c->turn, first, turn);
+  for (int k = 0; any(rest) != 0 && k < LANES; k++)
+    if (rest[k]) {
+      const uint32_t cell = first + lane_record[k];
+      c->turn[cell].axis = random_axis_from(model->seed, RANDOM_ROTATION_AXIS, 1, step, cell);
+    }
+}
+
+/* The last LANES cells are solved once more if they are no multiple: the sums are still there. */
+static void solve_fast(const struct model *model, struct mpc *c, uint64_t step)
+{
+  words lane_cell;
+  for (int k = 0; k < LANES; k++)
+    lane_cell[k] = lane_record[k];
+  for (uint32_t k = 0; k + LANES <= c->cells; k += LANES)
+    solve_lanes(model, c, step, k, lane_cell);
+  if (c->cells % LANES != 0)
+    solve_lanes(model, c, step, c->cells - LANES, lane_cell);
+}
+
 /* --- turns ------------------------------------------------------------------------------------------------------- */
 
 /* New velocities of LANES particles from place i on: srd_apply, but a member that is alone keeps its velocity. The
@@ -221,4 +277,4 @@ static void turn_fast(struct state *state, const struct model *model, const stru
   srd_turn_from(state, model, c, n - n % LANES, scaled);
 }
 
-const struct kernel KERNEL = {.name = KERNEL_NAME, .gather = gather_fast, .turn = turn_fast};
+const struct kernel KERNEL = {.name = KERNEL_NAME, .gather = gather_fast, .solve = solve_fast, .turn = turn_fast};

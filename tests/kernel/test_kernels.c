@@ -239,14 +239,44 @@ static struct model driven(void)
   return m;
 }
 
+/* Seven cells: fewer than the largest register takes. */
+static struct model tiny(void)
+{
+  struct model m = test_model(7, 1, 1, 5.0, 0.01, 2);
+  test_particles(&m, 61);
+  return m;
+}
+
+static struct model plane(void)
+{
+  struct model m = dense();
+  m.box = box_of_cells(14, 15, 1);
+  test_particles(&m, 1223);
+  m.dimensions = 2;
+  return m;
+}
+
 static const struct scene {
   const char *name;
   struct model (*make)(void);
-} scenes[] = {
-    {"dense", dense},      {"accelerated", accelerated},     {"130 degrees", by_130}, {"60 degrees", by_minus_60},
-    {"rescale", rescaled}, {"maxwell-boltzmann", canonical}, {"layers", layered},     {"thin", thin},
-    {"few", few},          {"walls", between_walls},         {"sheared", sheared},    {"dumbbells", springs},
-    {"swap", swapped},     {"fibers", with_fibers},          {"1024 cells", longest}, {"driven", driven}};
+} scenes[] = {{"dense", dense},
+              {"accelerated", accelerated},
+              {"130 degrees", by_130},
+              {"60 degrees", by_minus_60},
+              {"rescale", rescaled},
+              {"maxwell-boltzmann", canonical},
+              {"layers", layered},
+              {"thin", thin},
+              {"few", few},
+              {"walls", between_walls},
+              {"sheared", sheared},
+              {"dumbbells", springs},
+              {"swap", swapped},
+              {"fibers", with_fibers},
+              {"1024 cells", longest},
+              {"driven", driven},
+              {"seven cells", tiny},
+              {"plane", plane}};
 
 /* --- tests ------------------------------------------------------------------------------------------------------- */
 
@@ -358,22 +388,24 @@ static void parts_by_scene(void **unused)
   (void)unused;
   static const struct {
     struct model (*make)(void);
-    bool gather, turn;
-  } wanted[] = {{dense, true, true},          {accelerated, true, true}, {by_130, true, true},   {rescaled, true, true},
-                {thin, true, false},          {swapped, true, true},     {sheared, false, true}, {springs, false, true},
-                {between_walls, false, true}, {with_fibers, true, true}};
+    struct kernel_parts parts;
+  } wanted[] = {{dense, {true, true, true}},          {accelerated, {true, true, true}}, {by_130, {true, true, true}},
+                {rescaled, {true, true, true}},       {thin, {true, true, false}},       {swapped, {true, true, true}},
+                {sheared, {false, true, true}},       {springs, {false, true, true}},    {plane, {true, false, true}},
+                {between_walls, {false, true, true}}, {with_fibers, {true, true, true}}, {tiny, {true, false, true}}};
   for (size_t k = 0; k < sizeof wanted / sizeof *wanted; k++) {
     struct model m = wanted[k].make();
     test_finish(&m);
     const struct kernel_parts parts = kernel_parts_for(&m);
-    assert_int_equal(parts.gather, wanted[k].gather);
-    assert_int_equal(parts.turn, wanted[k].turn);
+    assert_int_equal(parts.gather, wanted[k].parts.gather);
+    assert_int_equal(parts.solve, wanted[k].parts.solve);
+    assert_int_equal(parts.turn, wanted[k].parts.turn);
     model_free(&m);
   }
   struct model m = dense();
   m.solvent.rule = RULE_AT_A;
   test_finish(&m);
-  assert_false(kernel_parts_for(&m).gather || kernel_parts_for(&m).turn);
+  assert_false(kernel_parts_for(&m).gather || kernel_parts_for(&m).solve || kernel_parts_for(&m).turn);
   model_free(&m);
 }
 
@@ -386,6 +418,7 @@ static void runs_get_the_best(void **unused)
     best = kernel_rows[k].runs() ? kernel_rows[k].kernel : best;
   struct test_run r = test_start(dense());
   assert_ptr_equal(r.work.mpc.kernel.gather, best->gather);
+  assert_ptr_equal(r.work.mpc.kernel.solve, best->solve);
   assert_ptr_equal(r.work.mpc.kernel.turn, best->turn);
   assert_true(work_add_everything(&r.work, &r.model));
   assert_ptr_equal(r.work.mpc.kernel.gather, best->gather);

@@ -26,7 +26,7 @@ SOLVENT = "thermostat: rescale"  # with hydrodynamics: see validation/cases/tube
 FREE_SOLVENT = "thermostat: none"
 BATH = "hydrodynamics: false\n  bath: phantoms"  # without
 STANDARD = {"box": 32, "dt": 0.01, "flow": 0, "solvent": SOLVENT, "vertices": 64, "forbidden": "true",
-            "refusal": "stay",
+            "refusal": "stay", "others": "",
             "frame": "laboratory", "series": 10000, "every": 50, "longest_lag": 3276800}
 
 
@@ -35,6 +35,12 @@ def scene(**values):
     values = {**STANDARD, **values}
     values.setdefault("persistence", values["vertices"] / 2)
     return string.Template(TEMPLATE.read_text()).substitute(values)
+
+
+def frozen_network(count, vertices=64, persistence=32.0):
+    """The value of `others`: a second kind, that stands still but takes the same part in the bath."""
+    return (f"\n  - name: net\n    count: {count}\n    vertices: {vertices}\n    mass: 5\n    bond_length: 0.5\n    spring: 100\n"
+            f"    persistence_length: {persistence}\n    frozen: true")
 
 
 def mesh_size(count, length, box):

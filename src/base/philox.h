@@ -1,0 +1,36 @@
+/* Philox 4x32-10 once more (random_at has Random123's), of LANES counters at once. */
+#ifndef UNCROSS_BASE_PHILOX_H
+#define UNCROSS_BASE_PHILOX_H
+
+#include "base/random.h"
+#include "base/registers.h"
+
+/* Two of the counter's words are multiplied in each round; the high halves meet the other two and the key, the low
+ * halves take their places. A word is the low half of its lane; what is in the high half does not matter. */
+INLINE void philox_rounds(uint64_t seed, words w[4])
+{
+  uint32_t key0 = (uint32_t)seed, key1 = (uint32_t)(seed >> 32);
+  for (int round = 0; round < PHILOX4x32_DEFAULT_ROUNDS; round++) {
+    const words p = multiply_low(w[0], PHILOX_M4x32_0), q = multiply_low(w[2], PHILOX_M4x32_1);
+    w[0] = (q >> 32) ^ (w[1] ^ key0);
+    w[1] = q;
+    w[2] = (p >> 32) ^ (w[3] ^ key1);
+    w[3] = p;
+    key0 += PHILOX_W32_0;
+    key1 += PHILOX_W32_1;
+  }
+}
+
+/* The words of LANES entities, as random_at. */
+INLINE void philox_words(uint64_t seed, enum random_purpose purpose, uint32_t draw, uint64_t step, words entity,
+                         words w[4])
+{
+  const words zero = {0};
+  w[0] = entity;
+  w[1] = zero + ((uint32_t)purpose + 256 * draw);
+  w[2] = zero + (uint32_t)step;
+  w[3] = zero + (step >> 32);
+  philox_rounds(seed, w);
+}
+
+#endif
