@@ -211,13 +211,15 @@ struct model checkpoint_model(const struct checkpoint_summary *s)
 /* Looks at the shapes of the arrays; nothing is allocated by a claimed number. */
 static bool has_arrays(hid_t file, const struct checkpoint_summary *summary)
 {
-  const uint32_t claimed[STATE_GROUPS] = {summary->particles, summary->vertices, summary->dumbbells,
-                                          summary->wall_rows, summary->beads};
+  const uint32_t claimed[STATE_GROUPS] = {summary->particles, summary->vertices, summary->dumbbells, summary->wall_rows,
+                                          summary->beads};
   struct point nowhere;
   struct vec3 still;
   struct bead bead;
-  const struct state none = {
-      .position = &nowhere, .velocity = &still, .wall_momentum = &nowhere, .bead = &bead}; /* only names are looked at */
+  const struct state none = {.position = &nowhere,
+                             .velocity = &still,
+                             .wall_momentum = &nowhere,
+                             .bead = &bead}; /* only names are looked at */
   struct state_group rows[STATE_GROUPS];
   state_groups(&none, rows);
   hid_t group = h5_open_group(file, "state");
