@@ -9,47 +9,47 @@
 
 enum { NEEDS = 7 };
 
-static void list_needs(struct medium *b, const struct model *m, struct memory_need need[NEEDS])
+static void list_needs(struct medium *medium, const struct model *m, struct memory_need need[NEEDS])
 {
   const bool pairs = m->medium.kind == MEDIUM_PAIRS;
   const size_t members = pairs ? (size_t)m->solvent.particles + m->vertices : 0;
   const struct memory_need all[NEEDS] = {
-      {(void **)&b->cell, members, sizeof *b->cell},
-      {(void **)&b->first, pairs ? (size_t)box_cell_count(&m->box) + 1 : 0, sizeof *b->first},
-      {(void **)&b->x, members, sizeof *b->x},
-      {(void **)&b->y, members, sizeof *b->y},
-      {(void **)&b->z, members, sizeof *b->z},
-      {(void **)&b->number, members, sizeof *b->number},
-      {(void **)&b->mover, members, sizeof *b->mover},
+      {(void **)&medium->cell, members, sizeof *medium->cell},
+      {(void **)&medium->first, pairs ? (size_t)box_cell_count(&m->box) + 1 : 0, sizeof *medium->first},
+      {(void **)&medium->x, members, sizeof *medium->x},
+      {(void **)&medium->y, members, sizeof *medium->y},
+      {(void **)&medium->z, members, sizeof *medium->z},
+      {(void **)&medium->number, members, sizeof *medium->number},
+      {(void **)&medium->mover, members, sizeof *medium->mover},
   };
   memcpy(need, all, sizeof all);
 }
 
-bool medium_alloc(struct medium *b, const struct model *m, const struct fluid *fluid)
+bool medium_alloc(struct medium *medium, const struct model *m, const struct fluid *fluid)
 {
   struct memory_need need[NEEDS];
-  *b = (struct medium){.fluid = fluid, .members = m->solvent.particles + m->vertices};
-  list_needs(b, m, need);
+  *medium = (struct medium){.fluid = fluid, .members = m->solvent.particles + m->vertices};
+  list_needs(medium, m, need);
   return memory_take(need, NEEDS);
 }
 
-void medium_free(struct medium *b)
+void medium_free(struct medium *medium)
 {
   struct memory_need need[NEEDS];
   const struct model nothing = {0};
-  list_needs(b, &nothing, need);
+  list_needs(medium, &nothing, need);
   memory_release(need, NEEDS);
-  free(b->encounter);
-  free(b->key);
-  free(b->spare);
-  memset(b, 0, sizeof *b);
+  free(medium->encounter);
+  free(medium->key);
+  free(medium->spare);
+  memset(medium, 0, sizeof *medium);
 }
 
 uint64_t medium_bytes(const struct model *m)
 {
-  struct medium b = {0};
+  struct medium medium = {0};
   struct memory_need need[NEEDS];
-  list_needs(&b, m, need);
+  list_needs(&medium, m, need);
   return memory_bytes(need, NEEDS);
 }
 

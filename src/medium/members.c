@@ -24,63 +24,64 @@ static inline struct point vertex_at(const struct state *state, const struct box
 }
 
 /* The next place of a cell: first[cell] runs from the begin of the cell to that of the next. */
-static inline void put(struct medium *b, uint32_t cell, struct point p, uint32_t number, struct mover mover)
+static inline void put(struct medium *medium, uint32_t cell, struct point p, uint32_t number, struct mover mover)
 {
-  const uint32_t place = b->first[cell]++;
-  b->x[place] = (double)p.x * LATTICE_UNIT;
-  b->y[place] = (double)p.y * LATTICE_UNIT;
-  b->z[place] = (double)p.z * LATTICE_UNIT;
-  b->number[place] = number;
-  b->mover[place] = mover;
+  const uint32_t place = medium->first[cell]++;
+  medium->x[place] = (double)p.x * LATTICE_UNIT;
+  medium->y[place] = (double)p.y * LATTICE_UNIT;
+  medium->z[place] = (double)p.z * LATTICE_UNIT;
+  medium->number[place] = number;
+  medium->mover[place] = mover;
 }
 
 /* first[k] = members in cells before k */
-static void count(const struct state *state, const struct box *box, struct medium *b)
+static void count(const struct state *state, const struct box *box, struct medium *medium)
 {
   const struct solvent *s = &state->solvent;
   const uint32_t cells = (uint32_t)box_cell_count(box);
-  memset(b->first, 0, ((size_t)cells + 1) * sizeof *b->first);
+  memset(medium->first, 0, ((size_t)cells + 1) * sizeof *medium->first);
   for (uint32_t i = 0; i < s->n; i++)
-    b->first[b->cell[i] = cell_of(box, particle_at(s, i))]++;
+    medium->first[medium->cell[i] = cell_of(box, particle_at(s, i))]++;
   for (uint32_t v = 0; v < state->vertices; v++)
-    b->first[b->cell[s->n + v] = cell_of(box, vertex_at(state, box, v))]++;
+    medium->first[medium->cell[s->n + v] = cell_of(box, vertex_at(state, box, v))]++;
   uint32_t sum = 0;
   for (uint32_t k = 0; k <= cells; k++) {
-    const uint32_t here = b->first[k];
-    b->first[k] = sum;
+    const uint32_t here = medium->first[k];
+    medium->first[k] = sum;
     sum += here;
   }
 }
 
-void members_gather(const struct state *state, const struct model *model, struct medium *b)
+void members_gather(const struct state *state, const struct model *model, struct medium *medium)
 {
   const struct solvent *s = &state->solvent;
   const struct box *box = &model->box;
-  count(state, box, b);
+  count(state, box, medium);
   for (uint32_t i = 0; i < s->n; i++)
-    put(b, b->cell[i], particle_at(s, i), s->id[i], (struct mover){solvent_velocity(s, i), 1.0});
+    put(medium, medium->cell[i], particle_at(s, i), s->id[i], (struct mover){solvent_velocity(s, i), 1.0});
   for (uint32_t v = 0; v < state->vertices; v++)
-    put(b, b->cell[s->n + v], vertex_at(state, box, v), s->n + v, (struct mover){state->velocity[v], model->mass[v]});
-  memmove(&b->first[1], b->first, (size_t)box_cell_count(box) * sizeof *b->first);
-  b->first[0] = 0;
+    put(medium, medium->cell[s->n + v], vertex_at(state, box, v), s->n + v,
+        (struct mover){state->velocity[v], model->mass[v]});
+  memmove(&medium->first[1], medium->first, (size_t)box_cell_count(box) * sizeof *medium->first);
+  medium->first[0] = 0;
 }
 
-void members_scatter(struct state *state, const struct medium *b)
+void members_scatter(struct state *state, const struct medium *medium)
 {
   struct solvent *s = &state->solvent;
   uint32_t i = 0;
-  for (uint32_t k = 0; k < b->members; k++) {
-    const struct vec3 v = b->mover[k].velocity;
-    if (b->number[k] >= s->n) {
-      state->velocity[b->number[k] - s->n] = v;
+  for (uint32_t k = 0; k < medium->members; k++) {
+    const struct vec3 v = medium->mover[k].velocity;
+    if (medium->number[k] >= s->n) {
+      state->velocity[medium->number[k] - s->n] = v;
       continue;
     }
-    s->x[i] = lattice_from_a0(b->x[k]);
-    s->y[i] = lattice_from_a0(b->y[k]);
-    s->z[i] = lattice_from_a0(b->z[k]);
+    s->x[i] = lattice_from_a0(medium->x[k]);
+    s->y[i] = lattice_from_a0(medium->y[k]);
+    s->z[i] = lattice_from_a0(medium->z[k]);
     s->vx[i] = v.x;
     s->vy[i] = v.y;
     s->vz[i] = v.z;
-    s->id[i++] = b->number[k];
+    s->id[i++] = medium->number[k];
   }
 }

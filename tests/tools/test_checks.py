@@ -67,7 +67,7 @@ class Floors(Tree):
 
     def test_upward_include(self):
         self.add("src/system/state.h", '#include "step.h"\n')
-        self.complain("src/system/state.h:2: system (floor 1) must not include step (floor 3)")
+        self.complain("src/system/state.h:2: system (floor 1) must not include step (floor 4)")
 
     def test_mpc_and_fiber_never_meet(self):
         self.add("src/mpc/flow.c", '  # include "fiber/bend.h"\n')
@@ -108,7 +108,7 @@ class Floors(Tree):
 
     def test_file_library_in_the_physics(self):
         self.add("src/observe/mean.h", "#include <hdf5.h>\n")
-        self.complain("hdf5.h belongs to floor 6 and above")
+        self.complain("hdf5.h belongs to floor 7 and above")
 
     def test_test_library_in_the_program(self):
         self.add("src/cli/main.c", "#include <gsl/gsl_math.h>\n")

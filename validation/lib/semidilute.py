@@ -194,14 +194,10 @@ def turning(tables, fibers):
     return numpy.array(lags), cosine, (1.0 - cosine) / numpy.sqrt(count)
 
 
-def rotation_time(tables, shortest, longest, fibers, least=4):
-    """(tau_r, error, intercept) from <a(0).a(t)> = A exp(-t/tau_r), tau_r = 1/(2 D_r), lags shortest to longest, of runs of
-    the same system. Bends hardly tilt the regression axis; A has what they do. The angles of a random walk at two lags have
-    the correlation sqrt(shorter/longer), as short intervals are parts of long ones: generalized least squares."""
-    tables = [one for one in tables if one is not None and "axis_unit" in one]
-    if not tables:
-        return None
-    t, c, error = turning(tables, fibers)
+def rotation_fit(t, c, error, shortest, longest, least=4):
+    """(tau_r, error, intercept) from <a(0).a(t)> = A exp(-t/tau_r), lags shortest to longest; None with too few. The angles of a
+    random walk at two lags have the correlation sqrt(shorter/longer), as short intervals are parts of long ones: generalized
+    least squares."""
     keep = (t >= shortest) & (t <= longest) & (c > 0.1)
     if keep.sum() < least:
         return None
@@ -212,6 +208,21 @@ def rotation_time(tables, shortest, longest, fibers, least=4):
     inverse = numpy.linalg.inv(basis.T @ weighted[:, :2])
     intercept, rate = inverse @ basis.T @ weighted[:, 2]
     return (1.0 / rate, math.sqrt(inverse[1, 1]) / rate**2, math.exp(-intercept)) if rate > 0 else None
+
+
+def rotation_time(tables, shortest, longest, fibers):
+    """(tau_r, error, intercept) of runs of the same system, tau_r = 1/(2 D_r). Bends hardly tilt the regression axis; the
+    intercept has what they do. The choice of the first lag has an error of its own, in the root of the sum of squares: the change
+    if it is doubled, or what this change could hide."""
+    tables = [one for one in tables if one is not None and "axis_unit" in one]
+    if not tables:
+        return None
+    seen = turning(tables, fibers)
+    found, doubled = (rotation_fit(*seen, first, longest) for first in (shortest, 2.0 * shortest))
+    if not found or not doubled:
+        return None
+    change = max(abs(doubled[0] - found[0]), math.sqrt(max(doubled[1]**2 - found[1]**2, 0.0)))
+    return found[0], math.hypot(found[1], change), found[2]
 
 
 def first_rate(t, y):

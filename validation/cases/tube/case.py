@@ -90,8 +90,9 @@ SYSTEMS = {"quick": {"length": 12.0, "contour": 23 * sd.BOND, "box": 10, "count"
                         "choice": 5.12, "choices": tuple(CHOICES), "late": 512.0}}
 LABELS = {"hi-entangled": "hydrodynamics on, uncrossable", "hi-free": "on, crossing free",
           "off-entangled": "off, uncrossable", "off-free": "off, crossing free"}
-# Lags (t0) after bends and before few intervals are left; fibers.
-ROTATION = {"hi": (800.0, 5000.0, 4), "off": (3000.0, 16000.0, 40)}
+# Lags (t0) and fibers. The first lag is the shortest of 10, 20, 40, ... that may be doubled without a change of tau_r by more than
+# two standard errors.
+ROTATION = {"hi": (40.0, 2000.0, 4), "off": (40.0, 2000.0, 40)}
 
 
 def curve(results, name):
@@ -257,7 +258,7 @@ def rotation_verdicts(results, system):
     found = [sd.measured(Verdict("tube.rotation.paper", "τ_r with hydrodynamics, t0", sd.PAPER_ROTATION_TIME,
                               "Sec. IV D, without an error bar: 15 %; a rigid rod (Tirado) of b = 0.6 a0 in this box: "
                               f"{expected_rotation('hi', system):.3g}", 0.15 * sd.PAPER_ROTATION_TIME, kind="paper",
-                              reason="Ours is from lags of a tenth of it, by an exponential after bends have relaxed."),
+                              reason="Ours is 1/(2 D_r) of lags up to 2000 t0; a bent fiber turns faster than a straight rod."),
                       rotation(results, "hi"), 0.15 * sd.PAPER_ROTATION_TIME)]
     expected = expected_rotation("off", system)
     found.append(sd.measured(Verdict("tube.rotation.off", "τ_r, hydrodynamics off, t0", expected,
@@ -349,8 +350,8 @@ reversed: with hydrodynamics the friction is lower for long waves than for short
 
 The runs have a thermostat (one factor for all velocities), because rejected moves heat: without one this system gains
 7·10⁻⁴ of its energy per t0. The effect of another thermostat, of `refusal: bounce` and of half the time step is
-measured twice: before fibers meet (`choice`), and in the tube (`late`). τ_r is measured from rotational diffusion at lags of some hundredths to a
-tenth of it, without the quick tilt by bends. This needs a run of only a tenth of the correlation time of the end-to-end vector. Four fibers
+measured twice: before fibers meet (`choice`), and in the tube (`late`). τ_r is measured from rotational diffusion of the regression axis, which bends hardly tilt, at
+lags of a thousandth to a hundredth of it. This needs a run of only a tenth of the correlation time of the end-to-end vector. Four fibers
 that may cross share the box: their concentration raises the viscosity by some 4 %, and the statistics are four times as large.
 
 “Off” still has some coupling in so dense a suspension. Vertices that share a collision cell, two of each fiber and others, are
