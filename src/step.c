@@ -30,6 +30,7 @@
 
 #include <stddef.h>
 
+#include "contact/laying.h"
 #include "fiber/start.h"
 #include "fluid/fluid.h"
 #include "medium/plan.h"
@@ -116,7 +117,7 @@ static struct vec3 conserved_axes(const struct model *model)
 {
   const double y = !model_has_walls(model), along = y != 0.0 || model->walls.kind == WALL_SLIP;
   return !model_keeps_momentum(model) || model->total_mass == 0.0 ? (struct vec3){0, 0, 0}
-                                                               : (struct vec3){along, y, along};
+                                                                  : (struct vec3){along, y, along};
 }
 
 /* Replaces the total momentum of the state by that of the flow: all velocities change by the same amount. Where
@@ -162,13 +163,65 @@ static void add_shear(struct state *state, const struct model *model)
     state->velocity[v].x += rate * (double)(state->position[v].y - middle) * LATTICE_UNIT;
 }
 
+static enum fiber_verdict judge_fiber(void *context, const struct point *position, uint32_t fiber)
+{
+  static const enum fiber_verdict verdicts[] = {
+      [LAYING_FITS] = FIBER_STAYS, [LAYING_OVERLAPS] = FIBER_OVERLAPS, [LAYING_NO_MEMORY] = FIBER_NO_MEMORY};
+  return verdicts[laying_add(context, position, fiber)];
+}
+
+static bool record_start(const struct model *model, const struct laying *l, enum fiber_start_end end, uint32_t fiber,
+                         struct fault *fault)
+{
+  if (end == FIBERS_OVERLAP)
+    return fault_record(fault, FAULT_OVERLAP, 0, l->bond, l->distance,
+                        (double)model_reach(model, l->bond, l->other) * LATTICE_UNIT);
+  if (end == FIBERS_NO_ROOM)
+    return fault_record(fault, FAULT_NO_ROOM, 0, fiber, FIBER_MOST_ATTEMPTS, FIBER_MOST_ATTEMPTS);
+  return end == FIBERS_LAID || fault_no_memory(fault, 0);
+}
+
+/* Lays all fibers, the thick ones without overlap. */
+static bool start_fibers(struct state *state, const struct model *model, struct fault *fault)
+{
+  struct laying laying = {0};
+  const struct fiber_room room = {judge_fiber, &laying};
+  uint32_t fiber = 0;
+  enum fiber_start_end end = FIBERS_NO_MEMORY;
+  if (model->thickness == 0)
+    end = fiber_start(state, model, NULL, &fiber);
+  else if (laying_begin(&laying, model))
+    end = fiber_start(state, model, &room, &fiber);
+  const bool ok = record_start(model, &laying, end, fiber, fault);
+  laying_end(&laying);
+  return ok;
+}
+
+bool step_sound(const struct state *state, const struct model *model, struct fault *fault)
+{
+  struct laying laying = {0};
+  enum fiber_start_end end = FIBERS_LAID;
+  if (model->thickness == 0)
+    return true;
+  if (!laying_begin(&laying, model))
+    end = FIBERS_NO_MEMORY;
+  for (uint32_t fiber = 0; end == FIBERS_LAID && fiber < model->fibers; fiber++) {
+    const enum laying_answer answer = laying_add(&laying, state->position, fiber);
+    end = answer == LAYING_FITS ? FIBERS_LAID : answer == LAYING_OVERLAPS ? FIBERS_OVERLAP : FIBERS_NO_MEMORY;
+  }
+  const bool ok = record_start(model, &laying, end, 0, fault);
+  laying_end(&laying);
+  return ok;
+}
+
 bool step_start(struct state *state, const struct model *model, struct work *work)
 {
   state->step = 0;
   state->solvent_lag = 0;
   state->solvent_time = 0;
   fluid_of(model)->start(state, model);
-  fiber_start(state, model);
+  if (!start_fibers(state, model, &work->fault))
+    return false;
   set_total_momentum(state, model);
   add_shear(state, model);
   if (!fiber_forces(state, model, work->fiber.force, 0, &work->fault))

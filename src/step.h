@@ -33,4 +33,7 @@ void step_plan(struct work *work, const struct model *model);
  * if a bond does not fit the box. */
 bool step_start(struct state *state, const struct model *model, struct work *work);
 
+/* True if no tubes of thick fibers overlap; else the fault says which. For states that come from files. */
+bool step_sound(const struct state *state, const struct model *model, struct fault *fault);
+
 #endif

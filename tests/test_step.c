@@ -355,7 +355,7 @@ static void start_sets_momentum_and_half_kick(void **unused)
   const struct vec3 p = total_momentum(&r);
   assert_close(vec3_norm(vec3_sub(p, vec3_scale(mass, m.flow))), 0.0, 1e-9);
   fluid_points.start(&h.state, &h.model);
-  fiber_start(&h.state, &h.model);
+  fiber_start(&h.state, &h.model, NULL, &(uint32_t){0});
   assert_true(fiber_forces(&h.state, &h.model, h.work.fiber.force, 0, &h.work.fault));
   const struct vec3 change = vec3_sub(solvent_v(&r.state, 0), solvent_v(&h.state, 0));
   for (uint32_t i = 0; i < h.state.solvent.n; i++)

@@ -95,13 +95,15 @@ static void fill_column(const struct state *state, const struct model *model, co
   s->w[0][k] = w.x, s->w[1][k] = w.y, s->w[2][k] = w.z;
 }
 
-/* The limit of each pair: the sum of the two paths before this drift, plus the distance of the bonds. */
-static void limit_columns(const struct columns *restrict s, uint32_t *restrict limit)
+/* The limit of each pair: the sum of the two paths before this drift, plus the distance of the bonds less the thickness
+ * of the thickest fiber, a0. */
+static void limit_columns(const struct columns *restrict s, double thickness, uint32_t *restrict limit)
 {
+  const double slack = thickness + CAPSULE_SLACK;
   for (uint32_t k = 0; k < s->count; k++) {
     const struct vec3 p = {s->p[0][k], s->p[1][k], s->p[2][k]}, q = {s->q[0][k], s->q[1][k], s->q[2][k]},
                       w = {s->w[0][k], s->w[1][k], s->w[2][k]};
-    const double apart = capsule_most(capsule_distance(p, q, w) - CAPSULE_SLACK, 0.0);
+    const double apart = capsule_most(capsule_distance(p, q, w) - slack, 0.0);
     limit[k] = s->path[k] + (uint32_t)(int32_t)(capsule_least(apart, 32.0) * (1 << CANDIDATES_UNITS));
   }
 }
@@ -145,12 +147,12 @@ static void forget_candidates(struct candidate_list *list)
 /* --- which pairs are candidates ---------------------------------------------------------------------------------- */
 
 /* Pairs that may touch in this drift become candidates; the others get the limit at which they are next due. */
-static bool settle_columns(const struct state *state, struct contact *contact, const struct columns *s,
-                           struct fault *fault)
+static bool settle_columns(const struct state *state, const struct model *model, struct contact *contact,
+                           const struct columns *s, struct fault *fault)
 {
   struct pair_list *list = &contact->neighbors.pairs;
   uint32_t limit[PAIRS];
-  limit_columns(s, limit);
+  limit_columns(s, model_thickness(model), limit);
   for (uint32_t k = 0; k < s->count; k++) {
     const uint32_t pair = s->pair[k], i = list->bond[pair], l = list->other[pair];
     list->limit[pair] = limit[k];
@@ -213,7 +215,7 @@ bool candidates_find(const struct state *state, const struct model *model, struc
     s.count = 0;
     for (uint32_t k = 0; k < count[now]; k++)
       look_at_pair(state, model, contact, due[now][k], &s);
-    if (!settle_columns(state, contact, &s, fault))
+    if (!settle_columns(state, model, contact, &s, fault))
       return false;
   }
   return true;

@@ -19,42 +19,14 @@
  */
 #include "contact/candidates.h"
 #include "contact/capsule.h"
-#include "contact/determinant.h"
 #include "contact/event_drift.h"
 #include "contact/impulse.h"
 #include "contact/neighbors.h"
 #include "contact/rule.h"
+#include "contact/shape.h"
 #include "contact/takeoff.h"
 
 /* --- a contact ---------------------------------------------------------------------------------------------------- */
-
-/* (p x q).w at a tick, with its exact sign. */
-static double volume_at(const struct flight_pair *pair, int32_t tick)
-{
-  const struct point p = flight_place(pair->p, pair->p_rate, tick), q = flight_place(pair->q, pair->q_rate, tick),
-                     w = flight_place(pair->w, pair->w_rate, tick);
-  return determinant((struct difference){p.x, p.y, p.z}, (struct difference){q.x, q.y, q.z},
-                     (struct difference){w.x, w.y, w.z});
-}
-
-/* The unit vector along which two touching bonds push each other, from bond p to bond q: perpendicular to both.
- * Parallel bonds have no such direction; and where both lie in one plane, an end meets a bond from the side. Then it is
- * the direction of the gap between them; if that cannot be told, that of their relative velocity perpendicular to q.
- * volume: (p x q).w. velocity: of p's point of contact relative to q's, a0/t0. */
-static struct vec3 contact_normal(double volume, struct vec3 p, struct vec3 q, struct vec3 gap, struct vec3 velocity)
-{
-  struct vec3 n = vec3_cross(p, q);
-  const bool parallel = !(vec3_dot(n, n) > 1e-24 * vec3_dot(p, p) * vec3_dot(q, q));
-  double approach = vec3_dot(n, velocity);
-  if (volume < 0.0 || (volume == 0.0 && approach < 0.0))
-    n = vec3_scale(-1.0, n), approach = -approach;
-  if (parallel || (volume == 0.0 && !(approach > 0.0))) {
-    n = gap;
-    if (!(vec3_dot(n, n) > 0.0))
-      n = vec3_add_scaled(velocity, -vec3_dot(velocity, q) / vec3_dot(q, q), q);
-  }
-  return vec3_scale(1.0 / vec3_norm(n), n);
-}
 
 /* The four vertices of a contact: ends of the first bond, then of the other. touching: the bonds have no gap at all, as
  * at no tick of a drift that began with bonds apart. */
@@ -87,17 +59,16 @@ static struct meeting meeting_of(const struct event_drift *d, const struct event
                     q = in_space(d, flight_place(pair.q, pair.q_rate, e->tick), e->tick),
                     w = in_space(d, flight_place(pair.w, pair.w_rate, e->tick), e->tick);
   double s, t;
-  capsule_closest(p, q, w, &s, &t);
+  const struct bond_shape *shape = bond_shape_of(model_reach(d->model, e->bond, e->other));
+  shape->points(p, q, w, &s, &t);
   const double lever[4] = {1.0 - s, s, t - 1.0, -t};
   struct vec3 velocity = {0, 0, 0};
   for (int k = 0; k < 4; k++)
     velocity = vec3_add_scaled(velocity, lever[k], d->state->velocity[m.vertex[k]]);
   velocity.x -= image_speed(d, e); /* the levers of the other bond have the sum -1 */
   m.geometry.s = s, m.geometry.t = t;
-  const double volume = volume_at(&pair, e->tick);
-  const struct vec3 gap = capsule_between(p, q, w, s, t);
-  m.touching = volume == 0.0 && vec3_norm(gap) < 0.25 * LATTICE_UNIT;
-  m.geometry.normal = contact_normal(volume, p, q, gap, velocity);
+  const struct shape_contact at = {p, q, capsule_between(p, q, w, s, t), velocity};
+  m.touching = !shape->normal(&pair, e->tick, &at, &m.geometry.normal);
   return m;
 }
 

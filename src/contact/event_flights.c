@@ -4,6 +4,7 @@
 #include "contact/candidates.h"
 #include "contact/capsule.h"
 #include "contact/neighbors.h"
+#include "contact/shape.h"
 #include "contact/takeoff.h"
 
 bool event_no_memory(const struct event_drift *d)
@@ -94,7 +95,8 @@ bool event_search_pair(const struct event_drift *d, uint32_t bond, const struct 
                     .other = exchange ? bond : (uint32_t)n->bond,
                     .image = {sign * n->image[0], sign * n->image[1], sign * n->image[2]}};
   const struct flight_pair pair = event_pair(d, e.bond, e.other, e.image);
-  e.tick = from < FLIGHT_TICKS ? flight_contact(&pair, from) : FLIGHT_TICKS;
+  const int64_t reach = model_reach(d->model, e.bond, e.other);
+  e.tick = from < FLIGHT_TICKS ? bond_shape_of(reach)->contact(&pair, reach, from) : FLIGHT_TICKS;
   e.version = event_version(d, e.bond, e.other);
   return e.tick == FLIGHT_TICKS || event_queue_push(&d->contact->flights.queue, &e) || event_no_memory(d);
 }
@@ -130,9 +132,10 @@ static bool look_around_bond(const struct event_drift *d, uint32_t bond)
 {
   struct neighbor_list *near = &d->contact->near;
   const uint32_t next = (uint32_t)d->model->next[bond];
+  const double radius = 0.5 * model_thickness(d->model);
   const struct point end[2] = {event_start(d, bond), event_start(d, next)};
   const struct capsule mine = {
-      {0, 0, 0}, point_difference(end[1], end[0]), candidates_range(d->model, d->contact, bond)};
+      {0, 0, 0}, point_difference(end[1], end[0]), radius + candidates_range(d->model, d->contact, bond)};
   if (!neighbors_near(d->state, d->model, d->contact, bond, end, mine.reach, near, d->fault))
     return false;
   for (uint32_t k = 0; k < near->count; k++) {
@@ -140,7 +143,7 @@ static bool look_around_bond(const struct event_drift *d, uint32_t bond)
     const struct point a = event_start(d, (uint32_t)n->bond), b = event_start(d, (uint32_t)d->model->next[n->bond]);
     const struct capsule its = {point_difference(point_image(a, n->image, &d->model->box), end[0]),
                                 point_difference(point_image(b, n->image, &d->model->box), end[0]),
-                                candidates_range(d->model, d->contact, (uint32_t)n->bond)};
+                                radius + candidates_range(d->model, d->contact, (uint32_t)n->bond)};
     if (!capsules_apart(&mine, &its) && !candidates_add(d->state, d->contact, bond, n, d->fault))
       return false;
   }

@@ -67,7 +67,7 @@ static inline struct capsule_box box_around(struct point a, struct point b, doub
 static struct capsule_box box_of(const struct neighbors *nb, const struct model *model, uint32_t bond)
 {
   const struct reference_position *p = &nb->reference[bond], *q = &nb->reference[model->next[bond]];
-  return box_around(p->at, q->at, capsule_most(p->skin, q->skin));
+  return box_around(p->at, q->at, capsule_most(p->skin, q->skin) + 0.5 * model_thickness(model));
 }
 
 /* The image of the box in which a point lies. */
@@ -203,6 +203,17 @@ static bool share_vertex(const struct model *model, uint32_t a, uint32_t b)
   return a == b || model->next[a] == (int32_t)b || model->next[b] == (int32_t)a;
 }
 
+/* Bonds that are never partners: a bond and its image; those that share a vertex, and their images, which thin lines
+ * cannot cross; of thick fibers, those that are near along the contour. */
+static bool never_touch(const struct model *model, uint32_t bond, const struct neighbor *n)
+{
+  const uint32_t other = (uint32_t)n->bond;
+  if (model->thickness == 0)
+    return share_vertex(model, bond, other);
+  const bool image = n->image[0] != 0 || n->image[1] != 0 || n->image[2] != 0;
+  return bond == other || (!image && (share_vertex(model, bond, other) || model_tube_is_blind(model, bond, other)));
+}
+
 /* Between walls there are no images along y. */
 static bool is_beyond_wall(const struct model *model, const struct neighbor *n)
 {
@@ -241,7 +252,8 @@ static void fill_column(const struct neighbors *nb, const struct model *model, u
   s->p[0][k] = p.x, s->p[1][k] = p.y, s->p[2][k] = p.z;
   s->q[0][k] = q.x, s->q[1][k] = q.y, s->q[2][k] = q.z;
   s->w[0][k] = w.x, s->w[1][k] = w.y, s->w[2][k] = w.z;
-  s->reach[k] = capsule_most(a->skin, b->skin) + capsule_most(c->skin, d->skin) + CAPSULE_SLACK;
+  s->reach[k] =
+      capsule_most(a->skin, b->skin) + capsule_most(c->skin, d->skin) + (model_thickness(model) + CAPSULE_SLACK);
 }
 
 /* Adds those pairs to the pair list whose capsules are not apart. */
@@ -271,7 +283,7 @@ static bool settle(struct neighbors *nb, const struct model *model, struct searc
     if (k == 0 || c->mine.bond != c[-1].mine.bond)
       home = image_of(nb, nb->reference[bond].at, &model->box);
     const struct neighbor n = neighbor_of(nb, model, c, &home);
-    const bool apart = share_vertex(model, bond, (uint32_t)n.bond) || is_beyond_wall(model, &n);
+    const bool apart = never_touch(model, bond, &n) || is_beyond_wall(model, &n);
     if (found->near) {
       if (!apart && !add_near(found->near, n))
         return false;

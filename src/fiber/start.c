@@ -173,36 +173,70 @@ static bool between_walls(const struct point *position, const struct model *mode
   return true;
 }
 
-/* Lays a fiber at random. A fiber that would be beyond a wall is drawn anew, shape and place: what is kept is in
- * equilibrium between the walls. */
-static void lay_at_random(struct state *state, const struct model *model, const struct fiber_kind *kind, uint32_t fiber)
+static enum fiber_verdict judge(const struct fiber_room *room, const struct state *state, uint32_t fiber)
 {
+  return room ? room->judge(room->context, state->position, fiber) : FIBER_STAYS;
+}
+
+static const enum fiber_start_end ends[] = {
+    [FIBER_STAYS] = FIBERS_LAID, [FIBER_OVERLAPS] = FIBERS_OVERLAP, [FIBER_NO_MEMORY] = FIBERS_NO_MEMORY};
+
+/* Lays a fiber at random. A fiber that would be beyond a wall, or that overlaps, is drawn anew, shape and place: what
+ * is kept is in equilibrium between the walls. */
+static enum fiber_start_end lay_at_random(struct state *state, const struct model *model, uint32_t fiber,
+                                          const struct fiber_room *room)
+{
+  const struct fiber_kind *kind = &model->kind[model->fiber_kind_of[fiber]];
   const uint32_t first = model->fiber_first[fiber];
-  uint64_t attempt = 0;
-  do {
+  uint32_t overlaps = 0;
+  for (uint64_t attempt = 0; overlaps < FIBER_MOST_ATTEMPTS; attempt++) {
     const struct site site = {first, attempt, random_place(model, attempt, fiber),
                               random_direction(model, kind, attempt, fiber)};
     layings[kind->start](state->position, model, kind, &site);
-    attempt++;
-  } while (!between_walls(state->position, model, kind, first));
+    if (!between_walls(state->position, model, kind, first))
+      continue;
+    const enum fiber_verdict verdict = judge(room, state, fiber);
+    if (verdict != FIBER_OVERLAPS)
+      return ends[verdict];
+    overlaps++;
+  }
+  return FIBERS_NO_ROOM;
 }
 
-void fiber_start(struct state *state, const struct model *model)
+static enum fiber_start_end lay_at_place(struct state *state, const struct model *model, uint32_t fiber,
+                                         const struct fiber_place *place, const struct fiber_room *room)
 {
-  for (uint32_t fiber = 0, k = 0, within = 0; fiber < model->fibers; fiber++, within++) {
-    if (model->fiber_kind_of[fiber] != k) {
-      k = model->fiber_kind_of[fiber];
-      within = 0;
+  const struct fiber_kind *kind = &model->kind[model->fiber_kind_of[fiber]];
+  const struct site site = {model->fiber_first[fiber], 0, place->center,
+                            vec3_scale(1.0 / vec3_norm(place->direction), place->direction)};
+  layings[kind->start](state->position, model, kind, &site);
+  return ends[judge(room, state, fiber)];
+}
+
+/* Lays all fibers that have places of their own, or all others. */
+static enum fiber_start_end lay_fibers(struct state *state, const struct model *model, bool placed,
+                                       const struct fiber_room *room, uint32_t *stuck)
+{
+  uint32_t fiber = 0;
+  for (uint32_t k = 0; k < model->kinds; k++)
+    for (uint32_t within = 0; within < model->kind[k].count; within++, fiber++) {
+      if ((within < model->kind[k].placed) != placed)
+        continue;
+      const enum fiber_start_end end = placed ? lay_at_place(state, model, fiber, &model->kind[k].place[within], room)
+                                              : lay_at_random(state, model, fiber, room);
+      *stuck = fiber;
+      if (end != FIBERS_LAID)
+        return end;
     }
-    const struct fiber_kind *kind = &model->kind[k];
-    if (within >= kind->placed) {
-      lay_at_random(state, model, kind, fiber);
-      continue;
-    }
-    const struct fiber_place *place = &kind->place[within];
-    const struct site site = {model->fiber_first[fiber], 0, place->center,
-                              vec3_scale(1.0 / vec3_norm(place->direction), place->direction)};
-    layings[kind->start](state->position, model, kind, &site);
-  }
+  return FIBERS_LAID;
+}
+
+enum fiber_start_end fiber_start(struct state *state, const struct model *model, const struct fiber_room *room,
+                                 uint32_t *fiber)
+{
+  enum fiber_start_end end = lay_fibers(state, model, true, room, fiber);
+  if (end == FIBERS_LAID)
+    end = lay_fibers(state, model, false, room, fiber);
   start_velocities(state, model);
+  return end;
 }

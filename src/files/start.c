@@ -1,4 +1,6 @@
 /* The state in which a run of a scene begins. */
+#include <inttypes.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "files/snapshot.h"
@@ -61,15 +63,51 @@ static bool is_flat_as_said(const struct scene *scene, const struct state *state
   return false;
 }
 
+/* The key of a fiber that overlaps or has no room: that of its place, or of its diameter. */
+static void key_of_fiber(const struct model *m, uint32_t fiber, char *key, size_t size)
+{
+  const uint32_t kind = m->fiber_kind_of[fiber];
+  uint32_t within = fiber;
+  for (uint32_t k = 0; k < kind; k++)
+    within -= m->kind[k].count;
+  if (within < m->kind[kind].placed)
+    snprintf(key, size, "fibers.%" PRIu32 ".places.%" PRIu32 ".center", kind, within);
+  else
+    snprintf(key, size, "fibers.%" PRIu32 ".diameter", kind);
+}
+
+/* Tells what is wrong with the start, at the key of the scene that is to blame. Always returns false. */
+static bool refuse_start(const struct scene *scene, const struct fault *fault, struct message *message)
+{
+  const struct model *m = &scene->model;
+  char key[80];
+  if (fault->code == FAULT_NO_ROOM) {
+    key_of_fiber(m, (uint32_t)fault->entity, key, sizeof key);
+    return scene_refuse_at(scene, key, key, message,
+                           "fiber %" PRId64 " of %" PRIu32 " overlaps with others wherever it is laid, %.0f times; "
+                           "allowed: thinner or fewer fibers",
+                           fault->entity, m->fibers, fault->value);
+  }
+  if (fault->code != FAULT_OVERLAP)
+    return message_fault(message, fault);
+  key_of_fiber(m, m->fiber_of[fault->entity], key, sizeof key);
+  return scene_refuse_at(scene, scene->snapshot ? "start.snapshot" : key, scene->snapshot ? "start.snapshot" : key,
+                         message,
+                         "bond %" PRId64 " of fiber %" PRIu32 " overlaps with another: their axes are %.9g a0 apart; "
+                         "allowed: more than %.9g",
+                         fault->entity, m->fiber_of[fault->entity], fault->value, fault->limit);
+}
+
 bool scene_start(const struct scene *scene, struct state *state, struct work *work, struct message *message)
 {
   const struct model *m = &scene->model;
   if (!scene->snapshot)
-    return step_start(state, m, work) || message_fault(message, &work->fault);
+    return step_start(state, m, work) || refuse_start(scene, &work->fault, message);
   char *path = scene_snapshot_path(scene);
   message_set(message, "no memory for the path of the snapshot");
   bool ok = path && snapshot_read_start(path, m, state, message);
   free(path);
   return ok && (state_sound(state, m, &work->fault) || message_fault(message, &work->fault)) &&
-         is_flat_as_said(scene, state, message) && flows_as_said(scene, state, work, message);
+         is_flat_as_said(scene, state, message) && flows_as_said(scene, state, work, message) &&
+         (step_sound(state, m, &work->fault) || refuse_start(scene, &work->fault, message));
 }

@@ -36,6 +36,7 @@ static void lay_fiber(struct model *m, uint32_t fiber, uint32_t first, uint32_t 
 void model_count(struct model *m)
 {
   m->fibers = m->vertices = m->bonds = m->frozen = 0;
+  m->thickness = 0;
   m->total_mass = m->solvent.particles;
   m->max_mass = 1.0;
   for (uint32_t k = 0; k < m->kinds; k++) {
@@ -46,6 +47,7 @@ void model_count(struct model *m)
     m->bonds += kind->count * (kind->vertices - !kind->ring);
     m->total_mass += kind->mass * kind->vertices * kind->count;
     m->max_mass = kind->mass > m->max_mass ? kind->mass : m->max_mass;
+    m->thickness = 2 * kind->radius > m->thickness ? 2 * kind->radius : m->thickness;
   }
 }
 
@@ -59,6 +61,13 @@ bool model_lay(struct model *m)
       lay_fiber(m, fiber, first, k);
   m->fiber_first[fiber] = first;
   return true;
+}
+
+bool model_tube_is_blind(const struct model *m, uint32_t bond, uint32_t other)
+{
+  const uint32_t fiber = m->fiber_of[bond], between = bond > other ? bond - other : other - bond;
+  const struct fiber_kind *k = &m->kind[m->fiber_kind_of[fiber]];
+  return m->fiber_of[other] == fiber && (between < k->blind || (k->ring && k->vertices - between < k->blind));
 }
 
 uint32_t model_bonds_at(const struct model *model, uint32_t n, const uint32_t *vertex, uint32_t *bond)

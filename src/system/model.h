@@ -126,9 +126,12 @@ struct fiber_kind {
   double spring;              /* k = K/l0, in kT/a0^2: Eq. (1) */
   double bending;             /* kappa: Eq. (2); 0: no bend forces, or given by persistence_length */
   double persistence_length;  /* l_p, in a0: sets bending to l_p/l0; 0: not given */
+  double diameter;            /* D, in a0: of the tube around each bond; 0: a thin line */
   struct vec3 force;          /* constant force on each vertex, in kT/a0 */
   enum fiber_start start;
   uint32_t dimensions;       /* derived by model_finish: those of the model; 0 is 3 */
+  int64_t radius;            /* derived: D/2, lattice units */
+  uint32_t blind;            /* derived: a tube does not see bonds of its fiber that are less than so many bonds away */
   uint32_t placed;           /* number of fibers whose place is given; the others are placed at random */
   struct fiber_place *place; /* [placed], allocated */
 };
@@ -240,6 +243,7 @@ struct model {
 
   /* Derived by model_finish. Vertices are numbered fiber by fiber, fibers kind by kind; bond j joins j and next[j]. */
   uint32_t fibers, vertices, bonds;
+  int64_t thickness;       /* the largest diameter of all kinds, lattice units; 0: all fibers are thin */
   uint32_t frozen;         /* of the vertices */
   uint32_t *fiber_first;   /* [fibers + 1]: first vertex of each fiber */
   uint32_t *fiber_kind_of; /* [fibers] */
@@ -286,6 +290,24 @@ static inline double model_longest_bond(const struct model *model)
 
 /* The bonds that end at these vertices, each once. bond: room for 2 n. Returns their number. */
 uint32_t model_bonds_at(const struct model *model, uint32_t n, const uint32_t *vertex, uint32_t *bond);
+
+/* The distance of the axes of two bonds at which they touch, lattice units; 0: both are thin lines. */
+static inline int64_t model_reach(const struct model *model, uint32_t bond, uint32_t other)
+{
+  if (model->thickness == 0)
+    return 0;
+  return model->kind[model->fiber_kind_of[model->fiber_of[bond]]].radius +
+         model->kind[model->fiber_kind_of[model->fiber_of[other]]].radius;
+}
+
+/* True if a bond of a thick fiber does not see another one of it, since they are near along the contour. */
+bool model_tube_is_blind(const struct model *model, uint32_t bond, uint32_t other);
+
+/* a0: the largest diameter of a fiber. */
+static inline double model_thickness(const struct model *model)
+{
+  return (double)model->thickness * LATTICE_UNIT;
+}
 
 static inline bool model_has_solvent(const struct model *model)
 {

@@ -345,10 +345,57 @@ static bool check_gap(const struct look *look)
   return true;
 }
 
+/* a0: far above the motion in a tick, which turns the normal by its part of the diameter. */
+#define THINNEST_TUBE 1e-4
+
+/* What a scene with tubes must be. */
+static bool check_tube_scene(const struct look *look)
+{
+  const struct model *m = look->model;
+  const struct {
+    bool ok;
+    const char *why;
+  } rows[] = {
+      {look->kind->vertices > 1, "a free point has no bond, and so no tube; allowed: 0"},
+      {m->crossing.forbidden, "with crossing: {forbidden: false} fibers pass through each other; allowed: 0"},
+      {m->crossing.rule == CROSSING_EVENT_DRIVEN,
+       "the rule sequential knows thin lines only; allowed: 0, or crossing: {rule: event-driven}"},
+      {m->walls.kind == WALL_ABSENT, "walls know the axes of fibers only; allowed between walls: 0"},
+      {m->box.boundary[1] != BOUNDARY_SHEAR,
+       "in a sheared box bonds move in sheared coordinates, where tubes are not round; allowed there: 0"},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+    if (!rows[i].ok)
+      return reject_kind(look, "diameter", "%s", rows[i].why);
+  return true;
+}
+
+/* Two bonds that meet at a bend may touch if they are less than pi D/2 apart along the contour: they are blind to each
+ * other. A tube as thick as the bonds are long would be blind to three bonds and more, and overlap with them. */
+static bool derive_tube(const struct look *look)
+{
+  struct fiber_kind *k = look->kind;
+  const double bond = fiber_mean_bond(k);
+  k->radius = 0, k->blind = 0;
+  if (k->diameter == 0.0)
+    return true;
+  if (!check_tube_scene(look))
+    return false;
+  if (!(k->diameter >= THINNEST_TUBE && k->diameter <= bond))
+    return reject_kind(look, "diameter",
+                       "%.6g for bonds of a mean length of %.6g a0; allowed: 0, a thin line, or from %g to the length "
+                       "of a bond",
+                       k->diameter, bond, THINNEST_TUBE);
+  k->radius = lattice_round(0.5 * k->diameter * LATTICE_PER_A0);
+  k->blind = 1 + (uint32_t)ceil(1.5707963267948966 * k->diameter / bond);
+  return true;
+}
+
 static bool finish_kind(const struct look *look, uint64_t *vertices)
 {
   return round_mass(look) && derive_bending(look) && check_shape(look) && check_count(look, vertices) &&
-         check_frozen(look) && check_extent(look) && check_places(look) && check_plane(look) && check_gap(look) && check_stability(look);
+         check_frozen(look) && check_extent(look) && check_places(look) && check_plane(look) && check_gap(look) &&
+         check_stability(look) && derive_tube(look);
 }
 
 static bool finish_fibers(struct model *m, struct model_error *error)

@@ -114,18 +114,20 @@ static const struct key_table solvent_table = {"solvent", NULL, COUNT(solvent_ke
 
 static const struct key medium_keys[] = {
     {.name = "kind",
-     .text = "With whom velocities mix, once in each time step. `private`: each vertex with a bath of its own (Langevin, "
-             "Andersen), without solvent particles. `pairs`: any two members nearer than 1 a0, by the component of their "
-             "relative velocity along the line between them; members are vertices and particles of mass 1 "
-             "(Lowe-Andersen, Peters, Shardlow). See [media.md](media.md).",
+     .text =
+         "With whom velocities mix, once in each time step. `private`: each vertex with a bath of its own (Langevin, "
+         "Andersen), without solvent particles. `pairs`: any two members nearer than 1 a0, by the component of their "
+         "relative velocity along the line between them; members are vertices and particles of mass 1 "
+         "(Lowe-Andersen, Peters, Shardlow). See [media.md](media.md).",
      .type = KEY_CHOICE,
      .choice = medium_words,
      .first = MEDIUM_PRIVATE,
      .offset = IN_MODEL(medium.kind)},
     {.name = "rate",
-     .text = "Rate at which a velocity is forgotten: that of a vertex, or the relative one of a pair at weight 1. The "
-             "friction of a private bath is M times it; gamma of DPD is the reduced mass times it. With `draw: replace` "
-             "at most 1/`time_step`.",
+     .text =
+         "Rate at which a velocity is forgotten: that of a vertex, or the relative one of a pair at weight 1. The "
+         "friction of a private bath is M times it; gamma of DPD is the reduced mass times it. With `draw: replace` "
+         "at most 1/`time_step`.",
      .type = KEY_NUMBER,
      .low = 0,
      .above = true,
@@ -134,22 +136,25 @@ static const struct key medium_keys[] = {
      .unit = "1/t0",
      .symbol = "Gamma"},
     {.name = "draw",
-     .text = "`replace`: with the probability rate times dt the velocity is drawn anew (Andersen, Lowe-Andersen). "
-             "`relax`: it keeps exp(-rate dt) of itself (Langevin, Peters). `cayley`: it keeps (1 - e)/(1 + e), e = rate "
-             "dt/2 (Shardlow).",
+     .text =
+         "`replace`: with the probability rate times dt the velocity is drawn anew (Andersen, Lowe-Andersen). "
+         "`relax`: it keeps exp(-rate dt) of itself (Langevin, Peters). `cayley`: it keeps (1 - e)/(1 + e), e = rate "
+         "dt/2 (Shardlow).",
      .type = KEY_CHOICE,
      .absent = "replace",
      .choice = draw_words,
      .offset = IN_MODEL(medium.draw)},
     {.name = "weight",
-     .text = "Of pairs: how the rate depends on the distance r. `hat`: not at all below 1 a0. `quadratic`: as (1 - r)^2.",
+     .text =
+         "Of pairs: how the rate depends on the distance r. `hat`: not at all below 1 a0. `quadratic`: as (1 - r)^2.",
      .type = KEY_CHOICE,
      .absent = "hat",
      .choice = weight_words,
      .offset = IN_MODEL(medium.weight)},
     {.name = "density",
-     .text = "Of pairs: particles of mass 1 per volume. Times the volume, rounded, it is their number; with the vertices "
-             "at most 16777216.",
+     .text =
+         "Of pairs: particles of mass 1 per volume. Times the volume, rounded, it is their number; with the vertices "
+         "at most 16777216.",
      .type = KEY_NUMBER,
      .optional = true,
      .low = 0,
@@ -271,6 +276,17 @@ static const struct key fiber_keys[] = {
      .symbol = "l_p",
      .excludes = "bending",
      .derives = true},
+    {.name = "diameter",
+     .text = "Diameter of the tube around each bond, with half spheres at its ends; 0: a thin line. From 0.0001 to the "
+             "mean length of a bond. Needs `crossing: {rule: event-driven}` and two or more vertices; see "
+             "[thick.md](thick.md).",
+     .type = KEY_NUMBER,
+     .absent = "0",
+     .low = 0,
+     .high = 512,
+     .offset = IN_KIND(diameter),
+     .unit = "a0",
+     .symbol = "D"},
     {.name = "force",
      .text = "Constant force on each vertex. A net force on the whole is a warning.",
      .type = KEY_VECTOR,

@@ -60,7 +60,7 @@ static struct test_run started(struct model m)
   struct test_run r = {.model = m};
   test_finish(&r.model);
   assert_true(state_alloc(&r.state, &r.model) && work_alloc(&r.work, &r.model));
-  fiber_start(&r.state, &r.model);
+  fiber_start(&r.state, &r.model, NULL, &(uint32_t){0});
   return r;
 }
 

@@ -273,7 +273,7 @@ static void measure_factors(double degrees, uint32_t vertices, uint32_t collisio
   for (uint32_t k = 0; k < collisions; k++) {
     r.model.seed = seed + k;
     fluid_points.start(&r.state, &r.model);
-    fiber_start(&r.state, &r.model);
+    fiber_start(&r.state, &r.model, NULL, &(uint32_t){0});
     for (uint32_t i = 0; i < r.state.solvent.n; i++)
       before[r.state.solvent.id[i]] = solvent_v(&r.state, i);
     memcpy(vertex_before, r.state.velocity, vertices * sizeof *vertex_before);

@@ -283,7 +283,7 @@ static void background_motion_is_taken_out(void **unused)
   kind->force = (struct vec3){0, 0, 5 * 0.0625}; /* M = 5: the same acceleration for all */
   struct puppet p = puppet_start(m, OBSERVE_DYNAMICS, 2, 64);
   struct point *start = malloc(p.model.vertices * sizeof *start);
-  fiber_start(&p.state, &p.model);
+  fiber_start(&p.state, &p.model, NULL, &(uint32_t){0});
   memcpy(start, p.state.position, p.model.vertices * sizeof *start);
   for (p.state.step = 0; p.state.step <= 128; p.state.step++) {
     const double t = 0.125 * (double)p.state.step;

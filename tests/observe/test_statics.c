@@ -13,7 +13,7 @@ static struct kept *sample_start(struct fiber_kind kind, unsigned seed)
   memcpy(kind.name, k->name, sizeof kind.name);
   *k = kind;
   struct puppet p = puppet_start(m, OBSERVE_STATICS, 10, 0);
-  fiber_start(&p.state, &p.model);
+  fiber_start(&p.state, &p.model, NULL, &(uint32_t){0});
   puppet_sample(&p);
   struct kept *kept = keep_summaries(p.observers, &p.model);
   puppet_end(&p);
