@@ -24,7 +24,8 @@ static void start_points(struct state *state, const struct model *model)
   if (state->beads > 0)
     bead_start(state, model);
   for (uint32_t i = 0; i < s->n; i++) {
-    uint32_t id = s->id[i], attempt = 0;
+    uint32_t id = s->id[i];
+    uint32_t attempt = 0;
     struct point x = start_place(model, id, attempt);
     while (state->beads > 0 && !bead_is_outside(model, state->bead->position, x))
       x = start_place(model, id, ++attempt);
