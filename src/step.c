@@ -131,8 +131,11 @@ static void set_total_momentum(struct state *state, const struct model *model)
   for (uint32_t v = 0; v < state->vertices; v++)
     p = vec3_add_scaled(p, model->mass[v], state->velocity[v]);
 
+  if (state->beads > 0)
+    p = vec3_add_scaled(p, model->bead.mass, state->bead->velocity);
+
   const struct vec3 axes = conserved_axes(model);
-  const double each = model->total_mass > 0.0 ? -1.0 / model->total_mass : 0.0;
+  const double mass = model->total_mass + model->bead.mass, each = mass > 0.0 ? -1.0 / mass : 0.0;
   const struct vec3 change =
       vec3_add_scaled(model->flow, each, (struct vec3){axes.x * p.x, axes.y * p.y, axes.z * p.z});
   for (uint32_t i = 0; i < s->n; i++) {
@@ -142,6 +145,8 @@ static void set_total_momentum(struct state *state, const struct model *model)
   }
   for (uint32_t v = 0; v < state->vertices; v++)
     state->velocity[v] = vec3_add(state->velocity[v], change);
+  if (state->beads > 0)
+    state->bead->velocity = vec3_add(state->bead->velocity, change);
 }
 
 /* A sheared box starts with its linear profile: velocities are thermal about it. */

@@ -36,7 +36,8 @@ void random_normal_three_columns(uint64_t seed, enum random_purpose purpose, uin
                                  const uint32_t *entity, uint32_t n, double *restrict x, double *restrict y,
                                  double *restrict z);
 
-/* The third of random_normal_three from words 2 and 3 of each of n draws, n <= RANDOM_UNIFORMS: the low halves count. */
+/* The third of random_normal_three from words 2 and 3 of each of n draws, n <= RANDOM_UNIFORMS: the low halves count.
+ */
 void random_normal_third_column(const uint64_t *restrict word2, const uint64_t *restrict word3, uint32_t n,
                                 double *restrict z);
 

@@ -31,7 +31,7 @@ enum random_purpose {
   RANDOM_SPIN_VELOCITY = 13,    /* entity = cell; draw = k, the cell's virtual particle */
   RANDOM_SPIN_PLACE = 14,       /* entity = cell; draw = 2 k and 2 k + 1 of the same */
   RANDOM_PLANE_TURN = 15,       /* entity = cell: rotation in a plane */
-  RANDOM_SOLVENT_POSITION = 16, /* entity = particle id; step 0 from here on: starting states */
+  RANDOM_SOLVENT_POSITION = 16, /* entity = particle id; draw = 2 attempt: x, y; + 1: z; step 0 from here to 25 */
   RANDOM_SOLVENT_VELOCITY = 17, /* entity = particle id */
   RANDOM_VERTEX_VELOCITY = 18,  /* entity = vertex */
   RANDOM_FIBER_POSITION = 19,   /* entity = fiber */
@@ -40,7 +40,9 @@ enum random_purpose {
   RANDOM_BEND = 22,             /* entity = vertex */
   RANDOM_BEND_AZIMUTH = 23,     /* entity = vertex; draw = attempt */
   RANDOM_DUMBBELL_CENTER = 24,  /* entity = dumbbell; draw = 2 attempt: x, y; + 1: z, and a uniform number */
-  RANDOM_DUMBBELL_VECTOR = 25   /* the same: components along x, y; z */
+  RANDOM_DUMBBELL_VECTOR = 25,  /* the same: components along x, y; z */
+  RANDOM_BEAD_PLACE = 26,       /* entity = cell; draw = k, the cell's virtual particle: words 0, 1, 2 */
+  RANDOM_BEAD_REST = 27         /* entity 0; step 0: the bead's velocity; else that of its uncut part */
 };
 
 struct random_words {

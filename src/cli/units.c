@@ -130,8 +130,7 @@ static void report_solvent(const struct model *m, const struct si_scale *s)
   beside("viscosity", eta, SI_WATER_VISCOSITY, "Pa s", true);
   beside("kinematic viscosity", eta / density, nu_water, "m^2/s", false);
   beside("speed of sound", sound, SI_WATER_SOUND, "m/s", true);
-  beside("Schmidt number", theory_model_schmidt(m),
-         nu_water / SI_WATER_DIFFUSION, "", false);
+  beside("Schmidt number", theory_model_schmidt(m), nu_water / SI_WATER_DIFFUSION, "", false);
 }
 
 void units_report(const struct units *u, const struct model *m, const struct si_scale *s)

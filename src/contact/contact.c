@@ -199,5 +199,8 @@ static bool act_drift_about_frozen(void *room, const struct moment *now, const s
 void contact_plan_drift(struct plan *plan, const struct model *model, size_t room, double fraction, uint32_t drift)
 {
   if (model->vertices > 0)
-    plan_append(plan, (struct stage){.act = model->frozen ? act_drift_about_frozen : act_drift, .room = room, .fraction = fraction, .drift = drift});
+    plan_append(plan, (struct stage){.act = model->frozen ? act_drift_about_frozen : act_drift,
+                                     .room = room,
+                                     .fraction = fraction,
+                                     .drift = drift});
 }

@@ -1,11 +1,11 @@
 /*
  * Frozen fibers: obstacles that stand still and take part in the bath.
  *
- * A vertex of a frozen fiber has a velocity like any other. Collisions change it, by momentum and mass, so that the fluid
- * is as heavy and as viscous as if the fiber moved. But it moves nothing: in a drift the velocity is set aside, and is 0. Its
- * inverse mass is 0 (system/model.h), so that no force changes it, and a fiber that meets it bounces as off a wall: the
- * velocity of the contact point of the moving bond reverses along the normal, kinetic energy is conserved, and
- * momentum goes to the obstacle and is lost. That holds under every crossing rule.
+ * A vertex of a frozen fiber has a velocity like any other. Collisions change it, by momentum and mass, so that the
+ * fluid is as heavy and as viscous as if the fiber moved. But it moves nothing: in a drift the velocity is set aside,
+ * and is 0. Its inverse mass is 0 (system/model.h), so that no force changes it, and a fiber that meets it bounces as
+ * off a wall: the velocity of the contact point of the moving bond reverses along the normal, kinetic energy is
+ * conserved, and momentum goes to the obstacle and is lost. That holds under every crossing rule.
  */
 #ifndef UNCROSS_CONTACT_FROZEN_H
 #define UNCROSS_CONTACT_FROZEN_H

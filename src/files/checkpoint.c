@@ -158,6 +158,7 @@ static bool read_numbers(hid_t file, struct checkpoint_summary *summary)
   hid_t group = h5_open_group(file, "state");
   const bool ok = checkpoint_numbers(group, &summary->numbers, false);
   summary->wall_rows = ok && h5_has(group, "wall_momentum") ? WALLS * ACCOUNT_SHARES : 0;
+  summary->beads = ok && h5_has(group, "bead_position");
   h5_close(group);
   return ok;
 }
@@ -201,6 +202,7 @@ struct model checkpoint_model(const struct checkpoint_summary *s)
   model.solvent.acceleration = s->acceleration;
   model.vertices = s->vertices;
   model.dumbbells.pairs = s->dumbbells;
+  model.bead.radius = s->beads;
   if (s->wall_rows > 0)
     box_bound(&model.box, 1, BOUNDARY_WALL);
   return model;
@@ -209,12 +211,15 @@ struct model checkpoint_model(const struct checkpoint_summary *s)
 /* Looks at the shapes of the arrays; nothing is allocated by a claimed number. */
 static bool has_arrays(hid_t file, const struct checkpoint_summary *summary)
 {
-  const uint32_t claimed[STATE_GROUPS] = {summary->particles, summary->vertices, summary->dumbbells,
-                                          summary->wall_rows};
+  const uint32_t claimed[STATE_GROUPS] = {summary->particles, summary->vertices, summary->dumbbells, summary->wall_rows,
+                                          summary->beads};
   struct point nowhere;
   struct vec3 still;
-  const struct state none = {
-      .position = &nowhere, .velocity = &still, .wall_momentum = &nowhere}; /* only names are looked at */
+  struct bead bead;
+  const struct state none = {.position = &nowhere,
+                             .velocity = &still,
+                             .wall_momentum = &nowhere,
+                             .bead = &bead}; /* only names are looked at */
   struct state_group rows[STATE_GROUPS];
   state_groups(&none, rows);
   hid_t group = h5_open_group(file, "state");

@@ -23,6 +23,7 @@ struct checkpoint_summary {
   struct vec3 acceleration; /* of the solvent, in a0/t0^2 */
   uint32_t particles, vertices, dumbbells;
   uint32_t wall_rows;   /* of the account of the walls: system/state.h */
+  uint32_t beads;       /* 0 or 1 */
   struct state numbers; /* only what state_numbers lists */
 };
 

@@ -35,6 +35,9 @@ static bool fits_model(hid_t file, const char *path, const struct checkpoint_sum
   if ((s->wall_rows > 0) != model_has_walls(m))
     return message_set(message, "%s: it is of a box %s walls, the scene's box has %s", path,
                        s->wall_rows > 0 ? "between" : "without", s->wall_rows > 0 ? "none" : "walls");
+  if ((s->beads > 0) != model_has_bead(m))
+    return message_set(message, "%s: it is of a solvent %s bead, the scene has %s", path,
+                       s->beads > 0 ? "around a" : "without a", s->beads > 0 ? "none" : "one");
   hid_t group = h5_open_group(file, "structure");
   bool same = group >= 0 && structure_same_bonds(group, m);
   h5_close(group);

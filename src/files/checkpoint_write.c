@@ -93,7 +93,8 @@ static struct checkpoint_summary summary_of(const struct checkpoint_head *head, 
                                  .particles = state->solvent.n,
                                  .vertices = state->vertices,
                                  .dumbbells = state->dumbbells.n,
-                                 .wall_rows = state->wall_rows};
+                                 .wall_rows = state->wall_rows,
+                                 .beads = state->beads};
   checkpoint_take_numbers(&s.numbers, state);
   s.head.version[sizeof s.head.version - 1] = '\0';
   memcpy(s.cells, model->box.cells, sizeof s.cells);

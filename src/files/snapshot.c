@@ -1,6 +1,7 @@
 /* States that scenes start from: checkpoints, and last frames of trajectories. */
 #include "files/snapshot.h"
 #include "fluid/fluid.h"
+#include "system/bead.h"
 
 #include "files/checkpoint.h"
 #include "files/frames.h"
@@ -34,7 +35,9 @@ static bool start_from_checkpoint(const char *path, const struct model *model, s
   struct model then = *model;
   then.time_step = summary.time_step;
   then.solvent.acceleration = summary.acceleration;
-  return make_up_lag(state, &then, message);
+  struct fault fault = {.code = FAULT_NONE};
+  return make_up_lag(state, &then, message) &&
+         (bead_sound(state, model, &fault) || (message_fault(message, &fault), false));
 }
 
 /* Rows must be in the scene's order: vertices fiber by fiber, then solvent. */
@@ -54,6 +57,8 @@ static bool last_frame(struct trajectory *t, const char *path, const struct mode
     return message_set(message, "%s: its frames hold no velocities; a start needs them", path);
   if (model_has_dumbbells(model))
     return message_set(message, "%s: its frames hold no springs of dumbbells; a start needs a checkpoint", path);
+  if (model_has_bead(model))
+    return message_set(message, "%s: its frames hold no bead; a start needs a checkpoint", path);
   if (model_has_solvent(model) && !trajectory_has_solvent(t, model))
     return message_set(message, "%s: its frames hold %u particles; a start needs %u vertices and %u solvent particles",
                        path, t->particles, model->vertices, model->solvent.particles);

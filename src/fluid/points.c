@@ -1,22 +1,34 @@
 /* A fluid of independent particles, in free flight between collisions. */
 #include "base/normal.h"
+#include "fluid/bead.h"
 #include "fluid/boundary.h"
 #include "fluid/fluid.h"
 
 /* --- start ------------------------------------------------------------------------------------------------------- */
 
-/* Uniform positions, Maxwell velocities. In a plane, at z = 0. */
+/* Uniform in the box. */
+static struct point start_place(const struct model *model, uint32_t id, uint32_t attempt)
+{
+  const struct random_words xy = random_at(model->seed, RANDOM_SOLVENT_POSITION, 2 * attempt, 0, id);
+  const struct random_words z = random_at(model->seed, RANDOM_SOLVENT_POSITION, 2 * attempt + 1, 0, id);
+  return (struct point){lattice_uniform(random_u64(xy, 0), model->box.cells[0]),
+                        lattice_uniform(random_u64(xy, 1), model->box.cells[1]),
+                        model_is_flat(model) ? 0 : lattice_uniform(random_u64(z, 0), model->box.cells[2])};
+}
+
+/* Uniform positions outside a bead, Maxwell velocities. In a plane, at z = 0. */
 static void start_points(struct state *state, const struct model *model)
 {
   const bool flat = model_is_flat(model);
   struct solvent *s = &state->solvent;
+  if (state->beads > 0)
+    bead_start(state, model);
   for (uint32_t i = 0; i < s->n; i++) {
-    uint32_t id = s->id[i];
-    struct random_words xy = random_at(model->seed, RANDOM_SOLVENT_POSITION, 0, 0, id);
-    struct random_words z = random_at(model->seed, RANDOM_SOLVENT_POSITION, 1, 0, id);
-    s->x[i] = lattice_uniform(random_u64(xy, 0), model->box.cells[0]);
-    s->y[i] = lattice_uniform(random_u64(xy, 1), model->box.cells[1]);
-    s->z[i] = flat ? 0 : lattice_uniform(random_u64(z, 0), model->box.cells[2]);
+    uint32_t id = s->id[i], attempt = 0;
+    struct point x = start_place(model, id, attempt);
+    while (state->beads > 0 && !bead_is_outside(model, state->bead->position, x))
+      x = start_place(model, id, ++attempt);
+    s->x[i] = x.x, s->y[i] = x.y, s->z[i] = x.z;
     double a[2], b[2];
     random_normal_pair(random_at(model->seed, RANDOM_SOLVENT_VELOCITY, 0, 0, id), a);
     random_normal_pair(random_at(model->seed, RANDOM_SOLVENT_VELOCITY, 1, 0, id), b);
@@ -52,4 +64,5 @@ static void points_now(const struct state *state, const struct model *model, uin
   }
 }
 
-const struct fluid fluid_points = {.name = "points", .start = start_points, .stream = stream_points, .now = points_now};
+const struct fluid fluid_points = {
+    .name = "points", .start = start_points, .stream = stream_points, .now = points_now, .meet = bead_meet};

@@ -45,7 +45,6 @@ static void weigh_quadratic(const double *restrict r, uint32_t n, double *restri
 
 bath_weight *bath_weight_of(enum medium_weight weight)
 {
-  static bath_weight *const weights[MEDIUM_WEIGHTS] = {
-      [WEIGHT_HAT] = weigh_hat, [WEIGHT_QUADRATIC] = weigh_quadratic};
+  static bath_weight *const weights[MEDIUM_WEIGHTS] = {[WEIGHT_HAT] = weigh_hat, [WEIGHT_QUADRATIC] = weigh_quadratic};
   return weights[weight];
 }

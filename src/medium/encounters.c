@@ -1,7 +1,7 @@
 /*
- * All pairs of members nearer than 1 a0, each once: those within a cell, and those between a cell and the half of its 26
- * neighbors that come after it. Cells along x follow each other in memory, so that half is the cell to the right and four
- * rows of three. Differences of places are exact, so that distances do not depend on which member is the first.
+ * All pairs of members nearer than 1 a0, each once: those within a cell, and those between a cell and the half of its
+ * 26 neighbors that come after it. Cells along x follow each other in memory, so that half is the cell to the right and
+ * four rows of three. Differences of places are exact, so that distances do not depend on which member is the first.
  */
 #include "base/elementary.h"
 #include "base/memory.h"
@@ -32,7 +32,8 @@ struct search {
   uint64_t step;
 };
 
-/* --- pairs that are near: the random numbers ----------------------------------------------------------------------- */
+/* --- pairs that are near: the random numbers -----------------------------------------------------------------------
+ */
 
 /* A difference of two coordinates of the box, to the nearest image: exact. */
 static inline double nearest(double difference, double edge)
@@ -121,17 +122,17 @@ static bool list_pairs(const struct search *s, uint32_t *a, uint32_t *b, uint32_
     const double inverse = 1.0 / c.r[k];
     const double masses = 1.0 / m->mover[a[k]].mass + 1.0 / m->mover[b[k]].mass;
     m->key[m->encounters] = (uint64_t)(uint32_t)c.word[1][k] << 32 | m->encounters;
-    m->encounter[m->encounters++] =
-        (struct encounter){{c.x[k] * inverse, c.y[k] * inverse, c.z[k] * inverse},
-                           c.loss[k],
-                           bath_noise(c.loss[k], masses) * c.normal[k],
-                           a[k],
-                           b[k]};
+    m->encounter[m->encounters++] = (struct encounter){{c.x[k] * inverse, c.y[k] * inverse, c.z[k] * inverse},
+                                                       c.loss[k],
+                                                       bath_noise(c.loss[k], masses) * c.normal[k],
+                                                       a[k],
+                                                       b[k]};
   }
   return true;
 }
 
-/* --- the search ---------------------------------------------------------------------------------------------------- */
+/* --- the search ----------------------------------------------------------------------------------------------------
+ */
 
 /* Cells x - 1 to x + 1 of a row, or x + 1 alone; where the box ends, two ranges. */
 static uint32_t add_row(const struct search *s, int low, int high, int y, int z, uint32_t ranges, struct range *range)
@@ -206,9 +207,12 @@ static bool search_cell(const struct search *s, int x, int y, int z, struct near
 
 bool encounters_find(const struct model *model, struct medium *medium, uint64_t step)
 {
-  const struct search s = {
-      model, medium, bath_draw_of(model->medium.draw), bath_weight_of(model->medium.weight),
-      model->medium.rate * model->time_step, step};
+  const struct search s = {model,
+                           medium,
+                           bath_draw_of(model->medium.draw),
+                           bath_weight_of(model->medium.weight),
+                           model->medium.rate * model->time_step,
+                           step};
   const int *edge = model->box.cells;
   struct near near = {.n = 0};
   bool ok = true;

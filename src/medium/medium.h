@@ -2,8 +2,8 @@
  * Baths other than that of collision cells (mpc/), the same one operator (bath.h) with two choices of partner:
  *
  *   private   private.c: each component of a vertex's velocity, about the flow
- *   pairs     encounters.c finds all pairs of members that are nearer than 1 a0; pairs.c acts on one after the other, in a
- *             random order, on the component of their relative velocity along the line between them
+ *   pairs     encounters.c finds all pairs of members that are nearer than 1 a0; pairs.c acts on one after the other,
+ * in a random order, on the component of their relative velocity along the line between them
  *
  * Members are solvent particles and vertices: particle id i has the number i, vertex v the number particles + v. All
  * random numbers of a pair are addressed by its two numbers, so nothing depends on the order in memory, to the bit.
@@ -51,8 +51,8 @@ void medium_free(struct medium *medium);
 /* Bytes that medium_alloc allocates, before lists grow. */
 uint64_t medium_bytes(const struct model *model);
 
-/* The bath's action of step number `step`. Particles are streamed before. False, with the fault recorded, if a flight is
- * too far or memory is short. */
+/* The bath's action of step number `step`. Particles are streamed before. False, with the fault recorded, if a flight
+ * is too far or memory is short. */
 bool private_collide(struct state *state, const struct model *model, struct medium *medium, uint64_t step,
                      struct fault *fault);
 bool pairs_collide(struct state *state, const struct model *model, struct medium *medium, uint64_t step,

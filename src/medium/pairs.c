@@ -11,7 +11,8 @@
  */
 #include "medium/medium.h"
 
-/* --- order ---------------------------------------------------------------------------------------------------------- */
+/* --- order ----------------------------------------------------------------------------------------------------------
+ */
 
 enum { DIGITS = 3, DIGIT_BITS = 11, DIGIT_VALUES = 1 << DIGIT_BITS };
 
@@ -55,8 +56,8 @@ static uint64_t numbers_of(const struct medium *m, uint64_t key)
 static void settle_ties(struct medium *m)
 {
   for (uint32_t k = 1; k < m->encounters; k++)
-    for (uint32_t i = k; i > 0 && m->key[i] >> 32 == m->key[i - 1] >> 32 &&
-                         numbers_of(m, m->key[i]) < numbers_of(m, m->key[i - 1]);
+    for (uint32_t i = k;
+         i > 0 && m->key[i] >> 32 == m->key[i - 1] >> 32 && numbers_of(m, m->key[i]) < numbers_of(m, m->key[i - 1]);
          i--) {
       const uint64_t swap = m->key[i];
       m->key[i] = m->key[i - 1];
@@ -70,7 +71,8 @@ void encounters_order(struct medium *medium)
   settle_ties(medium);
 }
 
-/* --- the bath ------------------------------------------------------------------------------------------------------- */
+/* --- the bath -------------------------------------------------------------------------------------------------------
+ */
 
 void encounter_act(const struct encounter *e, struct mover *mover)
 {

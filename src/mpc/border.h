@@ -3,7 +3,7 @@
  * NULL is left out.
  *
  * The order within a collision: enter, bin_particles (both block by block), enter_vertices, bin_vertices, the rule's
- * sums, fill, the rule's turns, the thermostat, the new velocities, account, leave.
+ * sums, rebound, fill, the rule's turns, the thermostat, the new velocities, account, leave.
  *
  * A cell that a wall cuts is filled up with virtual particles, whose velocities are of the Maxwell distribution about
  * the velocity of the wall. To SRD and AT-a they are one member: n of them have the mass n, and the mean of their
@@ -36,6 +36,11 @@ struct border {
   void (*enter_vertices)(struct state *state, const struct model *model, struct mpc *mpc);
   void (*leave)(struct state *state, const struct model *model, struct mpc *mpc);
 
+  /* After all members have been added: gives those their true flights that meet something in the box. span: as
+   * add_particles returns it, of all; may grow. False, with the fault recorded, if a flight is out of range. */
+  bool (*rebound)(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step, uint64_t *span,
+                  struct fault *fault);
+
   /* Adds virtual particles to the sums of cells. False, with the fault recorded, if a cell exceeds its range. */
   bool (*fill)(const struct state *state, const struct model *model, struct mpc *mpc, uint64_t step,
                struct fault *fault);
@@ -44,7 +49,7 @@ struct border {
   void (*account)(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step);
 };
 
-extern const struct border border_periodic, border_walls, border_sheared;
+extern const struct border border_periodic, border_walls, border_sheared, border_bead;
 
 /* The virtual particles of the cell at this place in sum; n is 0 in cells that no wall cuts. */
 struct virtual_members border_virtual(const struct mpc *mpc, const struct model *model, uint32_t place);

@@ -115,6 +115,8 @@ static bool gather(struct state *state, const struct model *model, struct mpc *m
     else if (!mpc->kernel.gather(state, model, mpc, step, i, n, &span, fault))
       return false;
   }
+  if (border->rebound && !border->rebound(state, model, mpc, step, &span, fault))
+    return false;
   state_streamed(state);
   if (border->enter_vertices)
     border->enter_vertices(state, model, mpc);

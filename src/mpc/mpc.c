@@ -1,5 +1,6 @@
 #include "mpc/mpc.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -24,7 +25,7 @@ static size_t count_cells(const struct model *m)
   return model_has_cells(m) ? cells : 0;
 }
 
-enum { NEEDS = 17 };
+enum { NEEDS = 18 };
 
 /* The single list of the scratch that the collisions of a model use. */
 static void list_needs(struct mpc *c, const struct model *m, bool everything, struct memory_need need[NEEDS])
@@ -54,6 +55,7 @@ static void list_needs(struct mpc *c, const struct model *m, bool everything, st
       {(void **)&c->drawn_vertex, drawing ? colliding : 0, sizeof *c->drawn_vertex},
       {(void **)&c->spin, spinning, sizeof *c->spin},
       {(void **)&c->middle, spinning, sizeof *c->middle},
+      {(void **)&c->bead.mask, model_has_bead(m) ? cells : 0, sizeof *c->bead.mask},
   };
   memcpy(need, all, sizeof all);
 }
@@ -87,6 +89,8 @@ void mpc_free(struct mpc *c)
   const struct model nothing = {0};
   list_needs(c, &nothing, false, need);
   memory_release(need, NEEDS);
+  free(c->bead.meetings.at);
+  free(c->bead.cut);
   memset(c, 0, sizeof *c);
 }
 

@@ -30,6 +30,14 @@ struct virtual_members;
 
 struct mpc_stress;
 
+/* Of collisions around a bead: mpc/bead.c. */
+struct mpc_bead {
+  uint8_t *mask;               /* [cells] 1 where particles may have met the bead in their flight; all 0 between uses */
+  struct bead_visits meetings; /* of the flight */
+  struct bead_cut *cut;        /* [cuts] cells that its surface cuts and that have members */
+  uint32_t cuts, cut_room;
+};
+
 struct mpc {
   const struct collision_rule *rule;
   const struct thermostat *thermostat; /* NULL: none */
@@ -59,6 +67,7 @@ struct mpc {
   struct cell_spin *spin;    /* [cells] sums of a rule with angular momentum (rules/spin.h), else NULL */
   bool spin_is_clear;        /* all of `spin` is 0: the rule clears each cell when it has solved it */
   struct point *middle;      /* [cells] of the same rule: place in the cell next to its centre of mass, lattice units */
+  struct mpc_bead bead;      /* empty without one */
   bool prefetch;             /* sums and turns of cells are asked for ahead of their use */
   uint32_t since_sort;       /* collisions since particles were last sorted by cell */
 };

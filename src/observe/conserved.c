@@ -191,6 +191,8 @@ struct motion motion_measure(const struct model *model, const struct state *stat
   measure_solvent(model, state, force, &m);
   if (model_has_dumbbells(model))
     m.bond += fluid_dumbbell_energy(state, model);
+  if (state->beads > 0)
+    vertex_add(&m.bead, model->bead.mass, state->bead->velocity);
   return m;
 }
 
@@ -198,8 +200,13 @@ static struct conserved conserved_of(const struct motion *m)
 {
   const double solvent = 0.5 * (m->solvent_squares.x + m->solvent_squares.y + m->solvent_squares.z);
   const double kinetic = solvent + m->vertex.kinetic;
-  return (struct conserved){solvent, m->vertex.kinetic,           m->bond,
-                            m->bend, kinetic + m->bond + m->bend, vec3_add(m->solvent_sum, m->vertex.momentum)};
+  struct conserved c = {solvent, m->vertex.kinetic,           m->bond,
+                        m->bend, kinetic + m->bond + m->bend, vec3_add(m->solvent_sum, m->vertex.momentum)};
+  if (m->bead.kinetic > 0.0) {
+    c.total += m->bead.kinetic;
+    c.momentum = vec3_add(c.momentum, m->bead.momentum);
+  }
+  return c;
 }
 
 struct conserved observe_conserved(const struct model *model, const struct state *state)
@@ -234,8 +241,9 @@ struct temperatures motion_temperatures(const struct model *model, const struct 
   /* A box by itself keeps its velocity, which takes a degree of freedom along each axis; a bath that takes momentum
    * up has the flow's. */
   const bool kept = model_keeps_momentum(model);
-  const struct vec3 u = kept ? vec3_scale(1.0 / total, vec3_add(m->solvent_sum, m->vertex.momentum)) : model->flow;
-  const double solvent_freedom = n * (1.0 - 1.0 / total);
+  const double moving = total + model->bead.mass; /* with a bead */
+  const struct vec3 u = kept ? vec3_scale(1.0 / moving, conserved_of(m).momentum) : model->flow;
+  const double solvent_freedom = n * (1.0 - 1.0 / moving);
   const double vertex_freedom =
       model->dimensions * (model->vertices - (kept && m->slabs == 0 ? vertices / total : 0.0));
   const struct vec3 squares = {squares_about(m->solvent_squares.x, m->solvent_sum.x, n, u.x),

@@ -27,6 +27,7 @@ struct motion {
   struct vec3 slab_squares;                 /* the same about the mean of each slab, one cell thick along y */
   uint32_t slabs;                           /* that hold particles; 0: the solvent does not flow */
   struct vertex_motion vertex, vertex_half; /* with velocities of the step, and of the half step ahead */
+  struct vertex_motion bead;                /* of a bead; 0 without one */
   double bond, bend;                        /* kT */
 };
 

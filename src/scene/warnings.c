@@ -90,8 +90,8 @@ static void warn_force(struct teller *t, const struct model *m)
              a.y - net.y / n, a.z - net.z / n,
              model_is_isothermal(m) ? "" : ", with solvent.thermostat: rescale, since forces do work");
   if (m->solvent.profile != PROFILE_UNIFORM)
-    return;                                                              /* its mean is taken out */
-  const bool held = model_has_walls(m) && m->walls.kind == WALL_NO_SLIP; /* walls take the momentum up */
+    return;                                                               /* its mean is taken out */
+  const bool held = model_has_walls(m) && m->walls.kind == WALL_NO_SLIP;  /* walls take the momentum up */
   if (!held && model_keeps_momentum(m) && vec3_norm(net) > 1e-12 * scale) /* a bath takes the momentum up */
     warn(t,
          "a net force of (%.6g, %.6g, %.6g) kT/a0 acts on a periodic system, which accelerates without end by %.3g "

@@ -26,6 +26,8 @@ static const struct {
     [FAULT_SOLVENT_PLACE] = {"solvent particle", "is not in the box:", "a0", false},
     [FAULT_VERTEX_WALL] = {"vertex", "is beyond a wall, at y =", "a0", false},
     [FAULT_DUMBBELL] = {"dumbbell", "has a spring that is too long, or does not fit its two particles:", "a0", false},
+    [FAULT_BEAD_MOVE] = {"bead", "and the solvent near it reach too far in one collision interval:", "a0", true},
+    [FAULT_IN_BEAD] = {"solvent particle", "is inside the bead, at a distance from its center of", "a0", false},
     [FAULT_BOND_TOO_LONG] = {"bond", "is longer than half the shortest box edge:", "a0", true},
     [FAULT_OVERLAP] = {"bond", "overlaps with another one: their axes are apart by", "a0", false},
     [FAULT_NO_ROOM] = {"fiber", "overlaps with others wherever it is laid:", "attempts", false},

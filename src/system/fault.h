@@ -21,6 +21,8 @@ enum fault_code {
   FAULT_SOLVENT_PLACE,  /* a solvent particle is not in the box (in a file: a run keeps them there) */
   FAULT_VERTEX_WALL,    /* a vertex is beyond a wall (in a file: a run keeps them between) */
   FAULT_DUMBBELL,       /* the vector of a dumbbell is not that between its particles (in a file) */
+  FAULT_BEAD_MOVE,      /* a bead, or solvent near it, is so fast that its image may be hit too, or not a number */
+  FAULT_IN_BEAD,        /* a solvent particle is in the bead (in a file: a run keeps them outside) */
   FAULT_BOND_TOO_LONG,  /* a bond is longer than half the shortest edge */
   FAULT_OVERLAP,        /* the tubes of two bonds overlap at the start: one of them, and the distance of their axes */
   FAULT_NO_ROOM,        /* a thick fiber overlaps with others wherever it is laid: its number, and the attempts */

@@ -36,6 +36,24 @@ static inline int64_t flux_fixed(double x)
   return lattice_round(FLUX_SCALE * x);
 }
 
+/* A particle that may have met the bead in its flight: fluid/bead.c. */
+struct bead_visit {
+  uint32_t place;        /* in memory */
+  bool rigid;            /* it goes with the bead for the rest of the flight, at this place relative to it */
+  uint32_t again;        /* hits at the tick of its last one, less 1 */
+  int64_t clock, due;    /* ticks: where it was last turned; its next hit */
+  struct point at, rate; /* from the bead's center at the start, lattice units, at that tick; the same per tick */
+  struct vec3 velocity;  /* a0/t0 */
+};
+
+/* Those of one flight. */
+struct bead_visits {
+  struct bead_visit *at;
+  uint32_t n, room;
+  bool enough;      /* none is missing: the bead has kept to the slack that was allowed for */
+  struct bead bead; /* after the flight */
+};
+
 struct fluid {
   const char *name;
 
@@ -61,6 +79,13 @@ struct fluid {
    * 1 < y < L - 1. NULL: none stand together. */
   void (*flux)(const struct state *state, const struct model *model, const struct flux_frame *frame,
                struct flux_sum *sum);
+
+  /* Who of n particles, at these places of memory, meets the bead in the flight that has been made as if there were no
+   * bead, and how the flights of these and of the bead really end: `at` is the position of a particle in the box,
+   * `velocity` its velocity then. The state is left as it is. near: all particles within reach. slack: a0, how far the
+   * bead may be off its free flight. False, with the fault recorded, if memory is short. NULL: no bead. */
+  bool (*meet)(const struct state *state, const struct model *model, const uint32_t *near, uint32_t n, double slack,
+               struct bead_visits *meetings, struct fault *fault);
 };
 
 #endif

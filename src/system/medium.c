@@ -35,10 +35,11 @@ static bool check_rate(const struct model *m, struct model_error *error)
 {
   const struct medium_model *b = &m->medium;
   return b->draw != DRAW_REPLACE || b->rate * m->time_step <= 1.0 + 1e-12 ||
-         model_reject(error, "medium.rate",
-                      "%.15g times the time step %.15g is %.6g, which is no probability; allowed with draw: replace: up "
-                      "to %.15g",
-                      b->rate, m->time_step, b->rate * m->time_step, 1.0 / m->time_step);
+         model_reject(
+             error, "medium.rate",
+             "%.15g times the time step %.15g is %.6g, which is no probability; allowed with draw: replace: up "
+             "to %.15g",
+             b->rate, m->time_step, b->rate * m->time_step, 1.0 / m->time_step);
 }
 
 static bool finish_private(struct model *m, struct model_error *error)
@@ -60,7 +61,8 @@ static double count_vertices(const struct model *m)
   return vertices;
 }
 
-/* The pairs are found in cells of edge 1 a0 and their neighbors: three along each edge, so that no pair is met twice. */
+/* The pairs are found in cells of edge 1 a0 and their neighbors: three along each edge, so that no pair is met twice.
+ */
 static bool finish_pairs(struct model *m, struct model_error *error)
 {
   const double particles = nearbyint(m->medium.density * box_volume(&m->box)), members = particles + count_vertices(m);

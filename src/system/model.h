@@ -192,6 +192,13 @@ struct dumbbell_model {
   double frequency; /* sqrt(2 K/m), 1/t0 */
 };
 
+/* A sphere in the solvent: system/bead.h. */
+struct bead_model {
+  double radius;      /* R, a0; 0: none */
+  double mass;        /* M, m; effective: that of the solvent it displaces, if 0 was given */
+  struct vec3 center; /* at the start, a0 */
+};
+
 /* Walls at y = 0 and y = L. */
 struct wall_model {
   enum wall_kind kind;       /* WALL_ABSENT: none */
@@ -226,6 +233,7 @@ struct model {
   struct solvent_model solvent;
   struct medium_model medium;
   struct dumbbell_model dumbbells;
+  struct bead_model bead;
   struct wall_model walls;
   struct shear_model shear;
   struct crossing_model crossing;
@@ -244,7 +252,7 @@ struct model {
   double *mass;            /* [vertices] M */
   double *inverse_mass;    /* [vertices] 1/M; 0 if frozen: no force and no contact moves it */
   double max_mass;         /* of any member of a collision cell */
-  double total_mass;       /* of solvent and vertices */
+  double total_mass;       /* of solvent and vertices, without a bead */
   struct wave wave;        /* of the walls' or the shear's motion */
 };
 
@@ -351,6 +359,11 @@ static inline bool model_is_sheared(const struct model *model)
 static inline bool model_has_dumbbells(const struct model *model)
 {
   return model->dumbbells.pairs > 0;
+}
+
+static inline bool model_has_bead(const struct model *model)
+{
+  return model->bead.radius > 0.0;
 }
 
 static inline bool model_has_phantoms(const struct model *model)

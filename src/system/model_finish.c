@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/elementary.h"
+#include "system/bead.h"
 #include "system/fiber_kind.h"
 #include "system/flow.h"
 #include "system/medium.h"
@@ -66,7 +67,7 @@ static bool derive_particles(struct model *m, struct model_error *error)
   m->solvent.particles = 0;
   if (model_has_phantoms(m))
     return check_phantoms(m, error);
-  const double particles = nearbyint(m->solvent.per_cell * box_volume(&m->box));
+  const double particles = nearbyint(m->solvent.per_cell * (box_volume(&m->box) - bead_volume(m)));
   if (!(particles >= 1.0 && particles < 2147483648.0))
     return model_reject(error, "solvent.per_cell",
                         "%.15g in a box of %.0f cells makes %.0f particles; allowed: 1 to 2147483647",
@@ -458,8 +459,8 @@ bool model_finish_numbers(struct model *m, struct model_error *error)
   if (!keys_check(&model_keys, m, error))
     return false;
   m->box = box_of_cells(m->box.cells[0], m->box.cells[1], m->box.cells[2]);
-  if (!medium_finish(m, error) || !finish_solvent(m, error) || !finish_dumbbells(m, error) || !flow_finish(m, error) ||
-      !finish_fibers(m, error) || !check_crossing(m, error))
+  if (!medium_finish(m, error) || !bead_fits(m, error) || !finish_solvent(m, error) || !finish_dumbbells(m, error) ||
+      !flow_finish(m, error) || !finish_fibers(m, error) || !bead_finish(m, error) || !check_crossing(m, error))
     return false;
   if (!model_collides(m) && m->kinds == 0)
     return model_reject(error, "", "there is nothing to simulate; a scene has a 'solvent', 'fibers', or both");

@@ -423,6 +423,36 @@ static const struct key dumbbell_keys[] = {
 };
 static const struct key_table dumbbell_table = {"dumbbells", NULL, COUNT(dumbbell_keys), dumbbell_keys};
 
+static const struct key bead_keys[] = {
+    {.name = "radius",
+     .text = "Radius R. Smaller ones are not resolved by the cells. The box has edges of at least 2 R + 4 and 40 "
+             "collision intervals.",
+     .type = KEY_NUMBER,
+     .low = 1.5,
+     .high = 512,
+     .offset = IN_MODEL(bead.radius),
+     .unit = "a0",
+     .symbol = "R"},
+    {.name = "mass",
+     .text = "Mass, at least that of the solvent it displaces. If absent: that.",
+     .type = KEY_NUMBER,
+     .optional = true,
+     .low = 0,
+     .high = 1e12,
+     .offset = IN_MODEL(bead.mass),
+     .unit = "m",
+     .symbol = "M"},
+    {.name = "center",
+     .text = "Where its center is at the start.",
+     .type = KEY_VECTOR,
+     .absent = "[0, 0, 0]",
+     .low = -LATTICE_MAX_EDGE,
+     .high = LATTICE_MAX_EDGE,
+     .offset = IN_MODEL(bead.center),
+     .unit = "a0"},
+};
+static const struct key_table bead_table = {"bead", NULL, COUNT(bead_keys), bead_keys};
+
 static const struct key shear_keys[] = {
     {.name = "rate",
      .text = "Shear rate dv_x/dy. With a `period`, its amplitude.",
@@ -571,6 +601,11 @@ static const struct key top_keys[] = {
      .type = KEY_SECTION,
      .optional = true,
      .keys = &dumbbell_table},
+    {.name = "bead",
+     .text = "A sphere in the solvent, on which particles do not slip ([bead.md](bead.md)); absent: none.",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &bead_table},
     {.name = "walls",
      .text = "Walls at y = 0 and y = L; absent: none.",
      .type = KEY_SECTION,

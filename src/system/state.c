@@ -16,6 +16,7 @@ bool state_alloc(struct state *s, const struct model *model)
   s->solvent.n = model->solvent.particles;
   s->vertices = model->vertices;
   s->dumbbells.n = model->dumbbells.pairs;
+  s->beads = model_has_bead(model);
   s->wall_rows = model_has_walls(model) ? WALLS * ACCOUNT_SHARES : 0;
   int64_t **lattice[] = {&s->solvent.x, &s->solvent.y, &s->solvent.z};
   int64_t **spring[] = {&s->dumbbells.x, &s->dumbbells.y, &s->dumbbells.z};
@@ -31,6 +32,7 @@ bool state_alloc(struct state *s, const struct model *model)
   ok &= (s->position = memory_alloc(v, sizeof *s->position)) != NULL;
   ok &= (s->velocity = memory_alloc(v, sizeof *s->velocity)) != NULL;
   ok &= (s->wall_momentum = memory_alloc(WALLS * ACCOUNT_SHARES, sizeof *s->wall_momentum)) != NULL;
+  ok &= (s->bead = memory_alloc(1, sizeof *s->bead)) != NULL;
   if (!ok) {
     state_free(s);
     return false;
@@ -58,6 +60,7 @@ void state_free(struct state *s)
   free(s->position);
   free(s->velocity);
   free(s->wall_momentum);
+  free(s->bead);
   memset(s, 0, sizeof *s);
 }
 
@@ -108,6 +111,7 @@ void state_groups(const struct state *s, struct state_group group[STATE_GROUPS])
   struct point *r = s->position;
   struct vec3 *v = s->velocity;
   struct point *w = s->wall_momentum;
+  struct bead *b = s->bead;
   const struct state_group groups[STATE_GROUPS] = {
       {p->n,
        false,
@@ -123,6 +127,13 @@ void state_groups(const struct state *s, struct state_group group[STATE_GROUPS])
         {"vertex_velocity", false, {&v->x, &v->y, &v->z}, sizeof *v}}},
       {d->n, true, d->id, 1, {{"dumbbell_vector", true, {d->x, d->y, d->z}, sizeof *d->x}}},
       {s->wall_rows, true, NULL, 1, {{"wall_momentum", true, {&w->x, &w->y, &w->z}, sizeof *w}}},
+      {s->beads,
+       true,
+       NULL,
+       3,
+       {{"bead_position", true, {&b->position.x, &b->position.y, &b->position.z}, sizeof *b},
+        {"bead_velocity", false, {&b->velocity.x, &b->velocity.y, &b->velocity.z}, sizeof *b},
+        {"bead_account", true, {&b->account.x, &b->account.y, &b->account.z}, sizeof *b}}},
   };
   memcpy(group, groups, sizeof groups);
 }
@@ -181,7 +192,7 @@ static void hash_group(XXH64_state_t *hash, const struct state_group *g, uint32_
 {
   state_group_slots(g, slot);
   for (uint32_t k = 0; k < g->rows; k++) {
-    char row[2 * 3 * 8], *to = row;
+    char row[STATE_FIELDS * 3 * 8], *to = row;
     for (size_t f = 0; f < g->fields; f++)
       for (int c = 0; c < 3; c++, to += 8)
         memcpy(to, place_in(&g->field[f], c, g->id ? slot[k] : k), 8);

@@ -54,6 +54,14 @@ struct collision_counts {
   uint64_t rigid;    /* contacts that no impulse answers: their bonds moved rigidly for the rest of the drift */
 };
 
+/* A sphere in the solvent: system/bead.h. It is always where the solvent was last streamed to. */
+struct bead {
+  struct point position; /* of its center, lattice units, unwrapped */
+  struct vec3 velocity;  /* a0/t0 */
+  struct point account;  /* what came in since the start, in units of BEAD_ENERGY_UNIT: x, heat from its own matter in
+                          * collisions; y, work of the drive; z, hits: a number. Sums wrap. */
+};
+
 /* By what a wall gives momentum to the solvent. */
 enum account_share { ACCOUNT_HITS, ACCOUNT_COLLISIONS, ACCOUNT_SHARES };
 
@@ -70,6 +78,8 @@ struct state {
   uint32_t wall_rows;          /* 4 between walls, else 0 */
   struct point *wall_momentum; /* [wall_rows] the account of the walls: system/account.h */
   uint64_t wall_turns[4];      /* how often the x of each has wrapped */
+  uint32_t beads;              /* 0 or 1 */
+  struct bead *bead;
 };
 
 /* The solvent was streamed to now: there is no lag any more. */
@@ -122,16 +132,18 @@ struct state_field {
   size_t stride;
 };
 
+enum { STATE_FIELDS = 3 }; /* most of a group */
+
 /* Things of one kind (solvent particles, vertices), one row each. */
 struct state_group {
   uint32_t rows;
   bool optional; /* without rows it is neither in files nor in hashes */
   uint32_t *id;  /* [rows] number of each row in files and hashes; NULL: its place in memory */
   size_t fields;
-  struct state_field field[2];
+  struct state_field field[STATE_FIELDS];
 };
 
-enum { STATE_GROUPS = 4 };
+enum { STATE_GROUPS = 5 };
 
 /* The groups of this state, in the order in which they are hashed. */
 void state_groups(const struct state *state, struct state_group group[STATE_GROUPS]);

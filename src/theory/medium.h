@@ -17,7 +17,8 @@ double theory_medium_loss(const struct model *model, double mass);
 double theory_medium_diffusion(const struct model *model, double mass);
 
 /* eta of pairs, m/(a0 t0), 0 of the private bath. Kinetic: rho dt [1/loss - 1/2] of the kinetic stress, of which a
- * step takes the part 4 pi rho int r^2 [<1 - c>/3 - <(1 - c)^2>/15] dr. Collisional: (pi/15) rho^2 int r^4 <1 - c>/dt dr. */
+ * step takes the part 4 pi rho int r^2 [<1 - c>/3 - <(1 - c)^2>/15] dr. Collisional: (pi/15) rho^2 int r^4 <1 - c>/dt
+ * dr. */
 double theory_medium_viscosity_kinetic(const struct model *model);
 double theory_medium_viscosity_collisional(const struct model *model);
 

@@ -32,8 +32,8 @@ static uint32_t mixed_links(const struct model *m, const struct links *links)
 {
   uint32_t mixed = 0;
   for (uint32_t k = 0; k < links->n; k++)
-    mixed += m->kind[m->fiber_kind_of[links->link[k].ring]].frozen !=
-             m->kind[m->fiber_kind_of[links->link[k].other]].frozen;
+    mixed +=
+        m->kind[m->fiber_kind_of[links->link[k].ring]].frozen != m->kind[m->fiber_kind_of[links->link[k].other]].frozen;
   return mixed;
 }
 
@@ -60,8 +60,8 @@ static void frozen_rings_stay_and_hold(void **unused)
     assert_int_equal(stood, 200);
     find_links(&r, &x, &now);
     const bool kept = memcmp(&start, &now, sizeof start - sizeof start.link) == 0 || now.n == start.n;
-    print_message("  %s: %u links, %u of both kinds, %lu contacts, kept: %d\n", crossing_rule_of(&r.model)->name, start.n,
-                  mixed_links(&r.model, &start), (unsigned long)r.state.counts.executed, kept);
+    print_message("  %s: %u links, %u of both kinds, %lu contacts, kept: %d\n", crossing_rule_of(&r.model)->name,
+                  start.n, mixed_links(&r.model, &start), (unsigned long)r.state.counts.executed, kept);
     assert_true(mixed_links(&r.model, &start) >= 2);
     if (rules[k] != CROSSING_FREE) {
       assert_true(r.state.counts.executed > 100);
@@ -76,8 +76,8 @@ static void frozen_rings_stay_and_hold(void **unused)
   exact_close(&x);
 }
 
-/* In the bath they are as the others: M <v^2>/3 kT of either kind, and each collision changes their velocities. 1600 samples of
- * 200 vertices, which a collision decorrelates by c = 0.68, tell kT to 0.5 %. */
+/* In the bath they are as the others: M <v^2>/3 kT of either kind, and each collision changes their velocities. 1600
+ * samples of 200 vertices, which a collision decorrelates by c = 0.68, tell kT to 0.5 %. */
 static void frozen_vertices_take_part_in_the_bath(void **unused)
 {
   (void)unused;
@@ -105,7 +105,8 @@ static void frozen_vertices_take_part_in_the_bath(void **unused)
   test_end(&r);
 }
 
-/* A bond that meets a frozen one: its point of contact turns back, its kinetic energy stays, the other's velocities too. */
+/* A bond that meets a frozen one: its point of contact turns back, its kinetic energy stays, the other's velocities
+ * too. */
 static void a_frozen_bond_is_a_wall(void **unused)
 {
   (void)unused;

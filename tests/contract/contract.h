@@ -311,7 +311,8 @@ static inline void contract_momentum(struct choice c)
 static inline bool contract_keeps_energy(struct choice c)
 {
   struct model m = {.solvent.bath = c.bath};
-  return c.medium == MEDIUM_CELLS && !contract_rule(c.rule)->thermal && c.thermostat == THERMOSTAT_NONE && !model_has_phantoms(&m);
+  return c.medium == MEDIUM_CELLS && !contract_rule(c.rule)->thermal && c.thermostat == THERMOSTAT_NONE &&
+         !model_has_phantoms(&m);
 }
 
 static inline void contract_energy(struct choice c)

@@ -109,8 +109,8 @@ static struct found *find(struct test_run *r, uint64_t step, uint32_t *n)
   return all;
 }
 
-/* By all pairs of all members, with the nearest image by floor: each pair nearer than 1 a0, once, in the smallest box too
- * (3 a0), in random places and among fibers that have left the box. */
+/* By all pairs of all members, with the nearest image by floor: each pair nearer than 1 a0, once, in the smallest box
+ * too (3 a0), in random places and among fibers that have left the box. */
 static void every_pair_once(void **unused)
 {
   (void)unused;
@@ -192,8 +192,7 @@ static void random_numbers_have_addresses(void **unused)
   for (uint32_t k = 0; k < b->encounters; k++) {
     const struct encounter *e = &b->encounter[k];
     const uint32_t i = b->number[e->a], j = b->number[e->b];
-    const struct random_words w =
-        random_at(m.seed, RANDOM_BATH_PAIR, i < j ? j : i, 0x123456789ab, i < j ? i : j);
+    const struct random_words w = random_at(m.seed, RANDOM_BATH_PAIR, i < j ? j : i, 0x123456789ab, i < j ? i : j);
     double normal[3];
     random_normal_three(w, normal);
     assert_true((w.w[0] + 0.5) * 0x1p-32 < 0.5);
@@ -252,10 +251,11 @@ static void order_does_not_depend_on_the_list(void **unused)
 }
 
 /*
- * One moving particle among resting ones, one sweep without noise in which every pair acts, c = 0: the momentum is handed
- * on within the sweep. Its first moment stays where it was in any order (the sweep keeps momentum and a uniform flow). The
- * third moment of the distances along x is 0 on average only if the order has no direction: an order by cells hands
- * momentum on along the cells. Sample: 300 sweeps with particles placed anew; 4 standard errors, 1 false alarm in 16 000.
+ * One moving particle among resting ones, one sweep without noise in which every pair acts, c = 0: the momentum is
+ * handed on within the sweep. Its first moment stays where it was in any order (the sweep keeps momentum and a uniform
+ * flow). The third moment of the distances along x is 0 on average only if the order has no direction: an order by
+ * cells hands momentum on along the cells. Sample: 300 sweeps with particles placed anew; 4 standard errors, 1 false
+ * alarm in 16 000.
  */
 static void order_has_no_direction(void **unused)
 {
@@ -326,7 +326,8 @@ static void momentum_and_flow(void **unused)
   for (uint32_t k = 0; k < r.state.vertices; k++)
     p = vec3_add_scaled(p, 3.0, r.state.velocity[k]);
   for (uint32_t i = 0; i < f.state.solvent.n; i++)
-    off = fmax(off, vec3_norm(vec3_sub(vec3_sub(solvent_velocity(&f.state.solvent, i), flow), v[f.state.solvent.id[i]])));
+    off =
+        fmax(off, vec3_norm(vec3_sub(vec3_sub(solvent_velocity(&f.state.solvent, i), flow), v[f.state.solvent.id[i]])));
   print_message("  momentum %.3g m a0/t0 after 20 steps, difference in a flow %.3g a0/t0\n", vec3_norm(p), off);
   assert_close(vec3_norm(p), 0.0, 1e-11);
   assert_close(off, 0.0, 1e-8);

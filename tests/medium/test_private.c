@@ -36,7 +36,8 @@ static void check(enum medium_draw draw, double x, double mass)
   struct vec3 *old = calloc(VERTICES, sizeof *old);
   struct point *at = calloc(VERTICES, sizeof *at);
   const double dt = r.model.time_step;
-  assert_close(theory_medium_diffusion(&r.model, mass), dt / mass * (1.0 / (1.0 - c) - 0.5), 1e-13 / (mass * (1.0 - c)));
+  assert_close(theory_medium_diffusion(&r.model, mass), dt / mass * (1.0 / (1.0 - c) - 0.5),
+               1e-13 / (mass * (1.0 - c)));
   for (int round = 0; round < ROUNDS; round++) {
     for (uint32_t v = 0; v < VERTICES; v++) {
       old[v] = vec3_sub(r.state.velocity[v], r.model.flow);
@@ -49,8 +50,9 @@ static void check(enum medium_draw draw, double x, double mass)
         const struct vec3 w = vec3_sub(r.state.velocity[v], r.model.flow);
         product[k - 1] += vec3_dot(old[v], w) / (3.0 * VERTICES);
         if (k == 2)
-          both += (old[v].x * old[v].x * w.x * w.x + old[v].y * old[v].y * w.y * w.y + old[v].z * old[v].z * w.z * w.z) /
-                  (3.0 * VERTICES);
+          both +=
+              (old[v].x * old[v].x * w.x * w.x + old[v].y * old[v].y * w.y * w.y + old[v].z * old[v].z * w.z * w.z) /
+              (3.0 * VERTICES);
       }
     }
     for (uint32_t v = 0; v < VERTICES; v++) {

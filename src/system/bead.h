@@ -1,0 +1,55 @@
+/*
+ * A bead: a sphere of radius R and mass M in the solvent. It translates; it does not turn, and no angular momentum is
+ * kept.
+ *
+ * A particle that hits the surface leaves with its velocity relative to the bead reversed, as two bodies of masses m
+ * and M that bounce: momentum and energy are conserved (fluid/bead.c). The part of a collision cell that is in the
+ * bead holds virtual particles. They are matter of the bead: mpc/bead.c.
+ *
+ * The bead is streamed with the solvent, so a step is a collision interval, and nothing is late between steps.
+ */
+#ifndef UNCROSS_SYSTEM_BEAD_H
+#define UNCROSS_SYSTEM_BEAD_H
+
+#include "system/fault.h"
+#include "system/model.h"
+#include "system/state.h"
+
+#define BEAD_ENERGY_SCALE 0x1p32 /* of the account: units per kT */
+#define BEAD_ENERGY_UNIT 0x1p-32
+
+/* a0^3; 0 without a bead */
+static inline double bead_volume(const struct model *model)
+{
+  const double r = model->bead.radius;
+  return 4.0 / 3.0 * 3.14159265358979323846 * r * r * r;
+}
+
+/* R in lattice units, exact. */
+static inline int64_t bead_radius(const struct model *model)
+{
+  return llrint(model->bead.radius * LATTICE_PER_A0);
+}
+
+/* Is the place outside the bead, or on its surface? Exact. Both in lattice units, anywhere. */
+bool bead_is_outside(const struct model *model, struct point center, struct point place);
+
+/* From a place to the nearest image of another one, lattice units. */
+struct point bead_to_image(const struct box *box, struct point from, struct point to);
+
+/* Has the box room for the bead? Before anything is derived. */
+bool bead_fits(const struct model *model, struct model_error *error);
+
+/* Derives the mass, and checks what the scene may not combine with a bead. */
+bool bead_finish(struct model *model, struct model_error *error);
+
+/* Is the solvent outside the bead? Records FAULT_IN_BEAD if not. */
+bool bead_sound(const struct state *state, const struct model *model, struct fault *fault);
+
+/* Adds to a sum in units of BEAD_ENERGY_UNIT; it may wrap. */
+static inline void bead_account(int64_t *sum, double energy)
+{
+  *sum = (int64_t)((uint64_t)*sum + (uint64_t)llrint(BEAD_ENERGY_SCALE * energy));
+}
+
+#endif
