@@ -56,6 +56,31 @@ done
 # files
 gives 2 'missing.yaml' check "$dir/missing.yaml"
 
+# thick fibers that overlap at the start, or find no room: at their key, and nothing is written
+cat >"$dir/thick.yaml" <<YAML
+box: [8, 8, 8]
+time_step: 0.01
+steps: 20
+fibers:
+  - name: a
+    count: 2
+    vertices: 4
+    mass: 5
+    bond_length: 0.5
+    spring: 100
+    diameter: 0.3
+    start: straight
+    places:
+      - {center: [4, 4, 4], direction: [1, 0, 0]}
+      - {center: [4, 4, 4.2], direction: [0, 1, 0]}
+crossing: {rule: event-driven}
+YAML
+gives 2 'thick.yaml:15:18: .*overlaps with another: their axes are 0.2 a0 apart; allowed: more than 0.3' run "$dir/thick.yaml" --out "$dir/thick"
+[ ! -e "$dir/thick" ]
+ok $? "thick fibers that overlap leave no folder"
+sed -e '/start:/,/- {center: .*1, 0\]/d' -e 's/count: 2/count: 2000/; s/diameter: 0.3/diameter: 0.5/' "$dir/thick.yaml" >"$dir/full.yaml"
+gives 2 'full.yaml:11:15: .*overlaps with others wherever it is laid' run "$dir/full.yaml" --out "$dir/thick"
+
 # `check` answers at once, in little memory, whatever the numbers in the scene: 5 s (they take 0.3 s) and 2 GiB.
 at_once() { # at_once CODE PATTERN SCENE: as gives, of `check`
   local wanted=$1 pattern=$2
