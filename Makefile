@@ -446,11 +446,11 @@ SECONDS ?= 60
 FUZZ_LIMITS := ASAN_OPTIONS=max_allocation_size_mb=64:allocator_may_return_null=1 \
    LSAN_OPTIONS=suppressions=tests/fuzz/leaks:print_suppressions=0
 FUZZ    ?= -max_total_time=$(SECONDS) build/fuzz/corpus tests/fuzz/corpus
+FUZZ_CFLAGS := -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
 .PHONY: fuzz
 fuzz:
 	tools/install-dependencies run hard
-	$(MAKE) -j2 CC=clang BUILD=build/fuzz OPTIMIZE=-O1 CFLAGS='-g -fsanitize=fuzzer-no-link,address,undefined \
-	   -fno-sanitize-recover=all' build/fuzz/readers
+	$(MAKE) -j2 CC=clang BUILD=build/fuzz OPTIMIZE=-O1 CFLAGS='$(FUZZ_CFLAGS)' build/fuzz/readers
 	mkdir -p build/fuzz/corpus
 	TMPDIR=build/fuzz $(FUZZ_LIMITS) build/fuzz/readers -artifact_prefix=build/fuzz/ -max_len=4096 -timeout=60 \
 	   -rss_limit_mb=3000 -print_final_stats=1 $(FUZZ)
