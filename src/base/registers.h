@@ -26,6 +26,13 @@
 #endif
 #endif
 
+/* The processor's own instructions for LANES numbers. Without them, tests run the same source on any processor. */
+#if LANES == 8 && defined __AVX512F__ && defined __AVX512DQ__
+#define HAS_512
+#elif LANES == 4 && defined __AVX2__
+#define HAS_256
+#endif
+
 typedef double reals __attribute__((vector_size(LANES * 8)));
 typedef int64_t wholes __attribute__((vector_size(LANES * 8)));
 typedef uint64_t words __attribute__((vector_size(LANES * 8)));
@@ -102,7 +109,7 @@ INLINE words negative(words x)
 /* The integer nearest to each number, if its size is below 2^51; otherwise any integer of 2^51 or more. */
 INLINE words round_to_words(reals x)
 {
-#if LANES == 8
+#if defined HAS_512
   return (words)_mm512_cvtpd_epi64((__m512d)x);
 #else
   const reals magic = (reals){0} + 0x1.8p52;
@@ -113,7 +120,7 @@ INLINE words round_to_words(reals x)
 /* The size of signed integers, or one less if they are negative. */
 INLINE words sizes(words x)
 {
-#if LANES == 8
+#if defined HAS_512
   return (words)_mm512_abs_epi64((__m512i)x);
 #else
   return x ^ negative(x);
@@ -124,10 +131,10 @@ INLINE words sizes(words x)
  * the remainder; outside of it, something outside of [0, edge). */
 INLINE words wrap(words x, uint64_t edge)
 {
-#if LANES == 8 /* without a sign, the one in the box is the smallest */
+#if defined HAS_512 /* without a sign, the one in the box is the smallest */
   x = (words)_mm512_min_epu64((__m512i)x, (__m512i)(x + edge));
   return (words)_mm512_min_epu64((__m512i)x, (__m512i)(x - edge));
-#elif LANES == 4 /* the sign chooses */
+#elif defined HAS_256 /* the sign chooses */
   x = (words)_mm256_blendv_pd((__m256d)x, (__m256d)(x + edge), (__m256d)x);
   const words less = x - edge;
   return (words)_mm256_blendv_pd((__m256d)less, (__m256d)x, (__m256d)less);
@@ -140,7 +147,7 @@ INLINE words wrap(words x, uint64_t edge)
 /* Remembers whether an x was outside of [0, edge); was_outside: one was. `seen` begins as 0. */
 INLINE words see(words seen, words x, uint64_t edge)
 {
-#if LANES == 8
+#if defined HAS_512
   (void)edge;
   return (words)_mm512_max_epu64((__m512i)seen, (__m512i)x);
 #else
@@ -150,7 +157,7 @@ INLINE words see(words seen, words x, uint64_t edge)
 
 INLINE words was_outside(words seen, uint64_t edge)
 {
-#if LANES == 8
+#if defined HAS_512
   return seen | (edge - 1 - seen);
 #else
   (void)edge;
@@ -162,12 +169,12 @@ INLINE words was_outside(words seen, uint64_t edge)
 INLINE words but_not(words x, uint32_t n)
 {
   const halves less = (halves)x - (halves)((words){0} + n);
-#if LANES == 8
+#if defined HAS_512
   return (words)_mm512_min_epu32((__m512i)x, (__m512i)less);
-#elif LANES == 4
+#elif defined HAS_256
   return (words)_mm256_min_epu32((__m256i)x, (__m256i)less);
 #else
-  typedef int32_t quarters __attribute__((vector_size(16)));
+  typedef int32_t quarters __attribute__((vector_size(LANES * 8)));
   return x & (words)((quarters)less >> 31);
 #endif
 }
@@ -212,7 +219,7 @@ INLINE reals square_root(reals x)
  * the number 2^52 + k; the high halves come as 2^84 + 2^32 (k + 2^31). Only the last sum rounds. */
 INLINE reals reals_from_signed(words x)
 {
-#if LANES == 8
+#if defined HAS_512
   return (reals)_mm512_cvtepi64_pd((__m512i)x);
 #else
   const reals high = (reals)(x >> 32 ^ 0x4530000080000000), low = (reals)((x & 0xffffffff) | 0x4330000000000000);
@@ -251,7 +258,7 @@ INLINE uint64_t any(words x)
 /* True if all words are 0. */
 INLINE int none(words x)
 {
-#if LANES == 8
+#if defined HAS_512
   return _mm512_test_epi64_mask((__m512i)x, (__m512i)x) == 0;
 #else
   return any(x) == 0;
@@ -262,7 +269,7 @@ INLINE int none(words x)
  * length that the list has then. There is room for LANES of them. */
 INLINE uint32_t append(uint32_t *list, uint32_t n, words x, words mask)
 {
-#if LANES == 8
+#if defined HAS_512
   const __mmask8 taken = _mm512_movepi64_mask((__m512i)mask);
   store_narrow(&list[n], (words)_mm512_maskz_compress_epi64(taken, (__m512i)x));
   return n + (uint32_t)__builtin_popcount(taken);
@@ -359,29 +366,33 @@ INLINE void load_records(const void *records, reals column[4])
   exchange_rows(column, 4);
 }
 
+enum { PART = LANES == 8 ? 4 : LANES }; /* doubles of a record that are in one register */
+
 /* Half of a record of eight doubles, from two records with AVX-512. */
 INLINE reals load_parts(const double *low, const double *high)
 {
-#if LANES == 8
+#if defined HAS_512
   return (reals)_mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(low)), _mm256_loadu_pd(high), 1);
 #else
-  (void)high;
-  return load_reals(low);
+  reals x;
+  memcpy(&x, low, PART * sizeof *low);
+  if (PART < LANES)
+    memcpy((char *)&x + PART * sizeof *low, high, PART * sizeof *low);
+  return x;
 #endif
 }
 
 INLINE void store_parts(double *low, double *high, reals x)
 {
-#if LANES == 8
+#if defined HAS_512
   _mm256_storeu_pd(low, _mm512_castpd512_pd256((__m512d)x));
   _mm256_storeu_pd(high, _mm512_extractf64x4_pd((__m512d)x, 1));
 #else
-  (void)high;
-  store_reals(low, x);
+  memcpy(low, &x, PART * sizeof *low);
+  if (PART < LANES)
+    memcpy(high, (const char *)&x + PART * sizeof *low, PART * sizeof *low);
 #endif
 }
-
-enum { PART = LANES == 8 ? 4 : LANES }; /* doubles of a record that are in one register */
 
 /* Stores columns as records of eight doubles; that of lane k has the number first + lane_record[k]. */
 INLINE void store_columns(double *records, uint32_t first, reals column[8])
