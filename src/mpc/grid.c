@@ -40,10 +40,35 @@ void grid_bin_particles(const struct state *state, const struct model *model, ui
     cell[i] = (cell_index(z[i], shift.z, lz) * ly + cell_index(y[i], shift.y, ly)) * lx + cell_index(x[i], shift.x, lx);
 }
 
+/* The same for an unwrapped coordinate along a periodic axis: the row that it is in, counted from the origin, less
+ * whole boxes. They are mostly those of the vertex before (*boxes, in rows), so there is seldom a division. */
+static inline uint32_t row_near(int64_t x, int64_t shift, uint32_t cells, int64_t *boxes)
+{
+  const int64_t row = (int64_t)((uint64_t)x + (uint64_t)shift) >> LATTICE_BITS;
+  if ((uint64_t)(row - *boxes) >= cells)
+    *boxes = row - lattice_fold(row, cells);
+  return (uint32_t)(row - *boxes);
+}
+
+static void bin_periodic(const struct point *restrict p, uint32_t n, const struct box *box, struct point shift,
+                         uint32_t *restrict cell)
+{
+  const uint32_t lx = (uint32_t)box->rows[0], ly = (uint32_t)box->rows[1], lz = (uint32_t)box->rows[2];
+  struct point boxes = {0, 0, 0};
+  for (const struct point *end = p + n; p < end; p++, cell++) {
+    uint32_t place = row_near(p->z, shift.z, lz, &boxes.z) * ly;
+    place = (place + row_near(p->y, shift.y, ly, &boxes.y)) * lx;
+    *cell = place + row_near(p->x, shift.x, lx, &boxes.x);
+  }
+}
+
 void grid_bin_vertices(const struct state *state, const struct model *model, struct mpc *mpc)
 {
-  for (uint32_t v = 0; v < state->vertices; v++)
-    mpc->vertex_cell[v] = grid_cell_of(&model->box, state->position[v], mpc->shift);
+  if (model->box.boundary[1] != BOUNDARY_WALL)
+    bin_periodic(state->position, state->vertices, &model->box, mpc->shift, mpc->vertex_cell);
+  else
+    for (uint32_t v = 0; v < state->vertices; v++)
+      mpc->vertex_cell[v] = grid_cell_of(&model->box, state->position[v], mpc->shift);
 }
 
 void grid_bin(const struct state *state, const struct model *model, struct point shift, struct mpc *mpc)
