@@ -18,6 +18,7 @@ struct scene {
   double hydro;       /* 0: velocities of the solvent are swapped */
   double thermostat;  /* 0 none, 1 rescale, 2 maxwell-boltzmann */
   double rule;        /* 0 srd, 1 at-a, 2 at+a */
+  double angle;       /* of srd, degrees */
   double bond_length; /* a0 */
   double spring;      /* kT/a0^2 */
   double bending;     /* kT */
@@ -36,6 +37,7 @@ static inline struct scene scene_default(void)
                         .crossing = 1,
                         .order = SCHEME_KICK_SPLIT,
                         .hydro = 1,
+                        .angle = 90,
                         .bond_length = 0.5,
                         .spring = 100,
                         .bending = 64};
@@ -56,6 +58,7 @@ static const struct scene_key {
     {"hydro", offsetof(struct scene, hydro)},
     {"thermostat", offsetof(struct scene, thermostat)},
     {"rule", offsetof(struct scene, rule)},
+    {"angle", offsetof(struct scene, angle)},
     {"bond_length", offsetof(struct scene, bond_length)},
     {"spring", offsetof(struct scene, spring)},
     {"bending", offsetof(struct scene, bending)},
@@ -104,6 +107,7 @@ static inline struct model scene_model(const struct scene *s)
   m.solvent.hydrodynamics = s->hydro != 0.0;
   m.solvent.thermostat = (enum thermostat_kind)s->thermostat;
   m.solvent.rule = (enum rule)s->rule;
+  m.solvent.rotation_angle = s->angle;
   if (s->walls != 0.0)
     m.walls = (struct wall_model){.kind = WALL_NO_SLIP, .fill = (enum wall_fill)s->fill, .shear_rate = 0.02};
   m.shear.rate = s->shear;
