@@ -10,21 +10,22 @@
  *     edge     f = |c x e|^2 - R^2 e.e,        g = -c.e, e.e + c.e
  *     inside   f = (n.w)^2 - R^2 n.n,          g = S, n.n - S, T, n.n - T,    n = p x q, S = (w x q).n, T = (w x p).n
  *
- * where R is the reach. (Of parallel axes, n = 0, the nearest points may be taken on an edge.) All vectors are linear in
- * time, so f and g are polynomials of degree 6 or less. Over an interval they are written in Bernstein form, in integers.
- * If all coefficients of f are > 0, or those of one g all <= 0, the feature is apart at all times of the interval. If
- * f <= 0 and all g > 0 at an end of it, the tubes are not. Else it is halved, without rounding.
+ * where R is the reach. (Of parallel axes, n = 0, the nearest points may be taken on an edge.) All vectors are linear
+ * in time, so f and g are polynomials of degree 6 or less. Over an interval they are written in Bernstein form, in
+ * integers. If all coefficients of f are > 0, or those of one g all <= 0, the feature is apart at all times of the
+ * interval. If f <= 0 and all g > 0 at an end of it, the tubes are not. Else it is halved, without rounding.
  */
 #ifndef UNCROSS_TESTS_EXACT_TUBES_H
 #define UNCROSS_TESTS_EXACT_TUBES_H
 
-#include "contact/tubes.h"
+#include "contact/flight.h"
+#include "exact.h"
 
 enum {
   BERNSTEIN_DEGREE = 6,
-  BERNSTEIN_LIMITS = 4,    /* g of a feature, at most */
+  BERNSTEIN_LIMITS = 4,     /* g of a feature, at most */
   BERNSTEIN_HALVINGS = 160, /* 65536 ticks are 1e-43 ticks then */
-  REACH_BITS = 20          /* a reach is a whole number of lattice units over 2^20 */
+  REACH_BITS = 20           /* a reach is a whole number of lattice units over 2^20 */
 };
 
 enum tube_verdict { TUBES_APART, TUBES_TOUCH, TUBES_OPEN };
@@ -274,8 +275,8 @@ static inline bool piece_touches_at(const struct piece *x, bool end)
   return touch;
 }
 
-/* Both halves, times 2^degree n. With y = u, x = 1 - u, the first half is f(x + y/2, y/2), and the other f(x/2, y + x/2):
- * sums c_k y^k (2 x + y)^(n - k), and c_k (2 y + x)^k x^(n - k). Each is a shift by one, by Pascal's sums. */
+/* Both halves, times 2^degree n. With y = u, x = 1 - u, the first half is f(x + y/2, y/2), and the other f(x/2, y +
+ * x/2): sums c_k y^k (2 x + y)^(n - k), and c_k (2 y + x)^k x^(n - k). Each is a shift by one, by Pascal's sums. */
 static inline void form_halve(struct form *f, struct form *first)
 {
   const int n = f->degree;
@@ -330,86 +331,6 @@ static inline enum tube_verdict exact_tubes_verdict(struct exact_tubes *e, const
     worst = verdict == TUBES_APART ? worst : verdict;
   }
   return worst;
-}
-
-/* --- the audit ---------------------------------------------------------------------------------------------------- */
-
-/* Answers: those with a contact in their tick, and those that pass by within the doubt (tube_doubt). Missed: a contact
- * before the answer. Invented: further apart than the doubt in the whole tick. Open: not decided. */
-struct exact_tally {
-  uint64_t queries, answers, contacts, passes, missed, invented, open;
-  double overlap; /* a0, the deepest before an answer */
-};
-
-static inline void count_answer(struct exact_tubes *e, const struct tube_query *k, int32_t tick, struct exact_tally *t)
-{
-  const int64_t reach = k->reach << REACH_BITS,
-                doubt = (int64_t)ceil(tube_doubt(k) * 0x1p40 * (1 << REACH_BITS));
-  t->answers++;
-  if (exact_tubes_verdict(e, &k->pair, reach, tick, tick + 1) == TUBES_TOUCH) {
-    t->contacts++;
-    return;
-  }
-  const enum tube_verdict near = exact_tubes_verdict(e, &k->pair, reach + doubt, tick, tick + 1);
-  t->passes += near == TUBES_TOUCH, t->invented += near == TUBES_APART, t->open += near == TUBES_OPEN;
-}
-
-static inline void audit_exactly(struct exact_tubes *e, const struct tube_query *k, tube_search *search,
-                                 struct exact_tally *t)
-{
-  const int64_t reach = k->reach << REACH_BITS;
-  if (exact_tubes_verdict(e, &k->pair, reach, k->from, k->from) != TUBES_APART) /* no question */
-    return;
-  const int32_t tick = search(&k->pair, k->reach, k->from);
-  const enum tube_verdict before = exact_tubes_verdict(e, &k->pair, reach, k->from, tick);
-  t->queries++;
-  t->open += before == TUBES_OPEN;
-  if (before == TUBES_TOUCH) {
-    const long double apart = (long double)k->reach * 0x1p-40L;
-    t->missed++;
-    t->overlap = fmax(t->overlap, -(double)least_gap(&k->pair, apart, k->from, tick, -1.0L));
-  }
-  if (tick < FLIGHT_TICKS)
-    count_answer(e, k, tick, t);
-}
-
-static inline void tell_exact(const char *name, const struct exact_tally *t)
-{
-  print_message("  %-12s %9lu queries %9lu answers: %9lu contacts %8lu passes; %lu missed, %lu invented, %lu open;"
-                " overlap %.1e a0\n",
-                name, (unsigned long)t->queries, (unsigned long)t->answers, (unsigned long)t->contacts,
-                (unsigned long)t->passes, (unsigned long)t->missed, (unsigned long)t->invented, (unsigned long)t->open,
-                t->overlap);
-  fflush(stdout);
-}
-
-static inline struct exact_tally audit_kind_exactly(struct dice *d, enum tube_kind kind, uint64_t queries,
-                                                    tube_search *search)
-{
-  struct exact_tubes *e = exact_tubes_open();
-  struct exact_tally t = {0};
-  while (t.queries < queries) {
-    const struct tube_query k = draw_tubes(d, kind);
-    audit_exactly(e, &k, search, &t);
-  }
-  exact_tubes_close(e);
-  return t;
-}
-
-/* So many queries of each kind. */
-static inline struct exact_tally audit_tubes_exactly(uint64_t seed, uint64_t queries)
-{
-  struct dice d = {seed};
-  struct exact_tally sum = {0};
-  for (int kind = 0; kind < TUBE_KINDS; kind++) {
-    const struct exact_tally t = audit_kind_exactly(&d, (enum tube_kind)kind, queries, tube_contact);
-    tell_exact(tube_kinds[kind], &t);
-    sum.queries += t.queries, sum.answers += t.answers, sum.contacts += t.contacts, sum.passes += t.passes;
-    sum.missed += t.missed, sum.invented += t.invented, sum.open += t.open;
-    sum.overlap = fmax(sum.overlap, t.overlap);
-  }
-  tell_exact("all", &sum);
-  return sum;
 }
 
 #endif

@@ -391,8 +391,8 @@ static void wrong_models_are_refused(void **unused)
   assert_non_null(strstr(refusal(m), "sheared"));
 }
 
-/* By hand: bonds of a mean length of 0.53846 and a width of 0.1, so one bond keeps two apart for D up to 0.23846, and two
- * for D up to 1.07692 - 0.42426 = 0.65266; on the way round a bend, up to 0.34280 and 0.68560. */
+/* By hand: bonds of a mean length of 0.53846 and a width of 0.1, so one bond keeps two apart for D up to 0.23846, and
+ * two for D up to 1.07692 - 0.42426 = 0.65266; on the way round a bend, up to 0.34280 and 0.68560. */
 static void near_bonds_are_blind(void **unused)
 {
   (void)unused;

@@ -1,6 +1,6 @@
 /* Tubes in flight: the search for their contacts against a march in continuous time and exact polynomials, and what a
  * contact does. */
-#include "contact/exact_tubes.h"
+#include "contact/exact_tube_audit.h"
 
 static void no_contact_is_late_and_none_invented(void **unused)
 {
@@ -205,9 +205,9 @@ static void what_tubes_cannot_be_is_refused(void **unused)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(exact_polynomials_by_hand), cmocka_unit_test(exact_polynomials_agree),
-      cmocka_unit_test(exact_polynomials_see_them_too),
-      cmocka_unit_test(no_contact_is_late_and_none_invented), cmocka_unit_test(the_audit_sees_planted_errors),
-      cmocka_unit_test(no_overlap_begins), cmocka_unit_test(what_tubes_cannot_be_is_refused)};
+      cmocka_unit_test(exact_polynomials_by_hand),      cmocka_unit_test(exact_polynomials_agree),
+      cmocka_unit_test(exact_polynomials_see_them_too), cmocka_unit_test(no_contact_is_late_and_none_invented),
+      cmocka_unit_test(the_audit_sees_planted_errors),  cmocka_unit_test(no_overlap_begins),
+      cmocka_unit_test(what_tubes_cannot_be_is_refused)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

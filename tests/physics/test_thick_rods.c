@@ -61,16 +61,16 @@ static double overlap_volume(const struct pair_of_kinds *row, struct dice *d, in
   return volume * share;
 }
 
-/* Half of 2 R |p x q| + pi R^2 (|p| + |q|) + (4/3) pi R^3, R half the sum of the diameters: exact, and pi/4 for the sine
- * in the mean over all directions. 4.5 errors: one false alarm in 10^5 for each row. */
+/* Half of 2 R |p x q| + pi R^2 (|p| + |q|) + (4/3) pi R^3, R half the sum of the diameters: exact, and pi/4 for the
+ * sine in the mean over all directions. 4.5 errors: one false alarm in 10^5 for each row. */
 static void overlaps_fill_their_volume(void **unused)
 {
   (void)unused;
   static const struct pair_of_kinds rows[] = {
-      {{2, 2}, {1.0, 1.0}, {0.5, 0.5}, -1},    {{2, 2}, {2.5, 2.5}, {0.5, 0.5}, -1},
-      {{2, 2}, {2.0, 2.0}, {0.02, 0.02}, -1},  {{2, 2}, {1.5, 0.8}, {0.2, 0.6}, -1},
-      {{6, 6}, {2.5, 2.5}, {0.2, 0.2}, -1},    {{2, 2}, {2.0, 2.0}, {0.5, 0.5}, 0},
-      {{2, 2}, {2.0, 2.0}, {0.5, 0.5}, 30},    {{2, 3}, {2.0, 2.0}, {0.5, 0.0}, 90},
+      {{2, 2}, {1.0, 1.0}, {0.5, 0.5}, -1},   {{2, 2}, {2.5, 2.5}, {0.5, 0.5}, -1},
+      {{2, 2}, {2.0, 2.0}, {0.02, 0.02}, -1}, {{2, 2}, {1.5, 0.8}, {0.2, 0.6}, -1},
+      {{6, 6}, {2.5, 2.5}, {0.2, 0.2}, -1},   {{2, 2}, {2.0, 2.0}, {0.5, 0.5}, 0},
+      {{2, 2}, {2.0, 2.0}, {0.5, 0.5}, 30},   {{2, 3}, {2.0, 2.0}, {0.5, 0.0}, 90},
   };
   struct dice d = {dice_seed(1911)};
   for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
