@@ -1,5 +1,6 @@
 #include "fluid/boundary.h"
 
+#include "system/bead.h"
 #include "system/shear.h"
 
 static bool boundaries_move(const struct model *model)
@@ -10,6 +11,11 @@ static bool boundaries_move(const struct model *model)
 struct span boundary_lag(const struct state *state, const struct model *model)
 {
   const bool uniform = model->solvent.profile == PROFILE_UNIFORM;
+  if (model->bead.driven) /* nothing else accelerates the solvent then */
+    return (struct span){.time = 0.5 * state->solvent_lag * model->time_step,
+                         .begin = state->solvent_time,
+                         .end = state->solvent_time + state->solvent_lag,
+                         .acceleration = bead_counter(state, model)};
   return (struct span){.time = 0.5 * state->solvent_lag * model->time_step,
                        .begin = state->solvent_time,
                        .end = state->solvent_time + state->solvent_lag,
