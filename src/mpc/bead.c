@@ -201,9 +201,13 @@ static double part_before(const struct model *model)
 static bool stream_and_drive(struct state *state, const struct model *model, struct mpc *c, uint64_t step,
                              uint64_t *span, struct fault *fault)
 {
+  const struct point from = state->bead->position;
+  const uint64_t begin = state->solvent_time, end = begin + state->solvent_lag;
   if (!rebound(state, model, c, step, span, fault))
     return false;
-  drive(state, model, state->solvent_time + state->solvent_lag, part_before(model));
+  if (model->bead.driven)
+    bead_work(state->bead, model, from, begin, end);
+  drive(state, model, end, part_before(model));
   return true;
 }
 

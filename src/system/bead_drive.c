@@ -50,10 +50,15 @@ struct vec3 bead_counter(const struct state *state, const struct model *model)
 
 void bead_kick(struct bead *bead, const struct model *model, uint64_t half_steps, double time)
 {
-  const struct vec3 change = vec3_scale(time / model->bead.mass, bead_force(model, bead->position, half_steps));
-  bead_account(&bead->account.y,
-               model->bead.mass * (vec3_dot(change, bead->velocity) + 0.5 * vec3_dot(change, change)));
-  bead->velocity = vec3_add(bead->velocity, change);
+  const struct vec3 force = bead_force(model, bead->position, half_steps);
+  bead->velocity = vec3_add_scaled(bead->velocity, time / model->bead.mass, force);
+}
+
+void bead_work(struct bead *bead, const struct model *model, struct point from, uint64_t begin, uint64_t end)
+{
+  const struct vec3 before = bead_force(model, from, begin), after = bead_force(model, bead->position, end);
+  const struct vec3 way = point_in_a0(point_minus(bead->position, from));
+  bead_account(&bead->account.y, 0.5 * vec3_dot(vec3_add(before, after), way));
 }
 
 struct vec3 bead_velocity_now(const struct state *state, const struct model *model)
