@@ -22,6 +22,12 @@ static const struct refusal {
     {"medium: {kind: pairs, rate: 1, weight: -1, density: 3}", 40, "allowed: hat | quadratic"},
     {"medium: {kind: pairs, rate: 1, draw: again, density: 3}", 38, "allowed: replace | relax | cayley"},
     {"medium: {kind: pairs, rate: 1, density: 3, cutoff: 2}", 44, "unknown key 'cutoff'"},
+    {"medium: {kind: pairs, rate: 1, density: 3, repulsion: -1}", 55, "an attraction without many_body"},
+    {"medium: {kind: pairs, rate: 1, density: 3, repulsion: 1001}", 55, "medium.repulsion: '1001' is out of range"},
+    {"medium: {kind: pairs, rate: 1, density: 3, second: {share: 0.0005, repulsion: 50}}", 60, "a group that no one has"},
+    {"medium: {kind: pairs, rate: 1, density: 3, second: {share: 0.5}}", 52, "key 'repulsion' is missing"},
+    {"medium: {kind: pairs, rate: 1, density: 3, many_body: {repulsion: 25, range: 1.5}}", 78, "is out of range"},
+    {"medium: {kind: private, rate: 1, repulsion: 25}" FIBER, 16, "knows no distances, so no repulsion"},
     {"medium: {kind: private, rate: 1}", 16, "there are no fibers"},
     {"medium: {kind: private, rate: 10.001}" FIBER, 31, "no probability"},
     {"medium: {kind: private, rate: 1, density: 3}" FIBER, 43, "a private bath has no particles"},
@@ -41,6 +47,8 @@ static const struct elsewhere {
      "images that slide"},
     {"box: [6, 6, 6]", "medium: {kind: pairs, rate: 1, density: 3}\ndumbbells: {spring: 1}", "m.yaml:6:12: ",
      "has springs"},
+    {"box: [6, 6, 6]", "medium: {kind: pairs, rate: 1, density: 3, repulsion: 25}\ncrossing: {rule: event-driven}" FIBER,
+     "m.yaml:6:18: ", "allowed with repulsion: sequential"},
 };
 
 static bool read_scene(const char *first, const char *last, struct scene *scene, struct message *message)
@@ -80,6 +88,8 @@ static void bounds(void **unused)
       "medium: {kind: pairs, rate: 10, density: 3}",
       "medium: {kind: pairs, rate: 1000, density: 3, draw: relax, weight: quadratic}",
       "medium: {kind: private, rate: 10}" FIBER,
+      "medium: {kind: pairs, rate: 1, density: 3, repulsion: -40, many_body: {repulsion: 25}}",
+      "medium: {kind: pairs, rate: 1, density: 3, repulsion: 25, second: {share: 1, repulsion: 50, start: slab}}",
   };
   for (size_t k = 0; k < sizeof lines / sizeof *lines; k++) {
     struct scene scene;
