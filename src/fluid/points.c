@@ -14,8 +14,7 @@ static int64_t start_height(const struct model *model, uint32_t id, int64_t y)
     return y;
   const int64_t edge = model->box.edge[1], border = (int64_t)(m->second.share * (double)edge);
   const double part = (double)y / (double)edge;
-  return id >= m->second.first ? (int64_t)(part * (double)border)
-                               : border + (int64_t)(part * (double)(edge - border));
+  return id >= m->second.first ? (int64_t)(part * (double)border) : border + (int64_t)(part * (double)(edge - border));
 }
 
 /* Uniform in the box. */

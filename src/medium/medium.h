@@ -2,9 +2,9 @@
  * Baths other than that of collision cells (mpc/), the same one operator (bath.h) with two choices of partner:
  *
  *   private   private.c: each component of a vertex's velocity, about the flow
- *   pairs     near.c finds all pairs of members that are nearer than 1 a0; encounters.c chooses among them; pairs.c acts
- *             on one after the other, in a random order, on the component of their relative velocity along the line
- *             between them
+ *   pairs     near.c finds all pairs of members that are nearer than 1 a0; encounters.c chooses among them; pairs.c
+ * acts on one after the other, in a random order, on the component of their relative velocity along the line between
+ * them
  *
  * Pairs may also exert forces on each other: repulsion.c.
  *

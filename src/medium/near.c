@@ -49,7 +49,8 @@ static bool visit(const struct near_search *s, const uint32_t *a, const uint32_t
 }
 
 /* Cells x - 1 to x + 1 of a row, or x + 1 alone; where the box ends, two ranges. */
-static uint32_t add_row(const struct near_search *s, int low, int high, int y, int z, uint32_t ranges, struct range *range)
+static uint32_t add_row(const struct near_search *s, int low, int high, int y, int z, uint32_t ranges,
+                        struct range *range)
 {
   const int *edge = s->model->box.cells;
   const uint32_t *first = s->medium->first;

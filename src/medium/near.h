@@ -16,7 +16,7 @@ struct near_pairs {
 
 struct near_search {
   const struct model *model;
-  struct medium *medium; /* members_gather has filled it */
+  struct medium *medium;                                                    /* members_gather has filled it */
   bool (*look)(const struct near_search *search, struct near_pairs *pairs); /* false stops the search */
   void *context;
 };

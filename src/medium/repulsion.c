@@ -19,7 +19,8 @@ static double crowd_factor(double d)
   return 15.0 / (2.0 * pi * d * d * d);
 }
 
-/* --- one block of pairs -------------------------------------------------------------------------------------------- */
+/* --- one block of pairs --------------------------------------------------------------------------------------------
+ */
 
 /* a of each pair, kT/a0. */
 static void strengths(const struct near_search *s, const struct near_pairs *p, double *a)
@@ -116,7 +117,8 @@ static void find_forces(const struct model *model, struct medium *m)
   }
 }
 
-/* --- a step -------------------------------------------------------------------------------------------------------- */
+/* --- a step --------------------------------------------------------------------------------------------------------
+ */
 
 bool repulsion_forces(struct state *state, const struct model *model, struct medium *medium, struct fault *fault)
 {
@@ -142,7 +144,8 @@ void repulsion_kick(struct state *state, const struct model *model, const struct
     state->velocity[v] = vec3_add_scaled(state->velocity[v], dt * model->inverse_mass[v], medium->force[s->n + v]);
 }
 
-/* --- sums for observers -------------------------------------------------------------------------------------------- */
+/* --- sums for observers --------------------------------------------------------------------------------------------
+ */
 
 struct summing {
   struct repulsion_sums *sums;
@@ -174,8 +177,7 @@ static void add_slopes(const struct near_search *s, const struct near_pairs *p, 
   t->slope[b] = vec3_sub(t->slope[b], e);
   t->curve[a] += first * first;
   t->curve[b] += first * first;
-  t->sums->laplacian +=
-      ends * derived * (crowd_at(s->medium, a) + crowd_at(s->medium, b)) * (second + 2.0 * first / r);
+  t->sums->laplacian += ends * derived * (crowd_at(s->medium, a) + crowd_at(s->medium, b)) * (second + 2.0 * first / r);
 }
 
 static bool add_sums(const struct near_search *s, struct near_pairs *p)

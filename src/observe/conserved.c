@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "fiber/force.h"
 #include "base/memory.h"
+#include "fiber/force.h"
 #include "fluid/fluid.h"
 #include "medium/repulsion.h"
 #include "observe/observer.h"
@@ -196,8 +196,8 @@ struct motion motion_measure(const struct model *model, const struct state *stat
   struct motion m = {.bond = 0.0};
   struct repulsion_sums pairs;
   struct vec3 *pair;
-  const struct memory_need need = {
-      (void **)&pair, model_repels(model) ? (size_t)state->solvent.n + state->vertices : 0, sizeof *pair};
+  const struct memory_need need = {(void **)&pair, model_repels(model) ? (size_t)state->solvent.n + state->vertices : 0,
+                                   sizeof *pair};
   const bool known = memory_take(&need, 1) && repulsion_measure(state, model, pair, &pairs);
   measure_vertices(model, state, force, pair, &m);
   measure_solvent(model, state, force, pair, &m);
@@ -214,8 +214,12 @@ static struct conserved conserved_of(const struct motion *m)
 {
   const double solvent = 0.5 * (m->solvent_squares.x + m->solvent_squares.y + m->solvent_squares.z);
   const double kinetic = solvent + m->vertex.kinetic;
-  struct conserved c = {solvent, m->vertex.kinetic,           m->bond,
-                        m->bend, kinetic + m->bond + m->bend + m->pairs, vec3_add(m->solvent_sum, m->vertex.momentum)};
+  struct conserved c = {solvent,
+                        m->vertex.kinetic,
+                        m->bond,
+                        m->bend,
+                        kinetic + m->bond + m->bend + m->pairs,
+                        vec3_add(m->solvent_sum, m->vertex.momentum)};
   if (m->bead.kinetic > 0.0) {
     c.total += m->bead.kinetic;
     c.momentum = vec3_add(c.momentum, m->bead.momentum);

@@ -53,8 +53,7 @@ static void add_bonded(const struct model *model, const struct state *state, uin
   const struct vec3 bond = fiber_bond(state, model, v);
   s->laplacian += bond_laplacian(k, (int)model->dimensions, vec3_norm(bond));
   if (k->bending != 0.0 && model->prev[v] >= 0)
-    s->laplacian +=
-        bend_laplacian(k, (int)model->dimensions, fiber_bond(state, model, (uint32_t)model->prev[v]), bond);
+    s->laplacian += bend_laplacian(k, (int)model->dimensions, fiber_bond(state, model, (uint32_t)model->prev[v]), bond);
 }
 
 /* bonded: forces of bonds and bends, and the constant one; pair: those of the medium's pairs, NULL without. */

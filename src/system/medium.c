@@ -63,7 +63,8 @@ static bool check_forces(struct model *m, struct model_error *error)
       {b->repulsion >= 0.0 || b->many.repulsion > 0.0, "medium.repulsion",
        "an attraction without many_body, under which all members fall onto each other; allowed: 0 and more"},
       {!model_repels(m) || !chases, "crossing.rule",
-       "forces of particles are known once in a step, and contacts need them at their own time; allowed with repulsion: "
+       "forces of particles are known once in a step, and contacts need them at their own time; allowed with "
+       "repulsion: "
        "sequential"},
   };
   if (!refuse_first(rows, sizeof rows / sizeof *rows, error))
@@ -71,8 +72,9 @@ static bool check_forces(struct model *m, struct model_error *error)
   const double others = nearbyint(b->second.share * m->solvent.particles);
   m->medium.second.first = m->solvent.particles - (uint32_t)others;
   return b->second.share == 0.0 || others >= 1.0 ||
-         model_reject(error, "medium.second.share", "%.15g of %u particles is a group that no one has; allowed: 1 "
-                                                    "particle and more",
+         model_reject(error, "medium.second.share",
+                      "%.15g of %u particles is a group that no one has; allowed: 1 "
+                      "particle and more",
                       b->second.share, m->solvent.particles);
 }
 

@@ -115,7 +115,8 @@ static const struct key_table solvent_table = {"solvent", NULL, COUNT(solvent_ke
 
 static const struct key second_keys[] = {
     {.name = "share",
-     .text = "Of the particles that are of the second group: those with the highest numbers. Vertices are of the first.",
+     .text =
+         "Of the particles that are of the second group: those with the highest numbers. Vertices are of the first.",
      .type = KEY_NUMBER,
      .low = 0,
      .above = true,
@@ -131,8 +132,9 @@ static const struct key second_keys[] = {
      .unit = "kT/a0",
      .symbol = "a_AB"},
     {.name = "start",
-     .text = "Where the second group is laid. `mixed`: anywhere. `slab`: below `share` times the box's edge along y, the "
-             "first group above.",
+     .text =
+         "Where the second group is laid. `mixed`: anywhere. `slab`: below `share` times the box's edge along y, the "
+         "first group above.",
      .type = KEY_CHOICE,
      .absent = "mixed",
      .choice = layout_words,
@@ -213,8 +215,9 @@ static const struct key medium_keys[] = {
      .unit = "1/a0^3",
      .symbol = "rho"},
     {.name = "repulsion",
-     .text = "Of pairs: a of the force a (1 - r) between any two members nearer than 1 a0 (DPD). Below 0 an attraction, "
-             "which needs `many_body`.",
+     .text =
+         "Of pairs: a of the force a (1 - r) between any two members nearer than 1 a0 (DPD). Below 0 an attraction, "
+         "which needs `many_body`.",
      .type = KEY_NUMBER,
      .absent = "0",
      .low = -1000,

@@ -64,10 +64,8 @@ static void scratch_is_what_is_used(void **unused)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_row_has_a_word),
-      cmocka_unit_test(temperature_is_one),
-      cmocka_unit_test(bits_are_the_same),
-      cmocka_unit_test(forces_have_the_same_bits),
+      cmocka_unit_test(every_row_has_a_word),    cmocka_unit_test(temperature_is_one),
+      cmocka_unit_test(bits_are_the_same),       cmocka_unit_test(forces_have_the_same_bits),
       cmocka_unit_test(scratch_is_what_is_used),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

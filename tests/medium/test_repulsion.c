@@ -97,9 +97,9 @@ static double along(struct vec3 v, int axis)
   return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
 }
 
-/* U as the definition has it; F = -grad U; sum of r.F = -dU/d ln scale; the Laplacian is the divergence of -F. Differences
- * over 2 h = 2^-23 a0: forces have a kink at 1 a0, and no pair should be that near to it. Rounding of U leaves 1e-6, that of
- * forces 2e-3 per coordinate. */
+/* U as the definition has it; F = -grad U; sum of r.F = -dU/d ln scale; the Laplacian is the divergence of -F.
+ * Differences over 2 h = 2^-23 a0: forces have a kink at 1 a0, and no pair should be that near to it. Rounding of U
+ * leaves 1e-6, that of forces 2e-3 per coordinate. */
 static void forces_are_gradients(void **unused)
 {
   (void)unused;
@@ -175,7 +175,8 @@ static void forces_cancel(void **unused)
   }
 }
 
-/* --- observers ----------------------------------------------------------------------------------------------------- */
+/* --- observers -----------------------------------------------------------------------------------------------------
+ */
 
 enum { TIME, PRESSURE, XX, YY, ZZ, XY, POTENTIAL, SQUARE, LAPLACIAN, CONFIGURATIONAL, COLUMNS };
 
@@ -309,8 +310,8 @@ static void equation_of_state(void **unused)
   test_end(&r);
 }
 
-/* Particles that do not repel stay an ideal gas in the bath: as many pairs nearer than s as chance makes, in every draw.
- * A bath that pulls with old velocities makes them gather. Counts of pairs in 40 states that are 2 t0 apart; 4.5
+/* Particles that do not repel stay an ideal gas in the bath: as many pairs nearer than s as chance makes, in every
+ * draw. A bath that pulls with old velocities makes them gather. Counts of pairs in 40 states that are 2 t0 apart; 4.5
  * standard errors. */
 static void ideal_gas(void **unused)
 {
@@ -343,8 +344,9 @@ static void ideal_gas(void **unused)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(forces_are_gradients), cmocka_unit_test(forces_cancel),     cmocka_unit_test(laplacian_of_fibers),
-      cmocka_unit_test(ideal_chains),         cmocka_unit_test(equation_of_state), cmocka_unit_test(ideal_gas),
+      cmocka_unit_test(forces_are_gradients), cmocka_unit_test(forces_cancel),
+      cmocka_unit_test(laplacian_of_fibers),  cmocka_unit_test(ideal_chains),
+      cmocka_unit_test(equation_of_state),    cmocka_unit_test(ideal_gas),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -9,8 +9,7 @@
 static struct model pairs(double rate, double dt, enum medium_draw draw, enum medium_weight weight)
 {
   struct model m = test_model(5, 5, 5, 0, dt, 0);
-  m.medium = (struct medium_model){
-      .kind = MEDIUM_PAIRS, .rate = rate, .draw = draw, .weight = weight, .density = 3.0};
+  m.medium = (struct medium_model){.kind = MEDIUM_PAIRS, .rate = rate, .draw = draw, .weight = weight, .density = 3.0};
   test_finish(&m);
   return m;
 }
@@ -41,8 +40,8 @@ static void dissipative_particles(void **unused)
   }
 }
 
-/* D is the same at the same rate. Per collision the kinetic stress loses (1 - c)/3 - (1 - c)^2/15: 4/15 for c = 0, and 1/3
- * of the loss for weak relaxation. So `replace` has 5/4 of the kinetic viscosity. */
+/* D is the same at the same rate. Per collision the kinetic stress loses (1 - c)/3 - (1 - c)^2/15: 4/15 for c = 0, and
+ * 1/3 of the loss for weak relaxation. So `replace` has 5/4 of the kinetic viscosity. */
 static void what_tells_replacing_from_relaxing(void **unused)
 {
   (void)unused;
