@@ -190,6 +190,35 @@ static bool keep_row(void *context, enum observable which, size_t columns, const
   return true;
 }
 
+/* Temperatures are those of the step: velocities are taken back by half of one. */
+static void velocities_of_the_step(void **unused)
+{
+  (void)unused;
+  struct model m = fluid(5, 3.0, 0.04, DPD);
+  test_add_kind(&m, 5, 4)->mass = 2.0;
+  struct test_run r = test_start(m);
+  const struct observe_plan plan = {.every[OBSERVE_TEMPERATURE] = 1};
+  struct observers *o = observers_create(&plan, &r.model);
+  double row[COLUMNS + 2], square = 0.0;
+  const struct observe_sink sink = {keep_row, row};
+  test_steps(&r, 20);
+  const uint32_t n = r.state.solvent.n;
+  struct vec3 *force = calloc(n + r.state.vertices, sizeof *force), sum = {0, 0, 0};
+  struct repulsion_sums sums;
+  assert_true(repulsion_measure(&r.state, &r.model, force, &sums));
+  for (uint32_t i = 0; i < n; i++) {
+    const struct vec3 v = vec3_add_scaled(solvent_velocity(&r.state.solvent, i), -0.02, force[r.state.solvent.id[i]]);
+    square += vec3_dot(v, v);
+    sum = vec3_add(sum, v);
+  }
+  assert_true(observers_sample(o, &r.model, &r.state, &sink));
+  assert_close(row[COLUMNS + 1], square / (3.0 * n * (1.0 - 1.0 / r.model.total_mass)), 1e-9);
+  assert_true(vec3_norm(sum) > 0.1); /* vertices have the rest of the momentum */
+  free(force);
+  observers_free(o);
+  test_end(&r);
+}
+
 /* The Laplacian of bonds and bends: minus the divergence of their forces, by differences. */
 static void laplacian_of_fibers(void **unused)
 {

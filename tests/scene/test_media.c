@@ -89,7 +89,7 @@ static void bounds(void **unused)
   static const char *const lines[] = {
       "medium: {kind: pairs, rate: 10, density: 3}",
       "medium: {kind: pairs, rate: 1000, density: 3, draw: relax, weight: quadratic}",
-      "medium: {kind: private, rate: 10}" FIBER,
+      ("medium: {kind: private, rate: 10}" FIBER),
       "medium: {kind: pairs, rate: 1, density: 3, repulsion: -40, many_body: {repulsion: 25}}",
       "medium: {kind: pairs, rate: 1, density: 3, repulsion: 25, second: {share: 1, repulsion: 50, start: slab}}",
   };
