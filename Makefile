@@ -28,6 +28,10 @@ FAST       := $(if $(PLAIN),,$(KERNELS))
 sse2_FLAGS := -msse2
 avx2_FLAGS := -mavx2
 avx512_FLAGS := -mavx512f -mavx512dq -mavx512vl
+# For tests alone: the lanes of AVX2 and of AVX-512 on processors that have neither.
+WIDE       := four eight
+four_FLAGS := -DLANES=4 -Wno-psabi
+eight_FLAGS := -DLANES=8 -Wno-psabi
 
 SOURCES := $(filter-out src/kernel/solvent.c src/kernel/$(if $(PLAIN),rows,none).c,$(sort $(shell find src -name '*.c')))
 OBJECTS := $(SOURCES:%.c=$(BUILD)/%.o) $(FAST:%=$(BUILD)/src/kernel/%.o)
@@ -94,7 +98,7 @@ $(BUILD)/%.o: %.c Makefile
 # Whatever OPTIMIZE asks for, of the processor a kernel may only use what its name says.
 KERNEL_CFLAGS = $(filter-out -march=% -mtune=%,$(ALL_CFLAGS)) -march=x86-64 $($*_FLAGS) -DKERNEL=kernel_$* -DKERNEL_NAME='"$*"'
 
-$(KERNELS:%=$(BUILD)/src/kernel/%.o): $(BUILD)/src/kernel/%.o: src/kernel/solvent.c Makefile
+$(patsubst %,$(BUILD)/src/kernel/%.o,$(KERNELS) $(WIDE)): $(BUILD)/src/kernel/%.o: src/kernel/solvent.c Makefile
 	@mkdir -p $(@D)
 	@echo '  CC $< ($*)'
 	@$(CC) $(KERNEL_CFLAGS) $(DEPENDENCIES) -c $< -o $@
@@ -240,7 +244,7 @@ $(BUILD)/tests/api/test_core: tests/api/test_core.c $(BUILD)/lib/libuncross-core
 	   -lcmocka -lxxhash -lm -o $@
 
 # Holds all kernels against the plain one, whether the program has them or not.
-ROWS := $(if $(KERNELS),$(BUILD)/src/kernel/rows.o $(KERNELS:%=$(BUILD)/src/kernel/%.o))
+ROWS := $(if $(KERNELS),$(BUILD)/src/kernel/rows.o) $(patsubst %,$(BUILD)/src/kernel/%.o,$(KERNELS) $(WIDE))
 $(filter $(BUILD)/tests/kernel/%,$(TEST_PROGRAMS)): $(BUILD)/%: %.c $(ROWS) $(LIBRARY) Makefile
 	@mkdir -p $(@D)
 	@echo '  CC $<'

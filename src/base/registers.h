@@ -2,7 +2,8 @@
  * As many 64-bit numbers as a register holds, in the vectors of gcc and clang: 8 with AVX-512, 4 with AVX2, else 2.
  * Which of them is known when a file is compiled. + - * / & | ^ ~ << >> act on each number; a comparison gives all ones
  * for true, 0 for false. What they have no operator for is here. For random numbers, and for the fast kernels
- * (kernel/), which are compiled for each.
+ * (kernel/), which are compiled for each. Tests ask for 8 lanes of any processor: the compiler then makes a vector of
+ * several registers.
  */
 #ifndef UNCROSS_BASE_REGISTERS_H
 #define UNCROSS_BASE_REGISTERS_H
@@ -15,12 +16,14 @@
 #include <immintrin.h>
 #endif
 
+#ifndef LANES
 #if defined __AVX512F__
 #define LANES 8
 #elif defined __AVX2__
 #define LANES 4
 #else
 #define LANES 2
+#endif
 #endif
 
 typedef double reals __attribute__((vector_size(LANES * 8)));
@@ -106,11 +109,11 @@ INLINE words multiply(words x, uint32_t m)
  * 64, or adds shifted words, at more than twice the cost of a whole Philox. */
 INLINE words multiply_low(words x, uint32_t m)
 {
-#if defined __AVX512F__
+#if LANES == 8 && defined __AVX512F__
   return (words)_mm512_mul_epu32((__m512i)x, _mm512_set1_epi64(m));
-#elif defined __AVX2__
+#elif LANES == 4 && defined __AVX2__
   return (words)_mm256_mul_epu32((__m256i)x, _mm256_set1_epi64x(m));
-#elif defined __SSE2__
+#elif LANES == 2 && defined __SSE2__
   return (words)_mm_mul_epu32((__m128i)x, _mm_set1_epi64x(m));
 #else
   return (x & 0xffffffff) * m;
@@ -119,11 +122,11 @@ INLINE words multiply_low(words x, uint32_t m)
 
 INLINE reals square_root(reals x)
 {
-#if defined __AVX512F__
+#if LANES == 8 && defined __AVX512F__
   return (reals)_mm512_sqrt_pd((__m512d)x);
-#elif defined __AVX2__
+#elif LANES == 4 && defined __AVX2__
   return (reals)_mm256_sqrt_pd((__m256d)x);
-#elif defined __SSE2__
+#elif LANES == 2 && defined __SSE2__
   return (reals)_mm_sqrt_pd((__m128d)x);
 #else
   for (int k = 0; k < LANES; k++)

@@ -108,15 +108,16 @@ static void assert_same_collision(struct pair *p, uint64_t step, const char *nam
 
 /* --- kernels and scenes ------------------------------------------------------------------------------------------ */
 
+/* The lanes of AVX2 and AVX-512 with any processor's instructions: each order of lanes is seen on each machine. */
+extern const struct kernel kernel_four, kernel_eight;
+
 static void for_each_kernel(void (*test)(const struct kernel *))
 {
-  uint32_t tried = 0;
   for (size_t k = 0; k < kernel_row_count; k++)
-    if (kernel_rows[k].runs()) {
+    if (kernel_rows[k].runs())
       test(kernel_rows[k].kernel);
-      tried++;
-    }
-  assert_true(tried > 0 || kernel_row_count == 0);
+  test(&kernel_four);
+  test(&kernel_eight);
 }
 
 /* 1223 particles: no multiple of any register, and more than four chunks. */

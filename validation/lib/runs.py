@@ -39,6 +39,7 @@ class Run:
     hours: float = 0.0
     priority: int = 0
     goals: tuple = ()  # (steps, priority), ...: stops on the way to `steps`, so that every figure is coarse before one is fine
+    after: tuple = ()  # (NAME, arguments ...): when the run is finished, validation/measure/NAME.py prints NAME.csv from its trajectory
     case: str = None  # set by whoever lists the runs
     stage: bool = False  # a stop on the way, not the whole run
 
@@ -210,8 +211,24 @@ def execute_locked(run, folder, build, fresh, lock):
         (folder / "output.part").replace(folder / "output.txt")
     else:
         (folder / "output.part").unlink()
+    if run.after and code == 0 and not run.stage:
+        code = evaluate_after(run, folder)
+        session["finished"] = code == 0
     write_json(folder / "session.json", session)
     return INTERRUPTED if caught and code != 0 else code
+
+
+def evaluate_after(run, folder):
+    """Exit code of the evaluation of the run's trajectory, into a table beside it."""
+    name, *arguments = run.after
+    script = pathlib.Path(__file__).resolve().parent.parent / f"measure/{name}.py"
+    part = folder / f"{name}.part"
+    with open(part, "wb") as output:
+        code = subprocess.run([sys.executable, str(script), str(folder / "trajectory.h5"), *map(str, arguments)],
+                              stdout=output, check=False).returncode
+    if code == 0:
+        part.replace(folder / f"{name}.csv")
+    return code
 
 
 def call(command, output, lock):

@@ -53,6 +53,9 @@ def campaign():
     for name, solvent, hours in (("held-off", sd.BATH, 0.7), ("held-hi", sd.SOLVENT, 1.0)):
         found.append(Run(name, steps=400000, hours=hours, seed=460 + (name == "held-hi"), priority=1,
                          scene=sd.scene(count=MOBILE, solvent=solvent, others=sd.frozen_network(1000 - MOBILE), longest_lag=204800)))
+    # Where everybody moves: how much of it is a motion of a fiber together with its neighbors, those nearer than two mesh sizes?
+    found.append(Run("cage-off", steps=200000, hours=0.4, seed=470, priority=1, after=("cage", round(2.0 * sd.mesh_size(1000, 32.0, 32.0), 2)),
+                     scene=sd.scene(count=1000, solvent=sd.BATH, longest_lag=102400) + "trajectory: {every: 1000}\n"))
     # Four fibers in one box: each is dilute, and four times the turning is seen for the same solvent. 40 without
     # hydrodynamics, where nobody feels anybody.
     found.append(Run("axis-off", steps=2000000, hours=0.12, seed=3200, priority=1,
@@ -269,7 +272,7 @@ def rotation_verdicts(results, system):
 
 # --- figures ----------------------------------------------------------------------------------------------------------
 
-def draw(curves, held, system, times, errors, column):
+def draw(curves, held, cage, system, times, errors, column):
     """times: tau_r of either kind; errors: theirs, relative."""
     figure, above, below = figures.with_residuals(height=5.6)
     scale = system["length"]**2
@@ -286,6 +289,9 @@ def draw(curves, held, system, times, errors, column):
         if columns is not None:
             figures.points(above, columns["time"] / times[which], columns[column] / scale, columns[column + "_error"] / scale,
                            4 + number, label=f"held tube, {'on' if which == 'hi' else 'off'}", linestyle="-", markersize=2.6)
+    if cage is not None:
+        figures.points(above, cage["time"] / times["off"], cage["cage"] / scale, cage["cage_error"] / scale, 6,
+                       label="relative to its cage, off", linestyle="-", markersize=2.6)
     above.axhline(2 * square, color=figures.INK, linestyle="-.", linewidth=1.1, label="$2L_\\perp^2$, Eq. (35)")
     above.axhline(4 * square, color=figures.INK, linestyle=(0, (1, 3)), linewidth=1.1, label="$4L_\\perp^2$")
     for which, line in (("hi", "-"), ("off", "--")) if column == "d2_contour" else ():  # the other has the vertices' floor
@@ -315,6 +321,7 @@ def evaluate(results, tier):
     system = SYSTEMS[tier]
     curves = {name: curve(results, name) for name in CASES}
     held = {which: sd.table(results.get(f"held-{which}"), least=2) for which in ("hi", "off")}
+    cage = sd.table(results.get("cage-off"), "cage", least=2)
     measured = {which: rotation(results, which) for which in ("hi", "off")}
     times = {which: measured[which][0] if measured[which] else expected_rotation(which, system) for which in measured}
     words = {which: f"({1e-5 * pair[0]:.2f} ± {1e-5 * pair[1]:.2f})·10⁵ t0" if pair else
@@ -331,7 +338,7 @@ def evaluate(results, tier):
                "forbidden over free at the same lag. 2 L⊥²: the line that the paper draws. 4 L⊥²: where a fixed tube would end, because both positions that d² compares "
                "fluctuate. Free motion becomes hindered near the first line. The curve passes both: the tube shifts as its neighbors move. Horizontal bars: the error of τ_r, by which each pair of curves may be shifted sideways.")
     errors = {which: pair[1] / pair[0] if pair else None for which, pair in measured.items()}
-    found = [Figure(f"fig4-{column}", what + caption, lambda column=column: draw(curves, held, system, times, errors, column))
+    found = [Figure(f"fig4-{column}", what + caption, lambda column=column: draw(curves, held, cage, system, times, errors, column))
              for column, what in (("d2", "The paper's d²(t), to the nearest vertex. "),
                                   ("d2_contour", "The same to the nearest point of the contour. "))]
     return Outcome(verdicts, found, PROSE + (half_words(curves, system) if tier == "campaign" else ""))
