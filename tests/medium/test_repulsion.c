@@ -373,9 +373,13 @@ static void ideal_gas(void **unused)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(forces_are_gradients), cmocka_unit_test(forces_cancel),
-      cmocka_unit_test(laplacian_of_fibers),  cmocka_unit_test(ideal_chains),
-      cmocka_unit_test(equation_of_state),    cmocka_unit_test(ideal_gas),
+      cmocka_unit_test(forces_are_gradients),
+      cmocka_unit_test(forces_cancel),
+      cmocka_unit_test(laplacian_of_fibers),
+      cmocka_unit_test(velocities_of_the_step),
+      cmocka_unit_test(ideal_chains),
+      cmocka_unit_test(equation_of_state),
+      cmocka_unit_test(ideal_gas),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
