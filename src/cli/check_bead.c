@@ -15,7 +15,8 @@ static void report_drive(const struct si_scale *si, const struct model *m, doubl
   const double force = vec3_norm(d->force), speed = force / friction, nu = units_viscosity(m) / m->solvent.per_cell;
   if (force > 0.0) {
     sheet_row(si, "speed under the force", "", speed, "a0/t0", "F/xi, relative to the mean of everything");
-    sheet_row(si, "Reynolds number", "Re", speed * m->bead.radius / nu, "", "V R/nu; keep below 0.1 to compare with Stokes");
+    sheet_row(si, "Reynolds number", "Re", speed * m->bead.radius / nu, "",
+              "V R/nu; keep below 0.1 to compare with Stokes");
   }
   if (d->spring == 0.0)
     return;

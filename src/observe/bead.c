@@ -33,10 +33,9 @@ static void bead_row(struct observer *observer, struct view *view, double *row)
   memcpy(row, values, sizeof values);
 }
 
-static const char *const columns[] = {"time",       "place_x",    "place_y",    "place_z",
-                                      "velocity_x", "velocity_y", "velocity_z", "force_x",
-                                      "force_y",    "force_z",    "trap_x",     "trap_y",
-                                      "trap_z",     "work",       "heat",       "hits"};
+static const char *const columns[] = {"time",       "place_x", "place_y", "place_z", "velocity_x", "velocity_y",
+                                      "velocity_z", "force_x", "force_y", "force_z", "trap_x",     "trap_y",
+                                      "trap_z",     "work",    "heat",    "hits"};
 
 const struct observer_type bead_observer = {
     .column = columns,

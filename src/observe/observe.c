@@ -19,7 +19,8 @@ static const struct observer_type *const types[OBSERVABLES] = {
 const char *const observable_names[OBSERVABLES] = {
     [OBSERVE_CONSERVED] = "conserved", [OBSERVE_TEMPERATURE] = "temperature", [OBSERVE_STATICS] = "statics",
     [OBSERVE_DYNAMICS] = "dynamics",   [OBSERVE_COLLISIONS] = "collisions",   [OBSERVE_PROFILE] = "profile",
-    [OBSERVE_STRESS] = "stress",       [OBSERVE_DUMBBELLS] = "dumbbells",     [OBSERVE_ORIENTATION] = "orientation", [OBSERVE_BEAD] = "bead",
+    [OBSERVE_STRESS] = "stress",       [OBSERVE_DUMBBELLS] = "dumbbells",     [OBSERVE_ORIENTATION] = "orientation",
+    [OBSERVE_BEAD] = "bead",
 };
 
 enum { MAX_BLOCKS = 6 * OBSERVABLES };
