@@ -153,8 +153,8 @@ static void set_total_momentum(struct state *state, const struct model *model)
     state->bead->velocity = vec3_add(state->bead->velocity, change);
 }
 
-/* As between steps, the velocity of a driven bead is that of the half step ahead; that of all else is half a step behind
- * with the counterforce, which acts in flight. */
+/* As between steps, the velocity of a driven bead is that of the half step ahead; that of all else is half a step
+ * behind with the counterforce, which acts in flight. */
 static void start_drive(struct state *state, const struct model *model)
 {
   const double half = 0.5 * model->time_step;

@@ -108,8 +108,8 @@ bool scene_start(const struct scene *scene, struct state *state, struct work *wo
   bool ok = path && snapshot_read_start(path, m, state, message);
   free(path);
   ok = ok && (state_sound(state, m, &work->fault) || message_fault(message, &work->fault)) &&
-         is_flat_as_said(scene, state, message) && flows_as_said(scene, state, work, message) &&
-         (step_sound(state, m, &work->fault) || refuse_start(scene, &work->fault, message));
+       is_flat_as_said(scene, state, message) && flows_as_said(scene, state, work, message) &&
+       (step_sound(state, m, &work->fault) || refuse_start(scene, &work->fault, message));
   if (ok)
     step_begin_drive(state, m);
   return ok;

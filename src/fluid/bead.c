@@ -11,8 +11,8 @@
  * v' = 2 U - v, U = (m v + M V)/(m + M). It bends the path of the bead as well, and so moves all later hits. Hits are
  * answered one after the other, by tick, then by particle id.
  *
- * The counterforce of a drive accelerates all particles. Those that follow ticks fly straight, with their velocity of the
- * middle of the flight: they get half of its kick before, half of it after. They end where the others would.
+ * The counterforce of a drive accelerates all particles. Those that follow ticks fly straight, with their velocity of
+ * the middle of the flight: they get half of its kick before, half of it after. They end where the others would.
  *
  * Only those particles follow ticks that come within the slack of the bead's free flight. All others are further from
  * it than the bead can be off that flight; if it is off further, all is done again with more slack.

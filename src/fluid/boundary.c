@@ -13,7 +13,8 @@ static struct vec3 acceleration_of(const struct state *state, const struct model
 {
   const bool uniform = model->solvent.profile == PROFILE_UNIFORM;
   return model->bead.driven ? bead_counter(state, model)
-                            : uniform ? model->solvent.acceleration : (struct vec3){0, 0, 0};
+         : uniform          ? model->solvent.acceleration
+                            : (struct vec3){0, 0, 0};
 }
 
 struct span boundary_lag(const struct state *state, const struct model *model)

@@ -71,10 +71,11 @@ static bool check_force(const struct scene *scene, struct message *message)
 {
   const double force = vec3_norm(scene->model.bead.drive.force), friction = theory_model_bead_friction(&scene->model);
   return force <= BEAD_MOST_SPEED * friction ||
-         scene_refuse_at(scene, "bead.drive.force", "bead.drive.force", message,
-                         "%.6g kT/a0 drives the bead at %.3g a0/t0, too near the speed of sound; allowed: at most %.6g, "
-                         "for %g a0/t0",
-                         force, force / friction, BEAD_MOST_SPEED * friction, BEAD_MOST_SPEED);
+         scene_refuse_at(
+             scene, "bead.drive.force", "bead.drive.force", message,
+             "%.6g kT/a0 drives the bead at %.3g a0/t0, too near the speed of sound; allowed: at most %.6g, "
+             "for %g a0/t0",
+             force, force / friction, BEAD_MOST_SPEED * friction, BEAD_MOST_SPEED);
 }
 
 /* What is observed of a bead, and what is not where one is. */

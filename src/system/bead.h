@@ -48,16 +48,17 @@ bool bead_fits(const struct model *model, struct model_error *error);
 struct vec3 bead_force(const struct model *model, struct point place, uint64_t half_steps);
 struct vec3 bead_trap(const struct model *model, uint64_t half_steps);
 
-/* The counterforce: acceleration of solvent and vertices, a0/t0^2, from the time to which the solvent was streamed until
- * it is streamed again. It takes up the momentum that the drive gives to the bead at that time. 0 without a drive. */
+/* The counterforce: acceleration of solvent and vertices, a0/t0^2, from the time to which the solvent was streamed
+ * until it is streamed again. It takes up the momentum that the drive gives to the bead at that time. 0 without a
+ * drive. */
 struct vec3 bead_counter(const struct state *state, const struct model *model);
 
 /* Adds the drive's force on the bead for a time to its velocity. */
 void bead_kick(struct bead *bead, const struct model *model, uint64_t half_steps, double time);
 
 /* Adds the drive's work on the way from a place, at `begin`, to where the bead is now, at `end` (half steps), to its
- * account: the mean of both forces times the way. So a force that is constant or that of a trap at rest does the work of
- * its potential, exactly. */
+ * account: the mean of both forces times the way. So a force that is constant or that of a trap at rest does the work
+ * of its potential, exactly. */
 void bead_work(struct bead *bead, const struct model *model, struct point from, uint64_t begin, uint64_t end);
 
 /* The bead's velocity at the time of the step, a0/t0: with a drive the state has that of the half step ahead. */

@@ -208,7 +208,8 @@ struct dumbbell_model {
   double frequency; /* sqrt(2 K/m), 1/t0 */
 };
 
-/* What pulls a bead: force - spring (x - trap), where the trap is at center + velocity t + amplitude sin(2 pi t/period).
+/* What pulls a bead: force - spring (x - trap), where the trap is at center + velocity t + amplitude sin(2 pi
+ * t/period).
  */
 struct bead_drive {
   struct vec3 force;     /* constant, kT/a0 */

@@ -509,8 +509,9 @@ static const struct key drive_keys[] = {
      .unit = "kT/a0",
      .symbol = "F"},
     {.name = "spring",
-     .text = "Constant k of a harmonic trap, k x^2/2 per component, whose middle is at `center` at the start. If absent: "
-             "no trap.",
+     .text =
+         "Constant k of a harmonic trap, k x^2/2 per component, whose middle is at `center` at the start. If absent: "
+         "no trap.",
      .type = KEY_NUMBER,
      .optional = true,
      .low = 0,

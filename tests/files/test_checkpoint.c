@@ -561,13 +561,18 @@ static void other_observers_are_refused(void **unused)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(everything_comes_back),
-      cmocka_unit_test(a_bead_comes_back),       cmocka_unit_test(parts_may_be_missing),
-      cmocka_unit_test(bytes_are_canonical),         cmocka_unit_test(no_object_carries_a_time),
-      cmocka_unit_test(the_old_one_survives),        cmocka_unit_test(damage_is_found),
-      cmocka_unit_test(flipped_memory_is_found),     cmocka_unit_test(foreign_files_are_refused),
-      cmocka_unit_test(other_observers_are_refused), cmocka_unit_test(unsound_states_are_refused),
-      cmocka_unit_test(an_endless_lag_is_refused),   cmocka_unit_test(a_plane_comes_back)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(everything_comes_back),
+                                     cmocka_unit_test(a_bead_comes_back),
+                                     cmocka_unit_test(parts_may_be_missing),
+                                     cmocka_unit_test(bytes_are_canonical),
+                                     cmocka_unit_test(no_object_carries_a_time),
+                                     cmocka_unit_test(the_old_one_survives),
+                                     cmocka_unit_test(damage_is_found),
+                                     cmocka_unit_test(flipped_memory_is_found),
+                                     cmocka_unit_test(foreign_files_are_refused),
+                                     cmocka_unit_test(other_observers_are_refused),
+                                     cmocka_unit_test(unsound_states_are_refused),
+                                     cmocka_unit_test(an_endless_lag_is_refused),
+                                     cmocka_unit_test(a_plane_comes_back)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
