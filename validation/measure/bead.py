@@ -9,7 +9,7 @@ REST: mass of all that is not the bead, over that of the bead. RADIUS: a0. MASS:
   friction, passive  kT/D across the force, D from the slope of the mean square displacement between lags of 20 and 40 t0
   trap               k <x^2> (1 + 1/REST), 1 in equilibrium
   G' and G''         active: (F* + M omega^2 x*)/(6 pi R x*), F and x at the trap's frequency. Passive: kT/(pi R i omega m*) with
-                     the transform m* of the mean square displacement in three dimensions, less the inertia and the trap
+                     the transform m* of the mean square displacement in three dimensions (of components without a drift), less the inertia and the trap
 
 The transform is that of straight lines between the points (Evans et al., Phys. Rev. E 80, 012501 (2009)). The inertia of the fluid is in
 both. Errors: scatter of ten parts of the run.
@@ -117,8 +117,8 @@ def main():
     constant = force.std() == 0.0 or args.spring == 0.0
     if constant and numpy.linalg.norm(force) > 0.0:
         rows.append(("active friction", *active_friction(time, place, force, args.rest)))
+    still = [k for k in range(3) if not constant or not force[k].any()]  # components without a drift
     if args.spring == 0.0:
-        still = [k for k in range(3) if not force[k].any()]
         rows.append(("passive friction", *passive_friction(time, place[still])))
     elif not args.swings:
         middle = vectors(columns, "trap")
@@ -128,7 +128,7 @@ def main():
         value, error = active_modulus(time, place, force, args.radius, args.mass, args.omega[0])
         rows += [("active G'", value[0], error[0]), ("active G''", value[1], error[1])]
     elif args.omega:
-        values, errors = passive_moduli(time, place, args.radius, args.mass, args.spring, args.omega)
+        values, errors = passive_moduli(time, place[still], args.radius, args.mass, args.spring, args.omega)
         for omega, value, error in zip(args.omega, values, errors):
             rows += [(f"passive G' at {omega:g}", value[0], error[0]), (f"passive G'' at {omega:g}", value[1], error[1])]
     print("what,value,error")
