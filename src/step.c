@@ -34,6 +34,7 @@
 #include "fiber/start.h"
 #include "fluid/fluid.h"
 #include "medium/plan.h"
+#include "medium/repulsion.h"
 #include "mpc/plan.h"
 #include "system/bead.h"
 #include "system/shear.h"
@@ -75,9 +76,11 @@ static void plan_actions(struct plan *plan, const struct part *part, const struc
       medium_plan_collision(plan, m, offsetof(struct work, medium), "collide");
       break;
     case FORCE:
+      medium_plan_forces(plan, m, offsetof(struct work, medium), m->vertices > 0 ? NULL : "force");
       fiber_plan_forces(plan, m, offsetof(struct work, fiber), "force");
       break;
     case KICK:
+      medium_plan_kick(plan, m, offsetof(struct work, medium), part->fraction, m->vertices > 0 ? NULL : "kick");
       fiber_plan_kick(plan, m, offsetof(struct work, fiber), part->fraction, "kick");
       break;
     case END:
@@ -253,5 +256,10 @@ bool step_start(struct state *state, const struct model *model, struct work *wor
   if (!fiber_forces(state, model, work->fiber.force, 0, &work->fault))
     return false;
   fiber_kick(state, model, work->fiber.force, 0.5);
+  if (!model_repels(model))
+    return true;
+  if (!repulsion_forces(state, model, &work->medium, &work->fault))
+    return false;
+  repulsion_kick(state, model, &work->medium, 0.5);
   return true;
 }

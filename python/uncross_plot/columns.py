@@ -108,6 +108,15 @@ COLUMNS = {
     "N1_spring": Column("springs", r"$N_1^\mathrm{spr}$", S),
     "sigma_xy_fibers": Column("fibers", r"$\sigma_{xy}^\mathrm{fib}$", S),
     "N1_fibers": Column("fibers", r"$N_1^\mathrm{fib}$", S),
+    # pressure
+    "p_xx": Column("along x", "$p_{xx}$", S),
+    "p_yy": Column("along y", "$p_{yy}$", S),
+    "p_zz": Column("along z", "$p_{zz}$", S),
+    "p_xy": Column("off the diagonal", "$p_{xy}$", S),
+    "potential": Column("potential energy", "$U$", "kT"),
+    "force_square": Column("forces squared", r"$|\nabla U|^2$", "kT²/a0²"),
+    "laplacian": Column("Laplacian", r"$\nabla^2 U$", "kT/a0²"),
+    "configurational": Column("configurational", r"$T_\mathrm{conf}$", "kT"),
     # orientation
     "RxRx": Column("along the flow", r"$\langle R_x R_x\rangle$", A2),
     "RyRy": Column("across the flow", r"$\langle R_y R_y\rangle$", A2),
@@ -213,11 +222,18 @@ PANELS = {
         Panel("Normal stress difference", ("N1", "N1_spring", "N1_fibers"), level=0.0),
         Panel("Pressure", ("pressure",)),
     ),
+    "pressure": (
+        Panel("Pressure", ("pressure", "p_xx", "p_yy", "p_zz"), rf"pressure / {S}"),
+        Panel("Shear", ("p_xy",), level=0.0),
+        Panel("Potential energy", ("potential",)),
+        Panel("Configurational temperature", ("configurational",), level=1.0),
+    ),
 }
 LAG_LABEL = "lag $t$ / $t_0$"
 TITLES = {"conserved": "Energy and momentum", "temperature": "Temperature", "collisions": "Contacts of bonds",
           "statics": "Size and shape", "dynamics": "Motion", "profile": "Profile across the flow", "stress": "Stress",
-          "dumbbells": "Shape of dumbbells", "orientation": "Orientation", "bead": "The bead"}
+          "dumbbells": "Shape of dumbbells", "orientation": "Orientation", "bead": "The bead",
+          "pressure": "Pressure and configurational temperature"}
 
 
 def column(name):

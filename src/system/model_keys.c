@@ -15,6 +15,7 @@ static const char *const bath_words[] = {"particles", "phantoms", NULL};
 static const char *const medium_words[] = {"private", "pairs", NULL};
 static const char *const draw_words[] = {"replace", "relax", "cayley", NULL};
 static const char *const weight_words[] = {"hat", "quadratic", NULL};
+static const char *const layout_words[] = {"mixed", "slab", NULL};
 static const char *const exclusion_words[] = {"shared-vertex", "paper", NULL};
 static const char *const crossing_words[] = {"sequential", "event-driven", NULL};
 static const char *const rejection_words[] = {"stay", "bounce", NULL};
@@ -112,6 +113,57 @@ static const struct key solvent_keys[] = {
 };
 static const struct key_table solvent_table = {"solvent", NULL, COUNT(solvent_keys), solvent_keys};
 
+static const struct key second_keys[] = {
+    {.name = "share",
+     .text =
+         "Of the particles that are of the second group: those with the highest numbers. Vertices are of the first.",
+     .type = KEY_NUMBER,
+     .low = 0,
+     .above = true,
+     .high = 1,
+     .offset = IN_MODEL(medium.second.share)},
+    {.name = "repulsion",
+     .text = "Between members of the two groups, instead of `medium.repulsion`.",
+     .type = KEY_NUMBER,
+     .low = 0,
+     .above = true,
+     .high = 1000,
+     .offset = IN_MODEL(medium.second.repulsion),
+     .unit = "kT/a0",
+     .symbol = "a_AB"},
+    {.name = "start",
+     .text =
+         "Where the second group is laid. `mixed`: anywhere. `slab`: below `share` times the box's edge along y, the "
+         "first group above.",
+     .type = KEY_CHOICE,
+     .absent = "mixed",
+     .choice = layout_words,
+     .offset = IN_MODEL(medium.second.start)},
+};
+static const struct key_table second_table = {"medium.second", NULL, COUNT(second_keys), second_keys};
+
+static const struct key many_keys[] = {
+    {.name = "repulsion",
+     .text = "B of the force B (rho_i + rho_j) (1 - r/range) between members, rho_i being the density about member i.",
+     .type = KEY_NUMBER,
+     .low = 0,
+     .above = true,
+     .high = 1000,
+     .offset = IN_MODEL(medium.many.repulsion),
+     .unit = "kT a0^2",
+     .symbol = "B"},
+    {.name = "range",
+     .text = "Range of the weight 15/(2 pi range^3) (1 - r/range)^2 of that density.",
+     .type = KEY_NUMBER,
+     .absent = "0.75",
+     .low = 0.1,
+     .high = 1,
+     .offset = IN_MODEL(medium.many.range),
+     .unit = "a0",
+     .symbol = "r_d"},
+};
+static const struct key_table many_table = {"medium.many_body", NULL, COUNT(many_keys), many_keys};
+
 static const struct key medium_keys[] = {
     {.name = "kind",
      .text =
@@ -162,6 +214,29 @@ static const struct key medium_keys[] = {
      .offset = IN_MODEL(medium.density),
      .unit = "1/a0^3",
      .symbol = "rho"},
+    {.name = "repulsion",
+     .text =
+         "Of pairs: a of the force a (1 - r) between any two members nearer than 1 a0 (DPD). Below 0 an attraction, "
+         "which needs `many_body`.",
+     .type = KEY_NUMBER,
+     .absent = "0",
+     .low = -1000,
+     .high = 1000,
+     .offset = IN_MODEL(medium.repulsion),
+     .unit = "kT/a0",
+     .symbol = "a"},
+    {.name = "second",
+     .text = "A second group of particles; absent: none.",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &second_table,
+     .line = true},
+    {.name = "many_body",
+     .text = "A repulsion that grows with the density (Warren, Phys. Rev. E 68, 066702 (2003)); absent: none.",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &many_table,
+     .line = true},
 };
 static const struct key_table medium_table = {"medium", NULL, COUNT(medium_keys), medium_keys};
 
