@@ -69,25 +69,30 @@ def passive_friction(time, place, lag=40.0):
 
 
 def line_transform(time, square, omega):
-    """Integral of square(t) exp(-i omega t) over t > 0; straight lines between the points, time[0] = square[0] = 0, and the slope of the
-    last line beyond."""
+    """Integral of square(t) exp(-i omega t) over t > 0; straight lines between the points, time[0] = square[0] = 0, and the mean slope of the
+    last quarter of the points beyond."""
     slopes = numpy.diff(square) / numpy.diff(time)
     turns = numpy.exp(-1j * omega * time)
-    second = slopes @ (turns[:-1] - turns[1:]) + slopes[-1] * turns[-1]
+    quarter = 3 * (len(time) - 1) // 4
+    second = slopes @ (turns[:-1] - turns[1:]) + (square[-1] - square[quarter]) / (time[-1] - time[quarter]) * turns[-1]
     return -second / omega ** 2
 
 
 def passive_moduli(time, place, radius, mass, spring, omegas, longest=80.0):
+    """Values and errors, [omegas, 2]. The modulus is that of the mean of all parts, since 1/m* of one part has a bias; errors are those
+    of the jackknife."""
     step = time[1] - time[0]
     lags = numpy.arange(round(longest / step) + 1)
+    length = place.shape[1] // PARTS
+    squares = numpy.array([3.0 * square_displacement(place[:, k * length:(k + 1) * length], lags) for k in range(PARTS)])
 
-    def moduli(x):
-        square = 3.0 * square_displacement(x, lags)
+    def moduli(square):
         found = [1.0 / (numpy.pi * radius * 1j * w * line_transform(lags * step, square, w)) for w in omegas]
-        return [g + (mass * w * w - spring) / (6.0 * numpy.pi * radius) for g, w in zip(found, omegas)]
+        found = [g + (mass * w * w - spring) / (6.0 * numpy.pi * radius) for g, w in zip(found, omegas)]
+        return numpy.array([[g.real, g.imag] for g in found])
 
-    parts, errors = parted(lambda x: numpy.array([[g.real, g.imag] for g in moduli(x)]), place)
-    return parts, errors
+    others = numpy.array([moduli(numpy.delete(squares, k, axis=0).mean(axis=0)) for k in range(PARTS)])
+    return moduli(squares.mean(axis=0)), others.std(axis=0) * (PARTS - 1) ** 0.5
 
 
 def active_modulus(time, place, force, radius, mass, omega):
