@@ -58,7 +58,7 @@ static bool finish_private(struct model *m, struct model_error *error)
 static bool check_forces(struct model *m, struct model_error *error)
 {
   const struct medium_model *b = &m->medium;
-  const bool chases = m->crossing.forbidden && m->crossing.rule == CROSSING_EVENT_DRIVEN && m->vertices > 0;
+  const bool chases = m->crossing.forbidden && m->crossing.rule == CROSSING_EVENT_DRIVEN && m->kinds > 0;
   const struct refusal rows[] = {
       {b->repulsion >= 0.0 || b->many.repulsion > 0.0, "medium.repulsion",
        "an attraction without many_body, under which all members fall onto each other; allowed: 0 and more"},
