@@ -118,6 +118,7 @@ COLUMNS = {
     "uyuy": Column("bonds across the flow", r"$\langle u_y u_y\rangle$"),
     "uzuz": Column("bonds along the vorticity", r"$\langle u_z u_z\rangle$"),
     "uxuy": Column("correlation of bonds", r"$\langle u_x u_y\rangle$"),
+    "S": Column("nematic order", "$S$"),
     # dumbbells
     "r2": Column("length squared", r"$\langle r^2\rangle$", A2),
     "rxrx": Column("along the flow", r"$\langle r_x r_x\rangle$", A2),
