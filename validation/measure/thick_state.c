@@ -1,13 +1,14 @@
 /*
- * Equation of state and order of hard spherocylinders: thick rods of one bond in flight, without solvent (docs/thick.md).
+ * Equation of state and order of hard spherocylinders: thick rods of one bond in flight, without solvent
+ * (docs/thick.md).
  *
  * usage: thick_state EDGE RATIO BLOCKS TIME START PHI...
  *
- * Rods of length 1 a0 and diameter 1/RATIO in a cube of EDGE a0, at volume fractions PHI. START: `random`, laid one after
- * another; `aligned`, along z in a square lattice of layers, with S = 1. BLOCKS blocks of TIME t0 each. The first half of
- * the blocks is given to equilibration. Of the other half: Z = P V/(N kT) from contacts (rods.h), its error from the
- * blocks, and S, the largest eigenvalue of <(3 u u - 1)/2>, the mean over the box. Both also for its two quarters: they
- * must agree where equilibrium is reached. `parsons`: 1 + (B2/v0) phi (1 - phi/2)/(1 - phi)^3.
+ * Rods of length 1 a0 and diameter 1/RATIO in a cube of EDGE a0, at volume fractions PHI. START: `random`, laid one
+ * after another; `aligned`, along z in a square lattice of layers, with S = 1. BLOCKS blocks of TIME t0 each. The first
+ * half of the blocks is given to equilibration. Of the other half: Z = P V/(N kT) from contacts (rods.h), its error
+ * from the blocks, and S, the largest eigenvalue of <(3 u u - 1)/2>, the mean over the box. Both also for its two
+ * quarters: they must agree where equilibrium is reached. `parsons`: 1 + (B2/v0) phi (1 - phi/2)/(1 - phi)^3.
  */
 #include <gsl/gsl_eigen.h>
 
@@ -94,8 +95,8 @@ static void measure_state(int edge, double ratio, int blocks, double time, bool 
     const int later = 4 * b >= 3 * blocks;
     sample_add(&z, now.z), sample_add(&s, now.s), sample_add(&zs[later], now.z), sample_add(&ss[later], now.s);
   }
-  printf("%5.0f  %.4f  %8.4f +- %.4f  %8.4f  %6.3f +- %.3f   %8.4f %8.4f   %6.3f %6.3f   %lu rigid\n", n, fraction, z.mean,
-         sample_error(&z), 1.0 + rod_b2(length, d) / v0 * fraction * rod_contact_value(fraction), s.mean,
+  printf("%5.0f  %.4f  %8.4f +- %.4f  %8.4f  %6.3f +- %.3f   %8.4f %8.4f   %6.3f %6.3f   %lu rigid\n", n, fraction,
+         z.mean, sample_error(&z), 1.0 + rod_b2(length, d) / v0 * fraction * rod_contact_value(fraction), s.mean,
          sample_error(&s), zs[0].mean, zs[1].mean, ss[0].mean, ss[1].mean, (unsigned long)r.state.counts.rigid);
   fflush(stdout);
   run_end(&r);
