@@ -108,6 +108,15 @@ COLUMNS = {
     "N1_spring": Column("springs", r"$N_1^\mathrm{spr}$", S),
     "sigma_xy_fibers": Column("fibers", r"$\sigma_{xy}^\mathrm{fib}$", S),
     "N1_fibers": Column("fibers", r"$N_1^\mathrm{fib}$", S),
+    # pressure
+    "p_xx": Column("along x", "$p_{xx}$", S),
+    "p_yy": Column("along y", "$p_{yy}$", S),
+    "p_zz": Column("along z", "$p_{zz}$", S),
+    "p_xy": Column("off the diagonal", "$p_{xy}$", S),
+    "potential": Column("potential energy", "$U$", "kT"),
+    "force_square": Column("forces squared", r"$|\nabla U|^2$", "kT²/a0²"),
+    "laplacian": Column("Laplacian", r"$\nabla^2 U$", "kT/a0²"),
+    "configurational": Column("configurational", r"$T_\mathrm{conf}$", "kT"),
     # orientation
     "RxRx": Column("along the flow", r"$\langle R_x R_x\rangle$", A2),
     "RyRy": Column("across the flow", r"$\langle R_y R_y\rangle$", A2),
@@ -119,6 +128,22 @@ COLUMNS = {
     "uzuz": Column("bonds along the vorticity", r"$\langle u_z u_z\rangle$"),
     "uxuy": Column("correlation of bonds", r"$\langle u_x u_y\rangle$"),
     "S": Column("nematic order", "$S$"),
+    # bead
+    "place_x": Column("place, x", "$x$", A),
+    "place_y": Column("place, y", "$y$", A),
+    "place_z": Column("place, z", "$z$", A),
+    "velocity_x": Column("velocity, x", "$V_x$", V),
+    "velocity_y": Column("velocity, y", "$V_y$", V),
+    "velocity_z": Column("velocity, z", "$V_z$", V),
+    "force_x": Column("force of the drive, x", "$F_x$", "$(kT/a_0)$"),
+    "force_y": Column("force of the drive, y", "$F_y$", "$(kT/a_0)$"),
+    "force_z": Column("force of the drive, z", "$F_z$", "$(kT/a_0)$"),
+    "trap_x": Column("middle of the trap, x", "$c_x$", A),
+    "trap_y": Column("middle of the trap, y", "$c_y$", A),
+    "trap_z": Column("middle of the trap, z", "$c_z$", A),
+    "work": Column("work of the drive", "$W$", E),
+    "heat": Column("heat from its matter", "$Q$", E),
+    "hits": Column("hits of particles"),
     # dumbbells
     "r2": Column("length squared", r"$\langle r^2\rangle$", A2),
     "rxrx": Column("along the flow", r"$\langle r_x r_x\rangle$", A2),
@@ -132,7 +157,7 @@ COLUMNS = {
 
 # Sums and counts since the start, and what drifts where a force acts: their mean over time says nothing.
 RUNNING = {"total", "px", "py", "pz", "moves", "possible", "executed", "negative", "softened", "rigid",
-           "executed_per_possible"}
+           "executed_per_possible", "work", "heat", "hits", "place_x", "place_y", "place_z", "trap_x", "trap_y", "trap_z"}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -167,6 +192,14 @@ PANELS = {
         Panel("Rate since the row before", ("rate_per_vertex",)),
         Panel("Rate over kinetic theory", ("rate_over_theory",), level=1.0),
     ),
+    "bead": (
+        Panel("Way since the start", ("place_x", "place_y", "place_z"), "way / $a_0$", change=True),
+        Panel("Middle of the trap", ("trap_x", "trap_y", "trap_z"), "middle / $a_0$", change=True),
+        Panel("Velocity", ("velocity_x", "velocity_y", "velocity_z"), f"velocity / {V}"),
+        Panel("Force of the drive", ("force_x", "force_y", "force_z"), "force / $(kT/a_0)$"),
+        Panel("Work and heat", ("work", "heat"), "energy / $kT$"),
+        Panel("Hits since the start", ("hits",)),
+    ),
     "dynamics": (
         Panel("Mean square displacements", ("g", "g_cm", "g_cm_about_mean", "g_middle", "d2", "d2_contour"),
               "mean square displacement / $a_0^2$", log_y=True, wide=True, **LAG),
@@ -190,11 +223,18 @@ PANELS = {
         Panel("Normal stress difference", ("N1", "N1_spring", "N1_fibers"), level=0.0),
         Panel("Pressure", ("pressure",)),
     ),
+    "pressure": (
+        Panel("Pressure", ("pressure", "p_xx", "p_yy", "p_zz"), rf"pressure / {S}"),
+        Panel("Shear", ("p_xy",), level=0.0),
+        Panel("Potential energy", ("potential",)),
+        Panel("Configurational temperature", ("configurational",), level=1.0),
+    ),
 }
 LAG_LABEL = "lag $t$ / $t_0$"
 TITLES = {"conserved": "Energy and momentum", "temperature": "Temperature", "collisions": "Contacts of bonds",
           "statics": "Size and shape", "dynamics": "Motion", "profile": "Profile across the flow", "stress": "Stress",
-          "dumbbells": "Shape of dumbbells", "orientation": "Orientation"}
+          "dumbbells": "Shape of dumbbells", "orientation": "Orientation", "bead": "The bead",
+          "pressure": "Pressure and configurational temperature"}
 
 
 def column(name):

@@ -2,6 +2,7 @@
 #include <stdio.h>
 
 #include "base/text.h"
+#include "cli/check_bead.h"
 #include "cli/check_dumbbells.h"
 #include "cli/check_flow.h"
 #include "cli/check_medium.h"
@@ -101,6 +102,8 @@ static void report_vertex(const struct si_scale *si, const struct model *m, cons
   if (model_has_solvent(m) && !model_is_flat(m))
     sheet_row(si, "  hydrodynamic radius, from D_0 alone", "a_h", theory_hydrodynamic_radius(units_viscosity(m), d0),
               "a0", "with HI: 0.25 to 0.3");
+  if (model_has_solvent(m) && k->vertices > 1)
+    check_times(si, m, sqrt(theory_bond_square(k)), d0);
   if (k->bending == 0.0 && k->bond_length == 0.0 && !k->ring && k->vertices > 1)
     sheet_row(si, "  slowest Rouse mode, without HI", "tau_1", theory_rouse_time(k, 1.0 / d0), "t0", "");
 }
@@ -268,6 +271,7 @@ static void report_parts(const struct scene *scene)
       {"... velocities drawn anew", "mpc/rules/at_a.c", collides && s->rule == RULE_AT_A},
       {"private baths of vertices", "medium/private.c", m->medium.kind == MEDIUM_PRIVATE},
       {"baths of pairs", "medium/pairs.c", m->medium.kind == MEDIUM_PAIRS},
+      {"forces of pairs", "medium/repulsion.c", model_repels(m)},
       {"thermostat's sums and factors", "mpc/thermostat.c", solvent && s->thermostat != THERMOSTAT_NONE},
       {"permuted velocities", "mpc/sort.c", solvent && collides && !s->hydrodynamics},
       {"moves of vertices", "contact/rule.c", m->vertices > 0},
@@ -334,6 +338,8 @@ void scene_report(const struct scene *scene, const struct units *units, const st
     check_medium(si, m);
   if (model_has_dumbbells(m))
     check_dumbbells(si, m);
+  if (model_has_bead(m))
+    check_bead(si, m);
   if (model_has_walls(m))
     check_walls(si, m);
   if (model_is_sheared(m))

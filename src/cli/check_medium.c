@@ -32,6 +32,9 @@ static void report_pairs(const struct si_scale *si, const struct model *m)
             "molecular chaos; too low where Lambda < 1");
   sheet_row(si, "Schmidt number", "Sc", theory_model_schmidt(m), "", "nu/D_s");
   sheet_row(si, "speed of sound", "c_s", theory_sound_speed(true, 3), "a0/t0", "ideal gas, isothermal");
+  if (m->medium.repulsion > 0.0 && m->medium.many.repulsion == 0.0)
+    sheet_row(si, "pressure, mean field", "p", rho + pi / 30.0 * m->medium.repulsion * rho * rho, "kT/a0^3",
+              "rho kT + pi/30 a rho^2; 10 % too high at rho = 3");
 }
 
 void check_medium(const struct si_scale *si, const struct model *m)
@@ -44,12 +47,11 @@ void check_medium(const struct si_scale *si, const struct model *m)
     report_pairs(si, m);
 }
 
-/* Times for the length l: of sound, of momentum, of diffusion. A fluid that is hardly compressible, and whose flow
- * follows the vertices at once, has t_s << t_H << t_D. */
-static void report_times(const struct si_scale *si, const struct model *m, double l, double diffusion)
+void check_times(const struct si_scale *si, const struct model *m, double l, double diffusion)
 {
-  const double nu = units_viscosity(m) / m->medium.density;
-  sheet_row(si, "  time of sound, over a bond", "t_s", l / theory_sound_speed(true, 3), "t0", "l/c_s");
+  const double nu = units_viscosity(m) / model_solvent_density(m);
+  const double sound = theory_sound_speed(model_is_isothermal(m), (int)m->dimensions);
+  sheet_row(si, "  time of sound, over a bond", "t_s", l / sound, "t0", "l/c_s");
   sheet_row(si, "  time of momentum", "t_H", l * l / nu, "t0", "l^2/nu");
   sheet_row(si, "  time of diffusion", "t_D", l * l / diffusion, "t0", "l^2/D_0; wanted: t_s < t_H << t_D");
 }
@@ -71,12 +73,13 @@ void check_medium_vertex(const struct si_scale *si, const struct model *m, const
   if (k->vertices < 2)
     return;
   sheet_row(si, "  ... over the rms bond", "a/b", radius / bond, "", "1/4: D of a chain scales from few vertices on");
-  report_times(si, m, bond, d0);
+  check_times(si, m, bond, d0);
 }
 
 double check_medium_cost(const struct model *m)
 {
   const double pairs = pairs_per_particle(m);
   const double chosen = bath_draw_of(m->medium.draw)->chooses ? m->medium.rate * m->time_step : 1.0;
-  return m->medium.kind == MEDIUM_PAIRS ? 150.0 + pairs * (20.0 + 15.0 * chosen) : 0.0;
+  const double forces = model_repels(m) ? 100.0 + 25.0 * pairs : 0.0;
+  return m->medium.kind == MEDIUM_PAIRS ? 150.0 + pairs * (20.0 + 15.0 * chosen) + forces : 0.0;
 }

@@ -6,13 +6,24 @@
 
 /* --- start ------------------------------------------------------------------------------------------------------- */
 
+/* A height that is uniform in the box, moved into the part of it that the particle's group has. */
+static int64_t start_height(const struct model *model, uint32_t id, int64_t y)
+{
+  const struct medium_model *m = &model->medium;
+  if (m->second.start != LAYOUT_SLAB || m->second.share == 0.0)
+    return y;
+  const int64_t edge = model->box.edge[1], border = (int64_t)(m->second.share * (double)edge);
+  const double part = (double)y / (double)edge;
+  return id >= m->second.first ? (int64_t)(part * (double)border) : border + (int64_t)(part * (double)(edge - border));
+}
+
 /* Uniform in the box. */
 static struct point start_place(const struct model *model, uint32_t id, uint32_t attempt)
 {
   const struct random_words xy = random_at(model->seed, RANDOM_SOLVENT_POSITION, 2 * attempt, 0, id);
   const struct random_words z = random_at(model->seed, RANDOM_SOLVENT_POSITION, 2 * attempt + 1, 0, id);
   return (struct point){lattice_uniform(random_u64(xy, 0), model->box.cells[0]),
-                        lattice_uniform(random_u64(xy, 1), model->box.cells[1]),
+                        start_height(model, id, lattice_uniform(random_u64(xy, 1), model->box.cells[1])),
                         model_is_flat(model) ? 0 : lattice_uniform(random_u64(z, 0), model->box.cells[2])};
 }
 

@@ -6,12 +6,13 @@
 
 #include "base/memory.h"
 #include "medium/plan.h"
+#include "medium/repulsion.h"
 
-enum { NEEDS = 7 };
+enum { NEEDS = 10 };
 
 static void list_needs(struct medium *medium, const struct model *m, struct memory_need need[NEEDS])
 {
-  const bool pairs = m->medium.kind == MEDIUM_PAIRS;
+  const bool pairs = m->medium.kind == MEDIUM_PAIRS, repels = model_repels(m);
   const size_t members = pairs ? (size_t)m->solvent.particles + m->vertices : 0;
   const struct memory_need all[NEEDS] = {
       {(void **)&medium->cell, members, sizeof *medium->cell},
@@ -21,6 +22,9 @@ static void list_needs(struct medium *medium, const struct model *m, struct memo
       {(void **)&medium->z, members, sizeof *medium->z},
       {(void **)&medium->number, members, sizeof *medium->number},
       {(void **)&medium->mover, members, sizeof *medium->mover},
+      {(void **)&medium->push, repels ? 3 * members : 0, sizeof *medium->push},
+      {(void **)&medium->crowd, m->medium.many.repulsion != 0.0 ? members : 0, sizeof *medium->crowd},
+      {(void **)&medium->force, repels ? members : 0, sizeof *medium->force},
   };
   memcpy(need, all, sizeof all);
 }
@@ -73,4 +77,28 @@ void medium_plan_collision(struct plan *plan, const struct model *m, size_t room
 {
   if (baths[m->medium.kind])
     plan_append(plan, (struct stage){.name = name, .act = baths[m->medium.kind], .room = room});
+}
+
+static bool act_forces(void *room, const struct moment *now, const struct stage *stage)
+{
+  (void)stage;
+  return repulsion_forces(now->state, now->model, room, now->fault);
+}
+
+static bool act_kick(void *room, const struct moment *now, const struct stage *stage)
+{
+  repulsion_kick(now->state, now->model, room, stage->fraction);
+  return true;
+}
+
+void medium_plan_forces(struct plan *plan, const struct model *m, size_t room, const char *name)
+{
+  if (model_repels(m))
+    plan_append(plan, (struct stage){.name = name, .act = act_forces, .room = room});
+}
+
+void medium_plan_kick(struct plan *plan, const struct model *m, size_t room, double fraction, const char *name)
+{
+  if (model_repels(m))
+    plan_append(plan, (struct stage){.name = name, .act = act_kick, .room = room, .fraction = fraction});
 }

@@ -2,8 +2,11 @@
  * Baths other than that of collision cells (mpc/), the same one operator (bath.h) with two choices of partner:
  *
  *   private   private.c: each component of a vertex's velocity, about the flow
- *   pairs     encounters.c finds all pairs of members that are nearer than 1 a0; pairs.c acts on one after the other,
- * in a random order, on the component of their relative velocity along the line between them
+ *   pairs     near.c finds all pairs of members that are nearer than 1 a0; encounters.c chooses among them; pairs.c
+ * acts on one after the other, in a random order, on the component of their relative velocity along the line between
+ * them
+ *
+ * Pairs may also exert forces on each other: repulsion.c.
  *
  * Members are solvent particles and vertices: particle id i has the number i, vertex v the number particles + v. All
  * random numbers of a pair are addressed by its two numbers, so nothing depends on the order in memory, to the bit.
@@ -42,6 +45,10 @@ struct medium {
   struct encounter *encounter; /* [room] */
   uint64_t *key, *spare;       /* [room] order 2^32 + place in encounter */
   uint32_t encounters, room;
+
+  int64_t *push;  /* [3 members] of the member at a place, units of REPULSION_UNIT kT/a0: sums do not depend on order */
+  int64_t *crowd; /* [members] density about the member at a place, units of CROWD_UNIT 1/a0^3; with many_body */
+  struct vec3 *force; /* [members] kT/a0, of the member with this number */
 };
 
 /* Allocates what this model's medium uses; nothing without one. False if memory is short. */

@@ -8,4 +8,8 @@
  * name: as in struct stage. */
 void medium_plan_collision(struct plan *plan, const struct model *model, size_t room, const char *name);
 
+/* The same of the forces of pairs, and of a kick by fraction * dt, if there are any. */
+void medium_plan_forces(struct plan *plan, const struct model *model, size_t room, const char *name);
+void medium_plan_kick(struct plan *plan, const struct model *model, size_t room, double fraction, const char *name);
+
 #endif

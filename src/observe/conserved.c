@@ -3,9 +3,12 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "fiber/force.h"
 #include "fluid/fluid.h"
+#include "medium/repulsion.h"
 #include "observe/observer.h"
+#include "system/bead.h"
 #include "system/shear.h"
 
 /* A sum that does not depend on the order of its terms: each is split into a multiple of 2^-16 and a multiple of 2^-50
@@ -113,7 +116,7 @@ static void measure_vertices_in_slabs(const struct model *model, const struct st
 
 /* Where the solvent flows, or is not free between collisions: positions and velocities of now, and slabs along y. */
 static void measure_now(const struct model *model, const struct state *state, const struct vec3 *force,
-                        struct motion *m)
+                        const struct vec3 *pair, struct motion *m)
 {
   const int64_t cells = model->box.cells[1];
   struct slab slab[LATTICE_MAX_EDGE] = {{0}}, all = {0};
@@ -123,6 +126,8 @@ static void measure_now(const struct model *model, const struct state *state, co
     struct point at[SOME];
     struct vec3 v[SOME];
     fluid_of(model)->now(state, model, first, n, at, v);
+    for (uint32_t i = 0; pair && i < n; i++)
+      v[i] = vec3_add_scaled(v[i], -0.5 * model->time_step, pair[state->solvent.id[first + i]]);
     for (uint32_t i = 0; i < n; i++) {
       const int64_t row = at[i].y >> LATTICE_BITS;
       const bool wild =
@@ -149,14 +154,21 @@ static void measure_now(const struct model *model, const struct state *state, co
   m->slab_squares = (struct vec3){within[0], within[1], within[2]};
 }
 
-static void measure_solvent(const struct model *model, const struct state *state, const struct vec3 *force,
-                            struct motion *m)
+/* The bead's velocity is that of the half step ahead; solvent and vertices have half of the counterforce of a step to
+ * come (system/bead.h). */
+static struct vec3 counter_gain(const struct model *model, const struct state *state)
 {
-  if (flows(model) || model_has_dumbbells(model)) {
-    measure_now(model, state, force, m);
+  return vec3_scale(0.5 * model->time_step, bead_counter(state, model));
+}
+
+static void measure_solvent(const struct model *model, const struct state *state, const struct vec3 *force,
+                            const struct vec3 *pair, struct motion *m)
+{
+  if (flows(model) || model_has_dumbbells(model) || pair) {
+    measure_now(model, state, force, pair, m);
     return;
   }
-  const struct vec3 gain = fluid_gain(state, model);
+  const struct vec3 gain = vec3_add(fluid_gain(state, model), counter_gain(model, state));
   solvent_component(state, state->solvent.vx, gain.x, &m->solvent_sum.x, &m->solvent_squares.x);
   solvent_component(state, state->solvent.vy, gain.y, &m->solvent_sum.y, &m->solvent_squares.y);
   solvent_component(state, state->solvent.vz, gain.z, &m->solvent_sum.z, &m->solvent_squares.z);
@@ -168,14 +180,26 @@ static void vertex_add(struct vertex_motion *sum, double mass, struct vec3 v)
   sum->momentum = vec3_add_scaled(sum->momentum, mass, v);
 }
 
-static void measure_vertices(const struct model *model, const struct state *state, struct vec3 *force, struct motion *m)
+static struct vertex_motion measure_bead(const struct model *model, const struct state *state)
+{
+  struct vertex_motion m = {.kinetic = 0.0};
+  const struct vec3 velocity = bead_velocity_now(state, model);
+  vertex_add(&m, model->bead.mass, velocity);
+  return m;
+}
+
+static void measure_vertices(const struct model *model, const struct state *state, struct vec3 *force,
+                             const struct vec3 *pair, struct motion *m)
 {
   struct fault ignored = {FAULT_NONE, 0, 0, 0.0,
                           0.0}; /* a bond too long for the box stops the run, not its observers */
   fiber_forces(state, model, force, state->step, &ignored);
   const double half = 0.5 * model->time_step;
+  const struct vec3 gain = counter_gain(model, state);
+  for (uint32_t i = 0; pair && i < state->vertices; i++)
+    force[i] = vec3_add(force[i], pair[state->solvent.n + i]);
   for (uint32_t i = 0; i < state->vertices; i++) {
-    const struct vec3 ahead = state->velocity[i];
+    const struct vec3 ahead = vec3_add(state->velocity[i], gain);
     vertex_add(&m->vertex_half, model->mass[i], ahead);
     vertex_add(&m->vertex, model->mass[i], vec3_add_scaled(ahead, -half * model->inverse_mass[i], force[i]));
   }
@@ -187,12 +211,19 @@ static void measure_vertices(const struct model *model, const struct state *stat
 struct motion motion_measure(const struct model *model, const struct state *state, struct vec3 *force)
 {
   struct motion m = {.bond = 0.0};
-  measure_vertices(model, state, force, &m);
-  measure_solvent(model, state, force, &m);
+  struct repulsion_sums pairs;
+  struct vec3 *pair;
+  const struct memory_need need = {(void **)&pair, model_repels(model) ? (size_t)state->solvent.n + state->vertices : 0,
+                                   sizeof *pair};
+  const bool known = memory_take(&need, 1) && repulsion_measure(state, model, pair, &pairs);
+  measure_vertices(model, state, force, pair, &m);
+  measure_solvent(model, state, force, pair, &m);
+  memory_release(&need, 1);
+  m.pairs = known ? pairs.energy : NAN;
   if (model_has_dumbbells(model))
     m.bond += fluid_dumbbell_energy(state, model);
   if (state->beads > 0)
-    vertex_add(&m.bead, model->bead.mass, state->bead->velocity);
+    m.bead = measure_bead(model, state);
   return m;
 }
 
@@ -200,8 +231,12 @@ static struct conserved conserved_of(const struct motion *m)
 {
   const double solvent = 0.5 * (m->solvent_squares.x + m->solvent_squares.y + m->solvent_squares.z);
   const double kinetic = solvent + m->vertex.kinetic;
-  struct conserved c = {solvent, m->vertex.kinetic,           m->bond,
-                        m->bend, kinetic + m->bond + m->bend, vec3_add(m->solvent_sum, m->vertex.momentum)};
+  struct conserved c = {solvent,
+                        m->vertex.kinetic,
+                        m->bond,
+                        m->bend,
+                        kinetic + m->bond + m->bend + m->pairs,
+                        vec3_add(m->solvent_sum, m->vertex.momentum)};
   if (m->bead.kinetic > 0.0) {
     c.total += m->bead.kinetic;
     c.momentum = vec3_add(c.momentum, m->bead.momentum);

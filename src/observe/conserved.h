@@ -5,6 +5,7 @@
  * v(t) = v(t + dt/2) - F(t) dt / (2 M), with the forces computed anew. So measured, the energy of a leap-frog
  * fluctuates by O(dt^2) and does not drift; with half-step velocities it would fluctuate by O(dt). Solvent particles
  * fly freely since they were last streamed; under a constant acceleration a they have gained a x lag, which is added.
+ * Those that exert forces on each other are half a step ahead, as vertices are.
  *
  * Sums over the solvent are made in fixed point, exactly, so that they do not depend on the order in memory: a
  * checkpoint keeps particles in id order, a running state sorts them by cell.
@@ -28,7 +29,7 @@ struct motion {
   uint32_t slabs;                           /* that hold particles; 0: the solvent does not flow */
   struct vertex_motion vertex, vertex_half; /* with velocities of the step, and of the half step ahead */
   struct vertex_motion bead;                /* of a bead; 0 without one */
-  double bond, bend;                        /* kT */
+  double bond, bend, pairs;                 /* kT; pairs: of the medium */
 };
 
 /* Measures a state; force: scratch, [vertices]. Numbers are NaN if a solvent velocity is not a number, or beyond 2^17

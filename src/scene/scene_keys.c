@@ -72,6 +72,9 @@ static const struct key_table shape_table = {"observe.dumbbells", NULL, COUNT(ev
 
 static const struct key_table orientation_table = {"observe.orientation", NULL, COUNT(every_keys), every_keys};
 
+static const struct key_table bead_observe_table = {"observe.bead", NULL, COUNT(every_keys), every_keys};
+static const struct key_table pressure_table = {"observe.pressure", NULL, COUNT(every_keys), every_keys};
+
 static const struct key observe_keys[] = {
     {.name = "from",
      .text =
@@ -156,6 +159,20 @@ static const struct key observe_keys[] = {
      .optional = true,
      .keys = &orientation_table,
      .offset = IN_SCENE(observe.every[OBSERVE_ORIENTATION]),
+     .line = true},
+    {.name = "bead",
+     .text = "Time series of the bead: place, velocity, force of its drive, middle of its trap, work, heat, hits.",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &bead_observe_table,
+     .offset = IN_SCENE(observe.every[OBSERVE_BEAD]),
+     .line = true},
+    {.name = "pressure",
+     .text = "Time series of the pressure tensor, of the potential energy and of the configurational temperature.",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &pressure_table,
+     .offset = IN_SCENE(observe.every[OBSERVE_PRESSURE]),
      .line = true},
 };
 static const struct key_table observe_table = {"observe", NULL, COUNT(observe_keys), observe_keys};

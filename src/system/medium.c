@@ -49,8 +49,33 @@ static bool finish_private(struct model *m, struct model_error *error)
       {m->medium.density == 0.0, "medium.density", "a private bath has no particles; allowed with kind: pairs"},
       {m->medium.weight == WEIGHT_HAT, "medium.weight",
        "a private bath knows no distances; allowed: hat, which has no effect there"},
+      {!model_repels(m), "medium.kind", "a private bath knows no distances, so no repulsion; allowed with it: pairs"},
   };
   return refuse_first(rows, sizeof rows / sizeof *rows, error);
+}
+
+/* What forces of pairs ask for. A contact of the event-driven rule needs the forces on its vertices at its own time. */
+static bool check_forces(struct model *m, struct model_error *error)
+{
+  const struct medium_model *b = &m->medium;
+  const bool chases = m->crossing.forbidden && m->crossing.rule == CROSSING_EVENT_DRIVEN && m->kinds > 0;
+  const struct refusal rows[] = {
+      {b->repulsion >= 0.0 || b->many.repulsion > 0.0, "medium.repulsion",
+       "an attraction without many_body, under which all members fall onto each other; allowed: 0 and more"},
+      {!model_repels(m) || !chases, "crossing.rule",
+       "forces of particles are known once in a step, and contacts need them at their own time; allowed with "
+       "repulsion: "
+       "sequential"},
+  };
+  if (!refuse_first(rows, sizeof rows / sizeof *rows, error))
+    return false;
+  const double others = nearbyint(b->second.share * m->solvent.particles);
+  m->medium.second.first = m->solvent.particles - (uint32_t)others;
+  return b->second.share == 0.0 || others >= 1.0 ||
+         model_reject(error, "medium.second.share",
+                      "%.15g of %u particles is a group that no one has; allowed: 1 "
+                      "particle and more",
+                      b->second.share, m->solvent.particles);
 }
 
 static double count_vertices(const struct model *m)
@@ -80,7 +105,7 @@ static bool finish_pairs(struct model *m, struct model_error *error)
                         "to %.0f in all",
                         m->medium.density, box_volume(&m->box), particles, members, MEDIUM_MOST_MEMBERS);
   m->solvent.particles = (uint32_t)particles;
-  return true;
+  return check_forces(m, error);
 }
 
 bool medium_finish(struct model *m, struct model_error *error)

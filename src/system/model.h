@@ -52,6 +52,9 @@ enum medium_draw { DRAW_REPLACE, DRAW_RELAX, DRAW_CAYLEY, MEDIUM_DRAWS };
 /* How the rate of a pair depends on its distance: the rows of medium/bath.c. */
 enum medium_weight { WEIGHT_HAT, WEIGHT_QUADRATIC, MEDIUM_WEIGHTS };
 
+/* How the particles of two groups are laid at the start. */
+enum medium_layout { LAYOUT_MIXED, LAYOUT_SLAB, MEDIUM_LAYOUTS };
+
 /* Where the body force acts on the solvent, and how much of it: along y, in a box of edge L. */
 enum force_profile {
   PROFILE_UNIFORM, /* everywhere the same */
@@ -166,6 +169,19 @@ struct medium_model {
   enum medium_draw draw;
   enum medium_weight weight; /* of pairs */
   double density;            /* of pairs: particles of mass 1 per a0^3 */
+
+  /* Forces of pairs, medium/repulsion.h. */
+  double repulsion; /* kT/a0: of all pairs, at r = 0; 0: none */
+  struct {
+    double share;     /* of the particles that are of the second group; 0: there is none */
+    double repulsion; /* kT/a0: between the groups */
+    enum medium_layout start;
+    uint32_t first; /* derived: number of its first particle */
+  } second;
+  struct {
+    double repulsion; /* kT/a0 per density: B; 0: none */
+    double range;     /* r_d, a0 */
+  } many;
 };
 
 struct crossing_model {
@@ -192,11 +208,24 @@ struct dumbbell_model {
   double frequency; /* sqrt(2 K/m), 1/t0 */
 };
 
+/* What pulls a bead: force - spring (x - trap), where the trap is at center + velocity t + amplitude sin(2 pi
+ * t/period).
+ */
+struct bead_drive {
+  struct vec3 force;     /* constant, kT/a0 */
+  double spring;         /* k, kT/a0^2; 0: no trap */
+  struct vec3 velocity;  /* of the trap, a0/t0 */
+  struct vec3 amplitude; /* of the trap's oscillation, a0 */
+  double period;         /* of it, t0; 0: none */
+};
+
 /* A sphere in the solvent: system/bead.h. */
 struct bead_model {
   double radius;      /* R, a0; 0: none */
   double mass;        /* M, m; effective: that of the solvent it displaces, if 0 was given */
   struct vec3 center; /* at the start, a0 */
+  struct bead_drive drive;
+  bool driven; /* derived: there is a force or a spring */
 };
 
 /* Walls at y = 0 and y = L. */
@@ -336,6 +365,12 @@ static inline bool model_rule_is_thermal(const struct model *model)
 static inline bool model_in_cells(const struct model *model)
 {
   return model->medium.kind == MEDIUM_CELLS;
+}
+
+/* Members of the medium exert forces on each other. */
+static inline bool model_repels(const struct model *model)
+{
+  return model->medium.repulsion != 0.0 || model->medium.many.repulsion != 0.0 || model->medium.second.share != 0.0;
 }
 
 /* Something holds kT = 1: the rule, a thermostat, or a bath. */

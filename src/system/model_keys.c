@@ -15,6 +15,7 @@ static const char *const bath_words[] = {"particles", "phantoms", NULL};
 static const char *const medium_words[] = {"private", "pairs", NULL};
 static const char *const draw_words[] = {"replace", "relax", "cayley", NULL};
 static const char *const weight_words[] = {"hat", "quadratic", NULL};
+static const char *const layout_words[] = {"mixed", "slab", NULL};
 static const char *const exclusion_words[] = {"shared-vertex", "paper", NULL};
 static const char *const crossing_words[] = {"sequential", "event-driven", NULL};
 static const char *const rejection_words[] = {"stay", "bounce", NULL};
@@ -112,6 +113,57 @@ static const struct key solvent_keys[] = {
 };
 static const struct key_table solvent_table = {"solvent", NULL, COUNT(solvent_keys), solvent_keys};
 
+static const struct key second_keys[] = {
+    {.name = "share",
+     .text =
+         "Of the particles that are of the second group: those with the highest numbers. Vertices are of the first.",
+     .type = KEY_NUMBER,
+     .low = 0,
+     .above = true,
+     .high = 1,
+     .offset = IN_MODEL(medium.second.share)},
+    {.name = "repulsion",
+     .text = "Between members of the two groups, instead of `medium.repulsion`.",
+     .type = KEY_NUMBER,
+     .low = 0,
+     .above = true,
+     .high = 1000,
+     .offset = IN_MODEL(medium.second.repulsion),
+     .unit = "kT/a0",
+     .symbol = "a_AB"},
+    {.name = "start",
+     .text =
+         "Where the second group is laid. `mixed`: anywhere. `slab`: below `share` times the box's edge along y, the "
+         "first group above.",
+     .type = KEY_CHOICE,
+     .absent = "mixed",
+     .choice = layout_words,
+     .offset = IN_MODEL(medium.second.start)},
+};
+static const struct key_table second_table = {"medium.second", NULL, COUNT(second_keys), second_keys};
+
+static const struct key many_keys[] = {
+    {.name = "repulsion",
+     .text = "B of the force B (rho_i + rho_j) (1 - r/range) between members, rho_i being the density about member i.",
+     .type = KEY_NUMBER,
+     .low = 0,
+     .above = true,
+     .high = 1000,
+     .offset = IN_MODEL(medium.many.repulsion),
+     .unit = "kT a0^2",
+     .symbol = "B"},
+    {.name = "range",
+     .text = "Range of the weight 15/(2 pi range^3) (1 - r/range)^2 of that density.",
+     .type = KEY_NUMBER,
+     .absent = "0.75",
+     .low = 0.1,
+     .high = 1,
+     .offset = IN_MODEL(medium.many.range),
+     .unit = "a0",
+     .symbol = "r_d"},
+};
+static const struct key_table many_table = {"medium.many_body", NULL, COUNT(many_keys), many_keys};
+
 static const struct key medium_keys[] = {
     {.name = "kind",
      .text =
@@ -162,6 +214,29 @@ static const struct key medium_keys[] = {
      .offset = IN_MODEL(medium.density),
      .unit = "1/a0^3",
      .symbol = "rho"},
+    {.name = "repulsion",
+     .text =
+         "Of pairs: a of the force a (1 - r) between any two members nearer than 1 a0 (DPD). Below 0 an attraction, "
+         "which needs `many_body`.",
+     .type = KEY_NUMBER,
+     .absent = "0",
+     .low = -1000,
+     .high = 1000,
+     .offset = IN_MODEL(medium.repulsion),
+     .unit = "kT/a0",
+     .symbol = "a"},
+    {.name = "second",
+     .text = "A second group of particles; absent: none.",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &second_table,
+     .line = true},
+    {.name = "many_body",
+     .text = "A repulsion that grows with the density (Warren, Phys. Rev. E 68, 066702 (2003)); absent: none.",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &many_table,
+     .line = true},
 };
 static const struct key_table medium_table = {"medium", NULL, COUNT(medium_keys), medium_keys};
 
@@ -423,6 +498,54 @@ static const struct key dumbbell_keys[] = {
 };
 static const struct key_table dumbbell_table = {"dumbbells", NULL, COUNT(dumbbell_keys), dumbbell_keys};
 
+static const struct key drive_keys[] = {
+    {.name = "force",
+     .text = "Constant force on the bead. If absent: none.",
+     .type = KEY_VECTOR,
+     .optional = true,
+     .low = -1e6,
+     .high = 1e6,
+     .offset = IN_MODEL(bead.drive.force),
+     .unit = "kT/a0",
+     .symbol = "F"},
+    {.name = "spring",
+     .text =
+         "Constant k of a harmonic trap, k x^2/2 per component, whose middle is at `center` at the start. If absent: "
+         "no trap.",
+     .type = KEY_NUMBER,
+     .optional = true,
+     .low = 0,
+     .high = 1e6,
+     .offset = IN_MODEL(bead.drive.spring),
+     .unit = "kT/a0^2",
+     .symbol = "k"},
+    {.name = "velocity",
+     .text = "Constant velocity of the trap. If absent: it stands.",
+     .type = KEY_VECTOR,
+     .optional = true,
+     .low = -100,
+     .high = 100,
+     .offset = IN_MODEL(bead.drive.velocity),
+     .unit = "a0/t0"},
+    {.name = "amplitude",
+     .text = "Amplitude of an oscillation of the trap, sin(2 pi t/period). If absent: none.",
+     .type = KEY_VECTOR,
+     .optional = true,
+     .low = -1024,
+     .high = 1024,
+     .offset = IN_MODEL(bead.drive.amplitude),
+     .unit = "a0"},
+    {.name = "period",
+     .text = "Period of this oscillation, at least 8 time steps.",
+     .type = KEY_NUMBER,
+     .optional = true,
+     .low = 0,
+     .high = 1e9,
+     .offset = IN_MODEL(bead.drive.period),
+     .unit = "t0"},
+};
+static const struct key_table drive_table = {"bead.drive", NULL, COUNT(drive_keys), drive_keys};
+
 static const struct key bead_keys[] = {
     {.name = "radius",
      .text = "Radius R. Smaller ones are not resolved by the cells. The box has edges of at least 2 R + 4 and 40 "
@@ -450,6 +573,11 @@ static const struct key bead_keys[] = {
      .high = LATTICE_MAX_EDGE,
      .offset = IN_MODEL(bead.center),
      .unit = "a0"},
+    {.name = "drive",
+     .text = "What pulls it; absent: nothing.",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &drive_table},
 };
 static const struct key_table bead_table = {"bead", NULL, COUNT(bead_keys), bead_keys};
 

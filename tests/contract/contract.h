@@ -33,6 +33,7 @@ struct choice {
   enum medium_kind medium; /* instead of collisions in cells */
   enum medium_draw draw;
   enum medium_weight weight;
+  bool repels; /* pairs of the medium: with two groups and many bodies */
 };
 
 /* --- models ------------------------------------------------------------------------------------------------------ */
@@ -55,7 +56,13 @@ static inline void contract_choose(struct model *m, struct choice c)
   m->crossing.rule = c.crossing;
   if (c.medium != MEDIUM_CELLS) {
     const double density = c.medium == MEDIUM_PAIRS ? m->solvent.per_cell : 0.0;
-    m->medium = (struct medium_model){c.medium, 0.4 / m->time_step, c.draw, c.weight, density};
+    m->medium = (struct medium_model){
+        .kind = c.medium, .rate = 0.4 / m->time_step, .draw = c.draw, .weight = c.weight, .density = density};
+    if (c.repels) {
+      m->medium.repulsion = 25.0;
+      m->medium.second.share = 0.25, m->medium.second.repulsion = 40.0;
+      m->medium.many.repulsion = 10.0, m->medium.many.range = 0.75;
+    }
     m->solvent.per_cell = m->solvent.collision_interval = 0.0;
   }
 }

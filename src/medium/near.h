@@ -1,0 +1,27 @@
+/* The search for pairs of members that are near each other: what the bath and the repulsion of pairs share. */
+#ifndef UNCROSS_MEDIUM_NEAR_H
+#define UNCROSS_MEDIUM_NEAR_H
+
+#include "base/random.h"
+#include "medium/medium.h"
+
+enum { NEAR_BLOCK = RANDOM_UNIFORMS };
+
+/* Some pairs, in columns. */
+struct near_pairs {
+  uint32_t n;
+  uint32_t a[NEAR_BLOCK], b[NEAR_BLOCK];                             /* places of the members */
+  double x[NEAR_BLOCK], y[NEAR_BLOCK], z[NEAR_BLOCK], r[NEAR_BLOCK]; /* a - b, exact, and its length; a0 */
+};
+
+struct near_search {
+  const struct model *model;
+  struct medium *medium;                                                    /* members_gather has filled it */
+  bool (*look)(const struct near_search *search, struct near_pairs *pairs); /* false stops the search */
+  void *context;
+};
+
+/* Shows all pairs with 0 < r < 1 to `look`, each once, in no particular order. False if it did. */
+bool near_find(const struct near_search *search);
+
+#endif

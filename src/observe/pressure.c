@@ -1,0 +1,155 @@
+/*
+ * The pressure tensor and the configurational temperature, at the step of the row:
+ *
+ *   p_ab = (1/V) [sum of m w_a w_b + sum of r_a F_b],   T = <sum of |grad U|^2>/<laplacian of U>
+ *
+ * (Rugh 1997; Butler, Ayton, Jepps and Evans, J. Chem. Phys. 109, 6519 (1998)). U is the energy of bonds, bends and of
+ * the medium's pairs; w velocities relative to the flow, taken back by the half step that states are ahead. Means are
+ * what to compare: T of one row has a bias of the order of 1 over the number of members. Fibers that stand still have
+ * no part in the second.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "fiber/force.h"
+#include "fluid/fluid.h"
+#include "medium/repulsion.h"
+#include "observe/observer.h"
+
+struct sums {
+  double flow[STRESS_COMPONENTS]; /* kT: of m w_a w_b + r_a F_b */
+  double potential, square, laplacian;
+};
+
+static void add_products(double sum[STRESS_COMPONENTS], double factor, struct vec3 a, struct vec3 b)
+{
+  sum[STRESS_XY] += factor * a.x * b.y;
+  sum[STRESS_XX] += factor * a.x * b.x;
+  sum[STRESS_YY] += factor * a.y * b.y;
+  sum[STRESS_ZZ] += factor * a.z * b.z;
+}
+
+/* Of the energy of a bond, in the coordinates of both ends: 2 [U'' + (d - 1) U'/r]. */
+static double bond_laplacian(const struct fiber_kind *k, int dimensions, double length)
+{
+  const double slope = k->bond_length == 0.0 ? k->spring : k->spring * (1.0 - k->bond_length / length);
+  return 2.0 * (k->spring + (dimensions - 1) * slope);
+}
+
+/* Of kappa (1 - cos), in the coordinates of all three vertices; a, b: the bonds. */
+static double bend_laplacian(const struct fiber_kind *k, int dimensions, struct vec3 a, struct vec3 b)
+{
+  const double aa = vec3_dot(a, a), bb = vec3_dot(b, b), product = sqrt(aa * bb), cosine = vec3_dot(a, b) / product;
+  return 2.0 * k->bending *
+         ((dimensions - 1) * cosine * (1.0 / aa + 1.0 / bb) + (dimensions - 2 + cosine * cosine) / product);
+}
+
+static void add_bonded(const struct model *model, const struct state *state, uint32_t v, struct sums *s)
+{
+  const struct fiber_kind *k = &model->kind[model->fiber_kind_of[model->fiber_of[v]]];
+  if (model->next[v] < 0 || k->frozen)
+    return;
+  const struct vec3 bond = fiber_bond(state, model, v);
+  s->laplacian += bond_laplacian(k, (int)model->dimensions, vec3_norm(bond));
+  if (k->bending != 0.0 && model->prev[v] >= 0)
+    s->laplacian += bend_laplacian(k, (int)model->dimensions, fiber_bond(state, model, (uint32_t)model->prev[v]), bond);
+}
+
+/* bonded: forces of bonds and bends, and the constant one; pair: those of the medium's pairs, NULL without. */
+static void add_vertices(const struct view *view, const struct vec3 *bonded, const struct vec3 *pair, struct sums *s)
+{
+  const struct model *model = view->model;
+  const struct state *state = view->state;
+  const double half = 0.5 * model->time_step;
+  for (uint32_t v = 0; v < state->vertices; v++) {
+    const uint32_t fiber = model->fiber_of[v];
+    const struct vec3 outer = model->kind[model->fiber_kind_of[fiber]].force, inner = vec3_sub(bonded[v], outer),
+                      more = pair ? pair[state->solvent.n + v] : (struct vec3){0, 0, 0},
+                      all = vec3_add(bonded[v], more), grad = vec3_add(inner, more),
+                      now = vec3_add_scaled(state->velocity[v], -half * model->inverse_mass[v], all),
+                      w = vec3_sub(now, model->flow);
+    const struct point origin = state->position[model->fiber_first[fiber]];
+    add_products(s->flow, model->mass[v], w, w);
+    add_products(s->flow, 1.0, point_difference(state->position[v], origin), inner);
+    s->square += model->inverse_mass[v] > 0.0 ? vec3_dot(grad, grad) : 0.0;
+    add_bonded(model, state, v, s);
+  }
+}
+
+/* In the order of their numbers, so that sums do not depend on the order in memory. by_number: [particles]. */
+static void add_particles(const struct view *view, const struct vec3 *pair, struct vec3 *by_number, struct sums *s)
+{
+  const struct state *state = view->state;
+  const double half = 0.5 * view->model->time_step;
+  for (uint32_t i = 0; i < state->solvent.n; i++)
+    fluid_of(view->model)->now(state, view->model, i, 1, NULL, &by_number[state->solvent.id[i]]);
+  for (uint32_t i = 0; i < state->solvent.n; i++) {
+    const struct vec3 force = pair ? pair[i] : (struct vec3){0, 0, 0},
+                      w = vec3_sub(vec3_add_scaled(by_number[i], -half, force), view->model->flow);
+    add_products(s->flow, 1.0, w, w);
+    s->square += vec3_dot(force, force);
+  }
+}
+
+static void add_pairs(const struct repulsion_sums *pairs, struct sums *s)
+{
+  for (int k = 0; k < STRESS_COMPONENTS; k++)
+    s->flow[k] += pairs->virial[k];
+  s->potential += pairs->energy;
+  s->laplacian += pairs->laplacian;
+}
+
+static bool measure(struct view *view, struct sums *s)
+{
+  const struct model *model = view->model;
+  const struct state *state = view->state;
+  struct fault ignored = {.code = FAULT_NONE}; /* a bond too long for the box stops the run, not its observers */
+  struct repulsion_sums pairs;
+  struct vec3 *pair, *by_number;
+  const size_t n = state->solvent.n, members = model_repels(model) ? n + state->vertices : 0;
+  const struct memory_need need[] = {{(void **)&pair, members, sizeof *pair},
+                                     {(void **)&by_number, n, sizeof *by_number}};
+  if (!memory_take(need, 2))
+    return false;
+  const bool ok = repulsion_measure(state, model, pair, &pairs);
+  if (state->vertices > 0)
+    fiber_forces(state, model, view->force, state->step, &ignored);
+  const struct fiber_energy energy = fiber_energies(state, model);
+  s->potential = energy.bond + energy.bend;
+  add_vertices(view, view->force, pair, s);
+  add_particles(view, pair, by_number, s);
+  add_pairs(&pairs, s);
+  memory_release(need, 2);
+  return ok;
+}
+
+static void pressure_row(struct observer *o, struct view *view, double *row)
+{
+  (void)o;
+  const struct model *model = view->model;
+  const double volume = box_volume(&model->box), d = model->dimensions;
+  struct sums s = {.potential = 0.0};
+  const double unknown = measure(view, &s) ? 0.0 : NAN;
+  const double *p = s.flow;
+  const double values[] = {view_time(view),
+                           unknown + (p[STRESS_XX] + p[STRESS_YY] + (d > 2 ? p[STRESS_ZZ] : 0.0)) / (d * volume),
+                           unknown + p[STRESS_XX] / volume,
+                           unknown + p[STRESS_YY] / volume,
+                           unknown + p[STRESS_ZZ] / volume,
+                           unknown + p[STRESS_XY] / volume,
+                           unknown + s.potential,
+                           unknown + s.square,
+                           unknown + s.laplacian,
+                           unknown + s.square / s.laplacian};
+  memcpy(row, values, sizeof values);
+}
+
+static const char *const columns[] = {"time", "pressure",  "p_xx",         "p_yy",      "p_zz",
+                                      "p_xy", "potential", "force_square", "laplacian", "configurational"};
+
+const struct observer_type pressure_observer = {
+    .column = columns,
+    .columns = sizeof columns / sizeof *columns,
+    .row = pressure_row,
+};

@@ -1,0 +1,44 @@
+#include "theory/bead.h"
+
+#include <math.h>
+
+#include "theory/dumbbell.h"
+#include "theory/flow.h"
+#include "theory/theory.h"
+
+static const double pi = 3.14159265358979323846;
+
+double theory_bead_stokes(double viscosity, double radius)
+{
+  return 6.0 * pi * viscosity * radius;
+}
+
+double theory_bead_enskog(double gamma, double radius, double mass)
+{
+  return 16.0 / 3.0 * gamma * radius * radius * sqrt(2.0 * pi * mass / (1.0 + mass));
+}
+
+double theory_bead_radius(double radius, double slip)
+{
+  return radius * (radius + 2.0 * slip) / (radius + 3.0 * slip);
+}
+
+double theory_bead_box(double radius, double edge)
+{
+  const double x = radius / edge, cube = x * x * x;
+  return 1.0 / (1.0 - 2.837297 * x + 4.0 * pi / 3.0 * cube - 27.4 * cube * cube);
+}
+
+double theory_model_bead_slip(const struct model *model)
+{
+  const struct solvent_model *s = &model->solvent;
+  const double flat = theory_slip_length(collision_rule_of(model), model->dimensions, s->per_cell, s->cosine,
+                                         model_collision_interval(model));
+  return fmax(0.0, flat); /* beyond THEORY_MOST_SLIP_INTERVAL the formula falls below 0 */
+}
+
+double theory_model_bead_friction(const struct model *model)
+{
+  const double radius = theory_bead_radius(model->bead.radius, theory_model_bead_slip(model));
+  return theory_bead_stokes(theory_model_viscosity(model), radius);
+}
