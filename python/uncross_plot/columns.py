@@ -127,6 +127,7 @@ COLUMNS = {
     "uyuy": Column("bonds across the flow", r"$\langle u_y u_y\rangle$"),
     "uzuz": Column("bonds along the vorticity", r"$\langle u_z u_z\rangle$"),
     "uxuy": Column("correlation of bonds", r"$\langle u_x u_y\rangle$"),
+    "S": Column("nematic order", "$S$"),
     # bead
     "place_x": Column("place, x", "$x$", A),
     "place_y": Column("place, y", "$y$", A),
