@@ -72,15 +72,17 @@ static const struct key_table shape_table = {"observe.dumbbells", NULL, COUNT(ev
 
 static const struct key_table orientation_table = {"observe.orientation", NULL, COUNT(every_keys), every_keys};
 
+static const struct key_table memory_table = {"observe.memory", NULL, COUNT(every_keys), every_keys};
+
 static const struct key_table pressure_table = {"observe.pressure", NULL, COUNT(every_keys), every_keys};
 
 static const struct key observe_keys[] = {
     {.name = "from",
-     .text =
-         "Step at which averages (`statics`, `dynamics`, `profile`, `dumbbells`, `orientation`) begin, so that they "
-         "leave a transient out. "
-         "Time series "
-         "begin at step 0 all the same. At most `steps`. If absent: 0.",
+     .text = "Step at which averages (`statics`, `dynamics`, `profile`, `dumbbells`, `orientation`, `memory`) begin, "
+             "so that they "
+             "leave a transient out. "
+             "Time series "
+             "begin at step 0 all the same. At most `steps`. If absent: 0.",
      .type = KEY_WHOLE64,
      .optional = true,
      .most = INT64_MAX,
@@ -158,6 +160,13 @@ static const struct key observe_keys[] = {
      .optional = true,
      .keys = &orientation_table,
      .offset = IN_SCENE(observe.every[OBSERVE_ORIENTATION]),
+     .line = true},
+    {.name = "memory",
+     .text = "Functions of the lag: memory of velocities and of the stress of fibers.",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &memory_table,
+     .offset = IN_SCENE(observe.every[OBSERVE_MEMORY]),
      .line = true},
     {.name = "pressure",
      .text = "Time series of the pressure tensor, of the potential energy and of the configurational temperature.",
