@@ -39,6 +39,7 @@
 #include "medium/plan.h"
 #include "medium/repulsion.h"
 #include "mpc/plan.h"
+#include "system/bead.h"
 #include "system/shear.h"
 
 enum action { END, DRIFT, COLLIDE, FORCE, KICK, MOVE };
@@ -162,6 +163,30 @@ static void set_total_momentum(struct state *state, const struct model *model)
     state->bead->velocity = vec3_add(state->bead->velocity, change);
 }
 
+/* As between steps, the velocity of a driven bead is that of the half step ahead; that of all else is half a step
+ * behind with the counterforce, which acts in flight. */
+static void start_drive(struct state *state, const struct model *model)
+{
+  const double half = 0.5 * model->time_step;
+  const struct vec3 behind = vec3_scale(-half, bead_counter(state, model));
+  struct solvent *s = &state->solvent;
+  if (!model->bead.driven)
+    return;
+  bead_kick(state->bead, model, state->solvent_time, half);
+  for (uint32_t i = 0; i < s->n; i++)
+    s->vx[i] += behind.x, s->vy[i] += behind.y, s->vz[i] += behind.z;
+  for (uint32_t v = 0; v < state->vertices; v++)
+    state->velocity[v] = vec3_add(state->velocity[v], behind);
+}
+
+void step_begin_drive(struct state *state, const struct model *model)
+{
+  if (!model->bead.driven)
+    return;
+  set_total_momentum(state, model);
+  start_drive(state, model);
+}
+
 /* A sheared box starts with its linear profile: velocities are thermal about it. */
 static void add_shear(struct state *state, const struct model *model)
 {
@@ -240,6 +265,7 @@ bool step_start(struct state *state, const struct model *model, struct work *wor
     return true;
   }
   set_total_momentum(state, model);
+  start_drive(state, model);
   add_shear(state, model);
   if (!fiber_forces(state, model, work->fiber.force, 0, &work->fault))
     return false;

@@ -33,6 +33,10 @@ void step_plan(struct work *work, const struct model *model);
  * if a bond does not fit the box. */
 bool step_start(struct state *state, const struct model *model, struct work *work);
 
+/* Gives the velocities of a state that was made without a drive those of a start: total momentum, and half steps ahead
+ * of and behind the drive (system/bead.h). Nothing without a driven bead. */
+void step_begin_drive(struct state *state, const struct model *model);
+
 /* True if no tubes of thick fibers overlap; else the fault says which. For states that come from files. */
 bool step_sound(const struct state *state, const struct model *model, struct fault *fault);
 

@@ -131,6 +131,22 @@ COLUMNS = {
     "uyuy": Column("bonds across the flow", r"$\langle u_y u_y\rangle$"),
     "uzuz": Column("bonds along the vorticity", r"$\langle u_z u_z\rangle$"),
     "uxuy": Column("correlation of bonds", r"$\langle u_x u_y\rangle$"),
+    # bead
+    "place_x": Column("place, x", "$x$", A),
+    "place_y": Column("place, y", "$y$", A),
+    "place_z": Column("place, z", "$z$", A),
+    "velocity_x": Column("velocity, x", "$V_x$", V),
+    "velocity_y": Column("velocity, y", "$V_y$", V),
+    "velocity_z": Column("velocity, z", "$V_z$", V),
+    "force_x": Column("force of the drive, x", "$F_x$", "$(kT/a_0)$"),
+    "force_y": Column("force of the drive, y", "$F_y$", "$(kT/a_0)$"),
+    "force_z": Column("force of the drive, z", "$F_z$", "$(kT/a_0)$"),
+    "trap_x": Column("middle of the trap, x", "$c_x$", A),
+    "trap_y": Column("middle of the trap, y", "$c_y$", A),
+    "trap_z": Column("middle of the trap, z", "$c_z$", A),
+    "work": Column("work of the drive", "$W$", E),
+    "heat": Column("heat from its matter", "$Q$", E),
+    "hits": Column("hits of particles"),
     # dumbbells
     "r2": Column("length squared", r"$\langle r^2\rangle$", A2),
     "rxrx": Column("along the flow", r"$\langle r_x r_x\rangle$", A2),
@@ -144,7 +160,7 @@ COLUMNS = {
 
 # Sums and counts since the start, and what drifts where a force acts: their mean over time says nothing.
 RUNNING = {"total", "px", "py", "pz", "moves", "possible", "executed", "negative", "softened", "rigid",
-           "executed_per_possible"}
+           "executed_per_possible", "work", "heat", "hits", "place_x", "place_y", "place_z", "trap_x", "trap_y", "trap_z"}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -179,6 +195,14 @@ PANELS = {
         Panel("Rate since the row before", ("rate_per_vertex",)),
         Panel("Rate over kinetic theory", ("rate_over_theory",), level=1.0),
     ),
+    "bead": (
+        Panel("Way since the start", ("place_x", "place_y", "place_z"), "way / $a_0$", change=True),
+        Panel("Middle of the trap", ("trap_x", "trap_y", "trap_z"), "middle / $a_0$", change=True),
+        Panel("Velocity", ("velocity_x", "velocity_y", "velocity_z"), f"velocity / {V}"),
+        Panel("Force of the drive", ("force_x", "force_y", "force_z"), "force / $(kT/a_0)$"),
+        Panel("Work and heat", ("work", "heat"), "energy / $kT$"),
+        Panel("Hits since the start", ("hits",)),
+    ),
     "dynamics": (
         Panel("Mean square displacements", ("g", "g_cm", "g_cm_about_mean", "g_middle", "d2", "d2_contour"),
               "mean square displacement / $a_0^2$", log_y=True, wide=True, **LAG),
@@ -212,7 +236,8 @@ PANELS = {
 LAG_LABEL = "lag $t$ / $t_0$"
 TITLES = {"conserved": "Energy and momentum", "temperature": "Temperature", "collisions": "Contacts of bonds",
           "statics": "Size and shape", "dynamics": "Motion", "profile": "Profile across the flow", "stress": "Stress",
-          "dumbbells": "Shape of dumbbells", "orientation": "Orientation", "pressure": "Pressure and configurational temperature", "memory": "Memory"}
+          "dumbbells": "Shape of dumbbells", "orientation": "Orientation", "bead": "The bead",
+          "pressure": "Pressure and configurational temperature", "memory": "Memory"}
 
 
 def column(name):

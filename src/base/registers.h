@@ -26,6 +26,13 @@
 #endif
 #endif
 
+/* The processor's own instructions for LANES numbers. Without them, tests run the same source on any processor. */
+#if LANES == 8 && defined __AVX512F__ && defined __AVX512DQ__
+#define HAS_512
+#elif LANES == 4 && defined __AVX2__
+#define HAS_256
+#endif
+
 typedef double reals __attribute__((vector_size(LANES * 8)));
 typedef int64_t wholes __attribute__((vector_size(LANES * 8)));
 typedef uint64_t words __attribute__((vector_size(LANES * 8)));
@@ -99,6 +106,79 @@ INLINE words negative(words x)
 #endif
 }
 
+/* The integer nearest to each number, if its size is below 2^51; otherwise any integer of 2^51 or more. */
+INLINE words round_to_words(reals x)
+{
+#if defined HAS_512
+  return (words)_mm512_cvtpd_epi64((__m512d)x);
+#else
+  const reals magic = (reals){0} + 0x1.8p52;
+  return (words)(x + magic) - (words)magic;
+#endif
+}
+
+/* The size of signed integers, or one less if they are negative. */
+INLINE words sizes(words x)
+{
+#if defined HAS_512
+  return (words)_mm512_abs_epi64((__m512i)x);
+#else
+  return x ^ negative(x);
+#endif
+}
+
+/* Signed integers x, and x + edge where x is negative, x - edge where x is edge or more. Within [-edge, 2 edge) this is
+ * the remainder; outside of it, something outside of [0, edge). */
+INLINE words wrap(words x, uint64_t edge)
+{
+#if defined HAS_512 /* without a sign, the one in the box is the smallest */
+  x = (words)_mm512_min_epu64((__m512i)x, (__m512i)(x + edge));
+  return (words)_mm512_min_epu64((__m512i)x, (__m512i)(x - edge));
+#elif defined HAS_256 /* the sign chooses */
+  x = (words)_mm256_blendv_pd((__m256d)x, (__m256d)(x + edge), (__m256d)x);
+  const words less = x - edge;
+  return (words)_mm256_blendv_pd((__m256d)less, (__m256d)x, (__m256d)less);
+#else
+  x += negative(x) & edge;
+  return x - (negative(edge - 1 - x) & edge);
+#endif
+}
+
+/* Remembers whether an x was outside of [0, edge); was_outside: one was. `seen` begins as 0. */
+INLINE words see(words seen, words x, uint64_t edge)
+{
+#if defined HAS_512
+  (void)edge;
+  return (words)_mm512_max_epu64((__m512i)seen, (__m512i)x);
+#else
+  return seen | x | (edge - 1 - x);
+#endif
+}
+
+INLINE words was_outside(words seen, uint64_t edge)
+{
+#if defined HAS_512
+  return seen | (edge - 1 - seen);
+#else
+  (void)edge;
+  return seen;
+#endif
+}
+
+/* x, but 0 where it is n: numbers from 0 to n, n below 2^31. */
+INLINE words but_not(words x, uint32_t n)
+{
+  const halves less = (halves)x - (halves)((words){0} + n);
+#if defined HAS_512
+  return (words)_mm512_min_epu32((__m512i)x, (__m512i)less);
+#elif defined HAS_256
+  return (words)_mm256_min_epu32((__m256i)x, (__m256i)less);
+#else
+  typedef int32_t quarters __attribute__((vector_size(LANES * 8)));
+  return x & (words)((quarters)less >> 31);
+#endif
+}
+
 /* Each word times m, both below 2^32 with a product below 2^32. */
 INLINE words multiply(words x, uint32_t m)
 {
@@ -135,23 +215,29 @@ INLINE reals square_root(reals x)
 #endif
 }
 
-/* The double nearest to each word, taken as a signed integer. Bits 0x433 before 52 bits k are the number 2^52 + k; the
- * high halves come as 2^84 + 2^32 (k + 2^31). Only the last sum rounds. */
+/* The double nearest to each word, taken as a signed integer. Without an instruction: bits 0x433 before 52 bits k are
+ * the number 2^52 + k; the high halves come as 2^84 + 2^32 (k + 2^31). Only the last sum rounds. */
 INLINE reals reals_from_signed(words x)
 {
+#if defined HAS_512
+  return (reals)_mm512_cvtepi64_pd((__m512i)x);
+#else
   const reals high = (reals)(x >> 32 ^ 0x4530000080000000), low = (reals)((x & 0xffffffff) | 0x4330000000000000);
   return (high - 0x1.00000801p84) + low;
+#endif
 }
 
-/* The same for words below 2^52, without a sign; and for low halves, taken as signed integers of 32 bits. */
+/* The same for words below 2^52, without a sign. */
 INLINE reals reals_from_small(words x)
 {
   return (reals)(x | 0x4330000000000000) - 0x1p52;
 }
 
-INLINE reals reals_from_low(words x)
+/* (k + 0.5) 2^-31 of low halves k, taken as signed integers of 32 bits: bits 0x413 before 52 bits 2 k' + 1 are the
+ * number 2^20 + (2 k' + 1) 2^-32, and k' = k + 2^31. */
+INLINE reals reals_in_square(words x)
 {
-  return (reals)((x & 0xffffffff) ^ 0x4330000080000000) - (0x1p52 + 0x1p31);
+  return (reals)((x << 1 & 0x1fffffffe) ^ 0x4130000100000001) - (0x1p20 + 1.0);
 }
 
 /* a where the mask is all ones, b where it is 0. */
@@ -169,7 +255,35 @@ INLINE uint64_t any(words x)
   return all;
 }
 
-/* Of two rows: blocks of one lane, then of two, of four, change places across the diagonal. */
+/* True if all words are 0. */
+INLINE int none(words x)
+{
+#if defined HAS_512
+  return _mm512_test_epi64_mask((__m512i)x, (__m512i)x) == 0;
+#else
+  return any(x) == 0;
+#endif
+}
+
+/* Writes the low halves of those x whose mask is all ones from list[n] on, in the order of lanes, and returns the
+ * length that the list has then. There is room for LANES of them. */
+INLINE uint32_t append(uint32_t *list, uint32_t n, words x, words mask)
+{
+#if defined HAS_512
+  const __mmask8 taken = _mm512_movepi64_mask((__m512i)mask);
+  store_narrow(&list[n], (words)_mm512_maskz_compress_epi64(taken, (__m512i)x));
+  return n + (uint32_t)__builtin_popcount(taken);
+#else
+  UNROLL
+  for (int k = 0; k < LANES; k++) {
+    list[n] = (uint32_t)x[k];
+    n += (uint32_t)mask[k] & 1;
+  }
+  return n;
+#endif
+}
+
+/* Of two rows: blocks of one lane, then of two, change places across the diagonal. */
 #define EXCHANGE(a, b, low, high)                                                                                      \
   do {                                                                                                                 \
     const reals first = SHUFFLE(a, b, low), second = SHUFFLE(a, b, high);                                              \
@@ -181,8 +295,6 @@ INLINE uint64_t any(words x)
 #define HIGH_1 1, 9, 3, 11, 5, 13, 7, 15
 #define LOW_2 0, 1, 8, 9, 4, 5, 12, 13
 #define HIGH_2 2, 3, 10, 11, 6, 7, 14, 15
-#define LOW_4 0, 1, 2, 3, 8, 9, 10, 11
-#define HIGH_4 4, 5, 6, 7, 12, 13, 14, 15
 #elif LANES == 4
 #define LOW_1 0, 4, 2, 6
 #define HIGH_1 1, 5, 3, 7
@@ -193,25 +305,15 @@ INLINE uint64_t any(words x)
 #define HIGH_1 1, 3
 #endif
 
-/* Transposes squares of LANES/2 (four rows), or of LANES (as many rows); row r of column k becomes row k, column r. */
+/* Transposes squares of four, with AVX-512 in each half of the registers; without AVX squares of two. */
 INLINE void exchange_rows(reals *r, int rows)
 {
   UNROLL
   for (int k = 0; k < rows; k += 2)
     EXCHANGE(r[k], r[k + 1], LOW_1, HIGH_1);
 #if LANES >= 4
-  UNROLL
-  for (int k = 0; k < rows; k += 4) {
-    EXCHANGE(r[k], r[k + 2], LOW_2, HIGH_2);
-    EXCHANGE(r[k + 1], r[k + 3], LOW_2, HIGH_2);
-  }
-#endif
-#if LANES == 8
-  if (rows == 8) {
-    UNROLL
-    for (int k = 0; k < 4; k++)
-      EXCHANGE(r[k], r[k + 4], LOW_4, HIGH_4);
-  }
+  EXCHANGE(r[0], r[2], LOW_2, HIGH_2);
+  EXCHANGE(r[1], r[3], LOW_2, HIGH_2);
 #endif
 }
 
@@ -264,15 +366,44 @@ INLINE void load_records(const void *records, reals column[4])
   exchange_rows(column, 4);
 }
 
+enum { PART = LANES == 8 ? 4 : LANES }; /* doubles of a record that are in one register */
+
+/* Half of a record of eight doubles, from two records with AVX-512. */
+INLINE reals load_parts(const double *low, const double *high)
+{
+#if defined HAS_512
+  return (reals)_mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(low)), _mm256_loadu_pd(high), 1);
+#else
+  reals x;
+  memcpy(&x, low, PART * sizeof *low);
+  if (PART < LANES)
+    memcpy((char *)&x + PART * sizeof *low, high, PART * sizeof *low);
+  return x;
+#endif
+}
+
+INLINE void store_parts(double *low, double *high, reals x)
+{
+#if defined HAS_512
+  _mm256_storeu_pd(low, _mm512_castpd512_pd256((__m512d)x));
+  _mm256_storeu_pd(high, _mm512_extractf64x4_pd((__m512d)x, 1));
+#else
+  memcpy(low, &x, PART * sizeof *low);
+  if (PART < LANES)
+    memcpy(high, (const char *)&x + PART * sizeof *low, PART * sizeof *low);
+#endif
+}
+
 /* Stores columns as records of eight doubles; that of lane k has the number first + lane_record[k]. */
 INLINE void store_columns(double *records, uint32_t first, reals column[8])
 {
   UNROLL
-  for (int c = 0; c < 8; c += LANES) {
-    exchange_rows(&column[c], LANES);
+  for (int c = 0; c < 8; c += PART) {
+    exchange_rows(&column[c], PART);
     UNROLL
-    for (int k = 0; k < LANES; k++)
-      store_reals(records + (size_t)8 * (first + lane_record[k]) + c, column[c + k]);
+    for (int k = 0; k < PART; k++)
+      store_parts(records + (size_t)8 * (first + lane_record[k]) + c,
+                  records + (size_t)8 * (first + lane_record[k + LANES - PART]) + c, column[c + k]);
   }
 }
 
@@ -280,11 +411,12 @@ INLINE void store_columns(double *records, uint32_t first, reals column[8])
 INLINE void load_columns(const double *records, const uint32_t number[LANES], reals column[8])
 {
   UNROLL
-  for (int c = 0; c < 8; c += LANES) {
+  for (int c = 0; c < 8; c += PART) {
     UNROLL
-    for (int k = 0; k < LANES; k++)
-      column[c + k] = load_reals(records + (size_t)8 * number[k] + c);
-    exchange_rows(&column[c], LANES);
+    for (int k = 0; k < PART; k++)
+      column[c + k] =
+          load_parts(records + (size_t)8 * number[k] + c, records + (size_t)8 * number[k + LANES - PART] + c);
+    exchange_rows(&column[c], PART);
   }
 }
 

@@ -26,7 +26,8 @@ static uint64_t least_common_multiple(uint64_t a, uint64_t b)
  * frames. */
 static void fit_plan(struct scene *scene, const struct trajectory *frames)
 {
-  const bool everything = trajectory_has_velocities(frames) && trajectory_has_solvent(frames, &scene->model);
+  const bool everything = trajectory_has_velocities(frames) && trajectory_has_solvent(frames, &scene->model) &&
+                          !model_has_bead(&scene->model); /* which is not in frames */
   const bool possible[OBSERVABLES] = {[OBSERVE_CONSERVED] = everything && !model_has_dumbbells(&scene->model),
                                       [OBSERVE_TEMPERATURE] = everything,
                                       [OBSERVE_STATICS] = true,
@@ -35,7 +36,8 @@ static void fit_plan(struct scene *scene, const struct trajectory *frames)
                                       [OBSERVE_PROFILE] = everything,
                                       [OBSERVE_STRESS] = false,
                                       [OBSERVE_DUMBBELLS] = false,
-                                      [OBSERVE_ORIENTATION] = true};
+                                      [OBSERVE_ORIENTATION] = true,
+                                      [OBSERVE_BEAD] = false};
   for (int k = 0; k < OBSERVABLES; k++) {
     uint64_t *every = &scene->observe.every[k];
     if (*every > 0 && !possible[k])

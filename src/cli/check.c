@@ -2,6 +2,7 @@
 #include <stdio.h>
 
 #include "base/text.h"
+#include "cli/check_bead.h"
 #include "cli/check_dumbbells.h"
 #include "cli/check_flow.h"
 #include "cli/check_medium.h"
@@ -339,6 +340,8 @@ void scene_report(const struct scene *scene, const struct units *units, const st
     check_medium(si, m);
   if (model_has_dumbbells(m))
     check_dumbbells(si, m);
+  if (model_has_bead(m))
+    check_bead(si, m);
   if (model_has_walls(m))
     check_walls(si, m);
   if (model_is_sheared(m))

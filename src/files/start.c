@@ -107,7 +107,10 @@ bool scene_start(const struct scene *scene, struct state *state, struct work *wo
   message_set(message, "no memory for the path of the snapshot");
   bool ok = path && snapshot_read_start(path, m, state, message);
   free(path);
-  return ok && (state_sound(state, m, &work->fault) || message_fault(message, &work->fault)) &&
-         is_flat_as_said(scene, state, message) && flows_as_said(scene, state, work, message) &&
-         (step_sound(state, m, &work->fault) || refuse_start(scene, &work->fault, message));
+  ok = ok && (state_sound(state, m, &work->fault) || message_fault(message, &work->fault)) &&
+       is_flat_as_said(scene, state, message) && flows_as_said(scene, state, work, message) &&
+       (step_sound(state, m, &work->fault) || refuse_start(scene, &work->fault, message));
+  if (ok)
+    step_begin_drive(state, m);
+  return ok;
 }

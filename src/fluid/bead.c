@@ -11,6 +11,9 @@
  * v' = 2 U - v, U = (m v + M V)/(m + M). It bends the path of the bead as well, and so moves all later hits. Hits are
  * answered one after the other, by tick, then by particle id.
  *
+ * The counterforce of a drive accelerates all particles. Those that follow ticks fly straight, with their velocity of
+ * the middle of the flight: they get half of its kick before, half of it after. They end where the others would.
+ *
  * Only those particles follow ticks that come within the slack of the bead's free flight. All others are further from
  * it than the bead can be off that flight; if it is off further, all is done again with more slack.
  */
@@ -179,11 +182,13 @@ static bool find_meetings(const struct state *state, const struct model *model, 
   const struct solvent *s = &state->solvent;
   const struct bead *bead = state->bead;
   const double reach = model->bead.radius + slack + ROUNDING, t = span->time;
+  const struct vec3 a = span->acceleration;
   for (uint32_t k = 0; k < n; k++) {
     const uint32_t i = near[k];
-    const struct vec3 v = solvent_velocity(s, i);
-    const struct point start = {s->x[i] - boundary_flight(v.x, 0.0, t), s->y[i] - boundary_flight(v.y, 0.0, t),
-                                s->z[i] - boundary_flight(v.z, 0.0, t)};
+    const struct vec3 end = solvent_velocity(s, i), v = vec3_add_scaled(end, -0.5 * t, a),
+                      begin = vec3_add_scaled(end, -t, a);
+    const struct point start = {s->x[i] - boundary_flight(begin.x, a.x, t), s->y[i] - boundary_flight(begin.y, a.y, t),
+                                s->z[i] - boundary_flight(begin.z, a.z, t)};
     const struct point at = bead_to_image(&model->box, bead->position, start);
     if (!comes_within(point_in_a0(at), vec3_scale(t, vec3_sub(v, bead->velocity)), reach))
       continue;
@@ -213,7 +218,8 @@ static bool fly(struct way *bead, struct bead_visits *all, const uint32_t *id, d
 }
 
 /* Where particles and bead are at the end. */
-static void land(const struct way *bead, const struct model *model, const struct state *state, struct bead_visits *all)
+static void land(const struct way *bead, const struct model *model, const struct state *state, const struct span *span,
+                 struct bead_visits *all)
 {
   const struct point end = later(bead->at, bead->rate, BEAD_TICKS - bead->clock), origin = state->bead->position;
   for (struct bead_visit *m = all->at; m < all->at + all->n; m++) {
@@ -221,6 +227,7 @@ static void land(const struct way *bead, const struct model *model, const struct
     m->at = (struct point){lattice_fold(origin.x + at.x, model->box.edge[0]),
                            lattice_fold(origin.y + at.y, model->box.edge[1]),
                            lattice_fold(origin.z + at.z, model->box.edge[2])};
+    m->velocity = vec3_add_scaled(m->velocity, 0.5 * span->time, span->acceleration);
   }
   all->bead.position = point_plus(origin, end);
   all->bead.velocity = bead->velocity;
@@ -240,7 +247,7 @@ bool bead_meet(const struct state *state, const struct model *model, const uint3
   if (!find_meetings(state, model, &span, near, n, slack, all, fault))
     return false;
   all->enough = fly(&bead, all, state->solvent.id, slack);
-  land(&bead, model, state, all);
+  land(&bead, model, state, &span, all);
   return true;
 }
 

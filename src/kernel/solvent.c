@@ -50,35 +50,25 @@ static struct axis axis_of(const struct state *state, const struct model *model,
                        .cells = (uint32_t)model->box.rows[axis]};
 }
 
-INLINE words round_to_words(reals x)
+/* The flight of LANES particles from place i on, and their cells along the axis: boundary_fly_periodic, and cell_index
+ * of mpc/grid.c. *v: their velocities after it. */
+INLINE words fly(const struct axis *a, uint32_t i, const bool accelerated, reals *v, words *seen)
 {
-  const reals magic = (reals){0} + LATTICE_ROUND_MAGIC;
-  return (words)(x + magic) - (words)magic;
-}
-
-/* The flight of LANES particles from place i on, and their cells along the axis: boundary_fly_periodic, which says what
- * goes into `outside`, and cell_index of mpc/grid.c. *v: their velocities after it. */
-INLINE words fly(const struct axis *a, uint32_t i, const bool accelerated, reals *v, words *outside)
-{
-  const reals before = load_reals(&a->v[i]);
-  words p = load_words(&a->x[i]) + round_to_words(before * a->time + a->fall);
-  p += negative(p) & a->edge;
-  p -= negative(a->edge - 1 - p) & a->edge;
-  *outside |= p | (a->edge - 1 - p);
+  const reals before = load_reals(&a->v[i]), way = before * a->time;
+  const words p = wrap(load_words(&a->x[i]) + round_to_words(accelerated ? way + a->fall : way), a->edge);
+  *seen = see(*seen, p, a->edge);
   store_words(&a->x[i], p);
   *v = accelerated ? before + a->gain : before;
   if (accelerated)
     store_reals(&a->v[i], *v);
-  const words cell = (p + a->shift) >> LATTICE_BITS;
-  return cell & negative(cell - a->cells);
+  return but_not((p + a->shift) >> LATTICE_BITS, a->cells);
 }
 
-/* Momenta of particles of mass 1, in units of the sums, and their size: cell_add, where they are below 2^51. If one is
- * not, its sum with the magic number has another exponent, and the size comes out as 2^51 or more. */
+/* Momenta of particles of mass 1, in units of the sums, and their size: cell_add, where they are below 2^51. */
 INLINE reals momenta(reals v, words *span)
 {
   const words p = round_to_words(CELL_MOMENTUM_SCALE * v);
-  *span |= p ^ negative(p);
+  *span |= sizes(p);
   return (reals)p;
 }
 
@@ -88,24 +78,24 @@ INLINE reals momenta(reals v, words *span)
 enum { CHUNK = 256 };
 
 /* For a chunk: flight, cells, and what each particle adds to the sums of its cell, in the order of store_records. The
- * sign bit of the result is set as that of boundary_fly_periodic. */
+ * sign bit of the result is set where that of boundary_fly_periodic is. */
 INLINE uint64_t fly_chunk(const struct axis axis[3], uint32_t *cell, uint32_t first, uint32_t n, const bool accelerated,
                           double *record, uint64_t *span)
 {
   const struct axis x = axis[0], y = axis[1], z = axis[2];
-  words outside = {0}, size = {0};
+  words seen[3] = {{0}, {0}, {0}}, size = {0};
   for (uint32_t k = 0; k < n; k += LANES) {
     const uint32_t i = first + k;
     reals v[3];
-    const words cx = fly(&x, i, accelerated, &v[0], &outside), cy = fly(&y, i, accelerated, &v[1], &outside),
-                cz = fly(&z, i, accelerated, &v[2], &outside);
+    const words cx = fly(&x, i, accelerated, &v[0], &seen[0]), cy = fly(&y, i, accelerated, &v[1], &seen[1]),
+                cz = fly(&z, i, accelerated, &v[2], &seen[2]);
     store_narrow(&cell[i], multiply(multiply(cz, y.cells) + cy, x.cells) + cx);
     reals column[4] = {momenta(v[0], &size), momenta(v[1], &size), momenta(v[2], &size),
                        (reals)((words){0} + cell_load(1.0))};
     store_records(&record[(size_t)4 * k], column);
   }
   *span = any(size);
-  return any(outside);
+  return any(was_outside(seen[0], x.edge) | was_outside(seen[1], y.edge) | was_outside(seen[2], z.edge));
 }
 
 static void add_records(struct cell_sum *sum, const uint32_t *cell, uint32_t n, const double *record)
@@ -165,13 +155,14 @@ static bool gather_fast(struct state *state, const struct model *model, struct m
 
 /* --- centers and axes -------------------------------------------------------------------------------------------- */
 
-/* The axes of LANES cells, as random_axis. In lanes where both pairs of words are outside the unit disk, z <= -1. */
-INLINE void draw_axes(const struct model *model, uint64_t step, words cell, reals axis[3])
+/* The axes of LANES cells, by the words of this draw: as random_axis_from, but in lanes where both pairs of words are
+ * outside the unit disk z <= -1. */
+INLINE void draw_axes(const struct model *model, uint32_t draw, uint64_t step, words cell, reals axis[3])
 {
   words w[4];
-  philox_words(model->seed, RANDOM_ROTATION_AXIS, 0, step, cell, w);
-  const reals u0 = (reals_from_low(w[0]) + 0.5) * 0x1p-31, v0 = (reals_from_low(w[1]) + 0.5) * 0x1p-31;
-  const reals u1 = (reals_from_low(w[2]) + 0.5) * 0x1p-31, v1 = (reals_from_low(w[3]) + 0.5) * 0x1p-31;
+  philox_words(model->seed, RANDOM_ROTATION_AXIS, draw, step, cell, w);
+  const reals u0 = reals_in_square(w[0]), v0 = reals_in_square(w[1]);
+  const reals u1 = reals_in_square(w[2]), v1 = reals_in_square(w[3]);
   const reals s0 = u0 * u0 + v0 * v0, s1 = u1 * u1 + v1 * v1;
   const wholes first = s0 < 1.0;
   const reals u = choose(first, u0, u1), v = choose(first, v0, v1), s = choose(first, s0, s1);
@@ -181,42 +172,58 @@ INLINE void draw_axes(const struct model *model, uint64_t step, words cell, real
   axis[2] = 1.0 - 2.0 * s;
 }
 
-/* cell_solve, and the axis, of LANES cells. */
-INLINE void solve_lanes(const struct model *model, struct mpc *c, uint64_t step, uint32_t first, words lane_cell)
+/* cell_solve, and the axis, of LANES cells. Those whose axis needs another draw, one in twenty, are appended to a list.
+ * Returns its length.
+ */
+INLINE uint32_t solve_lanes(const struct model *model, struct mpc *c, uint64_t step, uint32_t first, words lane_cell,
+                            uint32_t *list, uint32_t n)
 {
   reals p[4], turn[8];
   load_records(&c->sum[first], p);
   const words load = (words)p[3], two = ~negative((load >> 40) - 2);
-  if (any(two) == 0) {
+  if (none(two)) {
     for (uint32_t k = first; k < first + LANES; k++)
       c->turn[k].active = 0.0, c->turn[k].factor = 1.0;
-    return;
+    return n;
   }
+  const words cell = lane_cell + first;
   const reals scale = CELL_MOMENTUM_UNIT / (reals_from_small(load & (CELL_MEMBER - 1)) * CELL_MASS_UNIT);
   for (int k = 0; k < 3; k++)
     turn[k] = (reals)((words)(reals_from_signed((words)p[k]) * scale) & two);
-  draw_axes(model, step, lane_cell + first, &turn[3]);
-  const words rest = (words)((turn[5] <= -1.0) & (wholes)two);
+  draw_axes(model, 0, step, cell, &turn[3]);
+  n = append(list, n, cell, (words)((turn[5] <= -1.0) & (wholes)two));
   turn[6] = (reals){0} + 1.0;
   turn[7] = (reals)((words)turn[6] & two);
   store_columns((double *)c->turn, first, turn);
-  for (int k = 0; any(rest) != 0 && k < LANES; k++)
-    if (rest[k]) {
-      const uint32_t cell = first + lane_record[k];
-      c->turn[cell].axis = random_axis_from(model->seed, RANDOM_ROTATION_AXIS, 1, step, cell);
-    }
+  return n;
+}
+
+/* The second draw for LANES cells of the list, and if need be more. */
+static void draw_again(const struct model *model, struct mpc *c, uint64_t step, const uint32_t *list)
+{
+  reals axis[3];
+  draw_axes(model, 1, step, load_low(list), axis);
+  for (int k = 0; k < LANES; k++)
+    c->turn[list[k]].axis = axis[2][k] > -1.0 ? (struct vec3){axis[0][k], axis[1][k], axis[2][k]}
+                                              : random_axis_from(model->seed, RANDOM_ROTATION_AXIS, 2, step, list[k]);
 }
 
 /* The last LANES cells are solved once more if they are no multiple: the sums are still there. */
 static void solve_fast(const struct model *model, struct mpc *c, uint64_t step)
 {
+  uint32_t list[2 * LANES + CHUNK], n = 0;
   words lane_cell;
   for (int k = 0; k < LANES; k++)
     lane_cell[k] = lane_record[k];
-  for (uint32_t k = 0; k + LANES <= c->cells; k += LANES)
-    solve_lanes(model, c, step, k, lane_cell);
-  if (c->cells % LANES != 0)
-    solve_lanes(model, c, step, c->cells - LANES, lane_cell);
+  for (uint32_t k = 0; k < c->cells; k += LANES) {
+    n = solve_lanes(model, c, step, k + LANES <= c->cells ? k : c->cells - LANES, lane_cell, list, n);
+    if (n < CHUNK && k + LANES < c->cells)
+      continue;
+    for (; n >= LANES; n -= LANES)
+      draw_again(model, c, step, &list[n - LANES]);
+  }
+  for (uint32_t k = 0; k < n; k++)
+    c->turn[list[k]].axis = random_axis_from(model->seed, RANDOM_ROTATION_AXIS, 1, step, list[k]);
 }
 
 /* --- turns ------------------------------------------------------------------------------------------------------- */

@@ -91,6 +91,8 @@ void mpc_free(struct mpc *c)
   memory_release(need, NEEDS);
   free(c->bead.meetings.at);
   free(c->bead.cut);
+  free(c->bead.number);
+  free(c->bead.normal);
   memset(c, 0, sizeof *c);
 }
 

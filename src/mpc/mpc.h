@@ -35,6 +35,8 @@ struct mpc_bead {
   uint8_t *mask;               /* [cells] 1 where particles may have met the bead in their flight; all 0 between uses */
   struct bead_visits meetings; /* of the flight */
   struct bead_cut *cut;        /* [cuts] cells that its surface cuts and that have members */
+  uint32_t *number;            /* [cuts] their numbers */
+  struct vec3 *normal;         /* [cuts] the normal deviates of their virtual particles */
   uint32_t cuts, cut_room;
 };
 

@@ -53,6 +53,15 @@ static bool blame(struct culprit c, double limit, uint64_t step, struct fault *f
   return fault_record(fault, c.code, step, c.who, c.value, limit);
 }
 
+/* Members of the fullest cell. They are the upper bits of its load. */
+static uint32_t most_members(const struct mpc *c)
+{
+  struct cell_sum fullest = {0};
+  for (uint32_t k = 0; k < c->cells; k++)
+    fullest.load = c->sum[k].load > fullest.load ? c->sum[k].load : fullest.load;
+  return cell_members(&fullest);
+}
+
 /* The fullest cell, as its place in sum and turn. */
 static uint32_t fullest_cell(const struct mpc *c)
 {
@@ -75,7 +84,7 @@ static double most_drawn(const struct model *model, const struct mpc *c)
 bool overflow_of_momenta(const struct state *state, const struct model *model, const struct mpc *c, uint64_t span,
                          uint64_t step, struct fault *fault)
 {
-  const uint32_t where = fullest_cell(c), most = cell_members(&c->sum[where]);
+  const uint32_t most = most_members(c);
   const double limit = 0x1p63 * CELL_MOMENTUM_UNIT / most;
   if (!(((double)span + 1.0) * CELL_MOMENTUM_UNIT < limit)) { /* the span may be up to twice the largest momentum */
     const struct culprit fastest = find_fastest(state, model);
@@ -83,7 +92,7 @@ bool overflow_of_momenta(const struct state *state, const struct model *model, c
       return blame(fastest, limit, step, fault);
   }
   const double mass = most * model->max_mass, heaviest = 0x1p40 * CELL_MASS_UNIT;
-  return mass < heaviest || fault_record(fault, FAULT_CELL_MASS, step, mpc_cell(c, where), mass, heaviest);
+  return mass < heaviest || fault_record(fault, FAULT_CELL_MASS, step, mpc_cell(c, fullest_cell(c)), mass, heaviest);
 }
 
 /* Members times the largest energy must fit in 63 bits. */
@@ -93,6 +102,6 @@ bool overflow_of_energies(const struct state *state, const struct model *model, 
   const double range = 0x1p63 * CELL_ENERGY_UNIT, rounded = largest + CELL_ENERGY_UNIT;
   if (rounded * ((double)state->solvent.n + state->vertices) < range) /* even if all were in one cell */
     return true;
-  const double limit = range / cell_members(&c->sum[fullest_cell(c)]);
+  const double limit = range / most_members(c);
   return rounded < limit || blame(find_hottest(state, model, c), limit, step, fault);
 }

@@ -8,6 +8,7 @@
 #include "fluid/fluid.h"
 #include "medium/repulsion.h"
 #include "observe/observer.h"
+#include "system/bead.h"
 #include "system/shear.h"
 
 /* A sum that does not depend on the order of its terms: each is split into a multiple of 2^-16 and a multiple of 2^-50
@@ -153,6 +154,13 @@ static void measure_now(const struct model *model, const struct state *state, co
   m->slab_squares = (struct vec3){within[0], within[1], within[2]};
 }
 
+/* The bead's velocity is that of the half step ahead; solvent and vertices have half of the counterforce of a step to
+ * come (system/bead.h). */
+static struct vec3 counter_gain(const struct model *model, const struct state *state)
+{
+  return vec3_scale(0.5 * model->time_step, bead_counter(state, model));
+}
+
 static void measure_solvent(const struct model *model, const struct state *state, const struct vec3 *force,
                             const struct vec3 *pair, struct motion *m)
 {
@@ -160,7 +168,7 @@ static void measure_solvent(const struct model *model, const struct state *state
     measure_now(model, state, force, pair, m);
     return;
   }
-  const struct vec3 gain = fluid_gain(state, model);
+  const struct vec3 gain = vec3_add(fluid_gain(state, model), counter_gain(model, state));
   solvent_component(state, state->solvent.vx, gain.x, &m->solvent_sum.x, &m->solvent_squares.x);
   solvent_component(state, state->solvent.vy, gain.y, &m->solvent_sum.y, &m->solvent_squares.y);
   solvent_component(state, state->solvent.vz, gain.z, &m->solvent_sum.z, &m->solvent_squares.z);
@@ -172,6 +180,14 @@ static void vertex_add(struct vertex_motion *sum, double mass, struct vec3 v)
   sum->momentum = vec3_add_scaled(sum->momentum, mass, v);
 }
 
+static struct vertex_motion measure_bead(const struct model *model, const struct state *state)
+{
+  struct vertex_motion m = {.kinetic = 0.0};
+  const struct vec3 velocity = bead_velocity_now(state, model);
+  vertex_add(&m, model->bead.mass, velocity);
+  return m;
+}
+
 static void measure_vertices(const struct model *model, const struct state *state, struct vec3 *force,
                              const struct vec3 *pair, struct motion *m)
 {
@@ -179,10 +195,11 @@ static void measure_vertices(const struct model *model, const struct state *stat
                           0.0}; /* a bond too long for the box stops the run, not its observers */
   fiber_forces(state, model, force, state->step, &ignored);
   const double half = 0.5 * model->time_step;
+  const struct vec3 gain = counter_gain(model, state);
   for (uint32_t i = 0; pair && i < state->vertices; i++)
     force[i] = vec3_add(force[i], pair[state->solvent.n + i]);
   for (uint32_t i = 0; i < state->vertices; i++) {
-    const struct vec3 ahead = state->velocity[i];
+    const struct vec3 ahead = vec3_add(state->velocity[i], gain);
     vertex_add(&m->vertex_half, model->mass[i], ahead);
     vertex_add(&m->vertex, model->mass[i], vec3_add_scaled(ahead, -half * model->inverse_mass[i], force[i]));
   }
@@ -206,7 +223,7 @@ struct motion motion_measure(const struct model *model, const struct state *stat
   if (model_has_dumbbells(model))
     m.bond += fluid_dumbbell_energy(state, model);
   if (state->beads > 0)
-    vertex_add(&m.bead, model->bead.mass, state->bead->velocity);
+    m.bead = measure_bead(model, state);
   return m;
 }
 

@@ -14,6 +14,8 @@
 #include "scene/set.h"
 #include "scene/write.h"
 #include "scene/yaml.h"
+#include "system/bead.h"
+#include "theory/bead.h"
 
 /* --- where a key is said ----------------------------------------------------------------------------------------- */
 
@@ -64,6 +66,39 @@ bool scene_says(const struct scene *scene, const char *path)
 
 /* --- what keys must be together, besides the model's -------------------------------------------------------------- */
 
+/* A steady force must not drive the bead faster than a trap may. Friction in the box is more than without it. */
+static bool check_force(const struct scene *scene, struct message *message)
+{
+  const double force = vec3_norm(scene->model.bead.drive.force), friction = theory_model_bead_friction(&scene->model);
+  return force <= BEAD_MOST_SPEED * friction ||
+         scene_refuse_at(
+             scene, "bead.drive.force", "bead.drive.force", message,
+             "%.6g kT/a0 drives the bead at %.3g a0/t0, too near the speed of sound; allowed: at most %.6g, "
+             "for %g a0/t0",
+             force, force / friction, BEAD_MOST_SPEED * friction, BEAD_MOST_SPEED);
+}
+
+/* What is observed of a bead, and what is not where one is. */
+static bool check_bead(const struct scene *scene, struct message *message)
+{
+  const uint64_t *every = scene->observe.every;
+  const bool bead = model_has_bead(&scene->model);
+  const struct {
+    bool ok;
+    const char *key, *why;
+  } rows[] = {
+      {bead || every[OBSERVE_BEAD] == 0, "observe.bead", "there is none; allowed with a bead"},
+      {!bead || every[OBSERVE_STRESS] == 0, "observe.stress",
+       "momentum that the solvent gives to the bead is not in its stress; allowed without a bead"},
+      {!bead || every[OBSERVE_PROFILE] == 0, "observe.profile",
+       "a slab is not full of solvent where the bead is; allowed without a bead"},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+    if (!rows[i].ok)
+      return scene_refuse_at(scene, rows[i].key, rows[i].key, message, "%s", rows[i].why);
+  return !bead || check_force(scene, message);
+}
+
 static bool check_observables(const struct scene *scene, struct message *message)
 {
   const struct observe_plan *plan = &scene->observe;
@@ -72,6 +107,8 @@ static bool check_observables(const struct scene *scene, struct message *message
         scene, "observe.dynamics", message,
         "a fiber that leaves a sheared box is replaced by an image, which moves at another speed, so it has "
         "no displacement; allowed without shear");
+  if (!check_bead(scene, message))
+    return false;
   if (plan->longest_lag == 0 || plan->longest_lag >= plan->every[OBSERVE_DYNAMICS])
     return true;
   return scene_refuse_at(scene, "observe.dynamics.longest_lag", "observe.dynamics.longest_lag", message,

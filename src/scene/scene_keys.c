@@ -74,6 +74,7 @@ static const struct key_table orientation_table = {"observe.orientation", NULL, 
 
 static const struct key_table memory_table = {"observe.memory", NULL, COUNT(every_keys), every_keys};
 
+static const struct key_table bead_observe_table = {"observe.bead", NULL, COUNT(every_keys), every_keys};
 static const struct key_table pressure_table = {"observe.pressure", NULL, COUNT(every_keys), every_keys};
 
 static const struct key observe_keys[] = {
@@ -167,6 +168,13 @@ static const struct key observe_keys[] = {
      .optional = true,
      .keys = &memory_table,
      .offset = IN_SCENE(observe.every[OBSERVE_MEMORY]),
+     .line = true},
+    {.name = "bead",
+     .text = "Time series of the bead: place, velocity, force of its drive, middle of its trap, work, heat, hits.",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &bead_observe_table,
+     .offset = IN_SCENE(observe.every[OBSERVE_BEAD]),
      .line = true},
     {.name = "pressure",
      .text = "Time series of the pressure tensor, of the potential energy and of the configurational temperature.",

@@ -71,6 +71,51 @@ static bool check_company(const struct model *m, struct model_error *error)
   return true;
 }
 
+static bool check_trap(const struct model *m, struct model_error *error)
+{
+  const struct bead_drive *d = &m->bead.drive;
+  const bool moves = vec3_norm(d->velocity) > 0.0, swings = vec3_norm(d->amplitude) > 0.0;
+  const struct {
+    bool ok;
+    const char *path, *why;
+  } rows[] = {
+      {d->spring > 0.0 || !moves, "bead.drive.velocity", "there is no trap to move; allowed with a spring"},
+      {d->spring > 0.0 || !swings, "bead.drive.amplitude", "there is no trap to move; allowed with a spring"},
+      {d->period > 0.0 || !swings, "bead.drive.amplitude", "an oscillation needs a period; allowed with one"},
+      {d->period == 0.0 || swings, "bead.drive.period", "nothing oscillates; allowed with an amplitude"},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+    if (!rows[i].ok)
+      return model_reject(error, rows[i].path, "%s", rows[i].why);
+  return true;
+}
+
+enum { LEAST_STEPS_OF_PERIOD = 8 };
+#define MOST_TURN 0.5 /* of a trapped bead in a time step, omega dt */
+
+/* What is resolved by steps, and slow beside sound. */
+static bool check_pace(const struct model *m, struct model_error *error)
+{
+  const struct bead_drive *d = &m->bead.drive;
+  const double dt = m->time_step, turn = sqrt(d->spring / m->bead.mass) * dt;
+  const double swing = d->period > 0.0 ? 6.283185307179586 / d->period * vec3_norm(d->amplitude) : 0.0;
+  if (d->period > 0.0 && d->period < LEAST_STEPS_OF_PERIOD * dt)
+    return model_reject(error, "bead.drive.period", "%.6g t0; allowed: %d time steps, %.6g t0, or more", d->period,
+                        LEAST_STEPS_OF_PERIOD, LEAST_STEPS_OF_PERIOD * dt);
+  if (vec3_norm(d->velocity) > BEAD_MOST_SPEED)
+    return model_reject(error, "bead.drive.velocity", "%.6g a0/t0 is too near the speed of sound; allowed: at most %g",
+                        vec3_norm(d->velocity), BEAD_MOST_SPEED);
+  if (swing > BEAD_MOST_SPEED)
+    return model_reject(error, "bead.drive.amplitude",
+                        "the trap's largest speed, 2 pi/period of it, is %.6g a0/t0, too near that of sound; allowed: "
+                        "at most %g",
+                        swing, BEAD_MOST_SPEED);
+  return turn <= MOST_TURN ||
+         model_reject(error, "bead.drive.spring",
+                      "sqrt(spring/mass) times the time step is %.6g; allowed: at most %g, a spring of %.6g kT/a0^2",
+                      turn, MOST_TURN, MOST_TURN * MOST_TURN * m->bead.mass / (dt * dt));
+}
+
 bool bead_finish(struct model *m, struct model_error *error)
 {
   const double displaced = m->solvent.per_cell * bead_volume(m);
@@ -80,9 +125,11 @@ bool bead_finish(struct model *m, struct model_error *error)
     return false;
   if (m->bead.mass == 0.0)
     m->bead.mass = displaced;
-  return m->bead.mass >= displaced ||
-         model_reject(error, "bead.mass", "%.15g m, and the solvent it displaces has %.15g m; allowed: at least that",
-                      m->bead.mass, displaced);
+  if (m->bead.mass < displaced)
+    return model_reject(error, "bead.mass", "%.15g m, and the solvent it displaces has %.15g m; allowed: at least that",
+                        m->bead.mass, displaced);
+  m->bead.driven = m->bead.drive.spring > 0.0 || vec3_norm(m->bead.drive.force) > 0.0;
+  return check_trap(m, error) && check_pace(m, error);
 }
 
 bool bead_sound(const struct state *state, const struct model *model, struct fault *fault)

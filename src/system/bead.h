@@ -18,6 +18,9 @@
 #define BEAD_ENERGY_SCALE 0x1p32 /* of the account: units per kT */
 #define BEAD_ENERGY_UNIT 0x1p-32
 
+/* a0/t0: of the trap, and of a bead under a constant force (scene/scene.c). That of sound is 1 or 1.29. */
+#define BEAD_MOST_SPEED 0.5
+
 /* a0^3; 0 without a bead */
 static inline double bead_volume(const struct model *model)
 {
@@ -39,6 +42,27 @@ struct point bead_to_image(const struct box *box, struct point from, struct poin
 
 /* Has the box room for the bead? Before anything is derived. */
 bool bead_fits(const struct model *model, struct model_error *error);
+
+/* Force of the drive on the bead at a time, kT/a0, where its center is at this place; and the middle of the trap, a0.
+ * Both are 0 without it. half_steps: half time steps since the start. */
+struct vec3 bead_force(const struct model *model, struct point place, uint64_t half_steps);
+struct vec3 bead_trap(const struct model *model, uint64_t half_steps);
+
+/* The counterforce: acceleration of solvent and vertices, a0/t0^2, from the time to which the solvent was streamed
+ * until it is streamed again. It takes up the momentum that the drive gives to the bead at that time. 0 without a
+ * drive. */
+struct vec3 bead_counter(const struct state *state, const struct model *model);
+
+/* Adds the drive's force on the bead for a time to its velocity. */
+void bead_kick(struct bead *bead, const struct model *model, uint64_t half_steps, double time);
+
+/* Adds the drive's work on the way from a place, at `begin`, to where the bead is now, at `end` (half steps), to its
+ * account: the mean of both forces times the way. So a force that is constant or that of a trap at rest does the work
+ * of its potential, exactly. */
+void bead_work(struct bead *bead, const struct model *model, struct point from, uint64_t begin, uint64_t end);
+
+/* The bead's velocity at the time of the step, a0/t0: with a drive the state has that of the half step ahead. */
+struct vec3 bead_velocity_now(const struct state *state, const struct model *model);
 
 /* Derives the mass, and checks what the scene may not combine with a bead. */
 bool bead_finish(struct model *model, struct model_error *error);

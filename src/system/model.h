@@ -216,11 +216,24 @@ struct dumbbell_model {
   double frequency; /* sqrt(2 K/m), 1/t0 */
 };
 
+/* What pulls a bead: force - spring (x - trap), where the trap is at center + velocity t + amplitude sin(2 pi
+ * t/period).
+ */
+struct bead_drive {
+  struct vec3 force;     /* constant, kT/a0 */
+  double spring;         /* k, kT/a0^2; 0: no trap */
+  struct vec3 velocity;  /* of the trap, a0/t0 */
+  struct vec3 amplitude; /* of the trap's oscillation, a0 */
+  double period;         /* of it, t0; 0: none */
+};
+
 /* A sphere in the solvent: system/bead.h. */
 struct bead_model {
   double radius;      /* R, a0; 0: none */
   double mass;        /* M, m; effective: that of the solvent it displaces, if 0 was given */
   struct vec3 center; /* at the start, a0 */
+  struct bead_drive drive;
+  bool driven; /* derived: there is a force or a spring */
 };
 
 /* Walls at y = 0 and y = L. */

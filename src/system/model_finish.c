@@ -370,8 +370,19 @@ static bool check_tube_scene(const struct look *look)
   return true;
 }
 
-/* Two bonds that meet at a bend may touch if they are less than pi D/2 apart along the contour: they are blind to each
- * other. A tube as thick as the bonds are long would be blind to three bonds and more, and overlap with them. */
+/* How many bonds away a tube sees others of its fiber. With n bonds between them, two may touch at any bend if n bonds
+ * are shorter than pi D/2, and without a bend if they are shorter than D. Lengths scatter by the width of a bond's
+ * spring: three times that leaves their distribution as it is (docs/thick.md). */
+static uint32_t bonds_between_seen(const struct fiber_kind *k, double bond)
+{
+  const double width = 1.0 / sqrt(k->spring);
+  uint32_t n = 1;
+  while (n * bond < 1.5707963267948966 * k->diameter || n * bond - 3.0 * width * sqrt(n) < k->diameter)
+    n++;
+  return n;
+}
+
+/* A tube as thick as the bonds are long would be blind to three bonds and more, and overlap with them. */
 static bool derive_tube(const struct look *look)
 {
   struct fiber_kind *k = look->kind;
@@ -387,7 +398,7 @@ static bool derive_tube(const struct look *look)
                        "of a bond",
                        k->diameter, bond, THINNEST_TUBE);
   k->radius = lattice_round(0.5 * k->diameter * LATTICE_PER_A0);
-  k->blind = 1 + (uint32_t)ceil(1.5707963267948966 * k->diameter / bond);
+  k->blind = 1 + bonds_between_seen(k, bond);
   return true;
 }
 

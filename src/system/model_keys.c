@@ -521,6 +521,54 @@ static const struct key dumbbell_keys[] = {
 };
 static const struct key_table dumbbell_table = {"dumbbells", NULL, COUNT(dumbbell_keys), dumbbell_keys};
 
+static const struct key drive_keys[] = {
+    {.name = "force",
+     .text = "Constant force on the bead. If absent: none.",
+     .type = KEY_VECTOR,
+     .optional = true,
+     .low = -1e6,
+     .high = 1e6,
+     .offset = IN_MODEL(bead.drive.force),
+     .unit = "kT/a0",
+     .symbol = "F"},
+    {.name = "spring",
+     .text =
+         "Constant k of a harmonic trap, k x^2/2 per component, whose middle is at `center` at the start. If absent: "
+         "no trap.",
+     .type = KEY_NUMBER,
+     .optional = true,
+     .low = 0,
+     .high = 1e6,
+     .offset = IN_MODEL(bead.drive.spring),
+     .unit = "kT/a0^2",
+     .symbol = "k"},
+    {.name = "velocity",
+     .text = "Constant velocity of the trap. If absent: it stands.",
+     .type = KEY_VECTOR,
+     .optional = true,
+     .low = -100,
+     .high = 100,
+     .offset = IN_MODEL(bead.drive.velocity),
+     .unit = "a0/t0"},
+    {.name = "amplitude",
+     .text = "Amplitude of an oscillation of the trap, sin(2 pi t/period). If absent: none.",
+     .type = KEY_VECTOR,
+     .optional = true,
+     .low = -1024,
+     .high = 1024,
+     .offset = IN_MODEL(bead.drive.amplitude),
+     .unit = "a0"},
+    {.name = "period",
+     .text = "Period of this oscillation, at least 8 time steps.",
+     .type = KEY_NUMBER,
+     .optional = true,
+     .low = 0,
+     .high = 1e9,
+     .offset = IN_MODEL(bead.drive.period),
+     .unit = "t0"},
+};
+static const struct key_table drive_table = {"bead.drive", NULL, COUNT(drive_keys), drive_keys};
+
 static const struct key bead_keys[] = {
     {.name = "radius",
      .text = "Radius R. Smaller ones are not resolved by the cells. The box has edges of at least 2 R + 4 and 40 "
@@ -548,6 +596,11 @@ static const struct key bead_keys[] = {
      .high = LATTICE_MAX_EDGE,
      .offset = IN_MODEL(bead.center),
      .unit = "a0"},
+    {.name = "drive",
+     .text = "What pulls it; absent: nothing.",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &drive_table},
 };
 static const struct key_table bead_table = {"bead", NULL, COUNT(bead_keys), bead_keys};
 

@@ -1,5 +1,6 @@
-/* Tubes in flight: the search for their contacts against a march in continuous time, and what a contact does. */
-#include "contact/tubes.h"
+/* Tubes in flight: the search for their contacts against a march in continuous time and exact polynomials, and what a
+ * contact does. */
+#include "contact/exact_tube_audit.h"
 
 static void no_contact_is_late_and_none_invented(void **unused)
 {
@@ -10,6 +11,17 @@ static void no_contact_is_late_and_none_invented(void **unused)
     fail_msg("seed %lu: %lu missed, %lu invented", (unsigned long)seed, (unsigned long)t.missed,
              (unsigned long)t.invented);
   assert_true(t.queries >= 100000 && t.answers > t.queries / 4);
+}
+
+static void exact_polynomials_agree(void **unused)
+{
+  (void)unused;
+  const uint64_t seed = dice_seed(1908);
+  const struct exact_tally t = audit_tubes_exactly(seed, 2000);
+  if (t.missed + t.invented + t.open > 0)
+    fail_msg("seed %lu: %lu missed, %lu invented, %lu open", (unsigned long)seed, (unsigned long)t.missed,
+             (unsigned long)t.invented, (unsigned long)t.open);
+  assert_true(t.contacts > t.queries / 4);
 }
 
 /* --- the audit sees what it should ------------------------------------------------------------------------------- */
@@ -54,6 +66,47 @@ static void the_audit_sees_planted_errors(void **unused)
   for (int k = 0; k < 5; k++)
     tell_tubes((const char *const[]){"late", "early", "thicker", "thinner", "second root"}[k], &t[k]);
   assert_true(t[0].missed > 500 && t[1].invented > 500 && t[2].invented > 10 && t[4].missed > 20);
+}
+
+static void exact_polynomials_see_them_too(void **unused)
+{
+  (void)unused;
+  struct dice d = {dice_seed(1909)};
+  const struct exact_tally t[] = {
+      audit_kind_exactly(&d, TUBE_SIDES, 1000, late), audit_kind_exactly(&d, TUBE_SIDES, 1000, early),
+      audit_kind_exactly(&d, TUBE_SIDES, 1000, thicker), audit_kind_exactly(&d, TUBE_SLOW, 3000, thinner),
+      audit_kind_exactly(&d, TUBE_DEEP, 1000, second_root)};
+  for (int k = 0; k < 5; k++)
+    tell_exact((const char *const[]){"late", "early", "thicker", "thinner", "second root"}[k], &t[k]);
+  assert_true(t[0].missed > 500 && t[1].invented > 500 && t[2].invented > 10 && t[3].missed > 50 && t[4].missed > 20);
+  assert_true(t[0].overlap > 1e-10 && t[0].open + t[1].open + t[2].open + t[3].open + t[4].open == 0);
+}
+
+/* By hand, in lattice units: rods of 1000 along z that approach along x by one in a tick, from 900. The reach is
+ * 100. They touch at tick 800: apart up to 799, and with a reach that is less by 2^-20. */
+static void exact_polynomials_by_hand(void **unused)
+{
+  (void)unused;
+  struct exact_tubes *e = exact_tubes_open();
+  struct flight_pair pair = {.p = {0, 0, 1000}, .q = {0, 0, 1000}, .w = {900, 0, 0}, .w_rate = {-1, 0, 0}};
+  const int64_t reach = (int64_t)100 << REACH_BITS;
+  const int64_t high[] = {0, 999, 1000, 1001, 1099, 1100, 1101, -1100, -1101}; /* caps reach 100 beyond the ends */
+  for (size_t k = 0; k < sizeof high / sizeof *high; k++) {
+    pair.w.z = high[k];
+    const int64_t beyond = llabs(high[k]) - 1000, late = beyond <= 0 ? 800 : beyond > 100 ? 1000 : 0;
+    assert_int_equal(exact_tubes_verdict(e, &pair, reach, 0, 799), TUBES_APART);
+    if (late == 800)
+      assert_int_equal(exact_tubes_verdict(e, &pair, reach, 0, 800), TUBES_TOUCH);
+    if (late == 800)
+      assert_int_equal(exact_tubes_verdict(e, &pair, reach - 1, 0, 800), TUBES_APART);
+    if (beyond == 100) /* end on end, at x = 0 alone */
+      assert_int_equal(exact_tubes_verdict(e, &pair, reach, 0, 1800), TUBES_TOUCH);
+    if (beyond == 100)
+      assert_int_equal(exact_tubes_verdict(e, &pair, reach - 1, 0, 1800), TUBES_APART);
+    if (late == 1000)
+      assert_int_equal(exact_tubes_verdict(e, &pair, reach, 0, 1800), TUBES_APART);
+  }
+  exact_tubes_close(e);
 }
 
 /* --- whole drifts ------------------------------------------------------------------------------------------------- */
@@ -152,7 +205,9 @@ static void what_tubes_cannot_be_is_refused(void **unused)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(no_contact_is_late_and_none_invented), cmocka_unit_test(the_audit_sees_planted_errors),
-      cmocka_unit_test(no_overlap_begins), cmocka_unit_test(what_tubes_cannot_be_is_refused)};
+      cmocka_unit_test(exact_polynomials_by_hand),      cmocka_unit_test(exact_polynomials_agree),
+      cmocka_unit_test(exact_polynomials_see_them_too), cmocka_unit_test(no_contact_is_late_and_none_invented),
+      cmocka_unit_test(the_audit_sees_planted_errors),  cmocka_unit_test(no_overlap_begins),
+      cmocka_unit_test(what_tubes_cannot_be_is_refused)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

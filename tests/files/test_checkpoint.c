@@ -101,6 +101,49 @@ static void everything_comes_back(void **unused)
   remove_folder(folder);
 }
 
+static void expect_refusal(const char *path, const struct model *model, struct state *state, const char *word);
+
+/* A driven bead: its place, velocity and accounts, and the future. A scene without one does not take the file. */
+static void a_bead_comes_back(void **unused)
+{
+  (void)unused;
+  char folder[64];
+  make_folder(folder);
+  const char *path = in_folder(folder, "checkpoint.h5");
+  struct message message;
+  struct model m = test_model(12, 12, 12, 3.0, 0.1, 1), plain = m;
+  m.bead.radius = 1.5;
+  m.bead.center = (struct vec3){1.0, 2.0, 11.5};
+  m.bead.drive = (struct bead_drive){.force = {5.0, 0.0, 0.0}, .spring = 10.0, .velocity = {0.0, 0.1, 0.0}};
+  struct test_run r = test_start(m);
+  test_steps(&r, 20);
+  if (!write_some(path, &r, &message))
+    fail_msg("%s", message.text);
+  struct test_run resumed = {.model = r.model};
+  struct memory memory = {{0}, {0}};
+  struct observe_block blocks[3];
+  struct checkpoint_head head;
+  list_blocks(&memory, blocks);
+  assert_true(state_alloc(&resumed.state, &r.model) && work_alloc(&resumed.work, &resumed.model));
+  if (!checkpoint_read(path, &r.model, &head, &resumed.state, blocks, 3, &message))
+    fail_msg("%s", message.text);
+  assert_memory_equal(resumed.state.bead, r.state.bead, sizeof *r.state.bead);
+  assert_true(r.state.bead->account.x != 0 && r.state.bead->account.y != 0 && r.state.bead->account.z > 0);
+  test_steps(&resumed, 20);
+  test_steps(&r, 20);
+  assert_true(state_hash(&resumed.state) == state_hash(&r.state));
+  assert_memory_equal(resumed.state.bead, r.state.bead, sizeof *r.state.bead);
+  work_free(&resumed.work);
+  state_free(&resumed.state);
+
+  test_particles(&plain, r.state.solvent.n);
+  struct test_run without = test_start(plain);
+  expect_refusal(path, &without.model, &without.state, "bead");
+  test_end(&without);
+  test_end(&r);
+  remove_folder(folder);
+}
+
 /* Fibers without solvent, solvent without fibers, and no scene text. */
 static void parts_may_be_missing(void **unused)
 {
@@ -518,12 +561,18 @@ static void other_observers_are_refused(void **unused)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(everything_comes_back),       cmocka_unit_test(parts_may_be_missing),
-      cmocka_unit_test(bytes_are_canonical),         cmocka_unit_test(no_object_carries_a_time),
-      cmocka_unit_test(the_old_one_survives),        cmocka_unit_test(damage_is_found),
-      cmocka_unit_test(flipped_memory_is_found),     cmocka_unit_test(foreign_files_are_refused),
-      cmocka_unit_test(other_observers_are_refused), cmocka_unit_test(unsound_states_are_refused),
-      cmocka_unit_test(an_endless_lag_is_refused),   cmocka_unit_test(a_plane_comes_back)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(everything_comes_back),
+                                     cmocka_unit_test(a_bead_comes_back),
+                                     cmocka_unit_test(parts_may_be_missing),
+                                     cmocka_unit_test(bytes_are_canonical),
+                                     cmocka_unit_test(no_object_carries_a_time),
+                                     cmocka_unit_test(the_old_one_survives),
+                                     cmocka_unit_test(damage_is_found),
+                                     cmocka_unit_test(flipped_memory_is_found),
+                                     cmocka_unit_test(foreign_files_are_refused),
+                                     cmocka_unit_test(other_observers_are_refused),
+                                     cmocka_unit_test(unsound_states_are_refused),
+                                     cmocka_unit_test(an_endless_lag_is_refused),
+                                     cmocka_unit_test(a_plane_comes_back)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

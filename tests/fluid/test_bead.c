@@ -313,6 +313,37 @@ static void a_head_on_hit(void **unused)
   test_end(&r);
 }
 
+/* Two particles that hit the bead at one tick: that of the smaller id comes first, wherever both stand in memory. It
+ * meets a bead at rest, so it turns straight around; the other one is carried sideways. */
+static void two_hits_at_a_tick(void **unused)
+{
+  (void)unused;
+  for (uint32_t first = 0; first < 2; first++) {
+    struct dice d = {dice_seed(4105)};
+    struct test_run r = test_start(bead_model(&d, 1.0));
+    struct solvent *s = &r.state.solvent;
+    const double away = r.model.bead.radius + 0.02, mass = r.model.bead.mass;
+    for (uint32_t i = 0; i < s->n; i++)
+      set_solvent_v(&r.state, i, (struct vec3){0, 0, 0});
+    r.state.bead->velocity = (struct vec3){0, 0, 0};
+    const uint32_t id = s->id[0];
+    s->id[0] = s->id[first], s->id[first] = id;
+    for (uint32_t i = 0; i < 2; i++) {
+      const double x = i == first ? 1.0 : 0.0, y = 1.0 - x;
+      const struct point at = point_move(r.state.bead->position, (struct vec3){away * x, away * y, 0});
+      s->x[i] = lattice_fold(at.x, r.model.box.edge[0]), s->y[i] = lattice_fold(at.y, r.model.box.edge[1]);
+      s->z[i] = lattice_fold(at.z, r.model.box.edge[2]);
+      set_solvent_v(&r.state, i, (struct vec3){-x, -y, 0});
+    }
+    fly_all(&r);
+    assert_int_equal(r.state.bead->account.z, 2);
+    assert_close(s->vx[first], (mass - 1.0) / (mass + 1.0), 1e-14);
+    assert_true(s->vy[first] == 0.0);
+    assert_close(s->vx[1 - first], 2.0 * mass / (mass + 1.0) * (-2.0 / (mass + 1.0)), 1e-14);
+    test_end(&r);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -320,6 +351,7 @@ int main(void)
       cmocka_unit_test(flights_are_those_of_a_plain_simulation),
       cmocka_unit_test(flights_keep_momentum_and_energy_and_the_outside),
       cmocka_unit_test(a_head_on_hit),
+      cmocka_unit_test(two_hits_at_a_tick),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -236,6 +236,46 @@ static void bad_input_is_refused(void **unused)
   print_message("  %zu bad scenes refused\n", sizeof bad_scenes / sizeof *bad_scenes);
 }
 
+/* What a bead may not be, and what may not be with it. The bead's line is line 5. */
+static void bad_beads_are_refused(void **unused)
+{
+  (void)unused;
+  static const struct {
+    const char *bead, *observe;
+    size_t line, column;
+    const char *says;
+  } rows[] = {
+      {"{radius: 5}", "{}", 5, 16, "bead.radius: 5 a0 in a box whose shortest edge is 16 a0; allowed: at most 4 a0"},
+      {"{radius: 20}", "{}", 5, 16, "allowed: at most 4 a0"},
+      {"{radius: 1.2}", "{}", 5, 16, "bead.radius: '1.2' is out of range"},
+      {"{radius: 2, mass: 100}", "{}", 5, 25, "bead.mass: 100 m, and the solvent it displaces has 167.5"},
+      {"{radius: 2, drive: {velocity: [0.1, 0, 0]}}", "{}", 5, 37, "there is no trap to move; allowed with a spring"},
+      {"{radius: 2, drive: {spring: 1, amplitude: [1, 0, 0]}}", "{}", 5, 49, "an oscillation needs a period"},
+      {"{radius: 2, drive: {spring: 1, period: 10}}", "{}", 5, 46, "nothing oscillates; allowed with an amplitude"},
+      {"{radius: 2, drive: {spring: 1, amplitude: [0.1, 0, 0], period: 0.5}}", "{}", 5, 70, "allowed: 8 time steps"},
+      {"{radius: 2, drive: {spring: 1, amplitude: [5, 0, 0], period: 10}}", "{}", 5, 49, "largest speed, 2 pi/period"},
+      {"{radius: 2, drive: {spring: 1, velocity: [0.3, 0.3, 0.3]}}", "{}", 5, 48, "allowed: at most 0.5"},
+      {"{radius: 2, drive: {spring: 5000}}", "{}", 5, 35, "allowed: at most 0.5, a spring of 4188.79"},
+      {"{radius: 2, drive: {force: [0, 0, 200]}}", "{}", 5, 34, "too near the speed of sound; allowed: at most"},
+      {"{radius: 2, drive: {pull: 1}}", "{}", 5, 27, "unknown key 'pull' in bead.drive"},
+      {"{radius: 2}", "{stress: {every: 1}}", 6, 19, "observe.stress: momentum that the solvent gives to the bead"},
+      {"{radius: 2}", "{profile: {every: 1, slabs: 4}}", 6, 20, "observe.profile: a slab is not full of solvent"},
+  };
+  int wrong = 0;
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    char text[1024];
+    const int size = snprintf(text, sizeof text,
+                              "box: [16, 16, 16]\ntime_step: 0.1\nsteps: 1\n"
+                              "solvent: {per_cell: 5, collision_interval: 0.1}\nbead: %s\nobserve: %s\n",
+                              rows[i].bead, rows[i].observe);
+    wrong += !refused(text, (size_t)size, rows[i].line, rows[i].column, rows[i].says);
+  }
+  static const char none[] = "box: [16, 16, 16]\ntime_step: 0.1\nsteps: 1\n"
+                             "solvent: {per_cell: 5, collision_interval: 0.1}\nobserve: {bead: {every: 1}}\n";
+  wrong += !refused(none, sizeof none - 1, 5, 17, "observe.bead: there is none; allowed with a bead");
+  assert_int_equal(wrong, 0);
+}
+
 static void whole_files_are_refused(void **unused)
 {
   (void)unused;
@@ -1083,7 +1123,7 @@ static void keys_are_documented(void **unused)
     free(table);
     at = end;
   }
-  assert_int_equal(tables, 27);
+  assert_int_equal(tables, 29);
   for (const char *at = said; (at = strstr(at, "\n| `")) != NULL; at++)
     written++;
   for (const char *at = text; (at = strstr(at, "\n| `")) != NULL; at++)
@@ -1124,6 +1164,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(bad_input_is_refused),
+      cmocka_unit_test(bad_beads_are_refused),
       cmocka_unit_test(whole_files_are_refused),
       cmocka_unit_test(truncated_files),
       cmocka_unit_test(values_arrive),

@@ -24,6 +24,7 @@ struct scene {
   double walls;       /* 1: between no-slip walls that slide at a shear rate of 0.02 / t0 */
   double fill;        /* enum wall_fill: 0 planar, 1 paper, 2 none */
   double shear;       /* rate of a sheared box, 1/t0 */
+  double diameter;    /* of fibers, a0 */
   double pairs;       /* spring constant of dumbbells, kT/a0^2; 0: independent particles */
 };
 
@@ -62,6 +63,7 @@ static const struct scene_key {
     {"walls", offsetof(struct scene, walls)},
     {"fill", offsetof(struct scene, fill)},
     {"shear", offsetof(struct scene, shear)},
+    {"diameter", offsetof(struct scene, diameter)},
     {"pairs", offsetof(struct scene, pairs)},
 };
 
@@ -114,6 +116,7 @@ static inline struct model scene_model(const struct scene *s)
     k->bond_length = s->bond_length;
     k->spring = s->spring;
     k->bending = s->bending;
+    k->diameter = s->diameter;
   }
   return m;
 }

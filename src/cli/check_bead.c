@@ -1,0 +1,48 @@
+#include "cli/check_bead.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "cli/quantity.h"
+#include "cli/units.h"
+#include "system/bead.h"
+#include "theory/bead.h"
+#include "theory/theory.h"
+
+static void report_drive(const struct si_scale *si, const struct model *m, double friction)
+{
+  const struct bead_drive *d = &m->bead.drive;
+  const double force = vec3_norm(d->force), speed = force / friction, nu = units_viscosity(m) / m->solvent.per_cell;
+  if (force > 0.0) {
+    sheet_row(si, "speed under the force", "", speed, "a0/t0", "F/xi, relative to the mean of everything");
+    sheet_row(si, "Reynolds number", "Re", speed * m->bead.radius / nu, "",
+              "V R/nu; keep below 0.1 to compare with Stokes");
+  }
+  if (d->spring == 0.0)
+    return;
+  sheet_row(si, "relaxation in the trap", "", friction / d->spring, "t0", "xi/k");
+  sheet_row(si, "width of places in the trap", "", sqrt(1.0 / d->spring), "a0", "sqrt(kT/k), per component");
+  if (d->period > 0.0)
+    sheet_row(si, "frequency of the trap", "omega", 6.283185307179586 / d->period, "1/t0", "");
+}
+
+void check_bead(const struct si_scale *si, const struct model *m)
+{
+  const struct bead_model *b = &m->bead;
+  const double eta = units_viscosity(m), edge = box_shortest_edge(&m->box);
+  const double stokes = theory_bead_stokes(eta, b->radius),
+               enskog = theory_bead_enskog(m->solvent.per_cell, b->radius, b->mass),
+               free = theory_bead_friction(stokes, enskog);
+  const double box = b->radius / edge < 0.25 ? theory_bead_box(b->radius, edge) : 1.0,
+               slowed = theory_bead_friction(stokes * box, enskog);
+  sheet_heading("Bead (in the solvent alone; docs/bead.md says what is measured)");
+  sheet_row(si, "mass", "M", b->mass, "m", "");
+  sheet_row(si, "friction of Stokes", "xi_S", stokes, "m/t0", "6 pi eta R");
+  sheet_row(si, "friction of single hits", "xi_E", enskog, "m/t0", "(16/3) gamma R^2 sqrt(2 pi kT)");
+  sheet_row(si, "both at once", "xi", free, "m/t0", "1/(1/xi_S + 1/xi_E)");
+  sheet_row(si, "in a cubic box of the shortest edge", "", slowed, "m/t0",
+            b->radius / edge < 0.25 ? "xi_S by Hasimoto's factor" : "not known: R/L is above 0.25");
+  sheet_row(si, "diffusion coefficient", "D", 1.0 / slowed, "a0^2/t0", "kT/xi in the box");
+  sheet_row(si, "momentum is kept for", "", b->mass / free, "t0", "M/xi");
+  report_drive(si, m, slowed);
+}

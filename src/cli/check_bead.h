@@ -1,0 +1,11 @@
+/* What `uncross check` says of a bead. */
+#ifndef UNCROSS_CLI_CHECK_BEAD_H
+#define UNCROSS_CLI_CHECK_BEAD_H
+
+#include "cli/sheet.h"
+#include "system/model.h"
+
+/* Prints the numbers of a bead. The model must have one. */
+void check_bead(const struct si_scale *si, const struct model *model);
+
+#endif
