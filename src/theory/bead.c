@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "theory/dumbbell.h"
+#include "theory/flow.h"
 #include "theory/theory.h"
 
 static const double pi = 3.14159265358979323846;
@@ -17,9 +18,9 @@ double theory_bead_enskog(double gamma, double radius, double mass)
   return 16.0 / 3.0 * gamma * radius * radius * sqrt(2.0 * pi * mass / (1.0 + mass));
 }
 
-double theory_bead_friction(double stokes, double enskog)
+double theory_bead_radius(double radius, double slip)
 {
-  return stokes * enskog / (stokes + enskog);
+  return radius * (radius + 2.0 * slip) / (radius + 3.0 * slip);
 }
 
 double theory_bead_box(double radius, double edge)
@@ -28,9 +29,16 @@ double theory_bead_box(double radius, double edge)
   return 1.0 / (1.0 - 2.837297 * x + 4.0 * pi / 3.0 * cube - 27.4 * cube * cube);
 }
 
+double theory_model_bead_slip(const struct model *model)
+{
+  const struct solvent_model *s = &model->solvent;
+  const double flat = theory_slip_length(collision_rule_of(model), model->dimensions, s->per_cell, s->cosine,
+                                         model_collision_interval(model));
+  return fmax(0.0, flat); /* beyond THEORY_MOST_SLIP_INTERVAL the formula falls below 0 */
+}
+
 double theory_model_bead_friction(const struct model *model)
 {
-  const struct bead_model *b = &model->bead;
-  return theory_bead_friction(theory_bead_stokes(theory_model_viscosity(model), b->radius),
-                              theory_bead_enskog(model->solvent.per_cell, b->radius, b->mass));
+  const double radius = theory_bead_radius(model->bead.radius, theory_model_bead_slip(model));
+  return theory_bead_stokes(theory_model_viscosity(model), radius);
 }

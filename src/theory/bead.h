@@ -9,20 +9,22 @@
 /* 6 pi eta R, kT t0/a0^2: Stokes, no slip, no box. */
 double theory_bead_stokes(double viscosity, double radius);
 
-/* The friction of a sphere that turns no flow: (16/3) gamma R^2 sqrt(2 pi mu kT), mu = m M/(m + M). A particle that
- * hits it gets its relative velocity reversed; a sphere that reverses the normal component only has half of it. */
+/* Hydrodynamic radius, a0, of a sphere on which the flow slips by a length b: R (1 + 2b/R)/(1 + 3b/R) (Basset 1888). */
+double theory_bead_radius(double radius, double slip);
+
+/* The friction of single hits, kT t0/a0^2, without any flow: (16/3) gamma R^2 sqrt(2 pi mu kT), mu = m M/(m + M). A
+ * particle that hits the bead gets its relative velocity reversed; where the normal component alone is reversed, it is
+ * half of this. Where hits are all the coupling, frictions add up as 1/xi_S + 1/xi_E (Lee and Kapral, J. Chem. Phys.
+ * 121, 11163 (2004); Padding and Louis, Phys. Rev. E 74, 031402 (2006)). Here collisions with virtual particles couple
+ * more: as at a wall, the flow slips by the length of theory_slip_length. docs/bead.md has the measurement. */
 double theory_bead_enskog(double gamma, double radius, double mass);
 
-/* Both at once, 1/(1/xi_S + 1/xi_E): Lee and Kapral, J. Chem. Phys. 121, 11163 (2004); Padding and Louis, Phys. Rev. E
- * 74, 031402 (2006). */
-double theory_bead_friction(double stokes, double enskog);
-
 /* Friction in a cubic lattice of beads over that of one alone: 1/(1 - 2.837297 x + (4 pi/3) x^3 - 27.4 x^6), x = R/L
- * (Hasimoto, J. Fluid Mech. 5, 317 (1959)). The velocity is relative to the mean of everything, bead and fluid. For x
- * below 0.25. */
+ * (Hasimoto, J. Fluid Mech. 5, 317 (1959)). The velocity is relative to the mean of everything. For x below 0.25. */
 double theory_bead_box(double radius, double edge);
 
-/* The same of a model: Stokes and Enskog, without the box. */
+/* Of a model: slip length, a0; friction 6 pi eta R_h, without the box. */
+double theory_model_bead_slip(const struct model *model);
 double theory_model_bead_friction(const struct model *model);
 
 #endif

@@ -3,6 +3,7 @@
  * test in 3000 fails by chance, of the two that are statistical.
  */
 #include "exact.h"
+#include "fluid/fluid.h"
 #include "kernel/choose.h"
 #include "observe/observe.h"
 #include "statistics.h"
@@ -142,6 +143,41 @@ static void a_trap_holds_the_bead(void **unused)
   }
 }
 
+/* --- flights -------------------------------------------------------------------------------------------------------
+ */
+
+/* Particles that follow ticks and hit nothing end where they fly by themselves, accelerated by the counterforce: to
+ * half a lattice unit per tick, 3e-8 a0. Here a t^2 is 2e-5 a0. Its velocity is that of the free flight. */
+static void who_misses_the_bead_flies_as_others(void **unused)
+{
+  (void)unused;
+  struct model m = driven_model(RULE_SRD, SCHEME_KICK_SPLIT);
+  m.bead.drive.force = (struct vec3){6.0, -6.0, 9.0};
+  struct test_run r = test_start(m);
+  r.state.solvent_lag = 2;
+  struct fault fault = {.code = FAULT_NONE};
+  const struct fluid *fluid = fluid_of(&r.model);
+  assert_true(fluid->stream(&r.state, &r.model, 0, r.state.solvent.n, &fault));
+  uint32_t *near = malloc(r.state.solvent.n * sizeof *near), missed = 0;
+  for (uint32_t i = 0; i < r.state.solvent.n; i++)
+    near[i] = i;
+  struct bead_visits all = {0};
+  assert_true(fluid->meet(&r.state, &r.model, near, r.state.solvent.n, 0.5, &all, &fault) && all.enough);
+  assert_true(all.n > 50 && all.bead.account.z > 0);
+  for (const struct bead_visit *v = all.at; v < all.at + all.n; v++) {
+    const struct solvent *s = &r.state.solvent;
+    if (!(vec3_norm(vec3_sub(v->velocity, solvent_velocity(s, v->place))) < 1e-14))
+      continue;
+    const struct point end = {s->x[v->place], s->y[v->place], s->z[v->place]};
+    assert_true(vec3_norm(point_in_a0(bead_to_image(&r.model.box, end, v->at))) < 1e-7);
+    missed++;
+  }
+  assert_true(missed > 20);
+  free(all.at);
+  free(near);
+  test_end(&r);
+}
+
 /* --- kernels -------------------------------------------------------------------------------------------------------
  */
 
@@ -163,9 +199,9 @@ static void kernels_give_the_same_bits(void **unused)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(the_force_is_that_of_the_formula), cmocka_unit_test(all_momentum_stays_zero),
-      cmocka_unit_test(work_is_that_of_the_potential),    cmocka_unit_test(a_trap_holds_the_bead),
-      cmocka_unit_test(kernels_give_the_same_bits),
+      cmocka_unit_test(the_force_is_that_of_the_formula),    cmocka_unit_test(all_momentum_stays_zero),
+      cmocka_unit_test(work_is_that_of_the_potential),       cmocka_unit_test(a_trap_holds_the_bead),
+      cmocka_unit_test(who_misses_the_bead_flies_as_others), cmocka_unit_test(kernels_give_the_same_bits),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
