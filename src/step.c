@@ -19,6 +19,8 @@
  *   kick-split   between two half kicks: velocities and positions of the same time
  *   drift-split  between two half drifts: the same, half a step earlier
  *
+ * Overdamped vertices (medium: {kind: overdamped}) have no velocities: a step is forces and one move.
+ *
  * Each action becomes stages: each room that has a part in it (fiber/, contact/, mpc/) appends its own. The list of
  * stages is the plan (system/plan.h). It is made once for a run, and holds only what the scene needs.
  *
@@ -29,6 +31,7 @@
 #include "step.h"
 
 #include <stddef.h>
+#include <string.h>
 
 #include "contact/laying.h"
 #include "fiber/start.h"
@@ -39,7 +42,7 @@
 #include "system/bead.h"
 #include "system/shear.h"
 
-enum action { END, DRIFT, COLLIDE, FORCE, KICK };
+enum action { END, DRIFT, COLLIDE, FORCE, KICK, MOVE };
 
 struct part {
   enum action action;
@@ -47,6 +50,9 @@ struct part {
 };
 
 static const struct part without_collision[] = {{DRIFT, 1.0}, {FORCE, 0}, {KICK, 1.0}, {END, 0}};
+
+/* Vertices without velocities move at once. */
+static const struct part overdamped[] = {{FORCE, 0}, {MOVE, 1.0}, {END, 0}};
 
 static const struct part with_collision[SCHEMES][6] = {
     [SCHEME_PAPER] = {{DRIFT, 1.0}, {COLLIDE, 0}, {FORCE, 0}, {KICK, 1.0}, {END, 0}},
@@ -83,6 +89,9 @@ static void plan_actions(struct plan *plan, const struct part *part, const struc
       medium_plan_kick(plan, m, offsetof(struct work, medium), part->fraction, m->vertices > 0 ? NULL : "kick");
       fiber_plan_kick(plan, m, offsetof(struct work, fiber), part->fraction, "kick");
       break;
+    case MOVE:
+      fiber_plan_move(plan, m, offsetof(struct work, fiber), "move");
+      break;
     case END:
       break;
     }
@@ -91,8 +100,9 @@ static void plan_actions(struct plan *plan, const struct part *part, const struc
 
 void step_plan(struct work *work, const struct model *model)
 {
-  plan_actions(&work->plan[false], without_collision, model);
-  plan_actions(&work->plan[true], with_collision[model->scheme], model);
+  const bool moves = model_is_overdamped(model);
+  plan_actions(&work->plan[false], moves ? overdamped : without_collision, model);
+  plan_actions(&work->plan[true], moves ? overdamped : with_collision[model->scheme], model);
 }
 
 bool step_advance_watched(struct state *state, const struct model *model, struct work *work,
@@ -250,6 +260,10 @@ bool step_start(struct state *state, const struct model *model, struct work *wor
   fluid_of(model)->start(state, model);
   if (!start_fibers(state, model, &work->fault))
     return false;
+  if (model_is_overdamped(model)) {
+    memset(state->velocity, 0, state->vertices * sizeof *state->velocity);
+    return true;
+  }
   set_total_momentum(state, model);
   start_drive(state, model);
   add_shear(state, model);

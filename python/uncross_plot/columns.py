@@ -108,6 +108,10 @@ COLUMNS = {
     "N1_spring": Column("springs", r"$N_1^\mathrm{spr}$", S),
     "sigma_xy_fibers": Column("fibers", r"$\sigma_{xy}^\mathrm{fib}$", S),
     "N1_fibers": Column("fibers", r"$N_1^\mathrm{fib}$", S),
+    # memory
+    "vertices": Column("vertices", r"$\langle v(0)v(t)\rangle$", "(kT/m)"),
+    "center": Column("centres of mass", r"$\langle V(0)V(t)\rangle$", "(kT/m)"),
+    "stress_memory": Column("stress of a fiber", r"$\langle s(0)s(t)\rangle$", "(kT)²"),
     # pressure
     "p_xx": Column("along x", "$p_{xx}$", S),
     "p_yy": Column("along y", "$p_{yy}$", S),
@@ -127,6 +131,7 @@ COLUMNS = {
     "uyuy": Column("bonds across the flow", r"$\langle u_y u_y\rangle$"),
     "uzuz": Column("bonds along the vorticity", r"$\langle u_z u_z\rangle$"),
     "uxuy": Column("correlation of bonds", r"$\langle u_x u_y\rangle$"),
+    "S": Column("nematic order", "$S$"),
     # bead
     "place_x": Column("place, x", "$x$", A),
     "place_y": Column("place, y", "$y$", A),
@@ -233,7 +238,7 @@ LAG_LABEL = "lag $t$ / $t_0$"
 TITLES = {"conserved": "Energy and momentum", "temperature": "Temperature", "collisions": "Contacts of bonds",
           "statics": "Size and shape", "dynamics": "Motion", "profile": "Profile across the flow", "stress": "Stress",
           "dumbbells": "Shape of dumbbells", "orientation": "Orientation", "bead": "The bead",
-          "pressure": "Pressure and configurational temperature"}
+          "pressure": "Pressure and configurational temperature", "memory": "Memory"}
 
 
 def column(name):

@@ -272,6 +272,8 @@ static void report_parts(const struct scene *scene)
       {"private baths of vertices", "medium/private.c", m->medium.kind == MEDIUM_PRIVATE},
       {"baths of pairs", "medium/pairs.c", m->medium.kind == MEDIUM_PAIRS},
       {"forces of pairs", "medium/repulsion.c", model_repels(m)},
+      {"overdamped motion", "fiber/overdamped.c", model_is_overdamped(m)},
+      {"... with a tensor", "fiber/mobility.c", m->medium.tensor != TENSOR_NONE},
       {"thermostat's sums and factors", "mpc/thermostat.c", solvent && s->thermostat != THERMOSTAT_NONE},
       {"permuted velocities", "mpc/sort.c", solvent && collides && !s->hydrodynamics},
       {"moves of vertices", "contact/rule.c", m->vertices > 0},

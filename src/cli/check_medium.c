@@ -40,7 +40,11 @@ static void report_pairs(const struct si_scale *si, const struct model *m)
 void check_medium(const struct si_scale *si, const struct model *m)
 {
   const bool pairs = m->medium.kind == MEDIUM_PAIRS;
-  sheet_heading(pairs ? "Medium: a bath of pairs" : "Medium: a private bath of each vertex, no hydrodynamics");
+  static const char *const headings[MEDIA] = {
+      [MEDIUM_PRIVATE] = "Medium: a private bath of each vertex, no hydrodynamics",
+      [MEDIUM_PAIRS] = "Medium: a bath of pairs",
+      [MEDIUM_OVERDAMPED] = "Medium: overdamped motion, each fiber alone in an unbounded fluid"};
+  sheet_heading(headings[m->medium.kind]);
   sheet_row(si, "rate", "Gamma", m->medium.rate, "1/t0", "");
   sheet_row(si, "... in a time step", "Gamma dt", m->medium.rate * m->time_step, "", "");
   if (pairs)
@@ -56,8 +60,31 @@ void check_times(const struct si_scale *si, const struct model *m, double l, dou
   sheet_row(si, "  time of diffusion", "t_D", l * l / diffusion, "t0", "l^2/D_0; wanted: t_s < t_H << t_D");
 }
 
+static void report_overdamped(const struct si_scale *si, const struct model *m, const struct fiber_kind *k)
+{
+  const struct medium_model *b = &m->medium;
+  const double d0 = theory_medium_diffusion(m, k->mass), bond = k->vertices > 1 ? sqrt(theory_bond_square(k)) : 1.0;
+  sheet_row(si, "  vertex diffusion", "D_0", d0, "a0^2/t0", "kT/(M rate)");
+  if (b->tensor != TENSOR_NONE)
+    sheet_row(si, "  viscosity", "eta", k->mass * b->rate / (6.0 * pi * b->radius), "m/a0 t0", "M rate/(6 pi a_h)");
+  if (k->vertices < 2)
+    return;
+  sheet_row(si, "  hydrodynamic radius over the rms bond", "a/b", b->radius / bond, "",
+            "1/4: D of a chain scales from few vertices on");
+  sheet_row(si, "  fastest relaxation in a time step", "", 4.0 * k->spring * d0 * m->time_step, "",
+            "4 k D_0 dt, without HI; unstable from 2 on");
+  if (k->bending == 0.0 && k->bond_length == 0.0 && !k->ring)
+    sheet_row(si, "  diffusion of the chain, Kirkwood", "D_K",
+              d0 * theory_kirkwood(b->tensor, k->vertices, b->radius / bond), "a0^2/t0",
+              "1 to 3 % above the limit of long times");
+}
+
 void check_medium_vertex(const struct si_scale *si, const struct model *m, const struct fiber_kind *k)
 {
+  if (model_is_overdamped(m)) {
+    report_overdamped(si, m, k);
+    return;
+  }
   const double loss = theory_medium_loss(m, k->mass), d0 = theory_medium_diffusion(m, k->mass);
   const double bond = sqrt(theory_bond_square(k));
   sheet_row(si, "  velocity kept per step", "c", 1.0 - loss, "", "");

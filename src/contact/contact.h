@@ -106,6 +106,8 @@ struct neighbors {
     double cells, cell_edge, box_edge;
   } inverse[3]; /* of the number of cells, and of edges in lattice units */
   uint32_t cell_count;
+  double around,
+      apart; /* a0: what boxes and pairs of capsules have beyond skins: half of the thickness, all of it; and slack */
   struct grid_row *entries; /* [cell_count] */
   struct point moved;       /* displacement of the frame of the moves since reference positions were first taken */
   uint64_t renewed;         /* number of reference positions taken so far, for benchmarks */

@@ -51,14 +51,14 @@ static bool add_near(struct neighbor_list *list, struct neighbor n)
 
 /* --- grid -------------------------------------------------------------------------------------------------------- */
 
-/* The box around a capsule, in lattice units. */
+/* The box around a capsule, in lattice units. reach_a0: with some slack. */
 struct capsule_box {
   struct point low, high;
 };
 
 static inline struct capsule_box box_around(struct point a, struct point b, double reach_a0)
 {
-  const int64_t reach = lattice_from_a0(reach_a0 + CAPSULE_SLACK);
+  const int64_t reach = lattice_from_a0(reach_a0);
   return (struct capsule_box){
       {(a.x < b.x ? a.x : b.x) - reach, (a.y < b.y ? a.y : b.y) - reach, (a.z < b.z ? a.z : b.z) - reach},
       {(a.x > b.x ? a.x : b.x) + reach, (a.y > b.y ? a.y : b.y) + reach, (a.z > b.z ? a.z : b.z) + reach}};
@@ -67,7 +67,7 @@ static inline struct capsule_box box_around(struct point a, struct point b, doub
 static struct capsule_box box_of(const struct neighbors *nb, const struct model *model, uint32_t bond)
 {
   const struct reference_position *p = &nb->reference[bond], *q = &nb->reference[model->next[bond]];
-  return box_around(p->at, q->at, capsule_most(p->skin, q->skin) + 0.5 * model_thickness(model));
+  return box_around(p->at, q->at, capsule_most(p->skin, q->skin) + nb->around);
 }
 
 /* The image of the box in which a point lies. */
@@ -252,8 +252,7 @@ static void fill_column(const struct neighbors *nb, const struct model *model, u
   s->p[0][k] = p.x, s->p[1][k] = p.y, s->p[2][k] = p.z;
   s->q[0][k] = q.x, s->q[1][k] = q.y, s->q[2][k] = q.z;
   s->w[0][k] = w.x, s->w[1][k] = w.y, s->w[2][k] = w.z;
-  s->reach[k] =
-      capsule_most(a->skin, b->skin) + capsule_most(c->skin, d->skin) + (model_thickness(model) + CAPSULE_SLACK);
+  s->reach[k] = capsule_most(a->skin, b->skin) + capsule_most(c->skin, d->skin) + nb->apart;
 }
 
 /* Adds those pairs to the pair list whose capsules are not apart. */
@@ -429,7 +428,8 @@ bool neighbors_near(const struct state *state, const struct model *model, struct
                     const struct point end[2], double range, struct neighbor_list *near, struct fault *fault)
 {
   struct neighbors *nb = &contact->neighbors;
-  const struct capsule_box box = box_around(point_minus(end[0], nb->moved), point_minus(end[1], nb->moved), range);
+  const struct capsule_box box =
+      box_around(point_minus(end[0], nb->moved), point_minus(end[1], nb->moved), range + CAPSULE_SLACK);
   struct search found;
   found.near = near, found.count = 0;
   near->count = 0;
@@ -492,6 +492,8 @@ bool neighbors_build(const struct state *state, const struct model *model, struc
   if (!allocate(model, nb))
     return fault_no_memory(fault, state->step + 1);
   nb->pairs.count = 0;
+  nb->around = 0.5 * model_thickness(model) + CAPSULE_SLACK;
+  nb->apart = model_thickness(model) + CAPSULE_SLACK;
   for (uint32_t c = 0; c < nb->cell_count; c++)
     nb->entries[c].count = 0;
   for (uint32_t j = 0; j < model->vertices; j++) {

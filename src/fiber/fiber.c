@@ -3,23 +3,38 @@
 
 #include "base/memory.h"
 #include "fiber/force.h"
+#include "fiber/overdamped.h"
 #include "system/plan.h"
+
+enum { NEEDS = 2 };
+
+static void list_needs(struct fiber *f, const struct model *m, struct memory_need need[NEEDS])
+{
+  need[0] = (struct memory_need){(void **)&f->force, m->vertices, sizeof *f->force};
+  need[1] = (struct memory_need){(void **)&f->overdamped, overdamped_doubles(m), sizeof *f->overdamped};
+}
 
 bool fiber_alloc(struct fiber *f, const struct model *m)
 {
-  const struct memory_need need = {(void **)&f->force, m->vertices, sizeof *f->force};
-  return memory_take(&need, 1);
+  struct memory_need need[NEEDS];
+  list_needs(f, m, need);
+  return memory_take(need, NEEDS);
 }
 
 void fiber_free(struct fiber *f)
 {
-  const struct memory_need need = {(void **)&f->force, 0, sizeof *f->force};
-  memory_release(&need, 1);
+  struct memory_need need[NEEDS];
+  const struct model nothing = {0};
+  list_needs(f, &nothing, need);
+  memory_release(need, NEEDS);
 }
 
 uint64_t fiber_bytes(const struct model *m)
 {
-  return (uint64_t)m->vertices * sizeof(struct vec3);
+  struct fiber f = {0};
+  struct memory_need need[NEEDS];
+  list_needs(&f, m, need);
+  return memory_bytes(need, NEEDS);
 }
 
 static bool act_forces(void *room, const struct moment *now, const struct stage *stage)
@@ -46,4 +61,17 @@ void fiber_plan_kick(struct plan *plan, const struct model *m, size_t room, doub
 {
   if (m->vertices > 0)
     plan_append(plan, (struct stage){.name = name, .act = act_kick, .room = room, .fraction = fraction});
+}
+
+static bool act_move(void *room, const struct moment *now, const struct stage *stage)
+{
+  (void)stage;
+  const struct fiber *f = room;
+  return overdamped_move(now->state, now->model, f->force, f->overdamped, now->step, now->fault);
+}
+
+void fiber_plan_move(struct plan *plan, const struct model *m, size_t room, const char *name)
+{
+  if (m->vertices > 0)
+    plan_append(plan, (struct stage){.name = name, .act = act_move, .room = room});
 }

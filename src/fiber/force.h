@@ -30,6 +30,7 @@ void fiber_kick(struct state *state, const struct model *model, const struct vec
 /* The room's scratch. */
 struct fiber {
   struct vec3 *force; /* [vertices] kT/a0 */
+  double *overdamped; /* [overdamped_doubles] */
 };
 
 /* False if memory is short. */
@@ -42,6 +43,9 @@ uint64_t fiber_bytes(const struct model *model);
 struct plan;
 void fiber_plan_forces(struct plan *plan, const struct model *model, size_t room, const char *name);
 void fiber_plan_kick(struct plan *plan, const struct model *model, size_t room, double fraction, const char *name);
+
+/* The same of an overdamped move. */
+void fiber_plan_move(struct plan *plan, const struct model *model, size_t room, const char *name);
 
 struct fiber_energy {
   double bond, bend; /* kT */

@@ -286,6 +286,8 @@ struct temperatures motion_temperatures(const struct model *model, const struct 
                                squares_about(m->solvent_squares.z, m->solvent_sum.z, n, u.z)};
   const struct vec3 solvent =
       m->slabs > 0 ? vec3_scale(1.0 / (n - m->slabs), m->slab_squares) : vec3_scale(1.0 / solvent_freedom, squares);
+  if (model_is_overdamped(model)) /* there are no velocities */
+    return (struct temperatures){solvent, NAN, NAN};
   return (struct temperatures){solvent, vertex_temperature(m, &m->vertex, vertices, vertex_freedom, u),
                                vertex_temperature(m, &m->vertex_half, vertices, vertex_freedom, u)};
 }

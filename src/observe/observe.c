@@ -14,14 +14,14 @@ static const struct observer_type *const types[OBSERVABLES] = {
     [OBSERVE_COLLISIONS] = &collisions_observer,   [OBSERVE_PROFILE] = &profile_observer,
     [OBSERVE_STRESS] = &stress_observer,           [OBSERVE_DUMBBELLS] = &dumbbells_observer,
     [OBSERVE_ORIENTATION] = &orientation_observer, [OBSERVE_BEAD] = &bead_observer,
-    [OBSERVE_PRESSURE] = &pressure_observer,
+    [OBSERVE_MEMORY] = &memory_observer,           [OBSERVE_PRESSURE] = &pressure_observer,
 };
 
 const char *const observable_names[OBSERVABLES] = {
     [OBSERVE_CONSERVED] = "conserved", [OBSERVE_TEMPERATURE] = "temperature", [OBSERVE_STATICS] = "statics",
     [OBSERVE_DYNAMICS] = "dynamics",   [OBSERVE_COLLISIONS] = "collisions",   [OBSERVE_PROFILE] = "profile",
     [OBSERVE_STRESS] = "stress",       [OBSERVE_DUMBBELLS] = "dumbbells",     [OBSERVE_ORIENTATION] = "orientation",
-    [OBSERVE_BEAD] = "bead",           [OBSERVE_PRESSURE] = "pressure",
+    [OBSERVE_BEAD] = "bead",           [OBSERVE_MEMORY] = "memory",           [OBSERVE_PRESSURE] = "pressure",
 };
 
 enum { MAX_BLOCKS = 6 * OBSERVABLES };

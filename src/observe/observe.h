@@ -23,6 +23,7 @@ enum observable {
   OBSERVE_STRESS,      /* time series: stress of the solvent in the bulk, of fibers, and on walls */
   OBSERVE_DUMBBELLS,   /* averages: second moments of the vectors of dumbbells */
   OBSERVE_ORIENTATION, /* averages per kind of fiber: second moments of end-to-end vectors and of directions of bonds */
+  OBSERVE_MEMORY,      /* averages against lag, per kind: memory of velocities and of the stress of fibers */
   OBSERVE_BEAD,        /* time series: place, velocity and force of the bead */
   OBSERVE_PRESSURE,    /* time series: pressure tensor, potential energy, configurational temperature */
   OBSERVABLES

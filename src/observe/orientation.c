@@ -2,6 +2,7 @@
  * How fibers lie in space, averaged over the run: second moments of the end-to-end vector R, and of the directions u of
  * bonds. A table "orientation-KIND" with one row for each kind of fiber with bonds. In a flow along x these moments
  * tell how fibers are stretched and turned into the flow.
+ * The nematic order of all bonds of a kind in the box: S, the largest eigenvalue of Q = <3 u u - 1>/2 of one sample.
  * And how fast the end-to-end vector turns in the plane of x and y, from sample to sample: in shear a fiber tumbles,
  * and pi over this rate is the time of a half turn.
  */
@@ -19,6 +20,7 @@ enum {
   BONDS_ALONG, /* u_x u_x, u_y u_y */
   BONDS_ACROSS,
   BONDS_ANGLE, /* u_x u_y, u_x u_x - u_y u_y: together they make the angle */
+  ORDER,       /* S; 0 */
   TURNING,     /* change of the angle of R in the plane of x and y since the sample before, radians; 0 */
   QUANTITIES
 };
@@ -45,7 +47,7 @@ static struct block_level *blocks_of(const struct observer *o, uint32_t kind, in
 }
 
 struct moments {
-  double xx, yy, zz, xy;
+  double xx, yy, zz, xy, xz, yz;
 };
 
 static void add_vector(struct moments *m, struct vec3 r, double weight)
@@ -54,6 +56,26 @@ static void add_vector(struct moments *m, struct vec3 r, double weight)
   m->yy += weight * r.y * r.y;
   m->zz += weight * r.z * r.z;
   m->xy += weight * r.x * r.y;
+  m->xz += weight * r.x * r.z;
+  m->yz += weight * r.y * r.z;
+}
+
+/* The largest eigenvalue of Q = (3 m - trace m)/2: the largest root of x^3 - 3 a x - 2 b, a = tr Q^2/6, b = det Q/2. By
+ * Newton's steps from 2 sqrt(a), which is not below it: from there they fall to it. */
+static double largest_order(const struct moments *m)
+{
+  const double trace = (m->xx + m->yy + m->zz) / 3.0, xx = 1.5 * (m->xx - trace), yy = 1.5 * (m->yy - trace),
+               zz = 1.5 * (m->zz - trace), xy = 1.5 * m->xy, xz = 1.5 * m->xz, yz = 1.5 * m->yz;
+  const double a = (xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + xz * xz + yz * yz)) / 6.0,
+               b = 0.5 * (xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz));
+  double x = 2.0 * sqrt(a);
+  for (int k = 0; k < 100; k++) {
+    const double slope = 3.0 * (x * x - a), next = slope > 0.0 ? x - ((x * x - 3.0 * a) * x - 2.0 * b) / slope : x;
+    if (!(next < x))
+      break;
+    x = next;
+  }
+  return x;
 }
 
 static bool is_bonded(const struct fiber_kind *kind)
@@ -76,7 +98,7 @@ static void add_kind(struct observer *o, const struct view *view, uint32_t k, ui
   const struct model *model = view->model;
   const struct fiber_kind *kind = &model->kind[k];
   const uint32_t bonds = kind->vertices - !kind->ring;
-  struct moments ends = {0, 0, 0, 0}, directions = {0, 0, 0, 0};
+  struct moments ends = {0, 0, 0, 0, 0, 0}, directions = {0, 0, 0, 0, 0, 0};
   double *before = before_of(o, model) + 2 * (size_t)number, turning = 0.0;
   for (uint32_t fiber = 0; fiber < kind->count; fiber++, first += kind->vertices) {
     for (uint32_t j = first; j < first + bonds; j++) {
@@ -94,6 +116,7 @@ static void add_kind(struct observer *o, const struct view *view, uint32_t k, ui
   block_add(blocks_of(o, k, BONDS_ALONG), LEVELS, directions.xx, directions.yy);
   block_add(blocks_of(o, k, BONDS_ACROSS), LEVELS, directions.xy, directions.zz);
   block_add(blocks_of(o, k, BONDS_ANGLE), LEVELS, directions.xy, directions.xx - directions.yy);
+  block_add(blocks_of(o, k, ORDER), LEVELS, largest_order(&directions), 0.0);
   if (o->integer[SEEN])
     block_add(blocks_of(o, k, TURNING), LEVELS, turning, 0.0);
 }
@@ -114,9 +137,9 @@ static void add_orientation(struct observer *o, struct view *view)
 /* --- the table --------------------------------------------------------------------------------------------------- */
 
 static const char *const columns[] = {
-    "RxRx",       "RxRx_error", "RyRy",       "RyRy_error", "RzRz",       "RzRz_error",    "RxRy",
-    "RxRy_error", "uxux",       "uxux_error", "uyuy",       "uyuy_error", "uzuz",          "uzuz_error",
-    "uxuy",       "uxuy_error", "chi",        "chi_error",  "turning",    "turning_error", "samples",
+    "RxRx", "RxRx_error", "RyRy",    "RyRy_error",    "RzRz", "RzRz_error", "RxRy",    "RxRy_error",
+    "uxux", "uxux_error", "uyuy",    "uyuy_error",    "uzuz", "uzuz_error", "uxuy",    "uxuy_error",
+    "chi",  "chi_error",  "turning", "turning_error", "S",    "S_error",    "samples",
 };
 
 enum { COLUMNS = sizeof columns / sizeof *columns };
@@ -150,7 +173,7 @@ static void fill_row(const struct observer *o, const struct model *model, uint32
   const double each = 1.0 / ((double)o->every * model->time_step); /* 1/t0 */
   *cell++ = open && turning->count > 0.0 ? each * turning->mean[0] : NAN;
   *cell++ = open ? block_error(turning, LEVELS, each, 0.0) : NAN;
-  *cell = angle->count;
+  *put_mean(cell, blocks_of(o, k, ORDER), 0, true) = angle->count;
 }
 
 static bool summarise_orientation(const struct observer *o, const struct model *model, const struct observer_take *to)

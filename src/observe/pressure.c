@@ -70,7 +70,8 @@ static void add_vertices(const struct view *view, const struct vec3 *bonded, con
                       now = vec3_add_scaled(state->velocity[v], -half * model->inverse_mass[v], all),
                       w = vec3_sub(now, model->flow);
     const struct point origin = state->position[model->fiber_first[fiber]];
-    add_products(s->flow, model->mass[v], w, w);
+    if (!model_is_overdamped(model))
+      add_products(s->flow, model->mass[v], w, w);
     add_products(s->flow, 1.0, point_difference(state->position[v], origin), inner);
     s->square += model->inverse_mass[v] > 0.0 ? vec3_dot(grad, grad) : 0.0;
     add_bonded(model, state, v, s);
@@ -118,6 +119,8 @@ static bool measure(struct view *view, struct sums *s)
   const struct fiber_energy energy = fiber_energies(state, model);
   s->potential = energy.bond + energy.bend;
   add_vertices(view, view->force, pair, s);
+  for (int k = STRESS_XX; k <= STRESS_ZZ && model_is_overdamped(model); k++)
+    s->flow[k] += state->vertices; /* kT of each: velocities have been averaged over */
   add_particles(view, pair, by_number, s);
   add_pairs(&pairs, s);
   memory_release(need, 2);

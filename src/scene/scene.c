@@ -90,6 +90,8 @@ static bool check_bead(const struct scene *scene, struct message *message)
       {bead || every[OBSERVE_BEAD] == 0, "observe.bead", "there is none; allowed with a bead"},
       {!bead || every[OBSERVE_STRESS] == 0, "observe.stress",
        "momentum that the solvent gives to the bead is not in its stress; allowed without a bead"},
+      {!bead || every[OBSERVE_PRESSURE] == 0, "observe.pressure",
+       "momentum that the solvent gives to the bead is not in it; allowed without a bead"},
       {!bead || every[OBSERVE_PROFILE] == 0, "observe.profile",
        "a slab is not full of solvent where the bead is; allowed without a bead"},
   };

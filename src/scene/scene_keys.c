@@ -72,16 +72,18 @@ static const struct key_table shape_table = {"observe.dumbbells", NULL, COUNT(ev
 
 static const struct key_table orientation_table = {"observe.orientation", NULL, COUNT(every_keys), every_keys};
 
+static const struct key_table memory_table = {"observe.memory", NULL, COUNT(every_keys), every_keys};
+
 static const struct key_table bead_observe_table = {"observe.bead", NULL, COUNT(every_keys), every_keys};
 static const struct key_table pressure_table = {"observe.pressure", NULL, COUNT(every_keys), every_keys};
 
 static const struct key observe_keys[] = {
     {.name = "from",
-     .text =
-         "Step at which averages (`statics`, `dynamics`, `profile`, `dumbbells`, `orientation`) begin, so that they "
-         "leave a transient out. "
-         "Time series "
-         "begin at step 0 all the same. At most `steps`. If absent: 0.",
+     .text = "Step at which averages (`statics`, `dynamics`, `profile`, `dumbbells`, `orientation`, `memory`) begin, "
+             "so that they "
+             "leave a transient out. "
+             "Time series "
+             "begin at step 0 all the same. At most `steps`. If absent: 0.",
      .type = KEY_WHOLE64,
      .optional = true,
      .most = INT64_MAX,
@@ -159,6 +161,13 @@ static const struct key observe_keys[] = {
      .optional = true,
      .keys = &orientation_table,
      .offset = IN_SCENE(observe.every[OBSERVE_ORIENTATION]),
+     .line = true},
+    {.name = "memory",
+     .text = "Functions of the lag: memory of velocities and of the stress of fibers.",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &memory_table,
+     .offset = IN_SCENE(observe.every[OBSERVE_MEMORY]),
      .line = true},
     {.name = "bead",
      .text = "Time series of the bead: place, velocity, force of its drive, middle of its trap, work, heat, hits.",

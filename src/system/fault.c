@@ -31,6 +31,10 @@ static const struct {
     [FAULT_BOND_TOO_LONG] = {"bond", "is longer than half the shortest box edge:", "a0", true},
     [FAULT_OVERLAP] = {"bond", "overlaps with another one: their axes are apart by", "a0", false},
     [FAULT_NO_ROOM] = {"fiber", "overlaps with others wherever it is laid:", "attempts", false},
+    [FAULT_MOBILITY] =
+        {"the fiber of vertex",
+         "has places where its tensor (oseen) is not positive, so that no noise belongs to it; a pivot is", "D0",
+         false},
     [FAULT_NO_MEMORY] = {"", "", "", false},
 };
 
@@ -44,7 +48,8 @@ void fault_describe(const struct fault *fault, char *text, size_t size)
       !wording[fault->code].heated ? "" : " (a time step that is too large, or a heated system, is the usual cause)";
   snprintf(text, size, "step %" PRIu64 ": %s %" PRId64 " %s %.8g %s; at %s %.8g is allowed%s", fault->step,
            wording[fault->code].entity, fault->entity, wording[fault->code].what, text_real(fault->value),
-           wording[fault->code].unit, fault->code == FAULT_OVERLAP ? "least" : "most", fault->limit, hint);
+           wording[fault->code].unit, fault->code == FAULT_OVERLAP || fault->code == FAULT_MOBILITY ? "least" : "most",
+           fault->limit, hint);
 }
 
 int message_fault(struct message *message, const struct fault *fault)

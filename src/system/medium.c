@@ -34,7 +34,7 @@ static bool check_company(const struct model *m, struct model_error *error)
 static bool check_rate(const struct model *m, struct model_error *error)
 {
   const struct medium_model *b = &m->medium;
-  return b->draw != DRAW_REPLACE || b->rate * m->time_step <= 1.0 + 1e-12 ||
+  return model_is_overdamped(m) || b->draw != DRAW_REPLACE || b->rate * m->time_step <= 1.0 + 1e-12 ||
          model_reject(
              error, "medium.rate",
              "%.15g times the time step %.15g is %.6g, which is no probability; allowed with draw: replace: up "
@@ -108,10 +108,41 @@ static bool finish_pairs(struct model *m, struct model_error *error)
   return check_forces(m, error);
 }
 
+#define MOST_COUPLED 1000u /* vertices of a fiber with a tensor: a matrix of 72 MB */
+
+static uint32_t longest_fiber(const struct model *m)
+{
+  uint32_t most = 0;
+  for (uint32_t k = 0; k < m->kinds; k++)
+    most = m->kind[k].vertices > most ? m->kind[k].vertices : most;
+  return most;
+}
+
+static bool finish_overdamped(struct model *m, struct model_error *error)
+{
+  const struct medium_model *b = &m->medium;
+  const bool coupled = b->tensor != TENSOR_NONE;
+  const struct refusal rows[] = {
+      {m->kinds > 0, "medium.kind", "overdamped motion is one of vertices, and there are no fibers; allowed: pairs"},
+      {m->dimensions == 3, "dimensions", "tensors are those of space; allowed with overdamped motion: 3"},
+      {!m->crossing.forbidden, "crossing.forbidden",
+       "overdamped vertices have no velocities, so bonds cannot exchange momentum; allowed with this medium: false"},
+      {b->density == 0.0, "medium.density", "overdamped motion has no particles; allowed with kind: pairs"},
+      {b->weight == WEIGHT_HAT && b->draw == DRAW_REPLACE && !model_repels(m), "medium.kind",
+       "overdamped motion knows no pairs and draws no velocities: no draw, weight or repulsion; allowed with them: "
+       "pairs"},
+      {coupled == (b->radius > 0.0), coupled ? "medium.tensor" : "medium.radius",
+       "a tensor needs a radius above 0, and a radius a tensor; allowed: both or none"},
+      {!coupled || longest_fiber(m) <= MOST_COUPLED, "medium.tensor",
+       "a fiber has more than 1000 vertices, and its matrix more than 72 MB; allowed with a tensor: up to 1000"},
+  };
+  return refuse_first(rows, sizeof rows / sizeof *rows, error);
+}
+
 bool medium_finish(struct model *m, struct model_error *error)
 {
   static bool (*const finish[MEDIA])(struct model *, struct model_error *) = {
-      [MEDIUM_PRIVATE] = finish_private, [MEDIUM_PAIRS] = finish_pairs};
+      [MEDIUM_PRIVATE] = finish_private, [MEDIUM_PAIRS] = finish_pairs, [MEDIUM_OVERDAMPED] = finish_overdamped};
   if (model_in_cells(m))
     return true;
   m->solvent.interval_steps = 1;

@@ -40,9 +40,10 @@ enum bath {
 
 /* With whom a bath mixes velocities: the rows of medium/medium.c. */
 enum medium_kind {
-  MEDIUM_CELLS,   /* with the members of a collision cell: the solvent's keys */
-  MEDIUM_PRIVATE, /* each vertex with a bath of its own: Langevin, Andersen */
-  MEDIUM_PAIRS,   /* two members that are near each other: Lowe-Andersen, Peters, Shardlow */
+  MEDIUM_CELLS,      /* with the members of a collision cell: the solvent's keys */
+  MEDIUM_PRIVATE,    /* each vertex with a bath of its own: Langevin, Andersen */
+  MEDIUM_PAIRS,      /* two members that are near each other: Lowe-Andersen, Peters, Shardlow */
+  MEDIUM_OVERDAMPED, /* none: vertices have no velocities, fiber/overdamped.h */
   MEDIA
 };
 
@@ -51,6 +52,9 @@ enum medium_draw { DRAW_REPLACE, DRAW_RELAX, DRAW_CAYLEY, MEDIUM_DRAWS };
 
 /* How the rate of a pair depends on its distance: the rows of medium/bath.c. */
 enum medium_weight { WEIGHT_HAT, WEIGHT_QUADRATIC, MEDIUM_WEIGHTS };
+
+/* How spheres of a fiber feel each other's flow in overdamped motion: the rows of fiber/mobility.c. */
+enum medium_tensor { TENSOR_NONE, TENSOR_OSEEN, TENSOR_RPY, MEDIUM_TENSORS };
 
 /* How the particles of two groups are laid at the start. */
 enum medium_layout { LAYOUT_MIXED, LAYOUT_SLAB, MEDIUM_LAYOUTS };
@@ -169,6 +173,10 @@ struct medium_model {
   enum medium_draw draw;
   enum medium_weight weight; /* of pairs */
   double density;            /* of pairs: particles of mass 1 per a0^3 */
+
+  /* Of overdamped motion. */
+  enum medium_tensor tensor;
+  double radius; /* a0: of a vertex; 0 without a tensor */
 
   /* Forces of pairs, medium/repulsion.h. */
   double repulsion; /* kT/a0: of all pairs, at r = 0; 0: none */
@@ -373,6 +381,12 @@ static inline bool model_repels(const struct model *model)
   return model->medium.repulsion != 0.0 || model->medium.many.repulsion != 0.0 || model->medium.second.share != 0.0;
 }
 
+/* Vertices have places and no velocities. */
+static inline bool model_is_overdamped(const struct model *model)
+{
+  return model->medium.kind == MEDIUM_OVERDAMPED;
+}
+
 /* Something holds kT = 1: the rule, a thermostat, or a bath. */
 static inline bool model_is_isothermal(const struct model *model)
 {
@@ -415,7 +429,7 @@ static inline double model_solvent_density(const struct model *model)
 /* False if a bath takes up the momentum of vertices. */
 static inline bool model_keeps_momentum(const struct model *model)
 {
-  return !model_has_phantoms(model) && model->medium.kind != MEDIUM_PRIVATE;
+  return !model_has_phantoms(model) && (model_in_cells(model) || model->medium.kind == MEDIUM_PAIRS);
 }
 
 /* True if the model has solvent, phantoms or another bath; without them there are no collisions. */

@@ -12,9 +12,10 @@ static const char *const profile_words[] = {"uniform", "sine", "reverse", NULL};
 static const char *const wall_words[] = {"no-slip", "slip", NULL};
 static const char *const fill_words[] = {"planar", "paper", "none", NULL};
 static const char *const bath_words[] = {"particles", "phantoms", NULL};
-static const char *const medium_words[] = {"private", "pairs", NULL};
+static const char *const medium_words[] = {"private", "pairs", "overdamped", NULL};
 static const char *const draw_words[] = {"replace", "relax", "cayley", NULL};
 static const char *const weight_words[] = {"hat", "quadratic", NULL};
+static const char *const tensor_words[] = {"none", "oseen", "rpy", NULL};
 static const char *const layout_words[] = {"mixed", "slab", NULL};
 static const char *const exclusion_words[] = {"shared-vertex", "paper", NULL};
 static const char *const crossing_words[] = {"sequential", "event-driven", NULL};
@@ -170,16 +171,18 @@ static const struct key medium_keys[] = {
          "With whom velocities mix, once in each time step. `private`: each vertex with a bath of its own (Langevin, "
          "Andersen), without solvent particles. `pairs`: any two members nearer than 1 a0, by the component of their "
          "relative velocity along the line between them; members are vertices and particles of mass 1 "
-         "(Lowe-Andersen, Peters, Shardlow). See [media.md](media.md).",
+         "(Lowe-Andersen, Peters, Shardlow). `overdamped`: vertices have no velocities, and move by forces and noise "
+         "(Ermak and McCammon 1978). See [media.md](media.md).",
      .type = KEY_CHOICE,
      .choice = medium_words,
      .first = MEDIUM_PRIVATE,
      .offset = IN_MODEL(medium.kind)},
     {.name = "rate",
-     .text =
-         "Rate at which a velocity is forgotten: that of a vertex, or the relative one of a pair at weight 1. The "
-         "friction of a private bath is M times it; gamma of DPD is the reduced mass times it. With `draw: replace` "
-         "at most 1/`time_step`.",
+     .text = "Rate at which a velocity is forgotten: that of a vertex, or the relative one of a pair at weight 1. The "
+             "friction of a private bath, and of overdamped motion, is M times it; gamma of DPD is the reduced mass "
+             "times it. "
+             "With `draw: replace` "
+             "at most 1/`time_step`.",
      .type = KEY_NUMBER,
      .low = 0,
      .above = true,
@@ -214,6 +217,26 @@ static const struct key medium_keys[] = {
      .offset = IN_MODEL(medium.density),
      .unit = "1/a0^3",
      .symbol = "rho"},
+    {.name = "tensor",
+     .text =
+         "Of overdamped motion: how vertices of one fiber move each other through the fluid. `none`: not at all. "
+         "`rpy`: "
+         "as spheres that may overlap (Rotne, Prager, Yamakawa). `oseen`: as points, which stops with an error where "
+         "vertices come so near that the tensor is not positive.",
+     .type = KEY_CHOICE,
+     .absent = "none",
+     .choice = tensor_words,
+     .offset = IN_MODEL(medium.tensor)},
+    {.name = "radius",
+     .text = "Of overdamped motion with a tensor: hydrodynamic radius of a vertex. The viscosity is `rate` M/(6 pi "
+             "radius).",
+     .type = KEY_NUMBER,
+     .optional = true,
+     .low = 0,
+     .high = 100,
+     .offset = IN_MODEL(medium.radius),
+     .unit = "a0",
+     .symbol = "a_h"},
     {.name = "repulsion",
      .text =
          "Of pairs: a of the force a (1 - r) between any two members nearer than 1 a0 (DPD). Below 0 an attraction, "

@@ -39,6 +39,8 @@ double theory_medium_loss(const struct model *m, double mass)
 
 double theory_medium_diffusion(const struct model *m, double mass)
 {
+  if (model_is_overdamped(m))
+    return 1.0 / (mass * m->medium.rate);
   return m->time_step / mass * (1.0 / theory_medium_loss(m, mass) - 0.5);
 }
 
@@ -53,4 +55,23 @@ double theory_medium_viscosity_collisional(const struct model *m)
 {
   const double rho = m->medium.density;
   return pi / 15.0 * rho * rho * integrate(m, 4, 1) / m->time_step;
+}
+
+/* (1/3) tr D_ij/D0 of two spheres whose distance vector is Gaussian, of variance `spread` along each axis: a/r, with
+ * overlaps 1 - r/4a below 2a. */
+static double mean_coupling(enum medium_tensor tensor, double a, double spread)
+{
+  const double s = sqrt(spread), root = sqrt(2.0 / pi), cut = tensor == TENSOR_RPY ? 2.0 * a / s : 0.0;
+  const double tail = exp(-0.5 * cut * cut);
+  const double within = erf(cut / sqrt(2.0)) - root * cut * tail,
+               distance = s * root * (2.0 - (cut * cut + 2.0) * tail);
+  return a * root * tail / s + within - distance / (4.0 * a);
+}
+
+double theory_kirkwood(enum medium_tensor tensor, uint32_t n, double ratio)
+{
+  double sum = 0.0;
+  for (uint32_t k = 1; k < n && tensor != TENSOR_NONE; k++)
+    sum += 2.0 * (n - k) * mean_coupling(tensor, ratio, k / 3.0);
+  return (1.0 + sum / n) / n;
 }

@@ -22,4 +22,9 @@ double theory_medium_diffusion(const struct model *model, double mass);
 double theory_medium_viscosity_kinetic(const struct model *model);
 double theory_medium_viscosity_collisional(const struct model *model);
 
+/* Kirkwood's diffusion coefficient of a Gaussian chain of n vertices, over that of one of them: ratio is the radius
+ * over the rms bond. (1/n) [1 + (1/n) sum_{i != j} <tr D_ij>/3 D0]; with `oseen` it is Eq. (39) of Padding 2009 for n
+ * -> oo. What the chain really does is lower by 1 to 3 %. */
+double theory_kirkwood(enum medium_tensor tensor, uint32_t n, double ratio);
+
 #endif

@@ -58,6 +58,11 @@ static inline void contract_choose(struct model *m, struct choice c)
     const double density = c.medium == MEDIUM_PAIRS ? m->solvent.per_cell : 0.0;
     m->medium = (struct medium_model){
         .kind = c.medium, .rate = 0.4 / m->time_step, .draw = c.draw, .weight = c.weight, .density = density};
+    if (c.medium == MEDIUM_OVERDAMPED) { /* no velocities: no crossing rule */
+      m->medium.tensor = TENSOR_RPY;
+      m->medium.radius = 0.25;
+      m->crossing.forbidden = false;
+    }
     if (c.repels) {
       m->medium.repulsion = 25.0;
       m->medium.second.share = 0.25, m->medium.second.repulsion = 40.0;

@@ -1,5 +1,7 @@
 /* Stress and orientation of fibers in flow. */
-#include "support.h"
+#include <gsl/gsl_eigen.h>
+
+#include "exact.h"
 #include "tables.h"
 
 #include "contact/rule.h"
@@ -121,6 +123,7 @@ static void moments_by_hand(void **unused)
   assert_close(kept_value(kept, "orientation-kind1", 0, "uzuz"), 0.5, 1e-9);
   assert_close(kept_value(kept, "orientation-kind1", 0, "uxuy"), 0.24, 1e-9);
   assert_close(kept_value(kept, "orientation-kind1", 0, "chi"), 53.13010235415598, 1e-6); /* atan(4/3) */
+  assert_close(kept_value(kept, "orientation-kind1", 0, "S"), 0.25, 1e-7); /* two at a right angle: 1/4, 1/4, -1/2 */
   assert_true(isnan(kept_value(kept, "orientation-kind2", 0, "RxRx")));
   const double sum = kept_value(kept, "orientation-kind2", 0, "uxux") +
                      kept_value(kept, "orientation-kind2", 0, "uyuy") +
@@ -129,6 +132,56 @@ static void moments_by_hand(void **unused)
   free(kept);
   observers_free(o);
   test_end(&r);
+}
+
+/* The largest eigenvalue of Q of one sample, by GSL. */
+static double order_by_gsl(const struct test_run *r, uint32_t fibers)
+{
+  double q[9] = {0};
+  for (uint32_t f = 0; f < fibers; f++) {
+    const struct vec3 b = point_difference(r->state.position[2 * f + 1], r->state.position[2 * f]);
+    const double v[3] = {b.x, b.y, b.z}, square = vec3_dot(b, b);
+    for (int k = 0; k < 9; k++)
+      q[k] += (1.5 * v[k / 3] * v[k % 3] / square - 0.5 * (k / 3 == k % 3)) / fibers;
+  }
+  gsl_matrix_view view = gsl_matrix_view_array(q, 3, 3);
+  gsl_vector *value = gsl_vector_alloc(3);
+  gsl_eigen_symm_workspace *work = gsl_eigen_symm_alloc(3);
+  gsl_eigen_symm(&view.matrix, value, work);
+  const double most = gsl_vector_max(value);
+  gsl_eigen_symm_free(work);
+  gsl_vector_free(value);
+  return most;
+}
+
+/* Rods drawn about an axis, more and less narrowly; one rod, and parallel ones. */
+static void nematic_order_is_an_eigenvalue(void **unused)
+{
+  (void)unused;
+  struct dice d = {dice_seed(1921)};
+  for (int round = 0; round < 200; round++) {
+    const uint32_t fibers = round % 2 ? 40 : 3;
+    const double width = (double[]){0.0, 0.01, 0.3, 3.0}[round % 4];
+    struct model m = test_model(8, 8, 8, 0, 0.01, 2);
+    test_add_kind(&m, fibers, 2)->bond_length = 1.0;
+    struct test_run r = test_start(m);
+    struct observe_plan plan = {0};
+    plan.every[OBSERVE_ORIENTATION] = 1;
+    struct observers *o = observers_create(&plan, &r.model);
+    const struct vec3 axis = dice_direction(&d);
+    for (uint32_t f = 0; f < fibers; f++)
+      r.state.position[2 * f + 1] =
+          point_move(r.state.position[2 * f], vec3_add_scaled(axis, 1.0, dice_vector(&d, width)));
+    assert_true(observers_sample(o, &r.model, &r.state, NULL));
+    struct kept *kept = keep_summaries(o, &r.model);
+    const double order = kept_value(kept, "orientation-kind1", 0, "S");
+    assert_close(order, order_by_gsl(&r, fibers), 1e-7);
+    if (width == 0.0)
+      assert_close(order, 1.0, 1e-9);
+    free(kept);
+    observers_free(o);
+    test_end(&r);
+  }
 }
 
 /* Two rods that are turned by hand by 0.3 and -0.1 radians from sample to sample. */
@@ -166,6 +219,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(stress_makes_heat),
       cmocka_unit_test(moments_by_hand),
+      cmocka_unit_test(nematic_order_is_an_eigenvalue),
       cmocka_unit_test(turning_by_hand),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -11,7 +11,7 @@ static const struct refusal {
 } refusals[] = {
     {"medium: {rate: 1, density: 3}", 9, "medium: key 'kind' is missing"},
     {"medium: {kind: pairs, density: 3}", 9, "medium: key 'rate' is missing"},
-    {"medium: {kind: pair, rate: 1, density: 3}", 16, "allowed: private | pairs"},
+    {"medium: {kind: pair, rate: 1, density: 3}", 16, "allowed: private | pairs | overdamped"},
     {"medium: {kind: pairs, rate: 0, density: 3}", 29, "medium.rate: '0' is out of range"},
     {"medium: {kind: pairs, rate: -1, density: 3}", 29, "medium.rate: '-1' is out of range"},
     {"medium: {kind: pairs, rate: nan, density: 3}", 29, "medium.rate"},
@@ -30,6 +30,13 @@ static const struct refusal {
     {"medium: {kind: pairs, rate: 1, density: 3, many_body: {repulsion: 25, range: 1.5}}", 78, "is out of range"},
     {"medium: {kind: private, rate: 1, repulsion: 25}" FIBER, 16, "knows no distances, so no repulsion"},
     {"medium: {kind: private, rate: 1}", 16, "there are no fibers"},
+    {"medium: {kind: overdamped, rate: 1}", 16, "there are no fibers"},
+    {"medium: {kind: overdamped, rate: 1, tensor: rpy}\ncrossing: {forbidden: false}" FIBER, 45,
+     "a tensor needs a radius"},
+    {"medium: {kind: overdamped, rate: 1, radius: 0.3}\ncrossing: {forbidden: false}" FIBER, 45, "a radius a tensor"},
+    {"medium: {kind: overdamped, rate: 1, draw: relax}\ncrossing: {forbidden: false}" FIBER, 16, "draws no velocities"},
+    {"medium: {kind: overdamped, rate: 1, density: 3}\ncrossing: {forbidden: false}" FIBER, 46, "has no particles"},
+    {"medium: {kind: overdamped, rate: 1, tensor: stokes}" FIBER, 45, "allowed: none | oseen | rpy"},
     {"medium: {kind: private, rate: 10.001}" FIBER, 31, "no probability"},
     {"medium: {kind: private, rate: 1, density: 3}" FIBER, 43, "a private bath has no particles"},
     {"medium: {kind: private, rate: 1, weight: quadratic}" FIBER, 42, "knows no distances"},
@@ -51,6 +58,10 @@ static const struct elsewhere {
     {"box: [6, 6, 6]",
      "medium: {kind: pairs, rate: 1, density: 3, repulsion: 25}\ncrossing: {rule: event-driven}" FIBER,
      "m.yaml:6:18: ", "allowed with repulsion: sequential"},
+    {"box: [6, 6, 6]", "medium: {kind: overdamped, rate: 1}\ncrossing: {forbidden: true}" FIBER,
+     "m.yaml:6:23: ", "cannot exchange momentum"},
+    {"box: [6, 6, 6]", "medium: {kind: overdamped, rate: 1}\nwalls: {kind: no-slip}" FIBER,
+     "m.yaml:6:8: ", "rules for walls"},
 };
 
 static bool read_scene(const char *first, const char *last, struct scene *scene, struct message *message)

@@ -259,6 +259,7 @@ static void bad_beads_are_refused(void **unused)
       {"{radius: 2, drive: {force: [0, 0, 200]}}", "{}", 5, 34, "too near the speed of sound; allowed: at most"},
       {"{radius: 2, drive: {pull: 1}}", "{}", 5, 27, "unknown key 'pull' in bead.drive"},
       {"{radius: 2}", "{stress: {every: 1}}", 6, 19, "observe.stress: momentum that the solvent gives to the bead"},
+      {"{radius: 2}", "{pressure: {every: 1}}", 6, 21, "observe.pressure: momentum that the solvent gives to the bead"},
       {"{radius: 2}", "{profile: {every: 1, slabs: 4}}", 6, 20, "observe.profile: a slab is not full of solvent"},
   };
   int wrong = 0;
@@ -1123,7 +1124,7 @@ static void keys_are_documented(void **unused)
     free(table);
     at = end;
   }
-  assert_int_equal(tables, 28);
+  assert_int_equal(tables, 29);
   for (const char *at = said; (at = strstr(at, "\n| `")) != NULL; at++)
     written++;
   for (const char *at = text; (at = strstr(at, "\n| `")) != NULL; at++)

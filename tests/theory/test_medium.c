@@ -54,9 +54,25 @@ static void what_tells_replacing_from_relaxing(void **unused)
   model_free(&relax);
 }
 
+/* Sums of sqrt(6/(pi |i - j|)) a/b, with overlaps integrated numerically: digits of the ratio D_K/D0 at a/b = 1/4. */
+static void kirkwood(void **unused)
+{
+  (void)unused;
+  static const struct {
+    uint32_t n;
+    double oseen, rpy;
+  } rows[] = {{2, 0.67275, 0.66271},  {4, 0.46557, 0.45569},  {5, 0.41493, 0.40587},  {8, 0.32653, 0.31948},
+              {10, 0.29169, 0.28559}, {16, 0.23027, 0.22590}, {20, 0.20589, 0.20221}, {128, 0.08137, 0.08064}};
+  for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+    assert_close(theory_kirkwood(TENSOR_OSEEN, rows[k].n, 0.25), rows[k].oseen, 6e-6);
+    assert_close(theory_kirkwood(TENSOR_RPY, rows[k].n, 0.25), rows[k].rpy, 6e-6);
+    assert_close(theory_kirkwood(TENSOR_NONE, rows[k].n, 0.25), 1.0 / rows[k].n, 1e-15);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(lowe_andersen), cmocka_unit_test(dissipative_particles),
-                                     cmocka_unit_test(what_tells_replacing_from_relaxing)};
+                                     cmocka_unit_test(what_tells_replacing_from_relaxing), cmocka_unit_test(kirkwood)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

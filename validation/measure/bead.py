@@ -9,7 +9,7 @@ REST: mass of all that is not the bead, over that of the bead. RADIUS: a0. MASS:
   friction, passive  kT/D across the force, D from the slope of the mean square displacement between lags of 20 and 40 t0
   trap               k <x^2> (1 + 1/REST), 1 in equilibrium
   G' and G''         active: (F* + M omega^2 x*)/(6 pi R x*), F and x at the trap's frequency. Passive: kT/(pi R i omega m*) with
-                     the transform m* of the mean square displacement in three dimensions, less the inertia and the trap
+                     the transform m* of the mean square displacement in three dimensions (of components without a drift), less the inertia and the trap
 
 The transform is that of straight lines between the points (Evans et al., Phys. Rev. E 80, 012501 (2009)). The inertia of the fluid is in
 both. Errors: scatter of ten parts of the run.
@@ -69,25 +69,30 @@ def passive_friction(time, place, lag=40.0):
 
 
 def line_transform(time, square, omega):
-    """Integral of square(t) exp(-i omega t) over t > 0; straight lines between the points, time[0] = square[0] = 0, and the slope of the
-    last line beyond."""
+    """Integral of square(t) exp(-i omega t) over t > 0; straight lines between the points, time[0] = square[0] = 0, and the mean slope of the
+    last quarter of the points beyond."""
     slopes = numpy.diff(square) / numpy.diff(time)
     turns = numpy.exp(-1j * omega * time)
-    second = slopes @ (turns[:-1] - turns[1:]) + slopes[-1] * turns[-1]
+    quarter = 3 * (len(time) - 1) // 4
+    second = slopes @ (turns[:-1] - turns[1:]) + (square[-1] - square[quarter]) / (time[-1] - time[quarter]) * turns[-1]
     return -second / omega ** 2
 
 
 def passive_moduli(time, place, radius, mass, spring, omegas, longest=80.0):
+    """Values and errors, [omegas, 2]. The modulus is that of the mean of all parts, since 1/m* of one part has a bias; errors are those
+    of the jackknife."""
     step = time[1] - time[0]
     lags = numpy.arange(round(longest / step) + 1)
+    length = place.shape[1] // PARTS
+    squares = numpy.array([3.0 * square_displacement(place[:, k * length:(k + 1) * length], lags) for k in range(PARTS)])
 
-    def moduli(x):
-        square = 3.0 * square_displacement(x, lags)
+    def moduli(square):
         found = [1.0 / (numpy.pi * radius * 1j * w * line_transform(lags * step, square, w)) for w in omegas]
-        return [g + (mass * w * w - spring) / (6.0 * numpy.pi * radius) for g, w in zip(found, omegas)]
+        found = [g + (mass * w * w - spring) / (6.0 * numpy.pi * radius) for g, w in zip(found, omegas)]
+        return numpy.array([[g.real, g.imag] for g in found])
 
-    parts, errors = parted(lambda x: numpy.array([[g.real, g.imag] for g in moduli(x)]), place)
-    return parts, errors
+    others = numpy.array([moduli(numpy.delete(squares, k, axis=0).mean(axis=0)) for k in range(PARTS)])
+    return moduli(squares.mean(axis=0)), others.std(axis=0) * (PARTS - 1) ** 0.5
 
 
 def active_modulus(time, place, force, radius, mass, omega):
@@ -117,8 +122,8 @@ def main():
     constant = force.std() == 0.0 or args.spring == 0.0
     if constant and numpy.linalg.norm(force) > 0.0:
         rows.append(("active friction", *active_friction(time, place, force, args.rest)))
+    still = [k for k in range(3) if not constant or not force[k].any()]  # components without a drift
     if args.spring == 0.0:
-        still = [k for k in range(3) if not force[k].any()]
         rows.append(("passive friction", *passive_friction(time, place[still])))
     elif not args.swings:
         middle = vectors(columns, "trap")
@@ -128,7 +133,7 @@ def main():
         value, error = active_modulus(time, place, force, args.radius, args.mass, args.omega[0])
         rows += [("active G'", value[0], error[0]), ("active G''", value[1], error[1])]
     elif args.omega:
-        values, errors = passive_moduli(time, place, args.radius, args.mass, args.spring, args.omega)
+        values, errors = passive_moduli(time, place[still], args.radius, args.mass, args.spring, args.omega)
         for omega, value, error in zip(args.omega, values, errors):
             rows += [(f"passive G' at {omega:g}", value[0], error[0]), (f"passive G'' at {omega:g}", value[1], error[1])]
     print("what,value,error")

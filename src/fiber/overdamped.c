@@ -1,0 +1,109 @@
+#include "fiber/overdamped.h"
+
+#include <math.h>
+
+#include "base/normal.h"
+#include "fiber/mobility.h"
+
+static uint32_t longest_fiber(const struct model *m)
+{
+  uint32_t most = 0;
+  for (uint32_t k = 0; k < m->kinds; k++)
+    most = m->kind[k].vertices > most ? m->kind[k].vertices : most;
+  return most;
+}
+
+/* Four vectors and, with a tensor, a matrix of the longest fiber. */
+size_t overdamped_doubles(const struct model *m)
+{
+  const size_t order = 3 * (size_t)longest_fiber(m);
+  if (!model_is_overdamped(m))
+    return 0;
+  return order * 5 + (m->medium.tensor != TENSOR_NONE ? order * order : 0);
+}
+
+/* One fiber, n components of n/3 vertices. */
+struct chain {
+  uint32_t first, n;
+  double *force, *noise, *pull, *jump; /* [n] F, xi, D F/D0, L xi */
+  struct vec3 *place;                  /* [n/3] relative to the first vertex, a0 */
+  double *tensor;                      /* [n][n] D/D0, then L */
+};
+
+static struct chain chain_of(const struct model *m, uint32_t fiber, double *scratch)
+{
+  const uint32_t first = m->fiber_first[fiber], n = 3 * (m->fiber_first[fiber + 1] - first);
+  return (struct chain){.first = first,
+                        .n = n,
+                        .force = scratch,
+                        .noise = scratch + n,
+                        .pull = scratch + 2 * (size_t)n,
+                        .jump = scratch + 3 * (size_t)n,
+                        .place = (struct vec3 *)(scratch + 4 * (size_t)n),
+                        .tensor = scratch + 5 * (size_t)n};
+}
+
+static void gather(const struct state *state, const struct model *m, const struct vec3 *force, uint64_t step,
+                   const struct chain *c)
+{
+  for (uint32_t i = 0, v = c->first; i < c->n; i += 3, v++) {
+    c->force[i] = force[v].x;
+    c->force[i + 1] = force[v].y;
+    c->force[i + 2] = force[v].z;
+    random_normal_three(random_at(m->seed, RANDOM_BATH_VERTEX, 0, step, v), &c->noise[i]);
+    c->place[i / 3] = point_difference(state->position[v], state->position[c->first]);
+  }
+}
+
+/* pull = D F and jump = L xi. */
+static bool couple(const struct model *m, struct chain *c, uint64_t step, struct fault *fault)
+{
+  const struct mobility *mobility = mobility_of(m->medium.tensor);
+  double pivot;
+  if (!mobility->block) {
+    c->pull = c->force;
+    c->jump = c->noise;
+    return true;
+  }
+  mobility_fill(mobility, m->medium.radius, c->n / 3, c->place, c->tensor);
+  mobility_apply(c->n, c->tensor, c->force, c->pull);
+  if (!mobility_factor(c->n, c->tensor, &pivot))
+    return fault_record(fault, FAULT_MOBILITY, step, c->first, pivot, 0.0);
+  mobility_root(c->n, c->tensor, c->noise, c->jump);
+  return true;
+}
+
+static bool move(struct state *state, const struct model *m, const struct chain *c, uint64_t step, struct fault *fault)
+{
+  const double d0 = m->inverse_mass[c->first] / m->medium.rate, drift = d0 * m->time_step, jump = sqrt(2.0 * drift);
+  const double limit = model_longest_bond(m), reach = (double)LATTICE_REACH * LATTICE_UNIT;
+  for (uint32_t i = 0, v = c->first; i < c->n; i += 3, v++) {
+    const struct vec3 d = {drift * c->pull[i] + jump * c->jump[i] + m->flow.x * m->time_step,
+                           drift * c->pull[i + 1] + jump * c->jump[i + 1] + m->flow.y * m->time_step,
+                           drift * c->pull[i + 2] + jump * c->jump[i + 2] + m->flow.z * m->time_step};
+    const double far = fmax(fabs(d.x), fmax(fabs(d.y), fabs(d.z)));
+    struct point *p = &state->position[v];
+    if (!(far < limit))
+      return fault_record(fault, FAULT_VERTEX_MOVE, step, v, far, limit);
+    *p = (struct point){p->x + lattice_from_a0(d.x), p->y + lattice_from_a0(d.y), p->z + lattice_from_a0(d.z)};
+    const struct vec3 r = point_in_a0(*p);
+    const double away = fmax(fabs(r.x), fmax(fabs(r.y), fabs(r.z)));
+    if (!(away < reach))
+      return fault_record(fault, FAULT_VERTEX_PLACE, step, v, away, reach);
+  }
+  return true;
+}
+
+bool overdamped_move(struct state *state, const struct model *m, const struct vec3 *force, double *scratch,
+                     uint64_t step, struct fault *fault)
+{
+  bool ok = true;
+  for (uint32_t f = 0; ok && f < m->fibers; f++) {
+    struct chain chain = chain_of(m, f, scratch);
+    if (m->inverse_mass[chain.first] == 0.0)
+      continue; /* it stands still */
+    gather(state, m, force, step, &chain);
+    ok = couple(m, &chain, step, fault) && move(state, m, &chain, step, fault);
+  }
+  return ok;
+}
