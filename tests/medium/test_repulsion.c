@@ -219,6 +219,26 @@ static void velocities_of_the_step(void **unused)
   test_end(&r);
 }
 
+/* At the start particles, too, get their half kick: beside the same start without forces, velocities differ by F dt/2.
+ */
+static void the_first_half_kick(void **unused)
+{
+  (void)unused;
+  struct model m = fluid(5, 3.0, 0.04, DPD), n = fluid(5, 3.0, 0.04, DPD);
+  n.medium.repulsion = 0.0;
+  struct test_run r = test_start(m), free_run = test_start(n);
+  struct vec3 *force = calloc(r.state.solvent.n, sizeof *force);
+  struct repulsion_sums sums;
+  assert_true(repulsion_measure(&r.state, &r.model, force, &sums));
+  for (uint32_t i = 0; i < r.state.solvent.n; i++) {
+    assert_int_equal(r.state.solvent.id[i], free_run.state.solvent.id[i]);
+    assert_close(r.state.solvent.vx[i], free_run.state.solvent.vx[i] + 0.02 * force[r.state.solvent.id[i]].x, 1e-13);
+  }
+  free(force);
+  test_end(&r);
+  test_end(&free_run);
+}
+
 /* The Laplacian of bonds and bends: minus the divergence of their forces, by differences. */
 static void laplacian_of_fibers(void **unused)
 {
@@ -373,13 +393,10 @@ static void ideal_gas(void **unused)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(forces_are_gradients),
-      cmocka_unit_test(forces_cancel),
-      cmocka_unit_test(laplacian_of_fibers),
-      cmocka_unit_test(velocities_of_the_step),
-      cmocka_unit_test(ideal_chains),
-      cmocka_unit_test(equation_of_state),
-      cmocka_unit_test(ideal_gas),
+      cmocka_unit_test(forces_are_gradients),   cmocka_unit_test(forces_cancel),
+      cmocka_unit_test(laplacian_of_fibers),    cmocka_unit_test(the_first_half_kick),
+      cmocka_unit_test(velocities_of_the_step), cmocka_unit_test(ideal_chains),
+      cmocka_unit_test(equation_of_state),      cmocka_unit_test(ideal_gas),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
