@@ -184,10 +184,11 @@ static bool add_sums(const struct near_search *s, struct near_pairs *p)
 {
   const struct summing *t = s->context;
   struct repulsion_sums *sums = t->sums;
+  const uint32_t n = p->n;
   double push[NEAR_BLOCK], a[NEAR_BLOCK];
   pushes(s, p, push);
   strengths(s, p, a);
-  for (uint32_t k = 0; k < p->n; k++) {
+  for (uint32_t k = 0; k < n; k++) {
     const double near = 1.0 - p->r[k], ends = free_ends(s, p, k);
     sums->energy += 0.5 * a[k] * near * near;
     sums->virial[STRESS_XY] += push[k] * p->x[k] * p->y[k];

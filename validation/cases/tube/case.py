@@ -95,6 +95,7 @@ LABELS = {"hi-entangled": "hydrodynamics on, uncrossable", "hi-free": "on, cross
           "off-entangled": "off, uncrossable", "off-free": "off, crossing free"}
 # Lags (t0) and fibers. The first lag is the shortest of 10, 20, 40, ... that may be doubled without a change of tau_r by more than
 # two standard errors.
+HELD_LAG = 512.0  # t0: long after the bend, and seen several times
 ROTATION = {"hi": (40.0, 2000.0, 4), "off": (40.0, 2000.0, 40)}
 
 
@@ -185,6 +186,20 @@ def plateau_verdicts(curves, system):
                          0.4, kind="paper", reason="Eq. (35) is a theory of scaling.")
         sd.measured(flat, sd.last_exponent(columns), 0.1)
         found += [flat, sd.measured(height, sd.over(sd.bend(columns), 2.0 * width(system)**2), 0.4)]
+    return found
+
+
+def held_verdicts(held, system):
+    """Does d^2 of fibers in a tube that is held end, and where? Both positions that it compares fluctuate, by L_perp^2 per component."""
+    found = []
+    for which, on in (("hi", "on"), ("off", "off")):
+        flat = Verdict(f"tube.held.flat.{which}", f"exponent of d²(t) (middle third) over the last factor of 8 in t, tube held, hydrodynamics {on}",
+                       0.0, "a plateau: below 0.1; 3/8 is half of what it was before the bend", 0.1, kind="paper", rival=0.375)
+        height = Verdict(f"tube.held.height.{which}", f"d² (middle third) in a tube that is held, {HELD_LAG:g} t0, over 4 L⊥², hydrodynamics {on}",
+                         1.0, "Eq. (35), L = l_p = 32, a theory of scaling to some 40 %; both positions fluctuate", 0.4, kind="paper",
+                         reason="Eq. (35) is a theory of scaling.")
+        sd.measured(flat, sd.last_exponent(held[which], "d2_third"), 0.1)
+        found += [flat, sd.measured(height, sd.over(sd.at(held[which], "d2_third", HELD_LAG), 4.0 * width(system)**2), 0.4)]
     return found
 
 
@@ -331,7 +346,7 @@ def evaluate(results, tier):
     verdicts += choice_verdicts(results, curves, system)
     if tier == "campaign":  # fibers of the quick tier are too short for a plateau, and nobody measures their tau_r
         verdicts += late_verdicts(results, curves, system)
-        verdicts += plateau_verdicts(curves, system) + rotation_verdicts(results, system)
+        verdicts += plateau_verdicts(curves, system) + held_verdicts(held, system) + rotation_verdicts(results, system)
         verdicts.append(normalized_verdict(curves, times, measured))
     caption = (f"c L³ = {system['count']}, L = l_p = {system['length']:g} a0. Filled: crossing forbidden. Open: crossing free. Time is in "
                f"units of the rotation time τ_r of a lone fiber: {words['hi']} with hydrodynamics, {words['off']} without. Below: "
