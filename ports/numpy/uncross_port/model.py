@@ -32,6 +32,8 @@ class Model:
     constant_force: np.ndarray
     flow: flows.Flow | None = None  # walls or shear
     dumbbells: pairs.Dumbbells | None = None
+    radius: np.ndarray | None = None  # of tubes, lattice units; None: all fibers are thin
+    blind: np.ndarray | None = None  # bonds, along the fiber
 
     @property
     def rows(self):
@@ -73,4 +75,6 @@ def from_tables(tables):
         constant_force=vertex[:, 4:7],
         flow=flows.from_tables(tables),
         dumbbells=pairs.from_tables(tables),
+        radius=tables["tubes"][:, 0] if len(tables["tubes"]) else None,
+        blind=tables["tubes"][:, 1] if len(tables["tubes"]) else None,
     )
