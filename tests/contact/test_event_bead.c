@@ -98,6 +98,47 @@ static struct model many_kinds(double radius, uint64_t seed)
   return m;
 }
 
+/* --- times of contact --------------------------------------------------------------------------------------------- */
+
+/* A bond and a point that are a reach and a little apart at some tick: at a side or at an end, with any motion, or with
+ * none towards each other. */
+static struct tube_query draw_bond_and_bead(struct dice *d, int kind)
+{
+  const double radius = dice_between(d, 1.5, 8.0), motion = dice_log(d, 1e-6, 1.0);
+  const struct vec3 n = any_unit(d);
+  const double s = kind % 2 ? (double)(dice_u64(d) % 2) : dice_uniform(d);
+  struct vec3 p = unit_across(d, n);
+  if (kind % 2) /* the end looks at the center */
+    p = vec3_add_scaled(p, (s == 0.0 ? -1.0 : 1.0) * dice_uniform(d), n);
+  p = vec3_scale(dice_log(d, 0.02, 2.0) / vec3_norm(p), p);
+  const struct vec3 vp = vec3_scale(motion * dice_uniform(d), any_unit(d));
+  struct vec3 vw = vec3_scale(motion, any_unit(d));
+  if (kind >= 4) { /* grazing */
+    const struct vec3 v = vec3_add_scaled(vw, -s, vp);
+    vw = vec3_add_scaled(vw, -vec3_dot(v, n), n);
+  }
+  const int32_t tick = kind >= 2 && kind < 4 ? 0 : (int32_t)dice_integer(d, 0, FLIGHT_TICKS);
+  const double gap = 0x1p-40 * (double[]){0.0, 4.0, 1e3, 0x1p36 * motion}[dice_u64(d) % 4] * dice_between(d, -1, 1);
+  struct tube_query k = {.reach = llrint(radius * 0x1p40), .from = 0};
+  k.pair.p_rate = lattice_of(vec3_scale(0x1p-16, vp)), k.pair.w_rate = lattice_of(vec3_scale(0x1p-16, vw));
+  k.pair.p = minus_ticks(lattice_of(p), k.pair.p_rate, tick);
+  k.pair.w = minus_ticks(lattice_of(vec3_add_scaled(vec3_scale(s, p), radius + gap, n)), k.pair.w_rate, tick);
+  return k;
+}
+
+static void contacts_are_never_late(void **unused)
+{
+  (void)unused;
+  struct dice d = {dice_seed(5107)};
+  struct tube_tally t = {0};
+  for (int k = 0; t.queries < 24000; k++) {
+    const struct tube_query query = draw_bond_and_bead(&d, k % 6);
+    audit_tubes(&query, tube_contact, &t);
+  }
+  tell_tubes("bead", &t);
+  assert_true(t.missed == 0 && t.invented == 0 && t.answers > 12000);
+}
+
 /* --- nothing enters ----------------------------------------------------------------------------------------------- */
 
 static void no_bond_enters_the_bead(void **unused)
@@ -505,6 +546,7 @@ static void what_does_not_touch_it_is_refused(void **unused)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(contacts_are_never_late),
       cmocka_unit_test(contacts_by_hand),
       cmocka_unit_test(contacts_keep_momentum_and_energy),
       cmocka_unit_test(contacts_keep_angular_momentum),
