@@ -98,7 +98,7 @@ struct neighbors {
   uint32_t *path; /* [vertices] bound on the way that both ends of bond j have gone, in units of 2^-20 a0, modulo 2^32.
                      Where vertex j has no bond j, its own way. */
   uint32_t *generation; /* [vertices] number of searches of bond j for partners */
-  uint32_t *hold;       /* [vertices] vertex j stays within its skin until path[j] exceeds this: contact/takeoff.c */
+  uint32_t *hold;       /* [vertices] vertex j stays within its skin until path[j] exceeds this: contact/renewals.h */
   struct pair_list pairs;
   int32_t cells[3];     /* of the search grid */
   int64_t cell_edge[3]; /* lattice units */
