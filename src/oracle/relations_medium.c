@@ -1,8 +1,9 @@
 /* The bath of vertices and overdamped motion, made with one thing changed. */
-#include "oracle/relations_medium.h"
 #include "base/lattice.h"
 #include "base/normal.h"
 #include "fiber/mobility.h"
+#include "oracle/relations.h"
+#include "oracle/relations_bath.h"
 
 /* --- private bath ------------------------------------------------------------------------------------------------ */
 

@@ -3,7 +3,8 @@
 
 #include "base/lattice.h"
 #include "base/normal.h"
-#include "oracle/relations_medium.h"
+#include "oracle/relations.h"
+#include "oracle/relations_bath.h"
 
 static const double pi = 3.14159265358979323846;
 

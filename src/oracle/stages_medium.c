@@ -202,7 +202,8 @@ static bool put_entries(struct oracle_stage *g, const char *name, const char *co
   for (uint32_t f = 0; f < m->fibers; f++)
     most = vertices_of(m, f) > most ? vertices_of(m, f) : most;
   const size_t n = 3 * (size_t)most;
-  double *to = oracle_put_reals(g, name, component, entries(m)), *scratch = malloc((n * n + 3 * n) * sizeof *scratch);
+  double *to = oracle_put_reals(g, name, component, entries(m)),
+         *scratch = malloc((n * n + 3 * n + 1) * sizeof *scratch);
   bool ok = to && scratch;
   g->pack->failed |= !ok;
   for (uint32_t f = 0; ok && f < m->fibers; f++) {

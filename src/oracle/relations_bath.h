@@ -1,6 +1,6 @@
 /* Inside the oracle: what guesses of baths (relations_medium.c) and of pairs (relations_pairs.c) have in common. */
-#ifndef UNCROSS_ORACLE_RELATIONS_MEDIUM_H
-#define UNCROSS_ORACLE_RELATIONS_MEDIUM_H
+#ifndef UNCROSS_ORACLE_RELATIONS_BATH_H
+#define UNCROSS_ORACLE_RELATIONS_BATH_H
 
 #include "medium/bath.h"
 #include "oracle/relations_flow.h"
