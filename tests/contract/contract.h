@@ -38,6 +38,12 @@ struct choice {
 
 /* --- models ------------------------------------------------------------------------------------------------------ */
 
+/* Draws that a medium has: an overdamped one has no velocities to draw. */
+static inline int contract_draws(int medium)
+{
+  return medium == MEDIUM_OVERDAMPED ? 1 : MEDIUM_DRAWS;
+}
+
 /* The one place that says how a model takes a row. Rows that no key chooses yet are compared in contract_taken. */
 static inline void contract_choose(struct model *m, struct choice c)
 {

@@ -5,7 +5,7 @@
 static void over_media(void (*check)(struct choice))
 {
   for (int medium = MEDIUM_PRIVATE; medium < MEDIA; medium++)
-    for (int draw = 0; draw < (medium == MEDIUM_OVERDAMPED ? 1 : MEDIUM_DRAWS); draw++)
+    for (int draw = 0; draw < contract_draws(medium); draw++)
       for (int weight = 0; weight < (medium == MEDIUM_PAIRS ? MEDIUM_WEIGHTS : 1); weight++) {
         print_message("  medium %d, draw %d, weight %d\n", medium, draw, weight);
         check((struct choice){.medium = medium, .draw = draw, .weight = weight});
