@@ -59,8 +59,6 @@ bool oracle_emit(const struct scene *scene, struct pack *pack, struct message *m
   const uint64_t interval = model_has_solvent(model) ? model->solvent.interval_steps : 1;
   const uint64_t last = scene->steps / interval * interval;
   memset(pack, 0, sizeof *pack);
-  if (!model_in_cells(model))
-    return message_set(message, "%s: medium; packs hold the operators of collision cells only", scene->path);
   if (model_has_phantoms(model))
     return message_set(message, "%s: solvent.bath: phantoms; packs hold the operators of a solvent of particles only",
                        scene->path);
