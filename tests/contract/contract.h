@@ -38,6 +38,12 @@ struct choice {
 
 /* --- models ------------------------------------------------------------------------------------------------------ */
 
+/* Draws that a medium has: an overdamped one has no velocities to draw. */
+static inline int contract_draws(int medium)
+{
+  return medium == MEDIUM_OVERDAMPED ? 1 : MEDIUM_DRAWS;
+}
+
 /* The one place that says how a model takes a row. Rows that no key chooses yet are compared in contract_taken. */
 static inline void contract_choose(struct model *m, struct choice c)
 {
@@ -664,6 +670,17 @@ static inline void contract_scratch(struct choice c)
   fibers.crossing.forbidden = crossing_rule_row(c.crossing)->forbids;
   fibers.crossing.rule = c.crossing;
   contract_scratch_of(fibers);
+}
+
+/* A check of every medium with every draw and weight that it takes. */
+static inline void contract_over_media(void (*check)(struct choice))
+{
+  for (int medium = MEDIUM_PRIVATE; medium < MEDIA; medium++)
+    for (int draw = 0; draw < contract_draws(medium); draw++)
+      for (int weight = 0; weight < (medium == MEDIUM_PAIRS ? MEDIUM_WEIGHTS : 1); weight++) {
+        print_message("  medium %d, draw %d, weight %d\n", medium, draw, weight);
+        check((struct choice){.medium = medium, .draw = draw, .weight = weight});
+      }
 }
 
 #endif

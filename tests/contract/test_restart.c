@@ -91,9 +91,10 @@ static void every_medium_restarts(void **unused)
   char folder[64];
   make_folder(folder);
   for (int medium = MEDIUM_PRIVATE; medium < MEDIA; medium++)
-    for (int draw = 0; draw < MEDIUM_DRAWS; draw++)
+    for (int draw = 0; draw < contract_draws(medium); draw++)
       for (int scheme = 0; scheme < SCHEMES; scheme++)
-        restart((struct choice){.medium = medium, .draw = draw, .scheme = scheme}, in_folder(folder, "checkpoint.h5"));
+        restart((struct choice){.medium = medium, .draw = draw, .scheme = scheme, .repels = medium == MEDIUM_PAIRS},
+                in_folder(folder, "checkpoint.h5"));
   remove_folder(folder);
 }
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from . import dumbbells as pairs
 from . import flow as flows
+from . import media
 
 
 @dataclass
@@ -34,6 +35,7 @@ class Model:
     dumbbells: pairs.Dumbbells | None = None
     radius: np.ndarray | None = None  # of tubes, lattice units; None: all fibers are thin
     blind: np.ndarray | None = None  # bonds, along the fiber
+    medium: media.Medium | None = None  # another bath than collision cells
 
     @property
     def rows(self):
@@ -77,4 +79,5 @@ def from_tables(tables):
         dumbbells=pairs.from_tables(tables),
         radius=tables["tubes"][:, 0] if len(tables["tubes"]) else None,
         blind=tables["tubes"][:, 1] if len(tables["tubes"]) else None,
+        medium=media.from_tables(tables),
     )
