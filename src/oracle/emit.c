@@ -59,8 +59,6 @@ bool oracle_emit(const struct scene *scene, struct pack *pack, struct message *m
   const uint64_t interval = model_has_solvent(model) ? model->solvent.interval_steps : 1;
   const uint64_t last = scene->steps / interval * interval;
   memset(pack, 0, sizeof *pack);
-  if (!model_in_cells(model))
-    return message_set(message, "%s: medium; packs hold the operators of collision cells only", scene->path);
   if (model_has_phantoms(model))
     return message_set(message, "%s: solvent.bath: phantoms; packs hold the operators of a solvent of particles only",
                        scene->path);
@@ -84,6 +82,8 @@ bool oracle_emit(const struct scene *scene, struct pack *pack, struct message *m
     return message_set(message, "%s: fibers.frozen; packs hold the operators of fibers that move", scene->path);
   if (model->thickness > 0)
     return message_set(message, "%s: fibers.diameter; packs hold the operators of thin lines", scene->path);
+  if (model_has_bead(model) && model->kinds > 0)
+    return message_set(message, "%s: bead; packs hold no contacts of fibers with a bead", scene->path);
   if (last == 0)
     return message_set(message, "%s: no collision within its %" PRIu64 " steps; a pack needs one", scene->path,
                        scene->steps);

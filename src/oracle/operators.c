@@ -77,7 +77,8 @@ static bool run_random(struct oracle_stage *g)
 
 /* OF_TURNS, OF_EVENTS: of one kind of crossing rule; OF_SRD, OF_ANDERSEN, OF_SPIN: of one collision rule, OF_ANDERSENS:
  * of at-a and at+a; OF_PERIODIC_POINTS, OF_WALLS, OF_SHEAR: of one boundary along y; OF_WAVE: of an oscillating shear;
- * POINTS, DUMBBELLS: of one fluid */
+ * POINTS, DUMBBELLS: of one fluid; OF_MOVING: of vertices with
+ * velocities; OF_PRIVATE and what follows: of media */
 enum of {
   OF_ALL,
   OF_FIBERS,
@@ -100,7 +101,15 @@ enum of {
   OF_DUMBBELLS,
   OF_PERIODIC_DUMBBELLS,
   OF_WALL_DUMBBELLS,
-  OF_SHEAR_DUMBBELLS
+  OF_SHEAR_DUMBBELLS,
+  OF_MOVING,
+  OF_STREAM,
+  OF_PRIVATE,
+  OF_PAIRS,
+  OF_REPULSION,
+  OF_CROWD,
+  OF_OVERDAMPED,
+  OF_TENSOR
 };
 
 static const struct operation {
@@ -123,11 +132,20 @@ static const struct operation {
     {"bond_force", oracle_run_bond_force, NULL, OF_FIBERS},
     {"bend_force", oracle_run_bend_force, NULL, OF_FIBERS},
     {"force", oracle_run_force, NULL, OF_FIBERS},
-    {"kick", oracle_run_kick, NULL, OF_FIBERS},
+    {"mobility", oracle_run_mobility, NULL, OF_TENSOR},
+    {"root", oracle_run_root, NULL, OF_TENSOR},
+    {"move", oracle_run_move, NULL, OF_OVERDAMPED},
+    {"kick", oracle_run_kick, NULL, OF_MOVING},
+    {"private_bath", oracle_run_private_bath, NULL, OF_PRIVATE},
     {"wall_motion", oracle_run_wall_motion, NULL, OF_WALLS},
     {"shear_motion", oracle_run_shear_motion, NULL, OF_SHEAR},
     {"dumbbell_start", oracle_run_dumbbell_start, NULL, OF_DUMBBELLS},
-    {"stream", oracle_run_stream, NULL, OF_PERIODIC_POINTS},
+    {"stream", oracle_run_stream, NULL, OF_STREAM},
+    {"crowd", oracle_run_crowd, NULL, OF_CROWD},
+    {"repulsion", oracle_run_repulsion, NULL, OF_REPULSION},
+    {"repulsion_kick", oracle_run_repulsion_kick, NULL, OF_REPULSION},
+    {"pairs", oracle_run_pairs, NULL, OF_PAIRS},
+    {"pair_bath", oracle_run_pair_bath, NULL, OF_PAIRS},
     {"wall_stream", oracle_run_wall_stream, NULL, OF_WALL_POINTS},
     {"shear_stream", oracle_run_shear_stream, NULL, OF_SHEAR_POINTS},
     {"dumbbell_stream", oracle_run_dumbbell_stream, NULL, OF_PERIODIC_DUMBBELLS},
@@ -160,12 +178,13 @@ static const struct operation {
 /* True if a step of this model has the operation. */
 static bool is_of(enum of of, const struct model *m)
 {
-  const bool events = oracle_has_events(m), solvent = model_has_solvent(m);
+  const bool events = oracle_has_events(m), solvent = model_has_solvent(m) && model_in_cells(m);
+  const bool moving = !model_is_overdamped(m), pairs = m->medium.kind == MEDIUM_PAIRS;
   const bool walls = model_has_walls(m), shear = model_is_sheared(m), periodic = !walls && !shear;
   const bool dumbbells = model_has_dumbbells(m);
   const bool holds[] = {[OF_ALL] = true,
                         [OF_FIBERS] = periodic,
-                        [OF_TURNS] = periodic && !events,
+                        [OF_TURNS] = periodic && !events && moving,
                         [OF_EVENTS] = events,
                         [OF_SOLVENT] = solvent,
                         [OF_PERIODIC_POINTS] = solvent && periodic && !dumbbells,
@@ -184,7 +203,15 @@ static bool is_of(enum of of, const struct model *m)
                         [OF_SRD] = solvent && m->solvent.rule == RULE_SRD,
                         [OF_ANDERSENS] = solvent && m->solvent.rule != RULE_SRD,
                         [OF_ANDERSEN] = solvent && m->solvent.rule == RULE_AT_A,
-                        [OF_SPIN] = solvent && m->solvent.rule == RULE_AT_PLUS_A};
+                        [OF_SPIN] = solvent && m->solvent.rule == RULE_AT_PLUS_A,
+                        [OF_MOVING] = periodic && moving,
+                        [OF_STREAM] = (solvent && periodic && !dumbbells) || pairs,
+                        [OF_PRIVATE] = m->medium.kind == MEDIUM_PRIVATE,
+                        [OF_PAIRS] = pairs,
+                        [OF_REPULSION] = model_repels(m),
+                        [OF_CROWD] = m->medium.many.repulsion != 0.0,
+                        [OF_OVERDAMPED] = !moving,
+                        [OF_TENSOR] = !moving && m->medium.tensor != TENSOR_NONE};
   return holds[of];
 }
 
@@ -220,10 +247,11 @@ int oracle_operator_rank(const char *name)
 static int table_rank(const char *name)
 {
   static const char *const names[] = {
-      "out.word",   "out.uniform",  "out.normal", "out.filled",  "out.active",   "out.second",  "out.angular",
-      "out.middle", "out.beyond",   "out.omega",  "out.center",  "out.axis",     "out.crosses", "out.tick",
-      "out.answer", "out.event",    "out.hit",    "out.order",   "out.position", "out.vector",  "out.momentum",
-      "out.load",   "out.relative", "out.factor", "out.solvent", "out.vertex",   "out.force",   "out.velocity"};
+      "out.word",     "out.uniform", "out.normal",   "out.filled", "out.active",   "out.second",  "out.angular",
+      "out.middle",   "out.beyond",  "out.omega",    "out.center", "out.axis",     "out.crosses", "out.tick",
+      "out.answer",   "out.pair",    "out.along",    "out.bath",   "out.event",    "out.hit",     "out.order",
+      "out.position", "out.vector",  "out.momentum", "out.load",   "out.relative", "out.factor",  "out.solvent",
+      "out.vertex",   "out.force",   "out.velocity"};
   int rank = 0;
   while (rank < (int)(sizeof names / sizeof *names) && strcmp(names[rank], name) != 0)
     rank++;
@@ -279,4 +307,6 @@ void oracle_put_model(struct pack *pack, const struct model *m)
     oracle_put_flow(&g);
   if (model_has_dumbbells(m))
     oracle_put_dumbbells(&g);
+  if (!model_in_cells(m))
+    oracle_put_medium(&g);
 }

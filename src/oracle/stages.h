@@ -60,6 +60,20 @@ bool oracle_run_dumbbell_stream(struct oracle_stage *stage);
 bool oracle_run_dumbbell_wall_stream(struct oracle_stage *stage);
 bool oracle_run_dumbbell_shear_stream(struct oracle_stage *stage);
 
+/* Of media (stages_medium.c). */
+bool oracle_run_private_bath(struct oracle_stage *stage);
+bool oracle_run_crowd(struct oracle_stage *stage);
+bool oracle_run_repulsion(struct oracle_stage *stage);
+bool oracle_run_repulsion_kick(struct oracle_stage *stage);
+bool oracle_run_pairs(struct oracle_stage *stage);
+bool oracle_run_pair_bath(struct oracle_stage *stage);
+bool oracle_run_mobility(struct oracle_stage *stage);
+bool oracle_run_root(struct oracle_stage *stage);
+bool oracle_run_move(struct oracle_stage *stage);
+
+/* Tables of the model that only scenes with a medium have. */
+void oracle_put_medium(struct oracle_stage *g);
+
 /* A thermostat on the cells as they are; its factors are not used further on. */
 bool oracle_run_thermostat(struct oracle_stage *stage, enum thermostat_kind kind);
 

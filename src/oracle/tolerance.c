@@ -393,6 +393,18 @@ static const struct {
   const char *operator_name, *table;
   tolerance_rule *tolerance;
 } rules[] = {
+    {"private_bath", "out.velocity", tolerance_private_bath},
+    {"pairs", "out.along", tolerance_pair_along},
+    {"pairs", "out.bath", tolerance_pair_draw},
+    {"pair_bath", "out.solvent", tolerance_pair_bath},
+    {"pair_bath", "out.vertex", tolerance_pair_bath},
+    {"crowd", "out.crowd", tolerance_crowd},
+    {"repulsion", "out.force", tolerance_repulsion},
+    {"repulsion_kick", "out.solvent", tolerance_repulsion_kick},
+    {"repulsion_kick", "out.vertex", tolerance_repulsion_kick},
+    {"mobility", "out.tensor", tolerance_mobility},
+    {"root", "out.root", tolerance_root},
+    {"move", "out.position", tolerance_move},
     {"dumbbell_start", "out.position", tolerance_drawn_place},
     {"dumbbell_start", "out.vector", tolerance_drawn_place},
     {"dumbbell_stream", "out.position", tolerance_swing_position},

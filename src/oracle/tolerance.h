@@ -41,4 +41,8 @@ tolerance_rule tolerance_spin_middle, tolerance_spin_beyond, tolerance_spin_seco
 /* The same for those of dumbbells (tolerance_flow.c). */
 tolerance_rule tolerance_drawn_place, tolerance_swing_position, tolerance_swing_velocity, tolerance_swing_given;
 
+/* The same for those of media (tolerance_medium.c). */
+tolerance_rule tolerance_private_bath, tolerance_pair_along, tolerance_pair_draw, tolerance_pair_bath, tolerance_crowd,
+    tolerance_repulsion, tolerance_repulsion_kick, tolerance_mobility, tolerance_root, tolerance_move;
+
 #endif

@@ -13,6 +13,7 @@ static const char momentum_beyond[] = "has a momentum beyond the range of its ce
 static const struct {
   const char *entity, *what, *unit;
   bool heated; /* it happens where something has become too hot */
+  bool least;  /* the limit is the least value allowed, else the largest */
 } wording[] = {
     [FAULT_NONE] = {"", "nothing wrong", "", false},
     [FAULT_SOLVENT_MOVE] = {"solvent particle", "moves too far in one collision interval:", "a0", true},
@@ -29,12 +30,13 @@ static const struct {
     [FAULT_BEAD_MOVE] = {"bead", "and the solvent near it reach too far in one collision interval:", "a0", true},
     [FAULT_IN_BEAD] = {"solvent particle", "is inside the bead, at a distance from its center of", "a0", false},
     [FAULT_BOND_TOO_LONG] = {"bond", "is longer than half the shortest box edge:", "a0", true},
-    [FAULT_OVERLAP] = {"bond", "overlaps with another one: their axes are apart by", "a0", false},
+    [FAULT_OVERLAP] = {"bond", "overlaps with another one: their axes are apart by", "a0", false, true},
+    [FAULT_BEAD_OVERLAP] = {"bond", "overlaps with the bead: its axis is from the center by", "a0", false, true},
     [FAULT_NO_ROOM] = {"fiber", "overlaps with others wherever it is laid:", "attempts", false},
     [FAULT_MOBILITY] =
         {"the fiber of vertex",
-         "has places where its tensor (oseen) is not positive, so that no noise belongs to it; a pivot is", "D0",
-         false},
+         "has places where its tensor (oseen) is not positive, so that no noise belongs to it; a pivot is", "D0", false,
+         true},
     [FAULT_NO_MEMORY] = {"", "", "", false},
 };
 
@@ -48,8 +50,7 @@ void fault_describe(const struct fault *fault, char *text, size_t size)
       !wording[fault->code].heated ? "" : " (a time step that is too large, or a heated system, is the usual cause)";
   snprintf(text, size, "step %" PRIu64 ": %s %" PRId64 " %s %.8g %s; at %s %.8g is allowed%s", fault->step,
            wording[fault->code].entity, fault->entity, wording[fault->code].what, text_real(fault->value),
-           wording[fault->code].unit, fault->code == FAULT_OVERLAP || fault->code == FAULT_MOBILITY ? "least" : "most",
-           fault->limit, hint);
+           wording[fault->code].unit, wording[fault->code].least ? "least" : "most", fault->limit, hint);
 }
 
 int message_fault(struct message *message, const struct fault *fault)

@@ -6,6 +6,7 @@ import numpy as np
 
 from . import dumbbells as pairs
 from . import flow as flows
+from . import media
 
 
 @dataclass
@@ -32,6 +33,7 @@ class Model:
     constant_force: np.ndarray
     flow: flows.Flow | None = None  # walls or shear
     dumbbells: pairs.Dumbbells | None = None
+    medium: media.Medium | None = None  # another bath than collision cells
 
     @property
     def rows(self):
@@ -73,4 +75,5 @@ def from_tables(tables):
         constant_force=vertex[:, 4:7],
         flow=flows.from_tables(tables),
         dumbbells=pairs.from_tables(tables),
+        medium=media.from_tables(tables),
     )

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from . import dumbbells, events, fiber, flow, random, solvent
+from . import dumbbells, events, fiber, flow, media, random, solvent
 from . import model as models
 from . import sweep as sweeps
 from .pack import Tables
@@ -283,7 +283,59 @@ def rescale_layers(model, step, given):
     return {"relative": column(relative), "factor": column(factor)}
 
 
+def private_bath(model, step, given):
+    return {"velocity": media.private_bath(model, step, given["velocity"])}
+
+
+def pairs(model, step, given):
+    return dict(zip(("pair", "along", "bath"), media.pairs(model, step, given["solvent"], given["vertex"])))
+
+
+BOTH = "solvent", "vertex"
+
+
+def pair_bath(model, step, given):
+    how = given["pair"], given["along"], given["bath"]
+    return dict(zip(BOTH, media.pair_bath(model, *how, given["solvent"], given["vertex"])))
+
+
+def crowd(model, step, given):
+    return {"crowd": column(media.crowds(model, given["solvent"], given["vertex"]))}
+
+
+def repulsion(model, step, given):
+    return {"force": media.repulsion(model, given["solvent"], given["vertex"], given["crowd"][:, 0])}
+
+
+def repulsion_kick(model, step, given):
+    velocity = given["solvent"], given["vertex"]
+    return dict(zip(BOTH, media.repulsion_kick(model, scalar(given["time"]), given["force"], *velocity)))
+
+
+def mobility(model, step, given):
+    return {"tensor": column(media.packed(media.tensors(model, given["position"])))}
+
+
+def root(model, step, given):
+    roots = [media.root_of(d) for d in media.unpacked(model, given["tensor"][:, 0])]
+    return {"root": column(media.packed(roots))}
+
+
+def move(model, step, given):
+    coupled = (media.unpacked(model, given[name][:, 0]) if len(given[name]) else [] for name in ("tensor", "root"))
+    return {"position": media.move(model, step, given["position"], given["force"], *coupled)}
+
+
 OPERATORS = {
+    "private_bath": private_bath,
+    "pairs": pairs,
+    "pair_bath": pair_bath,
+    "crowd": crowd,
+    "repulsion": repulsion,
+    "repulsion_kick": repulsion_kick,
+    "mobility": mobility,
+    "root": root,
+    "move": move,
     "dumbbell_start": dumbbell_start,
     "dumbbell_stream": dumbbell_stream,
     "dumbbell_wall_stream": dumbbell_wall_stream,

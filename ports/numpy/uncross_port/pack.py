@@ -54,6 +54,11 @@ COLUMNS |= {
     "spring": "spring frequency depth range",
     "begin": "offset",
     "second": "xx yy zz yz zx xy",
+    "medium": "kind draw weight tensor second",
+    "pair": "first second",
+    "crowd": "crowd",
+    "tensor": "entry",
+    "root": "entry",
 }
 COLUMNS_AT = {
     ("swap", "out.order"): "particle",
@@ -71,6 +76,9 @@ COLUMNS_AT = {
     ("impulse", "in.mass"): "p0 p1 q0 q1",
     ("impulse", "in.contact"): "s t",
     ("impulse", "out.momentum"): "momentum",
+    ("pairs", "out.bath"): "loss noise",
+    ("pair_bath", "in.bath"): "loss noise",
+    ("model", "in.bath"): "rate radius repulsion between many_body many_body_range flow_x flow_y flow_z",
     ("model", "in.vertex"): "mass bond_length spring bending force_x force_y force_z",
 }
 for drift in ("event_drift", "long_event_drift"):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import xxhash
 
-from . import dumbbells, events, fiber, flow, operators, solvent, sweep
+from . import dumbbells, events, fiber, flow, media, operators, solvent, sweep
 from .lattice import UNIT, dot
 
 # Stages of a step: name and duration in steps. A collision has none; other steps are drift, force, kick.
@@ -17,6 +17,7 @@ COLLIDING = {
     "kick-split": [("drift", 1.0), ("force", None), ("kick", 0.5), ("collide", None), ("kick", 0.5)],
     "drift-split": [("drift", 0.5), ("collide", None), ("drift", 0.5), ("force", None), ("kick", 1.0)],
 }
+OVERDAMPED = [("force", None), ("move", None)]
 THERMOSTATS = ["none", "rescale", "maxwell-boltzmann", "rescale-layers"]
 CONTACT_COLUMNS = ["contacts", "contacts_hash"]
 COLUMNS = "momentum_x momentum_y momentum_z solvent_kinetic vertex_kinetic bond bend".split()
@@ -51,7 +52,7 @@ class System:
         self.finished, self.lag = (int(x) for x in start["counters"][0])
         if model.dumbbells is not None:
             self.vector = start["vector"]
-        self.force = None
+        self.force = self.pushes = None
         self.event_driven = bool(start["rule"].any())
         self.rule = int(start["collision"].sum())  # 0 srd, 1 at-a, 2 at+a
         self.contacts = []  # rows of events since the last row of the trace
@@ -110,10 +111,43 @@ class System:
         self.vertex, self.vertex_velocity = moved[:2]
 
     def kick(self, share):
+        time = share * self.model.dt
+        if self.pushes is not None:
+            velocity = self.solvent_velocity, self.vertex_velocity
+            self.solvent_velocity, self.vertex_velocity = media.repulsion_kick(self.model, time, self.pushes, *velocity)
         self.vertex_velocity = fiber.kick(self.model, self.vertex_velocity, self.force, share * self.model.dt)
+
+    def find_forces(self):
+        model = self.model
+        self.force = fiber.forces(model, self.vertex)
+        if model.medium is not None and model.medium.repels:
+            self.stream()
+            place = self.solvent, self.vertex
+            crowd = media.crowds(model, *place) if model.medium.many_body else None
+            self.pushes = media.repulsion(model, *place, crowd)
+
+    def move(self):
+        model, tensor, root = self.model, [], []
+        if model.medium.tensor != media.NONE:
+            tensor = media.tensors(model, self.vertex)
+            root = [media.root_of(d) for d in tensor]
+        self.vertex = media.move(model, self.finished + 1, self.vertex, self.force, tensor, root)
+
+    def meet(self):
+        """The bath of a medium."""
+        model, step, velocity = self.model, self.finished + 1, (self.solvent_velocity, self.vertex_velocity)
+        if model.medium.kind == media.PRIVATE:
+            self.vertex_velocity = media.private_bath(model, step, self.vertex_velocity)
+            return
+        self.stream()
+        pairs = media.pairs(model, step, self.solvent, self.vertex)
+        self.solvent_velocity, self.vertex_velocity = media.pair_bath(model, *pairs, *velocity)
 
     def collide(self):
         model, step = self.model, self.finished + 1
+        if model.medium is not None:
+            self.meet()
+            return
         self.stream()
         shift = solvent.grid_shift(model, step)
         sheared = model.flow is not None and not model.flow.walls
@@ -183,20 +217,29 @@ class System:
             return flow.rescale_layers(self.model, load, relative, filled)
         return solvent.maxwell_boltzmann(self.model, step, load, relative)
 
+    def plan(self):
+        medium = self.model.medium
+        if medium is not None and medium.kind == media.OVERDAMPED:
+            return OVERDAMPED
+        alone = self.model.particles == 0 and medium is None
+        collides = not alone and (self.finished + 1) % self.model.interval == 0
+        return COLLIDING[self.scene.order] if collides else QUIET
+
     def step(self):
         """One step; yields the name of each stage after it."""
-        collides = self.model.particles > 0 and (self.finished + 1) % self.model.interval == 0
         sweeps = 0
-        for stage, share in COLLIDING[self.scene.order] if collides else QUIET:
-            if stage in ("force", "kick") and not len(self.vertex):
+        for stage, share in self.plan():
+            if stage in ("force", "kick") and not len(self.vertex) and self.model.medium is None:
                 continue
             if stage == "drift":
                 self.drift(share, sweeps)
                 sweeps += 1
             elif stage == "force":
-                self.force = fiber.forces(self.model, self.vertex)
+                self.find_forces()
             elif stage == "kick":
                 self.kick(share)
+            elif stage == "move":
+                self.move()
             else:
                 self.collide()
             yield stage
