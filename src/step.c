@@ -33,6 +33,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "contact/event_bead.h"
 #include "contact/laying.h"
 #include "fiber/start.h"
 #include "fluid/fluid.h"
@@ -68,14 +69,50 @@ static bool act_lag(void *room, const struct moment *now, const struct stage *st
   return true;
 }
 
+/* Vertices take up their share of what a drive gives to the bead, half of it before the drift and half of it after. */
+static void take_counterforce(struct state *state, const struct model *model)
+{
+  const struct vec3 half = vec3_scale(0.5 * model->time_step, bead_counter(state, model));
+  for (uint32_t v = 0; model->bead.driven && v < state->vertices; v++)
+    state->velocity[v] = vec3_add(state->velocity[v], half);
+}
+
+/* The bead flies with the fibers. */
+static bool act_beside(void *room, const struct moment *now, const struct stage *stage)
+{
+  struct work *w = room;
+  (void)stage;
+  w->contact.bead.steps = w->mpc.fluid->steps;
+  w->contact.bead.visits = &w->mpc.bead.meetings;
+  take_counterforce(now->state, now->model);
+  return true;
+}
+
+static bool act_counter(void *room, const struct moment *now, const struct stage *stage)
+{
+  (void)room, (void)stage;
+  take_counterforce(now->state, now->model);
+  return true;
+}
+
+static void plan_drift(struct plan *plan, const struct model *m, double fraction, uint32_t drift)
+{
+  const bool beside = model_has_bead(m) && m->vertices > 0;
+  if (beside)
+    plan_append(plan, (struct stage){.act = act_beside});
+  contact_plan_drift(plan, m, offsetof(struct work, contact), fraction, drift);
+  if (beside)
+    plan_append(plan, (struct stage){.act = act_counter});
+  plan_append(plan, (struct stage){.name = "drift", .act = act_lag, .fraction = fraction});
+}
+
 static void plan_actions(struct plan *plan, const struct part *part, const struct model *m)
 {
   uint32_t drift = 0;
   for (plan->stages = 0; part->action != END; part++) {
     switch (part->action) {
     case DRIFT:
-      contact_plan_drift(plan, m, offsetof(struct work, contact), part->fraction, drift++);
-      plan_append(plan, (struct stage){.name = "drift", .act = act_lag, .fraction = part->fraction});
+      plan_drift(plan, m, part->fraction, drift++);
       break;
     case COLLIDE:
       mpc_plan_collision(plan, m, offsetof(struct work, mpc), "collide");
@@ -201,54 +238,85 @@ static void add_shear(struct state *state, const struct model *model)
     state->velocity[v].x += rate * (double)(state->position[v].y - middle) * LATTICE_UNIT;
 }
 
+/* Where fibers are laid: among thick ones, and beside a bead. */
+struct ground {
+  const struct state *state;
+  const struct model *model;
+  struct laying laying; /* empty if all are thin */
+  bool in_bead;         /* the last fiber that overlaps does so with the bead: */
+  uint32_t bond;        /* this bond of it, */
+  double distance;      /* whose axis is so far from the center, a0 */
+};
+
 static enum fiber_verdict judge_fiber(void *context, const struct point *position, uint32_t fiber)
 {
   static const enum fiber_verdict verdicts[] = {
       [LAYING_FITS] = FIBER_STAYS, [LAYING_OVERLAPS] = FIBER_OVERLAPS, [LAYING_NO_MEMORY] = FIBER_NO_MEMORY};
-  return verdicts[laying_add(context, position, fiber)];
+  struct ground *g = context;
+  const struct state *s = g->state;
+  g->in_bead = s->beads > 0 && !event_bead_clear(g->model, s->bead->position, position, fiber, &g->bond, &g->distance);
+  if (g->in_bead)
+    return FIBER_OVERLAPS;
+  return g->model->thickness > 0 ? verdicts[laying_add(&g->laying, position, fiber)] : FIBER_STAYS;
 }
 
-static bool record_start(const struct model *model, const struct laying *l, enum fiber_start_end end, uint32_t fiber,
-                         struct fault *fault)
+/* Does it matter where fibers are? */
+static bool is_crowded(const struct model *model)
+{
+  return model->thickness > 0 || model_has_bead(model);
+}
+
+static bool record_overlap(const struct ground *g, struct fault *fault)
+{
+  const struct model *m = g->model;
+  const struct laying *l = &g->laying;
+  if (!g->in_bead)
+    return fault_record(fault, FAULT_OVERLAP, 0, l->bond, l->distance,
+                        (double)model_reach(m, l->bond, l->other) * LATTICE_UNIT);
+  const struct fiber_kind *kind = &m->kind[m->fiber_kind_of[m->fiber_of[g->bond]]];
+  return fault_record(fault, FAULT_BEAD_OVERLAP, 0, g->bond, g->distance,
+                      (double)(bead_radius(m) + kind->radius) * LATTICE_UNIT);
+}
+
+static bool record_start(const struct ground *g, enum fiber_start_end end, uint32_t fiber, struct fault *fault)
 {
   if (end == FIBERS_OVERLAP)
-    return fault_record(fault, FAULT_OVERLAP, 0, l->bond, l->distance,
-                        (double)model_reach(model, l->bond, l->other) * LATTICE_UNIT);
+    return record_overlap(g, fault);
   if (end == FIBERS_NO_ROOM)
     return fault_record(fault, FAULT_NO_ROOM, 0, fiber, FIBER_MOST_ATTEMPTS, FIBER_MOST_ATTEMPTS);
   return end == FIBERS_LAID || fault_no_memory(fault, 0);
 }
 
-/* Lays all fibers, the thick ones without overlap. */
+/* Lays all fibers, the thick ones without overlap, and all of them outside of a bead. */
 static bool start_fibers(struct state *state, const struct model *model, struct fault *fault)
 {
-  struct laying laying = {0};
-  const struct fiber_room room = {judge_fiber, &laying};
+  struct ground ground = {.state = state, .model = model};
+  const struct fiber_room room = {judge_fiber, &ground};
   uint32_t fiber = 0;
   enum fiber_start_end end = FIBERS_NO_MEMORY;
-  if (model->thickness == 0)
+  if (!is_crowded(model))
     end = fiber_start(state, model, NULL, &fiber);
-  else if (laying_begin(&laying, model))
+  else if (model->thickness == 0 || laying_begin(&ground.laying, model))
     end = fiber_start(state, model, &room, &fiber);
-  const bool ok = record_start(model, &laying, end, fiber, fault);
-  laying_end(&laying);
+  const bool ok = record_start(&ground, end, fiber, fault);
+  laying_end(&ground.laying);
   return ok;
 }
 
 bool step_sound(const struct state *state, const struct model *model, struct fault *fault)
 {
-  struct laying laying = {0};
+  static const enum fiber_start_end ends[] = {
+      [FIBER_STAYS] = FIBERS_LAID, [FIBER_OVERLAPS] = FIBERS_OVERLAP, [FIBER_NO_MEMORY] = FIBERS_NO_MEMORY};
+  struct ground ground = {.state = state, .model = model};
   enum fiber_start_end end = FIBERS_LAID;
-  if (model->thickness == 0)
+  if (!is_crowded(model))
     return true;
-  if (!laying_begin(&laying, model))
+  if (model->thickness > 0 && !laying_begin(&ground.laying, model))
     end = FIBERS_NO_MEMORY;
-  for (uint32_t fiber = 0; end == FIBERS_LAID && fiber < model->fibers; fiber++) {
-    const enum laying_answer answer = laying_add(&laying, state->position, fiber);
-    end = answer == LAYING_FITS ? FIBERS_LAID : answer == LAYING_OVERLAPS ? FIBERS_OVERLAP : FIBERS_NO_MEMORY;
-  }
-  const bool ok = record_start(model, &laying, end, 0, fault);
-  laying_end(&laying);
+  for (uint32_t fiber = 0; end == FIBERS_LAID && fiber < model->fibers; fiber++)
+    end = ends[judge_fiber(&ground, state->position, fiber)];
+  const bool ok = record_start(&ground, end, 0, fault);
+  laying_end(&ground.laying);
   return ok;
 }
 

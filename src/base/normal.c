@@ -35,6 +35,13 @@ static void firsts(const double *restrict radius, const double *restrict turns, 
     z[k] = radius[k] * elementary_circle_turns(turns[k]).cosine;
 }
 
+void random_normal_firsts(const double *u, const double *v, uint32_t n, double *x)
+{
+  double radius[RANDOM_UNIFORMS];
+  radii(u, n, radius);
+  firsts(radius, v, n, x);
+}
+
 void random_normal_columns(uint64_t seed, enum random_purpose purpose, uint64_t step, const uint32_t *entity,
                            uint32_t n, double *restrict x, double *restrict y, double *restrict z)
 {

@@ -13,6 +13,10 @@
  * deviates 0 and 1 of these words. */
 void random_normal_pair(struct random_words r, double out[2]);
 
+/* The first of the pair for each of n entities, n <= RANDOM_UNIFORMS, of uniform deviates u and v: x[n]. The same bits,
+ * in a loop that vectorises. */
+void random_normal_firsts(const double *u, const double *v, uint32_t n, double *x);
+
 /* Three independent standard normal deviates for each of n entities, columns of n numbers each: x and y are the pair
  * of draw 0, z is the first of the pair of draw 1. The same bits as random_normal_pair, in loops that vectorise. */
 void random_normal_columns(uint64_t seed, enum random_purpose purpose, uint64_t step, const uint32_t *entity,

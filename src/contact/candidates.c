@@ -20,10 +20,14 @@ static inline uint32_t way(uint32_t one, uint32_t other)
   return further < longest ? further : longest;
 }
 
-/* By how much bond j's path has grown in this drift. */
 static inline uint32_t way_of(const struct model *model, const struct contact *contact, uint32_t j)
 {
   return way(contact->range[j], contact->range[model->next[j] < 0 ? (int32_t)j : model->next[j]]);
+}
+
+uint32_t candidates_way(const struct model *model, const struct contact *contact, uint32_t j)
+{
+  return way_of(model, contact, j);
 }
 
 void candidates_lengthen(const struct model *model, struct contact *contact)

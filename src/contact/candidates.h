@@ -39,6 +39,9 @@ bool candidates_add(const struct state *state, struct contact *contact, uint32_t
 /* Raises the range of vertex i to `range`, and the paths of its bonds accordingly. */
 void candidates_widen(const struct model *model, struct contact *contact, uint32_t i, uint32_t range);
 
+/* By how much the path of bond j has grown in this drift. */
+uint32_t candidates_way(const struct model *model, const struct contact *contact, uint32_t j);
+
 /* Bound on the distance that the ends of a bond go in this drift, a0. */
 static inline double candidates_range(const struct model *model, const struct contact *contact, uint32_t bond)
 {

@@ -8,6 +8,7 @@
 #include "contact/event_queue.h"
 #include "contact/line.h"
 #include "system/fault.h"
+#include "system/fluid.h"
 #include "system/model.h"
 #include "system/shear.h"
 #include "system/state.h"
@@ -97,7 +98,7 @@ struct neighbors {
   uint32_t *path; /* [vertices] bound on the way that both ends of bond j have gone, in units of 2^-20 a0, modulo 2^32.
                      Where vertex j has no bond j, its own way. */
   uint32_t *generation; /* [vertices] number of searches of bond j for partners */
-  uint32_t *hold;       /* [vertices] vertex j stays within its skin until path[j] exceeds this: contact/takeoff.c */
+  uint32_t *hold;       /* [vertices] vertex j stays within its skin until path[j] exceeds this: contact/renewals.h */
   struct pair_list pairs;
   int32_t cells[3];     /* of the search grid */
   int64_t cell_edge[3]; /* lattice units */
@@ -137,6 +138,28 @@ struct flights {
   struct event_queue queue;
 };
 
+/* A bond that may touch the bead in this drift. */
+struct bead_neighbor {
+  uint32_t bond;
+  int32_t due;        /* the tick of its next contact; FLIGHT_TICKS: none */
+  struct point image; /* of the bead that it may touch, from the bead itself */
+};
+
+/* The bead among bonds: contact/event_bead.h. */
+struct bead_company {
+  const struct bead_steps *steps; /* its flight among the solvent; given before each drift, as is `visits` */
+  struct bead_visits *visits;
+  uint32_t *limit;          /* [vertices] bond j cannot touch it before path[j] and its own way together exceed this */
+  uint32_t *listed;         /* [vertices] 1 + place of bond j in the list, or 0 */
+  uint32_t way, way_before; /* bound on the way that the bead has gone; without this drift; units of paths */
+  uint32_t count, room;
+  struct bead_neighbor *at;
+  double slack;     /* a0: of the bead's free flight, as the way is reckoned */
+  bool stale;       /* the next hit has to be looked for */
+  int32_t hit;      /* its tick */
+  uint32_t cluster; /* of the vertices that move rigidly with the bead; 0: none */
+};
+
 /* The force on a vertex of a fiber whose vertices stand at place(context, vertex), kT/a0. */
 typedef struct vec3 contact_force(const struct model *model, uint32_t vertex,
                                   struct point (*place)(const void *context, uint32_t vertex), const void *context);
@@ -169,7 +192,8 @@ struct contact {
   struct candidate_list candidates;
   struct neighbor_list near; /* scratch */
   struct neighbors neighbors;
-  struct vec3 *aside; /* [vertices] models with frozen fibers, else NULL: contact/frozen.h */
+  struct bead_company bead; /* empty without a bead */
+  struct vec3 *aside;       /* [vertices] models with frozen fibers, else NULL: contact/frozen.h */
   uint64_t waited,
       called_back; /* number of moves so far that waited for their turn; of these, called back. For benchmarks */
 };

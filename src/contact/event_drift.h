@@ -22,6 +22,7 @@ struct event_drift {
   const struct drift_frame *frame; /* contact->frame */
   const struct contact_log *log;
   struct fault *fault;
+  struct bead_company *bead; /* contact->bead; NULL: there is none */
 };
 
 /* Records that memory is short. False. */
@@ -33,6 +34,9 @@ bool event_no_memory(const struct event_drift *d);
 struct point event_rate(const struct event_drift *d, uint32_t i);
 struct point event_place(const struct event_drift *d, uint32_t i, int32_t tick);
 struct vec3 event_force(const struct event_drift *d, uint32_t i, int32_t tick);
+
+/* The place of a vertex at the start of the drift. */
+struct point event_start(const struct event_drift *d, uint32_t i);
 
 /* Time from the middle of the step to a tick, t0. */
 static inline double event_time(const struct event_drift *d, int32_t tick)

@@ -9,6 +9,9 @@
  *      is left
  *   5  every vertex lands where its flight ends
  *
+ * A bead has its own list of what comes next to it, hits of solvent particles and contacts with bonds; what is earlier
+ * is answered first, from this list or from the queue (contact/event_bead.h).
+ *
  * At every tick up to the one at hand, all bonds are apart: each piece of path that is flown was searched. So no bond
  * passes through another.
  *
@@ -19,6 +22,7 @@
  */
 #include "contact/candidates.h"
 #include "contact/capsule.h"
+#include "contact/event_bead.h"
 #include "contact/event_drift.h"
 #include "contact/impulse.h"
 #include "contact/neighbors.h"
@@ -94,13 +98,14 @@ static bool join_cluster(const struct event_drift *d, uint32_t from, uint32_t to
 static bool make_rigid(const struct event_drift *d, const struct meeting *m)
 {
   const int32_t tick = m->event.tick;
+  const uint32_t of_bead = d->bead ? d->bead->cluster : 0; /* this one stays */
   struct point sum = {0, 0, 0};
   uint32_t cluster = 0;
   for (int k = 0; k < 4; k++) {
     const struct bend_in_path *bend = event_bend(d, m->vertex[k]);
     if (!bend)
       return event_no_memory(d);
-    if (bend->cluster && !cluster) {
+    if (bend->cluster && (!cluster || bend->cluster == of_bead)) {
       cluster = bend->cluster;
       sum = flight_place((struct point){0, 0, 0}, bend->rate, 4);
     }
@@ -201,25 +206,52 @@ static bool answer(const struct event_drift *d, const struct event *e)
   return bend_flights(d, &m);
 }
 
+/* Answers what was queued, if it is not out of date. */
+static bool answer_queued(const struct event_drift *d, const struct event *e)
+{
+  if (e->other == EVENT_WALL)
+    return event_answer_wall(d, e);
+  return e->version != event_version(d, e->bond, e->other) || answer(d, e);
+}
+
+/* All that happens in a drift with a bead. */
+static bool answer_beside_bead(const struct event_drift *d)
+{
+  const struct event_queue *queue = &d->contact->flights.queue;
+  struct event e;
+  if (!event_bead_begin(d))
+    return false;
+  for (;;) {
+    const int32_t bead = event_bead_next(d);
+    if (queue->count > 0 && queue->at[0].tick < bead) {
+      if (event_queue_pop(&d->contact->flights.queue, &e) && !answer_queued(d, &e))
+        return false;
+    } else if (bead == FLIGHT_TICKS) {
+      event_bead_end(d);
+      return true;
+    } else if (!event_bead_answer(d)) {
+      return false;
+    }
+  }
+}
+
 static bool drift_event_driven(struct state *state, const struct model *model, struct contact *contact, uint64_t step,
                                uint32_t drift, const struct contact_log *log, struct fault *fault)
 {
   (void)step, (void)drift;
-  const struct event_drift d = {state, model, contact, &contact->frame, log, fault};
+  struct bead_company *bead = model_has_bead(model) ? &contact->bead : NULL;
+  const struct event_drift d = {state, model, contact, &contact->frame, log, fault, bead};
   contact->flights.bends.count = 0;
   if ((!contact->neighbors.built && !neighbors_build(state, model, contact, fault)) ||
       !take_off(state, model, contact, fault) || !candidates_find(state, model, contact, fault) ||
       !event_search_all(&d) || (model_has_walls(model) && !event_search_walls(&d)))
     return false;
   struct event e;
-  while (event_queue_pop(&contact->flights.queue, &e)) {
-    if (e.other == EVENT_WALL) {
-      if (!event_answer_wall(&d, &e))
-        return false;
-    } else if (e.version == event_version(&d, e.bond, e.other) && !answer(&d, &e)) {
+  if (bead && !answer_beside_bead(&d))
+    return false;
+  while (event_queue_pop(&contact->flights.queue, &e))
+    if (!answer_queued(&d, &e))
       return false;
-    }
-  }
   event_land(&d);
   state->counts.moves += state->vertices;
   return true;

@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "contact/candidates.h"
 #include "contact/capsule.h"
+#include "contact/event_bead.h"
 #include "contact/neighbors.h"
 #include "contact/shape.h"
 #include "contact/takeoff.h"
@@ -24,8 +25,7 @@ struct point event_place(const struct event_drift *d, uint32_t i, int32_t tick)
   return flight_place(d->state->position[i], event_rate(d, i), tick);
 }
 
-/* The place of a vertex at the start of the drift. */
-static struct point event_start(const struct event_drift *d, uint32_t i)
+struct point event_start(const struct event_drift *d, uint32_t i)
 {
   const struct flights *f = &d->contact->flights;
   return f->bend_of[i] ? f->bends.at[f->bend_of[i] - 1].start : d->state->position[i];
@@ -216,5 +216,5 @@ bool event_search_again(const struct event_drift *d, uint32_t n, const uint32_t 
       if (!done && !event_search_pair(d, bond[b], &with, tick))
         return false;
     }
-  return true;
+  return !d->bead || event_bead_search_again(d, bonds, bond, tick);
 }

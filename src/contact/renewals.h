@@ -1,30 +1,30 @@
 /*
- * Vertices that wait for new reference positions. A search for partners mostly waits for memory. So a vertex does not
- * get its reference position at once: its search cells are prefetched, and it waits until some others wait as well.
+ * Which vertices need new reference positions, and those that wait for them.
+ *
+ * A drift reads every vertex, so what is read is kept short: reference positions are read now and then. A vertex that
+ * is `left` inside of its skin cannot leave it before its way has grown by `left`. The path of bond i is a bound on the
+ * way of vertex i; so the vertex has a limit, `hold`, and its skin is looked at when the path exceeds it.
+ *
+ * A search for partners mostly waits for memory. So a vertex does not get its reference position at once: its search
+ * cells are prefetched, and it waits until some others wait as well.
  */
 #ifndef UNCROSS_CONTACT_RENEWALS_H
 #define UNCROSS_CONTACT_RENEWALS_H
 
 #include "contact/neighbors.h"
 
-#define RENEWALS_MOST (2 * NEIGHBORS_AT_ONCE)
+/* Where a vertex that stands at `from` ends this drift, if it touches nothing. */
+typedef struct point end_of_move(const struct drift_frame *frame, struct vec3 velocity, struct point from);
 
-struct renewals {
-  uint32_t count, vertex[RENEWALS_MOST]; /* the one that has waited longest comes first */
-  struct point from[RENEWALS_MOST], to[RENEWALS_MOST];
-};
+/* New reference positions for all vertices that would leave their skins in this drift. Once in a drift, after
+ * candidates_lengthen. False, with the fault recorded, if memory is short. */
+bool renewals_of_late(const struct state *state, const struct model *model, struct contact *contact, end_of_move *end,
+                      struct fault *fault);
 
-/* Vertex i is about to leave its skin by a straight move. If RENEWALS_MOST vertices wait, the first NEIGHBORS_AT_ONCE
- * of them take new reference positions. False, with the fault recorded, if memory is short. */
-bool renewals_add(const struct state *state, const struct model *model, struct contact *contact, struct renewals *r,
-                  uint32_t i, struct point from, struct point to, struct fault *fault);
-
-/* All vertices that wait take new reference positions. False as renewals_add. */
-bool renewals_end(const struct state *state, const struct model *model, struct contact *contact, struct renewals *r,
-                  struct fault *fault);
-
-/* Vertex i, which ends its flight at `to` within its skin, cannot leave it before its path has grown by what is left of
- * it. If its flight bends, or its reference position is renewed, `hold` is set anew. */
-void renewals_hold_until(struct neighbors *nb, uint32_t i, struct point to);
+/* Vertex i does not end this drift where renewals_of_late had it: its skin is looked at in the next one. */
+static inline void renewals_look_again(struct neighbors *nb, uint32_t i)
+{
+  nb->hold[i] = nb->path[i];
+}
 
 #endif

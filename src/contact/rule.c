@@ -10,5 +10,6 @@ const struct crossing_rule *crossing_rule_row(enum crossing_kind kind)
 
 const struct crossing_rule *crossing_rule_of(const struct model *model)
 {
-  return crossing_rule_row(model->crossing.forbidden && model->bonds > 1 ? model->crossing.rule : CROSSING_FREE);
+  const bool meets = model->bonds > 1 || (model->bonds > 0 && model_has_bead(model));
+  return crossing_rule_row(model->crossing.forbidden && meets ? model->crossing.rule : CROSSING_FREE);
 }

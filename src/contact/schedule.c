@@ -10,25 +10,15 @@
 
 enum { BLOCK = 64 }; /* vertices worked on at a time */
 
-/* late[k]: vertex first + k is about to leave its reference position, as neighbors_hold has it. */
-static void find_late(const struct state *state, const struct neighbors *nb, uint32_t first, uint32_t n,
-                      const struct vec3 *restrict d, int64_t *restrict late)
+static struct point end_of_step(const struct drift_frame *frame, struct vec3 velocity, struct point from)
 {
-  const struct point *restrict p = &state->position[first], moved = nb->moved;
-  const struct reference_position *restrict reference = &nb->reference[first];
-  for (uint32_t k = 0; k < n; k++) {
-    const struct vec3 off = point_difference(point_move(p[k], d[k]), point_plus(reference[k].at, moved));
-    late[k] = !(vec3_dot(off, off) <= reference[k].skin * reference[k].skin);
-  }
+  return point_move(from, drift_displacement(frame, velocity, from.y));
 }
 
-/* Ranges of all vertices, and new reference positions for those that are about to leave theirs. */
+/* Ranges of all vertices, paths of bonds, and new reference positions for vertices that are about to leave theirs. */
 static bool prepare(const struct state *state, const struct model *model, struct contact *contact, struct fault *fault)
 {
   struct vec3 d[BLOCK];
-  int64_t late[BLOCK];
-  struct renewals r;
-  r.count = 0;
   for (uint32_t first = 0; first < state->vertices; first += BLOCK) {
     const uint32_t n = state->vertices - first < BLOCK ? state->vertices - first : BLOCK;
     if (!drift_displacements(state, model, &contact->frame, first, n, d, fault))
@@ -36,14 +26,9 @@ static bool prepare(const struct state *state, const struct model *model, struct
     uint32_t *restrict range = &contact->range[first];
     for (uint32_t k = 0; k < n; k++)
       range[k] = candidates_units(vec3_norm(d[k]));
-    find_late(state, &contact->neighbors, first, n, d, late);
-    for (uint32_t k = 0; k < n; k++) {
-      const struct point from = state->position[first + k];
-      if (late[k] && !renewals_add(state, model, contact, &r, first + k, from, point_move(from, d[k]), fault))
-        return false;
-    }
   }
-  return renewals_end(state, model, contact, &r, fault);
+  candidates_lengthen(model, contact);
+  return renewals_of_late(state, model, contact, end_of_step, fault);
 }
 
 /* --- the plan ---------------------------------------------------------------------------------------------------- */
@@ -110,10 +95,7 @@ static void move_others_sheared(struct state *state, const struct contact *conta
 
 bool schedule_plan(struct state *state, const struct model *model, struct contact *contact, struct fault *fault)
 {
-  if (!prepare(state, model, contact, fault))
-    return false;
-  candidates_lengthen(model, contact);
-  if (!candidates_find(state, model, contact, fault))
+  if (!prepare(state, model, contact, fault) || !candidates_find(state, model, contact, fault))
     return false;
   let_wait(model, contact);
   if (model_has_walls(model))
@@ -221,6 +203,7 @@ bool schedule_reconsider(struct state *state, const struct model *model, struct 
   const int64_t y = standing_place(state, contact, i, now).y;
   const uint32_t range =
       candidates_units(fmin(vec3_norm(drift_displacement(&contact->frame, state->velocity[i], y)), furthest));
+  renewals_look_again(&contact->neighbors, i);
   if (contact->rank[i] < now || range <= contact->range[i])
     return true;
   candidates_widen(model, contact, i, range);

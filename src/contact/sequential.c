@@ -4,6 +4,7 @@
 #include "contact/drift.h"
 #include "contact/impulse.h"
 #include "contact/neighbors.h"
+#include "contact/renewals.h"
 #include "contact/schedule.h"
 #include "contact/wall.h"
 
@@ -123,6 +124,7 @@ static bool execute(struct state *state, const struct model *model, struct conta
   const uint32_t pivot = e->moving_bond == t->vertex ? (uint32_t)model->next[t->vertex] : e->moving_bond;
   const uint32_t changed[3] = {pivot, e->standing_bond, (uint32_t)model->next[e->standing_bond]};
   exchange(state, model, &contact->frame, e);
+  renewals_look_again(&contact->neighbors, t->vertex);
   for (int k = 0; k < 3; k++)
     if (!schedule_reconsider(state, model, contact, changed[k], contact->rank[t->vertex], fault))
       return false;

@@ -88,9 +88,15 @@ static bool refuse_start(const struct scene *scene, const struct fault *fault, s
                            "allowed: thinner or fewer fibers",
                            fault->entity, m->fibers, fault->value);
   }
-  if (fault->code != FAULT_OVERLAP)
+  if (fault->code != FAULT_OVERLAP && fault->code != FAULT_BEAD_OVERLAP)
     return message_fault(message, fault);
   key_of_fiber(m, m->fiber_of[fault->entity], key, sizeof key);
+  if (fault->code == FAULT_BEAD_OVERLAP)
+    return scene_refuse_at(scene, scene->snapshot ? "start.snapshot" : key, scene->snapshot ? "start.snapshot" : key,
+                           message,
+                           "bond %" PRId64 " of fiber %" PRIu32 " overlaps with the bead: its axis is %.9g a0 from the "
+                           "center; allowed: more than %.9g",
+                           fault->entity, m->fiber_of[fault->entity], fault->value, fault->limit);
   return scene_refuse_at(scene, scene->snapshot ? "start.snapshot" : key, scene->snapshot ? "start.snapshot" : key,
                          message,
                          "bond %" PRId64 " of fiber %" PRIu32 " overlaps with another: their axes are %.9g a0 apart; "

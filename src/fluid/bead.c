@@ -25,66 +25,6 @@
 #include "base/normal.h"
 #include "fluid/boundary.h"
 
-__extension__ typedef __int128 wide;
-
-/* --- the next hit ------------------------------------------------------------------------------------------------ */
-
-static wide product(struct point a, struct point b)
-{
-  return (wide)a.x * b.x + (wide)a.y * b.y + (wide)a.z * b.z;
-}
-
-/* Square of the distance at a tick, less that of the radius. */
-struct gap {
-  wide square, along, start; /* of the rate; rate times distance; at tick 0 */
-};
-
-static wide gap_at(const struct gap *g, int64_t tick)
-{
-  return g->start + (2 * g->along + g->square * tick) * tick;
-}
-
-/* The gap falls from tick 0, where it is not negative, to tick `inside`, where it is. The root in doubles is next to
- * the tick in nearly all cases. */
-static int64_t last_outside(const struct gap *g, int64_t inside)
-{
-  enum { STEPS = 4 };
-  const double a = (double)g->square, b = (double)g->along, c = (double)g->start;
-  const double root = fmin(c / (-b + sqrt(fmax(0.0, b * b - a * c))), (double)(inside - 1));
-  int64_t low = 0, high = inside, look = root < 1.0 ? 1 : (int64_t)root;
-  for (int k = 0; high - low > 1; k++) {
-    const bool outside = gap_at(g, look) >= 0;
-    *(outside ? &low : &high) = look;
-    look = k >= STEPS ? low + (high - low) / 2 : outside ? low + 1 : high - 1;
-  }
-  return low;
-}
-
-/* The paths pass each other by more than doubles can be wrong. */
-static bool passes(const struct gap *g)
-{
-  const double along = (double)g->along;
-  return (double)g->start * (double)g->square > along * along * (1.0 + 1e-12);
-}
-
-int64_t bead_touch(const struct approach *approach, int64_t radius, int64_t most)
-{
-  const struct gap g = {product(approach->rate, approach->rate), product(approach->apart, approach->rate),
-                        product(approach->apart, approach->apart) - (wide)radius * radius};
-  if (g.along >= 0) /* the distance grows from here on */
-    return -1;
-  if (g.start < 0)
-    return 0;
-  if (passes(&g))
-    return -1;
-  const int64_t lowest = (int64_t)(-g.along / g.square < most ? -g.along / g.square : most);
-  const int64_t inside = gap_at(&g, lowest) < 0 ? lowest : lowest + 1;
-  if (gap_at(&g, inside) >= 0)
-    return -1;
-  const int64_t tick = last_outside(&g, inside);
-  return tick <= most ? tick : -1;
-}
-
 /* --- paths on ticks ---------------------------------------------------------------------------------------------- */
 
 static struct point rate_of(struct vec3 velocity, double time)
@@ -98,16 +38,8 @@ static struct point later(struct point at, struct point rate, int64_t ticks)
   return (struct point){at.x + rate.x * ticks, at.y + rate.y * ticks, at.z + rate.z * ticks};
 }
 
-/* The bead on its way; `at` and clock as in struct bead_visit. */
-struct way {
-  double time, mass; /* of the flight, t0; of the bead, m */
-  int64_t radius, clock;
-  struct point at, rate;
-  struct vec3 velocity;
-};
-
 /* The next hit of a particle, from the bead's clock on. */
-static int64_t next_hit(const struct way *bead, const struct bead_visit *m)
+static int64_t next_hit(const struct bead_way *bead, const struct bead_visit *m)
 {
   const struct approach a = {point_minus(later(m->at, m->rate, bead->clock - m->clock), bead->at),
                              point_minus(m->rate, bead->rate)};
@@ -115,27 +47,41 @@ static int64_t next_hit(const struct way *bead, const struct bead_visit *m)
   return touch < 0 ? BEAD_TICKS : bead->clock + touch;
 }
 
+static void set_velocity(struct bead_way *bead, struct vec3 velocity)
+{
+  bead->velocity = velocity;
+  bead->rate = rate_of(velocity, bead->time);
+}
+
 /* Both at the tick of their hit. */
-static void bounce(struct way *bead, struct bead_visit *m)
+static void bounce(struct bead_way *bead, struct bead_visit *m)
 {
   const struct vec3 center =
       vec3_scale(1.0 / (1.0 + bead->mass), vec3_add_scaled(m->velocity, bead->mass, bead->velocity));
   const struct vec3 after = vec3_sub(vec3_scale(2.0, center), m->velocity);
-  bead->velocity = vec3_add_scaled(bead->velocity, -1.0 / bead->mass, vec3_sub(after, m->velocity));
-  bead->rate = rate_of(bead->velocity, bead->time);
+  set_velocity(bead, vec3_add_scaled(bead->velocity, -1.0 / bead->mass, vec3_sub(after, m->velocity)));
   m->velocity = after;
   m->rate = rate_of(after, bead->time);
 }
 
 enum { MOST_AT_A_TICK = 8 }; /* hits of one particle: a pair that is at rest to rounding may go on for ever */
 
-static void answer(struct way *bead, struct bead_visits *all, struct bead_visit *m)
+/* The bead goes on to a tick. */
+static void go_to(struct bead_way *bead, int64_t tick)
 {
+  bead->at = later(bead->at, bead->rate, tick - bead->clock);
+  bead->clock = tick;
+}
+
+static void answer(struct bead_visits *all)
+{
+  struct bead_way *const bead = &all->way;
+  struct bead_visit *const m = all->first;
   const int64_t now = m->due;
   m->again = m->clock == now ? m->again + 1 : 0;
   m->at = later(m->at, m->rate, now - m->clock);
-  bead->at = later(bead->at, bead->rate, now - bead->clock);
-  m->clock = bead->clock = now;
+  m->clock = now;
+  go_to(bead, now);
   bounce(bead, m);
   if (m->again > MOST_AT_A_TICK) {
     m->rigid = true;
@@ -145,13 +91,28 @@ static void answer(struct way *bead, struct bead_visits *all, struct bead_visit 
 }
 
 /* The first that is due, of the smallest id among those of the same tick. */
-static struct bead_visit *first_due(struct bead_visits *all, const uint32_t *id)
+static struct bead_visit *first_due(const struct bead_visits *all, const uint32_t *id)
 {
   struct bead_visit *first = all->at;
   for (struct bead_visit *m = all->at; m < all->at + all->n; m++)
     if (m->due < first->due || (m->due == first->due && id[m->place] < id[first->place]))
       first = m;
   return first;
+}
+
+/* Looks for the next hit of all. Its tick, or BEAD_TICKS. */
+static int64_t next_of_all(const struct state *state, struct bead_visits *all)
+{
+  for (struct bead_visit *m = all->at; m < all->at + all->n; m++)
+    m->due = next_hit(&all->way, m);
+  all->first = first_due(all, state->solvent.id);
+  return all->n > 0 ? all->first->due : BEAD_TICKS;
+}
+
+/* The bead is off its free flight by this at most, a0. */
+static double off_free_flight(const struct bead_visits *all)
+{
+  return all->way.time * vec3_norm(vec3_sub(all->way.velocity, all->free));
 }
 
 /* --- who meets the bead ------------------------------------------------------------------------------------------ */
@@ -201,26 +162,31 @@ static bool find_meetings(const struct state *state, const struct model *model, 
 
 /* --- the flight -------------------------------------------------------------------------------------------------- */
 
-/* Answers all hits. False if the bead is off its free flight by more than the slack. */
-static bool fly(struct way *bead, struct bead_visits *all, const uint32_t *id, double slack)
+/* The bead at its start; no one meets it yet. */
+static void set_out(const struct state *state, const struct model *model, double time, struct bead_visits *all)
 {
-  const struct vec3 free = bead->velocity;
-  for (;;) {
-    for (struct bead_visit *m = all->at; m < all->at + all->n; m++)
-      m->due = next_hit(bead, m);
-    struct bead_visit *const m = first_due(all, id);
-    if (all->n == 0 || m->due == BEAD_TICKS)
-      return true;
-    answer(bead, all, m);
-    if (!(bead->time * vec3_norm(vec3_sub(bead->velocity, free)) <= slack))
+  all->n = 0;
+  all->bead = *state->bead;
+  all->free = state->bead->velocity;
+  all->way = (struct bead_way){.time = time, .mass = model->bead.mass, .radius = bead_radius(model)};
+  set_velocity(&all->way, all->free);
+}
+
+/* Answers all hits. False if the bead is off its free flight by more than the slack. */
+static bool fly(const struct state *state, struct bead_visits *all, double slack)
+{
+  while (next_of_all(state, all) < BEAD_TICKS) {
+    answer(all);
+    if (!(off_free_flight(all) <= slack))
       return false;
   }
+  return true;
 }
 
 /* Where particles and bead are at the end. */
-static void land(const struct way *bead, const struct model *model, const struct state *state, const struct span *span,
-                 struct bead_visits *all)
+static void land(const struct model *model, const struct state *state, const struct span *span, struct bead_visits *all)
 {
+  const struct bead_way *bead = &all->way;
   const struct point end = later(bead->at, bead->rate, BEAD_TICKS - bead->clock), origin = state->bead->position;
   for (struct bead_visit *m = all->at; m < all->at + all->n; m++) {
     const struct point at = m->rigid ? point_plus(end, m->at) : later(m->at, m->rate, BEAD_TICKS - m->clock);
@@ -237,19 +203,138 @@ bool bead_meet(const struct state *state, const struct model *model, const uint3
                struct bead_visits *all, struct fault *fault)
 {
   const struct span span = boundary_lag(state, model);
-  struct way bead = {.time = span.time,
-                     .mass = model->bead.mass,
-                     .radius = bead_radius(model),
-                     .rate = rate_of(state->bead->velocity, span.time),
-                     .velocity = state->bead->velocity};
-  all->n = 0;
-  all->bead = *state->bead;
+  set_out(state, model, span.time, all);
   if (!find_meetings(state, model, &span, near, n, slack, all, fault))
     return false;
-  all->enough = fly(&bead, all, state->solvent.id, slack);
-  land(&bead, model, state, &span, all);
+  all->enough = fly(state, all, slack);
+  land(model, state, &span, all);
   return true;
 }
+
+/* --- hit by hit -------------------------------------------------------------------------------------------------- */
+
+/* The drift that begins now: it takes a time step. */
+static struct span whole_step(const struct state *state, const struct model *model)
+{
+  struct span span = boundary_lag(state, model);
+  span.time = model->time_step;
+  return span;
+}
+
+enum { BLOCK = 64 };                     /* particles looked at together */
+static const double round_by = 0x1.8p52; /* adding and subtracting it rounds to the nearest whole number */
+
+/* What a sweep over all particles knows of the bead. */
+struct sweep {
+  double at[3], edge[3];    /* a0: its place in the box; the box */
+  double reach, per_square; /* a particle of velocity v is looked at if the square of its distance is below
+                             * reach + per_square v^2 */
+};
+
+/* (c + t v)^2 is at most 1.1 c^2 + 11 (t v)^2. */
+static struct sweep sweep_of(const struct state *state, const struct model *model, const struct span *span,
+                             double slack)
+{
+  const struct box *b = &model->box;
+  const struct point c = state->bead->position;
+  const double t = span->time, most = model->bead.radius + slack + ROUNDING + t * vec3_norm(state->bead->velocity) +
+                                      t * t * vec3_norm(span->acceleration);
+  return (struct sweep){.at = {(double)lattice_fold(c.x, b->edge[0]) * LATTICE_UNIT,
+                               (double)lattice_fold(c.y, b->edge[1]) * LATTICE_UNIT,
+                               (double)lattice_fold(c.z, b->edge[2]) * LATTICE_UNIT},
+                        .edge = {b->cells[0], b->cells[1], b->cells[2]},
+                        .reach = 1.1 * most * most,
+                        .per_square = 11.0 * t * t};
+}
+
+static void add_squares(const struct sweep *w, int axis, const int64_t *restrict x, const double *restrict v,
+                        uint32_t n, double *restrict square)
+{
+  const double edge = w->edge[axis], inverse = 1.0 / edge, at = w->at[axis], per_square = w->per_square;
+  for (uint32_t k = 0; k < n; k++) {
+    const double d = (double)x[k] * LATTICE_UNIT - at, apart = d - edge * ((d * inverse + round_by) - round_by);
+    square[k] += apart * apart - per_square * (v[k] * v[k]);
+  }
+}
+
+/* Takes those who may meet the bead while it is off its free flight by at most `slack`, but not those who may while it
+ * is off by `known`: they have been taken. */
+static bool sweep_all(const struct state *state, const struct model *model, double known, double slack,
+                      struct bead_visits *all, struct fault *fault)
+{
+  const struct solvent *s = &state->solvent;
+  const struct span span = whole_step(state, model);
+  const struct sweep w = sweep_of(state, model, &span, slack);
+  const double t = span.time, radius = model->bead.radius + ROUNDING;
+  for (uint32_t first = 0; first < s->n; first += BLOCK) {
+    const uint32_t n = s->n - first < BLOCK ? s->n - first : BLOCK;
+    double square[BLOCK] = {0};
+    add_squares(&w, 0, &s->x[first], &s->vx[first], n, square);
+    add_squares(&w, 1, &s->y[first], &s->vy[first], n, square);
+    add_squares(&w, 2, &s->z[first], &s->vz[first], n, square);
+    for (uint32_t i = first; i < first + n; i++) {
+      if (square[i - first] > w.reach)
+        continue;
+      const struct vec3 v = vec3_add_scaled(solvent_velocity(s, i), 0.5 * t, span.acceleration);
+      const struct point at =
+          bead_to_image(&model->box, state->bead->position, (struct point){s->x[i], s->y[i], s->z[i]});
+      const struct vec3 apart = point_in_a0(at), go = vec3_scale(t, vec3_sub(v, all->free));
+      if (!comes_within(apart, go, radius + slack) || (known >= 0.0 && comes_within(apart, go, radius + known)))
+        continue;
+      if (!take(all, (struct bead_visit){.place = i, .at = at, .rate = rate_of(v, t), .velocity = v}, state->step + 1,
+                fault))
+        return false;
+    }
+  }
+  return true;
+}
+
+#define SLACK 0.5 /* a0/t0: of the bead's velocity in a drift, at first */
+
+static bool steps_begin(const struct state *state, const struct model *model, struct bead_visits *all,
+                        struct fault *fault)
+{
+  set_out(state, model, model->time_step, all);
+  all->slack = SLACK * model->time_step;
+  return sweep_all(state, model, -1.0, all->slack, all, fault);
+}
+
+/* More slack, if the bead has become so fast. Those who are taken now have met no one yet. */
+static bool keep_slack(const struct state *state, const struct model *model, struct bead_visits *all,
+                       struct fault *fault)
+{
+  const double known = all->slack, off = off_free_flight(all), most = 0.5 * box_shortest_edge(&model->box);
+  if (off <= known)
+    return true;
+  if (!(2.0 * off + model->bead.radius < most))
+    return fault_record(fault, FAULT_BEAD_MOVE, state->step + 1, 0, 2.0 * off + model->bead.radius, most);
+  all->slack = 2.0 * off;
+  return sweep_all(state, model, known, all->slack, all, fault);
+}
+
+static bool steps_answer(const struct state *state, const struct model *model, struct bead_visits *all,
+                         struct fault *fault)
+{
+  answer(all);
+  return keep_slack(state, model, all, fault);
+}
+
+static bool steps_turn(const struct state *state, const struct model *model, struct bead_visits *all, int64_t tick,
+                       struct vec3 velocity, struct fault *fault)
+{
+  go_to(&all->way, tick);
+  set_velocity(&all->way, velocity);
+  return keep_slack(state, model, all, fault);
+}
+
+static void steps_end(const struct state *state, const struct model *model, struct bead_visits *all)
+{
+  const struct span span = whole_step(state, model);
+  land(model, state, &span, all);
+}
+
+const struct bead_steps bead_flight_steps = {
+    .begin = steps_begin, .next = next_of_all, .answer = steps_answer, .turn = steps_turn, .end = steps_end};
 
 /* --- start ------------------------------------------------------------------------------------------------------- */
 

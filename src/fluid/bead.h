@@ -5,8 +5,6 @@
 #include "system/bead.h"
 #include "system/fluid.h"
 
-#define BEAD_TICKS 65536 /* of a flight */
-
 /* Two points that move: from one to the other, and by how much that grows in a tick; lattice units. */
 struct approach {
   struct point apart, rate;
@@ -23,5 +21,8 @@ void bead_start(struct state *state, const struct model *model);
 /* `meet` of struct fluid. */
 bool bead_meet(const struct state *state, const struct model *model, const uint32_t *near, uint32_t n, double slack,
                struct bead_visits *meetings, struct fault *fault);
+
+/* `steps` of struct fluid. */
+extern const struct bead_steps bead_flight_steps;
 
 #endif

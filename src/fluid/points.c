@@ -76,5 +76,9 @@ static void points_now(const struct state *state, const struct model *model, uin
   }
 }
 
-const struct fluid fluid_points = {
-    .name = "points", .start = start_points, .stream = stream_points, .now = points_now, .meet = bead_meet};
+const struct fluid fluid_points = {.name = "points",
+                                   .start = start_points,
+                                   .stream = stream_points,
+                                   .now = points_now,
+                                   .meet = bead_meet,
+                                   .steps = &bead_flight_steps};

@@ -148,17 +148,25 @@ static double reach_of(const struct state *state, const struct model *model, dou
   return model->bead.radius + slack + time * (speed + counter + vec3_norm(state->bead->velocity)) + 1e-3;
 }
 
+/* The same; false, with the fault recorded, if an image of the bead may be met as well. */
+static bool reach_within(const struct state *state, const struct model *model, double slack, double speed,
+                         uint64_t step, double *reach, struct fault *fault)
+{
+  const double most = 0.5 * box_shortest_edge(&model->box) - 1.0;
+  *reach = reach_of(state, model, slack, speed);
+  if (!(*reach < most))
+    *reach = reach_of(state, model, slack, fastest_of_all(&state->solvent));
+  return *reach < most || fault_record(fault, FAULT_BEAD_MOVE, step, 0, *reach, most);
+}
+
 /* Who meets the bead if it is off its free flight by `slack` at most. False, with the fault recorded, if an image may
  * be met as well. */
 static bool meet(const struct state *state, const struct model *model, struct mpc *c, uint64_t step, double slack,
                  double speed, struct fault *fault)
 {
-  const double most = 0.5 * box_shortest_edge(&model->box) - 1.0;
-  double reach = reach_of(state, model, slack, speed);
-  if (!(reach < most))
-    reach = reach_of(state, model, slack, fastest_of_all(&state->solvent));
-  if (!(reach < most))
-    return fault_record(fault, FAULT_BEAD_MOVE, step, 0, reach, most);
+  double reach;
+  if (!reach_within(state, model, slack, speed, step, &reach, fault))
+    return false;
   const struct surround s = bead_surround(state->bead, model, c, reach);
   mark(&s, model, c, reach, 1);
   const uint32_t near = find_near(state, c, layers_of(&s, &model->box));
@@ -166,17 +174,29 @@ static bool meet(const struct state *state, const struct model *model, struct mp
   return c->fluid->meet(state, model, c->order, near, slack, &c->bead.meetings, fault);
 }
 
-static bool rebound(struct state *state, const struct model *model, struct mpc *c, uint64_t step, uint64_t *span,
-                    struct fault *fault)
+static bool meet_alone(struct state *state, const struct model *model, struct mpc *c, uint64_t step, double speed,
+                       struct fault *fault)
 {
-  struct bead_visits *all = &c->bead.meetings;
-  const double speed = fastest(c, *span), time = 0.5 * state->solvent_lag * model->time_step;
-  double slack = SLACK * time;
+  double slack = SLACK * 0.5 * state->solvent_lag * model->time_step;
   do {
     if (!meet(state, model, c, step, slack, speed, fault))
       return false;
     slack *= 2.0;
-  } while (!all->enough);
+  } while (!c->bead.meetings.enough);
+  return true;
+}
+
+/* Among fibers the drift has found who meets the bead, and where it goes (contact/event_bead.c). */
+static bool rebound(struct state *state, const struct model *model, struct mpc *c, uint64_t step, uint64_t *span,
+                    struct fault *fault)
+{
+  const struct bead_visits *all = &c->bead.meetings;
+  const double speed = fastest(c, *span);
+  double reach;
+  if (state->vertices == 0 && !meet_alone(state, model, c, step, speed, fault))
+    return false;
+  if (state->vertices > 0 && !reach_within(state, model, all->slack, speed, step, &reach, fault))
+    return false;
   for (const struct bead_visit *m = all->at; m < all->at + all->n; m++)
     write_flight(state, model, c, step, m, span);
   *state->bead = all->bead;

@@ -5,17 +5,50 @@
 #include "mpc/cell.h"
 #include "mpc/rule.h"
 
-double thermostat_gamma(uint64_t seed, uint64_t step, uint32_t cell, double shape)
+/* One attempt of Marsaglia and Tsang's, from a normal and a uniform deviate; negative if it is rejected. */
+static inline double attempt(double shape, double normal, double u)
 {
   const double d = shape - 1.0 / 3.0, c = 1.0 / sqrt(9.0 * d);
-  for (uint32_t draw = 0;; draw += 2) {
+  const double root = 1.0 + c * normal, v = root * root * root;
+  const bool below = elementary_log(u) < 0.5 * normal * normal + d - d * v + d * elementary_log(v);
+  return (v > 0.0) & below ? d * v : -1.0;
+}
+
+/* From this attempt on; each takes two draws. */
+static double gamma_from(uint64_t seed, uint64_t step, uint32_t cell, double shape, uint32_t draw)
+{
+  for (;; draw += 2) {
     double normal[2];
     random_normal_pair(random_at(seed, RANDOM_THERMOSTAT, draw, step, cell), normal);
-    double u = random_uniform(random_at(seed, RANDOM_THERMOSTAT, draw + 1, step, cell), 0);
-    double root = 1.0 + c * normal[0], v = root * root * root;
-    if (v > 0.0 && elementary_log(u) < 0.5 * normal[0] * normal[0] + d - d * v + d * elementary_log(v))
-      return d * v;
+    const double u = random_uniform(random_at(seed, RANDOM_THERMOSTAT, draw + 1, step, cell), 0);
+    const double gamma = attempt(shape, normal[0], u);
+    if (gamma >= 0.0)
+      return gamma;
   }
+}
+
+double thermostat_gamma(uint64_t seed, uint64_t step, uint32_t cell, double shape)
+{
+  return gamma_from(seed, step, cell, shape, 0);
+}
+
+static void attempts(const double *restrict shape, const double *restrict normal, const double *restrict u, uint32_t n,
+                     double *restrict gamma)
+{
+  for (uint32_t k = 0; k < n; k++)
+    gamma[k] = attempt(shape[k], normal[k], u[k]);
+}
+
+void thermostat_gammas(uint64_t seed, uint64_t step, const uint32_t *cell, const double *shape, uint32_t n,
+                       double *gamma)
+{
+  double u[4][RANDOM_UNIFORMS], normal[RANDOM_UNIFORMS];
+  random_uniform_columns(seed, RANDOM_THERMOSTAT, step, cell, n, u);
+  random_normal_firsts(u[0], u[1], n, normal);
+  attempts(shape, normal, u[2], n, gamma);
+  for (uint32_t k = 0; k < n; k++)
+    if (gamma[k] < 0.0)
+      gamma[k] = gamma_from(seed, step, cell[k], shape[k], 2);
 }
 
 double cell_freedoms(const struct mpc *c, const struct model *model, uint32_t place)
@@ -54,17 +87,34 @@ static double whole_energy(const struct mpc *c, const struct model *model, uint3
   return v.n == 0.0 ? energy : energy + cell_energy(&c->turn[place], v.n, rule_virtual_velocity(model, &v));
 }
 
+/* The places among first .. end - 1 of cells that collide. Returns their number. */
+static uint32_t list_active(const struct mpc *c, uint32_t first, uint32_t end, uint32_t *place)
+{
+  uint32_t n = 0;
+  for (uint32_t k = first; k < end; k++) {
+    place[n] = k;
+    n += c->turn[k].active != 0.0;
+  }
+  return n;
+}
+
 /* Canonical: each cell's relative kinetic energy is drawn afresh from its Gamma distribution of d (N-1) degrees of
  * freedom, N with virtual particles as one (Huang, Chatterji, Sutmann, Gompper and Winkler, J. Comput. Phys. 229, 168
  * (2010)). */
 static void maxwell_boltzmann(struct mpc *c, const struct model *model, uint64_t step)
 {
-  for (uint32_t k = 0; k < c->cells; k++) {
-    if (c->turn[k].active == 0.0)
-      continue;
-    double energy = 0.5 * whole_energy(c, model, k);
-    double wanted = thermostat_gamma(model->seed, step, k, 0.5 * model->dimensions * (cell_members(&c->sum[k]) - 1));
-    c->turn[k].factor = energy > 0.0 ? sqrt(wanted / energy) : 1.0;
+  uint32_t place[RANDOM_UNIFORMS];
+  double shape[RANDOM_UNIFORMS], wanted[RANDOM_UNIFORMS];
+  for (uint32_t first = 0; first < c->cells; first += RANDOM_UNIFORMS) {
+    const uint32_t left = c->cells - first, end = first + (left < RANDOM_UNIFORMS ? left : RANDOM_UNIFORMS);
+    const uint32_t n = list_active(c, first, end, place);
+    for (uint32_t k = 0; k < n; k++)
+      shape[k] = 0.5 * model->dimensions * (cell_members(&c->sum[place[k]]) - 1);
+    thermostat_gammas(model->seed, step, place, shape, n, wanted);
+    for (uint32_t k = 0; k < n; k++) {
+      const double energy = 0.5 * whole_energy(c, model, place[k]);
+      c->turn[place[k]].factor = energy > 0.0 ? sqrt(wanted[k] / energy) : 1.0;
+    }
   }
 }
 

@@ -83,8 +83,8 @@ bool oracle_emit(const struct scene *scene, struct pack *pack, struct message *m
                        scene->path);
   if (model->frozen > 0)
     return message_set(message, "%s: fibers.frozen; packs hold the operators of fibers that move", scene->path);
-  if (model->thickness > 0)
-    return message_set(message, "%s: fibers.diameter; packs hold the operators of thin lines", scene->path);
+  if (model_has_bead(model) && model->kinds > 0)
+    return message_set(message, "%s: bead; packs hold no contacts of fibers with a bead", scene->path);
   if (last == 0)
     return message_set(message, "%s: no collision within its %" PRIu64 " steps; a pack needs one", scene->path,
                        scene->steps);

@@ -1,6 +1,10 @@
 #include "system/bead.h"
 
+#include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
+
+#include "system/fiber_kind.h"
 
 __extension__ typedef __int128 wide;
 
@@ -47,7 +51,6 @@ static bool check_company(const struct model *m, struct model_error *error)
       {model_has_solvent(m), "bead", "it needs solvent particles, and there are none; allowed with a solvent"},
       {m->dimensions == 3, "dimensions", "a sphere is not in a plane; allowed with a bead: 3"},
       {m->medium.kind == 0, "medium", "its pairs do not know the bead; allowed with a bead: no medium"},
-      {m->kinds == 0, "fibers", "a bead does not touch fibers yet; allowed with a bead: no fibers"},
       {m->walls.kind == WALL_ABSENT, "walls", "a bead does not touch walls; allowed with a bead: no walls"},
       {m->shear.rate == 0.0, "shear", "a bead has no image that moves; allowed with a bead: no shear"},
       {m->dumbbells.pairs == 0, "dumbbells", "springs do not touch a bead; allowed with a bead: no dumbbells"},
@@ -68,6 +71,40 @@ static bool check_company(const struct model *m, struct model_error *error)
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
     if (!rows[i].ok)
       return model_reject(error, rows[i].path, "%s", rows[i].why);
+  return true;
+}
+
+#define LONGEST 3.0 /* a0: of a bond, with 8 standard deviations of its length and its thickness */
+
+/* A bond must not touch two images of the bead, and all must be answered in one timeline. */
+static bool check_fibers(const struct model *m, struct model_error *error)
+{
+  const struct crossing_model *c = &m->crossing;
+  if (m->kinds > 0 && (!c->forbidden || c->rule != CROSSING_EVENT_DRIVEN))
+    return model_reject(error, c->forbidden ? "crossing.rule" : "crossing.forbidden",
+                        "fibers do not touch the bead; allowed with both: {forbidden: true, rule: event-driven}");
+  for (uint32_t k = 0; k < m->kinds; k++) {
+    const struct fiber_kind *kind = &m->kind[k];
+    const double longest = fiber_mean_bond(kind) + 8.0 / sqrt(kind->spring) + kind->diameter;
+    const struct {
+      bool ok;
+      const char *key, *why;
+    } rows[] = {
+        {kind->vertices > 1, "vertices", "a vertex without a bond does not touch the bead; allowed: 2 or more"},
+        {!kind->frozen || (m->bead.drive.spring == 0.0 && vec3_norm(m->bead.drive.force) == 0.0), "frozen",
+         "they do not take up the momentum of the drive; allowed with a bead that is driven: false"},
+        {longest <= LONGEST, "bond_length",
+         "a bond may be so long that it touches two images of the bead; allowed with a bead: bond, 8/sqrt(spring) and "
+         "diameter of 3 a0 together"},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+      if (rows[i].ok)
+        continue;
+      model_reject(error, "fibers", "%s", rows[i].why);
+      snprintf(error->path, sizeof error->path, "fibers.%" PRIu32 ".%s", k, rows[i].key);
+      return false;
+    }
+  }
   return true;
 }
 
@@ -121,7 +158,7 @@ bool bead_finish(struct model *m, struct model_error *error)
   const double displaced = m->solvent.per_cell * bead_volume(m);
   if (!model_has_bead(m))
     return true;
-  if (!check_company(m, error))
+  if (!check_company(m, error) || !check_fibers(m, error))
     return false;
   if (m->bead.mass == 0.0)
     m->bead.mass = displaced;

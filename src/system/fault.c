@@ -13,7 +13,7 @@ static const char momentum_beyond[] = "has a momentum beyond the range of its ce
 static const struct {
   const char *entity, *what, *unit;
   bool heated; /* it happens where something has become too hot */
-  bool least;  /* the limit is the least that is allowed */
+  bool least;  /* the limit is the least value allowed, else the largest */
 } wording[] = {
     [FAULT_NONE] = {"", "nothing wrong", "", false},
     [FAULT_SOLVENT_MOVE] = {"solvent particle", "moves too far in one collision interval:", "a0", true},
@@ -31,6 +31,7 @@ static const struct {
     [FAULT_IN_BEAD] = {"solvent particle", "is inside the bead, at a distance from its center of", "a0", false},
     [FAULT_BOND_TOO_LONG] = {"bond", "is longer than half the shortest box edge:", "a0", true},
     [FAULT_OVERLAP] = {"bond", "overlaps with another one: their axes are apart by", "a0", false, true},
+    [FAULT_BEAD_OVERLAP] = {"bond", "overlaps with the bead: its axis is from the center by", "a0", false, true},
     [FAULT_NO_ROOM] = {"fiber", "overlaps with others wherever it is laid:", "attempts", false},
     [FAULT_MOBILITY] =
         {"the fiber of vertex",

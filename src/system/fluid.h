@@ -46,12 +46,46 @@ struct bead_visit {
   struct vec3 velocity;  /* a0/t0 */
 };
 
+#define BEAD_TICKS 65536 /* of a flight, as of a drift of bonds (contact/flight.h) */
+
+/* The bead on its way; `at` and clock as in struct bead_visit. */
+struct bead_way {
+  double time, mass; /* of the flight, t0; of the bead, m */
+  int64_t radius, clock;
+  struct point at, rate;
+  struct vec3 velocity;
+};
+
 /* Those of one flight. */
 struct bead_visits {
   struct bead_visit *at;
   uint32_t n, room;
   bool enough;      /* none is missing: the bead has kept to the slack that was allowed for */
   struct bead bead; /* after the flight */
+  struct bead_way way;
+  struct vec3 free;         /* the bead's velocity at the start, a0/t0 */
+  double slack;             /* a0: how far it may be off its free flight before others may be met */
+  struct bead_visit *first; /* of all, the next that hits the bead */
+};
+
+/* The flight of the bead hit by hit, for a drift in which it meets bonds as well (contact/event_bead.c). It begins
+ * while the solvent still stands where the drift begins. */
+struct bead_steps {
+  /* Who may meet the bead. False, with the fault recorded, if memory is short; so do answer and turn. */
+  bool (*begin)(const struct state *state, const struct model *model, struct bead_visits *all, struct fault *fault);
+
+  /* The tick of the next hit; BEAD_TICKS if there is none. */
+  int64_t (*next)(const struct state *state, struct bead_visits *all);
+
+  /* Answers this hit. */
+  bool (*answer)(const struct state *state, const struct model *model, struct bead_visits *all, struct fault *fault);
+
+  /* From this tick on the bead has another velocity. */
+  bool (*turn)(const struct state *state, const struct model *model, struct bead_visits *all, int64_t tick,
+               struct vec3 velocity, struct fault *fault);
+
+  /* Where all are at the end, as after `meet` of struct fluid. */
+  void (*end)(const struct state *state, const struct model *model, struct bead_visits *all);
 };
 
 struct fluid {
@@ -86,6 +120,7 @@ struct fluid {
    * bead may be off its free flight. False, with the fault recorded, if memory is short. NULL: no bead. */
   bool (*meet)(const struct state *state, const struct model *model, const uint32_t *near, uint32_t n, double slack,
                struct bead_visits *meetings, struct fault *fault);
+  const struct bead_steps *steps; /* the same hit by hit; NULL: no bead */
 };
 
 #endif

@@ -1,4 +1,4 @@
-/* The rule `event-driven` looks at a vertex's skin only when it may leave it (contact/takeoff.c). */
+/* A drift looks at a vertex's skin only when the vertex may leave it (contact/renewals.h). */
 #include "contact/neighbors.h"
 #include "flight_replay.h"
 
@@ -23,14 +23,13 @@ static uint64_t check_skins(const struct test_run *r)
 }
 
 /* Suspensions that fly on for many drifts, with a few vertices that are fast; whole steps alternate with halves. */
-static void skins_hold(void **unused)
+static void check_rule(enum crossing_kind rule)
 {
-  (void)unused;
   uint64_t waiting = 0, looked_at = 0, executed = 0;
   for (uint64_t k = 0; k < 10; k++) {
     struct dice d = {dice_seed(1821) + k};
     struct test_run r = dense(5, 4, 4, 60, 8, 0.54, &d);
-    follow_rule(&r, CROSSING_EVENT_DRIVEN);
+    follow_rule(&r, rule);
     for (uint32_t drift = 0; drift < 24; drift++) {
       for (uint32_t v = 0; v < r.state.vertices && drift % 8 == 0; v++)
         r.state.velocity[v] = dice_vector(&d, (dice_uniform(&d) < 0.05 ? 0.2 : 0.01) / r.model.time_step);
@@ -47,10 +46,24 @@ static void skins_hold(void **unused)
   assert_true(executed > 1000 && 2 * waiting > looked_at);
 }
 
+static void skins_hold(void **unused)
+{
+  (void)unused;
+  check_rule(CROSSING_EVENT_DRIVEN);
+}
+
+/* Those that are hit before their turns go further than they were about to, the ends of fibers among them. */
+static void skins_hold_in_turns(void **unused)
+{
+  (void)unused;
+  check_rule(CROSSING_SEQUENTIAL);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(skins_hold),
+      cmocka_unit_test(skins_hold_in_turns),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

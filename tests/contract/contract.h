@@ -672,4 +672,15 @@ static inline void contract_scratch(struct choice c)
   contract_scratch_of(fibers);
 }
 
+/* A check of every medium with every draw and weight that it takes. */
+static inline void contract_over_media(void (*check)(struct choice))
+{
+  for (int medium = MEDIUM_PRIVATE; medium < MEDIA; medium++)
+    for (int draw = 0; draw < contract_draws(medium); draw++)
+      for (int weight = 0; weight < (medium == MEDIUM_PAIRS ? MEDIUM_WEIGHTS : 1); weight++) {
+        print_message("  medium %d, draw %d, weight %d\n", medium, draw, weight);
+        check((struct choice){.medium = medium, .draw = draw, .weight = weight});
+      }
+}
+
 #endif

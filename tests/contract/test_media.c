@@ -1,16 +1,6 @@
-/* Every medium keeps what all baths promise: the Maxwell distribution at kT = 1 for all masses, and the same bits
- * whatever the order in memory. With every draw, and every weight that it takes. */
+/* Every medium keeps what all baths promise: the same bits whatever the order in memory, with every draw, and every
+ * weight that it takes. The Maxwell distribution is in tests/physics/test_media.c. */
 #include "contract/contract.h"
-
-static void over_media(void (*check)(struct choice))
-{
-  for (int medium = MEDIUM_PRIVATE; medium < MEDIA; medium++)
-    for (int draw = 0; draw < contract_draws(medium); draw++)
-      for (int weight = 0; weight < (medium == MEDIUM_PAIRS ? MEDIUM_WEIGHTS : 1); weight++) {
-        print_message("  medium %d, draw %d, weight %d\n", medium, draw, weight);
-        check((struct choice){.medium = medium, .draw = draw, .weight = weight});
-      }
-}
 
 static void every_row_has_a_word(void **unused)
 {
@@ -27,22 +17,10 @@ static void every_row_has_a_word(void **unused)
   assert_int_equal(words, MEDIUM_WEIGHTS);
 }
 
-static void equipartition(struct choice c)
-{
-  if (c.medium != MEDIUM_OVERDAMPED) /* it has no velocities */
-    contract_equipartition(c);
-}
-
-static void temperature_is_one(void **unused)
-{
-  (void)unused;
-  over_media(equipartition);
-}
-
 static void bits_are_the_same(void **unused)
 {
   (void)unused;
-  over_media(contract_bits);
+  contract_over_media(contract_bits);
 }
 
 /* The same with forces of pairs, in every order of a step. */
@@ -70,8 +48,9 @@ static void scratch_is_what_is_used(void **unused)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(every_row_has_a_word),    cmocka_unit_test(temperature_is_one),
-      cmocka_unit_test(bits_are_the_same),       cmocka_unit_test(forces_have_the_same_bits),
+      cmocka_unit_test(every_row_has_a_word),
+      cmocka_unit_test(bits_are_the_same),
+      cmocka_unit_test(forces_have_the_same_bits),
       cmocka_unit_test(scratch_is_what_is_used),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

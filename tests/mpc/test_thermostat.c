@@ -213,6 +213,40 @@ static void gamma_deviates_have_addresses(void **unused)
   assert_true(needed[0] > 40000 && needed[1] > 100 && needed[2] > 0);
 }
 
+/* True if the first attempt is rejected: made as above. */
+static bool needs_more_than_one(uint64_t seed, uint64_t step, uint32_t cell, double shape)
+{
+  const struct random_words one = random_at(seed, RANDOM_THERMOSTAT, 0, step, cell),
+                            other = random_at(seed, RANDOM_THERMOSTAT, 1, step, cell);
+  const double turn = 2.0 * 3.14159265358979323846 * random_uniform(one, 1), d = shape - 1.0 / 3.0;
+  const double x = sqrt(-2.0 * log(random_uniform(one, 0))) * cos(turn), v = pow(1.0 + x / sqrt(9.0 * d), 3.0);
+  return !(v > 0.0 && log(random_uniform(other, 0)) < x * x / 2.0 + d - d * v + d * log(v));
+}
+
+/* In columns they are the same, to the bit: any number of cells, in any order, of any numbers of members. */
+static void gamma_deviates_in_columns(void **unused)
+{
+  (void)unused;
+  struct dice d = {dice_seed(1931)};
+  uint32_t again = 0; /* cells that needed more than one attempt */
+  for (uint64_t step = 0; step < 2000; step++) {
+    uint32_t cell[RANDOM_UNIFORMS];
+    double shape[RANDOM_UNIFORMS], gamma[RANDOM_UNIFORMS];
+    const uint32_t n = (uint32_t)(step % (RANDOM_UNIFORMS + 1));
+    for (uint32_t k = 0; k < n; k++) {
+      cell[k] = (uint32_t)dice_u64(&d);
+      shape[k] = (dice_u64(&d) & 1 ? 1.5 : 1.0) * (1.0 + (double)(dice_u64(&d) % (dice_u64(&d) & 1 ? 4 : 1000)));
+    }
+    thermostat_gammas(91, step << 20, cell, shape, n, gamma);
+    for (uint32_t k = 0; k < n; k++) {
+      const double expected = thermostat_gamma(91, step << 20, cell[k], shape[k]);
+      assert_memory_equal(&gamma[k], &expected, sizeof expected);
+      again += needs_more_than_one(91, step << 20, cell[k], shape[k]);
+    }
+  }
+  assert_true(again > 100);
+}
+
 /* Everything at rest in its own cell's frame: nothing to scale, and nothing becomes NaN. */
 static void cold_cells_stay_finite(void **unused)
 {
@@ -355,9 +389,10 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(rescale_sets_the_sum),          cmocka_unit_test(layers_have_their_own_sums),
       cmocka_unit_test(canonical_energies_are_gamma),  cmocka_unit_test(gamma_deviates),
-      cmocka_unit_test(gamma_deviates_have_addresses), cmocka_unit_test(cold_cells_stay_finite),
-      cmocka_unit_test(energy_range_faults),           cmocka_unit_test(lone_members_have_no_energy),
-      cmocka_unit_test(hot_boxes_are_cooled),          cmocka_unit_test(equilibrium_is_maxwellian),
+      cmocka_unit_test(gamma_deviates_have_addresses), cmocka_unit_test(gamma_deviates_in_columns),
+      cmocka_unit_test(cold_cells_stay_finite),        cmocka_unit_test(energy_range_faults),
+      cmocka_unit_test(lone_members_have_no_energy),   cmocka_unit_test(hot_boxes_are_cooled),
+      cmocka_unit_test(equilibrium_is_maxwellian),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
