@@ -176,7 +176,8 @@ struct medium_model {
 
   /* Of overdamped motion. */
   enum medium_tensor tensor;
-  double radius; /* a0: of a vertex; 0 without a tensor */
+  double radius;     /* a0: of a vertex; 0 without a tensor */
+  bool inextensible; /* bonds keep their length by tension, and there is no noise */
 
   /* Forces of pairs, medium/repulsion.h. */
   double repulsion; /* kT/a0: of all pairs, at r = 0; 0: none */

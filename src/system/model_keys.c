@@ -237,6 +237,13 @@ static const struct key medium_keys[] = {
      .offset = IN_MODEL(medium.radius),
      .unit = "a0",
      .symbol = "a_h"},
+    {.name = "inextensible",
+     .text =
+         "Of overdamped motion: bonds keep `bond_length` by tension, and there is no noise (kT = 0). Springs have no "
+         "effect then. See [media.md](media.md#filaments).",
+     .type = KEY_SWITCH,
+     .absent = "false",
+     .offset = IN_MODEL(medium.inextensible)},
     {.name = "repulsion",
      .text =
          "Of pairs: a of the force a (1 - r) between any two members nearer than 1 a0 (DPD). Below 0 an attraction, "
