@@ -69,6 +69,18 @@ static void report_overdamped(const struct si_scale *si, const struct model *m, 
     sheet_row(si, "  viscosity", "eta", k->mass * b->rate / (6.0 * pi * b->radius), "m/a0 t0", "M rate/(6 pi a_h)");
   if (k->vertices < 2)
     return;
+  if (b->inextensible) {
+    const double length = k->bond_length * (k->vertices - 1.0), force = k->vertices * vec3_norm(k->force);
+    sheet_row(si, "  no noise; bonds keep their length", "b", k->bond_length, "a0", "medium.inextensible");
+    sheet_row(si, "  force over bending", "B", force * length * length / (k->bending * k->bond_length), "",
+              "F L^2/(kappa b)");
+    sheet_row(si, "  time of bending", "", pow(length, 4) / (d0 * k->bending * k->bond_length), "t0",
+              "L^4/(D_0 kappa b)");
+    sheet_row(si, "  fastest bending in a time step", "",
+              16.0 * k->bending * d0 * m->time_step / (k->bond_length * k->bond_length), "",
+              "16 kappa D_0 dt/b^2, without HI; unstable from 2 on");
+    return;
+  }
   sheet_row(si, "  hydrodynamic radius over the rms bond", "a/b", b->radius / bond, "",
             "1/4: D of a chain scales from few vertices on");
   sheet_row(si, "  fastest relaxation in a time step", "", 4.0 * k->spring * d0 * m->time_step, "",

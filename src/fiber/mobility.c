@@ -93,3 +93,19 @@ void mobility_root(uint32_t n, const double *restrict l, const double *restrict 
       y[i] += column[i] * x[k];
   }
 }
+
+void mobility_solve(uint32_t n, const double *restrict l, double *restrict x)
+{
+  for (uint32_t k = 0; k < n; k++) {
+    const double *column = &l[(size_t)k * n];
+    x[k] /= column[k];
+    for (uint32_t i = k + 1; i < n; i++)
+      x[i] -= column[i] * x[k];
+  }
+  for (uint32_t k = n; k-- > 0;) {
+    const double *column = &l[(size_t)k * n];
+    for (uint32_t i = k + 1; i < n; i++)
+      x[k] -= column[i] * x[i];
+    x[k] /= column[k];
+  }
+}

@@ -36,4 +36,7 @@ bool mobility_factor(uint32_t n, double *d, double *pivot);
 /* y = L x. */
 void mobility_root(uint32_t n, const double *restrict l, const double *restrict x, double *restrict y);
 
+/* Replaces x by the solution of L L^T y = x. No pivot of L may be 0. */
+void mobility_solve(uint32_t n, const double *restrict l, double *restrict x);
+
 #endif

@@ -1,9 +1,11 @@
 #include "fiber/overdamped.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "base/normal.h"
 #include "fiber/mobility.h"
+#include "fiber/tension.h"
 
 static uint32_t longest_fiber(const struct model *m)
 {
@@ -13,13 +15,16 @@ static uint32_t longest_fiber(const struct model *m)
   return most;
 }
 
-/* Four vectors and, with a tensor, a matrix of the longest fiber. */
+enum { BOND_DOUBLES = (sizeof(struct tension_bond) + sizeof(double) - 1) / sizeof(double) + 1 };
+
+/* Four vectors and, with a tensor, a matrix of the longest fiber; with tensions those of its bonds, and a matrix. */
 size_t overdamped_doubles(const struct model *m)
 {
-  const size_t order = 3 * (size_t)longest_fiber(m);
+  const size_t most = longest_fiber(m), order = 3 * most;
   if (!model_is_overdamped(m))
     return 0;
-  return order * 5 + (m->medium.tensor != TENSOR_NONE ? order * order : 0);
+  return order * 5 + (m->medium.tensor != TENSOR_NONE ? order * order : 0) +
+         (m->medium.inextensible ? most * (most + BOND_DOUBLES) : 0);
 }
 
 /* One fiber, n components of n/3 vertices. */
@@ -55,18 +60,51 @@ static void gather(const struct state *state, const struct model *m, const struc
   }
 }
 
+static double vertex_mobility(const struct model *m, uint32_t vertex)
+{
+  return m->inverse_mass[vertex] / m->medium.rate;
+}
+
+/* Adds tensions to the forces. There is no noise. */
+static bool hold_bonds(const struct model *m, struct chain *c, bool coupled, uint64_t step, struct fault *fault)
+{
+  const uint32_t n = c->n / 3;
+  double *matrix = c->tensor + (coupled ? (size_t)c->n * c->n : 0), *t = matrix + (size_t)n * n, pivot = 0.0;
+  struct tension_bond *bond = (struct tension_bond *)(t + n);
+  const double length = m->kind[m->fiber_kind_of[m->fiber_of[c->first]]].bond_length;
+  const double moved = vertex_mobility(m, c->first) * m->time_step;
+  uint32_t bonds = 0;
+  for (uint32_t v = 0; v < n; v++) {
+    if (m->next[c->first + v] < 0)
+      continue;
+    const uint32_t to = (uint32_t)m->next[c->first + v] - c->first;
+    const struct vec3 r = vec3_sub(c->place[to], c->place[v]);
+    const double now = vec3_norm(r);
+    bond[bonds++] = (struct tension_bond){vec3_scale(now > 0.0 ? 1.0 / now : 0.0, r), (now - length) / moved, v, to};
+  }
+  memset(c->jump, 0, c->n * sizeof *c->jump);
+  return tension_add(c->n, coupled ? c->tensor : NULL, c->pull, bonds, bond, matrix, t, c->force, &pivot) ||
+         fault_record(fault, FAULT_TENSION, step, c->first, pivot, 1e-12);
+}
+
 /* pull = D F and jump = L xi. */
 static bool couple(const struct model *m, struct chain *c, uint64_t step, struct fault *fault)
 {
   const struct mobility *mobility = mobility_of(m->medium.tensor);
+  const bool coupled = mobility->block != NULL;
   double pivot;
-  if (!mobility->block) {
+  if (!coupled) {
     c->pull = c->force;
     c->jump = c->noise;
-    return true;
+    return !m->medium.inextensible || hold_bonds(m, c, coupled, step, fault);
   }
   mobility_fill(mobility, m->medium.radius, c->n / 3, c->place, c->tensor);
   mobility_apply(c->n, c->tensor, c->force, c->pull);
+  if (m->medium.inextensible) {
+    const bool held = hold_bonds(m, c, coupled, step, fault);
+    mobility_apply(c->n, c->tensor, c->force, c->pull);
+    return held;
+  }
   if (!mobility_factor(c->n, c->tensor, &pivot))
     return fault_record(fault, FAULT_MOBILITY, step, c->first, pivot, 0.0);
   mobility_root(c->n, c->tensor, c->noise, c->jump);
@@ -75,7 +113,7 @@ static bool couple(const struct model *m, struct chain *c, uint64_t step, struct
 
 static bool move(struct state *state, const struct model *m, const struct chain *c, uint64_t step, struct fault *fault)
 {
-  const double d0 = m->inverse_mass[c->first] / m->medium.rate, drift = d0 * m->time_step, jump = sqrt(2.0 * drift);
+  const double drift = vertex_mobility(m, c->first) * m->time_step, jump = sqrt(2.0 * drift);
   const double limit = model_longest_bond(m), reach = (double)LATTICE_REACH * LATTICE_UNIT;
   for (uint32_t i = 0, v = c->first; i < c->n; i += 3, v++) {
     const struct vec3 d = {drift * c->pull[i] + jump * c->jump[i] + m->flow.x * m->time_step,

@@ -118,6 +118,8 @@ static const char *entity_of(const struct pack_table *t)
                                          {"sweep", "out.event", "event"},
                                          {"sweep", "out.hit", "event"},
                                          {"contact_search", "", "search"},
+                                         {"tube_search", "", "search"},
+                                         {"tube_contact", "", "contact"},
                                          {"impulse", "", "impulse"},
                                          {"long_event_drift", "out.event", "event"},
                                          {"long_event_drift", "out.hit", "event"},

@@ -243,10 +243,11 @@ static void search_relations(struct search *s, const struct relation *r, bool an
 static bool search_all_relations(struct search *s)
 {
   static const struct relation *const lists[] = {
-      oracle_relations_random,   oracle_relations_permutation, oracle_relations_contact, oracle_relations_fiber,
-      oracle_relations_event,    oracle_relations_grid,        oracle_relations_sum,     oracle_relations_rotate,
-      oracle_relations_andersen, oracle_relations_spin,        oracle_relations_walls,   oracle_relations_shear,
-      oracle_relations_dumbbell, oracle_relations_thermostat,  oracle_relations_medium,  oracle_relations_pairs};
+      oracle_relations_random, oracle_relations_permutation, oracle_relations_contact,    oracle_relations_fiber,
+      oracle_relations_event,  oracle_relations_tube,        oracle_relations_grid,       oracle_relations_sum,
+      oracle_relations_rotate, oracle_relations_andersen,    oracle_relations_spin,       oracle_relations_walls,
+      oracle_relations_shear,  oracle_relations_dumbbell,    oracle_relations_thermostat, oracle_relations_medium,
+      oracle_relations_pairs};
   for (size_t k = 0; k < sizeof lists / sizeof lists[0] && !s->named; k++)
     search_relations(s, lists[k], false);
   if (!s->named)

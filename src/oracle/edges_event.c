@@ -169,7 +169,7 @@ static uint32_t add_searches(struct dice *d, const struct search_kind *k, struct
 {
   uint32_t n = 0;
   for (int tries = 0; n < k->rows && tries < TRIES; tries++) {
-    s[n] = (struct oracle_search){make_pair(d, k), 0};
+    s[n] = (struct oracle_search){make_pair(d, k), 0, 0};
     s[n].from = n % 4 == 3 && k->when == ANY_TIME ? (int32_t)(dice_u64(d) % (FLIGHT_TICKS / 4)) : 0;
     n += fits(&s[n].pair) && is_wanted(k, &s[n]);
   }
@@ -185,7 +185,7 @@ static uint32_t add_at_rest(struct dice *d, struct oracle_search *s)
     pair.p_rate = pair.q_rate = pair.w_rate = (struct point){0, 0, 0};
     if (k % 2)
       pair.w = (struct point){pair.p.x / 8 * 3, pair.p.y / 8 * 3, pair.p.z / 8 * 3};
-    s[k] = (struct oracle_search){pair, 0};
+    s[k] = (struct oracle_search){pair, 0, 0};
   }
   return AT_REST;
 }

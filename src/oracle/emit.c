@@ -78,10 +78,11 @@ bool oracle_emit(const struct scene *scene, struct pack *pack, struct message *m
     return message_set(
         message, "%s: crossing.refusal or crossing.frame; packs hold drifts by the paper's rule: stay, laboratory",
         scene->path);
+  if (model->medium.inextensible)
+    return message_set(message, "%s: medium.inextensible; packs hold moves with noise, and without tension",
+                       scene->path);
   if (model->frozen > 0)
     return message_set(message, "%s: fibers.frozen; packs hold the operators of fibers that move", scene->path);
-  if (model->thickness > 0)
-    return message_set(message, "%s: fibers.diameter; packs hold the operators of thin lines", scene->path);
   if (model_has_bead(model) && model->kinds > 0)
     return message_set(message, "%s: bead; packs hold no contacts of fibers with a bead", scene->path);
   if (last == 0)

@@ -24,7 +24,16 @@ static void put_points(struct oracle_stage *g, const char *name, const struct or
   }
 }
 
-void oracle_put_searches(struct oracle_stage *g, const struct oracle_search *s, uint32_t n)
+bool oracle_search_is_legal(const struct flight_pair *f, double from)
+{
+  const int64_t *at = &f->p.x, *rate = &f->p_rate.x, limit = (int64_t)1 << 52, fastest = limit / FLIGHT_TICKS;
+  for (int k = 0; k < 9; k++)
+    if (!(at[k] < limit && at[k] > -limit && rate[k] < fastest && rate[k] > -fastest))
+      return false;
+  return from >= 0.0 && from < FLIGHT_TICKS;
+}
+
+void oracle_put_flight_pairs(struct oracle_stage *g, const struct oracle_search *s, uint32_t n)
 {
   put_points(g, "in.p", s, offsetof(struct flight_pair, p), n);
   put_points(g, "in.q", s, offsetof(struct flight_pair, q), n);
@@ -35,6 +44,11 @@ void oracle_put_searches(struct oracle_stage *g, const struct oracle_search *s, 
   int64_t *from = oracle_put_integers(g, "in.from", "tick", n);
   for (uint32_t k = 0; from && k < n; k++)
     from[k] = s[k].from;
+}
+
+void oracle_put_searches(struct oracle_stage *g, const struct oracle_search *s, uint32_t n)
+{
+  oracle_put_flight_pairs(g, s, n);
   int64_t *tick = oracle_put_integers(g, "out.tick", "tick", n);
   for (uint32_t k = 0; tick && k < n; k++)
     tick[k] = flight_contact(&s[k].pair, s[k].from);
@@ -129,7 +143,7 @@ void oracle_put_events(struct oracle_stage *g, const struct oracle_events *e)
     condition[k] = e->at[k].condition;
 }
 
-/* Of nearly parallel bonds, s and t are inexact. */
+/* Of nearly parallel bonds, s and t are inexact. The normal of tubes is the direction of a short vector. */
 static double condition_of(const struct oracle_stage *g, const struct contact_event *v, int32_t tick)
 {
   const struct model *m = g->model;
@@ -140,7 +154,10 @@ static double condition_of(const struct oracle_stage *g, const struct contact_ev
     at[k] = flight_place(g->state->position[four[k]], takeoff_rate_now(g->state, &g->work->contact, four[k]), tick);
   const struct vec3 p = point_difference(at[1], at[0]), q = point_difference(at[3], at[2]);
   const double parallel = vec3_norm(p) * vec3_norm(q) / vec3_norm(vec3_cross(p, q));
-  return parallel * parallel * (1.0 + (vec3_norm(p) + vec3_norm(q)) / fmin(vec3_norm(p), vec3_norm(q)));
+  const double reach = (double)model_reach(m, v->moving_bond, v->standing_bond) * LATTICE_UNIT,
+               both = vec3_norm(p) + vec3_norm(q);
+  return parallel * parallel * (1.0 + both / fmin(vec3_norm(p), vec3_norm(q))) *
+         (reach > 0.0 ? 1.0 + both / reach : 1.0);
 }
 
 static void take_event(void *context, const struct contact_event *v)

@@ -9,6 +9,7 @@
 /* A search for the first contact of two bonds, from a tick on. */
 struct oracle_search {
   struct flight_pair pair;
+  int64_t reach; /* distance of the axes at a contact, lattice units; 0: of thin lines */
   int32_t from;
 };
 
@@ -35,6 +36,12 @@ struct oracle_events {
 
 /* Names of the four ends in tables. */
 extern const char *const oracle_ends[4];
+
+/* True if a search is made for it: packs may come from anywhere. */
+bool oracle_search_is_legal(const struct flight_pair *pair, double from);
+
+/* Puts the inputs of n searches that those of lines and of tubes have in common. */
+void oracle_put_flight_pairs(struct oracle_stage *g, const struct oracle_search *search, uint32_t n);
 
 /* Puts n searches with their ticks; n impulses with the velocities after them; the events of a drift. */
 void oracle_put_searches(struct oracle_stage *g, const struct oracle_search *search, uint32_t n);

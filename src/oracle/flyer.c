@@ -23,6 +23,8 @@ bool flyer_take(const struct oracle_pair *p, struct flyer *f)
                       .to = oracle_sibling_of_theirs(p, "out.position"),
                       .end = oracle_sibling_of_theirs(p, "out.velocity")};
   f->n = f->from ? f->from->rows : 0;
+  if (oracle_model(p, "in.tubes")) /* drifts of lines only are made anew */
+    return false;
   if (f->n == 0 || !f->time || f->time->columns != 2 || !f->chain || !f->vertex || f->chain->rows != f->n ||
       f->vertex->rows != f->n || f->vertex->columns != 7 || !f->event || !f->hit || f->event->columns != 6 ||
       f->hit->columns != 6 || f->event->rows != f->hit->rows || !oracle_box(p, &f->box) ||

@@ -6,6 +6,7 @@
 #include "contact/rule.h"
 #include "oracle/columns.h"
 #include "oracle/stages.h"
+#include "oracle/tube_rows.h"
 
 /* --- random numbers ---------------------------------------------------------------------------------------------- */
 
@@ -75,15 +76,16 @@ static bool run_random(struct oracle_stage *g)
 
 /* --- all of them ------------------------------------------------------------------------------------------------- */
 
-/* OF_TURNS, OF_EVENTS: of one kind of crossing rule; OF_SRD, OF_ANDERSEN, OF_SPIN: of one collision rule, OF_ANDERSENS:
- * of at-a and at+a; OF_PERIODIC_POINTS, OF_WALLS, OF_SHEAR: of one boundary along y; OF_WAVE: of an oscillating shear;
- * POINTS, DUMBBELLS: of one fluid; OF_MOVING: of vertices with
- * velocities; OF_PRIVATE and what follows: of media */
+/* OF_TURNS, OF_EVENTS: of one kind of crossing rule; OF_TUBES: of thick fibers; OF_SRD, OF_ANDERSEN, OF_SPIN: of one
+ * collision rule, OF_ANDERSENS: of at-a and at+a; OF_PERIODIC_POINTS, OF_WALLS, OF_SHEAR: of one boundary along y;
+ * OF_WAVE: of an oscillating shear; POINTS, DUMBBELLS: of one fluid; OF_MOVING: of vertices with velocities; OF_PRIVATE
+ * and what follows: of media */
 enum of {
   OF_ALL,
   OF_FIBERS,
   OF_TURNS,
   OF_EVENTS,
+  OF_TUBES,
   OF_SOLVENT,
   OF_SRD,
   OF_ANDERSENS,
@@ -126,6 +128,8 @@ static const struct operation {
     {"long_sweep", oracle_run_long_sweep, NULL, OF_TURNS},
     {"sweep", oracle_run_sweep, oracle_edges_sweep, OF_TURNS},
     {"contact_search", oracle_run_contact_search, oracle_edges_contact_search, OF_EVENTS},
+    {"tube_search", oracle_run_tube_search, NULL, OF_TUBES},
+    {"tube_contact", oracle_run_tube_contact, NULL, OF_TUBES},
     {"impulse", oracle_run_impulse, oracle_edges_impulse, OF_EVENTS},
     {"long_event_drift", oracle_run_long_event_drift, NULL, OF_EVENTS},
     {"event_drift", oracle_run_event_drift, oracle_edges_event_drift, OF_EVENTS},
@@ -186,6 +190,7 @@ static bool is_of(enum of of, const struct model *m)
                         [OF_FIBERS] = periodic,
                         [OF_TURNS] = periodic && !events && moving,
                         [OF_EVENTS] = events,
+                        [OF_TUBES] = events && m->thickness > 0,
                         [OF_SOLVENT] = solvent,
                         [OF_PERIODIC_POINTS] = solvent && periodic && !dumbbells,
                         [OF_WALL_POINTS] = solvent && walls && !dumbbells,
@@ -247,11 +252,11 @@ int oracle_operator_rank(const char *name)
 static int table_rank(const char *name)
 {
   static const char *const names[] = {
-      "out.word",     "out.uniform", "out.normal",   "out.filled", "out.active",   "out.second",  "out.angular",
-      "out.middle",   "out.beyond",  "out.omega",    "out.center", "out.axis",     "out.crosses", "out.tick",
-      "out.answer",   "out.pair",    "out.along",    "out.bath",   "out.event",    "out.hit",     "out.order",
-      "out.position", "out.vector",  "out.momentum", "out.load",   "out.relative", "out.factor",  "out.solvent",
-      "out.vertex",   "out.force",   "out.velocity"};
+      "out.word",    "out.uniform",  "out.normal", "out.filled",   "out.active", "out.second",   "out.angular",
+      "out.middle",  "out.beyond",   "out.omega",  "out.center",   "out.axis",   "out.crosses",  "out.tick",
+      "out.contact", "out.answer",   "out.pair",   "out.along",    "out.bath",   "out.event",    "out.hit",
+      "out.order",   "out.position", "out.vector", "out.momentum", "out.load",   "out.relative", "out.factor",
+      "out.solvent", "out.vertex",   "out.force",  "out.velocity"};
   int rank = 0;
   while (rank < (int)(sizeof names / sizeof *names) && strcmp(names[rank], name) != 0)
     rank++;
@@ -303,6 +308,8 @@ void oracle_put_model(struct pack *pack, const struct model *m)
   if (reals)
     memcpy(reals, r, sizeof r);
   put_vertices(&g, m);
+  if (m->thickness > 0)
+    oracle_put_radii(&g);
   if (model_has_walls(m) || model_is_sheared(m))
     oracle_put_flow(&g);
   if (model_has_dumbbells(m))

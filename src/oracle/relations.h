@@ -23,10 +23,10 @@ struct relation {
 /* Each list ends with one that makes none. From the most to the least telling. Those of any operator say what the
  * values are, and no cause. */
 extern const struct relation oracle_relations_random[], oracle_relations_permutation[], oracle_relations_contact[],
-    oracle_relations_fiber[], oracle_relations_event[], oracle_relations_grid[], oracle_relations_sum[],
-    oracle_relations_rotate[], oracle_relations_andersen[], oracle_relations_spin[], oracle_relations_walls[],
-    oracle_relations_shear[], oracle_relations_dumbbell[], oracle_relations_thermostat[], oracle_relations_medium[],
-    oracle_relations_pairs[], oracle_relations_any[];
+    oracle_relations_fiber[], oracle_relations_event[], oracle_relations_tube[], oracle_relations_grid[],
+    oracle_relations_sum[], oracle_relations_rotate[], oracle_relations_andersen[], oracle_relations_spin[],
+    oracle_relations_walls[], oracle_relations_shear[], oracle_relations_dumbbell[], oracle_relations_thermostat[],
+    oracle_relations_medium[], oracle_relations_pairs[], oracle_relations_any[];
 
 /* Writes the text; true, for makers to return. */
 bool relation_say(char text[RELATION_TEXT], const char *format, ...);

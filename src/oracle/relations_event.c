@@ -20,16 +20,6 @@ static bool point_of(const struct evidence_part *part, const char *name, uint32_
   return ok;
 }
 
-/* Packs may come from anywhere: what a search is made for. */
-static bool is_legal(const struct flight_pair *f, double from)
-{
-  const int64_t *at = &f->p.x, *rate = &f->p_rate.x, limit = (int64_t)1 << 52, fastest = limit / FLIGHT_TICKS;
-  for (int k = 0; k < 9; k++)
-    if (!(at[k] < limit && at[k] > -limit && rate[k] < fastest && rate[k] > -fastest))
-      return false;
-  return from >= 0.0 && from < FLIGHT_TICKS;
-}
-
 static double searched(const struct evidence_part *part, uint32_t row, uint32_t column, const void *twist)
 {
   const struct pack_table *from = input_of(part, "in.from");
@@ -38,7 +28,7 @@ static double searched(const struct evidence_part *part, uint32_t row, uint32_t 
   if (!from || !point_of(part, "in.p", row, &f.p) || !point_of(part, "in.q", row, &f.q) ||
       !point_of(part, "in.w", row, &f.w) || !point_of(part, "in.p_rate", row, &f.p_rate) ||
       !point_of(part, "in.q_rate", row, &f.q_rate) || !point_of(part, "in.w_rate", row, &f.w_rate) ||
-      !is_legal(&f, pack_value(from, row, 0)))
+      !oracle_search_is_legal(&f, pack_value(from, row, 0)))
     return NAN;
   return event_search(twist, &f, (int32_t)pack_value(from, row, 0));
 }

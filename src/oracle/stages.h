@@ -12,6 +12,8 @@ bool oracle_run_exchange(struct oracle_stage *stage);
 bool oracle_run_long_sweep(struct oracle_stage *stage);
 bool oracle_run_sweep(struct oracle_stage *stage);
 bool oracle_run_contact_search(struct oracle_stage *stage);
+bool oracle_run_tube_search(struct oracle_stage *stage);
+bool oracle_run_tube_contact(struct oracle_stage *stage);
 bool oracle_run_impulse(struct oracle_stage *stage);
 bool oracle_run_long_event_drift(struct oracle_stage *stage);
 bool oracle_run_event_drift(struct oracle_stage *stage);

@@ -6,6 +6,7 @@
 #include "fiber/force.h"
 #include "oracle/event_rows.h"
 #include "oracle/stages.h"
+#include "oracle/tube_rows.h"
 
 #define LONG_DRIFT 32.0 /* dt, or 16, 8, ... if no more fits into the box */
 
@@ -96,7 +97,8 @@ struct contacts {
   int32_t *bent;         /* tick at which the flight of each vertex has changed last */
   struct oracle_search *search;
   struct oracle_impulse *impulse;
-  uint32_t searches, impulses;
+  struct oracle_tubes *tubes; /* of each impulse; not of two lines */
+  uint32_t searches, impulses, touching;
   bool failed;
 };
 
@@ -127,8 +129,8 @@ static struct flight_pair pair_of(const struct oracle_stage *g, const struct con
                               .w_rate = point_minus(rate[2], rate[0])};
 }
 
-/* Three searches of each contact: the one that found it; one that begins a tick later, when the bonds have passed each
- * other; and the one after the exchange. */
+/* Three searches of each contact: the one that found it; of lines, one that begins a tick later, when the bonds have
+ * passed each other; and the one after the exchange. */
 static void take_searches(struct contacts *c, const struct contact_event *v, const uint32_t four[4], int32_t tick)
 {
   const struct oracle_stage *g = c->stage;
@@ -141,10 +143,15 @@ static void take_searches(struct contacts *c, const struct contact_event *v, con
     from = c->bent[four[k]] > from ? c->bent[four[k]] : from;
   }
   const struct flight_pair before = pair_of(g, v, at, rate), after = pair_of(g, v, later, new_rate);
-  c->search[c->searches++] = (struct oracle_search){before, from};
-  if (tick + 1 < FLIGHT_TICKS)
-    c->search[c->searches++] = (struct oracle_search){before, tick + 1};
-  c->search[c->searches++] = (struct oracle_search){after, tick};
+  const int64_t reach = model_reach(g->model, v->moving_bond, v->standing_bond);
+  c->search[c->searches++] = (struct oracle_search){before, reach, from};
+  if (tick + 1 < FLIGHT_TICKS && reach == 0)
+    c->search[c->searches++] = (struct oracle_search){before, reach, tick + 1};
+  c->search[c->searches++] = (struct oracle_search){after, reach, tick};
+  if (reach > 0)
+    c->tubes[c->touching++] =
+        (struct oracle_tubes){flight_place(before.p, before.p_rate, tick), flight_place(before.q, before.q_rate, tick),
+                              flight_place(before.w, before.w_rate, tick)};
 }
 
 static void take_impulse(struct contacts *c, const struct contact_event *v, const uint32_t four[4], int32_t tick)
@@ -174,7 +181,9 @@ static void take_contact(void *context, const struct contact_event *v)
   c->search = search ? search : c->search;
   struct oracle_impulse *impulse = realloc(c->impulse, (c->impulses + 1) * sizeof *impulse);
   c->impulse = impulse ? impulse : c->impulse;
-  c->failed |= !search || !impulse;
+  struct oracle_tubes *tubes = realloc(c->tubes, (c->touching + 1) * sizeof *tubes);
+  c->tubes = tubes ? tubes : c->tubes;
+  c->failed |= !search || !impulse || !tubes;
   if (c->failed)
     return;
   take_searches(c, v, four, tick);
@@ -203,12 +212,38 @@ static bool with_contacts(struct oracle_stage *g, void (*put)(struct oracle_stag
   free(c.bent);
   free(c.search);
   free(c.impulse);
+  free(c.tubes);
   return ok;
+}
+
+/* Those of lines, or those of tubes. */
+static void put_searches_of(struct oracle_stage *g, const struct contacts *c, bool tubes,
+                            void (*put)(struct oracle_stage *, const struct oracle_search *, uint32_t))
+{
+  struct oracle_search *s = malloc(((size_t)c->searches + 1) * sizeof *s);
+  uint32_t n = 0;
+  g->pack->failed |= !s;
+  for (uint32_t k = 0; s && k < c->searches; k++)
+    if ((c->search[k].reach > 0) == tubes)
+      s[n++] = c->search[k];
+  if (s)
+    put(g, s, n);
+  free(s);
 }
 
 static void put_searches(struct oracle_stage *g, const struct contacts *c)
 {
-  oracle_put_searches(g, c->search, c->searches);
+  put_searches_of(g, c, false, oracle_put_searches);
+}
+
+static void put_tube_searches(struct oracle_stage *g, const struct contacts *c)
+{
+  put_searches_of(g, c, true, oracle_put_tube_searches);
+}
+
+static void put_tube_contacts(struct oracle_stage *g, const struct contacts *c)
+{
+  oracle_put_tube_contacts(g, c->tubes, c->touching);
 }
 
 static void put_impulses(struct oracle_stage *g, const struct contacts *c)
@@ -219,6 +254,16 @@ static void put_impulses(struct oracle_stage *g, const struct contacts *c)
 bool oracle_run_contact_search(struct oracle_stage *g)
 {
   return with_contacts(g, put_searches);
+}
+
+bool oracle_run_tube_search(struct oracle_stage *g)
+{
+  return with_contacts(g, put_tube_searches);
+}
+
+bool oracle_run_tube_contact(struct oracle_stage *g)
+{
+  return with_contacts(g, put_tube_contacts);
 }
 
 bool oracle_run_impulse(struct oracle_stage *g)

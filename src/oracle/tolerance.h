@@ -30,6 +30,9 @@ typedef double tolerance_rule(const struct oracle_pair *pair, uint32_t row, uint
 tolerance_rule tolerance_impulse_answer, tolerance_impulse_momentum, tolerance_impulse_velocity, tolerance_event_hit,
     tolerance_event_velocity, tolerance_event_position;
 
+/* The same for those of thick fibers (tolerance_tube.c). */
+tolerance_rule tolerance_tube_tick, tolerance_tube_points, tolerance_tube_normal;
+
 /* The same for those of walls and of shear (tolerance_flow.c). */
 tolerance_rule tolerance_motion, tolerance_wall_velocity, tolerance_wall_position, tolerance_wall_given, tolerance_slid,
     tolerance_affine, tolerance_filled, tolerance_filled_momentum, tolerance_account_given;

@@ -78,11 +78,13 @@ static bool check_force(const struct scene *scene, struct message *message)
              force, force / friction, BEAD_MOST_SPEED * friction, BEAD_MOST_SPEED);
 }
 
-/* What is observed of a bead, and what is not where one is. */
+/* What is observed of a bead, and what is not where one is; what has no tensions in it. */
 static bool check_bead(const struct scene *scene, struct message *message)
 {
   const uint64_t *every = scene->observe.every;
-  const bool bead = model_has_bead(&scene->model);
+  const bool bead = model_has_bead(&scene->model), tense = scene->model.medium.inextensible;
+  static const char without_tension[] =
+      "the tension of bonds is not in its stress; allowed without medium.inextensible";
   const struct {
     bool ok;
     const char *key, *why;
@@ -94,6 +96,8 @@ static bool check_bead(const struct scene *scene, struct message *message)
        "momentum that the solvent gives to the bead is not in it; allowed without a bead"},
       {!bead || every[OBSERVE_PROFILE] == 0, "observe.profile",
        "a slab is not full of solvent where the bead is; allowed without a bead"},
+      {!tense || every[OBSERVE_PRESSURE] == 0, "observe.pressure", without_tension},
+      {!tense || every[OBSERVE_MEMORY] == 0, "observe.memory", without_tension},
   };
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
     if (!rows[i].ok)

@@ -37,6 +37,11 @@ static const struct {
         {"the fiber of vertex",
          "has places where its tensor (oseen) is not positive, so that no noise belongs to it; a pivot is", "D0", false,
          true},
+    [FAULT_TENSION] =
+        {"the fiber of vertex",
+         "has bonds whose tensions cannot be found: a bond has no length, or the tensor is not positive; a "
+         "pivot of their matrix is",
+         "D0", false, true},
     [FAULT_NO_MEMORY] = {"", "", "", false},
 };
 

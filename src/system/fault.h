@@ -28,6 +28,7 @@ enum fault_code {
   FAULT_BEAD_OVERLAP,   /* a bond overlaps with the bead at the start: the distance of its axis from the center */
   FAULT_NO_ROOM,        /* a thick fiber overlaps with others wherever it is laid: its number, and the attempts */
   FAULT_MOBILITY,       /* the diffusion tensor of a fiber is not positive: its first vertex, and a pivot over D0 */
+  FAULT_TENSION,        /* the tensions of a fiber's bonds cannot be found: its first vertex, and a pivot */
   FAULT_NO_MEMORY       /* a list of neighbor bonds could not grow */
 };
 

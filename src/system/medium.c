@@ -25,6 +25,8 @@ static bool check_company(const struct model *m, struct model_error *error)
        "only a solvent of collision cells has springs; allowed without a medium"},
       {m->walls.kind == WALL_ABSENT, "walls",
        "only a solvent of collision cells has rules for walls; allowed without a medium"},
+      {!m->medium.inextensible || model_is_overdamped(m), "medium.inextensible",
+       "only vertices without velocities are held by tension; allowed with kind: overdamped"},
       {m->shear.rate == 0.0 && m->shear.strain == 0.0, "shear",
        "only a solvent of collision cells has rules for images that slide; allowed without a medium"},
   };
@@ -118,6 +120,15 @@ static uint32_t longest_fiber(const struct model *m)
   return most;
 }
 
+/* The shortest bond length of all kinds. */
+static double shortest_bond(const struct model *m)
+{
+  double least = m->kinds > 0 ? m->kind[0].bond_length : 1.0;
+  for (uint32_t k = 1; k < m->kinds; k++)
+    least = fmin(least, m->kind[k].bond_length);
+  return least;
+}
+
 static bool finish_overdamped(struct model *m, struct model_error *error)
 {
   const struct medium_model *b = &m->medium;
@@ -133,6 +144,8 @@ static bool finish_overdamped(struct model *m, struct model_error *error)
        "pairs"},
       {coupled == (b->radius > 0.0), coupled ? "medium.tensor" : "medium.radius",
        "a tensor needs a radius above 0, and a radius a tensor; allowed: both or none"},
+      {!b->inextensible || shortest_bond(m) > 0.0, "medium.inextensible",
+       "a kind of fibers has the bond_length 0, which no tension can hold; allowed with inextensible: above 0"},
       {!coupled || longest_fiber(m) <= MOST_COUPLED, "medium.tensor",
        "a fiber has more than 1000 vertices, and its matrix more than 72 MB; allowed with a tensor: up to 1000"},
   };

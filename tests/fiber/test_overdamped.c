@@ -1,4 +1,6 @@
 /* Overdamped motion: tensors, their factors, one step, and chains whose statics are known at any step. */
+#include <gsl/gsl_eigen.h>
+
 #include "exact.h"
 #include "fiber/mobility.h"
 #include "fiber/overdamped.h"
@@ -80,6 +82,103 @@ static void factors(void **unused)
         assert_close(product, tensor[j * ORDER + i], 2e-12);
       }
     }
+  }
+}
+
+static double inner(uint32_t n, const double *x, const double *y)
+{
+  double sum = 0.0;
+  for (uint32_t i = 0; i < n; i++)
+    sum += x[i] * y[i];
+  return sum;
+}
+
+enum { MOST = 27 };
+
+/* Lanczos' vectors q[steps] of D from z on, orthogonal, and the tridiagonal matrix a, b that D is in their space.
+ * Returns their number. */
+static uint32_t lanczos(uint32_t n, const double *d, const double *z, double q[MOST][MOST], double *a, double *b)
+{
+  const double size = sqrt(inner(n, z, z));
+  for (uint32_t i = 0; i < n; i++)
+    q[0][i] = z[i] / size;
+  for (uint32_t step = 0;; step++) {
+    double w[MOST];
+    mobility_apply(n, d, q[step], w);
+    a[step] = inner(n, q[step], w);
+    for (uint32_t k = 0; k < 2 * (step + 1); k++) { /* twice against each */
+      const double share = inner(n, q[k / 2], w);
+      for (uint32_t i = 0; i < n; i++)
+        w[i] -= share * q[k / 2][i];
+    }
+    b[step] = sqrt(inner(n, w, w));
+    if (step + 1 == n || b[step] < 1e-10)
+      return step + 1;
+    for (uint32_t i = 0; i < n; i++)
+      q[step + 1][i] = w[i] / b[step];
+  }
+}
+
+/* The symmetric root of D times z, from products with D alone (Ando et al., J. Chem. Phys. 137, 064106 (2012)). */
+static void lanczos_root(uint32_t n, const double *d, const double *z, double *y)
+{
+  double q[MOST][MOST], a[MOST], b[MOST];
+  const uint32_t m = lanczos(n, d, z, q, a, b);
+  gsl_matrix *t = gsl_matrix_calloc(m, m), *v = gsl_matrix_alloc(m, m);
+  gsl_vector *e = gsl_vector_alloc(m);
+  gsl_eigen_symmv_workspace *space = gsl_eigen_symmv_alloc(m);
+  for (uint32_t k = 0; k < m; k++) {
+    gsl_matrix_set(t, k, k, a[k]);
+    if (k + 1 < m)
+      gsl_matrix_set(t, k + 1, k, b[k]);
+  }
+  gsl_eigen_symmv(t, e, v, space);
+  memset(y, 0, n * sizeof *y);
+  for (uint32_t k = 0; k < m; k++)
+    for (uint32_t j = 0; j < m; j++) {
+      const double root = sqrt(fmax(gsl_vector_get(e, k), 0.0)) * gsl_matrix_get(v, j, k) * gsl_matrix_get(v, 0, k);
+      for (uint32_t i = 0; i < n; i++)
+        y[i] += sqrt(inner(n, z, z)) * root * q[j][i];
+    }
+  gsl_eigen_symmv_free(space);
+  gsl_matrix_free(t);
+  gsl_matrix_free(v);
+  gsl_vector_free(e);
+}
+
+/* The second opinion on Cholesky's root: that of Lanczos, of every unit vector, is symmetric, and its square is L L^T.
+ * So both noises have the same covariance. */
+static void lanczos_agrees(void **unused)
+{
+  (void)unused;
+  enum { N = 9, ORDER = 3 * N };
+  struct dice dice = {dice_seed(3405)};
+  for (int k = 0; k < 50; k++) {
+    static double d[ORDER * ORDER], left[ORDER * ORDER], root[ORDER][ORDER], column[ORDER][ORDER];
+    struct vec3 place[N];
+    const double spread = dice_between(&dice, 0.5, 4.0);
+    double pivot;
+    for (int i = 0; i < N; i++)
+      place[i] = dice_vector(&dice, spread);
+    mobility_fill(mobility_of(TENSOR_RPY), 0.5, N, place, d);
+    memcpy(left, d, sizeof left);
+    assert_true(mobility_factor(ORDER, left, &pivot));
+    for (int i = 0; i < ORDER; i++) {
+      double unit[ORDER] = {0};
+      unit[i] = 1.0;
+      lanczos_root(ORDER, d, unit, root[i]);
+      mobility_root(ORDER, left, unit, column[i]);
+    }
+    for (int i = 0; i < ORDER; i++)
+      for (int j = 0; j <= i; j++) {
+        double square = 0.0, product = 0.0;
+        for (int l = 0; l < ORDER; l++) {
+          square += root[l][i] * root[l][j];
+          product += column[l][i] * column[l][j];
+        }
+        assert_close(root[i][j], root[j][i], 1e-9);
+        assert_close(square, product, 1e-10);
+      }
   }
 }
 
@@ -257,8 +356,13 @@ static void oseen_stops(void **unused)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(blocks),      cmocka_unit_test(factors),       cmocka_unit_test(oseen_is_not_positive),
-      cmocka_unit_test(one_step),    cmocka_unit_test(free_draining), cmocka_unit_test(kirkwood_of_samples),
+      cmocka_unit_test(blocks),
+      cmocka_unit_test(factors),
+      cmocka_unit_test(lanczos_agrees),
+      cmocka_unit_test(oseen_is_not_positive),
+      cmocka_unit_test(one_step),
+      cmocka_unit_test(free_draining),
+      cmocka_unit_test(kirkwood_of_samples),
       cmocka_unit_test(oseen_stops),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -37,6 +37,11 @@ static const struct refusal {
     {"medium: {kind: overdamped, rate: 1, draw: relax}\ncrossing: {forbidden: false}" FIBER, 16, "draws no velocities"},
     {"medium: {kind: overdamped, rate: 1, density: 3}\ncrossing: {forbidden: false}" FIBER, 46, "has no particles"},
     {"medium: {kind: overdamped, rate: 1, tensor: stokes}" FIBER, 45, "allowed: none | oseen | rpy"},
+    {"medium: {kind: private, rate: 1, inextensible: true}" FIBER, 48, "allowed with kind: overdamped"},
+    {"medium: {kind: overdamped, rate: 1, inextensible: true}\ncrossing: {forbidden: false}\nfibers:\n  - {name: f, "
+     "count: 1, "
+     "vertices: 2, mass: 1, bond_length: 0, spring: 1}",
+     51, "which no tension can hold"},
     {"medium: {kind: private, rate: 10.001}" FIBER, 31, "no probability"},
     {"medium: {kind: private, rate: 1, density: 3}" FIBER, 43, "a private bath has no particles"},
     {"medium: {kind: private, rate: 1, weight: quadratic}" FIBER, 42, "knows no distances"},
@@ -62,6 +67,10 @@ static const struct elsewhere {
      "m.yaml:6:23: ", "cannot exchange momentum"},
     {"box: [6, 6, 6]", "medium: {kind: overdamped, rate: 1}\nwalls: {kind: no-slip}" FIBER,
      "m.yaml:6:8: ", "rules for walls"},
+    {"box: [6, 6, 6]",
+     "medium: {kind: overdamped, rate: 1, inextensible: true}\ncrossing: {forbidden: false}\nobserve: {pressure: "
+     "{every: 1}}" FIBER,
+     "m.yaml:7:21: ", "the tension of bonds is not in its stress"},
 };
 
 static bool read_scene(const char *first, const char *last, struct scene *scene, struct message *message)

@@ -7,11 +7,11 @@ import math
 
 import numpy as np
 
-from .lattice import CELL, UNIT, cross, dot
+from . import tubes
+from .lattice import CELL, UNIT, closest, cross, dot
 
 TICKS = 65536
 MOST_CONTACTS = 1000
-TINY = 2.0**-1000
 NONE, FULL, SOFTENED = 0, 1, 2
 
 
@@ -130,21 +130,6 @@ def first_contact(pair, start):
 
 
 # --- a contact ---
-
-
-def clamp(x):
-    return max(min(x, 1.0), 0.0)
-
-
-def closest(p, q, w):
-    """s and t of the points of two bonds that are closest to each other, and the gap between them."""
-    n = cross(p, q)
-    pp, qq, nn = dot(p, p) + TINY, dot(q, q) + TINY, dot(n, n) + TINY
-    pq, pw, qw = dot(p, q), dot(p, w), dot(q, w)
-    of_lines = clamp((pw * qq - pq * qw) / nn)
-    t = clamp((of_lines * pq - qw) / qq)
-    s = clamp((t * pq + pw) / pp)
-    return s, t, (w + t * q) + -s * p
 
 
 def levers(s, t):
@@ -274,24 +259,53 @@ class Drift:
         vectors = r[j] - r[i], r[l] - r[k], (r[k] + shift) - r[i], u[j] - u[i], u[l] - u[k], u[k] - u[i]
         return [vector.tolist() for vector in vectors]
 
+    def reach(self, bond, other):
+        """Distance of the axes at a contact; 0: both are thin lines."""
+        return 0 if self.model.radius is None else int(self.model.radius[bond] + self.model.radius[other])
+
+    def never_touch(self, bond, other, image):
+        """Of thick fibers; of thin ones neighbors() leaves out all images of bonds that share a vertex."""
+        model = self.model
+        if model.radius is None or any(image):
+            return bond == other
+        if set(self.ends(bond)) & set(self.ends(other)):
+            return True
+        between = abs(bond - other)
+        if model.fiber[bond] != model.fiber[other]:
+            return False
+        members = np.flatnonzero(model.fiber == model.fiber[bond])
+        if (model.next[members] >= 0).all():  # a ring
+            between = min(between, len(members) - between)
+        return between < model.blind[bond]
+
     def neighbors(self, bond, tick):
         """(other bond, image) of all that may come near from a tick on: boxes around their paths overlap."""
         bonds, following = self.model.bonds, self.model.next
         ends = [self.place(v, t) for v in (bonds, following[bonds]) for t in (tick, TICKS)]
         low, high = np.min(ends, axis=0), np.max(ends, axis=0)
         mine = np.flatnonzero(bonds == bond)[0]
+        if self.model.radius is not None:
+            pad = self.model.radius[bonds][:, None] + 2**24
+            low, high = low - pad, high + pad
         edge = self.model.box * CELL
         first, last = -((high - low[mine]) // edge), (high[mine] - low) // edge
         shared = np.isin(bonds, self.ends(bond)) | np.isin(following[bonds], self.ends(bond))
+        if self.model.radius is not None:
+            shared[:] = False
         for row in np.flatnonzero((first <= last).all(axis=1) & ~shared):
             ranges = [range(a, b + 1) for a, b in zip(first[row].tolist(), last[row].tolist())]
             for image in ((i, j, k) for i in ranges[0] for j in ranges[1] for k in ranges[2]):
-                yield int(bonds[row]), image
+                if not self.never_touch(bond, int(bonds[row]), image):
+                    yield int(bonds[row]), image
 
     def search_pair(self, bond, other, image, tick):
         if other < bond:
             bond, other, image = other, bond, tuple(-k for k in image)
-        found = first_contact(self.pair(bond, other, image), tick) if tick < TICKS else TICKS
+        reach, found = self.reach(bond, other), TICKS
+        if tick < TICKS and reach:
+            found = tubes.first_contact(self.pair(bond, other, image), reach, tick)
+        elif tick < TICKS:
+            found = first_contact(self.pair(bond, other, image), tick)
         if found < TICKS:
             self.events[bond, other, image] = found
 
@@ -318,8 +332,9 @@ class Drift:
         p, q, w = at_tick(self.pair(bond, other, image), tick)
         volume = idot(icross(p, q), w)
         p, q, w = (np.array(v) * UNIT for v in (p, q, w))
-        s, t, gap = closest(p, q, w)
-        if volume == 0 and np.sqrt(dot(gap, gap)) < 2.0**-42:
+        thick = self.reach(bond, other) > 0
+        s, t, gap = tubes.touch(p, q, w) if thick else closest(p, q, w)
+        if not thick and volume == 0 and np.sqrt(dot(gap, gap)) < 2.0**-42:
             del self.events[bond, other, image]
             self.search_pair(bond, other, image, tick + 1)
             return
@@ -327,7 +342,7 @@ class Drift:
         velocity = np.zeros(3)
         for lever, vertex in zip(levers(s, t), four):
             velocity = velocity + lever * self.velocity[vertex]
-        normal = normal_of(volume, p, q, gap, velocity)
+        normal = tubes.direction(gap) if thick else normal_of(volume, p, q, gap, velocity)
         if self.cluster[four].any() or (self.contacts[four] >= MOST_CONTACTS).any():
             self.make_rigid(four, tick)
             return

@@ -7,6 +7,7 @@ import numpy as np
 
 CELL = 1 << 40  # lattice units per a0
 UNIT = 2.0**-40
+TINY = 2.0**-1000
 
 
 def to_lattice(displacement):
@@ -26,3 +27,18 @@ def dot(a, b):
 def cross(a, b):
     (ax, ay, az), (bx, by, bz) = (np.moveaxis(np.asarray(v), -1, 0) for v in (a, b))
     return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=-1)
+
+
+def clamp(x):
+    return max(min(x, 1.0), 0.0)
+
+
+def closest(p, q, w):
+    """s and t of the points of two bonds that are closest to each other, and the gap between them."""
+    n = cross(p, q)
+    pp, qq, nn = dot(p, p) + TINY, dot(q, q) + TINY, dot(n, n) + TINY
+    pq, pw, qw = dot(p, q), dot(p, w), dot(q, w)
+    of_lines = clamp((pw * qq - pq * qw) / nn)
+    t = clamp((of_lines * pq - qw) / qq)
+    s = clamp((t * pq + pw) / pp)
+    return s, t, (w + t * q) + -s * p

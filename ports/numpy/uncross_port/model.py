@@ -33,6 +33,8 @@ class Model:
     constant_force: np.ndarray
     flow: flows.Flow | None = None  # walls or shear
     dumbbells: pairs.Dumbbells | None = None
+    radius: np.ndarray | None = None  # of tubes, lattice units; None: all fibers are thin
+    blind: np.ndarray | None = None  # bonds, along the fiber
     medium: media.Medium | None = None  # another bath than collision cells
 
     @property
@@ -75,5 +77,7 @@ def from_tables(tables):
         constant_force=vertex[:, 4:7],
         flow=flows.from_tables(tables),
         dumbbells=pairs.from_tables(tables),
+        radius=tables["tubes"][:, 0] if len(tables["tubes"]) else None,
+        blind=tables["tubes"][:, 1] if len(tables["tubes"]) else None,
         medium=media.from_tables(tables),
     )

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from . import dumbbells, events, fiber, flow, media, random, solvent
+from . import dumbbells, events, fiber, flow, media, random, solvent, tubes
 from . import model as models
 from . import sweep as sweeps
 from .pack import Tables
@@ -64,6 +64,21 @@ def sweep(model, step, given):
 def contact_search(model, step, given):
     vectors = zip(*(given[name].tolist() for name in ("p", "q", "w", "p_rate", "q_rate", "w_rate")))
     return {"tick": column([events.first_contact(pair, int(first)) for pair, first in zip(vectors, given["from"][:, 0])])}
+
+
+def tube_search(model, step, given):
+    vectors = zip(*(given[name].tolist() for name in ("p", "q", "w", "p_rate", "q_rate", "w_rate")))
+    how = zip(given["reach"][:, 0].tolist(), given["from"][:, 0].tolist())
+    return {"tick": column([tubes.first_contact(pair, *row) for pair, row in zip(vectors, how)])}
+
+
+def tube_contact(model, step, given):
+    contact, normal = [], []
+    for row in zip(*(given[name].tolist() for name in ("p", "q", "w"))):
+        s, t, gap = tubes.touch(*(tubes.in_a0(vector) for vector in row))
+        contact.append([s, t])
+        normal.append(tubes.direction(gap))
+    return {"contact": np.array(contact), "normal": np.array(normal)}
 
 
 FOUR = "p0", "p1", "q0", "q1"
@@ -359,6 +374,8 @@ OPERATORS = {
     "long_sweep": sweep,
     "sweep": sweep,
     "contact_search": contact_search,
+    "tube_search": tube_search,
+    "tube_contact": tube_contact,
     "impulse": impulse,
     "long_event_drift": event_drift,
     "event_drift": event_drift,

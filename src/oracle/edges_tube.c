@@ -1,0 +1,164 @@
+/* Tubes in flight and in contact, as scenes seldom have them: parallel, end on end, slow, grazing, at rest. */
+#include <math.h>
+
+#include "contact/capsule.h"
+#include "contact/shape.h"
+#include "contact/tube.h"
+#include "oracle/dice.h"
+#include "oracle/tube_rows.h"
+
+/* --- places ------------------------------------------------------------------------------------------------------- */
+
+enum direction { ANY_DIRECTION, PARALLEL, NEARLY_PARALLEL, ON_ONE_LINE };
+enum place { ANY_PLACE, END_ON_SIDE, END_ON_END };
+
+/* Tubes of a bond of 2^bond units along each axis at most, that touch at `tick`, or did if `direction` lets them; their
+ * ends move by 2^rate units in a tick. graze: they pass by in a depth of 2^graze units; 0: they do as they come. */
+static const struct tube_kind {
+  int bond, rate;
+  enum direction direction;
+  enum place place;
+  int graze;
+  uint32_t rows;
+} kinds[] = {
+    {39, 20, ANY_DIRECTION, ANY_PLACE, 0, 30},    {39, 20, ANY_DIRECTION, END_ON_SIDE, 0, 20},
+    {39, 20, ANY_DIRECTION, END_ON_END, 0, 20},   {39, 20, PARALLEL, ANY_PLACE, 0, 16},
+    {39, 20, NEARLY_PARALLEL, ANY_PLACE, 0, 16},  {39, 20, ON_ONE_LINE, END_ON_END, 0, 12},
+    {39, 6, ANY_DIRECTION, ANY_PLACE, 0, 20},     {36, 20, ANY_DIRECTION, END_ON_SIDE, 0, 12},
+    {39, 21, ANY_DIRECTION, ANY_PLACE, 26, 16},   {39, 21, ANY_DIRECTION, END_ON_END, 26, 16},
+    {39, 21, NEARLY_PARALLEL, ANY_PLACE, 30, 10},
+};
+enum { KINDS = sizeof kinds / sizeof *kinds, AT_REST = 6, TRIES = 4000 };
+_Static_assert(30 + 20 + 20 + 16 + 16 + 12 + 20 + 12 + 16 + 16 + 10 + AT_REST <= ORACLE_TUBE_SEARCHES, "room");
+
+static struct point plus_times(struct point p, int64_t factor, struct point q)
+{
+  return (struct point){p.x + factor * q.x, p.y + factor * q.y, p.z + factor * q.z};
+}
+
+static struct point units_of(struct vec3 r)
+{
+  return (struct point){llrint(r.x), llrint(r.y), llrint(r.z)};
+}
+
+static struct vec3 real(struct point p)
+{
+  return (struct vec3){(double)p.x, (double)p.y, (double)p.z};
+}
+
+static double draw_place(struct dice *d, enum place place, bool end)
+{
+  return place == END_ON_END || (place == END_ON_SIDE && end) ? (double)(dice_u64(d) % 2) : dice_between(d, 0.1, 0.9);
+}
+
+/* A unit vector, perpendicular to the bonds that are touched at their sides. */
+static struct vec3 draw_gap(struct dice *d, struct vec3 p, struct vec3 q, double s, double t)
+{
+  struct vec3 n = dice_vector(d, 1.0);
+  const bool side_p = s > 0.0 && s<1.0, side_q = t> 0.0 && t < 1.0;
+  const struct vec3 both = vec3_cross(p, q);
+  if (side_p && side_q && vec3_norm(both) > 1e-3 * vec3_norm(p) * vec3_norm(q))
+    n = both;
+  else if (side_p || side_q) {
+    const struct vec3 along = side_p ? p : q;
+    n = vec3_add_scaled(n, -vec3_dot(n, along) / vec3_dot(along, along), along);
+  }
+  return vec3_scale(1.0 / vec3_norm(n), n);
+}
+
+/* Two tubes at some time, their axes `reach` apart at the points s and t, or nearer where that is no nearest line. */
+static struct oracle_tubes draw_tubes(struct dice *d, const struct tube_kind *k, int64_t reach)
+{
+  const int64_t bond = (int64_t)1 << k->bond;
+  struct oracle_tubes c = {dice_point(d, bond), dice_point(d, bond), {0, 0, 0}};
+  const double s = draw_place(d, k->place, true), t = draw_place(d, k->place, false);
+  if (k->direction != ANY_DIRECTION)
+    c.q = plus_times((struct point){0, 0, 0}, dice_u64(d) % 2 ? 2 : -1, c.p);
+  if (k->direction == NEARLY_PARALLEL)
+    c.q = plus_times(c.q, 1, dice_point(d, bond >> 12));
+  struct vec3 gap = draw_gap(d, real(c.p), real(c.q), s, t);
+  if (k->direction == ON_ONE_LINE)
+    gap = vec3_scale((s > 0.5 ? 1.0 : -1.0) / vec3_norm(real(c.p)), real(c.p));
+  const struct vec3 w = vec3_add_scaled(vec3_scale(s, real(c.p)), -t, real(c.q));
+  c.w = units_of(vec3_add_scaled(w, (double)reach, gap));
+  return c;
+}
+
+/* --- searches ----------------------------------------------------------------------------------------------------- */
+
+static struct oracle_search draw_search(struct dice *d, const struct tube_kind *k)
+{
+  const int64_t reach = ((int64_t)1 << 36) + dice_integer(d, (int64_t)1 << 35), rate = (int64_t)1 << k->rate,
+                tick = (int64_t)(dice_u64(d) % FLIGHT_TICKS);
+  const struct oracle_tubes c = draw_tubes(d, k, reach);
+  struct flight_pair f = {.p_rate = dice_point(d, rate), .q_rate = dice_point(d, rate), .w_rate = dice_point(d, rate)};
+  if (k->direction == PARALLEL || k->direction == ON_ONE_LINE)
+    f.p_rate = f.q_rate = (struct point){0, 0, 0};
+  f.p = plus_times(c.p, -tick, f.p_rate), f.q = plus_times(c.q, -tick, f.q_rate);
+  f.w = plus_times(c.w, -tick, f.w_rate);
+  return (struct oracle_search){f, reach, 0};
+}
+
+/* Tubes that would just pass by are made thicker, so that they graze: by so much that they touch in depth 2^graze. */
+static bool make_grazing(struct oracle_search *s, int graze)
+{
+  int64_t passes = (int64_t)1 << 20, touches = s->reach;
+  if (tube_contact(&s->pair, touches, 0) == FLIGHT_TICKS || tube_contact(&s->pair, passes, 0) < FLIGHT_TICKS)
+    return false;
+  while (touches - passes > 1) {
+    const int64_t middle = passes + (touches - passes) / 2;
+    *(tube_contact(&s->pair, middle, 0) < FLIGHT_TICKS ? &touches : &passes) = middle;
+  }
+  s->reach = touches + ((int64_t)1 << graze);
+  return s->reach > (int64_t)1 << 34;
+}
+
+static bool is_wanted(const struct tube_kind *k, struct oracle_search *s)
+{
+  if (k->graze > 0 && !make_grazing(s, k->graze))
+    return false;
+  const int32_t tick = tube_contact(&s->pair, s->reach, 0);
+  return oracle_search_is_legal(&s->pair, 0.0) && tube_excluded(&s->pair, s->reach, 0, 0) && tick > 0 &&
+         tick < FLIGHT_TICKS - 1;
+}
+
+uint32_t oracle_edges_tube_searches(struct oracle_search search[ORACLE_TUBE_SEARCHES])
+{
+  struct dice d = {79};
+  uint32_t n = 0;
+  for (int k = 0; k < KINDS; k++) {
+    const uint32_t end = n + kinds[k].rows;
+    for (int tries = 0; n < end && tries < TRIES; tries++) {
+      search[n] = draw_search(&d, &kinds[k]);
+      n += is_wanted(&kinds[k], &search[n]);
+    }
+  }
+  for (uint32_t k = 0; k < AT_REST; k++) { /* no contact; half of them stand in each other */
+    struct oracle_search s = search[k];
+    s.pair.p_rate = s.pair.q_rate = s.pair.w_rate = (struct point){0, 0, 0};
+    if (k % 2)
+      s.pair.w = (struct point){s.reach / 2, 0, 0};
+    search[n++] = s;
+  }
+  return n;
+}
+
+/* --- contacts ----------------------------------------------------------------------------------------------------- */
+
+uint32_t oracle_edges_tube_contacts(struct oracle_tubes tubes[ORACLE_TUBE_CONTACTS])
+{
+  static const struct tube_kind of[] = {
+      {39, 0, ANY_DIRECTION, ANY_PLACE, 0, 20},  {39, 0, ANY_DIRECTION, END_ON_SIDE, 0, 20},
+      {39, 0, ANY_DIRECTION, END_ON_END, 0, 20}, {39, 0, PARALLEL, ANY_PLACE, 0, 20},
+      {39, 0, ON_ONE_LINE, END_ON_END, 0, 10},   {36, 0, ANY_DIRECTION, END_ON_SIDE, 0, 10},
+  };
+  struct dice d = {83};
+  uint32_t n = 0;
+  for (size_t k = 0; k < sizeof of / sizeof *of; k++)
+    for (const uint32_t end = n + of[k].rows; n < end;) {
+      tubes[n] = draw_tubes(&d, &of[k], ((int64_t)1 << 36) + dice_integer(&d, (int64_t)1 << 35));
+      const struct oracle_tubes *c = &tubes[n];
+      n += capsule_distance(point_in_a0(c->p), point_in_a0(c->q), point_in_a0(c->w)) > 0x1p-6; /* not in each other */
+    }
+  return n;
+}

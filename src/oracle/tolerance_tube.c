@@ -1,0 +1,61 @@
+/* Tolerances of contacts of thick fibers: docs/porting.md derives them. */
+#include <math.h>
+
+#include "contact/tube.h"
+#include "oracle/tolerance.h"
+#include "oracle/tube_rows.h"
+
+static double length(struct point p)
+{
+  return sqrt((double)p.x * (double)p.x + (double)p.y * (double)p.y + (double)p.z * (double)p.z);
+}
+
+/* Lattice units: what the proof of a search leaves open within a tick, and rounding. */
+static int64_t doubt(const struct oracle_pair *p, const struct oracle_search *s)
+{
+  const double way = length(s->pair.p_rate) + length(s->pair.q_rate) + length(s->pair.w_rate),
+               size = length(s->pair.p) + length(s->pair.q) + length(s->pair.w) + FLIGHT_TICKS * way;
+  return (int64_t)(2.0 + 2.0 * way * way / (double)s->reach + 64.0 * size * p->rounding);
+}
+
+/* A port may answer as if the tubes were a little thicker, or thinner. */
+double tolerance_tube_tick(const struct oracle_pair *p, uint32_t row, uint32_t column)
+{
+  struct oracle_search s;
+  if (!oracle_tube_search_of(p, row, &s))
+    return 0.0;
+  const int64_t off = doubt(p, &s);
+  const double ours = pack_value(p->ours, row, column), least = tube_contact(&s.pair, s.reach + off, s.from),
+               most = s.reach > off ? tube_contact(&s.pair, s.reach - off, s.from) : FLIGHT_TICKS;
+  return fmax(fmax(ours - least, most - ours), 0.0);
+}
+
+/* How much s and t amplify rounding. Tubes that are parallel beyond doubt touch in the middle of where they are side by
+ * side: that is well conditioned. */
+static double condition(struct vec3 p, struct vec3 q)
+{
+  const double a = vec3_norm(p), b = vec3_norm(q), n = vec3_norm(vec3_cross(p, q)) / (a * b),
+               unlike = 1.0 + (a + b) / fmin(a, b);
+  return n < 0.5e-12 ? unlike : unlike / (n * n);
+}
+
+double tolerance_tube_points(const struct oracle_pair *p, uint32_t row, uint32_t column)
+{
+  struct vec3 a, b, w;
+  (void)column;
+  if (!oracle_tubes_of(p, row, &a, &b, &w))
+    return 0.0;
+  return 64.0 * condition(a, b) * (1.0 + vec3_norm(w) / fmin(vec3_norm(a), vec3_norm(b))) * p->rounding;
+}
+
+double tolerance_tube_normal(const struct oracle_pair *p, uint32_t row, uint32_t column)
+{
+  const struct pack_table *contact = oracle_sibling(p, "out.contact");
+  struct vec3 a, b, w;
+  if (!contact || !oracle_tubes_of(p, row, &a, &b, &w))
+    return 0.0;
+  const double s = pack_value(contact, row, 0), t = pack_value(contact, row, 1),
+               size = vec3_norm(a) + vec3_norm(b) + vec3_norm(w);
+  const struct vec3 gap = vec3_add_scaled(vec3_add_scaled(w, t, b), -s, a);
+  return size / vec3_norm(gap) * (tolerance_tube_points(p, row, column) + 32.0 * p->rounding);
+}
