@@ -8,6 +8,7 @@ import dataclasses
 import io
 import math
 import os
+import re
 
 os.environ.setdefault("HDF5_USE_FILE_LOCKING", "FALSE")  # a run that is still going locks its trajectory
 import h5py  # noqa: E402
@@ -42,6 +43,16 @@ class Structure:
         """Numbers of the kinds whose fibers are closed: they have as many bonds as vertices."""
         bonds = numpy.bincount(self.kind[self.bonds[:, 0]], minlength=len(self.kinds))
         return set(numpy.flatnonzero(bonds == numpy.bincount(self.kind, minlength=len(self.kinds))).tolist())
+
+    @property
+    def diameters(self):
+        """Of each kind, a0: what its scene says after the kind's name. 0: a thin line, or nothing is said."""
+        found = []
+        for name in self.kinds:
+            text = re.search(rf"name:\s*[\"']?{re.escape(name)}\b.*?(?=name:|\Z)", self.scene, re.S)
+            number = re.search(r"^[^#]*\bdiameter:\s*([0-9.eE+-]+)", text[0], re.M) if text else None
+            found.append(float(number[1]) if number else 0.0)
+        return found
 
     @property
     def beads(self):
@@ -235,16 +246,18 @@ def marks(structure, points, camera):
     ends, bond = pieces(structure, points)
     beads = structure.beads
     colours, marked = fiber_colours(structure), marked_fiber(structure)
-    thick = min(0.16, 0.05 + 0.8 / max(1.0, len(structure.kind))**0.5)  # a0
+    line = min(0.16, 0.05 + 0.8 / max(1.0, len(structure.kind))**0.5)  # a0, for what has no diameter
+    thick = [diameter or line for diameter in structure.diameters]
     found = []
     flat = camera(ends.reshape(-1, 3)).reshape(-1, 2, 4)
     for piece, number in zip(flat, bond):
         fiber = structure.fiber[structure.bonds[number, 0]]
         near = piece[:, 3].mean()
-        width = max(1.0, thick * piece[:, 2].mean()) * (2.0 if fiber == marked else 1.0)
+        kind = structure.kind[structure.bonds[number, 0]]
+        width = max(1.0, thick[kind] * piece[:, 2].mean()) * (2.0 if fiber == marked and thick[kind] == line else 1.0)
         colour = _mix(colours[fiber], WHITE, 1.0 if fiber == marked else 0.4 + 0.6 * near)
         found.append(Mark(near, tuple(piece[0, :2]), tuple(piece[1, :2]), width, colour, int(number),
-                          is_hollow(structure.kind[structure.bonds[number, 0]])))
+                          is_hollow(kind)))
     inside = points[beads] - structure.edges * numpy.floor(points[beads] / structure.edges)
     for place, row in zip(camera(inside) if len(beads) else (), beads):
         colour = _mix(colours[structure.fiber[row]], WHITE, 0.4 + 0.6 * place[3])

@@ -119,6 +119,14 @@ static void report_statics(const struct si_scale *si, const struct model *m, con
   }
   if (!k->ring)
     sheet_row(si, "  end-to-end distance, rms", "R_e", sqrt(theory_end_to_end_square(k)), "a0", "");
+  if (k->stands_for == 0)
+    return;
+  const double n = k->stands_for;
+  sheet_row(si, "  stands for a chain of", "N", n, "", "vertices; what is lost:");
+  sheet_row(si, "  ... its end-to-end distance, squared", "", fiber_coarse_ratio(k, SIZE_ENDS), "", "times its own");
+  sheet_row(si, "  ... its radius of gyration, squared", "", fiber_coarse_ratio(k, SIZE_GYRATION), "", "times its own");
+  sheet_row(si, "  ... modes of N - 1", "", k->vertices - 1.0, "", "slowest ones; faster ones are not there");
+  sheet_row(si, "  ... its mass and its friction", "", k->vertices / n, "", "times its own if vertices are the same");
 }
 
 static void report_frequencies(const struct si_scale *si, const struct model *m, const struct fiber_kind *k)

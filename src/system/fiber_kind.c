@@ -9,6 +9,25 @@ double fiber_bonds(const struct fiber_kind *kind)
   return kind->ring ? kind->vertices : kind->vertices - 1.0;
 }
 
+/* The square of a size of a Gaussian chain of n vertices, over <l^2>: R_e^2 = n - 1, and six times R_g^2 = (n^2 - 1)/n.
+ */
+static double shape_of(double n, enum fiber_size size)
+{
+  return size == SIZE_ENDS ? n - 1.0 : (n * n - 1.0) / n;
+}
+
+double fiber_coarse_softening(const struct fiber_kind *kind)
+{
+  return kind->stands_for == 0 ? 1.0 : shape_of(kind->stands_for, kind->keeps) / shape_of(kind->vertices, kind->keeps);
+}
+
+double fiber_coarse_ratio(const struct fiber_kind *kind, enum fiber_size size)
+{
+  return kind->stands_for == 0
+             ? 1.0
+             : fiber_coarse_softening(kind) * shape_of(kind->vertices, size) / shape_of(kind->stands_for, size);
+}
+
 /* In d dimensions: <l> for p(l) ~ l^(d-1) exp(-k (l-l0)^2/2), l > 0; in the plane it is I_2/I_1. In space:
  *
  * <l> for p(l) ~ l^2 exp(-k (l-l0)^2/2), l > 0. With z = l sqrt(k), c = l0 sqrt(k), and the half-line moments

@@ -8,6 +8,13 @@
 /* Number of bonds of one fiber: N_v - 1, for a ring N_v. */
 double fiber_bonds(const struct fiber_kind *kind);
 
+/* A Gaussian chain that stands for a finer one keeps one of its sizes. The square of the other, or the same, over that
+ * of the finer chain; 1 without a finer one. */
+double fiber_coarse_ratio(const struct fiber_kind *kind, enum fiber_size size);
+
+/* k of the finer chain over k of this one: <l^2> over that of the finer one is its inverse. */
+double fiber_coarse_softening(const struct fiber_kind *kind);
+
 /* Mean bond length of a bond of this kind in equilibrium, in a0. */
 double fiber_mean_bond(const struct fiber_kind *kind);
 

@@ -108,6 +108,13 @@ enum frame {
 };
 
 /* How the fibers of a kind are laid at the start. */
+/* What a chain that stands for a finer one has in common with it. */
+enum fiber_size {
+  SIZE_ENDS,     /* the end-to-end distance */
+  SIZE_GYRATION, /* the radius of gyration */
+  FIBER_SIZES
+};
+
 enum fiber_start {
   START_BY_SHAPE,    /* not said: circle for rings, equilibrium for open fibers; model_finish writes which */
   START_EQUILIBRIUM, /* exact sample of the phantom chain, open fibers only */
@@ -130,11 +137,13 @@ struct fiber_kind {
   bool frozen;                /* they stand still, but take part in collisions: contact/frozen.h */
   double mass;                /* M, in m; effective: rounded to a multiple of MODEL_MASS_UNIT */
   double bond_length;         /* l0, in a0 */
-  double spring;              /* k = K/l0, in kT/a0^2: Eq. (1) */
-  double bending;             /* kappa: Eq. (2); 0: no bend forces, or given by persistence_length */
-  double persistence_length;  /* l_p, in a0: sets bending to l_p/l0; 0: not given */
-  double diameter;            /* D, in a0: of the tube around each bond; 0: a thin line */
-  struct vec3 force;          /* constant force on each vertex, in kT/a0 */
+  double spring;              /* k = K/l0, in kT/a0^2: Eq. (1); given of the finer chain if there is one */
+  uint32_t stands_for;        /* vertices of the finer Gaussian chain; 0: it is itself */
+  enum fiber_size keeps;
+  double bending;            /* kappa: Eq. (2); 0: no bend forces, or given by persistence_length */
+  double persistence_length; /* l_p, in a0: sets bending to l_p/l0; 0: not given */
+  double diameter;           /* D, in a0: of the tube around each bond; 0: a thin line */
+  struct vec3 force;         /* constant force on each vertex, in kT/a0 */
   enum fiber_start start;
   uint32_t dimensions;       /* derived by model_finish: those of the model; 0 is 3 */
   int64_t radius;            /* derived: D/2, lattice units */

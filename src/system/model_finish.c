@@ -173,6 +173,23 @@ static bool derive_bending(const struct look *look)
                      MODEL_MOST_BENDING);
 }
 
+/* A chain that stands for a finer one gets its spring from that of the other. */
+static bool derive_spring(const struct look *look)
+{
+  struct fiber_kind *k = look->kind;
+  if (k->stands_for == 0)
+    return k->keeps == SIZE_ENDS || reject_kind(look, "keeps", "there is no finer chain; allowed with stands_for");
+  if (k->bond_length != 0.0 || k->bending != 0.0 || k->ring || k->vertices < 2)
+    return reject_kind(look, "stands_for",
+                       "only an open Gaussian chain of 2 vertices or more stands for another one; allowed: bond_length "
+                       "0, no bending, no ring");
+  if (k->stands_for < k->vertices)
+    return reject_kind(look, "stands_for", "%u vertices for a finer chain of %u; allowed: %u and more", k->vertices,
+                       k->stands_for, k->vertices);
+  k->spring /= fiber_coarse_softening(k);
+  return true;
+}
+
 static bool check_shape(const struct look *look)
 {
   struct fiber_kind *k = look->kind;
@@ -404,9 +421,9 @@ static bool derive_tube(const struct look *look)
 
 static bool finish_kind(const struct look *look, uint64_t *vertices)
 {
-  return round_mass(look) && derive_bending(look) && check_shape(look) && check_count(look, vertices) &&
-         check_frozen(look) && check_extent(look) && check_places(look) && check_plane(look) && check_gap(look) &&
-         check_stability(look) && derive_tube(look);
+  return round_mass(look) && derive_bending(look) && derive_spring(look) && check_shape(look) &&
+         check_count(look, vertices) && check_frozen(look) && check_extent(look) && check_places(look) &&
+         check_plane(look) && check_gap(look) && check_stability(look) && derive_tube(look);
 }
 
 static bool finish_fibers(struct model *m, struct model_error *error)

@@ -21,6 +21,7 @@ static const char *const exclusion_words[] = {"shared-vertex", "paper", NULL};
 static const char *const crossing_words[] = {"sequential", "event-driven", NULL};
 static const char *const rejection_words[] = {"stay", "bounce", NULL};
 static const char *const frame_words[] = {"laboratory", "flow", NULL};
+static const char *const size_words[] = {"end-to-end", "gyration", NULL};
 static const char *const start_words[] = {"equilibrium", "straight", "circle", NULL};
 
 static const struct key solvent_keys[] = {
@@ -380,6 +381,26 @@ static const struct key fiber_keys[] = {
      .unit = "a0",
      .symbol = "l_p",
      .excludes = "bending",
+     .derives = true},
+    {.name = "stands_for",
+     .text = "Vertices of a finer Gaussian chain which this one stands for. `spring` is given of the finer chain then; "
+             "that "
+             "of this one follows, so that `keeps` stays. Needs `bond_length: 0`, open chains, no bending. See "
+             "[media.md](media.md#effective-potentials).",
+     .type = KEY_WHOLE32,
+     .optional = true,
+     .least = 0,
+     .most = 1000000000,
+     .offset = IN_KIND(stands_for),
+     .derives = true},
+    {.name = "keeps",
+     .text =
+         "With `stands_for`: what both chains have in common, the mean square of the `end-to-end` distance, or of the "
+         "radius of `gyration`.",
+     .type = KEY_CHOICE,
+     .absent = "end-to-end",
+     .choice = size_words,
+     .offset = IN_KIND(keeps),
      .derives = true},
     {.name = "diameter",
      .text = "Diameter of the tube around each bond, with half spheres at its ends; 0: a thin line. From 0.0001 to the "

@@ -95,9 +95,9 @@ static void measure_state(int edge, double ratio, int blocks, double time, bool 
     const int later = 4 * b >= 3 * blocks;
     sample_add(&z, now.z), sample_add(&s, now.s), sample_add(&zs[later], now.z), sample_add(&ss[later], now.s);
   }
-  printf("%5.0f  %.4f  %8.4f +- %.4f  %8.4f  %6.3f +- %.3f   %8.4f %8.4f   %6.3f %6.3f   %lu rigid\n", n, fraction,
-         z.mean, sample_error(&z), 1.0 + rod_b2(length, d) / v0 * fraction * rod_contact_value(fraction), s.mean,
-         sample_error(&s), zs[0].mean, zs[1].mean, ss[0].mean, ss[1].mean, (unsigned long)r.state.counts.rigid);
+  printf("%.0f,%.6f,%.6g,%.3g,%.6g,%.4f,%.4f,%.6g,%.6g,%.4f,%.4f,%lu\n", n, fraction, z.mean, sample_error(&z),
+         1.0 + rod_b2(length, d) / v0 * fraction * rod_contact_value(fraction), s.mean, sample_error(&s), zs[0].mean,
+         zs[1].mean, ss[0].mean, ss[1].mean, (unsigned long)r.state.counts.rigid);
   fflush(stdout);
   run_end(&r);
 }
@@ -108,7 +108,7 @@ int main(int argc, char **argv)
     fprintf(stderr, "usage: %s EDGE RATIO BLOCKS TIME random|aligned PHI...\n", argv[0]);
     return 2;
   }
-  printf("# rods     phi    Z                  parsons    S                  Z of quarters         S of quarters\n");
+  printf("rods,phi,Z,Z_error,parsons,S,S_error,Z_first,Z_second,S_first,S_second,rigid\n");
   for (int a = 6; a < argc; a++)
     measure_state(atoi(argv[1]), atof(argv[2]), atoi(argv[3]), atof(argv[4]), strcmp(argv[5], "aligned") == 0,
                   atof(argv[a]));
