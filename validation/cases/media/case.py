@@ -3,8 +3,9 @@ import math
 
 import numpy
 
-from lib import dilute, figures, stats
+from lib import dilute, figures, media
 from lib.case import Figure, Outcome, Verdict
+from lib.media import BLOCKS, at, fill, mean_of
 from lib.runs import Run
 
 TITLE = "Media around a chain"
@@ -15,15 +16,16 @@ STEP = 0.01    # b^2/D0
 EVERY = 20     # steps between samples
 CHAINS = {5: 200, 10: 100, 20: 50}
 LENGTH = {"quick": 1, "campaign": 10}
+QUICK_STEPS = 200000
 FIRST = 0.05    # b^2/D0: 5 steps; at the first lag a chain has hardly changed its shape
 DPD_PRESSURE, DPD_KNOWN = 23.65, 0.02  # rho 3, a 25: a program of its own, small steps
 
 
-def chain(name, medium, vertices, count, steps, hours, step=STEP, every=EVERY, first=2000):
+def chain(name, medium, vertices, count, steps, hours, step=STEP, every=EVERY, first=2000, memory=""):
     scene = (f"box: [64, 64, 64]\ntime_step: {step}\norder: drift-split\nmedium: {medium}\ncrossing: {{forbidden: false}}\n"
              f"fibers: [{{name: chain, count: {count}, vertices: {vertices}, mass: 1, bond_length: 0, spring: 3}}]\n"
-             f"observe: {{from: {first}, dynamics: {{every: {every}}}, statics: {{every: {every}}}}}\n")
-    return Run(name, scene=scene, steps=steps, hours=hours)
+             f"observe: {{from: {first}, dynamics: {{every: {every}}}, statics: {{every: {every}}}{memory}}}\n")
+    return Run(name, scene=scene, steps=steps, hours=hours, goals=((steps // 10, 0),) if steps > QUICK_STEPS else ())
 
 
 def runs(tier):
@@ -33,11 +35,12 @@ def runs(tier):
              for vertices, count in CHAINS.items()]
     found.append(chain("none-N10", "{kind: overdamped, rate: 1}", 10, 100, 40000 * n, 0.002 * n))
     found.append(chain("langevin-N10", "{kind: private, rate: 10, draw: relax}", 10, 50, 200000 * n, 0.005 * n, step=0.02,
-                       every=200, first=10000))
+                       every=200, first=10000, memory=", memory: {every: 5}"))
     fluid = ("box: [5, 5, 5]\ntime_step: 0.01\norder: kick-split\n"
              "medium: {kind: pairs, density: 3, rate: 9, draw: relax, weight: quadratic, repulsion: 25}\n"
              "observe: {pressure: {every: 20}, temperature: {every: 20}}\n")
-    return [*found, Run("dpd", scene=fluid, steps=20000 * n, hours=0.003 * n)]
+    found.append(Run("dpd", scene=fluid, steps=20000 * n, hours=0.003 * n))
+    return found + media.runs() if tier == "campaign" else found
 
 
 # --- what is known ----------------------------------------------------------------------------------------------------
@@ -59,18 +62,6 @@ def kirkwood(vertices):
 
 
 # --- verdicts ---------------------------------------------------------------------------------------------------------
-
-def at(table, name, time):
-    """(value, error) of the dynamics at the lag next to this time."""
-    row = int(numpy.argmin(abs(table["time"] - time)))
-    return table[name][row], table[name + "_error"][row]
-
-
-def fill(verdict, pair, systematic=0.0, **options):
-    verdict.measured, verdict.error = pair
-    verdict.tolerance = stats.tolerance(verdict.error, systematic=systematic, **options)
-    return verdict
-
 
 def chain_verdicts(results, vertices):
     """A step of 0.01 makes bonds too long by about 1 %, and D_K too low by half of it."""
@@ -102,16 +93,6 @@ def ideal_verdicts(results):
     if "langevin-N10" in results:
         fill(langevin, at(results["langevin-N10"].table("dynamics-chain"), "D_cumulative", 64.0))
     return [free, bond, langevin]
-
-
-BLOCKS = 16
-
-
-def mean_of(values):
-    """(mean, standard error) over blocks, the first tenth left out."""
-    values = values[len(values) // 10:]
-    blocks = values[:len(values) // BLOCKS * BLOCKS].reshape(BLOCKS, -1).mean(axis=1)
-    return float(blocks.mean()), float(blocks.std(ddof=1) / math.sqrt(BLOCKS))
 
 
 def fluid_verdicts(results):
@@ -148,4 +129,13 @@ def evaluate(results, tier):
     verdicts += ideal_verdicts(results) + fluid_verdicts(results)
     drawn = [Figure("chains", "N D/D0 of chains against the lag, with and without hydrodynamic interactions. Without, it is 1 at "
                     "any lag; with them it falls from Kirkwood's value by some per cent.", lambda: draw(results))] if results else []
-    return Outcome(verdicts, drawn, "" if results else "No run yet.")
+    if tier == "quick":
+        return Outcome(verdicts, drawn, "" if results else "No run yet.")
+    if media.costs(results):
+        drawn.insert(0, Figure("six", "The same chain of ten vertices in six media. Left: error of D against CPU time; lines fall as one over the "
+                               "root of the time from the point that was measured. Without hydrodynamic interactions D stays wrong by 65 %. Right: what each medium can "
+                               "show in this program.", lambda: media.draw_costs(results)))
+    if any(name in results for _, name, _ in media.REMEMBER):
+        drawn.append(Figure("memory", "Memory of the centre of mass of a chain of ten, in units in which all fluids have one curve. The line is for a "
+                            "chain that keeps its shape, in a fluid without sound and without end.", lambda: media.draw_memory(results)))
+    return Outcome(verdicts + media.verdicts(results), drawn, "" if results else "No run yet.")
