@@ -11,7 +11,8 @@ static inline double attempt(double shape, double normal, double u)
   const double d = shape - 1.0 / 3.0, c = 1.0 / sqrt(9.0 * d);
   const double root = 1.0 + c * normal, v = root * root * root;
   const bool below = elementary_log(u) < 0.5 * normal * normal + d - d * v + d * elementary_log(v);
-  return ((v > 0.0) & below) ? d * v : -1.0;
+  const bool taken = (v > 0.0) & below;
+  return taken ? d * v : -1.0;
 }
 
 /* From this attempt on; each takes two draws. */

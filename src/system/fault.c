@@ -15,24 +15,25 @@ static const struct {
   bool heated; /* it happens where something has become too hot */
   bool least;  /* the limit is the least value allowed, else the largest */
 } wording[] = {
-    [FAULT_NONE] = {"", "nothing wrong", "", false},
-    [FAULT_SOLVENT_MOVE] = {"solvent particle", "moves too far in one collision interval:", "a0", true},
-    [FAULT_SOLVENT_SPEED] = {"solvent particle", momentum_beyond, "m a0/t0", true},
-    [FAULT_VERTEX_SPEED] = {"vertex", momentum_beyond, "m a0/t0", true},
-    [FAULT_SOLVENT_ENERGY] = {"solvent particle", energy_beyond, "m a0^2/t0^2", true},
-    [FAULT_VERTEX_ENERGY] = {"vertex", energy_beyond, "m a0^2/t0^2", true},
-    [FAULT_CELL_MASS] = {"collision cell", "holds more mass than its sum can:", "m", true},
-    [FAULT_VERTEX_MOVE] = {"vertex", "moves too far in one time step:", "a0", true},
-    [FAULT_VERTEX_PLACE] = {"vertex", "is too far from the origin, unwrapped:", "a0", false},
-    [FAULT_SOLVENT_PLACE] = {"solvent particle", "is not in the box:", "a0", false},
-    [FAULT_VERTEX_WALL] = {"vertex", "is beyond a wall, at y =", "a0", false},
-    [FAULT_DUMBBELL] = {"dumbbell", "has a spring that is too long, or does not fit its two particles:", "a0", false},
-    [FAULT_BEAD_MOVE] = {"bead", "and the solvent near it reach too far in one collision interval:", "a0", true},
-    [FAULT_IN_BEAD] = {"solvent particle", "is inside the bead, at a distance from its center of", "a0", false},
-    [FAULT_BOND_TOO_LONG] = {"bond", "is longer than half the shortest box edge:", "a0", true},
+    [FAULT_NONE] = {"", "nothing wrong", "", false, false},
+    [FAULT_SOLVENT_MOVE] = {"solvent particle", "moves too far in one collision interval:", "a0", true, false},
+    [FAULT_SOLVENT_SPEED] = {"solvent particle", momentum_beyond, "m a0/t0", true, false},
+    [FAULT_VERTEX_SPEED] = {"vertex", momentum_beyond, "m a0/t0", true, false},
+    [FAULT_SOLVENT_ENERGY] = {"solvent particle", energy_beyond, "m a0^2/t0^2", true, false},
+    [FAULT_VERTEX_ENERGY] = {"vertex", energy_beyond, "m a0^2/t0^2", true, false},
+    [FAULT_CELL_MASS] = {"collision cell", "holds more mass than its sum can:", "m", true, false},
+    [FAULT_VERTEX_MOVE] = {"vertex", "moves too far in one time step:", "a0", true, false},
+    [FAULT_VERTEX_PLACE] = {"vertex", "is too far from the origin, unwrapped:", "a0", false, false},
+    [FAULT_SOLVENT_PLACE] = {"solvent particle", "is not in the box:", "a0", false, false},
+    [FAULT_VERTEX_WALL] = {"vertex", "is beyond a wall, at y =", "a0", false, false},
+    [FAULT_DUMBBELL] = {"dumbbell", "has a spring that is too long, or does not fit its two particles:", "a0", false,
+                        false},
+    [FAULT_BEAD_MOVE] = {"bead", "and the solvent near it reach too far in one collision interval:", "a0", true, false},
+    [FAULT_IN_BEAD] = {"solvent particle", "is inside the bead, at a distance from its center of", "a0", false, false},
+    [FAULT_BOND_TOO_LONG] = {"bond", "is longer than half the shortest box edge:", "a0", true, false},
     [FAULT_OVERLAP] = {"bond", "overlaps with another one: their axes are apart by", "a0", false, true},
     [FAULT_BEAD_OVERLAP] = {"bond", "overlaps with the bead: its axis is from the center by", "a0", false, true},
-    [FAULT_NO_ROOM] = {"fiber", "overlaps with others wherever it is laid:", "attempts", false},
+    [FAULT_NO_ROOM] = {"fiber", "overlaps with others wherever it is laid:", "attempts", false, false},
     [FAULT_MOBILITY] =
         {"the fiber of vertex",
          "has places where its tensor (oseen) is not positive, so that no noise belongs to it; a pivot is", "D0", false,
@@ -42,7 +43,7 @@ static const struct {
          "has bonds whose tensions cannot be found: a bond has no length, or the tensor is not positive; a "
          "pivot of their matrix is",
          "D0", false, true},
-    [FAULT_NO_MEMORY] = {"", "", "", false},
+    [FAULT_NO_MEMORY] = {"", "", "", false, false},
 };
 
 void fault_describe(const struct fault *fault, char *text, size_t size)

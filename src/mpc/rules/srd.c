@@ -16,23 +16,10 @@ static uint64_t add_particles(const struct state *state, const struct model *mod
   return members_add(c, first, n, &s->vx[first], &s->vy[first], &s->vz[first]);
 }
 
-/* Cells of vertices are anywhere in memory. What the cell of this one needs is asked for so many vertices ahead. */
-enum { AHEAD = 24 };
-
-static uint32_t vertex_ahead(const struct state *state, uint32_t v)
-{
-  return v + AHEAD < state->vertices ? v + AHEAD : v;
-}
-
 static uint64_t add_vertices(const struct state *state, const struct model *model, struct mpc *c, uint64_t step)
 {
   (void)step;
-  uint64_t span = 0;
-  for (uint32_t v = 0; v < state->vertices; v++) {
-    __builtin_prefetch(&c->sum[c->vertex_cell[vertex_ahead(state, v)]], 1);
-    span |= cell_add(&c->sum[c->vertex_cell[v]], model->mass[v], cell_load(model->mass[v]), state->velocity[v]);
-  }
-  return span;
+  return members_add_vertices(state, model, c);
 }
 
 static void add_virtual(const struct model *model, struct mpc *c, uint64_t step, uint32_t place,
@@ -171,7 +158,7 @@ static inline __attribute__((always_inline)) void turn_members(struct state *sta
     turn_dense(&state->solvent, c, rule, first, quarter, scaled);
   for (uint32_t v = 0; v < state->vertices; v++) {
     const struct cell_turn *t = &c->turn[c->vertex_cell[v]];
-    __builtin_prefetch(&c->turn[c->vertex_cell[vertex_ahead(state, v)]]);
+    __builtin_prefetch(&c->turn[c->vertex_cell[members_vertex_ahead(state, v)]]);
     if (t->active != 0.0)
       state->velocity[v] = srd_apply(t, state->velocity[v], quarter, rule->cosine, rule->sine, scaled);
   }
