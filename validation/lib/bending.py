@@ -40,20 +40,28 @@ def field(times, box, vertices, spacing, eta=dilute.ETA, nu=dilute.NU):
         G(r) = (1/eta V) sum_k (1 - (k x d)^2/2 k^2) exp(-k^2 s^2/2)/k^2 cos(k.r) {1 - [1 - exp(-nu k^2 t)]/(nu k^2 t)}
 
     d: direction of the fiber, averaged over; braces: what has built up on average within a lag t."""
-    k = half_waves(box)
-    square = (k**2).sum(axis=1)
+    square, sums = shells(box, vertices, spacing)
     x = nu * square[:, None] * numpy.atleast_1d(times)
     weight = 2.0 * numpy.exp(-0.5 * dilute.CELL_SPREAD * square) / (square * eta * box**3)
-    share = weight[:, None] * (1.0 + numpy.expm1(-x) / x)
-    total = numpy.zeros((x.shape[1], vertices))
+    return (weight[:, None] * (1.0 + numpy.expm1(-x) / x)).T @ sums
+
+
+@functools.lru_cache
+def shells(box, vertices, spacing):
+    """k^2 of each shell of wave vectors, and the sums of [1 - (k x d)^2/2 k^2] cos(k.r) over half of it: [shell, distance]. These
+    take the time, and neither the lag nor the fluid changes them."""
+    k = half_waves(box)
+    length2 = (k**2).sum(axis=1)
+    _, first, shell = numpy.unique(numpy.rint(length2 * (box / (2.0 * math.pi))**2), return_index=True, return_inverse=True)
+    sums = numpy.zeros((vertices, len(first)))
     for d in directions():
         along = k @ d
-        across = 0.5 * (1.0 + along**2 / square)
+        across = 0.5 * (1.0 + along**2 / length2)
         turn, phase = numpy.exp(1j * spacing * along), numpy.ones(len(k), complex)
         for n in range(vertices):
-            total[:, n] += (across * phase.real) @ share
+            sums[n] += numpy.bincount(shell, across * phase.real, len(first))
             phase *= turn
-    return total / DIRECTIONS
+    return length2[first], sums.T / DIRECTIONS
 
 
 def middle(t, mobility, kappa, bond2):

@@ -13,12 +13,12 @@ class RodBasis:
     """Real spherical harmonics that are even under u -> -u and z -> -z, up to l = most, and what a linear flow along x does to them."""
 
     def __init__(self, most):
-        x, weight = roots_legendre(2 * most + 6)
-        phi = 2.0 * math.pi * numpy.arange(4 * most + 8) / (4 * most + 8)
+        x, weight = (part[most + 3:] for part in roots_legendre(2 * most + 6))  # z > 0, and y > 0: all else is their image
+        phi = 2.0 * math.pi * numpy.arange(2 * most + 4) / (4 * most + 8)
         self.polar, self.around = numpy.arccos(x), phi
         self.cosine, self.phi = (grid.ravel() for grid in numpy.meshgrid(x, phi, indexing="ij"))
         self.sine = numpy.sqrt(1.0 - self.cosine**2)
-        self.weight = numpy.repeat(weight, len(phi)) * 2.0 * math.pi / len(phi)
+        self.weight = 2.0 * numpy.repeat(weight, len(phi)) * 2.0 * math.pi / len(phi)
         self.pairs = [(l, m) for l in range(0, most + 1, 2) for m in range(-l, l + 1, 2)]
         # Jeffery: u' = W u + B (E u - (u E u) u); the parts without and with the shape factor B
         turn, dip = 0.5 * numpy.cos(2.0 * self.phi), self.sine * self.cosine * numpy.sin(self.phi) * numpy.cos(self.phi)
