@@ -104,7 +104,7 @@ static uint32_t list_active(const struct mpc *c, uint32_t first, uint32_t end, u
  * (2010)). */
 static void maxwell_boltzmann(struct mpc *c, const struct model *model, uint64_t step)
 {
-  uint32_t place[RANDOM_UNIFORMS];
+  uint32_t place[RANDOM_UNIFORMS] = {0};
   double shape[RANDOM_UNIFORMS], wanted[RANDOM_UNIFORMS];
   for (uint32_t first = 0; first < c->cells; first += RANDOM_UNIFORMS) {
     const uint32_t left = c->cells - first, end = first + (left < RANDOM_UNIFORMS ? left : RANDOM_UNIFORMS);
