@@ -442,7 +442,7 @@ coverage:
 	gcc -O1 -c tests/faults/child_coverage.c -o build/coverage/child.o
 	$(MAKE) -j2 CC=gcc BUILD=build/coverage OPTIMIZE=-O0 CFLAGS='-g --coverage' \
 	   LIBS='$(LIBS) $(CURDIR)/build/coverage/child.o -Wl,--wrap=_exit' exact
-	tools/coverage build/coverage $(EXACT_TESTS)
+	tools/coverage build/coverage $(filter-out $(STATISTICS),$(EXACT_TESTS))
 
 # Inputs that find something new go to build/fuzz/corpus; what was found is a file crash-* there, which FUZZ=file runs again.
 SECONDS ?= 60
