@@ -7,6 +7,8 @@
 #include "contact/tube.h"
 #include "system/bead.h"
 
+_Static_assert(BEAD_TICKS == FLIGHT_TICKS, "the bead and the bonds have one timeline");
+
 /* Distance of the axis of a bond from the center of the bead at a contact, lattice units. */
 static int64_t reach_of(const struct model *model, uint32_t bond)
 {

@@ -84,7 +84,7 @@ static bool hold_bonds(const struct model *m, struct chain *c, bool coupled, uin
   }
   memset(c->jump, 0, c->n * sizeof *c->jump);
   return tension_add(c->n, coupled ? c->tensor : NULL, c->pull, bonds, bond, matrix, t, c->force, &pivot) ||
-         fault_record(fault, FAULT_TENSION, step, c->first, pivot, 1e-12);
+         fault_record(fault, FAULT_TENSION, step, c->first, pivot, TENSION_LEAST_PIVOT);
 }
 
 /* pull = D F and jump = L xi. */

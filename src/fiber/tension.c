@@ -51,7 +51,7 @@ bool tension_add(uint32_t n, const double *d, const double *pull, uint32_t bonds
     return false;
   for (uint32_t k = 0; k < bonds; k++) {
     *pivot = matrix[(size_t)k * bonds + k] * matrix[(size_t)k * bonds + k];
-    if (!(*pivot > 1e-12))
+    if (!(*pivot > TENSION_LEAST_PIVOT))
       return false;
   }
   mobility_solve(bonds, matrix, t);

@@ -78,8 +78,8 @@ static bool check_force(const struct scene *scene, struct message *message)
              force, force / friction, BEAD_MOST_SPEED * friction, BEAD_MOST_SPEED);
 }
 
-/* What is observed of a bead, and what is not where one is; what has no tensions in it. */
-static bool check_bead(const struct scene *scene, struct message *message)
+/* What cannot be observed: of a bead that is not there, beside one, or where bonds have tensions. */
+static bool check_observed(const struct scene *scene, struct message *message)
 {
   const uint64_t *every = scene->observe.every;
   const bool bead = model_has_bead(&scene->model), tense = scene->model.medium.inextensible;
@@ -113,7 +113,7 @@ static bool check_observables(const struct scene *scene, struct message *message
         scene, "observe.dynamics", message,
         "a fiber that leaves a sheared box is replaced by an image, which moves at another speed, so it has "
         "no displacement; allowed without shear");
-  if (!check_bead(scene, message))
+  if (!check_observed(scene, message))
     return false;
   if (plan->longest_lag == 0 || plan->longest_lag >= plan->every[OBSERVE_DYNAMICS])
     return true;

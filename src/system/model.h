@@ -107,7 +107,6 @@ enum frame {
   FRAMES
 };
 
-/* How the fibers of a kind are laid at the start. */
 /* What a chain that stands for a finer one has in common with it. */
 enum fiber_size {
   SIZE_ENDS,     /* the end-to-end distance */
@@ -115,6 +114,7 @@ enum fiber_size {
   FIBER_SIZES
 };
 
+/* How the fibers of a kind are laid at the start. */
 enum fiber_start {
   START_BY_SHAPE,    /* not said: circle for rings, equilibrium for open fibers; model_finish writes which */
   START_EQUILIBRIUM, /* exact sample of the phantom chain, open fibers only */

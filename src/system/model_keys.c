@@ -384,8 +384,7 @@ static const struct key fiber_keys[] = {
      .derives = true},
     {.name = "stands_for",
      .text = "Vertices of a finer Gaussian chain which this one stands for. `spring` is given of the finer chain then; "
-             "that "
-             "of this one follows, so that `keeps` stays. Needs `bond_length: 0`, open chains, no bending. See "
+             "that of this one follows, so that `keeps` stays. Needs `bond_length: 0`, open chains, no bending. See "
              "[media.md](media.md#effective-potentials).",
      .type = KEY_WHOLE32,
      .optional = true,

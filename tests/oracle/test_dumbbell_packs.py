@@ -3,24 +3,15 @@
 steps, makes between the same walls and images.
 """
 import math
-import os
-import pathlib
-import subprocess
-import tempfile
 import unittest
 
 import numpy as np
 
-TOP = pathlib.Path(__file__).resolve().parents[2]
+from packs import TOP, check_made_anew, run
+
 DATA = TOP / "reference-data/dumbbells"
-UNCROSS = os.environ.get("UNCROSS", str(TOP / "build/uncross"))
 NAMES = ("periodic", "walls", "slip", "shear")
 UNIT = 2.0**-40
-
-
-def run(*words):
-    done = subprocess.run([UNCROSS, "oracle", *map(str, words)], capture_output=True, text=True, check=False)
-    return done.returncode, done.stdout + done.stderr
 
 
 def tables(name):
@@ -46,15 +37,7 @@ class DumbbellPacks(unittest.TestCase):
         cls.pack = {name: tables(name) for name in NAMES}
 
     def test_they_are_those_of_this_code(self):
-        with tempfile.TemporaryDirectory() as folder:
-            for name in NAMES:
-                pack = pathlib.Path(folder) / f"{name}.h5"
-                self.assertEqual(run("emit", DATA / f"{name}.yaml", "-o", pack), (0, ""))
-                status, said = run("compare", DATA / f"{name}.pack.h5", pack)
-                self.assertEqual(status, 0, said)
-                status, said = run("trace", DATA / f"{name}.yaml")
-                self.assertEqual(status, 0, said)
-                self.assertEqual(said.splitlines(), (DATA / f"{name}.trace.csv").read_text().splitlines())
+        check_made_anew(self, DATA, NAMES)
 
     def test_operators_of_points_are_left_out(self):
         for name, pack in self.pack.items():

@@ -2,25 +2,16 @@
 """Packs and traces of media: they are those of this code, and what is in them obeys laws that were not used to make them: momentum
 and angular momentum of pairs, forces as slopes of an energy, and tensors as those of the formula, with their roots.
 """
-import os
-import pathlib
-import subprocess
-import tempfile
 import unittest
 
 import h5py
 import numpy as np
 
-TOP = pathlib.Path(__file__).resolve().parents[2]
+from packs import TOP, check_made_anew
+
 DATA = TOP / "reference-data/media"
-UNCROSS = os.environ.get("UNCROSS", str(TOP / "build/uncross"))
 NAMES = ("langevin", "andersen", "lowe", "dpd", "brownian")
 UNIT = 2.0**-40
-
-
-def run(*words):
-    done = subprocess.run([UNCROSS, "oracle", *map(str, words)], capture_output=True, text=True, check=False)
-    return done.returncode, done.stdout + done.stderr
 
 
 def tables(name):
@@ -57,15 +48,7 @@ class MediumPacks(unittest.TestCase):
         cls.pack = {name: tables(name) for name in NAMES}
 
     def test_they_are_those_of_this_code(self):
-        with tempfile.TemporaryDirectory() as folder:
-            for name in NAMES:
-                pack = pathlib.Path(folder) / f"{name}.h5"
-                self.assertEqual(run("emit", DATA / f"{name}.yaml", "-o", pack), (0, ""))
-                status, said = run("compare", DATA / f"{name}.pack.h5", pack)
-                self.assertEqual(status, 0, said)
-                status, said = run("trace", DATA / f"{name}.yaml")
-                self.assertEqual(status, 0, said)
-                self.assertEqual(said.splitlines(), (DATA / f"{name}.trace.csv").read_text().splitlines())
+        check_made_anew(self, DATA, NAMES)
 
     def test_operators_of_cells_are_left_out(self):
         for name, pack in self.pack.items():

@@ -4,26 +4,18 @@ tick of an answer the axes are further apart than the reach, and within the tick
 """
 import gzip
 import math
-import os
 import pathlib
-import subprocess
 import tempfile
 import unittest
 from fractions import Fraction
 
+from packs import TOP, run
 from test_edges import Text
 
-TOP = pathlib.Path(__file__).resolve().parents[2]
 DATA = TOP / "reference-data/tubes"
-UNCROSS = os.environ.get("UNCROSS", str(TOP / "build/uncross"))
 TICKS = 65536
 STEPS = (2, 40)
 VECTORS = ("p", "q", "w", "p_rate", "q_rate", "w_rate")
-
-
-def run(*words):
-    done = subprocess.run([UNCROSS, "oracle", *map(str, words)], capture_output=True, text=True, check=False)
-    return done.returncode, done.stdout + done.stderr
 
 
 def dot(a, b):
