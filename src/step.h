@@ -28,16 +28,4 @@ static inline bool step_collides(const struct model *model, uint64_t step)
 /* Makes the plans of this model's steps in its work; work_alloc calls it. */
 void step_plan(struct work *work, const struct model *model);
 
-/* The starting state (Padding 2009, Sec. III, step 1): solvent and fibers, with velocities of vertices half a step
- * ahead. The total momentum is that of the flow; in a bath of phantoms it is thermal. False, with the fault recorded,
- * if a bond does not fit the box. */
-bool step_start(struct state *state, const struct model *model, struct work *work);
-
-/* Gives the velocities of a state that was made without a drive those of a start: total momentum, and half steps ahead
- * of and behind the drive (system/bead.h). Nothing without a driven bead. */
-void step_begin_drive(struct state *state, const struct model *model);
-
-/* True if no tubes of thick fibers overlap; else the fault says which. For states that come from files. */
-bool step_sound(const struct state *state, const struct model *model, struct fault *fault);
-
 #endif

@@ -14,6 +14,7 @@
 
 #include <math.h>
 
+#include "start/start.h"
 #include "step.h"
 #include "system/model.h"
 #include "system/state.h"
@@ -98,7 +99,7 @@ static inline struct test_run test_start(struct model model)
   test_finish(&r.model);
   assert_true(state_alloc(&r.state, &r.model));
   assert_true(work_alloc(&r.work, &r.model));
-  assert_true(step_start(&r.state, &r.model, &r.work));
+  assert_true(start_state(&r.state, &r.model, &r.work));
   return r;
 }
 

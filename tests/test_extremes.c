@@ -172,7 +172,7 @@ static bool run_scene(const struct extreme *e, struct test_run *r, char text[512
   struct vec3 before;
   double scale;
   bool ok = state_alloc(&r->state, &r->model) && work_alloc(&r->work, &r->model) &&
-            step_start(&r->state, &r->model, &r->work);
+            start_state(&r->state, &r->model, &r->work);
   before = total_momentum(r, &scale);
   for (int k = 0; ok && k < 400; k++)
     ok = step_advance(&r->state, &r->model, &r->work, NULL);

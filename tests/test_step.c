@@ -428,7 +428,7 @@ static void faults_stop_the_step(void **unused)
   struct test_run r = {.model = m};
   test_finish(&r.model);
   assert_true(state_alloc(&r.state, &r.model) && work_alloc(&r.work, &r.model));
-  assert_false(step_start(&r.state, &r.model, &r.work));
+  assert_false(start_state(&r.state, &r.model, &r.work));
   assert_int_equal(r.work.fault.code, FAULT_BOND_TOO_LONG);
   assert_true(r.work.fault.step == 0);
   test_end(&r);

@@ -7,7 +7,7 @@
 #include "files/start.h"
 #include "observe/conserved.h"
 #include "scene/scene.h"
-#include "step.h"
+#include "start/start.h"
 #include "system/sound.h"
 
 /* Whether a scene may say this flow. */
@@ -108,15 +108,15 @@ bool scene_start(const struct scene *scene, struct state *state, struct work *wo
 {
   const struct model *m = &scene->model;
   if (!scene->snapshot)
-    return step_start(state, m, work) || refuse_start(scene, &work->fault, message);
+    return start_state(state, m, work) || refuse_start(scene, &work->fault, message);
   char *path = scene_snapshot_path(scene);
   message_set(message, "no memory for the path of the snapshot");
   bool ok = path && snapshot_read_start(path, m, state, message);
   free(path);
   ok = ok && (state_sound(state, m, &work->fault) || message_fault(message, &work->fault)) &&
        is_flat_as_said(scene, state, message) && flows_as_said(scene, state, work, message) &&
-       (step_sound(state, m, &work->fault) || refuse_start(scene, &work->fault, message));
+       (start_sound(state, m, &work->fault) || refuse_start(scene, &work->fault, message));
   if (ok)
-    step_begin_drive(state, m);
+    start_begin_drive(state, m);
   return ok;
 }

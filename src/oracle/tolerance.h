@@ -10,6 +10,9 @@ double tolerance_largest(const struct pack_table *table, uint32_t from, uint32_t
 /* The same of all of a table beside the pair's. */
 double tolerance_size_of(const struct oracle_pair *pair, const char *name);
 
+/* A table of the model; NULL if the pack has none of this name. */
+const struct pack_table *tolerance_of_model(const struct oracle_pair *pair, const char *name);
+
 /* Largest and smallest mass; the largest force on a vertex where vertices stand as `in.position` has them. */
 double tolerance_heaviest(const struct oracle_pair *pair);
 double tolerance_lightest(const struct oracle_pair *pair);
@@ -29,6 +32,10 @@ static inline bool tolerance_single(const struct oracle_pair *p)
 typedef double tolerance_rule(const struct oracle_pair *pair, uint32_t row, uint32_t column);
 tolerance_rule tolerance_impulse_answer, tolerance_impulse_momentum, tolerance_impulse_velocity, tolerance_event_hit,
     tolerance_event_velocity, tolerance_event_position;
+
+/* The same for those of vertices that move one by one (tolerance_contact.c). */
+tolerance_rule tolerance_crossing_hit, tolerance_exchange_momentum, tolerance_exchange_velocity, tolerance_sweep_hit,
+    tolerance_sweep_velocity, tolerance_sweep_position;
 
 /* The same for those of thick fibers (tolerance_tube.c). */
 tolerance_rule tolerance_tube_tick, tolerance_tube_points, tolerance_tube_normal;

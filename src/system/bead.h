@@ -13,6 +13,7 @@
 
 #include "system/fault.h"
 #include "system/model.h"
+#include "system/plan.h"
 #include "system/state.h"
 
 #define BEAD_ENERGY_SCALE 0x1p32 /* of the account: units per kT */
@@ -52,6 +53,10 @@ struct vec3 bead_trap(const struct model *model, uint64_t half_steps);
  * until it is streamed again. It takes up the momentum that the drive gives to the bead at that time. 0 without a
  * drive. */
 struct vec3 bead_counter(const struct state *state, const struct model *model);
+
+/* Appends what the vertices get of it in half a step: before and after their drift. The fluid's particles get it in
+ * flight. */
+void bead_plan_counter(struct plan *plan, const struct model *model);
 
 /* Adds the drive's force on the bead for a time to its velocity. */
 void bead_kick(struct bead *bead, const struct model *model, uint64_t half_steps, double time);

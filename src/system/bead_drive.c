@@ -48,6 +48,23 @@ struct vec3 bead_counter(const struct state *state, const struct model *model)
   return vec3_scale(-1.0 / model->total_mass, force);
 }
 
+/* Vertices take up their share of what a drive gives to the bead: half of it, twice in a step. */
+static bool act_counter(void *room, const struct moment *now, const struct stage *stage)
+{
+  struct state *state = now->state;
+  const struct vec3 half = vec3_scale(0.5 * now->model->time_step, bead_counter(state, now->model));
+  (void)room, (void)stage;
+  for (uint32_t v = 0; v < state->vertices; v++)
+    state->velocity[v] = vec3_add(state->velocity[v], half);
+  return true;
+}
+
+void bead_plan_counter(struct plan *plan, const struct model *model)
+{
+  if (model->bead.driven && model->vertices > 0)
+    plan_append(plan, (struct stage){.act = act_counter});
+}
+
 void bead_kick(struct bead *bead, const struct model *model, uint64_t half_steps, double time)
 {
   const struct vec3 force = bead_force(model, bead->position, half_steps);

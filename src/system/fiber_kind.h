@@ -33,4 +33,8 @@ double fiber_bend_frequency(const struct fiber_kind *kind);
  * two maxima, a close upper bound). A leap-frog of step dt is unstable above 2/dt. */
 double fiber_highest_frequency(const struct fiber_kind *kind);
 
+/* Checks all kinds of a model whose box and crossing are known, and derives their masses, bends, springs and tubes.
+ * False, with the reason in *error. */
+bool fibers_finish(struct model *model, struct model_error *error);
+
 #endif

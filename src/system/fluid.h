@@ -96,7 +96,7 @@ struct fluid {
   uint32_t together;
 
   /* Positions and velocities at step 0: exact samples of equilibrium at kT = 1. The total momentum is taken out later
-   * (step_start). */
+   * (start_state). */
   void (*start)(struct state *state, const struct model *model);
 
   /* n particles, from place `first` of memory on, fly for the time by which they are late, and stay in the box.

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "observe/observe.h"
+#include "start/start.h"
 #include "step.h"
 
 /* A model by hand: 5 fibers of 8 vertices in 6^3 cells with 4 particles each. */
@@ -54,7 +55,7 @@ static void test_core(void **unused)
   const struct observe_sink sink = {count_row, &rows};
   struct observers *observers = observers_create(&plan, &m);
   assert_true(observers && state_alloc(&s, &m) && work_alloc(&w, &m));
-  assert_true(step_start(&s, &m, &w));
+  assert_true(start_state(&s, &m, &w));
   const double energy = observe_conserved(&m, &s).total;
   for (int k = 0; k < 50; k++) {
     assert_true(step_advance(&s, &m, &w, NULL));

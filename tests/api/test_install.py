@@ -84,11 +84,11 @@ class Installed(unittest.TestCase):
     def test_the_core(self):
         """A program that is built with the core's headers, and needs no library for files."""
         source = self.folder / "core.c"
-        source.write_text('#include <stdio.h>\n#include "step.h"\n'
+        source.write_text('#include <stdio.h>\n#include "start/start.h"\n#include "step.h"\n'
                           'int main(void)\n{\n  struct model m = {.box = box_of_cells(4, 4, 4), .seed = 1, .time_step = 0.01,\n'
                           '    .solvent = {.per_cell = 5, .collision_interval = 0.02, .rotation_angle = 90, '
                           '.hydrodynamics = true}};\n  struct model_error error;\n  struct state s;\n  struct work w;\n'
-                          '  if (!model_finish(&m, &error) || !state_alloc(&s, &m) || !work_alloc(&w, &m) || !step_start(&s, &m, &w) '
+                          '  if (!model_finish(&m, &error) || !state_alloc(&s, &m) || !work_alloc(&w, &m) || !start_state(&s, &m, &w) '
                           '||\n      !step_advance(&s, &m, &w, NULL))\n    return 1;\n'
                           '  printf("step %d\\n", (int)s.step);\n  return 0;\n}\n')
         flags = self.flags("--cflags", "--libs", "uncross-core")

@@ -160,7 +160,7 @@ static void no_bond_enters_the_bead(void **unused)
       if (!(gap > -1e-14))
         fail_msg("step %d: a bond is %g a0 inside", step + 1, -gap);
       struct fault fault = {.code = FAULT_NONE};
-      assert_true(bead_sound(&r.state, &r.model, &fault) && step_sound(&r.state, &r.model, &fault));
+      assert_true(bead_sound(&r.state, &r.model, &fault) && start_sound(&r.state, &r.model, &fault));
     }
     print_message("  %ld contacts, %ld with the bead, %lu rigid, %ld hits; least gap %.2g a0\n", seen.contacts,
                   seen.with_bead, (unsigned long)r.state.counts.rigid, (long)r.state.bead->account.z, least);
@@ -304,7 +304,7 @@ static void contacts_keep_angular_momentum(void **unused)
     struct test_run r = {.model = m};
     test_finish(&r.model);
     assert_true(state_alloc(&r.state, &r.model) && work_alloc(&r.work, &r.model));
-    if (step_start(&r.state, &r.model, &r.work)) { /* the thick ones may overlap */
+    if (start_state(&r.state, &r.model, &r.work)) { /* the thick ones may overlap */
       for (uint32_t i = 0; i < r.state.solvent.n; i++)
         r.state.solvent.vx[i] = r.state.solvent.vy[i] = r.state.solvent.vz[i] = 0.0;
       for (uint32_t i = 0; i < r.model.vertices; i++)
@@ -355,7 +355,7 @@ static void what_is_pressed_goes_along(void **unused)
       fly(&r, &seen);
       assert_true(bead_gap(&r) > -1e-14);
       struct fault fault = {.code = FAULT_NONE};
-      assert_true(step_sound(&r.state, &r.model, &fault));
+      assert_true(start_sound(&r.state, &r.model, &fault));
     }
     print_message("  %ld contacts, %ld with the bead, %lu rigid\n", seen.contacts, seen.with_bead,
                   (unsigned long)r.state.counts.rigid);
@@ -462,16 +462,16 @@ static void overlapping_starts_are_refused(void **unused)
     struct test_run r = {.model = m};
     test_finish(&r.model);
     assert_true(state_alloc(&r.state, &r.model) && work_alloc(&r.work, &r.model));
-    assert_int_equal(step_start(&r.state, &r.model, &r.work), k % 2);
+    assert_int_equal(start_state(&r.state, &r.model, &r.work), k % 2);
     if (k % 2 == 0) {
       assert_int_equal(r.work.fault.code, FAULT_BEAD_OVERLAP);
       assert_close(r.work.fault.value, apart, 1e-9);
       assert_close(r.work.fault.limit, 2.15, 1e-9);
     } else {
-      assert_true(step_sound(&r.state, &r.model, &r.work.fault));
+      assert_true(start_sound(&r.state, &r.model, &r.work.fault));
       for (uint32_t i = 0; i < r.model.vertices; i++)
         r.state.position[i].y -= lattice_from_a0(0.1);
-      assert_true(!step_sound(&r.state, &r.model, &r.work.fault));
+      assert_true(!start_sound(&r.state, &r.model, &r.work.fault));
     }
     test_end(&r);
   }

@@ -375,7 +375,7 @@ static void no_shear_is_periodic(void **unused)
       if (k == 1)
         box_bound(&r[k].model.box, 1, BOUNDARY_SHEAR);
       assert_true(state_alloc(&r[k].state, &r[k].model) && work_alloc(&r[k].work, &r[k].model));
-      assert_true(step_start(&r[k].state, &r[k].model, &r[k].work));
+      assert_true(start_state(&r[k].state, &r[k].model, &r[k].work));
     }
     for (int step = 0; step < 60; step++) {
       test_steps(&r[0], 1);

@@ -267,7 +267,7 @@ static bool starts(struct model m, struct test_run *r)
   *r = (struct test_run){.model = m};
   test_finish(&r->model);
   assert_true(state_alloc(&r->state, &r->model) && work_alloc(&r->work, &r->model));
-  return step_start(&r->state, &r->model, &r->work);
+  return start_state(&r->state, &r->model, &r->work);
 }
 
 /* At random: as dense as 100000 draws for each fiber allow. Every start is looked at by all pairs. */
@@ -301,11 +301,11 @@ static bool two_rods_start(double apart, double at, double diameter)
     assert_close(r.work.fault.value, fabs(apart), 1e-9);
     assert_close(r.work.fault.limit, diameter, 1e-9);
   } else {
-    assert_true(step_sound(&r.state, &r.model, &r.work.fault));
+    assert_true(start_sound(&r.state, &r.model, &r.work.fault));
     r.state.position[0].x = r.state.position[5].x, r.state.position[1].x = r.state.position[5].x;
     r.state.position[0].z -= 0x1p39, r.state.position[1].z += 0x1p40;
     memcpy(&r.state.position[5], &r.state.position[0], 2 * sizeof *r.state.position);
-    assert_true(!step_sound(&r.state, &r.model, &r.work.fault) && r.work.fault.code == FAULT_OVERLAP);
+    assert_true(!start_sound(&r.state, &r.model, &r.work.fault) && r.work.fault.code == FAULT_OVERLAP);
   }
   test_end(&r);
   return ok;

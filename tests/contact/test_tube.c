@@ -156,7 +156,7 @@ static void no_overlap_begins(void **unused)
   const struct vec3 before = momentum_of(&r);
   for (int step = 0; step < 600; step++) {
     assert_true(step_advance(&r.state, &r.model, &r.work, &log));
-    if (!step_sound(&r.state, &r.model, &r.work.fault)) {
+    if (!start_sound(&r.state, &r.model, &r.work.fault)) {
       char text[256];
       fault_describe(&r.work.fault, text, sizeof text);
       fail_msg("after step %d: %s", step, text);

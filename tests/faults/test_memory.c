@@ -73,7 +73,7 @@ static bool try_start(struct bench *b)
   struct work w;
   if (!alloc_both(&s, &w, &b->run.model))
     return false;
-  bool ok = step_start(&s, &b->run.model, &w) && step_advance(&s, &b->run.model, &w, NULL);
+  bool ok = start_state(&s, &b->run.model, &w) && step_advance(&s, &b->run.model, &w, NULL);
   assert_true(ok || w.fault.code == FAULT_NO_MEMORY);
   work_free(&w);
   state_free(&s);
@@ -187,7 +187,7 @@ static const struct {
     {"model_finish", try_model, 8},
     {"state_alloc", try_state, 9},
     {"work_alloc", try_work, 8},
-    {"step_start, step_advance", try_start, 3},
+    {"start_state, step_advance", try_start, 3},
     {"fiber_sweep", try_crowd, 25},
     {"observers_create", try_observers, 10},
     {"scene_read", try_scene, 10},

@@ -19,7 +19,7 @@ static struct test_run read_and_start(struct scene *scene)
     fail_msg("%s", message.text);
   struct test_run r = {.model = scene->model};
   assert_true(state_alloc(&r.state, &r.model) && work_alloc(&r.work, &r.model));
-  assert_true(step_start(&r.state, &r.model, &r.work));
+  assert_true(start_state(&r.state, &r.model, &r.work));
   test_steps(&r, 4);
   return r;
 }

@@ -28,7 +28,7 @@
 #include "oracle/oracle.h"
 #include "scene/scene.h"
 #include "scene/scene_keys.h"
-#include "step.h"
+#include "start/start.h"
 
 int LLVMFuzzerInitialize(int *count, char ***words);
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
@@ -166,7 +166,7 @@ int LLVMFuzzerInitialize(int *count, char ***words)
   all.readers = readers && *readers ? readers : "sokjctefpCEP";
   require(scene_read_text("seed", scene_text, strlen(scene_text), &all.scene, &message), message.text);
   require(state_alloc(&all.state, &all.scene.model) && work_alloc(&work, &all.scene.model), "memory");
-  require(step_start(&all.state, &all.scene.model, &work), "start");
+  require(start_state(&all.state, &all.scene.model, &work), "start");
   work_free(&work);
   all.hash = state_hash(&all.state);
   const char *folder = getenv("TMPDIR") ? getenv("TMPDIR") : ".";

@@ -20,7 +20,7 @@ static uint64_t hash_after(const char *path, const struct kernel *kernel)
   assert_true(state_alloc(&state, m));
   assert_true(work_alloc(&work, m));
   work.mpc.kernel = kernel_mix(kernel, m);
-  assert_true(step_start(&state, m, &work));
+  assert_true(start_state(&state, m, &work));
   for (int k = 0; k < STEPS; k++)
     assert_true(step_advance(&state, m, &work, NULL));
   const uint64_t hash = state_hash(&state);

@@ -32,7 +32,7 @@ static struct test_run start_at_rest(enum boundary_kind kind, enum scheme scheme
   box_bound(&r.model.box, 1, kind);
   assert_true(state_alloc(&r.state, &r.model));
   assert_true(work_alloc(&r.work, &r.model));
-  assert_true(step_start(&r.state, &r.model, &r.work));
+  assert_true(start_state(&r.state, &r.model, &r.work));
   return r;
 }
 

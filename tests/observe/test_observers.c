@@ -136,7 +136,7 @@ static void temperature_of_a_small_system_is_one(void **unused)
   test_add_kind(&m, 4, 1);
   struct test_run r = test_start(m);
   for (r.model.seed = 1; r.model.seed <= STARTS; r.model.seed++) {
-    assert_true(step_start(&r.state, &r.model, &r.work));
+    assert_true(start_state(&r.state, &r.model, &r.work));
     const struct motion motion = motion_measure(&r.model, &r.state, r.work.fiber.force);
     const struct temperatures t = motion_temperatures(&r.model, &motion);
     const double now[] = {t.solvent.x, t.solvent.y, t.solvent.z, t.vertex, t.vertex_half};

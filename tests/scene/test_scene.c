@@ -1086,7 +1086,7 @@ static void rings_are_linked(void **unused)
   assert_true(scene_read("scenes/rings.yaml", &s, &message));
   struct test_run r = {.model = s.model};
   assert_true(state_alloc(&r.state, &r.model) && work_alloc(&r.work, &r.model));
-  assert_true(step_start(&r.state, &r.model, &r.work));
+  assert_true(start_state(&r.state, &r.model, &r.work));
   assert_close(fabs(linking_number(&r, 0, 1)), 1.0, 0.01);
   assert_close(linking_number(&r, 2, 3), 0.0, 0.01);
   work_free(&r.work);

@@ -8,6 +8,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "start/start.h"
 #include "step.h"
 
 struct run {
@@ -93,7 +94,7 @@ static inline void run_start_finished(struct run *run, struct model model, uint6
   run->model = model;
   run->model.seed = seed;
   stop_unless(state_alloc(&run->state, &run->model) && work_alloc(&run->work, &run->model), run);
-  stop_unless(step_start(&run->state, &run->model, &run->work), run);
+  stop_unless(start_state(&run->state, &run->model, &run->work), run);
 }
 
 /* The same of a model that is not finished yet. */

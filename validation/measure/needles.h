@@ -6,6 +6,7 @@
 
 #include "../../tests/statistics.h"
 #include "energy.h"
+#include "start/start.h"
 #include "step.h"
 
 /* Collisions of needles per volume and time if all vertices moved at once, exact in equilibrium.
@@ -55,7 +56,7 @@ static inline bool needle_rates(struct model *model, struct state *state, struct
     model->seed = seed + run;
     memset(&state->counts, 0, sizeof state->counts);
     work->contact.neighbors.built = false;
-    if (!step_start(state, model, work))
+    if (!start_state(state, model, work))
       return false;
     const struct energy before = energy_on_step(state, model, work);
     for (uint64_t k = 0; k < (uint64_t)(time / model->time_step + 0.5); k++)

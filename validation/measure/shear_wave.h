@@ -16,6 +16,7 @@
 #define UNCROSS_SHEAR_WAVE_H
 
 #include "../../tests/statistics.h"
+#include "start/start.h"
 #include "step.h"
 #include "system/model.h"
 #include "system/state.h"
@@ -76,7 +77,7 @@ static inline bool shear_wave_run(const struct model *model, struct state *state
                                   const struct shear_wave *wave, double sign, double *amplitude)
 {
   const double k = shear_wave_number(model);
-  if (!step_start(state, model, work))
+  if (!start_state(state, model, work))
     return false;
   shear_wave_add(state, k, sign * wave->amplitude);
   for (uint32_t i = 0; i < state->solvent.n && model_is_flat(model); i++)

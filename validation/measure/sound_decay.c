@@ -57,7 +57,7 @@ static void add_run(struct run *run, const struct question *q, double sign, uint
 {
   const double k = 6.283185307179586477 / q->edge;
   run->model.seed = seed;
-  stop_unless(step_start(&run->state, &run->model, &run->work), run);
+  stop_unless(start_state(&run->state, &run->model, &run->work), run);
   add_wave(&run->state.solvent, k, sign * q->amplitude);
   for (int n = 0; n < LOOKS; n++) {
     amplitude[n] += sign * wave_amplitude(&run->state.solvent, k) / q->amplitude / (2.0 * q->pairs);

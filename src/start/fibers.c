@@ -1,0 +1,88 @@
+#include "start/fibers.h"
+
+#include "contact/event_bead.h"
+#include "contact/laying.h"
+#include "fiber/start.h"
+#include "start/start.h"
+#include "system/bead.h"
+
+/* Where fibers are laid: among thick ones, and beside a bead. */
+struct ground {
+  const struct state *state;
+  const struct model *model;
+  struct laying laying; /* empty if all are thin */
+  bool in_bead;         /* the last fiber that overlaps does so with the bead: */
+  uint32_t bond;        /* this bond of it, */
+  double distance;      /* whose axis is so far from the center, a0 */
+};
+
+static enum fiber_verdict judge_fiber(void *context, const struct point *position, uint32_t fiber)
+{
+  static const enum fiber_verdict verdicts[] = {
+      [LAYING_FITS] = FIBER_STAYS, [LAYING_OVERLAPS] = FIBER_OVERLAPS, [LAYING_NO_MEMORY] = FIBER_NO_MEMORY};
+  struct ground *g = context;
+  const struct state *s = g->state;
+  g->in_bead = s->beads > 0 && !event_bead_clear(g->model, s->bead->position, position, fiber, &g->bond, &g->distance);
+  if (g->in_bead)
+    return FIBER_OVERLAPS;
+  return g->model->thickness > 0 ? verdicts[laying_add(&g->laying, position, fiber)] : FIBER_STAYS;
+}
+
+/* Does it matter where fibers are? */
+static bool is_crowded(const struct model *model)
+{
+  return model->thickness > 0 || model_has_bead(model);
+}
+
+static bool record_overlap(const struct ground *g, struct fault *fault)
+{
+  const struct model *m = g->model;
+  const struct laying *l = &g->laying;
+  if (!g->in_bead)
+    return fault_record(fault, FAULT_OVERLAP, 0, l->bond, l->distance,
+                        (double)model_reach(m, l->bond, l->other) * LATTICE_UNIT);
+  const struct fiber_kind *kind = &m->kind[m->fiber_kind_of[m->fiber_of[g->bond]]];
+  return fault_record(fault, FAULT_BEAD_OVERLAP, 0, g->bond, g->distance,
+                      (double)(bead_radius(m) + kind->radius) * LATTICE_UNIT);
+}
+
+static bool record_start(const struct ground *g, enum fiber_start_end end, uint32_t fiber, struct fault *fault)
+{
+  if (end == FIBERS_OVERLAP)
+    return record_overlap(g, fault);
+  if (end == FIBERS_NO_ROOM)
+    return fault_record(fault, FAULT_NO_ROOM, 0, fiber, FIBER_MOST_ATTEMPTS, FIBER_MOST_ATTEMPTS);
+  return end == FIBERS_LAID || fault_no_memory(fault, 0);
+}
+
+bool start_fibers(struct state *state, const struct model *model, struct fault *fault)
+{
+  struct ground ground = {.state = state, .model = model};
+  const struct fiber_room room = {judge_fiber, &ground};
+  uint32_t fiber = 0;
+  enum fiber_start_end end = FIBERS_NO_MEMORY;
+  if (!is_crowded(model))
+    end = fiber_start(state, model, NULL, &fiber);
+  else if (model->thickness == 0 || laying_begin(&ground.laying, model))
+    end = fiber_start(state, model, &room, &fiber);
+  const bool ok = record_start(&ground, end, fiber, fault);
+  laying_end(&ground.laying);
+  return ok;
+}
+
+bool start_sound(const struct state *state, const struct model *model, struct fault *fault)
+{
+  static const enum fiber_start_end ends[] = {
+      [FIBER_STAYS] = FIBERS_LAID, [FIBER_OVERLAPS] = FIBERS_OVERLAP, [FIBER_NO_MEMORY] = FIBERS_NO_MEMORY};
+  struct ground ground = {.state = state, .model = model};
+  enum fiber_start_end end = FIBERS_LAID;
+  if (!is_crowded(model))
+    return true;
+  if (model->thickness > 0 && !laying_begin(&ground.laying, model))
+    end = FIBERS_NO_MEMORY;
+  for (uint32_t fiber = 0; end == FIBERS_LAID && fiber < model->fibers; fiber++)
+    end = ends[judge_fiber(&ground, state->position, fiber)];
+  const bool ok = record_start(&ground, end, 0, fault);
+  laying_end(&ground.laying);
+  return ok;
+}

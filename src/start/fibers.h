@@ -1,0 +1,13 @@
+/* Where the fibers of a starting state lie. */
+#ifndef UNCROSS_START_FIBERS_H
+#define UNCROSS_START_FIBERS_H
+
+#include "system/fault.h"
+#include "system/model.h"
+#include "system/state.h"
+
+/* Lays all fibers, the thick ones without overlap, and all of them outside of a bead. False, with the fault recorded,
+ * if one has no room, or does not fit where the scene places it. */
+bool start_fibers(struct state *state, const struct model *model, struct fault *fault);
+
+#endif

@@ -1,0 +1,20 @@
+/* The state in which a run begins. */
+#ifndef UNCROSS_START_START_H
+#define UNCROSS_START_START_H
+
+#include "work.h"
+
+/* The starting state (Padding 2009, Sec. III, step 1): solvent and fibers, with velocities of vertices half a step
+ * ahead. The total momentum is that of the flow; in a bath of phantoms it is thermal. False, with the fault recorded,
+ * if a bond does not fit the box. */
+bool start_state(struct state *state, const struct model *model, struct work *work);
+
+/* Gives the velocities of a state that was made without a drive those of a start: total momentum, and half steps ahead
+ * of and behind the drive (system/bead.h). Nothing without a driven bead. */
+void start_begin_drive(struct state *state, const struct model *model);
+
+/* True if no tubes of thick fibers overlap, and none with a bead; else the fault says which. For states that come from
+ * files. */
+bool start_sound(const struct state *state, const struct model *model, struct fault *fault);
+
+#endif
