@@ -37,6 +37,14 @@
       fail_msg("%s = %.9g +- %.2g, expected %.9g: %.2f sigma", #actual, a_, s_, e_, (a_ - e_) / s_);                   \
   } while (0)
 
+/* Begins a case of long statistics. With NO_STATISTICS set (tools/sanitize, tools/coverage: slow programs, of which
+ * only faults, or the lines that are reached, are asked) it is skipped: others reach the same code. */
+static inline void test_begin_statistics(void)
+{
+  if (getenv("NO_STATISTICS"))
+    skip();
+}
+
 /* A model with this box and solvent at the paper's standard point (gamma per cell, dt, dt_c = interval dt, 90 degrees,
  * kick-split, seed 1), without fibers; call model_finish after adding kinds. */
 static inline struct model test_model(int lx, int ly, int lz, double per_cell, double dt, uint32_t interval)

@@ -8,6 +8,7 @@
 
 #include "system/fiber_kind.h"
 #include "system/model.h"
+#include "system/model_keys.h"
 #include "system/topology.h"
 
 /* A kind of fiber that is being checked. */

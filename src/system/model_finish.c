@@ -11,6 +11,7 @@
 #include "system/model.h"
 #include "system/model_keys.h"
 #include "system/shear.h"
+#include "system/topology.h"
 
 /* --- solvent ----------------------------------------------------------------------------------------------------- */
 

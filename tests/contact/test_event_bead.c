@@ -423,6 +423,7 @@ static double expected_rate(const struct model *m, double l)
 static void contacts_come_as_often_as_kinetic_theory_says(void **unused)
 {
   (void)unused;
+  test_begin_statistics();
   enum { RUNS = 12, STEPS = 2500, NEEDLES = 700 };
   struct dice d = {dice_seed(5104)};
   struct sample over = {0};

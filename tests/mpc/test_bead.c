@@ -132,6 +132,7 @@ static void the_solvent_starts_outside(void **unused)
 static void the_bead_is_thermal(void **unused)
 {
   (void)unused;
+  test_begin_statistics();
   const struct {
     enum rule rule;
     double radius, heavier;

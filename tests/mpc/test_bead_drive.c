@@ -123,6 +123,7 @@ static void work_is_that_of_the_potential(void **unused)
 static void a_trap_holds_the_bead(void **unused)
 {
   (void)unused;
+  test_begin_statistics();
   for (int k = 0; k < 2; k++) {
     struct model m = driven_model(k ? RULE_AT_A : RULE_SRD, SCHEME_KICK_SPLIT);
     m.bead.drive.spring = 70.0;
