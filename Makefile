@@ -177,7 +177,7 @@ force:
 # What is installed, one line each: mode, where it comes from, where it goes below $(PREFIX).
 DOCUMENTS := $(shell find docs scenes examples -type f -not -path '*/.*' -not -name '*.pyc' 2>/dev/null)
 # What `uncross oracle check` holds a port against.
-REFERENCE := $(wildcard $(foreach n,pack.h5 pack.txt.gz start.h5 start.txt.gz trace.csv yaml,reference-data/*.$(n) reference-data/flow/*.$(n) reference-data/dumbbells/*.$(n) reference-data/media/*.$(n) reference-data/tubes/*.$(n)))
+REFERENCE := $(wildcard $(foreach n,pack.h5 pack.txt.gz start.h5 start.txt.gz trace.csv yaml,reference-data/*.$(n) reference-data/flow/*.$(n) reference-data/dumbbells/*.$(n) reference-data/media/*.$(n) reference-data/tubes/*.$(n) reference-data/beads/*.$(n)))
 # Commands that other programs do: src/cli/outer.c finds them.
 OUTER := uncross-plot uncross-sweep
 define INSTALLED

@@ -48,3 +48,10 @@ double block_error(const struct block_level *level, size_t levels, double a, dou
   }
   return largest;
 }
+
+void block_ratio(const struct block_level *level, size_t levels, double ratio[2])
+{
+  const double x = level->mean[0], y = level->mean[1];
+  ratio[0] = y > 0.0 ? x / y : NAN;
+  ratio[1] = y > 0.0 ? block_error(level, levels, 1.0 / y, -x / (y * y)) : NAN;
+}

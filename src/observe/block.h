@@ -34,4 +34,7 @@ void block_add(struct block_level *level, size_t levels, double x, double y);
  * other choice underestimates by more. NaN with fewer than BLOCK_LEAST values. */
 double block_error(const struct block_level *level, size_t levels, double a, double b);
 
+/* The mean of x over that of y, and its error by linearisation; NaN where the mean of y is not above 0. */
+void block_ratio(const struct block_level *level, size_t levels, double ratio[2]);
+
 #endif

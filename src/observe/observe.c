@@ -15,6 +15,7 @@ static const struct observer_type *const types[OBSERVABLES] = {
     [OBSERVE_STRESS] = &stress_observer,           [OBSERVE_DUMBBELLS] = &dumbbells_observer,
     [OBSERVE_ORIENTATION] = &orientation_observer, [OBSERVE_BEAD] = &bead_observer,
     [OBSERVE_MEMORY] = &memory_observer,           [OBSERVE_PRESSURE] = &pressure_observer,
+    [OBSERVE_WAKE] = &wake_observer,
 };
 
 const char *const observable_names[OBSERVABLES] = {
@@ -22,6 +23,7 @@ const char *const observable_names[OBSERVABLES] = {
     [OBSERVE_DYNAMICS] = "dynamics",   [OBSERVE_COLLISIONS] = "collisions",   [OBSERVE_PROFILE] = "profile",
     [OBSERVE_STRESS] = "stress",       [OBSERVE_DUMBBELLS] = "dumbbells",     [OBSERVE_ORIENTATION] = "orientation",
     [OBSERVE_BEAD] = "bead",           [OBSERVE_MEMORY] = "memory",           [OBSERVE_PRESSURE] = "pressure",
+    [OBSERVE_WAKE] = "wake",
 };
 
 enum { MAX_BLOCKS = 6 * OBSERVABLES };

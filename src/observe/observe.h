@@ -26,6 +26,7 @@ enum observable {
   OBSERVE_MEMORY,      /* averages against lag, per kind: memory of velocities and of the stress of fibers */
   OBSERVE_BEAD,        /* time series: place, velocity and force of the bead */
   OBSERVE_PRESSURE,    /* time series: pressure tensor, potential energy, configurational temperature */
+  OBSERVE_WAKE,        /* averages around the bead: density and displacement of vertices */
   OBSERVABLES
 };
 
@@ -34,7 +35,7 @@ struct observe_plan {
   uint64_t every[OBSERVABLES]; /* steps between samples; 0: not asked for */
   uint64_t longest_lag;        /* of the dynamics, in steps; 0: 2^20 samples. Decides the size of its memory. */
   uint64_t slabs;              /* of the profile */
-  uint64_t from; /* step from which on averages (statics, dynamics, profile, dumbbells, orientation) are made; time
+  uint64_t from; /* step from which on averages (statics, dynamics, profile, dumbbells, orientation, memory, wake) are made; time
                     series begin at 0 */
 };
 

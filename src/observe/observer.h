@@ -71,7 +71,7 @@ enum { OBSERVER_MAX_COLUMNS = 32, OBSERVER_NAME_SIZE = MODEL_NAME_SIZE + 32 };
 
 extern const struct observer_type conserved_observer, temperature_observer, statics_observer, dynamics_observer,
     collisions_observer, profile_observer, stress_observer, dumbbells_observer, orientation_observer, bead_observer,
-    memory_observer, pressure_observer;
+    memory_observer, pressure_observer, wake_observer;
 
 /* Time of a state, in t0. */
 static inline double view_time(const struct view *view)

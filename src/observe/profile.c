@@ -173,15 +173,6 @@ static const char *const columns[] = {"y",
 
 enum { STEADY_COLUMNS = 12, COLUMNS = sizeof columns / sizeof *columns };
 
-/* Mean of x over that of y, and its error by linearisation; returns where to go on. */
-static double *put_ratio(double *cell, const struct block_level *level)
-{
-  const double x = level->mean[0], y = level->mean[1];
-  cell[0] = y > 0.0 ? x / y : NAN;
-  cell[1] = y > 0.0 ? block_error(level, LEVELS, 1.0 / y, -x / (y * y)) : NAN;
-  return cell + 2;
-}
-
 static double *put_mean(double *cell, const struct block_level *level, int part, double scale)
 {
   cell[0] = level->count > 0.0 ? scale * level->mean[part] : NAN;
@@ -195,8 +186,8 @@ static void fill_row(const struct observer *o, const struct model *model, uint64
   const double volume = box_volume(&model->box) / (double)o->slabs;
   *cell++ = ((double)k + 0.5) * thickness;
   cell = put_mean(cell, blocks_of(o, k, ALONG_X), 1, 1.0 / volume);
-  for (int quantity = ALONG_X; quantity <= HEAT; quantity++)
-    cell = put_ratio(cell, blocks_of(o, k, quantity));
+  for (int quantity = ALONG_X; quantity <= HEAT; quantity++, cell += 2)
+    block_ratio(blocks_of(o, k, quantity), LEVELS, cell);
   *cell++ = blocks_of(o, k, ALONG_X)->count;
   if (model->wave.intervals == 0)
     return;

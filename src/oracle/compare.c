@@ -120,6 +120,8 @@ static const char *entity_of(const struct pack_table *t)
                                          {"contact_search", "", "search"},
                                          {"tube_search", "", "search"},
                                          {"tube_contact", "", "contact"},
+                                         {"bead_search", "", "search"},
+                                         {"bead_contact", "", "contact"},
                                          {"impulse", "", "impulse"},
                                          {"long_event_drift", "out.event", "event"},
                                          {"long_event_drift", "out.hit", "event"},

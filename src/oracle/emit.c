@@ -8,6 +8,7 @@
 #include "fiber/force.h"
 #include "files/start.h"
 #include "oracle/columns.h"
+#include "oracle/company.h"
 #include "oracle/edges.h"
 #include "oracle/operators.h"
 #include "oracle/oracle.h"
@@ -16,10 +17,10 @@
 
 /* --- packs ------------------------------------------------------------------------------------------------------- */
 
-static bool advance_to(struct oracle_stage *g, uint64_t step, struct message *message)
+static bool advance_to(struct oracle_stage *g, uint64_t step, const struct contact_log *log, struct message *message)
 {
   while (g->state->step < step)
-    if (!step_advance(g->state, g->model, g->work, NULL))
+    if (!step_advance(g->state, g->model, g->work, log))
       return message_fault(message, &g->work->fault);
   return true;
 }
@@ -36,7 +37,7 @@ static bool with_run(const struct scene *scene, in_run *put, uint64_t step, stru
   bool ok = slot && state_alloc(&state, model) && work_alloc(&work, model) && work_add_everything(&work, model);
   message_set(message, "no memory for this scene");
   if (ok) {
-    struct oracle_stage g = {model, &state, &work, pack, {"", 0}, slot};
+    struct oracle_stage g = {model, &state, &work, pack, {"", 0}, slot, NULL};
     ok = scene_start(scene, &state, &work, message) && put(&g, scene, step, message);
   }
   work_free(&work);
@@ -49,8 +50,16 @@ static bool with_run(const struct scene *scene, in_run *put, uint64_t step, stru
 static bool put_step(struct oracle_stage *g, const struct scene *scene, uint64_t step, struct message *message)
 {
   (void)scene;
-  return advance_to(g, step - 1, message) &&
-         (oracle_run_operators(g, false) || g->pack->failed || message_fault(message, &g->work->fault));
+  struct oracle_company company = {.stage = g};
+  const struct contact_log log = {oracle_company_take, &company};
+  const bool beside = model_has_bead(g->model) && g->model->kinds > 0;
+  g->company = &company;
+  const bool ok = advance_to(g, step - 1, beside ? &log : NULL, message) &&
+                  (oracle_run_operators(g, false) || g->pack->failed || message_fault(message, &g->work->fault));
+  g->pack->failed |= company.failed;
+  oracle_company_free(&company);
+  g->company = NULL;
+  return ok;
 }
 
 bool oracle_emit(const struct scene *scene, struct pack *pack, struct message *message)
@@ -83,8 +92,6 @@ bool oracle_emit(const struct scene *scene, struct pack *pack, struct message *m
                        scene->path);
   if (model->frozen > 0)
     return message_set(message, "%s: fibers.frozen; packs hold the operators of fibers that move", scene->path);
-  if (model_has_bead(model) && model->kinds > 0)
-    return message_set(message, "%s: bead; packs hold no contacts of fibers with a bead", scene->path);
   if (last == 0)
     return message_set(message, "%s: no collision within its %" PRIu64 " steps; a pack needs one", scene->path,
                        scene->steps);

@@ -76,7 +76,8 @@ static bool run_random(struct oracle_stage *g)
 
 /* --- all of them ------------------------------------------------------------------------------------------------- */
 
-/* OF_TURNS, OF_EVENTS: of one kind of crossing rule; OF_TUBES: of thick fibers; OF_SRD, OF_ANDERSEN, OF_SPIN: of one
+/* OF_TURNS, OF_EVENTS: of one kind of crossing rule; OF_TUBES: of thick fibers; OF_COMPANY: of fibers around
+ * a bead; OF_SRD, OF_ANDERSEN, OF_SPIN: of one
  * collision rule, OF_ANDERSENS: of at-a and at+a; OF_PERIODIC_POINTS, OF_WALLS, OF_SHEAR: of one boundary along y;
  * OF_WAVE: of an oscillating shear; POINTS, DUMBBELLS: of one fluid; OF_MOVING: of vertices with velocities; OF_PRIVATE
  * and what follows: of media */
@@ -86,6 +87,7 @@ enum of {
   OF_TURNS,
   OF_EVENTS,
   OF_TUBES,
+  OF_COMPANY,
   OF_SOLVENT,
   OF_SRD,
   OF_ANDERSENS,
@@ -130,7 +132,10 @@ static const struct operation {
     {"contact_search", oracle_run_contact_search, oracle_edges_contact_search, OF_EVENTS},
     {"tube_search", oracle_run_tube_search, NULL, OF_TUBES},
     {"tube_contact", oracle_run_tube_contact, NULL, OF_TUBES},
+    {"bead_search", oracle_run_bead_search, NULL, OF_COMPANY},
+    {"bead_contact", oracle_run_bead_contact, NULL, OF_COMPANY},
     {"impulse", oracle_run_impulse, oracle_edges_impulse, OF_EVENTS},
+    {"impulse", oracle_run_bead_impulse, NULL, OF_COMPANY},
     {"long_event_drift", oracle_run_long_event_drift, NULL, OF_EVENTS},
     {"event_drift", oracle_run_event_drift, oracle_edges_event_drift, OF_EVENTS},
     {"bond_force", oracle_run_bond_force, NULL, OF_FIBERS},
@@ -182,15 +187,18 @@ static const struct operation {
 /* True if a step of this model has the operation. */
 static bool is_of(enum of of, const struct model *m)
 {
-  const bool events = oracle_has_events(m), solvent = model_has_solvent(m) && model_in_cells(m);
+  const bool company = model_has_bead(m) && m->kinds > 0; /* drifts and collisions with a bead are no operators yet */
+  const bool events = oracle_has_events(m) && !company,
+             solvent = model_has_solvent(m) && model_in_cells(m) && !company;
   const bool moving = !model_is_overdamped(m), pairs = m->medium.kind == MEDIUM_PAIRS;
   const bool walls = model_has_walls(m), shear = model_is_sheared(m), periodic = !walls && !shear;
   const bool dumbbells = model_has_dumbbells(m);
   const bool holds[] = {[OF_ALL] = true,
                         [OF_FIBERS] = periodic,
-                        [OF_TURNS] = periodic && !events && moving,
+                        [OF_TURNS] = periodic && !oracle_has_events(m) && moving,
                         [OF_EVENTS] = events,
                         [OF_TUBES] = events && m->thickness > 0,
+                        [OF_COMPANY] = company,
                         [OF_SOLVENT] = solvent,
                         [OF_PERIODIC_POINTS] = solvent && periodic && !dumbbells,
                         [OF_WALL_POINTS] = solvent && walls && !dumbbells,

@@ -7,6 +7,8 @@
 #include "system/state.h"
 #include "work.h"
 
+struct oracle_company;
+
 struct oracle_stage {
   const struct model *model;
   struct state *state; /* advanced by each operator in turn */
@@ -14,6 +16,7 @@ struct oracle_stage {
   struct pack *pack;
   struct pack_place place;
   uint32_t *slot; /* [particles] of ids in memory */
+  const struct oracle_company *company; /* contacts of bonds with the bead until now; NULL where nobody asks */
 };
 
 /* Puts the model's numbers, which all operators share: place `model`, step 0. */

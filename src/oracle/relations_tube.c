@@ -199,5 +199,7 @@ static bool contacts(struct evidence *e, uint32_t k, char text[RELATION_TEXT])
 const struct relation oracle_relations_tube[] = {
     {"tube_search", "out.tick", searches, .together = false},
     {"tube_contact", NULL, contacts, .together = true},
+    {"bead_search", "out.tick", searches, .together = false},
+    {"bead_contact", NULL, contacts, .together = true},
     {.make = NULL},
 };

@@ -15,6 +15,12 @@ bool oracle_run_contact_search(struct oracle_stage *stage);
 bool oracle_run_tube_search(struct oracle_stage *stage);
 bool oracle_run_tube_contact(struct oracle_stage *stage);
 bool oracle_run_impulse(struct oracle_stage *stage);
+
+/* Of fibers around a bead (stages_bead.c). */
+bool oracle_run_bead_search(struct oracle_stage *stage);
+bool oracle_run_bead_contact(struct oracle_stage *stage);
+bool oracle_run_bead_impulse(struct oracle_stage *stage);
+
 bool oracle_run_long_event_drift(struct oracle_stage *stage);
 bool oracle_run_event_drift(struct oracle_stage *stage);
 bool oracle_run_bond_force(struct oracle_stage *stage);

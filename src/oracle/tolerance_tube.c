@@ -30,12 +30,18 @@ double tolerance_tube_tick(const struct oracle_pair *p, uint32_t row, uint32_t c
   return fmax(fmax(ours - least, most - ours), 0.0);
 }
 
+/* Of two bonds, of which the other may be a point. */
+static double shorter(struct vec3 p, struct vec3 q)
+{
+  return vec3_norm(q) > 0.0 ? fmin(vec3_norm(p), vec3_norm(q)) : vec3_norm(p);
+}
+
 /* How much s and t amplify rounding. Tubes that are parallel beyond doubt touch in the middle of where they are side by
- * side: that is well conditioned. */
+ * side: that is well conditioned, and so is a bond beside a point. */
 static double condition(struct vec3 p, struct vec3 q)
 {
-  const double a = vec3_norm(p), b = vec3_norm(q), n = vec3_norm(vec3_cross(p, q)) / (a * b),
-               unlike = 1.0 + (a + b) / fmin(a, b);
+  const double a = vec3_norm(p), b = vec3_norm(q), n = b > 0.0 ? vec3_norm(vec3_cross(p, q)) / (a * b) : 0.0,
+               unlike = 1.0 + (a + b) / shorter(p, q);
   return n < 0.5e-12 ? unlike : unlike / (n * n);
 }
 
@@ -45,7 +51,7 @@ double tolerance_tube_points(const struct oracle_pair *p, uint32_t row, uint32_t
   (void)column;
   if (!oracle_tubes_of(p, row, &a, &b, &w))
     return 0.0;
-  return 64.0 * condition(a, b) * (1.0 + vec3_norm(w) / fmin(vec3_norm(a), vec3_norm(b))) * p->rounding;
+  return 64.0 * condition(a, b) * (1.0 + vec3_norm(w) / shorter(a, b)) * p->rounding;
 }
 
 double tolerance_tube_normal(const struct oracle_pair *p, uint32_t row, uint32_t column)

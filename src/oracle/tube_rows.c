@@ -20,14 +20,18 @@ void oracle_put_radii(struct oracle_stage *g)
   }
 }
 
-void oracle_put_tube_searches(struct oracle_stage *g, const struct oracle_search *search, uint32_t n)
+typedef uint32_t constructed_searches(struct oracle_search search[ORACLE_TUBE_SEARCHES]);
+typedef uint32_t constructed_contacts(struct oracle_tubes tubes[ORACLE_TUBE_CONTACTS]);
+
+static void put_searches(struct oracle_stage *g, const struct oracle_search *search, uint32_t n,
+                         constructed_searches *edges)
 {
   struct oracle_search *s = malloc(((size_t)n + ORACLE_TUBE_SEARCHES) * sizeof *s);
   g->pack->failed |= !s;
   if (!s)
     return;
   memcpy(s, search, n * sizeof *s);
-  n += oracle_edges_tube_searches(&s[n]);
+  n += edges(&s[n]);
   oracle_put_flight_pairs(g, s, n);
   int64_t *reach = oracle_put_integers(g, "in.reach", "reach", n);
   for (uint32_t k = 0; reach && k < n; k++)
@@ -46,14 +50,15 @@ static void put_points(struct oracle_stage *g, const char *name, const struct or
     memcpy(&to[3 * (size_t)k], (const char *)&c[k] + offset, sizeof(struct point));
 }
 
-void oracle_put_tube_contacts(struct oracle_stage *g, const struct oracle_tubes *tubes, uint32_t n)
+static void put_contacts(struct oracle_stage *g, const struct oracle_tubes *tubes, uint32_t n,
+                         constructed_contacts *edges)
 {
   struct oracle_tubes *c = malloc(((size_t)n + ORACLE_TUBE_CONTACTS) * sizeof *c);
   g->pack->failed |= !c;
   if (!c)
     return;
   memcpy(c, tubes, n * sizeof *c);
-  n += oracle_edges_tube_contacts(&c[n]);
+  n += edges(&c[n]);
   put_points(g, "in.p", c, offsetof(struct oracle_tubes, p), n);
   put_points(g, "in.q", c, offsetof(struct oracle_tubes, q), n);
   put_points(g, "in.w", c, offsetof(struct oracle_tubes, w), n);
@@ -73,6 +78,26 @@ void oracle_put_tube_contacts(struct oracle_stage *g, const struct oracle_tubes 
     oracle_put_vectors(g, "out.normal", normal, n);
   free(normal);
   free(c);
+}
+
+void oracle_put_tube_searches(struct oracle_stage *g, const struct oracle_search *search, uint32_t n)
+{
+  put_searches(g, search, n, oracle_edges_tube_searches);
+}
+
+void oracle_put_tube_contacts(struct oracle_stage *g, const struct oracle_tubes *tubes, uint32_t n)
+{
+  put_contacts(g, tubes, n, oracle_edges_tube_contacts);
+}
+
+void oracle_put_bead_searches(struct oracle_stage *g, const struct oracle_search *search, uint32_t n)
+{
+  put_searches(g, search, n, oracle_edges_bead_searches);
+}
+
+void oracle_put_bead_contacts(struct oracle_stage *g, const struct oracle_tubes *tubes, uint32_t n)
+{
+  put_contacts(g, tubes, n, oracle_edges_bead_contacts);
 }
 
 /* --- rows of a pack ----------------------------------------------------------------------------------------------- */

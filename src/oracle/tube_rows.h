@@ -1,4 +1,5 @@
-/* Tables of the operators `tube_search` and `tube_contact`: contacts of thick fibers, part by part. */
+/* Tables of the operators `tube_search` and `tube_contact`: contacts of thick fibers, part by part. Those of
+ * `bead_search` and `bead_contact` are the same: a bead is a tube without length, q = 0. */
 #ifndef UNCROSS_ORACLE_TUBE_ROWS_H
 #define UNCROSS_ORACLE_TUBE_ROWS_H
 
@@ -14,6 +15,8 @@ struct oracle_tubes {
  * ones, which scenes do not have (docs/porting.md). */
 void oracle_put_tube_searches(struct oracle_stage *g, const struct oracle_search *search, uint32_t n);
 void oracle_put_tube_contacts(struct oracle_stage *g, const struct oracle_tubes *tubes, uint32_t n);
+void oracle_put_bead_searches(struct oracle_stage *g, const struct oracle_search *search, uint32_t n);
+void oracle_put_bead_contacts(struct oracle_stage *g, const struct oracle_tubes *tubes, uint32_t n);
 
 /* Radius of the tube around each vertex, and how many bonds it is blind to: a table of the model. */
 void oracle_put_radii(struct oracle_stage *g);
@@ -22,6 +25,8 @@ void oracle_put_radii(struct oracle_stage *g);
 enum { ORACLE_TUBE_SEARCHES = 200, ORACLE_TUBE_CONTACTS = 100 };
 uint32_t oracle_edges_tube_searches(struct oracle_search search[ORACLE_TUBE_SEARCHES]);
 uint32_t oracle_edges_tube_contacts(struct oracle_tubes tubes[ORACLE_TUBE_CONTACTS]);
+uint32_t oracle_edges_bead_searches(struct oracle_search search[ORACLE_TUBE_SEARCHES]);
+uint32_t oracle_edges_bead_contacts(struct oracle_tubes tubes[ORACLE_TUBE_CONTACTS]);
 
 /* A search, a contact of a pack, in a0. False if there is none in this row, or none that is legal. */
 bool oracle_tube_search_of(const struct oracle_pair *pair, uint32_t row, struct oracle_search *search);

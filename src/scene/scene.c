@@ -90,6 +90,8 @@ static bool check_observed(const struct scene *scene, struct message *message)
     const char *key, *why;
   } rows[] = {
       {bead || every[OBSERVE_BEAD] == 0, "observe.bead", "there is none; allowed with a bead"},
+      {(bead && scene->model.kinds > 0) || every[OBSERVE_WAKE] == 0, "observe.wake",
+       "it is that of fibers around a bead; allowed with both"},
       {!bead || every[OBSERVE_STRESS] == 0, "observe.stress",
        "momentum that the solvent gives to the bead is not in its stress; allowed without a bead"},
       {!bead || every[OBSERVE_PRESSURE] == 0, "observe.pressure",

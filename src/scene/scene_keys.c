@@ -76,10 +76,11 @@ static const struct key_table memory_table = {"observe.memory", NULL, COUNT(ever
 
 static const struct key_table bead_observe_table = {"observe.bead", NULL, COUNT(every_keys), every_keys};
 static const struct key_table pressure_table = {"observe.pressure", NULL, COUNT(every_keys), every_keys};
+static const struct key_table wake_table = {"observe.wake", NULL, COUNT(every_keys), every_keys};
 
 static const struct key observe_keys[] = {
     {.name = "from",
-     .text = "Step at which averages (`statics`, `dynamics`, `profile`, `dumbbells`, `orientation`, `memory`) begin, "
+     .text = "Step at which averages (`statics`, `dynamics`, `profile`, `dumbbells`, `orientation`, `memory`, `wake`) begin, "
              "so that they "
              "leave a transient out. "
              "Time series "
@@ -182,6 +183,13 @@ static const struct key observe_keys[] = {
      .optional = true,
      .keys = &pressure_table,
      .offset = IN_SCENE(observe.every[OBSERVE_PRESSURE]),
+     .line = true},
+    {.name = "wake",
+     .text = "Averages around the bead: density of vertices, and how they are displaced from sample to sample.",
+     .type = KEY_SECTION,
+     .optional = true,
+     .keys = &wake_table,
+     .offset = IN_SCENE(observe.every[OBSERVE_WAKE]),
      .line = true},
 };
 static const struct key_table observe_table = {"observe", NULL, COUNT(observe_keys), observe_keys};

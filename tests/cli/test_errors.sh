@@ -81,6 +81,39 @@ ok $? "thick fibers that overlap leave no folder"
 sed -e '/start:/,/- {center: .*1, 0\]/d' -e 's/count: 2/count: 2000/; s/diameter: 0.3/diameter: 0.5/' "$dir/thick.yaml" >"$dir/full.yaml"
 gives 2 'full.yaml:11:15: .*overlaps with others wherever it is laid' run "$dir/full.yaml" --out "$dir/thick"
 
+# A bead: overlapped by a placed fiber, larger than the box allows, driven faster than is allowed.
+cat >"$dir/bead.yaml" <<YAML
+box: [12, 12, 12]
+time_step: 0.05
+steps: 20
+solvent: {per_cell: 5, collision_interval: 0.05}
+bead:
+  radius: 2
+  center: [6, 6, 6]
+  drive:
+    force: [5, 0, 0]
+fibers:
+  - name: a
+    count: 2
+    vertices: 4
+    mass: 5
+    bond_length: 0.5
+    spring: 100
+    diameter: 0.2
+    start: straight
+    places:
+      - {center: [6, 6, 9], direction: [1, 0, 0]}
+      - {center: [6, 8.05, 6], direction: [0, 0, 1]}
+crossing: {rule: event-driven}
+YAML
+gives 2 'bead.yaml:21:18: .*bond 4 of fiber 1 overlaps with the bead: its axis is 2.05 a0 from the center; allowed: more than 2.1' run "$dir/bead.yaml" --out "$dir/bead"
+sed 's/8.05/8.2/; s/radius: 2/radius: 4/' "$dir/bead.yaml" >"$dir/large.yaml"
+gives 2 'large.yaml:6:11: bead.radius: 4 a0 in a box whose shortest edge is 12 a0; allowed: at most 3 a0' run "$dir/large.yaml" --out "$dir/bead"
+sed 's/8.05/8.2/; s/\[5, 0, 0\]/[0, 500, 0]/' "$dir/bead.yaml" >"$dir/fast.yaml"
+gives 2 'fast.yaml:9:12: bead.drive.force: 500 kT/a0 drives the bead at .*too near the speed of sound; allowed: at most' run "$dir/fast.yaml" --out "$dir/bead"
+[ ! -e "$dir/bead" ]
+ok $? "beads that cannot be leave no folder"
+
 # `check` answers at once, in little memory, whatever the numbers in the scene: 5 s (they take 0.3 s) and 2 GiB.
 at_once() { # at_once CODE PATTERN SCENE: as gives, of `check`
   local wanted=$1 pattern=$2

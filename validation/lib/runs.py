@@ -39,7 +39,10 @@ class Run:
     hours: float = 0.0
     priority: int = 0
     goals: tuple = ()  # (steps, priority), ...: stops on the way to `steps`, so that every figure is coarse before one is fine
-    after: tuple = ()  # (NAME, arguments ...): when the run is finished, validation/measure/NAME.py prints NAME.csv from its trajectory
+    after: tuple = ()  # (NAME, arguments ...): when the run is finished, validation/measure/NAME.py prints a table from a file of it
+    after_from: str = "trajectory.h5"  # this file
+    after_to: str = ""  # the table's name; NAME if there is none
+    dropped: tuple = ()  # series that are not kept: too large, and told by the table
     case: str = None  # set by whoever lists the runs
     stage: bool = False  # a stop on the way, not the whole run
 
@@ -219,15 +222,15 @@ def execute_locked(run, folder, build, fresh, lock):
 
 
 def evaluate_after(run, folder):
-    """Exit code of the evaluation of the run's trajectory, into a table beside it."""
+    """Exit code of the evaluation of a file of the run, into a table beside it."""
     name, *arguments = run.after
     script = pathlib.Path(__file__).resolve().parent.parent / f"measure/{name}.py"
     part = folder / f"{name}.part"
     with open(part, "wb") as output:
-        code = subprocess.run([sys.executable, str(script), str(folder / "trajectory.h5"), *map(str, arguments)],
+        code = subprocess.run([sys.executable, str(script), str(folder / run.after_from), *map(str, arguments)],
                               stdout=output, check=False).returncode
     if code == 0:
-        part.replace(folder / f"{name}.csv")
+        part.replace(folder / f"{run.after_to or name}.csv")
     return code
 
 
@@ -289,7 +292,8 @@ def harvest(run, work, kept):
     target.mkdir(parents=True, exist_ok=True)
     for pattern in HARVESTED:
         for path in source.glob(pattern):
-            shutil.copyfile(path, target / path.name)
+            if path.stem not in run.dropped:
+                shutil.copyfile(path, target / path.name)
     for path in target.glob("*.csv"):  # of a run that goes on: whole lines
         rows = path.read_bytes()
         path.write_bytes(rows[:rows.rfind(b"\n") + 1])

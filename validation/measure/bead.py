@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """What the motion of a bead says of its surroundings, from bead.csv: friction, width of its trap, moduli G' and G''.
 
-usage: bead.py BEAD.CSV REST RADIUS MASS [--from TIME] [--omega OMEGA ...]
+usage: bead.py BEAD.CSV REST RADIUS MASS [--from TIME] [--spring K] [--omega OMEGA ...] [--swings]
 
 REST: mass of all that is not the bead, over that of the bead. RADIUS: a0. MASS: m. Units kT = a0 = m = 1. Printed is a CSV table `what,value,error`.
 
@@ -12,14 +12,15 @@ REST: mass of all that is not the bead, over that of the bead. RADIUS: a0. MASS:
                      the transform m* of the mean square displacement in three dimensions (of components without a drift), less the inertia and the trap
 
 The transform is that of straight lines between the points (Evans et al., Phys. Rev. E 80, 012501 (2009)). The inertia of the fluid is in
-both. Errors: scatter of ten parts of the run.
+both. Errors: scatter of forty parts of the run for what is known at once (active friction, trap), of ten for the rest.
 """
 import argparse
 import csv
 
 import numpy
 
-PARTS = 10
+PARTS = 10        # of a run, where lags are long
+SHORT_PARTS = 40  # else
 
 
 def read(path, begin):
@@ -37,11 +38,11 @@ def vectors(columns, what):
     return numpy.array([columns[f"{what}_{axis}"] for axis in "xyz"])
 
 
-def parted(function, *series):
+def parted(function, *series, parts=PARTS):
     """Mean of a function over parts of the series, and its error."""
-    length = series[0].shape[-1] // PARTS
-    values = numpy.array([function(*(s[..., k * length:(k + 1) * length] for s in series)) for k in range(PARTS)])
-    return values.mean(axis=0), values.std(axis=0, ddof=1) / PARTS ** 0.5
+    length = series[0].shape[-1] // parts
+    values = numpy.array([function(*(s[..., k * length:(k + 1) * length] for s in series)) for k in range(parts)])
+    return values.mean(axis=0), values.std(axis=0, ddof=1) / parts ** 0.5
 
 
 def square_displacement(place, lags):
@@ -51,7 +52,7 @@ def square_displacement(place, lags):
 
 def active_friction(time, place, force, rest):
     direction = force.mean(axis=1) / numpy.linalg.norm(force.mean(axis=1))
-    speed, error = parted(lambda t, x: direction @ (x[:, -1] - x[:, 0]) / (t[-1] - t[0]), time, place)
+    speed, error = parted(lambda t, x: direction @ (x[:, -1] - x[:, 0]) / (t[-1] - t[0]), time, place, parts=SHORT_PARTS)
     friction = numpy.linalg.norm(force.mean(axis=1)) / speed * (1.0 + 1.0 / rest)
     return friction, friction * error / speed
 
@@ -127,7 +128,7 @@ def main():
         rows.append(("passive friction", *passive_friction(time, place[still])))
     elif not args.swings:
         middle = vectors(columns, "trap")
-        width, error = parted(lambda x: args.spring * (1.0 + 1.0 / args.rest) * numpy.mean(x ** 2), place - middle)
+        width, error = parted(lambda x: args.spring * (1.0 + 1.0 / args.rest) * numpy.mean(x ** 2), place - middle, parts=SHORT_PARTS)
         rows.append(("trap", width, error))
     if args.swings:
         value, error = active_modulus(time, place, force, args.radius, args.mass, args.omega[0])

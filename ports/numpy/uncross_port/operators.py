@@ -376,6 +376,8 @@ OPERATORS = {
     "contact_search": contact_search,
     "tube_search": tube_search,
     "tube_contact": tube_contact,
+    "bead_search": tube_search,  # a bead is a tube without length
+    "bead_contact": tube_contact,
     "impulse": impulse,
     "long_event_drift": event_drift,
     "event_drift": event_drift,

@@ -1,12 +1,11 @@
 """A driven bead: drag in a periodic box, what it does in a trap, and fibers around it."""
-import importlib.util
 import math
 
 import numpy
 
 from lib import figures, stats
 from lib.case import Figure, Outcome, Verdict
-from lib.runs import TREE, Run
+from lib.runs import Run
 
 TITLE = "A bead in the solvent and among fibers"
 PAPER = "outlook; Hasimoto (1959), Lee and Kapral (2004), Padding and Louis (2006)"
@@ -15,64 +14,107 @@ GAMMA, STEP = 5.0, 0.1
 RADIUS = 2.0
 FORCE = 20.0       # kT/a0, in the box of 12
 SPRING = 100.0     # kT/a0^2
-PARTS = 40         # of a run, for errors
+SHORT, LONG = 40, 10  # parts of a run, for errors (validation/measure/bead.py)
 SLIP_KNOWN = 0.06  # of the drag: the slip of a curved surface is not that of a flat one
 RIGHT = 0.02       # of k<x^2>: omega^2 dt^2/4, and more than that
 # Campaign: (rule, box, steps).
-BOXES = (("srd", 12, 300000), ("srd", 16, 150000), ("srd", 24, 60000), ("at-a", 12, 840000))
-# A network: fibers of 16 vertices in 14^3; beads of radius 2, and of 1.5 and 3 in the middle density.
-NETWORK_STEP, NETWORK_STEPS, NETWORK_FORCE, NETWORK_BOX = 0.05, 24000, 12.0, 14
-NETWORKS = ((0, 2.0), (50, 2.0), (100, 2.0), (200, 2.0), (400, 2.0), (0, 1.5), (200, 1.5), (0, 3.0), (200, 3.0))
+BOXES = (("srd", 12, 300000), ("srd", 16, 150000), ("srd", 24, 60000), ("at-a", 12, 300000))
 
-
-def measure():
-    """The program that reads bead.csv: validation/measure/bead.py."""
-    spec = importlib.util.spec_from_file_location("measure_bead", TREE / "validation/measure/bead.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+# Networks: fibers of 16 vertices in 14^3, and beads of three radii, under a force of 6 R.
+NETWORK_STEP, NETWORK_BOX = 0.05, 14
+BOND = 0.52        # a0: mean length of a bond
+VERTEX_MASS = 10.0
+COUNTS = {1.5: (0, 25, 50, 100, 200, 400), 2.0: (0, 25, 50, 100, 200, 400), 3.0: (0, 25, 50, 100, 200)}
+PULL = 6.0         # kT/a0 for each a0 of the radius
+# Forces on a bead of 2 a0 among 200 fibers, with steps: the smaller the force, the longer.
+DENSE, FORCES = 200, ((3.0, 160000), (6.0, 100000), (12.0, 60000), (24.0, 40000), (48.0, 20000))
+# Moduli, in the solvent and among 200 fibers: (period in t0, spring in kT/a0^2) of traps that swing by 0.5 a0.
+SWINGS, AMPLITUDE, SWING_STEPS, FREE_STEPS = ((60, 45), (20, 60), (6, 100)), 0.5, 73200, {0: 120000, DENSE: 240000}
+OMEGAS = tuple(2 * math.pi / period for period in (120, 60, 35, 20, 11, 6, 3.5))
+BELOW = 0.45       # radius over mesh size: well below one mesh
+NANOSECONDS = {"srd": 30, "at-a": 60, "vertex": 150}  # CPU time of a particle or a vertex in a step
 
 
 # --- runs -------------------------------------------------------------------------------------------------------------
 
-def alone(name, rule, box, drive, steps, hours, seed):
+def evaluated(name, scene, steps, seed, bead, rest, begin=50.0, kept=False, **more):
+    """A run whose bead.csv makes the table `numbers` (validation/measure/bead.py). bead: (radius, mass); rest: mass of all else. more:
+    options of that program."""
+    radius, mass = bead
+    words = [f"{rest / mass:.9g}", f"{radius:g}", f"{mass:.9g}", "--from", f"{begin:g}"]
+    for key, value in more.items():
+        words += [f"--{key}"] + ([] if value is True else [f"{x:.9g}" for x in numpy.atleast_1d(value)])
+    return Run(name, scene=scene, steps=steps, seed=seed, after=("bead", *words), after_from="bead.csv", after_to="numbers",
+               dropped=() if kept else ("bead",))
+
+
+def alone(name, rule, box, drive, steps, seed, **more):
+    """A bead of 2 a0 in its solvent."""
     scene = (f"box: [{box}, {box}, {box}]\ntime_step: {STEP}\n"
              f"solvent: {{per_cell: {GAMMA:g}, collision_interval: {STEP}, rule: {rule}}}\n"
              f"bead: {{radius: {RADIUS:g}, center: [{box / 2}, {box / 2}, {box / 2}], drive: {{{drive}}}}}\n"
              "observe: {bead: {every: 5}, conserved: {every: 100}}\n")
-    return Run(name, scene=scene, steps=steps, hours=hours, seed=seed)
+    bead, rest = masses(box)
+    run = evaluated(name, scene, steps, seed, (RADIUS, bead), rest, **more)
+    run.hours = NANOSECONDS[rule] * box**3 * GAMMA * steps / 3.6e12
+    return run
 
 
-def network(name, count, radius, steps, hours, seed):
+def network(name, count, radius, drive, steps, seed, every=20, **more):
+    """A bead among so many fibers, with a drive or without one."""
     half = NETWORK_BOX / 2
-    fibers = (f"fibers: [{{name: net, count: {count}, vertices: 16, mass: 10, bond_length: 0.5, spring: 50, bending: 16}}]\n"
+    fibers = (f"fibers: [{{name: net, count: {count}, vertices: 16, mass: {VERTEX_MASS:g}, bond_length: 0.5, spring: 50, bending: 16}}]\n"
               "crossing: {rule: event-driven}\n") if count else ""
+    wake = "wake: {every: 40}, from_time: 50, " if count and "force" in drive else ""
+    drive = f", drive: {{{drive}}}" if drive else ""
     scene = (f"box: [{NETWORK_BOX}, {NETWORK_BOX}, {NETWORK_BOX}]\ntime_step: {NETWORK_STEP}\n"
              f"solvent: {{per_cell: {GAMMA:g}, collision_interval: {NETWORK_STEP}}}\n{fibers}"
-             f"bead: {{radius: {radius:g}, center: [{half}, {half}, {half}], drive: {{force: [{NETWORK_FORCE:g}, 0, 0]}}}}\n"
-             "observe: {bead: {every: 10}, conserved: {every: 1000}}\n")
-    return Run(name, scene=scene, steps=steps, hours=hours, seed=seed)
+             f"bead: {{radius: {radius:g}, center: [{half}, {half}, {half}]{drive}}}\n"
+             f"observe: {{{wake}bead: {{every: {every}}}, conserved: {{every: 2000}}}}\n")
+    bead, rest = masses(NETWORK_BOX, radius, count * 16 * VERTEX_MASS)
+    run = evaluated(name, scene, steps, seed, (radius, bead), rest, **more)
+    run.hours = (NANOSECONDS["srd"] * NETWORK_BOX**3 * GAMMA + NANOSECONDS["vertex"] * 16 * count) * steps / 3.6e12
+    return run
 
 
 def crowd(steps, hours, seed):
     """Thick and thin fibers, thermal bead, nothing pulls: momentum, energy and temperature."""
     kind = "vertices: 10, mass: 5, bond_length: 0.5, spring: 100, bending: 10"
+    every = 10 if steps < 10000 else 50
     scene = ("box: [10, 10, 10]\ntime_step: 0.02\nsolvent: {per_cell: 5, collision_interval: 0.02}\n"
              f"fibers:\n  - {{name: thin, count: 60, {kind}}}\n  - {{name: thick, count: 30, {kind}, diameter: 0.2}}\n"
              "crossing: {rule: event-driven}\nbead: {radius: 1.5, center: [5, 5, 5]}\n"
-             "observe: {bead: {every: 10}, conserved: {every: 50}, collisions: {every: 100}}\n")
+             f"observe: {{bead: {{every: {every}}}, conserved: {{every: {5 * every}}}, collisions: {{every: 1000}}}}\n")
     return Run("crowd", scene=scene, steps=steps, hours=hours, seed=seed)
+
+
+def moduli_runs():
+    found = []
+    for k, count in enumerate((DENSE, 0)):
+        found.append(network(f"free-n{count}", count, RADIUS, "", FREE_STEPS[count], 940 + k, every=2, omega=OMEGAS))
+        found += [network(f"swing-n{count}-T{period}", count, RADIUS,
+                          f"spring: {spring}, amplitude: [{AMPLITUDE:g}, 0, 0], period: {period}", SWING_STEPS, 942 + 3 * k + i, every=2,
+                          begin=60.0, spring=spring, omega=2 * math.pi / period, swings=True)
+                  for i, (period, spring) in enumerate(SWINGS)]
+    return found
+
+
+def network_runs():
+    found = [network(f"force-{force:g}", DENSE, RADIUS, f"force: [{force:g}, 0, 0]", steps, 950 + k)
+             for k, (force, steps) in enumerate(FORCES)]
+    for k, (radius, counts) in enumerate(COUNTS.items()):
+        found += [network(f"network-R{radius:g}-n{count}", count, radius, f"force: [{PULL * radius:g}, 0, 0]", 60000, 960 + 10 * k + i)
+                  for i, count in enumerate(counts) if (radius, count) != (RADIUS, DENSE)]  # force-12 is this one
+    return found
 
 
 def runs(tier):
     if tier == "quick":
-        return [alone("pull-srd-L12", "srd", 12, f"force: [{FORCE:g}, 0, 0]", 30000, 0.0015, 901),
-                alone("trap", "srd", 12, f"spring: {SPRING:g}", 30000, 0.0015, 902), crowd(8000, 0.0007, 903)]
-    found = [alone(f"pull-{rule}-L{box}", rule, box, "force: [6, 0, 0]", steps, 1.3e-10 * box**3 * GAMMA * steps * 0.5, 910 + k)
-             for k, (rule, box, steps) in enumerate(BOXES)]
-    found += [alone("trap", "srd", 12, f"spring: {SPRING:g}", 160000, 0.02, 920), crowd(60000, 0.03, 921)]
-    return found + [network(f"network-R{radius:g}-n{count}", count, radius, NETWORK_STEPS, 0.02 + 0.0002 * count, 930 + k)
-                    for k, (count, radius) in enumerate(NETWORKS)]
+        return [alone("pull-srd-L12", "srd", 12, f"force: [{FORCE:g}, 0, 0]", 30000, 901),
+                alone("trap", "srd", 12, f"spring: {SPRING:g}", 30000, 902, begin=20.0, spring=SPRING), crowd(8000, 0.0007, 903)]
+    found = [alone(f"pull-{rule}-L{box}", rule, box, "force: [6, 0, 0]", steps, 910 + k) for k, (rule, box, steps) in enumerate(BOXES)]
+    found += [alone("trap", "srd", 12, f"spring: {SPRING:g}", 160000, 920, begin=20.0, spring=SPRING), crowd(60000, 0.03, 921)]
+    return found + moduli_runs() + network_runs()
 
 
 # --- what is known ----------------------------------------------------------------------------------------------------
@@ -110,41 +152,37 @@ def masses(box, radius=RADIUS, vertices=0.0):
 
 # --- verdicts ---------------------------------------------------------------------------------------------------------
 
-def pulled(result, rest, begin=50.0):
-    """((friction of the force, error), (of diffusion across it, error)), or None."""
-    tool = measure()
-    table = result.table("bead")
-    kept = table["time"] >= begin
-    table = {name: column[kept] for name, column in table.items()}
-    time, place, force = table["time"], tool.vectors(table, "place"), tool.vectors(table, "force")
-    across = tool.passive_friction(time, place[1:])  # of ten parts: lags are long
-    tool.PARTS = PARTS
-    return tool.active_friction(time, place, force, rest), across
+def numbers(results, name):
+    """{what: (value, error)} of a run, from its table `numbers`; empty without it."""
+    if name not in results or not results[name].exists or "numbers" not in results[name].tables():
+        return {}
+    table = results[name].table("numbers")
+    return {what: (float(value), float(error)) for what, value, error in zip(table["what"], table["value"], table["error"])}
 
 
-def filled(verdict, pair, systematic=0.0, values=PARTS):
+def over(a, b):
+    """A ratio with its error."""
+    return a[0] / b[0], abs(a[0] / b[0]) * math.hypot(a[1] / a[0], b[1] / b[0])
+
+
+def filled(verdict, pair, systematic=0.0, values=SHORT):
     verdict.measured, verdict.error = float(pair[0]), float(pair[1])
     verdict.tolerance = stats.tolerance(verdict.error, systematic=systematic, values=values)
     return verdict
 
 
 def drag_verdicts(results, rule, box, tier):
-    expected = drag(rule, box)
-    word = f"R {RADIUS:g} in {box}³, {rule}"
-    active = Verdict(f"bead.drag.{rule}.L{box}", f"drag over 6πηR_h in the box, {word}", 1.0,
+    active = Verdict(f"bead.drag.{rule}.L{box}", f"drag over 6πηR_h in the box, R {RADIUS:g} in {box}³, {rule}", 1.0,
                      f"Hasimoto, slip of a flat wall, η of molecular chaos; known to {100 * SLIP_KNOWN:.0f} %", SLIP_KNOWN)
-    passive = Verdict(f"bead.passive.{rule}.L{box}", f"kT/D across the force over the drag, {word}", 1.0, "Einstein", 0.1)
-    name = f"pull-{rule}-L{box}"
-    if name in results and results[name].exists:
-        bead, rest = masses(box)
-        (value, error), (across, spread) = pulled(results[name], rest / bead)
-        filled(active, (value / expected, error / expected), SLIP_KNOWN)
-        ratio = across / value
-        filled(passive, (ratio, ratio * math.hypot(spread / across, error / value)), values=10)
+    passive = Verdict(f"bead.passive.{rule}.L{box}", f"kT/D across the force over the drag, R {RADIUS:g} in {box}³, {rule}", 1.0, "Einstein", 0.1)
+    found = numbers(results, f"pull-{rule}-L{box}")
+    if found:
+        filled(active, over(found["active friction"], (drag(rule, box), 0.0)), SLIP_KNOWN)
+        filled(passive, over(found["passive friction"], found["active friction"]), values=LONG)
     return [active] if tier == "quick" else [active, passive]
 
 
-def parted(values, parts=PARTS):
+def parted(values, parts=SHORT):
     """(mean, standard error) of parts of a series."""
     blocks = values[:len(values) // parts * parts].reshape(parts, -1).mean(axis=1)
     return float(blocks.mean()), float(blocks.std(ddof=1) / math.sqrt(parts))
@@ -153,12 +191,9 @@ def parted(values, parts=PARTS):
 def trap_verdicts(results):
     width = Verdict("bead.trap", "k⟨x²⟩ (1 + M/m) of a bead in a trap, kT", 1.0,
                     "equipartition, the momentum of the rest taken off; 2 % of the leap-frog", RIGHT)
-    if "trap" in results and results["trap"].exists:
-        bead, rest = masses(12)
-        table = results["trap"].table("bead")
-        kept = table["time"] >= 20.0
-        square = sum((table[f"place_{axis}"] - table[f"trap_{axis}"])[kept]**2 for axis in "xyz") / 3.0
-        filled(width, parted(SPRING * (1.0 + bead / rest) * square), RIGHT)
+    found = numbers(results, "trap")
+    if found:
+        filled(width, found["trap"], RIGHT)
     return [width]
 
 
@@ -183,50 +218,195 @@ def crowd_verdicts(results):
     return [momentum, energy, heat]
 
 
+# --- moduli -----------------------------------------------------------------------------------------------------------
+
+def omega_of(period):
+    return 2 * math.pi / period
+
+
+def moduli(results, count):
+    """(active, passive): {omega: (G', its error, G'', its error)} of the bead among so many fibers."""
+    active, passive = {}, {}
+    for period, _ in SWINGS:
+        found = numbers(results, f"swing-n{count}-T{period}")
+        if found:
+            active[omega_of(period)] = (*found["active G'"], *found["active G''"])
+    found = numbers(results, f"free-n{count}")
+    for omega in OMEGAS if found else ():
+        passive[omega] = (*found[f"passive G' at {omega:g}"], *found[f"passive G'' at {omega:g}"])
+    return active, passive
+
+
+def moduli_verdicts(results):
+    verdicts = []
+    for count, words in ((0, "in the solvent"), (DENSE, f"among {DENSE} fibers")):
+        active, passive = moduli(results, count)
+        for period, _ in SWINGS:
+            omega = omega_of(period)
+            for k, name in enumerate(("G′", "G″")):
+                verdict = Verdict(f"bead.moduli.n{count}.T{period}.{'storage' if k == 0 else 'loss'}",
+                                  f"{name} of a free bead less that of a swinging one, over |G| of this, {words}, ω {omega:.3g}", 0.0,
+                                  "generalized Stokes–Einstein relation", 0.1, power=1.0)
+                if omega in active and omega in passive:
+                    (a, b), size = (active[omega], passive[omega]), math.hypot(active[omega][0], active[omega][2])
+                    filled(verdict, ((b[2 * k] - a[2 * k]) / size, math.hypot(a[2 * k + 1], b[2 * k + 1]) / size), values=LONG)
+                verdicts.append(verdict)
+    return verdicts
+
+
+def draw_moduli(results):
+    figure, panels = figures.plain(width=9.5, height=4.4, columns=2)
+    for panel, (count, title) in zip(panels, ((0, "solvent alone"), (DENSE, f"{DENSE} fibers"))):
+        active, passive = moduli(results, count)
+        for k, name in enumerate(("G′", "G″")):
+            sign = -1.0 if k == 0 else 1.0
+            label = "−G′" if k == 0 else name
+            if passive:
+                omega = numpy.array(sorted(passive))
+                value, error = (numpy.array([passive[w][2 * k + e] for w in omega]) for e in (0, 1))
+                panel.fill_between(omega, sign * value - error, sign * value + error, alpha=0.3, color=figures.COLORS[k], linewidth=0)
+                panel.plot(omega, sign * value, color=figures.COLORS[k], linewidth=1, label=f"{label}, passive")
+            if active:
+                omega = numpy.array(sorted(active))
+                figures.points(panel, omega, *(numpy.array([s * active[w][2 * k + e] for w in omega]) for e, s in ((0, sign), (1, 1.0))),
+                               number=k, markersize=4, label=f"{label}, active")
+        panel.axhline(0.0, color=figures.INK, linewidth=0.6)
+        panel.set(xscale="log", xlabel="ω $t_0$", ylabel="modulus ($kT/a_0^3$)", title=title)
+    figures.legend(panels[0])
+    return figure
+
+
 # --- friction among fibers --------------------------------------------------------------------------------------------
 
 def mesh(count):
     """(length density)^(-1/2) of the network, a0."""
-    return math.inf if count == 0 else (NETWORK_BOX**3 / (count * 15 * 0.52)) ** 0.5
+    return math.inf if count == 0 else (NETWORK_BOX**3 / (count * 15 * BOND)) ** 0.5
 
 
-def network_rows(results):
-    """(fibers, radius, friction, error)"""
-    found = []
-    for count, radius in NETWORKS:
-        name = f"network-R{radius:g}-n{count}"
-        if name in results and results[name].exists:
-            bead, rest = masses(NETWORK_BOX, radius, count * 160.0)
-            found.append((count, radius, *pulled(results[name], rest / bead)[0]))
-    return found
+def friction(results, radius, count):
+    """(friction, error) at the force of this radius, or None."""
+    name = f"force-{PULL * radius:g}" if (radius, count) == (RADIUS, DENSE) else f"network-R{radius:g}-n{count}"
+    return numbers(results, name).get("active friction")
 
 
-def ratio(rows, count, radius):
+def excess(results, radius, count):
     """Friction over that without fibers, and its error; None if a run is missing."""
-    known = {(n, r): (value, error) for n, r, value, error in rows}
-    if (count, radius) not in known or (0, radius) not in known:
-        return None
-    (a, da), (b, db) = known[count, radius], known[0, radius]
-    return a / b, a / b * math.hypot(da / a, db / b)
+    here, alone_ = friction(results, radius, count), friction(results, radius, 0)
+    return over(here, alone_) if here and alone_ else None
 
 
-def draw(rows):
+def weighted(values):
+    weights = numpy.array([1.0 / error**2 for _, error in values])
+    return float(weights @ [value for value, _ in values] / weights.sum()), float(weights.sum() ** -0.5)
+
+
+def weight(results, force):
+    """(friction, error) of a force on the bead among the dense fibers, or None."""
+    return numbers(results, f"force-{force:g}").get("active friction")
+
+
+def linear_verdicts(results):
+    verdict = Verdict("bead.linear", "friction at 12 kT/a0 over that at 3 and 6 kT/a0, 200 fibers", 1.0, "linear response", 0.3, power=0.6)
+    small = [weight(results, force) for force in (3.0, 6.0)]
+    if all(small) and weight(results, 12.0):
+        filled(verdict, over(weight(results, 12.0), weighted(small)))
+    return [verdict]
+
+
+def network_verdicts(results):
+    """Below one mesh the solvent's friction, above it the network's."""
+    verdicts = []
+    for radius, counts in COUNTS.items():
+        for count in counts[1:]:
+            found = excess(results, radius, count)
+            if found and radius / mesh(count) < BELOW:
+                verdicts.append(filled(Verdict(f"bead.below.R{radius:g}.n{count}",
+                                               f"friction over that without fibers, R/mesh = {radius / mesh(count):.2f}", 1.0,
+                                               "a bead well below one mesh feels the solvent; 35 % for what fibers add to its viscosity", 0.35),
+                                       found, 0.35))
+    return verdicts
+
+
+def draw_force(results):
     figure, panel = figures.plain(width=5.5, height=4.0)
-    for number, radius in enumerate((1.5, 2.0, 3.0)):
-        shown = [(radius / mesh(count), *ratio(rows, count, radius)) for count, r, _, _ in rows
-                 if r == radius and count and ratio(rows, count, radius)]
+    found = [(force, *weight(results, force)) for force, _ in FORCES if weight(results, force)]
+    alone_ = friction(results, RADIUS, 0)
+    if alone_:
+        panel.axhline(alone_[0], color=figures.INK, linewidth=1.0, label="solvent alone")
+    force, value, error = (numpy.array(column) for column in zip(*found))
+    figures.points(panel, force, value, error, markersize=4, label=f"{DENSE} fibers")
+    panel.set(xscale="log", xlabel="force ($kT/a_0$)", ylabel="friction ($m/t_0$)")
+    panel.set_ylim(bottom=0.0)
+    figures.legend(panel)
+    return figure
+
+
+def draw_network(results):
+    figure, panel = figures.plain(width=5.5, height=4.0)
+    for number, (radius, counts) in enumerate(COUNTS.items()):
+        shown = [(radius / mesh(count), *excess(results, radius, count)) for count in counts[1:] if excess(results, radius, count)]
         if shown:
             x, y, error = (numpy.array(column) for column in zip(*shown))
             figures.points(panel, x, y, error, number=number, markersize=4, label=f"R = {radius:g} $a_0$")
-    panel.set(xlabel="R over the mesh size", ylabel="friction over that without fibers")
+    panel.axhline(1.0, color=figures.INK, linewidth=0.6)
+    panel.set(xscale="log", yscale="log", xlabel="R over the mesh size", ylabel="friction over that without fibers")
     figures.legend(panel)
     return figure
+
+
+# --- the network around the bead --------------------------------------------------------------------------------------
+
+WAKE = 24.0  # kT/a0, of the force whose wake is drawn
+
+
+def stokes(distance, cosine):
+    """Flow along the motion over the speed of a sphere of the bead's radius without slip, in a fluid without end."""
+    x = RADIUS / distance
+    return 0.75 * x * (1.0 + cosine**2) + 0.25 * x**3 * (1.0 - 3.0 * cosine**2)
+
+
+def draw_wake(result, speed):
+    figure, panels = figures.plain(width=9.5, height=4.4, columns=2)
+    table, interval = result.table("wake"), 40 * NETWORK_STEP
+    for number, cosine in enumerate(sorted(set(table["cosine"]))):
+        here = table["cosine"] == cosine
+        label = f"cos θ = {cosine:g}"
+        distance = table["distance"][here]
+        figures.points(panels[0], distance, *(table[name][here] / (interval * speed) for name in ("along", "along_error")), number=number,
+                       markersize=4, label=label)
+        figures.points(panels[1], distance, table["number"][here], table["number_error"][here], number=number, markersize=4)
+    distance = numpy.linspace(RADIUS, NETWORK_BOX / 2, 50)
+    for cosine, label in ((0.25, "Stokes, cos θ = ±0.25"), (0.75, "Stokes, cos θ = ±0.75")):
+        figures.theory(panels[0], distance, stokes(distance, cosine), linestyle=figures.STROKES[cosine > 0.5], label=label)
+    panels[0].set(xlabel="distance from the center ($a_0$)", ylabel="displacement along the force, of the bead's")
+    panels[1].set(xlabel="distance from the center ($a_0$)", ylabel="vertices per volume ($a_0^{-3}$)")
+    panels[1].axhline(DENSE * 16 / (NETWORK_BOX**3 - 4.0 / 3.0 * math.pi * RADIUS**3), color=figures.INK, linewidth=0.8)
+    figures.legend(panels[0])
+    return figure
+
+
+def shown_of(results):
+    found = []
+    if numbers(results, "free-n0"):
+        found.append(Figure("moduli", "Moduli that a bead of 2 a0 feels, with the inertia of the fluid in them: of traps that swing (points) and of the mean "
+                            "square displacement of a free bead (bands of one standard error).", lambda: draw_moduli(results)))
+    if any(weight(results, force) for force, _ in FORCES):
+        found.append(Figure("force", f"Friction of a bead of 2 a0 among {DENSE} fibers against the force on it.", lambda: draw_force(results)))
+    if any(excess(results, radius, count) for radius, counts in COUNTS.items() for count in counts[1:]):
+        found.append(Figure("network", "Friction of a bead among fibers over that in the solvent alone, in the same box, against its radius over the mesh size, "
+                            "which is (length density)^(-1/2).", lambda: draw_network(results)))
+    wake, name = weight(results, WAKE), f"force-{WAKE:g}"
+    if wake and "wake" in results[name].tables():
+        found.append(Figure("wake", f"The network around a bead of 2 a0 that is pulled with {WAKE:g} kT/a0. Left: mean displacement of vertices along the force, "
+                            "over that of the bead relative to all else; lines: flow around a sphere in a fluid without end. Right: number density of vertices; "
+                            "line: its mean outside of the bead. θ is the angle with the force.",
+                            lambda: draw_wake(results[name], WAKE / wake[0])))
+    return found
 
 
 def evaluate(results, tier):
     boxes = [("srd", 12)] if tier == "quick" else [(rule, box) for rule, box, _ in BOXES]
     verdicts = [v for rule, box in boxes for v in drag_verdicts(results, rule, box, tier)] + trap_verdicts(results) + crowd_verdicts(results)
-    rows = [] if tier == "quick" else network_rows(results)
-    shown = [Figure("network", "Friction of a bead among fibers over that in the solvent alone, in the same box, against its radius over the mesh size, "
-                    "which is (length density)^(-1/2).", lambda: draw(rows))] if rows else []
-    return Outcome(verdicts, shown)
+    if tier == "quick":
+        return Outcome(verdicts)
+    return Outcome(verdicts + moduli_verdicts(results) + linear_verdicts(results) + network_verdicts(results), shown_of(results))
