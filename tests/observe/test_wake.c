@@ -1,4 +1,5 @@
 /* The network around the bead: density and displacement of vertices, cell by cell. */
+#include "exact.h"
 #include "tables.h"
 
 #include "system/bead.h"

@@ -28,8 +28,8 @@ COUNTS = {1.5: (0, 25, 50, 100, 200, 400), 2.0: (0, 25, 50, 100, 200, 400), 3.0:
 PULL = 6.0         # kT/a0 for each a0 of the radius
 # Forces on a bead of 2 a0 among 200 fibers, with steps: the smaller the force, the longer.
 DENSE, FORCES = 200, ((3.0, 160000), (6.0, 100000), (12.0, 60000), (24.0, 40000), (48.0, 20000))
-# Moduli, in the solvent and among 200 fibers: (period in t0, spring in kT/a0^2) of traps that swing by 0.5 a0.
-SWINGS, AMPLITUDE, SWING_STEPS, FREE_STEPS = ((60, 45), (20, 60), (6, 100)), 0.5, 73200, {0: 120000, DENSE: 240000}
+# Moduli, in the solvent and among 200 fibers: (period in t0, spring in kT/a0^2, amplitude) of traps that swing.
+SWINGS, SWING_STEPS, FREE_STEPS = ((60, 45, 0.5), (20, 60, 0.5), (6, 100, 0.4)), 73200, {0: 120000, DENSE: 240000}
 OMEGAS = tuple(2 * math.pi / period for period in (120, 60, 35, 20, 11, 6, 3.5))
 BELOW = 0.45       # radius over mesh size: well below one mesh
 NANOSECONDS = {"srd": 30, "at-a": 60, "vertex": 150}  # CPU time of a particle or a vertex in a step
@@ -93,9 +93,9 @@ def moduli_runs():
     for k, count in enumerate((DENSE, 0)):
         found.append(network(f"free-n{count}", count, RADIUS, "", FREE_STEPS[count], 940 + k, every=2, omega=OMEGAS))
         found += [network(f"swing-n{count}-T{period}", count, RADIUS,
-                          f"spring: {spring}, amplitude: [{AMPLITUDE:g}, 0, 0], period: {period}", SWING_STEPS, 942 + 3 * k + i, every=2,
+                          f"spring: {spring}, amplitude: [{amplitude:g}, 0, 0], period: {period}", SWING_STEPS, 942 + 3 * k + i, every=2,
                           begin=60.0, spring=spring, omega=2 * math.pi / period, swings=True)
-                  for i, (period, spring) in enumerate(SWINGS)]
+                  for i, (period, spring, amplitude) in enumerate(SWINGS)]
     return found
 
 
@@ -227,7 +227,7 @@ def omega_of(period):
 def moduli(results, count):
     """(active, passive): {omega: (G', its error, G'', its error)} of the bead among so many fibers."""
     active, passive = {}, {}
-    for period, _ in SWINGS:
+    for period, *_ in SWINGS:
         found = numbers(results, f"swing-n{count}-T{period}")
         if found:
             active[omega_of(period)] = (*found["active G'"], *found["active G''"])
@@ -241,7 +241,7 @@ def moduli_verdicts(results):
     verdicts = []
     for count, words in ((0, "in the solvent"), (DENSE, f"among {DENSE} fibers")):
         active, passive = moduli(results, count)
-        for period, _ in SWINGS:
+        for period, *_ in SWINGS:
             omega = omega_of(period)
             for k, name in enumerate(("G′", "G″")):
                 verdict = Verdict(f"bead.moduli.n{count}.T{period}.{'storage' if k == 0 else 'loss'}",
