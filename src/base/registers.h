@@ -233,6 +233,12 @@ INLINE reals reals_from_small(words x)
   return (reals)(x | 0x4330000000000000) - 0x1p52;
 }
 
+/* The same less a whole number, of less than 2^52 too. */
+INLINE reals reals_from_small_less(words x, double number)
+{
+  return (reals)(x | 0x4330000000000000) - (0x1p52 + number);
+}
+
 /* (k + 0.5) 2^-31 of low halves k, taken as signed integers of 32 bits: bits 0x413 before 52 bits 2 k' + 1 are the
  * number 2^20 + (2 k' + 1) 2^-32, and k' = k + 2^31. */
 INLINE reals reals_in_square(words x)

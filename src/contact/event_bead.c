@@ -99,14 +99,41 @@ static bool measure(const struct event_drift *d, uint32_t bond)
   return !is_due(d, bond) || add(d, bond, s.image);
 }
 
+enum { GROUP = 64 };                       /* vertices looked at together: of most groups none is due */
+#define FURTHEST (32u << CANDIDATES_UNITS) /* a0, in units of paths: the largest limit */
+
+static bool any_due(const struct event_drift *d, uint32_t first, uint32_t n)
+{
+  const uint32_t *limit = &d->bead->limit[first], *path = &d->contact->neighbors.path[first], way = d->bead->way;
+  uint32_t sign = 0;
+  for (uint32_t k = 0; k < n; k++)
+    sign |= limit[k] - path[k] - way;
+  return sign >> 31;
+}
+
+/* A vertex that is due: its bond is measured, unless it has none, or is listed. */
+static bool look_at(const struct event_drift *d, uint32_t i)
+{
+  struct bead_company *c = d->bead;
+  if (d->model->next[i] >= 0)
+    return c->listed[i] || measure(d, i);
+  c->limit[i] = d->contact->neighbors.path[i] + c->way + FURTHEST;
+  return true;
+}
+
 /* Lists all bonds that may touch the bead and are not listed yet, and searches their contacts from a tick on. */
 static bool look_around(const struct event_drift *d, int32_t tick)
 {
   struct bead_company *c = d->bead;
-  const uint32_t first = c->count;
-  for (uint32_t i = 0; i < d->model->vertices; i++)
-    if (is_due(d, i) && d->model->next[i] >= 0 && !c->listed[i] && !measure(d, i))
-      return false;
+  const uint32_t first = c->count, all = d->model->vertices;
+  for (uint32_t group = 0; group < all; group += GROUP) {
+    const uint32_t n = all - group < GROUP ? all - group : GROUP;
+    if (!any_due(d, group, n))
+      continue;
+    for (uint32_t i = group; i < group + n; i++)
+      if (is_due(d, i) && !look_at(d, i))
+        return false;
+  }
   for (uint32_t k = first; k < c->count; k++)
     search(d, &c->at[k], tick);
   return true;

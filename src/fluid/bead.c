@@ -24,6 +24,7 @@
 
 #include "base/memory.h"
 #include "base/normal.h"
+#include "base/registers.h"
 #include "fluid/boundary.h"
 
 /* --- paths on ticks ---------------------------------------------------------------------------------------------- */
@@ -123,8 +124,8 @@ static double off_free_flight(const struct bead_visits *all)
 static bool comes_within(struct vec3 apart, struct vec3 go, double distance)
 {
   const double square = vec3_dot(go, go), along = -vec3_dot(apart, go);
-  const double part = !(along > 0.0) ? 0.0 : along < square ? along / square : 1.0;
-  const struct vec3 nearest = vec3_add_scaled(apart, part, go);
+  const double when = !(along > 0.0) ? 0.0 : along < square ? along / square : 1.0;
+  const struct vec3 nearest = vec3_add_scaled(apart, when, go);
   return !(vec3_dot(nearest, nearest) > distance * distance);
 }
 
@@ -222,68 +223,78 @@ static struct span whole_step(const struct state *state, const struct model *mod
   return span;
 }
 
-enum { BLOCK = 64 };                     /* particles looked at together */
-static const double round_by = 0x1.8p52; /* adding and subtracting it rounds to the nearest whole number */
+enum { BLOCK = 64 }; /* particles looked at together, registers of them at once */
 
-/* What a sweep over all particles knows of the bead. */
+/* What a sweep over all particles knows of the bead; lattice units. */
 struct sweep {
-  double at[3], edge[3];    /* a0: its place in the box; the box */
-  double reach, per_square; /* a particle of velocity v is looked at if the square of its distance is below
-                             * reach + per_square v^2: of the distance along each axis, and of all of it */
+  double at[3], edge[3];    /* its place in the box; the box */
+  double most, time;        /* a particle of velocity v is looked at if along each axis it is nearer than
+                             * most + time |v|, */
+  double reach, per_square; /* and if the square of its distance is below reach + per_square v^2 */
 };
 
 /* (c + t v)^2 is at most 1.1 c^2 + 11 (t v)^2. */
 static struct sweep sweep_of(const struct state *state, const struct model *model, const struct span *span,
                              double slack)
 {
-  const struct box *b = &model->box;
+  const int64_t *const edge = model->box.edge;
   const struct point c = state->bead->position;
-  const double t = span->time, most = model->bead.radius + slack + ROUNDING + t * vec3_norm(state->bead->velocity) +
-                                      t * t * vec3_norm(span->acceleration);
-  return (struct sweep){.at = {(double)lattice_fold(c.x, b->edge[0]) * LATTICE_UNIT,
-                               (double)lattice_fold(c.y, b->edge[1]) * LATTICE_UNIT,
-                               (double)lattice_fold(c.z, b->edge[2]) * LATTICE_UNIT},
-                        .edge = {b->cells[0], b->cells[1], b->cells[2]},
-                        .reach = 1.1 * most * most,
-                        .per_square = 11.0 * t * t};
+  const double t = span->time, time = t * LATTICE_PER_A0,
+               most = model->bead.radius + slack + ROUNDING + t * vec3_norm(state->bead->velocity) +
+                      t * t * vec3_norm(span->acceleration),
+               units = most * LATTICE_PER_A0;
+  return (struct sweep){
+      .at = {(double)lattice_fold(c.x, edge[0]), (double)lattice_fold(c.y, edge[1]), (double)lattice_fold(c.z, edge[2])},
+      .edge = {(double)edge[0], (double)edge[1], (double)edge[2]},
+      .most = units,
+      .time = time,
+      .reach = 1.1 * units * units,
+      .per_square = 11.0 * time * time};
 }
 
-/* The number itself, from 0 to 2^52; unlike a cast, for several at once. */
-static inline double double_of(int64_t whole)
+INLINE reals size_of(reals x)
 {
-  const int64_t bits = whole | 0x4330000000000000;
-  double x;
-  memcpy(&x, &bits, sizeof x);
-  return x - 0x1p52;
+  const words zero = {0};
+  return (reals)((words)x & (zero - 1) >> 1);
 }
 
-/* Adds what the distances along an axis are to `square`. True if one of them, and of `near` before, is in reach along
- * the axis: most blocks are far along the first axis, for particles stand by cells in memory, more or less. */
-static bool add_squares(const struct sweep *w, int axis, const int64_t *restrict x, const double *restrict v,
-                        uint32_t n, double *restrict square, int64_t *restrict near)
+/* Is one of a block's particles within reach along an axis? Of most blocks none is, for particles stand in memory by
+ * cells, more or less. A distance d within the box is half - |d - half| to the nearest image. */
+static bool any_near(const struct sweep *w, int axis, const int64_t *x, const double *v, uint32_t n)
 {
-  const double edge = w->edge[axis], inverse = 1.0 / edge, at = w->at[axis], per_square = w->per_square,
-               reach = w->reach;
-  int64_t any = 0;
-  for (uint32_t k = 0; k < n; k++) {
-    const double d = double_of(x[k]) * LATTICE_UNIT - at, apart = d - edge * ((d * inverse + round_by) - round_by),
-                 along = apart * apart - per_square * (v[k] * v[k]);
-    square[k] += along;
-    near[k] &= -(int64_t)(along <= reach);
-    any |= near[k];
+  const double half = 0.5 * w->edge[axis], at = w->at[axis], inner = half - w->most, time = w->time;
+  words near = {0};
+  for (uint32_t k = 0; k < n; k += LANES) {
+    const reals d = size_of(reals_from_small_less(load_words(&x[k]), at));
+    near |= (words)(size_of(d - half) >= inner - time * size_of(load_reals(&v[k])));
   }
-  return any != 0;
+  return any(near) != 0;
 }
 
-/* The squares of n particles' distances, from the first on; false if no one may meet the bead. */
+static void add_squares(const struct sweep *w, int axis, const int64_t *x, const double *v, uint32_t n, double *square)
+{
+  const double edge = w->edge[axis], at = w->at[axis], per_square = w->per_square;
+  for (uint32_t k = 0; k < n; k += LANES) {
+    const reals d = size_of(reals_from_small(load_words(&x[k])) - at), speed = load_reals(&v[k]),
+                apart = choose(d + d < edge, d, edge - d);
+    store_reals(&square[k], load_reals(&square[k]) + (apart * apart - per_square * (speed * speed)));
+  }
+}
+
+/* The squares of n particles' distances, from the first on; false if no one may meet the bead. If they do not fill their
+ * registers the squares are 0: all are looked at. */
 static bool squares_of(const struct sweep *w, const struct solvent *s, uint32_t first, uint32_t n, double square[BLOCK])
 {
-  int64_t near[BLOCK];
-  for (uint32_t k = 0; k < n; k++)
-    square[k] = 0.0, near[k] = -1;
-  return add_squares(w, 2, &s->z[first], &s->vz[first], n, square, near) &&
-         add_squares(w, 1, &s->y[first], &s->vy[first], n, square, near) &&
-         add_squares(w, 0, &s->x[first], &s->vx[first], n, square, near);
+  const bool whole = n % LANES == 0;
+  if (whole && (!any_near(w, 2, &s->z[first], &s->vz[first], n) || !any_near(w, 1, &s->y[first], &s->vy[first], n)))
+    return false;
+  memset(square, 0, BLOCK * sizeof *square);
+  if (!whole)
+    return true;
+  add_squares(w, 0, &s->x[first], &s->vx[first], n, square);
+  add_squares(w, 1, &s->y[first], &s->vy[first], n, square);
+  add_squares(w, 2, &s->z[first], &s->vz[first], n, square);
+  return true;
 }
 
 /* Takes those who may meet the bead while it is off its free flight by at most `slack`, but not those who may while it

@@ -48,14 +48,22 @@ struct vec3 bead_counter(const struct state *state, const struct model *model)
   return vec3_scale(-1.0 / model->total_mass, force);
 }
 
-/* Vertices take up their share of what a drive gives to the bead: half of it, twice in a step. */
+/* Vertices take up their share of what a drive gives to the bead: half of it, twice in a step. By twelve numbers, four
+ * vertices: compilers make a few vectors of them. */
 static bool act_counter(void *room, const struct moment *now, const struct stage *stage)
 {
-  struct state *state = now->state;
-  const struct vec3 half = vec3_scale(0.5 * now->model->time_step, bead_counter(state, now->model));
+  enum { TOGETHER = 12 };
+  const struct vec3 half = vec3_scale(0.5 * now->model->time_step, bead_counter(now->state, now->model));
+  double *v = &now->state->velocity[0].x, each[TOGETHER];
   (void)room, (void)stage;
-  for (uint32_t v = 0; v < state->vertices; v++)
-    state->velocity[v] = vec3_add(state->velocity[v], half);
+  for (int k = 0; k < TOGETHER; k++)
+    each[k] = k % 3 == 0 ? half.x : k % 3 == 1 ? half.y : half.z;
+  const size_t all = 3 * (size_t)now->state->vertices, whole = all / TOGETHER * TOGETHER;
+  for (size_t i = 0; i < whole; i += TOGETHER)
+    for (int k = 0; k < TOGETHER; k++)
+      v[i + k] += each[k];
+  for (size_t i = whole; i < all; i++)
+    v[i] += each[i - whole];
   return true;
 }
 

@@ -27,6 +27,7 @@ struct scene {
   double shear;       /* rate of a sheared box, 1/t0 */
   double diameter;    /* of fibers, a0 */
   double pairs;       /* spring constant of dumbbells, kT/a0^2; 0: independent particles */
+  double bead;        /* radius of a bead that 10 kT/a0 pull, a0; 0: none */
 };
 
 static inline struct scene scene_default(void)
@@ -68,6 +69,7 @@ static const struct scene_key {
     {"shear", offsetof(struct scene, shear)},
     {"diameter", offsetof(struct scene, diameter)},
     {"pairs", offsetof(struct scene, pairs)},
+    {"bead", offsetof(struct scene, bead)},
 };
 
 static inline bool scene_set(struct scene *scene, const char *name, size_t length, double value)
@@ -115,6 +117,9 @@ static inline struct model scene_model(const struct scene *s)
   m.shear.rate = s->shear;
   if (s->pairs > 0.0)
     m.dumbbells = (struct dumbbell_model){.spring = s->pairs, .fraction = 1.0};
+  if (s->bead > 0.0)
+    m.bead = (struct bead_model){
+        .radius = s->bead, .center = {0.5 * edge, 0.5 * edge, 0.5 * edge}, .drive = {.force = {10.0, 0.0, 0.0}}};
   if (s->fibers > 0.0) {
     struct fiber_kind *k = add_kind(&m, (uint32_t)s->fibers, (uint32_t)s->vertices);
     k->bond_length = s->bond_length;

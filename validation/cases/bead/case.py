@@ -18,7 +18,7 @@ SHORT, LONG = 40, 10  # parts of a run, for errors (validation/measure/bead.py)
 SLIP_KNOWN = 0.06  # of the drag: the slip of a curved surface is not that of a flat one
 RIGHT = 0.02       # of k<x^2>: omega^2 dt^2/4, and more than that
 # Campaign: (rule, box, steps).
-BOXES = (("srd", 12, 300000), ("srd", 16, 150000), ("srd", 24, 60000), ("at-a", 12, 300000))
+BOXES = (("srd", 12, 300000), ("srd", 16, 150000), ("srd", 24, 60000), ("at-a", 12, 120000))
 
 # Networks: fibers of 16 vertices in 14^3, and beads of three radii, under a force of 6 R.
 NETWORK_STEP, NETWORK_BOX = 0.05, 14
@@ -27,12 +27,12 @@ VERTEX_MASS = 10.0
 COUNTS = {1.5: (0, 25, 50, 100, 200, 400), 2.0: (0, 25, 50, 100, 200, 400), 3.0: (0, 25, 50, 100, 200)}
 PULL = 6.0         # kT/a0 for each a0 of the radius
 # Forces on a bead of 2 a0 among 200 fibers, with steps: the smaller the force, the longer.
-DENSE, FORCES = 200, ((3.0, 160000), (6.0, 100000), (12.0, 60000), (24.0, 40000), (48.0, 20000))
+DENSE, FORCES = 200, ((3.0, 80000), (6.0, 60000), (12.0, 60000), (24.0, 40000), (48.0, 20000))
 # Moduli, in the solvent and among 200 fibers: (period in t0, spring in kT/a0^2, amplitude) of traps that swing.
-SWINGS, SWING_STEPS, FREE_STEPS = ((60, 45, 0.5), (20, 60, 0.5), (6, 100, 0.4)), 73200, {0: 120000, DENSE: 240000}
+SWINGS, SWING_STEPS, FREE_STEPS = ((60, 45, 0.5), (20, 60, 0.5), (6, 100, 0.4)), 73200, {0: 120000, DENSE: 140000}
 OMEGAS = tuple(2 * math.pi / period for period in (120, 60, 35, 20, 11, 6, 3.5))
 BELOW = 0.45       # radius over mesh size: well below one mesh
-NANOSECONDS = {"srd": 30, "at-a": 60, "vertex": 150}  # CPU time of a particle or a vertex in a step
+NANOSECONDS = {"srd": 8, "at-a": 26, "vertex": 100}  # CPU time of a particle or a vertex in a step
 
 
 # --- runs -------------------------------------------------------------------------------------------------------------
@@ -103,7 +103,7 @@ def network_runs():
     found = [network(f"force-{force:g}", DENSE, RADIUS, f"force: [{force:g}, 0, 0]", steps, 950 + k)
              for k, (force, steps) in enumerate(FORCES)]
     for k, (radius, counts) in enumerate(COUNTS.items()):
-        found += [network(f"network-R{radius:g}-n{count}", count, radius, f"force: [{PULL * radius:g}, 0, 0]", 60000, 960 + 10 * k + i)
+        found += [network(f"network-R{radius:g}-n{count}", count, radius, f"force: [{PULL * radius:g}, 0, 0]", 40000 if count < 400 else 20000, 960 + 10 * k + i)
                   for i, count in enumerate(counts) if (radius, count) != (RADIUS, DENSE)]  # force-12 is this one
     return found
 
