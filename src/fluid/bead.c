@@ -243,13 +243,13 @@ static struct sweep sweep_of(const struct state *state, const struct model *mode
                most = model->bead.radius + slack + ROUNDING + t * vec3_norm(state->bead->velocity) +
                       t * t * vec3_norm(span->acceleration),
                units = most * LATTICE_PER_A0;
-  return (struct sweep){
-      .at = {(double)lattice_fold(c.x, edge[0]), (double)lattice_fold(c.y, edge[1]), (double)lattice_fold(c.z, edge[2])},
-      .edge = {(double)edge[0], (double)edge[1], (double)edge[2]},
-      .most = units,
-      .time = time,
-      .reach = 1.1 * units * units,
-      .per_square = 11.0 * time * time};
+  return (struct sweep){.at = {(double)lattice_fold(c.x, edge[0]), (double)lattice_fold(c.y, edge[1]),
+                               (double)lattice_fold(c.z, edge[2])},
+                        .edge = {(double)edge[0], (double)edge[1], (double)edge[2]},
+                        .most = units,
+                        .time = time,
+                        .reach = 1.1 * units * units,
+                        .per_square = 11.0 * time * time};
 }
 
 INLINE reals size_of(reals x)
@@ -281,8 +281,8 @@ static void add_squares(const struct sweep *w, int axis, const int64_t *x, const
   }
 }
 
-/* The squares of n particles' distances, from the first on; false if no one may meet the bead. If they do not fill their
- * registers the squares are 0: all are looked at. */
+/* The squares of n particles' distances, from the first on; false if no one may meet the bead. If they do not fill
+ * their registers the squares are 0: all are looked at. */
 static bool squares_of(const struct sweep *w, const struct solvent *s, uint32_t first, uint32_t n, double square[BLOCK])
 {
   const bool whole = n % LANES == 0;

@@ -9,12 +9,18 @@
 #include "observe/observer.h"
 
 static const struct observer_type *const types[OBSERVABLES] = {
-    [OBSERVE_CONSERVED] = &conserved_observer,     [OBSERVE_TEMPERATURE] = &temperature_observer,
-    [OBSERVE_STATICS] = &statics_observer,         [OBSERVE_DYNAMICS] = &dynamics_observer,
-    [OBSERVE_COLLISIONS] = &collisions_observer,   [OBSERVE_PROFILE] = &profile_observer,
-    [OBSERVE_STRESS] = &stress_observer,           [OBSERVE_DUMBBELLS] = &dumbbells_observer,
-    [OBSERVE_ORIENTATION] = &orientation_observer, [OBSERVE_BEAD] = &bead_observer,
-    [OBSERVE_MEMORY] = &memory_observer,           [OBSERVE_PRESSURE] = &pressure_observer,
+    [OBSERVE_CONSERVED] = &conserved_observer,
+    [OBSERVE_TEMPERATURE] = &temperature_observer,
+    [OBSERVE_STATICS] = &statics_observer,
+    [OBSERVE_DYNAMICS] = &dynamics_observer,
+    [OBSERVE_COLLISIONS] = &collisions_observer,
+    [OBSERVE_PROFILE] = &profile_observer,
+    [OBSERVE_STRESS] = &stress_observer,
+    [OBSERVE_DUMBBELLS] = &dumbbells_observer,
+    [OBSERVE_ORIENTATION] = &orientation_observer,
+    [OBSERVE_BEAD] = &bead_observer,
+    [OBSERVE_MEMORY] = &memory_observer,
+    [OBSERVE_PRESSURE] = &pressure_observer,
     [OBSERVE_WAKE] = &wake_observer,
 };
 

@@ -120,8 +120,8 @@ static void add_wake(struct observer *o, struct view *view)
 
 /* --- the table --------------------------------------------------------------------------------------------------- */
 
-static const char *const columns[] = {"distance", "cosine", "number", "number_error", "along",
-                                      "along_error", "away", "away_error", "samples"};
+static const char *const columns[] = {"distance",    "cosine", "number",     "number_error", "along",
+                                      "along_error", "away",   "away_error", "samples"};
 
 enum { COLUMNS = sizeof columns / sizeof *columns };
 

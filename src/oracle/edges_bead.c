@@ -11,7 +11,7 @@ static const struct bead_kind {
   int graze;
   uint32_t rows;
 } kinds[] = {
-    {39, 20, false, 0, 30}, {39, 20, true, 0, 30},  {39, 6, false, 0, 20},
+    {39, 20, false, 0, 30}, {39, 20, true, 0, 30},   {39, 6, false, 0, 20},
     {36, 20, true, 0, 20},  {39, 21, false, 26, 20}, {39, 21, true, 26, 20},
 };
 enum { KINDS = sizeof kinds / sizeof *kinds, AT_REST = 6, TRIES = 4000 };

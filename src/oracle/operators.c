@@ -188,8 +188,7 @@ static const struct operation {
 static bool is_of(enum of of, const struct model *m)
 {
   const bool company = model_has_bead(m) && m->kinds > 0; /* drifts and collisions with a bead are no operators yet */
-  const bool events = oracle_has_events(m) && !company,
-             solvent = model_has_solvent(m) && model_in_cells(m) && !company;
+  const bool events = oracle_has_events(m) && !company, solvent = model_has_solvent(m) && model_in_cells(m) && !company;
   const bool moving = !model_is_overdamped(m), pairs = m->medium.kind == MEDIUM_PAIRS;
   const bool walls = model_has_walls(m), shear = model_is_sheared(m), periodic = !walls && !shear;
   const bool dumbbells = model_has_dumbbells(m);

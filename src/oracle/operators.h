@@ -15,7 +15,7 @@ struct oracle_stage {
   struct work *work;   /* with everything (work_add_everything) */
   struct pack *pack;
   struct pack_place place;
-  uint32_t *slot; /* [particles] of ids in memory */
+  uint32_t *slot;                       /* [particles] of ids in memory */
   const struct oracle_company *company; /* contacts of bonds with the bead until now; NULL where nobody asks */
 };
 

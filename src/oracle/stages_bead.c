@@ -94,8 +94,7 @@ static struct oracle_impulse impulse_of(const struct oracle_stage *g, const stru
   }
   e.mass[2] = g->model->bead.mass;
   e.velocity[2] = w->velocity;
-  e.force[2] = bead_force(g->model,
-                          flight_place(point_plus(g->state->bead->position, w->at), w->rate, tick - w->clock),
+  e.force[2] = bead_force(g->model, flight_place(point_plus(g->state->bead->position, w->at), w->rate, tick - w->clock),
                           g->state->solvent_time + 1);
   return e;
 }
@@ -108,7 +107,8 @@ void oracle_company_take(void *context, const struct contact_event *v)
     return;
   const uint32_t vertex[2] = {v->moving_bond, (uint32_t)g->model->next[v->moving_bond]};
   const int32_t tick = (int32_t)(v->hit.time * FLIGHT_TICKS);
-  const int64_t reach = bead_radius(g->model) + g->model->kind[g->model->fiber_kind_of[g->model->fiber_of[vertex[0]]]].radius;
+  const int64_t reach =
+      bead_radius(g->model) + g->model->kind[g->model->fiber_kind_of[g->model->fiber_of[vertex[0]]]].radius;
   const struct oracle_impulse e = impulse_of(g, v, vertex, tick);
   const struct vec3 after[3] = {g->state->velocity[vertex[0]], g->state->velocity[vertex[1]],
                                 vec3_add_scaled(e.velocity[2], v->impulse / e.mass[2], v->hit.normal)};

@@ -80,7 +80,8 @@ static const struct key_table wake_table = {"observe.wake", NULL, COUNT(every_ke
 
 static const struct key observe_keys[] = {
     {.name = "from",
-     .text = "Step at which averages (`statics`, `dynamics`, `profile`, `dumbbells`, `orientation`, `memory`, `wake`) begin, "
+     .text = "Step at which averages (`statics`, `dynamics`, `profile`, `dumbbells`, `orientation`, `memory`, `wake`) "
+             "begin, "
              "so that they "
              "leave a transient out. "
              "Time series "

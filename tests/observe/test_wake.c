@@ -132,7 +132,8 @@ static void along_is_that_of_the_drive(void **unused)
   const struct vec3 none = {0, 0, 0}, a = {0, 0.3, 0}, b = {0, 0, -0.2};
   const struct {
     struct vec3 force, velocity, amplitude, along;
-  } rows[] = {{a, b, none, {0, 1, 0}}, {none, b, a, {0, 0, -1}}, {none, none, a, {0, 1, 0}}, {none, none, none, {1, 0, 0}}};
+  } rows[] = {
+      {a, b, none, {0, 1, 0}}, {none, b, a, {0, 0, -1}}, {none, none, a, {0, 1, 0}}, {none, none, none, {1, 0, 0}}};
   for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
     struct model m = crowd_around_a_bead();
     m.bead.drive = (struct bead_drive){.force = rows[k].force,
