@@ -8,13 +8,14 @@ import pathlib
 import string
 
 import numpy
-from scipy import special
+from scipy import linalg, special
 
 from lib import bending, dilute, stats
 
 BOND = (0.5**3 + 3 * 0.5 * 0.01) / (0.5**2 + 0.01)  # <l> of k = 100, l0 = 0.5: r^2 exp(-k (r - l0)^2/2) in closed form, 0.538462
 BOND2 = (0.5**4 + 6 * 0.5**2 * 0.01 + 3 * 0.01**2) / (0.5**2 + 0.01)  # <l^2>, 0.299231
 MASS = 5.0
+SPRING = 100.0  # k, kT/a0^2
 PERSISTENCE = -BOND / math.log(1.0 / math.tanh(64.0) - 1.0 / 64.0)  # -<l>/ln<cos>, 34.19
 VERTEX_DIFFUSION = 0.010662  # molecular chaos: what a vertex has without hydrodynamics (src/solvent, docs/accuracy.md)
 DENSITIES = (30, 100, 300, 1000)  # c L^3 of Fig. 5, which is the number of fibers in a box of edge L
@@ -26,7 +27,7 @@ SOLVENT = "thermostat: rescale"  # with hydrodynamics: see validation/cases/tube
 FREE_SOLVENT = "thermostat: none"
 BATH = "hydrodynamics: false\n  bath: phantoms"  # without
 STANDARD = {"box": 32, "dt": 0.01, "flow": 0, "solvent": SOLVENT, "vertices": 64, "forbidden": "true",
-            "refusal": "stay", "others": "",
+            "rule": "sequential", "refusal": "stay", "others": "",
             "frame": "laboratory", "series": 10000, "every": 50, "longest_lag": 3276800}
 
 
@@ -249,6 +250,26 @@ def momentum_change(results):
         kinetic = float(table["vertex_kinetic"][0] + table["solvent_kinetic"][0])
         worst = max(worst or 0.0, 1.5 * change / kinetic)
     return worst
+
+
+def wave_left(times, count, vertices, box, bonded):
+    """Share of a shear wave of the box's length that is left in a suspension, to leading order in its strain.
+
+    Vertices go with the fluid and make it heavier and more viscous (dilute.heavy_fluid). Bonds are springs along straight fibers of all
+    directions n. Along a fiber the wave is u n_x cos(k n_y s); it stretches the fiber by w, which slips back with the mobility
+    of a vertex: dw/dt = u - Gamma w, Gamma = mobility K <l>^2 k^2 n_y^2. The tension takes c K <l>^2 k^2 <n_x^2 n_y^2 w> from the
+    momentum. Left out: bends, which make fibers softer, and ends."""
+    y, share = numpy.polynomial.legendre.leggauss(16)
+    y, share = 0.5 * (y + 1.0), 0.5 * share
+    crowd, k = count * vertices / box**3, 2.0 * math.pi / box
+    stretch = (SPRING * BOND**2 * k**2) * y**2
+    rates = numpy.zeros((17, 17))
+    rates[0, 0] = -dilute.heavy_fluid(crowd)[1] * k**2
+    if bonded:
+        rates[0, 1:] = -count * (vertices - 1) / box**3 / (dilute.PER_CELL + MASS * crowd) * share * stretch * 0.5 * (1.0 - y**2)
+    rates[1:, 0] = 1.0
+    rates[range(1, 17), range(1, 17)] = -VERTEX_DIFFUSION * stretch
+    return numpy.array([linalg.expm(rates * t)[0, 0] for t in times])
 
 
 def measured(verdict, pair, systematic=0.0, values=None):
