@@ -80,6 +80,17 @@ gives 2 'thick.yaml:15:18: .*overlaps with another: their axes are 0.2 a0 apart;
 ok $? "thick fibers that overlap leave no folder"
 sed -e '/start:/,/- {center: .*1, 0\]/d' -e 's/count: 2/count: 2000/; s/diameter: 0.3/diameter: 0.5/' "$dir/thick.yaml" >"$dir/full.yaml"
 gives 2 'full.yaml:11:15: .*overlaps with others wherever it is laid' run "$dir/full.yaml" --out "$dir/thick"
+# tubes thicker than bonds are long; without contacts at their own time; a snapshot of thin lines whose tubes overlap
+sed -e 's/diameter: 0.3/diameter: 0.6/' "$dir/thick.yaml" >"$dir/wide.yaml"
+gives 2 'wide.yaml:11:15: .*0.6 for bonds of a mean length of 0.538.* a0' run "$dir/wide.yaml" --out "$dir/thick"
+sed -e 's/event-driven/sequential/' "$dir/thick.yaml" >"$dir/turns.yaml"
+gives 2 'turns.yaml:11:15: .*sequential knows thin lines only' run "$dir/turns.yaml" --out "$dir/thick"
+sed -e 's/diameter: 0.3/diameter: 0/' "$dir/thick.yaml" >"$dir/thin.yaml"
+gives 0 '' run "$dir/thin.yaml" --out "$dir/thin" --quiet
+{ sed -e '/start:/,/- {center: .*1, 0\]/d' "$dir/thick.yaml" && echo 'snapshot: thin/checkpoint.h5'; } >"$dir/again.yaml"
+gives 2 'again.yaml:13:11: .*overlaps with another: their axes are 0.2.* a0 apart' run "$dir/again.yaml" --out "$dir/thick"
+[ ! -e "$dir/thick" ]
+ok $? "no refused scene of thick fibers leaves a folder"
 
 # A bead: overlapped by a placed fiber, larger than the box allows, driven faster than is allowed.
 cat >"$dir/bead.yaml" <<YAML
