@@ -87,8 +87,8 @@ sed -e 's/event-driven/sequential/' "$dir/thick.yaml" >"$dir/turns.yaml"
 gives 2 'turns.yaml:11:15: .*sequential knows thin lines only' run "$dir/turns.yaml" --out "$dir/thick"
 sed -e 's/diameter: 0.3/diameter: 0/' "$dir/thick.yaml" >"$dir/thin.yaml"
 gives 0 '' run "$dir/thin.yaml" --out "$dir/thin" --quiet
-{ sed -e '/start:/,/- {center: .*1, 0\]/d' "$dir/thick.yaml" && echo 'snapshot: thin/checkpoint.h5'; } >"$dir/again.yaml"
-gives 2 'again.yaml:13:11: .*overlaps with another: their axes are 0.2.* a0 apart' run "$dir/again.yaml" --out "$dir/thick"
+{ sed -e '/start:/,/- {center: .*1, 0\]/d' "$dir/thick.yaml" && echo 'start: {snapshot: thin/checkpoint.h5}'; } >"$dir/again.yaml"
+gives 2 'again.yaml:13:19: .*overlaps with another: their axes are 0.2.* a0 apart' run "$dir/again.yaml" --out "$dir/thick"
 [ ! -e "$dir/thick" ]
 ok $? "no refused scene of thick fibers leaves a folder"
 
