@@ -8,6 +8,7 @@ struct knot {
   struct vec3 p, q, w, n;
 };
 
+/* Padding 2009, Eq. (29): the points of both bonds at this tick, and the nearest two of them. */
 static struct knot knot_at(const struct flight_pair *pair, int32_t tick)
 {
   struct knot k;
