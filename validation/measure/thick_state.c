@@ -93,7 +93,7 @@ static double grow(struct run *r, int64_t wanted, double edge)
       *radius = room < wanted ? room : wanted;
   }
   free(axis);
-  stop_unless(step_sound(&r->state, &r->model, &r->work.fault), r);
+  stop_unless(start_sound(&r->state, &r->model, &r->work.fault), r);
   return (double)(r->state.step - start) * r->model.time_step;
 }
 

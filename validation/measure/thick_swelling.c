@@ -86,8 +86,7 @@ static void try_pivot(struct chain *c, struct dice *d)
       vec3_scale(draw_length(d, &c->model.kind[0]) / vec3_norm(bond) - 1.0, turned(column, bond));
   memcpy(c->trial, c->now, (at + 1) * sizeof *c->now);
   for (uint32_t j = at + 1; j <= c->bonds; j++)
-    c->trial[j] =
-        point_move(c->now[at], vec3_add(turned(column, point_difference(c->now[j], c->now[at])), stretch));
+    c->trial[j] = point_move(c->now[at], vec3_add(turned(column, point_difference(c->now[j], c->now[at])), stretch));
 }
 
 static bool pivot(struct chain *c, struct dice *d)

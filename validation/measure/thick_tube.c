@@ -20,7 +20,7 @@ enum { LAGS = 24 };
 /* A lag: the state when its interval began, and sums of each fiber. */
 struct lag {
   uint64_t samples;
-  struct point *origin; /* [vertices] */
+  struct point *origin;  /* [vertices] */
   double *tube, *middle; /* [fibers] */
   double intervals;
 };
@@ -41,7 +41,8 @@ static uint32_t lags_begin(struct lag *lag, const struct run *r, uint64_t sample
   uint32_t lags = 0;
   while (lags < LAGS && 2 * dynamics_lag(lags) <= samples) {
     struct lag *l = &lag[lags];
-    *l = (struct lag){.samples = dynamics_lag(lags), .origin = malloc(r->state.vertices * sizeof *l->origin),
+    *l = (struct lag){.samples = dynamics_lag(lags),
+                      .origin = malloc(r->state.vertices * sizeof *l->origin),
                       .tube = calloc(r->model.fibers, sizeof *l->tube),
                       .middle = calloc(r->model.fibers, sizeof *l->middle)};
     stop_unless(l->origin && l->tube && l->middle, r);
@@ -55,8 +56,8 @@ static void lag_look(struct lag *l, const struct run *r, struct vec3 *scratch)
 {
   for (uint32_t f = 0; f < r->model.fibers; f++) {
     const uint32_t first = r->model.fiber_first[f];
-    const struct fiber_motion motion = fiber_motion(&r->model.kind[0], &l->origin[first], &r->state.position[first],
-                                                    (struct vec3){0, 0, 0}, scratch);
+    const struct fiber_motion motion =
+        fiber_motion(&r->model.kind[0], &l->origin[first], &r->state.position[first], (struct vec3){0, 0, 0}, scratch);
     l->tube[f] += motion.tube_third, l->middle[f] += motion.middle;
   }
   l->intervals += 1.0;
@@ -88,7 +89,7 @@ int main(int argc, char **argv)
   run_start_finished(&r, model_of(edge, fibers, vertices, diameter), seed);
   memcpy(r.state.position, start.state.position, r.state.vertices * sizeof *r.state.position);
   memcpy(r.state.velocity, start.state.velocity, r.state.vertices * sizeof *r.state.velocity);
-  stop_unless(step_sound(&r.state, &r.model, &r.work.fault), &r);
+  stop_unless(start_sound(&r.state, &r.model, &r.work.fault), &r);
   run_end(&start);
 
   const uint64_t steps = (uint64_t)(SAMPLE / r.model.time_step + 0.5),
