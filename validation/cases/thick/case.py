@@ -425,7 +425,7 @@ def draw_swelling(results):
             slope = stats.line(x[keep], (table["R2"] / table["ideal"])[keep], (table["R2_error"] / table["ideal"])[keep]).value[1]
             figures.line(right, [0.0, 32**-0.5], [line, line + slope * 32**-0.5], number=number)
     right.set(xlabel="$N^{-1/2}$", ylabel="$\\langle R^2\\rangle/N\\langle l^2\\rangle$")
-    figures.legend(left)
+    figures.legend(left, loc="lower left")
     figures.legend(right)
     return figure
 
@@ -443,7 +443,7 @@ def draw_tube(results):
         ratio = table["d2"] / thin["d2"]
         figures.points(right, table["time"], ratio, table["d2_error"] / thin["d2"], number=number, markersize=3)
         keep = table["time"] >= 32.0
-        figures.line(right, table["time"][keep], [expected_ratio(square, width) for square in thin["d2"][keep]], number=number)
+        figures.line(right, table["time"][keep], [expected_ratio(square, width) for square in thin["d2"][keep]], number=number, linestyle="--")
         figures.line(right, [8.0, table["time"].max()], 2 * [crowding_ratio(width)], number=number, linestyle=":")
     right.axhline(1.0, color=figures.INK, linewidth=0.8)
     right.set(xscale="log", xlabel="t, t0", ylabel="$d^2$ over that of thin lines")
