@@ -70,7 +70,7 @@ struct mpc {
   bool spin_is_clear;        /* all of `spin` is 0: the rule clears each cell when it has solved it */
   struct point *middle;      /* [cells] of the same rule: place in the cell next to its centre of mass, lattice units */
   struct mpc_bead bead;      /* empty without one */
-  bool prefetch;             /* sums and turns of cells are asked for ahead of their use */
+  bool prefetch;             /* sums and turns of cells are far in memory: they are asked for ahead of their use */
   uint32_t since_sort;       /* collisions since particles were last sorted by cell */
 };
 

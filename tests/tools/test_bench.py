@@ -204,7 +204,7 @@ class Programs(unittest.TestCase):
         lines = [line.split("\t") for line in text.splitlines()]
         self.assertEqual([line[:2] for line in lines[:-1]], [[r, k] for r in "12" for k in "012"])
         self.assertTrue(all(int(line[2]) > 0 and float(line[3]) >= 0 for line in lines[:-1]))
-        self.assertEqual(int(lines[1][2]), 100)  # 50 collisions, a whole period of sorting
+        self.assertEqual(int(lines[1][2]), 200)  # 100 collisions, a whole period of sorting
         self.assertTrue(1 << 20 < 1024 * int(lines[-1][1]) <= memory + (1 << 20))
 
     def test_precision(self):

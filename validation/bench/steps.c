@@ -11,7 +11,7 @@
 
 #include "scene.h"
 
-#define COLLISIONS_PER_BLOCK 50 /* as many as lie between two sorts, or a multiple */
+#define COLLISIONS_PER_BLOCK 100 /* as many as lie between two sorts, or a multiple */
 
 #define SETTLING_STEPS 100
 
