@@ -75,7 +75,7 @@ INLINE reals momenta(reals v, words *span)
 #define MOST_MOMENTUM ((uint64_t)1 << 51)
 
 /* Particles whose flight comes before their sums: all of it stays in the nearest cache. */
-enum { CHUNK = 256 };
+enum { CHUNK = 128 };
 
 /* For a chunk: flight, cells, and what each particle adds to the sums of its cell, in the order of store_records. The
  * sign bit of the result is set where that of boundary_fly_periodic is. */
