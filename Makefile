@@ -443,12 +443,13 @@ sanitize:
 	   CFLAGS='-g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all' exact
 	tools/sanitize build/sanitize $(filter-out $(STATISTICS),$(EXACT_TESTS))
 
+# -O1 takes a third of the time of -O0. It counts as many lines and branches, and of the branches 1 to 3 % more as taken.
 .PHONY: coverage
 coverage:
 	tools/install-dependencies run hard port
 	mkdir -p build/coverage
 	gcc -O1 -c tests/faults/child_coverage.c -o build/coverage/child.o
-	$(MAKE) -j2 CC=gcc BUILD=build/coverage ONCE=1 OPTIMIZE=-O0 CFLAGS='-g --coverage' \
+	$(MAKE) -j2 CC=gcc BUILD=build/coverage ONCE=1 OPTIMIZE=-O1 CFLAGS='-g --coverage' \
 	   LIBS='$(LIBS) $(CURDIR)/build/coverage/child.o -Wl,--wrap=_exit' exact
 	tools/coverage build/coverage $(filter-out $(STATISTICS),$(EXACT_TESTS))
 
