@@ -3,7 +3,7 @@ import math
 
 import numpy
 
-from lib import dilute, figures, media
+from lib import dilute, figures, filaments, integrators, interfaces, media
 from lib.case import Figure, Outcome, Verdict
 from lib.media import BLOCKS, at, fill, mean_of
 from lib.runs import Run
@@ -19,6 +19,7 @@ LENGTH = {"quick": 1, "campaign": 10}
 QUICK_STEPS = 200000
 FIRST = 0.05    # b^2/D0: 5 steps; at the first lag a chain has hardly changed its shape
 DPD_PRESSURE, DPD_KNOWN = 23.65, 0.02  # rho 3, a 25: a program of its own, small steps
+PARTS = (integrators, interfaces, filaments)  # of the campaign
 
 
 def chain(name, medium, vertices, count, steps, hours, step=STEP, every=EVERY, first=2000, memory=""):
@@ -40,7 +41,8 @@ def runs(tier):
              "medium: {kind: pairs, density: 3, rate: 9, draw: relax, weight: quadratic, repulsion: 25}\n"
              "observe: {pressure: {every: 20}, temperature: {every: 20}}\n")
     found.append(Run("dpd", scene=fluid, steps=20000 * n, hours=0.003 * n))
-    return found + media.runs() if tier == "campaign" else found
+    parts = [run for part in PARTS for run in part.runs()]
+    return found + media.runs() + parts if tier == "campaign" else found
 
 
 # --- what is known ----------------------------------------------------------------------------------------------------
@@ -124,6 +126,11 @@ def draw(results):
     return figure
 
 
+CAPTIONS = ("Temperatures of a fluid of DPD (ρ = 3, a = 25, γ = 4.5) by nine integrators. Left: that of velocities. Right: that of places, which a bath does not hold.",
+            "Left: density across a slab of the many-body liquid; its vapour is empty. Right: pressure of droplets of one liquid in another, against Laplace's line with the tension of a flat surface.",
+            "A filament. Left: how far its ends trail behind its middle, and how far apart they are, against the force. Right: how fast it aligns with the axis of a force that turns, against how fast that turns.")
+
+
 def evaluate(results, tier):
     verdicts = [verdict for vertices in CHAINS for verdict in chain_verdicts(results, vertices)]
     verdicts += ideal_verdicts(results) + fluid_verdicts(results)
@@ -138,4 +145,8 @@ def evaluate(results, tier):
     if any(name in results for _, name, _ in media.REMEMBER):
         drawn.append(Figure("memory", "Memory of the centre of mass of a chain of ten, in units in which all fluids have one curve. The line is for a "
                             "chain that keeps its shape, in a fluid without sound and without end.", lambda: media.draw_memory(results)))
-    return Outcome(verdicts + media.verdicts(results), drawn, "" if results else "No run yet.")
+    for part, name, caption in zip(PARTS, ("integrators", "interfaces", "filament"), CAPTIONS):
+        if any(run.name in results for run in part.runs()):
+            drawn.append(Figure(name, caption, lambda part=part: part.draw(results)))
+    verdicts += media.verdicts(results) + [verdict for part in PARTS for verdict in part.verdicts(results)]
+    return Outcome(verdicts, drawn, "" if results else "No run yet.")
