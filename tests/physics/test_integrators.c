@@ -79,10 +79,11 @@ static void answer(const char *name, double eps, double temperature[2])
 }
 
 /*
- * Of one pair, eps = 2 gamma w^2 dt/m: the temperature of v and of the velocity that friction is taken with. Recipe: the
- * step is u' = A u + b s with u = (v, force dt), <s^2> = 2 eps; C = A C A' + 2 eps b b' solved as a linear system, to six
- * digits. In closed form 1/(1 - eps/2) for the explicit and the semi-implicit step, and for the second of Groot and Warren's
- * with lambda 1/2; 1/(1 + eps/2) where friction and velocity are made to agree in the second half kick alone.
+ * Of one pair, eps = 2 gamma w^2 dt/m: the temperature of v and of the velocity that friction is taken with. Recipe:
+ * the step is u' = A u + b s with u = (v, force dt), <s^2> = 2 eps; C = A C A' + 2 eps b b' solved as a linear system,
+ * to six digits. In closed form 1/(1 - eps/2) for the explicit and the semi-implicit step, and for the second of Groot
+ * and Warren's with lambda 1/2; 1/(1 + eps/2) where friction and velocity are made to agree in the second half kick
+ * alone.
  */
 static void one_pair(void **unused)
 {
@@ -120,9 +121,9 @@ static void places(const struct state *state, int64_t (*at)[3])
   }
 }
 
-/* With lambda 1/2 and w = v + F dt/2, Groot and Warren's step is w += F(r, w) dt, r += w dt, identically. Over 100 steps
- * of 0.02 what rounding of places leaves, 2^-40, grows by collisions; a step that differs in anything is off by 1e-4 at
- * least. */
+/* With lambda 1/2 and w = v + F dt/2, Groot and Warren's step is w += F(r, w) dt, r += w dt, identically. Over 100
+ * steps of 0.02 what rounding of places leaves, 2^-40, grows by collisions; a step that differs in anything is off by
+ * 1e-4 at least. */
 static void groot_warren_is_semi_implicit(void **unused)
 {
   (void)unused;
@@ -160,8 +161,8 @@ static void groot_warren_is_semi_implicit(void **unused)
   test_end(&b);
 }
 
-/* All of them keep momentum. After 20 steps of 1e-4 from one state the places differ by noise alone, 1e-4 a0: so the squares
- * of the repulsions agree to 1 %. */
+/* All of them keep momentum. After 20 steps of 1e-4 from one state the places differ by noise alone, 1e-4 a0: so the
+ * squares of the repulsions agree to 1 %. */
 static void one_fluid(void **unused)
 {
   (void)unused;

@@ -11,7 +11,7 @@ import numpy
 sys.dont_write_bytecode = True
 TREE = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(TREE / "validation"))
-from lib import dilute, media  # noqa: E402
+from lib import dilute, filaments, integrators, interfaces, media  # noqa: E402
 
 spec = importlib.util.spec_from_file_location("apart", TREE / "validation/measure/apart.py")
 apart = importlib.util.module_from_spec(spec)
@@ -66,6 +66,81 @@ class Known(unittest.TestCase):
 
     def test_a_chain_in_a_large_box_is_its_own(self):
         self.assertAlmostEqual(dilute.kirkwood_chain(10, 0.25) / dilute.stokes(0.25), 0.28559, 4)
+
+
+class Table:
+    """As much of a Result as the parts of the case use."""
+
+    def __init__(self, columns, name=None):
+        self.columns = {key: numpy.array(value, dtype=float) for key, value in columns.items()}
+        self.name = name
+
+    def table(self, _name):
+        return self.columns
+
+    def tables(self):
+        return [self.name]
+
+
+def verdict(found, name):
+    return next(v for v in found if v.id == name)
+
+
+class Integrators(unittest.TestCase):
+    def test_expected(self):
+        """dt zeta/2 = 0.02 (4 pi/3) gamma rho/60 with int r^2 (1 - r)^2 = 1/30."""
+        self.assertAlmostEqual(verdict(integrators.verdicts({}), "media.integrators.gap").expected, 0.02 * 4.0 * math.pi / 3.0 * 4.5 * 3.0 / 60.0, 12)
+
+    def test_order_of_the_step(self):
+        columns = {"dt": [0.03, 0.06], "configurational": [1.02, 1.08], "configurational_error": [0.0002, 0.0004]}
+        found = verdict(integrators.verdicts({"integrator-peters": Table(columns)}), "media.integrators.order")
+        self.assertAlmostEqual(found.measured, 4.0, 12)
+        self.assertAlmostEqual(found.error, 4.0 * math.hypot(0.01, 0.005), 12)
+        self.assertEqual(found.verdict, "pass")
+
+    def test_a_gas_that_gathers_is_seen(self):
+        columns = {"dt": [0.02], "close": [2.4], "close_error": [0.06]}
+        found = integrators.verdicts({"ideal40-groot-warren": Table(columns), "ideal40-peters": Table(columns)})
+        self.assertEqual(verdict(found, "media.integrators.gas.groot-warren").verdict, "not reproduced")
+        self.assertEqual(verdict(found, "media.integrators.gas.peters").verdict, "fail")
+
+
+class Interfaces(unittest.TestCase):
+    def test_liquid_without_pressure(self):
+        """rho - 4.04 rho^2 + 1.5978515625 (rho^3 - 4.16 rho^2 + 18) = 0: 6.0900 by hand (Newton)."""
+        rho = interfaces.root(5.0, 7.0)
+        self.assertAlmostEqual(rho - 4.04 * rho ** 2 + 1.59785156 * (rho ** 3 - 4.16 * rho ** 2 + 18.0), 0.0, 5)
+        self.assertTrue(6.0 < rho < 6.2)
+
+    def test_profile_is_centered(self):
+        """A liquid of 6 over 8 of 16 a0, across the faces of the box."""
+        y = (numpy.arange(64) + 0.5) / 4.0
+        density = numpy.where((y < 3.0) | (y > 11.0), 6.0, 0.0)
+        away, sorted_density = interfaces.profile({"many-slab": Table({"y": y, "density": density}, "profile")})
+        self.assertTrue((sorted_density[abs(away) < 3.9] == 6.0).all())
+        self.assertTrue((sorted_density[abs(away) > 4.1] == 0.0).all())
+
+    def test_tension_of_two_surfaces(self):
+        rows = 1600
+        columns = {"p_yy": numpy.full(rows, 24.0), "p_xx": numpy.full(rows, 23.5), "p_zz": numpy.full(rows, 23.5)}
+        value, error = interfaces.tension({"slab": Table(columns)}, "slab", 16, 0.1)
+        self.assertAlmostEqual(value, 4.0, 12)
+        self.assertAlmostEqual(error, 0.0, 12)
+
+
+class Filaments(unittest.TestCase):
+    def test_rows(self):
+        found = filaments.verdicts({"filament-turn": Table({"rate": [0.0, 0.015], "decay": [0.02, 0.0098], "rises": [0.0, 3.0]})})
+        self.assertAlmostEqual(verdict(found, "media.filament.slow").measured, 0.98, 12)
+        self.assertEqual(verdict(found, "media.filament.slow").verdict, "pass")
+        self.assertEqual(verdict(found, "media.filament.rises").verdict, "fail")
+
+
+class Limit(unittest.TestCase):
+    def test_ratio_of_viscosities(self):
+        """At dt = 0.05: (9/12 pi - 0.025 + pi/25)/(45/48 pi - 0.025 + pi/25)."""
+        eta = verdict(media.limit_verdicts({}), "media.limit.viscosity").expected
+        self.assertAlmostEqual(eta, (0.75 / math.pi - 0.025 + math.pi / 25.0) / (0.9375 / math.pi - 0.025 + math.pi / 25.0), 12)
 
 
 if __name__ == "__main__":

@@ -4,8 +4,9 @@
  *
  * Output: comma-separated, a row per time step. kinetic: temperature of the velocities at the time of the places;
  * predicted: of those that friction is taken with; configurational: <|grad U|^2>/<laplacian of U>; pressure: with the
- * mean of the first temperature; gap: predicted less kinetic; D: (g(2t) - g(t))/6t, t = 4 t0; close: pairs nearer than 0.1 a0, over those of an ideal
- * gas. Errors are those of 16 parts of the run. A row of nan: a particle flew further in a step than the program allows.
+ * mean of the first temperature; gap: predicted less kinetic; D: (g(2t) - g(t))/6t, t = 4 t0; close: pairs nearer than
+ * 0.1 a0, over those of an ideal gas. Errors are those of 16 parts of the run. A row of nan: a particle flew further in
+ * a step than the program allows.
  */
 #include "dpd_integrators.h"
 #include "../../tests/statistics.h"
@@ -91,7 +92,8 @@ static void take_places(const struct dpd *d, struct series *s, int64_t (*last)[3
     const int64_t now[3] = {p->x[i], p->y[i], p->z[i]};
     const uint32_t id = p->id[i];
     struct vec3 *far = &s->far[(size_t)s->n * s->particles + id];
-    *far = s->n > 0 ? vec3_add(far[-(ptrdiff_t)s->particles], moved(&d->model->box, now, last[id])) : (struct vec3){0, 0, 0};
+    *far = s->n > 0 ? vec3_add(far[-(ptrdiff_t)s->particles], moved(&d->model->box, now, last[id]))
+                    : (struct vec3){0, 0, 0};
     memcpy(last[id], now, sizeof now);
   }
 }
@@ -114,7 +116,8 @@ static void take_sample(const struct question *q, struct dpd *d, struct run *run
   row[GAP] = row[PREDICTED] - kinetic;
   row[CONFIGURATIONAL] = square;
   row[VALUES] = sums.laplacian;
-  row[PRESSURE] = (n * kinetic + (sums.virial[STRESS_XX] + sums.virial[STRESS_YY] + sums.virial[STRESS_ZZ]) / 3.0) / volume;
+  row[PRESSURE] =
+      (n * kinetic + (sums.virial[STRESS_XX] + sums.virial[STRESS_YY] + sums.virial[STRESS_ZZ]) / 3.0) / volume;
   row[CLOSE] = d->close / (0.5 * n * (n - 1.0) * 4.188790204786391 * DPD_CLOSE * DPD_CLOSE * DPD_CLOSE / volume);
   take_places(d, s, last);
   s->n++;
@@ -231,8 +234,8 @@ int main(int argc, const char **argv)
     fprintf(stderr, "usage: %s SCHEME EDGE REPULSION GAMMA TIME SEED DT ...\n", argv[0]);
     return 2;
   }
-  const struct question q = {scheme_of(argv[1]), atoi(argv[2]), atof(argv[3]), atof(argv[4]), atof(argv[5]),
-                             strtoull(argv[6], NULL, 10)};
+  const struct question q = {scheme_of(argv[1]), atoi(argv[2]), atof(argv[3]),
+                             atof(argv[4]),      atof(argv[5]), strtoull(argv[6], NULL, 10)};
   if (q.time < 4.0 * LAG) {
     fprintf(stderr, "TIME is at least %g\n", 4.0 * LAG);
     return 2;

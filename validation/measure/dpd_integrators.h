@@ -1,20 +1,18 @@
 /*
- * Integrators of dissipative particle dynamics that err, for validation/measure/dpd_integrators.c and its test. No scene
- * has them: a bath that is exact at any step costs no more (medium/bath.h). Between particles of mass 1
+ * Integrators of dissipative particle dynamics that err, for validation/measure/dpd_integrators.c and its test. No
+ * scene has them: a bath that is exact at any step costs no more (medium/bath.h). Between particles of mass 1
  *
  *   F = a (1 - r) e - gamma w^2 (e.v) e + sqrt(2 gamma kT/dt) w theta e,   w = 1 - r,
  *
- * with one normal number theta for each pair and evaluation. The first term is the program's own (medium/repulsion.h), and
- * so is the search for pairs.
+ * with one normal number theta for each pair and evaluation. The first term is the program's own (medium/repulsion.h),
+ * and so is the search for pairs.
  *
  *   euler            explicit: r += v dt, v += F(r, v) dt with the places of before
  *   groot-warren     Groot and Warren, J. Chem. Phys. 107, 4423 (1997), Eq. (21), with their lambda 1/2 or 0.65
  *   semi-implicit    v += F(r, v) dt, r += v dt: what Groot and Warren's is with lambda 1/2
- *   dpd-vv           friction once more after the second half kick (Besold, Vattulainen, Karttunen and Polson, Phys. Rev.
- *                    E 62, R7611 (2000))
- *   sc-vv            the same until friction and velocities agree
- *   leap-frog        v' = v + F(r, (v + v')/2) dt, solved for v' (Pagonabarraga, Hagen and Frenkel, Europhys. Lett. 42,
- *                    377 (1998))
+ *   dpd-vv           friction once more after the second half kick (Besold, Vattulainen, Karttunen and Polson, Phys.
+ * Rev. E 62, R7611 (2000)) sc-vv            the same until friction and velocities agree leap-frog        v' = v + F(r,
+ * (v + v')/2) dt, solved for v' (Pagonabarraga, Hagen and Frenkel, Europhys. Lett. 42, 377 (1998))
  */
 #ifndef UNCROSS_DPD_INTEGRATORS_H
 #define UNCROSS_DPD_INTEGRATORS_H
@@ -29,9 +27,9 @@
 #include "step.h"
 
 struct dpd_link {
-  uint32_t i, j;      /* numbers */
-  struct vec3 along;  /* unit vector from j to i */
-  double weight;      /* w = 1 - r */
+  uint32_t i, j;     /* numbers */
+  struct vec3 along; /* unit vector from j to i */
+  double weight;     /* w = 1 - r */
 };
 
 /* Of a finished model of MEDIUM_PAIRS without vertices. All arrays are by number. */
@@ -45,23 +43,25 @@ struct dpd {
   uint64_t evaluation; /* address of the noise */
   struct dpd_link *link;
   uint32_t links, room;
-  uint32_t close;       /* links below DPD_CLOSE */
-  struct vec3 *v;       /* a0/t0 */
-  struct vec3 *trial;   /* the velocity that friction was last taken with */
-  struct vec3 *push;    /* kT/a0: the repulsion */
-  struct vec3 *given;   /* and the noise */
-  struct vec3 *pull;    /* friction */
-  struct vec3 *force;   /* all, of the evaluation that the next step begins with */
+  uint32_t close;     /* links below DPD_CLOSE */
+  struct vec3 *v;     /* a0/t0 */
+  struct vec3 *trial; /* the velocity that friction was last taken with */
+  struct vec3 *push;  /* kT/a0: the repulsion */
+  struct vec3 *given; /* and the noise */
+  struct vec3 *pull;  /* friction */
+  struct vec3 *force; /* all, of the evaluation that the next step begins with */
   struct vec3 *scratch;
+  struct vec3 *along; /* of the search for velocities that agree */
 };
 
 #define DPD_CLOSE 0.1 /* a0 */
 
-enum { DPD_ARRAYS = 7 };
+enum { DPD_ARRAYS = 8 };
 
 static inline void dpd_arrays(struct dpd *d, struct memory_need need[DPD_ARRAYS])
 {
-  struct vec3 **array[DPD_ARRAYS] = {&d->v, &d->trial, &d->push, &d->given, &d->pull, &d->force, &d->scratch};
+  struct vec3 **array[DPD_ARRAYS] = {&d->v,    &d->trial, &d->push,    &d->given,
+                                     &d->pull, &d->force, &d->scratch, &d->along};
   for (int k = 0; k < DPD_ARRAYS; k++)
     need[k] = (struct memory_need){(void **)array[k], d->state->solvent.n, sizeof(struct vec3)};
 }
@@ -85,8 +85,8 @@ static inline bool dpd_add_links(const struct near_search *s, struct near_pairs 
   const double sigma = d->loudness * sqrt(2.0 * d->friction / d->model->time_step);
   for (uint32_t k = 0; k < p->n; k++) {
     const uint32_t i = s->medium->number[p->a[k]], j = s->medium->number[p->b[k]];
-    const struct dpd_link link = {
-        i, j, vec3_scale(1.0 / p->r[k], (struct vec3){p->x[k], p->y[k], p->z[k]}), 1.0 - p->r[k]};
+    const struct dpd_link link = {i, j, vec3_scale(1.0 / p->r[k], (struct vec3){p->x[k], p->y[k], p->z[k]}),
+                                  1.0 - p->r[k]};
     const double noise = sigma * link.weight * normal[k];
     d->given[i] = vec3_add_scaled(d->given[i], noise, link.along);
     d->given[j] = vec3_add_scaled(d->given[j], -noise, link.along);
@@ -222,23 +222,38 @@ static inline bool dpd_verlet(struct dpd *d)
   return true;
 }
 
-/* Solves to = from + factor (given + friction of (share to + (1 - share) from)) by iteration, which gains a factor of
- * about gamma dt each time. */
+static inline double dpd_product(const struct dpd *d, const struct vec3 *a, const struct vec3 *b)
+{
+  double sum = 0.0;
+  for (uint32_t i = 0; i < d->state->solvent.n; i++)
+    sum += vec3_dot(a[i], b[i]);
+  return sum;
+}
+
+/* Solves to = from + factor (given + friction of (share to + (1 - share) from)), a symmetric positive problem, by
+ * conjugate gradients (Hestenes and Stiefel, J. Res. Natl. Bur. Stand. 49, 409 (1952)), until what is left is 1e-12
+ * a0/t0. */
 static inline void dpd_solve(struct dpd *d, double factor, double share, const struct vec3 *from, struct vec3 *to)
 {
   const uint32_t n = d->state->solvent.n;
-  double change = 1.0;
+  struct vec3 *left = d->scratch, *along = d->along;
   memcpy(to, from, n * sizeof *to);
-  for (int round = 0; round < 60 && change > 1e-12; round++) {
-    change = 0.0;
+  dpd_friction(d, from);
+  for (uint32_t i = 0; i < n; i++)
+    along[i] = left[i] = vec3_scale(factor, vec3_add(d->given[i], d->pull[i]));
+  double square = dpd_product(d, left, left);
+  for (int round = 0; round < 200 && square > 1e-24; round++) {
+    dpd_friction(d, along);
     for (uint32_t i = 0; i < n; i++)
-      d->scratch[i] = vec3_add(vec3_scale(share, to[i]), vec3_scale(1.0 - share, from[i]));
-    dpd_friction(d, d->scratch);
+      d->pull[i] = vec3_add_scaled(along[i], -factor * share, d->pull[i]);
+    const double far = square / dpd_product(d, along, d->pull), before = square;
     for (uint32_t i = 0; i < n; i++) {
-      const struct vec3 next = vec3_add_scaled(from[i], factor, vec3_add(d->given[i], d->pull[i]));
-      change = fmax(change, vec3_norm(vec3_sub(next, to[i])));
-      to[i] = next;
+      to[i] = vec3_add_scaled(to[i], far, along[i]);
+      left[i] = vec3_add_scaled(left[i], -far, d->pull[i]);
     }
+    square = dpd_product(d, left, left);
+    for (uint32_t i = 0; i < n; i++)
+      along[i] = vec3_add_scaled(left[i], square / before, along[i]);
   }
 }
 
@@ -299,7 +314,8 @@ enum { DPD_SCHEMES = sizeof dpd_schemes / sizeof *dpd_schemes };
 static inline bool dpd_begin(struct dpd *d, struct model *model, struct state *state, struct work *work)
 {
   struct memory_need need[DPD_ARRAYS];
-  *d = (struct dpd){.model = model, .state = state, .work = work, .friction = 0.5 * model->medium.rate, .loudness = 1.0};
+  *d =
+      (struct dpd){.model = model, .state = state, .work = work, .friction = 0.5 * model->medium.rate, .loudness = 1.0};
   dpd_arrays(d, need);
   if (!memory_take(need, DPD_ARRAYS))
     return false;

@@ -3,10 +3,10 @@
  * repulsion A within each and BETWEEN: the pressure inside and outside of them. Laplace: the difference is 2 sigma/R.
  *
  * At the start the particles that are nearest to the middle of the box are made the second liquid. 20 t0 are left out.
- * Inside is what is nearer to the droplet's center than R - 1.5 a0, outside what is further than R + 1.5 a0; p of a region is
- * kT n/V plus a third of its particles' halves of r.F, over V. Both regions are more than the range of forces away from the
- * surface. R is that of the equimolar surface: of a ball of the inner density that, with the outer density beyond it, has all
- * particles of the second liquid.
+ * Inside is what is nearer to the droplet's center than R - 1.5 a0, outside what is further than R + 1.5 a0; p of a
+ * region is kT n/V plus a third of its particles' halves of r.F, over V. Both regions are more than the range of forces
+ * away from the surface. R is that of the equimolar surface: of a ball of the inner density that, with the outer
+ * density beyond it, has all particles of the second liquid.
  *
  * Output: comma-separated, a row per droplet; errors of 16 parts of the run.
  */
@@ -240,8 +240,13 @@ int main(int argc, const char **argv)
     return 2;
   }
   const struct question q = {atof(argv[1]), atof(argv[2]), atof(argv[3]), strtoull(argv[4], NULL, 10)};
-  printf("asked,edge,particles,radius,radius_error,inside,inside_error,outside,outside_error,difference,difference_error,"
-         "tension,tension_error,density,density_error,seconds\n");
+  if (q.time < PARTS * EVERY * STEP) {
+    fprintf(stderr, "TIME is at least %g\n", PARTS * EVERY * STEP);
+    return 2;
+  }
+  printf(
+      "asked,edge,particles,radius,radius_error,inside,inside_error,outside,outside_error,difference,difference_error,"
+      "tension,tension_error,density,density_error,seconds\n");
   for (int k = 5; k + 1 < argc; k += 2)
     measure_droplet(&q, atof(argv[k]), atoi(argv[k + 1]));
   return 0;

@@ -1,20 +1,17 @@
 /*
- * A filament (medium: {kind: overdamped, inextensible: true}) under a force, of N vertices with the radius A: B = F L^2/
- * kappa, L = N - 1 bonds, F the force on all vertices together. Units b = mu_0 = kappa = 1: bond, mobility of a vertex,
- * bending rigidity. Shapes are deterministic, so there are no errors but those of the step.
+ * A filament (medium: {kind: overdamped, inextensible: true}) under a force, of N vertices with the radius A: B = F
+ * L^2/ kappa, L = N - 1 bonds, F the force on all vertices together. Units b = mu_0 = kappa = 1: bond, mobility of a
+ * vertex, bending rigidity. Shapes are deterministic, so there are no errors but those of the step.
  *
- *   filament across N A DT TIME TILT B ...            under a constant force along z; TILT: of the straight start, radians from
- *                                                     the direction across the force. A row per B, of the second half of
- *                                                     the time: depth: middle ahead of the ends, over L; ends: distance of
- *                                                     the ends, over L; their least and greatest; angle: of the ends to
- *                                                     the direction across the force, at the end; speed: of the mean
- *                                                     along the force, over that of a loose vertex; turns: how often the
+ *   filament across N A DT TIME TILT B ...            under a constant force along z; TILT: of the straight start,
+ * radians from the direction across the force. A row per B, of the second half of the time: depth: middle ahead of the
+ * ends, over L; ends: distance of the ends, over L; their least and greatest; angle: of the ends to the direction
+ * across the force, at the end; speed: of the mean along the force, over that of a loose vertex; turns: how often the
  *                                                     ends have changed sides
- *   filament rotating N A DT TIME B RATE ...          under a force that turns about z, straight at 45 degrees to z. A row
- *                                                     per RATE (radians per time; 0: a constant force, along which z is
- *                                                     then): decay: of ln tan(angle to z), or of that to the direction across
- *                                                     the constant force; rises: how many turns have ended with a larger
- *                                                     angle to z than the one before
+ *   filament rotating N A DT TIME B RATE ...          under a force that turns about z, straight at 45 degrees to z. A
+ * row per RATE (radians per time; 0: a constant force, along which z is then): decay: of ln tan(angle to z), or of that
+ * to the direction across the constant force; rises: how many turns have ended with a larger angle to z than the one
+ * before
  */
 #include "measure.h"
 
@@ -89,8 +86,8 @@ static void across(const struct question *q, double tilt, double b)
     most = fmax(most, vec3_norm(row.ends));
   }
   printf("%g,%.8g,%.8g,%.8g,%.8g,%.6g,%.8g,%d,%.1f\n", b, row.ahead.z / length, vec3_norm(row.ends) / length,
-         least / length, most / length, atan2(row.ends.z, row.ends.x), (row.mean.z - start) / (steps * q->dt) / force, turns,
-         cpu_seconds() - before);
+         least / length, most / length, atan2(row.ends.z, row.ends.x), (row.mean.z - start) / (steps * q->dt) / force,
+         turns, cpu_seconds() - before);
   fflush(stdout);
   run_end(&run);
 }
@@ -133,7 +130,8 @@ static void rotating(const struct question *q, double b, double rate)
 int main(int argc, const char **argv)
 {
   if (argc < 8) {
-    fprintf(stderr, "usage: %s across N A DT TIME TILT B ...\n       %s rotating N A DT TIME B RATE ...\n", argv[0], argv[0]);
+    fprintf(stderr, "usage: %s across N A DT TIME TILT B ...\n       %s rotating N A DT TIME B RATE ...\n", argv[0],
+            argv[0]);
     return 2;
   }
   const bool turns = strcmp(argv[1], "rotating") == 0;

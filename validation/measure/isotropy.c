@@ -1,10 +1,11 @@
 /*
- * Is the SRD solvent isotropic, although its cells are cubes? The kinematic viscosity at the paper's point (gamma 5, dt_c
- * 0.02, 90 degrees) from the decay of shear waves in four ways: a cubic medium has two viscosities, and the waves along
- * [110] tell them apart by the direction of their velocity.
+ * Is the SRD solvent isotropic, although its cells are cubes? The kinematic viscosity at the paper's point (gamma 5,
+ * dt_c 0.02, 90 degrees) from the decay of shear waves in four ways: a cubic medium has two viscosities, and the waves
+ * along [110] tell them apart by the direction of their velocity.
  *
- * A wave A e cos(k.r) is added to an equilibrium state, with both signs and the same random numbers; half the difference keeps
- * the wave. Estimates as in shear_wave.h. A wave of finite length loses k^2 a^2/30, which is divided out.
+ * A wave A e cos(k.r) is added to an equilibrium state, with both signs and the same random numbers; half the
+ * difference keeps the wave. Estimates as in shear_wave.h. A wave of finite length loses k^2 a^2/30, which is divided
+ * out.
  *
  * usage: isotropy EDGE PAIRS SEED; output: comma-separated, a row per wave.
  */
