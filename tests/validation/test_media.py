@@ -130,7 +130,7 @@ class Interfaces(unittest.TestCase):
 
 class Filaments(unittest.TestCase):
     def test_rows(self):
-        found = filaments.verdicts({"filament-turn": Table({"rate": [0.0, 0.015], "decay": [0.02, 0.0098], "rises": [0.0, 3.0]})})
+        found = filaments.verdicts({"filament-turn": Table({"rate": [0.0, 0.005], "decay": [0.02, 0.0098], "rises": [0.0, 3.0]})})
         self.assertAlmostEqual(verdict(found, "media.filament.slow").measured, 0.98, 12)
         self.assertEqual(verdict(found, "media.filament.slow").verdict, "pass")
         self.assertEqual(verdict(found, "media.filament.rises").verdict, "fail")
