@@ -1,10 +1,13 @@
 """A filament under a force (validation/measure/filament.c): shapes, and alignment with the axis of a force that turns."""
+import numpy
+
 from lib import figures, stats
 from lib.case import Verdict
 from lib.runs import Run
 
 SHAPES = (1, 30, 100, 300, 1000, 3000, 15000)  # B = F L^2/kappa
 RATES = (0, 0.005, 0.015, 0.05, 0.15, 0.5)  # of the force, radians per b^2/D0 and kappa = 1; N = 11, B = 20
+BENDING = 22  # b^2/D0, for a line in the figure: read off the points
 STEADY = 0.05  # of L: what the ends' distance may change in the second half of the run
 
 
@@ -56,5 +59,8 @@ def draw(results):
         rates = sorted(rate for rate in turns if rate > 0.0)
         figures.points(right, rates, [2.0 * turns[rate]["decay"] / turns[0.0]["decay"] for rate in rates], None, 2, label="rate of alignment")
         right.axhline(1.0, color=figures.PALE, linewidth=0.8)
+        x = numpy.geomspace(0.003, 0.7, 60)
+        figures.theory(right, x, 1.0 / (1.0 + (BENDING * x) ** 2), label=f"one bending time of {BENDING} $b^2/D_0$")
+        figures.legend(right, loc="lower left")
         right.set(xscale="log", xlabel="rate of the force ($D_0/b^2$, $\\kappa = kT b$)", ylabel="over that of slow turns", ylim=(0.0, 1.2))
     return figure

@@ -75,13 +75,13 @@ def draw(results):
     """Errors of the two temperatures against the step."""
     figure, panels = figures.plain(width=9.2, height=4.2, columns=2)
     for panel, column, label in zip(panels, ("kinetic", "configurational"), ("kinetic temperature", "configurational temperature")):
-        for number, (name, (title, _)) in enumerate(SCHEMES.items()):
+        for number, (name, (title, _)) in enumerate(list(SCHEMES.items())[1:]):  # the first is off the scale
             if f"integrator-{name}" not in results:
                 continue
             table = results[f"integrator-{name}"].columns
             figures.points(panel, table["dt"], table[column], table[column + "_error"], number, label=title.replace("`", ""), markersize=3.5)
             figures.line(panel, table["dt"], table[column], number)
         panel.axhline(1.0, color=figures.PALE, linewidth=0.8)
-        panel.set(xlabel="time step ($t_0$)", ylabel=label, ylim=(0.9, 1.35))
-    figures.legend(panels[0], loc="upper left")
+        panel.set(xlabel="time step ($t_0$)", ylabel=label, ylim=(0.95, 1.2))
+    figures.legend(panels[0], loc="upper left", fontsize=7.5)
     return figure

@@ -97,7 +97,7 @@ def draw(results):
         figures.points(left, *found, None, 0, label="many-body liquid", markersize=3.5)
         figures.theory(left, [-3.0, 3.0], [root(5.0, 7.0)] * 2, label="no pressure, Warren's fit")
     left.set(xlabel="$y$ from the middle ($a_0$)", ylabel="density ($a_0^{-3}$)")
-    figures.legend(left, loc="upper right")
+    figures.legend(left, loc="center")
     table, planar = drops(results), tension(results, "slab", SLAB[1], 0.1)
     if table is not None:
         figures.points(right, 1.0 / table["radius"], table["difference"], table["difference_error"], 1, label="droplets")
