@@ -121,6 +121,12 @@ COLUMNS = {
     "force_square": Column("forces squared", r"$|\nabla U|^2$", "kT²/a0²"),
     "laplacian": Column("Laplacian", r"$\nabla^2 U$", "kT/a0²"),
     "configurational": Column("configurational", r"$T_\mathrm{conf}$", "kT"),
+    # wake
+    "distance": Column("distance from the bead's center", "$r$", A),
+    "cosine": Column("cosine of the angle with the drive", r"$\cos\theta$"),
+    "number": Column("vertices per volume", r"$\rho$", "$(a_0^{-3})$"),
+    "along": Column("along the drive", r"$u_\parallel$", A),
+    "away": Column("away from the axis", r"$u_\perp$", A),
     # orientation
     "RxRx": Column("along the flow", r"$\langle R_x R_x\rangle$", A2),
     "RyRy": Column("across the flow", r"$\langle R_y R_y\rangle$", A2),
@@ -204,6 +210,10 @@ PANELS = {
         Panel("Work and heat", ("work", "heat"), "energy / $kT$"),
         Panel("Hits since the start", ("hits",)),
     ),
+    "wake": (
+        Panel("Vertices around the bead, four directions", ("number",)),
+        Panel("Their displacement from sample to sample", ("along", "away"), "displacement / $a_0$", level=0.0),
+    ),
     "dynamics": (
         Panel("Mean square displacements", ("g", "g_cm", "g_cm_about_mean", "g_middle", "d2", "d2_contour"),
               "mean square displacement / $a_0^2$", log_y=True, wide=True, **LAG),
@@ -237,7 +247,7 @@ PANELS = {
 LAG_LABEL = "lag $t$ / $t_0$"
 TITLES = {"conserved": "Energy and momentum", "temperature": "Temperature", "collisions": "Contacts of bonds",
           "statics": "Size and shape", "dynamics": "Motion", "profile": "Profile across the flow", "stress": "Stress",
-          "dumbbells": "Shape of dumbbells", "orientation": "Orientation", "bead": "The bead",
+          "dumbbells": "Shape of dumbbells", "orientation": "Orientation", "bead": "The bead", "wake": "The network around the bead",
           "pressure": "Pressure and configurational temperature", "memory": "Memory"}
 
 

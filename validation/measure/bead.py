@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """What the motion of a bead says of its surroundings, from bead.csv: friction, width of its trap, moduli G' and G''.
 
-usage: bead.py BEAD.CSV REST RADIUS MASS [--from TIME] [--spring K] [--omega OMEGA ...] [--swings]
+usage: bead.py BEAD.CSV REST RADIUS MASS [--from TIME] [--parts N] [--spring K] [--omega OMEGA ...] [--swings]
 
 REST: mass of all that is not the bead, over that of the bead. RADIUS: a0. MASS: m. Units kT = a0 = m = 1. Printed is a CSV table `what,value,error`.
 
@@ -12,14 +12,14 @@ REST: mass of all that is not the bead, over that of the bead. RADIUS: a0. MASS:
                      the transform m* of the mean square displacement in three dimensions (of components without a drift), less the inertia and the trap
 
 The transform is that of straight lines between the points (Evans et al., Phys. Rev. E 80, 012501 (2009)). The inertia of the fluid is in
-both. Errors: scatter of forty parts of the run for what is known at once (active friction, trap), of ten for the rest.
+both. Errors: scatter of forty parts of the run for what is known at once (trap; active friction, but for --parts), of twenty for the rest.
 """
 import argparse
 import csv
 
 import numpy
 
-PARTS = 10        # of a run, where lags are long
+PARTS = 20        # of a run, where lags are long
 SHORT_PARTS = 40  # else
 
 
@@ -50,9 +50,9 @@ def square_displacement(place, lags):
     return numpy.array([numpy.mean((place[:, lag:] - place[:, :place.shape[1] - lag]) ** 2) if lag else 0.0 for lag in lags])
 
 
-def active_friction(time, place, force, rest):
+def active_friction(time, place, force, rest, parts=SHORT_PARTS):
     direction = force.mean(axis=1) / numpy.linalg.norm(force.mean(axis=1))
-    speed, error = parted(lambda t, x: direction @ (x[:, -1] - x[:, 0]) / (t[-1] - t[0]), time, place, parts=SHORT_PARTS)
+    speed, error = parted(lambda t, x: direction @ (x[:, -1] - x[:, 0]) / (t[-1] - t[0]), time, place, parts=parts)
     friction = numpy.linalg.norm(force.mean(axis=1)) / speed * (1.0 + 1.0 / rest)
     return friction, friction * error / speed
 
@@ -115,6 +115,7 @@ def main():
     parser.add_argument("--from", dest="begin", type=float, default=0.0)
     parser.add_argument("--spring", type=float, default=0.0)
     parser.add_argument("--omega", type=float, nargs="*", default=[])
+    parser.add_argument("--parts", type=int, default=SHORT_PARTS, help="of the run, for errors of the active friction")
     parser.add_argument("--swings", action="store_true", help="the trap swings at the first omega")
     args = parser.parse_args()
     columns = read(args.table, args.begin)
@@ -122,7 +123,7 @@ def main():
     rows = []
     constant = force.std() == 0.0 or args.spring == 0.0
     if constant and numpy.linalg.norm(force) > 0.0:
-        rows.append(("active friction", *active_friction(time, place, force, args.rest)))
+        rows.append(("active friction", *active_friction(time, place, force, args.rest, args.parts)))
     still = [k for k in range(3) if not constant or not force[k].any()]  # components without a drift
     if args.spring == 0.0:
         rows.append(("passive friction", *passive_friction(time, place[still])))
