@@ -63,7 +63,7 @@ static void add_pair(struct run *run, const struct slant *w, double rate, struct
 {
   double a[LOOKS + 1] = {0.0}, after = 0.0, before = 0.0;
   for (int sign = -1; sign <= 1; sign += 2) {
-    stop_unless(step_start(&run->state, &run->model, &run->work), run);
+    stop_unless(start_state(&run->state, &run->model, &run->work), run);
     add_wave(run, w, sign * AMPLITUDE);
     for (int n = 0; n <= LOOKS; n++) {
       if (n > 0)
