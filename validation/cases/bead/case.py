@@ -344,6 +344,7 @@ def draw_network(results):
             figures.points(panel, x, y, error, number=number, markersize=4, label=f"R = {radius:g} $a_0$")
     panel.axhline(1.0, color=figures.INK, linewidth=0.6)
     panel.set(xscale="log", yscale="log", xlabel="R over the mesh size", ylabel="friction over that without fibers")
+    figures.readable(panel.yaxis)
     figures.legend(panel)
     return figure
 
