@@ -127,7 +127,8 @@ enum { COLUMNS = sizeof columns / sizeof *columns };
 
 static void fill_row(const struct observer *o, const struct model *model, uint32_t k, double *cell)
 {
-  const double inner = model->bead.radius + SHELL * (k / SECTORS), outer = inner + SHELL,
+  const uint32_t shell = k / SECTORS;
+  const double inner = model->bead.radius + SHELL * shell, outer = inner + SHELL,
                volume = 4.0 / 3.0 * 3.14159265358979323846 * (outer * outer * outer - inner * inner * inner) / SECTORS;
   const struct block_level *number = blocks_of(o, k, ALONG);
   cell[0] = 0.5 * (inner + outer);

@@ -99,19 +99,19 @@ static struct oracle_impulse impulse_of(const struct oracle_stage *g, const stru
   return e;
 }
 
-void oracle_company_take(void *context, const struct contact_event *v)
+void oracle_company_take(void *context, const struct contact_event *event)
 {
   struct oracle_company *c = context;
   const struct oracle_stage *g = c->stage;
-  if (v->standing_bond != EVENT_BEAD || c->contacts >= ORACLE_COMPANY_MOST || c->failed || !room_for_one(c))
+  if (event->standing_bond != EVENT_BEAD || c->contacts >= ORACLE_COMPANY_MOST || c->failed || !room_for_one(c))
     return;
-  const uint32_t vertex[2] = {v->moving_bond, (uint32_t)g->model->next[v->moving_bond]};
-  const int32_t tick = (int32_t)(v->hit.time * FLIGHT_TICKS);
+  const uint32_t vertex[2] = {event->moving_bond, (uint32_t)g->model->next[event->moving_bond]};
+  const int32_t tick = (int32_t)(event->hit.time * FLIGHT_TICKS);
   const int64_t reach =
       bead_radius(g->model) + g->model->kind[g->model->fiber_kind_of[g->model->fiber_of[vertex[0]]]].radius;
-  const struct oracle_impulse e = impulse_of(g, v, vertex, tick);
+  const struct oracle_impulse e = impulse_of(g, event, vertex, tick);
   const struct vec3 after[3] = {g->state->velocity[vertex[0]], g->state->velocity[vertex[1]],
-                                vec3_add_scaled(e.velocity[2], v->impulse / e.mass[2], v->hit.normal)};
+                                vec3_add_scaled(e.velocity[2], event->impulse / e.mass[2], event->hit.normal)};
   const struct bodies old = before_contact(g, vertex), new = after_contact(g, &old, after, tick);
   const struct flight_pair before = pair_of(&old);
   struct oracle_search *s = &c->search[3 * (size_t)c->contacts];

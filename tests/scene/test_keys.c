@@ -107,10 +107,10 @@ static void a_run_keeps_what_it_was_begun_with(void **unused)
 static void what_is_stored_reads_back(void **unused)
 {
   (void)unused;
+  static const struct key_table *const keys[] = {&scene_keys, &young_keys, &novel_keys};
   for (int k = 0; k < 3; k++) {
-    const struct key_table *keys = k == 0 ? &scene_keys : k == 1 ? &young_keys : &novel_keys;
-    struct scene scene = read_by(keys, text, MISSING_DEFAULT, NULL), again;
-    again = read_by(keys, scene.text, MISSING_ABSENT, NULL);
+    struct scene scene = read_by(keys[k], text, MISSING_DEFAULT, NULL), again;
+    again = read_by(keys[k], scene.text, MISSING_ABSENT, NULL);
     assert_true(again.fingerprint == scene.fingerprint);
     assert_true(again.trajectory_solvent == scene.trajectory_solvent && scene.trajectory_solvent == (k == 2));
     assert_true((strcmp(scene.text, text) == 0) == (k < 2));
