@@ -122,7 +122,7 @@ def draw(results):
         figures.points(panel, table["time"][known], vertices * table["D"][known], vertices * table["D_error"][known],
                        number=number, markersize=3, label=("no HI, " if "none" in name else "") + f"N = {vertices}")
     panel.set(xscale="log", xlabel="lag ($b^2/D_0$)", ylabel="$N D/D_0$")
-    figures.legend(panel, loc="center left", bbox_to_anchor=(0.0, 0.4))
+    figures.legend(panel, loc="center left", bbox_to_anchor=(0.0, 0.235))
     return figure
 
 
