@@ -443,7 +443,7 @@ sanitize:
 	   CFLAGS='-g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all' exact
 	tools/sanitize build/sanitize $(filter-out $(STATISTICS),$(EXACT_TESTS))
 
-# -O1 takes a third of the time of -O0. It counts as many lines and branches, and of the branches 1 to 3 % more as taken.
+# -O1 takes a third of the time of -O0. It counts as many lines and branches, and of the branches 1 to 3 points more as taken.
 .PHONY: coverage
 coverage:
 	tools/install-dependencies run hard port
