@@ -30,7 +30,8 @@ static void put_searches(struct oracle_stage *g, const struct oracle_search *sea
   g->pack->failed |= !s;
   if (!s)
     return;
-  memcpy(s, search, n * sizeof *s);
+  if (n > 0) /* there may be no array at all */
+    memcpy(s, search, n * sizeof *s);
   n += edges(&s[n]);
   oracle_put_flight_pairs(g, s, n);
   int64_t *reach = oracle_put_integers(g, "in.reach", "reach", n);
@@ -57,7 +58,8 @@ static void put_contacts(struct oracle_stage *g, const struct oracle_tubes *tube
   g->pack->failed |= !c;
   if (!c)
     return;
-  memcpy(c, tubes, n * sizeof *c);
+  if (n > 0)
+    memcpy(c, tubes, n * sizeof *c);
   n += edges(&c[n]);
   put_points(g, "in.p", c, offsetof(struct oracle_tubes, p), n);
   put_points(g, "in.q", c, offsetof(struct oracle_tubes, q), n);
