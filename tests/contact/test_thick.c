@@ -2,6 +2,7 @@
  * are those of tubes.h, of all pairs, without lists. */
 #include "contact/tubes.h"
 
+#include "contact/laying.h"
 #include "contact/rule.h"
 
 /* --- all distances ------------------------------------------------------------------------------------------------ */
@@ -337,6 +338,35 @@ static void images_of_a_fiber_are_others(void **unused)
   }
 }
 
+/* A fiber that overlaps leaves the cells as they were: it is drawn anew, and its old place is nobody's. */
+static void a_refused_fiber_leaves_no_entry(void **unused)
+{
+  (void)unused;
+  struct model m = test_model(8, 8, 8, 0, 0.01, 1);
+  struct fiber_kind *k = add_thick(&m, 2, 5, 0.3);
+  k->start = START_STRAIGHT, k->placed = 2, k->place = calloc(2, sizeof *k->place);
+  k->place[0] = (struct fiber_place){{4, 4, 4}, {0, 0, 1}};
+  k->place[1] = (struct fiber_place){{5, 4, 4}, {0, 1, 0}};
+  struct test_run r;
+  assert_true(starts(m, &r));
+  struct laying laying;
+  assert_true(laying_begin(&laying, &r.model));
+  assert_int_equal(laying_add(&laying, r.state.position, 0), LAYING_FITS);
+  const uint32_t before = laying.count;
+  for (uint32_t v = 5; v < 10; v++) /* the middle of it is in the first rod then */
+    r.state.position[v].x -= 0x1p40;
+  assert_int_equal(laying_add(&laying, r.state.position, 1), LAYING_OVERLAPS);
+  assert_int_equal(laying.count, before);
+  for (uint32_t cell = 0; cell < (uint32_t)(laying.cells[0] * laying.cells[1] * laying.cells[2]); cell++)
+    assert_true(laying.first[cell] <= before);
+  for (uint32_t v = 5; v < 10; v++)
+    r.state.position[v].x += 0x1p40;
+  assert_int_equal(laying_add(&laying, r.state.position, 1), LAYING_FITS);
+  assert_true(laying.count > before);
+  laying_end(&laying);
+  test_end(&r);
+}
+
 static void there_is_no_room(void **unused)
 {
   (void)unused;
@@ -419,17 +449,12 @@ static void near_bonds_are_blind(void **unused)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(no_tubes_overlap_in_a_run),
-      cmocka_unit_test(contacts_keep_momentum_and_angular_momentum),
-      cmocka_unit_test(a_head_on_contact_by_hand),
-      cmocka_unit_test(drifts_of_tubes_run_backwards),
-      cmocka_unit_test(thin_tubes_meet_as_lines_do),
-      cmocka_unit_test(random_starts_do_not_overlap),
-      cmocka_unit_test(placed_starts_are_judged),
-      cmocka_unit_test(images_of_a_fiber_are_others),
-      cmocka_unit_test(there_is_no_room),
-      cmocka_unit_test(wrong_models_are_refused),
-      cmocka_unit_test(near_bonds_are_blind),
+      cmocka_unit_test(no_tubes_overlap_in_a_run),       cmocka_unit_test(contacts_keep_momentum_and_angular_momentum),
+      cmocka_unit_test(a_head_on_contact_by_hand),       cmocka_unit_test(drifts_of_tubes_run_backwards),
+      cmocka_unit_test(thin_tubes_meet_as_lines_do),     cmocka_unit_test(random_starts_do_not_overlap),
+      cmocka_unit_test(placed_starts_are_judged),        cmocka_unit_test(images_of_a_fiber_are_others),
+      cmocka_unit_test(a_refused_fiber_leaves_no_entry), cmocka_unit_test(there_is_no_room),
+      cmocka_unit_test(wrong_models_are_refused),        cmocka_unit_test(near_bonds_are_blind),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
