@@ -127,6 +127,27 @@ class Together(unittest.TestCase):
         self.assertLess(rows[1][1], 0.05)
         self.assertLess(made and lags.joint(made, 3.2).estimator, 0.02)
 
+    def test_pulled(self):
+        """Fibers that drift with D F and a memory of waves, of their shape, and of what decayed at once: D comes back, and its error is the
+        scatter of 300 sets (they tell it to 4 %), whatever the memory before the first lag."""
+        t, share, d, fibers = 1.6 * numpy.arange(1.0, 101.0), 0.02, 0.5, 24
+        made = lags.System(None, lambda x: 0.03 / numpy.sqrt(x), 0.0, lambda x: share * numpy.ones_like(x), 2)
+        mean = d * t * (1.0 - share) - t * made.waves(t) - 0.7 * d
+        random, found = numpy.random.Generator(numpy.random.PCG64(10)), []
+        for _ in range(300):
+            steps = random.normal(0.0, math.sqrt(2.0 * d * 1.6 / 9.0), (fibers, 100))  # a force of 3: noise over force
+            columns = {"time": t, "way": mean + numpy.cumsum(steps.mean(axis=0)),
+                       "step_error": steps.std(axis=0) / math.sqrt(fibers - 1.0)}
+            found.append(lags.pulled(columns, made, 12.8))
+        value, error = numpy.array(found).T
+        self.assertLess(abs(value.mean() - d), 5.0 * value.std() / math.sqrt(300))
+        self.assertAlmostEqual(value.std() / error.mean(), 1.0, delta=5.0 * 0.041)
+        exact = lags.pulled({"time": t, "way": mean, "step_error": numpy.ones(100)}, made, 12.8)
+        self.assertAlmostEqual(exact[0], d, 12)
+
+    def test_beside(self):
+        self.assertEqual(lags.beside(numpy.array([[4.0, 1.0], [1.0, 9.0]]), [2.0]).tolist(), [[4, 1, 0], [1, 9, 0], [0, 0, 4]])
+
     def test_per_length(self):
         """Two boxes of one length with errors of 0.1 and 0.2, one of another, no correlation: the mean, weighted by 4 and 1."""
         far, logs = lags.per_length([5, 5, 7], numpy.array([1.0, 1.0, 2.0]), numpy.diag([0.01, 0.04, 0.01]), {5: 1.0, 7: 2.0}.get)

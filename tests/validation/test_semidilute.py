@@ -148,21 +148,23 @@ class Curves(unittest.TestCase):
     def test_rotation(self):
         t = numpy.array([100.0, 200.0, 400.0, 800.0, 1600.0, 3200.0])
         made = self.table(t, axis_unit=0.98 * numpy.exp(-t / 5e4), intervals=32000.0 / t)
-        tau, _, height = sd.rotation_time([made, None], 150.0, 4000.0, 4)
+        tau, _, height = sd.rotation_time([made, None], 150.0, 4000.0, (4, 4))
         self.assertAlmostEqual(tau, 5e4, 3)
         self.assertAlmostEqual(height, 0.98, 9)
-        self.assertIsNone(sd.rotation_time([made], 150.0, 1000.0, 4))
-        self.assertIsNone(sd.rotation_time([None], 150.0, 4000.0, 4))
+        self.assertIsNone(sd.rotation_time([made], 150.0, 1000.0, (4,)))
+        self.assertIsNone(sd.rotation_time([None], 150.0, 4000.0, (4,)))
         # two runs are pooled by their intervals, and halve the error's square
         other = self.table(t, axis_unit=0.96 * numpy.exp(-t / 5e4), intervals=96000.0 / t)
-        both = sd.rotation_time([made, other], 150.0, 4000.0, 4)
+        both = sd.rotation_time([made, other], 150.0, 4000.0, (4, 4))
         self.assertAlmostEqual(both[2], 0.965, 9)
-        one, four = (sd.rotation_time([made] * n, 150.0, 4000.0, 4)[1] for n in (1, 4))
+        # and by their fibers: weights 1 x 12 and 3 x 4
+        self.assertAlmostEqual(sd.rotation_time([made, other], 150.0, 4000.0, (12, 4))[2], 0.97, 9)
+        one, four = (sd.rotation_time([made] * n, 150.0, 4000.0, (4,) * n)[1] for n in (1, 4))
         self.assertAlmostEqual(one / four, 2.0, 6)
         # bends that relax slowly: tau_r changes with the first lag, and the error holds the change
         bent = self.table(t, axis_unit=1.0 - t / 5e4 + 2e-3 * numpy.exp(-t / 300.0), intervals=1e9 / t)
-        tau, error, _ = sd.rotation_time([bent], 150.0, 4000.0, 4)
-        later = sd.rotation_fit(*sd.turning([bent], 4), 300.0, 4000.0)[0]
+        tau, error, _ = sd.rotation_time([bent], 150.0, 4000.0, (4,))
+        later = sd.rotation_fit(*sd.turning([bent], (4,)), 300.0, 4000.0)[0]
         self.assertGreater(abs(later - tau), 0.01 * tau)
         self.assertGreaterEqual(error, abs(later - tau))
 
@@ -179,7 +181,7 @@ class Curves(unittest.TestCase):
             turned = [0.5 * numpy.mean(numpy.diff(angles[::lag], axis=0)**2) * 2.0 for lag in lags]
             made = {"time": numpy.array(lags, float), "axis_unit": 1.0 - numpy.array(turned),
                     "intervals": numpy.array([(samples - 1) // lag for lag in lags], float)}
-            tau, error, _ = sd.rotation_fit(*sd.turning([made], fibers), 10.0, 96.0)
+            tau, error, _ = sd.rotation_fit(*sd.turning([made], (fibers,)), 10.0, 96.0)
             found.append((1.0 / tau, error / tau**2))
         rate, error = numpy.array(found).T
         self.assertLess(abs(rate.mean() * 5000.0 - 1.0), 5.0 * rate.std() * 5000.0 / math.sqrt(sets) + 0.01)

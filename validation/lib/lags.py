@@ -98,6 +98,34 @@ def rule(systems, tries=(1.6, 3.2, 6.4, 12.8)):
     return (rows[first][0] if first < len(rows) else None), rows
 
 
+def pulled(columns, system, first=dilute.FIRST_LAG):
+    """(short-time D, error) of a system in its box from its answer to a force (validation/measure/pulled_fibers.c): the mean
+    displacement over the force is g/6, so that the same memory applies. From `first` to the last row it is
+
+        D [t (1 - share)] - t waves, its difference between both times,
+
+    and what had decayed before `first`, tau D_0, drops out. Increments are independent, and their errors add up in squares."""
+    t, way = columns["time"], columns["way"]
+    k = int(numpy.argmin(abs(t - first)))
+    ends = t[[k, -1]]
+    lost, grown = numpy.diff(ends * system.waves(ends))[0], numpy.diff(ends * (1.0 - system.share(ends)))[0]
+    return (way[-1] - way[k] + lost) / grown, math.sqrt((columns["step_error"][k + 1:]**2).sum()) / grown
+
+
+def pulled_mean(columns, system):
+    """The weighted mean of several runs of one system; None without any."""
+    found = [pulled(one, system) for one in columns]
+    return dilute.fair_mean(*zip(*found))[:2] if found else None
+
+
+def beside(covariance, errors):
+    """The covariance with further independent values behind it."""
+    n = len(covariance)
+    found = numpy.diag([0.0] * n + [error**2 for error in errors])
+    found[:n, :n] = covariance
+    return found
+
+
 def per_length(lengths, values, covariance, theory):
     """{N: (D, error, p)} of several boxes, and the covariance of ln D; p: the chance that boxes differ as much as they do."""
     sizes = sorted(set(lengths))

@@ -185,13 +185,13 @@ def bend(columns, name="d2_contour", half=0.375):
 
 
 def turning(tables, fibers):
-    """(t, <a(0).a(t)>, its error) of the regression axis at the lags of all runs, pooled by intervals. 1 - cos of a small
-    angle is a sum of two squares, so its mean over n intervals of `fibers` fibers has the relative error 1/sqrt(n fibers)."""
+    """(t, <a(0).a(t)>, its error) of the regression axis at the lags of all runs, pooled by intervals and `fibers` of each run. 1 - cos
+    of a small angle is a sum of two squares, so its mean over n intervals of all fibers has the relative error 1/sqrt(n)."""
     lags = sorted(set.intersection(*(set(one["time"]) for one in tables)))
-    rows = [[(one["axis_unit"][k], one["intervals"][k]) for one in tables for k in numpy.flatnonzero(one["time"] == t)]
-            for t in lags]
+    rows = [[(one["axis_unit"][k], count * one["intervals"][k]) for one, count in zip(tables, fibers)
+             for k in numpy.flatnonzero(one["time"] == t)] for t in lags]
     cosine = numpy.array([sum(c * n for c, n in row) / sum(n for _, n in row) for row in rows])
-    count = numpy.array([fibers * sum(n for _, n in row) for row in rows])
+    count = numpy.array([sum(n for _, n in row) for row in rows])
     return numpy.array(lags), cosine, (1.0 - cosine) / numpy.sqrt(count)
 
 
@@ -212,13 +212,13 @@ def rotation_fit(t, c, error, shortest, longest, least=4):
 
 
 def rotation_time(tables, shortest, longest, fibers):
-    """(tau_r, error, intercept) of runs of the same system, tau_r = 1/(2 D_r). Bends hardly tilt the regression axis; the
+    """(tau_r, error, intercept) of runs of the same fibers, so many in each, tau_r = 1/(2 D_r). Bends hardly tilt the regression axis; the
     intercept has what they do. The choice of the first lag has an error of its own, in the root of the sum of squares: the change
     if it is doubled, or what this change could hide."""
-    tables = [one for one in tables if one is not None and "axis_unit" in one]
-    if not tables:
+    chosen = [(one, count) for one, count in zip(tables, fibers) if one is not None and "axis_unit" in one]
+    if not chosen:
         return None
-    seen = turning(tables, fibers)
+    seen = turning(*zip(*chosen))
     found, doubled = (rotation_fit(*seen, first, longest) for first in (shortest, 2.0 * shortest))
     if not found or not doubled:
         return None

@@ -10,6 +10,7 @@ from lib.runs import Run
 
 TITLE = "Galilean invariance, and the lag behind a flow"
 PAPER = "Fig. 3"
+USES = ("tube",)  # its late-events is the event-driven rule at rest
 FLOWS = (0, 0.09, 0.18, 0.36, 0.54)
 QUICK = {"flow00": {}, "flow54": {"flow": 0.54}, "comoving54": {"flow": 0.54, "refusal": "bounce", "frame": "flow"}}
 
@@ -25,6 +26,9 @@ def campaign():
     for k, v in enumerate((0, 0.54)):  # no thermostat: what becomes of the energy
         found.append(Run(f"isolated{round(100 * v):02d}", steps=10000, hours=0.04, seed=320 + k,
                          scene=sd.scene(flow=v, solvent=sd.FREE_SOLVENT, **{**common, "series": 100})))
+    # Each contact at its own time: nobody lags, and nothing heats, so there is no thermostat. At rest: tube/late-events.
+    found.append(Run("events54", steps=100000, hours=0.2, seed=340, priority=1,
+                     scene=sd.scene(flow=0.54, rule="event-driven", solvent=sd.FREE_SOLVENT, **common)))
     # How far the vertices fall behind, for each rule: as many per volume in 16^3 cells.
     found.append(Run("lag", hours=0.1,
                      program=["refused_moves", 16, 208, 38, 0.54, 144, 330, "kick-split", 0.02, 0.01, 0.005]))
@@ -138,6 +142,23 @@ def displacement_verdict(result, rest, name, flow, column, lag):
     verdict.expected = 1.0 + (share * flow * lag)**2 / b[0]
     ratio = a[0] / b[0]
     return sd.measured(verdict, (ratio, ratio * math.hypot(a[1] / a[0], b[1] / b[0])), 0.01)
+
+
+def event_verdicts(results, lags):
+    """The event-driven rule: in a flow as at rest, without a lag; and at rest as by the paper's rule."""
+    rest, moving, paper = (sd.table(results.get(name)) for name in ("tube/late-events", "events54", "flow00"))
+    found = []
+    for column in ("g", "g_cm"):
+        for lag in lags:
+            for name, words, one, other in (("flow", "0.54 a0/t0 over at rest", moving, rest),
+                                            ("rule", "at rest over that by the paper's rule", rest, paper)):
+                a, b = sd.at(one, column, lag), sd.at(other, column, lag)
+                ratio = a[0] / b[0] if a and b else None
+                found.append(sd.measured(
+                    Verdict(f"galilean.events.{name}.{column}.{lag:g}", f"{column} by the event-driven rule {words}, {lag:g} t0", 1.0,
+                            "Galilean invariance without a lag" if name == "flow" else "the same suspension", 0.0),
+                    ratio and (ratio, ratio * math.hypot(a[1] / a[0], b[1] / b[0])), 0.01))
+    return found
 
 
 def momentum_verdict(results):
@@ -256,6 +277,7 @@ def evaluate(results, tier):
     verdicts = lag_verdicts(results) + displacement_verdicts(results, system, apart) + [momentum_verdict(results)]
     if tier == "campaign":
         verdicts.append(paper_verdict(results, system))
+        verdicts += event_verdicts(results, system["lags"])
     found = [Figure("fig3", "Mean square displacements of vertices (filled) and of centres of mass (open), background "
                             "flow subtracted. Time is in units of τ_r, " + f"{system['tau']:.0f} t0. "
                     "Below: divided by those of the resting system. Lines: contribution of the lag of the fastest system to g (dashed) and to g_cm (dotted).",

@@ -34,11 +34,17 @@ SYSTEMS = {
     (15, 27): (10, 2500, 1, 3, 6), (30, 36): (7, 1500, 1, 4, 8), (30, 54): (24, 700, 0, 2, 6),
     (45, 45): (5, 1000, 1, 5, 9), (45, 81): (24, 500, 0, 0, 4), (60, 54): (5, 700, 1, 5, 10),
     (60, 72): (10, 1000, 0, 0, 3)}
+# Pulled by a force on each rod, from equilibrium (validation/measure/pulled_fibers.c): name -> (N, box, rods, force, time).
+PULLED = {"pulled-N45-F20-s1": (45, 81, 24, 20, 160), "pulled-N60-F20-s1": (60, 108, 24, 20, 128),
+          "pulled-N60-F20-s2": (60, 108, 24, 20, 128), "pulled-N45-F20-s2": (45, 81, 24, 20, 160)}
 FREE = {10: (32, 1500), 15: (24, 1500), 30: (16, 1500), 45: (12, 1500), 60: (8, 2000)}  # without hydrodynamics
 
 
 def campaign():
     found = [rods(f"phantoms-N{n}", n, 128, count, time, bath="phantoms") for n, (count, time) in FREE.items()]
+    for number, (name, (n, box, count, force, time)) in enumerate(PULLED.items()):
+        found.append(Run(name, program=["pulled_fibers", "rods", n, count, box, force, time, 1.6, 1, 700 + number],
+                         hours=dilute.hours(box, count * n, time, time_step=0.01), priority=1))
     for (n, box), (count, time, *limits) in SYSTEMS.items():
         for seed in range(1, limits[-1] + 1):
             priority = next(p for p, limit in enumerate(limits) if seed <= limit)
@@ -119,6 +125,21 @@ def systems(results):
     return found
 
 
+def forced(results):
+    """[Point] of rods that were pulled."""
+    rows, found = {}, []
+    for name, (n, box, count, _, _) in PULLED.items():
+        if name in results and results[name].text:
+            rows.setdefault((n, box, count), []).append(results[name].columns)
+    for (n, box, count), columns in rows.items():
+        system = lags.System(None, functools.partial(dilute.memory, box=box, form=dilute.rod_form(n, BOND)), 0.0,
+                             functools.partial(shape.rod_share, n), box)
+        value, error = lags.pulled_mean(columns, system)
+        pure = dilute.in_pure_solvent(value, sharing(n)[0], (count - 1) * n / box**3)
+        found.append(Point(n, box, value, error, pure + dilute.image_shift(box, moments(n)[1])))
+    return found
+
+
 def with_hydrodynamics(results):
     """Short-time D of rods with hydrodynamics."""
     found, points = systems(results), []
@@ -131,6 +152,8 @@ def with_hydrodynamics(results):
         value = joint.value[i] / shares[i]
         pure = dilute.in_pure_solvent(value, sharing(n)[0], (count - 1) * n / box ** 3)
         points.append(Point(n, box, value, math.sqrt(covariance[i, i]), pure + dilute.image_shift(box, moments(n)[1])))
+    answers = forced(results)
+    points, covariance = points + answers, lags.beside(covariance, [p.error for p in answers])
     far, logs = lags.per_length([p.vertices for p in points], numpy.array([p.infinite for p in points]), covariance, cells)
     return Measured(points, joint, far, logs, covariance)
 
