@@ -29,6 +29,7 @@ TAIL_SEEDS = {"quick": 32, "campaign": 16}  # Student's t of few is wide
 EDGES, FINE_EDGES = (32, 16), (32, 24, 16, 12, 8)
 DIFFUSION_BOX, WINDOWS = 16, 24
 TAIL_BOX = 32
+LATE_EVERY, LATE_LAGS, LATE_BLOCKS = 10, (35, 60), 99  # collisions between looks; lags, in looks; values that errors come from
 SOUND_EDGE, SOUND_BLOCKS = 32, 24
 SOUND_K = 2.0 * numpy.pi / SOUND_EDGE
 HEAVY = 2  # vertices of mass 5 per cell, as many as cL^3 = 1000 has
@@ -84,6 +85,9 @@ def runs(tier):
     found += tail_runs(TAILS, tier, 125, 6 if tier == "quick" else 30)
     if PAPERS in TAIL_POINTS[tier]:
         found += tail_runs(PAPERS, tier, 250, 15)
+        # When sound has died, C turns positive: 7 to 12 t0, from 20,000 origins.
+        found.append(Run("tail-late", hours=0.25, priority=1, program=[
+            "solvent_tail", TAIL_BOX, PAPERS.dt_c, LATE_EVERY, *LATE_LAGS, 20000, 61]))
     return found + [heavy_run(tier)] + [sound_run(point, tier) for point in TAIL_POINTS[tier]]
 
 
@@ -289,6 +293,31 @@ def tail_verdict(results, point, tier):
     return verdict
 
 
+def late_tail(results):
+    """(t, C, its error) of the paper's point at long lags, and (mean over lags, its error); None without the run."""
+    if "tail-late" not in results or not results["tail-late"].text:
+        return None
+    table = results["tail-late"].columns
+    return [table[key][:-1] for key in ("time", "vacf", "vacf_error")], (table["vacf"][-1], table["vacf_error"][-1])
+
+
+def late_verdict(results):
+    """At the paper's point C is negative to 5 t0, while sound dies. Then it is positive, and whether a particle is a point or as wide as a
+    cell no longer matters."""
+    first, last = (lag * LATE_EVERY * PAPERS.dt_c for lag in LATE_LAGS)
+    verdict = Verdict("solvent.tail.late", f"mean of C(t) over lags of {first:g} to {last:g} t0, over that of shear waves alone, {words(PAPERS)}",
+                      0.0, "shear and sound waves of the box, nothing fitted; without sound 1", 0.0, rival=1.0)
+    found = late_tail(results)
+    if found and has_tail(results, PAPERS):
+        (time, _, _), (mean, error) = found
+        shear = shear_tail(results, PAPERS, time).mean()
+        low, high = sorted(tail_theory(results, PAPERS, time, smear).mean() / shear for smear in (0.0, theory.CELL))
+        verdict.expected = 0.5 * (low + high)
+        verdict.measured, verdict.error = mean / shear, error / shear
+        verdict.tolerance = stats.tolerance(verdict.error, systematic=0.5 * (high - low) + 0.05, values=LATE_BLOCKS)
+    return verdict
+
+
 # --- figures ----------------------------------------------------------------------------------------------------------
 
 def lines_of(results, known):
@@ -361,6 +390,17 @@ def draw_sound(results):
     return figure
 
 
+def draw_late(axes, results, number):
+    """Lags of tail-late, five to a point, over shear waves alone; and the theory there."""
+    time, vacf, error = (column[:25].reshape(5, 5) for column in late_tail(results)[0])
+    t, over = time.mean(axis=1), shear_tail(results, PAPERS, time.mean(axis=1))
+    figures.points(axes, t, vacf.mean(axis=1) / over, numpy.sqrt((error**2).sum(axis=1)) / 5.0 / over, number=number)
+    lines = numpy.linspace(time[0, 0], time[-1, -1], 40)
+    shear = shear_tail(results, PAPERS, lines)
+    axes.fill_between(lines, *(tail_theory(results, PAPERS, lines, smear) / shear for smear in (0.0, theory.CELL)),
+                      color=figures.COLORS[number], alpha=0.2, linewidth=0)
+
+
 def draw_tail(results, points):
     figure, top, below = figures.with_residuals(share=0.45)
     for number, point in enumerate(points):
@@ -381,6 +421,8 @@ def draw_tail(results, points):
         below.fill_between(lines, *bounds, color=figures.COLORS[number], alpha=0.2, linewidth=0)
         over = shear_tail(results, point, t[late])
         figures.points(below, t[late], mean[late] / over, error[late] / over, number=number)
+        if point == PAPERS and late_tail(results):
+            draw_late(below, results, number)
     top.set(xscale="log", yscale="log", ylim=(5e-5, 1.0), ylabel="$C(t)/C(0)$")
     below.set(ylabel="over shear waves'", ylim=(-3.0, 3.0), xlabel="time ($t_0$)")
     figures.named(top, "molecular chaos", linestyle="-", linewidth=0.8)
@@ -395,7 +437,7 @@ def evaluate(results, tier):
     verdicts += [viscosity_verdict(results, point) for point in POINTS["quick"]]
     verdicts += [slope_verdict(results)] if tier == "campaign" else []  # the quick runs cannot tell it from nothing
     verdicts += [heavy_verdict(results), diffusion_verdict(results), sound_verdict(results)]
-    verdicts += [tail_verdict(results, TAILS, tier)] + paper_verdicts(results)
+    verdicts += [tail_verdict(results, TAILS, tier)] + paper_verdicts(results) + ([late_verdict(results)] if tier == "campaign" else [])
     return Outcome(verdicts, figures_of(results, tier), prose(results))
 
 
