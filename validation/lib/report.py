@@ -172,6 +172,8 @@ STANDING = """# Where the campaign stands
 
 <!-- written by `validation/run report --tier campaign` -->
 
+**[The paper's figures, beside this program's](paper.md)**: what each figure and table of the paper shows, what this program shows, and why they differ where they do.
+
 The campaign runs the paper's own systems. It has used {hours:.1f} of the {planned:.0f} core-hours that are planned. This page counts its
 verdicts, and lists those that are not a pass; [validation/README.md](../../validation/README.md#verdicts) says what each verdict means.
 `validation/run report --tier campaign` makes the whole report, `reference-data/campaign/report.html`, from the results that are kept
