@@ -2,6 +2,8 @@
 import math
 import pathlib
 import sys
+import tempfile
+import types
 import unittest
 
 import numpy
@@ -10,7 +12,7 @@ sys.dont_write_bytecode = True
 TREE = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(TREE / "validation"))
 
-from lib import flow
+from lib import dumbbells, flow, runs
 from lib.flow_runs import POINTS, Point
 
 
@@ -101,6 +103,31 @@ class Response(unittest.TestCase):
 
     def test_heat_conductivity(self):
         self.assertAlmostEqual(sum(flow.heat_conductivity(Point(2, 10, 0.1))), 20.0 * (0.05 * 1.2 + 1.0 / 12.0), delta=1e-9)
+
+
+class Series(unittest.TestCase):
+    def test_oscillation_of_a_series_that_was_thinned(self):
+        """Rows are means over their own intervals, two or four of them may have become one: G' and G'' stay."""
+        every, rows, period, storage, loss = 0.02, 40, 0.8, 3.0, 5.0
+        omega = 2.0 * math.pi / period
+
+        def integral(time):
+            return (-storage * math.cos(omega * time) + loss * math.sin(omega * time)) / omega
+
+        lines = [f"{row},{row * every},{(integral(row * every) - integral((row - 1) * every)) / every!r}" for row in range(1, 20 * rows + 1)]
+        text = f"shear: {{period: {period}}}\nobserve: {{from: 0, stress: {{every: 1}}}}\ntime_step: {every}\n"
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "stress.csv"
+            for together in (1, 2, 4):
+                path.write_text("\n".join(["step,time,sigma_xy", *lines]) + "\n")
+                runs.thin(path, 20 * rows // together)
+                columns = numpy.genfromtxt(path, delimiter=",", names=True)
+                self.assertEqual(len(columns), 20 * rows // together)
+                result = types.SimpleNamespace(table=lambda name, columns=columns: columns, run=types.SimpleNamespace(scene_text=text))
+                _, values = dumbbells.harmonic(result, "sigma_xy")
+                self.assertAlmostEqual(values.mean().real, loss, delta=1e-9)
+                self.assertAlmostEqual(-values.mean().imag, storage, delta=1e-9)
+                self.assertEqual(len(values), 20)
 
 
 if __name__ == "__main__":

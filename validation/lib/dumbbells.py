@@ -113,7 +113,8 @@ def harmonic(result, *names):
     """Amplitude of the mean of these columns of the stress, sigma = Re[a exp(i omega t)], complex, from each period."""
     table, scene = result.table("stress"), flow.scene_of(result)
     section = scene.get("shear") or scene["walls"]
-    period, begin, every = section["period"], scene["observe"]["from"], scene["observe"]["stress"]["every"] * scene["time_step"]
+    period, begin = section["period"], scene["observe"]["from"]
+    every = float(numpy.median(numpy.diff(table["time"])))  # not the scene's: a series that is kept may be thinned
     rows, omega = round(period / every), 2.0 * math.pi / period
     keep = table["step"] > begin
     time, sigma = table["time"][keep] - 0.5 * every, numpy.mean([table[name][keep] for name in names], axis=0)

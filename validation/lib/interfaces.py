@@ -95,9 +95,9 @@ def draw(results):
     found = profile(results)
     if found is not None:
         figures.points(left, *found, None, 0, label="many-body liquid", markersize=3.5)
-        figures.theory(left, [-3.0, 3.0], [root(5.0, 7.0)] * 2, label="no pressure, Warren's fit")
+        figures.theory(left, [-3.0, 3.0], [root(5.0, 7.0)] * 2, label="no pressure, Warren's fit", zorder=5)
     left.set(xlabel="$y$ from the middle ($a_0$)", ylabel="density ($a_0^{-3}$)")
-    figures.legend(left, loc="center")
+    figures.legend_above(left, columns=1)
     table, planar = drops(results), tension(results, "slab", SLAB[1], 0.1)
     if table is not None:
         figures.points(right, 1.0 / table["radius"], table["difference"], table["difference_error"], 1, label="droplets")
@@ -105,5 +105,5 @@ def draw(results):
         x = numpy.linspace(0.0, 0.4, 2)
         figures.theory(right, x, 2.0 * planar[0] * x, label="$2\\sigma/R$ with σ of the flat surface")
     right.set(xlabel="$1/R$ ($1/a_0$)", ylabel="$p$ inside less outside ($kT/a_0^3$)", xlim=(0.0, 0.4), ylim=(0.0, None))
-    figures.legend(right, loc="upper left")
+    figures.legend_above(right, columns=1)
     return figure

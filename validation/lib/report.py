@@ -139,16 +139,21 @@ def superscript(power):
     return str(power).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
 
 
+def code(text):
+    """HTML of a line with `code`."""
+    return re.sub(r"`([^`]*)`", r"<code>\1</code>", html.escape(text.strip(), quote=False))
+
+
 def prose(text):
     """Paragraphs with `code` and **bold** as HTML."""
-    marked = re.sub(r"`([^`]*)`", r"<code>\1</code>", html.escape(text.strip(), quote=False))
+    marked = code(text)
     marked = re.sub(r"\*\*(.+?)\*\*", r"<b>\1</b>", marked)
     return "".join(f"<p>{paragraph}</p>\n" for paragraph in re.split(r"\n\s*\n", marked) if paragraph.strip())
 
 
 def page(tier, sections):
     environment = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True)
-    environment.filters.update(prose=prose, cpu=runs.duration, number=number, plusminus=plusminus,
+    environment.filters.update(prose=prose, cpu=runs.duration, number=number, plusminus=plusminus, code=code, signed=signed,
                                badge=lambda row: row["verdict"].split()[0])
     return environment.from_string(TEMPLATE.read_text()).render(
         tier=tier, titles=TITLES, sections=sections, total=math.fsum(part["cpu_seconds"] for part in sections),
@@ -166,6 +171,8 @@ def summary(tier, sections):
 STANDING = """# Where the campaign stands
 
 <!-- written by `validation/run report --tier campaign` -->
+
+**[The paper's figures, beside this program's](paper.md)**: what each figure and table of the paper shows, what this program shows, and why they differ where they do.
 
 The campaign runs the paper's own systems. It has used {hours:.1f} of the {planned:.0f} core-hours that are planned. This page counts its
 verdicts, and lists those that are not a pass; [validation/README.md](../../validation/README.md#verdicts) says what each verdict means.

@@ -281,7 +281,7 @@ def draw_refused(results, tier):
         none = [k for k, m in enumerate(missed) if m == 0]  # less than 3 of them, at 95 %
         axes[0].errorbar([dt[k] for k in none], [3.0 / table[k]["possible"] for k in none],
                          [1.5 / table[k]["possible"] for k in none], uplims=True, linestyle="none", elinewidth=1.0,
-                         color=figures.COLORS[number], label="none: less than 3, at 95 %" if none and number == len(COUNTS) - 1 else None)
+                         color=figures.COLORS[number], label="none found: upper limits" if none and number == len(COUNTS) - 1 else None)
         theory = kinetic_rate(table[0])
         figures.points(axes[1], dt, [row["rate"] / theory for row in table],
                        [row["rate_error"] / theory for row in table], number, markerfacecolor=figures.COLORS[number])

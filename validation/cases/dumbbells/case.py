@@ -298,7 +298,7 @@ def draw_walls(results):
         v = 0.5 * (table["vx"] - table["vx"][::-1])
         near = y < 6.0
         figures.points(panel, y[near], (v[near] + 0.5 * height * applied) / rate - y[near], table["vx_error"][near] / math.sqrt(2.0) / rate, number=number,
-                       label=name.removeprefix("walls-"), markersize=4)
+                       label=f"walls {height:g} $a_0$ apart" + (", with the potential" if name.endswith("-flat") else ""), markersize=4)
     panel.set(xlabel="distance from the wall ($a_0$)", ylabel="$(v - v_w)/\\dot\\gamma - y$ ($a_0$)")
     figures.legend(panel)
     return figure
@@ -333,7 +333,7 @@ def figures_of(results):
     if any(name.startswith("still-") and fluid.still(results, name == "still-flat") for name in results):
         found.append(Figure("density", "Density of particles near a wall, both walls averaged. Lines: theory.", lambda: draw_density(results)))
     if any(name.startswith("walls-") for name in results):
-        found.append(Figure("walls", "Velocity relative to the wall over the rate of the bulk, less the distance: the slip length of dumbbells is where it is level. Slabs are correlated.",
+        found.append(Figure("walls", "Velocity relative to the wall over the rate of the bulk, less the distance: the slip length of dumbbells is where it is level. K 1. Slabs are correlated.",
                             lambda: draw_walls(results)))
     return found
 

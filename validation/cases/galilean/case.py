@@ -252,6 +252,10 @@ def draw_energy(results):
     return figure
 
 
+RULES = {"stay": "stay (the paper's rule)", "bounce": "bounce", "stay-flow": "stay, in the frame of the flow",
+         "bounce-flow": "bounce, in that frame"}  # of the lag's figure
+
+
 def draw_lag(results):
     figure, above, below = figures.with_residuals(height=4.2)
     rows = lag_rows(results)
@@ -259,14 +263,14 @@ def draw_lag(results):
         mine = [row for row in rows if row["rule"] == rule]
         dt = [row["dt"] * 1.02**number for row in mine]
         figures.points(above, dt, [1e3 * row["lag"] for row in mine], [1e3 * row["lag_error"] for row in mine],
-                       number, label=rule)
+                       number, label=RULES.get(rule, rule))
         if rule == "stay":
             above.plot([row["dt"] for row in mine], [1e3 * row["rate"] * row["dt"] for row in mine], color="#222222",
                        linestyle="--", marker="_", label="share of rejected moves")
             figures.points(below, dt, [row["lag"] / row["rate"] / row["dt"] - 1 for row in mine],
                            [row["lag_error"] / row["rate"] / row["dt"] for row in mine], number)
-    above.set(ylabel="lag over flow, 10⁻³")
-    below.set(xlabel="dt, t0", ylabel="over share\n− 1", ylim=(-0.15, 0.3), xlim=(0.0, 0.024))
+    above.set(ylabel="lag over flow ($10^{-3}$)")
+    below.set(xlabel="$dt$ ($t_0$)", ylabel="over\nshare − 1", ylim=(-0.15, 0.3), xlim=(0.0, 0.024))
     figures.legend(above)
     return figure
 
@@ -282,7 +286,7 @@ def evaluate(results, tier):
                             "flow subtracted. Time is in units of τ_r, " + f"{system['tau']:.0f} t0. "
                     "Below: divided by those of the resting system. Lines: contribution of the lag of the fastest system to g (dashed) and to g_cm (dotted).",
                     lambda: draw_displacements(results, system)),
-             Figure("lag", "Lag of the vertices behind a flow of 0.54 a0/t0, for each rule for rejected moves.",
+             Figure("lag", "Lag of the vertices behind a flow of 0.54 a0/t0 against the time step, for each rule for rejected moves. Line: the share of moves that the rule of the paper rejects. Below: the lag over this share.",
                     lambda: draw_lag(results)),
              Figure("energy", "Energy and momentum of the densest suspension at dt 0.01, by the paper's rule. Isolated: no thermostat. Right: change "
                     "of the momentum of the whole system, per unit of mass.", lambda: draw_energy(results))]

@@ -199,7 +199,7 @@ def draw_lags(found, measured):
         late = t >= 0.8
         kept = (t >= 0.999 * dilute.FIRST_LAG) & (t <= 1.001 * LAST)
         figures.theory(axes, t[late], model[late], color=figures.COLORS[number])
-        figures.points(axes, t, table["D"], table["D_error"], number, label=f"L = {key[0]}")
+        figures.points(axes, t, table["D"], table["D_error"], number, label=f"$L_b$ = {key[0]} $a_0$")
         for which, fill in ((late & ~kept, "none"), (kept, figures.COLORS[number])):
             figures.points(below, t[which], (table["D"] / model - 1.0)[which], (table["D_error"] / model)[which], number,
                            markerfacecolor=fill)

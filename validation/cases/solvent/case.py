@@ -424,10 +424,10 @@ def draw_tail(results, points):
         if point == PAPERS and late_tail(results):
             draw_late(below, results, number)
     top.set(xscale="log", yscale="log", ylim=(5e-5, 1.0), ylabel="$C(t)/C(0)$")
-    below.set(ylabel="over shear waves'", ylim=(-3.0, 3.0), xlabel="time ($t_0$)")
+    below.set(ylabel="over the part\nof shear waves", ylim=(-3.0, 3.0), xlabel="time ($t_0$)")
     figures.named(top, "molecular chaos", linestyle="-", linewidth=0.8)
     figures.named(top, "shear waves of the box", linestyle="--", linewidth=1.1)
-    figures.named(below, "shear and sound, no width to a cell's", marker="s", markersize=8, alpha=0.3)
+    figures.named(below, "shear and sound, points to cells wide", marker="s", markersize=8, alpha=0.3)
     figures.legend_above(top, below)
     return figure
 
@@ -474,8 +474,8 @@ def prose(results):
     nu, d = viscosity(results, PAPERS)[0], diffusion(results, PAPERS)[0]
     chaos_nu, chaos_d = theory.kinematic_viscosity(*PAPERS), theory.self_diffusion(*PAPERS)
     return (
-        f"At the paper's point ν is {nu:.3f} ({100.0 * (nu / chaos_nu - 1.0):+.1f} % of Eqs. (30), (31)), and a solvent particle "
-        f"diffuses with D = {d:.4f} ({100.0 * (d / chaos_d - 1.0):+.0f} % of molecular chaos). **Both formulas fail for the same reason:** with a "
+        f"At the paper's point ν is {nu:.3f} ({100.0 * (1.0 - nu / chaos_nu):.1f} % below Eqs. (30), (31)), and a solvent particle "
+        f"diffuses with D = {d:.4f} ({100.0 * (d / chaos_d - 1.0):.0f} % above molecular chaos). **Both formulas fail for the same reason:** with a "
         "mean free path of 0.02 a0 the same particles share a cell for many collisions. A single collision agrees with molecular "
         f"chaos. The Schmidt number is {nu / d:.0f} instead of {chaos_nu / chaos_d:.0f}. With a mean free path of a cell molecular chaos "
         "holds.\n\nMolecular chaos leaves out hydrodynamics. The velocity autocorrelation follows ((ν + D)t)^(−3/2) with no number "

@@ -418,10 +418,10 @@ def draw_swelling(results):
     if table is not None:
         keep = table["diameter"] == SWOLLEN
         n, swollen = table["bonds"][keep], (table["R2"] / table["bonds"]**(2 * NU))[keep]
-        figures.points(left, n, swollen, (table["R2_error"] / table["bonds"]**(2 * NU))[keep], number=0, label=f"$D = {SWOLLEN:g}$ a0")
+        figures.points(left, n, swollen, (table["R2_error"] / table["bonds"]**(2 * NU))[keep], number=0, label=f"$D = {SWOLLEN:g}\\,a_0$")
         figures.theory(left, n, sd.BOND2 * n**(1.0 - 2 * NU), label="ideal chain")
         left.set(xscale="log", ylim=(0.0, 1.15 * swollen.max()))
-    left.set(xlabel="bonds $N$", ylabel="$\\langle R^2\\rangle/N^{1.1752}$, a0²")
+    left.set(xlabel="bonds $N$", ylabel="$\\langle R^2\\rangle/N^{1.1752}$ ($a_0^2$)")
     for number, z in enumerate(STRENGTHS):
         table = sizes(results, f"strength-{z:g}")
         if table is not None:
@@ -445,7 +445,7 @@ def draw_tube(results):
     tables = {width: results[f"tube-{width:g}"].columns for width in WIDTHS if f"tube-{width:g}" in results}
     for number, (width, table) in enumerate(tables.items()):
         figures.points(left, table["time"], table["d2"], table["d2_error"], number=number, label=f"$D = {width:g}$", markersize=3)
-    left.set(xscale="log", yscale="log", xlabel="t, t0", ylabel="$d^2$ (middle third), a0²")
+    left.set(xscale="log", yscale="log", xlabel="$t$ ($t_0$)", ylabel="$d^2$ (middle third, $a_0^2$)")
     thin = tables.get(0.0)
     for number, (width, table) in enumerate(tables.items()):
         if thin is None or width == 0.0:
@@ -456,7 +456,7 @@ def draw_tube(results):
         figures.line(right, table["time"][keep], [expected_ratio(square, width) for square in thin["d2"][keep]], number=number, linestyle="--")
         figures.line(right, [8.0, table["time"].max()], 2 * [crowding_ratio(width)], number=number, linestyle=":")
     right.axhline(1.0, color=figures.INK, linewidth=0.8)
-    right.set(xscale="log", xlabel="t, t0", ylabel="$d^2$ over that of thin lines")
+    right.set(xscale="log", xlabel="$t$ ($t_0$)", ylabel="$d^2$ over that of thin lines")
     figures.legend(left)
     return figure
 

@@ -426,7 +426,7 @@ def evaluate(results, tier):
     caption = (f"c L³ = {system['count']}, L = l_p = {system['length']:g} a0. Filled: crossing forbidden. Open: crossing free. Time is in "
                f"units of the rotation time τ_r of a lone fiber: {words['hi']} with hydrodynamics, {words['off']} without. Below: "
                "forbidden over free at the same lag. 2 L⊥²: the line that the paper draws. 4 L⊥²: where a fixed tube would end, because both positions that d² compares "
-               "fluctuate. Free motion becomes hindered near the first line. The curve passes both: the tube shifts as its neighbors move. Held tube: 40 fibers move among 960 that are frozen. Horizontal bars: the error of τ_r, by which each pair of curves may be shifted sideways.")
+               "fluctuate. Free motion becomes hindered near the first line. The curve passes both: the tube shifts as its neighbors move. Held tube: 40 fibers move among 960 that are frozen. Relative to its cage: less the motion that a fiber shares with its neighbors. Horizontal bars: the error of τ_r, by which each pair of curves may be shifted sideways.")
     errors = {which: pair[1] / pair[0] if pair else None for which, pair in measured.items()}
     found = [Figure(f"fig4-{column}", what + caption, lambda column=column: draw(curves, held, cage, system, times, errors, column))
              for column, what in (("d2", "The paper's d²(t), to the nearest vertex. "),
