@@ -423,17 +423,28 @@ def evaluate(results, tier):
         verdicts += late_verdicts(results, curves, system)
         verdicts += plateau_verdicts(curves, system) + held_verdicts(held, system) + wave_verdicts(results, system) + rotation_verdicts(results, system)
         verdicts.append(normalized_verdict(curves, times, measured))
-    caption = (f"c L³ = {system['count']}, L = l_p = {system['length']:g} a0. Filled: crossing forbidden. Open: crossing free. Time is in "
-               f"units of the rotation time τ_r of a lone fiber: {words['hi']} with hydrodynamics, {words['off']} without. Below: "
-               "forbidden over free at the same lag. 2 L⊥²: the line that the paper draws. 4 L⊥²: where a fixed tube would end, because both positions that d² compares "
-               "fluctuate. Free motion becomes hindered near the first line. The curve passes both: the tube shifts as its neighbors move. Held tube: 40 fibers move among 960 that are frozen. Relative to its cage: less the motion that a fiber shares with its neighbors. Horizontal bars: the error of τ_r, by which each pair of curves may be shifted sideways.")
     errors = {which: pair[1] / pair[0] if pair else None for which, pair in measured.items()}
-    found = [Figure(f"fig4-{column}", what + caption, lambda column=column: draw(curves, held, cage, system, times, errors, column))
-             for column, what in (("d2", "The paper's d²(t), to the nearest vertex. "),
-                                  ("d2_contour", "The same to the nearest point of the contour. "))]
+    found = [Figure(name, what + caption, lambda column=column, axis=axis, bars=bars: draw(curves, held, cage, system, axis, bars, column))
+             for name, column, axis, bars, what, caption in pictures(system, times, errors, words)]
     if tier == "campaign":
         found.append(Figure("wave", WAVE_CAPTION, lambda: draw_wave(results, system)))
     return Outcome(verdicts, found, PROSE + (half_words(curves, system) if tier == "campaign" else ""))
+
+
+def pictures(system, times, errors, words):
+    """(name, column, tau_r of either kind, relative errors to show, what it is, the rest of its caption)"""
+    one = sd.PAPER_ROTATION_TIME if system["length"] == 32.0 else expected_rotation("hi", system)
+    axis, none = dict.fromkeys(times, one), dict.fromkeys(times)
+    same = (f"c L³ = {system['count']}, L = l_p = {system['length']:g} a0. Filled: crossing forbidden. Open: crossing free. Below: "
+            "forbidden over free at the same lag. 2 L⊥²: the line that the paper draws. 4 L⊥²: where a fixed tube would end, because both positions that d² compares "
+            "fluctuate. Held tube: 40 fibers move among 960 that are frozen. Relative to its cage: less the motion that a fiber shares with its neighbors.")
+    moves = " Free motion becomes hindered near the first line. The curve passes both: the tube shifts as its neighbors move."
+    shared = f" Time is in units of one τ_r for all curves, {one:.3g} t0, as in Figs. 3 and 5."
+    apart = (f" Each pair of curves has its own τ_r, that of a lone fiber: {words['hi']} with hydrodynamics, {words['off']} without. "
+             "Horizontal bars: the error of τ_r, by which a pair may be shifted sideways.")
+    return (("fig4-d2", "d2", axis, none, "The paper's d²(t), to the nearest vertex. ", same + moves + shared),
+            ("fig4-d2_contour", "d2_contour", axis, none, "The same to the nearest point of the contour. ", same + shared),
+            ("fig4-own", "d2_contour", times, errors, "The same with another time axis. ", same + apart))
 
 
 def half_words(curves, system):
