@@ -136,13 +136,14 @@ class Together(unittest.TestCase):
         random, found = numpy.random.Generator(numpy.random.PCG64(10)), []
         for _ in range(300):
             steps = random.normal(0.0, math.sqrt(2.0 * d * 1.6 / 9.0), (fibers, 100))  # a force of 3: noise over force
+            since = steps[:, 8:].sum(axis=1)  # from 12.8 t0 on
             columns = {"time": t, "way": mean + numpy.cumsum(steps.mean(axis=0)),
-                       "step_error": steps.std(axis=0) / math.sqrt(fibers - 1.0)}
+                       "since_error": numpy.full(100, since.std() / math.sqrt(fibers - 1.0))}
             found.append(lags.pulled(columns, made, 12.8))
         value, error = numpy.array(found).T
         self.assertLess(abs(value.mean() - d), 5.0 * value.std() / math.sqrt(300))
         self.assertAlmostEqual(value.std() / error.mean(), 1.0, delta=5.0 * 0.041)
-        exact = lags.pulled({"time": t, "way": mean, "step_error": numpy.ones(100)}, made, 12.8)
+        exact = lags.pulled({"time": t, "way": mean, "since_error": numpy.ones(100)}, made, 12.8)
         self.assertAlmostEqual(exact[0], d, 12)
 
     def test_beside(self):

@@ -104,12 +104,12 @@ def pulled(columns, system, first=dilute.FIRST_LAG):
 
         D [t (1 - share)] - t waves, its difference between both times,
 
-    and what had decayed before `first`, tau D_0, drops out. Increments are independent, and their errors add up in squares."""
+    and what had decayed before `first`, tau D_0, drops out. `since_error` is the error of this difference."""
     t, way = columns["time"], columns["way"]
     k = int(numpy.argmin(abs(t - first)))
     ends = t[[k, -1]]
     lost, grown = numpy.diff(ends * system.waves(ends))[0], numpy.diff(ends * (1.0 - system.share(ends)))[0]
-    return (way[-1] - way[k] + lost) / grown, math.sqrt((columns["step_error"][k + 1:]**2).sum()) / grown
+    return (way[-1] - way[k] + lost) / grown, columns["since_error"][-1] / grown
 
 
 def pulled_mean(columns, system):

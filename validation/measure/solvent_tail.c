@@ -1,12 +1,12 @@
 /*
  * The velocity autocorrelation of solvent particles at long lags, C(t) = <v(0).v(t)>/<v.v>, from many origins of time.
  *
- * At long lags C is as small as 10^-5, where one origin leaves 1/sqrt(3 N) of noise, 10^-3 in a box of 32^3. But a particle forgets its
- * velocity within some collisions. So origins, and lags, that are so far apart are nearly independent: each look is an
- * origin for later ones. solvent_vacf has one origin for all its lags, and short ones.
+ * At long lags C is as small as 10^-5, where one origin leaves 1/sqrt(3 N) of noise, 10^-3 in a box of 32^3. But a
+ * particle forgets its velocity within some collisions. So origins, and lags, that are so far apart are nearly
+ * independent: each look is an origin for later ones. solvent_vacf has one origin for all its lags, and short ones.
  *
- * Output: comma-separated; lag (t0), C, its standard error from the scatter of blocks of looks. The last row has the time -1: the
- * mean over all lags, and its error, which counts what lags have in common.
+ * Output: comma-separated; lag (t0), C, its standard error from the scatter of blocks of looks. The last row has the
+ * time -1: the mean over all lags, and its error, which counts what lags have in common.
  */
 #include <math.h>
 

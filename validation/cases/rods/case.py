@@ -35,15 +35,15 @@ SYSTEMS = {
     (45, 45): (5, 1000, 1, 5, 9), (45, 81): (24, 500, 0, 0, 4), (60, 54): (5, 700, 1, 5, 10),
     (60, 72): (10, 1000, 0, 0, 3)}
 # Pulled by a force on each rod, from equilibrium (validation/measure/pulled_fibers.c): name -> (N, box, rods, force, time).
-PULLED = {"pulled-N45-F20-s1": (45, 81, 24, 20, 160), "pulled-N60-F20-s1": (60, 108, 24, 20, 128),
-          "pulled-N60-F20-s2": (60, 108, 24, 20, 128), "pulled-N45-F20-s2": (45, 81, 24, 20, 160)}
+PULLED = {"pulled-N45-F30-s1": (45, 81, 24, 30, 128), "pulled-N60-F30-s1": (60, 108, 24, 30, 112),
+          "pulled-N60-F30-s2": (60, 108, 24, 30, 112), "pulled-N45-F30-s2": (45, 81, 24, 30, 128)}
 FREE = {10: (32, 1500), 15: (24, 1500), 30: (16, 1500), 45: (12, 1500), 60: (8, 2000)}  # without hydrodynamics
 
 
 def campaign():
     found = [rods(f"phantoms-N{n}", n, 128, count, time, bath="phantoms") for n, (count, time) in FREE.items()]
     for number, (name, (n, box, count, force, time)) in enumerate(PULLED.items()):
-        found.append(Run(name, program=["pulled_fibers", "rods", n, count, box, force, time, 1.6, 1, 700 + number],
+        found.append(Run(name, program=["pulled_fibers", "rods", n, count, box, force, time, 1.6, dilute.FIRST_LAG, 1, 700 + number],
                          hours=dilute.hours(box, count * n, time, time_step=0.01), priority=1))
     for (n, box), (count, time, *limits) in SYSTEMS.items():
         for seed in range(1, limits[-1] + 1):
