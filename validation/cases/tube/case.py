@@ -10,7 +10,7 @@ from lib.runs import Run
 
 TITLE = "The tube: hydrodynamics and uncrossability"
 PAPER = "Fig. 4"
-USES = ("galilean",)  # its comoving54 bounces
+USES = ("galilean",)  # its comoving54 bounces; and other starts
 
 # name -> (solvent, crossings forbidden)
 CASES = {"hi-entangled": (sd.SOLVENT, "true"), "hi-free": (sd.SOLVENT, "false"),
@@ -23,10 +23,13 @@ CHOICES = {"none": {"solvent": sd.FREE_SOLVENT},
            "events": {"rule": "event-driven", "solvent": sd.FREE_SOLVENT}}
 # What tau_r is measured in: run -> fibers in it.
 AXIS = {"hi": {"axis-hi-1": 4, "axis-many-1": 24, "axis-many-2": 24}, "off": {"axis-off": 40}}
+LATE = ("maxwell-boltzmann", "dt5", "events")  # not `none`: by the paper's rule it would be half as hot again by then
+# The same suspension from other starts, up to 1000 t0. Faster flows are left out: the lag is a part of their d^2.
+STARTS = ("hi-entangled", *(f"late-{name}" for name in LATE), "galilean/flow00", "galilean/flow09", "galilean/flow18", "galilean/comoving54")
+START_LAGS = (128.0, 512.0)  # t0: at the bend, and in the tube
 MOBILE = 40  # of the 1000 fibers, where the others are frozen
 BONDS = ("loose", "free", "forbidden")  # vertices without bonds; with bonds that may cross; with bonds that may not
 WAVE = tuple(0.64 * look for look in range(1, 21))  # t0
-LATE = ("maxwell-boltzmann", "dt5", "events")  # not `none`: by the paper's rule it would be half as hot again by then
 
 
 def campaign():
@@ -293,6 +296,19 @@ def late_verdicts(results, curves, system):
             for name, (run, words) in others.items()]
 
 
+def start_verdicts(results):
+    """Do runs from other starts differ by more than their own errors say?"""
+    found = []
+    for lag in START_LAGS:
+        pairs = [pair for pair in (sd.at(sd.table(results.get(name)), "d2_contour", lag) for name in STARTS) if pair]
+        p, words = None, ""
+        if len(pairs) > 1:
+            mean, error, p = dilute.fair_mean(*zip(*pairs))
+            words = f" ({len(pairs)} starts: {mean:.3f} ± {error:.3f} a0²)"
+        found.append(dilute.scatter(f"tube.starts.{lag:g}", f"scatter of d² (contour) over independent starts, {lag:g} t0, in standard errors{words}", p))
+    return found
+
+
 def wave(results, bonds):
     return results[f"wave-{bonds}"].columns if f"wave-{bonds}" in results else None
 
@@ -420,7 +436,7 @@ def evaluate(results, tier):
     verdicts += [] if tier == "campaign" else [hindered_verdict(curves)]  # the campaign has `height`
     verdicts += choice_verdicts(results, curves, system)
     if tier == "campaign":  # fibers of the quick tier are too short for a plateau, and nobody measures their tau_r
-        verdicts += late_verdicts(results, curves, system)
+        verdicts += late_verdicts(results, curves, system) + start_verdicts(results)
         verdicts += plateau_verdicts(curves, system) + held_verdicts(held, system) + wave_verdicts(results, system) + rotation_verdicts(results, system)
         verdicts.append(normalized_verdict(curves, times, measured))
     errors = {which: pair[1] / pair[0] if pair else None for which, pair in measured.items()}
