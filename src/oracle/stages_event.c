@@ -19,7 +19,7 @@ static void put_back(struct oracle_stage *g, const struct vertices *saved)
   const size_t n = g->state->vertices;
   memcpy(g->state->position, saved->position, n * sizeof *saved->position);
   memcpy(g->state->velocity, saved->velocity, n * sizeof *saved->velocity);
-  g->work->contact.neighbors.built = false;
+  contact_forget_places(&g->work->contact);
 }
 
 /* A drift that has failed leaves its scratch as it was in the middle. */
