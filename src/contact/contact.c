@@ -112,7 +112,7 @@ static bool look_how_far(const struct state *state, struct contact *contact, uin
   struct neighbors *nb = &contact->neighbors;
   const uint32_t lost = state_lost_vertex(state);
   if (!point_within_reach(nb->moved))
-    nb->built = false;
+    contact_forget_places(contact);
   if (lost == state->vertices)
     return true;
   const struct vec3 r = point_in_a0(state->position[lost]);
@@ -145,7 +145,7 @@ static void take_back_fibers(struct state *state, const struct model *model, str
       state->position[i].y -= image * f->edge;
       state->velocity[i].x -= (double)image * f->image_speed;
     }
-    contact->neighbors.built = false;
+    contact_forget_places(contact);
   }
 }
 
@@ -154,7 +154,7 @@ static void take_back_fibers(struct state *state, const struct model *model, str
 static void enter_sheared(struct state *state, struct contact *contact, int64_t slid_before)
 {
   if (contact->frame.slid != slid_before)
-    contact->neighbors.built = false;
+    contact_forget_places(contact);
   for (uint32_t i = 0; i < state->vertices; i++)
     state->position[i] = drift_enter(&contact->frame, state->position[i]);
 }

@@ -203,6 +203,13 @@ struct contact {
 bool contact_alloc(struct contact *contact, const struct model *model, contact_force *force, bool everything);
 void contact_free(struct contact *contact);
 
+/* For whoever has put vertices elsewhere: the next drift searches for partners anew. A drift knows only how far
+ * vertices fly; without this it would take those of their old places for all that there are, and miss contacts. */
+static inline void contact_forget_places(struct contact *contact)
+{
+  contact->neighbors.built = false;
+}
+
 /* Bytes that contact_alloc and the first drift allocate, before lists grow. */
 uint64_t contact_bytes(const struct model *model);
 

@@ -237,7 +237,7 @@ void edges_at_the_same_time(struct oracle_stage *g)
   struct scaffold f = {g, 0, 2 * EDGES_PAIRS, 0};
   memset(g->state->velocity, 0, g->state->vertices * sizeof *g->state->velocity);
   build(&f);
-  g->work->contact.neighbors.built = false;
+  contact_forget_places(&g->work->contact);
 }
 
 bool oracle_edges_sweep(struct oracle_stage *g)

@@ -1,6 +1,5 @@
 /* Bonds that touch a bead, as scenes seldom have them: with an end, slow, grazing, at rest. */
-#include "contact/tube.h"
-#include "oracle/dice.h"
+#include "oracle/edges_touch.h"
 #include "oracle/tube_rows.h"
 
 /* Bonds of 2^bond units along each axis at most, their ends moving by 2^rate units in a tick at most. end: touched with
@@ -14,13 +13,8 @@ static const struct bead_kind {
     {39, 20, false, 0, 30}, {39, 20, true, 0, 30},   {39, 6, false, 0, 20},
     {36, 20, true, 0, 20},  {39, 21, false, 26, 20}, {39, 21, true, 26, 20},
 };
-enum { KINDS = sizeof kinds / sizeof *kinds, AT_REST = 6, TRIES = 4000 };
-_Static_assert(30 + 30 + 20 + 20 + 20 + 20 + AT_REST <= ORACLE_TUBE_SEARCHES, "room");
-
-static struct vec3 real(struct point p)
-{
-  return (struct vec3){(double)p.x, (double)p.y, (double)p.z};
-}
+enum { KINDS = sizeof kinds / sizeof *kinds };
+_Static_assert(30 + 30 + 20 + 20 + 20 + 20 + EDGES_AT_REST <= ORACLE_TUBE_SEARCHES, "room");
 
 /* R + D/2 of 1.5 to 2 a0. */
 static int64_t draw_reach(struct dice *d)
@@ -32,7 +26,7 @@ static int64_t draw_reach(struct dice *d)
 static struct oracle_tubes draw_contact(struct dice *d, const struct bead_kind *k, int64_t reach)
 {
   const struct point bond = dice_point(d, (int64_t)1 << k->bond);
-  const struct vec3 p = real(bond), any = dice_vector(d, 1.0);
+  const struct vec3 p = edges_vector(bond), any = dice_vector(d, 1.0);
   const double s = k->end ? (double)(dice_u64(d) % 2) : dice_between(d, 0.1, 0.9), along = vec3_dot(any, p);
   struct vec3 n = vec3_add_scaled(any, -along / vec3_dot(p, p), p);
   if (k->end)
@@ -41,8 +35,9 @@ static struct oracle_tubes draw_contact(struct dice *d, const struct bead_kind *
   return (struct oracle_tubes){.p = bond, .w = {llrint(w.x), llrint(w.y), llrint(w.z)}};
 }
 
-static struct oracle_search draw_search(struct dice *d, const struct bead_kind *k)
+static struct oracle_search draw_search(struct dice *d, const void *kind)
 {
+  const struct bead_kind *k = kind;
   const int64_t reach = draw_reach(d), rate = (int64_t)1 << k->rate, tick = (int64_t)(dice_u64(d) % FLIGHT_TICKS);
   const struct oracle_tubes c = draw_contact(d, k, reach);
   struct flight_pair f = {.p_rate = dice_point(d, rate), .w_rate = dice_point(d, rate)};
@@ -51,48 +46,15 @@ static struct oracle_search draw_search(struct dice *d, const struct bead_kind *
   return (struct oracle_search){f, reach, 0};
 }
 
-/* A bead that would just pass by is made larger, so that it grazes. */
-static bool make_grazing(struct oracle_search *s, int graze)
-{
-  int64_t passes = (int64_t)1 << 40, touches = s->reach;
-  if (tube_contact(&s->pair, touches, 0) == FLIGHT_TICKS || tube_contact(&s->pair, passes, 0) < FLIGHT_TICKS)
-    return false;
-  while (touches - passes > 1) {
-    const int64_t middle = passes + (touches - passes) / 2;
-    *(tube_contact(&s->pair, middle, 0) < FLIGHT_TICKS ? &touches : &passes) = middle;
-  }
-  s->reach = touches + ((int64_t)1 << graze);
-  return true;
-}
-
-static bool is_wanted(const struct bead_kind *k, struct oracle_search *s)
-{
-  if (k->graze > 0 && !make_grazing(s, k->graze))
-    return false;
-  const int32_t tick = tube_contact(&s->pair, s->reach, 0);
-  return oracle_search_is_legal(&s->pair, 0.0) && tube_excluded(&s->pair, s->reach, 0, 0) && tick > 0 &&
-         tick < FLIGHT_TICKS - 1;
-}
-
 uint32_t oracle_edges_bead_searches(struct oracle_search search[ORACLE_TUBE_SEARCHES])
 {
   struct dice d = {89};
   uint32_t n = 0;
   for (int k = 0; k < KINDS; k++) {
-    const uint32_t end = n + kinds[k].rows;
-    for (int tries = 0; n < end && tries < TRIES; tries++) {
-      search[n] = draw_search(&d, &kinds[k]);
-      n += is_wanted(&kinds[k], &search[n]);
-    }
+    const struct edges_touch wanted = {draw_search, &kinds[k], (int64_t)1 << 40, kinds[k].graze, kinds[k].rows};
+    n = edges_add_touches(&d, &wanted, search, n);
   }
-  for (uint32_t k = 0; k < AT_REST; k++) { /* no contact; half of the bonds stand in the bead */
-    struct oracle_search s = search[k];
-    s.pair.p_rate = s.pair.w_rate = (struct point){0, 0, 0};
-    if (k % 2)
-      s.pair.w = (struct point){s.reach / 2, 0, 0};
-    search[n++] = s;
-  }
-  return n;
+  return edges_add_at_rest(search, n);
 }
 
 uint32_t oracle_edges_bead_contacts(struct oracle_tubes tubes[ORACLE_TUBE_CONTACTS])

@@ -2,9 +2,7 @@
 #include <math.h>
 
 #include "contact/capsule.h"
-#include "contact/shape.h"
-#include "contact/tube.h"
-#include "oracle/dice.h"
+#include "oracle/edges_touch.h"
 #include "oracle/tube_rows.h"
 
 /* --- places ------------------------------------------------------------------------------------------------------- */
@@ -28,8 +26,8 @@ static const struct tube_kind {
     {39, 21, ANY_DIRECTION, ANY_PLACE, 26, 16},   {39, 21, ANY_DIRECTION, END_ON_END, 26, 16},
     {39, 21, NEARLY_PARALLEL, ANY_PLACE, 30, 10},
 };
-enum { KINDS = sizeof kinds / sizeof *kinds, AT_REST = 6, TRIES = 4000 };
-_Static_assert(30 + 20 + 20 + 16 + 16 + 12 + 20 + 12 + 16 + 16 + 10 + AT_REST <= ORACLE_TUBE_SEARCHES, "room");
+enum { KINDS = sizeof kinds / sizeof *kinds };
+_Static_assert(30 + 20 + 20 + 16 + 16 + 12 + 20 + 12 + 16 + 16 + 10 + EDGES_AT_REST <= ORACLE_TUBE_SEARCHES, "room");
 
 static struct point plus_times(struct point p, int64_t factor, struct point q)
 {
@@ -39,11 +37,6 @@ static struct point plus_times(struct point p, int64_t factor, struct point q)
 static struct point units_of(struct vec3 r)
 {
   return (struct point){llrint(r.x), llrint(r.y), llrint(r.z)};
-}
-
-static struct vec3 real(struct point p)
-{
-  return (struct vec3){(double)p.x, (double)p.y, (double)p.z};
 }
 
 static double draw_place(struct dice *d, enum place place, bool end)
@@ -76,18 +69,19 @@ static struct oracle_tubes draw_tubes(struct dice *d, const struct tube_kind *k,
     c.q = plus_times((struct point){0, 0, 0}, dice_u64(d) % 2 ? 2 : -1, c.p);
   if (k->direction == NEARLY_PARALLEL)
     c.q = plus_times(c.q, 1, dice_point(d, bond >> 12));
-  struct vec3 gap = draw_gap(d, real(c.p), real(c.q), s, t);
+  struct vec3 gap = draw_gap(d, edges_vector(c.p), edges_vector(c.q), s, t);
   if (k->direction == ON_ONE_LINE)
-    gap = vec3_scale((s > 0.5 ? 1.0 : -1.0) / vec3_norm(real(c.p)), real(c.p));
-  const struct vec3 w = vec3_add_scaled(vec3_scale(s, real(c.p)), -t, real(c.q));
+    gap = vec3_scale((s > 0.5 ? 1.0 : -1.0) / vec3_norm(edges_vector(c.p)), edges_vector(c.p));
+  const struct vec3 w = vec3_add_scaled(vec3_scale(s, edges_vector(c.p)), -t, edges_vector(c.q));
   c.w = units_of(vec3_add_scaled(w, (double)reach, gap));
   return c;
 }
 
 /* --- searches ----------------------------------------------------------------------------------------------------- */
 
-static struct oracle_search draw_search(struct dice *d, const struct tube_kind *k)
+static struct oracle_search draw_search(struct dice *d, const void *kind)
 {
+  const struct tube_kind *k = kind;
   const int64_t reach = ((int64_t)1 << 36) + dice_integer(d, (int64_t)1 << 35), rate = (int64_t)1 << k->rate,
                 tick = (int64_t)(dice_u64(d) % FLIGHT_TICKS);
   const struct oracle_tubes c = draw_tubes(d, k, reach);
@@ -99,48 +93,15 @@ static struct oracle_search draw_search(struct dice *d, const struct tube_kind *
   return (struct oracle_search){f, reach, 0};
 }
 
-/* Tubes that would just pass by are made thicker, so that they graze: by so much that they touch in depth 2^graze. */
-static bool make_grazing(struct oracle_search *s, int graze)
-{
-  int64_t passes = (int64_t)1 << 20, touches = s->reach;
-  if (tube_contact(&s->pair, touches, 0) == FLIGHT_TICKS || tube_contact(&s->pair, passes, 0) < FLIGHT_TICKS)
-    return false;
-  while (touches - passes > 1) {
-    const int64_t middle = passes + (touches - passes) / 2;
-    *(tube_contact(&s->pair, middle, 0) < FLIGHT_TICKS ? &touches : &passes) = middle;
-  }
-  s->reach = touches + ((int64_t)1 << graze);
-  return s->reach > (int64_t)1 << 34;
-}
-
-static bool is_wanted(const struct tube_kind *k, struct oracle_search *s)
-{
-  if (k->graze > 0 && !make_grazing(s, k->graze))
-    return false;
-  const int32_t tick = tube_contact(&s->pair, s->reach, 0);
-  return oracle_search_is_legal(&s->pair, 0.0) && tube_excluded(&s->pair, s->reach, 0, 0) && tick > 0 &&
-         tick < FLIGHT_TICKS - 1;
-}
-
 uint32_t oracle_edges_tube_searches(struct oracle_search search[ORACLE_TUBE_SEARCHES])
 {
   struct dice d = {79};
   uint32_t n = 0;
   for (int k = 0; k < KINDS; k++) {
-    const uint32_t end = n + kinds[k].rows;
-    for (int tries = 0; n < end && tries < TRIES; tries++) {
-      search[n] = draw_search(&d, &kinds[k]);
-      n += is_wanted(&kinds[k], &search[n]);
-    }
+    const struct edges_touch wanted = {draw_search, &kinds[k], (int64_t)1 << 20, kinds[k].graze, kinds[k].rows};
+    n = edges_add_touches(&d, &wanted, search, n);
   }
-  for (uint32_t k = 0; k < AT_REST; k++) { /* no contact; half of them stand in each other */
-    struct oracle_search s = search[k];
-    s.pair.p_rate = s.pair.q_rate = s.pair.w_rate = (struct point){0, 0, 0};
-    if (k % 2)
-      s.pair.w = (struct point){s.reach / 2, 0, 0};
-    search[n++] = s;
-  }
-  return n;
+  return edges_add_at_rest(search, n);
 }
 
 /* --- contacts ----------------------------------------------------------------------------------------------------- */

@@ -6,9 +6,39 @@
 
 #include "contact/rule.h"
 #include "contact/takeoff.h"
+#include "fiber/force.h"
 #include "oracle/columns.h"
 
 const char *const oracle_ends[4] = {"p0", "p1", "q0", "q1"};
+
+/* --- flights ----------------------------------------------------------------------------------------------------- */
+
+struct at_tick {
+  const struct oracle_stage *stage;
+  int32_t tick;
+};
+
+struct point oracle_rate_of(const struct oracle_stage *g, uint32_t vertex)
+{
+  return takeoff_rate_now(g->state, &g->work->contact, vertex);
+}
+
+static struct point place_of(const struct oracle_stage *g, uint32_t vertex, int32_t tick)
+{
+  return flight_place(g->state->position[vertex], oracle_rate_of(g, vertex), tick);
+}
+
+static struct point place_at_tick(const void *context, uint32_t vertex)
+{
+  const struct at_tick *t = context;
+  return place_of(t->stage, vertex, t->tick);
+}
+
+struct vec3 oracle_force_at_tick(const struct oracle_stage *g, uint32_t vertex, int32_t tick)
+{
+  const struct at_tick places = {g, tick};
+  return fiber_force_at(g->model, vertex, place_at_tick, &places);
+}
 
 /* --- searches ---------------------------------------------------------------------------------------------------- */
 
@@ -151,7 +181,7 @@ static double condition_of(const struct oracle_stage *g, const struct contact_ev
                             (uint32_t)m->next[v->standing_bond]};
   struct point at[4];
   for (int k = 0; k < 4; k++)
-    at[k] = flight_place(g->state->position[four[k]], takeoff_rate_now(g->state, &g->work->contact, four[k]), tick);
+    at[k] = place_of(g, four[k], tick);
   const struct vec3 p = point_difference(at[1], at[0]), q = point_difference(at[3], at[2]);
   const double parallel = vec3_norm(p) * vec3_norm(q) / vec3_norm(vec3_cross(p, q));
   const double reach = (double)model_reach(m, v->moving_bond, v->standing_bond) * LATTICE_UNIT,

@@ -34,6 +34,10 @@ struct oracle_events {
   bool failed; /* memory was short */
 };
 
+/* How far a vertex flies in a tick, as it does now within a drift; and the force on it where it is at a tick, kT/a0. */
+struct point oracle_rate_of(const struct oracle_stage *g, uint32_t vertex);
+struct vec3 oracle_force_at_tick(const struct oracle_stage *g, uint32_t vertex, int32_t tick);
+
 /* Names of the four ends in tables. */
 extern const char *const oracle_ends[4];
 

@@ -2,29 +2,11 @@
 #include <stdlib.h>
 
 #include "contact/event_bead.h"
-#include "contact/takeoff.h"
-#include "fiber/force.h"
 #include "oracle/company.h"
 #include "oracle/stages.h"
 #include "system/bead.h"
 
 /* --- as they come ------------------------------------------------------------------------------------------------- */
-
-struct at_tick {
-  const struct oracle_stage *stage;
-  int32_t tick;
-};
-
-static struct point rate_of(const struct oracle_stage *g, uint32_t vertex)
-{
-  return takeoff_rate_now(g->state, &g->work->contact, vertex);
-}
-
-static struct point place_at_tick(const void *context, uint32_t vertex)
-{
-  const struct at_tick *t = context;
-  return flight_place(t->stage->state->position[vertex], rate_of(t->stage, vertex), t->tick);
-}
 
 /* Bodies of a contact at tick 0 of the drift, as if they had always flown as they do now, and their rates: the ends of
  * the bond, then the bead's image that is touched. */
@@ -40,7 +22,7 @@ static struct bodies before_contact(const struct oracle_stage *g, const uint32_t
                      now = point_plus(point_plus(g->state->bead->position, image), w->at);
   struct bodies b = {.at[2] = flight_place(now, w->rate, -w->clock), .rate[2] = w->rate};
   for (int e = 0; e < 2; e++)
-    b.at[e] = g->state->position[vertex[e]], b.rate[e] = rate_of(g, vertex[e]);
+    b.at[e] = g->state->position[vertex[e]], b.rate[e] = oracle_rate_of(g, vertex[e]);
   return b;
 }
 
@@ -83,14 +65,13 @@ static struct oracle_impulse impulse_of(const struct oracle_stage *g, const stru
 {
   const struct drift_frame *frame = &g->work->contact.frame;
   const struct bead_way *w = &g->work->contact.bead.visits->way;
-  const struct at_tick places = {g, tick};
   const double lever[2] = {1.0 - v->hit.s, v->hit.s};
   struct oracle_impulse e = {.s = v->hit.s, .t = 0.0, .normal = v->hit.normal, .mass[3] = 1.0};
   e.tau = frame->start + frame->time * ((double)tick / FLIGHT_TICKS);
   for (int k = 0; k < 2; k++) {
     e.mass[k] = g->model->mass[vertex[k]];
     e.velocity[k] = vec3_add_scaled(g->state->velocity[vertex[k]], lever[k] * v->impulse / e.mass[k], v->hit.normal);
-    e.force[k] = fiber_force_at(g->model, vertex[k], place_at_tick, &places);
+    e.force[k] = oracle_force_at_tick(g, vertex[k], tick);
   }
   e.mass[2] = g->model->bead.mass;
   e.velocity[2] = w->velocity;

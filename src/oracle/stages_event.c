@@ -2,8 +2,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "contact/takeoff.h"
-#include "fiber/force.h"
 #include "oracle/event_rows.h"
 #include "oracle/stages.h"
 #include "oracle/tube_rows.h"
@@ -21,7 +19,7 @@ static void put_back(struct oracle_stage *g, const struct vertices *saved)
   const size_t n = g->state->vertices;
   memcpy(g->state->position, saved->position, n * sizeof *saved->position);
   memcpy(g->state->velocity, saved->velocity, n * sizeof *saved->velocity);
-  g->work->contact.neighbors.built = false;
+  contact_forget_places(&g->work->contact);
 }
 
 /* A drift that has failed leaves its scratch as it was in the middle. */
@@ -102,22 +100,6 @@ struct contacts {
   bool failed;
 };
 
-struct at_tick {
-  const struct oracle_stage *stage;
-  int32_t tick;
-};
-
-static struct point rate_of(const struct oracle_stage *g, uint32_t vertex)
-{
-  return takeoff_rate_now(g->state, &g->work->contact, vertex);
-}
-
-static struct point place_at_tick(const void *context, uint32_t vertex)
-{
-  const struct at_tick *t = context;
-  return flight_place(t->stage->state->position[vertex], rate_of(t->stage, vertex), t->tick);
-}
-
 static struct flight_pair pair_of(const struct oracle_stage *g, const struct contact_event *v, const struct point at[4],
                                   const struct point rate[4])
 {
@@ -137,7 +119,7 @@ static void take_searches(struct contacts *c, const struct contact_event *v, con
   struct point at[4], rate[4], later[4], new_rate[4];
   int32_t from = 0;
   for (int k = 0; k < 4; k++) {
-    at[k] = g->state->position[four[k]], rate[k] = rate_of(g, four[k]);
+    at[k] = g->state->position[four[k]], rate[k] = oracle_rate_of(g, four[k]);
     new_rate[k] = flight_rate(vec3_scale(c->dt, g->state->velocity[four[k]]));
     later[k] = flight_place(flight_place(at[k], rate[k], tick), new_rate[k], -(int64_t)tick);
     from = c->bent[four[k]] > from ? c->bent[four[k]] : from;
@@ -157,14 +139,13 @@ static void take_searches(struct contacts *c, const struct contact_event *v, con
 static void take_impulse(struct contacts *c, const struct contact_event *v, const uint32_t four[4], int32_t tick)
 {
   const struct oracle_stage *g = c->stage;
-  const struct at_tick places = {g, tick};
   struct oracle_impulse *e = &c->impulse[c->impulses++];
   *e = (struct oracle_impulse){.s = v->hit.s, .t = v->hit.s_standing, .normal = v->hit.normal};
   e->tau = -0.5 * c->dt + c->dt * ((double)tick / FLIGHT_TICKS);
   for (int k = 0; k < 4; k++) {
     e->velocity[k] = c->velocity[four[k]];
     e->mass[k] = g->model->mass[four[k]];
-    e->force[k] = fiber_force_at(g->model, four[k], place_at_tick, &places);
+    e->force[k] = oracle_force_at_tick(g, four[k], tick);
     c->velocity[four[k]] = g->state->velocity[four[k]]; /* the log is told after the exchange */
     c->bent[four[k]] = tick;
   }

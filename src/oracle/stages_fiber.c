@@ -135,7 +135,7 @@ static void put_back(struct oracle_stage *g, const struct vertices *saved)
   const size_t n = g->state->vertices;
   memcpy(g->state->position, saved->position, n * sizeof *saved->position);
   memcpy(g->state->velocity, saved->velocity, n * sizeof *saved->velocity);
-  g->work->contact.neighbors.built = false;
+  contact_forget_places(&g->work->contact);
 }
 
 /* True if no vertex of a sweep moves further than the box allows; exchanges can make one faster. All is put back. */

@@ -89,6 +89,7 @@ bool start_state(struct state *state, const struct model *model, struct work *wo
   state->step = 0;
   state->solvent_lag = 0;
   state->solvent_time = 0;
+  contact_forget_places(&work->contact);
   fluid_of(model)->start(state, model);
   if (!start_fibers(state, model, &work->fault))
     return false;

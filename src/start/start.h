@@ -6,7 +6,7 @@
 
 /* The starting state (Padding 2009, Sec. III, step 1): solvent and fibers, with velocities of vertices half a step
  * ahead. The total momentum is that of the flow; in a bath of phantoms it is thermal. False, with the fault recorded,
- * if a bond does not fit the box. */
+ * if a bond does not fit the box. The work may have served another state. */
 bool start_state(struct state *state, const struct model *model, struct work *work);
 
 /* Gives the velocities of a state that was made without a drive those of a start: total momentum, and half steps ahead

@@ -48,22 +48,14 @@ struct vec3 bead_counter(const struct state *state, const struct model *model)
   return vec3_scale(-1.0 / model->total_mass, force);
 }
 
-/* Vertices take up their share of what a drive gives to the bead: half of it, twice in a step. By twelve numbers, four
- * vertices: compilers make a few vectors of them. */
+/* Vertices take up their share of what a drive gives to the bead: half of it, twice in a step. */
 static bool act_counter(void *room, const struct moment *now, const struct stage *stage)
 {
-  enum { TOGETHER = 12 };
   const struct vec3 half = vec3_scale(0.5 * now->model->time_step, bead_counter(now->state, now->model));
-  double *v = &now->state->velocity[0].x, each[TOGETHER];
+  struct vec3 *velocity = now->state->velocity;
   (void)room, (void)stage;
-  for (int k = 0; k < TOGETHER; k++)
-    each[k] = k % 3 == 0 ? half.x : k % 3 == 1 ? half.y : half.z;
-  const size_t all = 3 * (size_t)now->state->vertices, whole = all / TOGETHER * TOGETHER;
-  for (size_t i = 0; i < whole; i += TOGETHER)
-    for (int k = 0; k < TOGETHER; k++)
-      v[i + k] += each[k];
-  for (size_t i = whole; i < all; i++)
-    v[i] += each[i - whole];
+  for (size_t i = 0; i < now->state->vertices; i++)
+    velocity[i] = vec3_add(velocity[i], half);
   return true;
 }
 

@@ -357,6 +357,54 @@ static void distances_of_bonds(void **unused)
   assert_true(worst < 1e-8);
 }
 
+/* A run from the start of seed 2. used: with the work of a run of seed 1. Without a solvent, whose order in memory
+ * shows in the last bit of the momentum that a start takes off. */
+static struct test_run start_of_seed_2(enum crossing_kind rule, bool used)
+{
+  struct model m = test_model(6, 5, 7, 0, 0.01, 2);
+  m.solvent.collision_interval = 0.0;
+  test_add_kind(&m, 60, 12);
+  m.crossing.rule = rule;
+  m.seed = used ? 1 : 2;
+  struct test_run r = test_start(m);
+  if (used) {
+    test_steps(&r, 10);
+    r.model.seed = 2;
+    r.state.counts = (struct collision_counts){0};
+    assert_true(start_state(&r.state, &r.model, &r.work));
+  }
+  return r;
+}
+
+/* The same work, counted, and the same places. Else partners would be those of the old places, so that contacts were
+ * missed, and searches would go as far as vertices have been put. */
+static void a_used_work_searches_anew_at_a_start(void **unused)
+{
+  (void)unused;
+  const enum crossing_kind rules[] = {CROSSING_SEQUENTIAL, CROSSING_EVENT_DRIVEN};
+  for (int k = 0; k < 2; k++) {
+    struct test_run fresh = start_of_seed_2(rules[k], false), used = start_of_seed_2(rules[k], true);
+    const struct neighbors *a = &fresh.work.contact.neighbors, *b = &used.work.contact.neighbors;
+    const uint64_t before = b->renewed;
+    test_steps(&fresh, 1), test_steps(&used, 1);
+    const uint32_t pairs[2] = {a->pairs.count, b->pairs.count};
+    test_steps(&fresh, 99), test_steps(&used, 99);
+    const uint64_t renewed[2] = {a->renewed, b->renewed - before};
+    const uint64_t contacts[2] = {fresh.state.counts.executed, used.state.counts.executed};
+    print_message(
+        "  pairs of the first step: %u, used %u; new reference positions: %lu, used %lu; contacts: %lu, used %lu\n",
+        pairs[0], pairs[1], (unsigned long)renewed[0], (unsigned long)renewed[1], (unsigned long)contacts[0],
+        (unsigned long)contacts[1]);
+    assert_true(renewed[0] > 0 && contacts[0] > 0);
+    assert_int_equal(contacts[1], contacts[0]);
+    assert_int_equal(pairs[1], pairs[0]);
+    assert_int_equal(renewed[1], renewed[0]);
+    assert_memory_equal(used.state.position, fresh.state.position, fresh.state.vertices * sizeof *fresh.state.position);
+    test_end(&fresh);
+    test_end(&used);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -366,6 +414,7 @@ int main(void)
       cmocka_unit_test(anchors_lead_without_a_solvent),
       cmocka_unit_test(distances_of_bonds),
       cmocka_unit_test(endless_bonds_are_a_fault),
+      cmocka_unit_test(a_used_work_searches_anew_at_a_start),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

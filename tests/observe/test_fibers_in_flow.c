@@ -1,6 +1,5 @@
 /* Stress and orientation of fibers in flow. */
-#include <gsl/gsl_eigen.h>
-
+#include "../../validation/measure/nematic.h"
 #include "exact.h"
 #include "tables.h"
 
@@ -134,27 +133,7 @@ static void moments_by_hand(void **unused)
   test_end(&r);
 }
 
-/* The largest eigenvalue of Q of one sample, by GSL. */
-static double order_by_gsl(const struct test_run *r, uint32_t fibers)
-{
-  double q[9] = {0};
-  for (uint32_t f = 0; f < fibers; f++) {
-    const struct vec3 b = point_difference(r->state.position[2 * f + 1], r->state.position[2 * f]);
-    const double v[3] = {b.x, b.y, b.z}, square = vec3_dot(b, b);
-    for (int k = 0; k < 9; k++)
-      q[k] += (1.5 * v[k / 3] * v[k % 3] / square - 0.5 * (k / 3 == k % 3)) / fibers;
-  }
-  gsl_matrix_view view = gsl_matrix_view_array(q, 3, 3);
-  gsl_vector *value = gsl_vector_alloc(3);
-  gsl_eigen_symm_workspace *work = gsl_eigen_symm_alloc(3);
-  gsl_eigen_symm(&view.matrix, value, work);
-  const double most = gsl_vector_max(value);
-  gsl_eigen_symm_free(work);
-  gsl_vector_free(value);
-  return most;
-}
-
-/* Rods drawn about an axis, more and less narrowly; one rod, and parallel ones. */
+/* Rods drawn about an axis, more and less narrowly, and parallel ones: as measuring programs have it, by GSL. */
 static void nematic_order_is_an_eigenvalue(void **unused)
 {
   (void)unused;
@@ -175,7 +154,7 @@ static void nematic_order_is_an_eigenvalue(void **unused)
     assert_true(observers_sample(o, &r.model, &r.state, NULL));
     struct kept *kept = keep_summaries(o, &r.model);
     const double order = kept_value(kept, "orientation-kind1", 0, "S");
-    assert_close(order, order_by_gsl(&r, fibers), 1e-7);
+    assert_close(order, nematic_order(&r.state, &r.model), 1e-7);
     if (width == 0.0)
       assert_close(order, 1.0, 1e-9);
     free(kept);

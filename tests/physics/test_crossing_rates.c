@@ -74,7 +74,6 @@ static struct ratio count_crossings(uint32_t fibers, uint32_t vertices, uint32_t
   for (uint32_t c = 0; c < configurations; c++) {
     r.model.seed = 1 + c;
     assert_true(start_state(&r.state, &r.model, &r.work));
-    r.work.contact.neighbors.built = false;
     double expected = 0.0;
     uint64_t hits = 0;
     for (uint32_t f = 0; f < fibers; f++) {

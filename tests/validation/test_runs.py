@@ -1,7 +1,11 @@
 """Runs are resumed where a signal stopped them, extended by more steps, and never mixed up with others."""
+import contextlib
+import fcntl
+import io
 import json
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -9,6 +13,7 @@ import tempfile
 import threading
 import time
 import unittest
+import unittest.mock
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "validation"))
@@ -22,6 +27,8 @@ SCENE = """box: [6, 6, 6]
 time_step: 0.02
 solvent: {per_cell: 5, collision_interval: 0.02}
 observe: {conserved: {every: 100}}
+"""
+AVERAGES = """fibers: [{name: chain, count: 2, vertices: 5, mass: 5, bond_length: 0.5, spring: 100}]
 """
 # Executes a run in a process of its own, so that signals can be sent to it.
 CHILD = """import sys, json
@@ -166,6 +173,91 @@ class Runs(unittest.TestCase):
         self.assertTrue(numpy.array_equal(runs.columns(table.read_text())["time"], whole))
         self.assertTrue(runs.harvest(self.scene(100), self.work, self.work / "kept"))
         self.assertEqual((self.work / "kept/made-up/a/conserved.csv").read_text(), rows)
+
+    def averaged(self):
+        """A run with averages, and where its tables are."""
+        run = self.scene(100, SCENE.replace("every: 100}", "every: 100}, statics: {every: 10}") + AVERAGES)
+        self.assertEqual(self.execute(run, "made-up/a"), 0)
+        return run, self.work / "made-up/a", self.work / "kept/made-up/a"
+
+    def checkpoint(self, folder, step, averages_only=False):
+        """What a run does at a checkpoint, in its order."""
+        (folder / "statics-chain.csv").write_text(f"l,l_error\n{step},0\n")
+        if averages_only:
+            return
+        with (folder / "conserved.csv").open("a") as more:
+            more.write(f"{step},0\n")
+        text = re.sub(r'"steps": \d+', f'"steps": {step}', (folder / "run.json").read_text())
+        (folder / "run.json").write_text(re.sub(r'"status": "\w+"', '"status": "running"', text))
+
+    def test_harvest_between_checkpoints(self):
+        """Rows that a run has written since its last checkpoint are not of the step of run.json."""
+        run, folder, kept = self.averaged()
+        rows = (folder / "conserved.csv").read_text()
+        with (folder / "conserved.csv").open("a") as more:
+            more.write(rows.splitlines()[-1].replace("100,", "200,", 1) + "\n")
+        self.assertTrue(runs.harvest(run, self.work, self.work / "kept"))
+        self.assertEqual((kept / "conserved.csv").read_text(), rows)
+
+    def test_harvest_during_a_checkpoint(self):
+        """A checkpoint that comes between two reads: averages and run.json are of one step all the same."""
+        run, folder, kept = self.averaged()
+        read, came = pathlib.Path.read_bytes, []
+
+        def read_and_go_on(path):
+            content = read(path)
+            if path.name == self.late and not came:
+                came.append(path)
+                self.checkpoint(folder, 200)
+            return content
+        for self.late in ("run.json", "session.json", "conserved.csv", "statics-chain.csv"):
+            came.clear()
+            (folder / "conserved.csv").write_text("step,time\n")
+            self.checkpoint(folder, 100)
+            with unittest.mock.patch.object(pathlib.Path, "read_bytes", read_and_go_on), unittest.mock.patch.object(
+                    runs, "HARVEST_PAUSE", 0.0):
+                self.assertTrue(runs.harvest(run, self.work, self.work / "kept"))
+            self.assertTrue(came)
+            step = json.loads((kept / "run.json").read_text())["steps"]
+            self.assertEqual((kept / "statics-chain.csv").read_text(), f"l,l_error\n{step},0\n", self.late)
+            self.assertEqual((kept / "conserved.csv").read_text().splitlines()[-1], f"{step},0", self.late)
+
+    def test_harvest_of_half_a_checkpoint(self):
+        """Averages are newer than run.json: what was kept before stays, until the run is through with it."""
+        run, folder, kept = self.averaged()
+        self.checkpoint(folder, 100)
+        self.assertTrue(runs.harvest(run, self.work, self.work / "kept"))
+        before = {path.name: path.read_bytes() for path in kept.iterdir()}
+        late = (folder / "run.json").stat().st_mtime_ns + 10**9
+        self.checkpoint(folder, 200, averages_only=True)
+        os.utime(folder / "statics-chain.csv", ns=(late, late))
+        with unittest.mock.patch.object(runs, "HARVEST_PAUSE", 0.0), contextlib.redirect_stderr(io.StringIO()) as told:
+            self.assertFalse(runs.harvest(run, self.work, self.work / "kept"))
+        self.assertIn("made-up/a is between two checkpoints", told.getvalue())
+        self.assertEqual(before, {path.name: path.read_bytes() for path in kept.iterdir()})
+
+    def test_harvest_of_a_run_that_is_extended(self):
+        """Until its first checkpoint run.json says `finished`, of fewer steps."""
+        run, folder, kept = self.averaged()
+        late = (folder / "run.json").stat().st_mtime_ns + 10**9
+        self.checkpoint(folder, 200, averages_only=True)
+        os.utime(folder / "statics-chain.csv", ns=(late, late))
+        with open(folder.with_name("a.lock"), "w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            with unittest.mock.patch.object(runs, "HARVEST_PAUSE", 0.0), contextlib.redirect_stderr(io.StringIO()):
+                self.assertFalse(runs.harvest(run, self.work, self.work / "kept"))
+        self.assertFalse(kept.exists())
+
+    def test_harvest_of_a_table_made_afterwards(self):
+        """It is newer than run.json, and of the same step."""
+        run, folder, kept = self.averaged()
+        run.after = ("cage", 1)
+        self.checkpoint(folder, 100)
+        (folder / "cage.csv").write_text("x\n1\n")
+        late = (folder / "run.json").stat().st_mtime_ns + 10**9
+        os.utime(folder / "cage.csv", ns=(late, late))
+        self.assertTrue(runs.harvest(run, self.work, self.work / "kept"))
+        self.assertEqual((kept / "cage.csv").read_text(), "x\n1\n")
 
     def test_long_series_are_thinned(self):
         """Rows of equal intervals: the mean stays, the row before the first interval goes, and step and time are the ends."""

@@ -16,6 +16,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import time
 
 import numpy
 
@@ -284,22 +285,77 @@ def progress(work):
 HARVESTED = ("scene.yaml", "run.json", "session.json", "output.txt", "*.csv")
 
 
+HARVEST_TRIES, HARVEST_PAUSE = 20, 0.25  # seconds; a checkpoint takes less to be put in place
+
+
 def harvest(run, work, kept):
-    """Copies the results into `kept`, finished or not. True if there were any."""
+    """Copies the results into `kept`, finished or not. True if there were any. All files are of the step that run.json states. If
+    they are of none (the run was killed in the middle of a checkpoint, and has not been resumed), nothing is copied."""
     source, target = pathlib.Path(work) / run.case / run.name, pathlib.Path(kept) / run.case / run.name
     if not Result(source, run).exists:
         return False
+    for attempt in range(HARVEST_TRIES):
+        time.sleep(HARVEST_PAUSE if attempt else 0.0)
+        files = files_of_one_step(run, source)
+        if files is not None:
+            break
+    else:
+        print(f"validation: {run.path} is between two checkpoints: not kept anew", file=sys.stderr)
+        return False
     target.mkdir(parents=True, exist_ok=True)
-    for pattern in HARVESTED:
-        for path in source.glob(pattern):
-            if path.stem not in run.dropped:
-                shutil.copyfile(path, target / path.name)
-    for path in target.glob("*.csv"):  # of a run that goes on: whole lines
-        rows = path.read_bytes()
-        path.write_bytes(rows[:rows.rfind(b"\n") + 1])
+    for name, content in files.items():
+        (target / name).write_bytes(content)
     if (target / "stress.csv").is_file():
         thin(target / "stress.csv")
     return True
+
+
+def is_running(folder):
+    """True if some process executes the run of this folder."""
+    path = folder.with_name(folder.name + ".lock")
+    if not path.exists():
+        return False
+    with open(path, encoding="ascii") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_SH | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return True
+    return False
+
+
+def files_of_one_step(run, source):
+    """What is kept of a run, name by name; None if a checkpoint came in between.
+
+    A run appends to its series as it goes: their rows end at the step of run.json. It puts averages in place at a checkpoint, then
+    run.json: averages that are newer than run.json are of the checkpoint at hand."""
+    record = source / "run.json"
+    if not record.exists():
+        return contents(run, source)
+    before, made = record.read_bytes(), record.stat().st_mtime_ns
+    told = json.loads(before)
+    goes_on = told["status"] == "running" or is_running(source)
+    files = contents(run, source)
+    for name in [name for name in files if name.endswith(".csv")]:
+        if files[name].startswith(b"step,"):
+            files[name] = rows_until(files[name], told["steps"])
+        elif goes_on and not is_afterwards(run, name) and (source / name).stat().st_mtime_ns > made:
+            return None
+    return files if files["run.json"] == before else None
+
+
+def contents(run, source):
+    return {path.name: path.read_bytes() for pattern in HARVESTED for path in source.glob(pattern) if path.stem not in run.dropped}
+
+
+def is_afterwards(run, name):
+    """True of the table that is made of a finished run (Run.after)."""
+    return bool(run.after) and name == f"{run.after_to or run.after[0]}.csv"
+
+
+def rows_until(table, step):
+    """The head and the whole rows of a series up to this step."""
+    head, *rows = table[:table.rfind(b"\n") + 1].splitlines(keepends=True)
+    return head + b"".join(row for row in rows if int(row.partition(b",")[0]) <= step)
 
 
 def thin(path, most=2000):

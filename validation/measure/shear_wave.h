@@ -77,8 +77,7 @@ static inline bool shear_wave_run(const struct model *model, struct state *state
                                   const struct shear_wave *wave, double sign, double *amplitude)
 {
   const double k = shear_wave_number(model);
-  work_free(work); /* it remembers where bonds were, and would search as far as they have moved since */
-  if (!work_alloc(work, model) || !start_state(state, model, work))
+  if (!start_state(state, model, work))
     return false;
   shear_wave_add(state, k, sign * wave->amplitude);
   for (uint32_t i = 0; i < state->solvent.n && model_is_flat(model); i++)
