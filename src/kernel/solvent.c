@@ -4,6 +4,7 @@
  * plain one whose bits it gives. What is rare goes to the plain ones: flights beyond the next image of the box, momenta
  * beyond the range of lattice_round, and the last particles if they do not fill a register.
  */
+#include "base/normal_lanes.h"
 #include "base/philox.h"
 #include "fluid/boundary.h"
 #include "kernel/choose.h"
@@ -78,6 +79,24 @@ INLINE reals momenta(reals v, words *span)
 /* Particles whose flight comes before their sums: all of it stays in the nearest cache. */
 enum { CHUNK = 128 };
 
+/* What AT-a draws for a chunk: andersen_draw_particles. */
+INLINE void draw_chunk(const struct solvent *s, const struct model *model, const struct mpc *c, uint64_t step,
+                       uint32_t first, uint32_t n)
+{
+  const uint64_t seed = model->seed, z = model_is_flat(model) ? 0 : UINT64_MAX;
+  const uint32_t *id = s->id;
+  double *const xi[3] = {c->drawn[0], c->drawn[1], c->drawn[2]};
+  for (uint32_t i = first; i < first + n; i += LANES) {
+    words w[4];
+    reals x[3];
+    philox_words(seed, RANDOM_ANDERSEN_PARTICLE, 0, step, load_low(&id[i]), w);
+    normal_three_lanes(w, x);
+    store_reals(&xi[0][i], x[0]);
+    store_reals(&xi[1][i], x[1]);
+    store_reals(&xi[2][i], (reals)((words)x[2] & z));
+  }
+}
+
 /* For a chunk: flight, cells, and what each particle adds to the sums of its cell, in the order of store_records: its
  * velocity, less the drawn one if there is one. The sign bit of the result is set where that of boundary_fly_periodic
  * is. */
@@ -86,14 +105,16 @@ INLINE uint64_t fly_chunk(const struct axis axis[3], const struct mpc *c, uint32
 {
   const struct axis x = axis[0], y = axis[1], z = axis[2];
   words seen[3] = {{0}, {0}, {0}}, size = {0};
+  uint32_t *cell = c->solvent_cell;
+  const double *const xi[3] = {c->drawn[0], c->drawn[1], c->drawn[2]};
   for (uint32_t k = 0; k < n; k += LANES) {
     const uint32_t i = first + k;
     reals v[3];
     const words cx = fly(&x, i, accelerated, &v[0], &seen[0]), cy = fly(&y, i, accelerated, &v[1], &seen[1]),
                 cz = fly(&z, i, accelerated, &v[2], &seen[2]);
-    store_narrow(&c->solvent_cell[i], multiply(multiply(cz, y.cells) + cy, x.cells) + cx);
+    store_narrow(&cell[i], multiply(multiply(cz, y.cells) + cy, x.cells) + cx);
     for (int a = 0; draws && a < 3; a++)
-      v[a] -= load_reals(&c->drawn[a][i]);
+      v[a] -= load_reals(&xi[a][i]);
     reals column[4] = {momenta(v[0], &size), momenta(v[1], &size), momenta(v[2], &size),
                        (reals)((words){0} + cell_load(1.0))};
     store_records(&record[(size_t)4 * k], column);
@@ -137,7 +158,7 @@ INLINE bool gather_all(struct state *state, const struct model *model, struct mp
     const uint32_t m = whole - i < CHUNK ? whole - i : CHUNK;
     uint64_t size;
     if (draws)
-      andersen_draw_particles(&state->solvent, model, c, step, i, m);
+      draw_chunk(&state->solvent, model, c, step, i, m);
     const uint64_t outside = accelerated ? fly_chunk(axis, c, i, m, true, draws, record, &size)
                                          : fly_chunk(axis, c, i, m, false, draws, record, &size);
     if ((int64_t)outside < 0) {
@@ -170,10 +191,10 @@ static bool gather_fast(struct state *state, const struct model *model, struct m
 
 /* The axes of LANES cells, by the words of this draw: as random_axis_from, but in lanes where both pairs of words are
  * outside the unit disk z <= -1. */
-INLINE void draw_axes(const struct model *model, uint32_t draw, uint64_t step, words cell, reals axis[3])
+INLINE void draw_axes(uint64_t seed, uint32_t draw, uint64_t step, words cell, reals axis[3])
 {
   words w[4];
-  philox_words(model->seed, RANDOM_ROTATION_AXIS, draw, step, cell, w);
+  philox_words(seed, RANDOM_ROTATION_AXIS, draw, step, cell, w);
   const reals u0 = reals_in_square(w[0]), v0 = reals_in_square(w[1]);
   const reals u1 = reals_in_square(w[2]), v1 = reals_in_square(w[3]);
   const reals s0 = u0 * u0 + v0 * v0, s1 = u1 * u1 + v1 * v1;
@@ -188,7 +209,7 @@ INLINE void draw_axes(const struct model *model, uint32_t draw, uint64_t step, w
 /* cell_solve, and the axis if cells turn, of LANES cells. Those whose axis needs another draw, one in twenty, are
  * appended to a list. Returns its length.
  */
-INLINE uint32_t solve_lanes(const struct model *model, struct mpc *c, uint64_t step, uint32_t first, words lane_cell,
+INLINE uint32_t solve_lanes(uint64_t seed, struct mpc *c, uint64_t step, uint32_t first, words lane_cell,
                             const bool turns, uint32_t *list, uint32_t n)
 {
   reals p[4], turn[8] = {{0}};
@@ -204,7 +225,7 @@ INLINE uint32_t solve_lanes(const struct model *model, struct mpc *c, uint64_t s
   for (int k = 0; k < 3; k++)
     turn[k] = (reals)((words)(reals_from_signed((words)p[k]) * scale) & two);
   if (turns) {
-    draw_axes(model, 0, step, cell, &turn[4]);
+    draw_axes(seed, 0, step, cell, &turn[4]);
     n = append(list, n, cell, (words)((turn[6] <= -1.0) & (wholes)two));
   }
   turn[7] = (reals){0} + 1.0;
@@ -217,7 +238,7 @@ INLINE uint32_t solve_lanes(const struct model *model, struct mpc *c, uint64_t s
 static void draw_again(const struct model *model, struct mpc *c, uint64_t step, const uint32_t *list)
 {
   reals axis[3];
-  draw_axes(model, 1, step, load_low(list), axis);
+  draw_axes(model->seed, 1, step, load_low(list), axis);
   for (int k = 0; k < LANES; k++)
     c->turn[list[k]].axis = axis[2][k] > -1.0 ? (struct vec3){axis[0][k], axis[1][k], axis[2][k]}
                                               : random_axis_from(model->seed, RANDOM_ROTATION_AXIS, 2, step, list[k]);
@@ -227,11 +248,12 @@ static void draw_again(const struct model *model, struct mpc *c, uint64_t step, 
 INLINE void solve_all(const struct model *model, struct mpc *c, uint64_t step, const bool turns)
 {
   uint32_t list[2 * LANES + CHUNK], n = 0;
+  const uint64_t seed = model->seed; /* nothing that is written here can change it, and its keys are kept */
   words lane_cell;
   for (int k = 0; k < LANES; k++)
     lane_cell[k] = lane_record[k];
   for (uint32_t k = 0; k < c->cells; k += LANES) {
-    n = solve_lanes(model, c, step, k + LANES <= c->cells ? k : c->cells - LANES, lane_cell, turns, list, n);
+    n = solve_lanes(seed, c, step, k + LANES <= c->cells ? k : c->cells - LANES, lane_cell, turns, list, n);
     if (n < CHUNK && k + LANES < c->cells)
       continue;
     for (; n >= LANES; n -= LANES)
