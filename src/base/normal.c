@@ -1,5 +1,7 @@
 #include "base/normal.h"
 
+#include "base/normal_lanes.h"
+
 static inline double radius_from(double u)
 {
   return sqrt(-2.0 * elementary_log(u));
@@ -108,46 +110,49 @@ void random_normal_three(struct random_words r, double out[3])
   out[2] = third(r.w[3], sqrt(2.0 * minus_log(r.w[2], r.w[3])));
 }
 
-static void roots(const uint64_t *restrict high, const uint64_t *restrict low, double times, uint32_t n,
-                  double *restrict root)
+/* Of m entities, at most LANES: columns have room for these alone. */
+INLINE void some_of_three(const words w[4], uint32_t m, double *x, double *y, double *z)
 {
-  for (uint32_t k = 0; k < n; k++)
-    root[k] = sqrt(times * minus_log(high[k], low[k]));
-}
-
-static void first_two_of_each(const uint64_t *restrict word, const double *restrict root, uint32_t n,
-                              double *restrict x, double *restrict y)
-{
-  for (uint32_t k = 0; k < n; k++)
-    first_two(word[k], root[k], &x[k], &y[k]);
-}
-
-static void third_of_each(const uint64_t *restrict word, const double *restrict radius, uint32_t n, double *restrict z)
-{
-  for (uint32_t k = 0; k < n; k++)
-    z[k] = third(word[k], radius[k]);
+  reals out[3];
+  normal_three_lanes(w, out);
+  memcpy(x, &out[0], m * sizeof *x);
+  memcpy(y, &out[1], m * sizeof *y);
+  memcpy(z, &out[2], m * sizeof *z);
 }
 
 void random_normal_three_columns(uint64_t seed, enum random_purpose purpose, uint32_t draw, uint64_t step,
                                  const uint32_t *entity, uint32_t n, double *restrict x, double *restrict y,
                                  double *restrict z)
 {
-  uint64_t word[4][RANDOM_UNIFORMS];
-  double root[RANDOM_UNIFORMS];
-  for (uint32_t first = 0; first < n; first += RANDOM_UNIFORMS) {
-    const uint32_t m = n - first < RANDOM_UNIFORMS ? n - first : RANDOM_UNIFORMS;
-    random_wide_columns(seed, purpose, draw, step, entity + first, m, word);
-    roots(word[0], word[1], 1.0, m, root);
-    first_two_of_each(word[1], root, m, x + first, y + first);
-    roots(word[2], word[3], 2.0, m, root);
-    third_of_each(word[3], root, m, z + first);
+  const uint32_t whole = n - n % LANES;
+  words w[4];
+  for (uint32_t k = 0; k < whole; k += LANES) {
+    philox_words(seed, purpose, draw, step, load_low(&entity[k]), w);
+    some_of_three(w, LANES, &x[k], &y[k], &z[k]);
   }
+  if (whole == n)
+    return;
+  uint32_t rest[LANES] = {0};
+  memcpy(rest, &entity[whole], (n - whole) * sizeof *rest);
+  philox_words(seed, purpose, draw, step, load_low(rest), w);
+  some_of_three(w, n - whole, &x[whole], &y[whole], &z[whole]);
+}
+
+INLINE void some_third(const uint64_t *word2, const uint64_t *word3, uint32_t m, double *z)
+{
+  words high = {0}, low = {0};
+  memcpy(&high, word2, m * sizeof *word2);
+  memcpy(&low, word3, m * sizeof *word3);
+  const reals third = normal_third(low, square_root(2.0 * normal_minus_log(high, low)));
+  memcpy(z, &third, m * sizeof *z);
 }
 
 void random_normal_third_column(const uint64_t *restrict word2, const uint64_t *restrict word3, uint32_t n,
                                 double *restrict z)
 {
-  double root[RANDOM_UNIFORMS];
-  roots(word2, word3, 2.0, n, root);
-  third_of_each(word3, root, n, z);
+  const uint32_t whole = n - n % LANES;
+  for (uint32_t k = 0; k < whole; k += LANES)
+    some_third(&word2[k], &word3[k], LANES, &z[k]);
+  if (whole < n)
+    some_third(&word2[whole], &word3[whole], n - whole, &z[whole]);
 }

@@ -45,23 +45,6 @@ void random_columns(uint64_t seed, enum random_purpose purpose, uint32_t draw, u
   }
 }
 
-/* Two groups of LANES entities at a time: neither waits for its own products then, and the keys are loaded once. */
-void random_wide_columns(uint64_t seed, enum random_purpose purpose, uint32_t draw, uint64_t step,
-                         const uint32_t *entity, uint32_t n, uint64_t word[4][RANDOM_UNIFORMS])
-{
-  uint32_t some[BLOCK];
-  take_block(entity, n, some);
-  for (uint32_t k = 0; k < n; k += 2 * LANES) {
-    words w[4], next[4];
-    words_of(seed, purpose, draw, step, &some[k], w);
-    words_of(seed, purpose, draw, step, &some[k + LANES], next);
-    for (int i = 0; i < 4; i++) {
-      memcpy(&word[i][k], &w[i], sizeof w[i]);
-      memcpy(&word[i][k + LANES], &next[i], sizeof next[i]);
-    }
-  }
-}
-
 void random_wide_pair_columns(uint64_t seed, enum random_purpose purpose, uint64_t step, const uint32_t *entity,
                               const uint32_t *draw, uint32_t n, uint64_t word[4][RANDOM_UNIFORMS])
 {

@@ -64,12 +64,8 @@ static inline struct random_words random_at(uint64_t seed, enum random_purpose p
 void random_columns(uint64_t seed, enum random_purpose purpose, uint32_t draw, uint64_t step, const uint32_t *entity,
                     uint32_t n, uint32_t *restrict column[4]);
 
-/* The words of n entities, n <= RANDOM_UNIFORMS, each in the low half of 64 bits; what is in the high half does not
- * matter. The same as random_columns, without narrowing. */
-void random_wide_columns(uint64_t seed, enum random_purpose purpose, uint32_t draw, uint64_t step,
-                         const uint32_t *entity, uint32_t n, uint64_t word[4][RANDOM_UNIFORMS]);
-
-/* The same of n pairs, each with its own draw: below RANDOM_DRAWS. */
+/* The words of n pairs, n <= RANDOM_UNIFORMS, each word in the low half of 64 bits; what is in the high half does not
+ * matter. The same as random_at; each pair has its own draw, below RANDOM_DRAWS. */
 #define RANDOM_DRAWS (1u << 24)
 void random_wide_pair_columns(uint64_t seed, enum random_purpose purpose, uint64_t step, const uint32_t *entity,
                               const uint32_t *draw, uint32_t n, uint64_t word[4][RANDOM_UNIFORMS]);

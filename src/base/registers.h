@@ -413,11 +413,12 @@ INLINE void store_columns(double *records, uint32_t first, reals column[8])
   }
 }
 
-/* Columns of records of eight doubles: column[c] holds entry c of the records with these numbers. */
-INLINE void load_columns(const double *records, const uint32_t number[LANES], reals column[8])
+/* Columns of records of eight doubles: column[c] holds entry c of the records with these numbers, c from 0 to 3, or to
+ * 7. */
+INLINE void load_columns(const double *records, const uint32_t number[LANES], reals *column, const int columns)
 {
   UNROLL
-  for (int c = 0; c < 8; c += PART) {
+  for (int c = 0; c < columns; c += PART) {
     UNROLL
     for (int k = 0; k < PART; k++)
       column[c + k] =

@@ -1,9 +1,10 @@
 /*
- * The fast kernel: points in a periodic flight, SRD. One source; the Makefile compiles it once for each instruction set
- * (base/registers.h), and choose.c takes the best one that the processor has. Each function names the plain one whose
- * bits it gives. What is rare goes to the plain ones: flights beyond the next image of the box, momenta beyond the
- * range of lattice_round, and the last particles if they do not fill a register.
+ * The fast kernel: points in a periodic flight, SRD and AT-a. One source; the Makefile compiles it once for each
+ * instruction set (base/registers.h), and choose.c takes the best one that the processor has. Each function names the
+ * plain one whose bits it gives. What is rare goes to the plain ones: flights beyond the next image of the box, momenta
+ * beyond the range of lattice_round, and the last particles if they do not fill a register.
  */
+#include "base/normal_lanes.h"
 #include "base/philox.h"
 #include "fluid/boundary.h"
 #include "kernel/choose.h"
@@ -11,6 +12,7 @@
 #include "mpc/cell.h"
 #include "mpc/members.h"
 #include "mpc/rule.h"
+#include "mpc/rules/andersen.h"
 #include "mpc/rules/srd.h"
 
 #ifndef KERNEL /* the Makefile names them */
@@ -77,19 +79,42 @@ INLINE reals momenta(reals v, words *span)
 /* Particles whose flight comes before their sums: all of it stays in the nearest cache. */
 enum { CHUNK = 128 };
 
-/* For a chunk: flight, cells, and what each particle adds to the sums of its cell, in the order of store_records. The
- * sign bit of the result is set where that of boundary_fly_periodic is. */
-INLINE uint64_t fly_chunk(const struct axis axis[3], uint32_t *cell, uint32_t first, uint32_t n, const bool accelerated,
-                          double *record, uint64_t *span)
+/* What AT-a draws for a chunk: andersen_draw_particles. */
+INLINE void draw_chunk(const struct solvent *s, const struct model *model, const struct mpc *c, uint64_t step,
+                       uint32_t first, uint32_t n)
+{
+  const uint64_t seed = model->seed, z = model_is_flat(model) ? 0 : UINT64_MAX;
+  const uint32_t *id = s->id;
+  double *const xi[3] = {c->drawn[0], c->drawn[1], c->drawn[2]};
+  for (uint32_t i = first; i < first + n; i += LANES) {
+    words w[4];
+    reals x[3];
+    philox_words(seed, RANDOM_ANDERSEN_PARTICLE, 0, step, load_low(&id[i]), w);
+    normal_three_lanes(w, x);
+    store_reals(&xi[0][i], x[0]);
+    store_reals(&xi[1][i], x[1]);
+    store_reals(&xi[2][i], (reals)((words)x[2] & z));
+  }
+}
+
+/* For a chunk: flight, cells, and what each particle adds to the sums of its cell, in the order of store_records: its
+ * velocity, less the drawn one if there is one. The sign bit of the result is set where that of boundary_fly_periodic
+ * is. */
+INLINE uint64_t fly_chunk(const struct axis axis[3], const struct mpc *c, uint32_t first, uint32_t n,
+                          const bool accelerated, const bool draws, double *record, uint64_t *span)
 {
   const struct axis x = axis[0], y = axis[1], z = axis[2];
   words seen[3] = {{0}, {0}, {0}}, size = {0};
+  uint32_t *cell = c->solvent_cell;
+  const double *const xi[3] = {c->drawn[0], c->drawn[1], c->drawn[2]};
   for (uint32_t k = 0; k < n; k += LANES) {
     const uint32_t i = first + k;
     reals v[3];
     const words cx = fly(&x, i, accelerated, &v[0], &seen[0]), cy = fly(&y, i, accelerated, &v[1], &seen[1]),
                 cz = fly(&z, i, accelerated, &v[2], &seen[2]);
     store_narrow(&cell[i], multiply(multiply(cz, y.cells) + cy, x.cells) + cx);
+    for (int a = 0; draws && a < 3; a++)
+      v[a] -= load_reals(&xi[a][i]);
     reals column[4] = {momenta(v[0], &size), momenta(v[1], &size), momenta(v[2], &size),
                        (reals)((words){0} + cell_load(1.0))};
     store_records(&record[(size_t)4 * k], column);
@@ -122,8 +147,8 @@ static bool fly_far(struct state *state, const struct model *model, struct axis 
   return true;
 }
 
-static bool gather_fast(struct state *state, const struct model *model, struct mpc *c, uint64_t step, uint32_t first,
-                        uint32_t n, uint64_t *span, struct fault *fault)
+INLINE bool gather_all(struct state *state, const struct model *model, struct mpc *c, uint64_t step, uint32_t first,
+                       uint32_t n, const bool draws, uint64_t *span, struct fault *fault)
 {
   struct axis axis[3] = {axis_of(state, model, c, 0), axis_of(state, model, c, 1), axis_of(state, model, c, 2)};
   const bool accelerated = axis[0].gain != 0.0 || axis[1].gain != 0.0 || axis[2].gain != 0.0;
@@ -132,8 +157,10 @@ static bool gather_fast(struct state *state, const struct model *model, struct m
   for (uint32_t i = first; i < whole; i += CHUNK) {
     const uint32_t m = whole - i < CHUNK ? whole - i : CHUNK;
     uint64_t size;
-    const uint64_t outside = accelerated ? fly_chunk(axis, c->solvent_cell, i, m, true, record, &size)
-                                         : fly_chunk(axis, c->solvent_cell, i, m, false, record, &size);
+    if (draws)
+      draw_chunk(&state->solvent, model, c, step, i, m);
+    const uint64_t outside = accelerated ? fly_chunk(axis, c, i, m, true, draws, record, &size)
+                                         : fly_chunk(axis, c, i, m, false, draws, record, &size);
     if ((int64_t)outside < 0) {
       const bool ok = fly_far(state, model, axis, first, i + m, end, fault);
       if (ok) {
@@ -153,14 +180,21 @@ static bool gather_fast(struct state *state, const struct model *model, struct m
   return whole == end || kernel_plain.gather(state, model, c, step, whole, end - whole, span, fault);
 }
 
+static bool gather_fast(struct state *state, const struct model *model, struct mpc *c, uint64_t step, uint32_t first,
+                        uint32_t n, uint64_t *span, struct fault *fault)
+{
+  return c->rule->thermal ? gather_all(state, model, c, step, first, n, true, span, fault)
+                          : gather_all(state, model, c, step, first, n, false, span, fault);
+}
+
 /* --- centers and axes -------------------------------------------------------------------------------------------- */
 
 /* The axes of LANES cells, by the words of this draw: as random_axis_from, but in lanes where both pairs of words are
  * outside the unit disk z <= -1. */
-INLINE void draw_axes(const struct model *model, uint32_t draw, uint64_t step, words cell, reals axis[3])
+INLINE void draw_axes(uint64_t seed, uint32_t draw, uint64_t step, words cell, reals axis[3])
 {
   words w[4];
-  philox_words(model->seed, RANDOM_ROTATION_AXIS, draw, step, cell, w);
+  philox_words(seed, RANDOM_ROTATION_AXIS, draw, step, cell, w);
   const reals u0 = reals_in_square(w[0]), v0 = reals_in_square(w[1]);
   const reals u1 = reals_in_square(w[2]), v1 = reals_in_square(w[3]);
   const reals s0 = u0 * u0 + v0 * v0, s1 = u1 * u1 + v1 * v1;
@@ -172,13 +206,13 @@ INLINE void draw_axes(const struct model *model, uint32_t draw, uint64_t step, w
   axis[2] = 1.0 - 2.0 * s;
 }
 
-/* cell_solve, and the axis, of LANES cells. Those whose axis needs another draw, one in twenty, are appended to a list.
- * Returns its length.
+/* cell_solve, and the axis if cells turn, of LANES cells. Those whose axis needs another draw, one in twenty, are
+ * appended to a list. Returns its length.
  */
-INLINE uint32_t solve_lanes(const struct model *model, struct mpc *c, uint64_t step, uint32_t first, words lane_cell,
-                            uint32_t *list, uint32_t n)
+INLINE uint32_t solve_lanes(uint64_t seed, struct mpc *c, uint64_t step, uint32_t first, words lane_cell,
+                            const bool turns, uint32_t *list, uint32_t n)
 {
-  reals p[4], turn[8];
+  reals p[4], turn[8] = {{0}};
   load_records(&c->sum[first], p);
   const words load = (words)p[3], two = ~negative((load >> 40) - 2);
   if (none(two)) {
@@ -190,10 +224,12 @@ INLINE uint32_t solve_lanes(const struct model *model, struct mpc *c, uint64_t s
   const reals scale = CELL_MOMENTUM_UNIT / (reals_from_small(load & (CELL_MEMBER - 1)) * CELL_MASS_UNIT);
   for (int k = 0; k < 3; k++)
     turn[k] = (reals)((words)(reals_from_signed((words)p[k]) * scale) & two);
-  draw_axes(model, 0, step, cell, &turn[3]);
-  n = append(list, n, cell, (words)((turn[5] <= -1.0) & (wholes)two));
-  turn[6] = (reals){0} + 1.0;
-  turn[7] = (reals)((words)turn[6] & two);
+  if (turns) {
+    draw_axes(seed, 0, step, cell, &turn[4]);
+    n = append(list, n, cell, (words)((turn[6] <= -1.0) & (wholes)two));
+  }
+  turn[7] = (reals){0} + 1.0;
+  turn[3] = (reals)((words)turn[7] & two);
   store_columns((double *)c->turn, first, turn);
   return n;
 }
@@ -202,21 +238,22 @@ INLINE uint32_t solve_lanes(const struct model *model, struct mpc *c, uint64_t s
 static void draw_again(const struct model *model, struct mpc *c, uint64_t step, const uint32_t *list)
 {
   reals axis[3];
-  draw_axes(model, 1, step, load_low(list), axis);
+  draw_axes(model->seed, 1, step, load_low(list), axis);
   for (int k = 0; k < LANES; k++)
     c->turn[list[k]].axis = axis[2][k] > -1.0 ? (struct vec3){axis[0][k], axis[1][k], axis[2][k]}
                                               : random_axis_from(model->seed, RANDOM_ROTATION_AXIS, 2, step, list[k]);
 }
 
 /* The last LANES cells are solved once more if they are no multiple: the sums are still there. */
-static void solve_fast(const struct model *model, struct mpc *c, uint64_t step)
+INLINE void solve_all(const struct model *model, struct mpc *c, uint64_t step, const bool turns)
 {
   uint32_t list[2 * LANES + CHUNK], n = 0;
+  const uint64_t seed = model->seed; /* nothing that is written here can change it, and its keys are kept */
   words lane_cell;
   for (int k = 0; k < LANES; k++)
     lane_cell[k] = lane_record[k];
   for (uint32_t k = 0; k < c->cells; k += LANES) {
-    n = solve_lanes(model, c, step, k + LANES <= c->cells ? k : c->cells - LANES, lane_cell, list, n);
+    n = solve_lanes(seed, c, step, k + LANES <= c->cells ? k : c->cells - LANES, lane_cell, turns, list, n);
     if (n < CHUNK && k + LANES < c->cells)
       continue;
     for (; n >= LANES; n -= LANES)
@@ -224,6 +261,14 @@ static void solve_fast(const struct model *model, struct mpc *c, uint64_t step)
   }
   for (uint32_t k = 0; k < n; k++)
     c->turn[list[k]].axis = random_axis_from(model->seed, RANDOM_ROTATION_AXIS, 1, step, list[k]);
+}
+
+static void solve_fast(const struct model *model, struct mpc *c, uint64_t step)
+{
+  if (c->rule->thermal)
+    solve_all(model, c, step, false);
+  else
+    solve_all(model, c, step, true);
 }
 
 /* --- turns ------------------------------------------------------------------------------------------------------- */
@@ -234,7 +279,7 @@ INLINE void turn_lanes(const struct solvent *s, uint32_t i, const reals turn[8],
                        const bool quarter, const bool scaled)
 {
   const reals vx = load_reals(&s->vx[i]), vy = load_reals(&s->vy[i]), vz = load_reals(&s->vz[i]);
-  const reals nx = turn[3], ny = turn[4], nz = turn[5];
+  const reals nx = turn[4], ny = turn[5], nz = turn[6];
   const reals wx = vx - turn[0], wy = vy - turn[1], wz = vz - turn[2];
   const reals dot = nx * wx + ny * wy + nz * wz, along = quarter ? dot : (1.0 - cosine) * dot;
   reals x = along * nx, y = along * ny, z = along * nz;
@@ -245,15 +290,25 @@ INLINE void turn_lanes(const struct solvent *s, uint32_t i, const reals turn[8],
   }
   x += cx, y += cy, z += cz;
   if (scaled)
-    x *= turn[6], y *= turn[6], z *= turn[6];
-  const wholes active = turn[7] != 0.0;
+    x *= turn[7], y *= turn[7], z *= turn[7];
+  const wholes active = turn[3] != 0.0;
   store_reals(&s->vx[i], choose(active, turn[0] + x, vx));
   store_reals(&s->vy[i], choose(active, turn[1] + y, vy));
   store_reals(&s->vz[i], choose(active, turn[2] + z, vz));
 }
 
-INLINE void turn_whole(struct state *state, const struct model *model, const struct mpc *c, const bool quarter,
-                       const bool scaled)
+/* The same of AT-a: the center's and the drawn one. */
+INLINE void renew_lanes(const struct solvent *s, const struct mpc *c, uint32_t i)
+{
+  double *const v[3] = {s->vx, s->vy, s->vz};
+  reals turn[4];
+  load_columns((const double *)c->turn, &c->solvent_cell[i], turn, 4);
+  for (int k = 0; k < 3; k++)
+    store_reals(&v[k][i], choose(turn[3] != 0.0, turn[k] + load_reals(&c->drawn[k][i]), load_reals(&v[k][i])));
+}
+
+INLINE void turn_whole(struct state *state, const struct model *model, const struct mpc *c, const bool draws,
+                       const bool quarter, const bool scaled)
 {
   const struct solvent *s = &state->solvent;
   const double cosine = model->solvent.cosine, sine = model->solvent.sine;
@@ -261,9 +316,11 @@ INLINE void turn_whole(struct state *state, const struct model *model, const str
   for (uint32_t first = 0; first < whole; first += CHUNK) {
     const uint32_t end = whole - first < CHUNK ? whole : first + CHUNK;
     members_prefetch_turns(c, end, s->n - end < CHUNK ? s->n - end : CHUNK);
-    for (uint32_t i = first; i < end; i += LANES) {
+    for (uint32_t i = first; i < end && draws; i += LANES)
+      renew_lanes(s, c, i);
+    for (uint32_t i = first; i < end && !draws; i += LANES) {
       reals column[8];
-      load_columns((const double *)c->turn, &c->solvent_cell[i], column);
+      load_columns((const double *)c->turn, &c->solvent_cell[i], column, 8);
       turn_lanes(s, i, column, cosine, sine, quarter, scaled);
     }
   }
@@ -272,16 +329,21 @@ INLINE void turn_whole(struct state *state, const struct model *model, const str
 static void turn_fast(struct state *state, const struct model *model, const struct mpc *c, bool scaled)
 {
   const bool quarter = model->solvent.cosine == 0.0;
-  const uint32_t n = state->solvent.n;
-  if (quarter && scaled)
-    turn_whole(state, model, c, true, true);
+  const uint32_t n = state->solvent.n, whole = n - n % LANES;
+  if (c->rule->thermal)
+    turn_whole(state, model, c, true, false, false);
+  else if (quarter && scaled)
+    turn_whole(state, model, c, false, true, true);
   else if (quarter)
-    turn_whole(state, model, c, true, false);
+    turn_whole(state, model, c, false, true, false);
   else if (scaled)
-    turn_whole(state, model, c, false, true);
+    turn_whole(state, model, c, false, false, true);
   else
-    turn_whole(state, model, c, false, false);
-  srd_turn_from(state, model, c, n - n % LANES, scaled);
+    turn_whole(state, model, c, false, false, false);
+  if (c->rule->thermal)
+    andersen_turn_from(state, c, whole);
+  else
+    srd_turn_from(state, model, c, whole, scaled);
 }
 
 const struct kernel KERNEL = {.name = KERNEL_NAME, .gather = gather_fast, .solve = solve_fast, .turn = turn_fast};

@@ -21,9 +21,9 @@ struct cell_sum {
  * line. */
 struct cell_turn {
   struct vec3 center; /* v_cm */
+  double active;      /* 0: fewer than two members, velocities stay as they are */
   struct vec3 axis;   /* unit vector of R */
   double factor;      /* 1, or the thermostat's */
-  double active;      /* 0: fewer than two members, velocities stay as they are */
 };
 
 struct virtual_members;

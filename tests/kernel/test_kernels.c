@@ -257,6 +257,72 @@ static struct model plane(void)
   return m;
 }
 
+static struct model drawn(struct model m)
+{
+  m.solvent.rule = RULE_AT_A;
+  return m;
+}
+
+static struct model at_a(void)
+{
+  return drawn(dense());
+}
+
+static struct model at_a_accelerated(void)
+{
+  return drawn(accelerated());
+}
+
+static struct model at_a_plane(void)
+{
+  return drawn(plane());
+}
+
+static struct model at_a_fibers(void)
+{
+  return drawn(with_fibers());
+}
+
+static struct model at_a_walls(void)
+{
+  return drawn(between_walls());
+}
+
+static struct model at_a_sheared(void)
+{
+  return drawn(sheared());
+}
+
+static struct model at_a_springs(void)
+{
+  return drawn(springs());
+}
+
+static struct model at_a_thin(void)
+{
+  return drawn(thin());
+}
+
+static struct model at_a_few(void)
+{
+  return drawn(few());
+}
+
+static struct model at_a_swapped(void)
+{
+  return drawn(swapped());
+}
+
+static struct model at_a_driven(void)
+{
+  return drawn(driven());
+}
+
+static struct model at_a_tiny(void)
+{
+  return drawn(tiny());
+}
+
 static const struct scene {
   const char *name;
   struct model (*make)(void);
@@ -277,7 +343,19 @@ static const struct scene {
               {"1024 cells", longest},
               {"driven", driven},
               {"seven cells", tiny},
-              {"plane", plane}};
+              {"plane", plane},
+              {"AT-a", at_a},
+              {"AT-a, accelerated", at_a_accelerated},
+              {"AT-a, plane", at_a_plane},
+              {"AT-a, fibers", at_a_fibers},
+              {"AT-a, walls", at_a_walls},
+              {"AT-a, sheared", at_a_sheared},
+              {"AT-a, dumbbells", at_a_springs},
+              {"AT-a, thin", at_a_thin},
+              {"AT-a, few", at_a_few},
+              {"AT-a, swap", at_a_swapped},
+              {"AT-a, driven", at_a_driven},
+              {"AT-a, seven cells", at_a_tiny}};
 
 /* --- tests ------------------------------------------------------------------------------------------------------- */
 
@@ -320,10 +398,10 @@ static void asking_ahead_changes_nothing(void **unused)
 /* Places at the edges of box and cells, velocities that round at the half, zeros of both signs. */
 static void edges(const struct kernel *kernel)
 {
-  static struct model (*const makes[])(void) = {dense, accelerated};
+  static struct model (*const makes[])(void) = {dense, accelerated, at_a, at_a_accelerated};
   static const double fixed[] = {0.0, -0.0, 0x1p-46, -0x1p-46, 0x1.8p-45, 0x1p-1060, 31.25, -31.25, 50.0, -50.0};
   for (uint64_t k = 0; k < 40; k++) {
-    struct pair p = start(makes[k % 2], kernel, dice_seed(830) + k);
+    struct pair p = start(makes[k % 4], kernel, dice_seed(830) + k);
     struct dice d = {dice_seed(831) + k};
     struct solvent *s = &p.plain.state.solvent;
     int64_t *x[3] = {s->x, s->y, s->z};
@@ -356,9 +434,10 @@ static void wild(const struct kernel *kernel)
                                        0x1p52,      -0x1p60, 1e300,  0x1p8, 63.9,   INFINITY, -INFINITY,
                                        (double)NAN, 0x1p7,   -0x1p7, 0x1p6, -0x1p6, 300.0};
   const int64_t kinds = sizeof wild_speeds / sizeof *wild_speeds;
+  static struct model (*const makes[])(void) = {accelerated, dense, at_a, dense, at_a_accelerated, at_a, at_a_fibers};
   uint32_t faults = 0, fine = 0;
-  for (uint64_t k = 0; k < 400; k++) {
-    struct pair p = start(k % 3 ? dense : accelerated, kernel, dice_seed(840) + k);
+  for (uint64_t k = 0; k < 700; k++) {
+    struct pair p = start(makes[k % 7], kernel, dice_seed(840) + k);
     struct dice d = {dice_seed(841) + k};
     struct solvent *s = &p.plain.state.solvent;
     double *v[3] = {s->vx, s->vy, s->vz};
@@ -390,10 +469,17 @@ static void parts_by_scene(void **unused)
   static const struct {
     struct model (*make)(void);
     struct kernel_parts parts;
-  } wanted[] = {{dense, {true, true, true}},          {accelerated, {true, true, true}}, {by_130, {true, true, true}},
-                {rescaled, {true, true, true}},       {thin, {true, true, false}},       {swapped, {true, true, true}},
-                {sheared, {false, true, true}},       {springs, {false, true, true}},    {plane, {true, false, true}},
-                {between_walls, {false, true, true}}, {with_fibers, {true, true, true}}, {tiny, {true, false, true}}};
+  } wanted[] = {{dense, {true, true, true}},         {accelerated, {true, true, true}},
+                {by_130, {true, true, true}},        {rescaled, {true, true, true}},
+                {thin, {true, true, false}},         {swapped, {true, true, true}},
+                {sheared, {false, true, true}},      {springs, {false, true, true}},
+                {plane, {true, false, true}},        {between_walls, {false, true, true}},
+                {with_fibers, {true, true, true}},   {tiny, {true, false, true}},
+                {at_a, {true, true, true}},          {at_a_accelerated, {true, true, true}},
+                {at_a_thin, {true, true, false}},    {at_a_fibers, {true, true, true}},
+                {at_a_sheared, {false, true, true}}, {at_a_springs, {false, true, true}},
+                {at_a_plane, {true, true, true}},    {at_a_walls, {false, true, true}},
+                {at_a_tiny, {true, false, true}}};
   for (size_t k = 0; k < sizeof wanted / sizeof *wanted; k++) {
     struct model m = wanted[k].make();
     test_finish(&m);
@@ -404,7 +490,7 @@ static void parts_by_scene(void **unused)
     model_free(&m);
   }
   struct model m = dense();
-  m.solvent.rule = RULE_AT_A;
+  m.solvent.rule = RULE_AT_PLUS_A;
   test_finish(&m);
   assert_false(kernel_parts_for(&m).gather || kernel_parts_for(&m).solve || kernel_parts_for(&m).turn);
   model_free(&m);

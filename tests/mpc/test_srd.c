@@ -211,7 +211,7 @@ static void apply_turns_about_the_center(void **unused)
   for (int k = 0; k < 2000; k++) {
     const struct vec3 n = dice_direction(&d), v = dice_vector(&d, 1.0), center = dice_vector(&d, 1.0);
     const double angle = dice_between(&d, 0.0, 3.2), factor = dice_between(&d, 0.5, 2.0);
-    const struct cell_turn turn = {center, n, factor, 1.0};
+    const struct cell_turn turn = {.center = center, .active = 1.0, .axis = n, .factor = factor};
     struct vec3 w = by_quaternion(vec3_sub(v, center), n, (long double)angle);
     assert_same(srd_apply(&turn, v, false, cos(angle), sin(angle), true), vec3_add_scaled(center, factor, w), 2e-14);
     w = by_quaternion(vec3_sub(v, center), n, 1.57079632679489661923L);

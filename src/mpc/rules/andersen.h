@@ -24,20 +24,32 @@ struct andersen_change {
   double x[ANDERSEN_BLOCK], y[ANDERSEN_BLOCK], z[ANDERSEN_BLOCK];
 };
 
-/* Draws xi of m particles, from place i of memory on, into mpc->drawn, and sets the columns of `change`. */
+/* Draws xi of m particles, from place i of memory on, into mpc->drawn. */
+static inline void andersen_draw_particles(const struct solvent *s, const struct model *model, const struct mpc *c,
+                                           uint64_t step, uint32_t i, uint32_t m)
+{
+  random_normal_three_columns(model->seed, RANDOM_ANDERSEN_PARTICLE, 0, step, &s->id[i], m, &c->drawn[0][i],
+                              &c->drawn[1][i], &c->drawn[2][i]);
+  if (model_is_flat(model))
+    memset(&c->drawn[2][i], 0, m * sizeof *c->drawn[2]);
+}
+
+/* The same, and sets the columns of `change`. */
 static inline void andersen_draw_block(const struct solvent *s, const struct model *model, struct mpc *c, uint64_t step,
                                        uint32_t i, uint32_t m, struct andersen_change *change)
 {
-  double *restrict x = &c->drawn[0][i], *restrict y = &c->drawn[1][i], *restrict z = &c->drawn[2][i];
+  const double *restrict x = &c->drawn[0][i], *restrict y = &c->drawn[1][i], *restrict z = &c->drawn[2][i];
   const double *restrict vx = &s->vx[i], *restrict vy = &s->vy[i], *restrict vz = &s->vz[i];
-  random_normal_three_columns(model->seed, RANDOM_ANDERSEN_PARTICLE, 0, step, &s->id[i], m, x, y, z);
-  if (model_is_flat(model))
-    memset(z, 0, m * sizeof *z);
+  andersen_draw_particles(s, model, c, step, i, m);
   for (uint32_t k = 0; k < m; k++) {
     change->x[k] = vx[k] - x[k];
     change->y[k] = vy[k] - y[k];
     change->z[k] = vz[k] - z[k];
   }
 }
+
+/* AT-a: new velocities of the particles from place `first` of memory on, and of all vertices, from what they drew and
+ * the turns of their cells. */
+void andersen_turn_from(struct state *state, const struct mpc *mpc, uint32_t first);
 
 #endif

@@ -85,11 +85,10 @@ static void apply_block(struct solvent *s, const struct mpc *c, uint32_t first, 
   memcpy(&s->vz[first], new.z, n * sizeof *new.z);
 }
 
-static void apply(struct state *state, const struct model *model, const struct mpc *c, bool scaled)
+void andersen_turn_from(struct state *state, const struct mpc *c, uint32_t first)
 {
-  (void)model, (void)scaled; /* it is a thermostat by itself */
   const uint32_t n = state->solvent.n;
-  for (uint32_t i = 0; i < n; i += ANDERSEN_BLOCK) {
+  for (uint32_t i = first; i < n; i += ANDERSEN_BLOCK) {
     const uint32_t m = n - i < ANDERSEN_BLOCK ? n - i : ANDERSEN_BLOCK;
     members_prefetch_turns(c, i, m);
     apply_block(&state->solvent, c, i, m);
@@ -99,6 +98,12 @@ static void apply(struct state *state, const struct model *model, const struct m
     if (t->active != 0.0)
       state->velocity[v] = vec3_add(t->center, c->drawn_vertex[v]);
   }
+}
+
+static void apply(struct state *state, const struct model *model, const struct mpc *c, bool scaled)
+{
+  (void)model, (void)scaled; /* it is a thermostat by itself */
+  andersen_turn_from(state, c, 0);
 }
 
 /* A member keeps its share of V only. */
