@@ -25,6 +25,8 @@ AXIS = {"hi": tuple(f"axis-hi-{n}" for n in range(1, 9)), "off": ("axis-off",)} 
 MOBILE = 40  # of the 1000 fibers, where the others are frozen
 BONDS = ("loose", "free", "forbidden")  # vertices without bonds; with bonds that may cross; with bonds that may not
 WAVE = tuple(0.64 * look for look in range(1, 21))  # t0
+# Of the quick tier: the same fibers at the same density, an eighth of the volume, one look. The box is half as long as they are.
+SHORT_WAVE = {"edge": 16, "vertices": 64, "count": 125, "time": 2.4, "pairs": 16}
 LATE = ("maxwell-boltzmann", "dt5", "events")  # not `none`: by the paper's rule it would be half as hot again by then
 
 
@@ -82,6 +84,9 @@ def quick():
     found += [Run("choice-" + name, scene=sd.scene(**{**small, **CHOICES[name]}), steps=6000, seed=450 + number,
                   hours=0.002)
               for number, name in enumerate(SYSTEMS["quick"]["choices"])]
+    found += [Run(f"wave-{bonds}", hours=0.001,
+                  program=["suspension_wave", bonds, 0.2, SHORT_WAVE["time"], 1, SHORT_WAVE["pairs"], 480 + number, SHORT_WAVE["edge"]])
+              for number, bonds in enumerate(BONDS[:2])]
     return found
 
 
@@ -283,11 +288,11 @@ def wave(results, bonds):
     return results[f"wave-{bonds}"].columns if f"wave-{bonds}" in results else None
 
 
-def wave_verdicts(results, system):
-    """Are bonded vertices the fluid that loose ones are? Bonds resist the flow, soon more than viscosity does."""
-    vertices, count, box = size(system)
+def wave_verdicts(results, vertices, count, box, times, values=None):
+    """Are bonded vertices the fluid that loose ones are? Bonds resist the flow, soon more than viscosity does. values: pairs of
+    runs, where they are few."""
     found = []
-    for time in (WAVE[3], WAVE[7]):
+    for time in times:
         bonded, loose = (sd.wave_left([time], count, vertices, box, one)[0] for one in (True, False))
         share = bonded / loose
         allowed = 0.3 * (1.0 - share)
@@ -296,7 +301,7 @@ def wave_verdicts(results, system):
                           rival=1.0)
         rows = [wave(results, bonds) for bonds in ("free", "loose")]
         if None not in rows:
-            verdict = sd.measured(verdict, share_of(*rows, time), allowed)
+            verdict = sd.measured(verdict, share_of(*rows, time), allowed, values)
         found.append(verdict)
     return found
 
@@ -407,8 +412,12 @@ def evaluate(results, tier):
     verdicts += choice_verdicts(results, curves, system)
     if tier == "campaign":  # fibers of the quick tier are too short for a plateau, and nobody measures their tau_r
         verdicts += late_verdicts(results, curves, system)
-        verdicts += plateau_verdicts(curves, system) + held_verdicts(held, system) + wave_verdicts(results, system) + rotation_verdicts(results, system)
+        verdicts += plateau_verdicts(curves, system) + held_verdicts(held, system)
+        verdicts += wave_verdicts(results, *size(system), (WAVE[3], WAVE[7])) + rotation_verdicts(results, system)
         verdicts.append(normalized_verdict(curves, times, measured))
+    else:
+        short = SHORT_WAVE
+        verdicts += wave_verdicts(results, short["vertices"], short["count"], short["edge"], (short["time"],), short["pairs"])
     caption = (f"c L³ = {system['count']}, L = l_p = {system['length']:g} a0. Filled: crossing forbidden. Open: crossing free. Time is in "
                f"units of the rotation time τ_r of a lone fiber: {words['hi']} with hydrodynamics, {words['off']} without. Below: "
                "forbidden over free at the same lag. 2 L⊥²: the line that the paper draws. 4 L⊥²: where a fixed tube would end, because both positions that d² compares "
