@@ -193,31 +193,24 @@ int apart_lost(struct apart *parent, struct message *message)
 
 /* --- between them ------------------------------------------------------------------------------------------------ */
 
+/* How many bytes a call that returned n has moved. A call that a signal ended has moved none, and is made again. */
+static size_t moved(struct apart *link, ssize_t n)
+{
+  link->broken = n == 0 || (n < 0 && errno != EINTR);
+  return n > 0 ? (size_t)n : 0;
+}
+
 bool apart_put(struct apart *link, const void *data, size_t bytes)
 {
-  const char *rest = data;
-  while (!link->broken && bytes > 0) {
-    const ssize_t n = send(link->socket, rest, bytes, MSG_NOSIGNAL);
-    if (n < 0 && errno == EINTR)
-      continue;
-    link->broken = n <= 0;
-    rest += n > 0 ? n : 0;
-    bytes -= n > 0 ? (size_t)n : 0;
-  }
+  for (size_t done = 0; !link->broken && done < bytes;)
+    done += moved(link, send(link->socket, (const char *)data + done, bytes - done, MSG_NOSIGNAL));
   return !link->broken;
 }
 
 bool apart_get(struct apart *link, void *data, size_t bytes)
 {
-  char *rest = data;
-  while (!link->broken && bytes > 0) {
-    const ssize_t n = recv(link->socket, rest, bytes, 0);
-    if (n < 0 && errno == EINTR)
-      continue;
-    link->broken = n <= 0;
-    rest += n > 0 ? n : 0;
-    bytes -= n > 0 ? (size_t)n : 0;
-  }
+  for (size_t done = 0; !link->broken && done < bytes;)
+    done += moved(link, recv(link->socket, (char *)data + done, bytes - done, 0));
   return !link->broken;
 }
 

@@ -1,5 +1,7 @@
 #include "oracle/columns.h"
 
+#include <string.h>
+
 #include "mpc/rules/srd.h"
 
 int64_t *oracle_put_integers(struct oracle_stage *g, const char *name, const char *components, uint32_t rows)
@@ -24,6 +26,17 @@ void oracle_put_points(struct oracle_stage *g, const char *name, const struct po
   int64_t *to = oracle_put_integers(g, name, "x y z", rows);
   for (uint32_t k = 0; to && k < rows; k++)
     to[3 * k] = p[k].x, to[3 * k + 1] = p[k].y, to[3 * k + 2] = p[k].z;
+}
+
+void oracle_put_points_of(struct oracle_stage *g, const char *name, const void *first, size_t size, size_t offset,
+                          uint32_t rows)
+{
+  int64_t *to = oracle_put_integers(g, name, "x y z", rows);
+  for (uint32_t k = 0; to && k < rows; k++) {
+    struct point p;
+    memcpy(&p, (const char *)first + k * size + offset, sizeof p);
+    to[3 * k] = p.x, to[3 * k + 1] = p.y, to[3 * k + 2] = p.z;
+  }
 }
 
 void oracle_put_counts(struct oracle_stage *g, const char *name, const char *component, const uint32_t *n,

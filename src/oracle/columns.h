@@ -9,6 +9,11 @@ int64_t *oracle_put_integers(struct oracle_stage *g, const char *name, const cha
 double *oracle_put_reals(struct oracle_stage *g, const char *name, const char *components, uint32_t rows);
 void oracle_put_vectors(struct oracle_stage *g, const char *name, const struct vec3 *v, uint32_t rows);
 void oracle_put_points(struct oracle_stage *g, const char *name, const struct point *p, uint32_t rows);
+
+/* The points that stand at `offset` in each of the structs of this size from `first` on; first may be NULL if there are
+ * none. */
+void oracle_put_points_of(struct oracle_stage *g, const char *name, const void *first, size_t size, size_t offset,
+                          uint32_t rows);
 void oracle_put_counts(struct oracle_stage *g, const char *name, const char *component, const uint32_t *n,
                        uint32_t rows);
 void oracle_put_number(struct oracle_stage *g, const char *name, const char *component, double value);

@@ -19,25 +19,13 @@ double oracle_condition(const struct crossing_query *k, double time)
   return (1.0 + lengths * reach / speed) * parallel * parallel * (1.0 + reach / fmin(vec3_norm(p), vec3_norm(ab)));
 }
 
-/* The points of one kind of all tests: they stand at `offset` in each. */
-static void put_points(struct oracle_stage *g, const char *name, const struct crossing_query *q, size_t offset,
-                       uint32_t n)
-{
-  int64_t *to = oracle_put_integers(g, name, "x y z", n);
-  for (uint32_t k = 0; to && k < n; k++) {
-    struct point p;
-    memcpy(&p, (const char *)&q[k] + offset, sizeof p);
-    to[3 * k] = p.x, to[3 * k + 1] = p.y, to[3 * k + 2] = p.z;
-  }
-}
-
 void oracle_put_crossings(struct oracle_stage *g, const struct crossing_query *q, uint32_t n)
 {
-  put_points(g, "in.from", q, offsetof(struct crossing_query, from), n);
-  put_points(g, "in.to", q, offsetof(struct crossing_query, to), n);
-  put_points(g, "in.pivot", q, offsetof(struct crossing_query, pivot), n);
-  put_points(g, "in.a", q, offsetof(struct crossing_query, a), n);
-  put_points(g, "in.b", q, offsetof(struct crossing_query, b), n);
+  oracle_put_points_of(g, "in.from", q, sizeof *q, offsetof(struct crossing_query, from), n);
+  oracle_put_points_of(g, "in.to", q, sizeof *q, offsetof(struct crossing_query, to), n);
+  oracle_put_points_of(g, "in.pivot", q, sizeof *q, offsetof(struct crossing_query, pivot), n);
+  oracle_put_points_of(g, "in.a", q, sizeof *q, offsetof(struct crossing_query, a), n);
+  oracle_put_points_of(g, "in.b", q, sizeof *q, offsetof(struct crossing_query, b), n);
   int64_t *flip = oracle_put_integers(g, "in.flip", "flip", n);
   for (uint32_t k = 0; flip && k < n; k++)
     flip[k] = q[k].flip;

@@ -5,6 +5,7 @@
 #include "contact/capsule.h"
 #include "contact/determinant.h"
 #include "contact/hull.h"
+#include "oracle/event_rows.h"
 
 /* --- the search --------------------------------------------------------------------------------------------------- */
 
@@ -109,18 +110,9 @@ static int32_t halve(enum search_rule rule, const struct flight_pair *f, int32_t
   return tick < FLIGHT_TICKS ? tick : halve(rule, f, middle, to);
 }
 
-static bool is_at_rest(const struct flight_pair *f)
-{
-  const int64_t *rate = &f->p_rate.x;
-  for (int k = 0; k < 9; k++)
-    if (rate[k] != 0)
-      return false;
-  return true;
-}
-
 int32_t event_search(const struct event_twist *t, const struct flight_pair *pair, int32_t from)
 {
-  if (is_at_rest(pair))
+  if (oracle_is_at_rest(pair))
     return t->search == SEARCH_AT_REST && !flight_excluded(pair, from, from + 1) ? from : FLIGHT_TICKS;
   const int32_t right = flight_contact(pair, t->search == SEARCH_FROM_ZERO ? 0 : from);
   switch (t->search) {

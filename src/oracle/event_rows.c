@@ -42,18 +42,6 @@ struct vec3 oracle_force_at_tick(const struct oracle_stage *g, uint32_t vertex, 
 
 /* --- searches ---------------------------------------------------------------------------------------------------- */
 
-/* The points of one kind of all searches: they stand at `offset` in each. */
-static void put_points(struct oracle_stage *g, const char *name, const struct oracle_search *s, size_t offset,
-                       uint32_t n)
-{
-  int64_t *to = oracle_put_integers(g, name, "x y z", n);
-  for (uint32_t k = 0; to && k < n; k++) {
-    struct point p;
-    memcpy(&p, (const char *)&s[k].pair + offset, sizeof p);
-    to[3 * k] = p.x, to[3 * k + 1] = p.y, to[3 * k + 2] = p.z;
-  }
-}
-
 bool oracle_search_is_legal(const struct flight_pair *f, double from)
 {
   const int64_t *at = &f->p.x, *rate = &f->p_rate.x, limit = (int64_t)1 << 52, fastest = limit / FLIGHT_TICKS;
@@ -63,14 +51,24 @@ bool oracle_search_is_legal(const struct flight_pair *f, double from)
   return from >= 0.0 && from < FLIGHT_TICKS;
 }
 
+static bool is_zero(struct point p)
+{
+  return p.x == 0 && p.y == 0 && p.z == 0;
+}
+
+bool oracle_is_at_rest(const struct flight_pair *f)
+{
+  return is_zero(f->p_rate) && is_zero(f->q_rate) && is_zero(f->w_rate);
+}
+
 void oracle_put_flight_pairs(struct oracle_stage *g, const struct oracle_search *s, uint32_t n)
 {
-  put_points(g, "in.p", s, offsetof(struct flight_pair, p), n);
-  put_points(g, "in.q", s, offsetof(struct flight_pair, q), n);
-  put_points(g, "in.w", s, offsetof(struct flight_pair, w), n);
-  put_points(g, "in.p_rate", s, offsetof(struct flight_pair, p_rate), n);
-  put_points(g, "in.q_rate", s, offsetof(struct flight_pair, q_rate), n);
-  put_points(g, "in.w_rate", s, offsetof(struct flight_pair, w_rate), n);
+  oracle_put_points_of(g, "in.p", s, sizeof *s, offsetof(struct oracle_search, pair.p), n);
+  oracle_put_points_of(g, "in.q", s, sizeof *s, offsetof(struct oracle_search, pair.q), n);
+  oracle_put_points_of(g, "in.w", s, sizeof *s, offsetof(struct oracle_search, pair.w), n);
+  oracle_put_points_of(g, "in.p_rate", s, sizeof *s, offsetof(struct oracle_search, pair.p_rate), n);
+  oracle_put_points_of(g, "in.q_rate", s, sizeof *s, offsetof(struct oracle_search, pair.q_rate), n);
+  oracle_put_points_of(g, "in.w_rate", s, sizeof *s, offsetof(struct oracle_search, pair.w_rate), n);
   int64_t *from = oracle_put_integers(g, "in.from", "tick", n);
   for (uint32_t k = 0; from && k < n; k++)
     from[k] = s[k].from;

@@ -70,15 +70,6 @@ static int32_t halve_by_ends(const struct oracle_search *s, int32_t from, int32_
   return tick < FLIGHT_TICKS ? tick : halve_by_ends(s, middle, to);
 }
 
-static bool is_at_rest(const struct flight_pair *f)
-{
-  const int64_t *rate = &f->p_rate.x;
-  for (int k = 0; k < 9; k++)
-    if (rate[k] != 0)
-      return false;
-  return true;
-}
-
 static int32_t twisted(const struct oracle_search *s, enum search_twist twist)
 {
   const int32_t right = tube_contact(&s->pair, s->reach, s->from);
@@ -96,13 +87,13 @@ static int32_t twisted(const struct oracle_search *s, enum search_twist twist)
   case FROM_ZERO:
     return tube_contact(&s->pair, s->reach, 0);
   case NONE_IS_LAST:
-    return right < FLIGHT_TICKS || is_at_rest(&s->pair) ? right : FLIGHT_TICKS - 1;
+    return right < FLIGHT_TICKS || oracle_is_at_rest(&s->pair) ? right : FLIGHT_TICKS - 1;
   case AT_REST_TOO:
     return right < FLIGHT_TICKS || tube_excluded(&s->pair, s->reach, s->from, FLIGHT_TICKS) ? right : s->from;
   case LEAVES:
     return right < FLIGHT_TICKS ? last_tick(s) : right;
   case ENDS_ONLY:
-    return is_at_rest(&s->pair) ? right : halve_by_ends(s, s->from, FLIGHT_TICKS);
+    return oracle_is_at_rest(&s->pair) ? right : halve_by_ends(s, s->from, FLIGHT_TICKS);
   default:
     return first_side(s);
   }

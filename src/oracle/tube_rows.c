@@ -43,14 +43,6 @@ static void put_searches(struct oracle_stage *g, const struct oracle_search *sea
   free(s);
 }
 
-static void put_points(struct oracle_stage *g, const char *name, const struct oracle_tubes *c, size_t offset,
-                       uint32_t n)
-{
-  int64_t *to = oracle_put_integers(g, name, "x y z", n);
-  for (uint32_t k = 0; to && k < n; k++)
-    memcpy(&to[3 * (size_t)k], (const char *)&c[k] + offset, sizeof(struct point));
-}
-
 static void put_contacts(struct oracle_stage *g, const struct oracle_tubes *tubes, uint32_t n,
                          constructed_contacts *edges)
 {
@@ -61,9 +53,9 @@ static void put_contacts(struct oracle_stage *g, const struct oracle_tubes *tube
   if (n > 0)
     memcpy(c, tubes, n * sizeof *c);
   n += edges(&c[n]);
-  put_points(g, "in.p", c, offsetof(struct oracle_tubes, p), n);
-  put_points(g, "in.q", c, offsetof(struct oracle_tubes, q), n);
-  put_points(g, "in.w", c, offsetof(struct oracle_tubes, w), n);
+  oracle_put_points_of(g, "in.p", c, sizeof *c, offsetof(struct oracle_tubes, p), n);
+  oracle_put_points_of(g, "in.q", c, sizeof *c, offsetof(struct oracle_tubes, q), n);
+  oracle_put_points_of(g, "in.w", c, sizeof *c, offsetof(struct oracle_tubes, w), n);
   struct vec3 *normal = malloc(((size_t)n + 1) * sizeof *normal);
   double *contact = oracle_put_reals(g, "out.contact", "s t", n);
   g->pack->failed |= !normal;

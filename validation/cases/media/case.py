@@ -42,7 +42,7 @@ def runs(tier):
              "observe: {pressure: {every: 20}, temperature: {every: 20}}\n")
     found.append(Run("dpd", scene=fluid, steps=20000 * n, hours=0.003 * n))
     parts = [run for part in PARTS for run in part.runs()]
-    return found + media.runs() + parts if tier == "campaign" else found
+    return found + media.runs() + parts if tier == "campaign" else found + integrators.quick_runs()
 
 
 # --- what is known ----------------------------------------------------------------------------------------------------
@@ -137,7 +137,7 @@ def evaluate(results, tier):
     drawn = [Figure("chains", "N D/D0 of chains against the lag, with and without hydrodynamic interactions. Without, it is 1 at "
                     "any lag; with them it falls from Kirkwood's value by some per cent.", lambda: draw(results))] if results else []
     if tier == "quick":
-        return Outcome(verdicts, drawn, "" if results else "No run yet.")
+        return Outcome(verdicts + integrators.quick_verdicts(results), drawn, "" if results else "No run yet.")
     if media.costs(results):
         drawn.insert(0, Figure("six", "The same chain of ten vertices in six media. Left: error of D against CPU time; lines fall as one over the "
                                "root of the time from the point that was measured. Without hydrodynamic interactions D stays wrong by 65 %. Right: what each medium can "
