@@ -143,8 +143,8 @@ INLINE void some_third(const uint64_t *word2, const uint64_t *word3, uint32_t m,
   words high = {0}, low = {0};
   memcpy(&high, word2, m * sizeof *word2);
   memcpy(&low, word3, m * sizeof *word3);
-  const reals third = normal_third(low, square_root(2.0 * normal_minus_log(high, low)));
-  memcpy(z, &third, m * sizeof *z);
+  const reals found = normal_third(low, square_root(2.0 * normal_minus_log(high, low)));
+  memcpy(z, &found, m * sizeof *z);
 }
 
 void random_normal_third_column(const uint64_t *restrict word2, const uint64_t *restrict word3, uint32_t n,

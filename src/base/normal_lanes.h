@@ -1,4 +1,5 @@
-/* random_normal_three once more (normal.h), of LANES draws at once: the same operations in the same order. */
+/* random_normal_three once more (normal.h), of LANES draws at once: the same operations in the same order.
+ * tests/base/test_elementary.c holds both together, bit by bit. */
 #ifndef UNCROSS_BASE_NORMAL_LANES_H
 #define UNCROSS_BASE_NORMAL_LANES_H
 

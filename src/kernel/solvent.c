@@ -20,6 +20,13 @@
 #define KERNEL_NAME "sse2"
 #endif
 
+/* Columns of turns, as load_columns and store_columns have them. */
+_Static_assert(offsetof(struct cell_turn, center) == 0 && offsetof(struct cell_turn, active) == 3 * sizeof(double) &&
+                   offsetof(struct cell_turn, axis) == 4 * sizeof(double) &&
+                   offsetof(struct cell_turn, factor) == 7 * sizeof(double) &&
+                   sizeof(struct cell_turn) == 8 * sizeof(double),
+               "center, active, axis, factor");
+
 /* --- flight, cells, sums ----------------------------------------------------------------------------------------- */
 
 /* What one axis of the flight needs. Lengths are in lattice units: a scale of 2^40 does not change how a product

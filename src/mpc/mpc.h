@@ -18,7 +18,7 @@ struct cell_sum {
 };
 
 /* The change of velocity that a cell gives to each of its members. For SRD: v' = v_cm + factor R (v - v_cm). One cache
- * line. */
+ * line, of which AT-a reads the first half: so `active` is there. */
 struct cell_turn {
   struct vec3 center; /* v_cm */
   double active;      /* 0: fewer than two members, velocities stay as they are */

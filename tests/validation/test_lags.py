@@ -131,20 +131,22 @@ class Together(unittest.TestCase):
         """Fibers that drift with D F and a memory of waves, of their shape, and of what decayed at once: D comes back, and its error is the
         scatter of 300 sets (they tell it to 4 %), whatever the memory before the first lag."""
         t, share, d, fibers = 1.6 * numpy.arange(1.0, 101.0), 0.02, 0.5, 24
-        made = lags.System(None, lambda x: 0.03 / numpy.sqrt(x), 0.0, lambda x: share * numpy.ones_like(x), 2)
+        made = lags.System(None, lambda x: 0.03 / numpy.sqrt(x), d, lambda x: share * numpy.ones_like(x), 2)
         mean = d * t * (1.0 - share) - t * made.waves(t) - 0.7 * d
         random, found = numpy.random.Generator(numpy.random.PCG64(10)), []
         for _ in range(300):
             steps = random.normal(0.0, math.sqrt(2.0 * d * 1.6 / 9.0), (fibers, 100))  # a force of 3: noise over force
             since = steps[:, 8:].sum(axis=1)  # from 12.8 t0 on
             columns = {"time": t, "way": mean + numpy.cumsum(steps.mean(axis=0)),
-                       "since_error": numpy.full(100, since.std() / math.sqrt(fibers - 1.0))}
+                       "since_error": numpy.where(numpy.arange(100) == 7, 0.0, since.std() / math.sqrt(fibers - 1.0))}
             found.append(lags.pulled(columns, made, 12.8))
         value, error = numpy.array(found).T
         self.assertLess(abs(value.mean() - d), 5.0 * value.std() / math.sqrt(300))
         self.assertAlmostEqual(value.std() / error.mean(), 1.0, delta=5.0 * 0.041)
-        exact = lags.pulled({"time": t, "way": mean, "since_error": numpy.ones(100)}, made, 12.8)
+        exact = lags.pulled({"time": t, "way": mean, "since_error": 1.0 * (numpy.arange(100) != 7)}, made, 12.8)
         self.assertAlmostEqual(exact[0], d, 12)
+        with self.assertRaises(ValueError):
+            lags.pulled({"time": t, "way": mean, "since_error": 1.0 * (numpy.arange(100) != 3)}, made, 12.8)
 
     def test_beside(self):
         self.assertEqual(lags.beside(numpy.array([[4.0, 1.0], [1.0, 9.0]]), [2.0]).tolist(), [[4, 1, 0], [1, 9, 0], [0, 0, 4]])

@@ -100,16 +100,15 @@ def rule(systems, tries=(1.6, 3.2, 6.4, 12.8)):
 
 def pulled(columns, system, first=dilute.FIRST_LAG):
     """(short-time D, error) of a system in its box from its answer to a force (validation/measure/pulled_fibers.c): the mean
-    displacement over the force is g/6, so that the same memory applies. From `first` to the last row it is
-
-        D [t (1 - share)] - t waves, its difference between both times,
-
-    and what had decayed before `first`, tau D_0, drops out. `since_error` is the error of this difference."""
+    displacement over the force is g/6, so that the same memory applies. From `first` to the last row it grows by D t - t correction(t),
+    and what had decayed before `first`, tau D_0, drops out. `since_error` is the error of this growth; it is 0 at `first`."""
     t, way = columns["time"], columns["way"]
-    k = int(numpy.argmin(abs(t - first)))
+    k = int(numpy.argmin(columns["since_error"]))
+    if abs(t[k] - first) > 1e-6 * first:
+        raise ValueError(f"a run whose errors begin at {t[k]:g} t0, not at {first:g}")
     ends = t[[k, -1]]
-    lost, grown = numpy.diff(ends * system.waves(ends))[0], numpy.diff(ends * (1.0 - system.share(ends)))[0]
-    return (way[-1] - way[k] + lost) / grown, columns["since_error"][-1] / grown
+    time, lost = ends[1] - ends[0], numpy.diff(ends * system.correction(ends))[0]
+    return (way[-1] - way[k] + lost) / time, columns["since_error"][-1] / time
 
 
 def pulled_mean(columns, system):

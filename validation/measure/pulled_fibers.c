@@ -40,20 +40,34 @@ struct question {
   uint64_t seed;
 };
 
+static bool is_sound(const struct question *q)
+{
+  const double steps = q->interval / 0.02;
+  return q->vertices > 0 && q->fibers > 2 && q->fibers <= MOST_FIBERS && q->fibers % 2 == 0 && q->edge > 3 &&
+         q->force > 0.0 && steps >= 1.0 && fabs(steps - floor(steps + 0.5)) < 1e-6 && q->last >= q->interval &&
+         q->first < q->last && (q->signs == 1 || q->signs == 2);
+}
+
 static struct question read_question(int argc, const char **argv)
 {
-  if (argc == 11 && atoi(argv[3]) <= MOST_FIBERS && (strcmp(argv[1], "chains") == 0 || strcmp(argv[1], "rods") == 0))
-    return (struct question){.rods = strcmp(argv[1], "rods") == 0,
-                             .vertices = (uint32_t)atoi(argv[2]),
-                             .fibers = (uint32_t)atoi(argv[3]),
-                             .edge = atoi(argv[4]),
-                             .force = atof(argv[5]),
-                             .last = atof(argv[6]),
-                             .interval = atof(argv[7]),
-                             .first = atof(argv[8]),
-                             .signs = atoi(argv[9]) == 2 ? 2 : 1,
-                             .seed = strtoull(argv[10], NULL, 10)};
-  fprintf(stderr, "usage: %s chains|rods VERTICES FIBERS EDGE FORCE TIME INTERVAL FIRST SIGNS SEED\n", argv[0]);
+  struct question q = {0};
+  if (argc == 11 && (strcmp(argv[1], "chains") == 0 || strcmp(argv[1], "rods") == 0))
+    q = (struct question){.rods = strcmp(argv[1], "rods") == 0,
+                          .vertices = (uint32_t)atoi(argv[2]),
+                          .fibers = (uint32_t)atoi(argv[3]),
+                          .edge = atoi(argv[4]),
+                          .force = atof(argv[5]),
+                          .last = atof(argv[6]),
+                          .interval = atof(argv[7]),
+                          .first = atof(argv[8]),
+                          .signs = (uint32_t)atoi(argv[9]),
+                          .seed = strtoull(argv[10], NULL, 10)};
+  if (is_sound(&q))
+    return q;
+  fprintf(stderr,
+          "usage: %s chains|rods VERTICES FIBERS EDGE FORCE TIME INTERVAL FIRST SIGNS SEED\n"
+          "  FIBERS even, 4 to %d; EDGE above 3; INTERVAL a multiple of 0.02; SIGNS 1 or 2\n",
+          argv[0], MOST_FIBERS);
   exit(2);
 }
 
@@ -73,6 +87,7 @@ static struct model pulled(const struct question *q, double sign)
   return m;
 }
 
+/* The next three are NU, PER_CELL and SHORTEST_WAVE of validation/lib/dilute.py. */
 #define VISCOSITY 2.148 /* kinematic, of the paper's solvent: docs/accuracy.md */
 #define DENSITY 5.0
 #define SHORTEST 2.0  /* k a0 of the shortest waves */
@@ -92,7 +107,7 @@ struct flow {
 static void flow_alloc(struct flow *f, const struct question *q)
 {
   const double unit = 6.283185307179586477 / q->edge, volume = pow(q->edge, 3.0);
-  const int reach = fmin(MOST_WAVES, SHORTEST / unit);
+  const int reach = (int)fmin(MOST_WAVES, SHORTEST / unit);
   const size_t most = (size_t)pow(2.0 * reach + 1.0, 3.0) / 2 + 1, all = most * q->fibers;
   *f = (struct flow){.fibers = q->fibers,
                      .k = calloc(most, sizeof *f->k),
@@ -230,6 +245,23 @@ static double correlation(const double *y, const double *z, uint32_t n)
 }
 
 /* x, others: of the first run; back: x of the second one, which is not looked at with one sign. */
+/* How much of the flow of the others is in the ways that fibers went, over fibers: 1 if it is right; and its error. */
+static void print_slope(const struct question *q, const double *way, const double *others)
+{
+  double unused, xy = 0.0, yy = 0.0, rest = 0.0;
+  const double mx = mean(way, q->fibers, &unused), my = mean(others, q->fibers, &unused);
+  for (uint32_t f = 0; f < q->fibers; f++) {
+    xy += (way[f] - mx) * (others[f] - my);
+    yy += (others[f] - my) * (others[f] - my);
+  }
+  for (uint32_t f = 0; f < q->fibers; f++) {
+    const double left = way[f] - mx - xy / yy * (others[f] - my);
+    rest += left * left;
+  }
+  printf("# flow of the others, as computed, in the ways that fibers went: %.3f +- %.3f of it\n", 1.0 + xy / yy,
+         sqrt(rest / (q->fibers - 2.0) / yy));
+}
+
 static void print_rows(const struct question *q, uint32_t rows, const double *x, const double *others,
                        const double *back)
 {
@@ -250,6 +282,7 @@ static void print_rows(const struct question *q, uint32_t rows, const double *x,
            mean(&others[(size_t)row * q->fibers], q->fibers, &unused) / q->force,
            q->signs == 2 ? -correlation(one, other, q->fibers) : 0.0);
   }
+  print_slope(q, &x[(size_t)rows * q->fibers], &others[(size_t)rows * q->fibers]);
 }
 
 int main(int argc, const char **argv)

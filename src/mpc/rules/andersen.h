@@ -38,9 +38,9 @@ static inline void andersen_draw_particles(const struct solvent *s, const struct
 static inline void andersen_draw_block(const struct solvent *s, const struct model *model, struct mpc *c, uint64_t step,
                                        uint32_t i, uint32_t m, struct andersen_change *change)
 {
+  andersen_draw_particles(s, model, c, step, i, m);
   const double *restrict x = &c->drawn[0][i], *restrict y = &c->drawn[1][i], *restrict z = &c->drawn[2][i];
   const double *restrict vx = &s->vx[i], *restrict vy = &s->vy[i], *restrict vz = &s->vz[i];
-  andersen_draw_particles(s, model, c, step, i, m);
   for (uint32_t k = 0; k < m; k++) {
     change->x[k] = vx[k] - x[k];
     change->y[k] = vy[k] - y[k];

@@ -36,7 +36,9 @@ SYSTEMS = {
     (60, 72): (10, 1000, 0, 0, 3)}
 # Pulled by a force on each rod, from equilibrium (validation/measure/pulled_fibers.c): name -> (N, box, rods, force, time).
 PULLED = {"pulled-N45-F30-s1": (45, 81, 24, 30, 128), "pulled-N60-F30-s1": (60, 108, 24, 30, 112),
-          "pulled-N60-F30-s2": (60, 108, 24, 30, 112), "pulled-N45-F30-s2": (45, 81, 24, 30, 128)}
+          "pulled-N60-F30-s2": (60, 108, 24, 30, 112), "pulled-N45-F30-s2": (45, 81, 24, 30, 128),
+          "pulled-N15-F15": (15, 27, 10, 15, 500)}
+TEST = (15, 27)  # N and box of rods that are pulled as a test of the method, and take no part in the fits
 FREE = {10: (32, 1500), 15: (24, 1500), 30: (16, 1500), 45: (12, 1500), 60: (8, 2000)}  # without hydrodynamics
 
 
@@ -126,14 +128,14 @@ def systems(results):
 
 
 def forced(results):
-    """[Point] of rods that were pulled."""
+    """[Point] of rods that were pulled; the test's as well."""
     rows, found = {}, []
     for name, (n, box, count, _, _) in PULLED.items():
         if name in results and results[name].text:
             rows.setdefault((n, box, count), []).append(results[name].columns)
     for (n, box, count), columns in rows.items():
-        system = lags.System(None, functools.partial(dilute.memory, box=box, form=dilute.rod_form(n, BOND)), 0.0,
-                             functools.partial(shape.rod_share, n), box)
+        system = lags.System(None, functools.partial(dilute.memory, box=box, form=dilute.rod_form(n, BOND)),
+                             cells(n) - dilute.image_shift(box, moments(n)[1]), functools.partial(shape.rod_share, n), box)
         value, error = lags.pulled_mean(columns, system)
         pure = dilute.in_pure_solvent(value, sharing(n)[0], (count - 1) * n / box**3)
         found.append(Point(n, box, value, error, pure + dilute.image_shift(box, moments(n)[1])))
@@ -152,7 +154,7 @@ def with_hydrodynamics(results):
         value = joint.value[i] / shares[i]
         pure = dilute.in_pure_solvent(value, sharing(n)[0], (count - 1) * n / box ** 3)
         points.append(Point(n, box, value, math.sqrt(covariance[i, i]), pure + dilute.image_shift(box, moments(n)[1])))
-    answers = forced(results)
+    answers = [p for p in forced(results) if (p.vertices, p.box) != TEST]
     points, covariance = points + answers, lags.beside(covariance, [p.error for p in answers])
     far, logs = lags.per_length([p.vertices for p in points], numpy.array([p.infinite for p in points]), covariance, cells)
     return Measured(points, joint, far, logs, covariance)
@@ -297,6 +299,14 @@ def cells_verdict(measured):
                        over_model(measured, cells), dilute.CELLS, dilute.NU_ERROR / dilute.NU)
 
 
+def pulled_verdict(results, measured):
+    """D of rods from the answer to a force over D from Brownian motion, in the same box."""
+    pairs = [[(p.value, p.error) for p in points if (p.vertices, p.box) == TEST] for points in (forced(results), measured.points)]
+    return dilute.held("rods.pulled", f"D of {TEST[0]} vertices from the answer to a force over D from Brownian motion, {TEST[1]}³ cells", 1.0,
+                       "fluctuation and dissipation, while the answer is linear", dilute.over(pairs[0][0], pairs[1][0]) if all(pairs) else None,
+                       0.005, power=0.25)
+
+
 def campaign_verdicts(measured):
     """What the quick tier's errors cannot tell. Prefactor and diameter are one number: they are correlated almost fully."""
     rules = fits(measured)
@@ -401,7 +411,7 @@ def evaluate(results, tier):
     found = [cells_verdict(measured), lags.scatter_verdict("rods", measured.joint),
              dilute.kirkwood_held("rods", over_model(measured, kirkwood), 0.15), free_verdict(results), size_verdict(results)]
     if tier == "campaign":
-        found += campaign_verdicts(measured)
+        found += [*campaign_verdicts(measured), pulled_verdict(results, measured)]
     pictures = [
         Figure("lengths", "Fig. 2, rods: diffusion against length. Below: divided by theory. Blue: infinite box, by Oseen's "
                "field smeared over cells (line: Kirkwood's sum). Red: the paper's boxes, by the paper's line. Green: no hydrodynamics, by molecular "

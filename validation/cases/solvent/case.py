@@ -303,7 +303,7 @@ def late_tail(results):
 
 def late_verdict(results):
     """At the paper's point C is negative to 5 t0, while sound dies. Then it is positive, and whether a particle is a point or as wide as a
-    cell no longer matters."""
+    cell no longer matters. 0.05 for nu(k), as for the other tail."""
     first, last = (lag * LATE_EVERY * PAPERS.dt_c for lag in LATE_LAGS)
     verdict = Verdict("solvent.tail.late", f"mean of C(t) over lags of {first:g} to {last:g} t0, over that of shear waves alone, {words(PAPERS)}",
                       0.0, "shear and sound waves of the box, nothing fitted; without sound 1", 0.0, rival=1.0)
@@ -392,7 +392,8 @@ def draw_sound(results):
 
 def draw_late(axes, results, number):
     """Lags of tail-late, five to a point, over shear waves alone; and the theory there."""
-    time, vacf, error = (column[:25].reshape(5, 5) for column in late_tail(results)[0])
+    columns = late_tail(results)[0]
+    time, vacf, error = (column[:len(column) // 5 * 5].reshape(-1, 5) for column in columns)
     t, over = time.mean(axis=1), shear_tail(results, PAPERS, time.mean(axis=1))
     figures.points(axes, t, vacf.mean(axis=1) / over, numpy.sqrt((error**2).sum(axis=1)) / 5.0 / over, number=number)
     lines = numpy.linspace(time[0, 0], time[-1, -1], 40)
