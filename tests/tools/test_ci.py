@@ -53,10 +53,16 @@ class Ci(unittest.TestCase):
     def test_a_tool_that_is_not_there(self):
         self.assertEqual(self.ends("check", "mutants"), (1, "3 passed, 1 failed"))
 
+    def test_out_of_time(self):
+        """A stage that would begin too late is skipped, and says so: it neither fails nor counts."""
+        done = subprocess.run(["env", "CI_SECONDS=0", str(self.tree / ".ci" / "run"), "check", "fuzz"], capture_output=True, text=True, check=False)
+        self.assertEqual((done.returncode, done.stdout.splitlines()[-1]), (0, "0 passed, 0 failed"))
+        self.assertEqual(done.stdout.count("check     skipped: "), 2)
+
     def test_unknown_stage(self):
         status, line = self.ends("checks")
         self.assertEqual(status, 2)
-        self.assertIn("there are install check validate lint sanitize coverage mutants counts port fuzz", line)
+        self.assertIn("there are install check validate lint sanitize mutants counts port fuzz coverage", line)
 
 
 if __name__ == "__main__":
