@@ -21,7 +21,7 @@ def campaign():
 
 def quick():
     systems = ("16:0", "16:12", "16:38", "16:125", "24:42", "32:100")
-    return [Run("steps", program=["step_cost", 5, 40, *systems], hours=0.002)]
+    return [Run("steps", program=["step_cost", 15, 40, *systems], hours=0.006)]
 
 
 def runs(tier):
