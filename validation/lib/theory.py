@@ -32,6 +32,18 @@ def self_diffusion(gamma=5.0, dt_c=0.02, alpha=90.0):
     return dt_c * (1.0 / (1.0 - retention(gamma, alpha)) - 0.5)
 
 
+def heat_diffusion(gamma=5.0, dt_c=0.02, alpha=90.0):
+    """Diffusivity of heat of the solvent at constant density (kinetic, collisional): conductivity over (3/2) n k, molecular chaos.
+
+    Kinetic: 5/3 of what holds at constant pressure, to first order in 1/gamma (Tuzel, Strauss, Ihle, Kroll, Phys. Rev. E 68, 036701
+    (2003)). Collisional: in a cell of n members the energies of particles come nearer to their mean by (4/3)(1 - cos alpha)/n of the
+    difference, (u.w of a member is what turns), and what is handed on moves by a0^2/6 of mean square per axis, as momentum does."""
+    turn = 1.0 - math.cos(math.radians(alpha))
+    kinetic = 5.0 / 6.0 * dt_c * (3.0 / turn - 1.0 + 6.0 / gamma * (0.8 - 0.5 / turn))
+    partners = sum(math.exp(n * math.log(gamma) - gamma - math.lgamma(n + 1.0)) * (n - 1.0) / n for n in range(1, int(gamma + 20.0 * math.sqrt(gamma)) + 20))
+    return kinetic, turn / (9.0 * dt_c) * partners / gamma
+
+
 def retention(gamma=5.0, alpha=90.0):
     """Share of its velocity that a solvent particle keeps per collision: 1 - (2/3)(1 - cos alpha)(gamma - 1 + exp(-gamma))/gamma."""
     return 1.0 - 2.0 / 3.0 * (1.0 - math.cos(math.radians(alpha))) * occupancy(gamma) / gamma
@@ -55,33 +67,72 @@ def shear_modes(cells, largest=40):
 CELL = 1.0 / 6.0
 
 
-def sound_decays(k2, damping, speed=SOUND_SPEED):
-    """[(amplitude, rate)] of the two decays that a longitudinal wave of velocity is made of, by the linear equations of
-    continuity and of Navier and Stokes (heat is not followed by itself; a measured damping has its share):
+def longitudinal(k2, damping, heat, speed=SOUND_SPEED):
+    """The matrix M of d(r, v, s)/dt = -M (r, v, s): density, velocity and temperature of a longitudinal wave, each in units of its
+    thermal fluctuation, by the linear equations of continuity, of Navier and Stokes, and of heat:
+
+        M = [[0, ik, 0], [ik, nu' k^2, iak], [0, iak, heat k^2]],  a^2 = c^2 - 1,  2 damping = nu' + heat a^2/c^2
+
+    damping: Gamma of long waves; heat: diffusivity of heat at constant density. Shape: that of k2, then (3, 3)."""
+    k2 = numpy.asarray(k2, float)
+    matrix = numpy.zeros((*k2.shape, 3, 3), complex)
+    matrix[..., 0, 1] = matrix[..., 1, 0] = 1j * numpy.sqrt(k2)
+    matrix[..., 1, 2] = matrix[..., 2, 1] = 1j * numpy.sqrt((speed**2 - 1.0) * k2)
+    matrix[..., 1, 1] = (2.0 * damping - heat * (1.0 - speed**-2)) * k2
+    matrix[..., 2, 2] = heat * k2
+    return matrix
+
+
+def decays(matrix, look, start):
+    """[(amplitude, rate)]: look.exp(-matrix t) start is their sum of amplitude exp(-rate t)."""
+    rates, vectors = numpy.linalg.eig(matrix)
+    amplitudes = (look @ vectors) * (numpy.linalg.inv(vectors) @ start)
+    return [(amplitudes[..., n], rates[..., n]) for n in range(len(start))]
+
+
+def sound_decays(k2, damping, speed=SOUND_SPEED, heat=0.0):
+    """[(amplitude, rate)] of the decays that a longitudinal wave of velocity is made of: the three of `longitudinal`. With heat = 0
+    heat stays where it is made, and there are two:
 
         exp(-g t) [cos wt - (g/w) sin wt],  g = damping k^2,  w^2 = (c k)^2 - g^2
 
     complex below g = c k, real beyond."""
+    if heat > 0.0:
+        velocity = numpy.array([0.0, 1.0, 0.0])
+        return decays(longitudinal(k2, damping, heat, speed), velocity, velocity)
     g = damping * k2
     w = numpy.sqrt(speed**2 * k2 - g**2 + 0j)
     return [(0.5 * (1.0 + 1j * g / w), g - 1j * w), (0.5 * (1.0 - 1j * g / w), g + 1j * w)]
 
 
-def sound_mode(t, k2, damping):
-    return sum(amplitude * numpy.exp(-rate * t) for amplitude, rate in sound_decays(k2, damping)).real
+def over_time(found, t):
+    """The sum of decays [(amplitude, rate)] at times t."""
+    return sum(amplitude * numpy.exp(-rate * t) for amplitude, rate in found).real
 
 
-def long_time_tail(t, cells, gamma, shear, sound, diffusion=0.0, smear=0.0):
+def sound_mode(t, k2, damping, heat=0.0):
+    return over_time(sound_decays(k2, damping, heat=heat), t)
+
+
+def heat_mode(t, k2, damping, heat):
+    """T' - (2/3) rho'/rho, in units of its start, of a wave of temperature: what sound does not carry away. For small k it decays as
+    exp(-(3/5) heat k^2 t)."""
+    warming = math.sqrt(SOUND_SPEED**2 - 1.0)
+    look, start = numpy.array([-warming, 0.0, 1.0]), numpy.array([0.0, 0.0, 1.0])
+    return over_time(decays(longitudinal(k2, damping, heat), look, start), t)
+
+
+def long_time_tail(t, cells, gamma, shear, sound, diffusion=0.0, smear=0.0, heat=0.0):
     """Velocity autocorrelation of a particle, per component and in units of kT/m, as the waves of the box carry it (Ernst,
     Hauge, van Leeuwen, Phys. Rev. Lett. 25, 1254 (1970), before the limit of long times):
 
         (1/3N) sum_k exp(-(D t + smear) k^2) [ 2 exp(-shear k^2 t) + sound_mode(t) ]
 
-    shear: nu; sound: damping Gamma of sound, None: without sound. smear: CELL at most. For t long after the first collisions. In
+    shear: nu; sound: damping Gamma of sound, None: without sound; heat as for sound_decays. smear: CELL at most. For t long after the first collisions. In
     an infinite box sound dies as exp(-c^2 t/4 Gamma), and the rest is (2/3 gamma)(4 pi (nu + D) t)^(-3/2)."""
     k2, count = shear_modes(cells)
     t = numpy.asarray(t, float)[..., None]
-    waves = 2.0 * numpy.exp(-shear * k2 * t) + (0.0 if sound is None else sound_mode(t, k2, sound))
+    waves = 2.0 * numpy.exp(-shear * k2 * t) + (0.0 if sound is None else sound_mode(t, k2, sound, heat))
     return (numpy.exp(-(diffusion * t + smear) * k2) * waves * count).sum(axis=-1) / (3.0 * gamma * cells**3)
 
 
@@ -89,12 +140,12 @@ def long_time_tail_unbounded(t, gamma, spread):
     return 2.0 / (3.0 * gamma) * (4.0 * math.pi * spread * numpy.asarray(t))**-1.5
 
 
-def diffusion_still_to_come(t, cells, gamma, shear, sound, diffusion=0.0, smear=0.0):
+def diffusion_still_to_come(t, cells, gamma, shear, sound, diffusion=0.0, smear=0.0, heat=0.0):
     """The amount by which <r^2>/6t is below its limit in this box after a time t: (1/t) times the integral of min(s, t) C(s) ds
     of the waves of long_time_tail, which for a decay exp(-rate s) is (1 - exp(-rate t))/(rate^2 t)."""
     k2, count = shear_modes(cells)
-    decays = [(2.0, shear * k2)] + ([] if sound is None else sound_decays(k2, sound))
-    each = sum(amplitude * -numpy.expm1(-(rate + diffusion * k2) * t) / (rate + diffusion * k2)**2 for amplitude, rate in decays)
+    waves = [(2.0, shear * k2)] + ([] if sound is None else sound_decays(k2, sound, heat=heat))
+    each = sum(amplitude * -numpy.expm1(-(rate + diffusion * k2) * t) / (rate + diffusion * k2)**2 for amplitude, rate in waves)
     return (count * numpy.exp(-smear * k2) * each.real).sum() / (3.0 * gamma * cells**3 * t)
 
 
