@@ -111,10 +111,18 @@ def pulled(columns, system, first=dilute.FIRST_LAG):
     return (way[-1] - way[k] + lost) / time, columns["since_error"][-1] / time
 
 
-def pulled_mean(columns, system):
-    """The weighted mean of several runs of one system; None without any."""
-    found = [pulled(one, system) for one in columns]
-    return dilute.fair_mean(*zip(*found))[:2] if found else None
+def answers(results, planned, system):
+    """[(N, box, fibers, force, D, error)] of the systems that were pulled: short-time D in their box, the weighted mean of the runs of one
+    system. planned: {run: (N, box, fibers, force, time)}; system(N, box): the System of its theory, without a table."""
+    groups = {}
+    for name, (*what, _) in planned.items():
+        if name in results and results[name].text:
+            groups.setdefault(tuple(what), []).append(results[name].columns)
+    found = []
+    for (n, box, *others), tables in groups.items():
+        values = [pulled(one, system(n, box)) for one in tables]
+        found.append((n, box, *others, *dilute.fair_mean(*zip(*values))[:2]))
+    return found
 
 
 def beside(covariance, errors):

@@ -150,29 +150,28 @@ def grouped(results):
     return found
 
 
+def system(n, box, table=None, kept=1.0):
+    """The lags.System of chains in a box, whose momentum leaves them the share `kept` of their D."""
+    return lags.System(table, functools.partial(dilute.memory, box=box, form=dilute.gaussian_form(n)),
+                       (cells(n) - dilute.image_shift(box, gyration2(n))) * kept, functools.partial(shape.chain_share, n), box)
+
+
 def systems(results):
     """{name: lags.System}"""
-    found = {}
-    for name, (n, box, count, table) in grouped(results).items():
-        inside = (cells(n) - dilute.image_shift(box, gyration2(n))) * dilute.closed_box(count, n * dilute.MASS, box)
-        found[name] = lags.System(table, functools.partial(dilute.memory, box=box, form=dilute.gaussian_form(n)), inside,
-                                  functools.partial(shape.chain_share, n), box)
-    return found
+    return {name: system(n, box, table, dilute.closed_box(count, n * dilute.MASS, box))
+            for name, (n, box, count, table) in grouped(results).items()}
+
+
+def point(n, box, count, value, error):
+    """The Point of chains whose D in their box is this."""
+    pure = dilute.in_pure_solvent(value, sharing(n)[0], (count - 1) * n / box**3)
+    return Point(n, box, count, value, error, pure + dilute.image_shift(box, gyration2(n)))
 
 
 def forced(results):
     """{(N, box, force): Point} of chains that were pulled."""
-    rows, found = {}, {}
-    for name, (n, box, count, force, _) in PULLED.items():
-        if name in results and results[name].text:
-            rows.setdefault((n, box, count, force), []).append(results[name].columns)
-    for (n, box, count, force), columns in rows.items():
-        system = lags.System(None, functools.partial(dilute.memory, box=box, form=dilute.gaussian_form(n)),
-                             cells(n) - dilute.image_shift(box, gyration2(n)), functools.partial(shape.chain_share, n), box)
-        value, error = lags.pulled_mean(columns, system)
-        pure = dilute.in_pure_solvent(value, sharing(n)[0], (count - 1) * n / box**3)
-        found[n, box, force] = Point(n, box, count, value, error, pure + dilute.image_shift(box, gyration2(n)))
-    return found
+    return {(n, box, force): point(n, box, count, value, error)
+            for n, box, count, force, value, error in lags.answers(results, PULLED, system)}
 
 
 def with_hydrodynamics(results):
@@ -184,13 +183,11 @@ def with_hydrodynamics(results):
     shares = numpy.array([dilute.closed_box(count, n * dilute.MASS, box) for n, box, count, _ in groups.values()])
     covariance = joint.covariance / numpy.outer(shares, shares)
     for i, (name, (n, box, count, _)) in enumerate(groups.items()):
-        value = joint.value[i] / shares[i]
-        pure = dilute.in_pure_solvent(value, sharing(n)[0], (count - 1) * n / box ** 3)
-        points[name] = Point(n, box, count, value, math.sqrt(covariance[i, i]), pure + dilute.image_shift(box, gyration2(n)))
-    for (n, box, force), point in forced(results).items():
+        points[name] = point(n, box, count, joint.value[i] / shares[i], math.sqrt(covariance[i, i]))
+    for (n, box, force), answer in forced(results).items():
         if n >= PULLED_LEAST:
-            points[f"N{n}-L{box}-F{force}"] = point
-            covariance = lags.beside(covariance, [point.error])
+            points[f"N{n}-L{box}-F{force}"] = answer
+            covariance = lags.beside(covariance, [answer.error])
     plain = [i for i, name in enumerate(points) if name.startswith("N")]
     chosen = [list(points.values())[i] for i in plain]
     far, logs = lags.per_length([p.vertices for p in chosen], numpy.array([p.infinite for p in chosen]),
@@ -370,13 +367,13 @@ def image_slope(measured):
 def pulled_verdicts(results, points):
     """D from the answer to a force over D from Brownian motion, in the same box."""
     found = []
-    for (n, box, force), point in forced(results).items():
+    for (n, box, force), answer in forced(results).items():
         free_one = points.get(f"N{n}-L{box}")
         if (n, force) == LINEAR and free_one:
             found.append(dilute.held(
                 f"chains.pulled.F{force}", f"D of {n} vertices from the answer to a force of {force} kT/a0 over D from Brownian motion, "
                 f"{box}³ cells", 1.0, "fluctuation and dissipation, while the answer is linear", dilute.over(
-                    (point.value, point.error), (free_one.value, free_one.error)), HEAT, power=0.25))
+                    (answer.value, answer.error), (free_one.value, free_one.error)), HEAT, power=0.25))
     return found
 
 

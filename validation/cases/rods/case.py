@@ -111,6 +111,12 @@ class Measured:
         return self.joint.estimator if self.joint else 0.0
 
 
+def system(n, box, table=None, kept=1.0):
+    """The lags.System of rods in a box, whose momentum leaves them the share `kept` of their D."""
+    return lags.System(table, functools.partial(dilute.memory, box=box, form=dilute.rod_form(n, BOND)),
+                       (cells(n) - dilute.image_shift(box, moments(n)[1])) * kept, functools.partial(shape.rod_share, n), box)
+
+
 def systems(results):
     """{(vertices, box): (rods, lags.System)}"""
     groups, found = {}, {}
@@ -120,40 +126,32 @@ def systems(results):
             groups.setdefault((int(match[1]), int(match[2])), []).append(result)
     for (n, box), members in sorted(groups.items()):
         table, count = dilute.merged(members, "rod"), int(re.search(r"count: (\d+)", members[0].run.scene)[1])
-        inside = (cells(n) - dilute.image_shift(box, moments(n)[1])) * dilute.closed_box(count, n * dilute.MASS, box)
         if table is not None:
-            found[n, box] = count, lags.System(table, functools.partial(dilute.memory, box=box, form=dilute.rod_form(n, BOND)),
-                                               inside, functools.partial(shape.rod_share, n), box)
+            found[n, box] = count, system(n, box, table, dilute.closed_box(count, n * dilute.MASS, box))
     return found
+
+
+def point(n, box, count, value, error):
+    """The Point of rods whose D in their box is this."""
+    pure = dilute.in_pure_solvent(value, sharing(n)[0], (count - 1) * n / box**3)
+    return Point(n, box, value, error, pure + dilute.image_shift(box, moments(n)[1]))
 
 
 def forced(results):
     """[Point] of rods that were pulled; the test's as well."""
-    rows, found = {}, []
-    for name, (n, box, count, _, _) in PULLED.items():
-        if name in results and results[name].text:
-            rows.setdefault((n, box, count), []).append(results[name].columns)
-    for (n, box, count), columns in rows.items():
-        system = lags.System(None, functools.partial(dilute.memory, box=box, form=dilute.rod_form(n, BOND)),
-                             cells(n) - dilute.image_shift(box, moments(n)[1]), functools.partial(shape.rod_share, n), box)
-        value, error = lags.pulled_mean(columns, system)
-        pure = dilute.in_pure_solvent(value, sharing(n)[0], (count - 1) * n / box**3)
-        found.append(Point(n, box, value, error, pure + dilute.image_shift(box, moments(n)[1])))
-    return found
+    return [point(n, box, count, value, error) for n, box, count, _, value, error in lags.answers(results, PULLED, system)]
 
 
 def with_hydrodynamics(results):
     """Short-time D of rods with hydrodynamics."""
     found, points = systems(results), []
-    joint = lags.joint([system for _, system in found.values()])
+    joint = lags.joint([one for _, one in found.values()])
     if joint is None:
         return Measured([], None, {}, None, None)
     shares = numpy.array([dilute.closed_box(count, n * dilute.MASS, box) for (n, box), (count, _) in found.items()])
     covariance = joint.covariance / numpy.outer(shares, shares)
     for i, ((n, box), (count, _)) in enumerate(found.items()):
-        value = joint.value[i] / shares[i]
-        pure = dilute.in_pure_solvent(value, sharing(n)[0], (count - 1) * n / box ** 3)
-        points.append(Point(n, box, value, math.sqrt(covariance[i, i]), pure + dilute.image_shift(box, moments(n)[1])))
+        points.append(point(n, box, count, joint.value[i] / shares[i], math.sqrt(covariance[i, i])))
     answers = [p for p in forced(results) if (p.vertices, p.box) != TEST]
     points, covariance = points + answers, lags.beside(covariance, [p.error for p in answers])
     far, logs = lags.per_length([p.vertices for p in points], numpy.array([p.infinite for p in points]), covariance, cells)
