@@ -148,25 +148,31 @@ class Curves(unittest.TestCase):
     def test_rotation(self):
         t = numpy.array([100.0, 200.0, 400.0, 800.0, 1600.0, 3200.0])
         made = self.table(t, axis_unit=0.98 * numpy.exp(-t / 5e4), intervals=32000.0 / t)
-        tau, _, height = sd.rotation_time([made, None], 150.0, 4000.0, (4, 4))
+        tau, _, height = sd.rotation_time([made, None], (150.0, 300.0), 4000.0, (4, 4))
         self.assertAlmostEqual(tau, 5e4, 3)
         self.assertAlmostEqual(height, 0.98, 9)
-        self.assertIsNone(sd.rotation_time([made], 150.0, 1000.0, (4,)))
-        self.assertIsNone(sd.rotation_time([None], 150.0, 4000.0, (4,)))
+        self.assertIsNone(sd.rotation_time([made], (150.0, 300.0), 1000.0, (4,)))
+        self.assertIsNone(sd.rotation_time([None], (150.0, 300.0), 4000.0, (4,)))
         # two runs are pooled by their intervals, and halve the error's square
         other = self.table(t, axis_unit=0.96 * numpy.exp(-t / 5e4), intervals=96000.0 / t)
-        both = sd.rotation_time([made, other], 150.0, 4000.0, (4, 4))
+        both = sd.rotation_time([made, other], (150.0, 300.0), 4000.0, (4, 4))
         self.assertAlmostEqual(both[2], 0.965, 9)
         # and by their fibers: weights 1 x 12 and 3 x 4
-        self.assertAlmostEqual(sd.rotation_time([made, other], 150.0, 4000.0, (12, 4))[2], 0.97, 9)
-        one, four = (sd.rotation_time([made] * n, 150.0, 4000.0, (4,) * n)[1] for n in (1, 4))
+        self.assertAlmostEqual(sd.rotation_time([made, other], (150.0, 300.0), 4000.0, (12, 4))[2], 0.97, 9)
+        one, four = (sd.rotation_time([made] * n, (150.0, 300.0), 4000.0, (4,) * n)[1] for n in (1, 4))
         self.assertAlmostEqual(one / four, 2.0, 6)
-        # bends that relax slowly: tau_r changes with the first lag, and the error holds the change
-        bent = self.table(t, axis_unit=1.0 - t / 5e4 + 2e-3 * numpy.exp(-t / 300.0), intervals=1e9 / t)
-        tau, error, _ = sd.rotation_time([bent], 150.0, 4000.0, (4,))
-        later = sd.rotation_fit(*sd.turning([bent], (4,)), 300.0, 4000.0)[0]
+        # bends that relax slowly: tau_r changes with the first lag. The error holds the change as long as nobody can see it
+        firsts, t = (150.0, 300.0, 600.0, 1200.0, 2400.0), 100.0 * 2.0**numpy.arange(9)
+        cosine = numpy.exp(-t / 5e4) + 2e-3 * numpy.exp(-t / 300.0)
+        few, many = (self.table(t, axis_unit=cosine, intervals=count / t) for count in (2e5, 1e9))
+        tau, error, _ = sd.rotation_time([few], firsts, 3e4, (4,))
+        early, later = (sd.rotation_fit(*sd.turning([few], (4,)), first, 3e4)[0] for first in firsts[:2])
+        self.assertEqual(tau, early)
         self.assertGreater(abs(later - tau), 0.01 * tau)
         self.assertGreaterEqual(error, abs(later - tau))
+        # and where it is seen, a later lag is taken, or none
+        self.assertAlmostEqual(sd.rotation_time([many], firsts, 3e4, (4,))[0] / 5e4, 1.0, 3)
+        self.assertIsNone(sd.rotation_time([many], firsts[:3], 3e4, (4,)))
 
     def test_error_of_rotation(self):
         """Rotors that turn by small angles about two axes, with bends that tilt them anew every time: the scatter of tau_r

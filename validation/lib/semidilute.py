@@ -211,19 +211,23 @@ def rotation_fit(t, c, error, shortest, longest, least=4):
     return (1.0 / rate, math.sqrt(inverse[1, 1]) / rate**2, math.exp(-intercept)) if rate > 0 else None
 
 
-def rotation_time(tables, shortest, longest, fibers):
+def rotation_time(tables, firsts, longest, fibers):
     """(tau_r, error, intercept) of runs of the same fibers, so many in each, tau_r = 1/(2 D_r). Bends hardly tilt the regression axis; the
-    intercept has what they do. The choice of the first lag has an error of its own, in the root of the sum of squares: the change
-    if it is doubled, or what this change could hide."""
+    intercept has what they do, and what the flow around a fiber does before it has built up. firsts: first lags to try, each twice the
+    one before. The first one is taken from which on tau_r changes by at most two standard errors whenever the lag is doubled (the
+    rule of lags.rule). The choice has an error of its own, in the root of the sum of squares: the change if it is doubled, or what
+    this change could hide."""
     chosen = [(one, count) for one, count in zip(tables, fibers) if one is not None and "axis_unit" in one]
     if not chosen:
         return None
     seen = turning(*zip(*chosen))
-    found, doubled = (rotation_fit(*seen, first, longest) for first in (shortest, 2.0 * shortest))
-    if not found or not doubled:
+    fits = [fit for fit in (rotation_fit(*seen, first, longest) for first in firsts) if fit]
+    changes = [(abs(later[0] - fit[0]), math.sqrt(max(later[1]**2 - fit[1]**2, 0.05 * later[1]**2))) for fit, later in zip(fits, fits[1:])]
+    bad = [k for k, (change, hidden) in enumerate(changes) if change > 2.0 * hidden]
+    first = bad[-1] + 1 if bad else 0
+    if first >= len(changes):
         return None
-    change = max(abs(doubled[0] - found[0]), math.sqrt(max(doubled[1]**2 - found[1]**2, 0.0)))
-    return found[0], math.hypot(found[1], change), found[2]
+    return fits[first][0], math.hypot(fits[first][1], max(changes[first])), fits[first][2]
 
 
 def first_rate(t, y):

@@ -115,10 +115,9 @@ SYSTEMS = {"quick": {"length": 12.0, "contour": 23 * sd.BOND, "box": 10, "count"
                         "choice": 5.12, "choices": tuple(CHOICES), "late": 512.0}}
 LABELS = {"hi-entangled": "hydrodynamics on, uncrossable", "hi-free": "on, crossing free",
           "off-entangled": "off, uncrossable", "off-free": "off, crossing free"}
-# Lags (t0). The first lag is the shortest of 10, 20, 40, ... that may be doubled without a change of tau_r by more than
-# two standard errors.
+# Lags (t0). Those tau_r may begin with, and the last one (sd.rotation_time).
 HELD_LAG = 512.0  # t0: long after the bend, and seen several times
-ROTATION = (40.0, 2000.0)
+ROTATION = ((10.0, 20.0, 40.0, 80.0, 160.0), 2000.0)
 
 
 def curve(results, name):
