@@ -76,6 +76,29 @@ class Shape(unittest.TestCase):
         bonds = [numpy.sqrt(((places[i + 1] - places[i])**2).sum(axis=0)).mean() for i in (0, 1)]
         self.assertAlmostEqual(shape.pair_mean(3, lambda r: r), 2.0 * (ends + sum(bonds)) / 9.0, 12)
 
+    def test_a_pair_turns(self):
+        """Two vertices, d = 2 apart: D_r = 2 (D - G)/d^2, D what each has by itself, G the field across their bond; tau_r = 1/(2 D_r). Oseen's
+        field of points: G = 1/(8 pi eta d)."""
+        pair = numpy.array([[[0.0, 0.0, 0.0], [0.0, 2.0, 0.0]]])
+        across = 1.0 / (16.0 * math.pi * 10.0)
+        own = brownian.smeared_oseen(numpy.zeros((1, 3)), 10.0, 1e-4)[0, 0, 0]
+        for rate in shape.turning_rates(pair, 0.05 * numpy.eye(2), 10.0, 1e-4):
+            self.assertAlmostEqual(rate[0], 4.0 * (0.05 + own - across) / 4.0, 4)
+
+    def test_fibers_turn(self):
+        """Without the field, all points with the same friction: 2 D_r of a straight row is 2 D/sum of s^2, and a bent fiber's frozen shape turns
+        as its moment of inertia says. With it, rods of 64 turn within 10 % as the ellipsoidal ends of Tirado and Garcia de la Torre do."""
+        row = 0.5 * (numpy.arange(9.0) - 4.0)
+        straight = numpy.stack([row, 0.0 * row, 0.0 * row], axis=1)[None]
+        for rate in shape.turning_rates(straight, 0.02 * numpy.eye(9), 1e30, 0.1):
+            self.assertAlmostEqual(rate[0], 2.0 * 0.02 / (row**2).sum(), 12)
+        bent = numpy.array([[[-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]])
+        about = bent[0] - bent[0].mean(axis=0)  # axis x: D about y and z, from the moments of inertia x^2 + z^2 and x^2 + y^2
+        x2, y2 = (about[:, 0]**2).sum(), (about[:, 1]**2).sum()
+        self.assertAlmostEqual(shape.turning_rates(bent, 0.02 * numpy.eye(3), 1e30, 0.1)[1][0], 0.02 * (1.0 / x2 + 1.0 / (x2 + y2)), 12)
+        tirado = 1.0 / (2.0 * 3.0 / (math.pi * dilute.ETA * (63 * shape.BOND)**3) * (math.log(63 * shape.BOND / 0.6) - 0.662 + 0.0162))
+        self.assertAlmostEqual(shape.turning_times(64, 1e5, 1000, 10)[1] / tirado, 1.0, delta=0.1)
+
 
 def walkers(random, count, local, step=0.4, steps=512, share=0.0):
     """dilute.merged's table of random walkers with D = 1/2, all lags without overlap, and D(t) = D (1 - share) - local D/t."""

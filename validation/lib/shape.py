@@ -64,10 +64,10 @@ def rod_share(n, times):
 
 
 @functools.lru_cache(maxsize=None)
-def rod_shapes(n, samples=3000):
-    """Independent shapes of the paper's rods, of their exact distribution: vertices x 3 x samples."""
+def rod_shapes(n, samples=3000, kappa=None):
+    """Independent shapes of the paper's rods, of their exact distribution, or of fibers with another stiffness: vertices x 3 x samples."""
     random = numpy.random.Generator(numpy.random.PCG64(n))
-    kappa, count = 2.0 * n, (n - 1, samples)
+    kappa, count = kappa or 2.0 * n, (n - 1, samples)
     length = random.normal(REST, math.sqrt(1.0 / SPRING), (16, *count))  # density times l^2: of 16 tries the first accepted
     accepted = (length > 0.0) & (random.uniform(size=length.shape) < length**2)
     length = numpy.take_along_axis(length, accepted.argmax(axis=0)[None], axis=0)[0]
@@ -88,3 +88,36 @@ def pair_mean(n, pair, samples=400):
     for one in places:
         total += pair(numpy.sqrt(((places - one)**2).sum(axis=1))).mean(axis=1).sum()
     return total / n**2
+
+
+def turning_rates(shapes, alone, eta, spread):
+    """Rates [of each shape] at which the regression axis of fibers forgets its direction, 2 D_r, kT = 1; shapes: fibers x vertices x 3. Twice:
+    as long as bends have not relaxed, when each vertex moves by itself, as in Kirkwood's D; and with a frozen shape, whose vertices share
+    one velocity and one rotation. alone: what each vertex has without the field, and what they share: a matrix."""
+    count, n, _ = shapes.shape
+    places = shapes - shapes.mean(axis=1, keepdims=True)
+    blocks = brownian.smeared_oseen(places[:, :, None] - places[:, None], eta, spread) + alone[..., None, None] * numpy.eye(3)
+    along = numpy.arange(n) - 0.5 * (n - 1.0)
+    axis = numpy.einsum("i,kia->ka", along, places)
+    length2 = (axis**2).sum(axis=1)
+    across = numpy.eye(3) - axis[:, :, None] * axis[:, None] / length2[:, None, None]
+    free = numpy.einsum("i,j,kijab,kab->k", along, along, blocks, across) / length2
+    rigid = numpy.zeros((count, n, 3, 6))
+    rigid[..., :3] = numpy.eye(3)
+    for k in range(3):
+        rigid[..., 3 + k] = numpy.cross(numpy.eye(3)[k], places)
+    rigid = rigid.reshape(count, 3 * n, 6)
+    friction = rigid.transpose(0, 2, 1) @ numpy.linalg.solve(blocks.transpose(0, 1, 3, 2, 4).reshape(count, 3 * n, 3 * n), rigid)
+    return free, (numpy.linalg.pinv(friction, 1e-12, hermitian=True)[:, 3:, 3:] * across).sum(axis=(1, 2))  # a straight one turns freely about itself
+
+
+@functools.lru_cache(maxsize=None)
+def turning_times(n, kappa, box, samples=300):
+    """(tau_r, of bends that have not relaxed; of frozen shapes; the larger standard error) of a lone fiber in a periodic box, nothing
+    fitted: the field smeared over cells, less what images take from a rotation, 1/(6 eta V)."""
+    alone = dilute.sharing_matrix(lambda draw: dilute.rod_shape(n, BOND, draw))
+    shapes = numpy.moveaxis(rod_shapes(n, samples, kappa), 2, 0)
+    parts = [turning_rates(some, alone, dilute.ETA, dilute.CELL_SPREAD) for some in numpy.array_split(shapes, 10)]
+    rates = numpy.concatenate(parts, axis=1) - 2.0 / (6.0 * dilute.ETA * box**3)
+    times = 1.0 / rates.mean(axis=1)
+    return *times, float((rates.std(axis=1, ddof=1) / math.sqrt(samples) * times**2).max())
