@@ -3,6 +3,7 @@
 Units a0 = kT = m = 1, time in t0. The paper's fiber: 64 vertices of mass 5, k = 100, l0 = 0.5, kappa = 64, so that
 L = l_p = 32 by the paper's count (vertices times l0); its mean contour is 63 x 0.5385 = 33.92."""
 import functools
+import itertools
 import math
 import pathlib
 import string
@@ -10,7 +11,7 @@ import string
 import numpy
 from scipy import linalg, special
 
-from lib import bending, dilute, stats
+from lib import bending, dilute, shape, stats
 
 BOND = (0.5**3 + 3 * 0.5 * 0.01) / (0.5**2 + 0.01)  # <l> of k = 100, l0 = 0.5: r^2 exp(-k (r - l0)^2/2) in closed form, 0.538462
 BOND2 = (0.5**4 + 6 * 0.5**2 * 0.01 + 3 * 0.01**2) / (0.5**2 + 0.01)  # <l^2>, 0.299231
@@ -86,10 +87,10 @@ def free_fiber(times, vertices, count, box, hydrodynamics):
 
 
 def rod_rotation_time(length, diameter, viscosity, volume=math.inf):
-    """1/(2 D_r), D_r by Tirado and Garcia de la Torre; in a periodic box less 1/(6 eta V)."""
+    """1/(2 D_r), D_r by Tirado and Garcia de la Torre; in a periodic box less what images take (shape.IMAGES)."""
     p = length / diameter
     rotation = 3.0 / (math.pi * viscosity * length**3) * (math.log(p) - 0.662 + 0.917 / p - 0.050 / p**2)
-    return 1.0 / (2.0 * (rotation - 1.0 / (6.0 * viscosity * volume)))
+    return 1.0 / (2.0 * (rotation - shape.IMAGES / (viscosity * volume)))
 
 
 PARTS = 24  # of a run, from which refused_moves has its errors (validation/measure/refusal.h)
@@ -221,7 +222,7 @@ def rotation_time(tables, firsts, longest, fibers):
     if not chosen:
         return None
     seen = turning(*zip(*chosen))
-    fits = [fit for fit in (rotation_fit(*seen, first, longest) for first in firsts) if fit]
+    fits = list(itertools.takewhile(bool, (rotation_fit(*seen, first, longest) for first in firsts)))
     changes = [(abs(later[0] - fit[0]), math.sqrt(max(later[1]**2 - fit[1]**2, 0.05 * later[1]**2))) for fit, later in zip(fits, fits[1:])]
     bad = [k for k, (change, hidden) in enumerate(changes) if change > 2.0 * hidden]
     first = bad[-1] + 1 if bad else 0

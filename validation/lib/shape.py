@@ -14,6 +14,10 @@ SPRING, REST = 100.0, 0.5  # of a rod's bonds
 BOND = (REST**3 + 3.0 * REST / SPRING) / (REST**2 + 1.0 / SPRING)  # <l>: r^2 exp(-k (r - l0)^2/2) in closed form
 BOND2 = (REST**4 + 6.0 * REST**2 / SPRING + 3.0 / SPRING**2) / (REST**2 + 1.0 / SPRING)  # <l^2>
 
+# What the images in a periodic box take from D_r of a slender rod, times eta V/kT, averaged over directions: of the torque 1/6, as for
+# a sphere, and of the strain that a turning rod makes 1/10.
+IMAGES = 4.0 / 15.0
+
 LATE = brownian.LAGS[-1]  # of D "at long times"
 
 # Share of D that a flexible chain's g_cm/6t lacks at brownian.LAGS, and its error at the last of them: the last column of
@@ -108,16 +112,18 @@ def turning_rates(shapes, alone, eta, spread):
         rigid[..., 3 + k] = numpy.cross(numpy.eye(3)[k], places)
     rigid = rigid.reshape(count, 3 * n, 6)
     friction = rigid.transpose(0, 2, 1) @ numpy.linalg.solve(blocks.transpose(0, 1, 3, 2, 4).reshape(count, 3 * n, 3 * n), rigid)
-    return free, (numpy.linalg.pinv(friction, 1e-12, hermitian=True)[:, 3:, 3:] * across).sum(axis=(1, 2))  # a straight one turns freely about itself
+    moving = numpy.linalg.pinv(friction, 1e-12, hermitian=True)  # a straight row turns freely about itself
+    return free, (moving[:, 3:, 3:] * across).sum(axis=(1, 2))
 
 
 @functools.lru_cache(maxsize=None)
 def turning_times(n, kappa, box, samples=300):
     """(tau_r, of bends that have not relaxed; of frozen shapes; the larger standard error) of a lone fiber in a periodic box, nothing
-    fitted: the field smeared over cells, less what images take from a rotation, 1/(6 eta V)."""
+    fitted: the field smeared over cells, less what images take from D_r. Without the field: of a straight row. Left out: what the
+    fiber's own vertices make heavier."""
     alone = dilute.sharing_matrix(lambda draw: dilute.rod_shape(n, BOND, draw))
     shapes = numpy.moveaxis(rod_shapes(n, samples, kappa), 2, 0)
     parts = [turning_rates(some, alone, dilute.ETA, dilute.CELL_SPREAD) for some in numpy.array_split(shapes, 10)]
-    rates = numpy.concatenate(parts, axis=1) - 2.0 / (6.0 * dilute.ETA * box**3)
+    rates = numpy.concatenate(parts, axis=1) - 2.0 * IMAGES / (dilute.ETA * box**3)
     times = 1.0 / rates.mean(axis=1)
     return *times, float((rates.std(axis=1, ddof=1) / math.sqrt(samples) * times**2).max())

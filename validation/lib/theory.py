@@ -37,10 +37,12 @@ def heat_diffusion(gamma=5.0, dt_c=0.02, alpha=90.0):
 
     Kinetic: 5/3 of what holds at constant pressure, to first order in 1/gamma (Tuzel, Strauss, Ihle, Kroll, Phys. Rev. E 68, 036701
     (2003)). Collisional: in a cell of n members the energies of particles come nearer to their mean by (4/3)(1 - cos alpha)/n of the
-    difference, (u.w of a member is what turns), and what is handed on moves by a0^2/6 of mean square per axis, as momentum does."""
+    difference: a rotation changes a member's energy through u.w only, u the cell's velocity, w the member's relative one. It spreads over
+    the cell as momentum does. The same as in Ihle, Tuzel, Kroll, Phys. Rev. E 72, 046707 (2005), at constant pressure."""
     turn = 1.0 - math.cos(math.radians(alpha))
     kinetic = 5.0 / 6.0 * dt_c * (3.0 / turn - 1.0 + 6.0 / gamma * (0.8 - 0.5 / turn))
-    partners = sum(math.exp(n * math.log(gamma) - gamma - math.lgamma(n + 1.0)) * (n - 1.0) / n for n in range(1, int(gamma + 20.0 * math.sqrt(gamma)) + 20))
+    most = int(gamma + 20.0 * math.sqrt(gamma)) + 20
+    partners = sum(math.exp(n * math.log(gamma) - gamma - math.lgamma(n + 1.0)) * (n - 1.0) / n for n in range(1, most))
     return kinetic, turn / (9.0 * dt_c) * partners / gamma
 
 

@@ -73,7 +73,8 @@ def campaign():
                      scene=sd.scene(count=40, solvent=sd.BATH, forbidden="false", every=1000, longest_lag=256000)))
     # The first three have a thermostat, which these fibers do not need.
     found += [Run(name, steps=1000000, hours=0.28 if number < 3 else 0.21, seed=3101 + number, priority=1,
-                  scene=sd.scene(count=fibers, solvent=sd.SOLVENT if number < 3 else sd.FREE_SOLVENT, forbidden="false", every=1000, longest_lag=256000))
+                  scene=sd.scene(count=fibers, solvent=sd.SOLVENT if number < 3 else sd.FREE_SOLVENT, forbidden="false", every=1000,
+                                 longest_lag=256000))
               for number, (name, fibers) in enumerate(AXIS["hi"].items())]
     found += [Run(name, steps=1000000, hours=0.35, seed=3102, priority=1,
                   scene=sd.scene(count=fibers, solvent=sd.FREE_SOLVENT, forbidden="false", every=1000, longest_lag=256000))
@@ -365,13 +366,13 @@ def share_of(one, other, time):
 
 def rotation_verdicts(results, system):
     vertices, _, box = size(system)
-    early, late, error = shape.turning_times(vertices, float(vertices), box)
-    known = 0.5 * abs(late - early) + 0.03 * late
-    found = [sd.measured(Verdict("tube.rotation.hi", f"τ_r with hydrodynamics, t0 (the paper: {sd.PAPER_ROTATION_TIME:.2g}, without an error bar)",
-                                 0.5 * (early + late), "bent fibers in Oseen's field smeared over the cells, in this box, nothing fitted: between "
-                                 f"{early:.3g} while bends have not relaxed and {late:.3g} with frozen shapes; 3 % as for D of rods. Straight rods: "
-                                 f"{shape.turning_times(vertices, 1e5, box)[1]:.2g}", known, expected_error=error, rival=sd.PAPER_ROTATION_TIME),
-                         rotation(results, "hi", system), known)]
+    early, late, _ = shape.turning_times(vertices, float(vertices), box)
+    straight = shape.turning_times(vertices, 1e5, box)[1]
+    allowed = 0.15 * sd.PAPER_ROTATION_TIME
+    found = [sd.measured(Verdict("tube.rotation.paper", "τ_r with hydrodynamics, t0", sd.PAPER_ROTATION_TIME, "Sec. IV D, without an error bar: 15 %",
+                                 allowed, kind="paper", reason="Bent fibers in Oseen's field smeared over the cells, in this box, nothing fitted, have "
+                                 f"{early:.0f} t0 while bends have not relaxed and {late:.0f} with frozen shapes; straight ones {straight:.0f}."),
+                         rotation(results, "hi", system), allowed)]
     expected = expected_rotation("off", system)
     found.append(sd.measured(Verdict("tube.rotation.off", "τ_r, hydrodynamics off, t0", expected,
                                      "friction of the vertices at the radius of gyration: 20 % for bends", 0.2 * expected),
@@ -508,9 +509,9 @@ reversed: with hydrodynamics the friction is lower for long waves than for short
 The runs have a thermostat (one factor for all velocities), because rejected moves heat: without one this system gains
 7·10⁻⁴ of its energy per t0. The effect of another thermostat, of `refusal: bounce` and of half the time step is
 measured twice: before fibers meet (`choice`), and in the tube (`late`). τ_r is measured from rotational diffusion of the regression axis, which bends hardly tilt, at
-lags of a thousandth to a hundredth of it. This needs a run of only a tenth of the correlation time of the end-to-end vector. Four fibers
+lags that are short beside it. This needs a run of only a tenth of the correlation time of the end-to-end vector. Four fibers
 that may cross share the box, so that the statistics are four times as large. The mass of the others makes the fluid 0.3 % more viscous, and their
-stress 4 %; both are taken off, and half of the stress is an error. With 24 fibers in the box τ_r is larger.
+stress 4 %; both are taken off, and half of the stress is an error. With 24 fibers in the box theory says a quarter more.
 
 “Off” still has some coupling in so dense a suspension. Vertices that share a collision cell, two of each fiber and others, are
 slowed down together, with the bath of phantoms as with the paper's swap of velocities. “On” is another fluid than the solvent. With two
