@@ -130,8 +130,8 @@ def long_time_tail(t, cells, gamma, shear, sound, diffusion=0.0, smear=0.0, heat
 
         (1/3N) sum_k exp(-(D t + smear) k^2) [ 2 exp(-shear k^2 t) + sound_mode(t) ]
 
-    shear: nu; sound: damping Gamma of sound, None: without sound; heat as for sound_decays. smear: CELL at most. For t long after the first collisions. In
-    an infinite box sound dies as exp(-c^2 t/4 Gamma), and the rest is (2/3 gamma)(4 pi (nu + D) t)^(-3/2)."""
+    shear: nu; sound: damping Gamma of sound, None: without sound; heat as for sound_decays. smear: CELL at most. For t long after the
+    first collisions. In an infinite box sound dies as exp(-c^2 t/4 Gamma), and the rest is (2/3 gamma)(4 pi (nu + D) t)^(-3/2)."""
     k2, count = shear_modes(cells)
     t = numpy.asarray(t, float)[..., None]
     waves = 2.0 * numpy.exp(-shear * k2 * t) + (0.0 if sound is None else sound_mode(t, k2, sound, heat))
