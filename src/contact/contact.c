@@ -50,7 +50,7 @@ bool contact_alloc(struct contact *c, const struct model *m, contact_force *forc
 static void free_neighbors(struct neighbors *nb)
 {
   for (uint32_t c = 0; nb->entries && c < nb->cell_count; c++)
-    if (nb->entries[c].room > NEIGHBORS_FIRST_ENTRIES)
+    if (nb->entries[c].room > SEARCH_FIRST_ENTRIES)
       free(nb->entries[c].at);
   free(nb->entries);
   free(nb->reference);

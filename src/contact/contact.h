@@ -73,11 +73,11 @@ struct pair_list {
 };
 
 /* Entries that a row of the grid holds itself; a longer row is allocated elsewhere. */
-enum { NEIGHBORS_FIRST_ENTRIES = 15 };
+enum { SEARCH_FIRST_ENTRIES = 15 };
 
 /* A bond that touches a search cell. */
 struct grid_entry {
-  uint64_t key; /* the part of the box around the bond that lies in the cell: contact/neighbors.c */
+  uint64_t key; /* the part of the box around the bond that lies in the cell: contact/search_cells.h */
   struct grid_bond {
     int32_t bond;
     int8_t image[3]; /* of the bond that lies there; 0: the image of its first end's reference position */
@@ -89,7 +89,7 @@ struct grid_entry {
 struct grid_row {
   _Alignas(64) struct grid_entry *at;
   uint32_t count, room;
-  struct grid_entry first[NEIGHBORS_FIRST_ENTRIES];
+  struct grid_entry first[SEARCH_FIRST_ENTRIES];
 };
 
 struct neighbors {

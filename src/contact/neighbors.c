@@ -1,45 +1,16 @@
 #include "contact/neighbors.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "contact/capsule.h"
 #include "contact/drift.h"
 #include "contact/pairs.h"
+#include "contact/search_cells.h"
 
 #define OVERLAPS 256 /* collected before they are looked at */
 #define COLUMNS 64   /* looked at together */
 #define FIRST_NEAR 64
-#define SEARCH_CELL_A0 1.0 /* least edge of a search cell */
-
-/* --- lists ------------------------------------------------------------------------------------------------------- */
-
-/* Doubles the capacity of a row. Its first entries stand in the grid itself; they are copied to new memory. NULL if
- * memory is short. */
-static void *grow(void *at, uint32_t *room, uint32_t first, size_t size)
-{
-  const bool began_here = *room == first;
-  if (*room > UINT32_MAX / 2)
-    return NULL;
-  void *bigger = began_here ? malloc(2 * first * size) : realloc(at, 2 * *room * size);
-  if (!bigger)
-    return NULL;
-  *room *= 2;
-  return began_here ? memcpy(bigger, at, first * size) : bigger;
-}
-
-static bool add_entry(struct grid_row *row, const struct grid_entry *e)
-{
-  if (row->count == row->room) {
-    struct grid_entry *bigger = grow(row->at, &row->room, NEIGHBORS_FIRST_ENTRIES, sizeof *bigger);
-    if (!bigger)
-      return false;
-    row->at = bigger;
-  }
-  row->at[row->count++] = *e;
-  return true;
-}
 
 static bool add_near(struct neighbor_list *list, struct neighbor n)
 {
@@ -49,100 +20,11 @@ static bool add_near(struct neighbor_list *list, struct neighbor n)
   return true;
 }
 
-/* --- grid -------------------------------------------------------------------------------------------------------- */
-
-/* The box around a capsule, in lattice units. reach_a0: with some slack. */
-struct capsule_box {
-  struct point low, high;
-};
-
-static inline struct capsule_box box_around(struct point a, struct point b, double reach_a0)
-{
-  const int64_t reach = lattice_from_a0(reach_a0);
-  return (struct capsule_box){
-      {(a.x < b.x ? a.x : b.x) - reach, (a.y < b.y ? a.y : b.y) - reach, (a.z < b.z ? a.z : b.z) - reach},
-      {(a.x > b.x ? a.x : b.x) + reach, (a.y > b.y ? a.y : b.y) + reach, (a.z > b.z ? a.z : b.z) + reach}};
-}
-
-static struct capsule_box box_of(const struct neighbors *nb, const struct model *model, uint32_t bond)
+static struct search_box box_of(const struct neighbors *nb, const struct model *model, uint32_t bond)
 {
   const struct reference_position *p = &nb->reference[bond], *q = &nb->reference[model->next[bond]];
-  return box_around(p->at, q->at, capsule_most(p->skin, q->skin) + nb->around);
+  return search_box_around(p->at, q->at, capsule_most(p->skin, q->skin) + nb->around);
 }
-
-/* The image of the box in which a point lies. */
-static inline struct image image_of(const struct neighbors *nb, struct point p, const struct box *box)
-{
-  return (struct image){{(int32_t)lattice_image_by(p.x, box->edge[0], nb->inverse[0].box_edge),
-                         (int32_t)lattice_image_by(p.y, box->edge[1], nb->inverse[1].box_edge),
-                         (int32_t)lattice_image_by(p.z, box->edge[2], nb->inverse[2].box_edge)}};
-}
-
-/* A walk along one axis through the search cells that an interval touches. */
-struct walk {
-  int64_t low, high;   /* the interval, from the lower side of the cell at hand */
-  int32_t cell, image; /* the cell at hand, wrapped */
-};
-
-/* The walk begins in the cell of `low`. Images are counted from `home`. */
-static struct walk walk_from(int64_t low, int64_t high, const struct neighbors *nb, int axis, int32_t home)
-{
-  const int64_t edge = nb->cell_edge[axis], at = lattice_image_by(low, edge, nb->inverse[axis].cell_edge),
-                image = lattice_image_by(at, nb->cells[axis], nb->inverse[axis].cells);
-  return (struct walk){low - at * edge, high - at * edge, (int32_t)(at - image * nb->cells[axis]),
-                       (int32_t)image - home};
-}
-
-/* To the next cell; false if the interval ends before it. */
-static bool walk_on(struct walk *w, const struct neighbors *nb, int axis)
-{
-  if (w->high < nb->cell_edge[axis])
-    return false;
-  w->low -= nb->cell_edge[axis];
-  w->high -= nb->cell_edge[axis];
-  if (++w->cell == nb->cells[axis])
-    w->cell = 0, w->image++;
-  return true;
-}
-
-/* --- keys -------------------------------------------------------------------------------------------------------- */
-
-/* The part of a box that lies in a cell, in one integer. Along axis k, the faces are at `low` and `high`, in about
- * 1/128 of the cell's edge, rounded down. The rounding is safe: intervals that overlap in the cell still overlap. Byte
- * k of the key is low, byte 3 + k is 127 - high; bit 48 + k says that the box begins below the cell. */
-enum { FACE_MOST = 127, BEGINS_BELOW = 48 };
-
-static inline uint64_t key_of_axis(const struct walk *w, const struct neighbors *nb, int axis)
-{
-  const uint64_t low = w->low < 0 ? 0 : (uint64_t)(w->low >> nb->cell_shift[axis]);
-  const uint64_t high = w->high < nb->cell_edge[axis] ? (uint64_t)(w->high >> nb->cell_shift[axis]) : FACE_MOST;
-  return low << 8 * axis | (FACE_MOST - high) << 8 * (axis + 3) | (uint64_t)(w->low < 0) << (BEGINS_BELOW + axis);
-}
-
-/* What a key is compared with, made of the key of one box: high in bytes 0 to 2, 127 - low in bytes 3 to 5. The highest
- * bit of each byte is set. below: the other box must not begin below the cell along the axes of these bits. */
-struct probe {
-  uint64_t faces, below;
-};
-
-#define EACH_BYTE 0x0101010101010101u
-
-static inline struct probe probe_of(uint64_t key)
-{
-  const uint64_t swapped = (key & 0xffffff) << 24 | (key >> 24 & 0xffffff);
-  return (struct probe){EACH_BYTE * 0xff - swapped, key & (uint64_t)7 << BEGINS_BELOW};
-}
-
-/* True if the boxes of two entries of one cell overlap, and the lower corner of the overlap lies in this cell: so a
- * pair that overlaps in several cells is taken once. Along every axis one of the two boxes begins in the cell; each
- * face `low` is at most the other's `high`, that is, no byte of the key is greater than that of the probe. In the
- * difference the highest bit of a byte stays set if its byte is not greater; no byte borrows from the next. */
-static inline bool overlap(struct probe mine, uint64_t its)
-{
-  return ((~(mine.faces - its) & EACH_BYTE * 0x80) | (mine.below & its)) == 0;
-}
-
-/* --- visits to cells --------------------------------------------------------------------------------------------- */
 
 /* Pairs of bonds whose boxes overlap, before the distance is tested. near: if not NULL, the other bonds are listed
  * there; if NULL, pairs whose capsules are not apart enter the pair list. */
@@ -153,37 +35,6 @@ struct search {
     struct grid_bond mine, its; /* in the same cell */
   } at[OVERLAPS + 1];           /* one that is written, and not taken */
 };
-
-/* A function that handles the entry of a bond in one cell; visit_cells calls it for each cell. */
-typedef bool visit(struct neighbors *, const struct model *, uint32_t cell, const struct grid_entry *, struct search *);
-
-/* Calls `what` for each cell that the box around a bond touches. */
-static inline bool visit_cells(struct neighbors *nb, const struct model *model, uint32_t bond, struct capsule_box box,
-                               visit *what, struct search *found)
-{
-  struct grid_entry e = {.is = {.bond = (int32_t)bond}};
-  const struct image home = image_of(nb, nb->reference[bond].at, &model->box);
-  struct walk z = walk_from(box.low.z, box.high.z, nb, 2, home.k[2]);
-  const struct walk y_start = walk_from(box.low.y, box.high.y, nb, 1, home.k[1]),
-                    x_start = walk_from(box.low.x, box.high.x, nb, 0, home.k[0]);
-  do {
-    struct walk y = y_start;
-    const uint64_t key_z = key_of_axis(&z, nb, 2);
-    e.is.image[2] = (int8_t)z.image;
-    do {
-      struct walk x = x_start;
-      const uint64_t key_yz = key_z | key_of_axis(&y, nb, 1);
-      e.is.image[1] = (int8_t)y.image;
-      do {
-        e.key = key_yz | key_of_axis(&x, nb, 0);
-        e.is.image[0] = (int8_t)x.image;
-        if (!what(nb, model, (uint32_t)((z.cell * nb->cells[1] + y.cell) * nb->cells[0] + x.cell), &e, found))
-          return false;
-      } while (walk_on(&x, nb, 0));
-    } while (walk_on(&y, nb, 1));
-  } while (walk_on(&z, nb, 2));
-  return true;
-}
 
 static bool leave_cell(struct neighbors *nb, const struct model *model, uint32_t cell, const struct grid_entry *e,
                        struct search *found)
@@ -233,7 +84,7 @@ struct columns {
 static struct neighbor neighbor_of(const struct neighbors *nb, const struct model *model, const struct overlap *c,
                                    const struct image *home)
 {
-  const struct image its_home = image_of(nb, nb->reference[c->its.bond].at, &model->box);
+  const struct image its_home = search_image(nb, nb->reference[c->its.bond].at, &model->box);
   struct neighbor n = {.bond = c->its.bond};
   for (int axis = 0; axis < 3; axis++)
     n.image[axis] = home->k[axis] - its_home.k[axis] + c->mine.image[axis] - c->its.image[axis];
@@ -280,7 +131,7 @@ static bool settle(struct neighbors *nb, const struct model *model, struct searc
     const struct overlap *c = &found->at[k];
     const uint32_t bond = (uint32_t)c->mine.bond;
     if (k == 0 || c->mine.bond != c[-1].mine.bond)
-      home = image_of(nb, nb->reference[bond].at, &model->box);
+      home = search_image(nb, nb->reference[bond].at, &model->box);
     const struct neighbor n = neighbor_of(nb, model, c, &home);
     const bool apart = never_touch(model, bond, &n) || is_beyond_wall(model, &n);
     if (found->near) {
@@ -306,7 +157,7 @@ static bool look_into_cell(struct neighbors *nb, const struct model *model, uint
                            const struct grid_entry *mine, struct search *found)
 {
   const struct grid_row *row = &nb->entries[cell];
-  const struct probe probe = probe_of(mine->key);
+  const struct search_probe probe = search_probe_of(mine->key);
   for (uint32_t first = 0; first < row->count; first += COLUMNS) {
     const uint32_t left = row->count - first, n = left < COLUMNS ? left : COLUMNS;
     if (found->count + n > OVERLAPS && !settle(nb, model, found))
@@ -314,7 +165,7 @@ static bool look_into_cell(struct neighbors *nb, const struct model *model, uint
     uint32_t count = found->count;
     for (const struct grid_entry *e = &row->at[first]; e < &row->at[first + n]; e++) {
       found->at[count] = (struct overlap){mine->is, e->is};
-      count += overlap(probe, e->key);
+      count += search_overlap(probe, e->key);
     }
     for (uint32_t k = found->count; k < count; k++) {
       __builtin_prefetch(&nb->reference[found->at[k].its.bond]);
@@ -329,7 +180,7 @@ static bool look_into_cell(struct neighbors *nb, const struct model *model, uint
 static bool enter_cell(struct neighbors *nb, const struct model *model, uint32_t cell, const struct grid_entry *mine,
                        struct search *found)
 {
-  return look_into_cell(nb, model, cell, mine, found) && add_entry(&nb->entries[cell], mine);
+  return look_into_cell(nb, model, cell, mine, found) && search_enter_cell(&nb->entries[cell], mine);
 }
 
 /* --- the entrances ----------------------------------------------------------------------------------------------- */
@@ -382,7 +233,7 @@ static bool enter(struct neighbors *nb, const struct model *model, uint32_t bond
   struct search found;
   found.near = NULL, found.count = 0;
   for (uint32_t k = 0; k < bonds; k++)
-    if (!visit_cells(nb, model, bond[k], box_of(nb, model, bond[k]), enter_cell, &found))
+    if (!search_visit(nb, model, bond[k], box_of(nb, model, bond[k]), enter_cell, &found))
       return false;
   return settle(nb, model, &found);
 }
@@ -403,7 +254,7 @@ void neighbors_fetch(struct neighbors *nb, const struct model *model, uint32_t v
   uint32_t bond[2];
   const int bonds = model_bonds_of(model, vertex, bond);
   for (int b = 0; b < bonds; b++)
-    visit_cells(nb, model, bond[b], box_of(nb, model, bond[b]), fetch_cell, NULL);
+    search_visit(nb, model, bond[b], box_of(nb, model, bond[b]), fetch_cell, NULL);
 }
 
 bool neighbors_renew(const struct state *state, const struct model *model, struct contact *contact, uint32_t n,
@@ -413,7 +264,7 @@ bool neighbors_renew(const struct state *state, const struct model *model, struc
   uint32_t bond[2 * NEIGHBORS_AT_ONCE] = {0};
   const uint32_t bonds = model_bonds_at(model, n, vertex, bond);
   for (uint32_t k = 0; k < bonds; k++) {
-    visit_cells(nb, model, bond[k], box_of(nb, model, bond[k]), leave_cell, NULL);
+    search_visit(nb, model, bond[k], box_of(nb, model, bond[k]), leave_cell, NULL);
     nb->generation[bond[k]]++;
   }
   for (uint32_t k = 0; k < n; k++) {
@@ -428,53 +279,13 @@ bool neighbors_near(const struct state *state, const struct model *model, struct
                     const struct point end[2], double range, struct neighbor_list *near, struct fault *fault)
 {
   struct neighbors *nb = &contact->neighbors;
-  const struct capsule_box box =
-      box_around(point_minus(end[0], nb->moved), point_minus(end[1], nb->moved), range + CAPSULE_SLACK);
+  const struct search_box box =
+      search_box_around(point_minus(end[0], nb->moved), point_minus(end[1], nb->moved), range + CAPSULE_SLACK);
   struct search found;
   found.near = near, found.count = 0;
   near->count = 0;
-  return (visit_cells(nb, model, bond, box, look_into_cell, &found) && settle(nb, model, &found)) ||
+  return (search_visit(nb, model, bond, box, look_into_cell, &found) && settle(nb, model, &found)) ||
          fault_no_memory(fault, state->step + 1);
-}
-
-/* Chooses search cells that divide the box edges exactly (in lattice units). There are about as many cells as bonds, or
- * fewer.
- */
-static void choose_grid(const struct model *model, struct neighbors *nb)
-{
-  const double edge = fmax(SEARCH_CELL_A0, cbrt(box_volume(&model->box) / (double)model->bonds));
-  for (int k = 0; k < 3; k++) {
-    int cells = (int)fmax(1.0, model->box.cells[k] / edge);
-    while (model->box.edge[k] % cells != 0)
-      cells--;
-    nb->cells[k] = cells;
-    nb->cell_edge[k] = model->box.edge[k] / cells;
-    while ((nb->cell_edge[k] - 1) >> nb->cell_shift[k] > FACE_MOST)
-      nb->cell_shift[k]++;
-    nb->inverse[k].cells = 1.0 / cells;
-    nb->inverse[k].cell_edge = 1.0 / (double)nb->cell_edge[k];
-    nb->inverse[k].box_edge = 1.0 / (double)model->box.edge[k];
-  }
-  nb->cell_count = (uint32_t)(nb->cells[0] * nb->cells[1] * nb->cells[2]);
-}
-
-static bool allocate(const struct model *model, struct neighbors *nb)
-{
-  if (nb->entries)
-    return true;
-  choose_grid(model, nb);
-  nb->reference = memory_alloc(model->vertices, sizeof *nb->reference);
-  nb->path = memory_alloc(model->vertices, sizeof *nb->path);
-  nb->generation = memory_alloc(model->vertices, sizeof *nb->generation);
-  nb->hold = memory_alloc(model->vertices, sizeof *nb->hold);
-  nb->entries = memory_alloc(nb->cell_count, sizeof *nb->entries);
-  if (!nb->reference || !nb->path || !nb->generation || !nb->hold || !nb->entries)
-    return false;
-  for (uint32_t c = 0; c < nb->cell_count; c++) {
-    struct grid_row *row = &nb->entries[c];
-    row->at = row->first, row->count = 0, row->room = NEIGHBORS_FIRST_ENTRIES;
-  }
-  return true;
 }
 
 /* A bond visits all search cells around it, of which there must not be 10^18. Forces find every bond that is half an
@@ -489,7 +300,7 @@ static bool spans_few_cells(const struct state *state, const struct model *model
 bool neighbors_build(const struct state *state, const struct model *model, struct contact *contact, struct fault *fault)
 {
   struct neighbors *nb = &contact->neighbors;
-  if (!allocate(model, nb))
+  if (!search_cells_alloc(model, nb))
     return fault_no_memory(fault, state->step + 1);
   nb->pairs.count = 0;
   nb->around = 0.5 * model_thickness(model) + CAPSULE_SLACK;
