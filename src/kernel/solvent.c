@@ -4,6 +4,8 @@
  * plain one whose bits it gives. What is rare goes to the plain ones: flights beyond the next image of the box, momenta
  * beyond the range of lattice_round, and the last particles if they do not fill a register.
  */
+#include <string.h>
+
 #include "base/normal_lanes.h"
 #include "base/philox.h"
 #include "fluid/boundary.h"
@@ -214,14 +216,17 @@ INLINE void draw_axes(uint64_t seed, uint32_t draw, uint64_t step, words cell, r
 }
 
 /* cell_solve, and the axis if cells turn, of LANES cells. Those whose axis needs another draw, one in twenty, are
- * appended to a list. Returns its length.
+ * appended to a list. Returns its length. Their loads are added to *loads, bit by bit. clears: their sums are set to 0.
  */
 INLINE uint32_t solve_lanes(uint64_t seed, struct mpc *c, uint64_t step, uint32_t first, words lane_cell,
-                            const bool turns, uint32_t *list, uint32_t n)
+                            const bool turns, const bool clears, uint32_t *list, uint32_t n, words *loads)
 {
   reals p[4], turn[8] = {{0}};
   load_records(&c->sum[first], p);
   const words load = (words)p[3], two = ~negative((load >> 40) - 2);
+  *loads |= load;
+  if (clears)
+    memset(&c->sum[first], 0, LANES * sizeof *c->sum);
   if (none(two)) {
     for (uint32_t k = first; k < first + LANES; k++)
       c->turn[k].active = 0.0, c->turn[k].factor = 1.0;
@@ -251,31 +256,37 @@ static void draw_again(const struct model *model, struct mpc *c, uint64_t step, 
                                               : random_axis_from(model->seed, RANDOM_ROTATION_AXIS, 2, step, list[k]);
 }
 
-/* The last LANES cells are solved once more if they are no multiple: the sums are still there. */
-INLINE void solve_all(const struct model *model, struct mpc *c, uint64_t step, const bool turns)
+/* If the cells are no multiple of LANES, the last LANES of them come first, and some are solved once more. */
+INLINE uint64_t solve_all(const struct model *model, struct mpc *c, uint64_t step, const bool turns, const bool clears)
 {
   uint32_t list[2 * LANES + CHUNK], n = 0;
+  const uint32_t whole = c->cells - c->cells % LANES;
   const uint64_t seed = model->seed; /* nothing that is written here can change it, and its keys are kept */
-  words lane_cell;
+  words lane_cell, loads = {0};
   for (int k = 0; k < LANES; k++)
     lane_cell[k] = lane_record[k];
-  for (uint32_t k = 0; k < c->cells; k += LANES) {
-    n = solve_lanes(seed, c, step, k + LANES <= c->cells ? k : c->cells - LANES, lane_cell, turns, list, n);
-    if (n < CHUNK && k + LANES < c->cells)
+  if (whole < c->cells)
+    n = solve_lanes(seed, c, step, c->cells - LANES, lane_cell, turns, false, list, n, &loads);
+  for (uint32_t k = 0; k < whole; k += LANES) {
+    n = solve_lanes(seed, c, step, k, lane_cell, turns, clears, list, n, &loads);
+    if (n < CHUNK && k + LANES < whole)
       continue;
     for (; n >= LANES; n -= LANES)
       draw_again(model, c, step, &list[n - LANES]);
   }
   for (uint32_t k = 0; k < n; k++)
     c->turn[list[k]].axis = random_axis_from(model->seed, RANDOM_ROTATION_AXIS, 1, step, list[k]);
+  if (clears)
+    memset(&c->sum[whole], 0, (c->cells - whole) * sizeof *c->sum);
+  c->sum_is_clear = clears;
+  return any(loads);
 }
 
-static void solve_fast(const struct model *model, struct mpc *c, uint64_t step)
+static uint64_t solve_fast(const struct model *model, struct mpc *c, uint64_t step, bool last)
 {
   if (c->rule->thermal)
-    solve_all(model, c, step, false);
-  else
-    solve_all(model, c, step, true);
+    return last ? solve_all(model, c, step, false, true) : solve_all(model, c, step, false, false);
+  return last ? solve_all(model, c, step, true, true) : solve_all(model, c, step, true, false);
 }
 
 /* --- turns ------------------------------------------------------------------------------------------------------- */

@@ -30,7 +30,9 @@ static uint32_t block_size(uint32_t n, uint32_t first, uint32_t most)
 
 static void clear_sums(struct mpc *c)
 {
-  memset(c->sum, 0, (size_t)c->cells * sizeof *c->sum);
+  if (!c->sum_is_clear)
+    memset(c->sum, 0, (size_t)c->cells * sizeof *c->sum);
+  c->sum_is_clear = false;
   if (c->rule->spinning && !c->spin_is_clear)
     memset(c->spin, 0, (size_t)c->cells * sizeof *c->spin);
   c->spin_is_clear = false;
@@ -93,9 +95,14 @@ static bool plain_gather(struct state *state, const struct model *model, struct 
   return true;
 }
 
-static void plain_solve(const struct model *model, struct mpc *mpc, uint64_t step)
+static uint64_t plain_solve(const struct model *model, struct mpc *mpc, uint64_t step, bool last)
 {
+  uint64_t loads = 0;
+  (void)last;
   mpc->rule->solve(model, mpc, step);
+  for (uint32_t k = 0; k < mpc->cells; k++)
+    loads |= mpc->sum[k].load;
+  return loads;
 }
 
 static void plain_turn(struct state *state, const struct model *model, const struct mpc *mpc, bool scaled)
@@ -105,33 +112,65 @@ static void plain_turn(struct state *state, const struct model *model, const str
 
 const struct kernel kernel_plain = {.name = "plain", .gather = plain_gather, .solve = plain_solve, .turn = plain_turn};
 
-/* Flight of the fluid, grid_bin and collide_sum: the three in one pass, block by block. */
-static bool gather(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step, struct fault *fault)
+/* Flight of the fluid, grid_bin and collide_sum without its test: the three in one pass, block by block. *span: the
+ * bitwise or of all that add_particles and add_vertices returned. */
+static bool gather(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step, uint64_t *span,
+                   struct fault *fault)
 {
   const struct border *border = mpc->border;
-  uint64_t span = 0;
+  *span = 0;
   mpc->shift = grid_shift(model, step);
   clear_sums(mpc);
   for (uint32_t i = 0; i < state->solvent.n; i += BLOCK) {
     const uint32_t n = block_size(state->solvent.n, i, BLOCK);
     if (state->solvent_lag == 0)
-      span |= bin_and_add(state, model, mpc, step, i, n);
-    else if (!mpc->kernel.gather(state, model, mpc, step, i, n, &span, fault))
+      *span |= bin_and_add(state, model, mpc, step, i, n);
+    else if (!mpc->kernel.gather(state, model, mpc, step, i, n, span, fault))
       return false;
   }
-  if (border->rebound && !border->rebound(state, model, mpc, step, &span, fault))
+  if (border->rebound && !border->rebound(state, model, mpc, step, span, fault))
     return false;
   state_streamed(state);
   if (border->enter_vertices)
     border->enter_vertices(state, model, mpc);
   border->bin_vertices(state, model, mpc);
-  span |= mpc->rule->add_vertices(state, model, mpc, step);
-  return overflow_of_momenta(state, model, mpc, span, step, fault);
+  *span |= mpc->rule->add_vertices(state, model, mpc, step);
+  return true;
+}
+
+/* Whether something reads the sums of cells after, or before, they are solved. */
+static bool sums_are_read(const struct mpc *mpc)
+{
+  return mpc->keeps_sums || mpc->border->fill || mpc->border->account || mpc->thermostat || mpc->stress;
+}
+
+/* Turns of cells of which nobody reads the sums. So the sums are read once, and in the same pass they may be cleared
+ * for the next collision. Their range is tested afterwards, by bounds, with sums made anew if the bounds allow a doubt.
+ */
+static bool solve_only(const struct state *state, const struct model *model, struct mpc *mpc, uint64_t step,
+                       uint64_t span, struct fault *fault)
+{
+  const uint64_t loads = mpc->kernel.solve(model, mpc, step, true);
+  return !overflow_may_be(model, span, loads) || collide_sum(state, model, mpc, step, fault);
+}
+
+/* The same where others read them. */
+static bool solve_and_share(const struct state *state, const struct model *model, struct mpc *mpc, uint64_t step,
+                            uint64_t span, struct fault *fault)
+{
+  const struct border *border = mpc->border;
+  if (!overflow_of_momenta(state, model, mpc, span, step, fault) ||
+      (border->fill && !border->fill(state, model, mpc, step, fault)))
+    return false;
+  if (mpc->stress)
+    stress_before(state, model, mpc);
+  collide_solve(model, mpc, step);
+  return !mpc->thermostat || collide_thermostat(state, model, mpc, mpc->thermostat, step, fault);
 }
 
 void collide_solve(const struct model *model, struct mpc *mpc, uint64_t step)
 {
-  mpc->kernel.solve(model, mpc, step);
+  mpc->kernel.solve(model, mpc, step, false);
 }
 
 bool collide_thermostat(const struct state *state, const struct model *model, struct mpc *mpc,
@@ -151,12 +190,9 @@ void collide_turn(struct state *state, const struct model *model, const struct m
 bool mpc_collide(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step, struct fault *fault)
 {
   const struct border *border = mpc->border;
-  if (!gather(state, model, mpc, step, fault) || (border->fill && !border->fill(state, model, mpc, step, fault)))
-    return false;
-  if (mpc->stress)
-    stress_before(state, model, mpc);
-  collide_solve(model, mpc, step);
-  if (mpc->thermostat && !collide_thermostat(state, model, mpc, mpc->thermostat, step, fault))
+  uint64_t span;
+  if (!gather(state, model, mpc, step, &span, fault) ||
+      !(sums_are_read(mpc) ? solve_and_share : solve_only)(state, model, mpc, step, span, fault))
     return false;
   collide_turn(state, model, mpc, mpc->thermostat);
   if (mpc->stress)

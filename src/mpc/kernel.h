@@ -23,8 +23,12 @@ struct kernel {
   bool (*gather)(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step, uint32_t first,
                  uint32_t n, uint64_t *span, struct fault *fault);
 
-  /* solve and apply of struct collision_rule. Cells with fewer than two members get any finite center, and any axis. */
-  void (*solve)(const struct model *model, struct mpc *mpc, uint64_t step);
+  /* solve of struct collision_rule. Cells with fewer than two members get any finite center, and any axis. Returns a
+   * number that is at least each load of a cell in bits 0 to 39, and in bits 40 to 63 (all bits of all loads together,
+   * say). `last`: nobody reads the sums after this. A kernel may then clear them, and sets mpc->sum_is_clear. */
+  uint64_t (*solve)(const struct model *model, struct mpc *mpc, uint64_t step, bool last);
+
+  /* apply of struct collision_rule. */
   void (*turn)(struct state *state, const struct model *model, const struct mpc *mpc, bool scaled);
 };
 

@@ -80,18 +80,39 @@ static double most_drawn(const struct model *model, const struct mpc *c)
   return c->rule->thermal ? 9.0 * sqrt(model->max_mass) : 0.0;
 }
 
+/* The most that a momentum may be in a cell of so many members: their sum must fit in 63 bits. */
+static double momentum_limit(uint32_t members)
+{
+  return 0x1p63 * CELL_MOMENTUM_UNIT / members;
+}
+
+/* The span may be up to twice the largest momentum. */
+static bool fits(uint64_t span, double limit)
+{
+  return ((double)span + 1.0) * CELL_MOMENTUM_UNIT < limit;
+}
+
+/* The most that a cell's mass may be. */
+static const double heaviest = 0x1p40 * CELL_MASS_UNIT;
+
+bool overflow_may_be(const struct model *model, uint64_t span, uint64_t loads)
+{
+  const uint32_t most = cell_members(&(struct cell_sum){.load = loads});
+  return !fits(span, momentum_limit(most)) || !(most * model->max_mass < heaviest);
+}
+
 /* Members times the largest momentum must fit in 63 bits, and members times the largest mass in 40. */
 bool overflow_of_momenta(const struct state *state, const struct model *model, const struct mpc *c, uint64_t span,
                          uint64_t step, struct fault *fault)
 {
   const uint32_t most = most_members(c);
-  const double limit = 0x1p63 * CELL_MOMENTUM_UNIT / most;
-  if (!(((double)span + 1.0) * CELL_MOMENTUM_UNIT < limit)) { /* the span may be up to twice the largest momentum */
+  const double limit = momentum_limit(most);
+  if (!fits(span, limit)) {
     const struct culprit fastest = find_fastest(state, model);
     if (!(fastest.value + most_drawn(model, c) + CELL_MOMENTUM_UNIT < limit))
       return blame(fastest, limit, step, fault);
   }
-  const double mass = most * model->max_mass, heaviest = 0x1p40 * CELL_MASS_UNIT;
+  const double mass = most * model->max_mass;
   return mass < heaviest || fault_record(fault, FAULT_CELL_MASS, step, mpc_cell(c, fullest_cell(c)), mass, heaviest);
 }
 

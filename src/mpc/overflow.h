@@ -7,6 +7,9 @@
 
 #include "mpc/mpc.h"
 
+/* False if no sum can have wrapped, by two bounds. span: as below; loads: as solve of struct kernel returns it. */
+bool overflow_may_be(const struct model *model, uint64_t span, uint64_t loads);
+
 /* Tests momenta and masses in mpc->sum. span: the bitwise or of all that cell_add returned. False, with the fault
  * recorded, if a sum may have wrapped. */
 bool overflow_of_momenta(const struct state *state, const struct model *model, const struct mpc *mpc, uint64_t span,

@@ -36,6 +36,7 @@ static void order_range(const struct state *state, const struct model *model, st
   const struct point unshifted = {0, 0, 0};
   const int64_t cells = box_cell_count(&model->box);
   memset(c->sum, 0, (size_t)cells * sizeof *c->sum);
+  c->sum_is_clear = false;
   for (uint32_t i = first; i < end; i += together) {
     c->solvent_cell[i] = grid_cell_of(&model->box, (struct point){s->x[i], s->y[i], s->z[i]}, unshifted);
     c->sum[c->solvent_cell[i]].load += together;
