@@ -162,6 +162,13 @@ class Runs(unittest.TestCase):
         kept = sorted(path.name for path in (self.work / "kept/made-up/a").iterdir())
         self.assertEqual(kept, ["conserved.csv", "run.json", "scene.yaml", "session.json"])
 
+    def test_harvest_names_no_folder_of_this_machine(self):
+        self.assertEqual(self.execute(self.scene(100), "made-up/a"), 0)
+        self.assertTrue(runs.harvest(self.scene(100), self.work, self.work / "kept"))
+        record = (self.work / "kept/made-up/a/run.json").read_text()
+        self.assertNotIn(str(self.work), record)
+        self.assertIn("build/campaign/made-up/a/scene.yaml", record)
+
     def test_harvest_of_a_run_that_goes_on(self):
         """Half a row on the disk is no row."""
         self.assertEqual(self.execute(self.scene(100), "made-up/a"), 0)

@@ -290,7 +290,8 @@ HARVEST_TRIES, HARVEST_PAUSE = 20, 0.25  # seconds; a checkpoint takes less to b
 
 def harvest(run, work, kept):
     """Copies the results into `kept`, finished or not. True if there were any. All files are of the step that run.json states. If
-    they are of none (the run was killed in the middle of a checkpoint, and has not been resumed), nothing is copied."""
+    they are of none (the run was killed in the middle of a checkpoint, and has not been resumed), nothing is copied. The record
+    names the run's folder in any clone (build/campaign/CASE/RUN), not the one of this machine."""
     source, target = pathlib.Path(work) / run.case / run.name, pathlib.Path(kept) / run.case / run.name
     if not Result(source, run).exists:
         return False
@@ -302,6 +303,8 @@ def harvest(run, work, kept):
     else:
         print(f"validation: {run.path} is between two checkpoints: not kept anew", file=sys.stderr)
         return False
+    if "run.json" in files:
+        files["run.json"] = files["run.json"].replace(f"{source}/".encode(), f"build/campaign/{run.case}/{run.name}/".encode())
     target.mkdir(parents=True, exist_ok=True)
     for name, content in files.items():
         (target / name).write_bytes(content)
