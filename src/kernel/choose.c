@@ -4,7 +4,7 @@
  * of an image: their flights are those of the plain kernel. Dumbbells do not fly alone. */
 static const bool free_flight[BOUNDARIES] = {[BOUNDARY_PERIODIC] = true};
 
-/* Sums and turns, by collision rule. Within a cell neither rule knows of boundaries or dumbbells. */
+/* Sums, energies and turns, by collision rule. Within a cell neither rule knows of boundaries or dumbbells. */
 static const bool turns[RULES] = {[RULE_SRD] = true, [RULE_AT_A] = true};
 
 struct kernel_parts kernel_parts_for(const struct model *m)
@@ -23,6 +23,7 @@ struct kernel kernel_mix(const struct kernel *fast, const struct model *model)
   return (struct kernel){.name = fast->name,
                          .gather = parts.gather ? fast->gather : kernel_plain.gather,
                          .solve = parts.solve ? fast->solve : kernel_plain.solve,
+                         .energies = parts.turn ? fast->energies : kernel_plain.energies,
                          .turn = parts.turn ? fast->turn : kernel_plain.turn};
 }
 

@@ -75,7 +75,7 @@ INLINE words fly(const struct axis *a, uint32_t i, const bool accelerated, reals
   return but_not((p + a->shift) >> LATTICE_BITS, a->cells);
 }
 
-/* Momenta of particles of mass 1, in units of the sums, and their size: cell_add, where they are below 2^51. */
+/* Momenta of particles of mass 1, in units of the sums, and their size: cell_add, where they are below MOST. */
 INLINE reals momenta(reals v, words *span)
 {
   const words p = round_to_words(CELL_MOMENTUM_SCALE * v);
@@ -83,7 +83,7 @@ INLINE reals momenta(reals v, words *span)
   return (reals)p;
 }
 
-#define MOST_MOMENTUM ((uint64_t)1 << 51)
+#define MOST ((uint64_t)1 << 51) /* of round_to_words */
 
 /* Particles whose flight comes before their sums: all of it stays in the nearest cache. */
 enum { CHUNK = 128 };
@@ -132,13 +132,41 @@ INLINE uint64_t fly_chunk(const struct axis axis[3], const struct mpc *c, uint32
   return any(was_outside(seen[0], x.edge) | was_outside(seen[1], y.edge) | was_outside(seen[2], z.edge));
 }
 
+/* Neighbors in memory are often in one cell, and what is added to it waits for the addition before. So four pieces of a
+ * chunk take turns. The sums are integers: their order does not matter. */
+enum { PIECES = 4 };
+
+INLINE void add_slot(struct cell_sum *sum, const uint32_t *cell, uint32_t k, uint32_t slot, const double *record)
+{
+  add_record((uint64_t *)&sum[cell[k + slot_lane[slot]]], &record[(size_t)4 * (k + slot)]);
+}
+
 static void add_records(struct cell_sum *sum, const uint32_t *cell, uint32_t n, const double *record)
 {
-  for (uint32_t k = 0; k < n; k += LANES) {
+  const uint32_t piece = n / (PIECES * LANES) * LANES;
+  for (uint32_t k = 0; k < piece; k += LANES) {
     UNROLL
-    for (uint32_t slot = 0; slot < LANES; slot++)
-      add_record((uint64_t *)&sum[cell[k + slot_lane[slot]]], &record[(size_t)4 * (k + slot)]);
+    for (uint32_t slot = 0; slot < LANES; slot++) {
+      UNROLL
+      for (uint32_t p = 0; p < PIECES; p++)
+        add_slot(sum, cell, k + p * piece, slot, record);
+    }
   }
+  for (uint32_t k = PIECES * piece; k < n; k += LANES)
+    for (uint32_t slot = 0; slot < LANES; slot++)
+      add_slot(sum, cell, k, slot, record);
+}
+
+static void add_words(int64_t *sum, const uint32_t *cell, uint32_t n, const int64_t *word)
+{
+  const uint32_t piece = n / PIECES;
+  for (uint32_t k = 0; k < piece; k++) {
+    UNROLL
+    for (uint32_t p = 0; p < PIECES; p++)
+      sum[cell[k + p * piece]] += word[k + p * piece];
+  }
+  for (uint32_t k = PIECES * piece; k < n; k++)
+    sum[cell[k]] += word[k];
 }
 
 /* Particles first to first + n - 1 have flown, one of them more than an edge out of the box. The others up to `end`
@@ -180,7 +208,7 @@ INLINE bool gather_all(struct state *state, const struct model *model, struct mp
     }
     for (uint32_t k = i; c->prefetch && k < i + m; k++)
       __builtin_prefetch(&c->sum[c->solvent_cell[k]], 1);
-    if (size < MOST_MOMENTUM)
+    if (size < MOST)
       add_records(c->sum, &c->solvent_cell[i], m, record);
     else
       size = c->rule->add_particles(state, model, c, step, i, m);
@@ -289,6 +317,40 @@ static uint64_t solve_fast(const struct model *model, struct mpc *c, uint64_t st
   return last ? solve_all(model, c, step, true, true) : solve_all(model, c, step, true, false);
 }
 
+/* --- energies ---------------------------------------------------------------------------------------------------- */
+
+/* cell_energy of LANES particles from place i on, in units of mpc->relative. */
+INLINE words energies(const struct solvent *s, const struct mpc *c, uint32_t i)
+{
+  reals turn[4];
+  load_columns((const double *)c->turn, &c->solvent_cell[i], turn, 4);
+  const reals x = load_reals(&s->vx[i]) - turn[0], y = load_reals(&s->vy[i]) - turn[1],
+              z = load_reals(&s->vz[i]) - turn[2];
+  return round_to_words(CELL_ENERGY_SCALE * (turn[3] * (x * x + y * y + z * z)));
+}
+
+static uint64_t energies_fast(const struct state *state, struct mpc *c, uint32_t first, uint32_t n)
+{
+  const uint32_t end = first + n, whole = end - n % LANES;
+  uint64_t span = 0;
+  for (uint32_t i = first, m = 0; i < whole; i += m) {
+    int64_t energy[CHUNK];
+    words size = {0};
+    m = whole - i < CHUNK ? whole - i : CHUNK;
+    members_prefetch_turns(c, i + m, whole - i - m < CHUNK ? whole - i - m : CHUNK);
+    for (uint32_t k = 0; k < m; k += LANES) {
+      const words e = energies(&state->solvent, c, i + k);
+      size |= e;
+      store_words(&energy[k], e);
+    }
+    if (any(size) >= MOST)
+      return span | kernel_plain.energies(state, c, i, end - i);
+    add_words(c->relative, &c->solvent_cell[i], m, energy);
+    span |= any(size);
+  }
+  return span | kernel_plain.energies(state, c, whole, end - whole);
+}
+
 /* --- turns ------------------------------------------------------------------------------------------------------- */
 
 /* New velocities of LANES particles from place i on: srd_apply, but a member that is alone keeps its velocity. The
@@ -364,4 +426,5 @@ static void turn_fast(struct state *state, const struct model *model, const stru
     srd_turn_from(state, model, c, whole, scaled);
 }
 
-const struct kernel KERNEL = {.name = KERNEL_NAME, .gather = gather_fast, .solve = solve_fast, .turn = turn_fast};
+const struct kernel KERNEL = {
+    .name = KERNEL_NAME, .gather = gather_fast, .solve = solve_fast, .energies = energies_fast, .turn = turn_fast};

@@ -38,10 +38,22 @@ static void clear_sums(struct mpc *c)
   c->spin_is_clear = false;
 }
 
-/* Unsigned: the sum may wrap. overflow_of_energies finds out afterwards. */
-static void add_energy(int64_t *sum, double energy)
+/* Adds the energy of a member to its cell's. Returns it, in the same units. Unsigned: the sum may wrap;
+ * overflow_of_energies finds out afterwards. */
+static uint64_t add_energy(int64_t *sum, const struct cell_turn *turn, double mass, struct vec3 v)
 {
-  *sum = (int64_t)((uint64_t)*sum + (uint64_t)llrint(CELL_ENERGY_SCALE * energy));
+  const uint64_t energy = (uint64_t)llrint(CELL_ENERGY_SCALE * cell_energy(turn, mass, v));
+  *sum = (int64_t)((uint64_t)*sum + energy);
+  return energy;
+}
+
+static uint64_t plain_energies(const struct state *state, struct mpc *c, uint32_t first, uint32_t n)
+{
+  const uint32_t *cell = c->solvent_cell;
+  uint64_t span = 0;
+  for (uint32_t i = first; i < first + n; i++)
+    span |= add_energy(&c->relative[cell[i]], &c->turn[cell[i]], 1.0, solvent_velocity(&state->solvent, i));
+  return span;
 }
 
 /* Sums the energies of all members cell by cell, in integers like the momenta. Momenta have been found in range before,
@@ -50,18 +62,12 @@ static bool sum_relative_energy(const struct state *state, const struct model *m
                                 struct fault *fault)
 {
   memset(c->relative, 0, (size_t)c->cells * sizeof *c->relative);
-  double largest = 0.0;
-  for (uint32_t i = 0; i < state->solvent.n; i++) {
-    const double energy = cell_energy(&c->turn[c->solvent_cell[i]], 1.0, solvent_velocity(&state->solvent, i));
-    largest = energy > largest ? energy : largest;
-    add_energy(&c->relative[c->solvent_cell[i]], energy);
-  }
+  uint64_t span = c->kernel.energies(state, c, 0, state->solvent.n);
   for (uint32_t v = 0; v < state->vertices; v++) {
-    const double energy = cell_energy(&c->turn[c->vertex_cell[v]], model->mass[v], state->velocity[v]);
-    largest = energy > largest ? energy : largest;
-    add_energy(&c->relative[c->vertex_cell[v]], energy);
+    const uint32_t cell = c->vertex_cell[v];
+    span |= add_energy(&c->relative[cell], &c->turn[cell], model->mass[v], state->velocity[v]);
   }
-  return overflow_of_energies(state, model, c, largest, step, fault);
+  return overflow_of_energies(state, model, c, span, step, fault);
 }
 
 bool collide_sum(const struct state *state, const struct model *model, struct mpc *mpc, uint64_t step,
@@ -110,7 +116,8 @@ static void plain_turn(struct state *state, const struct model *model, const str
   mpc->rule->apply(state, model, mpc, scaled);
 }
 
-const struct kernel kernel_plain = {.name = "plain", .gather = plain_gather, .solve = plain_solve, .turn = plain_turn};
+const struct kernel kernel_plain = {
+    .name = "plain", .gather = plain_gather, .solve = plain_solve, .energies = plain_energies, .turn = plain_turn};
 
 /* Flight of the fluid, grid_bin and collide_sum without its test: the three in one pass, block by block. *span: the
  * bitwise or of all that add_particles and add_vertices returned. */

@@ -28,6 +28,10 @@ struct kernel {
    * say). `last`: nobody reads the sums after this. A kernel may then clear them, and sets mpc->sum_is_clear. */
   uint64_t (*solve)(const struct model *model, struct mpc *mpc, uint64_t step, bool last);
 
+  /* Of n particles from place `first` of memory on, adds twice the kinetic energy relative to v_cm to mpc->relative of
+   * their cells. Returns the bitwise or of what was added; out of range it has the sign bit. */
+  uint64_t (*energies)(const struct state *state, struct mpc *mpc, uint32_t first, uint32_t n);
+
   /* apply of struct collision_rule. */
   void (*turn)(struct state *state, const struct model *model, const struct mpc *mpc, bool scaled);
 };

@@ -15,9 +15,9 @@ bool overflow_may_be(const struct model *model, uint64_t span, uint64_t loads);
 bool overflow_of_momenta(const struct state *state, const struct model *model, const struct mpc *mpc, uint64_t span,
                          uint64_t step, struct fault *fault);
 
-/* Tests energies in mpc->relative. largest: the largest energy of a member. False, with the fault recorded, if a sum
+/* Tests energies in mpc->relative. span: the bitwise or of all that was added. False, with the fault recorded, if a sum
  * may have wrapped. */
-bool overflow_of_energies(const struct state *state, const struct model *model, const struct mpc *mpc, double largest,
+bool overflow_of_energies(const struct state *state, const struct model *model, const struct mpc *mpc, uint64_t span,
                           uint64_t step, struct fault *fault);
 
 #endif

@@ -63,21 +63,46 @@ double cell_freedoms(const struct mpc *c, const struct model *model, uint32_t pl
          (members - 1.0 - (cell_mass(sum) - n) / cell_mass(sum)); /* the virtual ones are one member */
 }
 
+/* Of cells that share a factor. */
+struct heat {
+  double freedoms, energy; /* energy: twice the relative kinetic energy of their members, kT */
+};
+
+/* Adds that of cells first .. first + n - 1. Whole numbers of degrees of freedom are counted as integers. */
+static void heat_add(struct heat *heat, const struct mpc *c, const struct model *model, uint32_t first, uint32_t n)
+{
+  const uint32_t end = first + n;
+  uint64_t others = 0; /* members, less one in each cell that has some */
+  for (uint32_t k = first; k < end; k++) {
+    const uint32_t members = cell_members(&c->sum[k]);
+    others += members - (members > 0);
+    heat->energy += (double)c->relative[k] * CELL_ENERGY_UNIT;
+  }
+  if (!c->filled)
+    heat->freedoms += model->dimensions * (double)others;
+  for (uint32_t k = first; c->filled && k < end; k++)
+    heat->freedoms += c->turn[k].active != 0.0 ? cell_freedoms(c, model, k) : 0.0;
+}
+
+static double heat_factor(const struct heat *heat)
+{
+  return heat->energy > 0.0 ? sqrt(heat->freedoms / heat->energy) : 1.0;
+}
+
+static void set_factors(struct mpc *c, uint32_t first, uint32_t n, double factor)
+{
+  for (uint32_t k = first; k < first + n; k++)
+    c->turn[k].factor = factor;
+}
+
 /* One factor for all cells: a cell of N members has d (N-1) degrees of freedom with kT/2 each
  * (Padding 2009, step 4: "rescale velocities relative to center-of-mass velocity"). */
 static void rescale(struct mpc *c, const struct model *model, uint64_t step)
 {
   (void)step;
-  double freedoms = 0.0, energy = 0.0;
-  for (uint32_t k = 0; k < c->cells; k++) {
-    if (c->turn[k].active == 0.0)
-      continue;
-    freedoms += cell_freedoms(c, model, k);
-    energy += (double)c->relative[k] * CELL_ENERGY_UNIT;
-  }
-  double factor = energy > 0.0 ? sqrt(freedoms / energy) : 1.0;
-  for (uint32_t k = 0; k < c->cells; k++)
-    c->turn[k].factor = factor;
+  struct heat heat = {0};
+  heat_add(&heat, c, model, 0, c->cells);
+  set_factors(c, 0, c->cells, heat_factor(&heat));
 }
 
 /* Twice the relative kinetic energy of a cell with its virtual particles, as the one member that they are. */
@@ -126,18 +151,11 @@ static void rescale_layers(struct mpc *c, const struct model *model, uint64_t st
   (void)step;
   const uint32_t lx = (uint32_t)model->box.rows[0], ly = (uint32_t)model->box.rows[1];
   for (uint32_t row = 0; row < ly; row++) {
-    double freedoms = 0.0, energy = 0.0;
+    struct heat heat = {0};
     for (uint32_t first = row * lx; first < c->cells; first += ly * lx)
-      for (uint32_t k = first; k < first + lx; k++) {
-        if (c->turn[k].active == 0.0)
-          continue;
-        freedoms += cell_freedoms(c, model, k);
-        energy += (double)c->relative[k] * CELL_ENERGY_UNIT;
-      }
-    const double factor = energy > 0.0 ? sqrt(freedoms / energy) : 1.0;
+      heat_add(&heat, c, model, first, lx);
     for (uint32_t first = row * lx; first < c->cells; first += ly * lx)
-      for (uint32_t k = first; k < first + lx; k++)
-        c->turn[k].factor = factor;
+      set_factors(c, first, lx, heat_factor(&heat));
   }
 }
 

@@ -87,6 +87,8 @@ static void assert_same(const struct pair *p, const char *name)
   assert_bits(a->velocity, b->velocity, a->vertices, "velocities of vertices");
   assert_bits(c->solvent_cell, d->solvent_cell, s->n, "cells");
   assert_bits(c->sum, d->sum, c->cells, "sums");
+  if (c->thermostat)
+    assert_bits(c->relative, d->relative, c->cells, "energies of cells");
   assert_same_turns(c, d, name);
   assert_true(state_hash(a) == state_hash(b));
 }
@@ -400,10 +402,10 @@ static void asking_ahead_changes_nothing(void **unused)
 /* Places at the edges of box and cells, velocities that round at the half, zeros of both signs. */
 static void edges(const struct kernel *kernel)
 {
-  static struct model (*const makes[])(void) = {dense, accelerated, at_a, at_a_accelerated};
+  static struct model (*const makes[])(void) = {dense, accelerated, at_a, at_a_accelerated, rescaled};
   static const double fixed[] = {0.0, -0.0, 0x1p-46, -0x1p-46, 0x1.8p-45, 0x1p-1060, 31.25, -31.25, 50.0, -50.0};
   for (uint64_t k = 0; k < 40; k++) {
-    struct pair p = start(makes[k % 4], kernel, dice_seed(830) + k);
+    struct pair p = start(makes[k % 5], kernel, dice_seed(830) + k);
     struct dice d = {dice_seed(831) + k};
     struct solvent *s = &p.plain.state.solvent;
     int64_t *x[3] = {s->x, s->y, s->z};
@@ -429,17 +431,18 @@ static void bits_at_edges(void **unused)
 }
 
 /* Some particles with velocities beyond what a register takes: flights over several boxes, up to LATTICE_MAX_MOVE and
- * beyond; momenta beyond lattice_round; infinities and NaN. Same state, or the same fault. */
+ * beyond; momenta and energies beyond lattice_round; infinities and NaN. Same state, or the same fault. */
 static void wild(const struct kernel *kernel)
 {
   static const double wild_speeds[] = {400.0,       -400.0,  1500.0, 2.0e3, -9.0e4, 1.1e5,    -1.1e5,
                                        0x1p52,      -0x1p60, 1e300,  0x1p8, 63.9,   INFINITY, -INFINITY,
                                        (double)NAN, 0x1p7,   -0x1p7, 0x1p6, -0x1p6, 300.0};
   const int64_t kinds = sizeof wild_speeds / sizeof *wild_speeds;
-  static struct model (*const makes[])(void) = {accelerated, dense, at_a, dense, at_a_accelerated, at_a, at_a_fibers};
+  static struct model (*const makes[])(void) = {accelerated, dense, at_a,     dense,    at_a_accelerated,
+                                                  at_a,        at_a_fibers, rescaled, canonical};
   uint32_t faults = 0, fine = 0;
-  for (uint64_t k = 0; k < 700; k++) {
-    struct pair p = start(makes[k % 7], kernel, dice_seed(840) + k);
+  for (uint64_t k = 0; k < 900; k++) {
+    struct pair p = start(makes[k % 9], kernel, dice_seed(840) + k);
     struct dice d = {dice_seed(841) + k};
     struct solvent *s = &p.plain.state.solvent;
     double *v[3] = {s->vx, s->vy, s->vz};
@@ -600,6 +603,7 @@ static void runs_get_the_best(void **unused)
   struct test_run r = test_start(dense());
   assert_ptr_equal(r.work.mpc.kernel.gather, best->gather);
   assert_ptr_equal(r.work.mpc.kernel.solve, best->solve);
+  assert_ptr_equal(r.work.mpc.kernel.energies, best->energies);
   assert_ptr_equal(r.work.mpc.kernel.turn, best->turn);
   assert_true(work_add_everything(&r.work, &r.model));
   assert_ptr_equal(r.work.mpc.kernel.gather, best->gather);
