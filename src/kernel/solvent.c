@@ -132,41 +132,13 @@ INLINE uint64_t fly_chunk(const struct axis axis[3], const struct mpc *c, uint32
   return any(was_outside(seen[0], x.edge) | was_outside(seen[1], y.edge) | was_outside(seen[2], z.edge));
 }
 
-/* Neighbors in memory are often in one cell, and what is added to it waits for the addition before. So four pieces of a
- * chunk take turns. The sums are integers: their order does not matter. */
-enum { PIECES = 4 };
-
-INLINE void add_slot(struct cell_sum *sum, const uint32_t *cell, uint32_t k, uint32_t slot, const double *record)
-{
-  add_record((uint64_t *)&sum[cell[k + slot_lane[slot]]], &record[(size_t)4 * (k + slot)]);
-}
-
 static void add_records(struct cell_sum *sum, const uint32_t *cell, uint32_t n, const double *record)
 {
-  const uint32_t piece = n / (PIECES * LANES) * LANES;
-  for (uint32_t k = 0; k < piece; k += LANES) {
+  for (uint32_t k = 0; k < n; k += LANES) {
     UNROLL
-    for (uint32_t slot = 0; slot < LANES; slot++) {
-      UNROLL
-      for (uint32_t p = 0; p < PIECES; p++)
-        add_slot(sum, cell, k + p * piece, slot, record);
-    }
-  }
-  for (uint32_t k = PIECES * piece; k < n; k += LANES)
     for (uint32_t slot = 0; slot < LANES; slot++)
-      add_slot(sum, cell, k, slot, record);
-}
-
-static void add_words(int64_t *sum, const uint32_t *cell, uint32_t n, const int64_t *word)
-{
-  const uint32_t piece = n / PIECES;
-  for (uint32_t k = 0; k < piece; k++) {
-    UNROLL
-    for (uint32_t p = 0; p < PIECES; p++)
-      sum[cell[k + p * piece]] += word[k + p * piece];
+      add_record((uint64_t *)&sum[cell[k + slot_lane[slot]]], &record[(size_t)4 * (k + slot)]);
   }
-  for (uint32_t k = PIECES * piece; k < n; k++)
-    sum[cell[k]] += word[k];
 }
 
 /* Particles first to first + n - 1 have flown, one of them more than an edge out of the box. The others up to `end`
@@ -332,7 +304,7 @@ INLINE words energies(const struct solvent *s, const struct mpc *c, uint32_t i)
 static uint64_t energies_fast(const struct state *state, struct mpc *c, uint32_t first, uint32_t n)
 {
   const uint32_t end = first + n, whole = end - n % LANES;
-  uint64_t span = 0;
+  uint64_t span = 0, *sum = (uint64_t *)c->relative; /* unsigned: see overflow.h */
   for (uint32_t i = first, m = 0; i < whole; i += m) {
     int64_t energy[CHUNK];
     words size = {0};
@@ -345,7 +317,8 @@ static uint64_t energies_fast(const struct state *state, struct mpc *c, uint32_t
     }
     if (any(size) >= MOST)
       return span | kernel_plain.energies(state, c, i, end - i);
-    add_words(c->relative, &c->solvent_cell[i], m, energy);
+    for (uint32_t k = 0; k < m; k++)
+      sum[c->solvent_cell[i + k]] += (uint64_t)energy[k];
     span |= any(size);
   }
   return span | kernel_plain.energies(state, c, whole, end - whole);
