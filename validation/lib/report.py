@@ -182,7 +182,7 @@ beside it.
 | claim | | pass | within allowance | fail | not reproduced | undecided | runs: finished, begun, all | core-hours |
 | --- | --- | --- | --- | --- | --- | --- | --- | --- |
 {cases}
-
+{failed}
 ## Within the theory's stated allowance
 
 The difference is larger than the error bars explain. It is smaller than what the theory is stated, beforehand, to be off by; z counts
@@ -210,6 +210,17 @@ The number is not measured yet, or its error is still so large that it would agr
 """
 
 
+FAILED = """
+## Fail
+
+The numbers should agree, and do not.
+
+| | measured | expected | z |
+| --- | --- | --- | --- |
+{failed}
+"""
+
+
 def standing(summed):
     """docs/claims/README.md, from what report.json holds."""
     def rows(case, word):
@@ -217,12 +228,14 @@ def standing(summed):
 
     def cell(text):
         return " ".join(text.split()).replace("|", "\\|")
-    table, covered, findings, undecided = [], [], [], []
+    table, failed, covered, findings, undecided = [], [], [], [], []
     for part in summed["sections"]:
         name, counts = part["id"], [len(rows(part["id"], word)) for word in cases.VERDICTS]
         have = sum(row["run"].startswith(name + "/") for row in summed["runs"])
         table.append(f"| [{name}]({name}.md) | {cell(part['title'])} | {' | '.join(map(str, counts))} | "
                       f"{have - len(part['unfinished'])}, {have}, {have + len(part['absent'])} | {part['cpu_seconds'] / 3600.0:.1f} |")
+        failed += [f"| `{row['id']}`: {cell(row['statement'])} | {plusminus(row['measured'], row['error'])} | "
+                   f"{plusminus(row['expected'], row['expected_error'])} ({cell(row['source'])}) | {signed(row['z'])} |" for row in rows(name, "fail")]
         covered += [f"| `{row['id']}`: {cell(row['statement'])} | {plusminus(row['measured'], row['error'])} | "
                     f"{plusminus(row['expected'], row['expected_error'])} ({cell(row['source'])}) | {number(row['allowed'])} | "
                     f"{signed(row['z'])} |" for row in rows(name, "within allowance")]
@@ -233,7 +246,7 @@ def standing(summed):
                       f"{plusminus(row['expected'], row['expected_error'])} |" for row in rows(name, "undecided")]
     return STANDING.format(hours=math.fsum(part["cpu_seconds"] for part in summed["sections"]) / 3600.0,
                            planned=math.fsum(part["hours_estimated"] for part in summed["sections"]),
-                           cases="\n".join(table), covered="\n".join(covered) or "| nothing | | | | |", findings="\n".join(findings), undecided="\n".join(undecided) or "| nothing | | |")
+                           cases="\n".join(table), failed=FAILED.format(failed="\n".join(failed)) if failed else "", covered="\n".join(covered) or "| nothing | | | | |", findings="\n".join(findings), undecided="\n".join(undecided) or "| nothing | | |")
 
 
 def write_standing(summed, page):

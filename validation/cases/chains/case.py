@@ -554,7 +554,7 @@ def evaluate(results, tier):
     pictures = [
         Figure("lengths", "Fig. 2, chains: diffusion against length, with and without hydrodynamics. Below: divided by "
                "theory, with hydrodynamics by Oseen's field smeared over cells (line: Kirkwood's sum), without by molecular chaos of "
-               "chains whose vertices share cells.",
+               "chains whose vertices share cells. Light crosses: runs in the paper's own box.",
                lambda: draw_lengths(results, measured)),
         Figure("rouse", "Rotation of the end-to-end vector without hydrodynamics. Line: Rouse's theory with the friction of "
                "a lone vertex, nothing fitted.", lambda: draw_rouse(results))]

@@ -103,7 +103,7 @@ def evaluate(results, tier):
     for row in table:
         if row["cells"] == 32 and row["vertices"] == 64 and row["fibers"] in (30, 300, 1000):
             prose += f" c L³ = {row['fibers']:.0f}: {hours(row['milliseconds'], sd.PAPER_ROTATION_TIME):.1f} h."
-    return Outcome([volume, density], [Figure("cost", "Smallest CPU time of a step, systems in turn. Left: growing boxes "
+    return Outcome([volume, density], [Figure("cost", "Smallest CPU time of a step in nine rounds; in each, every system has its turn. Left: growing boxes "
                                                       "at c L³ = 100. "
                                               "Right: growing density, and the same less the time of the box without "
                                               "fibers.",

@@ -199,7 +199,7 @@ def draw_lags(found, measured):
         late = t >= 0.8
         kept = (t >= 0.999 * dilute.FIRST_LAG) & (t <= 1.001 * LAST)
         figures.theory(axes, t[late], model[late], color=figures.COLORS[number])
-        figures.points(axes, t, table["D"], table["D_error"], number, label=f"$L_b$ = {key[0]} $a_0$")
+        figures.points(axes, t, table["D"], table["D_error"], number, label=f"$L_b$ = {key[0]} $a_0$, {key[1]} vertices")
         for which, fill in ((late & ~kept, "none"), (kept, figures.COLORS[number])):
             figures.points(below, t[which], (table["D"] / model - 1.0)[which], (table["D_error"] / model)[which], number,
                            markerfacecolor=fill)
@@ -239,7 +239,7 @@ def evaluate(results, tier):
     systems_found, measured = boxes(results)
     pictures = [
         Figure("boxes", "Diffusion of a vertex against the size of the box. The line has the slope of the images and "
-               "the measured viscosity; only its height is fitted.", lambda: draw_boxes(measured, off, swap))]
+               "the measured viscosity; only its height is fitted. Crowded: 128 and 512 vertices in 16³ cells; the latter is below the lower panel.", lambda: draw_boxes(measured, off, swap))]
     if measured:
         pictures.append(
             Figure("lags", "The running estimate g(t)/6t of a vertex in three boxes. Lines: the fitted limit, less the "

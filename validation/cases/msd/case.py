@@ -360,7 +360,7 @@ smaller than it is. d² to the nearest point of the **contour** has no floor.
 Without hydrodynamics the law has no free number. With hydrodynamics the theory has none either: straight fibers in the periodic box, whose
 flow builds up as momentum spreads, in a fluid that the vertices of the others make heavier and more viscous (2.9 times at c L³ = 1000). This
 theory is good to 9 % between 1 and 5 t0, at all densities. Later it is too large. For four fibers that may cross, and are not
-hindered, it is too large by 4 % at 20 t0 and 8 % at 100 t0; this part is an error of the theory. The rest, which grows with the density, is
+hindered, it is too large by 6 % at 20 t0 and 11 % at 100 t0; this part is an error of the theory. The rest, which grows with the density, is
 the effect of the other fibers.
 
 With hydrodynamics no single power holds: the local exponent is above 3/4 while the flow builds up, and below it later.

@@ -412,7 +412,7 @@ def evaluate(results, tier):
         found += [*campaign_verdicts(measured), pulled_verdict(results, measured)]
     pictures = [
         Figure("lengths", "Fig. 2, rods: diffusion against length. Below: divided by theory. Blue: infinite box, by Oseen's "
-               "field smeared over cells (line: Kirkwood's sum). Red: the paper's boxes, by the paper's line. Green: no hydrodynamics, by molecular "
+               "field smeared over cells (line: Kirkwood's sum). Orange: the paper's boxes, by the paper's line; light crosses: runs in such a box itself. Green: no hydrodynamics, by molecular "
                "chaos with shared cells.", lambda: draw_lengths(results, measured))]
     if len({(p.vertices, p.box) for p in points}) > len({p.vertices for p in points}):
         pictures.append(Figure("images", "Effect of the box: the same rods in several boxes. Lines: one limit for each "

@@ -30,8 +30,8 @@ STARTS_KNOWN = 0.06  # by which S may remember its start
 HALF_ORDER = 0.4     # S at the transition: between 0.17 and 0.57 of the two states there
 # name -> (start, volume fraction); edge, blocks, t0 of each block
 ORDER = {"quick": {"aligned-0.436": (4, 12, 5)},
-         "campaign": {"aligned-0.352": (5, 12, 10), "aligned-0.397": (5, 24, 10), "aligned-0.41": (5, 24, 10), "aligned-0.419": (5, 24, 10),
-                      "aligned-0.436": (5, 20, 10), "grown-0.397": (5, 20, 10), "grown-0.436": (5, 20, 10)}}
+         "campaign": {"aligned-0.352": (5, 12, 10), "aligned-0.397": (5, 100, 10), "aligned-0.41": (5, 24, 10), "aligned-0.419": (5, 24, 10),
+                      "aligned-0.436": (5, 20, 10), "grown-0.397": (5, 100, 10), "grown-0.436": (5, 100, 10)}}
 
 
 SWOLLEN = 0.2     # diameter of the chains whose exponent is measured
@@ -465,7 +465,7 @@ def drawn(results):
     """The figures whose runs there are."""
     known = (("state-", "state", "Pressure of spherocylinders with L/D = 5 against volume fraction (random starts below 0.25, parallel rods that were let go "
               "above), Monte Carlo of McGrother et al., Nezbeda's equation, and the virial series.", draw_state),
-             ("aligned-", "order", "Nematic order of spherocylinders with L/D = 5 against volume fraction, 1394 to 1531 rods, from parallel rods and from rods "
+             ("aligned-", "order", "Nematic order of spherocylinders with L/D = 5 against volume fraction, 1236 to 1531 rods, from parallel rods and from rods "
               "without order (S is still rising there: its bar is half of the rise), with Monte Carlo of McGrother et al.", draw_order),
              ("swelling", "swelling", "Single flexible chains of tubes. Left: the size of chains with D = 0.2, over N to the power 2ν. Right: swelling at the same z "
               "against N to the power −1/2, lines through chains of 32 bonds and more, and the theory of long chains (black, at 0). Dotted: that theory with B2 of the sides of "

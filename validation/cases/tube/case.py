@@ -297,7 +297,8 @@ def normalized_verdict(curves, times, measured):
     share, error = values[0] / values[1], values[0] / values[1] * math.hypot(*errors)
     if abs(share - 1.0) > stats.SIGMAS * error:  # else it is too rough to say
         verdict.measured, verdict.error = share, error
-    verdict.statement += f" (so far {share:.2f} ± {error:.2f})"
+    if verdict.measured is None:
+        verdict.statement += f" (so far {share:.2f} ± {error:.2f})"
     return verdict
 
 
@@ -399,7 +400,7 @@ def draw(curves, held, cage, system, times, errors, column):
         if columns is not None:
             figures.points(above, columns["time"] / times[which], columns[column] / scale, columns[column + "_error"] / scale,
                            4 + number, label=f"held tube, {'on' if which == 'hi' else 'off'}", linestyle="-", markersize=2.6)
-    if cage is not None:
+    if cage is not None and column == "d2_contour":  # it is measured to the contour
         figures.points(above, cage["time"] / times["off"], cage["cage"] / scale, cage["cage_error"] / scale, 6,
                        label="relative to its cage, off", linestyle="-", markersize=2.6)
     above.axhline(2 * square, color=figures.INK, linestyle="-.", linewidth=1.1, label="$2L_\\perp^2$, Eq. (35)")
@@ -485,14 +486,15 @@ def pictures(system, times, errors, words):
     axis, none = dict.fromkeys(times, one), dict.fromkeys(times)
     same = (f"c L³ = {system['count']}, L = l_p = {system['length']:g} a0. Filled: crossing forbidden. Open: crossing free. Below: "
             "forbidden over free at the same lag. 2 L⊥²: the line that the paper draws. 4 L⊥²: where a fixed tube would end, because both positions that d² compares "
-            "fluctuate. Held tube: 40 fibers move among 960 that are frozen. Relative to its cage: less the motion that a fiber shares with its neighbors.")
+            "fluctuate. Held tube: 40 fibers move among 960 that are frozen.")
+    caged = " Relative to its cage: less the motion that a fiber shares with its neighbors."
     moves = " Free motion becomes hindered near the first line. The curve passes both: the tube shifts as its neighbors move."
-    shared = f" Time is in units of one τ_r for all curves, {one:.3g} t0, as in Figs. 3 and 5."
+    shared = f" Time is in units of one τ_r for all curves, {one / 1e4:.2g}·10⁴ t0, as in Figs. 3 and 5."
     apart = (f" Each pair of curves has its own τ_r, that of a lone fiber: {words['hi']} with hydrodynamics, {words['off']} without. "
              "Horizontal bars: the error of τ_r, by which a pair may be shifted sideways.")
     return (("fig4-d2", "d2", axis, none, "The paper's d²(t), to the nearest vertex. ", same + moves + shared),
-            ("fig4-d2_contour", "d2_contour", axis, none, "The same to the nearest point of the contour. ", same + shared),
-            ("fig4-own", "d2_contour", times, errors, "The same with another time axis. ", same + apart))
+            ("fig4-d2_contour", "d2_contour", axis, none, "The same to the nearest point of the contour. ", same + caged + shared),
+            ("fig4-own", "d2_contour", times, errors, "d² to the contour once more, with another time axis. ", same + caged + apart))
 
 
 def half_words(curves, system):
