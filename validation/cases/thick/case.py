@@ -30,7 +30,7 @@ STARTS_KNOWN = 0.06  # by which S may remember its start
 HALF_ORDER = 0.4     # S at the transition: between 0.17 and 0.57 of the two states there
 # name -> (start, volume fraction); edge, blocks, t0 of each block
 ORDER = {"quick": {"aligned-0.436": (4, 12, 5)},
-         "campaign": {"aligned-0.352": (5, 12, 10), "aligned-0.397": (5, 100, 10), "aligned-0.41": (5, 24, 10), "aligned-0.419": (5, 24, 10),
+         "campaign": {"aligned-0.352": (5, 12, 10), "aligned-0.397": (5, 100, 10), "aligned-0.41": (5, 100, 10), "aligned-0.419": (5, 100, 10),
                       "aligned-0.436": (5, 20, 10), "grown-0.397": (5, 100, 10), "grown-0.436": (5, 100, 10)}}
 
 
