@@ -438,8 +438,8 @@ static void wild(const struct kernel *kernel)
                                        0x1p52,      -0x1p60, 1e300,  0x1p8, 63.9,   INFINITY, -INFINITY,
                                        (double)NAN, 0x1p7,   -0x1p7, 0x1p6, -0x1p6, 300.0};
   const int64_t kinds = sizeof wild_speeds / sizeof *wild_speeds;
-  static struct model (*const makes[])(void) = {accelerated, dense, at_a,     dense,    at_a_accelerated,
-                                                  at_a,        at_a_fibers, rescaled, canonical};
+  static struct model (*const makes[])(void) = {accelerated, dense,       at_a,     dense,    at_a_accelerated,
+                                                at_a,        at_a_fibers, rescaled, canonical};
   uint32_t faults = 0, fine = 0;
   for (uint64_t k = 0; k < 900; k++) {
     struct pair p = start(makes[k % 9], kernel, dice_seed(840) + k);
