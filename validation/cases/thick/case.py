@@ -466,7 +466,7 @@ def drawn(results):
     known = (("state-", "state", "Pressure of spherocylinders with L/D = 5 against volume fraction (random starts below 0.25, parallel rods that were let go "
               "above), Monte Carlo of McGrother et al., Nezbeda's equation, and the virial series.", draw_state),
              ("aligned-", "order", "Nematic order of spherocylinders with L/D = 5 against volume fraction, 1236 to 1531 rods, from parallel rods and from rods "
-              "without order (S is still rising there: its bar is half of the rise), with Monte Carlo of McGrother et al.", draw_order),
+              "without order (bars: half of what S changes between the halves of a run, where that is more), with Monte Carlo of McGrother et al.", draw_order),
              ("swelling", "swelling", "Single flexible chains of tubes. Left: the size of chains with D = 0.2, over N to the power 2ν. Right: swelling at the same z "
               "against N to the power −1/2, lines through chains of 32 bonds and more, and the theory of long chains (black, at 0). Dotted: that theory with B2 of the sides of "
               "bonds alone.", draw_swelling),
