@@ -270,6 +270,14 @@ class Campaign(unittest.TestCase):
         page = (TREE / "docs/claims/README.md").read_text()
         self.assertEqual(report.standing(committed), page, "make it anew: validation/run report --tier campaign")
 
+    @unittest.skipUnless((CAMPAIGN / "report.json").exists(), "no campaign yet")
+    def test_a_failure_is_on_the_page_of_verdicts(self):
+        summed = json.loads((CAMPAIGN / "report.json").read_text())
+        row = next(row for row in summed["claims"] if row["verdict"] == "pass")
+        row["verdict"] = "fail"
+        failed = report.standing(summed).partition("## Fail\n")[2].partition("## Within")[0]
+        self.assertIn(f"`{row['id']}`", failed)
+
 
 if __name__ == "__main__":
     unittest.main()
