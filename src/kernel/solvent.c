@@ -75,6 +75,8 @@ INLINE words fly(const struct axis *a, uint32_t i, const bool accelerated, reals
   return but_not((p + a->shift) >> LATTICE_BITS, a->cells);
 }
 
+#define MOST ((uint64_t)1 << 51) /* of round_to_words */
+
 /* Momenta of particles of mass 1, in units of the sums, and their size: cell_add, where they are below MOST. */
 INLINE reals momenta(reals v, words *span)
 {
@@ -82,8 +84,6 @@ INLINE reals momenta(reals v, words *span)
   *span |= sizes(p);
   return (reals)p;
 }
-
-#define MOST ((uint64_t)1 << 51) /* of round_to_words */
 
 /* Particles whose flight comes before their sums: all of it stays in the nearest cache. */
 enum { CHUNK = 128 };
@@ -292,7 +292,7 @@ static uint64_t solve_fast(const struct model *model, struct mpc *c, uint64_t st
 /* --- energies ---------------------------------------------------------------------------------------------------- */
 
 /* cell_energy of LANES particles from place i on, in units of mpc->relative. */
-INLINE words energies(const struct solvent *s, const struct mpc *c, uint32_t i)
+INLINE words energy_lanes(const struct solvent *s, const struct mpc *c, uint32_t i)
 {
   reals turn[4];
   load_columns((const double *)c->turn, &c->solvent_cell[i], turn, 4);
@@ -311,7 +311,7 @@ static uint64_t energies_fast(const struct state *state, struct mpc *c, uint32_t
     m = whole - i < CHUNK ? whole - i : CHUNK;
     members_prefetch_turns(c, i + m, whole - i - m < CHUNK ? whole - i - m : CHUNK);
     for (uint32_t k = 0; k < m; k += LANES) {
-      const words e = energies(&state->solvent, c, i + k);
+      const words e = energy_lanes(&state->solvent, c, i + k);
       size |= e;
       store_words(&energy[k], e);
     }

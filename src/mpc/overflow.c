@@ -116,14 +116,17 @@ bool overflow_of_momenta(const struct state *state, const struct model *model, c
   return mass < heaviest || fault_record(fault, FAULT_CELL_MASS, step, mpc_cell(c, fullest_cell(c)), mass, heaviest);
 }
 
-/* Members times the largest energy must fit in 63 bits. Mostly they would even if all members were in one cell. */
+/* Members times the largest energy must fit in 63 bits. The span may be up to twice the largest, and mostly it fits
+ * even if all members are in one cell. */
 bool overflow_of_energies(const struct state *state, const struct model *model, const struct mpc *c, uint64_t span,
                           uint64_t step, struct fault *fault)
 {
-  const double range = 0x1p63 * CELL_ENERGY_UNIT, all = (double)state->solvent.n + state->vertices;
-  if (((double)span + 1.0) * CELL_ENERGY_UNIT * all < range)
+  const double range = 0x1p63 * CELL_ENERGY_UNIT, bound = ((double)span + 1.0) * CELL_ENERGY_UNIT;
+  if (bound * ((double)state->solvent.n + state->vertices) < range)
+    return true;
+  const double limit = range / most_members(c);
+  if (bound < limit)
     return true;
   const struct culprit hottest = find_hottest(state, model, c);
-  const double limit = range / fmin(most_members(c), all);
   return hottest.value + CELL_ENERGY_UNIT < limit || blame(hottest, limit, step, fault);
 }
