@@ -249,7 +249,11 @@ INLINE reals reals_in_square(words x)
 /* a where the mask is all ones, b where it is 0. */
 INLINE reals choose(wholes mask, reals a, reals b)
 {
+#if defined HAS_512
+  return (reals)_mm512_mask_blend_pd(_mm512_movepi64_mask((__m512i)mask), (__m512d)b, (__m512d)a);
+#else
   return (reals)(((wholes)a & mask) | ((wholes)b & ~mask));
+#endif
 }
 
 /* The bitwise or of all lanes. */
@@ -259,6 +263,14 @@ INLINE uint64_t any(words x)
   for (int k = 0; k < LANES; k++)
     all |= x[k];
   return all;
+}
+
+INLINE uint64_t sum_of(words x)
+{
+  uint64_t sum = 0;
+  for (int k = 0; k < LANES; k++)
+    sum += x[k];
+  return sum;
 }
 
 /* True if all words are 0. */
@@ -417,12 +429,15 @@ INLINE void store_columns(double *records, uint32_t first, reals column[8])
  * 7. */
 INLINE void load_columns(const double *records, const uint32_t number[LANES], reals *column, const int columns)
 {
+  const double *record[LANES];
+  UNROLL
+  for (int k = 0; k < LANES; k++)
+    record[k] = (const double *)((const char *)records + ((size_t)number[k] << 6));
   UNROLL
   for (int c = 0; c < columns; c += PART) {
     UNROLL
     for (int k = 0; k < PART; k++)
-      column[c + k] =
-          load_parts(records + (size_t)8 * number[k] + c, records + (size_t)8 * number[k + LANES - PART] + c);
+      column[c + k] = load_parts(record[k] + c, record[k + LANES - PART] + c);
     exchange_rows(&column[c], PART);
   }
 }

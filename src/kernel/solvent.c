@@ -88,21 +88,21 @@ INLINE reals momenta(reals v, words *span)
 /* Particles whose flight comes before their sums: all of it stays in the nearest cache. */
 enum { CHUNK = 128 };
 
-/* What AT-a draws for a chunk: andersen_draw_particles. */
+/* What AT-a draws for a chunk: andersen_draw_particles. Words first, then normals: one loop of both is so long that the
+ * processor sees too little of the next pass while it waits for the roots of this one. */
 INLINE void draw_chunk(const struct solvent *s, const struct model *model, const struct mpc *c, uint64_t step,
                        uint32_t first, uint32_t n)
 {
   const uint64_t seed = model->seed, z = model_is_flat(model) ? 0 : UINT64_MAX;
-  const uint32_t *id = s->id;
-  double *const xi[3] = {c->drawn[0], c->drawn[1], c->drawn[2]};
-  for (uint32_t i = first; i < first + n; i += LANES) {
-    words w[4];
+  words word[CHUNK / LANES][4];
+  for (uint32_t k = 0; k < n; k += LANES)
+    philox_words(seed, RANDOM_ANDERSEN_PARTICLE, 0, step, load_low(&s->id[first + k]), word[k / LANES]);
+  for (uint32_t k = 0; k < n; k += LANES) {
     reals x[3];
-    philox_words(seed, RANDOM_ANDERSEN_PARTICLE, 0, step, load_low(&id[i]), w);
-    normal_three_lanes(w, x);
-    store_reals(&xi[0][i], x[0]);
-    store_reals(&xi[1][i], x[1]);
-    store_reals(&xi[2][i], (reals)((words)x[2] & z));
+    normal_three_lanes(word[k / LANES], x);
+    store_reals(&c->drawn[0][first + k], x[0]);
+    store_reals(&c->drawn[1][first + k], x[1]);
+    store_reals(&c->drawn[2][first + k], (reals)((words)x[2] & z));
   }
 }
 
@@ -216,15 +216,16 @@ INLINE void draw_axes(uint64_t seed, uint32_t draw, uint64_t step, words cell, r
 }
 
 /* cell_solve, and the axis if cells turn, of LANES cells. Those whose axis needs another draw, one in twenty, are
- * appended to a list. Returns its length. Their loads are added to *loads, bit by bit. clears: their sums are set to 0.
- */
+ * appended to a list. Returns its length. Their loads and members are counted (struct solved). clears: their sums are
+ * set to 0. */
 INLINE uint32_t solve_lanes(uint64_t seed, struct mpc *c, uint64_t step, uint32_t first, words lane_cell,
-                            const bool turns, const bool clears, uint32_t *list, uint32_t n, words *loads)
+                            const bool turns, const bool clears, uint32_t *list, uint32_t n, words counts[2])
 {
   reals p[4], turn[8] = {{0}};
   load_records(&c->sum[first], p);
-  const words load = (words)p[3], two = ~negative((load >> 40) - 2);
-  *loads |= load;
+  const words load = (words)p[3], others = (load >> 40) - 1, two = ~negative(others - 1);
+  counts[0] |= load;
+  counts[1] += others & two;
   if (clears)
     memset(&c->sum[first], 0, LANES * sizeof *c->sum);
   if (none(two)) {
@@ -256,19 +257,17 @@ static void draw_again(const struct model *model, struct mpc *c, uint64_t step, 
                                               : random_axis_from(model->seed, RANDOM_ROTATION_AXIS, 2, step, list[k]);
 }
 
-/* If the cells are no multiple of LANES, the last LANES of them come first, and some are solved once more. */
-INLINE uint64_t solve_all(const struct model *model, struct mpc *c, uint64_t step, const bool turns, const bool clears)
+INLINE struct solved solve_all(const struct model *model, struct mpc *c, uint64_t step, const bool turns,
+                               const bool clears)
 {
   uint32_t list[2 * LANES + CHUNK], n = 0;
   const uint32_t whole = c->cells - c->cells % LANES;
   const uint64_t seed = model->seed; /* nothing that is written here can change it, and its keys are kept */
-  words lane_cell, loads = {0};
+  words lane_cell, counts[2] = {{0}, {0}};
   for (int k = 0; k < LANES; k++)
     lane_cell[k] = lane_record[k];
-  if (whole < c->cells)
-    n = solve_lanes(seed, c, step, c->cells - LANES, lane_cell, turns, false, list, n, &loads);
   for (uint32_t k = 0; k < whole; k += LANES) {
-    n = solve_lanes(seed, c, step, k, lane_cell, turns, clears, list, n, &loads);
+    n = solve_lanes(seed, c, step, k, lane_cell, turns, clears, list, n, counts);
     if (n < CHUNK && k + LANES < whole)
       continue;
     for (; n >= LANES; n -= LANES)
@@ -276,13 +275,20 @@ INLINE uint64_t solve_all(const struct model *model, struct mpc *c, uint64_t ste
   }
   for (uint32_t k = 0; k < n; k++)
     c->turn[list[k]].axis = random_axis_from(model->seed, RANDOM_ROTATION_AXIS, 1, step, list[k]);
-  if (clears)
-    memset(&c->sum[whole], 0, (c->cells - whole) * sizeof *c->sum);
+  struct solved all = {.loads = any(counts[0]), .others = sum_of(counts[1])};
+  for (uint32_t k = whole; k < c->cells; k++) {
+    cell_count(&c->sum[k], &all);
+    cell_solve(&c->sum[k], &c->turn[k]);
+    if (turns)
+      c->turn[k].axis = random_axis_from(seed, RANDOM_ROTATION_AXIS, 0, step, k);
+    if (clears)
+      c->sum[k] = (struct cell_sum){0};
+  }
   c->sum_is_clear = clears;
-  return any(loads);
+  return all;
 }
 
-static uint64_t solve_fast(const struct model *model, struct mpc *c, uint64_t step, bool last)
+static struct solved solve_fast(const struct model *model, struct mpc *c, uint64_t step, bool last)
 {
   if (c->rule->thermal)
     return last ? solve_all(model, c, step, false, true) : solve_all(model, c, step, false, false);
@@ -301,27 +307,30 @@ INLINE words energy_lanes(const struct solvent *s, const struct mpc *c, uint32_t
   return round_to_words(CELL_ENERGY_SCALE * (turn[3] * (x * x + y * y + z * z)));
 }
 
-static uint64_t energies_fast(const struct state *state, struct mpc *c, uint32_t first, uint32_t n)
+static uint64_t energies_fast(const struct state *state, struct mpc *c, uint32_t first, uint32_t n, energy_sum *total)
 {
   const uint32_t end = first + n, whole = end - n % LANES;
   uint64_t span = 0, *sum = (uint64_t *)c->relative; /* unsigned: see overflow.h */
   for (uint32_t i = first, m = 0; i < whole; i += m) {
     int64_t energy[CHUNK];
-    words size = {0};
+    words size = {0}, sums = {0};
     m = whole - i < CHUNK ? whole - i : CHUNK;
     members_prefetch_turns(c, i + m, whole - i - m < CHUNK ? whole - i - m : CHUNK);
     for (uint32_t k = 0; k < m; k += LANES) {
       const words e = energy_lanes(&state->solvent, c, i + k);
       size |= e;
+      sums += e;
       store_words(&energy[k], e);
     }
     if (any(size) >= MOST)
-      return span | kernel_plain.energies(state, c, i, end - i);
-    for (uint32_t k = 0; k < m; k++)
+      return span | kernel_plain.energies(state, c, i, end - i, total);
+    if (total)
+      *total += sum_of(sums);
+    for (uint32_t k = 0; k < m && !total; k++)
       sum[c->solvent_cell[i + k]] += (uint64_t)energy[k];
     span |= any(size);
   }
-  return span | kernel_plain.energies(state, c, whole, end - whole);
+  return span | kernel_plain.energies(state, c, whole, end - whole, total);
 }
 
 /* --- turns ------------------------------------------------------------------------------------------------------- */

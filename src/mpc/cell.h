@@ -40,6 +40,13 @@ static inline double cell_mass(const struct cell_sum *sum)
   return (double)(sum->load & (CELL_MEMBER - 1)) * CELL_MASS_UNIT;
 }
 
+/* Counts a cell among all of them (struct solved). */
+static inline void cell_count(const struct cell_sum *sum, struct solved *all)
+{
+  all->loads |= sum->load;
+  all->others += cell_members(sum) - (cell_members(sum) > 0);
+}
+
 /* Adds a member. Returns a number that is at least the size of each momentum component, in momentum units; it is
  * 2^63 - 1 if a component was out of range or not a number (llrint gives INT64_MIN then). */
 static inline uint64_t cell_add(struct cell_sum *sum, double mass, uint64_t load, struct vec3 v)

@@ -38,21 +38,42 @@ static void clear_sums(struct mpc *c)
   c->spin_is_clear = false;
 }
 
-/* Adds the energy of a member to its cell's. Returns it, in the same units. Unsigned: the sum may wrap;
- * overflow_of_energies finds out afterwards. */
-static uint64_t add_energy(int64_t *sum, const struct cell_turn *turn, double mass, struct vec3 v)
+static uint64_t member_energy(const struct cell_turn *turn, double mass, struct vec3 v)
 {
-  const uint64_t energy = (uint64_t)llrint(CELL_ENERGY_SCALE * cell_energy(turn, mass, v));
-  *sum = (int64_t)((uint64_t)*sum + energy);
-  return energy;
+  return (uint64_t)llrint(CELL_ENERGY_SCALE * cell_energy(turn, mass, v));
 }
 
-static uint64_t plain_energies(const struct state *state, struct mpc *c, uint32_t first, uint32_t n)
+/* Unsigned: the sum of a cell may wrap; overflow_of_energies finds out afterwards. */
+static void add_energy(energy_sum *total, int64_t *cell, uint64_t energy)
+{
+  if (total)
+    *total += energy;
+  else
+    *cell = (int64_t)((uint64_t)*cell + energy);
+}
+
+static uint64_t plain_energies(const struct state *state, struct mpc *c, uint32_t first, uint32_t n, energy_sum *total)
 {
   const uint32_t *cell = c->solvent_cell;
   uint64_t span = 0;
-  for (uint32_t i = first; i < first + n; i++)
-    span |= add_energy(&c->relative[cell[i]], &c->turn[cell[i]], 1.0, solvent_velocity(&state->solvent, i));
+  for (uint32_t i = first; i < first + n; i++) {
+    const uint64_t energy = member_energy(&c->turn[cell[i]], 1.0, solvent_velocity(&state->solvent, i));
+    add_energy(total, &c->relative[cell[i]], energy);
+    span |= energy;
+  }
+  return span;
+}
+
+/* The energies of all members: to mpc->relative of their cells, or to *total, as energies of struct kernel. */
+static uint64_t add_energies(const struct state *state, const struct model *model, struct mpc *c, energy_sum *total)
+{
+  uint64_t span = c->kernel.energies(state, c, 0, state->solvent.n, total);
+  for (uint32_t v = 0; v < state->vertices; v++) {
+    const uint32_t cell = c->vertex_cell[v];
+    const uint64_t energy = member_energy(&c->turn[cell], model->mass[v], state->velocity[v]);
+    add_energy(total, &c->relative[cell], energy);
+    span |= energy;
+  }
   return span;
 }
 
@@ -62,12 +83,7 @@ static bool sum_relative_energy(const struct state *state, const struct model *m
                                 struct fault *fault)
 {
   memset(c->relative, 0, (size_t)c->cells * sizeof *c->relative);
-  uint64_t span = c->kernel.energies(state, c, 0, state->solvent.n);
-  for (uint32_t v = 0; v < state->vertices; v++) {
-    const uint32_t cell = c->vertex_cell[v];
-    span |= add_energy(&c->relative[cell], &c->turn[cell], model->mass[v], state->velocity[v]);
-  }
-  return overflow_of_energies(state, model, c, span, step, fault);
+  return overflow_of_energies(state, model, c, add_energies(state, model, c, NULL), step, fault);
 }
 
 bool collide_sum(const struct state *state, const struct model *model, struct mpc *mpc, uint64_t step,
@@ -101,14 +117,14 @@ static bool plain_gather(struct state *state, const struct model *model, struct 
   return true;
 }
 
-static uint64_t plain_solve(const struct model *model, struct mpc *mpc, uint64_t step, bool last)
+static struct solved plain_solve(const struct model *model, struct mpc *mpc, uint64_t step, bool last)
 {
-  uint64_t loads = 0;
+  struct solved all = {0};
   (void)last;
   mpc->rule->solve(model, mpc, step);
   for (uint32_t k = 0; k < mpc->cells; k++)
-    loads |= mpc->sum[k].load;
-  return loads;
+    cell_count(&mpc->sum[k], &all);
+  return all;
 }
 
 static void plain_turn(struct state *state, const struct model *model, const struct mpc *mpc, bool scaled)
@@ -145,10 +161,10 @@ static bool gather(struct state *state, const struct model *model, struct mpc *m
   return true;
 }
 
-/* Whether something reads the sums of cells after, or before, they are solved. */
+/* Whether something but a thermostat reads the sums of cells after, or before, they are solved. */
 static bool sums_are_read(const struct mpc *mpc)
 {
-  return mpc->keeps_sums || mpc->border->fill || mpc->border->account || mpc->thermostat || mpc->stress;
+  return mpc->keeps_sums || mpc->border->fill || mpc->border->account || mpc->stress;
 }
 
 /* Turns of cells of which nobody reads the sums. So the sums are read once, and in the same pass they may be cleared
@@ -157,11 +173,27 @@ static bool sums_are_read(const struct mpc *mpc)
 static bool solve_only(const struct state *state, const struct model *model, struct mpc *mpc, uint64_t step,
                        uint64_t span, struct fault *fault)
 {
-  const uint64_t loads = mpc->kernel.solve(model, mpc, step, true);
-  return !overflow_may_be(model, span, loads) || collide_sum(state, model, mpc, step, fault);
+  const struct solved all = mpc->kernel.solve(model, mpc, step, true);
+  return !overflow_may_be(model, span, all.loads) || collide_sum(state, model, mpc, step, fault);
 }
 
-/* The same where others read them. */
+/* The same with a thermostat that has one factor for all cells: it needs what all of them have together, and no sums.
+ * If the bound of the energies allows a doubt, the sums are made anew, and the energies of each cell are tested. */
+static bool solve_and_scale(const struct state *state, const struct model *model, struct mpc *mpc, uint64_t step,
+                            uint64_t span, struct fault *fault)
+{
+  const struct solved all = mpc->kernel.solve(model, mpc, step, true);
+  if (overflow_may_be(model, span, all.loads) && !collide_sum(state, model, mpc, step, fault))
+    return false;
+  energy_sum energy = 0;
+  if (overflow_of_energies_may_be(add_energies(state, model, mpc, &energy), all.loads))
+    return collide_sum(state, model, mpc, step, fault) &&
+           collide_thermostat(state, model, mpc, mpc->thermostat, step, fault);
+  thermostat_set_factor(mpc, model->dimensions * (double)all.others, energy);
+  return true;
+}
+
+/* The same where sums are read. */
 static bool solve_and_share(const struct state *state, const struct model *model, struct mpc *mpc, uint64_t step,
                             uint64_t span, struct fault *fault)
 {
@@ -194,12 +226,22 @@ void collide_turn(struct state *state, const struct model *model, const struct m
   mpc->kernel.turn(state, model, mpc, scaled);
 }
 
+typedef bool solving(const struct state *, const struct model *, struct mpc *, uint64_t, uint64_t, struct fault *);
+
+static solving *way_of(const struct mpc *mpc)
+{
+  if (sums_are_read(mpc))
+    return solve_and_share;
+  if (!mpc->thermostat)
+    return solve_only;
+  return mpc->thermostat->common ? solve_and_scale : solve_and_share;
+}
+
 bool mpc_collide(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step, struct fault *fault)
 {
   const struct border *border = mpc->border;
   uint64_t span;
-  if (!gather(state, model, mpc, step, &span, fault) ||
-      !(sums_are_read(mpc) ? solve_and_share : solve_only)(state, model, mpc, step, span, fault))
+  if (!gather(state, model, mpc, step, &span, fault) || !way_of(mpc)(state, model, mpc, step, span, fault))
     return false;
   collide_turn(state, model, mpc, mpc->thermostat);
   if (mpc->stress)

@@ -13,6 +13,15 @@
 
 struct mpc;
 
+/* Energies of any number of members, in units of 2^-32 kT. */
+__extension__ typedef unsigned __int128 energy_sum;
+
+/* Of all cells together. */
+struct solved {
+  uint64_t loads;  /* at least each load of a cell in bits 0 to 39, and in bits 40 to 63: all bits of all loads, say */
+  uint64_t others; /* members but the first one, of all cells that have some: degrees of freedom per dimension */
+};
+
 struct kernel {
   const char *name;
 
@@ -23,14 +32,14 @@ struct kernel {
   bool (*gather)(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step, uint32_t first,
                  uint32_t n, uint64_t *span, struct fault *fault);
 
-  /* solve of struct collision_rule. Cells with fewer than two members get any finite center, and any axis. Returns a
-   * number that is at least each load of a cell in bits 0 to 39, and in bits 40 to 63 (all bits of all loads together,
-   * say). `last`: nobody reads the sums after this. A kernel may then clear them, and sets mpc->sum_is_clear. */
-  uint64_t (*solve)(const struct model *model, struct mpc *mpc, uint64_t step, bool last);
+  /* solve of struct collision_rule. Cells with fewer than two members get any finite center, and any axis. `last`:
+   * nobody reads the sums after this. A kernel may then clear them, and sets mpc->sum_is_clear. */
+  struct solved (*solve)(const struct model *model, struct mpc *mpc, uint64_t step, bool last);
 
   /* Of n particles from place `first` of memory on, adds twice the kinetic energy relative to v_cm to mpc->relative of
-   * their cells. Returns the bitwise or of what was added; out of range it has the sign bit. */
-  uint64_t (*energies)(const struct state *state, struct mpc *mpc, uint32_t first, uint32_t n);
+   * their cells, or to *total instead, if it is not NULL. Returns the bitwise or of what was added; out of range it has
+   * the sign bit, and *total is then of no use. */
+  uint64_t (*energies)(const struct state *state, struct mpc *mpc, uint32_t first, uint32_t n, energy_sum *total);
 
   /* apply of struct collision_rule. */
   void (*turn)(struct state *state, const struct model *model, const struct mpc *mpc, bool scaled);

@@ -116,15 +116,29 @@ bool overflow_of_momenta(const struct state *state, const struct model *model, c
   return mass < heaviest || fault_record(fault, FAULT_CELL_MASS, step, mpc_cell(c, fullest_cell(c)), mass, heaviest);
 }
 
-/* Members times the largest energy must fit in 63 bits. The span may be up to twice the largest, and mostly it fits
- * even if all members are in one cell. */
+/* The most that a cell's energy may be, kT: 63 bits. */
+static const double hottest_cell = 0x1p63 * CELL_ENERGY_UNIT;
+
+static double energy_bound(uint64_t span)
+{
+  return ((double)span + 1.0) * CELL_ENERGY_UNIT;
+}
+
+bool overflow_of_energies_may_be(uint64_t span, uint64_t loads)
+{
+  const uint32_t most = cell_members(&(struct cell_sum){.load = loads});
+  return !(energy_bound(span) * most < hottest_cell);
+}
+
+/* Members times the largest energy must fit. The span may be up to twice the largest, and mostly it fits even if all
+ * members are in one cell. */
 bool overflow_of_energies(const struct state *state, const struct model *model, const struct mpc *c, uint64_t span,
                           uint64_t step, struct fault *fault)
 {
-  const double range = 0x1p63 * CELL_ENERGY_UNIT, bound = ((double)span + 1.0) * CELL_ENERGY_UNIT;
-  if (bound * ((double)state->solvent.n + state->vertices) < range)
+  const double bound = energy_bound(span);
+  if (bound * ((double)state->solvent.n + state->vertices) < hottest_cell)
     return true;
-  const double limit = range / most_members(c);
+  const double limit = hottest_cell / most_members(c);
   if (bound < limit)
     return true;
   const struct culprit hottest = find_hottest(state, model, c);

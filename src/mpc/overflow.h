@@ -15,6 +15,10 @@ bool overflow_may_be(const struct model *model, uint64_t span, uint64_t loads);
 bool overflow_of_momenta(const struct state *state, const struct model *model, const struct mpc *mpc, uint64_t span,
                          uint64_t step, struct fault *fault);
 
+/* False if no energy of a cell can have exceeded its range, by two bounds. span: the bitwise or of all energies of
+ * members; loads: as above. */
+bool overflow_of_energies_may_be(uint64_t span, uint64_t loads);
+
 /* Tests energies in mpc->relative. span: the bitwise or of all that was added. False, with the fault recorded, if a sum
  * may have wrapped. */
 bool overflow_of_energies(const struct state *state, const struct model *model, const struct mpc *mpc, uint64_t span,

@@ -65,34 +65,39 @@ double cell_freedoms(const struct mpc *c, const struct model *model, uint32_t pl
 
 /* Of cells that share a factor. */
 struct heat {
-  double freedoms, energy; /* energy: twice the relative kinetic energy of their members, kT */
+  double freedoms;
+  energy_sum energy; /* twice the relative kinetic energy of their members; exact, so in any order */
 };
 
 /* Adds that of cells first .. first + n - 1. Whole numbers of degrees of freedom are counted as integers. */
 static void heat_add(struct heat *heat, const struct mpc *c, const struct model *model, uint32_t first, uint32_t n)
 {
   const uint32_t end = first + n;
-  uint64_t others = 0; /* members, less one in each cell that has some */
+  struct solved all = {0};
   for (uint32_t k = first; k < end; k++) {
-    const uint32_t members = cell_members(&c->sum[k]);
-    others += members - (members > 0);
-    heat->energy += (double)c->relative[k] * CELL_ENERGY_UNIT;
+    cell_count(&c->sum[k], &all);
+    heat->energy += (uint64_t)c->relative[k];
   }
   if (!c->filled)
-    heat->freedoms += model->dimensions * (double)others;
+    heat->freedoms += model->dimensions * (double)all.others;
   for (uint32_t k = first; c->filled && k < end; k++)
     heat->freedoms += c->turn[k].active != 0.0 ? cell_freedoms(c, model, k) : 0.0;
 }
 
 static double heat_factor(const struct heat *heat)
 {
-  return heat->energy > 0.0 ? sqrt(heat->freedoms / heat->energy) : 1.0;
+  return heat->energy > 0 ? sqrt(heat->freedoms / ((double)heat->energy * CELL_ENERGY_UNIT)) : 1.0;
 }
 
 static void set_factors(struct mpc *c, uint32_t first, uint32_t n, double factor)
 {
   for (uint32_t k = first; k < first + n; k++)
     c->turn[k].factor = factor;
+}
+
+void thermostat_set_factor(struct mpc *c, double freedoms, energy_sum energy)
+{
+  set_factors(c, 0, c->cells, heat_factor(&(struct heat){freedoms, energy}));
 }
 
 /* One factor for all cells: a cell of N members has d (N-1) degrees of freedom with kT/2 each
@@ -102,7 +107,7 @@ static void rescale(struct mpc *c, const struct model *model, uint64_t step)
   (void)step;
   struct heat heat = {0};
   heat_add(&heat, c, model, 0, c->cells);
-  set_factors(c, 0, c->cells, heat_factor(&heat));
+  thermostat_set_factor(c, heat.freedoms, heat.energy);
 }
 
 /* Twice the relative kinetic energy of a cell with its virtual particles, as the one member that they are. */
@@ -119,7 +124,7 @@ static uint32_t list_active(const struct mpc *c, uint32_t first, uint32_t end, u
   uint32_t n = 0;
   for (uint32_t k = first; k < end; k++) {
     place[n] = k;
-    n += c->turn[k].active != 0.0;
+    n += cell_members(&c->sum[k]) >= 2;
   }
   return n;
 }
@@ -130,17 +135,19 @@ static uint32_t list_active(const struct mpc *c, uint32_t first, uint32_t end, u
 static void maxwell_boltzmann(struct mpc *c, const struct model *model, uint64_t step)
 {
   uint32_t place[RANDOM_UNIFORMS] = {0};
-  double shape[RANDOM_UNIFORMS], wanted[RANDOM_UNIFORMS];
+  double shape[RANDOM_UNIFORMS], wanted[RANDOM_UNIFORMS] = {0}, energy[RANDOM_UNIFORMS] = {0}, factor[RANDOM_UNIFORMS];
   for (uint32_t first = 0; first < c->cells; first += RANDOM_UNIFORMS) {
     const uint32_t left = c->cells - first, end = first + (left < RANDOM_UNIFORMS ? left : RANDOM_UNIFORMS);
     const uint32_t n = list_active(c, first, end, place);
     for (uint32_t k = 0; k < n; k++)
       shape[k] = 0.5 * model->dimensions * (cell_members(&c->sum[place[k]]) - 1);
     thermostat_gammas(model->seed, step, place, shape, n, wanted);
-    for (uint32_t k = 0; k < n; k++) {
-      const double energy = 0.5 * whole_energy(c, model, place[k]);
-      c->turn[place[k]].factor = energy > 0.0 ? sqrt(wanted[k] / energy) : 1.0;
-    }
+    for (uint32_t k = 0; k < n; k++)
+      energy[k] = 0.5 * whole_energy(c, model, place[k]);
+    for (uint32_t k = 0; k < RANDOM_UNIFORMS; k++)
+      factor[k] = energy[k] > 0.0 ? sqrt(wanted[k] / energy[k]) : 1.0;
+    for (uint32_t k = 0; k < n; k++)
+      c->turn[place[k]].factor = factor[k];
   }
 }
 
@@ -160,7 +167,7 @@ static void rescale_layers(struct mpc *c, const struct model *model, uint64_t st
 }
 
 static const struct thermostat thermostats[THERMOSTATS] = {
-    [THERMOSTAT_RESCALE] = {.name = "rescale", .factors = rescale},
+    [THERMOSTAT_RESCALE] = {.name = "rescale", .common = true, .factors = rescale},
     [THERMOSTAT_MAXWELL_BOLTZMANN] = {.name = "maxwell-boltzmann", .factors = maxwell_boltzmann},
     [THERMOSTAT_RESCALE_LAYERS] = {.name = "rescale-layers", .layered = true, .factors = rescale_layers},
 };

@@ -8,6 +8,7 @@ struct thermostat {
   const char *name; /* as in scenes */
 
   bool layered; /* fixes the energy of each row of cells along y; else that of none, or of all together */
+  bool common;  /* one factor for all cells: thermostat_set_factor */
 
   /* Sets the factor of every cell that has members to collide, from the relative kinetic energies (mpc->relative). */
   void (*factors)(struct mpc *mpc, const struct model *model, uint64_t step);
@@ -15,6 +16,10 @@ struct thermostat {
 
 /* The thermostat of this kind; NULL: none. */
 const struct thermostat *thermostat_of(enum thermostat_kind kind);
+
+/* Sets the factor of a common thermostat for all cells, from their degrees of freedom together, and the sum of their
+ * relative energies. */
+void thermostat_set_factor(struct mpc *mpc, double freedoms, energy_sum energy);
 
 /* Degrees of freedom of the members of a cell relative to its v_cm, with kT/2 each: d (N - M/(M + n)) for N members of
  * mass M, d dimensions, and n virtual particles, which have a share in v_cm. That is d (N - 1) where there are none.

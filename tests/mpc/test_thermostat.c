@@ -349,6 +349,37 @@ static void hot_boxes_are_cooled(void **unused)
   test_end(&r);
 }
 
+/* The energy that `rescale` brings to its value is summed in integers, so it does not depend on the order of cells:
+ * with everything moved by one cell, the factor has the same bits, even where the sum has more than the 53 of a double.
+ * keeps_sums: cell by cell, or all members at once. */
+static void rescale_is_the_same_in_any_order(void **unused)
+{
+  (void)unused;
+  for (uint64_t k = 0; k < 20; k++) {
+    double factor[2][2];
+    for (int moved = 0; moved < 2; moved++)
+      for (int whole = 0; whole < 2; whole++) {
+        struct dice d = {dice_seed(506) + k};
+        struct test_run r = thermostatted(THERMOSTAT_RESCALE, 90, 5, 1e5, &d);
+        struct mpc *c = &r.work.mpc;
+        const int64_t edge = r.model.box.edge[0], one = moved * LATTICE_CELL;
+        for (uint32_t i = 0; i < r.state.solvent.n; i++)
+          r.state.solvent.x[i] = (r.state.solvent.x[i] + one) % edge;
+        for (uint32_t v = 0; v < r.state.vertices; v++)
+          r.state.position[v].x += one;
+        c->keeps_sums = !whole;
+        assert_true(mpc_collide(&r.state, &r.model, c, 3, &r.work.fault));
+        uint32_t active = 0;
+        while (c->turn[active].active == 0.0)
+          active++;
+        factor[moved][whole] = c->turn[active].factor;
+        test_end(&r);
+      }
+    assert_true(factor[0][0] > 0.0 && factor[0][0] < 0.01);
+    assert_true(factor[0][1] == factor[0][0] && factor[1][0] == factor[0][0] && factor[1][1] == factor[0][0]);
+  }
+}
+
 /* A hot start comes to T = 1 and Maxwell velocities under either thermostat: kurtosis 3, equipartition between masses.
  */
 static void equilibrium_is_maxwellian(void **unused)
@@ -387,11 +418,17 @@ static void equilibrium_is_maxwellian(void **unused)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(rescale_sets_the_sum),          cmocka_unit_test(layers_have_their_own_sums),
-      cmocka_unit_test(canonical_energies_are_gamma),  cmocka_unit_test(gamma_deviates),
-      cmocka_unit_test(gamma_deviates_have_addresses), cmocka_unit_test(gamma_deviates_in_columns),
-      cmocka_unit_test(cold_cells_stay_finite),        cmocka_unit_test(energy_range_faults),
-      cmocka_unit_test(lone_members_have_no_energy),   cmocka_unit_test(hot_boxes_are_cooled),
+      cmocka_unit_test(rescale_sets_the_sum),
+      cmocka_unit_test(layers_have_their_own_sums),
+      cmocka_unit_test(canonical_energies_are_gamma),
+      cmocka_unit_test(gamma_deviates),
+      cmocka_unit_test(gamma_deviates_have_addresses),
+      cmocka_unit_test(gamma_deviates_in_columns),
+      cmocka_unit_test(cold_cells_stay_finite),
+      cmocka_unit_test(energy_range_faults),
+      cmocka_unit_test(lone_members_have_no_energy),
+      cmocka_unit_test(hot_boxes_are_cooled),
+      cmocka_unit_test(rescale_is_the_same_in_any_order),
       cmocka_unit_test(equilibrium_is_maxwellian),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
