@@ -6,12 +6,35 @@
 #include "base/random.h"
 #include "mpc/grid.h"
 
-/* column[k] <- column[from[k]] for all k; elements of 8 bytes. */
-static void permute(void *column, const uint32_t *from, uint32_t n, int64_t *scratch)
+/* to[k] <- column[from[k]] for all k; elements of 8 bytes. */
+static void collect(void *restrict to, const void *restrict column, const uint32_t *restrict from, uint32_t n)
 {
-  memcpy(scratch, column, (size_t)n * sizeof *scratch);
+  const size_t size = sizeof(int64_t);
   for (uint32_t k = 0; k < n; k++)
-    memcpy((char *)column + (size_t)k * sizeof *scratch, &scratch[from[k]], sizeof *scratch);
+    memcpy((char *)to + k * size, (const char *)column + from[k] * size, size);
+}
+
+/* A column of all particles in its new order: in the memory of c->column, which takes that of the old one instead. */
+static void *permuted(void *column, const uint32_t *from, uint32_t n, struct mpc *c)
+{
+  void *const to = c->column;
+  collect(to, column, from, n);
+  c->column = column;
+  return to;
+}
+
+static void permute_velocities(struct solvent *s, const uint32_t *from, struct mpc *c)
+{
+  s->vx = permuted(s->vx, from, s->n, c);
+  s->vy = permuted(s->vy, from, s->n, c);
+  s->vz = permuted(s->vz, from, s->n, c);
+}
+
+/* The same of a column that is shorter, in place. */
+static void permute(int64_t *column, const uint32_t *from, uint32_t n, int64_t *scratch)
+{
+  memcpy(scratch, column, (size_t)n * sizeof *column);
+  collect(column, scratch, from, n);
 }
 
 void mpc_swap_velocities(struct state *state, const struct model *model, struct mpc *c, uint64_t step)
@@ -22,9 +45,7 @@ void mpc_swap_velocities(struct state *state, const struct model *model, struct 
   uint32_t *from = (uint32_t *)c->solvent_cell; /* not needed any more in this collision */
   for (uint32_t i = 0; i < s->n; i++)
     from[i] = c->slot[c->order[s->id[i]]];
-  permute(s->vx, from, s->n, c->column);
-  permute(s->vy, from, s->n, c->column);
-  permute(s->vz, from, s->n, c->column);
+  permute_velocities(s, from, c);
 }
 
 /* Orders the particles first to end - 1 by cell; `together` of them, from the first on, go with their first one.
@@ -32,15 +53,15 @@ void mpc_swap_velocities(struct state *state, const struct model *model, struct 
 static void order_range(const struct state *state, const struct model *model, struct mpc *c, uint32_t first,
                         uint32_t end, uint32_t together)
 {
-  const struct solvent *s = &state->solvent;
-  const struct point unshifted = {0, 0, 0};
   const int64_t cells = box_cell_count(&model->box);
+  const struct point shift = c->shift;
   memset(c->sum, 0, (size_t)cells * sizeof *c->sum);
   c->sum_is_clear = false;
-  for (uint32_t i = first; i < end; i += together) {
-    c->solvent_cell[i] = grid_cell_of(&model->box, (struct point){s->x[i], s->y[i], s->z[i]}, unshifted);
+  c->shift = (struct point){0, 0, 0};
+  grid_bin_particles(state, model, first, end - first, c);
+  c->shift = shift;
+  for (uint32_t i = first; i < end; i += together)
     c->sum[c->solvent_cell[i]].load += together;
-  }
   uint64_t start = first;
   for (int64_t k = 0; k < cells; k++) {
     uint64_t here = c->sum[k].load;
@@ -65,12 +86,10 @@ void mpc_sort(struct state *state, const struct model *model, struct mpc *c)
   struct dumbbells *d = &state->dumbbells;
   order_range(state, model, c, 0, 2 * d->n, 2);
   order_range(state, model, c, 2 * d->n, s->n, 1);
-  permute(s->x, c->order, s->n, c->column);
-  permute(s->y, c->order, s->n, c->column);
-  permute(s->z, c->order, s->n, c->column);
-  permute(s->vx, c->order, s->n, c->column);
-  permute(s->vy, c->order, s->n, c->column);
-  permute(s->vz, c->order, s->n, c->column);
+  s->x = permuted(s->x, c->order, s->n, c);
+  s->y = permuted(s->y, c->order, s->n, c);
+  s->z = permuted(s->z, c->order, s->n, c);
+  permute_velocities(s, c->order, c);
   permute_ids(s->id, c->order, s->n, c->column);
   if (d->n == 0)
     return;

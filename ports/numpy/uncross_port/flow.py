@@ -251,7 +251,7 @@ def rescale_layers(model, load, relative, filled):
     number = np.arange(model.cells).reshape(active.shape)
     factor = np.ones(model.cells)
     for row in range(model.rows):
-        wanted = present = 0.0
+        wanted, present = 0.0, 0
         cells = number[:, row][active[:, row]]
         for cell in cells:
             mass = load[cell, 1] * 2.0**-16
@@ -259,9 +259,9 @@ def rescale_layers(model, load, relative, filled):
             if virtual[cell]:
                 freedoms -= (mass - virtual[cell]) / mass
             wanted += 3.0 * freedoms
-            present += relative[cell] * 2.0**-32
+            present += int(relative[cell])
         if present > 0:
-            factor[cells] = np.sqrt(wanted / present)
+            factor[cells] = np.sqrt(wanted / (float(present) * 2.0**-32))
     return factor
 
 

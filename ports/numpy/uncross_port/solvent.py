@@ -62,10 +62,8 @@ def relative_energy(model, cell, mass, velocity, center, load):
 def rescale(model, load, relative):
     """One factor for all cells that brings their relative energy to 3 (N - 1) kT/2 each on average."""
     active = load[:, 0] >= 2
-    wanted, present = 0.0, 0.0
-    for count, energy in zip(load[active, 0], relative[active]):
-        wanted += 3.0 * (count - 1)
-        present += energy * 2.0**-32
+    wanted = 3.0 * float(sum(int(count) - 1 for count in load[active, 0]))
+    present = float(sum(int(energy) for energy in relative[active])) * 2.0**-32
     return np.where(active, np.sqrt(wanted / present) if present > 0 else 1.0, 1.0)
 
 
