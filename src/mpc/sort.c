@@ -6,35 +6,12 @@
 #include "base/random.h"
 #include "mpc/grid.h"
 
-/* to[k] <- column[from[k]] for all k; elements of 8 bytes. */
-static void collect(void *restrict to, const void *restrict column, const uint32_t *restrict from, uint32_t n)
+/* column[k] <- column[from[k]] for all k; elements of 8 bytes. */
+static void permute(void *column, const uint32_t *from, uint32_t n, int64_t *scratch)
 {
-  const size_t size = sizeof(int64_t);
+  memcpy(scratch, column, (size_t)n * sizeof *scratch);
   for (uint32_t k = 0; k < n; k++)
-    memcpy((char *)to + k * size, (const char *)column + from[k] * size, size);
-}
-
-/* A column of all particles in its new order: in the memory of c->column, which takes that of the old one instead. */
-static void *permuted(void *column, const uint32_t *from, uint32_t n, struct mpc *c)
-{
-  void *const to = c->column;
-  collect(to, column, from, n);
-  c->column = column;
-  return to;
-}
-
-static void permute_velocities(struct solvent *s, const uint32_t *from, struct mpc *c)
-{
-  s->vx = permuted(s->vx, from, s->n, c);
-  s->vy = permuted(s->vy, from, s->n, c);
-  s->vz = permuted(s->vz, from, s->n, c);
-}
-
-/* The same of a column that is shorter, in place. */
-static void permute(int64_t *column, const uint32_t *from, uint32_t n, int64_t *scratch)
-{
-  memcpy(scratch, column, (size_t)n * sizeof *column);
-  collect(column, scratch, from, n);
+    memcpy((char *)column + (size_t)k * sizeof *scratch, &scratch[from[k]], sizeof *scratch);
 }
 
 void mpc_swap_velocities(struct state *state, const struct model *model, struct mpc *c, uint64_t step)
@@ -45,7 +22,9 @@ void mpc_swap_velocities(struct state *state, const struct model *model, struct 
   uint32_t *from = (uint32_t *)c->solvent_cell; /* not needed any more in this collision */
   for (uint32_t i = 0; i < s->n; i++)
     from[i] = c->slot[c->order[s->id[i]]];
-  permute_velocities(s, from, c);
+  permute(s->vx, from, s->n, c->column);
+  permute(s->vy, from, s->n, c->column);
+  permute(s->vz, from, s->n, c->column);
 }
 
 /* Orders the particles first to end - 1 by cell; `together` of them, from the first on, go with their first one.
@@ -86,10 +65,12 @@ void mpc_sort(struct state *state, const struct model *model, struct mpc *c)
   struct dumbbells *d = &state->dumbbells;
   order_range(state, model, c, 0, 2 * d->n, 2);
   order_range(state, model, c, 2 * d->n, s->n, 1);
-  s->x = permuted(s->x, c->order, s->n, c);
-  s->y = permuted(s->y, c->order, s->n, c);
-  s->z = permuted(s->z, c->order, s->n, c);
-  permute_velocities(s, c->order, c);
+  permute(s->x, c->order, s->n, c->column);
+  permute(s->y, c->order, s->n, c->column);
+  permute(s->z, c->order, s->n, c->column);
+  permute(s->vx, c->order, s->n, c->column);
+  permute(s->vy, c->order, s->n, c->column);
+  permute(s->vz, c->order, s->n, c->column);
   permute_ids(s->id, c->order, s->n, c->column);
   if (d->n == 0)
     return;

@@ -390,6 +390,34 @@ static void crowded_cells_fault_rather_than_wrap(void **unused)
   test_end(&r);
 }
 
+/* A vertex is in any image of the box, up to the range of positions. Its cell is that of a division in integers, at the
+ * ends of images too, where the quotient of rows is a product that rounds: 49 times 1/49 is less than 1. */
+static void vertices_are_in_any_image(void **unused)
+{
+  (void)unused;
+  enum { IMAGES = 9, PLACES = 5, VERTICES = IMAGES * PLACES };
+  struct point position[VERTICES];
+  uint32_t cell[VERTICES];
+  for (int edge = 1; edge <= LATTICE_MAX_EDGE; edge++) {
+    struct model m = test_model(edge, edge, edge, 0.0, 0.01, 2);
+    const int64_t far = (LATTICE_REACH - 2 * LATTICE_CELL) / m.box.edge[0];
+    const int64_t image[IMAGES] = {0, 1, 2, 3, far, -1, -2, -3, -far};
+    const int64_t place[PLACES] = {0, -1, LATTICE_CELL, 1 - LATTICE_CELL, -LATTICE_CELL};
+    for (uint32_t v = 0; v < VERTICES; v++) {
+      const int64_t x = image[v / PLACES] * m.box.edge[0] + place[v % PLACES];
+      position[v] = (struct point){x, -x, image[(v + 7) % VERTICES / PLACES] * m.box.edge[0]};
+    }
+    const struct point shifts[] = {{0, 0, 0}, {1, LATTICE_CELL - 1, 12345}, {LATTICE_CELL - 1, 1, 0}};
+    for (int k = 0; k < 3; k++) {
+      struct mpc c = {.shift = shifts[k], .vertex_cell = cell};
+      const struct state state = {.vertices = VERTICES, .position = position};
+      grid_bin_vertices(&state, &m, &c);
+      for (uint32_t v = 0; v < VERTICES; v++)
+        assert_int_equal(cell[v], cell_by_floor(&m.box, position[v], shifts[k]));
+    }
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -397,6 +425,7 @@ int main(void)
       cmocka_unit_test(lone_members_keep_their_velocities),
       cmocka_unit_test(cells_are_where_they_should_be),
       cmocka_unit_test(grid_shift_is_uniform),
+      cmocka_unit_test(vertices_are_in_any_image),
       cmocka_unit_test(vertices_and_solvent_share_the_grid),
       cmocka_unit_test(factor_formula),
       cmocka_unit_test(one_step_factors),
