@@ -195,13 +195,16 @@ gives 2 'is of another scene' run "$dir/other.yaml" --out "$run" --resume --step
 sed 's/conserved: {every: 1}/statics: {every: 1}/' "$scene" >"$dir/other.yaml"
 gives 2 'no memory of the observable' run "$dir/other.yaml" --out "$run" --resume --steps 23
 "$uncross" run "$scene" --out "$dir/stop'd here" --set "box=[4, 4, 5]" --steps 100000000 >"$dir/out" 2>"$dir/err" &
-sleep 0.4
+for ((waited = 0; waited < 1000; waited++)); do # a shell has its background ignore SIGINT, until the program looks for it
+  [ ! -e "$dir/stop'd here" ] || break
+  sleep 0.1
+done
 kill -INT $!
 wait $!
 [ $? = 5 ] && grep -qF "go on with:  $uncross run " "$dir/out"
 ok $? "SIGINT: exit code 5, and what to do next"
 next=$(sed -n 's/^go on with:  //p' "$dir/out")
-eval "timeout -s INT 0.4 $next" >"$dir/out" 2>&1
+eval "timeout -s INT 2 $next" >"$dir/out" 2>&1
 [ $? = 124 ] && grep -q '^go on with:  .* run ' "$dir/out"
 ok $? "what is printed is the whole command, as a shell takes it"
 "$uncross" info "$dir/stop'd here" >"$dir/out" && grep -q 'run.json: record of a run' "$dir/out" && grep -q 'checkpoint.h5: checkpoint of' "$dir/out"

@@ -102,6 +102,10 @@ cp "$dir/observed.yaml" "$dir/scene.yaml"
 
 # Interrupted by a signal, in the middle of the loop.
 "$uncross" run "$dir/scene.yaml" --out "$dir/killed" --steps 100000000 --quiet >/dev/null 2>"$dir/err" &
+for ((waited = 0; waited < 1000; waited++)); do # its folder comes after it looks for signals
+  [ ! -e "$dir/killed" ] || break
+  sleep 0.1
+done
 sleep 1
 kill -TERM $!
 wait $!
