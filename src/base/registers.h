@@ -265,6 +265,7 @@ INLINE uint64_t any(words x)
   return all;
 }
 
+/* The sum of all lanes. */
 INLINE uint64_t sum_of(words x)
 {
   uint64_t sum = 0;

@@ -1,6 +1,7 @@
 /*
- * One collision of the whole suspension, and its parts for the oracle and for tests. mpc_collide does them in this
- * order, after grid_bin. All parts but the last change struct mpc only.
+ * One collision of the whole suspension, and its parts for the oracle and for tests. mpc_collide gives what these give
+ * in this order, after grid_bin; where nobody reads the sums of cells, it goes shorter ways. All parts but the last
+ * change struct mpc only.
  */
 #ifndef UNCROSS_MPC_COLLIDE_H
 #define UNCROSS_MPC_COLLIDE_H

@@ -41,8 +41,8 @@ void grid_bin_particles(const struct state *state, const struct model *model, ui
 }
 
 /* The same for an unwrapped coordinate along a periodic axis: the remainder of the row that it is in, counted from the
- * origin. The quotient may be one too small or too large, since a product rounds; so a box is added, or taken away.
- * Rows have 24 bits. Without a branch or a division, so that a loop vectorises. */
+ * origin. The quotient may be one too small or too large, since it is cut towards zero and the product rounds; so a box
+ * is added, or taken away. Rows have 24 bits. Without a branch or a division, so that a loop vectorises. */
 static inline uint32_t row_of(int64_t x, int64_t shift, int32_t cells, double inverse)
 {
   const int32_t row = (int32_t)((int64_t)((uint64_t)x + (uint64_t)shift) >> LATTICE_BITS);

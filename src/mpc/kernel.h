@@ -19,7 +19,8 @@ __extension__ typedef unsigned __int128 energy_sum;
 /* Of all cells together. */
 struct solved {
   uint64_t loads;  /* at least each load of a cell in bits 0 to 39, and in bits 40 to 63: all bits of all loads, say */
-  uint64_t others; /* members but the first one, of all cells that have some: degrees of freedom per dimension */
+  uint64_t others; /* members but the first one, of all cells that have some: degrees of freedom per dimension where
+                    * there are no virtual members (else cell_freedoms) */
 };
 
 struct kernel {
@@ -32,8 +33,9 @@ struct kernel {
   bool (*gather)(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step, uint32_t first,
                  uint32_t n, uint64_t *span, struct fault *fault);
 
-  /* solve of struct collision_rule. Cells with fewer than two members get any finite center, and any axis. `last`:
-   * nobody reads the sums after this. A kernel may then clear them, and sets mpc->sum_is_clear. */
+  /* solve of struct collision_rule. Cells with fewer than two members get any finite center, and any axis. Returns
+   * what all cells have together. `last`: nobody reads the sums after this. A kernel may then clear them, and sets
+   * mpc->sum_is_clear. */
   struct solved (*solve)(const struct model *model, struct mpc *mpc, uint64_t step, bool last);
 
   /* Of n particles from place `first` of memory on, adds twice the kinetic energy relative to v_cm to mpc->relative of

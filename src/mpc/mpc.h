@@ -52,7 +52,8 @@ struct mpc {
   bool sum_is_clear;      /* all of `sum` is 0: the kernel cleared each cell when it had solved it */
   bool keeps_sums;        /* for tests: it never does */
   struct cell_turn *turn; /* [cells] */
-  int64_t *relative;      /* [cells] twice the kinetic energy relative to v_cm, 2^-32 kT; thermostat only, else NULL */
+  int64_t *relative;      /* [cells] twice the kinetic energy relative to v_cm, 2^-32 kT; thermostat only, else NULL.
+                           * Not filled where one sum of all cells will do (collide.c) */
   uint32_t *solvent_cell; /* [particles] the same for particles, in memory order */
   uint32_t *vertex_cell;  /* [vertices] place of the vertex's cell in sum and turn */
   uint32_t *occupied;     /* [vertices] numbers of the cells that hold a vertex; random solvent only, else NULL */

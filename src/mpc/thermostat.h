@@ -8,7 +8,8 @@ struct thermostat {
   const char *name; /* as in scenes */
 
   bool layered; /* fixes the energy of each row of cells along y; else that of none, or of all together */
-  bool common;  /* one factor for all cells: thermostat_set_factor */
+  bool common;  /* one factor for all cells. Where nobody reads sums of cells, thermostat_set_factor takes the place of
+                 * `factors`, and mpc->relative is not filled */
 
   /* Sets the factor of every cell that has members to collide, from the relative kinetic energies (mpc->relative). */
   void (*factors)(struct mpc *mpc, const struct model *model, uint64_t step);

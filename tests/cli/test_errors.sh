@@ -199,6 +199,7 @@ for ((waited = 0; waited < 1000; waited++)); do # a shell has its background ign
   [ ! -e "$dir/stop'd here" ] || break
   sleep 0.1
 done
+[ -e "$dir/stop'd here" ] || kill -KILL $!
 kill -INT $!
 wait $!
 [ $? = 5 ] && grep -qF "go on with:  $uncross run " "$dir/out"

@@ -106,6 +106,7 @@ for ((waited = 0; waited < 1000; waited++)); do # its folder comes after it look
   [ ! -e "$dir/killed" ] || break
   sleep 0.1
 done
+[ -e "$dir/killed" ] || kill -KILL $!
 sleep 1
 kill -TERM $!
 wait $!
