@@ -430,7 +430,7 @@ INLINE void store_columns(double *records, uint32_t first, reals column[8])
  * 7. */
 INLINE void load_columns(const double *records, const uint32_t number[LANES], reals *column, const int columns)
 {
-  const double *record[LANES];
+  const double *record[LANES]; /* gcc makes an address for each half of a record, unless it is told that there is one */
   UNROLL
   for (int k = 0; k < LANES; k++)
     record[k] = (const double *)((const char *)records + ((size_t)number[k] << 6));

@@ -228,6 +228,7 @@ void collide_turn(struct state *state, const struct model *model, const struct m
 
 typedef bool solving(const struct state *, const struct model *, struct mpc *, uint64_t, uint64_t, struct fault *);
 
+/* How the turns of cells are found: the shortest way that who reads sums of cells allows. */
 static solving *way_of(const struct mpc *mpc)
 {
   if (sums_are_read(mpc))

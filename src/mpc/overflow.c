@@ -119,6 +119,7 @@ bool overflow_of_momenta(const struct state *state, const struct model *model, c
 /* The most that a cell's energy may be, kT: 63 bits. */
 static const double hottest_cell = 0x1p63 * CELL_ENERGY_UNIT;
 
+/* At least each energy that went into this span, kT. */
 static double energy_bound(uint64_t span)
 {
   return ((double)span + 1.0) * CELL_ENERGY_UNIT;

@@ -135,7 +135,7 @@ static uint32_t list_active(const struct mpc *c, uint32_t first, uint32_t end, u
 static void maxwell_boltzmann(struct mpc *c, const struct model *model, uint64_t step)
 {
   uint32_t place[RANDOM_UNIFORMS] = {0};
-  double shape[RANDOM_UNIFORMS], wanted[RANDOM_UNIFORMS] = {0}, energy[RANDOM_UNIFORMS] = {0}, factor[RANDOM_UNIFORMS];
+  double shape[RANDOM_UNIFORMS], wanted[RANDOM_UNIFORMS], energy[RANDOM_UNIFORMS], factor[RANDOM_UNIFORMS];
   for (uint32_t first = 0; first < c->cells; first += RANDOM_UNIFORMS) {
     const uint32_t left = c->cells - first, end = first + (left < RANDOM_UNIFORMS ? left : RANDOM_UNIFORMS);
     const uint32_t n = list_active(c, first, end, place);
@@ -144,7 +144,7 @@ static void maxwell_boltzmann(struct mpc *c, const struct model *model, uint64_t
     thermostat_gammas(model->seed, step, place, shape, n, wanted);
     for (uint32_t k = 0; k < n; k++)
       energy[k] = 0.5 * whole_energy(c, model, place[k]);
-    for (uint32_t k = 0; k < RANDOM_UNIFORMS; k++)
+    for (uint32_t k = 0; k < n; k++) /* in columns, so that it vectorises */
       factor[k] = energy[k] > 0.0 ? sqrt(wanted[k] / energy[k]) : 1.0;
     for (uint32_t k = 0; k < n; k++)
       c->turn[place[k]].factor = factor[k];

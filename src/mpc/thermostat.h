@@ -18,8 +18,8 @@ struct thermostat {
 /* The thermostat of this kind; NULL: none. */
 const struct thermostat *thermostat_of(enum thermostat_kind kind);
 
-/* Sets the factor of a common thermostat for all cells, from their degrees of freedom together, and the sum of their
- * relative energies. */
+/* Sets the one factor of all cells, from what they have together: degrees of freedom, and twice their relative kinetic
+ * energy. The factor is 1 if there is no energy. */
 void thermostat_set_factor(struct mpc *mpc, double freedoms, energy_sum energy);
 
 /* Degrees of freedom of the members of a cell relative to its v_cm, with kT/2 each: d (N - M/(M + n)) for N members of

@@ -535,31 +535,46 @@ static void cleared(const struct kernel *kernel)
   }
 }
 
+struct outcomes {
+  uint32_t sure, doubts, faults;
+};
+
+/* One particle has this speed where nobody reads the sums. If the kernel's bounds allow a doubt, the sums are made
+ * anew: then they are not clear. */
+static void collide_with_one_fast(struct model (*make)(void), const struct kernel *kernel, uint64_t seed, double speed,
+                                  struct outcomes *all)
+{
+  struct pair p = start(make, kernel, seed);
+  struct mpc *c = &p.fast.work.mpc;
+  c->keeps_sums = false;
+  p.plain.state.solvent.vx[3] = p.fast.state.solvent.vx[3] = speed;
+  p.plain.state.solvent_lag = p.fast.state.solvent_lag = 0;
+  const bool fine = collide(&p.plain, STEP);
+  assert_true(collide(&p.fast, STEP) == fine);
+  assert_int_equal(p.fast.work.fault.code, p.plain.work.fault.code);
+  assert_int_equal(p.fast.work.fault.entity, p.plain.work.fault.entity);
+  if (fine) {
+    assert_true(state_hash(&p.plain.state) == state_hash(&p.fast.state));
+    assert_same_turns(&p.plain.work.mpc, c, kernel->name);
+  }
+  if (fine && !c->sum_is_clear)
+    assert_same_sums(&p.plain.work.mpc, c, kernel->name);
+  all->sure += fine && c->sum_is_clear;
+  all->doubts += fine && !c->sum_is_clear;
+  all->faults += !fine;
+  end(&p);
+}
+
 /* One particle is so fast that a sum may have wrapped, by the bounds that the kernel returns. Then the sums are made
  * once more and tested, and the answer is that of the plain kernel. */
 static void doubtful(const struct kernel *kernel)
 {
-  uint32_t doubts = 0, faults = 0;
+  struct outcomes all = {0};
   for (uint64_t m = 0; m < UNREAD; m++)
-    for (uint64_t k = 0; k < 20; k++) {
-      struct pair p = start(unread[m], kernel, dice_seed(860) + k);
-      struct mpc *c = &p.fast.work.mpc;
-      c->keeps_sums = false;
-      p.plain.state.solvent.vx[3] = p.fast.state.solvent.vx[3] = 2e4 * pow(1.1, (double)k);
-      p.plain.state.solvent_lag = p.fast.state.solvent_lag = 0;
-      const bool fine = collide(&p.plain, STEP);
-      assert_true(collide(&p.fast, STEP) == fine);
-      assert_int_equal(p.fast.work.fault.code, p.plain.work.fault.code);
-      assert_int_equal(p.fast.work.fault.entity, p.plain.work.fault.entity);
-      if (fine)
-        assert_true(state_hash(&p.plain.state) == state_hash(&p.fast.state));
-      if (fine && !c->sum_is_clear)
-        doubts++, assert_same_sums(&p.plain.work.mpc, c, kernel->name);
-      faults += !fine;
-      end(&p);
-    }
-  if (doubts < 5 || faults < 20)
-    fail_msg("%s: %u doubts and %u faults", kernel->name, doubts, faults);
+    for (uint64_t k = 0; k < 20; k++)
+      collide_with_one_fast(unread[m], kernel, dice_seed(860) + k, 2e4 * pow(1.1, (double)k), &all);
+  if (all.doubts < 5 || all.faults < 20)
+    fail_msg("%s: %u doubts and %u faults", kernel->name, all.doubts, all.faults);
 }
 
 /* With one factor for all cells, the energies of all members make one sum, and no cell has its own. A member may be so
@@ -567,29 +582,12 @@ static void doubtful(const struct kernel *kernel)
  * have more than 53 bits. */
 static void doubtful_energy(const struct kernel *kernel)
 {
-  uint32_t sure = 0, doubts = 0, faults = 0;
+  struct outcomes all = {0};
   for (uint64_t m = 0; m < SCALED; m++)
-    for (uint64_t k = 0; k < 40; k++) {
-      struct pair p = start(scaled[m], kernel, dice_seed(870) + k);
-      struct mpc *c = &p.fast.work.mpc;
-      c->keeps_sums = false;
-      p.plain.state.solvent.vx[3] = p.fast.state.solvent.vx[3] = 1e3 * pow(1.1, (double)k);
-      p.plain.state.solvent_lag = p.fast.state.solvent_lag = 0;
-      const bool fine = collide(&p.plain, STEP);
-      assert_true(collide(&p.fast, STEP) == fine);
-      assert_int_equal(p.fast.work.fault.code, p.plain.work.fault.code);
-      assert_int_equal(p.fast.work.fault.entity, p.plain.work.fault.entity);
-      if (fine) {
-        assert_true(state_hash(&p.plain.state) == state_hash(&p.fast.state));
-        assert_same_turns(&p.plain.work.mpc, c, kernel->name);
-      }
-      sure += fine && c->sum_is_clear;
-      doubts += fine && !c->sum_is_clear;
-      faults += !fine;
-      end(&p);
-    }
-  if (sure < 20 || doubts < 5 || faults < 20)
-    fail_msg("%s: %u sure, %u doubts and %u faults", kernel->name, sure, doubts, faults);
+    for (uint64_t k = 0; k < 40; k++)
+      collide_with_one_fast(scaled[m], kernel, dice_seed(870) + k, 1e3 * pow(1.1, (double)k), &all);
+  if (all.sure < 20 || all.doubts < 5 || all.faults < 20)
+    fail_msg("%s: %u sure, %u doubts and %u faults", kernel->name, all.sure, all.doubts, all.faults);
 }
 
 static void doubtful_sums_are_tested(void **unused)
