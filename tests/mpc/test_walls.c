@@ -41,15 +41,16 @@ static struct vec3 given(const struct point before[4], const struct point after[
 /* --- grid -------------------------------------------------------------------------------------------------------- */
 
 /* Every y in [0, L] and every shift: row floor(y + s), 0 to L, without a wrap; x and z wrap. The member loop and the
- * function for single places agree. */
+ * function for single places agree. A vertex in another image of a particle's place is in its cell. */
 static void rows_do_not_wrap(void **unused)
 {
   (void)unused;
   struct dice d = {dice_seed(2811)};
   uint64_t seen[2] = {0, 0};
   for (int round = 0; round < 300; round++) {
-    struct test_run r =
-        dice_run(walls_model(1 + (int)(d.state % 3), 1 + round % 5, 2, 20.0, RULE_SRD, FILL_PLANAR), &d);
+    struct model m = walls_model(1 + (int)(d.state % 3), 1 + round % 5, 2, 20.0, RULE_SRD, FILL_PLANAR);
+    test_add_kind(&m, 6, 1);
+    struct test_run r = dice_run(m, &d);
     struct solvent *s = &r.state.solvent;
     const int64_t *edge = r.model.box.edge, most = LATTICE_CELL - 1;
     const struct point shift = {dice_integer(&d, 0, most),
@@ -58,7 +59,11 @@ static void rows_do_not_wrap(void **unused)
                                             : 0,
                                 dice_integer(&d, 0, most)};
     s->y[0] = 0, s->y[1] = edge[1], s->y[2] = edge[1] - shift.y, s->y[3] = LATTICE_CELL - shift.y;
+    for (int64_t v = 0; v < 6; v++)
+      r.state.position[v] = (struct point){s->x[v] + (v - 2) * edge[0], s->y[v], s->z[v] - v * edge[2]};
     grid_bin(&r.state, &r.model, shift, &r.work.mpc);
+    for (uint32_t v = 0; v < 6; v++)
+      assert_int_equal(r.work.mpc.vertex_cell[v], r.work.mpc.solvent_cell[v]);
     for (uint32_t i = 0; i < s->n; i++) {
       const int64_t x = (s->x[i] + shift.x) % edge[0] >> 40, z = (s->z[i] + shift.z) % edge[2] >> 40;
       const int64_t y = (s->y[i] + shift.y) >> 40, rows = r.model.box.cells[1] + 1;

@@ -37,5 +37,22 @@ class Share(unittest.TestCase):
         self.assertEqual(self.share(""), self.bugs)
 
 
+class Check(unittest.TestCase):
+    def check(self, **other):
+        some = next(b for b in mutants.read_bugs(TREE / "tests/mutants/mutants.txt") if b.file == "src/mpc/grid.c")
+        bug = some._replace(**other)
+        return mutants.check([bug]) or mutants.check_syntax([bug])
+
+    def test_a_bug_that_can_be_planted(self):
+        self.assertEqual(self.check(), [])
+
+    def test_one_whose_text_is_gone(self):
+        self.assertIn("stands 0 times in src/mpc/grid.c", self.check(old="no such text")[0])
+
+    def test_one_that_names_what_is_gone(self):
+        self.assertRegex(self.check(new="gone(0)")[0], "does not compile: .*gone|does not compile: .*function")
+        self.assertIn("does not compile", self.check(new="lattice_fold(p.y, no_such_name)")[0])
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -151,6 +151,14 @@ class MadeUp(unittest.TestCase):
             self.assertEqual((suite.get("failures"), suite.get("skipped")), (failures, skipped))
             self.assertEqual(len(suite.findall("testcase/skipped")), int(skipped))
 
+    def test_a_time_may_be_undecided_but_not_absent(self):
+        timed = CASE.replace("measured=x, error=0.25", "measured=x, error=0.25, power=0.1, timed=True")
+        (self.folder / "cases/made/case.py").write_text(timed)
+        for x, code, failures, skipped in ((1.0, 0, "0", "1"), ("nan", 1, "1", "0")):
+            self.assertEqual((self.report(x)[0], self.report(x)[1]["claims"][0]["verdict"]), (code, "undecided"))
+            suite = xml.parse(self.folder / "out/report.xml").getroot().find("testsuite")
+            self.assertEqual((suite.get("failures"), suite.get("skipped")), (failures, skipped))
+
     def test_a_case_that_cannot_say_fails(self):
         (self.folder / "cases/made/case.py").write_text(CASE.replace('["there"]', '["absent"]'))
         code, said = self.report(1.0)

@@ -26,7 +26,10 @@ class Verdict:
     the measurement is too rough: while `detects` is larger than the expected number, or the rival agrees, too.
 
     `power`, where given, is the wrong effect that the verdict is there to see. While `detects` is larger, nothing that agrees
-    is a pass: it stays "undecided"."""
+    is a pass: it stays "undecided".
+
+    `timed`: measured by a clock, which other programs on the machine make uncertain. Such a number may stay "undecided" in the
+    quick tier, too."""
     id: str
     statement: str
     expected: float
@@ -40,6 +43,7 @@ class Verdict:
     reason: str = ""
     rival: float = None
     power: float = None
+    timed: bool = False
 
     @property
     def verdict(self):

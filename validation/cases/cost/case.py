@@ -69,12 +69,12 @@ def short_rotation_time():
 def evaluate(results, tier):
     table = rows(results)
     volume = Verdict("cost.volume", "exponent of CPU time per step against volume, c L³ = 100", 1.0,
-                     "paper: proportional to the volume; every stage is a loop over particles or cells", 0.05, kind="paper",
+                     "paper: proportional to the volume; every stage is a loop over particles or cells", 0.05, kind="paper", timed=True,
                      reason="Larger boxes outgrow the caches.")
     density = Verdict("cost.density", "exponent of the fibers' share of CPU time against c L³, upper half of the "
                                       "densities", 1.0,
                       "paper: rate “scales approximately inversely linear with … c L³”; tests of pairs grow faster", 0.05,
-                      kind="paper",
+                      kind="paper", timed=True,
                       reason="The number of pairs of bonds that come near each other grows as the square of the "
                              "density.")
     prose = PROSE
