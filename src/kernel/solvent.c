@@ -1,110 +1,53 @@
 /*
  * The fast kernel: points in a periodic flight, SRD and AT-a. One source; the Makefile compiles it once for each
- * instruction set (base/registers.h), and choose.c takes the best one that the processor has. Each function names the
- * plain one whose bits it gives. What is rare goes to the plain ones: flights beyond the next image of the box, momenta
+ * instruction set (base/registers.h), and choose.c takes the best one that the processor has. The formulas for several
+ * particles at once stand beside the plain ones whose bits they give, in headers *_lanes.h; here are the loops. What is
+ * rare goes to the plain ones: flights beyond the next image of the box, momenta
  * beyond the range of lattice_round, and the last particles if they do not fill a register.
  */
 #include <string.h>
 
-#include "base/normal_lanes.h"
-#include "base/philox.h"
-#include "fluid/boundary.h"
+#include "base/axis_lanes.h"
+#include "fluid/flight_lanes.h"
 #include "kernel/choose.h"
 #include "mpc/border.h"
-#include "mpc/cell.h"
+#include "mpc/cell_lanes.h"
 #include "mpc/members.h"
 #include "mpc/rule.h"
 #include "mpc/rules/andersen.h"
+#include "mpc/rules/andersen_lanes.h"
 #include "mpc/rules/srd.h"
+#include "mpc/rules/srd_lanes.h"
 
 #ifndef KERNEL /* the Makefile names them */
 #define KERNEL kernel_sse2
 #define KERNEL_NAME "sse2"
 #endif
 
-/* Columns of turns, as load_columns and store_columns have them. */
-_Static_assert(offsetof(struct cell_turn, center) == 0 && offsetof(struct cell_turn, active) == 3 * sizeof(double) &&
-                   offsetof(struct cell_turn, axis) == 4 * sizeof(double) &&
-                   offsetof(struct cell_turn, factor) == 7 * sizeof(double) &&
-                   sizeof(struct cell_turn) == 8 * sizeof(double),
-               "center, active, axis, factor");
-
 /* --- flight, cells, sums ----------------------------------------------------------------------------------------- */
 
-/* What one axis of the flight needs. Lengths are in lattice units: a scale of 2^40 does not change how a product
- * rounds.
- */
+/* An axis: the flight along it, and the grid. */
 struct axis {
-  int64_t *x;
-  double *v;
-  double time; /* of the flight, in lattice units per a0/t0 */
-  double fall; /* a t^2/2 of the acceleration a */
-  double gain; /* a t, a0/t0; if there is none -0.0, which changes no number that it is added to */
-  uint64_t edge;
-  uint64_t shift; /* of the grid */
+  struct flight flight;
+  uint64_t shift;
   uint32_t cells;
 };
 
 static struct axis axis_of(const struct state *state, const struct model *model, const struct mpc *c, int axis)
 {
-  const struct solvent *s = &state->solvent;
-  const struct span span = boundary_lag(state, model);
-  const struct vec3 accelerations = span.acceleration;
-  const double t = span.time, a = (const double[]){accelerations.x, accelerations.y, accelerations.z}[axis];
-  return (struct axis){.x = (int64_t *[]){s->x, s->y, s->z}[axis],
-                       .v = (double *[]){s->vx, s->vy, s->vz}[axis],
-                       .time = t * LATTICE_PER_A0,
-                       .fall = 0.5 * a * t * t * LATTICE_PER_A0,
-                       .gain = a * t != 0.0 ? a * t : -0.0,
-                       .edge = (uint64_t)model->box.edge[axis],
+  return (struct axis){.flight = flight_along(state, model, axis),
                        .shift = (uint64_t)(const int64_t[]){c->shift.x, c->shift.y, c->shift.z}[axis],
                        .cells = (uint32_t)model->box.rows[axis]};
 }
 
-/* The flight of LANES particles from place i on, and their cells along the axis: boundary_fly_periodic, and cell_index
- * of mpc/grid.c. *v: their velocities after it. */
+/* Flight of LANES particles from place i on, and their places on the grid. */
 INLINE words fly(const struct axis *a, uint32_t i, const bool accelerated, reals *v, words *seen)
 {
-  const reals before = load_reals(&a->v[i]), way = before * a->time;
-  const words p = wrap(load_words(&a->x[i]) + round_to_words(accelerated ? way + a->fall : way), a->edge);
-  *seen = see(*seen, p, a->edge);
-  store_words(&a->x[i], p);
-  *v = accelerated ? before + a->gain : before;
-  if (accelerated)
-    store_reals(&a->v[i], *v);
-  return but_not((p + a->shift) >> LATTICE_BITS, a->cells);
-}
-
-#define MOST ((uint64_t)1 << 51) /* of round_to_words */
-
-/* Momenta of particles of mass 1, in units of the sums, and their size: cell_add, where they are below MOST. */
-INLINE reals momenta(reals v, words *span)
-{
-  const words p = round_to_words(CELL_MOMENTUM_SCALE * v);
-  *span |= sizes(p);
-  return (reals)p;
+  return cell_places_lanes(flight_lanes(&a->flight, i, accelerated, v, seen), a->shift, a->cells);
 }
 
 /* Particles whose flight comes before their sums: all of it stays in the nearest cache. */
-enum { CHUNK = 128 };
-
-/* What AT-a draws for a chunk: andersen_draw_particles. Words first, then normals: one loop of both is so long that the
- * processor sees too little of the next pass while it waits for the roots of this one. */
-INLINE void draw_chunk(const struct solvent *s, const struct model *model, const struct mpc *c, uint64_t step,
-                       uint32_t first, uint32_t n)
-{
-  const uint64_t seed = model->seed, z = model_is_flat(model) ? 0 : UINT64_MAX;
-  words word[CHUNK / LANES][4];
-  for (uint32_t k = 0; k < n; k += LANES)
-    philox_words(seed, RANDOM_ANDERSEN_PARTICLE, 0, step, load_low(&s->id[first + k]), word[k / LANES]);
-  for (uint32_t k = 0; k < n; k += LANES) {
-    reals x[3];
-    normal_three_lanes(word[k / LANES], x);
-    store_reals(&c->drawn[0][first + k], x[0]);
-    store_reals(&c->drawn[1][first + k], x[1]);
-    store_reals(&c->drawn[2][first + k], (reals)((words)x[2] & z));
-  }
-}
+enum { CHUNK = ANDERSEN_LANES_MOST };
 
 /* For a chunk: flight, cells, and what each particle adds to the sums of its cell, in the order of store_records: its
  * velocity, less the drawn one if there is one. The sign bit of the result is set where that of boundary_fly_periodic
@@ -124,12 +67,13 @@ INLINE uint64_t fly_chunk(const struct axis axis[3], const struct mpc *c, uint32
     store_narrow(&cell[i], multiply(multiply(cz, y.cells) + cy, x.cells) + cx);
     for (int a = 0; draws && a < 3; a++)
       v[a] -= load_reals(&xi[a][i]);
-    reals column[4] = {momenta(v[0], &size), momenta(v[1], &size), momenta(v[2], &size),
-                       (reals)((words){0} + cell_load(1.0))};
+    reals column[4] = {cell_momenta_lanes(v[0], &size), cell_momenta_lanes(v[1], &size),
+                       cell_momenta_lanes(v[2], &size), (reals)((words){0} + cell_load(1.0))};
     store_records(&record[(size_t)4 * k], column);
   }
   *span = any(size);
-  return any(was_outside(seen[0], x.edge) | was_outside(seen[1], y.edge) | was_outside(seen[2], z.edge));
+  return any(was_outside(seen[0], x.flight.edge) | was_outside(seen[1], y.flight.edge) |
+             was_outside(seen[2], z.flight.edge));
 }
 
 static void add_records(struct cell_sum *sum, const uint32_t *cell, uint32_t n, const double *record)
@@ -149,7 +93,8 @@ static bool fly_far(struct state *state, const struct model *model, struct axis 
   const struct span span = boundary_lag(state, model);
   const double a[3] = {span.acceleration.x, span.acceleration.y, span.acceleration.z};
   for (int k = 0; k < 3; k++)
-    boundary_fly_periodic(end - flown, &axis[k].x[flown], &axis[k].v[flown], span.time, a[k], model->box.edge[k]);
+    boundary_fly_periodic(end - flown, &axis[k].flight.x[flown], &axis[k].flight.v[flown], span.time, a[k],
+                          model->box.edge[k]);
   for (int k = 0; k < 3; k++)
     if (!boundary_fold(state, model, k, span.time, begin, end - begin, fault))
       return false;
@@ -160,14 +105,14 @@ INLINE bool gather_all(struct state *state, const struct model *model, struct mp
                        uint32_t n, const bool draws, uint64_t *span, struct fault *fault)
 {
   struct axis axis[3] = {axis_of(state, model, c, 0), axis_of(state, model, c, 1), axis_of(state, model, c, 2)};
-  const bool accelerated = axis[0].gain != 0.0 || axis[1].gain != 0.0 || axis[2].gain != 0.0;
+  const bool accelerated = axis[0].flight.gain != 0.0 || axis[1].flight.gain != 0.0 || axis[2].flight.gain != 0.0;
   const uint32_t end = first + n, whole = end - n % LANES;
   double record[4 * CHUNK];
   for (uint32_t i = first; i < whole; i += CHUNK) {
     const uint32_t m = whole - i < CHUNK ? whole - i : CHUNK;
     uint64_t size;
     if (draws)
-      draw_chunk(&state->solvent, model, c, step, i, m);
+      andersen_draw_lanes(&state->solvent, model, c, step, i, m);
     const uint64_t outside = accelerated ? fly_chunk(axis, c, i, m, true, draws, record, &size)
                                          : fly_chunk(axis, c, i, m, false, draws, record, &size);
     if ((int64_t)outside < 0) {
@@ -180,7 +125,7 @@ INLINE bool gather_all(struct state *state, const struct model *model, struct mp
     }
     for (uint32_t k = i; c->prefetch && k < i + m; k++)
       __builtin_prefetch(&c->sum[c->solvent_cell[k]], 1);
-    if (size < MOST)
+    if (size < CELL_LANES_MOST)
       add_records(c->sum, &c->solvent_cell[i], m, record);
     else
       size = c->rule->add_particles(state, model, c, step, i, m);
@@ -197,23 +142,6 @@ static bool gather_fast(struct state *state, const struct model *model, struct m
 }
 
 /* --- centers and axes -------------------------------------------------------------------------------------------- */
-
-/* The axes of LANES cells, by the words of this draw: as random_axis_from, but in lanes where both pairs of words are
- * outside the unit disk z <= -1. */
-INLINE void draw_axes(uint64_t seed, uint32_t draw, uint64_t step, words cell, reals axis[3])
-{
-  words w[4];
-  philox_words(seed, RANDOM_ROTATION_AXIS, draw, step, cell, w);
-  const reals u0 = reals_in_square(w[0]), v0 = reals_in_square(w[1]);
-  const reals u1 = reals_in_square(w[2]), v1 = reals_in_square(w[3]);
-  const reals s0 = u0 * u0 + v0 * v0, s1 = u1 * u1 + v1 * v1;
-  const wholes first = s0 < 1.0;
-  const reals u = choose(first, u0, u1), v = choose(first, v0, v1), s = choose(first, s0, s1);
-  const reals root = square_root(1.0 - s);
-  axis[0] = 2.0 * u * root;
-  axis[1] = 2.0 * v * root;
-  axis[2] = 1.0 - 2.0 * s;
-}
 
 /* cell_solve, and the axis if cells turn, of LANES cells. Those whose axis needs another draw, one in twenty, are
  * appended to a list. Returns its length. Their loads and members are counted (struct solved). clears: their sums are
@@ -234,11 +162,11 @@ INLINE uint32_t solve_lanes(uint64_t seed, struct mpc *c, uint64_t step, uint32_
     return n;
   }
   const words cell = lane_cell + first;
-  const reals scale = CELL_MOMENTUM_UNIT / (reals_from_small(load & (CELL_MEMBER - 1)) * CELL_MASS_UNIT);
+  const reals scale = cell_center_scale_lanes(load);
   for (int k = 0; k < 3; k++)
     turn[k] = (reals)((words)(reals_from_signed((words)p[k]) * scale) & two);
   if (turns) {
-    draw_axes(seed, 0, step, cell, &turn[4]);
+    axis_lanes(seed, RANDOM_ROTATION_AXIS, 0, step, cell, &turn[4]);
     n = append(list, n, cell, (words)((turn[6] <= -1.0) & (wholes)two));
   }
   turn[7] = (reals){0} + 1.0;
@@ -251,7 +179,7 @@ INLINE uint32_t solve_lanes(uint64_t seed, struct mpc *c, uint64_t step, uint32_
 static void draw_again(const struct model *model, struct mpc *c, uint64_t step, const uint32_t *list)
 {
   reals axis[3];
-  draw_axes(model->seed, 1, step, load_low(list), axis);
+  axis_lanes(model->seed, RANDOM_ROTATION_AXIS, 1, step, load_low(list), axis);
   for (int k = 0; k < LANES; k++)
     c->turn[list[k]].axis = axis[2][k] > -1.0 ? (struct vec3){axis[0][k], axis[1][k], axis[2][k]}
                                               : random_axis_from(model->seed, RANDOM_ROTATION_AXIS, 2, step, list[k]);
@@ -297,18 +225,9 @@ static struct solved solve_fast(const struct model *model, struct mpc *c, uint64
 
 /* --- energies ---------------------------------------------------------------------------------------------------- */
 
-/* cell_energy of LANES particles from place i on, in units of mpc->relative. */
-INLINE words energy_lanes(const struct solvent *s, const struct mpc *c, uint32_t i)
-{
-  reals turn[4];
-  load_columns((const double *)c->turn, &c->solvent_cell[i], turn, 4);
-  const reals x = load_reals(&s->vx[i]) - turn[0], y = load_reals(&s->vy[i]) - turn[1],
-              z = load_reals(&s->vz[i]) - turn[2];
-  return round_to_words(CELL_ENERGY_SCALE * (turn[3] * (x * x + y * y + z * z)));
-}
-
 static uint64_t energies_fast(const struct state *state, struct mpc *c, uint32_t first, uint32_t n, energy_sum *total)
 {
+  const struct solvent *s = &state->solvent;
   const uint32_t end = first + n, whole = end - n % LANES;
   uint64_t span = 0, *sum = (uint64_t *)c->relative; /* unsigned: see overflow.h */
   for (uint32_t i = first, m = 0; i < whole; i += m) {
@@ -317,12 +236,15 @@ static uint64_t energies_fast(const struct state *state, struct mpc *c, uint32_t
     m = whole - i < CHUNK ? whole - i : CHUNK;
     members_prefetch_turns(c, i + m, whole - i - m < CHUNK ? whole - i - m : CHUNK);
     for (uint32_t k = 0; k < m; k += LANES) {
-      const words e = energy_lanes(&state->solvent, c, i + k);
+      reals turn[4];
+      load_columns((const double *)c->turn, &c->solvent_cell[i + k], turn, 4);
+      const words e =
+          cell_energy_lanes(turn, load_reals(&s->vx[i + k]), load_reals(&s->vy[i + k]), load_reals(&s->vz[i + k]));
       size |= e;
       sums += e;
       store_words(&energy[k], e);
     }
-    if (any(size) >= MOST)
+    if (any(size) >= CELL_LANES_MOST)
       return span | kernel_plain.energies(state, c, i, end - i, total);
     if (total)
       *total += sum_of(sums);
@@ -335,40 +257,6 @@ static uint64_t energies_fast(const struct state *state, struct mpc *c, uint32_t
 
 /* --- turns ------------------------------------------------------------------------------------------------------- */
 
-/* New velocities of LANES particles from place i on: srd_apply, but a member that is alone keeps its velocity. The
- * columns are those of struct cell_turn. */
-INLINE void turn_lanes(const struct solvent *s, uint32_t i, const reals turn[8], const double cosine, const double sine,
-                       const bool quarter, const bool scaled)
-{
-  const reals vx = load_reals(&s->vx[i]), vy = load_reals(&s->vy[i]), vz = load_reals(&s->vz[i]);
-  const reals nx = turn[4], ny = turn[5], nz = turn[6];
-  const reals wx = vx - turn[0], wy = vy - turn[1], wz = vz - turn[2];
-  const reals dot = nx * wx + ny * wy + nz * wz, along = quarter ? dot : (1.0 - cosine) * dot;
-  reals x = along * nx, y = along * ny, z = along * nz;
-  reals cx = ny * wz - nz * wy, cy = nz * wx - nx * wz, cz = nx * wy - ny * wx;
-  if (!quarter) {
-    x = cosine * wx + x, y = cosine * wy + y, z = cosine * wz + z;
-    cx = sine * cx, cy = sine * cy, cz = sine * cz;
-  }
-  x += cx, y += cy, z += cz;
-  if (scaled)
-    x *= turn[7], y *= turn[7], z *= turn[7];
-  const wholes active = turn[3] != 0.0;
-  store_reals(&s->vx[i], choose(active, turn[0] + x, vx));
-  store_reals(&s->vy[i], choose(active, turn[1] + y, vy));
-  store_reals(&s->vz[i], choose(active, turn[2] + z, vz));
-}
-
-/* The same of AT-a: the center's and the drawn one. */
-INLINE void renew_lanes(const struct solvent *s, const struct mpc *c, uint32_t i)
-{
-  double *const v[3] = {s->vx, s->vy, s->vz};
-  reals turn[4];
-  load_columns((const double *)c->turn, &c->solvent_cell[i], turn, 4);
-  for (int k = 0; k < 3; k++)
-    store_reals(&v[k][i], choose(turn[3] != 0.0, turn[k] + load_reals(&c->drawn[k][i]), load_reals(&v[k][i])));
-}
-
 INLINE void turn_whole(struct state *state, const struct model *model, const struct mpc *c, const bool draws,
                        const bool quarter, const bool scaled)
 {
@@ -379,11 +267,11 @@ INLINE void turn_whole(struct state *state, const struct model *model, const str
     const uint32_t end = whole - first < CHUNK ? whole : first + CHUNK;
     members_prefetch_turns(c, end, s->n - end < CHUNK ? s->n - end : CHUNK);
     for (uint32_t i = first; i < end && draws; i += LANES)
-      renew_lanes(s, c, i);
+      andersen_turn_lanes(s, c, i);
     for (uint32_t i = first; i < end && !draws; i += LANES) {
       reals column[8];
       load_columns((const double *)c->turn, &c->solvent_cell[i], column, 8);
-      turn_lanes(s, i, column, cosine, sine, quarter, scaled);
+      srd_turn_lanes(s, i, column, cosine, sine, quarter, scaled);
     }
   }
 }
