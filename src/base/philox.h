@@ -33,4 +33,12 @@ INLINE void philox_words(uint64_t seed, enum random_purpose purpose, uint32_t dr
   philox_rounds(seed, w);
 }
 
+/* random_uniform of words (low, high), through bits: before AVX-512 there is no vector conversion of 64-bit integers.
+ * Bits 0x3ff before 52 bits k are the number 1 + k 2^-52; the difference is exact. */
+INLINE reals uniform_lanes(words low, words high)
+{
+  const words fraction = (high << 20 & 0x000fffffffffffff) | (low & 0xffffffff) >> 12;
+  return (reals)(fraction | 0x3ff0000000000000) - (1.0 - 0x1p-53);
+}
+
 #endif

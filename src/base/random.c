@@ -61,15 +61,6 @@ void random_wide_pair_columns(uint64_t seed, enum random_purpose purpose, uint64
   }
 }
 
-/* random_uniform of words (low, high), through bits: before AVX-512 there is no vector conversion of 64-bit integers.
- * Bits 0x3ff before 52 bits k are the number 1 + k 2^-52; the difference is exact. */
-INLINE void uniforms_from(const words *low, const words *high, double u[LANES])
-{
-  const words fraction = (*high << 20 & 0x000fffffffffffff) | (*low & 0xffffffff) >> 12;
-  const reals uniform = (reals)(fraction | 0x3ff0000000000000) - (1.0 - 0x1p-53);
-  memcpy(u, &uniform, sizeof uniform);
-}
-
 void random_uniform_columns(uint64_t seed, enum random_purpose purpose, uint64_t step, const uint32_t *entity,
                             uint32_t n, double u[4][RANDOM_UNIFORMS])
 {
@@ -80,10 +71,10 @@ void random_uniform_columns(uint64_t seed, enum random_purpose purpose, uint64_t
     words w[4], next[4];
     words_of(seed, purpose, 0, step, &some[first], w);
     words_of(seed, purpose, 1, step, &some[first], next);
-    uniforms_from(&w[0], &w[1], &u[0][first]);
-    uniforms_from(&w[2], &w[3], &u[1][first]);
-    uniforms_from(&next[0], &next[1], &u[2][first]);
-    uniforms_from(&next[2], &next[3], &u[3][first]);
+    store_reals(&u[0][first], uniform_lanes(w[0], w[1]));
+    store_reals(&u[1][first], uniform_lanes(w[2], w[3]));
+    store_reals(&u[2][first], uniform_lanes(next[0], next[1]));
+    store_reals(&u[3][first], uniform_lanes(next[2], next[3]));
   }
 }
 

@@ -76,12 +76,20 @@ INLINE void add_record(uint64_t *to, const double *record)
 
 /* Columns of LANES records of four, of which column lane k is from record lane_record[k]. */
 #if LANES == 8
-static const uint32_t lane_record[LANES] = {0, 2, 4, 6, 1, 3, 5, 7};
+#define LANE_RECORD 0, 2, 4, 6, 1, 3, 5, 7
 #elif LANES == 4
-static const uint32_t lane_record[LANES] = {0, 1, 2, 3};
+#define LANE_RECORD 0, 1, 2, 3
 #else
-static const uint32_t lane_record[LANES] = {0, 1};
+#define LANE_RECORD 0, 1
 #endif
+static const uint32_t lane_record[LANES] = {LANE_RECORD};
+
+/* LANES numbers, in the order of the records of such columns. */
+INLINE words load_as_records(const int64_t *p)
+{
+  const reals x = (reals)load_words(p);
+  return (words)SHUFFLE(x, x, LANE_RECORD);
+}
 
 INLINE void load_records(const void *records, reals column[4])
 {

@@ -45,4 +45,22 @@ INLINE words flight_lanes(const struct flight *f, uint32_t i, const bool acceler
   return p;
 }
 
+/* Particles begin .. flown - 1 have flown, one of them more than an edge out of the box. The others up to `end` follow,
+ * and all from `begin` on are looked at, as fly_periodic of boundary.c does with a block: so the fault is the same. */
+static inline bool flight_far(struct state *state, const struct model *model, uint32_t begin, uint32_t flown,
+                              uint32_t end, struct fault *fault)
+{
+  const struct solvent *s = &state->solvent;
+  const struct span span = boundary_lag(state, model);
+  const double a[3] = {span.acceleration.x, span.acceleration.y, span.acceleration.z};
+  int64_t *const x[3] = {&s->x[flown], &s->y[flown], &s->z[flown]};
+  double *const v[3] = {&s->vx[flown], &s->vy[flown], &s->vz[flown]};
+  for (int k = 0; k < 3; k++)
+    boundary_fly_periodic(end - flown, x[k], v[k], span.time, a[k], model->box.edge[k]);
+  for (int k = 0; k < 3; k++)
+    if (!boundary_fold(state, model, k, span.time, begin, end - begin, fault))
+      return false;
+  return true;
+}
+
 #endif

@@ -24,6 +24,7 @@ struct kernel kernel_mix(const struct kernel *fast, const struct model *model)
                          .gather = parts.gather ? fast->gather : kernel_plain.gather,
                          .solve = parts.solve ? fast->solve : kernel_plain.solve,
                          .energies = parts.turn ? fast->energies : kernel_plain.energies,
+                         .canonical = parts.solve ? fast->canonical : kernel_plain.canonical,
                          .turn = parts.turn ? fast->turn : kernel_plain.turn};
 }
 

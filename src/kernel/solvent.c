@@ -2,8 +2,8 @@
  * The fast kernel: points in a periodic flight, SRD and AT-a. One source; the Makefile compiles it once for each
  * instruction set (base/registers.h), and choose.c takes the best one that the processor has. The formulas for several
  * particles at once stand beside the plain ones whose bits they give, in headers *_lanes.h; here are the loops. What is
- * rare goes to the plain ones: flights beyond the next image of the box, momenta
- * beyond the range of lattice_round, and the last particles if they do not fill a register.
+ * rare goes to the plain ones: flights beyond the next image of the box, momenta beyond the range of lattice_round, and
+ * the last particles if they do not fill a register.
  */
 #include <string.h>
 
@@ -18,6 +18,7 @@
 #include "mpc/rules/andersen_lanes.h"
 #include "mpc/rules/srd.h"
 #include "mpc/rules/srd_lanes.h"
+#include "mpc/thermostat_lanes.h"
 
 #ifndef KERNEL /* the Makefile names them */
 #define KERNEL kernel_sse2
@@ -85,22 +86,6 @@ static void add_records(struct cell_sum *sum, const uint32_t *cell, uint32_t n, 
   }
 }
 
-/* Particles first to first + n - 1 have flown, one of them more than an edge out of the box. The others up to `end`
- * follow, and all from `begin` on are looked at, as fly_periodic does with a block: so the fault is the same. */
-static bool fly_far(struct state *state, const struct model *model, struct axis axis[3], uint32_t begin, uint32_t flown,
-                    uint32_t end, struct fault *fault)
-{
-  const struct span span = boundary_lag(state, model);
-  const double a[3] = {span.acceleration.x, span.acceleration.y, span.acceleration.z};
-  for (int k = 0; k < 3; k++)
-    boundary_fly_periodic(end - flown, &axis[k].flight.x[flown], &axis[k].flight.v[flown], span.time, a[k],
-                          model->box.edge[k]);
-  for (int k = 0; k < 3; k++)
-    if (!boundary_fold(state, model, k, span.time, begin, end - begin, fault))
-      return false;
-  return true;
-}
-
 INLINE bool gather_all(struct state *state, const struct model *model, struct mpc *c, uint64_t step, uint32_t first,
                        uint32_t n, const bool draws, uint64_t *span, struct fault *fault)
 {
@@ -116,7 +101,7 @@ INLINE bool gather_all(struct state *state, const struct model *model, struct mp
     const uint64_t outside = accelerated ? fly_chunk(axis, c, i, m, true, draws, record, &size)
                                          : fly_chunk(axis, c, i, m, false, draws, record, &size);
     if ((int64_t)outside < 0) {
-      const bool ok = fly_far(state, model, axis, first, i + m, end, fault);
+      const bool ok = flight_far(state, model, first, i + m, end, fault);
       if (ok) {
         c->border->bin_particles(state, model, i, end - i, c);
         *span |= c->rule->add_particles(state, model, c, step, i, end - i);
@@ -255,6 +240,11 @@ static uint64_t energies_fast(const struct state *state, struct mpc *c, uint32_t
   return span | kernel_plain.energies(state, c, whole, end - whole, total);
 }
 
+static void canonical_fast(const struct model *model, struct mpc *c, uint64_t step, bool last)
+{
+  thermostat_canonical_lanes(model, c, step, last);
+}
+
 /* --- turns ------------------------------------------------------------------------------------------------------- */
 
 INLINE void turn_whole(struct state *state, const struct model *model, const struct mpc *c, const bool draws,
@@ -296,5 +286,9 @@ static void turn_fast(struct state *state, const struct model *model, const stru
     srd_turn_from(state, model, c, whole, scaled);
 }
 
-const struct kernel KERNEL = {
-    .name = KERNEL_NAME, .gather = gather_fast, .solve = solve_fast, .energies = energies_fast, .turn = turn_fast};
+const struct kernel KERNEL = {.name = KERNEL_NAME,
+                              .gather = gather_fast,
+                              .solve = solve_fast,
+                              .energies = energies_fast,
+                              .canonical = canonical_fast,
+                              .turn = turn_fast};

@@ -132,8 +132,18 @@ static void plain_turn(struct state *state, const struct model *model, const str
   mpc->rule->apply(state, model, mpc, scaled);
 }
 
-const struct kernel kernel_plain = {
-    .name = "plain", .gather = plain_gather, .solve = plain_solve, .energies = plain_energies, .turn = plain_turn};
+static void plain_canonical(const struct model *model, struct mpc *mpc, uint64_t step, bool last)
+{
+  (void)last;
+  thermostat_canonical(model, mpc, step, 0);
+}
+
+const struct kernel kernel_plain = {.name = "plain",
+                                    .gather = plain_gather,
+                                    .solve = plain_solve,
+                                    .energies = plain_energies,
+                                    .canonical = plain_canonical,
+                                    .turn = plain_turn};
 
 /* Flight of the fluid, grid_bin and collide_sum without its test: the three in one pass, block by block. *span: the
  * bitwise or of all that add_particles and add_vertices returned. */
@@ -177,18 +187,31 @@ static bool solve_only(const struct state *state, const struct model *model, str
   return !overflow_may_be(model, span, all.loads) || collide_sum(state, model, mpc, step, fault);
 }
 
-/* The same with a thermostat that has one factor for all cells: it needs what all of them have together, and no sums.
+/* Factors of cells, by their energies. last: nobody reads the sums after this. */
+static bool set_factors(const struct state *state, const struct model *model, struct mpc *mpc,
+                        const struct thermostat *thermostat, uint64_t step, bool last, struct fault *fault)
+{
+  if (!sum_relative_energy(state, model, mpc, step, fault))
+    return false;
+  thermostat->factors(mpc, model, step, last);
+  return true;
+}
+
+/* The same with a thermostat. If it has one factor for all cells, it needs what all of them have together, and no sums.
  * If the bound of the energies allows a doubt, the sums are made anew, and the energies of each cell are tested. */
 static bool solve_and_scale(const struct state *state, const struct model *model, struct mpc *mpc, uint64_t step,
                             uint64_t span, struct fault *fault)
 {
-  const struct solved all = mpc->kernel.solve(model, mpc, step, true);
+  const bool common = mpc->thermostat->common;
+  const struct solved all = mpc->kernel.solve(model, mpc, step, common);
   if (overflow_may_be(model, span, all.loads) && !collide_sum(state, model, mpc, step, fault))
     return false;
+  if (!common)
+    return set_factors(state, model, mpc, mpc->thermostat, step, true, fault);
   energy_sum energy = 0;
   if (overflow_of_energies_may_be(add_energies(state, model, mpc, &energy), all.loads))
     return collide_sum(state, model, mpc, step, fault) &&
-           collide_thermostat(state, model, mpc, mpc->thermostat, step, fault);
+           set_factors(state, model, mpc, mpc->thermostat, step, true, fault);
   thermostat_set_factor(mpc, model->dimensions * (double)all.others, energy);
   return true;
 }
@@ -215,10 +238,7 @@ void collide_solve(const struct model *model, struct mpc *mpc, uint64_t step)
 bool collide_thermostat(const struct state *state, const struct model *model, struct mpc *mpc,
                         const struct thermostat *thermostat, uint64_t step, struct fault *fault)
 {
-  if (!sum_relative_energy(state, model, mpc, step, fault))
-    return false;
-  thermostat->factors(mpc, model, step);
-  return true;
+  return set_factors(state, model, mpc, thermostat, step, false, fault);
 }
 
 void collide_turn(struct state *state, const struct model *model, const struct mpc *mpc, bool scaled)
@@ -231,11 +251,7 @@ typedef bool solving(const struct state *, const struct model *, struct mpc *, u
 /* How the turns of cells are found: the shortest way that who reads sums of cells allows. */
 static solving *way_of(const struct mpc *mpc)
 {
-  if (sums_are_read(mpc))
-    return solve_and_share;
-  if (!mpc->thermostat)
-    return solve_only;
-  return mpc->thermostat->common ? solve_and_scale : solve_and_share;
+  return sums_are_read(mpc) ? solve_and_share : mpc->thermostat ? solve_and_scale : solve_only;
 }
 
 bool mpc_collide(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step, struct fault *fault)

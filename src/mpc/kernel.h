@@ -43,6 +43,9 @@ struct kernel {
    * the sign bit, and *total is then of no use. */
   uint64_t (*energies)(const struct state *state, struct mpc *mpc, uint32_t first, uint32_t n, energy_sum *total);
 
+  /* thermostat_canonical of all cells, where none has virtual members. last: as for solve; the sums may be cleared. */
+  void (*canonical)(const struct model *model, struct mpc *mpc, uint64_t step, bool last);
+
   /* apply of struct collision_rule. */
   void (*turn)(struct state *state, const struct model *model, const struct mpc *mpc, bool scaled);
 };

@@ -33,6 +33,11 @@ double thermostat_gamma(uint64_t seed, uint64_t step, uint32_t cell, double shap
   return gamma_from(seed, step, cell, shape, 0);
 }
 
+double thermostat_gamma_again(uint64_t seed, uint64_t step, uint32_t cell, double shape)
+{
+  return gamma_from(seed, step, cell, shape, 2);
+}
+
 static void attempts(const double *restrict shape, const double *restrict normal, const double *restrict u, uint32_t n,
                      double *restrict gamma)
 {
@@ -49,7 +54,7 @@ void thermostat_gammas(uint64_t seed, uint64_t step, const uint32_t *cell, const
   attempts(shape, normal, u[2], n, gamma);
   for (uint32_t k = 0; k < n; k++)
     if (gamma[k] < 0.0)
-      gamma[k] = gamma_from(seed, step, cell[k], shape[k], 2);
+      gamma[k] = thermostat_gamma_again(seed, step, cell[k], shape[k]);
 }
 
 double cell_freedoms(const struct mpc *c, const struct model *model, uint32_t place)
@@ -102,9 +107,9 @@ void thermostat_set_factor(struct mpc *c, double freedoms, energy_sum energy)
 
 /* One factor for all cells: a cell of N members has d (N-1) degrees of freedom with kT/2 each
  * (Padding 2009, step 4: "rescale velocities relative to center-of-mass velocity"). */
-static void rescale(struct mpc *c, const struct model *model, uint64_t step)
+static void rescale(struct mpc *c, const struct model *model, uint64_t step, bool last)
 {
-  (void)step;
+  (void)step, (void)last;
   struct heat heat = {0};
   heat_add(&heat, c, model, 0, c->cells);
   thermostat_set_factor(c, heat.freedoms, heat.energy);
@@ -129,14 +134,11 @@ static uint32_t list_active(const struct mpc *c, uint32_t first, uint32_t end, u
   return n;
 }
 
-/* Canonical: each cell's relative kinetic energy is drawn afresh from its Gamma distribution of d (N-1) degrees of
- * freedom, N with virtual particles as one (Huang, Chatterji, Sutmann, Gompper and Winkler, J. Comput. Phys. 229, 168
- * (2010)). */
-static void maxwell_boltzmann(struct mpc *c, const struct model *model, uint64_t step)
+void thermostat_canonical(const struct model *model, struct mpc *c, uint64_t step, uint32_t begin)
 {
   uint32_t place[RANDOM_UNIFORMS] = {0};
   double shape[RANDOM_UNIFORMS], wanted[RANDOM_UNIFORMS], energy[RANDOM_UNIFORMS], factor[RANDOM_UNIFORMS];
-  for (uint32_t first = 0; first < c->cells; first += RANDOM_UNIFORMS) {
+  for (uint32_t first = begin; first < c->cells; first += RANDOM_UNIFORMS) {
     const uint32_t left = c->cells - first, end = first + (left < RANDOM_UNIFORMS ? left : RANDOM_UNIFORMS);
     const uint32_t n = list_active(c, first, end, place);
     for (uint32_t k = 0; k < n; k++)
@@ -151,11 +153,19 @@ static void maxwell_boltzmann(struct mpc *c, const struct model *model, uint64_t
   }
 }
 
+static void maxwell_boltzmann(struct mpc *c, const struct model *model, uint64_t step, bool last)
+{
+  if (c->filled)
+    thermostat_canonical(model, c, step, 0);
+  else
+    c->kernel.canonical(model, c, step, last);
+}
+
 /* A factor for each row of cells of the shifted grid along y: Tao, Goetze and Gompper, J. Chem. Phys. 128, 144902
  * (2008). Cell (z Ry + y) Lx + x is in row y. */
-static void rescale_layers(struct mpc *c, const struct model *model, uint64_t step)
+static void rescale_layers(struct mpc *c, const struct model *model, uint64_t step, bool last)
 {
-  (void)step;
+  (void)step, (void)last;
   const uint32_t lx = (uint32_t)model->box.rows[0], ly = (uint32_t)model->box.rows[1];
   for (uint32_t row = 0; row < ly; row++) {
     struct heat heat = {0};

@@ -11,8 +11,9 @@ struct thermostat {
   bool common;  /* one factor for all cells. Where nobody reads sums of cells, thermostat_set_factor takes the place of
                  * `factors`, and mpc->relative is not filled */
 
-  /* Sets the factor of every cell that has members to collide, from the relative kinetic energies (mpc->relative). */
-  void (*factors)(struct mpc *mpc, const struct model *model, uint64_t step);
+  /* Sets the factor of every cell that has members to collide, from the relative kinetic energies (mpc->relative).
+   * last: nobody reads the sums of cells after this. They may then be cleared (mpc->sum_is_clear). */
+  void (*factors)(struct mpc *mpc, const struct model *model, uint64_t step, bool last);
 };
 
 /* The thermostat of this kind; NULL: none. */
@@ -22,6 +23,11 @@ const struct thermostat *thermostat_of(enum thermostat_kind kind);
  * energy. The factor is 1 if there is no energy. */
 void thermostat_set_factor(struct mpc *mpc, double freedoms, energy_sum energy);
 
+/* `maxwell-boltzmann`, canonical, of the cells from `begin` on: each cell's relative kinetic energy is drawn afresh
+ * from its Gamma distribution of d (N-1) degrees of freedom, N with virtual particles as one (Huang, Chatterji,
+ * Sutmann, Gompper and Winkler, J. Comput. Phys. 229, 168 (2010)). */
+void thermostat_canonical(const struct model *model, struct mpc *mpc, uint64_t step, uint32_t begin);
+
 /* Degrees of freedom of the members of a cell relative to its v_cm, with kT/2 each: d (N - M/(M + n)) for N members of
  * mass M, d dimensions, and n virtual particles, which have a share in v_cm. That is d (N - 1) where there are none.
  * For cells that collide (turn.active). */
@@ -30,7 +36,10 @@ double cell_freedoms(const struct mpc *mpc, const struct model *model, uint32_t 
 /* A Gamma(shape, 1) deviate for this cell and step, shape >= 1 (Marsaglia and Tsang, ACM TOMS 26, 363 (2000)). */
 double thermostat_gamma(uint64_t seed, uint64_t step, uint32_t cell, double shape);
 
-/* The same of n cells, n <= RANDOM_UNIFORMS: gamma[n] of shape[n], to the bit, in loops that vectorise. */
+/* The same, where the first attempt is rejected. */
+double thermostat_gamma_again(uint64_t seed, uint64_t step, uint32_t cell, double shape);
+
+/* thermostat_gamma of n cells, n <= RANDOM_UNIFORMS: gamma[n] of shape[n], to the bit, in loops that vectorise. */
 void thermostat_gammas(uint64_t seed, uint64_t step, const uint32_t *cell, const double *shape, uint32_t n,
                        double *gamma);
 

@@ -1,0 +1,89 @@
+/* thermostat_canonical once more (thermostat.c), of LANES cells at once: the same operations in the same order. */
+#ifndef UNCROSS_MPC_THERMOSTAT_LANES_H
+#define UNCROSS_MPC_THERMOSTAT_LANES_H
+
+#include "base/elementary_lanes.h"
+#include "base/philox.h"
+#include "mpc/cell_lanes.h"
+#include "mpc/thermostat.h"
+
+/* Uniform deviates of the first attempts of LANES cells: two for a normal deviate, and the one that decides. */
+struct thermostat_draw {
+  reals u, v, decides;
+};
+
+INLINE struct thermostat_draw thermostat_draw_lanes(uint64_t seed, uint64_t step, words cell)
+{
+  words w[4], next[4];
+  philox_words(seed, RANDOM_THERMOSTAT, 0, step, cell, w);
+  philox_words(seed, RANDOM_THERMOSTAT, 1, step, cell, next);
+  return (struct thermostat_draw){uniform_lanes(w[0], w[1]), uniform_lanes(w[2], w[3]),
+                                  uniform_lanes(next[0], next[1])};
+}
+
+/* The first of random_normal_pair. */
+INLINE reals thermostat_normal_lanes(reals u, reals v)
+{
+  return square_root(-2.0 * elementary_log_lanes(u)) * elementary_cosine_turns_lanes(v);
+}
+
+/* Gamma deviates of these shapes; -1 where the attempt is rejected. */
+INLINE reals thermostat_attempt_lanes(reals shape, reals normal, reals u)
+{
+  const reals d = shape - 1.0 / 3.0, c = 1.0 / square_root(9.0 * d);
+  const reals root = 1.0 + c * normal, v = root * root * root;
+  const wholes below = elementary_log_lanes(u) < 0.5 * normal * normal + d - d * v + d * elementary_log_lanes(v);
+  return choose((v > 0.0) & below, d * v, (reals){0} - 1.0);
+}
+
+/* The factors of cells first .. first + LANES - 1; column lane k is of cell[k]. */
+INLINE void thermostat_factors_lanes(const struct model *model, struct mpc *c, uint64_t step, uint32_t first,
+                                     words cell, reals normal, reals u)
+{
+  reals sum[4];
+  load_records(&c->sum[first], sum);
+  const words others = ((words)sum[3] >> 40) - 1, two = ~negative(others - 1);
+  const reals shape = 0.5 * model->dimensions * reals_from_small(others & two);
+  reals wanted = thermostat_attempt_lanes(shape, normal, u);
+  const words again = (words)(wanted < 0.0) & two;
+  for (int k = 0; !none(again) && k < LANES; k++)
+    if (again[k])
+      wanted[k] = thermostat_gamma_again(model->seed, step, (uint32_t)cell[k], shape[k]);
+  const reals energy = 0.5 * (reals_from_signed(load_as_records(&c->relative[first])) * CELL_ENERGY_UNIT);
+  const reals factor = choose((energy > 0.0) & (wholes)two, square_root(wanted / energy), (reals){0} + 1.0);
+  UNROLL
+  for (int k = 0; k < LANES; k++)
+    c->turn[first + lane_record[k]].factor = factor[k];
+}
+
+/* canonical of struct kernel. Words first, then normals, then factors: one loop of all is so long that the processor
+ * sees too little of the next pass while it waits for the divisions and roots of this one. */
+INLINE void thermostat_canonical_lanes(const struct model *model, struct mpc *c, uint64_t step, bool last)
+{
+  enum { REGISTERS = 8, SOME = REGISTERS * LANES };
+  const uint64_t seed = model->seed;
+  const uint32_t whole = c->cells - c->cells % LANES;
+  words lane_cell;
+  for (int k = 0; k < LANES; k++)
+    lane_cell[k] = lane_record[k];
+  for (uint32_t first = 0; first < whole; first += SOME) {
+    const uint32_t left = (whole - first) / LANES, n = left < REGISTERS ? left : REGISTERS;
+    struct thermostat_draw drawn[REGISTERS];
+    reals normal[REGISTERS];
+    for (uint32_t k = 0; k < n; k++)
+      drawn[k] = thermostat_draw_lanes(seed, step, lane_cell + (first + k * LANES));
+    for (uint32_t k = 0; k < n; k++)
+      normal[k] = thermostat_normal_lanes(drawn[k].u, drawn[k].v);
+    for (uint32_t k = 0; k < n; k++)
+      thermostat_factors_lanes(model, c, step, first + k * LANES, lane_cell + (first + k * LANES), normal[k],
+                               drawn[k].decides);
+    if (last)
+      memset(&c->sum[first], 0, n * LANES * sizeof *c->sum);
+  }
+  thermostat_canonical(model, c, step, whole);
+  if (last)
+    memset(&c->sum[whole], 0, (c->cells - whole) * sizeof *c->sum);
+  c->sum_is_clear = last;
+}
+
+#endif
