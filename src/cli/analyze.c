@@ -26,23 +26,28 @@ static uint64_t least_common_multiple(uint64_t a, uint64_t b)
  * frames. */
 static void fit_plan(struct scene *scene, const struct trajectory *frames)
 {
-  const bool everything = trajectory_has_velocities(frames) && trajectory_has_solvent(frames, &scene->model) &&
-                          !model_has_bead(&scene->model); /* which is not in frames */
-  const bool possible[OBSERVABLES] = {[OBSERVE_CONSERVED] = everything && !model_has_dumbbells(&scene->model),
-                                      [OBSERVE_TEMPERATURE] = everything,
-                                      [OBSERVE_STATICS] = true,
-                                      [OBSERVE_DYNAMICS] = true,
-                                      [OBSERVE_COLLISIONS] = false,
-                                      [OBSERVE_PROFILE] = everything,
-                                      [OBSERVE_STRESS] = false,
-                                      [OBSERVE_DUMBBELLS] = false,
-                                      [OBSERVE_ORIENTATION] = true,
-                                      [OBSERVE_BEAD] = false};
+  const char *const all = !trajectory_has_velocities(frames)               ? "velocities are not in the frames"
+                          : !trajectory_has_solvent(frames, &scene->model) ? "the solvent is not in the frames"
+                          : model_has_bead(&scene->model)                  ? "the bead is not in the frames"
+                                                                           : NULL;
+  const char *const springs = "springs of dumbbells are not in the frames";
+  const char *const missing[OBSERVABLES] = {/* NULL: nothing */
+                                            [OBSERVE_CONSERVED] = model_has_dumbbells(&scene->model) ? springs : all,
+                                            [OBSERVE_TEMPERATURE] = all,
+                                            [OBSERVE_COLLISIONS] = "counts of crossings are not in the frames",
+                                            [OBSERVE_PROFILE] = all,
+                                            [OBSERVE_STRESS] = "flights and contacts are not in the frames",
+                                            [OBSERVE_DUMBBELLS] = springs,
+                                            [OBSERVE_BEAD] = "the bead is not in the frames",
+                                            [OBSERVE_MEMORY] = "collisions are not in the frames",
+                                            [OBSERVE_PRESSURE] = "forces and contacts are not in the frames",
+                                            [OBSERVE_WAKE] = "the bead is not in the frames"};
+  _Static_assert(OBSERVABLES == OBSERVE_WAKE + 1, "what frames lack of a new observable");
   for (int k = 0; k < OBSERVABLES; k++) {
     uint64_t *every = &scene->observe.every[k];
-    if (*every > 0 && !possible[k])
-      fprintf(stderr, "uncross: %s: cannot be had from this trajectory, left out\n", observable_names[k]);
-    *every = *every > 0 && possible[k] ? least_common_multiple(*every, scene->trajectory_every) : 0;
+    if (*every > 0 && missing[k])
+      fprintf(stderr, "uncross: %s: left out: %s\n", observable_names[k], missing[k]);
+    *every = *every > 0 && !missing[k] ? least_common_multiple(*every, scene->trajectory_every) : 0;
   }
 }
 

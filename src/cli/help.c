@@ -11,8 +11,8 @@ static const char *const code_text[EXIT_CODES] = {
     [EXIT_STOPPED] =
         ("the run had to stop (a bond too long, a velocity out of range, ...): run.json says why; the last "
          "checkpoint stays"),
-    [EXIT_NOT_WRITTEN] = ("a file or DIR could not be written, or another process writes into DIR; the last checkpoint "
-                          "stays"),
+    [EXIT_NOT_WRITTEN] = ("a file or DIR could not be written, or another process writes into DIR; a checkpoint that "
+                          "was there stays"),
     [EXIT_INTERRUPTED] = "interrupted by a signal; a checkpoint was written, --resume goes on",
     [EXIT_CLOSE] = "oracle compare: different, but within the derived tolerances",
     [EXIT_DIFFERS] = "oracle compare: different beyond them, or something is missing; oracle judge: different",

@@ -18,20 +18,22 @@ struct wish {
   size_t block_count;
 };
 
+#define SAME "; use the scene that it was written with"
+
 static bool fits_model(hid_t file, const char *path, const struct checkpoint_summary *s, const struct model *m,
                        struct message *message)
 {
   const int *cells = m->box.cells;
   if (memcmp(s->cells, cells, sizeof s->cells) != 0)
-    return message_set(message, "%s: its box is %d x %d x %d cells, the scene's %d x %d x %d", path, s->cells[0],
+    return message_set(message, "%s: its box is %d x %d x %d cells, the scene's %d x %d x %d" SAME, path, s->cells[0],
                        s->cells[1], s->cells[2], cells[0], cells[1], cells[2]);
   if (s->particles != m->solvent.particles)
-    return message_set(message, "%s: it holds %u solvent particles, the scene %u", path, s->particles,
+    return message_set(message, "%s: it holds %u solvent particles, the scene %u" SAME, path, s->particles,
                        m->solvent.particles);
   if (s->vertices != m->vertices)
-    return message_set(message, "%s: it holds %u fiber vertices, the scene %u", path, s->vertices, m->vertices);
+    return message_set(message, "%s: it holds %u fiber vertices, the scene %u" SAME, path, s->vertices, m->vertices);
   if (s->dumbbells != m->dumbbells.pairs)
-    return message_set(message, "%s: it holds %u dumbbells, the scene %u", path, s->dumbbells, m->dumbbells.pairs);
+    return message_set(message, "%s: it holds %u dumbbells, the scene %u" SAME, path, s->dumbbells, m->dumbbells.pairs);
   if ((s->wall_rows > 0) != model_has_walls(m))
     return message_set(message, "%s: it is of a box %s walls, the scene's box has %s", path,
                        s->wall_rows > 0 ? "between" : "without", s->wall_rows > 0 ? "none" : "walls");

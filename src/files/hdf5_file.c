@@ -56,7 +56,8 @@ hid_t h5_open(const char *path, bool writable, bool *sealed, enum h5_trouble *tr
     return -1;
   if (H5Fis_hdf5(path) <= 0) {
     H5Eclear2(H5E_DEFAULT);
-    message_set(message, "%s: not an HDF5 file, or its beginning is damaged", path);
+    message_set(message, "%s: not an HDF5 file (as checkpoint.h5 and trajectory.h5 are), or its beginning is damaged",
+                path);
     return -1;
   }
   hid_t access = new_format();

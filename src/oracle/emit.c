@@ -69,29 +69,34 @@ bool oracle_emit(const struct scene *scene, struct pack *pack, struct message *m
   const uint64_t last = scene->steps / interval * interval;
   memset(pack, 0, sizeof *pack);
   if (model_has_phantoms(model))
-    return message_set(message, "%s: solvent.bath: phantoms; packs hold the operators of a solvent of particles only",
+    return message_set(message,
+                       "%s: solvent.bath: it is phantoms; packs hold the operators of a solvent of particles only",
                        scene->path);
-  if (model->dimensions != 3 || model->solvent.profile != PROFILE_UNIFORM)
-    return message_set(
-        message,
-        "%s: dimensions: 2 or a profile of the acceleration; packs hold the operators of a box in space, "
-        "with a uniform acceleration",
-        scene->path);
+  if (model->dimensions != 3)
+    return message_set(message, "%s: dimensions: they are 2; packs hold the operators of a box in space only",
+                       scene->path);
+  if (model->solvent.profile != PROFILE_UNIFORM)
+    return message_set(message, "%s: solvent.acceleration: it has a profile; packs hold uniform accelerations only",
+                       scene->path);
   if (model_has_walls(model) && model->solvent.rule != RULE_SRD)
-    return message_set(message, "%s: solvent.rule; packs of walls hold the operators of the rule srd only",
+    return message_set(message,
+                       "%s: solvent.rule: it is not srd; packs of walls hold the operators of the rule srd only",
                        scene->path);
   if ((model_has_walls(model) || model_is_sheared(model)) && model->kinds > 0)
-    return message_set(message, "%s: fibers; packs of walls and of shear hold the operators of a solvent only",
+    return message_set(message,
+                       "%s: fibers: there are some; packs of walls and of shear hold the operators of a solvent only",
                        scene->path);
   if (model->crossing.rejection != REJECTION_STAY || model->crossing.frame != FRAME_LABORATORY)
     return message_set(
-        message, "%s: crossing.refusal or crossing.frame; packs hold drifts by the paper's rule: stay, laboratory",
+        message,
+        "%s: crossing.refusal or crossing.frame: not the paper's; packs hold drifts with stay and laboratory only",
         scene->path);
   if (model->medium.inextensible)
-    return message_set(message, "%s: medium.inextensible; packs hold moves with noise, and without tension",
+    return message_set(message, "%s: medium.inextensible: it is true; packs hold moves with noise, and without tension",
                        scene->path);
   if (model->frozen > 0)
-    return message_set(message, "%s: fibers.frozen; packs hold the operators of fibers that move", scene->path);
+    return message_set(message, "%s: fibers.frozen: it is true; packs hold the operators of fibers that move",
+                       scene->path);
   if (last == 0)
     return message_set(message, "%s: no collision within its %" PRIu64 " steps; a pack needs one", scene->path,
                        scene->steps);

@@ -158,7 +158,9 @@ bool model_finish_numbers(struct model *m, struct model_error *error)
       !flow_finish(m, error) || !fibers_finish(m, error) || !bead_finish(m, error) || !check_crossing(m, error))
     return false;
   if (!model_collides(m) && m->kinds == 0)
-    return model_reject(error, "", "there is nothing to simulate; a scene has a 'solvent', 'fibers', or both");
+    return model_reject(error, "",
+                        "there is nothing to simulate; a scene has a 'solvent', a 'medium' of pairs, 'fibers', or more "
+                        "than one of these");
   model_count(m);
   return true;
 }

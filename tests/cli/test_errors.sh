@@ -168,7 +168,10 @@ gives 4 'loop: cannot find out what this is: ' analyze "$dir/frames.h5" --out "$
 "$uncross" run "$scene" --out "$dir/loop" --resume 2>"$dir/err"
 grep -q 'loop: cannot find out what this is: ' "$dir/err"
 ok $? "a folder that cannot be looked into is not told to hold nothing to resume"
-gives 0 'cannot be had from this trajectory' analyze "$dir/frames.h5" --out "$dir/tables"
+gives 2 'not a file that verify knows: checkpoints and trajectories' verify "$scene"
+printf '# uncross pack 2: operator step row table.component value\nhalf a line\n' >"$dir/half.txt"
+gives 9 'half.txt:2:.*not understood' verify "$dir/half.txt"
+gives 0 'left out: ' analyze "$dir/frames.h5" --out "$dir/tables"
 if [ -w /dev/full ]; then
   "$uncross" export "$dir/frames.h5" >/dev/full 2>"$dir/err"
   { [ $? = 4 ] && grep -q 'written: No space left\|cannot write: No space left' "$dir/err"; }
