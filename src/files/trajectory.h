@@ -38,6 +38,12 @@ struct trajectory {
 struct trajectory *trajectory_allocate(const char *path);
 struct trajectory *trajectory_give_up(struct trajectory *trajectory);
 
+#define TRAJECTORY_CHUNK 65536  /* bytes: of small frames so many as fill this share a chunk */
+#define TRAJECTORY_SLACK 262144 /* bytes: room for what HDF5 itself needs: headers, indices of chunks */
+
+/* Asks the file system for so many bytes more, before HDF5 writes them. False, with a message, if there is no room. */
+bool trajectory_reserve(const struct trajectory *trajectory, size_t bytes, struct message *message);
+
 /* Finds the datasets of a file that is open, and checks that it is one of ours of a known version, or another's. False,
  * with a message, on failure. */
 bool trajectory_find(struct trajectory *trajectory, struct message *message);

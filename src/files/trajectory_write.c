@@ -1,7 +1,6 @@
-/* Trajectories are made, continued and appended to. */
+/* Trajectories are made, and continued. */
 #include <errno.h>
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,8 +11,6 @@
 #include "version.h"
 
 #define PATH_SIZE 4096
-#define CHUNK_BYTES 65536 /* of small frames so many as fill this share a chunk */
-#define SLACK 262144      /* room for what HDF5 itself needs: headers, indices of chunks */
 
 /* --- creating ---------------------------------------------------------------------------------------------------- */
 
@@ -68,8 +65,8 @@ static hid_t add_element(struct trajectory *t, hid_t parent, const char *name, i
   for (int k = 1; k < rank; k++)
     bytes *= dims[k];
   hid_t element = h5_group(parent, name);
-  hid_t value =
-      h5_dataset(element, "value", H5T_NATIVE_DOUBLE, rank, dims, true, bytes < CHUNK_BYTES ? CHUNK_BYTES / bytes : 1);
+  hid_t value = h5_dataset(element, "value", H5T_NATIVE_DOUBLE, rank, dims, true,
+                           bytes < TRAJECTORY_CHUNK ? TRAJECTORY_CHUNK / bytes : 1);
   if (t->step < 0) {
     const hsize_t none[1] = {0};
     t->step = h5_dataset(element, "step", H5T_NATIVE_INT64, 1, none, true, 1024);
@@ -126,12 +123,6 @@ static bool create_contents(struct trajectory *t, const struct model *model, con
          H5Fflush(t->file, H5F_SCOPE_GLOBAL) >= 0;
 }
 
-static bool reserve(hid_t file, const char *path, size_t bytes, struct message *message)
-{
-  int error = h5_reserve(file, bytes);
-  return error == 0 || message_set(message, "%s: no room for %zu bytes more: %s", path, bytes, strerror(error));
-}
-
 static uint32_t rows_wanted(const struct model *model, const struct trajectory_options *options)
 {
   return model->vertices + (options->solvent ? model->solvent.particles : 0);
@@ -177,8 +168,8 @@ static struct trajectory *create(const char *path, const struct model *model, co
     remove(path); /* it was made just now, wherever it is */
     return trajectory_give_up(t);
   }
-  size_t bytes = 32 * ((size_t)t->particles + model->bonds) + strlen(scene_text ? scene_text : "") + SLACK;
-  bool ok = reserve(t->file, path, bytes, message);
+  size_t bytes = 32 * ((size_t)t->particles + model->bonds) + strlen(scene_text ? scene_text : "") + TRAJECTORY_SLACK;
+  bool ok = trajectory_reserve(t, bytes, message);
   if (ok && !(make_room(t, model) && create_contents(t, model, options, scene_text)))
     ok = h5_fail(message, path, "trajectory cannot be created");
   h5_trim(t->file);
@@ -373,103 +364,4 @@ struct trajectory *trajectory_open(const char *path, const struct model *model,
       return NULL;
   }
   return create(path, model, options, scene_text, message);
-}
-
-/* --- appending --------------------------------------------------------------------------------------------------- */
-
-static bool append_block(hid_t dataset, uint64_t frame, int rank, const hsize_t *frame_dims, hid_t type,
-                         const void *data)
-{
-  hsize_t dims[3] = {frame + 1}, start[3] = {frame}, count[3] = {1};
-  for (int k = 1; k < rank; k++)
-    dims[k] = count[k] = frame_dims[k - 1];
-  if (H5Dset_extent(dataset, dims) < 0)
-    return false;
-  hid_t file_space = H5Dget_space(dataset), memory = H5Screate_simple(rank, count, NULL);
-  bool ok = H5Sselect_hyperslab(file_space, H5S_SELECT_SET, start, NULL, count, NULL) >= 0 &&
-            H5Dwrite(dataset, type, memory, file_space, H5P_DEFAULT, data) >= 0;
-  h5_close(memory);
-  h5_close(file_space);
-  return ok;
-}
-
-/* Frames hold every lattice point within the limit. */
-static bool within_limit(const struct trajectory *t, const struct state *state, struct message *message)
-{
-  for (uint32_t v = 0; v < state->vertices; v++) {
-    const double *r = &t->row[3 * (size_t)v];
-    if (!(fabs(r[0]) < TRAJECTORY_LIMIT && fabs(r[1]) < TRAJECTORY_LIMIT && fabs(r[2]) < TRAJECTORY_LIMIT))
-      return message_set(message, "%s: step %llu: vertex %u is at (%.6g, %.6g, %.6g), unwrapped; frames hold %g a0",
-                         t->path, (unsigned long long)state->step, v, r[0], r[1], r[2], TRAJECTORY_LIMIT);
-  }
-  return true;
-}
-
-/* The step comes last: a frame without it does not count. A file of version 1 is continued without checksums. */
-static bool write_frame(struct trajectory *t, const struct model *model, const struct state *state)
-{
-  const hsize_t rows[2] = {t->particles, 3}, matrix[2] = {3, 3}, sums[1] = {FRAME_SUMS};
-  const size_t numbers = 3 * (size_t)t->particles;
-  const int *cells = model->box.cells;
-  const double edges[9] = {cells[0], 0, 0, 0, cells[1], 0, 0, 0, cells[2]};
-  const double diagonal[3] = {cells[0], cells[1], cells[2]};
-  const double time = (double)state->step * model->time_step;
-  const int64_t step = (int64_t)state->step;
-  uint64_t sum[FRAME_SUMS] = {[SUM_MOMENT] = frame_sum_moment(t->frames, step, time),
-                              [SUM_EDGES] = frame_sum_numbers(t->frames, diagonal, 3),
-                              [SUM_POSITION] = frame_sum_numbers(t->frames, t->row, numbers)};
-  bool ok = append_block(t->position, t->frames, 3, rows, H5T_NATIVE_DOUBLE, t->row);
-  if (ok && t->velocity >= 0) {
-    frame_velocities(state, model, t->slot, t->row);
-    sum[SUM_VELOCITY] = frame_sum_numbers(t->frames, t->row, numbers);
-    ok = append_block(t->velocity, t->frames, 3, rows, H5T_NATIVE_DOUBLE, t->row);
-  }
-  return ok && append_block(t->edges, t->frames, 3, matrix, H5T_NATIVE_DOUBLE, edges) &&
-         append_block(t->time, t->frames, 1, NULL, H5T_NATIVE_DOUBLE, &time) &&
-         (t->checksum < 0 || append_block(t->checksum, t->frames, 2, sums, H5T_NATIVE_UINT64, sum)) &&
-         append_block(t->step, t->frames, 1, NULL, H5T_NATIVE_INT64, &step) && H5Fflush(t->file, H5F_SCOPE_GLOBAL) >= 0;
-}
-
-/* The most that a frame can take: a new chunk of every dataset. */
-static size_t frame_bytes(const struct trajectory *t)
-{
-  size_t rows = 24 * (size_t)t->particles;
-  return 2 * (rows > CHUNK_BYTES ? rows : CHUNK_BYTES) + CHUNK_BYTES + SLACK;
-}
-
-bool trajectory_append(struct trajectory *t, const struct model *model, const struct state *state,
-                       struct message *message)
-{
-  if (t->broken)
-    return message_set(message, "%s: an earlier frame could not be written", t->path);
-  if (t->frames > 0 && state->step == t->last_step)
-    return true;
-  if (t->frames > 0 && state->step < t->last_step)
-    return message_set(message, "%s: a frame of step %llu cannot follow that of step %llu", t->path,
-                       (unsigned long long)state->step, (unsigned long long)t->last_step);
-  if (t->slot)
-    state_solvent_slots(state, t->slot);
-  frame_positions(state, model, t->slot, t->row);
-  if (!within_limit(t, state, message) || !reserve(t->file, t->path, frame_bytes(t), message))
-    return false;
-  bool ok = write_frame(t, model, state);
-  h5_trim(t->file);
-  if (!ok) {
-    t->broken = true;
-    return h5_fail(message, t->path, "a frame could not be written");
-  }
-  t->frames++;
-  t->last_step = state->step;
-  return true;
-}
-
-bool trajectory_sync(struct trajectory *t, struct message *message)
-{
-  const int error = h5_sync(t->file);
-  return error == 0 || message_set(message, "%s: not synced: %s", t->path, strerror(error));
-}
-
-uint64_t trajectory_end(const struct trajectory *t)
-{
-  return t && t->frames > 0 ? t->last_step + 1 : 0;
 }
