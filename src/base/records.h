@@ -42,7 +42,7 @@ INLINE void exchange_rows(reals *r, int rows)
 #endif
 }
 
-/* The opposite, for four columns: LANES records of four, that of lane slot_lane[k] at place k. */
+/* Four columns become LANES records of four: that of lane slot_lane[k] is at place k. */
 #if LANES == 8
 static const uint32_t slot_lane[LANES] = {0, 4, 1, 5, 2, 6, 3, 7};
 #elif LANES == 4
@@ -83,6 +83,16 @@ INLINE void add_record(uint64_t *to, const double *record)
 #define LANE_RECORD 0, 1
 #endif
 static const uint32_t lane_record[LANES] = {LANE_RECORD};
+
+/* Which record each lane has. */
+INLINE words lane_records(void)
+{
+  words record;
+  UNROLL
+  for (int k = 0; k < LANES; k++)
+    record[k] = lane_record[k];
+  return record;
+}
 
 /* LANES numbers, in the order of the records of such columns. */
 INLINE words load_as_records(const int64_t *p)

@@ -26,7 +26,8 @@ static uint64_t least_common_multiple(uint64_t a, uint64_t b)
  * frames. */
 static void fit_plan(struct scene *scene, const struct trajectory *frames)
 {
-  const char *const all = !trajectory_has_velocities(frames)               ? "velocities are not in the frames"
+  const char *const all = !model_has_solvent(&scene->model)                ? "the scene has no solvent particles"
+                          : !trajectory_has_velocities(frames)             ? "velocities are not in the frames"
                           : !trajectory_has_solvent(frames, &scene->model) ? "the solvent is not in the frames"
                           : model_has_bead(&scene->model)                  ? "the bead is not in the frames"
                                                                            : NULL;

@@ -7,29 +7,17 @@
 #include "files/verify.h"
 #include "oracle/pack.h"
 
-/* A file that says itself that it is a pack: HDF5, or text that begins as ours does. */
-static bool says_pack(const char *path)
-{
-  static const char text[] = "# uncross pack", hdf5[] = "\x89HDF";
-  char head[sizeof text] = {0};
-  FILE *in = fopen(path, "rb");
-  const size_t n = in ? fread(head, 1, sizeof text - 1, in) : 0;
-  if (in)
-    fclose(in);
-  return n >= 4 && (strcmp(head, text) == 0 || memcmp(head, hdf5, 4) == 0);
-}
-
 static enum condition verify_pack(const char *path)
 {
   struct message message, ignored;
   struct pack pack;
   if (!pack_read(path, &pack, &message)) {
-    const bool is_pack = says_pack(path);
+    const bool known = pack_begins(path);
     printf("%s%s\n", message.text,
-           is_pack
+           known
                ? ""
                : "; not a file that verify knows: checkpoints and trajectories (.h5), tables (.csv), run.json, packs");
-    return is_pack ? CONDITION_DAMAGED : CONDITION_UNKNOWN;
+    return known ? CONDITION_DAMAGED : CONDITION_UNKNOWN;
   }
   if (seal_check(path, &ignored) == SEAL_FITS)
     printf("%s: whole: a pack of %zu tables, every byte fits its seal\n", text_shown(path), pack.count);

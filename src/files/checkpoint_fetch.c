@@ -18,7 +18,7 @@ struct wish {
   size_t block_count;
 };
 
-#define SAME "; use the scene that it was written with"
+#define SAME "; they must be equal"
 
 static bool fits_model(hid_t file, const char *path, const struct checkpoint_summary *s, const struct model *m,
                        struct message *message)

@@ -1,4 +1,5 @@
-/* boundary_fly_periodic once more (boundary.h), of LANES particles at once: the same operations in the same order. */
+/* boundary_fly_periodic once more (boundary.h), of LANES particles at once: the same operations in the same order; and
+ * what is done after a flight that it does not reach (flight_far). */
 #ifndef UNCROSS_FLUID_FLIGHT_LANES_H
 #define UNCROSS_FLUID_FLIGHT_LANES_H
 

@@ -136,7 +136,7 @@ INLINE uint32_t solve_lanes(uint64_t seed, struct mpc *c, uint64_t step, uint32_
 {
   reals p[4], turn[8] = {{0}};
   load_records(&c->sum[first], p);
-  const words load = (words)p[3], others = (load >> 40) - 1, two = ~negative(others - 1);
+  const words load = (words)p[3], others = cell_others_lanes(load), two = cell_collides_lanes(others);
   counts[0] |= load;
   counts[1] += others & two;
   if (clears)
@@ -176,9 +176,8 @@ INLINE struct solved solve_all(const struct model *model, struct mpc *c, uint64_
   uint32_t list[2 * LANES + CHUNK], n = 0;
   const uint32_t whole = c->cells - c->cells % LANES;
   const uint64_t seed = model->seed; /* nothing that is written here can change it, and its keys are kept */
-  words lane_cell, counts[2] = {{0}, {0}};
-  for (int k = 0; k < LANES; k++)
-    lane_cell[k] = lane_record[k];
+  const words lane_cell = lane_records();
+  words counts[2] = {{0}, {0}};
   for (uint32_t k = 0; k < whole; k += LANES) {
     n = solve_lanes(seed, c, step, k, lane_cell, turns, clears, list, n, counts);
     if (n < CHUNK && k + LANES < whole)

@@ -18,6 +18,18 @@ INLINE words cell_places_lanes(words x, uint64_t shift, uint32_t cells)
   return but_not((x + shift) >> LATTICE_BITS, cells);
 }
 
+/* Members but one of cells with these loads; all ones in cells without a member. */
+INLINE words cell_others_lanes(words load)
+{
+  return (load >> 40) - 1;
+}
+
+/* All ones for cells with two members or more, else 0. */
+INLINE words cell_collides_lanes(words others)
+{
+  return ~negative(others - 1);
+}
+
 #define CELL_LANES_MOST                                                                                                \
   ((uint64_t)1 << 51) /* of round_to_words: larger momenta and energies go to the plain functions */
 

@@ -49,7 +49,7 @@ struct mpc {
   struct point shift;     /* of the grid (grid_shift), lattice units */
   uint32_t cells;         /* all cells of the box; with a random solvent, those that hold a vertex */
   struct cell_sum *sum;   /* [cells] */
-  bool sum_is_clear;      /* all of `sum` is 0: the kernel cleared each cell when it had solved it */
+  bool sum_is_clear;      /* all of `sum` is 0: the kernel cleared each cell when nobody needed it any more */
   bool keeps_sums;        /* for tests: it never does */
   struct cell_turn *turn; /* [cells] */
   int64_t *relative;      /* [cells] twice the kinetic energy relative to v_cm, 2^-32 kT; thermostat only, else NULL.

@@ -23,9 +23,10 @@ const struct thermostat *thermostat_of(enum thermostat_kind kind);
  * energy. The factor is 1 if there is no energy. */
 void thermostat_set_factor(struct mpc *mpc, double freedoms, energy_sum energy);
 
-/* `maxwell-boltzmann`, canonical, of the cells from `begin` on: each cell's relative kinetic energy is drawn afresh
- * from its Gamma distribution of d (N-1) degrees of freedom, N with virtual particles as one (Huang, Chatterji,
- * Sutmann, Gompper and Winkler, J. Comput. Phys. 229, 168 (2010)). */
+/* `maxwell-boltzmann`, canonical: each cell's relative kinetic energy is drawn afresh from its Gamma distribution of
+ * d (N-1) degrees of freedom, N with virtual particles as one (Huang, Chatterji, Sutmann, Gompper and Winkler, J.
+ * Comput. Phys. 229, 168 (2010)). Of the cells from place `begin` on it needs sum, turn and relative, and sets the
+ * factors of those that collide. */
 void thermostat_canonical(const struct model *model, struct mpc *mpc, uint64_t step, uint32_t begin);
 
 /* Degrees of freedom of the members of a cell relative to its v_cm, with kT/2 each: d (N - M/(M + n)) for N members of

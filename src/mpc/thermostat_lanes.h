@@ -42,7 +42,7 @@ INLINE void thermostat_factors_lanes(const struct model *model, struct mpc *c, u
 {
   reals sum[4];
   load_records(&c->sum[first], sum);
-  const words others = ((words)sum[3] >> 40) - 1, two = ~negative(others - 1);
+  const words others = cell_others_lanes((words)sum[3]), two = cell_collides_lanes(others);
   const reals shape = 0.5 * model->dimensions * reals_from_small(others & two);
   reals wanted = thermostat_attempt_lanes(shape, normal, u);
   const words again = (words)(wanted < 0.0) & two;
@@ -63,9 +63,7 @@ INLINE void thermostat_canonical_lanes(const struct model *model, struct mpc *c,
   enum { REGISTERS = 8, SOME = REGISTERS * LANES };
   const uint64_t seed = model->seed;
   const uint32_t whole = c->cells - c->cells % LANES;
-  words lane_cell;
-  for (int k = 0; k < LANES; k++)
-    lane_cell[k] = lane_record[k];
+  const words lane_cell = lane_records();
   for (uint32_t first = 0; first < whole; first += SOME) {
     const uint32_t left = (whole - first) / LANES, n = left < REGISTERS ? left : REGISTERS;
     struct thermostat_draw drawn[REGISTERS];

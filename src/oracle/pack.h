@@ -67,6 +67,10 @@ bool pack_write(const struct pack *pack, FILE *out, const char *path, struct mes
 /* Reads a pack of either form. False, with a message (for text `file:line:col: ...`), if it is neither, or damaged. */
 bool pack_read(const char *path, struct pack *pack, struct message *message);
 
+/* Whether a file begins as a pack does, though the rest may be damaged: HDF5, or text with the words that pack_write
+ * begins with, or with a first line of values that can be understood. */
+bool pack_begins(const char *path);
+
 /* The text form, reals exact: as hexadecimal floating-point constants, or in 17 decimal digits. False if the stream
  * cannot be written. */
 bool pack_dump(const struct pack *pack, bool decimal, FILE *out);

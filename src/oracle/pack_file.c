@@ -252,11 +252,11 @@ static bool read_hdf5(const char *path, struct pack *pack, struct message *messa
   return ok;
 }
 
-bool pack_read(const char *path, struct pack *pack, struct message *message)
+/* NULL, with a message, if it cannot be opened. */
+static FILE *open_pack(const char *path, bool *hdf5, struct message *message)
 {
   static const unsigned char signature[4] = {0x89, 'H', 'D', 'F'};
   unsigned char head[4] = {0};
-  memset(pack, 0, sizeof *pack);
   const int fd = open_regular(path, message);
   FILE *in = fd < 0 ? NULL : fdopen(fd, "rb");
   if (!in && fd >= 0) {
@@ -264,9 +264,31 @@ bool pack_read(const char *path, struct pack *pack, struct message *message)
     message_set(message, "%s: out of memory", path);
   }
   if (!in)
-    return false;
-  bool hdf5 = fread(head, 1, sizeof head, in) == sizeof head && memcmp(head, signature, sizeof head) == 0;
+    return NULL;
+  *hdf5 = fread(head, 1, sizeof head, in) == sizeof head && memcmp(head, signature, sizeof head) == 0;
   rewind(in);
+  return in;
+}
+
+bool pack_begins(const char *path)
+{
+  struct message ignored;
+  bool hdf5;
+  FILE *in = open_pack(path, &hdf5, &ignored);
+  if (!in)
+    return false;
+  const bool begins = hdf5 || pack_text_begins(in);
+  fclose(in);
+  return begins;
+}
+
+bool pack_read(const char *path, struct pack *pack, struct message *message)
+{
+  bool hdf5;
+  memset(pack, 0, sizeof *pack);
+  FILE *in = open_pack(path, &hdf5, message);
+  if (!in)
+    return false;
   bool ok = hdf5 ? read_hdf5(path, pack, message) : pack_read_text(in, path, pack, message);
   fclose(in);
   if (!ok)

@@ -288,6 +288,24 @@ static bool read_lines(FILE *in, const char *path, struct pack *pack, struct dra
   return ok && (feof(in) || message_set(message, "%s: cannot be read", path));
 }
 
+bool pack_text_begins(FILE *in)
+{
+  static const char ours[] = "# " PACK_FORMAT;
+  char *text = NULL;
+  size_t room = 0;
+  bool begins = false, more = true;
+  while (!begins && more && getline(&text, &room, in) >= 0) {
+    struct line line = {.most_row = MOST_ROWS};
+    text[strcspn(text, "\r\n")] = '\0';
+    begins = strncmp(text, ours, sizeof ours - 1) == 0;
+    more = text[0] == '#' || text[0] == '\0';
+    if (!begins && !more)
+      begins = parse_line(text, &line) == 0;
+  }
+  free(text);
+  return begins;
+}
+
 bool pack_read_text(FILE *in, const char *path, struct pack *pack, struct message *message)
 {
   struct draft *drafts = calloc(MOST_TABLES, sizeof *drafts);

@@ -7,4 +7,7 @@
 /* Reads lines `operator step row table.component value` to the end; `path` serves messages only. */
 bool pack_read_text(FILE *in, const char *path, struct pack *pack, struct message *message);
 
+/* pack_begins, of text. */
+bool pack_text_begins(FILE *in);
+
 #endif

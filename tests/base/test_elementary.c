@@ -4,6 +4,7 @@
 #include <mpfr.h>
 #include <xxhash.h>
 
+#include "base/elementary_lanes.h"
 #include "base/normal.h"
 #include "exact.h"
 
@@ -505,19 +506,39 @@ static void turns_sine_column(const double *restrict x, uint32_t n, double *rest
     out[k] = elementary_circle_turns(x[k]).sine;
 }
 
+static void log_lanes(const double *restrict x, uint32_t n, double *restrict out)
+{
+  for (uint32_t k = 0; k < n; k += LANES)
+    store_reals(&out[k], elementary_log_lanes(load_reals(&x[k])));
+}
+
+static void cosine_lanes(const double *restrict x, uint32_t n, double *restrict out)
+{
+  for (uint32_t k = 0; k < n; k += LANES)
+    store_reals(&out[k], elementary_cosine_turns_lanes(load_reals(&x[k])));
+}
+
+/* In loops that vectorise, and several in one register (elementary_lanes.h). */
 static void columns_are_the_same(void **unused)
 {
   (void)unused;
-  void (*const columns[])(const double *restrict, uint32_t, double *restrict) = {
-      [LOG] = log_column, [EXP] = exp_column, [TURNS_COSINE] = turns_cosine_column, [TURNS_SINE] = turns_sine_column};
-  static double x[COLUMN], out[COLUMN];
+  const struct {
+    int function;
+    void (*column)(const double *restrict, uint32_t, double *restrict);
+  } rows[] = {{LOG, log_column},
+              {EXP, exp_column},
+              {TURNS_COSINE, turns_cosine_column},
+              {TURNS_SINE, turns_sine_column},
+              {LOG, log_lanes},
+              {TURNS_COSINE, cosine_lanes}};
+  static double x[COLUMN + LANES], out[COLUMN + LANES]; /* to the end of a register */
   double (*volatile one)(double);
-  for (int function = LOG; function <= TURNS_SINE; function++) {
-    struct dice d = {dice_seed(160 + (uint64_t)function)};
+  for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
+    struct dice d = {dice_seed(160 + r)};
     for (int k = 0; k < COLUMN; k++)
-      x[k] = golden_argument(function, dice_u64(&d), k);
-    columns[function](x, COLUMN, out);
-    one = functions[function].ours;
+      x[k] = golden_argument(rows[r].function, dice_u64(&d), k);
+    rows[r].column(x, COLUMN, out);
+    one = functions[rows[r].function].ours;
     for (int k = 0; k < COLUMN; k++)
       assert_true(is_bits(out[k], one(x[k])));
   }

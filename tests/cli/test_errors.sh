@@ -175,7 +175,11 @@ printf '# uncross pack 2: operator step row table.component value\nhalf a line\n
 "$uncross" verify "$dir/half.txt" >"$dir/out"
 [ $? = 9 ] && grep -q 'half.txt:2:.*not understood' "$dir/out"
 ok $? "verify of a damaged pack: 9, $(sed "s|$dir/||g; 1q" "$dir/out" | cut -c 1-120)"
-gives 0 'left out: ' analyze "$dir/frames.h5" --out "$dir/tables"
+printf '# of a port\nbonds 3 0 out.force.x 1\nhalf a line\n' >"$dir/half.txt"
+"$uncross" verify "$dir/half.txt" >"$dir/out"
+[ $? = 9 ] && grep -q 'half.txt:3:.*not understood' "$dir/out"
+ok $? "verify of a damaged pack of a port: 9, $(sed "s|$dir/||g; 1q" "$dir/out" | cut -c 1-120)"
+gives 0 'conserved: left out: the solvent is not in the frames' analyze "$dir/frames.h5" --out "$dir/tables"
 if [ -w /dev/full ]; then
   "$uncross" export "$dir/frames.h5" >/dev/full 2>"$dir/err"
   { [ $? = 4 ] && grep -q 'written: No space left\|cannot write: No space left' "$dir/err"; }
