@@ -9,6 +9,7 @@
  * and is not printed. */
 #include <time.h>
 
+#include "base/memory.h"
 #include "scene.h"
 
 #define COLLISIONS_PER_BLOCK 100 /* as many as lie between two sorts, or a multiple */
@@ -56,9 +57,9 @@ static void start(struct contender *c, const char *text)
     return;
   }
   c->length = (size_t)(atof(text + 6) * 1e6 / 24.0);
-  c->a = malloc(c->length * sizeof *c->a);
-  c->b = malloc(c->length * sizeof *c->b);
-  c->c = malloc(c->length * sizeof *c->c);
+  c->a = memory_alloc(c->length, sizeof *c->a); /* in large pages, as what the program works on */
+  c->b = memory_alloc(c->length, sizeof *c->b);
+  c->c = memory_alloc(c->length, sizeof *c->c);
   c->block = 1;
   if (!c->a || !c->b || !c->c || c->length == 0) {
     fprintf(stderr, "steps: no memory for '%s'\n", text);
