@@ -198,7 +198,8 @@ static bool set_factors(const struct state *state, const struct model *model, st
 }
 
 /* The same with a thermostat. One that has one factor for all cells needs what all of them have together, and no sums.
- * Another one reads the sums, and may clear them itself. If the bound of the energies allows a doubt, the sums are made anew, and the energies of each cell are tested. */
+ * Another one reads the sums, and may clear them itself. If the bound of the energies allows a doubt, the sums are made
+ * anew, and the energies of each cell are tested. */
 static bool solve_and_scale(const struct state *state, const struct model *model, struct mpc *mpc, uint64_t step,
                             uint64_t span, struct fault *fault)
 {
