@@ -76,7 +76,7 @@ bool oracle_emit(const struct scene *scene, struct pack *pack, struct message *m
     return message_set(message, "%s: dimensions: they are 2; packs hold the operators of a box in space only",
                        scene->path);
   if (model->solvent.profile != PROFILE_UNIFORM)
-    return message_set(message, "%s: solvent.acceleration: it has a profile; packs hold uniform accelerations only",
+    return message_set(message, "%s: solvent.profile: it is not uniform; packs hold uniform accelerations only",
                        scene->path);
   if (model_has_walls(model) && model->solvent.rule != RULE_SRD)
     return message_set(message,

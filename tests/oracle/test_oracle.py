@@ -554,7 +554,7 @@ class OracleTest(unittest.TestCase):
                          "fibers: [{name: a, count: 2, vertices: 3, mass: 5, bond_length: 0.5, spring: 100}]\n")
         status, said = run("emit", scene, "-o", pack)
         self.assertEqual((status, pack.exists()), (2, False))
-        self.assertIn("solvent.bath: phantoms", said)
+        self.assertIn("solvent.bath: it is phantoms; packs hold", said)
         status, said = run("trace", scene)
         self.assertEqual((status, said.count(",collide,")), (0, 4))
 
@@ -597,13 +597,15 @@ class OracleTest(unittest.TestCase):
 
     def test_packs_of_other_boxes(self):
         """Packs hold the operators of a box in space, with a uniform acceleration; traces hold any box."""
-        for key, solvent, box in (("", ", profile: sine, acceleration: [0.1, 0, 0]", "[4, 4, 4]"), ("dimensions: 2", "", "[4, 4, 1]")):
+        for key, solvent, box, why in (
+                ("", ", profile: sine, acceleration: [0.1, 0, 0]", "[4, 4, 4]", "solvent.profile: it is not uniform; packs hold uniform"),
+                ("dimensions: 2", "", "[4, 4, 1]", "dimensions: they are 2; packs hold the operators of a box in space only")):
             scene, pack = self.dir / "flow.yaml", self.dir / "flow.h5"
             scene.write_text(f"box: {box}\ntime_step: 0.02\nsteps: 4\n"
                              f"solvent: {{per_cell: 5, collision_interval: 0.02{solvent}}}\n{key}\n")
             status, said = run("emit", scene, "-o", pack)
             self.assertEqual((status, pack.exists()), (2, False))
-            self.assertIn("a box in space", said)
+            self.assertIn(why, said)
             status, said = run("trace", scene)
             self.assertEqual((status, said.count(",collide,")), (0, 4))
 
@@ -616,7 +618,7 @@ class OracleTest(unittest.TestCase):
                              f"crossing: {{rule: sequential, {rule}}}\n")
             status, said = run("emit", scene, "-o", pack)
             self.assertEqual((status, pack.exists()), (2, False))
-            self.assertIn("by the paper's rule", said)
+            self.assertIn("not the paper's; packs hold drifts with stay and laboratory only", said)
             status, said = run("trace", scene)
             self.assertEqual((status, said.count(",collide,")), (0, 4))
 
