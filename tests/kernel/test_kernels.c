@@ -493,39 +493,35 @@ static struct model odd(void)
   return m;
 }
 
+static struct model with_thermostat(struct model m, enum thermostat_kind kind)
+{
+  m.solvent.thermostat = kind;
+  return m;
+}
+
 static struct model rescaled_fibers(void)
 {
-  struct model m = with_fibers();
-  m.solvent.thermostat = THERMOSTAT_RESCALE;
-  return m;
+  return with_thermostat(with_fibers(), THERMOSTAT_RESCALE);
 }
 
 static struct model rescaled_thin(void)
 {
-  struct model m = thin();
-  m.solvent.thermostat = THERMOSTAT_RESCALE;
-  return m;
+  return with_thermostat(thin(), THERMOSTAT_RESCALE);
 }
 
 static struct model canonical_fibers(void)
 {
-  struct model m = with_fibers();
-  m.solvent.thermostat = THERMOSTAT_MAXWELL_BOLTZMANN;
-  return m;
+  return with_thermostat(with_fibers(), THERMOSTAT_MAXWELL_BOLTZMANN);
 }
 
 static struct model canonical_thin(void)
 {
-  struct model m = thin();
-  m.solvent.thermostat = THERMOSTAT_MAXWELL_BOLTZMANN;
-  return m;
+  return with_thermostat(thin(), THERMOSTAT_MAXWELL_BOLTZMANN);
 }
 
 static struct model canonical_odd(void)
 {
-  struct model m = odd();
-  m.solvent.thermostat = THERMOSTAT_MAXWELL_BOLTZMANN;
-  return m;
+  return with_thermostat(odd(), THERMOSTAT_MAXWELL_BOLTZMANN);
 }
 
 static struct model (*const unread[])(void) = {dense, with_fibers, at_a, at_a_fibers, thin, even, odd};
