@@ -21,6 +21,18 @@ struct span {
   struct vec3 acceleration; /* constant, a0/t0^2 */
 };
 
+/* Particles that fly together between walls, or in a sheared box; blocks begin at multiples of this from `first`. If
+ * several particles would move too far, the fault is of the first block that has one: so it is the same with any
+ * kernel.
+ */
+enum { BOUNDARY_BLOCK = 64 };
+
+/* Of n particles, those of the block that begins at i. */
+static inline uint32_t boundary_block(uint32_t n, uint32_t i)
+{
+  return n - i < BOUNDARY_BLOCK ? n - i : BOUNDARY_BLOCK;
+}
+
 struct boundary {
   const char *name;
 

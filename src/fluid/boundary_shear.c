@@ -63,8 +63,8 @@ static bool bring_all_in(struct state *state, const struct model *model, const s
   return true;
 }
 
-static bool fly_sheared(struct state *state, const struct model *model, const struct span *span, uint32_t first,
-                        uint32_t n, struct fault *fault)
+static bool fly_block(struct state *state, const struct model *model, const struct span *span, uint32_t first,
+                      uint32_t n, struct fault *fault)
 {
   struct solvent *s = &state->solvent;
   const double t = span->time;
@@ -76,6 +76,15 @@ static bool fly_sheared(struct state *state, const struct model *model, const st
     return false;
   return fly_along_y(n, &s->y[first], &s->vy[first], t, edge[1]) >= 0 ||
          bring_all_in(state, model, span, first, n, fault);
+}
+
+static bool fly_sheared(struct state *state, const struct model *model, const struct span *span, uint32_t first,
+                        uint32_t n, struct fault *fault)
+{
+  for (uint32_t i = 0; i < n; i += BOUNDARY_BLOCK)
+    if (!fly_block(state, model, span, first + i, boundary_block(n, i), fault))
+      return false;
+  return true;
 }
 
 static void now_sheared(const struct model *model, const struct span *span, struct point *x, struct vec3 *v)

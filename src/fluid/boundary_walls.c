@@ -134,8 +134,6 @@ static double rebound(const struct slit *slit, int64_t d, struct point *x, struc
 
 /* --- many particles ---------------------------------------------------------------------------------------------- */
 
-enum { BLOCK = 512 };
-
 /* Particles looked at together: only few hit a wall, and so there is none among most. */
 enum { GROUP = 32 };
 
@@ -151,7 +149,8 @@ static int64_t move_across(uint32_t n, int64_t *restrict y, const double *restri
 }
 
 /* The same for a block. Returns the number of those that end outside, and their places in `outside`. */
-static uint32_t fly_across(uint32_t n, int64_t *y, const double *v, double t, int64_t edge, uint32_t outside[BLOCK])
+static uint32_t fly_across(uint32_t n, int64_t *y, const double *v, double t, int64_t edge,
+                           uint32_t outside[BOUNDARY_BLOCK])
 {
   uint32_t count = 0;
   for (uint32_t first = 0; first < n; first += GROUP) {
@@ -178,8 +177,8 @@ static bool fly_block(struct state *state, const struct slit *slit, uint32_t fir
   const double t = slit->span->time;
   const struct vec3 a = slit->span->acceleration;
   const int64_t *edge = slit->model->box.edge;
-  uint32_t outside[BLOCK];
-  struct end end[BLOCK];
+  uint32_t outside[BOUNDARY_BLOCK];
+  struct end end[BOUNDARY_BLOCK];
   const uint32_t hits = fly_across(n, &s->y[first], &s->vy[first], t, edge[1], outside);
   for (uint32_t k = 0; k < hits; k++) {
     const uint32_t i = first + outside[k];
@@ -208,8 +207,8 @@ static bool fly_walls(struct state *state, const struct model *model, const stru
 {
   const struct slit slit = slit_of(model, span, account_of(state, ACCOUNT_HITS));
   bool ok = true;
-  for (uint32_t i = 0; ok && i < n; i += BLOCK)
-    ok = fly_block(state, &slit, first + i, n - i < BLOCK ? n - i : BLOCK, fault);
+  for (uint32_t i = 0; ok && i < n; i += BOUNDARY_BLOCK)
+    ok = fly_block(state, &slit, first + i, boundary_block(n, i), fault);
   return ok;
 }
 

@@ -46,6 +46,16 @@ INLINE words flight_lanes(const struct flight *f, uint32_t i, const bool acceler
   return p;
 }
 
+/* True if n particles, a multiple of LANES, from place i on would end in [0, below) along this axis, where nothing
+ * accelerates them. */
+INLINE bool flight_stays_lanes(const struct flight *f, uint32_t i, uint32_t n, uint64_t below)
+{
+  words seen = {0};
+  for (uint32_t k = i; k < i + n; k += LANES)
+    seen = see(seen, load_words(&f->x[k]) + round_to_words(load_reals(&f->v[k]) * f->time), below);
+  return (int64_t)any(was_outside(seen, below)) >= 0;
+}
+
 /* Particles begin .. flown - 1 have flown, one of them more than an edge out of the box. The others up to `end` follow,
  * and all from `begin` on are looked at, as fly_periodic of boundary.c does with a block: so the fault is the same. */
 static inline bool flight_far(struct state *state, const struct model *model, uint32_t begin, uint32_t flown,

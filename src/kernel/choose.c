@@ -1,18 +1,14 @@
 #include "kernel/choose.h"
 
-/* Flights, by boundary along y. Between walls a particle may hit them, and in a sheared box it may take the velocity
- * of an image: their flights are those of the plain kernel. Dumbbells do not fly alone. */
-static const bool free_flight[BOUNDARIES] = {[BOUNDARY_PERIODIC] = true};
-
-/* Sums, energies and turns, by collision rule. Within a cell neither rule knows of boundaries or dumbbells. */
-static const bool turns[RULES] = {[RULE_SRD] = true, [RULE_AT_A] = true};
+/* By collision rule. */
+static const bool has_lanes[RULES] = {[RULE_SRD] = true, [RULE_AT_A] = true};
 
 struct kernel_parts kernel_parts_for(const struct model *m)
 {
-  const bool particles = model_has_solvent(m) && turns[m->solvent.rule];
+  const bool particles = model_has_solvent(m) && has_lanes[m->solvent.rule];
   const bool thin = m->solvent.particles < (uint64_t)box_cell_count(&m->box); /* most are alone, and are not turned */
   const bool enough = box_cell_count(&m->box) >= 8;                           /* cells for a register */
-  return (struct kernel_parts){.gather = particles && free_flight[m->box.boundary[1]] && !model_has_dumbbells(m),
+  return (struct kernel_parts){.gather = particles,
                                .solve = particles && enough && (!model_is_flat(m) || m->solvent.rule == RULE_AT_A),
                                .turn = particles && !thin};
 }

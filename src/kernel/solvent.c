@@ -1,17 +1,16 @@
 /*
- * The fast kernel: points in a periodic flight, SRD and AT-a. One source; the Makefile compiles it once for each
- * instruction set (base/registers.h), and choose.c takes the best one that the processor has. The formulas for several
- * particles at once stand beside the plain ones whose bits they give, in headers *_lanes.h; here are the loops. What is
- * rare goes to the plain ones: flights beyond the next image of the box, momenta beyond the range of lattice_round, and
- * the last particles if they do not fill a register.
+ * The fast kernel: SRD and AT-a. One source; the Makefile compiles it once for each instruction set (base/registers.h),
+ * and choose.c takes the best one that the processor has. The formulas for several particles at once stand beside the
+ * plain ones whose bits they give, in headers *_lanes.h; here are the loops. What is rare goes to the plain ones:
+ * flights beyond the next image of the box, momenta beyond the range of lattice_round, the last particles if they do
+ * not fill a register, and all that are near a wall or the boundary of a sheared box.
  */
 #include <string.h>
 
 #include "base/axis_lanes.h"
-#include "fluid/flight_lanes.h"
 #include "kernel/choose.h"
 #include "mpc/border.h"
-#include "mpc/cell_lanes.h"
+#include "mpc/gather_lanes.h"
 #include "mpc/members.h"
 #include "mpc/rule.h"
 #include "mpc/rules/andersen.h"
@@ -27,103 +26,81 @@
 
 /* --- flight, cells, sums ----------------------------------------------------------------------------------------- */
 
-/* An axis: the flight along it, and the grid. */
-struct axis {
-  struct flight flight;
-  uint64_t shift;
-  uint32_t cells;
-};
-
-static struct axis axis_of(const struct state *state, const struct model *model, const struct mpc *c, int axis)
-{
-  return (struct axis){.flight = flight_along(state, model, axis),
-                       .shift = (uint64_t)(const int64_t[]){c->shift.x, c->shift.y, c->shift.z}[axis],
-                       .cells = (uint32_t)model->box.rows[axis]};
-}
-
-/* Flight of LANES particles from place i on, and their places on the grid. */
-INLINE words fly(const struct axis *a, uint32_t i, const bool accelerated, reals *v, words *seen)
-{
-  return cell_places_lanes(flight_lanes(&a->flight, i, accelerated, v, seen), a->shift, a->cells);
-}
-
 /* Particles whose flight comes before their sums: all of it stays in the nearest cache. */
 enum { CHUNK = ANDERSEN_LANES_MOST };
+_Static_assert(CHUNK % BOUNDARY_BLOCK == 0, "faults are those of the plain kernel");
 
-/* For a chunk: flight, cells, and what each particle adds to the sums of its cell, in the order of store_records: its
- * velocity, less the drawn one if there is one. The sign bit of the result is set where that of boundary_fly_periodic
- * is. */
-INLINE uint64_t fly_chunk(const struct axis axis[3], const struct mpc *c, uint32_t first, uint32_t n,
-                          const bool accelerated, const bool draws, double *record, uint64_t *span)
+static void bin_and_add(const struct state *state, const struct model *model, struct mpc *c, uint64_t step,
+                        uint32_t first, uint32_t n, uint64_t *span)
 {
-  const struct axis x = axis[0], y = axis[1], z = axis[2];
-  words seen[3] = {{0}, {0}, {0}}, size = {0};
-  uint32_t *cell = c->solvent_cell;
-  const double *const xi[3] = {c->drawn[0], c->drawn[1], c->drawn[2]};
-  for (uint32_t k = 0; k < n; k += LANES) {
-    const uint32_t i = first + k;
-    reals v[3];
-    const words cx = fly(&x, i, accelerated, &v[0], &seen[0]), cy = fly(&y, i, accelerated, &v[1], &seen[1]),
-                cz = fly(&z, i, accelerated, &v[2], &seen[2]);
-    store_narrow(&cell[i], multiply(multiply(cz, y.cells) + cy, x.cells) + cx);
-    for (int a = 0; draws && a < 3; a++)
-      v[a] -= load_reals(&xi[a][i]);
-    reals column[4] = {cell_momenta_lanes(v[0], &size), cell_momenta_lanes(v[1], &size),
-                       cell_momenta_lanes(v[2], &size), (reals)((words){0} + cell_load(1.0))};
-    store_records(&record[(size_t)4 * k], column);
-  }
-  *span = any(size);
-  return any(was_outside(seen[0], x.flight.edge) | was_outside(seen[1], y.flight.edge) |
-             was_outside(seen[2], z.flight.edge));
-}
-
-static void add_records(struct cell_sum *sum, const uint32_t *cell, uint32_t n, const double *record)
-{
-  for (uint32_t k = 0; k < n; k += LANES) {
-    UNROLL
-    for (uint32_t slot = 0; slot < LANES; slot++)
-      add_record((uint64_t *)&sum[cell[k + slot_lane[slot]]], &record[(size_t)4 * (k + slot)]);
-  }
+  c->border->bin_particles(state, model, first, n, c);
+  *span |= c->rule->add_particles(state, model, c, step, first, n);
 }
 
 INLINE bool gather_all(struct state *state, const struct model *model, struct mpc *c, uint64_t step, uint32_t first,
-                       uint32_t n, const bool draws, uint64_t *span, struct fault *fault)
+                       uint32_t n, const enum course course, const bool draws, uint64_t *span, struct fault *fault)
 {
-  struct axis axis[3] = {axis_of(state, model, c, 0), axis_of(state, model, c, 1), axis_of(state, model, c, 2)};
+  const struct gather_axis axis[3] = {gather_axis_of(state, model, c, 0), gather_axis_of(state, model, c, 1),
+                                      gather_axis_of(state, model, c, 2)};
   const bool accelerated = axis[0].flight.gain != 0.0 || axis[1].flight.gain != 0.0 || axis[2].flight.gain != 0.0;
-  const uint32_t end = first + n, whole = end - n % LANES;
+  const uint64_t clear = axis[1].flight.edge - (model_is_sheared(model) ? axis[1].shift : 0); /* border_shear.c */
+  const uint32_t chunk = course == COURSE_CLEAR ? BOUNDARY_BLOCK : CHUNK, end = first + n,
+                 whole = end - n % (course == COURSE_CLEAR ? chunk : LANES);
   double record[4 * CHUNK];
-  for (uint32_t i = first; i < whole; i += CHUNK) {
-    const uint32_t m = whole - i < CHUNK ? whole - i : CHUNK;
+  uint32_t i = first;
+  for (uint32_t m; i < whole; i += m) {
+    m = whole - i < chunk ? whole - i : chunk;
+    if (course == COURSE_CLEAR && !flight_stays_lanes(&axis[1].flight, i, m, clear)) {
+      if (!kernel_plain.gather(state, model, c, step, i, m, span, fault))
+        return false;
+      continue;
+    }
     uint64_t size;
     if (draws)
       andersen_draw_lanes(&state->solvent, model, c, step, i, m);
-    const uint64_t outside = accelerated ? fly_chunk(axis, c, i, m, true, draws, record, &size)
-                                         : fly_chunk(axis, c, i, m, false, draws, record, &size);
+    const uint64_t outside = accelerated ? gather_records_lanes(axis, c, i, m, course, true, draws, record, &size)
+                                         : gather_records_lanes(axis, c, i, m, course, false, draws, record, &size);
     if ((int64_t)outside < 0) {
-      const bool ok = flight_far(state, model, first, i + m, end, fault);
-      if (ok) {
-        c->border->bin_particles(state, model, i, end - i, c);
-        *span |= c->rule->add_particles(state, model, c, step, i, end - i);
-      }
-      return ok;
+      const uint32_t flown = i + m;
+      m = course == COURSE_CLEAR ? m : end - i;
+      if (!flight_far(state, model, course == COURSE_CLEAR ? i : first, flown, i + m, fault))
+        return false;
+      bin_and_add(state, model, c, step, i, m, span);
+      continue;
     }
     for (uint32_t k = i; c->prefetch && k < i + m; k++)
       __builtin_prefetch(&c->sum[c->solvent_cell[k]], 1);
     if (size < CELL_LANES_MOST)
-      add_records(c->sum, &c->solvent_cell[i], m, record);
+      gather_add_lanes(c->sum, &c->solvent_cell[i], m, record);
     else
       size = c->rule->add_particles(state, model, c, step, i, m);
     *span |= size;
   }
-  return whole == end || kernel_plain.gather(state, model, c, step, whole, end - whole, span, fault);
+  if (course != COURSE_THERE)
+    return i == end || kernel_plain.gather(state, model, c, step, i, end - i, span, fault);
+  bin_and_add(state, model, c, step, i, end - i, span);
+  return true;
+}
+
+INLINE bool gather_by(struct state *state, const struct model *model, struct mpc *c, uint64_t step, uint32_t first,
+                      uint32_t n, const enum course course, uint64_t *span, struct fault *fault)
+{
+  return c->rule->thermal ? gather_all(state, model, c, step, first, n, course, true, span, fault)
+                          : gather_all(state, model, c, step, first, n, course, false, span, fault);
 }
 
 static bool gather_fast(struct state *state, const struct model *model, struct mpc *c, uint64_t step, uint32_t first,
                         uint32_t n, uint64_t *span, struct fault *fault)
 {
-  return c->rule->thermal ? gather_all(state, model, c, step, first, n, true, span, fault)
-                          : gather_all(state, model, c, step, first, n, false, span, fault);
+  if (!model_has_dumbbells(model))
+    return model->box.boundary[1] == BOUNDARY_PERIODIC
+               ? gather_by(state, model, c, step, first, n, COURSE_PERIODIC, span, fault)
+               : gather_by(state, model, c, step, first, n, COURSE_CLEAR, span, fault);
+  if (!c->fluid->stream(state, model, first, n, fault))
+    return false;
+  if (c->border->enter)
+    c->border->enter(state, model, first, n, c);
+  return gather_by(state, model, c, step, first, n, COURSE_THERE, span, fault);
 }
 
 /* --- centers and axes -------------------------------------------------------------------------------------------- */

@@ -49,7 +49,6 @@ static void enter(struct state *state, const struct model *model, uint32_t first
   const struct slide slide = slide_now(state, model);
   const int64_t beyond = model->box.edge[1] - c->shift.y;
   const uint32_t end = first + n;
-  c->entered = first == 0 ? 0 : c->entered;
   for (uint32_t from = first; from < end; from += HANDFUL) {
     const uint32_t to = end - from < HANDFUL ? end : from + HANDFUL;
     if (!any_beyond(&s->y[from], to - from, beyond))

@@ -153,6 +153,7 @@ static bool gather(struct state *state, const struct model *model, struct mpc *m
   const struct border *border = mpc->border;
   *span = 0;
   mpc->shift = grid_shift(model, step);
+  mpc->entered = 0;
   clear_sums(mpc);
   for (uint32_t i = 0; i < state->solvent.n; i += BLOCK) {
     const uint32_t n = block_size(state->solvent.n, i, BLOCK);

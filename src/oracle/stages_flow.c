@@ -191,6 +191,7 @@ bool oracle_run_enter(struct oracle_stage *g)
 {
   struct mpc *c = &g->work->mpc;
   c->shift = grid_shift(g->model, g->place.step);
+  c->entered = 0;
   oracle_put_points(g, "in.shift", &c->shift, 1);
   put_slide_of_collision(g);
   put_particles(g, "in.position", "in.velocity");

@@ -207,11 +207,66 @@ static struct model sheared(void)
   return m;
 }
 
+/* So high that most blocks of particles are clear of both ends. */
+static struct model high(struct model m)
+{
+  m.box = test_model(3, 64, 2, 5.0, 0.01, 2).box;
+  test_particles(&m, 1923);
+  m.walls.shear_rate *= 0.1; /* walls and images stay slower than sound */
+  m.shear.rate *= 0.1;
+  return m;
+}
+
+static struct model high_walls(void)
+{
+  return high(between_walls());
+}
+
+static struct model high_walls_accelerated(void)
+{
+  struct model m = high_walls();
+  m.solvent.acceleration = (struct vec3){0.3, 0.0, 0.0};
+  return m;
+}
+
+static struct model high_slip(void)
+{
+  struct model m = high_walls();
+  m.walls = (struct wall_model){.kind = WALL_SLIP};
+  return m;
+}
+
+static struct model high_sheared(void)
+{
+  return high(sheared());
+}
+
 static struct model springs(void)
 {
   struct model m = dense();
   test_particles(&m, 1222);
   m.dumbbells = (struct dumbbell_model){.spring = 1.0, .fraction = 0.5};
+  return m;
+}
+
+static struct model high_springs(void)
+{
+  struct model m = high(springs());
+  test_particles(&m, 1922);
+  return m;
+}
+
+static struct model springs_at_walls(void)
+{
+  struct model m = high_springs();
+  m.walls = high_walls().walls;
+  return m;
+}
+
+static struct model springs_sheared(void)
+{
+  struct model m = high_springs();
+  m.shear = high_sheared().shear;
   return m;
 }
 
@@ -297,6 +352,16 @@ static struct model at_a_sheared(void)
   return drawn(sheared());
 }
 
+static struct model at_a_high_walls(void)
+{
+  return drawn(high_walls());
+}
+
+static struct model at_a_high_sheared(void)
+{
+  return drawn(high_sheared());
+}
+
 static struct model at_a_springs(void)
 {
   return drawn(springs());
@@ -341,7 +406,13 @@ static const struct scene {
               {"few", few},
               {"walls", between_walls},
               {"sheared", sheared},
+              {"high walls", high_walls},
+              {"high walls, accelerated", high_walls_accelerated},
+              {"high slip walls", high_slip},
+              {"high and sheared", high_sheared},
               {"dumbbells", springs},
+              {"dumbbells, walls", springs_at_walls},
+              {"dumbbells, sheared", springs_sheared},
               {"swap", swapped},
               {"fibers", with_fibers},
               {"1024 cells", longest},
@@ -354,6 +425,8 @@ static const struct scene {
               {"AT-a, fibers", at_a_fibers},
               {"AT-a, walls", at_a_walls},
               {"AT-a, sheared", at_a_sheared},
+              {"AT-a, high walls", at_a_high_walls},
+              {"AT-a, high and sheared", at_a_high_sheared},
               {"AT-a, dumbbells", at_a_springs},
               {"AT-a, thin", at_a_thin},
               {"AT-a, few", at_a_few},
@@ -402,10 +475,12 @@ static void asking_ahead_changes_nothing(void **unused)
 /* Places at the edges of box and cells, velocities that round at the half, zeros of both signs. */
 static void edges(const struct kernel *kernel)
 {
-  static struct model (*const makes[])(void) = {dense, accelerated, at_a, at_a_accelerated, rescaled};
+  static struct model (*const makes[])(void) = {
+      dense,     accelerated,  at_a,           at_a_accelerated, rescaled, high_walls, high_walls_accelerated,
+      high_slip, high_sheared, at_a_high_walls};
   static const double fixed[] = {0.0, -0.0, 0x1p-46, -0x1p-46, 0x1.8p-45, 0x1p-1060, 31.25, -31.25, 50.0, -50.0};
-  for (uint64_t k = 0; k < 40; k++) {
-    struct pair p = start(makes[k % 5], kernel, dice_seed(830) + k);
+  for (uint64_t k = 0; k < 80; k++) {
+    struct pair p = start(makes[k % 10], kernel, dice_seed(830) + k);
     struct dice d = {dice_seed(831) + k};
     struct solvent *s = &p.plain.state.solvent;
     int64_t *x[3] = {s->x, s->y, s->z};
@@ -438,11 +513,13 @@ static void wild(const struct kernel *kernel)
                                        0x1p52,      -0x1p60, 1e300,  0x1p8, 63.9,   INFINITY, -INFINITY,
                                        (double)NAN, 0x1p7,   -0x1p7, 0x1p6, -0x1p6, 300.0};
   const int64_t kinds = sizeof wild_speeds / sizeof *wild_speeds;
-  static struct model (*const makes[])(void) = {accelerated, dense,       at_a,     dense,    at_a_accelerated,
-                                                at_a,        at_a_fibers, rescaled, canonical};
+  static struct model (*const makes[])(void) = {
+      accelerated,     dense,       at_a,      dense,      at_a_accelerated,       at_a,
+      at_a_fibers,     rescaled,    canonical, high_walls, high_walls_accelerated, high_sheared,
+      at_a_high_walls, high_springs};
   uint32_t faults = 0, fine = 0;
-  for (uint64_t k = 0; k < 900; k++) {
-    struct pair p = start(makes[k % 9], kernel, dice_seed(840) + k);
+  for (uint64_t k = 0; k < 1400; k++) {
+    struct pair p = start(makes[k % 14], kernel, dice_seed(840) + k);
     struct dice d = {dice_seed(841) + k};
     struct solvent *s = &p.plain.state.solvent;
     double *v[3] = {s->vx, s->vy, s->vz};
@@ -654,16 +731,16 @@ static void parts_by_scene(void **unused)
   static const struct {
     struct model (*make)(void);
     struct kernel_parts parts;
-  } wanted[] = {{dense, {true, true, true}},         {accelerated, {true, true, true}},
-                {by_130, {true, true, true}},        {rescaled, {true, true, true}},
-                {thin, {true, true, false}},         {swapped, {true, true, true}},
-                {sheared, {false, true, true}},      {springs, {false, true, true}},
-                {plane, {true, false, true}},        {between_walls, {false, true, true}},
-                {with_fibers, {true, true, true}},   {tiny, {true, false, true}},
-                {at_a, {true, true, true}},          {at_a_accelerated, {true, true, true}},
-                {at_a_thin, {true, true, false}},    {at_a_fibers, {true, true, true}},
-                {at_a_sheared, {false, true, true}}, {at_a_springs, {false, true, true}},
-                {at_a_plane, {true, true, true}},    {at_a_walls, {false, true, true}},
+  } wanted[] = {{dense, {true, true, true}},        {accelerated, {true, true, true}},
+                {by_130, {true, true, true}},       {rescaled, {true, true, true}},
+                {thin, {true, true, false}},        {swapped, {true, true, true}},
+                {sheared, {true, true, true}},      {springs, {true, true, true}},
+                {plane, {true, false, true}},       {between_walls, {true, true, true}},
+                {with_fibers, {true, true, true}},  {tiny, {true, false, true}},
+                {at_a, {true, true, true}},         {at_a_accelerated, {true, true, true}},
+                {at_a_thin, {true, true, false}},   {at_a_fibers, {true, true, true}},
+                {at_a_sheared, {true, true, true}}, {at_a_springs, {true, true, true}},
+                {at_a_plane, {true, true, true}},   {at_a_walls, {true, true, true}},
                 {at_a_tiny, {true, false, true}}};
   for (size_t k = 0; k < sizeof wanted / sizeof *wanted; k++) {
     struct model m = wanted[k].make();
