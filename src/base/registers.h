@@ -64,6 +64,21 @@ INLINE words load_words(const int64_t *p)
   return x;
 }
 
+/* The first words of LANES pairs of words. */
+INLINE words load_first(const void *pairs)
+{
+  words a, b;
+  memcpy(&a, pairs, sizeof a);
+  memcpy(&b, (const char *)pairs + sizeof a, sizeof b);
+#if LANES == 8
+  return SHUFFLE(a, b, 0, 2, 4, 6, 8, 10, 12, 14);
+#elif LANES == 4
+  return SHUFFLE(a, b, 0, 2, 4, 6);
+#else
+  return SHUFFLE(a, b, 0, 2);
+#endif
+}
+
 INLINE void store_reals(double *p, reals x)
 {
   memcpy(p, &x, sizeof x);
@@ -282,6 +297,41 @@ INLINE int none(words x)
 #else
   return any(x) == 0;
 #endif
+}
+
+/* Bit k is set where word k is 0. */
+INLINE uint32_t zeros(words x)
+{
+#if defined HAS_512
+  return _mm512_testn_epi64_mask((__m512i)x, (__m512i)x);
+#elif defined HAS_256
+  return (uint32_t)_mm256_movemask_pd((__m256d)(x == 0));
+#else
+  uint32_t bits = 0;
+  for (int k = 0; k < LANES; k++)
+    bits |= (uint32_t)(x[k] == 0) << k;
+  return bits;
+#endif
+}
+
+/* Bit k is set where number k of 64, taken as a signed one of 32 bits, is negative. */
+INLINE uint64_t negatives_of_64(const uint32_t *x)
+{
+  uint64_t all = 0;
+  for (int k = 0; k < 64; k += 8) {
+#if defined __AVX__
+    const uint64_t some = (uint32_t)_mm256_movemask_ps(_mm256_loadu_ps((const float *)&x[k]));
+#elif defined __SSE2__
+    const uint64_t some = (uint32_t)_mm_movemask_ps(_mm_loadu_ps((const float *)&x[k])) |
+                          (uint32_t)_mm_movemask_ps(_mm_loadu_ps((const float *)&x[k + 4])) << 4;
+#else
+    uint64_t some = 0;
+    for (int i = 0; i < 8; i++)
+      some |= (uint64_t)(x[k + i] >> 31) << i;
+#endif
+    all |= some << k;
+  }
+  return all;
 }
 
 /* Writes the low halves of those x whose mask is all ones from list[n] on, in the order of lanes, and returns the

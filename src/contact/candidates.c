@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/registers.h"
 #include "contact/capsule.h"
 #include "contact/neighbors.h"
 #include "contact/pairs.h"
@@ -63,13 +64,12 @@ static uint32_t list_due(const struct neighbors *nb, uint32_t first, uint32_t n,
   const uint32_t *restrict bond = &nb->pairs.bond[first], *restrict other = &nb->pairs.other[first],
                            *restrict limit = &nb->pairs.limit[first];
   const uint32_t *restrict path = nb->path;
-  uint32_t left[PAIRS], count = 0;
+  uint32_t left[PAIRS] = {0}, count = 0;
   for (uint32_t k = 0; k < n; k++)
     left[k] = limit[k] - path[bond[k]] - path[other[k]];
-  for (uint32_t k = 0; k < n; k++) {
-    due[count] = first + k;
-    count += left[k] >> 31; /* less than 0 */
-  }
+  for (uint32_t from = 0; from < PAIRS; from += 64)
+    for (uint64_t late = negatives_of_64(&left[from]); late; late &= late - 1)
+      due[count++] = first + from + (uint32_t)__builtin_ctzll(late);
   return count;
 }
 

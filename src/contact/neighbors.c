@@ -9,7 +9,7 @@
 #include "contact/search_cells.h"
 
 #define OVERLAPS 256 /* collected before they are looked at */
-#define COLUMNS 64   /* looked at together */
+#define COLUMNS 64   /* looked at together: bits of a word */
 #define FIRST_NEAR 64
 
 static bool add_near(struct neighbor_list *list, struct neighbor n)
@@ -33,7 +33,7 @@ struct search {
   uint32_t count;
   struct overlap {
     struct grid_bond mine, its; /* in the same cell */
-  } at[OVERLAPS + 1];           /* one that is written, and not taken */
+  } at[OVERLAPS];
 };
 
 static bool leave_cell(struct neighbors *nb, const struct model *model, uint32_t cell, const struct grid_entry *e,
@@ -54,13 +54,11 @@ static bool share_vertex(const struct model *model, uint32_t a, uint32_t b)
   return a == b || model->next[a] == (int32_t)b || model->next[b] == (int32_t)a;
 }
 
-/* Bonds that are never partners: a bond and its image; those that share a vertex, and their images, which thin lines
- * cannot cross; of thick fibers, those that are near along the contour. */
+/* Thick fibers that are never partners: a bond and its image; those that share a vertex; those that are near along the
+ * contour. */
 static bool never_touch(const struct model *model, uint32_t bond, const struct neighbor *n)
 {
   const uint32_t other = (uint32_t)n->bond;
-  if (model->thickness == 0)
-    return share_vertex(model, bond, other);
   const bool image = n->image[0] != 0 || n->image[1] != 0 || n->image[2] != 0;
   return bond == other || (!image && (share_vertex(model, bond, other) || model_tube_is_blind(model, bond, other)));
 }
@@ -124,16 +122,20 @@ static bool add_pairs(struct neighbors *nb, const struct columns *restrict s)
 /* Empties the list of overlaps: into `near` or the pair list, see struct search. */
 static bool settle(struct neighbors *nb, const struct model *model, struct search *found)
 {
+  const bool thin = model->thickness == 0;
   struct image home = {{0, 0, 0}};
+  int32_t home_of = -1;
   struct columns s;
   s.count = 0;
   for (uint32_t k = 0; k < found->count; k++) {
     const struct overlap *c = &found->at[k];
     const uint32_t bond = (uint32_t)c->mine.bond;
-    if (k == 0 || c->mine.bond != c[-1].mine.bond)
-      home = search_image(nb, nb->reference[bond].at, &model->box);
+    if (thin && share_vertex(model, bond, (uint32_t)c->its.bond)) /* thin lines cannot cross these, or their images */
+      continue;
+    if (c->mine.bond != home_of)
+      home = search_image(nb, nb->reference[bond].at, &model->box), home_of = c->mine.bond;
     const struct neighbor n = neighbor_of(nb, model, c, &home);
-    const bool apart = never_touch(model, bond, &n) || is_beyond_wall(model, &n);
+    const bool apart = (!thin && never_touch(model, bond, &n)) || is_beyond_wall(model, &n);
     if (found->near) {
       if (!apart && !add_near(found->near, n))
         return false;
@@ -151,8 +153,7 @@ static bool settle(struct neighbors *nb, const struct model *model, struct searc
   return add_pairs(nb, &s);
 }
 
-/* Collects the bonds of a cell whose boxes overlap with this one's. Each entry is written to the list, and stays there
- * if it overlaps: a branch would be mispredicted too often. */
+/* Collects the bonds of a cell whose boxes overlap with this one's. */
 static bool look_into_cell(struct neighbors *nb, const struct model *model, uint32_t cell,
                            const struct grid_entry *mine, struct search *found)
 {
@@ -162,17 +163,13 @@ static bool look_into_cell(struct neighbors *nb, const struct model *model, uint
     const uint32_t left = row->count - first, n = left < COLUMNS ? left : COLUMNS;
     if (found->count + n > OVERLAPS && !settle(nb, model, found))
       return false;
-    uint32_t count = found->count;
-    for (const struct grid_entry *e = &row->at[first]; e < &row->at[first + n]; e++) {
-      found->at[count] = (struct overlap){mine->is, e->is};
-      count += search_overlap(probe, e->key);
+    for (uint64_t hits = search_overlaps(probe, &row->at[first], n); hits; hits &= hits - 1) {
+      const struct grid_bond its = row->at[first + (uint32_t)__builtin_ctzll(hits)].is;
+      found->at[found->count++] = (struct overlap){mine->is, its};
+      __builtin_prefetch(&nb->reference[its.bond]);
+      __builtin_prefetch(&nb->reference[its.bond + 1]);
+      __builtin_prefetch(&model->next[its.bond]);
     }
-    for (uint32_t k = found->count; k < count; k++) {
-      __builtin_prefetch(&nb->reference[found->at[k].its.bond]);
-      __builtin_prefetch(&nb->reference[found->at[k].its.bond + 1]);
-      __builtin_prefetch(&model->next[found->at[k].its.bond]);
-    }
-    found->count = count;
   }
   return true;
 }

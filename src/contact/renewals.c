@@ -1,12 +1,12 @@
 #include "contact/renewals.h"
 
-#include <math.h>
 #include <string.h>
 
+#include "base/registers.h"
 #include "contact/candidates.h"
 
 #define WAIT_MOST (2 * NEIGHBORS_AT_ONCE)
-enum { BLOCK = 64 }; /* vertices worked on at a time */
+enum { BLOCK = 64 }; /* vertices worked on at a time: bits of a word */
 
 /* --- vertices that wait ------------------------------------------------------------------------------------------ */
 
@@ -15,12 +15,16 @@ struct renewals {
   struct point from[WAIT_MOST], to[WAIT_MOST];
 };
 
-/* Vertex i, which ends its move at `to` within its skin, cannot leave it before its path has grown by what is left of
- * it. */
-static void hold_until(struct neighbors *nb, uint32_t i, struct point to)
+/* How far a vertex at p is inside of its skin, a0; negative if it is outside. */
+static double inside_of_skin(const struct neighbors *nb, uint32_t i, struct point p)
 {
-  const double off = vec3_norm(point_difference(to, point_plus(nb->reference[i].at, nb->moved)));
-  const double left = fmin(fmax(nb->reference[i].skin - off, 0.0), 1.0);
+  return nb->reference[i].skin - vec3_norm(point_difference(p, point_plus(nb->reference[i].at, nb->moved)));
+}
+
+/* Vertex i, which ends its move `inside` of its skin, cannot leave it before its path has grown by that much. */
+static void hold_until(struct neighbors *nb, uint32_t i, double inside)
+{
+  const double left = capsule_least(capsule_most(inside, 0.0), 1.0);
   nb->hold[i] = nb->path[i] + (uint32_t)(int32_t)(left * (1 << CANDIDATES_UNITS));
 }
 
@@ -32,7 +36,7 @@ static bool renew(const struct state *state, const struct model *model, struct c
   if (!neighbors_renew(state, model, contact, n, r->vertex, r->from, r->to, fault))
     return false;
   for (uint32_t k = 0; k < n; k++)
-    hold_until(&contact->neighbors, r->vertex[k], r->to[k]);
+    hold_until(&contact->neighbors, r->vertex[k], inside_of_skin(&contact->neighbors, r->vertex[k], r->to[k]));
   memmove(r->vertex, &r->vertex[n], left * sizeof *r->vertex);
   memmove(r->from, &r->from[n], left * sizeof *r->from);
   memmove(r->to, &r->to[n], left * sizeof *r->to);
@@ -70,19 +74,22 @@ struct due {
 /* Lists the vertices among first .. first + BLOCK - 1 whose paths exceed their limits, and prefetches their data. */
 static void list_due(const struct state *state, const struct contact *contact, uint32_t first, struct due *restrict due)
 {
-  const uint32_t left = first < state->vertices ? state->vertices - first : 0, n = left < BLOCK ? left : BLOCK;
-  const uint32_t *restrict path = contact->neighbors.path, *restrict hold = contact->neighbors.hold;
+  const uint32_t rest = first < state->vertices ? state->vertices - first : 0, n = rest < BLOCK ? rest : BLOCK;
+  uint32_t left[BLOCK] = {0};
   due->count = 0;
-  for (uint32_t i = first; i < first + n; i++) {
-    due->vertex[due->count] = i;
-    due->count += (hold[i] - path[i]) >> 31; /* less than 0 */
-  }
-  for (uint32_t k = 0; k < due->count; k++) {
-    __builtin_prefetch(&state->position[due->vertex[k]]);
-    __builtin_prefetch(&state->position[due->vertex[k]].z);
-    __builtin_prefetch(&state->velocity[due->vertex[k]]);
-    __builtin_prefetch(&state->velocity[due->vertex[k]].z);
-    __builtin_prefetch(&contact->neighbors.reference[due->vertex[k]]);
+  if (n == 0)
+    return;
+  const uint32_t *restrict path = &contact->neighbors.path[first], *restrict hold = &contact->neighbors.hold[first];
+  for (uint32_t k = 0; k < n; k++)
+    left[k] = hold[k] - path[k];
+  for (uint64_t late = negatives_of_64(left); late; late &= late - 1) {
+    const uint32_t i = first + (uint32_t)__builtin_ctzll(late);
+    due->vertex[due->count++] = i;
+    __builtin_prefetch(&state->position[i]);
+    __builtin_prefetch(&state->position[i].z);
+    __builtin_prefetch(&state->velocity[i]);
+    __builtin_prefetch(&state->velocity[i].z);
+    __builtin_prefetch(&contact->neighbors.reference[i]);
   }
 }
 
@@ -100,8 +107,9 @@ bool renewals_of_late(const struct state *state, const struct model *model, stru
     for (uint32_t k = 0; k < due[now].count; k++) {
       const uint32_t i = due[now].vertex[k];
       const struct point from = state->position[i], to = end(&contact->frame, state->velocity[i], from);
-      if (neighbors_hold(nb, i, to))
-        hold_until(nb, i, to);
+      const double inside = inside_of_skin(nb, i, to);
+      if (inside >= 0.0)
+        hold_until(nb, i, inside);
       else if (!add(state, model, contact, &r, i, from, to, fault))
         return false;
     }

@@ -37,7 +37,7 @@ bool search_cells_alloc(const struct model *model, struct neighbors *nb)
   nb->path = memory_alloc(model->vertices, sizeof *nb->path);
   nb->generation = memory_alloc(model->vertices, sizeof *nb->generation);
   nb->hold = memory_alloc(model->vertices, sizeof *nb->hold);
-  nb->entries = memory_alloc(nb->cell_count, sizeof *nb->entries);
+  nb->entries = memory_alloc((size_t)nb->cell_count + 1, sizeof *nb->entries); /* search_overlaps may read into it */
   if (!nb->reference || !nb->path || !nb->generation || !nb->hold || !nb->entries)
     return false;
   for (uint32_t c = 0; c < nb->cell_count; c++) {
@@ -53,7 +53,7 @@ bool search_row_grow(struct grid_row *row)
   const bool began_here = row->room == SEARCH_FIRST_ENTRIES;
   struct grid_entry *bigger = NULL;
   if (row->room <= UINT32_MAX / 2)
-    bigger = realloc(began_here ? NULL : row->at, 2 * (size_t)row->room * sizeof *bigger);
+    bigger = realloc(began_here ? NULL : row->at, (2 * (size_t)row->room + LANES) * sizeof *bigger);
   if (!bigger)
     return false;
   row->at = began_here ? memcpy(bigger, row->at, row->room * sizeof *bigger) : bigger;

@@ -6,6 +6,7 @@
 #ifndef UNCROSS_CONTACT_SEARCH_CELLS_H
 #define UNCROSS_CONTACT_SEARCH_CELLS_H
 
+#include "base/registers.h"
 #include "contact/contact.h"
 
 /* Chooses the cells and allocates them, empty, with the arrays of reference positions. Does nothing if they are there.
@@ -102,6 +103,18 @@ static inline struct search_probe search_probe_of(uint64_t key)
 static inline bool search_overlap(struct search_probe mine, uint64_t its)
 {
   return ((~(mine.faces - its) & SEARCH_EACH_BYTE * 0x80) | (mine.below & its)) == 0;
+}
+
+/* The same for n <= 64 entries of a row: bit k for entry k. What is read behind them, of LANES - 1 entries at most, does
+ * not count. */
+static inline uint64_t search_overlaps(struct search_probe mine, const struct grid_entry *its, uint32_t n)
+{
+  uint64_t overlap = 0;
+  for (uint32_t k = 0; k < n; k += LANES) {
+    const words key = load_first(&its[k]);
+    overlap |= (uint64_t)zeros((~(mine.faces - key) & SEARCH_EACH_BYTE * 0x80) | (mine.below & key)) << k;
+  }
+  return overlap & UINT64_MAX >> (64 - n);
 }
 
 /* --- visits ------------------------------------------------------------------------------------------------------ */
