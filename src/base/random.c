@@ -107,11 +107,20 @@ void random_axes(uint64_t seed, enum random_purpose purpose, uint64_t step, cons
     axis[k] = z[k] > -1.0 ? (struct vec3){x[k], y[k], z[k]} : random_axis_from(seed, purpose, 1, step, entity[k]);
 }
 
+__extension__ typedef unsigned __int128 wide;
+
 /* floor(r n / 2^64) */
 static uint32_t below(uint64_t r, uint32_t n)
 {
-  uint64_t high = (r >> 32) * n, low = (r & 0xffffffffu) * n;
-  return (uint32_t)((high + (low >> 32)) >> 32);
+  return (uint32_t)((wide)r * n >> 64);
+}
+
+/* The step of a shuffle that fills place k, with 64 random bits as two words. */
+static inline void swap_at(uint32_t *order, uint32_t k, uint32_t low, uint32_t high)
+{
+  const uint32_t j = below((uint64_t)high << 32 | low, k + 1), swap = order[k];
+  order[k] = order[j];
+  order[j] = swap;
 }
 
 void random_permutation(uint64_t seed, enum random_purpose purpose, uint32_t draw, uint64_t step, uint32_t n,
@@ -120,19 +129,17 @@ void random_permutation(uint64_t seed, enum random_purpose purpose, uint32_t dra
   uint32_t entity[BLOCK], w[4][BLOCK], *columns[4] = {w[0], w[1], w[2], w[3]};
   for (uint32_t k = 0; k < n; k++)
     order[k] = k;
-  uint32_t first = UINT32_MAX; /* of the block at hand */
-  for (uint32_t k = n; k-- > 1;) {
-    if (k / 2 < first) {
-      const uint32_t last = k / 2;
-      first = last < BLOCK ? 0 : last - BLOCK + 1;
-      for (uint32_t e = first; e <= last; e++)
-        entity[e - first] = e;
-      random_columns(seed, purpose, draw, step, entity, last - first + 1, columns);
+  for (uint32_t end = n / 2 + n % 2, first; end > 0; end = first) {
+    first = end < BLOCK ? 0 : end - BLOCK;
+    for (uint32_t k = 0; k < end - first; k++)
+      entity[k] = first + k;
+    random_columns(seed, purpose, draw, step, entity, end - first, columns);
+    for (uint32_t e = end - first; e-- > 0;) {
+      const uint32_t k = 2 * (first + e);
+      if (k + 1 < n)
+        swap_at(order, k + 1, w[2][e], w[3][e]);
+      if (k > 0)
+        swap_at(order, k, w[0][e], w[1][e]);
     }
-    const uint32_t e = k / 2 - first, low = 2 * (k % 2);
-    const uint32_t j = below((uint64_t)w[low][e] | (uint64_t)w[low + 1][e] << 32, k + 1);
-    const uint32_t swap = order[k];
-    order[k] = order[j];
-    order[j] = swap;
   }
 }

@@ -12,7 +12,7 @@
 
 /* --- scratch ----------------------------------------------------------------------------------------------------- */
 
-enum { NEEDS = 11 };
+enum { NEEDS = 12 };
 
 /* The single list of the scratch that the drifts of a model use. Lists that grow are allocated where they grow. */
 static void list_needs(struct contact *c, const struct model *m, bool everything, struct memory_need need[NEEDS])
@@ -28,6 +28,7 @@ static void list_needs(struct contact *c, const struct model *m, bool everything
       {(void **)&c->range, noncrossing, sizeof *c->range},
       {(void **)&c->queue, in_turns, sizeof *c->queue},
       {(void **)&c->waits, in_turns, sizeof *c->waits},
+      {(void **)&c->turns, (in_turns + 63) / 64, sizeof *c->turns},
       {(void **)&c->candidates.first, noncrossing, sizeof *c->candidates.first},
       {(void **)&c->flights.version, at_once, sizeof *c->flights.version},
       {(void **)&c->flights.bend_of, at_once, sizeof *c->flights.bend_of},

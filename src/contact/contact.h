@@ -183,12 +183,14 @@ struct contact {
   struct wall_bounces bounces;
   struct flights flights; /* rules that move all at once, else NULL */
   uint32_t *order;        /* [vertices] in which vertices move in this drift */
-  uint32_t *rank;  /* [vertices] order[rank[i]] = i. Order, rank, queue, waits: rules that move in turns, else NULL */
+  uint32_t
+      *rank; /* [vertices] order[rank[i]] = i. Order, rank, queue, waits, turns: rules that move in turns, else NULL */
   uint32_t *range; /* [vertices] bound on the distance that a vertex goes in this drift, units of paths. Range and
                       candidates.first: rules that forbid crossing, else NULL */
   uint32_t *queue; /* [vertices] vertices that wait for their turns, in this order; `queued` of them */
   uint32_t queued;
-  uint8_t *waits; /* [vertices] 1: moves at its turn, 0: moves at once */
+  uint8_t *waits;  /* [vertices] 1: moves at its turn, 0: moves at once */
+  uint64_t *turns; /* [vertices / 64, rounded up] scratch: bit k is set if the vertex of rank k waits */
   struct candidate_list candidates;
   struct neighbor_list near; /* scratch */
   struct neighbors neighbors;

@@ -33,26 +33,43 @@ static bool prepare(const struct state *state, const struct model *model, struct
 
 /* --- the plan ---------------------------------------------------------------------------------------------------- */
 
-/* Vertices of candidate contacts wait for their turns. Each candidate is listed with both of its bonds. */
-static void let_wait(const struct model *model, struct contact *contact)
+static void let_wait(struct contact *contact, uint32_t i)
 {
-  memset(contact->waits, 0, model->vertices);
+  const uint32_t rank = contact->rank[i];
+  contact->waits[i] = 1;
+  contact->turns[rank / 64] |= (uint64_t)1 << rank % 64;
+}
+
+/* Vertices of candidate contacts wait for their turns. Each candidate is listed with both of its bonds. */
+static void let_candidates_wait(const struct model *model, struct contact *contact)
+{
   for (uint32_t k = 0; k < contact->candidates.count; k++) {
     const uint32_t bond = contact->candidates.at[k].bond;
-    contact->waits[bond] = contact->waits[model->next[bond]] = 1;
+    let_wait(contact, bond);
+    let_wait(contact, (uint32_t)model->next[bond]);
+  }
+}
+
+/* Those that would be beyond a wall wait, too: what they do there is a matter of their turns. */
+static void let_wait_at_walls(const struct state *state, const struct model *model, struct contact *contact)
+{
+  for (uint32_t i = 0; i < state->vertices; i++) {
+    const struct point p = state->position[i];
+    const struct vec3 d = drift_displacement(&contact->frame, state->velocity[i], p.y);
+    if (wall_is_beyond(&model->box, point_move(p, d).y))
+      let_wait(contact, i);
   }
 }
 
 /* The vertices that wait, in the order of their turns. */
 static void queue_up(const struct state *state, struct contact *contact)
 {
-  uint32_t n = 0;
-  for (uint32_t k = 0; k < state->vertices; k++) {
-    const uint32_t i = contact->order[k];
-    contact->queue[n] = i;
-    n += contact->waits[i];
-  }
-  contact->queued = n;
+  contact->queued = 0;
+  for (uint32_t first = 0; first < state->vertices; first += 64)
+    for (uint64_t turns = contact->turns[first / 64]; turns; turns &= turns - 1) {
+      const uint32_t k = first + (uint32_t)__builtin_ctzll(turns);
+      contact->queue[contact->queued++] = contact->order[k];
+    }
 }
 
 /* Inserts vertex i into the queue; its turn is later than the present one. */
@@ -64,24 +81,26 @@ static void join_queue(struct contact *contact, uint32_t i)
   contact->queue[k] = i;
 }
 
-/* Those that would be beyond a wall wait, too: what they do there is a matter of their turns. */
-static void let_wait_at_walls(const struct state *state, const struct model *model, struct contact *contact)
-{
-  for (uint32_t i = 0; i < state->vertices; i++) {
-    const struct point p = state->position[i];
-    const struct vec3 d = drift_displacement(&contact->frame, state->velocity[i], p.y);
-    contact->waits[i] |= wall_is_beyond(&model->box, point_move(p, d).y);
-  }
-}
-
-/* Moves all vertices that need not wait. */
+/* Moves all vertices that need not wait. Components are in one row: x, y, z of the first vertex, then of the next. */
 static void move_others(struct state *state, const struct contact *contact)
 {
-  const struct vec3 *restrict v = state->velocity, frame = contact->frame.velocity;
-  struct point *restrict p = state->position;
-  for (uint32_t i = 0; i < state->vertices; i++) {
-    const double time = contact->waits[i] ? 0.0 : contact->frame.time;
-    p[i] = point_move(p[i], vec3_scale(time, vec3_sub(v[i], frame)));
+  enum { ROW = 3 * BLOCK };
+  const double time = contact->frame.time;
+  double frame[ROW];
+  for (int k = 0; k < ROW; k += 3)
+    frame[k] = contact->frame.velocity.x, frame[k + 1] = contact->frame.velocity.y,
+    frame[k + 2] = contact->frame.velocity.z;
+  for (uint32_t first = 0; first < state->vertices; first += BLOCK) {
+    const uint32_t n = state->vertices - first < BLOCK ? state->vertices - first : BLOCK;
+    const double *restrict v = &state->velocity[first].x;
+    int64_t *restrict p = &state->position[first].x, move[ROW];
+    for (uint32_t k = 0; k < 3 * n; k++)
+      move[k] = lattice_from_a0(time * (v[k] - frame[k]));
+    const uint8_t *waits = &contact->waits[first], *one = waits;
+    for (; (one = memchr(one, 1, n - (size_t)(one - waits))); one++)
+      memset(&move[3 * (one - waits)], 0, 3 * sizeof *move);
+    for (uint32_t k = 0; k < 3 * n; k++)
+      p[k] += move[k];
   }
 }
 
@@ -97,7 +116,9 @@ bool schedule_plan(struct state *state, const struct model *model, struct contac
 {
   if (!prepare(state, model, contact, fault) || !candidates_find(state, model, contact, fault))
     return false;
-  let_wait(model, contact);
+  memset(contact->waits, 0, state->vertices);
+  memset(contact->turns, 0, (state->vertices + 63) / 64 * sizeof *contact->turns);
+  let_candidates_wait(model, contact);
   if (model_has_walls(model))
     let_wait_at_walls(state, model, contact);
   queue_up(state, contact);

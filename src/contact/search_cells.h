@@ -105,8 +105,8 @@ static inline bool search_overlap(struct search_probe mine, uint64_t its)
   return ((~(mine.faces - its) & SEARCH_EACH_BYTE * 0x80) | (mine.below & its)) == 0;
 }
 
-/* The same for n <= 64 entries of a row: bit k for entry k. What is read behind them, of LANES - 1 entries at most, does
- * not count. */
+/* The same for n <= 64 entries of a row: bit k for entry k. What is read behind them, of LANES - 1 entries at most,
+ * does not count. */
 static inline uint64_t search_overlaps(struct search_probe mine, const struct grid_entry *its, uint32_t n)
 {
   uint64_t overlap = 0;
