@@ -1,5 +1,7 @@
 #include "fiber/force.h"
 
+#include "base/registers.h"
+
 /* Derivative of bond_energy; positive pulls the ends of the bond together. */
 static inline double bond_tension(const struct fiber_kind *k, double length)
 {
@@ -38,15 +40,26 @@ struct stretch {
   double ax[ROOM], ay[ROOM], az[ROOM]; /* and after it */
 };
 
+/* n differences of coordinates, q - p, in a0, as point_difference has them. */
+static void differences(const int64_t *restrict q, const int64_t *restrict p, uint32_t n, double *restrict d)
+{
+  uint32_t k = 0;
+  for (; k + LANES <= n; k += LANES)
+    store_reals(&d[k], reals_from_signed(load_words(&q[k]) - load_words(&p[k])) * LATTICE_UNIT);
+  for (; k < n; k++)
+    d[k] = (double)(q[k] - p[k]) * LATTICE_UNIT;
+}
+
 /* Bond vectors of consecutive bonds; from, to: vertices of the first of them. True if one is too long. */
 static bool measure_bonds(const struct state *state, double limit, uint32_t from, uint32_t to, uint32_t n,
                           struct stretch *restrict s, uint32_t c)
 {
-  const struct point *restrict p = &state->position[from], *restrict q = &state->position[to];
+  double *restrict x = &s->x[c], *restrict y = &s->y[c], *restrict z = &s->z[c], row[3 * ROOM]; /* x, y, z of each */
   int64_t beyond = 0;
+  differences(&state->position[to].x, &state->position[from].x, 3 * n, row);
   for (uint32_t k = 0; k < n; k++) {
-    const struct vec3 r = point_difference(q[k], p[k]);
-    s->x[c + k] = r.x, s->y[c + k] = r.y, s->z[c + k] = r.z;
+    const struct vec3 r = {row[3 * k], row[3 * k + 1], row[3 * k + 2]};
+    x[k] = r.x, y[k] = r.y, z[k] = r.z;
     beyond |= !(vec3_dot(r, r) < limit * limit);
   }
   return beyond;
@@ -260,15 +273,25 @@ struct vec3 fiber_force_at(const struct model *model, uint32_t vertex,
   return force;
 }
 
-/* Padding 2009, Eq. (8). */
-void fiber_kick(struct state *state, const struct model *model, const struct vec3 *force_on, double fraction)
+/* Components are in one row, x, y, z of each vertex. */
+static void kick_row(double *restrict velocity, const double *restrict force, size_t n, double scale)
+{
+  for (size_t k = 0; k < n; k++)
+    velocity[k] += scale * force[k];
+}
+
+/* Padding 2009, Eq. (8). All vertices of a kind have one mass, and fibers of a kind are mostly next to each other. */
+void fiber_kick(struct state *state, const struct model *model, const struct vec3 *force, double fraction)
 {
   const double dt = fraction * model->time_step;
-  struct vec3 *restrict velocity = state->velocity;
-  const struct vec3 *restrict force = force_on;
-  const double *restrict inverse_mass = model->inverse_mass;
-  for (uint32_t v = 0; v < state->vertices; v++)
-    velocity[v] = vec3_add_scaled(velocity[v], dt * inverse_mass[v], force[v]);
+  for (uint32_t fiber = 0, end; fiber < model->fibers; fiber = end) {
+    end = fiber + 1;
+    while (end < model->fibers && model->fiber_kind_of[end] == model->fiber_kind_of[fiber])
+      end++;
+    const uint32_t first = model->fiber_first[fiber];
+    kick_row(&state->velocity[first].x, &force[first].x, 3 * (size_t)(model->fiber_first[end] - first),
+             dt * model->inverse_mass[first]);
+  }
 }
 
 struct fiber_energy fiber_energies(const struct state *state, const struct model *model)
