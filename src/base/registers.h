@@ -64,18 +64,21 @@ INLINE words load_words(const int64_t *p)
   return x;
 }
 
-/* The first words of LANES pairs of words. */
-INLINE words load_first(const void *pairs)
+/* The first, and the second, words of LANES pairs of words. */
+INLINE void load_pairs(const void *pairs, words *first, words *second)
 {
   words a, b;
   memcpy(&a, pairs, sizeof a);
   memcpy(&b, (const char *)pairs + sizeof a, sizeof b);
 #if LANES == 8
-  return SHUFFLE(a, b, 0, 2, 4, 6, 8, 10, 12, 14);
+  *first = SHUFFLE(a, b, 0, 2, 4, 6, 8, 10, 12, 14);
+  *second = SHUFFLE(a, b, 1, 3, 5, 7, 9, 11, 13, 15);
 #elif LANES == 4
-  return SHUFFLE(a, b, 0, 2, 4, 6);
+  *first = SHUFFLE(a, b, 0, 2, 4, 6);
+  *second = SHUFFLE(a, b, 1, 3, 5, 7);
 #else
-  return SHUFFLE(a, b, 0, 2);
+  *first = SHUFFLE(a, b, 0, 2);
+  *second = SHUFFLE(a, b, 1, 3);
 #endif
 }
 

@@ -41,11 +41,13 @@ static bool leave_cell(struct neighbors *nb, const struct model *model, uint32_t
 {
   (void)model, (void)found;
   struct grid_row *row = &nb->entries[cell];
-  uint32_t k = 0;
-  while (k < row->count && memcmp(&row->at[k].is, &e->is, sizeof e->is) != 0)
-    k++;
-  if (k < row->count)
-    row->at[k] = row->at[--row->count];
+  uint64_t mine = 0;
+  for (uint32_t first = 0; first < row->count && !mine; first += COLUMNS) {
+    const uint32_t left = row->count - first;
+    mine = search_entry_of(e->is, &row->at[first], left < COLUMNS ? left : COLUMNS);
+    if (mine)
+      row->at[first + (uint32_t)__builtin_ctzll(mine)] = row->at[--row->count];
+  }
   return true;
 }
 

@@ -111,10 +111,24 @@ static inline uint64_t search_overlaps(struct search_probe mine, const struct gr
 {
   uint64_t overlap = 0;
   for (uint32_t k = 0; k < n; k += LANES) {
-    const words key = load_first(&its[k]);
+    words key, is;
+    load_pairs(&its[k], &key, &is);
     overlap |= (uint64_t)zeros((~(mine.faces - key) & SEARCH_EACH_BYTE * 0x80) | (mine.below & key)) << k;
   }
   return overlap & UINT64_MAX >> (64 - n);
+}
+
+/* Which of n <= 64 entries of a row is that of this bond, in the same way; 0 if none is. */
+static inline uint64_t search_entry_of(struct grid_bond bond, const struct grid_entry *its, uint32_t n)
+{
+  uint64_t found = 0, mine;
+  memcpy(&mine, &bond, sizeof mine);
+  for (uint32_t k = 0; k < n; k += LANES) {
+    words key, is;
+    load_pairs(&its[k], &key, &is);
+    found |= (uint64_t)zeros(is ^ mine) << k;
+  }
+  return found & UINT64_MAX >> (64 - n);
 }
 
 /* --- visits ------------------------------------------------------------------------------------------------------ */
