@@ -105,8 +105,8 @@ static inline bool search_overlap(struct search_probe mine, uint64_t its)
   return ((~(mine.faces - its) & SEARCH_EACH_BYTE * 0x80) | (mine.below & its)) == 0;
 }
 
-/* The same for n <= 64 entries of a row: bit k for entry k. What is read behind them, of LANES - 1 entries at most,
- * does not count. */
+/* The same for n entries of a row, 1 <= n <= 64: bit k for entry k. What is read behind them, of LANES - 1 entries at
+ * most, does not count. */
 static inline uint64_t search_overlaps(struct search_probe mine, const struct grid_entry *its, uint32_t n)
 {
   uint64_t overlap = 0;
@@ -118,7 +118,7 @@ static inline uint64_t search_overlaps(struct search_probe mine, const struct gr
   return overlap & UINT64_MAX >> (64 - n);
 }
 
-/* Which of n <= 64 entries of a row is that of this bond, in the same way; 0 if none is. */
+/* Which of n entries of a row, 1 <= n <= 64, is that of this bond, in the same way; 0 if none is. */
 static inline uint64_t search_entry_of(struct grid_bond bond, const struct grid_entry *its, uint32_t n)
 {
   uint64_t found = 0, mine;

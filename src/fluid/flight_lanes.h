@@ -57,7 +57,8 @@ INLINE bool flight_stays_lanes(const struct flight *f, uint32_t i, uint32_t n, u
 }
 
 /* Particles begin .. flown - 1 have flown, one of them more than an edge out of the box. The others up to `end` follow,
- * and all from `begin` on are looked at, as fly_periodic of boundary.c does with a block: so the fault is the same. */
+ * and all from `begin` on are looked at, as fly_periodic of boundary.c does: so the fault is the same. The same for a
+ * block that is clear of walls, or of the end of a sheared box: nothing of it is folded along y. */
 static inline bool flight_far(struct state *state, const struct model *model, uint32_t begin, uint32_t flown,
                               uint32_t end, struct fault *fault)
 {

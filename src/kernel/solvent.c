@@ -28,7 +28,8 @@
 
 /* Particles whose flight comes before their sums: all of it stays in the nearest cache. */
 enum { CHUNK = ANDERSEN_LANES_MOST };
-_Static_assert(CHUNK % BOUNDARY_BLOCK == 0, "faults are those of the plain kernel");
+_Static_assert((int)BOUNDARY_BLOCK <= (int)CHUNK && BOUNDARY_BLOCK % LANES == 0,
+               "a block has room, and fills registers");
 
 static void bin_and_add(const struct state *state, const struct model *model, struct mpc *c, uint64_t step,
                         uint32_t first, uint32_t n, uint64_t *span)

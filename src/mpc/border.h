@@ -31,7 +31,8 @@ struct border {
                         struct mpc *mpc);
   void (*bin_vertices)(const struct state *state, const struct model *model, struct mpc *mpc);
 
-  /* Gives members whose cell is beyond the boundary the position and velocity of their image there, until `leave`. */
+  /* Gives members whose cell is beyond the boundary the position and velocity of their image there, until `leave`. Adds
+   * particles to those that have entered: mpc->entered is 0 before the first call. */
   void (*enter)(struct state *state, const struct model *model, uint32_t first, uint32_t n, struct mpc *mpc);
   void (*enter_vertices)(struct state *state, const struct model *model, struct mpc *mpc);
   void (*leave)(struct state *state, const struct model *model, struct mpc *mpc);

@@ -634,6 +634,7 @@ static inline void contract_scratch_of(struct model model)
   assert_there(t.range, forbids, "range");
   assert_there(t.queue, in_turns, "queue");
   assert_there(t.waits, in_turns, "waits");
+  assert_there(t.turns, in_turns, "turns");
   assert_there(t.flights.version, forbids && !in_turns, "flights.version");
   assert_there(t.flights.bend_of, forbids && !in_turns, "flights.bend_of");
   assert_there(t.candidates.first, forbids, "candidates.first");
