@@ -544,8 +544,9 @@ static void far_flights_and_faults_are_the_same(void **unused)
   for_each_kernel(wild);
 }
 
-/* Particles in the order of their heights, some of them at both ends of the box. Two or three have wild velocities, in
- * one block or in neighboring ones: so blocks with faults along different axes meet, and the last block is not full. */
+/* Particles in the order of their heights, some of them at rest at both ends of the box. Two or three have wild
+ * velocities, in one block or in neighboring ones: so blocks with faults along different axes meet, and the last block
+ * is not full. */
 static void wild_in_layers(const struct kernel *kernel)
 {
   static const double wild_speeds[] = {400.0, -400.0, 2.0e3, -9.0e4, 1.1e5, -1.1e5, 0x1p60, INFINITY, (double)NAN};
@@ -562,14 +563,16 @@ static void wild_in_layers(const struct kernel *kernel)
     double *v[3] = {s->vx, s->vy, s->vz};
     for (int64_t i = 0; i < n; i++)
       s->y[i] = edge / n * i;
-    for (int64_t i = 0; i < 20; i++)
-      s->y[dice_integer(&d, 0, n - 1)] = highest * dice_integer(&d, 0, 1);
+    for (int64_t m = 0; m < 20; m++) {
+      const int64_t i = dice_integer(&d, 0, n - 1);
+      s->y[i] = highest * dice_integer(&d, 0, 1), s->vy[i] = 0.0; /* they stay there */
+    }
     const int64_t at = dice_integer(&d, 0, 2) ? dice_integer(&d, 0, n - 1) : n - 1 - dice_integer(&d, 0, 44);
+    const bool far = k / 5 % 3 > 0, level = k / 5 % 3 > 1; /* too far; none of them along y */
     for (int64_t m = dice_integer(&d, 2, 3); m > 0; m--) {
-      const int64_t i = at + dice_integer(&d, -80, 80);
-      v[dice_integer(&d, 0, 2)][i < 0    ? 0
-                                : i >= n ? n - 1
-                                         : i] = wild_speeds[dice_integer(&d, 0, k % 3 ? kinds - 1 : 1)];
+      const int64_t near = at + dice_integer(&d, -80, 80), i = near < 0 ? 0 : near >= n ? n - 1 : near;
+      const int64_t axis = level ? 2 * dice_integer(&d, 0, 1) : dice_integer(&d, 0, 2);
+      v[axis][i] = wild_speeds[far ? dice_integer(&d, 2, kinds - 1) : dice_integer(&d, 0, 1)];
     }
     copy_state(&p.fast.state, &p.plain.state);
     assert_same_collision(&p, STEP, kernel->name);
