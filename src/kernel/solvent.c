@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/axis_lanes.h"
+#include "fluid/flight_lanes.h"
 #include "kernel/choose.h"
 #include "mpc/border.h"
 #include "mpc/gather_lanes.h"
@@ -31,6 +32,32 @@ enum { CHUNK = ANDERSEN_LANES_MOST };
 _Static_assert((int)BOUNDARY_BLOCK <= (int)CHUNK && BOUNDARY_BLOCK % LANES == 0,
                "a block has room, and fills registers");
 
+/* How particles get to their places: by a periodic flight; by one in which a block of them stays clear of what is at
+ * the ends of the box along y, or else flies by the plain kernel; or they are there, for dumbbells do not fly alone. */
+enum course { COURSE_PERIODIC, COURSE_CLEAR, COURSE_THERE };
+
+/* Flight, cells and records of a chunk. The sign bit of the result is set where that of boundary_fly_periodic is. */
+INLINE uint64_t fly_chunk(const struct flight flight[3], const struct gather_axis grid[3], struct mpc *c,
+                          uint32_t first, uint32_t n, const enum course course, const bool accelerated,
+                          const bool draws, double *record, uint64_t *span)
+{
+  const struct flight f[3] = {flight[0], flight[1], flight[2]};
+  const struct gather_axis axis[3] = {grid[0], grid[1], grid[2]};
+  words seen[3] = {{0}, {0}, {0}}, size = {0};
+  for (uint32_t i = first; i < first + n; i += LANES) {
+    reals v[3];
+    words x[3];
+    for (int a = 0; a < 3; a++) {
+      v[a] = load_reals(&f[a].v[i]);
+      x[a] = course == COURSE_THERE ? load_words(&f[a].x[i]) : flight_lanes(&f[a], i, accelerated, &v[a], &seen[a]);
+    }
+    gather_cells_lanes(axis, x, c, i);
+    gather_records_lanes(v, c, i, draws, &size, &record[(size_t)4 * (i - first)]);
+  }
+  *span = any(size);
+  return any(was_outside(seen[0], f[0].edge) | was_outside(seen[1], f[1].edge) | was_outside(seen[2], f[2].edge));
+}
+
 static void bin_and_add(const struct state *state, const struct model *model, struct mpc *c, uint64_t step,
                         uint32_t first, uint32_t n, uint64_t *span)
 {
@@ -41,17 +68,19 @@ static void bin_and_add(const struct state *state, const struct model *model, st
 INLINE bool gather_all(struct state *state, const struct model *model, struct mpc *c, uint64_t step, uint32_t first,
                        uint32_t n, const enum course course, const bool draws, uint64_t *span, struct fault *fault)
 {
-  const struct gather_axis axis[3] = {gather_axis_of(state, model, c, 0), gather_axis_of(state, model, c, 1),
-                                      gather_axis_of(state, model, c, 2)};
-  const bool accelerated = axis[0].flight.gain != 0.0 || axis[1].flight.gain != 0.0 || axis[2].flight.gain != 0.0;
-  const uint64_t clear = axis[1].flight.edge - (model_is_sheared(model) ? axis[1].shift : 0); /* border_shear.c */
+  const struct flight f[3] = {flight_along(state, model, 0), flight_along(state, model, 1),
+                              flight_along(state, model, 2)};
+  const struct gather_axis axis[3] = {gather_axis_of(model, c, 0), gather_axis_of(model, c, 1),
+                                      gather_axis_of(model, c, 2)};
+  const bool accelerated = f[0].gain != 0.0 || f[1].gain != 0.0 || f[2].gain != 0.0;
+  const uint64_t clear = f[1].edge - (model_is_sheared(model) ? axis[1].shift : 0); /* border_shear.c */
   const uint32_t chunk = course == COURSE_CLEAR ? BOUNDARY_BLOCK : CHUNK, end = first + n,
                  whole = end - n % (course == COURSE_CLEAR ? chunk : LANES);
   double record[4 * CHUNK];
   uint32_t i = first;
   for (uint32_t m; i < whole; i += m) {
     m = whole - i < chunk ? whole - i : chunk;
-    if (course == COURSE_CLEAR && !flight_stays_lanes(&axis[1].flight, i, m, clear)) {
+    if (course == COURSE_CLEAR && !flight_stays_lanes(&f[1], i, m, clear)) {
       if (!kernel_plain.gather(state, model, c, step, i, m, span, fault))
         return false;
       continue;
@@ -59,8 +88,8 @@ INLINE bool gather_all(struct state *state, const struct model *model, struct mp
     uint64_t size;
     if (draws)
       andersen_draw_lanes(&state->solvent, model, c, step, i, m);
-    const uint64_t outside = accelerated ? gather_records_lanes(axis, c, i, m, course, true, draws, record, &size)
-                                         : gather_records_lanes(axis, c, i, m, course, false, draws, record, &size);
+    const uint64_t outside = accelerated ? fly_chunk(f, axis, c, i, m, course, true, draws, record, &size)
+                                         : fly_chunk(f, axis, c, i, m, course, false, draws, record, &size);
     if ((int64_t)outside < 0) {
       const uint32_t flown = i + m;
       m = course == COURSE_CLEAR ? m : end - i;
@@ -217,11 +246,6 @@ static uint64_t energies_fast(const struct state *state, struct mpc *c, uint32_t
   return span | kernel_plain.energies(state, c, whole, end - whole, total);
 }
 
-static void canonical_fast(const struct model *model, struct mpc *c, uint64_t step, bool last)
-{
-  thermostat_canonical_lanes(model, c, step, last);
-}
-
 /* --- turns ------------------------------------------------------------------------------------------------------- */
 
 INLINE void turn_whole(struct state *state, const struct model *model, const struct mpc *c, const bool draws,
@@ -267,5 +291,5 @@ const struct kernel KERNEL = {.name = KERNEL_NAME,
                               .gather = gather_fast,
                               .solve = solve_fast,
                               .energies = energies_fast,
-                              .canonical = canonical_fast,
+                              .canonical = thermostat_canonical_lanes,
                               .turn = turn_fast};
