@@ -1,9 +1,9 @@
 /*
  * As many 64-bit numbers as a register holds, in the vectors of gcc and clang: 8 with AVX-512, 4 with AVX2, else 2.
  * Which of them is known when a file is compiled. + - * / & | ^ ~ << >> act on each number; a comparison gives all ones
- * for true, 0 for false. What they have no operator for is here. For random numbers, and for the fast kernels
- * (kernel/), which are compiled for each. Tests ask for 8 lanes of any processor: the compiler then makes a vector of
- * several registers.
+ * for true, 0 for false. What they have no operator for is here. For the fast kernels (kernel/), which are
+ * compiled for each, and for random numbers, contacts and forces, which have the lanes that the program is built for.
+ * Tests ask for 8 lanes of any processor: the compiler then makes a vector of several registers.
  */
 #ifndef UNCROSS_BASE_REGISTERS_H
 #define UNCROSS_BASE_REGISTERS_H

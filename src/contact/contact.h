@@ -183,8 +183,7 @@ struct contact {
   struct wall_bounces bounces;
   struct flights flights; /* rules that move all at once, else NULL */
   uint32_t *order;        /* [vertices] in which vertices move in this drift */
-  uint32_t
-      *rank; /* [vertices] order[rank[i]] = i. Order, rank, queue, waits, turns: rules that move in turns, else NULL */
+  uint32_t *rank;         /* [vertices] order[rank[i]] = i. This and order, queue, waits, turns: rules in turns */
   uint32_t *range; /* [vertices] bound on the distance that a vertex goes in this drift, units of paths. Range and
                       candidates.first: rules that forbid crossing, else NULL */
   uint32_t *queue; /* [vertices] vertices that wait for their turns, in this order; `queued` of them */

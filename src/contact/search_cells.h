@@ -96,17 +96,11 @@ static inline struct search_probe search_probe_of(uint64_t key)
   return (struct search_probe){SEARCH_EACH_BYTE * 0xff - swapped, key & (uint64_t)7 << SEARCH_BEGINS_BELOW};
 }
 
-/* True if the boxes of two entries of one cell overlap, and the lower corner of the overlap lies in this cell: so a
- * pair that overlaps in several cells is taken once. Along every axis one of the two boxes begins in the cell; each
- * face `low` is at most the other's `high`, that is, no byte of the key is greater than that of the probe. In the
- * difference the highest bit of a byte stays set if its byte is not greater; no byte borrows from the next. */
-static inline bool search_overlap(struct search_probe mine, uint64_t its)
-{
-  return ((~(mine.faces - its) & SEARCH_EACH_BYTE * 0x80) | (mine.below & its)) == 0;
-}
-
-/* The same for n entries of a row, 1 <= n <= 64: bit k for entry k. What is read behind them, of LANES - 1 entries at
- * most, does not count. */
+/* Of n entries of a row, 1 <= n <= 64: bit k is set if the box of entry k overlaps with that of the probe, and the
+ * lower corner of the overlap lies in this cell: so a pair that overlaps in several cells is taken once. Along every
+ * axis one of the two boxes begins in the cell; each face `low` is at most the other's `high`, that is, no byte of the
+ * key is greater than that of the probe. In the difference the highest bit of a byte stays set if its byte is not
+ * greater; no byte borrows from the next. Up to LANES - 1 entries behind the n are read, and do not count. */
 static inline uint64_t search_overlaps(struct search_probe mine, const struct grid_entry *its, uint32_t n)
 {
   uint64_t overlap = 0;

@@ -1,6 +1,6 @@
 #include "fiber/force.h"
 
-#include "base/registers.h"
+#include "base/lattice_lanes.h"
 
 /* Derivative of bond_energy; positive pulls the ends of the bond together. */
 static inline double bond_tension(const struct fiber_kind *k, double length)
@@ -40,23 +40,13 @@ struct stretch {
   double ax[ROOM], ay[ROOM], az[ROOM]; /* and after it */
 };
 
-/* n differences of coordinates, q - p, in a0, as point_difference has them. */
-static void differences(const int64_t *restrict q, const int64_t *restrict p, uint32_t n, double *restrict d)
-{
-  uint32_t k = 0;
-  for (; k + LANES <= n; k += LANES)
-    store_reals(&d[k], reals_from_signed(load_words(&q[k]) - load_words(&p[k])) * LATTICE_UNIT);
-  for (; k < n; k++)
-    d[k] = (double)(q[k] - p[k]) * LATTICE_UNIT;
-}
-
 /* Bond vectors of consecutive bonds; from, to: vertices of the first of them. True if one is too long. */
 static bool measure_bonds(const struct state *state, double limit, uint32_t from, uint32_t to, uint32_t n,
                           struct stretch *restrict s, uint32_t c)
 {
   double *restrict x = &s->x[c], *restrict y = &s->y[c], *restrict z = &s->z[c], row[3 * ROOM]; /* x, y, z of each */
   int64_t beyond = 0;
-  differences(&state->position[to].x, &state->position[from].x, 3 * n, row);
+  lattice_differences(&state->position[to].x, &state->position[from].x, 3 * n, row);
   for (uint32_t k = 0; k < n; k++) {
     const struct vec3 r = {row[3 * k], row[3 * k + 1], row[3 * k + 2]};
     x[k] = r.x, y[k] = r.y, z[k] = r.z;

@@ -1,6 +1,10 @@
 #include "kernel/choose.h"
 
-/* By collision rule. */
+/* Boundaries that leave particles alone that are clear of both ends of the box (enum course in solvent.c). */
+static const bool free_inside[BOUNDARIES] = {
+    [BOUNDARY_PERIODIC] = true, [BOUNDARY_WALL] = true, [BOUNDARY_SHEAR] = true};
+
+/* Collision rules with formulas for several particles at once. */
 static const bool has_lanes[RULES] = {[RULE_SRD] = true, [RULE_AT_A] = true};
 
 struct kernel_parts kernel_parts_for(const struct model *m)
@@ -8,7 +12,7 @@ struct kernel_parts kernel_parts_for(const struct model *m)
   const bool particles = model_has_solvent(m) && has_lanes[m->solvent.rule];
   const bool thin = m->solvent.particles < (uint64_t)box_cell_count(&m->box); /* most are alone, and are not turned */
   const bool enough = box_cell_count(&m->box) >= 8;                           /* cells for a register */
-  return (struct kernel_parts){.gather = particles,
+  return (struct kernel_parts){.gather = particles && free_inside[m->box.boundary[1]],
                                .solve = particles && enough && (!model_is_flat(m) || m->solvent.rule == RULE_AT_A),
                                .turn = particles && !thin};
 }

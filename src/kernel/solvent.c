@@ -9,6 +9,7 @@
 
 #include "base/axis_lanes.h"
 #include "fluid/flight_lanes.h"
+#include "fluid/fluid.h"
 #include "kernel/choose.h"
 #include "mpc/border.h"
 #include "mpc/gather_lanes.h"
@@ -33,26 +34,31 @@ _Static_assert((int)BOUNDARY_BLOCK <= (int)CHUNK && BOUNDARY_BLOCK % LANES == 0,
                "a block has room, and fills registers");
 
 /* How particles get to their places: by a periodic flight; by one in which a block of them stays clear of what is at
- * the ends of the box along y, or else flies by the plain kernel; or they are there, for dumbbells do not fly alone. */
+ * the ends of the box along y, or else flies by the plain kernel; or they are there, for other fluids than points fly
+ * by themselves. */
 enum course { COURSE_PERIODIC, COURSE_CLEAR, COURSE_THERE };
 
 /* Flight, cells and records of a chunk. The sign bit of the result is set where that of boundary_fly_periodic is. */
-INLINE uint64_t fly_chunk(const struct flight flight[3], const struct gather_axis grid[3], struct mpc *c,
+INLINE uint64_t fly_chunk(const struct flight flight[3], const struct gather_axis grid[3], const struct mpc *c,
                           uint32_t first, uint32_t n, const enum course course, const bool accelerated,
                           const bool draws, double *record, uint64_t *span)
 {
   const struct flight f[3] = {flight[0], flight[1], flight[2]};
   const struct gather_axis axis[3] = {grid[0], grid[1], grid[2]};
+  const double *const drawn[3] = {c->drawn[0], c->drawn[1], c->drawn[2]};
+  uint32_t *cell = c->solvent_cell;
   words seen[3] = {{0}, {0}, {0}}, size = {0};
-  for (uint32_t i = first; i < first + n; i += LANES) {
+  for (uint32_t k = 0; k < n; k += LANES) {
+    const uint32_t i = first + k;
     reals v[3];
     words x[3];
+    UNROLL
     for (int a = 0; a < 3; a++) {
       v[a] = load_reals(&f[a].v[i]);
       x[a] = course == COURSE_THERE ? load_words(&f[a].x[i]) : flight_lanes(&f[a], i, accelerated, &v[a], &seen[a]);
     }
-    gather_cells_lanes(axis, x, c, i);
-    gather_records_lanes(v, c, i, draws, &size, &record[(size_t)4 * (i - first)]);
+    gather_cells_lanes(axis, x, &cell[i]);
+    gather_records_lanes(v, drawn, i, draws, &size, &record[(size_t)4 * k]);
   }
   *span = any(size);
   return any(was_outside(seen[0], f[0].edge) | was_outside(seen[1], f[1].edge) | was_outside(seen[2], f[2].edge));
@@ -122,7 +128,7 @@ INLINE bool gather_by(struct state *state, const struct model *model, struct mpc
 static bool gather_fast(struct state *state, const struct model *model, struct mpc *c, uint64_t step, uint32_t first,
                         uint32_t n, uint64_t *span, struct fault *fault)
 {
-  if (!model_has_dumbbells(model))
+  if (c->fluid == &fluid_points)
     return model->box.boundary[1] == BOUNDARY_PERIODIC
                ? gather_by(state, model, c, step, first, n, COURSE_PERIODIC, span, fault)
                : gather_by(state, model, c, step, first, n, COURSE_CLEAR, span, fault);

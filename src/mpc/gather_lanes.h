@@ -18,22 +18,23 @@ static inline struct gather_axis gather_axis_of(const struct model *model, const
                               .cells = (uint32_t)model->box.rows[axis]};
 }
 
-/* The cells of particles from place i on, from their coordinates. */
-INLINE void gather_cells_lanes(const struct gather_axis axis[3], const words x[3], struct mpc *c, uint32_t i)
+/* The cells of particles, from their coordinates. */
+INLINE void gather_cells_lanes(const struct gather_axis axis[3], const words x[3], uint32_t *cell)
 {
   const words cx = cell_places_lanes(x[0], axis[0].shift, axis[0].cells),
               cy = cell_places_lanes(x[1], axis[1].shift, axis[1].cells),
               cz = cell_places_lanes(x[2], axis[2].shift, axis[2].cells);
-  store_narrow(&c->solvent_cell[i], multiply(multiply(cz, axis[1].cells) + cy, axis[0].cells) + cx);
+  store_narrow(cell, multiply(multiply(cz, axis[1].cells) + cy, axis[0].cells) + cx);
 }
 
 /* What particles from place i on add to the sums of their cells, in the order of store_records: their velocities, less
  * the drawn ones if there are. *span: or'ed with the sizes of momenta. */
-INLINE void gather_records_lanes(reals v[3], const struct mpc *c, uint32_t i, const bool draws, words *span,
+INLINE void gather_records_lanes(reals v[3], const double *const drawn[3], uint32_t i, const bool draws, words *span,
                                  double *record)
 {
-  for (int a = 0; draws && a < 3; a++)
-    v[a] -= load_reals(&c->drawn[a][i]);
+  UNROLL
+  for (int a = 0; a < 3 * draws; a++)
+    v[a] -= load_reals(&drawn[a][i]);
   reals column[4] = {cell_momenta_lanes(v[0], span), cell_momenta_lanes(v[1], span), cell_momenta_lanes(v[2], span),
                      (reals)((words){0} + cell_load(1.0))};
   store_records(record, column);
