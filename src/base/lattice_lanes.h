@@ -5,15 +5,17 @@
 #include "base/lattice.h"
 #include "base/registers.h"
 
-/* n differences q - p of coordinates, as point_difference has them: d[n], a0. */
-static inline void lattice_differences(const int64_t *restrict q, const int64_t *restrict p, uint32_t n,
-                                       double *restrict d)
+/* Vectors q - p of n pairs of points, as point_difference has them: d[n], a0. */
+static inline void point_differences(const struct point *restrict q, const struct point *restrict p, uint32_t n,
+                                     struct vec3 *restrict d)
 {
+  const int64_t *a = &q->x, *b = &p->x;
+  double *difference = &d->x;
   uint32_t k = 0;
-  for (; k + LANES <= n; k += LANES)
-    store_reals(&d[k], reals_from_signed(load_words(&q[k]) - load_words(&p[k])) * LATTICE_UNIT);
-  for (; k < n; k++)
-    d[k] = (double)(q[k] - p[k]) * LATTICE_UNIT;
+  for (; k + LANES <= 3 * n; k += LANES)
+    store_reals(&difference[k], reals_from_signed(load_words(&a[k]) - load_words(&b[k])) * LATTICE_UNIT);
+  for (; k < 3 * n; k++)
+    difference[k] = (double)(a[k] - b[k]) * LATTICE_UNIT;
 }
 
 #endif

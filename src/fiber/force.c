@@ -44,11 +44,12 @@ struct stretch {
 static bool measure_bonds(const struct state *state, double limit, uint32_t from, uint32_t to, uint32_t n,
                           struct stretch *restrict s, uint32_t c)
 {
-  double *restrict x = &s->x[c], *restrict y = &s->y[c], *restrict z = &s->z[c], row[3 * ROOM]; /* x, y, z of each */
+  double *restrict x = &s->x[c], *restrict y = &s->y[c], *restrict z = &s->z[c];
+  struct vec3 bonds[ROOM];
   int64_t beyond = 0;
-  lattice_differences(&state->position[to].x, &state->position[from].x, 3 * n, row);
+  point_differences(&state->position[to], &state->position[from], n, bonds);
   for (uint32_t k = 0; k < n; k++) {
-    const struct vec3 r = {row[3 * k], row[3 * k + 1], row[3 * k + 2]};
+    const struct vec3 r = bonds[k];
     x[k] = r.x, y[k] = r.y, z[k] = r.z;
     beyond |= !(vec3_dot(r, r) < limit * limit);
   }
