@@ -5,6 +5,7 @@
 #include "contact/capsule.h"
 #include "contact/event_bead.h"
 #include "contact/neighbors.h"
+#include "contact/renewals.h"
 #include "contact/shape.h"
 #include "contact/takeoff.h"
 
@@ -186,7 +187,7 @@ bool event_steer(const struct event_drift *d, uint32_t i, struct point rate, int
     candidates_widen(d->model, c, i, range);
   if (leaves && !neighbors_renew(d->state, d->model, c, 1, &i, &here, &end, d->fault))
     return false;
-  c->neighbors.hold[i] = c->neighbors.path[i]; /* to be looked at in the next drift */
+  renewals_look_again(&c->neighbors, i);
   return (!model_has_walls(d->model) || event_search_wall(d, i)) && (!(wider || leaves) || look_around(d, i));
 }
 

@@ -21,11 +21,11 @@ static double inside_of_skin(const struct neighbors *nb, uint32_t i, struct poin
   return nb->reference[i].skin - vec3_norm(point_difference(p, point_plus(nb->reference[i].at, nb->moved)));
 }
 
-/* Vertex i, which ends its move `inside` of its skin, cannot leave it before its path has grown by that much. */
+/* Vertex i, which ends its move `inside` of its skin, cannot leave it before it has gone that far. */
 static void hold_until(struct neighbors *nb, uint32_t i, double inside)
 {
   const double left = capsule_least(capsule_most(inside, 0.0), 1.0);
-  nb->hold[i] = nb->path[i] + (uint32_t)(int32_t)(left * (1 << CANDIDATES_UNITS));
+  nb->hold[i] = (uint32_t)(int32_t)(left * (1 << CANDIDATES_UNITS));
 }
 
 /* New reference positions for the vertices that have waited longest. */
@@ -71,17 +71,19 @@ struct due {
   uint32_t count, vertex[BLOCK];
 };
 
-/* Lists the vertices among first .. first + BLOCK - 1 whose paths exceed their limits, and prefetches their data. */
-static void list_due(const struct state *state, const struct contact *contact, uint32_t first, struct due *restrict due)
+/* The vertices first .. first + BLOCK - 1 go on by their ranges. Lists those that may leave their skins, and prefetches
+ * their data. */
+static void list_due(const struct state *state, struct contact *contact, uint32_t first, struct due *restrict due)
 {
   const uint32_t rest = first < state->vertices ? state->vertices - first : 0, n = rest < BLOCK ? rest : BLOCK;
   uint32_t left[BLOCK] = {0};
   due->count = 0;
   if (n == 0)
     return;
-  const uint32_t *restrict path = &contact->neighbors.path[first], *restrict hold = &contact->neighbors.hold[first];
+  const uint32_t *restrict range = &contact->range[first];
+  uint32_t *restrict hold = &contact->neighbors.hold[first];
   for (uint32_t k = 0; k < n; k++)
-    left[k] = hold[k] - path[k];
+    left[k] = hold[k] -= range[k];
   for (uint64_t late = negatives_of_64(left); late; late &= late - 1) {
     const uint32_t i = first + (uint32_t)__builtin_ctzll(late);
     due->vertex[due->count++] = i;
@@ -90,6 +92,7 @@ static void list_due(const struct state *state, const struct contact *contact, u
     __builtin_prefetch(&state->velocity[i]);
     __builtin_prefetch(&state->velocity[i].z);
     __builtin_prefetch(&contact->neighbors.reference[i]);
+    __builtin_prefetch(&contact->neighbors.entered[i]);
   }
 }
 

@@ -2,8 +2,8 @@
  * Which vertices need new reference positions, and those that wait for them.
  *
  * A drift reads every vertex, so what is read is kept short: reference positions are read now and then. A vertex that
- * is `left` inside of its skin cannot leave it before its way has grown by `left`. The path of bond i is a bound on the
- * way of vertex i; so the vertex has a limit, `hold`, and its skin is looked at when the path exceeds it.
+ * is `hold` inside of its skin cannot leave it before it has gone that far. Each drift takes the vertex's range off
+ * `hold`, and its skin is looked at when nothing is left.
  *
  * A search for partners mostly waits for memory. So a vertex does not get its reference position at once: its search
  * cells are prefetched, and it waits until some others wait as well.
@@ -17,14 +17,14 @@
 typedef struct point end_of_move(const struct drift_frame *frame, struct vec3 velocity, struct point from);
 
 /* New reference positions for all vertices that would leave their skins in this drift. Once in a drift, after
- * candidates_lengthen. False, with the fault recorded, if memory is short. */
+ * contact->range is known. False, with the fault recorded, if memory is short. */
 bool renewals_of_late(const struct state *state, const struct model *model, struct contact *contact, end_of_move *end,
                       struct fault *fault);
 
 /* Vertex i does not end this drift where renewals_of_late had it: its skin is looked at in the next one. */
 static inline void renewals_look_again(struct neighbors *nb, uint32_t i)
 {
-  nb->hold[i] = nb->path[i];
+  nb->hold[i] = 0;
 }
 
 #endif
