@@ -55,8 +55,6 @@ static void free_neighbors(struct neighbors *nb)
       free(nb->entries[c].at);
   free(nb->entries);
   free(nb->reference);
-  free(nb->searched);
-  free(nb->entered);
   free(nb->path);
   free(nb->generation);
   free(nb->hold);
@@ -87,8 +85,7 @@ uint64_t contact_bytes(const struct model *m)
   struct contact c = {0};
   struct memory_need need[NEEDS];
   list_needs(&c, m, false, need);
-  const size_t per_bond = sizeof(struct reference_position) + sizeof(struct searched_bond) +
-                          sizeof(struct search_cells) + 3 * sizeof(uint32_t) + sizeof(struct grid_row);
+  const size_t per_bond = sizeof(struct reference_position) + 3 * sizeof(uint32_t) + sizeof(struct grid_row);
   return memory_bytes(need, NEEDS) + (crossing_rule_of(m)->forbids ? (uint64_t)m->bonds * per_bond : 0);
 }
 

@@ -60,19 +60,6 @@ struct image {
   int32_t k[3]; /* in box edges */
 };
 
-/* A bond as others see it when they look for partners: one cache line. */
-struct searched_bond {
-  _Alignas(64) struct point at; /* reference position of its first end */
-  struct vec3 along;            /* from there to that of its second end, a0 */
-  struct image home;            /* of the box in which `at` lies */
-  float reach;                  /* a0: the larger skin of its two ends, rounded up */
-};
-
-/* The search cells that a bond has entered: along axis k, number[k] of them from first[k] on, periodically. */
-struct search_cells {
-  int32_t first[3], number[3];
-};
-
 /* The pair list (contact/pairs.h). A pair can touch only when the sum of its two bonds' paths exceeds its limit.
  */
 struct pair_list {
@@ -108,13 +95,11 @@ struct grid_row {
 struct neighbors {
   bool built;
   struct reference_position *reference; /* [vertices] */
-  struct searched_bond *searched;       /* [vertices] of bond j, as of its last search for partners */
-  struct search_cells *entered;         /* [vertices] by bond j */
   uint32_t *path; /* [vertices] bound on the way that both ends of bond j have gone, in units of 2^-20 a0, modulo 2^32.
                      Where vertex j has no bond j, its own way. */
   uint32_t *generation; /* [vertices] number of searches of bond j for partners */
-  uint32_t *hold; /* [vertices] how far vertex j may still go before its skin has to be looked at, in the same units:
-                     contact/renewals.h */
+  uint32_t *hold; /* [vertices] how far vertex j may still go before its skin is looked at, in the same units, modulo
+                     2^32: contact/renewals.h */
   struct pair_list pairs;
   int32_t cells[3];     /* of the search grid */
   int64_t cell_edge[3]; /* lattice units */

@@ -20,6 +20,12 @@ static bool add_near(struct neighbor_list *list, struct neighbor n)
   return true;
 }
 
+static struct search_box box_of(const struct neighbors *nb, const struct model *model, uint32_t bond)
+{
+  const struct reference_position *p = &nb->reference[bond], *q = &nb->reference[model->next[bond]];
+  return search_box_around(p->at, q->at, capsule_most(p->skin, q->skin) + nb->around);
+}
+
 /* Pairs of bonds whose boxes overlap, before the distance is tested. near: if not NULL, the other bonds are listed
  * there; if NULL, pairs whose capsules are not apart enter the pair list. */
 struct search {
@@ -30,9 +36,24 @@ struct search {
   } at[OVERLAPS];
 };
 
+static bool leave_cell(struct neighbors *nb, const struct model *model, uint32_t cell, const struct grid_entry *e,
+                       struct search *found)
+{
+  (void)model, (void)found;
+  struct grid_row *row = &nb->entries[cell];
+  uint64_t mine = 0;
+  for (uint32_t first = 0; first < row->count && !mine; first += COLUMNS) {
+    const uint32_t left = row->count - first;
+    mine = search_entry_of(e->is, &row->at[first], left < COLUMNS ? left : COLUMNS);
+    if (mine)
+      row->at[first + (uint32_t)__builtin_ctzll(mine)] = row->at[--row->count];
+  }
+  return true;
+}
+
 static bool share_vertex(const struct model *model, uint32_t a, uint32_t b)
 {
-  return a == b || model->next[a] == (int32_t)b || model->prev[a] == (int32_t)b;
+  return a == b || model->next[a] == (int32_t)b || model->next[b] == (int32_t)a;
 }
 
 /* Thick fibers that are never partners: a bond and its image; those that share a vertex; those that are near along the
@@ -59,27 +80,30 @@ struct columns {
   double p[3][COLUMNS], q[3][COLUMNS], w[3][COLUMNS], reach[COLUMNS];
 };
 
-/* Which image of the other bond overlaps. */
-static struct neighbor neighbor_of(const struct neighbors *nb, const struct overlap *c)
+/* Which image of the other bond overlaps. home: image of the box in which the first end of `mine` lies. */
+static struct neighbor neighbor_of(const struct neighbors *nb, const struct model *model, const struct overlap *c,
+                                   const struct image *home)
 {
-  const int32_t *home = nb->searched[c->mine.bond].home.k, *its_home = nb->searched[c->its.bond].home.k;
+  const struct image its_home = search_image(nb, nb->reference[c->its.bond].at, &model->box);
   struct neighbor n = {.bond = c->its.bond};
   for (int axis = 0; axis < 3; axis++)
-    n.image[axis] = home[axis] - its_home[axis] + c->mine.image[axis] - c->its.image[axis];
+    n.image[axis] = home->k[axis] - its_home.k[axis] + c->mine.image[axis] - c->its.image[axis];
   return n;
 }
 
-static void fill_column(const struct neighbors *nb, const struct box *box, uint32_t bond, struct neighbor n,
+static void fill_column(const struct neighbors *nb, const struct model *model, uint32_t bond, struct neighbor n,
                         struct columns *s)
 {
   const uint32_t k = s->count;
-  const struct searched_bond *mine = &nb->searched[bond], *its = &nb->searched[n.bond];
-  const struct vec3 p = mine->along, q = its->along, w = point_difference(point_image(its->at, n.image, box), mine->at);
+  const struct reference_position *a = &nb->reference[bond], *b = &nb->reference[model->next[bond]],
+                                  *c = &nb->reference[n.bond], *d = &nb->reference[model->next[n.bond]];
+  const struct vec3 p = point_difference(b->at, a->at), q = point_difference(d->at, c->at),
+                    w = point_difference(point_image(c->at, n.image, &model->box), a->at);
   s->bond[k] = bond, s->other[k] = n;
   s->p[0][k] = p.x, s->p[1][k] = p.y, s->p[2][k] = p.z;
   s->q[0][k] = q.x, s->q[1][k] = q.y, s->q[2][k] = q.z;
   s->w[0][k] = w.x, s->w[1][k] = w.y, s->w[2][k] = w.z;
-  s->reach[k] = (double)mine->reach + (double)its->reach + nb->apart;
+  s->reach[k] = capsule_most(a->skin, b->skin) + capsule_most(c->skin, d->skin) + nb->apart;
 }
 
 /* Adds those pairs to the pair list whose capsules are not apart. */
@@ -101,6 +125,8 @@ static bool add_pairs(struct neighbors *nb, const struct columns *restrict s)
 static bool settle(struct neighbors *nb, const struct model *model, struct search *found)
 {
   const bool thin = model->thickness == 0;
+  struct image home = {{0, 0, 0}};
+  int32_t home_of = -1;
   struct columns s;
   s.count = 0;
   for (uint32_t k = 0; k < found->count; k++) {
@@ -108,14 +134,16 @@ static bool settle(struct neighbors *nb, const struct model *model, struct searc
     const uint32_t bond = (uint32_t)c->mine.bond;
     if (thin && share_vertex(model, bond, (uint32_t)c->its.bond)) /* thin lines cannot cross these, or their images */
       continue;
-    const struct neighbor n = neighbor_of(nb, c);
+    if (c->mine.bond != home_of)
+      home = search_image(nb, nb->reference[bond].at, &model->box), home_of = c->mine.bond;
+    const struct neighbor n = neighbor_of(nb, model, c, &home);
     const bool apart = (!thin && never_touch(model, bond, &n)) || is_beyond_wall(model, &n);
     if (found->near) {
       if (!apart && !add_near(found->near, n))
         return false;
       continue;
     }
-    fill_column(nb, &model->box, bond, n, &s);
+    fill_column(nb, model, bond, n, &s);
     s.count += !apart;
     if (s.count == COLUMNS) {
       if (!add_pairs(nb, &s))
@@ -140,7 +168,9 @@ static bool look_into_cell(struct neighbors *nb, const struct model *model, uint
     for (uint64_t hits = search_overlaps(probe, &row->at[first], n); hits; hits &= hits - 1) {
       const struct grid_bond its = row->at[first + (uint32_t)__builtin_ctzll(hits)].is;
       found->at[found->count++] = (struct overlap){mine->is, its};
-      __builtin_prefetch(&nb->searched[its.bond]);
+      __builtin_prefetch(&nb->reference[its.bond]);
+      __builtin_prefetch(&nb->reference[its.bond + 1]);
+      __builtin_prefetch(&model->next[its.bond]);
     }
   }
   return true;
@@ -196,48 +226,26 @@ static struct reference_position reference_of_move(const struct state *state, co
   return (struct reference_position){at, fmax(NEIGHBORS_SKIN, 0.5 * length + LATTICE_UNIT)};
 }
 
-/* The bond as others see it, with the reference positions of its ends. */
-static struct searched_bond searched_bond(const struct neighbors *nb, const struct model *model, uint32_t bond)
-{
-  const struct reference_position *p = &nb->reference[bond], *q = &nb->reference[model->next[bond]];
-  const double up = 1.0 + 0x1p-23; /* twice the relative error of a float */
-  return (struct searched_bond){p->at, point_difference(q->at, p->at), search_image(nb, p->at, &model->box),
-                                (float)(up * capsule_most(p->skin, q->skin))};
-}
-
 /* Enters bonds into the grid and finds their pairs, after they got new reference positions. */
 static bool enter(struct neighbors *nb, const struct model *model, uint32_t bonds, const uint32_t *bond)
 {
   struct search found;
   found.near = NULL, found.count = 0;
-  for (uint32_t k = 0; k < bonds; k++) {
-    const uint32_t j = bond[k];
-    nb->searched[j] = searched_bond(nb, model, j);
-    const struct search_box box = search_box_around(nb->reference[j].at, nb->reference[model->next[j]].at,
-                                                    (double)nb->searched[j].reach + nb->around);
-    if (!search_visit(nb, model, j, box, enter_cell, &found, &nb->entered[j]))
+  for (uint32_t k = 0; k < bonds; k++)
+    if (!search_visit(nb, model, bond[k], box_of(nb, model, bond[k]), enter_cell, &found))
       return false;
-  }
   return settle(nb, model, &found);
 }
 
-/* Takes one entry of the bond out of a row. */
-static void leave_row(struct grid_row *row, uint32_t bond)
+/* Prefetches a row of the grid. */
+static bool fetch_cell(struct neighbors *nb, const struct model *model, uint32_t cell, const struct grid_entry *e,
+                       struct search *found)
 {
-  uint64_t mine = 0;
-  for (uint32_t first = 0; first < row->count && !mine; first += COLUMNS) {
-    const uint32_t left = row->count - first;
-    mine = search_entries_of(bond, &row->at[first], left < COLUMNS ? left : COLUMNS);
-    if (mine)
-      row->at[first + (uint32_t)__builtin_ctzll(mine)] = row->at[--row->count];
-  }
-}
-
-static void fetch_row(struct grid_row *row, uint32_t bond)
-{
-  (void)bond;
-  for (size_t line = 0; line < sizeof *row; line += 64)
-    __builtin_prefetch((const char *)row + line, 1);
+  (void)model, (void)e, (void)found;
+  const char *row = (const char *)&nb->entries[cell];
+  for (size_t line = 0; line < sizeof nb->entries[cell]; line += 64)
+    __builtin_prefetch(row + line, 1);
+  return true;
 }
 
 void neighbors_fetch(struct neighbors *nb, const struct model *model, uint32_t vertex)
@@ -245,7 +253,7 @@ void neighbors_fetch(struct neighbors *nb, const struct model *model, uint32_t v
   uint32_t bond[2];
   const int bonds = model_bonds_of(model, vertex, bond);
   for (int b = 0; b < bonds; b++)
-    search_revisit(nb, bond[b], fetch_row);
+    search_visit(nb, model, bond[b], box_of(nb, model, bond[b]), fetch_cell, NULL);
 }
 
 bool neighbors_renew(const struct state *state, const struct model *model, struct contact *contact, uint32_t n,
@@ -255,7 +263,7 @@ bool neighbors_renew(const struct state *state, const struct model *model, struc
   uint32_t bond[2 * NEIGHBORS_AT_ONCE] = {0};
   const uint32_t bonds = model_bonds_at(model, n, vertex, bond);
   for (uint32_t k = 0; k < bonds; k++) {
-    search_revisit(nb, bond[k], leave_row);
+    search_visit(nb, model, bond[k], box_of(nb, model, bond[k]), leave_cell, NULL);
     nb->generation[bond[k]]++;
   }
   for (uint32_t k = 0; k < n; k++) {
@@ -272,11 +280,10 @@ bool neighbors_near(const struct state *state, const struct model *model, struct
   struct neighbors *nb = &contact->neighbors;
   const struct search_box box =
       search_box_around(point_minus(end[0], nb->moved), point_minus(end[1], nb->moved), range + CAPSULE_SLACK);
-  struct search_cells touched;
   struct search found;
   found.near = near, found.count = 0;
   near->count = 0;
-  return (search_visit(nb, model, bond, box, look_into_cell, &found, &touched) && settle(nb, model, &found)) ||
+  return (search_visit(nb, model, bond, box, look_into_cell, &found) && settle(nb, model, &found)) ||
          fault_no_memory(fault, state->step + 1);
 }
 

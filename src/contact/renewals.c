@@ -92,7 +92,6 @@ static void list_due(const struct state *state, struct contact *contact, uint32_
     __builtin_prefetch(&state->velocity[i]);
     __builtin_prefetch(&state->velocity[i].z);
     __builtin_prefetch(&contact->neighbors.reference[i]);
-    __builtin_prefetch(&contact->neighbors.entered[i]);
   }
 }
 

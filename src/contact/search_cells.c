@@ -34,13 +34,11 @@ bool search_cells_alloc(const struct model *model, struct neighbors *nb)
     return true;
   choose_cells(model, nb);
   nb->reference = memory_alloc(model->vertices, sizeof *nb->reference);
-  nb->searched = memory_alloc(model->vertices, sizeof *nb->searched);
-  nb->entered = memory_alloc(model->vertices, sizeof *nb->entered);
   nb->path = memory_alloc(model->vertices, sizeof *nb->path);
   nb->generation = memory_alloc(model->vertices, sizeof *nb->generation);
   nb->hold = memory_alloc(model->vertices, sizeof *nb->hold);
   nb->entries = memory_alloc((size_t)nb->cell_count + 1, sizeof *nb->entries); /* search_overlaps may read into it */
-  if (!nb->reference || !nb->searched || !nb->entered || !nb->path || !nb->generation || !nb->hold || !nb->entries)
+  if (!nb->reference || !nb->path || !nb->generation || !nb->hold || !nb->entries)
     return false;
   for (uint32_t c = 0; c < nb->cell_count; c++) {
     struct grid_row *row = &nb->entries[c];

@@ -112,18 +112,15 @@ static inline uint64_t search_overlaps(struct search_probe mine, const struct gr
   return overlap & UINT64_MAX >> (64 - n);
 }
 
-/* Which of n entries of a row, 1 <= n <= 64, are of this bond, in the same way: of several images, if the box is small;
- * 0 if none is. */
-static inline uint64_t search_entries_of(uint32_t bond, const struct grid_entry *its, uint32_t n)
+/* Which of n entries of a row, 1 <= n <= 64, is that of this bond, in the same way; 0 if none is. */
+static inline uint64_t search_entry_of(struct grid_bond bond, const struct grid_entry *its, uint32_t n)
 {
-  const struct grid_bond number = {.bond = (int32_t)bond}, all = {.bond = -1};
-  uint64_t found = 0, mine, mask;
-  memcpy(&mine, &number, sizeof mine);
-  memcpy(&mask, &all, sizeof mask);
+  uint64_t found = 0, mine;
+  memcpy(&mine, &bond, sizeof mine);
   for (uint32_t k = 0; k < n; k += LANES) {
     words key, is;
     load_pairs(&its[k], &key, &is);
-    found |= (uint64_t)zeros((is ^ mine) & mask) << k;
+    found |= (uint64_t)zeros(is ^ mine) << k;
   }
   return found & UINT64_MAX >> (64 - n);
 }
@@ -136,65 +133,32 @@ struct search; /* what the caller collects on the way */
 typedef bool search_visitor(struct neighbors *, const struct model *, uint32_t cell, const struct grid_entry *,
                             struct search *);
 
-/* Calls `what` for each cell that the box around a bond touches. cells: which these are. False as soon as `what`
- * returns false. */
+/* Calls `what` for each cell that the box around a bond touches. */
 static inline bool search_visit(struct neighbors *nb, const struct model *model, uint32_t bond, struct search_box box,
-                                search_visitor *what, struct search *found, struct search_cells *cells)
+                                search_visitor *what, struct search *found)
 {
   struct grid_entry e = {.is = {.bond = (int32_t)bond}};
-  const int32_t *home = nb->searched[bond].home.k;
-  struct search_walk z = search_walk_from(box.low.z, box.high.z, nb, 2, home[2]);
-  const struct search_walk y_start = search_walk_from(box.low.y, box.high.y, nb, 1, home[1]),
-                           x_start = search_walk_from(box.low.x, box.high.x, nb, 0, home[0]);
-  const int32_t z_start = z.cell;
-  int32_t number[3] = {0, 0, 0};
+  const struct image home = search_image(nb, nb->reference[bond].at, &model->box);
+  struct search_walk z = search_walk_from(box.low.z, box.high.z, nb, 2, home.k[2]);
+  const struct search_walk y_start = search_walk_from(box.low.y, box.high.y, nb, 1, home.k[1]),
+                           x_start = search_walk_from(box.low.x, box.high.x, nb, 0, home.k[0]);
   do {
     struct search_walk y = y_start;
     const uint64_t key_z = search_key_of_axis(&z, nb, 2);
     e.is.image[2] = (int8_t)z.image;
-    number[1] = 0;
     do {
       struct search_walk x = x_start;
       const uint64_t key_yz = key_z | search_key_of_axis(&y, nb, 1);
       e.is.image[1] = (int8_t)y.image;
-      number[0] = 0;
       do {
         e.key = key_yz | search_key_of_axis(&x, nb, 0);
         e.is.image[0] = (int8_t)x.image;
         if (!what(nb, model, (uint32_t)((z.cell * nb->cells[1] + y.cell) * nb->cells[0] + x.cell), &e, found))
           return false;
-        number[0]++;
       } while (search_walk_on(&x, nb, 0));
-      number[1]++;
     } while (search_walk_on(&y, nb, 1));
-    number[2]++;
   } while (search_walk_on(&z, nb, 2));
-  *cells = (struct search_cells){{x_start.cell, y_start.cell, z_start}, {number[0], number[1], number[2]}};
   return true;
-}
-
-/* A function that handles a row that a bond has entered; search_revisit calls it for each. */
-typedef void search_revisitor(struct grid_row *, uint32_t bond);
-
-static inline int32_t search_next_cell(const struct neighbors *nb, int axis, int32_t cell)
-{
-  return cell + 1 < nb->cells[axis] ? cell + 1 : 0;
-}
-
-/* Calls `what` for each row that the bond has entered; twice, where two of its images touch a cell. */
-static inline void search_revisit(struct neighbors *nb, uint32_t bond, search_revisitor *what)
-{
-  const struct search_cells c = nb->entered[bond];
-  int32_t z = c.first[2];
-  for (int32_t k = 0; k < c.number[2]; k++, z = search_next_cell(nb, 2, z)) {
-    int32_t y = c.first[1];
-    for (int32_t j = 0; j < c.number[1]; j++, y = search_next_cell(nb, 1, y)) {
-      struct grid_row *rows = &nb->entries[(uint32_t)((z * nb->cells[1] + y) * nb->cells[0])];
-      int32_t x = c.first[0];
-      for (int32_t i = 0; i < c.number[0]; i++, x = search_next_cell(nb, 0, x))
-        what(&rows[x], bond);
-    }
-  }
 }
 
 /* Enters a bond into a cell. False if memory is short. */

@@ -33,6 +33,13 @@ class Share(unittest.TestCase):
             for k in range(8):
                 self.assertIn(bug, self.share(f"commit {k}", [changed]))
 
+    def test_of_what_changed_no_more_than_there_is_time_for(self):
+        every = {bug.file for bug in self.bugs}
+        drawn = [mutants.share(self.bugs, 24, f"commit {k}", every, most=20) for k in range(8)]
+        for k, one in enumerate(drawn):
+            self.assertEqual(len(one), 20 + len(mutants.share(self.bugs, 24, f"commit {k}", set())))
+        self.assertNotEqual(drawn[0], drawn[1])
+
     def test_without_a_commit_all_are_seen(self):
         self.assertEqual(self.share(""), self.bugs)
 
