@@ -22,9 +22,10 @@ struct bead_cut {
 };
 
 /* Of the virtual particles of a cell, those inside the bead. corner: of the cell, from the bead's center, a0. */
-static uint32_t count_inside(const struct model *model, uint64_t step, uint32_t cell, const double corner[3])
+static uint32_t count_inside(const struct virtual_law *law, const struct model *model, uint64_t step, uint32_t cell,
+                             const double corner[3])
 {
-  const uint32_t n = virtual_number(model, step, cell, model->solvent.per_cell);
+  const uint32_t n = virtual_number(law, model, step, cell);
   const double square = model->bead.radius * model->bead.radius;
   uint32_t inside = 0;
   for (uint32_t k = 0; k < n; k++) {
@@ -61,8 +62,8 @@ static bool add_cut(struct mpc_bead *b, uint32_t cell, uint32_t n, uint64_t step
 }
 
 /* All of one line of cells along x. */
-static bool cut_line(const struct surround *s, const struct model *model, struct mpc *c, int64_t y, int64_t z,
-                     uint64_t step, struct fault *fault)
+static bool cut_line(const struct surround *s, const struct virtual_law *law, const struct model *model, struct mpc *c,
+                     int64_t y, int64_t z, uint64_t step, struct fault *fault)
 {
   const double square = model->bead.radius * model->bead.radius;
   const double least = surround_least(s, 2, z) + surround_least(s, 1, y);
@@ -74,7 +75,7 @@ static bool cut_line(const struct surround *s, const struct model *model, struct
     if (cell_members(&c->sum[cell]) == 0)
       continue;
     const double corner[3] = {(double)x - s->center[0], (double)y - s->center[1], (double)z - s->center[2]};
-    const uint32_t n = count_inside(model, step, cell, corner);
+    const uint32_t n = count_inside(law, model, step, cell, corner);
     if (n > 0 && !add_cut(&c->bead, cell, n, step, fault))
       return false;
   }
@@ -113,10 +114,12 @@ static void draw_velocities(const struct bead *bead, const struct model *model, 
 bool bead_fill(const struct state *state, const struct model *model, struct mpc *c, uint64_t step, struct fault *fault)
 {
   const struct surround s = bead_surround(state->bead, model, c, model->bead.radius);
+  struct virtual_law law;
+  virtual_law_of(model->solvent.per_cell, &law);
   c->bead.cuts = 0;
   for (int64_t z = s.low[2]; z <= s.high[2]; z++)
     for (int64_t y = s.low[1]; y <= s.high[1]; y++)
-      if (!cut_line(&s, model, c, y, z, step, fault))
+      if (!cut_line(&s, &law, model, c, y, z, step, fault))
         return false;
   draw_velocities(state->bead, model, &c->bead, step);
   for (const struct bead_cut *cut = c->bead.cut; cut < c->bead.cut + c->bead.cuts; cut++) {

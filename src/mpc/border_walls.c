@@ -8,61 +8,82 @@
  *   paper   gamma - N of them where the cell has N < gamma members, else none (the paper's rule)
  *   none    none; nor at slip walls
  */
+#include <string.h>
+
 #include "mpc/cell.h"
 #include "mpc/grid.h"
 #include "mpc/rule.h"
 #include "mpc/virtual.h"
 
-/* A cell that a wall cuts. */
-struct cut {
+enum { BLOCK = 64 }; /* cells worked on at a time */
+
+/* Cells that one wall cuts. */
+struct cuts {
   enum wall wall;
-  uint32_t place; /* in sum and turn */
-  double beyond;  /* part of it that is beyond the wall */
-  uint32_t members;
+  double beyond; /* part of each that is beyond the wall */
+  uint32_t count;
+  uint32_t place[BLOCK]; /* in sum and turn */
 };
 
-typedef double fill_number(const struct model *model, uint64_t step, const struct cut *cut);
+/* Numbers of virtual particles: n[cuts->count]. law: of the numbers in what is beyond the wall. */
+typedef void fill_numbers(const struct virtual_law *law, const struct model *model, const struct mpc *c, uint64_t step,
+                          const struct cuts *cuts, double *n);
 
-static double planar(const struct model *model, uint64_t step, const struct cut *cut)
+static void planar(const struct virtual_law *law, const struct model *model, const struct mpc *c, uint64_t step,
+                   const struct cuts *cuts, double *n)
 {
-  return virtual_number(model, step, cut->place, model->solvent.per_cell * cut->beyond);
+  (void)c;
+  uint32_t drawn[BLOCK];
+  virtual_numbers(law, model, step, cuts->place, cuts->count, drawn);
+  for (uint32_t k = 0; k < cuts->count; k++)
+    n[k] = drawn[k];
 }
 
 /* Rounded, so that the cell's mass is exact. */
-static double paper(const struct model *model, uint64_t step, const struct cut *cut)
+static void paper(const struct virtual_law *law, const struct model *model, const struct mpc *c, uint64_t step,
+                  const struct cuts *cuts, double *n)
 {
-  (void)step;
-  const double missing = model->solvent.per_cell - cut->members;
-  return missing > 0.0 ? nearbyint(missing / MODEL_MASS_UNIT) * MODEL_MASS_UNIT : 0.0;
+  (void)law, (void)step;
+  for (uint32_t k = 0; k < cuts->count; k++) {
+    const double missing = model->solvent.per_cell - cell_members(&c->sum[cuts->place[k]]);
+    n[k] = missing > 0.0 ? nearbyint(missing / MODEL_MASS_UNIT) * MODEL_MASS_UNIT : 0.0;
+  }
 }
 
-static double none(const struct model *model, uint64_t step, const struct cut *cut)
+static void none(const struct virtual_law *law, const struct model *model, const struct mpc *c, uint64_t step,
+                 const struct cuts *cuts, double *n)
 {
-  (void)model, (void)step, (void)cut;
-  return 0.0;
+  (void)law, (void)model, (void)c, (void)step;
+  memset(n, 0, cuts->count * sizeof *n);
 }
 
-static fill_number *fill_of(const struct model *model)
+static fill_numbers *fill_of(const struct model *model)
 {
-  static fill_number *const fills[FILLS] = {[FILL_PLANAR] = planar, [FILL_PAPER] = paper, [FILL_NONE] = none};
+  static fill_numbers *const fills[FILLS] = {[FILL_PLANAR] = planar, [FILL_PAPER] = paper, [FILL_NONE] = none};
   return model->walls.kind == WALL_SLIP ? none : fills[model->walls.fill];
 }
 
-/* Number k of the cut cells, in the order of mpc->filled. */
-static struct cut cut_cell(const struct model *model, const struct mpc *c, uint32_t k)
+static double part_beyond(const struct mpc *c, enum wall wall)
 {
-  const struct box *box = &model->box;
-  const uint32_t lx = (uint32_t)box->rows[0], ry = (uint32_t)box->rows[1], each = lx * (uint32_t)box->rows[2];
-  const enum wall wall = k < each ? WALL_LOWER : WALL_UPPER;
-  const uint32_t in_row = k < each ? k : k - each, row = wall == WALL_LOWER ? 0 : ry - 1;
-  const uint32_t place = (in_row / lx * ry + row) * lx + in_row % lx;
   const double s = (double)c->shift.y * LATTICE_UNIT;
-  return (struct cut){wall, place, wall == WALL_LOWER ? s : 1.0 - s, cell_members(&c->sum[place])};
+  return wall == WALL_LOWER ? s : 1.0 - s;
 }
 
+/* The number of cells that each wall cuts. In mpc->filled, those of the lower wall come first. */
 static uint32_t cut_cells(const struct model *model)
 {
-  return 2 * (uint32_t)model->box.rows[0] * (uint32_t)model->box.rows[2];
+  return (uint32_t)model->box.rows[0] * (uint32_t)model->box.rows[2];
+}
+
+/* Cells from number `first` on among those that this wall cuts. */
+static struct cuts cuts_from(const struct model *model, const struct mpc *c, enum wall wall, uint32_t first)
+{
+  const uint32_t lx = (uint32_t)model->box.rows[0], ry = (uint32_t)model->box.rows[1],
+                 row = wall == WALL_LOWER ? 0 : ry - 1, left = cut_cells(model) - first;
+  struct cuts cuts = {.wall = wall, .beyond = part_beyond(c, wall), .count = left < BLOCK ? left : BLOCK};
+  for (uint32_t k = 0; k < cuts.count; k++)
+    cuts.place[k] = ((first + k) / lx * ry + row) * lx + (first + k) % lx;
+  return cuts;
 }
 
 struct virtual_members border_virtual(const struct mpc *c, const struct model *model, uint32_t place)
@@ -90,44 +111,51 @@ static int64_t particle_in(const struct state *state, const struct mpc *c, uint3
 }
 
 /* Adds virtual particles, not none, to a cut cell. */
-static bool add(const struct state *state, const struct model *model, struct mpc *c, uint64_t step,
-                const struct cut *cut, const struct virtual_members *v, struct fault *fault)
+static bool add(const struct state *state, const struct model *model, struct mpc *c, uint64_t step, uint32_t place,
+                const struct virtual_members *v, struct fault *fault)
 {
-  if (!virtual_room(&c->sum[cut->place], v->n, step, cut->place, FAULT_SOLVENT_SPEED, fault)) {
+  if (!virtual_room(&c->sum[place], v->n, step, place, FAULT_SOLVENT_SPEED, fault)) {
     if (fault->code == FAULT_SOLVENT_SPEED)
-      fault->entity = particle_in(state, c, cut->place);
+      fault->entity = particle_in(state, c, place);
     return false;
   }
-  c->rule->add_virtual(model, c, step, cut->place, v);
+  c->rule->add_virtual(model, c, step, place, v);
   return true;
 }
 
-enum { BLOCK = 64 }; /* cells worked on at a time */
+/* Fills cells that a wall cuts, whose velocity is `flow`. filled: theirs of mpc->filled. */
+static bool fill_cuts(const struct state *state, const struct model *model, struct mpc *c, uint64_t step,
+                      const struct virtual_law *law, const struct cuts *cuts, struct vec3 flow,
+                      struct virtual_members *filled, struct fault *fault)
+{
+  fill_numbers *const numbers = fill_of(model);
+  const bool lower = cuts->wall == WALL_LOWER;
+  const double bottom = lower ? 0.0 : 1.0 - cuts->beyond, top = lower ? cuts->beyond : 1.0;
+  double n[BLOCK];
+  struct vec3 normal[BLOCK];
+  numbers(law, model, c, step, cuts, n);
+  if (numbers != none)
+    virtual_normals(model, step, cuts->place, cuts->count, normal);
+  for (uint32_t k = 0; k < cuts->count; k++) {
+    filled[k] =
+        (struct virtual_members){n[k], n[k] > 0.0 ? virtual_velocity(normal[k], n[k], flow) : flow, flow, bottom, top};
+    if (n[k] > 0.0 && !add(state, model, c, step, cuts->place[k], &filled[k], fault))
+      return false;
+  }
+  return true;
+}
 
 static bool fill(const struct state *state, const struct model *model, struct mpc *c, uint64_t step,
                  struct fault *fault)
 {
-  const uint32_t cuts = cut_cells(model);
-  const struct vec3 wall[WALLS] = {velocity_of(model, WALL_LOWER, step), velocity_of(model, WALL_UPPER, step)};
-  fill_number *const number = fill_of(model);
-  struct cut cut[BLOCK];
-  struct vec3 normal[BLOCK];
-  uint32_t place[BLOCK];
-  for (uint32_t first = 0; first < cuts; first += BLOCK) {
-    const uint32_t m = cuts - first < BLOCK ? cuts - first : BLOCK;
-    for (uint32_t k = 0; k < m; k++) {
-      cut[k] = cut_cell(model, c, first + k);
-      place[k] = cut[k].place;
-    }
-    if (number != none)
-      virtual_normals(model, step, place, m, normal);
-    for (uint32_t k = 0; k < m; k++) {
-      const bool lower = cut[k].wall == WALL_LOWER;
-      const struct vec3 flow = wall[cut[k].wall];
-      const double n = number(model, step, &cut[k]), beyond = cut[k].beyond;
-      c->filled[first + k] = (struct virtual_members){n, n > 0.0 ? virtual_velocity(normal[k], n, flow) : flow, flow,
-                                                      lower ? 0.0 : 1.0 - beyond, lower ? beyond : 1.0};
-      if (n > 0.0 && !add(state, model, c, step, &cut[k], &c->filled[first + k], fault))
+  const uint32_t each = cut_cells(model);
+  for (enum wall wall = 0; wall < WALLS; wall++) {
+    const struct vec3 flow = velocity_of(model, wall, step);
+    struct virtual_law law;
+    virtual_law_of(fill_of(model) == planar ? model->solvent.per_cell * part_beyond(c, wall) : 0.0, &law);
+    for (uint32_t first = 0; first < each; first += BLOCK) {
+      const struct cuts cuts = cuts_from(model, c, wall, first);
+      if (!fill_cuts(state, model, c, step, &law, &cuts, flow, &c->filled[wall * each + first], fault))
         return false;
     }
   }
@@ -136,14 +164,17 @@ static bool fill(const struct state *state, const struct model *model, struct mp
 
 static void account(struct state *state, const struct model *model, struct mpc *c, uint64_t step)
 {
-  const uint32_t cuts = cut_cells(model);
-  for (uint32_t k = 0; k < cuts; k++) {
-    const struct virtual_members *v = &c->filled[k];
-    const struct cut cut = cut_cell(model, c, k);
-    if (v->n > 0.0)
-      account_enter(account_of(state, ACCOUNT_COLLISIONS), cut.wall,
-                    vec3_scale(-1.0, c->rule->virtual_gain(model, c, step, cut.place, v, c->thermostat != NULL)));
-  }
+  const uint32_t each = cut_cells(model);
+  for (enum wall wall = 0; wall < WALLS; wall++)
+    for (uint32_t first = 0; first < each; first += BLOCK) {
+      const struct cuts cuts = cuts_from(model, c, wall, first);
+      const struct virtual_members *v = &c->filled[wall * each + first];
+      for (uint32_t k = 0; k < cuts.count; k++)
+        if (v[k].n > 0.0)
+          account_enter(
+              account_of(state, ACCOUNT_COLLISIONS), wall,
+              vec3_scale(-1.0, c->rule->virtual_gain(model, c, step, cuts.place[k], &v[k], c->thermostat != NULL)));
+    }
 }
 
 const struct border border_walls = {.name = "walls",

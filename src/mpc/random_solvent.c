@@ -21,15 +21,30 @@ static struct vec3 flow_of(const struct model *model, uint64_t step, uint32_t ce
   return vec3_add(model->flow, (struct vec3){rate * y, 0, 0});
 }
 
+enum { BLOCK = 64 }; /* cells worked on at a time */
+
+/* The phantoms of up to BLOCK cells, those of each as one member. */
+static void draw(const struct virtual_law *law, const struct model *model, uint64_t step, const uint32_t *cell,
+                 uint32_t cells, struct virtual_members *members)
+{
+  uint32_t n[BLOCK];
+  struct vec3 normal[BLOCK];
+  virtual_numbers(law, model, step, cell, cells, n);
+  virtual_normals(model, step, cell, cells, normal);
+  for (uint32_t k = 0; k < cells; k++) {
+    const struct vec3 flow = flow_of(model, step, cell[k]);
+    members[k] =
+        (struct virtual_members){n[k], n[k] > 0 ? virtual_velocity(normal[k], n[k], flow) : flow, flow, 0.0, 1.0};
+  }
+}
+
 struct phantoms random_solvent_phantoms(const struct model *model, uint64_t step, uint32_t cell)
 {
-  const double n = virtual_number(model, step, cell, model->solvent.per_cell);
-  const struct vec3 flow = flow_of(model, step, cell);
-  struct vec3 normal;
-  if (n == 0.0)
-    return (struct phantoms){0.0, flow};
-  virtual_normals(model, step, &cell, 1, &normal);
-  return (struct phantoms){n, virtual_velocity(normal, n, flow)};
+  struct virtual_law law;
+  struct virtual_members all;
+  virtual_law_of(model->solvent.per_cell, &law);
+  draw(&law, model, step, &cell, 1, &all);
+  return (struct phantoms){all.n, all.velocity};
 }
 
 /* The place of this cell in the list of occupied ones; it is appended if it is not there yet. The hash is Fibonacci's
@@ -67,17 +82,20 @@ static int64_t vertex_in(const struct mpc *c, uint32_t place)
 /* Adds the phantoms of each cell to its vertices, as one member. */
 static bool add_phantoms(const struct model *model, struct mpc *c, uint64_t step, struct fault *fault)
 {
+  struct virtual_law law;
+  struct virtual_members members[BLOCK];
+  virtual_law_of(model->solvent.per_cell, &law);
   for (uint32_t k = 0; k < c->cells; k++) {
-    const struct phantoms p = random_solvent_phantoms(model, step, c->occupied[k]);
-    if (!virtual_room(&c->sum[k], p.mass, step, c->occupied[k], FAULT_VERTEX_SPEED, fault)) {
+    const struct virtual_members *v = &members[k % BLOCK];
+    if (k % BLOCK == 0)
+      draw(&law, model, step, &c->occupied[k], c->cells - k < BLOCK ? c->cells - k : BLOCK, members);
+    if (!virtual_room(&c->sum[k], v->n, step, c->occupied[k], FAULT_VERTEX_SPEED, fault)) {
       if (fault->code == FAULT_VERTEX_SPEED)
         fault->entity = vertex_in(c, k);
       return false;
     }
-    if (p.mass > 0.0)
-      c->rule->add_virtual(
-          model, c, step, k,
-          &(struct virtual_members){p.mass, p.velocity, flow_of(model, step, c->occupied[k]), 0.0, 1.0});
+    if (v->n > 0.0)
+      c->rule->add_virtual(model, c, step, k, v);
   }
   return true;
 }

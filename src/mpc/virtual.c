@@ -1,35 +1,70 @@
 #include "mpc/virtual.h"
 
+#include <string.h>
+
 #include "base/normal.h"
 #include "mpc/cell.h"
 
-/* A Poisson number by inversion, from one uniform deviate. Stops at the latest where a further term is lost in the
- * rounding of the sum. */
-static uint32_t poisson(double mean, double uniform)
-{
-  double term = elementary_exp(-mean), sum = term;
-  uint32_t n = 0;
-  while (uniform >= sum && (n < mean || sum + term > sum)) {
-    term *= mean / ++n;
-    sum += term;
-  }
-  return n;
-}
+enum { COLUMN = 64 }; /* cells worked on at a time */
 
 /* e^-mean must not underflow, so a large mean is drawn in equal parts: a sum of Poisson numbers is one. */
 #define LARGEST_PART 256.0
 
-uint32_t virtual_number(const struct model *model, uint64_t step, uint32_t cell, double mean)
+/* The last chance is where a further term is lost in the rounding of the sum. */
+void virtual_law_of(double mean, struct virtual_law *law)
 {
-  const double parts = ceil(mean / LARGEST_PART), each = mean / parts;
+  law->parts = (uint32_t)ceil(mean / LARGEST_PART);
+  law->count = 0;
+  if (law->parts == 0) /* the mean is 0 */
+    return;
+  const double each = mean / law->parts;
+  double term = elementary_exp(-each), sum = term;
   uint32_t n = 0;
-  for (uint32_t part = 0; part < parts; part++)
-    n += poisson(each,
-                 random_uniform(random_at(model->seed, RANDOM_PHANTOM_NUMBER, part / 2, step, cell), (int)(part % 2)));
+  while (n < VIRTUAL_CHANCES && (n < each || sum + term > sum)) {
+    law->at_most[n] = sum;
+    term *= each / ++n;
+    sum += term;
+  }
+  law->count = n;
+}
+
+/* By inversion, from one uniform deviate: the number of chances that it exceeds. All are compared, so that there is no
+ * branch to predict. */
+static uint32_t number_at(const struct virtual_law *law, double uniform)
+{
+  uint64_t n = 0;
+  for (uint32_t k = 0; k < law->count; k++)
+    n += uniform >= law->at_most[k];
+  return (uint32_t)n;
+}
+
+uint32_t virtual_number(const struct virtual_law *law, const struct model *model, uint64_t step, uint32_t cell)
+{
+  uint32_t n = 0;
+  for (uint32_t part = 0; part < law->parts; part++) {
+    const struct random_words r = random_at(model->seed, RANDOM_PHANTOM_NUMBER, part / 2, step, cell);
+    n += number_at(law, random_uniform(r, (int)(part % 2)));
+  }
   return n;
 }
 
-enum { COLUMN = 64 }; /* cells worked on at a time */
+void virtual_numbers(const struct virtual_law *law, const struct model *model, uint64_t step, const uint32_t *cell,
+                     uint32_t cells, uint32_t *n)
+{
+  uint32_t w[4][COLUMN], *column[4] = {w[0], w[1], w[2], w[3]};
+  memset(n, 0, cells * sizeof *n);
+  for (uint32_t first = 0; first < cells; first += COLUMN) {
+    const uint32_t m = cells - first < COLUMN ? cells - first : COLUMN;
+    for (uint32_t part = 0; part < law->parts; part++) {
+      if (part % 2 == 0)
+        random_columns(model->seed, RANDOM_PHANTOM_NUMBER, part / 2, step, &cell[first], m, column);
+      for (uint32_t k = 0; k < m; k++) {
+        const struct random_words r = {{w[0][k], w[1][k], w[2][k], w[3][k]}};
+        n[first + k] += number_at(law, random_uniform(r, (int)(part % 2)));
+      }
+    }
+  }
+}
 
 void virtual_normals(const struct model *model, uint64_t step, const uint32_t *cell, uint32_t cells,
                      struct vec3 *normal)

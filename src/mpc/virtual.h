@@ -7,8 +7,23 @@
 
 #include "mpc/border.h"
 
-/* A Poisson number of this mean for a cell. */
-uint32_t virtual_number(const struct model *model, uint64_t step, uint32_t cell, double mean);
+enum { VIRTUAL_CHANCES = 512 }; /* 398 for the largest mean of a part */
+
+/* The law of Poisson numbers. A large mean is drawn in equal parts. */
+struct virtual_law {
+  uint32_t parts, count;
+  double at_most[VIRTUAL_CHANCES]; /* [count] the chance that a part is k or less; beyond them it rounds to 1 */
+};
+
+/* The law of this mean, at least 0. */
+void virtual_law_of(double mean, struct virtual_law *law);
+
+/* A number for this cell. */
+uint32_t virtual_number(const struct virtual_law *law, const struct model *model, uint64_t step, uint32_t cell);
+
+/* The same for each of `cells` cells, in a form that vectorises: n[cells]. */
+void virtual_numbers(const struct virtual_law *law, const struct model *model, uint64_t step, const uint32_t *cell,
+                     uint32_t cells, uint32_t *n);
 
 /* The normal deviates of the mean velocities of `cells` cells. */
 void virtual_normals(const struct model *model, uint64_t step, const uint32_t *cell, uint32_t cells,

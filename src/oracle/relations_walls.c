@@ -252,7 +252,9 @@ static double virtual_count(const struct evidence_part *part, const struct fill_
     return mean;
   if (paper != (t->number == OTHER_RULE))
     return missing > 0.0 ? rint(missing * CELL_MASS_SCALE) * CELL_MASS_UNIT : 0.0;
-  return virtual_number(&model, part->pair.ours->place.step - (t->number == STEP_BEFORE), cell, mean);
+  struct virtual_law law;
+  virtual_law_of(mean, &law);
+  return virtual_number(&law, &model, part->pair.ours->place.step - (t->number == STEP_BEFORE), cell);
 }
 
 static double velocity_of_virtual(const struct evidence_part *part, const struct fill_twist *t, const struct box *box,

@@ -2,10 +2,14 @@
  * Virtual members of cells at walls: the one member that stands for them against particles drawn one by one, and what
  * thermostat and rules make of them. Expected numbers are those of simulations of single cells, written here.
  */
+#include <gsl/gsl_cdf.h>
+
+#include "base/random.h"
 #include "exact.h"
 #include "mpc/border.h"
 #include "mpc/collide.h"
 #include "mpc/rule.h"
+#include "mpc/virtual.h"
 #include "system/account.h"
 
 static struct model walls_model(int lx, int ly, int lz, double per_cell, enum rule rule, enum wall_fill fill)
@@ -15,6 +19,63 @@ static struct model walls_model(int lx, int ly, int lz, double per_cell, enum ru
   m.walls.kind = WALL_NO_SLIP;
   m.walls.fill = fill;
   return m;
+}
+
+/* --- numbers ------------------------------------------------------------------------------------------------------ */
+
+static const double means[] = {0.0, 1e-300, 1e-3, 0.7, 5.0, 100.0, 255.9, 256.0, 256.1, 700.0, 1000.0};
+
+/* The chances of all parts against GSL's sums of Poisson's law; those that are left out are 1 to rounding. Sums of up
+ * to 400 terms, each of up to 400 products, and e^-mean: 1e-13. */
+static void chances_are_poissons(void **unused)
+{
+  (void)unused;
+  for (size_t k = 0; k < sizeof means / sizeof *means; k++) {
+    struct virtual_law law;
+    virtual_law_of(means[k], &law);
+    assert_true(law.parts == ceil(means[k] / 256.0) && law.count < VIRTUAL_CHANCES);
+    if (law.parts == 0)
+      continue;
+    const double each = means[k] / law.parts;
+    for (uint32_t n = 0; n < law.count; n++)
+      assert_close(law.at_most[n], gsl_cdf_poisson_P(n, each), 1e-13);
+    assert_true(gsl_cdf_poisson_Q(law.count, each) < 1e-13);
+  }
+}
+
+/* Numbers of many cells at once are those of each; each is the first of which the chance exceeds the deviate, summed
+ * over the parts, with the deviates of docs/conventions.md: two of a draw. */
+static void numbers_are_those_of_their_deviates(void **unused)
+{
+  (void)unused;
+  enum { CELLS = 150 };
+  struct model m = test_model(4, 4, 4, 5.0, 0.1, 1);
+  m.seed = dice_seed(1851);
+  uint32_t cell[CELLS], together[CELLS];
+  for (uint32_t k = 0; k < CELLS; k++)
+    cell[k] = 7 * k + 3;
+  for (size_t k = 0; k < sizeof means / sizeof *means; k++) {
+    struct virtual_law law;
+    virtual_law_of(means[k], &law);
+    for (uint32_t cells = 1; cells <= CELLS; cells += cells < 3 ? 1 : 49) {
+      virtual_numbers(&law, &m, 12, cell, cells, together);
+      for (uint32_t i = 0; i < cells; i++)
+        assert_int_equal(together[i], virtual_number(&law, &m, 12, cell[i]));
+    }
+    for (uint32_t i = 0; i < CELLS; i++) {
+      uint32_t sum = 0;
+      for (uint32_t part = 0; part < law.parts; part++) {
+        const struct random_words r = random_at(m.seed, RANDOM_PHANTOM_NUMBER, part / 2, 12, cell[i]);
+        const double u = random_uniform(r, (int)(part % 2));
+        uint32_t n = 0;
+        while (n < law.count && law.at_most[n] <= u)
+          n++;
+        sum += n;
+      }
+      assert_int_equal(together[i], sum);
+    }
+  }
+  model_free(&m);
 }
 
 /* The real members of a cell: their number, and sums over their velocities. */
@@ -303,8 +364,8 @@ static void at_plus_a_stops_a_uniform_flow(void **unused)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(layers_with_virtual_members),
-      cmocka_unit_test(one_member_stands_for_all),
+      cmocka_unit_test(chances_are_poissons),           cmocka_unit_test(numbers_are_those_of_their_deviates),
+      cmocka_unit_test(layers_with_virtual_members),    cmocka_unit_test(one_member_stands_for_all),
       cmocka_unit_test(at_plus_a_stops_a_uniform_flow),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
