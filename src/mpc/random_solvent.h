@@ -18,7 +18,7 @@ struct phantoms {
   struct vec3 velocity;
 };
 
-/* The phantoms of this cell at this step. */
+/* The phantoms of this cell at this step. For tests and tools: a collision draws those of many cells at a time. */
 struct phantoms random_solvent_phantoms(const struct model *model, uint64_t step, uint32_t cell);
 
 /* Lists the cells that hold a vertex, on the grid with this shift. Fills mpc->occupied (numbers of these cells), .cells

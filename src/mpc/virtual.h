@@ -12,7 +12,8 @@ enum { VIRTUAL_CHANCES = 512 }; /* 398 for the largest mean of a part */
 /* The law of Poisson numbers. A large mean is drawn in equal parts. */
 struct virtual_law {
   uint32_t parts, count;
-  double at_most[VIRTUAL_CHANCES]; /* [count] the chance that a part is k or less; beyond them it rounds to 1 */
+  double
+      at_most[VIRTUAL_CHANCES]; /* [count] the chance that a part is k or less; beyond them it is 1 but for rounding */
 };
 
 /* The law of this mean, at least 0. */

@@ -2,6 +2,7 @@
 #include "contact/drift.h"
 #include "contact/rings_in_flow.h"
 #include "contact/rule.h"
+#include "contact/skins.h"
 #include "contact/takeoff.h"
 #include "fiber/force.h"
 #include "statistics.h"
@@ -148,6 +149,8 @@ static void balance(enum crossing_kind rule, enum wall_kind kind, double per_cel
     for (int c = 0; c < 3; c++)
       assert_close((double)((p[c] - p0[c]) - (given[c] - given0[c])), 0.0, rounding);
     touched += given[1] != given0[1];
+    if (crossing_rule_of(&r.model)->forbids)
+      check_skins(&r);
   }
   print_message("  %s, %s: %lu steps with hits, %lu contacts\n", crossing_rule_of(&r.model)->name,
                 kind == WALL_SLIP ? "slip" : "no slip", (unsigned long)touched, (unsigned long)r.state.counts.executed);

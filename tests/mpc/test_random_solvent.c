@@ -7,15 +7,20 @@
 #include "mpc/random_solvent.h"
 #include "observe/conserved.h"
 
-static struct model bath_model(double per_cell, uint32_t light, uint32_t heavy)
+static struct model bath_in(int lx, int ly, int lz, double per_cell, uint32_t light, uint32_t heavy)
 {
-  struct model m = test_model(4, 3, 5, per_cell, 0.02, 1);
+  struct model m = test_model(lx, ly, lz, per_cell, 0.02, 1);
   m.solvent.hydrodynamics = false;
   m.solvent.bath = BATH_PHANTOMS;
   m.flow = (struct vec3){0.25, -0.5, 1.0};
   test_add_kind(&m, heavy, 1);
   test_add_kind(&m, light, 1)->mass = 1.5;
   return m;
+}
+
+static struct model bath_model(double per_cell, uint32_t light, uint32_t heavy)
+{
+  return bath_in(4, 3, 5, per_cell, light, heavy);
 }
 
 static void turn_by(struct model *m, double degrees)
@@ -220,7 +225,7 @@ static uint32_t compare_with_plain(const struct test_run *before, const struct t
   const struct model *m = &before->model;
   const struct point shift = grid_shift(m, step);
   uint32_t alone = 0;
-  for (uint32_t number = 0; number < 60; number++) {
+  for (uint32_t number = 0; number < box_cell_count(&m->box); number++) {
     struct plain_cell cell = {.members = 0, .phantoms = random_solvent_phantoms(m, step, number)};
     for (uint32_t v = 0; v < m->vertices; v++)
       if (cell_by_floor(&m->box, before->state.position[v], shift) == number)
@@ -234,6 +239,22 @@ static uint32_t compare_with_plain(const struct test_run *before, const struct t
     }
   }
   return alone;
+}
+
+/* In more occupied cells than are drawn at a time; those of the last blocks as well. */
+static void collision_in_many_cells_is_the_plain_rule(void **unused)
+{
+  (void)unused;
+  for (uint64_t k = 0; k < 4; k++) {
+    struct dice d = {dice_seed(714) + k}, e = d;
+    struct test_run before = dice_run(bath_in(7, 5, 6, 2.0, 200, 100), &d),
+                    after = dice_run(bath_in(7, 5, 6, 2.0, 200, 100), &e);
+    assert_true(random_solvent_collide(&after.state, &after.model, &after.work.mpc, 17 + k, &after.work.fault));
+    assert_true(after.work.mpc.cells > 2 * 64 && after.work.mpc.cells % 64 != 0);
+    compare_with_plain(&before, &after, 17 + k);
+    test_end(&before);
+    test_end(&after);
+  }
 }
 
 static void collision_is_the_plain_rule(void **unused)
@@ -467,6 +488,7 @@ int main(void)
       cmocka_unit_test(velocities_are_maxwellian),
       cmocka_unit_test(phantoms_flow_with_their_cell),
       cmocka_unit_test(collision_is_the_plain_rule),
+      cmocka_unit_test(collision_in_many_cells_is_the_plain_rule),
       cmocka_unit_test(numbering_does_not_matter),
       cmocka_unit_test(occupied_cells_are_listed_once),
       cmocka_unit_test(vertices_take_the_baths_temperature),

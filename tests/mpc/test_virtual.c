@@ -4,6 +4,7 @@
  */
 #include <gsl/gsl_cdf.h>
 
+#include "base/elementary.h"
 #include "base/random.h"
 #include "exact.h"
 #include "mpc/border.h"
@@ -25,8 +26,8 @@ static struct model walls_model(int lx, int ly, int lz, double per_cell, enum ru
 
 static const double means[] = {0.0, 1e-300, 1e-3, 0.7, 5.0, 100.0, 255.9, 256.0, 256.1, 700.0, 1000.0};
 
-/* The chances of all parts against GSL's sums of Poisson's law; those that are left out are 1 to rounding. Sums of up
- * to 400 terms, each of up to 400 products, and e^-mean: 1e-13. */
+/* The chances of all parts are sums in their order, and are those of Poisson's law by GSL; those that are left out are
+ * 1 to rounding. Sums of up to 400 terms, each of up to 400 products, and e^-mean: 1e-13. */
 static void chances_are_poissons(void **unused)
 {
   (void)unused;
@@ -37,6 +38,13 @@ static void chances_are_poissons(void **unused)
     if (law.parts == 0)
       continue;
     const double each = means[k] / law.parts;
+    double term = elementary_exp(-each), sum = term;
+    uint32_t last = 0;
+    for (; last < each || sum + term > sum; sum += term) { /* docs/conventions.md: bit by bit */
+      assert_true(law.at_most[last] == sum);
+      term *= each / ++last;
+    }
+    assert_int_equal(law.count, last);
     for (uint32_t n = 0; n < law.count; n++)
       assert_close(law.at_most[n], gsl_cdf_poisson_P(n, each), 1e-13);
     assert_true(gsl_cdf_poisson_Q(law.count, each) < 1e-13);

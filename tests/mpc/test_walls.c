@@ -94,7 +94,9 @@ static void walls_give_what_the_solvent_gains(void **unused)
       for (int rule = 0; rule < RULES; rule++)
         for (int thermostat = 0; thermostat < THERMOSTATS; thermostat++)
           for (int motion = 0; motion < 3; motion++) {
-            struct model m = walls_model(4, 3, 4, fill == FILL_PAPER && rule == RULE_AT_PLUS_A ? 4.0 : 4.5, rule, fill);
+            const double per_cell = fill == FILL_PAPER && rule == RULE_AT_PLUS_A ? 4.0 : 4.5;
+            struct model m = motion == 2 ? walls_model(9, 1, 9, per_cell, rule, fill) /* 81 cells at each wall */
+                                         : walls_model(4, 3, 4, per_cell, rule, fill);
             if (model_rule_is_thermal(&m) && thermostat != THERMOSTAT_NONE)
               continue;
             m.seed = dice_u64(&d);
