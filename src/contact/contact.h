@@ -98,8 +98,8 @@ struct neighbors {
   uint32_t *path; /* [vertices] bound on the way that both ends of bond j have gone, in units of 2^-20 a0, modulo 2^32.
                      Where vertex j has no bond j, its own way. */
   uint32_t *generation; /* [vertices] number of searches of bond j for partners */
-  uint32_t *hold; /* [vertices] how far vertex j may still go before its skin is looked at, in the same units; at least
-                     0 between drifts: contact/renewals.h */
+  uint32_t *hold; /* [vertices] how far vertex j may still go before its skin is looked at, in the same units. In a
+                     drift it may fall below 0, modulo 2^32: the skin is looked at then (contact/renewals.h). */
   struct pair_list pairs;
   int32_t cells[3];     /* of the search grid */
   int64_t cell_edge[3]; /* lattice units */

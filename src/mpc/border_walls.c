@@ -92,7 +92,7 @@ struct virtual_members border_virtual(const struct mpc *c, const struct model *m
   const uint32_t row = place / lx % ry, in_row = place / (lx * ry) * lx + place % lx;
   if (!c->filled || (row != 0 && row != ry - 1))
     return (struct virtual_members){0};
-  return c->filled[in_row + (row == 0 ? 0 : lx * (uint32_t)model->box.rows[2])];
+  return c->filled[in_row + (row == 0 ? 0 : cut_cells(model))];
 }
 
 /* The velocity of a wall at the collision of this step. */

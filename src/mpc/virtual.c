@@ -28,7 +28,7 @@ void virtual_law_of(double mean, struct virtual_law *law)
   law->count = n;
 }
 
-/* By inversion, from one uniform deviate: the number of chances that it exceeds. All are compared, so that there is no
+/* By inversion, from one uniform deviate: the number of chances that it reaches. All are compared, so that there is no
  * branch to predict. */
 static uint32_t number_at(const struct virtual_law *law, double uniform)
 {

@@ -7,13 +7,13 @@
 
 #include "mpc/border.h"
 
-enum { VIRTUAL_CHANCES = 512 }; /* 398 for the largest mean of a part */
+enum { VIRTUAL_CHANCES = 512 }; /* room; the largest mean of a part needs 398 */
 
-/* The law of Poisson numbers. A large mean is drawn in equal parts. */
+/* The law of Poisson numbers of one mean. A large mean is drawn in equal parts. at_most[k]: the chance that a part is k
+ * or less, for k < count; from there on it is 1 but for rounding. */
 struct virtual_law {
   uint32_t parts, count;
-  double
-      at_most[VIRTUAL_CHANCES]; /* [count] the chance that a part is k or less; beyond them it is 1 but for rounding */
+  double at_most[VIRTUAL_CHANCES];
 };
 
 /* The law of this mean, at least 0. */
