@@ -32,8 +32,8 @@
 
 /* --- a contact ---------------------------------------------------------------------------------------------------- */
 
-/* The four vertices of a contact: ends of the first bond, then of the other. touching: the bonds have no gap at all, as
- * at no tick of a drift that began with bonds apart. */
+/* The four vertices of a contact: ends of the first bond, then of the other. touching: the bonds have no gap at all. In
+ * a drift that began with bonds apart this happens at no tick. */
 struct meeting {
   bool touching;
   struct event event;

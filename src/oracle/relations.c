@@ -48,7 +48,7 @@ void relation_fill_tables(struct evidence *e, relation_table *f, const void *twi
   for (uint32_t k = 0; k < e->parts; k++) {
     const struct evidence_part *part = &e->part[k];
     double *guess = &e->guess[(size_t)part->first * e->columns];
-    /* Whole tables are made: what their table lacks is nobody's. */
+    /* Whole tables are made: a table of theirs that lacks rows gets no guess. */
     const bool made = part->rows == part->pair.ours->rows && f(part, twist, guess);
     for (size_t j = 0; !made && j < (size_t)part->rows * e->columns; j++)
       guess[j] = NAN;

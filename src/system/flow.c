@@ -31,8 +31,8 @@ static bool check_plane(const struct model *m, struct model_error *error)
       {flat && (m->walls.lower.z != 0.0 || m->walls.upper.z != 0.0), "walls",
        "with dimensions: 2 nothing moves along z; allowed: velocities with a z component of 0"},
       {flat && m->kinds > 0 && m->crossing.forbidden, "crossing.forbidden",
-       "in a plane a fiber cannot pass over another, and all its bonds are in one plane with all others, so that no "
-       "contact has a side; allowed with dimensions: 2: false"},
+       "in a plane fibers cannot pass over each other, so the rule has no side on which to keep them; allowed with "
+       "dimensions: 2: false"},
       {flat && model_has_phantoms(m), "solvent.bath",
        "phantoms are drawn in space; allowed with dimensions: 2: particles"},
       {flat && !m->solvent.hydrodynamics, "solvent.hydrodynamics",
