@@ -1,6 +1,8 @@
 """Tables and JSON of runs, and words for durations. The campaign (validation/lib/runs.py) uses them too."""
 import csv
+import fcntl
 import json
+import sys
 
 import numpy
 
@@ -36,6 +38,18 @@ def write_text(path, text):
 
 def write_json(path, data):
     write_text(path, json.dumps(data, indent=2, sort_keys=True) + "\n")
+
+
+def take_lock(file, how, what):
+    """flock, whose BlockingIOError says that another process has it. Where there are no locks, work goes on without, with a
+    warning that nobody else may do `what`."""
+    try:
+        fcntl.flock(file, how)
+    except BlockingIOError:
+        raise
+    except OSError as error:
+        print(f"uncross: {file.name}: locks cannot be had here ({error.strerror}): see to it yourself that no other process "
+              f"{what}", file=sys.stderr, flush=True)
 
 
 def duration(seconds):

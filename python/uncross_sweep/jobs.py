@@ -10,7 +10,7 @@ import sys
 import tempfile
 import time
 
-from .files import duration, read_json
+from .files import duration, read_json, take_lock
 from .grid import Refused, is_begun
 
 INTERRUPTED = 5  # exit code of `uncross run` after a signal
@@ -31,7 +31,7 @@ def locked(folder):
         give_up = time.monotonic() + PATIENCE
         while True:
             try:
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                take_lock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB, "sweeps in this folder")
                 break
             except BlockingIOError:
                 if time.monotonic() > give_up:

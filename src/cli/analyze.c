@@ -111,6 +111,8 @@ static enum exit_code write_tables(const struct scene *scene, struct trajectory 
     return trouble == FOLDER_IS_NONE ? EXIT_BAD_INPUT : EXIT_NOT_WRITTEN;
   if (!folder_lock(&folder, message))
     return EXIT_NOT_WRITTEN;
+  if (message->text[0] != '\0')
+    fprintf(stderr, "uncross: %s\n", message->text);
   if (output_left(scene, observers, &folder, &name))
     message_set(message, "%s/%s: is there already, and nothing is written over; name another folder", path, name.text);
   else

@@ -240,7 +240,7 @@ static void keep_streams(void)
 int main(int count, char **words)
 {
   keep_streams();
-  h5_skip_exit();
+  h5_own_process();
   if (count < 2) {
     help_all(stderr);
     return EXIT_BAD_INPUT;

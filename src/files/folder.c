@@ -4,9 +4,10 @@
 #include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "files/lock.h"
 
 /* --- folders are made -------------------------------------------------------------------------------------------- */
 
@@ -116,10 +117,16 @@ bool folder_lock(struct folder *folder, struct message *message)
   int fd = open(folder->name, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (fd < 0)
     return message_set(message, "%s: cannot open this folder: %s", folder->name, strerror(errno));
-  if (flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+  const enum lock lock = lock_take(fd, true);
+  if (lock == LOCK_IN_USE) {
     close(fd);
     return message_set(message, "%s: in use by another process, which writes into this folder", folder->name);
   }
+  message_set(message, "%s", "");
+  if (lock == LOCK_NONE)
+    message_set(message,
+                "%s: locks cannot be had here (%s): see to it yourself that no other process writes into this folder",
+                folder->name, strerror(errno));
   folder->fd = fd;
   return true;
 }

@@ -38,7 +38,8 @@ enum folder_trouble folder_prepare(const char *name, size_t *made, struct messag
 void folder_unmake(const char *name, size_t made);
 
 /* Opens the folder, and keeps other processes that ask for this lock out of it as long as the descriptor stays open.
- * False, with a message, if another one is in it or it cannot be opened. */
+ * False, with a message, if another one is in it or it cannot be opened. After a success the message is empty, or says
+ * that there are no locks here (lock.h). */
 bool folder_lock(struct folder *folder, struct message *message);
 
 /* Closes the folder, and so unlocks it. */

@@ -16,9 +16,10 @@
 
 #include "base/message.h"
 
-/* For a program, before anything else: HDF5 does nothing at exit. It would try once more to close a file that it could
- * not write, and crash (1.10.8); our files are closed by then. A library must not decide this for its host. */
-void h5_skip_exit(void);
+/* For a program, before anything else; a library must not decide this for its host. HDF5 does nothing at exit: it would
+ * try once more to close a file that it could not write, and crash (1.10.8); our files are closed by then. And whatever
+ * HDF5_USE_FILE_LOCKING says, it locks no file: lock.h does. */
+void h5_own_process(void);
 
 /* From now on, until the next file is opened, counts the calls of HDF5 that fail. Readers never make a call that fails
  * on a whole file: they ask first what there is. And after a failure HDF5 1.10.8 may take what it could not read for

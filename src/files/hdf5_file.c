@@ -3,11 +3,11 @@
 #include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "files/hdf5.h"
+#include "files/lock.h"
 #include "files/seal.h"
 
 static void silence(void)
@@ -17,8 +17,12 @@ static void silence(void)
 
 /* --- files ------------------------------------------------------------------------------------------------------- */
 
-/* HDF5 locks the files it opens (flock) and would call one in use damaged, so the lock is tested first. A pipe would
- * block. */
+static bool say_in_use(const char *path, struct message *message)
+{
+  return message_set(message, "%s: in use by another process (a run that still writes it?)", path);
+}
+
+/* A pipe would block. */
 static bool readable(const char *path, bool writable, struct message *message)
 {
   int fd = open(path, (writable ? O_RDWR : O_RDONLY) | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
@@ -27,18 +31,18 @@ static bool readable(const char *path, bool writable, struct message *message)
                        strerror(errno));
   struct stat status;
   bool regular = fstat(fd, &status) == 0 && S_ISREG(status.st_mode);
-  bool in_use = regular && flock(fd, (writable ? LOCK_EX : LOCK_SH) | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  const bool in_use = regular && lock_take(fd, writable) == LOCK_IN_USE;
   close(fd);
   if (!regular)
     return message_set(message, "%s: not a file but a folder, a pipe or a device", path);
-  if (in_use)
-    return message_set(message, "%s: in use by another process (a run that still writes it?)", path);
-  return true;
+  return !in_use || say_in_use(path, message);
 }
 
+/* HDF5's own locks are off: it takes a file system without locks for a damaged file. lock.h does it. */
 static hid_t new_format(void)
 {
   hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+  H5Pset_file_locking(access, false, true);
   H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18);
   return access;
 }
@@ -63,11 +67,18 @@ hid_t h5_open(const char *path, bool writable, bool *sealed, enum h5_trouble *tr
   hid_t access = new_format();
   hid_t file = H5Fopen(path, writable ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access);
   h5_close(access);
-  if (file < 0)
+  if (file < 0) {
     h5_fail(message, path, "damaged HDF5 file");
-  else
+    return -1;
+  }
+  if (lock_take(h5_descriptor(file), writable) != LOCK_IN_USE) {
     *trouble = H5_FINE;
-  return file;
+    return file;
+  }
+  *trouble = H5_UNREADABLE;
+  say_in_use(path, message);
+  h5_close(file);
+  return -1;
 }
 
 static hid_t create(const char *path, unsigned how, hid_t access)
@@ -84,7 +95,9 @@ static hid_t create(const char *path, unsigned how, hid_t access)
 hid_t h5_create(const char *path)
 {
   hid_t file = create(path, H5F_ACC_EXCL, new_format());
-  if (file < 0 && access(path, F_OK) == 0)
+  if (file >= 0)
+    lock_take(h5_descriptor(file), true); /* nobody else knows of it yet */
+  else if (access(path, F_OK) == 0)
     errno = EEXIST; /* HDF5 looks for itself, and leaves no errno */
   return file;
 }

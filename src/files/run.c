@@ -56,7 +56,10 @@ static enum run_code take_folder(struct run *run, struct message *message)
   const enum folder_trouble trouble = folder_prepare(run->name, &run->made, message);
   if (trouble != FOLDER_FINE)
     return trouble == FOLDER_IS_NONE ? RUN_BAD_INPUT : RUN_NOT_WRITTEN;
-  return folder_lock(&run->folder, message) ? check_folder(run, message) : RUN_NOT_WRITTEN;
+  if (!folder_lock(&run->folder, message))
+    return RUN_NOT_WRITTEN;
+  snprintf(run->unlocked, sizeof run->unlocked, "%s", message->text);
+  return check_folder(run, message);
 }
 
 bool run_fingerprint(const char *path, uint64_t *fingerprint)
@@ -285,6 +288,8 @@ enum run_code run_open(struct run *run, const struct run_parts *parts, const cha
     message_set(message, "%s", "");
     if (parts->state->step <= parts->scene->steps)
       code = open_files(run, message);
+    if (code == RUN_FINE && run->unlocked[0] != '\0')
+      message_set(message, "%s%s%s", run->unlocked, message->text[0] ? "; " : "", message->text);
   }
   if (code != RUN_FINE) {
     close_all(run);

@@ -47,6 +47,7 @@ struct run {
   struct checkpoint_head head;
   struct record record;   /* as in run.json, or as it would be there */
   char reason[1024];      /* why it stopped */
+  char unlocked[1024];    /* why the folder has no lock; "" if it has one */
   uint64_t first_step;    /* of this session */
   double session_started; /* clock_seconds, of all the following */
   double loop_started, last_checkpoint;

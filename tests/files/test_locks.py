@@ -76,8 +76,8 @@ class Locks(unittest.TestCase):
 
     def test_sweeps_go_on(self):
         done = self.without(errno.ENOLCK, "sweep", "s.yaml", "--out", "sweep", "--seeds", "1..2")
-        self.assertIn("uncross sweep: sweep: locks cannot be had here (No locks available): see to it yourself that no other "
-                      "sweep works in this folder\n", done.stderr)
+        self.assertIn("uncross: sweep/.lock: locks cannot be had here (No locks available): see to it yourself that no "
+                      "other process sweeps in this folder\n", done.stderr)
         records = list((self.dir / "sweep").glob("**/run.json"))
         self.assertEqual([json.loads(record.read_text())["status"] for record in records], ["finished"] * 2)
 

@@ -2,10 +2,13 @@
 #include "files/files.h"
 
 #include <errno.h>
+#include <fcntl.h>
+#include <unistd.h>
 
 #include "base/clock.h"
 #include "cli/progress.h"
 #include "files/folder.h"
+#include "files/lock.h"
 #include "files/table.h"
 
 static const char *const names[] = {"a", "b"};
@@ -341,6 +344,26 @@ static void test_a_folder_has_one_writer(void **unused)
   remove_folder(folder);
 }
 
+/* What cannot be locked is in nobody's use: the lock that a closed descriptor has not. */
+static void test_no_lock_is_not_one_in_use(void **unused)
+{
+  (void)unused;
+  char folder[64];
+  make_folder(folder);
+  struct folder first = {folder, FOLDER_BY_NAME};
+  struct message m;
+  assert_true(folder_lock(&first, &m));
+  assert_string_equal(m.text, "");
+  const int other = open(folder, O_RDONLY | O_DIRECTORY);
+  assert_int_equal(lock_take(other, true), LOCK_IN_USE);
+  assert_int_equal(lock_take(other, false), LOCK_IN_USE);
+  close(other);
+  assert_int_equal(lock_take(other, true), LOCK_NONE);
+  assert_int_equal(errno, EBADF);
+  folder_close(&first);
+  remove_folder(folder);
+}
+
 /* --- progress ----------------------------------------------------------------------------------------------------- */
 
 static void test_durations_as_people_say_them(void **unused)
@@ -429,6 +452,7 @@ int main(void)
       cmocka_unit_test(test_folders_are_made_with_those_above),
       cmocka_unit_test(test_a_wrong_name_is_not_a_closed_folder),
       cmocka_unit_test(test_a_folder_has_one_writer),
+      cmocka_unit_test(test_no_lock_is_not_one_in_use),
       cmocka_unit_test(test_an_open_folder_may_be_moved),
       cmocka_unit_test(test_links_and_pipes_in_a_folder),
       cmocka_unit_test(test_durations_as_people_say_them),

@@ -22,7 +22,7 @@ import numpy
 
 TREE = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(TREE / "python"))
-from uncross_sweep.files import columns, duration, read_json, write_json  # noqa: E402
+from uncross_sweep.files import columns, duration, read_json, take_lock, write_json  # noqa: E402
 
 INTERRUPTED = 5  # exit code of `uncross run` after a signal, and of `validation/run one`
 CHECKPOINT_SECONDS = 120
@@ -198,7 +198,7 @@ def execute(run, folder, build, fresh=False):
     folder, build = pathlib.Path(folder), pathlib.Path(build)
     folder.parent.mkdir(parents=True, exist_ok=True)
     with open(folder.with_name(folder.name + ".lock"), "w", encoding="ascii") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)  # two stages of one run take turns
+        take_lock(lock, fcntl.LOCK_EX, "makes this run")  # two stages of one run take turns
         return execute_locked(run, folder, build, fresh, lock.fileno())
 
 
@@ -320,7 +320,7 @@ def is_running(folder):
         return False
     with open(path, encoding="ascii") as lock:
         try:
-            fcntl.flock(lock, fcntl.LOCK_SH | fcntl.LOCK_NB)
+            take_lock(lock, fcntl.LOCK_SH | fcntl.LOCK_NB, "makes this run")
         except BlockingIOError:
             return True
     return False
