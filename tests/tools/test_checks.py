@@ -114,6 +114,10 @@ class Floors(Tree):
         self.add("src/cli/main.c", "#include <gsl/gsl_math.h>\n")
         self.complain("gsl/gsl_math.h must not be used in src/")
 
+    def test_library_that_nobody_installs(self):
+        self.add("src/cli/main.c", "#include <Random123/philox.h>\n")
+        self.complain("Random123/philox.h is neither of the C library nor of a library that the program is built with")
+
 
     def test_public_header_inside(self):
         self.add("src/files/file.h", '#include "house.h"\n')
