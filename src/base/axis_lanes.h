@@ -2,7 +2,7 @@
 #ifndef UNCROSS_BASE_AXIS_LANES_H
 #define UNCROSS_BASE_AXIS_LANES_H
 
-#include "base/philox.h"
+#include "base/philox_lanes.h"
 
 /* Unit vectors by the words of this draw: as random_axis_from, but in lanes where both pairs of words are outside the
  * unit disk z <= -1. */

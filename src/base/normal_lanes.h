@@ -3,7 +3,7 @@
 #ifndef UNCROSS_BASE_NORMAL_LANES_H
 #define UNCROSS_BASE_NORMAL_LANES_H
 
-#include "base/philox.h"
+#include "base/philox_lanes.h"
 
 #define NORMAL_ONE 0x3ff0000000000000 /* the bits of 1; 52 bits of a fraction come after it */
 

@@ -1,23 +1,22 @@
-/* Philox 4x32-10 once more (random_at has Random123's), of LANES counters at once. */
-#ifndef UNCROSS_BASE_PHILOX_H
-#define UNCROSS_BASE_PHILOX_H
+/* Philox 4x32-10 of LANES counters at once. */
+#ifndef UNCROSS_BASE_PHILOX_LANES_H
+#define UNCROSS_BASE_PHILOX_LANES_H
 
 #include "base/random.h"
 #include "base/registers.h"
 
-/* Two of the counter's words are multiplied in each round; the high halves meet the other two and the key, the low
- * halves take their places. A word is the low half of its lane; what is in the high half does not matter. */
+/* The rounds of philox. A word is the low half of its lane; what is in the high half does not matter. */
 INLINE void philox_rounds(uint64_t seed, words w[4])
 {
   uint32_t key0 = (uint32_t)seed, key1 = (uint32_t)(seed >> 32);
-  for (int round = 0; round < PHILOX4x32_DEFAULT_ROUNDS; round++) {
-    const words p = multiply_low(w[0], PHILOX_M4x32_0), q = multiply_low(w[2], PHILOX_M4x32_1);
+  for (int round = 0; round < PHILOX_ROUNDS; round++) {
+    const words p = multiply_low(w[0], PHILOX_MULTIPLIER_0), q = multiply_low(w[2], PHILOX_MULTIPLIER_1);
     w[0] = (q >> 32) ^ (w[1] ^ key0);
     w[1] = q;
     w[2] = (p >> 32) ^ (w[3] ^ key1);
     w[3] = p;
-    key0 += PHILOX_W32_0;
-    key1 += PHILOX_W32_1;
+    key0 += PHILOX_KEY_STEP_0;
+    key1 += PHILOX_KEY_STEP_1;
   }
 }
 

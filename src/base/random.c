@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "base/philox.h"
+#include "base/philox_lanes.h"
 
 /* The words of LANES entities. */
 INLINE void words_of(uint64_t seed, enum random_purpose purpose, uint32_t draw, uint64_t step,

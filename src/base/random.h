@@ -1,5 +1,5 @@
 /*
- * Random numbers with addresses, not drawn in sequence: Philox 4x32-10 (Salmon et al., SC11; Random123) of
+ * Random numbers with addresses, not drawn in sequence: Philox 4x32-10 (base/philox.h) of
  *
  *   counter = { entity, purpose + 256 draw, step (low 32 bits), step (high 32 bits) },   key = seed (low, high)
  *
@@ -9,10 +9,10 @@
 #ifndef UNCROSS_BASE_RANDOM_H
 #define UNCROSS_BASE_RANDOM_H
 
-#include <Random123/philox.h>
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/philox.h"
 #include "base/vec3.h"
 
 enum random_purpose {
@@ -52,10 +52,9 @@ struct random_words {
 static inline struct random_words random_at(uint64_t seed, enum random_purpose purpose, uint32_t draw, uint64_t step,
                                             uint32_t entity)
 {
-  philox4x32_ctr_t counter = {{entity, (uint32_t)purpose + 256 * draw, (uint32_t)step, (uint32_t)(step >> 32)}};
-  philox4x32_key_t key = {{(uint32_t)seed, (uint32_t)(seed >> 32)}};
-  philox4x32_ctr_t r = philox4x32(counter, key);
-  return (struct random_words){{r.v[0], r.v[1], r.v[2], r.v[3]}};
+  struct random_words r = {{entity, (uint32_t)purpose + 256 * draw, (uint32_t)step, (uint32_t)(step >> 32)}};
+  philox((uint32_t)seed, (uint32_t)(seed >> 32), r.w);
+  return r;
 }
 
 #define RANDOM_UNIFORMS 64 /* entities that the functions with columns of fixed length take */

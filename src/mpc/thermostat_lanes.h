@@ -3,7 +3,7 @@
 #define UNCROSS_MPC_THERMOSTAT_LANES_H
 
 #include "base/elementary_lanes.h"
-#include "base/philox.h"
+#include "base/philox_lanes.h"
 #include "mpc/cell_lanes.h"
 #include "mpc/thermostat.h"
 

@@ -36,10 +36,11 @@ static uint32_t high_of(uint64_t x)
   return (uint32_t)(x >> 32);
 }
 
-static void philox(const struct philox_twist *t, uint32_t c[4], uint32_t k0, uint32_t k1)
+static void twisted_philox(const struct philox_twist *t, uint32_t c[4], uint32_t k0, uint32_t k1)
 {
-  static const uint32_t factor[2] = {0xD2511F53U, 0xCD9E8D57U}, weyl[2] = {0x9E3779B9U, 0xBB67AE85U};
-  for (unsigned round = 0; round < (t->rounds ? t->rounds : 10); round++) {
+  static const uint32_t factor[2] = {PHILOX_MULTIPLIER_0, PHILOX_MULTIPLIER_1};
+  static const uint32_t weyl[2] = {PHILOX_KEY_STEP_0, PHILOX_KEY_STEP_1};
+  for (unsigned round = 0; round < (t->rounds ? t->rounds : PHILOX_ROUNDS); round++) {
     if ((round > 0 || t->key_raised) && !t->key_constant)
       k0 += weyl[t->weyl_exchanged], k1 += weyl[!t->weyl_exchanged];
     const uint64_t a = (uint64_t)factor[t->multipliers_exchanged] * c[0];
@@ -71,7 +72,7 @@ static bool make_words(const struct evidence_part *part, const void *twist, doub
     for (int k = 0; k < 4; k++)
       c[k] = counter[t->order ? t->order[k] : k];
     const uint32_t first = low_of(seed), second = t->seed_short ? 0 : high_of(seed);
-    philox(t, c, t->key_exchanged ? second : first, t->key_exchanged ? first : second);
+    twisted_philox(t, c, t->key_exchanged ? second : first, t->key_exchanged ? first : second);
     for (int k = 0; k < 4; k++)
       guess[4 * (size_t)row + k] = c[k];
   }
