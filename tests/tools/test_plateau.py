@@ -1,0 +1,119 @@
+#!/usr/bin/python3
+"""A diffusion coefficient is shown as final only if it has stopped moving: pages of runs, of sweeps and of comparisons.
+
+Random walks, whose D does not change, give the rate of false alarms: their intervals and errors are made here with NumPy, as
+docs/observables.md has them. The scene with a D that grows is that of a reader, whose longer runs gave 1.6 times as much.
+"""
+import csv
+import os
+import pathlib
+import sys
+import unittest
+
+import numpy
+
+sys.dont_write_bytecode = True  # nothing is left in the source tree
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from support import TOP, UNCROSS, FolderTest, uncross  # noqa: E402
+
+os.environ["UNCROSS"] = str(UNCROSS)
+sys.path.insert(0, str(TOP / "python"))
+from uncross_plot import compare, page, runs, sweeps  # noqa: E402
+from uncross_sweep import averages, plateau  # noqa: E402
+
+SHORT = """box: [16, 16, 16]
+time_step: 0.01
+steps: 2000
+solvent: {per_cell: 5, collision_interval: 0.02}
+fibers:
+  - {name: micelle, count: 40, vertices: 24, mass: 5, bond_length: 0.5, spring: 100, persistence_length: 4}
+observe: {dynamics: {every: 10}}
+"""
+
+
+def of_interval(walk, lag):
+    """(mean, error) of the growth of g_cm from lag/2 to lag over 3 lag, lag even: of each interval, as docs/observables.md
+    says; the larger of the errors in time and over fibers."""
+    half = numpy.diff(walk[::lag // 2], axis=0)
+    half = half[:len(half) // 2 * 2]
+    a, b = half[::2], half[1::2]
+    grown = (((a + b)**2).sum(-1) - ((a**2).sum(-1) + (b**2).sum(-1)) / 2.0) / (3.0 * lag)
+    time = averages.blocked_mean(grown.mean(axis=1))[1]
+    fiber = grown.mean(axis=0)
+    over = fiber.std(ddof=1) / numpy.sqrt(len(fiber)) if len(fiber) >= 8 else numpy.nan
+    return grown.mean(), float(numpy.fmax(time, over))
+
+
+def table_of(walk):
+    """A table of dynamics at the lags 2 and 4 of a walk [times][fibers][3]."""
+    found = numpy.array([of_interval(walk, lag) for lag in (2, 4)])
+    return {"time": numpy.array([2.0, 4.0]), "intervals": numpy.array([len(walk) // 2, len(walk) // 4]),
+            "D": found[:, 0], "D_error": found[:, 1], "D_cumulative": found[:, 0], "D_cumulative_error": found[:, 1]}
+
+
+def walks(fibers, intervals, trials, growth=0.0):
+    """Tables of random walks; growth: of D with each doubling of the lag, by steps that follow the one before."""
+    random = numpy.random.default_rng(36)
+    for _ in range(trials):
+        steps = random.normal(size=(4 * intervals, fibers, 3))
+        steps[1:] += growth * steps[:-1]
+        yield table_of(numpy.concatenate([numpy.zeros((1, fibers, 3)), numpy.cumsum(steps, axis=0)]))
+
+
+class Rule(unittest.TestCase):
+    def test_false_alarms(self):
+        """600 walks each. One fiber with 16 intervals: 0.3 % are expected, so that more than 7 of 600 come by chance once in
+        800 times; 64 fibers: 0.1 %, more than 4 once in 2500."""
+        for fibers, most in ((1, 7), (64, 4)):
+            alarms = sum(plateau.plateau(table, 1).moves for table in walks(fibers, 16, 600))
+            self.assertLessEqual(alarms, most, f"{fibers} fibers")
+
+    def test_what_moves_is_seen(self):
+        """Steps correlated with the one before: g grows as 1 + w^2 + 2w (1 - 1/n), w = 1/2. D of the octave to 2 is 7/4, that of
+        the octave to 4 is 9/4 less the half of nothing: a growth of 1 - (7/4)/(9/4) at most; with 2000 intervals it is seen."""
+        table = next(walks(64, 2000, 1, growth=0.5))
+        self.assertTrue(plateau.plateau(table, 1).moves)
+
+    def test_by_hand(self):
+        table = {"time": numpy.array([1.0, 2.0, 3.0, 4.0]), "D": numpy.array([1.0, 2.0, 2.5, 3.0]),
+                 "D_error": numpy.array([0.3, 0.3, 0.3, 0.3]), "D_cumulative": numpy.array([numpy.nan, 3.0, numpy.nan, 4.0]),
+                 "D_cumulative_error": numpy.array([numpy.nan, 0.3, numpy.nan, 0.4])}
+        found = plateau.plateau(table, 3)  # 4 - 3, and sqrt(0.3^2 + 0.4^2) = 0.5; over 4
+        self.assertAlmostEqual(found.change, 0.25, 14)
+        self.assertAlmostEqual(found.error, 0.125, 14)
+        self.assertFalse(found.moves)  # 2 errors
+        self.assertEqual(found.word, "not known to be final")
+        first = plateau.plateau(table, 1)  # there is no octave before: against D up to there, (3 - 1)/3
+        self.assertAlmostEqual(first.change, 2.0 / 3.0, 14)
+        self.assertTrue(first.moves)  # 2/sqrt(0.3^2 + 0.3^2) = 4.7 errors
+        for row in (0, 2):
+            self.assertIn("no two octaves", plateau.plateau(table, row).doubt("D"))
+        table["D_cumulative_error"][:] = table["D_error"][:] = 0.01
+        table["D_cumulative"][1] = 4.0
+        self.assertEqual(plateau.plateau(table, 3).doubt("D"), "")
+
+
+class Pages(FolderTest):
+    """The scene above, twice: by seeds of a sweep, and each against the other."""
+
+    def test_no_page_takes_it_as_final(self):
+        (self.dir / "short.yaml").write_text(SHORT)
+        out = self.dir / "swept"
+        done = uncross("sweep", self.dir / "short.yaml", "--out", out, "--seeds", "1..2", "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        row = next(csv.DictReader((out / "summary.csv").open(encoding="ascii")))
+        lag = float(row["lag_micelle"])
+        text = sweeps.page_of(str(out))
+        self.assertNotIn("Nothing that this page looks for", text)
+        self.assertRegex(text, rf"<li>all: D of &#39;micelle&#39; is not final: it grows by \d+% from one octave of lags to the next, at lag {lag:.3g} t0")
+        self.assertIn(f"at lag {lag:.3g} t0", text.partition("<figcaption")[2])  # beside each D
+        both = [runs.read(str(out / "all" / f"seed-{seed}")) for seed in (1, 2)]
+        for run in both:
+            told = [text for text in runs.distrust(run) if "is not final" in text]
+            self.assertEqual(len(told), 1)
+            self.assertIn(f"at lag {lag:.3g} t0 (still moving)", page._result(run))
+        self.assertEqual(compare.page_of(*both).count("is not final: it grows"), 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
