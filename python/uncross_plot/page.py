@@ -234,18 +234,16 @@ def _result(run):
 
 
 def _diffusion(run, table):
-    """The diffusion coefficient at the longest lag that enough intervals have; about the drift where a force acts."""
-    drifts = any("contain (v t)^2" in text for text in (run.record or {}).get("warnings", []))
-    column, about = ("D_about_mean", " about its drift") if drifts else ("D", "")
-    pairs, values = table.data.get("intervals"), table.data.get(column)
-    if pairs is None or values is None:
+    """The diffusion coefficient, its lag, and whether it has stopped moving with the lag."""
+    found = runs.diffusion(run, table)
+    if found is None:
         return []
-    rows = numpy.flatnonzero((pairs >= runs.LEAST_PAIRS) & numpy.isfinite(values))
-    if not len(rows):
-        return []
-    row, errors = rows[-1], table.errors(column)
-    value = with_error(values[row], None if errors is None else errors[row])
-    return [f"D of '{columns.split(table.name)[1]}'{about} {value} a0²/t0 at lag {table.data['time'][row]:.3g} t0"]
+    column, row, plateau = found
+    errors = table.errors(column)
+    value = with_error(table.data[column][row], None if errors is None else errors[row])
+    about = " about its drift" if column == "D_about_mean" else ""
+    word = f" ({plateau.word})" if plateau.word else ""
+    return [f"D of '{columns.split(table.name)[1]}'{about} {value} a0²/t0 at lag {table.data['time'][row]:.3g} t0{word}"]
 
 
 def _doubts(found):

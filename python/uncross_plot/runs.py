@@ -9,9 +9,11 @@ import tempfile
 
 import numpy
 
+from uncross_sweep import plateau
+
 from . import columns, fibers, tables
 
-LEAST_PAIRS = 16  # pairs of times, below which the error comes from the scatter over fibers alone
+LEAST_PAIRS = plateau.LEAST_PAIRS
 PROGRAM = os.environ.get("UNCROSS", "uncross")
 
 
@@ -238,7 +240,7 @@ def _number(line, has_si):
 def distrust(run):
     """Sentences, the gravest first; an empty list if nothing is known against the run."""
     return [*_ended(run), *run.trouble, *(run.record or {}).get("warnings", []), *_faults(run), *_short(run),
-            *_unconverged(run), *_off_theory(run)]
+            *_moving(run), *_unconverged(run), *_off_theory(run)]
 
 
 def _ended(run):
@@ -278,6 +280,26 @@ def _short(run):
     for lag, names in few.items():
         yield (f"{', '.join(names)}: from lag {lag} t0 on, fewer than {LEAST_PAIRS} pairs of times were compared: errors "
                "there are the scatter over fibers alone.")
+
+
+def diffusion(run, table):
+    """(column, row, Plateau) of the D that the page shows of a table: at the longest lag that enough intervals have, about the
+    drift where a force acts; None if it has none."""
+    column = "D_about_mean" if any("contain (v t)^2" in text for text in (run.record or {}).get("warnings", [])) else "D"
+    row = plateau.last_lag(table.data) if column in table.data else None
+    if row is None or not numpy.isfinite(table.data[column][row]):
+        return None
+    return column, row, plateau.plateau(table.data, row, column)
+
+
+def _moving(run):
+    """Diffusion coefficients that still depend on the lag."""
+    for table in run.tables:
+        found = diffusion(run, table)
+        if found:
+            doubt = found[2].doubt(f"D of '{columns.split(table.name)[1] or table.name}'")
+            if doubt:
+                yield doubt
 
 
 def _unconverged(run):

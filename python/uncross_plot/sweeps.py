@@ -5,6 +5,8 @@ import os
 
 import numpy
 
+from uncross_sweep import averages, plateau
+
 from . import columns, page, style
 
 RESULTS = "seeds"  # columns before it are the grid's, those after it final numbers
@@ -57,6 +59,34 @@ def _label(name, short=False):
     return words + (f", {kind}" if kind else "")
 
 
+def _lag(row, kind):
+    return _number(row.get(f"lag_{kind}", "nan"))
+
+
+def _moving(row):
+    """A sentence for each kind whose diffusion coefficient still depends on the lag."""
+    doubts = {}
+    for name in row:
+        column, kind = _parts(name)
+        change = f"change_{name}"
+        if column in plateau.OCTAVES and change in row and math.isfinite(_number(row[name])):
+            base = abs(_number(row.get(f"{plateau.OCTAVES[column]}_{kind}", "nan"))) or math.nan
+            found = plateau.Plateau(_lag(row, kind), _number(row[change]) / base, _error(row, change) / base)
+            words = found.doubt(f"D{'' if column == 'D' else ' about its drift'} of '{kind}'")
+            if words:
+                doubts.setdefault(kind, words)
+    return list(doubts.values())
+
+
+def _at_lag(rows, name):
+    """Of the caption of a number that is taken at a lag."""
+    column, kind = _parts(name)
+    lags = sorted({_lag(row, kind) for row in rows if math.isfinite(_lag(row, kind))})
+    if not lags or column not in averages.DYNAMICS:
+        return ""
+    return f" It is that at lag {lags[0]:.3g}{f' to {lags[-1]:.3g}' if lags[-1] > lags[0] else ''} t0."
+
+
 def _places(rows, key):
     """Numbers of the values of a key, and their words if they are none."""
     words = list(dict.fromkeys(row[key] for row in rows))
@@ -104,10 +134,11 @@ def page_of(path):
              ("What is here", f"Averages over seeds in a folder for each point, such as {rows[0][names[0]]}; "
               "uncross plot shows them, and each run below it.") if rows else ("What is here", "No point is finished."),
              ("What to distrust", page._doubts([f"{run['folder']}: exit code {run['exit_code']}, {run['status']}. {run['message']}".strip()
-                                                for run in unfinished]))]
-    shown = [name for name in results if not name.startswith("lag_")]
+                                                for run in unfinished] +
+                                               [f"{row[names[0]]}: {text}" for row in rows for text in _moving(row)]))]
+    shown = [name for name in results if not name.startswith(("lag_", "change_"))]
     figures = [page.Figure(page.plain(_label(name)), style.data_uri(figure(rows, keys, name)),
-                           f"{page.plain(_label(name))} over {keys[0]}.", f"{name} of summary.csv. Error bars: one standard error, "
+                           f"{page.plain(_label(name))} over {keys[0]}.", f"{name} of summary.csv.{_at_lag(rows, name)} Error bars: one standard error, "
                            "of blocks of the runs where they have one, else of the scatter over seeds.", name) for name in shown]
     table = page.Rows("Final numbers", [[row[key] for key in keys] + [page.with_error(_number(row[name]), _error(row, name))
                                                                       for name in results] for row in rows],

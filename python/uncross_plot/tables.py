@@ -4,6 +4,8 @@ import math
 
 import numpy
 
+from uncross_sweep import averages
+
 from . import columns, style
 
 WIDE = 3  # panels in a row of a comparison
@@ -75,14 +77,9 @@ def _is_number(word):
     return True
 
 
-def blocked_error(series, least=16):
-    """Standard error of the mean of a correlated series (Flyvbjerg and Petersen 1989): the largest over blocks of 1, 2, 4,
-    ... values, of which there are at least `least`; nan for fewer values."""
-    error = math.nan
-    while len(series) >= least:
-        error = numpy.fmax(error, series.std(ddof=1) / math.sqrt(len(series)))
-        series = series[:len(series) // 2 * 2].reshape(-1, 2).mean(axis=1)
-    return float(error)
+def blocked_error(series):
+    """Standard error of the mean of a correlated series, from blocks of values."""
+    return averages.blocked_mean(series)[1] if len(series) else math.nan
 
 
 # --- one table ---------------------------------------------------------------------------------------------------------

@@ -5,9 +5,10 @@ import math
 
 import numpy
 
+from . import plateau
 from .files import columns, write_text
 
-LEAST_BLOCKS = 16  # intervals of a lag in each run, for the final numbers
+LEAST_BLOCKS = 16  # of a series
 KEYS = ("step", "time")  # columns that say which row it is
 COUNTS = ("samples", "intervals")  # columns that are added up
 
@@ -96,7 +97,7 @@ SERIES = {  # column of the summary: table, column, whether it tells of interval
     "collision_rate_over_theory": ("collisions", "rate_over_theory", True),
 }
 STATICS = ("Ree2", "Rg2", "lp", "bond_energy")
-DYNAMICS = ("D", "D_about_mean", "D_cumulative", "drift_x", "drift_y", "drift_z")
+DYNAMICS = ("D", "D_about_mean", "D_cumulative", "D_cumulative_about_mean", "drift_x", "drift_y", "drift_z")
 
 
 def put(row, name, found):
@@ -106,7 +107,7 @@ def put(row, name, found):
 
 def final_numbers(folders, averages, start):
     """One row: averages of time series from step `start` on, the table of statics, and the dynamics of the longest lag
-    that has LEAST_BLOCKS intervals in each run. folders: of the runs; averages: their tables, averaged."""
+    that has enough intervals in each run (plateau.py). folders: of the runs; averages: their tables, averaged."""
     row = {}
     series = {name: [columns((folder / f"{name}.csv").read_text()) for folder in folders]
               for name in ("temperature", "collisions") if name in averages}
@@ -120,13 +121,22 @@ def final_numbers(folders, averages, start):
         if name.startswith("statics-"):
             for column in STATICS:
                 put_cell(row, f"{column}_{kind}", table, column, 0)
-        elif name.startswith("dynamics-") and "intervals" in table:
-            good = numpy.flatnonzero((table["intervals"] >= LEAST_BLOCKS * len(folders)) & (table["seeds"] == len(folders)))
-            if len(good):
-                row[f"lag_{kind}"] = table["time"][good[-1]]
-                for column in DYNAMICS:
-                    put_cell(row, f"{column}_{kind}", table, column, good[-1])
+        elif name.startswith("dynamics-"):
+            put_dynamics(row, kind, table, len(folders))
     return row
+
+
+def put_dynamics(row, kind, table, seeds):
+    """The longest lag, the numbers there, and how much D changes to there from the octave of lags before."""
+    last = plateau.last_lag(table, seeds)
+    if last is None:
+        return
+    row[f"lag_{kind}"] = table["time"][last]
+    for column in DYNAMICS:
+        put_cell(row, f"{column}_{kind}", table, column, last)
+    for column in plateau.OCTAVES:
+        if f"{column}_{kind}" in row:
+            put(row, f"change_{column}_{kind}", plateau.change(table, last, column, ("_error", "_block_error")))
 
 
 def put_cell(row, name, table, column, k):
