@@ -1,0 +1,140 @@
+// A port of uncross for all cores and for a GPU.
+#include <chrono>
+#include <cinttypes>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+
+#include "pack.h"
+#include "run.h"
+
+static const char usage[] = "usage: port PACK OUT           outputs of all operators of a pack (text)\n"
+                            "       port --trace START OUT  the trace of a start (text)\n"
+                            "       port --run START [option ...]          runs a start, prints the state hash\n"
+                            "       port --solvent X,Y,Z [option ...]      the same of a solvent that is drawn here\n"
+                            "options: --steps N  --warm N (steps before the clock)  --sort N  --transposed\n"
+                            "         --unfused  --per-cell N  --interval N  --dt T  --seed S\n";
+
+static std::string trace(const Pack &pack)
+{
+  const Model model = read_model(pack);
+  State state = read_state(pack);
+  Run run(model, state, Settings{});
+  std::string text = "step,stage,state_hash\n";
+  run.after_stage = [&](uint64_t number, const char *stage) {
+    char line[96];
+    std::snprintf(line, sizeof line, "%" PRIu64 ",%s,%016" PRIx64 "\n", number, stage, state_hash(run.now()));
+    text += line;
+  };
+  run.after_stage(state.step, "start");
+  run.steps(model.steps);
+  return text;
+}
+
+struct Options {
+  const char *cells = nullptr;
+  int64_t steps = -1, warm = 0, per_cell = 5;
+  Settings settings;
+  Model model; // of a solvent that is drawn here
+};
+
+static Options read_options(int count, char **word)
+{
+  Options o;
+  o.model.time_step = 0.02, o.model.sine = 1.0, o.model.seed = 1;
+  for (int k = 0; k < count; k++) {
+    const std::string name = word[k];
+    if (name == "--transposed") {
+      o.settings.transposed = 1;
+    } else if (name == "--unfused") {
+      o.settings.fused = false;
+    } else if (k + 1 == count) {
+      throw BadInput("unknown option, or its value is missing: " + name);
+    } else {
+      const char *value = word[++k];
+      if (name == "--steps")
+        o.steps = std::atoll(value);
+      else if (name == "--warm")
+        o.warm = std::atoll(value);
+      else if (name == "--sort")
+        o.settings.sort_every = std::atoi(value);
+      else if (name == "--per-cell")
+        o.per_cell = std::atoll(value);
+      else if (name == "--interval")
+        o.model.interval = std::atoll(value);
+      else if (name == "--dt")
+        o.model.time_step = std::atof(value);
+      else if (name == "--seed")
+        o.model.seed = std::strtoull(value, nullptr, 10);
+      else
+        throw BadInput("unknown option " + name);
+    }
+  }
+  return o;
+}
+
+static double now()
+{
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+static void run_and_report(const Model &model, State &state, const Options &o)
+{
+  Run run(model, state, o.settings);
+  const int64_t steps = o.steps >= 0 ? o.steps : model.steps, warm = o.warm < steps ? o.warm : steps;
+  run.steps(warm);
+  device_wait();
+  const double begin = now();
+  run.steps(steps - warm);
+  device_wait();
+  const double seconds = now() - begin, particles = (double)state.solvent.size();
+  const double collisions = (double)(steps - warm) / (double)model.interval;
+  const uint64_t hash = state_hash(run.now());
+  std::printf("{\"hash\": \"%016" PRIx64 "\", \"cells\": [%" PRId64 ", %" PRId64 ", %" PRId64 "], "
+              "\"particles\": %zu, \"vertices\": %zu, \"steps\": %" PRId64 ", \"timed_steps\": %" PRId64 ", "
+              "\"seconds\": %.6f, \"ms_per_step\": %.6f, \"ns_per_particle_and_collision\": %.4f, \"gpu\": %s}\n",
+              hash, model.cells[0], model.cells[1], model.cells[2], state.solvent.size(), state.vertex.size(), steps,
+              steps - warm, seconds, steps > warm ? 1e3 * seconds / (double)(steps - warm) : 0.0,
+              collisions > 0 && particles > 0 ? 1e9 * seconds / (particles * collisions) : 0.0,
+              on_gpu ? "true" : "false");
+}
+
+static void run_solvent(const char *cells, Options &o)
+{
+  Model &model = o.model;
+  if (std::sscanf(cells, "%" SCNd64 ",%" SCNd64 ",%" SCNd64, &model.cells[0], &model.cells[1], &model.cells[2]) != 3)
+    throw BadInput("three numbers of cells are needed, such as 32,32,32");
+  model.particles = o.per_cell * model.cell_count();
+  State state = draw_solvent(model);
+  run_and_report(model, state, o);
+}
+
+int main(int count, char **word)
+{
+  try {
+    const std::string first = count > 1 ? word[1] : "";
+    if (first == "--trace" && count == 4) {
+      write_file(word[3], trace(Pack(read_file(word[2]))));
+    } else if (first == "--run" && count >= 3) {
+      const Options o = read_options(count - 3, word + 3);
+      const Pack pack(read_file(word[2]));
+      const Model model = read_model(pack);
+      State state = read_state(pack);
+      run_and_report(model, state, o);
+    } else if (first == "--solvent" && count >= 3) {
+      Options o = read_options(count - 3, word + 3);
+      run_solvent(word[2], o);
+    } else {
+      std::fputs(usage, stderr);
+      return 2;
+    }
+    return 0;
+  } catch (const BadInput &error) {
+    std::fprintf(stderr, "port: %s\n", error.what());
+    return 2;
+  } catch (const std::exception &error) {
+    std::fprintf(stderr, "port: %s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,48 @@
+#include "model.h"
+
+uint64_t state_hash(const State &state)
+{
+  WordHash hash;
+  for (uint64_t word : {state.step, state.lag, (uint64_t)state.solvent.size(), (uint64_t)state.vertex.size()})
+    hash.add(word);
+  for (size_t i = 0; i < state.solvent.size(); i++)
+    hash.add(state.solvent[i]), hash.add(state.solvent_velocity[i]);
+  for (size_t i = 0; i < state.vertex.size(); i++)
+    hash.add(state.vertex[i]), hash.add(state.vertex_velocity[i]);
+  return hash.value();
+}
+
+// The cell is floor(n h / 2^24) with the high 24 bits h; the low 40 bits are the place within it.
+static int64_t place_along(uint64_t integer, int64_t cells)
+{
+  const uint64_t h = integer >> 40, cell = (uint64_t)cells * h >> 24;
+  return (int64_t)(cell << 40 | (integer & 0xffffffffff));
+}
+
+State draw_solvent(const Model &model)
+{
+  const int64_t n = model.particles;
+  State state;
+  state.solvent.resize((size_t)n);
+  state.solvent_velocity.resize((size_t)n);
+  const Source place = model.source(SOLVENT_POSITION, 0), velocity = model.source(SOLVENT_VELOCITY, 0);
+#pragma omp parallel for
+  for (int64_t i = 0; i < n; i++) {
+    const uint32_t id = (uint32_t)i;
+    const Words xy = words_of(place, 0, id), z = words_of(place, 1, id);
+    state.solvent[(size_t)i] = {place_along(integer_of(xy, 0), model.cells[0]),
+                                place_along(integer_of(xy, 1), model.cells[1]),
+                                place_along(integer_of(z, 0), model.cells[2])};
+    const CirclePoint a = normal_pair(words_of(velocity, 0, id)), b = normal_pair(words_of(velocity, 1, id));
+    state.solvent_velocity[(size_t)i] = {a.cosine, a.sine, b.cosine};
+  }
+  // The total momentum is taken out, summed in the order of the ids.
+  Vector momentum = {0, 0, 0};
+  for (const Vector &v : state.solvent_velocity)
+    momentum = momentum + v;
+  const Vector change = (-1.0 / (double)n) * momentum;
+#pragma omp parallel for
+  for (int64_t i = 0; i < n; i++)
+    state.solvent_velocity[(size_t)i] = state.solvent_velocity[(size_t)i] + change;
+  return state;
+}

@@ -1,0 +1,79 @@
+#include "run.h"
+
+Run::Run(const Model &model, State &state, const Settings &settings)
+    : model(model), state(state), solvent(model, state, settings)
+{
+}
+
+const State &Run::now()
+{
+  solvent.fetch(state);
+  return state;
+}
+
+void Run::told(uint64_t number, const char *stage)
+{
+  if (after_stage)
+    after_stage(number, stage);
+}
+
+void Run::steps(int64_t number)
+{
+  for (int64_t k = 0; k < number; k++)
+    one_step();
+}
+
+void Run::one_step()
+{
+  const uint64_t number = state.step + 1;
+  const double dt = model.time_step;
+  const bool collides = number % (uint64_t)model.interval == 0;
+  if (collides && model.scheme == DRIFT_SPLIT) {
+    drift(number, 0.5 * dt, 0);
+    collide(number);
+    drift(number, 0.5 * dt, 1);
+  } else {
+    drift(number, dt, 0);
+  }
+  if (collides && model.scheme == PAPER)
+    collide(number);
+  force(number);
+  if (collides && model.scheme == KICK_SPLIT) {
+    kick(number, 0.5 * dt);
+    collide(number);
+    kick(number, 0.5 * dt);
+  } else {
+    kick(number, dt);
+  }
+  state.step = number;
+  told(number, "end");
+}
+
+// A drift adds 2 to the lag, half a drift 1.
+void Run::drift(uint64_t number, double time, uint32_t which)
+{
+  (void)which;
+  state.lag += time == model.time_step ? 2 : 1;
+  told(number, "drift");
+}
+
+// The solvent streams when a collision comes, for the whole time since the last one.
+void Run::collide(uint64_t number)
+{
+  solvent.collide(number, (double)state.lag * (model.time_step / 2.0), state);
+  state.lag = 0;
+  told(number, "collide");
+}
+
+void Run::force(uint64_t number)
+{
+  if (!state.vertex.empty())
+    told(number, "force");
+}
+
+void Run::kick(uint64_t number, double time)
+{
+  (void)time;
+  if (!state.vertex.empty())
+    told(number, "kick");
+}

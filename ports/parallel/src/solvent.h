@@ -1,0 +1,74 @@
+// The solvent and the collisions, on the machine of device.h. Particles lie in memory in about the order of their
+// cells.
+#pragma once
+
+#include "device.h"
+#include "model.h"
+
+// What the members of a cell add up to. `load`: members times 2^44, plus the mass in 2^-16 m.
+struct CellSum {
+  int64_t x, y, z, load;
+};
+
+struct alignas(64) CellTurn {
+  Vector center, axis;
+  double factor;
+  int64_t active;
+};
+
+constexpr int load_bits = 44;
+
+struct Columns {
+  int64_t *x, *y, *z;
+  double *vx, *vy, *vz;
+  uint32_t *id;
+};
+
+struct Grid {
+  int64_t cells[3];
+  Point edge, shift;
+};
+
+struct Settings {
+  int sort_every = 64; // collisions between two sortings
+  int transposed = 0;  // on a GPU: neighbors in a warp add the four numbers of one particle together
+  bool fused = true;   // turn and the next flight in one pass
+};
+
+class Solvent
+{
+public:
+  Solvent(const Model &model, const State &state, const Settings &settings);
+
+  // The collision of a step; the solvent flies for `time` before. Velocities of vertices change.
+  void collide(uint64_t step, double time, State &state);
+  // Solvent by ids into the state.
+  void fetch(State &state);
+
+private:
+  Columns columns();
+  Grid grid(Point shift) const;
+  void fly_and_sum(double time, const Grid &next);
+  void solve(uint64_t step);
+  void apply_thermostat(uint64_t step);
+  void collide_drawn(uint64_t step, State &state);
+  void finish_turn();
+  void sort();
+  void swap_velocities(uint64_t step);
+
+  const Model &model;
+  Settings settings;
+  int64_t n, cell_count;
+  int shards;
+  bool pending = false; // velocities are those of before the collision; `turn` has what is left to be done
+  int64_t since_sort = 0;
+  Grid at_collision = {};
+  Array<int64_t> place[3], sorted_place[3], count, relative, total;
+  Array<double> velocity[3], sorted_velocity[3];
+  Array<uint32_t> id, sorted_id;
+  Array<CellSum> sums;
+  Array<CellTurn> turn;
+  Array<Point> vertex;
+  Array<Vector> vertex_velocity;
+  Array<double> vertex_mass;
+};
