@@ -116,11 +116,9 @@ struct CirclePoint {
   double cosine, sine;
 };
 
-// "Circle", in turns
-ANYWHERE CirclePoint circle(double turns)
+// "Circle": the unit is high + low.
+ANYWHERE CirclePoint circle(double t, double high, double low, int64_t quarters)
 {
-  constexpr double high = 0x1.921fb54p+0, low = 0x1.10b4611a62633p-30, round = 0x1.8p52;
-  const double k = (4.0 * turns + round) - round, t = 4.0 * turns - k;
   const double t1 = from_bits(bits_of(t) & 0xfffffffff8000000), t2 = t - t1;
   const double exact = t1 * high, rest = t2 * high + t * low;
   const double x = exact + rest, lost = rest - (x - exact), z = x * x, w = z * z;
@@ -131,7 +129,7 @@ ANYWHERE CirclePoint circle(double turns)
   const double c1 = -1.0 / 720 + w * (-1.0 / 3628800 + w * (-1.0 / 87178291200.0));
   const double h = 0.5 * z, less = 1.0 - h;
   const double across = less + (((1.0 - less) - h) + (w * (c0 + z * c1) - x * lost));
-  switch ((int64_t)k & 3) {
+  switch (quarters & 3) {
   case 0:
     return {across + 0.0, along + 0.0};
   case 1:
@@ -141,6 +139,18 @@ ANYWHERE CirclePoint circle(double turns)
   default:
     return {along + 0.0, -across + 0.0};
   }
+}
+
+ANYWHERE CirclePoint circle_turns(double turns)
+{
+  const double k = (4.0 * turns + 0x1.8p52) - 0x1.8p52;
+  return circle(4.0 * turns - k, 0x1.921fb54p+0, 0x1.10b4611a62633p-30, (int64_t)k);
+}
+
+ANYWHERE CirclePoint circle_degrees(double angle)
+{
+  const double k = (angle / 90.0 + 0x1.8p52) - 0x1.8p52;
+  return circle(angle - 90.0 * k, 0x1.1df46a4p-6, -0x1.ad62c6ea3e274p-34, (int64_t)k);
 }
 
 struct Words {
@@ -198,7 +208,7 @@ ANYWHERE double uniform_of(const Words &w, int k)
 ANYWHERE CirclePoint normal_pair(const Words &w)
 {
   const double radius = std::sqrt(-2.0 * natural_log(uniform_of(w, 0)));
-  const CirclePoint at = circle(uniform_of(w, 1));
+  const CirclePoint at = circle_turns(uniform_of(w, 1));
   return {radius * at.cosine, radius * at.sine};
 }
 

@@ -14,7 +14,8 @@ static const char usage[] = "usage: port PACK OUT           outputs of all opera
                             "       port --run START [option ...]          runs a start, prints the state hash\n"
                             "       port --solvent X,Y,Z [option ...]      the same of a solvent that is drawn here\n"
                             "options: --steps N  --warm N (steps before the clock)  --sort N  --transposed\n"
-                            "         --unfused  --per-cell N  --interval N  --dt T  --seed S\n";
+                            "         --unfused  --per-cell N  --interval N  --dt T  --seed S\n"
+                            "         --degrees A  --thermostat 0, 1 or 2  --at-a\n";
 
 static std::string trace(const Pack &pack)
 {
@@ -39,6 +40,12 @@ struct Options {
   Model model; // of a solvent that is drawn here
 };
 
+static void turn_by(Model &model, double degrees)
+{
+  const CirclePoint at = circle_degrees(degrees);
+  model.cosine = at.cosine, model.sine = at.sine;
+}
+
 static Options read_options(int count, char **word)
 {
   Options o;
@@ -49,6 +56,8 @@ static Options read_options(int count, char **word)
       o.settings.transposed = 1;
     } else if (name == "--unfused") {
       o.settings.fused = false;
+    } else if (name == "--at-a") {
+      o.model.andersen = true;
     } else if (k + 1 == count) {
       throw BadInput("unknown option, or its value is missing: " + name);
     } else {
@@ -65,6 +74,10 @@ static Options read_options(int count, char **word)
         o.model.interval = std::atoll(value);
       else if (name == "--dt")
         o.model.time_step = std::atof(value);
+      else if (name == "--thermostat")
+        o.model.thermostat = std::atoi(value);
+      else if (name == "--degrees")
+        turn_by(o.model, std::atof(value));
       else if (name == "--seed")
         o.model.seed = std::strtoull(value, nullptr, 10);
       else
