@@ -1,0 +1,113 @@
+"""`uncross sweep` and `uncross plot` in folders that hold links and pipes where their files would be: what a link leads to
+is not touched, and a pipe is not waited for. Needs UNCROSS."""
+import os
+import pathlib
+import sys
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from support import FolderTest, uncross  # noqa: E402
+
+SCENE = """box: [4, 4, 4]
+time_step: 0.02
+steps: 20
+seed: 1
+solvent: {per_cell: 3, collision_interval: 0.02}
+observe:
+  temperature: {every: 5}
+"""
+SWEPT = "runs.csv", "summary.csv", "scene/temperature.csv"
+
+
+class HostileFolders(FolderTest):
+    def setUp(self):
+        super().setUp()
+        (self.dir / "scene.yaml").write_text(SCENE)
+        self.target = self.dir / "target"
+
+    def call(self, *words):
+        return uncross(*words, cwd=self.dir, timeout=60)
+
+    def refused(self, name, code, *words):
+        done = self.call(*words)
+        self.assertEqual(done.returncode, code, done.stderr)
+        self.assertIn(name, done.stderr)
+        self.assertNotIn("Traceback", done.stderr)
+        self.assertNotIn("Errno", done.stderr)
+        return done.stderr
+
+    def put(self, path, kind):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        if kind == "link":
+            self.target.write_text("mine\n")
+            path.symlink_to(self.target)
+        elif kind == "dangling link":
+            path.symlink_to(self.dir / "nowhere")
+        else:
+            os.mkfifo(path)
+
+    def test_sweeps_write_into_files_only(self):
+        words = "sweep", "scene.yaml", "--out", "sweep", "--seeds", "1..2", "--quiet", "--resume"
+        self.assertEqual(self.call(*words[:-1]).returncode, 0)
+        made = [path for path in (self.dir / "sweep").rglob("*.csv") if "seed-" not in str(path)]
+        self.assertGreaterEqual(len(made), 3)
+        for kind in "link", "dangling link", "pipe":
+            for path in [self.dir / "sweep/.lock", *made, *(path.with_name(path.name + ".part") for path in made)]:
+                before = path.read_bytes() if path.exists() else None
+                path.unlink(missing_ok=True)
+                self.put(path, kind)
+                self.refused(path.name, 4, *words)
+                self.assertFalse((self.dir / "nowhere").exists())
+                if kind == "link":
+                    self.assertEqual(self.target.read_text(), "mine\n", path)
+                path.unlink()
+                if before is not None:
+                    path.write_bytes(before)
+        self.assertEqual(self.call(*words).returncode, 0)
+
+    def test_sweeps_wait_for_no_pipe(self):
+        words = "sweep", "scene.yaml", "--out", "sweep", "--seeds", "1..1", "--quiet"
+        self.assertEqual(self.call(*words).returncode, 0)
+        for name in "run.json", "temperature.csv":
+            path = next((self.dir / "sweep").rglob("seed-1")) / name
+            before = path.read_bytes()
+            path.unlink()
+            os.mkfifo(path)
+            done = self.call(*words, "--resume")
+            self.assertIn(done.returncode, (2, 4), name)
+            self.assertIn(name, done.stderr)
+            self.assertNotIn("Traceback", done.stderr)
+            path.unlink()
+            path.write_bytes(before)
+
+    def test_pages_wait_for_no_pipe(self):
+        os.mkfifo(self.dir / "pipe.csv")
+        os.mkfifo(self.dir / "pipe")
+        for name in "pipe", "pipe.csv":
+            self.refused(f"{name}: not a file but a folder, a pipe or a device", 2, "plot", name, "--out", "page.html")
+        self.assertEqual(self.call("run", "scene.yaml", "--out", "run", "--quiet").returncode, 0)
+        for name in "run.json", "temperature.csv", "trajectory.h5", "checkpoint.h5":
+            path = self.dir / "run" / name
+            before = path.read_bytes() if path.exists() else None
+            path.unlink(missing_ok=True)
+            os.mkfifo(path)
+            done = self.call("plot", "run", "--out", f"{name}.html")
+            page = self.dir / f"{name}.html"
+            said = done.stderr + (page.read_text() if page.exists() else "")
+            self.assertIn(f"{name}: not a file but a folder, a pipe or a device", said)
+            self.assertNotIn("Traceback", said)
+            path.unlink()
+            if before is not None:
+                path.write_bytes(before)
+
+    def test_pages_are_new_files(self):
+        self.assertEqual(self.call("run", "scene.yaml", "--out", "run", "--quiet").returncode, 0)
+        for kind in "link", "dangling link", "pipe":
+            self.put(self.dir / "page.html", kind)
+            self.assertIn(self.call("plot", "run", "--out", "page.html").returncode, (2, 4), kind)
+            self.assertFalse((self.dir / "nowhere").exists())
+            (self.dir / "page.html").unlink()
+
+
+if __name__ == "__main__":
+    unittest.main()
