@@ -159,7 +159,9 @@ UNCROSS_API uncross_sim *uncross_sim_resume(const uncross_scene *scene, const ch
  * way. */
 UNCROSS_API int uncross_sim_advance(uncross_sim *sim, uint64_t steps, uncross_error *error);
 
-/* Writes a checkpoint: the file is at every moment either the old one or the new one. FILES. */
+/* Writes a checkpoint: the file is at every moment either the old one or the new one. Nothing is replaced but a
+ * checkpoint: another file, a link, a pipe or a device under this name is an error, and so is one named PATH.part,
+ * which is needed for a moment. FILES. */
 UNCROSS_API int uncross_sim_save(uncross_sim *sim, const char *path, uncross_error *error);
 
 UNCROSS_API void uncross_sim_free(uncross_sim *sim);

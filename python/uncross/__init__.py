@@ -276,7 +276,7 @@ class Run(_Looks):
         return self
 
     def save(self, path):
-        """Writes a checkpoint."""
+        """Writes a checkpoint, in the place of an earlier one if there is one; of nothing else."""
         _check(lib.uncross_sim_save, self._sim, _bytes(path))
 
 

@@ -308,7 +308,7 @@ def sections_of(run, movie=False):
 
 
 def page_of(run, movie=False):
-    if run.record is None and run.frames is None and len(run.tables) == 1:  # a table alone
+    if run.record is None and run.frames is None and len(run.tables) == 1 and not run.trouble:  # a table alone
         return render(columns.title(run.tables[0].name), [], sections_of(run))
     return render(run.name, front(run), sections_of(run, movie))
 

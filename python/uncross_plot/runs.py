@@ -10,6 +10,7 @@ import tempfile
 import numpy
 
 from uncross_sweep import plateau
+from uncross_sweep.opening import reading
 
 from . import columns, fibers, tables
 
@@ -158,7 +159,7 @@ def read_file(path, units=""):
         return run
     if path.endswith(".json"):
         raise BadInput(f"{path}: give the folder of the run, which has its tables and frames too")
-    with open(path, "rb") as file:
+    with open(path, "rb", opener=reading) as file:
         if file.read(8) != b"\x89HDF\r\n\x1a\n":
             raise BadInput(f"{path}: neither a folder of a run, nor a table *.csv, a trajectory or a checkpoint")
     run.frames = open_frames(path)
@@ -182,7 +183,7 @@ def read(path, units=""):
 
 def _read_record(run, path):
     try:
-        with open(path, encoding="utf-8") as file:
+        with open(path, encoding="utf-8", opener=reading) as file:
             record = json.load(file)
         if not isinstance(record, dict):
             raise ValueError("not a mapping")

@@ -6,6 +6,7 @@ import os
 import numpy
 
 from uncross_sweep import averages, plateau
+from uncross_sweep.opening import reading
 
 from . import columns, page, style
 
@@ -25,7 +26,7 @@ def is_sweep(path):
 
 def _read(path):
     """[{column: text}] of a table; ValueError if it has no line of names."""
-    with open(path, encoding="utf-8", newline="") as file:
+    with open(path, encoding="utf-8", newline="", opener=reading) as file:
         rows = list(csv.reader(file))
     if not rows or any(len(row) != len(rows[0]) for row in rows):
         raise ValueError(f"{path}: not a table of a sweep: rows of different lengths")

@@ -5,6 +5,7 @@ import math
 import numpy
 
 from uncross_sweep import averages
+from uncross_sweep.opening import reading
 
 from . import columns, style
 
@@ -48,7 +49,7 @@ class Table:
 
 def read(path, name, growing=False):
     """A table; ValueError, with file, line and column, if it is none. Of one that is growing the last line may be a part."""
-    with open(path, encoding="utf-8", newline="") as file:
+    with open(path, encoding="utf-8", newline="", opener=reading) as file:
         try:
             text = file.read()
             lines = list(csv.reader((text[:text.rfind("\n") + 1] if growing else text).splitlines()))

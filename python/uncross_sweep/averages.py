@@ -6,7 +6,8 @@ import math
 import numpy
 
 from . import plateau
-from .files import columns, write_text
+from .files import columns
+from .opening import read_text, write_text
 
 LEAST_BLOCKS = 16  # of a series
 KEYS = ("step", "time")  # columns that say which row it is
@@ -109,7 +110,7 @@ def final_numbers(folders, averages, start):
     """One row: averages of time series from step `start` on, the table of statics, and the dynamics of the longest lag
     that has enough intervals in each run (plateau.py). folders: of the runs; averages: their tables, averaged."""
     row = {}
-    series = {name: [columns((folder / f"{name}.csv").read_text()) for folder in folders]
+    series = {name: [columns(read_text(folder / f"{name}.csv")) for folder in folders]
               for name in ("temperature", "collisions") if name in averages}
     for name, (table, column, intervals) in SERIES.items():
         if table in series and all(column in one for one in series[table]):
@@ -165,7 +166,7 @@ def write_rows(path, names, rows):
 def write_averages(folder, folders):
     """Averages the tables of the run folders into `folder`; returns them. Tables that not all runs have are left out."""
     names = sorted(path.stem for path in folders[0].glob("*.csv") if all((run / path.name).exists() for run in folders))
-    made = {name: average([columns((run / f"{name}.csv").read_text()) for run in folders]) for name in names}
+    made = {name: average([columns(read_text(run / f"{name}.csv")) for run in folders]) for name in names}
     for name, table in made.items():
         rows = [dict(zip(table, map(float, values))) for values in zip(*table.values())]
         write_rows(folder / f"{name}.csv", list(table), rows)

@@ -109,5 +109,7 @@ def main(words):
         code, text = BAD_INPUT, refused
     except (jobs.Busy, OSError) as trouble:
         code, text = NOT_WRITTEN, trouble
+        if isinstance(trouble, OSError) and trouble.filename is not None:
+            text = f"{trouble.filename}: {trouble.strerror}"
     print(f"uncross: {text}", file=sys.stderr)
     return code

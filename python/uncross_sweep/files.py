@@ -6,6 +6,8 @@ import sys
 
 import numpy
 
+from .opening import read_text, write_text
+
 
 def columns(text):
     """Comma-separated values under a line of names as a dict of arrays, of floats where all are numbers. A last line
@@ -24,16 +26,9 @@ def columns(text):
 
 def read_json(path):
     try:
-        return json.loads(path.read_text())
+        return json.loads(read_text(path))
     except FileNotFoundError:
         return {}
-
-
-def write_text(path, text):
-    """In place of an earlier file, at once."""
-    aside = path.with_name(path.name + ".part")
-    aside.write_text(text)
-    aside.replace(path)
 
 
 def write_json(path, data):

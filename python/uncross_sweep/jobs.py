@@ -12,6 +12,7 @@ import time
 
 from .files import duration, read_json, take_lock
 from .grid import Refused, is_begun
+from .opening import writing
 
 INTERRUPTED = 5  # exit code of `uncross run` after a signal
 PATIENCE = 30.0  # s; for runs that a killed sweep left, which write their checkpoints
@@ -27,7 +28,7 @@ def locked(folder):
     """Keeps other sweeps out of the folder. Runs inherit the open file: should this process be killed, the folder is
     theirs until they have ended."""
     folder.mkdir(parents=True, exist_ok=True)
-    with open(folder / ".lock", "w", encoding="ascii") as lock:
+    with open(folder / ".lock", "a", encoding="ascii", opener=writing) as lock:
         give_up = time.monotonic() + PATIENCE
         while True:
             try:

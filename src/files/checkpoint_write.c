@@ -1,11 +1,14 @@
 /* Checkpoints are put together in memory, and put in place as a whole. */
+#include <fcntl.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "files/checkpoint_parts.h"
 #include "files/folder.h"
+#include "files/frames.h"
 #include "files/structure.h"
 
 /* --- writing ----------------------------------------------------------------------------------------------------- */
@@ -132,10 +135,48 @@ bool checkpoint_write_in(const struct folder *folder, const char *file, struct c
   return ok;
 }
 
+/* Whether a checkpoint may be put there by its path, where files of others may be: nothing is there, or a checkpoint.
+ */
+static bool is_place_of_checkpoint(const char *path, struct message *message)
+{
+  const struct folder none = {"", FOLDER_BY_NAME};
+  enum h5_sort sort;
+  enum h5_trouble trouble;
+  struct message ignored;
+  if (!folder_has_place(&none, path, message))
+    return false;
+  if (folder_find(&none, path, message) != FOLDER_HAS)
+    return true; /* what cannot be known cannot be written either */
+  return (h5_find_sort(path, &sort, &trouble, &ignored) && sort == H5_CHECKPOINT) ||
+         message_set(message,
+                     "%s: is not a checkpoint, or a damaged one; nothing is written over it: name another file", path);
+}
+
+/* The file that is written first. A killed program may have left it, and it may be another file of the same name. */
+static bool is_part_ours(const char *path, struct message *message)
+{
+  static const unsigned char signature[] = {0x89, 'H', 'D', 'F'};
+  const struct folder none = {"", FOLDER_BY_NAME};
+  unsigned char head[sizeof signature];
+  char part[4096];
+  if ((size_t)snprintf(part, sizeof part, "%s.part", path) >= sizeof part)
+    return message_set(message, "%.200s...: path too long", path);
+  if (!folder_has(&none, part))
+    return true;
+  const int fd = folder_open_file(&none, part, O_RDONLY);
+  const ssize_t bytes = fd < 0 ? -1 : read(fd, head, sizeof head);
+  if (fd >= 0)
+    close(fd);
+  return bytes == 0 || (bytes == sizeof head && memcmp(head, signature, sizeof head) == 0) ||
+         message_set(message,
+                     "%s: is needed for a moment, and holds something else: name another file, or move it away", part);
+}
+
 bool checkpoint_write(const char *path, struct checkpoint_head *head, const struct model *model,
                       const struct state *state, const struct observe_block *blocks, size_t block_count,
                       const char *scene_text, struct message *message)
 {
   const struct folder none = {"", FOLDER_BY_NAME};
-  return checkpoint_write_in(&none, path, head, model, state, blocks, block_count, scene_text, message);
+  return is_place_of_checkpoint(path, message) && is_part_ours(path, message) &&
+         checkpoint_write_in(&none, path, head, model, state, blocks, block_count, scene_text, message);
 }

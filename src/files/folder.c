@@ -252,6 +252,14 @@ static int create_part(const struct folder *folder, const char *part)
   return fd >= 0 || errno != EEXIST || !folder_remove(folder, part) ? fd : folder_open_file(folder, part, how);
 }
 
+bool folder_has_place(const struct folder *folder, const char *file, struct message *message)
+{
+  struct stat status;
+  return !status_of(folder, file, &status) || S_ISREG(status.st_mode) ||
+         message_set(message, "%s%s%s: is a link, a folder, a pipe or a device; nothing is put in its place",
+                     folder->name, folder->name[0] ? "/" : "", file);
+}
+
 /* Writes all and waits until it is on the disk; false with errno set. */
 static bool write_through(const struct folder *folder, const char *part, const char *data, size_t bytes)
 {
@@ -292,6 +300,8 @@ bool file_replace(const struct folder *folder, const char *file, const void *dat
   if ((size_t)snprintf(part, sizeof part, "%s.part", file) >= sizeof part ||
       !folder_path(folder, file, path, sizeof path))
     return message_set(message, "%.200s...: path too long", file);
+  if (!folder_has_place(folder, file, message))
+    return false;
   if (!write_through(folder, part, data, bytes) || !folder_rename(folder, part, file)) {
     message_set(message, "%s: cannot write it (%zu bytes): %s; an earlier one is untouched", path, bytes,
                 strerror(errno));

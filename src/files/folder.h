@@ -74,8 +74,12 @@ int folder_open_file(const struct folder *folder, const char *file, int flags);
 bool folder_rename(const struct folder *folder, const char *from, const char *to);
 bool folder_remove(const struct folder *folder, const char *file);
 
+/* True if a file may be put there: nothing is there yet, or a file. Else with a message. */
+bool folder_has_place(const struct folder *folder, const char *file, struct message *message);
+
 /* Writes file.part, syncs it, and renames it to `file`: that is at every moment either the old file or the new one.
- * False, with a message, on any failure; `file` is then untouched, and file.part gone. */
+ * False, with a message, on any failure, and if `file` is there and is no file; `file` is then untouched, and file.part
+ * gone. A file.part of before, be it a link, is removed: where others have files, ask folder_find. */
 bool file_replace(const struct folder *folder, const char *file, const void *data, size_t bytes,
                   struct message *message);
 

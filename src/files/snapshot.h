@@ -34,7 +34,8 @@ bool checkpoint_write_in(const struct folder *folder, const char *file, struct c
                          const struct model *model, const struct state *state, const struct observe_block *blocks,
                          size_t block_count, const char *scene_text, struct message *message);
 
-/* The same, for a file that is named by its path. */
+/* The same, for a file that is named by its path. Nothing is written over but a checkpoint, nor into what is no file.
+ */
 bool checkpoint_write(const char *path, struct checkpoint_head *head, const struct model *model,
                       const struct state *state, const struct observe_block *blocks, size_t block_count,
                       const char *scene_text, struct message *message);

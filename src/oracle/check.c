@@ -124,7 +124,7 @@ static bool run_port(const struct check_options *o, struct check *k, const char 
 static bool write_input(const struct check_options *o, const struct pack *pack, const char *path,
                         struct message *message)
 {
-  FILE *out = fopen(path, "wb");
+  FILE *out = fopen(path, "wbx");
   if (!out)
     return message_set(message, "%s: cannot create: %s", path, strerror(errno));
   bool ok = o->text ? pack_dump(pack, true, out) : pack_write(pack, out, path, message);

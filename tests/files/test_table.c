@@ -275,6 +275,10 @@ static void test_links_and_pipes_in_a_folder(void **unused)
   char *text = slurp(victim, &bytes);
   assert_string_equal(text, "mine");
   free(text);
+  for (const char *const *odd = (const char *[]){"t.csv", "p.csv", ".", NULL}; *odd; odd++) {
+    assert_false(file_replace(&open, *odd, "new", 3, &m));
+    assert_non_null(strstr(m.text, "is a link, a folder, a pipe or a device"));
+  }
   struct series s;
   uint64_t found;
   assert_false(series_open(&s, &open, "t", 2, names, 4, &m));

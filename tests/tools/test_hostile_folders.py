@@ -16,7 +16,6 @@ solvent: {per_cell: 3, collision_interval: 0.02}
 observe:
   temperature: {every: 5}
 """
-SWEPT = "runs.csv", "summary.csv", "scene/temperature.csv"
 
 
 class HostileFolders(FolderTest):
@@ -50,9 +49,10 @@ class HostileFolders(FolderTest):
         words = "sweep", "scene.yaml", "--out", "sweep", "--seeds", "1..2", "--quiet", "--resume"
         self.assertEqual(self.call(*words[:-1]).returncode, 0)
         made = [path for path in (self.dir / "sweep").rglob("*.csv") if "seed-" not in str(path)]
-        self.assertGreaterEqual(len(made), 3)
-        for kind in "link", "dangling link", "pipe":
-            for path in [self.dir / "sweep/.lock", *made, *(path.with_name(path.name + ".part") for path in made)]:
+        self.assertEqual(sorted(path.name for path in made), ["runs.csv", "summary.csv", "temperature.csv"])
+        places = [self.dir / "sweep" / name for name in (".lock", "summary.csv.part", "runs.csv")]
+        for kind, paths in ("link", [*places, *made]), ("dangling link", places[:2]), ("pipe", places):
+            for path in paths:
                 before = path.read_bytes() if path.exists() else None
                 path.unlink(missing_ok=True)
                 self.put(path, kind)
@@ -86,27 +86,21 @@ class HostileFolders(FolderTest):
         for name in "pipe", "pipe.csv":
             self.refused(f"{name}: not a file but a folder, a pipe or a device", 2, "plot", name, "--out", "page.html")
         self.assertEqual(self.call("run", "scene.yaml", "--out", "run", "--quiet").returncode, 0)
-        for name in "run.json", "temperature.csv", "trajectory.h5", "checkpoint.h5":
-            path = self.dir / "run" / name
-            before = path.read_bytes() if path.exists() else None
-            path.unlink(missing_ok=True)
-            os.mkfifo(path)
-            done = self.call("plot", "run", "--out", f"{name}.html")
-            page = self.dir / f"{name}.html"
-            said = done.stderr + (page.read_text() if page.exists() else "")
+        pipes = "run.json", "other.csv", "trajectory.h5", "checkpoint.h5"
+        for name in pipes:
+            (self.dir / "run" / name).unlink(missing_ok=True)
+            os.mkfifo(self.dir / "run" / name)
+        done = self.call("plot", "run", "--out", "page.html")
+        self.assertEqual(done.returncode, 0)
+        said = done.stderr + (self.dir / "page.html").read_text()
+        for name in pipes:
             self.assertIn(f"{name}: not a file but a folder, a pipe or a device", said)
-            self.assertNotIn("Traceback", said)
-            path.unlink()
-            if before is not None:
-                path.write_bytes(before)
 
     def test_pages_are_new_files(self):
         self.assertEqual(self.call("run", "scene.yaml", "--out", "run", "--quiet").returncode, 0)
-        for kind in "link", "dangling link", "pipe":
-            self.put(self.dir / "page.html", kind)
-            self.assertIn(self.call("plot", "run", "--out", "page.html").returncode, (2, 4), kind)
-            self.assertFalse((self.dir / "nowhere").exists())
-            (self.dir / "page.html").unlink()
+        self.put(self.dir / "page.html", "dangling link")
+        self.assertIn(self.call("plot", "run", "--out", "page.html").returncode, (2, 4))
+        self.assertFalse((self.dir / "nowhere").exists())
 
 
 if __name__ == "__main__":

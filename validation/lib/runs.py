@@ -23,6 +23,7 @@ import numpy
 TREE = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(TREE / "python"))
 from uncross_sweep.files import columns, duration, read_json, take_lock, write_json  # noqa: E402
+from uncross_sweep.opening import writing  # noqa: E402
 
 INTERRUPTED = 5  # exit code of `uncross run` after a signal, and of `validation/run one`
 CHECKPOINT_SECONDS = 120
@@ -197,7 +198,7 @@ def execute(run, folder, build, fresh=False):
     should this process be killed, its child still keeps others out until it ends."""
     folder, build = pathlib.Path(folder), pathlib.Path(build)
     folder.parent.mkdir(parents=True, exist_ok=True)
-    with open(folder.with_name(folder.name + ".lock"), "w", encoding="ascii") as lock:
+    with open(folder.with_name(folder.name + ".lock"), "a", encoding="ascii", opener=writing) as lock:
         take_lock(lock, fcntl.LOCK_EX, "makes this run")  # two stages of one run take turns
         return execute_locked(run, folder, build, fresh, lock.fileno())
 

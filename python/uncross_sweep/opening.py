@@ -1,0 +1,59 @@
+"""The one way in which programs in Python open files that may be anything: uncross_plot and the campaign use it too.
+
+Reading: regular files only, so that no pipe is waited for. Writing: never through a link, never into what is no regular
+file, never over a file that was not looked at."""
+import contextlib
+import errno
+import os
+import stat
+
+
+class NoFile(OSError):
+    """What is there is no regular file."""
+
+    def __str__(self):
+        return f"{self.filename}: {self.strerror}"
+
+
+def _regular(fd, path):
+    if not stat.S_ISREG(os.fstat(fd).st_mode):
+        os.close(fd)
+        raise NoFile(errno.EINVAL, "not a file but a folder, a pipe or a device", str(path))
+    return fd
+
+
+def reading(path, flags):
+    """An `opener` of open: `open(path, opener=reading)`."""
+    return _regular(os.open(path, flags | os.O_NONBLOCK | os.O_CLOEXEC | os.O_NOCTTY), path)
+
+
+def writing(path, flags):
+    """The same. A file that is there is emptied (mode "w") only once it is known to be one."""
+    fd = os.open(path, flags & ~os.O_TRUNC | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC | os.O_NOCTTY, 0o666)
+    _regular(fd, path)
+    if flags & os.O_TRUNC:
+        os.ftruncate(fd, 0)
+    return fd
+
+
+def read_text(path):
+    with open(path, encoding="utf-8", opener=reading) as file:
+        return file.read()
+
+
+def _look(path):
+    """Nothing is put in the place of what is no file."""
+    with contextlib.suppress(FileNotFoundError):
+        if not stat.S_ISREG(os.lstat(path).st_mode):
+            raise NoFile(errno.EINVAL, "is a link, a folder, a pipe or a device; nothing is written there", str(path))
+
+
+def write_text(path, text):
+    """In place of an earlier file, at once. It is made beside that, as PATH.part."""
+    aside = path.with_name(path.name + ".part")
+    _look(aside)
+    _look(path)
+    aside.unlink(missing_ok=True)  # a program that was killed left it
+    with open(aside, "x", encoding="utf-8", opener=writing) as file:
+        file.write(text)
+    aside.replace(path)
