@@ -17,6 +17,10 @@
  * Threads: different handles may be used by different threads at the same time, with one exception: HDF5 is not safe
  * for threads as Debian builds it, so only one thread of a process may be in a function that reads or writes files.
  * These functions are marked FILES. One handle is for one thread at a time.
+ *
+ * Processes: a process that forks off (fork) has a copy of every handle. A simulation may be used in both; each has its
+ * own. A run in a folder stays with the process that opened it. In the other one it can be looked at; advance and save
+ * are errors, close and free do nothing.
  */
 #ifndef UNCROSS_INTERFACE_H
 #define UNCROSS_INTERFACE_H

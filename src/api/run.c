@@ -74,10 +74,19 @@ static bool keep_on(void *context)
   return !w->watch || w->watch(w->context, w->run);
 }
 
+/* A copy in a forked process. HDF5 is not called there either: another thread may have been at work in it. */
+static int fail_forked(uncross_error *error)
+{
+  return fail(error, UNCROSS_BAD_INPUT,
+              "this process was forked off while the run was open: the run goes on in the other", NULL);
+}
+
 int uncross_run_advance(uncross_run *run, uint64_t steps, uncross_run_watch *watch, void *context, uncross_error *error)
 {
   if (!run)
     return fail_null(error, "run");
+  if (!run_is_ours(&run->run))
+    return fail_forked(error);
   struct call call;
   struct message message;
   struct watched watched = {run, watch, context};
@@ -92,6 +101,8 @@ int uncross_run_save(uncross_run *run, uncross_error *error)
 {
   if (!run)
     return fail_null(error, "run");
+  if (!run_is_ours(&run->run))
+    return fail_forked(error);
   struct call call;
   struct message message;
   call_begin(&call, true);
@@ -104,6 +115,8 @@ int uncross_run_close(uncross_run *run, uncross_error *error)
 {
   if (!run)
     return fail_null(error, "run");
+  if (!run_is_ours(&run->run))
+    return UNCROSS_OK;
   struct call call;
   struct message message;
   call_begin(&call, true);
@@ -116,7 +129,7 @@ int uncross_run_close(uncross_run *run, uncross_error *error)
 
 void uncross_run_free(uncross_run *run)
 {
-  if (!run)
+  if (!run || (run->run.owner && !run_is_ours(&run->run)))
     return;
   struct call call;
   call_begin(&call, true);

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/clock.h"
 #include "files/checkpoint.h"
@@ -60,6 +61,11 @@ static enum run_code take_folder(struct run *run, struct message *message)
     return RUN_NOT_WRITTEN;
   snprintf(run->unlocked, sizeof run->unlocked, "%s", message->text);
   return check_folder(run, message);
+}
+
+bool run_is_ours(const struct run *run)
+{
+  return run->owner == getpid();
 }
 
 bool run_fingerprint(const char *path, uint64_t *fingerprint)
@@ -276,7 +282,7 @@ static void close_all(struct run *run)
 enum run_code run_open(struct run *run, const struct run_parts *parts, const char *folder, bool resume,
                        const uint64_t *seed, struct message *message)
 {
-  *run = (struct run){.parts = *parts, .resume = resume, .made = SIZE_MAX};
+  *run = (struct run){.parts = *parts, .owner = getpid(), .resume = resume, .made = SIZE_MAX};
   run->name = strdup(folder);
   run->folder = (struct folder){run->name, FOLDER_BY_NAME};
   message_set(message, "no memory for the name of the folder");

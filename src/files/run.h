@@ -8,6 +8,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <sys/types.h>
 
 #include "base/message.h"
 #include "files/folder.h"
@@ -36,6 +37,7 @@ struct run_parts {
 
 struct run {
   struct run_parts parts;
+  pid_t owner;          /* the process that opened it */
   char *name;           /* of the folder */
   struct folder folder; /* locked while the run writes */
   size_t made;          /* for folder_unmake */
@@ -54,6 +56,10 @@ struct run {
   bool first_interval;    /* no checkpoint was due in this session yet */
   double earlier_seconds; /* spent in earlier sessions */
 };
+
+/* False in a process that forked off since the run was opened, and has a copy of it. No other function may be called
+ * there, as all files are the owner's, which goes on with them. */
+bool run_is_ours(const struct run *run);
 
 /* The fingerprint of the scene that a checkpoint is of; false if it cannot be read. */
 bool run_fingerprint(const char *path, uint64_t *fingerprint);

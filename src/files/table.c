@@ -99,6 +99,12 @@ static FILE *open_stream(const struct folder *folder, const char *name, int flag
   return file;
 }
 
+/* What stays in a buffer is written once more by every process that forks off this one and ends. */
+static bool flushed(const struct series *s)
+{
+  return fflush(s->file) == 0 && !ferror(s->file);
+}
+
 bool series_open(struct series *s, const struct folder *folder, const char *name, size_t columns,
                  const char *const *names, uint64_t end, struct message *message)
 {
@@ -114,7 +120,7 @@ bool series_open(struct series *s, const struct folder *folder, const char *name
   else if (!find_kept(s->file, columns, names, end, &kept) || ftruncate(fileno(s->file), kept.bytes) != 0 ||
            fseek(s->file, kept.bytes, SEEK_SET) != 0)
     return failed(message, s->path, "cut to the checkpoint");
-  return true;
+  return flushed(s) || failed(message, s->path, "write");
 }
 
 bool series_find_end(const struct folder *folder, const char *name, size_t columns, const char *const *names,
@@ -137,12 +143,12 @@ bool series_row(struct series *s, uint64_t step, size_t columns, const double *v
 {
   fprintf(s->file, "%" PRIu64, step);
   write_values(s->file, ",", columns, values);
-  return !ferror(s->file) || failed(message, s->path, "write");
+  return flushed(s) || failed(message, s->path, "write");
 }
 
 bool series_sync(struct series *s, struct message *message)
 {
-  return !s->file || (fflush(s->file) == 0 && fsync(fileno(s->file)) == 0) || failed(message, s->path, "write");
+  return !s->file || (flushed(s) && fsync(fileno(s->file)) == 0) || failed(message, s->path, "write");
 }
 
 bool series_close(struct series *s, struct message *message)
