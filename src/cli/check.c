@@ -13,6 +13,7 @@
 #include "mpc/rule.h"
 #include "scene/scene.h"
 #include "system/fiber_kind.h"
+#include "theory/load.h"
 #include "theory/theory.h"
 #include "work.h"
 
@@ -204,6 +205,20 @@ static void report_kind(const struct si_scale *si, const struct model *m, const 
   report_flow(si, m, k);
 }
 
+/* What the flow meets: vertices that go with it, and the diameter that fibers have in it. */
+static void report_load(const struct si_scale *si, const struct model *m)
+{
+  const double filled = theory_line_density(m) * 0.25 * 3.14159265358979323846 * 0.6 * 0.6;
+  if (!theory_is_loaded(m))
+    return;
+  sheet_row(si, "mass per cell", "rho", m->solvent.per_cell + theory_load(m), "m/a0^3", "solvent and vertices");
+  sheet_row(si, "viscosity of the loaded fluid", "eta_l", theory_loaded_viscosity(m), "m/a0 t0",
+            "loose vertices; bonds add to it");
+  sheet_row(si, "... over that of the solvent", "", theory_loaded_viscosity(m) / units_viscosity(m), "", "");
+  if (m->bonds > 0 && !model_is_flat(m))
+    sheet_row(si, "volume that the flow finds filled", "", filled, "", "c L pi b^2/4, b = 0.6 a0");
+}
+
 static void report_suspension(const struct si_scale *si, const struct model *m)
 {
   sheet_heading("Suspension");
@@ -215,6 +230,7 @@ static void report_suspension(const struct si_scale *si, const struct model *m)
   sheet_row(si, "bonds", "", m->bonds, "", "");
   sheet_row(si, "vertices per cell", "", m->vertices / cells, "1/a0^3", "");
   sheet_row(si, "mass of vertices per cell", "", (m->total_mass - m->solvent.particles) / cells, "m/a0^3", "");
+  report_load(si, m);
   sheet_row(si, "fiber length per volume", "c L", theory_line_density(m), "1/a0^2", "");
   if (!m->crossing.forbidden)
     return;

@@ -5,6 +5,7 @@
 #include "cli/quantity.h"
 #include "cli/units.h"
 #include "theory/flow.h"
+#include "theory/load.h"
 #include "theory/theory.h"
 
 static void report_period(const struct si_scale *si, const struct model *m)
@@ -18,7 +19,8 @@ static void report_period(const struct si_scale *si, const struct model *m)
 
 void check_shear(const struct si_scale *si, const struct model *m)
 {
-  const double height = m->box.cells[1], gamma = m->solvent.per_cell, eta = units_viscosity(m), rate = m->shear.rate;
+  const double height = m->box.cells[1], gamma = m->solvent.per_cell, rate = m->shear.rate;
+  const double eta = theory_loaded_viscosity(m);
   const double speed = 0.5 * fabs(rate) * height;
   sheet_heading("Shear (of the box; linear from the start)");
   sheet_row(si, "shear rate", "", rate, "1/t0", m->wave.intervals ? "largest" : "");
@@ -27,7 +29,7 @@ void check_shear(const struct si_scale *si, const struct model *m)
   sheet_row(si, "velocity at the boundary", "", speed, "a0/t0", "rate L/2");
   sheet_row(si, "Mach number", "Ma", theory_mach(speed, theory_sound_speed(model_is_isothermal(m), m->dimensions)), "",
             "of this velocity; harmless, since nothing is there");
-  sheet_row(si, "shear stress", "", eta * rate, "kT/a0^3", "eta times rate");
+  sheet_row(si, "shear stress", "", eta * rate, "kT/a0^3", theory_is_loaded(m) ? "eta_l times rate" : "eta times rate");
   sheet_row(si, "heat", "", theory_flow_heating(eta, theory_mean_shear_rate(m), gamma, m->dimensions), "kT/t0",
             model_is_isothermal(m) ? "the thermostat takes it away" : "2 eta rate^2/(d rho)");
 }

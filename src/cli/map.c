@@ -2,10 +2,13 @@
  * choices, which are those of the paper's scenes. */
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "cli/command.h"
 #include "cli/quantity.h"
 #include "mpc/rule.h"
+#include "scene/load_words.h"
+#include "scene/scene.h"
 #include "system/fiber_kind.h"
 #include "theory/theory.h"
 
@@ -33,8 +36,14 @@ static const struct quantity_row rows[] = {
 #define PAPER_ANGLE 90.0
 #define MOST_VERTICES 1e6
 
+/* Time steps in a collision interval: two, and more for a fiber whose fastest vibration needs them. */
+#define PAPER_SPLIT 2
+#define MOST_SPLIT 64
+#define MOST_PHASE 0.5 /* omega dt */
+
 struct mapped {
   struct fiber_kind kind;
+  int split; /* time steps in a collision interval */
   double a0;
   double edge;  /* a0 */
   double count; /* fibers in the box */
@@ -74,6 +83,25 @@ static bool lay_out(const struct given *f, const struct units *u, struct mapped 
          message_set(message, "map: the fiber is too stiff: bending would be above %g kT", MODEL_MOST_BENDING);
 }
 
+/* Time steps that are short enough for the fastest vibration. A fiber that is straight anyway needs no stiffness that
+ * takes more of them. */
+static bool choose_step(const struct given *f, struct mapped *p, struct message *message)
+{
+  const double omega = fiber_highest_frequency(&p->kind);
+  p->split = PAPER_SPLIT;
+  while (p->split < MOST_SPLIT && omega * PAPER_INTERVAL / p->split > MOST_PHASE)
+    p->split *= 2;
+  const double phase = omega * PAPER_INTERVAL / p->split, least = pow(MOST_PHASE / phase, 2.0);
+  char text[64];
+  return phase <= MOST_PHASE ||
+         message_set(
+             message,
+             "map: the fiber is too stiff: its fastest vibration, %.3g / t0, needs time steps below %.3g t0; use "
+             "a persistence length of %s or less, which is %.3g times the length",
+             omega, MOST_PHASE / omega, quantity_text(0.9 * least * f->persistence, "m", true, text, sizeof text),
+             0.9 * least * f->persistence / f->length);
+}
+
 /* A box in which no fiber meets its own image, and as many fibers as the mesh asks for: c L = 3/xi^2. */
 static bool fill_box(const struct given *f, struct mapped *p, struct message *message)
 {
@@ -109,54 +137,116 @@ static bool read_all(const struct arguments *a, struct given *f, struct units *u
 
 /* --- printing ----------------------------------------------------------------------------------------------------- */
 
-static void print_head(const struct given *f, const struct units *u, const struct mapped *p)
+/* The comment at the head, without what follows from the whole scene. */
+static void write_head(FILE *out, const struct given *f, const struct units *u, const struct mapped *p)
 {
-  char text[3][64];
-  printf("# A fiber of length %s and persistence length %s at %.6g K, in %u vertices (uncross map, docs/units.md).\n"
-         "# SI units of this scene: --units a0=%.9gnm,T=%.9gK",
-         quantity_text(f->length, "m", true, text[0], sizeof text[0]),
-         quantity_text(f->persistence, "m", true, text[1], sizeof text[1]), u->temperature, p->kind.vertices,
-         1e9 * p->a0, u->temperature);
+  char text[2][64];
+  fprintf(out,
+          "# A fiber of length %s and persistence length %s at %.6g K, in %u vertices (uncross map, docs/units.md).\n"
+          "# SI units of this scene: --units a0=%.9gnm,T=%.9gK",
+          quantity_text(f->length, "m", true, text[0], sizeof text[0]),
+          quantity_text(f->persistence, "m", true, text[1], sizeof text[1]), u->temperature, p->kind.vertices,
+          1e9 * p->a0, u->temperature);
   if (u->viscosity > 0.0)
-    printf(",eta=%.9gmPas", 1e3 * u->viscosity);
+    fprintf(out, ",eta=%.9gmPas", 1e3 * u->viscosity);
   if (u->density > 0.0)
-    printf(",rho=%.9gkg/m3", u->density);
+    fprintf(out, ",rho=%.9gkg/m3", u->density);
   if (u->mass > 0.0)
-    printf(",mass=%.9gkg", u->mass);
+    fprintf(out, ",mass=%.9gkg", u->mass);
   if (u->time > 0.0)
-    printf(",t0=%.9gs", u->time);
-  printf("\n#\n# What differs from the experiment:\n");
+    fprintf(out, ",t0=%.9gs", u->time);
+  fputs("\n#\n# What differs from the experiment:\n", out);
+}
+
+static void write_differences(FILE *out, const struct given *f, const struct units *u, const struct mapped *p)
+{
+  char text[2][64];
   if (p->kind.bending > 0.0 && f->diameter > 0.0) {
     const double wrong = PAPER_DIAMETER * p->a0;
     const double ratio =
         theory_rod_diffusion(1.0, f->length, wrong) / theory_rod_diffusion(1.0, f->length, f->diameter);
-    printf("# - In the flow the fiber has a diameter of %s (0.6 a0), not %s. A straight one diffuses %.3g times as "
-           "fast.\n",
-           quantity_text(wrong, "m", true, text[0], sizeof text[0]),
-           quantity_text(f->diameter, "m", true, text[1], sizeof text[1]), ratio);
+    fprintf(out,
+            "# - In the flow the fiber has a diameter of %s (0.6 a0), not %s. A straight one diffuses %.3g times as "
+            "fast.\n",
+            quantity_text(wrong, "m", true, text[0], sizeof text[0]),
+            quantity_text(f->diameter, "m", true, text[1], sizeof text[1]), ratio);
   }
-  printf("# - The springs are the paper's (%.6g kT/a0^2 = %s), not the fiber's own.\n", p->kind.spring,
-         quantity_text(p->kind.spring * SI_BOLTZMANN * u->temperature / (p->a0 * p->a0), "N/m", true, text[0],
-                       sizeof text[0]));
-  printf("# - Between contacts fibers have no width: no excluded volume.\n");
+  fprintf(out, "# - The springs are the paper's (%.6g kT/a0^2 = %s), not the fiber's own.\n", p->kind.spring,
+          quantity_text(p->kind.spring * SI_BOLTZMANN * u->temperature / (p->a0 * p->a0), "N/m", true, text[0],
+                        sizeof text[0]));
+  fputs("# - Between contacts fibers have no width: no excluded volume.\n", out);
   if (p->kind.bending == 0.0)
-    printf("# - A bond is longer than l_p: the chain has no stiffness. Its R_e is that of the wormlike chain, %s.\n",
-           quantity_text(sqrt(si_wormlike_square(f->length, f->persistence)), "m", true, text[0], sizeof text[0]));
+    fprintf(out,
+            "# - A bond is longer than l_p: the chain has no stiffness. Its R_e is that of the wormlike chain, %s.\n",
+            quantity_text(sqrt(si_wormlike_square(f->length, f->persistence)), "m", true, text[0], sizeof text[0]));
 }
 
-static void print_scene(const struct mapped *p)
+#define MUCH_FILLED 0.05 /* of the volume */
+
+/* What is wrong with many fibers in a box. */
+static void write_crowd(FILE *out, const struct mapped *p, const struct model *m)
+{
+  const double length = p->kind.count * fiber_contour(&p->kind) / box_volume(&m->box);
+  const double filled = 0.25 * 3.14159265358979323846 * PAPER_DIAMETER * PAPER_DIAMETER * length;
+  char text[512];
+  if (p->kind.bending > 0.0 && filled > MUCH_FILLED)
+    fprintf(out, "# - With the diameter that they have in the flow, 0.6 a0, fibers fill %.0f %% of the volume.\n",
+            100.0 * filled);
+  if (load_words(m, "--set fibers.fiber.mass", "--set solvent.per_cell", text, sizeof text))
+    fprintf(out, "# - The %s.\n", text);
+}
+
+static void write_scene(FILE *out, const struct mapped *p)
 {
   const int edge = (int)p->edge;
-  printf("\nbox: [%d, %d, %d]\ntime_step: 0.01\nsteps: 10000\nseed: 1\n\n"
-         "solvent:\n  per_cell: %g\n  collision_interval: %g\n  rotation_angle: %g\n\n"
-         "fibers:\n  - name: fiber\n    count: %u\n    vertices: %u\n    mass: %g\n    bond_length: %.9g\n    spring: "
-         "%.9g\n",
-         edge, edge, edge, PAPER_GAMMA, PAPER_INTERVAL, PAPER_ANGLE, p->kind.count, p->kind.vertices, p->kind.mass,
-         p->kind.bond_length, p->kind.spring);
+  fprintf(out,
+          "\nbox: [%d, %d, %d]\ntime_step: %.9g\nsteps: %d\nseed: 1\n\n"
+          "solvent:\n  per_cell: %g\n  collision_interval: %g\n  rotation_angle: %g\n\n"
+          "fibers:\n  - name: fiber\n    count: %u\n    vertices: %u\n    mass: %g\n    bond_length: %.9g\n    spring: "
+          "%.9g\n",
+          edge, edge, edge, PAPER_INTERVAL / p->split, 10000 / PAPER_SPLIT * p->split, PAPER_GAMMA, PAPER_INTERVAL,
+          PAPER_ANGLE, p->kind.count, p->kind.vertices, p->kind.mass, p->kind.bond_length, p->kind.spring);
   if (p->kind.bending > 0.0)
-    printf("    bending: %.9g\n", p->kind.bending);
-  printf("\nobserve:\n  conserved: {every: 100}\n  statics: {every: 100}\n  dynamics: {every: 10}\n\n"
-         "trajectory: {every: 100}\n");
+    fprintf(out, "    bending: %.9g\n", p->kind.bending);
+  fputs("\nobserve:\n  conserved: {every: 100}\n  statics: {every: 100}\n  dynamics: {every: 10}\n\n"
+        "trajectory: {every: 100}\n",
+        out);
+}
+
+/* The text of the scene, to be freed; NULL if memory is short. */
+static char *scene_text(const struct mapped *p, size_t *size)
+{
+  char *text = NULL;
+  FILE *out = open_memstream(&text, size);
+  if (!out)
+    return NULL;
+  write_scene(out, p);
+  if (fclose(out) == 0)
+    return text;
+  free(text);
+  return NULL;
+}
+
+/* Reads the scene as `check` does before it prints it: what is printed can be run. */
+static bool print_all(const struct given *f, const struct units *u, const struct mapped *p, struct message *message)
+{
+  size_t size = 0;
+  char *text = scene_text(p, &size);
+  struct scene scene;
+  struct message why;
+  const bool good = text && scene_read_text("map", text, size, &scene, &why);
+  if (good) {
+    write_head(stdout, f, u, p);
+    write_differences(stdout, f, u, p);
+    write_crowd(stdout, p, &scene.model);
+    fputs(text, stdout);
+    scene_free(&scene);
+  } else if (text)
+    message_set(message, "map: no scene for these fibers: %s", why.text);
+  else
+    message_set(message, "map: no memory");
+  free(text);
+  return good;
 }
 
 enum exit_code command_map(const struct arguments *a)
@@ -165,11 +255,10 @@ enum exit_code command_map(const struct arguments *a)
   struct units u;
   struct mapped p;
   struct message message;
-  if (!read_all(a, &f, &u, &message) || !lay_out(&f, &u, &p, &message) || !fill_box(&f, &p, &message)) {
+  if (!read_all(a, &f, &u, &message) || !lay_out(&f, &u, &p, &message) || !choose_step(&f, &p, &message) ||
+      !fill_box(&f, &p, &message) || !print_all(&f, &u, &p, &message)) {
     fprintf(stderr, "uncross: %s\n", message.text);
     return EXIT_BAD_INPUT;
   }
-  print_head(&f, &u, &p);
-  print_scene(&p);
   return EXIT_DONE;
 }

@@ -6,6 +6,7 @@
 #include "cli/sheet.h"
 #include "mpc/rule.h"
 #include "theory/dumbbell.h"
+#include "theory/load.h"
 #include "theory/theory.h"
 
 #define AT(member) offsetof(struct units, member)
@@ -54,18 +55,22 @@ static const struct choice {
   bool solvent; /* the scene must have one */
   double (*time)(const struct units *units, const struct model *model, const struct si_scale *scale);
   const char *right, *wrong;
+  const char *loaded; /* what is right where vertices load the fluid */
 } choices[] = {
     {"eta", AT(viscosity), true, time_of_viscosity,
      "lengths, energies, forces, and the times of all that viscosity governs (diffusion, relaxation, drag)",
-     "the density, so inertia and Reynolds numbers are too large by its ratio; sound; the Schmidt number"},
+     "the density, so inertia and Reynolds numbers are too large by its ratio; sound; the Schmidt number",
+     "lengths, energies, forces, and the viscosity of the solvent alone"},
     {"rho", AT(density), true, time_of_density,
      "lengths, energies, forces, and inertia: masses, thermal velocities of vertices",
      "the viscosity, so whatever it governs (diffusion, relaxation) is faster by 1 over its ratio; sound; the Schmidt "
-     "number"},
+     "number",
+     "lengths, energies, forces, masses, and the density of the solvent alone"},
     {"mass", AT(mass), false, time_of_mass, "lengths, energies, forces, and masses",
-     "the solvent's density and viscosity, as listed; sound; the Schmidt number"},
+     "the solvent's density and viscosity, as listed; sound; the Schmidt number",
+     "lengths, energies, forces, and masses"},
     {"t0", AT(time), false, time_given, "lengths, energies, forces",
-     "the solvent's density and viscosity, as listed; sound; the Schmidt number"},
+     "the solvent's density and viscosity, as listed; sound; the Schmidt number", "lengths, energies, forces"},
 };
 enum { CHOICES = sizeof choices / sizeof *choices };
 
@@ -133,6 +138,17 @@ static void report_solvent(const struct model *m, const struct si_scale *s)
   beside("Schmidt number", theory_model_schmidt(m), nu_water / SI_WATER_DIFFUSION, "", false);
 }
 
+static void report_right(const struct model *m, const struct choice *c)
+{
+  const double factor = theory_loaded_viscosity(m) / units_viscosity(m), gamma = model_solvent_density(m);
+  if (factor > THEORY_HEAVY_LOAD)
+    printf("  right:  %s\n  wrong:  viscosity and density of the fluid with its vertices, %.3g and %.3g times the "
+           "solvent's, and so the times of diffusion, relaxation and drag; %s\n",
+           c->loaded, factor, (gamma + theory_load(m)) / gamma, c->wrong);
+  else
+    printf("  right:  %s\n  wrong:  %s\n", c->right, c->wrong);
+}
+
 void units_report(const struct units *u, const struct model *m, const struct si_scale *s)
 {
   const struct choice *c = choice_of(u);
@@ -147,6 +163,6 @@ void units_report(const struct units *u, const struct model *m, const struct si_
   sheet_row(s, "unit of mass, a solvent particle", "m", 1.0, "m", "kT t0^2/a0^2");
   if (model_has_solvent(m)) {
     report_solvent(m, s);
-    printf("  right:  %s\n  wrong:  %s\n", c->right, c->wrong);
+    report_right(m, c);
   }
 }

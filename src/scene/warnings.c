@@ -4,10 +4,12 @@
 #include <stdio.h>
 
 #include "mpc/rule.h"
+#include "scene/load_words.h"
 #include "scene/scene.h"
 #include "system/fiber_kind.h"
 #include "theory/dumbbell.h"
 #include "theory/flow.h"
+#include "theory/load.h"
 #include "theory/theory.h"
 
 struct teller {
@@ -114,7 +116,7 @@ static void warn_walls(struct teller *t, const struct model *m)
           : 0.0;
   const double speed = fmax(driven, fmax(vec3_norm(m->walls.lower), vec3_norm(m->walls.upper)));
   const double mach = theory_mach(speed, theory_sound_speed(model_is_isothermal(m), m->dimensions));
-  const double heating = theory_flow_heating(eta, rate, m->solvent.per_cell, m->dimensions);
+  const double heating = theory_flow_heating(theory_loaded_viscosity(m), rate, m->solvent.per_cell, m->dimensions);
   if (m->solvent.thermostat == THERMOSTAT_RESCALE)
     warn(t,
          "thermostat rescale has one factor for the whole box, but flow between walls heats unevenly, and walls hold "
@@ -142,7 +144,7 @@ static void warn_shear(struct teller *t, const struct model *m)
 {
   const double rate = fabs(m->shear.rate), strain = rate * model_collision_interval(m);
   const double heating =
-      theory_flow_heating(theory_model_viscosity(m), theory_mean_shear_rate(m), m->solvent.per_cell, m->dimensions);
+      theory_flow_heating(theory_loaded_viscosity(m), theory_mean_shear_rate(m), m->solvent.per_cell, m->dimensions);
   if (strain > MOST_STRAIN)
     warn(t,
          "shear: the strain in a collision interval is %.3g > %g, so that the viscosity depends on the rate; use a "
@@ -395,6 +397,9 @@ int scene_warnings(const struct scene *scene, void (*tell)(void *context, const 
     warn_profile(&t, m);
   for (uint32_t k = 0; k < m->kinds; k++)
     warn_kind(&t, scene, &m->kind[k]);
+  char heavy[448];
+  if (load_words(m, "mass", "solvent.per_cell", heavy, sizeof heavy))
+    warn(&t, "%s", heavy);
   if (model_has_dumbbells(m) && model_collides(m))
     warn_dumbbells(&t, m);
   warn_heating(&t, scene);

@@ -958,8 +958,21 @@ static void warning_of_heat(void **unused)
   scene_warnings(&s, collect, all);
   assert_true(strtod(strstr(all, "time_step ") + 10, NULL) >= 0.999e-9 * model_collision_interval(&s.model));
   s.model.solvent.thermostat = THERMOSTAT_RESCALE;
-  assert_int_equal(scene_warnings(&s, NULL, NULL), 0);
+  all[0] = '\0';
+  assert_int_equal(scene_warnings(&s, collect, all), 1);
+  assert_non_null(strstr(all, "vertices load the fluid"));
   scene_free(&s);
+}
+
+/* Shipped scenes that are dense on purpose: their vertices make the fluid more than a quarter more viscous. */
+static bool is_loaded(const char *path)
+{
+  static const char *const loaded[] = {"scenes/dense.yaml", "scenes/dense-crossable.yaml", "scenes/thick.yaml",
+                                       "scenes/bead-fibers.yaml", "scenes/fibers-shear.yaml"};
+  for (size_t i = 0; i < sizeof loaded / sizeof *loaded; i++)
+    if (strcmp(path, loaded[i]) == 0)
+      return true;
+  return false;
 }
 
 static void shipped_scenes_are_sound(void **unused)
@@ -971,7 +984,8 @@ static void shipped_scenes_are_sound(void **unused)
     char all[8192] = "";
     if (!scene_read(shipped[i], &s, &message))
       fail_msg("%s", message.text);
-    if (scene_warnings(&s, collect, all) > 0)
+    const int told = scene_warnings(&s, collect, all);
+    if (told != is_loaded(shipped[i]) || (told > 0 && !strstr(all, "vertices load the fluid")))
       fail_msg("%s: %s", shipped[i], all);
     scene_free(&s);
   }

@@ -7,7 +7,9 @@
 
 #include "fiber/force.h"
 #include "system/fiber_kind.h"
+#include "theory/dumbbell.h"
 #include "theory/flow.h"
+#include "theory/load.h"
 #include "theory/theory.h"
 
 /* |actual/expected - 1| <= tolerance */
@@ -467,6 +469,27 @@ static void net_force(void **unused)
   model_free(&m);
 }
 
+/* 3 vertices of mass 5 and 0.5 of mass 0.75 per cell: h = sum over Poisson numbers n, a, b below 60 of p (c - (n + a
+ * 5^2
+ * + b 0.75^2)/c), c = n + 5 a + 0.75 b; factor (eta_kin + eta_col h/P)/(eta_kin + eta_col) with the numbers of
+ * `viscosity`. */
+static void loaded_fluid(void **unused)
+{
+  (void)unused;
+  struct model m = test_model(10, 10, 10, 5, 0.01, 2);
+  test_add_kind(&m, 300, 10)->mass = 5.0;
+  test_add_kind(&m, 100, 5)->mass = 0.75;
+  test_finish(&m);
+  assert_true(theory_is_loaded(&m));
+  close_to(theory_load(&m), 15.375, 1e-14);
+  close_to(theory_load_factor(&m, 1.0, 5.0), 4.142056534537778, 1e-11);
+  close_to(theory_load_factor(&m, 0.5, 5.0), 2.7035203093542344, 1e-11);
+  close_to(theory_loaded_viscosity(&m), 46.3240110874855, 1e-11);
+  m.solvent.hydrodynamics = false;
+  assert_true(theory_loaded_viscosity(&m) == theory_model_viscosity(&m));
+  model_free(&m);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -492,6 +515,7 @@ int main(void)
       cmocka_unit_test(self_collisions),
       cmocka_unit_test(flow_between_walls),
       cmocka_unit_test(net_force),
+      cmocka_unit_test(loaded_fluid),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
