@@ -102,6 +102,11 @@ def page_of(a, b, movie=False):
 
 def _kin(a, b):
     """Differences are judged as if the runs were independent."""
-    seeds = [(run.record or {}).get("seed") for run in (a, b)]
-    return ([f"Both have the seed {seeds[0]}: their fluctuations may be alike, and differences over errors too small."]
-            if seeds[0] is not None and seeds[0] == seeds[1] else [])
+    streams, starts = zip(*(runs.stream_and_start(run.record) for run in (a, b)))
+    said = []
+    if streams[0] and streams[0] == streams[1]:
+        said.append(f"Both draw the same random numbers (stream {streams[0]}): their fluctuations may be alike, and "
+                    "differences over errors too small.")
+    if starts[0] and starts[0] == starts[1]:
+        said.append("Both begin with the same state of a snapshot: they are alike until it is forgotten.")
+    return said

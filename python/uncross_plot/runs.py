@@ -238,6 +238,12 @@ def _number(line, has_si):
 
 # --- what to distrust --------------------------------------------------------------------------------------------------
 
+def stream_and_start(record):
+    """Which random numbers a run draws, and the state of the snapshot that it begins with; of each None if not known or none."""
+    record = record or {}
+    return record.get("stream", record.get("seed")), (record.get("stream_from") or {}).get("state")
+
+
 def distrust(run):
     """Sentences, the gravest first; an empty list if nothing is known against the run."""
     return [*_ended(run), *run.trouble, *(run.record or {}).get("warnings", []), *_faults(run), *_short(run),

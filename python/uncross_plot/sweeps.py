@@ -118,6 +118,26 @@ def figure(rows, keys, name):
         return style.svg(drawing)
 
 
+def _kin(runs, keys):
+    """What runs have in common that are averaged, or compared, as if they were independent."""
+    said, points = [], {}
+    for run in runs:
+        points.setdefault(tuple(run[key] for key in keys), []).append(run)
+    for mine in points.values():
+        streams = [run["stream"] for run in mine if run.get("stream")]
+        if len(set(streams)) < len(streams):
+            said.append(f"{mine[0]['folder']}: runs that are averaged draw the same random numbers (a stream twice in runs.csv): "
+                        "errors are too small.")
+    if any(len(starts) > len(set(starts)) for starts in (
+            [run["start_state"] for run in mine if run.get("start_state")] for mine in points.values())):
+        said.append("Runs of one point begin with the same state of a snapshot: they are independent only when it is forgotten.")
+    shared = set.intersection(*({run["stream"] for run in mine if run.get("stream")} for mine in points.values())) if points else ()
+    if shared and len(points) > 1:
+        said.append("All points have the same seeds, and draw the same random numbers: values of two points may be off in the same "
+                    "way, and the error of their difference is not that of independent runs. Other seeds for each point end this.")
+    return said
+
+
 def page_of(path):
     """HTML of a sweep's page; ValueError if its tables are none."""
     folder = path if os.path.isdir(path) else os.path.dirname(path) or "."
@@ -136,7 +156,8 @@ def page_of(path):
               "uncross plot shows them, and each run below it.") if rows else ("What is here", "No point is finished."),
              ("What to distrust", page._doubts([f"{run['folder']}: exit code {run['exit_code']}, {run['status']}. {run['message']}".strip()
                                                 for run in unfinished] +
-                                               [f"{row[names[0]]}: {text}" for row in rows for text in _moving(row)]))]
+                                               [f"{row[names[0]]}: {text}" for row in rows for text in _moving(row)] +
+                                               _kin(runs, keys)))]
     shown = [name for name in results if not name.startswith(("lag_", "change_"))]
     figures = [page.Figure(page.plain(_label(name)), style.data_uri(figure(rows, keys, name)),
                            f"{page.plain(_label(name))} over {keys[0]}.", f"{name} of summary.csv.{_at_lag(rows, name)} Error bars: one standard error, "

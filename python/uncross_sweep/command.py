@@ -59,10 +59,11 @@ def write_results(sweep, runs):
     for run in runs:
         status, steps, state = jobs.status_of(run)
         code = 0 if id(run) in done else "" if run.code is None else run.code
-        listed.append({"folder": run.name, **run.point.values, "seed": run.seed, "exit_code": code, "status": status,
+        stream, start = jobs.stream_of(run)
+        listed.append({"folder": run.name, **run.point.values, "seed": run.seed, "stream": stream, "start_state": start, "exit_code": code, "status": status,
                        "steps": steps, "state_hash": state, "message": "" if id(run) in done else run.message})
     averages.write_rows(sweep.out / "runs.csv",
-                        ["folder", *keys, "seed", "exit_code", "status", "steps", "state_hash", "message"], listed)
+                        ["folder", *keys, "seed", "stream", "start_state", "exit_code", "status", "steps", "state_hash", "message"], listed)
     rows = []
     for point in sweep.points:
         folders = [run.folder for run in runs if run.point is point and id(run) in done]

@@ -177,6 +177,12 @@ def processors():
     return len(os.sched_getaffinity(0))
 
 
+def stream_of(run):
+    """Which random numbers a run draws, and the state of the snapshot that it begins with; "" where there is none."""
+    record = record_of(run) or {}
+    return record.get("stream", ""), (record.get("stream_from") or {}).get("state", "")
+
+
 def status_of(run):
     """(status, steps, state hash) that run.json tells."""
     try:

@@ -40,7 +40,7 @@ static int read_source(const struct uncross_scene *from, struct reading how, con
   if (!scene_read_source(&source, scene))
     return fail(error, UNCROSS_BAD_INPUT, message.text, NULL);
   if (from->has_seed)
-    scene->model.seed = from->seed;
+    scene->seed = scene->model.seed = from->seed;
   return UNCROSS_OK;
 }
 

@@ -6,6 +6,7 @@
 #include "cli/check_dumbbells.h"
 #include "cli/check_flow.h"
 #include "cli/check_medium.h"
+#include "cli/check_start.h"
 #include "cli/check_walls.h"
 #include "cli/command.h"
 #include "cli/sheet.h"
@@ -351,7 +352,8 @@ static void tell_warning(void *context, const char *text)
   printf("  warning: %s\n", text_shown(text));
 }
 
-void scene_report(const struct scene *scene, const struct units *units, const struct si_scale *si)
+void scene_report(const struct scene *scene, const struct stream *stream, const struct units *units,
+                  const struct si_scale *si)
 {
   const struct model *m = &scene->model;
   printf("# The effective scene of %s, every default filled in (fingerprint %016" PRIx64 ")\n\n",
@@ -380,6 +382,7 @@ void scene_report(const struct scene *scene, const struct units *units, const st
   sheet_row(si, "simulated time", "", m->time_step * (double)scene->steps, "t0", "");
   if (si)
     units_report(units, m, si);
+  check_stream(scene->seed, stream);
   report_parts(scene);
   report_cost(scene);
   sheet_heading("Warnings");

@@ -134,9 +134,10 @@ void help_man(FILE *out);
 void help_completion(FILE *out);
 
 /* Prints to stdout: the effective scene, every derived number of the paper's Tables I and II, what this scene uses and
- * skips, memory, estimated time, warnings. `uncross check`. si: the same numbers in SI units, made of `units` (both
- * NULL without). */
-void scene_report(const struct scene *scene, const struct units *units, const struct si_scale *si);
+ * skips, memory, estimated time, warnings. `uncross check`. stream: that of its runs. si: the same numbers in SI units,
+ * made of `units` (both NULL without). */
+void scene_report(const struct scene *scene, const struct stream *stream, const struct units *units,
+                  const struct si_scale *si);
 
 /* Becomes the program of a command; words[0] is replaced. Returns if that cannot be, and has said why. */
 enum exit_code outer_run(const struct command *command, char **words);

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "base/text.h"
+#include "cli/check_start.h"
 #include "cli/command.h"
 #include "files/build_info.h"
 #include "files/hdf5.h"
@@ -30,12 +31,14 @@ static enum exit_code check(const struct arguments *a)
   struct scene scene;
   struct units units;
   struct si_scale si;
+  struct stream stream;
   struct message message;
   bool ok = !a->units || units_read(a->units, &units, &message);
   const bool read = ok && scene_read_numbers(a->file[0], &settings, &scene, &message);
-  ok = read && (!a->units || units_scale(&units, &scene.model, &si, &message));
+  ok = read && (!a->units || units_scale(&units, &scene.model, &si, &message)) &&
+       check_start(a->file[0], &settings, &scene, &stream, &message);
   if (ok)
-    scene_report(&scene, a->units ? &units : NULL, a->units ? &si : NULL);
+    scene_report(&scene, &stream, a->units ? &units : NULL, a->units ? &si : NULL);
   else
     fprintf(stderr, "uncross: %s\n", message.text);
   if (read)

@@ -42,8 +42,8 @@ static enum exit_code close_output(FILE *out, enum exit_code code, const char *p
 }
 
 /* Writes the pack that `make` fills: of a scene, or of none (NULL). */
-static enum exit_code write_pack(const struct arguments *a, const struct scene *scene,
-                                 bool (*make)(const struct scene *, struct pack *, struct message *))
+static enum exit_code write_pack(const struct arguments *a, struct scene *scene,
+                                 bool (*make)(struct scene *, struct pack *, struct message *))
 {
   struct message message;
   struct pack pack = {0};
@@ -60,7 +60,7 @@ static enum exit_code write_pack(const struct arguments *a, const struct scene *
 }
 
 static enum exit_code write_pack_of_scene(const struct arguments *a,
-                                          bool (*make)(const struct scene *, struct pack *, struct message *))
+                                          bool (*make)(struct scene *, struct pack *, struct message *))
 {
   struct message message;
   struct scene scene;
@@ -81,13 +81,13 @@ enum exit_code oracle_start_file(const struct arguments *a)
   return write_pack_of_scene(a, oracle_start);
 }
 
-static bool edges(const struct scene *none, struct pack *pack, struct message *message)
+static bool edges(struct scene *none, struct pack *pack, struct message *message)
 {
   (void)none;
   return oracle_edges(false, pack, message);
 }
 
-static bool contacts(const struct scene *none, struct pack *pack, struct message *message)
+static bool contacts(struct scene *none, struct pack *pack, struct message *message)
 {
   (void)none;
   return oracle_edges(true, pack, message);

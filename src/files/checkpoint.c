@@ -28,6 +28,11 @@ struct field {
 static const struct field fields[] = {
     {"head", "fingerprint", U64, 0, AT(head.fingerprint), ANY, false},
     {"head", "seed", U64, 0, AT(head.seed), ANY, false},
+    {"head", "stream", U64, 0, AT(head.stream.key), ANY, true},
+    {"head", "stream_from", U32, 0, AT(head.stream.from), 0.0, STREAM_FOREIGN, true},
+    {"head", "parent_stream", U64, 0, AT(head.stream.parent), ANY, true},
+    {"head", "parent_step", U64, 0, AT(head.stream.parent_step), ANY, true},
+    {"head", "parent_state", U64, 0, AT(head.stream.parent_state), ANY, true},
     {"head", "state_hash", U64, 0, AT(head.state_hash), ANY, false},
     {"head", "wall_seconds", REAL, 0, AT(head.wall_seconds), 0.0, 1e12, false},
     {"head", "start_energy", REAL, 0, AT(head.start_energy), ANY, false},
@@ -189,6 +194,8 @@ static bool read_summary(hid_t file, const char *path, bool sealed, struct check
             checkpoint_fields(file, summary, false) && read_numbers(file, summary);
   if (ok) /* else 0: earlier checkpoints do not know it */
     h5_get(head, "frames_end", H5T_NATIVE_UINT64, 0, &summary->head.frames_end);
+  if (summary->head.stream.from == STREAM_UNTOLD)
+    summary->head.stream = stream_of_seed(summary->head.seed);
   h5_close(head);
   return ok ? in_range(summary, path, message) : h5_fail(message, path, "damaged or incomplete checkpoint");
 }

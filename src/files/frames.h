@@ -20,7 +20,9 @@ struct frames_about {
   bool checked;    /* a checkpoint has a seal, or each frame of a trajectory checksums: damage does not go unseen */
   bool steps;      /* steps are stored */
   bool velocities;
-  bool bonds; /* bonds are stored */
+  bool bonds;      /* bonds are stored */
+  bool has_stream; /* a trajectory of this program */
+  uint64_t stream; /* of its random numbers */
   uint64_t frames;
   uint32_t rows;                     /* particles of a frame */
   struct checkpoint_summary summary; /* of a checkpoint */

@@ -42,6 +42,17 @@ static void read_creator(hid_t file, struct frames_about *about)
   H5Eclear2(H5E_DEFAULT);
 }
 
+/* Earlier trajectories of ours hold the seed only, which was the stream. */
+static void read_stream(hid_t file, struct frames_about *about)
+{
+  hid_t parameters = h5_open_group(file, "parameters"), own = h5_open_group(parameters, "uncross");
+  about->has_stream = own >= 0 && (h5_get(own, "stream", H5T_NATIVE_UINT64, 0, &about->stream) ||
+                                   h5_get(own, "seed", H5T_NATIVE_UINT64, 0, &about->stream));
+  h5_close(own);
+  h5_close(parameters);
+  H5Eclear2(H5E_DEFAULT);
+}
+
 static bool open_structure(struct source *s, hid_t particles, hid_t connectivity, uint32_t rows,
                            struct message *message)
 {
@@ -73,6 +84,8 @@ static bool open_trajectory(struct source *s, struct message *message)
   ok = ok && (told >= 0 || h5_fail(message, s->path, "damaged, its scene cannot be read"));
   if (ok)
     read_creator(t->file, &s->about);
+  if (ok)
+    read_stream(t->file, &s->about);
   return ok;
 }
 

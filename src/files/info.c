@@ -49,8 +49,8 @@ static void tell_checkpoint(const struct frames *f)
   if (s->numbers.counts.softened + s->numbers.counts.rigid > 0)
     printf("  contacts: %" PRIu64 " softened rebounds, %" PRIu64 " rigid\n", s->numbers.counts.softened,
            s->numbers.counts.rigid);
-  printf("  seed %" PRIu64 ", scene fingerprint %016" PRIx64 ", state hash %016" PRIx64 "\n", s->head.seed,
-         s->head.fingerprint, s->head.state_hash);
+  printf("  seed %" PRIu64 ", stream %" PRIu64 ", scene fingerprint %016" PRIx64 ", state hash %016" PRIx64 "\n",
+         s->head.seed, s->head.stream.key, s->head.fingerprint, s->head.state_hash);
 }
 
 static void tell_species(const struct structure *s)

@@ -136,7 +136,8 @@ static bool open_trajectory(struct output *o, const struct scene *scene, bool re
   const bool there = folder_has(o->folder, "trajectory.h5");
   const struct trajectory_options options = {.solvent = scene->trajectory_solvent,
                                              .velocities = scene->trajectory_velocities,
-                                             .seed = scene->model.seed,
+                                             .seed = scene->seed,
+                                             .stream = scene->model.seed,
                                              .folder = o->folder};
   o->trajectory = trajectory_open(path, &scene->model, &options, resume, step, scene->text, message);
   if (o->trajectory && resume && step > 0 && message->text[0] == '\0')

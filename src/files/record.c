@@ -42,6 +42,15 @@ static json_t *seed(uint64_t x)
   return json_string(text);
 }
 
+/* The snapshot that a stream is made of; null if there is none. */
+static json_t *parent(const struct stream *s)
+{
+  if (!stream_has_parent(s))
+    return json_null();
+  return json_pack("{s:o, s:I, s:o}", "stream", s->from == STREAM_SNAPSHOT ? seed(s->parent) : json_null(), "step",
+                   (json_int_t)s->parent_step, "state", hexadecimal(s->parent_state));
+}
+
 static void add_text(void *list, const char *text)
 {
   json_array_append_new(list, json_string(text));
@@ -69,9 +78,10 @@ bool record_write(const struct folder *folder, const struct scene *scene, const 
                   struct message *message)
 {
   json_t *root = json_pack(
-      "{s:s, s:s?, s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:I, s:I, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:o, s:s}", "status",
-      r->status, "reason", r->reason, "program", "uncross", "version", UNCROSS_VERSION, "commit", build_info.commit,
-      "compiler", build_info.compiler, "flags", build_info.flags, "seed", seed(scene->model.seed), "scene_fingerprint",
+      "{s:s, s:s?, s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:o, s:I, s:I, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:o, s:s}",
+      "status", r->status, "reason", r->reason, "program", "uncross", "version", UNCROSS_VERSION, "commit",
+      build_info.commit, "compiler", build_info.compiler, "flags", build_info.flags, "seed", seed(scene->seed),
+      "stream", seed(r->stream.key), "stream_from", parent(&r->stream), "scene_fingerprint",
       hexadecimal(scene->fingerprint), "steps", (json_int_t)r->step, "steps_wanted", (json_int_t)scene->steps, "time",
       (double)r->step * scene->model.time_step, "wall_seconds", r->wall_seconds, "steps_per_second",
       r->steps_per_second, "collisions", counts(&r->counts), "warnings", warnings(scene, r), "start",

@@ -7,11 +7,13 @@
 #include "observe/observe.h"
 #include "scene/scene.h"
 #include "system/state.h"
+#include "system/stream.h"
 
 struct record {
   const char *status; /* "finished", "interrupted", "stopped", "running" */
   const char *reason; /* why it stopped; NULL if it did not */
-  uint64_t step;      /* of the last checkpoint, as what follows */
+  struct stream stream;
+  uint64_t step; /* of the last checkpoint, as what follows */
   struct collision_counts counts;
   double wall_seconds;     /* over all sessions */
   double steps_per_second; /* of this session, everything included */

@@ -80,11 +80,13 @@ bool run_fingerprint(const char *path, uint64_t *fingerprint)
 
 enum run_code run_begin(const struct run_parts *p, struct checkpoint_head *head, struct message *message)
 {
-  if (!scene_start(p->scene, p->state, p->work, message))
+  struct stream stream;
+  if (!scene_start(p->scene, p->state, p->work, &stream, message))
     return RUN_BAD_INPUT;
   const struct conserved start = observe_conserved(&p->scene->model, p->state);
   *head = (struct checkpoint_head){.fingerprint = p->scene->fingerprint,
-                                   .seed = p->scene->model.seed,
+                                   .seed = p->scene->seed,
+                                   .stream = stream,
                                    .state_hash = state_hash(p->state),
                                    .start_energy = start.total,
                                    .start_momentum = start.momentum,
@@ -111,7 +113,8 @@ enum run_code run_continue(const struct run_parts *p, const char *path, const ui
     message_set(message, "%s: was run with seed %" PRIu64 "; a resumed run keeps its seed", path, head->seed);
     return RUN_BAD_INPUT;
   }
-  p->scene->model.seed = head->seed;
+  p->scene->seed = head->seed;
+  p->scene->model.seed = head->stream.key;
   return RUN_FINE;
 }
 
@@ -158,6 +161,7 @@ static void take_record(struct run *run, const char *status)
 {
   const struct run_parts *p = &run->parts;
   run->record = (struct record){.status = status,
+                                .stream = run->head.stream,
                                 .step = p->state->step,
                                 .counts = p->state->counts,
                                 .wall_seconds = run->head.wall_seconds,

@@ -26,11 +26,12 @@ static bool make_up_lag(struct state *state, const struct model *model, struct m
 }
 
 static bool start_from_checkpoint(const char *path, const struct model *model, struct state *state,
-                                  struct message *message)
+                                  struct snapshot_origin *origin, struct message *message)
 {
   struct checkpoint_summary summary;
   if (!checkpoint_fetch(path, model, &summary, state, NULL, 0, message))
     return false;
+  *origin = (struct snapshot_origin){true, summary.head.stream.key, state->step};
   /* The lag is time that passed under the checkpoint's own time step and body force. */
   struct model then = *model;
   then.time_step = summary.time_step;
@@ -67,18 +68,21 @@ static bool last_frame(struct trajectory *t, const char *path, const struct mode
 }
 
 static bool start_from_trajectory(const char *path, const struct model *model, struct state *state,
-                                  struct message *message)
+                                  struct snapshot_origin *origin, struct message *message)
 {
   struct trajectory *t = trajectory_open_read(path, message);
   if (!t)
     return false;
   struct message ignored;
+  const struct frames_about *about = &t->frames_apart->about;
   bool ok = last_frame(t, path, model, state, message);
+  *origin = (struct snapshot_origin){about->has_stream, about->stream, state->step};
   trajectory_close(t, &ignored);
   return ok;
 }
 
-bool snapshot_read_start(const char *path, const struct model *model, struct state *state, struct message *message)
+bool snapshot_read_start(const char *path, const struct model *model, struct state *state,
+                         struct snapshot_origin *origin, struct message *message)
 {
   enum h5_sort sort;
   enum h5_trouble trouble;
@@ -86,7 +90,7 @@ bool snapshot_read_start(const char *path, const struct model *model, struct sta
     return false;
   if (sort != H5_CHECKPOINT && sort != H5_TRAJECTORY)
     return message_set(message, "%s: an HDF5 file, but neither a checkpoint nor an H5MD trajectory", path);
-  if (!(sort == H5_CHECKPOINT ? start_from_checkpoint : start_from_trajectory)(path, model, state, message))
+  if (!(sort == H5_CHECKPOINT ? start_from_checkpoint : start_from_trajectory)(path, model, state, origin, message))
     return false;
   state->step = 0;
   state->solvent_lag = 0;

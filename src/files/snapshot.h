@@ -14,11 +14,13 @@
 #include "observe/observe.h"
 #include "system/model.h"
 #include "system/state.h"
+#include "system/stream.h"
 
 /* The data of a checkpoint about its run, besides the state. */
 struct checkpoint_head {
   uint64_t fingerprint; /* of the scene: scene.h */
-  uint64_t seed;
+  uint64_t seed;        /* of the scene */
+  struct stream stream;
   uint64_t state_hash; /* of the state as written; checked when read */
   uint64_t frames_end; /* 1 + the step of the trajectory's last frame; 0: none, or not known */
   double wall_seconds; /* spent so far, over all sessions */
@@ -49,12 +51,19 @@ bool checkpoint_write(const char *path, struct checkpoint_head *head, const stru
 bool checkpoint_read(const char *path, const struct model *model, struct checkpoint_head *head, struct state *state,
                      const struct observe_block *blocks, size_t block_count, struct message *message);
 
+/* What a snapshot says about the run that made it. */
+struct snapshot_origin {
+  bool has_stream;
+  uint64_t stream, step;
+};
+
 /* Reads a starting state: a checkpoint, or the last frame of an H5MD file with positions and velocities of vertices
  * (and of solvent, if the model has one). Sets step, lag and counts of crossings to 0; solvent that lags in a
  * checkpoint is streamed to its present position. Velocities of vertices are taken to be of the half step ahead, as
  * uncross writes them. Box, numbers and bonds must be the model's; whether bonds fit the box is for the caller to
  * check. */
-bool snapshot_read_start(const char *path, const struct model *model, struct state *state, struct message *message);
+bool snapshot_read_start(const char *path, const struct model *model, struct state *state,
+                         struct snapshot_origin *origin, struct message *message);
 
 /* --- trajectory -------------------------------------------------------------------------------------------------- */
 
@@ -63,7 +72,7 @@ struct trajectory; /* an open H5MD file */
 struct trajectory_options {
   bool solvent; /* frames hold the solvent, else only the vertices */
   bool velocities;
-  uint64_t seed;
+  uint64_t seed, stream;
   const struct folder *folder; /* a run's: the path's last part must be a file of this folder, and no link; or NULL */
 };
 

@@ -104,19 +104,39 @@ static bool refuse_start(const struct scene *scene, const struct fault *fault, s
                          fault->entity, m->fiber_of[fault->entity], fault->value, fault->limit);
 }
 
-bool scene_start(const struct scene *scene, struct state *state, struct work *work, struct message *message)
+/* The stream of a run that begins with this state, of a snapshot. */
+static bool find_stream(const struct scene *scene, const struct snapshot_origin *origin, const struct state *state,
+                        struct stream *stream, struct message *message)
+{
+  const uint64_t hash = state_hash(state);
+  *stream = stream_of_snapshot(scene->seed, origin->has_stream, origin->stream, origin->step, hash);
+  return hash != 0 || message_set(message, "no memory to look at the starting state");
+}
+
+static bool start_from_snapshot(const struct scene *scene, struct state *state, struct work *work,
+                                struct stream *stream, struct message *message)
 {
   const struct model *m = &scene->model;
-  if (!scene->snapshot)
-    return start_state(state, m, work) || refuse_start(scene, &work->fault, message);
+  struct snapshot_origin origin;
   char *path = scene_snapshot_path(scene);
   message_set(message, "no memory for the path of the snapshot");
-  bool ok = path && snapshot_read_start(path, m, state, message);
+  bool ok = path && snapshot_read_start(path, m, state, &origin, message);
   free(path);
   ok = ok && (state_sound(state, m, &work->fault) || message_fault(message, &work->fault)) &&
        is_flat_as_said(scene, state, message) && flows_as_said(scene, state, work, message) &&
        (start_sound(state, m, &work->fault) || refuse_start(scene, &work->fault, message));
   if (ok)
     start_begin_drive(state, m);
+  return ok && find_stream(scene, &origin, state, stream, message);
+}
+
+bool scene_start(struct scene *scene, struct state *state, struct work *work, struct stream *stream,
+                 struct message *message)
+{
+  *stream = stream_of_seed(scene->seed);
+  const bool ok = scene->snapshot
+                      ? start_from_snapshot(scene, state, work, stream, message)
+                      : start_state(state, &scene->model, work) || refuse_start(scene, &work->fault, message);
+  scene->model.seed = stream->key;
   return ok;
 }

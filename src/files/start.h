@@ -4,10 +4,13 @@
 
 #include "base/message.h"
 #include "scene/scene.h"
+#include "system/stream.h"
 #include "work.h"
 
 /* The state in which a run of the scene begins, drawn or its snapshot: a file whose bonds fit the box, and whose center
- * of mass moves with the scene's flow. state and work are allocated for scene->model. */
-bool scene_start(const struct scene *scene, struct state *state, struct work *work, struct message *message);
+ * of mass moves with the scene's flow. The stream of the run becomes the key of the model's random numbers. state and
+ * work are allocated for scene->model. */
+bool scene_start(struct scene *scene, struct state *state, struct work *work, struct stream *stream,
+                 struct message *message);
 
 #endif

@@ -25,20 +25,25 @@ static bool advance_to(struct oracle_stage *g, uint64_t step, const struct conta
   return true;
 }
 
-/* A scene's run of its own, for one part of a pack: what it leaves behind is no state of the scene's run. */
+/* A scene's run of its own, for one part of a pack: what it leaves behind is no state of the scene's run. The model
+ * comes first in a pack, with the stream of the run. */
 typedef bool in_run(struct oracle_stage *stage, const struct scene *scene, uint64_t step, struct message *message);
 
-static bool with_run(const struct scene *scene, in_run *put, uint64_t step, struct pack *pack, struct message *message)
+static bool with_run(struct scene *scene, in_run *put, uint64_t step, struct pack *pack, struct message *message)
 {
   const struct model *model = &scene->model;
   struct state state = {0};
   struct work work = {0};
+  struct stream stream;
   uint32_t *slot = malloc(((size_t)model->solvent.particles + 1) * sizeof *slot);
   bool ok = slot && state_alloc(&state, model) && work_alloc(&work, model) && work_add_everything(&work, model);
   message_set(message, "no memory for this scene");
   if (ok) {
     struct oracle_stage g = {model, &state, &work, pack, {"", 0}, slot, NULL};
-    ok = scene_start(scene, &state, &work, message) && put(&g, scene, step, message);
+    ok = scene_start(scene, &state, &work, &stream, message);
+    if (ok && pack->count == 0)
+      oracle_put_model(pack, model);
+    ok = ok && put(&g, scene, step, message);
   }
   work_free(&work);
   state_free(&state);
@@ -62,7 +67,7 @@ static bool put_step(struct oracle_stage *g, const struct scene *scene, uint64_t
   return ok;
 }
 
-bool oracle_emit(const struct scene *scene, struct pack *pack, struct message *message)
+bool oracle_emit(struct scene *scene, struct pack *pack, struct message *message)
 {
   const struct model *model = &scene->model;
   const uint64_t interval = model_has_solvent(model) ? model->solvent.interval_steps : 1;
@@ -100,7 +105,6 @@ bool oracle_emit(const struct scene *scene, struct pack *pack, struct message *m
   if (last == 0)
     return message_set(message, "%s: no collision within its %" PRIu64 " steps; a pack needs one", scene->path,
                        scene->steps);
-  oracle_put_model(pack, model);
   return with_run(scene, put_step, interval, pack, message) &&
          (last == interval || with_run(scene, put_step, last, pack, message));
 }
@@ -123,7 +127,6 @@ bool oracle_edges(bool contacts, struct pack *pack, struct message *message)
   memset(pack, 0, sizeof *pack);
   if (!scene_make(&settings, &scene, message))
     return false;
-  oracle_put_model(pack, &scene.model);
   const bool ok = with_run(&scene, put_edges, 1, pack, message);
   scene_free(&scene);
   return ok;
@@ -157,10 +160,9 @@ static bool put_start(struct oracle_stage *g, const struct scene *scene, uint64_
   return true;
 }
 
-bool oracle_start(const struct scene *scene, struct pack *pack, struct message *message)
+bool oracle_start(struct scene *scene, struct pack *pack, struct message *message)
 {
   memset(pack, 0, sizeof *pack);
-  oracle_put_model(pack, &scene->model);
   return with_run(scene, put_start, 0, pack, message);
 }
 
@@ -255,10 +257,11 @@ static bool trace_steps(const struct scene *scene, struct state *state, struct w
   return !t->short_of_memory || message_set(message, "no memory for the hash of the state");
 }
 
-bool oracle_trace(const struct scene *scene, FILE *out, struct message *message)
+bool oracle_trace(struct scene *scene, FILE *out, struct message *message)
 {
   struct state state = {0};
   struct work work = {0};
+  struct stream stream;
   struct tracer t = {.model = &scene->model, .out = out};
   t.slot = malloc(((size_t)scene->model.solvent.particles + 1) * sizeof *t.slot);
   const bool events = oracle_has_events(&scene->model);
@@ -267,7 +270,7 @@ bool oracle_trace(const struct scene *scene, FILE *out, struct message *message)
   message_set(message, "no memory for this scene");
   if (ok && events)
     XXH64_reset(t.together, 0);
-  ok = ok && scene_start(scene, &state, &work, message) && trace_steps(scene, &state, &work, &t, message);
+  ok = ok && scene_start(scene, &state, &work, &stream, message) && trace_steps(scene, &state, &work, &t, message);
   work_free(&work);
   state_free(&state);
   XXH64_freeState(t.together);

@@ -17,17 +17,17 @@
 
 /* Fills a pack with the scene's numbers and every operator's input and output, at the first step that has a collision
  * and at the last one of the scene. The pack needs freeing in any case. */
-bool oracle_emit(const struct scene *scene, struct pack *pack, struct message *message);
+bool oracle_emit(struct scene *scene, struct pack *pack, struct message *message);
 
 /* Fills a pack with operators' inputs that are constructed, not from a scene, and their outputs (docs/porting.md).
  * contacts: those of contacts at their own time (rule `event-driven`). */
 bool oracle_edges(bool contacts, struct pack *pack, struct message *message);
 
 /* Fills a pack with what a run of the scene starts from: the model, the state, the stages of its steps. */
-bool oracle_start(const struct scene *scene, struct pack *pack, struct message *message);
+bool oracle_start(struct scene *scene, struct pack *pack, struct message *message);
 
 /* Writes the trace of the whole scene as CSV: one row per stage of each step. */
-bool oracle_trace(const struct scene *scene, FILE *out, struct message *message);
+bool oracle_trace(struct scene *scene, FILE *out, struct message *message);
 
 /* Puts a pack's tables in the order of steps, and of operators within a step: files keep them by name. */
 void oracle_sort(struct pack *pack);

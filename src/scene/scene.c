@@ -265,6 +265,7 @@ static bool read_whole(struct scene *scene, const struct scene_source *r)
     return false;
   if (scene_says(scene, "observe.from_time"))
     scene->observe.from = step_of_time(scene->observe_from_time, scene->model.time_step);
+  scene->seed = scene->model.seed;
   if (!set_text(scene, r, gaps.defaults) || !set_fingerprint(scene, r))
     return message_set(r->message, "%s: out of memory", r->path);
   scene->steps = r->steps ? *r->steps : scene->steps;

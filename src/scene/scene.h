@@ -16,6 +16,7 @@
 struct scene {
   struct model model; /* finished (model_finish) */
   uint64_t steps;     /* length of the whole run */
+  uint64_t seed;      /* as the scene says it; model.seed is the stream that the run makes of it (system/stream.h) */
   char *snapshot; /* start from this file instead of each kind's `start`; NULL: none. As the scene says it: relative to
                      the scene file's folder (scene_snapshot_path). */
   struct observe_plan observe;

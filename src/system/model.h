@@ -273,7 +273,7 @@ struct wave {
 struct model {
   uint32_t dimensions; /* 3; 2: everything moves in the plane of x and y */
   struct box box;      /* cells are given; edges are derived */
-  uint64_t seed;       /* key of every random number */
+  uint64_t seed;       /* key of every random number: the run's stream (system/stream.h) */
   double time_step;    /* dt, in t0 */
   enum scheme scheme;
   struct vec3 flow; /* uniform flow given to everything at the start, in a0/t0 */

@@ -729,7 +729,9 @@ static const struct key top_keys[] = {
      .symbol = "dt",
      .first_format = true},
     {.name = "seed",
-     .text = "Key of every random number, all 64 bits of it; `--seed` says otherwise.",
+     .text =
+         "Key of every random number, all 64 bits of it; `--seed` says otherwise. With a `snapshot` the key is made of "
+         "the seed and the snapshot ([conventions.md](conventions.md#streams)).",
      .type = KEY_WHOLE64,
      .absent = "1",
      .most = UINT64_MAX,

@@ -101,6 +101,13 @@ static inline struct test_run small_run(uint64_t steps)
   return r;
 }
 
+/* snapshot_read_start, whoever made the file. */
+static inline bool read_start(const char *path, const struct model *model, struct state *state, struct message *message)
+{
+  struct snapshot_origin origin;
+  return snapshot_read_start(path, model, state, &origin, message);
+}
+
 /* No HDF5 object may be left open. */
 static inline void assert_all_closed(void)
 {

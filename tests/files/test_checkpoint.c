@@ -287,7 +287,7 @@ static void unsound_states_are_refused(void **unused)
     unsound[k].spoil(&r.state);
     assert_true(write_some(path, &r, &resumed));
     assert_false(read_state(path, &r.model, &r.state, &resumed));
-    assert_false(snapshot_read_start(path, &r.model, &r.state, &started));
+    assert_false(read_start(path, &r.model, &r.state, &started));
     if (!strstr(resumed.text, unsound[k].words))
       fail_msg("'%s' is not in '%s'", unsound[k].words, resumed.text);
     assert_string_equal(resumed.text, started.text);
@@ -307,7 +307,7 @@ static void an_endless_lag_is_refused(void **unused)
   struct test_run r = small_run(3);
   r.state.solvent_lag = UINT32_MAX;
   assert_true(write_some(path, &r, &message));
-  assert_false(snapshot_read_start(path, &r.model, &r.state, &message));
+  assert_false(read_start(path, &r.model, &r.state, &message));
   assert_non_null(strstr(message.text, "moves too far in one collision interval"));
   test_end(&r);
   remove_folder(folder);

@@ -77,6 +77,7 @@ static void everything_reads_back(void **unused)
   r.state.counts = (struct collision_counts){9007199254740993u, 30, 20, 10, 5, 2}; /* 2^53 + 1: no double holds it */
   const struct conserved now = observe_conserved(&r.model, &r.state);
   const struct record record = {.status = "finished",
+                                .stream = {0xfedcba9876543210u, STREAM_SNAPSHOT, UINT64_MAX, 9007199254740993u, 0xabcu},
                                 .step = r.state.step,
                                 .counts = r.state.counts,
                                 .wall_seconds = 1.0 / 3.0,
@@ -96,6 +97,11 @@ static void everything_reads_back(void **unused)
   assert_text(root, "program", "uncross");
   assert_text(root, "version", UNCROSS_VERSION);
   assert_text(root, "seed", "18446744073709551615"); /* a text: readers of JSON would round the number */
+  assert_text(root, "stream", "18364758544493064720");
+  const json_t *from = json_object_get(root, "stream_from");
+  assert_text(from, "stream", "18446744073709551615");
+  assert_text(from, "state", "0000000000000abc");
+  assert_true(json_integer_value(json_object_get(from, "step")) == 9007199254740993);
   assert_text(root, "scene_fingerprint", "00000000000012ab");
   assert_text(root, "state_hash", hash);
   assert_text(root, "scene", text);
@@ -121,7 +127,7 @@ static void everything_reads_back(void **unused)
   static const char *const build[] = {"commit", "compiler", "flags"};
   for (int k = 0; k < 3; k++)
     assert_true(json_string_length(json_object_get(root, build[k])) > 0);
-  assert_int_equal(json_object_size(root), 20);
+  assert_int_equal(json_object_size(root), 22);
   json_decref(root);
   forget(&scene, &r);
   remove_folder(folder);
@@ -141,6 +147,7 @@ static void what_json_cannot_hold_is_null(void **unused)
   json_t *root = load(folder);
   const json_t *start = json_object_get(root, "start"), *momentum = json_object_get(start, "momentum");
   assert_text(root, "reason", "too hot");
+  assert_true(json_is_null(json_object_get(root, "stream_from")));
   assert_true(json_is_null(json_object_get(start, "energy")));
   assert_true(json_is_null(json_array_get(momentum, 0)) && json_is_null(json_array_get(momentum, 2)));
   assert_true(json_number_value(json_array_get(momentum, 1)) == 0.0 && json_is_real(json_array_get(momentum, 1)));

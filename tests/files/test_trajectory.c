@@ -440,7 +440,7 @@ static void both_files_start_alike(void **unused)
 
   struct state a, b;
   assert_true(state_alloc(&a, &r.model) && state_alloc(&b, &r.model));
-  if (!snapshot_read_start(frames, &r.model, &a, &message) || !snapshot_read_start(checkpoint, &r.model, &b, &message))
+  if (!read_start(frames, &r.model, &a, &message) || !read_start(checkpoint, &r.model, &b, &message))
     fail_msg("%s", message.text);
   assert_true(state_hash(&a) == state_hash(&b));
   assert_true(a.step == 0 && a.solvent_lag == 0 && b.counts.moves == 0);
@@ -449,15 +449,15 @@ static void both_files_start_alike(void **unused)
 
   remove(frames);
   close_or_fail(open_or_fail(frames, &r.model, &fibers_only, false, 0));
-  assert_false(snapshot_read_start(frames, &r.model, &a, &message));
+  assert_false(read_start(frames, &r.model, &a, &message));
   assert_non_null(strstr(message.text, "without frames"));
   t = open_or_fail(frames, &r.model, &fibers_only, true, 0);
   append_or_fail(t, &r);
   close_or_fail(t);
-  assert_false(snapshot_read_start(frames, &r.model, &a, &message));
+  assert_false(read_start(frames, &r.model, &a, &message));
   assert_non_null(strstr(message.text, "no velocities"));
   spill(frames, "not hdf5", 8);
-  assert_false(snapshot_read_start(frames, &r.model, &a, &message));
+  assert_false(read_start(frames, &r.model, &a, &message));
   state_free(&a);
   state_free(&b);
   test_end(&r);
@@ -488,7 +488,7 @@ static void fixed_boxes_are_read(void **unused)
     assert_true(h5_array_write(file, where, H5T_NATIVE_DOUBLE, rank, three, rank == 1 ? vector : edges));
     h5_close(file);
     memset(start.position, 0, start.vertices * sizeof *start.position);
-    if (!snapshot_read_start(frames, &r.model, &start, &message))
+    if (!read_start(frames, &r.model, &start, &message))
       fail_msg("%s", message.text);
     assert_shows(&start, &r, true);
   }

@@ -15,6 +15,7 @@ import re
 import shutil
 import sys
 import tempfile
+import types
 import unittest
 import unittest.mock
 import xml.etree.ElementTree as xml
@@ -30,7 +31,7 @@ from support import TOP, UNCROSS, load  # noqa: E402
 
 os.environ["UNCROSS"] = str(UNCROSS)
 sys.path.insert(0, str(TOP / "python"))
-from uncross_plot import columns, compare, fibers, page, runs, tables  # noqa: E402
+from uncross_plot import columns, compare, fibers, page, runs, sweeps, tables  # noqa: E402
 
 SCENE = """box: [8, 8, 10]
 time_step: 0.01
@@ -462,9 +463,24 @@ class Folder(unittest.TestCase):
         z = (b.data["l"][0] - a.data["l"][0]) / math.hypot(a.data["l_error"][0], b.data["l_error"][0])
         row = re.search(r"of &#39;rods&#39;, in numbers.*?bond length</td>.*?</tr>", both.text, re.S)[0]
         self.assertIn(f'<td class="n">{z:+.1f}</td>', row)
-        self.assertNotIn("Both have the seed", both.said)
+        self.assertNotIn("the same random numbers", both.said)
         same = runs.read(str(self.dir / "one"))
-        self.assertEqual(compare._kin(same, same)[0][:20], "Both have the seed 5")
+        self.assertEqual(compare._kin(same, same)[0][:52], "Both draw the same random numbers (stream 5): their f"[:52])
+        begun, other = ({"stream": stream, "stream_from": {"stream": "1", "step": 3, "state": "0f"}} for stream in "34")
+        told = compare._kin(types.SimpleNamespace(record=begun), types.SimpleNamespace(record=other))
+        self.assertEqual([text[:40] for text in told], ["Both begin with the same state of a snap"])
+
+    def test_runs_of_a_sweep_that_are_no_independent_ones(self):
+        def told(*rows):
+            return sweeps._kin([dict(zip(("folder", "k", "stream", "start_state"), row)) for row in rows], ["k"])
+
+        self.assertEqual(told(("a", "1", "5", ""), ("b", "1", "6", ""), ("c", "2", "7", "")), [])
+        twice, apart = told(("a", "1", "5", ""), ("b", "1", "5", "")), told(("a", "1", "5", ""), ("b", "2", "5", ""))
+        self.assertIn("a: runs that are averaged draw the same random numbers", twice[0])
+        self.assertIn("All points have the same seeds", apart[0])
+        begun = told(("a", "1", "5", "0f"), ("b", "1", "6", "0f"))
+        self.assertIn("begin with the same state of a snapshot", begun[0])
+        self.assertEqual([len(twice), len(apart), len(begun)], [1, 1, 1])
 
     def test_differences_are_of_the_same_place(self):
         a = tables.Table("dynamics-x", {"time": numpy.array([1.0, 2, 3]), "g": numpy.array([1.0, 4, 9]),

@@ -85,6 +85,7 @@ class SweepTest(FolderTest):
         self.assertEqual(summary["fibers.rods.count"], [5, 5, 9, 9])
         self.assertEqual(summary["time_step"], [0.01, 0.02, 0.01, 0.02])
         self.assertEqual(len(set(runs["state_hash"])), 8)
+        self.assertEqual((runs["stream"], set(runs["start_state"])), (runs["seed"], {""}))
 
     def check_table(self, made, of):
         self.assertTrue((made["seeds"] == 2).all())
