@@ -170,6 +170,56 @@ class Flows(unittest.TestCase):
             self.assertEqual(dict(page.front(run))["What ran"], "The solvent between two walls, in a box of 2 × 4 × 1 a0.")
             self.assertNotIn("Fibers", [section.title for section in page.sections_of(run)])
 
+    SUSPENSION = """box: [10, 20, 10]
+time_step: 0.02
+steps: 1000
+solvent: {per_cell: 5, collision_interval: 0.02, thermostat: maxwell-boltzmann}
+shear: {rate: 0.1}
+fibers: [{name: point, count: 4000, vertices: 1, mass: 5}]
+"""
+
+    def test_suspension(self):
+        """The theory of the solvent alone is no theory of a suspension: it is named, and no difference in errors is given. eta_r
+        is the measured 30 over the solvent's 11.183819 (tests/theory/test_theory.c)."""
+        with tempfile.TemporaryDirectory() as folder:
+            tell(pathlib.Path(folder), self.SUSPENSION, profile(lambda y: 0.1 * (y - EDGE / 2)),
+                 {**stress(0.0), "sigma_xy": [3.0 + 0.01 * (-1)**k for k in range(64)]})
+            run = runs.read(folder)
+        found = flow.Flow(run).measured()
+        self.near(self.one(found, "viscosity over the solvent's", "stress"), 30.0 / 11.183819)
+        rows = {row[0]: row for row in page.measured_flow(run)[0].rows}
+        self.assertEqual(rows["viscosity"][3:5], ("11.1838, solvent alone", ""))
+        self.assertNotEqual(rows["slope of the profile"][4], "")  # of the box, and exact
+        told = str(dict(page.front(run))["What came out"])
+        self.assertRegex(told, r"Viscosity 30\.\d* ± 0\.\d+ m/a0 t0, 2\.682\d* times that of the solvent alone")
+        self.assertNotIn("theory 11", told)
+
+    def test_a_profile_that_has_not_become_steady(self):
+        """tau = L^2/(pi^2 nu), nu = 37.62/10 of check: 10.8 t0. A run of 20 t0 still has 2 * exp(-2)... of the start in its mean; one of 500 t0
+        that averages from 100 t0 on has not."""
+        scene = SOLVENT % (", acceleration: [0.02, 0, 0]", "walls: {kind: no-slip}\nobserve:\n  from: %d")
+        for steps, begins, told in ((1000, 0, True), (25000, 5000, False), (25000, 0, True)):
+            with tempfile.TemporaryDirectory() as folder:
+                tell(pathlib.Path(folder), scene % begins, profile(lambda y: 0.01 * y * (EDGE - y)))
+                record = {"scene": scene % begins, "steps": steps, "time": 0.02 * steps, "status": "finished"}
+                (pathlib.Path(folder) / "run.json").write_text(json.dumps(record), encoding="utf-8")
+                doubts = [text for text in runs.distrust(runs.read(folder)) if "has not become steady" in text]
+            self.assertEqual(len(doubts), told, (steps, begins))
+
+    def test_captions_know_the_box(self):
+        for line, words in (("walls: {kind: no-slip}", "between two walls"), ("shear: {rate: 0.1}", "in a sheared box"), ("", "in a periodic box")):
+            scene = f"box: [8, 8, 8]\ntime_step: 0.01\nsteps: 0\n{line}\nfibers: [{{name: rod, count: 2, vertices: 4, mass: 5, bond_length: 0.5, spring: 100}}]\n"
+            with tempfile.TemporaryDirectory() as folder:
+                path = pathlib.Path(folder)
+                (path / "scene.yaml").write_text(scene + "solvent: {per_cell: 5, collision_interval: 0.02, thermostat: maxwell-boltzmann}\n", encoding="utf-8")
+                subprocess.run([str(UNCROSS), "run", str(path / "scene.yaml"), "--out", str(path / "run"), "--quiet"], check=True)
+                run = runs.read(str(path / "run"))
+                figure = page.picture_of(run.frames).blocks[0]
+                self.assertIn(words, figure.caption)
+                self.assertIn(words, page._what(run))
+                self.assertEqual("periodic" in figure.caption, not line, figure.caption)
+                self.assertEqual("the walls" in figure.caption, "walls" in line)
+
     def test_no_flow(self):
         self.assertEqual(self.found(SOLVENT % ("", ""), profile(lambda y: 0.0), stress(0.0)), [])
 
