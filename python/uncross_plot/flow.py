@@ -16,13 +16,17 @@ BETWEEN = 1.0  # a0: at walls the parabola is not fitted nearer than this
 
 @dataclasses.dataclass
 class Measured:
-    """A number with a bound of its standard error; theory, or nan."""
+    """A number with a bound of its standard error; theory, or nan. alone: that theory is of the solvent without its fibers."""
     name: str
     value: float
     error: float
     unit: str = ""
     theory: float = math.nan
     source: str = ""
+    alone: bool = False
+
+
+EXACT = ("slope of the profile",)  # of the box itself: it holds for a suspension, too
 
 
 class Flow:
@@ -31,7 +35,7 @@ class Flow:
     def __init__(self, run):
         self.numbers, self.sources, self.kind = {}, {}, ""
         for heading, rows in run.derived:
-            if heading.startswith(("Solvent", "Dumbbells", "Walls", "Shear", "Flow by")):
+            if heading.startswith(("Solvent", "Dumbbells", "Walls", "Shear", "Flow by", "Suspension")):
                 self.numbers.update({row.name: float(row.value) for row in rows})
                 self.sources.update({row.name: row.source for row in rows})
             if heading.startswith(("Walls", "Shear", "Flow by")):
@@ -108,8 +112,25 @@ class Flow:
         if not self.kind:
             return []
         if self.oscillates:
-            return self._response() + (self._moduli() if self.kind == "shear" else [])
-        return {"walls": self._walls, "shear": self._shear, "flow": self._driven}[self.kind]()
+            return self._of_suspension(self._response() + (self._moduli() if self.kind == "shear" else []))
+        return self._of_suspension({"walls": self._walls, "shear": self._shear, "flow": self._driven}[self.kind]())
+
+    @property
+    def is_suspension(self):
+        return self.numbers.get("vertices", 0.0) > 0.0
+
+    def _of_suspension(self, found):
+        """With fibers in the solvent, its theory is that of the solvent alone; what they add is eta_r."""
+        if not self.is_suspension:
+            return found
+        told, loaded = [], self.numbers.get("... over that of the solvent", math.nan)
+        for one in found:
+            told.append(dataclasses.replace(one, alone=one.name not in EXACT and math.isfinite(one.theory)))
+            if one.name == "viscosity":
+                loose = f"; loose vertices would make it {loaded:.4g}" if math.isfinite(loaded) else ""
+                told.append(Measured("viscosity over the solvent's, η_r", one.value / self.eta, one.error / self.eta,
+                                     source=f"{one.source}, over that of the solvent alone{loose}"))
+        return told
 
     def _over(self, stress, rate, name, source):
         value = stress[0] / rate[0]

@@ -79,12 +79,23 @@ def plain(text):
     return text
 
 
+WALLED = " between two walls, in a box"
+PLACES = ((r"(?m)^walls:", WALLED), (r"(?m)^shear:", " in a sheared box"),
+          (r"\bprofile: *(sine|reverse)\b", ", driven by a force with a profile, in a periodic box"))
+
+
+def place(scene):
+    """The box that a scene has, in words."""
+    return next((words for pattern, words in PLACES if re.search(pattern, scene)), " in a periodic box")
+
+
 # --- pictures of fibers ------------------------------------------------------------------------------------------------
 
 def picture_of(frames, movie=False):
     structure = frames.structure
     box = " × ".join(f"{e:g}" for e in structure.edges)
-    shown = f"{fibers.words(structure)} in a periodic box of {box} a0"
+    shown = f"{fibers.words(structure)}{place(structure.scene)} of {box} a0"
+    ways = "" if place(structure.scene) != WALLED else ", except at the walls, which nothing crosses"
     keys = []
     for kind, name in enumerate(structure.kinds):
         keys.append((style.COLORS[kind % len(style.COLORS)], name))
@@ -93,7 +104,7 @@ def picture_of(frames, movie=False):
     last = f"step {frames.steps[-1]}, time {frames.times[-1]:g} t0"
     blocks = [Figure("Fibers at the end", fibers.picture(frames), f"Perspective picture of {shown}, at {last}.",
                      f"{shown[0].upper()}{shown[1:]}, at {last}. A bond that crosses a face of the box comes in again at "
-                     "the opposite one.", keys=keys,
+                     f"the opposite one{ways}.", keys=keys,
                      hollow=tuple(k for k in range(len(structure.kinds)) if fibers.is_hollow(k)),
                      round=tuple({int(structure.kind[row]) for row in structure.beads}))]
     if movie:
@@ -126,7 +137,7 @@ def flow_guides(run):
     found = flow.Flow(run)
     y = None if not found.kind else numpy.linspace(0.0, found.edge, 200)
     expected = None if y is None else found.expected(y)
-    return [] if expected is None else [("theory", lambda t: float(numpy.interp(t, y, expected)), "--")]
+    return [] if expected is None else [("theory" + (", solvent alone" if found.is_suspension else ""), lambda t: float(numpy.interp(t, y, expected)), "--")]
 
 
 def measured_flow(run):
@@ -134,11 +145,13 @@ def measured_flow(run):
     rows = []
     for m in flow.Flow(run).measured():
         known = math.isfinite(m.theory)
-        away = f"{(m.value - m.theory) / m.error:+.1f}" if known and m.error > 0 else ""
-        rows.append((m.name, with_error(m.value, m.error), m.unit, f"{m.theory:.6g}" if known else "", away, m.source))
+        away = f"{(m.value - m.theory) / m.error:+.1f}" if known and m.error > 0 and not m.alone else ""
+        theory = f"{m.theory:.6g}{', solvent alone' if m.alone else ''}" if known else ""
+        rows.append((m.name, with_error(m.value, m.error), m.unit, theory, away, m.source))
     return [Rows("The flow, measured", rows, ("", "value ± error", "unit", "theory", "difference / error", "from"),
                  "Of profile.csv and stress.csv. Errors of fits are bounds: those of slabs are added as if all went the same way. "
-                 "Theory: molecular chaos, some per cent off at a short mean free path; it is no exact number.", (1, 3, 4))] if rows else []
+                 "Theory: molecular chaos, some per cent off at a short mean free path; it is no exact number. Solvent alone: of a flow "
+                 "without fibers, with which a suspension need not agree.", (1, 3, 4))] if rows else []
 
 
 def figure_of(run, table):
@@ -176,8 +189,6 @@ def figure_of(run, table):
 # --- words -------------------------------------------------------------------------------------------------------------
 
 SHOWN = ("viscosity", "slip length")  # of a flow, on top of the page
-PLACES = {"Walls": " between two walls, in a box", "Shear": " in a sheared box",  # sections of `uncross check`
-          "Flow by": ", driven by a force with a profile, in a periodic box"}
 
 
 def _what(run):
@@ -190,9 +201,7 @@ def _what(run):
         what = "single beads" if each == 1 else f"rings of {each} vertices" if ring else f"fibers of {each} vertices"
         parts.append(f"{count} {what} ('{name}')")
     edges = f" of {' × '.join(f'{e:g}' for e in structure.edges)} a0" if structure else ""
-    moved = next((words for start, words in PLACES.items() if any(heading.startswith(start) for heading, _ in run.derived)),
-                 " in a periodic box")
-    return (", ".join(parts) or "The solvent") + (moved + edges if structure else "") + "."
+    return (", ".join(parts) or "The solvent") + (place(run.scene) + edges if structure else "") + "."
 
 
 def _how(run):
@@ -229,7 +238,9 @@ def _result(run):
             words += _diffusion(run, table)
     for m in flow.Flow(run).measured():
         if m.name in SHOWN and math.isfinite(m.value) and math.isfinite(m.error):
-            words.append(f"{m.name} {with_error(m.value, m.error)} {m.unit}, theory {m.theory:.4g} ({m.source})")
+            beside = (f"{with_error(m.value / m.theory, m.error / m.theory)} times that of the solvent alone" if m.alone else
+                      f"theory {m.theory:.4g}")
+            words.append(f"{m.name} {with_error(m.value, m.error)} {m.unit}, {beside} ({m.source})")
     return ("; ".join(words)[:1].upper() + "; ".join(words)[1:] + ".") if words else "No observable was asked for."
 
 

@@ -275,6 +275,11 @@ def _short(run):
             if row.name.startswith("rotational relaxation") and time and time < float(row.value):
                 yield (f"{heading}: the run lasted {time:.4g} t0, and a fiber turns in {float(row.value):.4g} t0: "
                        "averages still show the start.")
+            if row.name.startswith("slowest Rouse mode") and time and time < float(row.value):
+                yield (f"{heading}: the run lasted {time:.4g} t0, and the slowest mode of a chain, without hydrodynamics, takes "
+                       f"{float(row.value):.4g} t0: averages still show the start.")
+            if row.name == "time to become steady" and time:
+                yield from _unsteady(run, time, float(row.value))
     few = {}
     for table in run.tables:
         lost = [c for c in table.values if table.errors(c) is not None
@@ -287,6 +292,24 @@ def _short(run):
     for lag, names in few.items():
         yield (f"{', '.join(names)}: from lag {lag} t0 on, fewer than {LEAST_PAIRS} pairs of times were compared: errors "
                "there are the scatter over fibers alone.")
+
+
+MOST_START = 0.01  # of a mean over time: as src/scene/warnings.c has it
+
+
+def _unsteady(run, end, tau):
+    """Profiles and stresses of a flow that starts at rest. A run from a snapshot starts as that ended."""
+    means = [table.name for table in run.tables if table.name in ("profile", "stress")]
+    told = any("the flow starts at rest" in text for text in (run.record or {}).get("warnings", []))
+    steps = (run.record or {}).get("steps")
+    found = re.search(r"(?m)^ +from: (\d+)", run.scene)
+    begin = int(found[1]) * end / steps if found and steps else 0.0
+    if told or not means or end <= begin or re.search(r"\bsnapshot:", run.scene):
+        return
+    share = tau / (end - begin) * (math.exp(-begin / tau) - math.exp(-end / tau))
+    if share > MOST_START:
+        yield (f"{', '.join(means)}: the flow has not become steady: it starts at rest and needs {tau:.3g} t0 for each factor of e; "
+               f"means from {begin:.4g} to {end:.4g} t0 hold {100.0 * share:.2g} % of the start.")
 
 
 def diffusion(run, table):
