@@ -17,16 +17,35 @@ static const char usage[] = "usage: port PACK OUT           outputs of all opera
                             "         --unfused  --per-cell N  --interval N  --dt T  --seed S\n"
                             "         --degrees A  --thermostat 0, 1 or 2  --at-a\n";
 
+// Number and hash of the contacts since the row before.
+static std::string columns_of(std::vector<ContactRow> &rows)
+{
+  WordHash hash;
+  for (const ContactRow &row : rows)
+    for (const int64_t word : {(int64_t)row.bond, (int64_t)row.other, (int64_t)row.image[0], (int64_t)row.image[1],
+                               (int64_t)row.image[2], row.tick})
+      hash.add((uint64_t)word);
+  char text[64];
+  std::snprintf(text, sizeof text, ",%zu,%016" PRIx64, rows.size(), hash.value());
+  rows.clear();
+  return text;
+}
+
 static std::string trace(const Pack &pack)
 {
   const Model model = read_model(pack);
   State state = read_state(pack);
   Run run(model, state, Settings{});
-  std::string text = "step,stage,state_hash\n";
+  std::vector<ContactRow> rows;
+  run.rows = &rows;
+  std::string text = model.event_driven ? "step,stage,state_hash,contacts,contacts_hash\n" : "step,stage,state_hash\n";
   run.after_stage = [&](uint64_t number, const char *stage) {
     char line[96];
-    std::snprintf(line, sizeof line, "%" PRIu64 ",%s,%016" PRIx64 "\n", number, stage, state_hash(run.now()));
+    std::snprintf(line, sizeof line, "%" PRIu64 ",%s,%016" PRIx64, number, stage, state_hash(run.now()));
     text += line;
+    if (model.event_driven)
+      text += columns_of(rows);
+    text += "\n";
   };
   run.after_stage(state.step, "start");
   run.steps(model.steps);

@@ -16,7 +16,7 @@ struct Model {
   bool forbidden = false, exclusion_paper = false;
   double time_step = 0, cosine = 0, sine = 0;
   Vector acceleration = {0, 0, 0};
-  std::vector<int32_t> next, prev; // of each vertex, -1: none
+  std::vector<int32_t> next, prev, fiber; // of each vertex, -1: none
   std::vector<double> mass, bond_length, spring, bending;
   std::vector<Vector> constant_force;
 

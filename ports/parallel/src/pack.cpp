@@ -220,6 +220,8 @@ Model read_model(const Pack &pack)
     model.next.push_back((int32_t)j);
   for (const int64_t j : group.integers("chain", "prev"))
     model.prev.push_back((int32_t)j);
+  for (const int64_t j : group.integers("chain", "fiber"))
+    model.fiber.push_back((int32_t)j);
   model.mass = group.reals("vertex", "mass");
   model.bond_length = group.reals("vertex", "bond_length");
   model.spring = group.reals("vertex", "spring");

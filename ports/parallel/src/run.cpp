@@ -1,7 +1,7 @@
 #include "run.h"
 
 Run::Run(const Model &model, State &state, const Settings &settings)
-    : model(model), state(state), solvent(model, state, settings)
+    : model(model), state(state), solvent(model, state, settings), fibers(model), contacts(model, fibers)
 {
 }
 
@@ -52,7 +52,8 @@ void Run::one_step()
 // A drift adds 2 to the lag, half a drift 1.
 void Run::drift(uint64_t number, double time, uint32_t which)
 {
-  (void)which;
+  if (!state.vertex.empty())
+    contacts.drift(time, which == 0 ? -0.5 * model.time_step : 0.0, state.vertex, state.vertex_velocity, rows);
   state.lag += time == model.time_step ? 2 : 1;
   told(number, "drift");
 }
@@ -67,13 +68,16 @@ void Run::collide(uint64_t number)
 
 void Run::force(uint64_t number)
 {
-  if (!state.vertex.empty())
-    told(number, "force");
+  if (state.vertex.empty())
+    return;
+  fibers.forces(state.vertex, ALL_FORCES, forces);
+  told(number, "force");
 }
 
 void Run::kick(uint64_t number, double time)
 {
-  (void)time;
-  if (!state.vertex.empty())
-    told(number, "kick");
+  if (state.vertex.empty())
+    return;
+  fibers.kick(time, forces, state.vertex_velocity);
+  told(number, "kick");
 }

@@ -4,6 +4,8 @@
 #include <functional>
 #include <string>
 
+#include "events.h"
+#include "fibers.h"
 #include "model.h"
 #include "solvent.h"
 
@@ -14,6 +16,8 @@ public:
   void steps(int64_t number);
   // The state of now, by ids.
   const State &now();
+  // Contacts since they were last cleared, if asked for.
+  std::vector<ContactRow> *rows = nullptr;
   // Called after each stage with its name, and the number of the step in progress.
   std::function<void(uint64_t, const char *)> after_stage;
 
@@ -28,4 +32,7 @@ private:
   const Model &model;
   State &state;
   Solvent solvent;
+  Fibers fibers;
+  EventDrift contacts;
+  std::vector<Vector> forces;
 };
