@@ -60,7 +60,6 @@ static double size_of(Point a)
   return (double)std::max({std::llabs(a.x), std::llabs(a.y), std::llabs(a.z)});
 }
 
-
 // Condition (i) for certain.
 static bool certainly_keeps_side(const Three &a, const Three &b)
 {

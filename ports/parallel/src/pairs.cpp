@@ -36,10 +36,7 @@ static int64_t floor_divide(int64_t a, int64_t b)
 // All images of the other bond that are closer than the skin.
 void PairList::add_images(int32_t bond, int32_t other, double reach, std::vector<Pair> &found) const
 {
-  const size_t i = (size_t)bond, j = (size_t)other, i1 = (size_t)model.next[i], j1 = (size_t)model.next[j];
-  if (i == j || i == j1 || i1 == j || i1 == j1)
-    return;
-  const Point w = reference[j] - reference[i], between = middle[j] - middle[i], edge = model.edge();
+  const Point between = middle[(size_t)other] - middle[(size_t)bond], edge = model.edge();
   const int64_t far = (int64_t)(reach * lattice_per_a0);
   const int64_t apart[3] = {between.x, between.y, between.z}, edges[3] = {edge.x, edge.y, edge.z};
   int64_t low[3], high[3];
@@ -49,55 +46,107 @@ void PairList::add_images(int32_t bond, int32_t other, double reach, std::vector
     if (low[axis] > high[axis])
       return;
   }
-  const Vector p = in_a0(reference[i1] - reference[i]), q = in_a0(reference[j1] - reference[j]);
   for (int64_t x = low[0]; x <= high[0]; x++)
     for (int64_t y = low[1]; y <= high[1]; y++)
       for (int64_t z = low[2]; z <= high[2]; z++) {
         const Point shift = {x * edge.x, y * edge.y, z * edge.z};
         const Vector at = in_a0(between + shift);
-        if (dot(at, at) <= reach * reach && bond_distance(p, q, in_a0(w + shift)) < skin)
-          found.push_back({bond, other, {(int32_t)x, (int32_t)y, (int32_t)z}});
+        if (dot(at, at) <= reach * reach)
+          add_pair(bond, other, {x, y, z}, found);
       }
 }
 
-// Cells at least as wide as the reach of a bond's middle: partners are in the 27 cells around.
-void PairList::find_by_cells(const std::vector<int32_t> &bonds, const int64_t cells[3], double reach)
+// Bonds in the order of their cells: middles within the box, a0, and what was added to them, in edges.
+struct Sorted {
+  std::vector<int32_t> bond, start; // start: of each cell
+  std::vector<Vector> middle;
+  std::vector<double> half; // of the length
+  std::vector<Point> folds, cell;
+};
+
+static Sorted sort_bonds(const Model &model, const std::vector<int32_t> &bonds, const std::vector<Point> &reference,
+                         const std::vector<Point> &middle, const int64_t cells[3])
 {
+  const size_t n = bonds.size();
   const Point edge = model.edge();
-  const auto cell_along = [](int64_t x, int64_t edge, int64_t n) {
-    const int64_t folded = x - floor_divide(x, edge) * edge;
+  const auto cell_along = [](int64_t folded, int64_t edge, int64_t n) {
     return std::min((int64_t)((double)folded / (double)edge * (double)n), n - 1);
   };
-  std::vector<int32_t> start((size_t)(cells[0] * cells[1] * cells[2] + 1), 0), sorted(bonds.size());
-  std::vector<int64_t> cell_of(3 * bonds.size());
-  for (size_t k = 0; k < bonds.size(); k++) {
+  Sorted s;
+  std::vector<Point> fold(n), cell(n);
+  std::vector<size_t> number(n);
+  s.start.assign((size_t)(cells[0] * cells[1] * cells[2] + 1), 0);
+  for (size_t k = 0; k < n; k++) {
     const Point r = middle[(size_t)bonds[k]];
-    cell_of[3 * k] = cell_along(r.x, edge.x, cells[0]);
-    cell_of[3 * k + 1] = cell_along(r.y, edge.y, cells[1]);
-    cell_of[3 * k + 2] = cell_along(r.z, edge.z, cells[2]);
+    fold[k] = {-floor_divide(r.x, edge.x), -floor_divide(r.y, edge.y), -floor_divide(r.z, edge.z)};
+    cell[k] = {cell_along(r.x + fold[k].x * edge.x, edge.x, cells[0]),
+               cell_along(r.y + fold[k].y * edge.y, edge.y, cells[1]),
+               cell_along(r.z + fold[k].z * edge.z, edge.z, cells[2])};
+    number[k] = (size_t)((cell[k].z * cells[1] + cell[k].y) * cells[0] + cell[k].x);
+    s.start[number[k] + 1]++;
   }
-  const auto number = [&](int64_t x, int64_t y, int64_t z) { return (size_t)((z * cells[1] + y) * cells[0] + x); };
-  const auto number_of = [&](size_t k) { return number(cell_of[3 * k], cell_of[3 * k + 1], cell_of[3 * k + 2]); };
-  for (size_t k = 0; k < bonds.size(); k++)
-    start[number_of(k) + 1]++;
-  for (size_t c = 1; c < start.size(); c++)
-    start[c] += start[c - 1];
-  std::vector<int32_t> next(start.begin(), start.end() - 1);
-  for (size_t k = 0; k < bonds.size(); k++)
-    sorted[(size_t)next[number_of(k)]++] = bonds[k];
-  std::vector<std::vector<Pair>> parts(64); // in the order of the bonds, whoever finds them
+  for (size_t c = 1; c < s.start.size(); c++)
+    s.start[c] += s.start[c - 1];
+  std::vector<int32_t> next(s.start.begin(), s.start.end() - 1);
+  s.bond.resize(n), s.middle.resize(n), s.half.resize(n), s.folds.resize(n), s.cell.resize(n);
+  for (size_t k = 0; k < n; k++) {
+    const size_t to = (size_t)next[number[k]]++, i = (size_t)bonds[k];
+    const Vector along = in_a0(reference[(size_t)model.next[i]] - reference[i]);
+    s.bond[to] = bonds[k], s.folds[to] = fold[k], s.cell[to] = cell[k];
+    s.middle[to] = in_a0(middle[i] + Point{fold[k].x * edge.x, fold[k].y * edge.y, fold[k].z * edge.z});
+    s.half[to] = 0.5 * std::sqrt(dot(along, along)) + 1e-6;
+  }
+  return s;
+}
+
+// Adds a pair if its image is closer than the skin.
+void PairList::add_pair(int32_t bond, int32_t other, Point image, std::vector<Pair> &found) const
+{
+  const size_t i = (size_t)bond, j = (size_t)other, i1 = (size_t)model.next[i], j1 = (size_t)model.next[j];
+  if (i == j1 || i1 == j || i1 == j1)
+    return;
+  const Point edge = model.edge(), shift = {image.x * edge.x, image.y * edge.y, image.z * edge.z};
+  const Vector p = in_a0(reference[i1] - reference[i]), q = in_a0(reference[j1] - reference[j]);
+  if (bond_distance(p, q, in_a0(reference[j] + shift - reference[i])) >= skin)
+    return;
+  if (bond < other)
+    found.push_back({bond, other, {(int32_t)image.x, (int32_t)image.y, (int32_t)image.z}});
+  else
+    found.push_back({other, bond, {(int32_t)-image.x, (int32_t)-image.y, (int32_t)-image.z}});
+}
+
+// Partners of one bond, among those that come after it in the order of the cells.
+void PairList::find_around(const Sorted &s, size_t k, const int64_t cells[3], std::vector<Pair> &found) const
+{
+  const Vector edge = in_a0(model.edge());
+  for (int n = 0; n < 27; n++) {
+    int64_t at[3] = {s.cell[k].x + n % 3 - 1, s.cell[k].y + n / 3 % 3 - 1, s.cell[k].z + n / 9 - 1}, image[3];
+    for (int axis = 0; axis < 3; axis++) {
+      image[axis] = at[axis] < 0 ? -1 : at[axis] == cells[axis];
+      at[axis] -= image[axis] * cells[axis];
+    }
+    const size_t cell = (size_t)((at[2] * cells[1] + at[1]) * cells[0] + at[0]);
+    const Vector from =
+        s.middle[k] - Vector{(double)image[0] * edge.x, (double)image[1] * edge.y, (double)image[2] * edge.z};
+    const double reach = s.half[k] + skin;
+    for (size_t m = std::max((size_t)s.start[cell], k + 1); m < (size_t)s.start[cell + 1]; m++) {
+      const Vector d = s.middle[m] - from;
+      const double far = reach + s.half[m];
+      if (dot(d, d) < far * far)
+        add_pair(s.bond[k], s.bond[m], s.folds[m] + Point{image[0], image[1], image[2]} - s.folds[k], found);
+    }
+  }
+}
+
+// Cells at least as wide as the reach of a bond's middle: partners are in the 27 cells around.
+void PairList::find_by_cells(const std::vector<int32_t> &bonds, const int64_t cells[3])
+{
+  const Sorted s = sort_bonds(model, bonds, reference, middle, cells);
+  std::vector<std::vector<Pair>> parts(64); // in one order, whoever finds them
 #pragma omp parallel for schedule(dynamic)
   for (size_t part = 0; part < parts.size(); part++)
     for (size_t k = part * bonds.size() / parts.size(); k < (part + 1) * bonds.size() / parts.size(); k++)
-      for (int64_t n = 0; n < 27; n++) {
-        const int64_t x = (cell_of[3 * k] + n % 3 + cells[0] - 1) % cells[0];
-        const int64_t y = (cell_of[3 * k + 1] + n / 3 % 3 + cells[1] - 1) % cells[1];
-        const int64_t z = (cell_of[3 * k + 2] + n / 9 + cells[2] - 1) % cells[2];
-        const size_t cell = number(x, y, z);
-        for (int32_t m = start[cell]; m < start[cell + 1]; m++)
-          if (sorted[(size_t)m] > bonds[k])
-            add_images(bonds[k], sorted[(size_t)m], reach, parts[part]);
-      }
+      find_around(s, k, cells, parts[part]);
   for (const std::vector<Pair> &part : parts)
     pairs.insert(pairs.end(), part.begin(), part.end());
 }
@@ -120,7 +169,7 @@ void PairList::find(const std::vector<int32_t> &bonds)
   }
   pairs.clear();
   if (wide) {
-    find_by_cells(bonds, cells, reach);
+    find_by_cells(bonds, cells);
     return;
   }
   for (size_t a = 0; a < bonds.size(); a++)

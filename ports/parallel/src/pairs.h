@@ -41,7 +41,9 @@ public:
 
 private:
   void find(const std::vector<int32_t> &bonds);
-  void find_by_cells(const std::vector<int32_t> &bonds, const int64_t cells[3], double reach);
+  void find_by_cells(const std::vector<int32_t> &bonds, const int64_t cells[3]);
+  void find_around(const struct Sorted &s, size_t k, const int64_t cells[3], std::vector<Pair> &found) const;
+  void add_pair(int32_t bond, int32_t other, Point image, std::vector<Pair> &found) const;
   void add_images(int32_t bond, int32_t other, double reach, std::vector<Pair> &found) const;
   void index();
 
