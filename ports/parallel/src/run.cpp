@@ -19,6 +19,7 @@ void Run::told(uint64_t number, const char *stage)
 
 void Run::steps(int64_t number)
 {
+  last = state.step + (uint64_t)number;
   for (int64_t k = 0; k < number; k++)
     one_step();
 }
@@ -63,6 +64,9 @@ void Run::collide(uint64_t number)
 {
   solvent.collide(number, (double)state.lag * (model.time_step / 2.0), state);
   state.lag = 0;
+  const uint64_t next = number + (uint64_t)model.interval;
+  if (!after_stage && next <= last)
+    solvent.fly_ahead(next, (double)(2 * model.interval) * (model.time_step / 2.0));
   told(number, "collide");
 }
 

@@ -32,6 +32,7 @@ private:
   const Model &model;
   State &state;
   Solvent solvent;
+  uint64_t last = 0; // step of this call of `steps`
   Fibers fibers;
   EventDrift contacts;
   std::vector<Vector> forces;

@@ -108,6 +108,7 @@ void Solvent::fly_and_sum(double time, const Grid &next)
     for_each(n, TurnFlySum<false>{columns(), at_collision, turn.data(), model.cosine, model.sine, flight, next, to});
   else
     for_each(n, FlySum{columns(), flight, next, to});
+  pending = false;
 }
 
 void Solvent::solve(uint64_t step)
@@ -168,8 +169,10 @@ void Solvent::collide(uint64_t step, double time, State &state)
     at_collision = next;
     collide_drawn(step, state);
   } else {
-    fly_and_sum(time, next);
+    if (!ahead)
+      fly_and_sum(time, next);
     at_collision = next;
+    ahead = false;
     for_each(vertices, SumVertex{vertex.data(), vertex_velocity.data(), vertex_mass.data(), next,
                                  Sums{sums.data(), cell_count, 0}});
     solve(step);
@@ -187,6 +190,14 @@ void Solvent::collide(uint64_t step, double time, State &state)
     finish_turn();
     swap_velocities(step);
   }
+}
+
+void Solvent::fly_ahead(uint64_t step, double time)
+{
+  if (model.andersen || n == 0)
+    return;
+  fly_and_sum(time, grid(grid_shift(model, step)));
+  ahead = true;
 }
 
 std::vector<uint32_t> permutation(const Source &source, uint32_t draw, uint32_t size)

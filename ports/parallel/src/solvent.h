@@ -42,6 +42,9 @@ public:
 
   // The collision of a step; the solvent flies for `time` before. Velocities of vertices change.
   void collide(uint64_t step, double time, State &state);
+  // Begins the flight to the next collision, which must come without a fetch in between: a GPU flies while the host
+  // works on the vertices.
+  void fly_ahead(uint64_t step, double time);
   // Solvent by ids into the state.
   void fetch(State &state);
 
@@ -61,6 +64,7 @@ private:
   int64_t n, cell_count;
   int shards;
   bool pending = false; // velocities are those of before the collision; `turn` has what is left to be done
+  bool ahead = false;   // the flight to the next collision has begun
   int64_t since_sort = 0;
   Grid at_collision = {};
   Array<int64_t> place[3], sorted_place[3], count, relative, total;
