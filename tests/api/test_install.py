@@ -7,6 +7,7 @@ import json
 import os
 import pathlib
 import re
+import shlex
 import shutil
 import subprocess
 import tempfile
@@ -18,12 +19,12 @@ SCENE = TOP / "reference-data" / "mixed.yaml"
 STEPS = 30
 
 
-def call(*words, environment=None, folder=TOP, code=0):
+def call(*words, environment=None, folder=TOP, code=0, show=False):
     done = subprocess.run([str(w) for w in words], cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, text=True,
                           check=False, env={**os.environ, "MAKEFLAGS": "", **(environment or {})})
     if done.returncode != code:
         raise AssertionError(f"{words}: {done.returncode}\n{done.stdout}{done.stderr}")
-    return done.stdout
+    return done.stdout + done.stderr * show
 
 
 def make(target, prefix, destination=""):
@@ -34,7 +35,7 @@ class Installed(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = pathlib.Path(tempfile.mkdtemp(dir=BUILD))
-        cls.prefix = cls.folder / "prefix"
+        cls.prefix = cls.folder / "a b & 'c' | \"d\""  # as a user may call a folder
         make("install", cls.prefix)
         cls.environment = {"PKG_CONFIG_PATH": str(cls.prefix / "lib/pkgconfig"),
                            "LD_LIBRARY_PATH": str(cls.prefix / "lib"),
@@ -47,7 +48,7 @@ class Installed(unittest.TestCase):
         shutil.rmtree(cls.folder)
 
     def flags(self, *words):
-        return call("pkg-config", *words, environment=self.environment).split()
+        return shlex.split(call("pkg-config", *words, environment=self.environment))
 
     def program(self, name, compiler, source, *flags):
         path = self.folder / name
@@ -186,6 +187,40 @@ class Installed(unittest.TestCase):
         make("install", "/usr/local", destination)
         make("uninstall", "/usr/local", destination)
         self.assertFalse(destination.exists() and list(destination.rglob("*")))
+
+    def test_uninstall_removes_its_own_alone(self):
+        """Folders that were there before, even if empty, stay; so do those that a careless shell would take for the prefix."""
+        destination = self.folder / "stage of words"
+        kept = [destination / name for name in ("usr/local/share/man/man1", "usr/local/bin", "usr/local/lib", "usr/local x")]
+        for folder in kept:
+            folder.mkdir(parents=True)
+        other = self.folder / "stage"
+        other.mkdir()
+        (other / "file").write_text("somebody else's\n")
+        before = sorted(self.folder.glob("stage*/**/*"))
+        make("install", "/usr/local x/y", destination)
+        make("install", "/usr/local", destination)
+        call("/usr/bin/python3", "-c", "import uncross", environment={  # leaves __pycache__
+            "PYTHONPATH": str(destination / "usr/local/lib/python3/dist-packages"), "LD_LIBRARY_PATH": str(destination / "usr/local/lib")})
+        make("install", "/usr/local", destination)
+        make("uninstall", "/usr/local", destination)
+        make("uninstall", "/usr/local x/y", destination)
+        self.assertEqual(sorted(self.folder.glob("stage*/**/*")), before)
+        told = call("make", "-s", "uninstall", f"BUILD={os.path.relpath(BUILD, TOP)}", "PREFIX=/usr/local", f"DESTDIR={destination}", code=2,
+                    show=True)
+        self.assertIn("nothing of uncross is installed in", told)
+
+    def test_hardened(self):
+        """Program and library refuse what an overflow would do next: writing over tables of functions, over a return address."""
+        for path in (self.prefix / "bin/uncross", self.prefix / "lib/libuncross.so"):
+            read = call("readelf", "-hdlW", path)
+            self.assertIn("GNU_RELRO", read)
+            self.assertRegex(read, r"BIND_NOW|FLAGS_1.*NOW")
+            self.assertRegex(read, r"GNU_STACK .* RW ")
+            self.assertIn("DYN (", read)
+            used = call("nm", "-D", "--undefined-only", path)
+            self.assertIn("__stack_chk_fail", used)
+            self.assertRegex(used, "__(vs|s)n?printf_chk")
 
 
 if __name__ == "__main__":
