@@ -12,18 +12,22 @@ BUILD   ?= build
 STRICT   := -std=c11 -ffp-contract=off -fno-math-errno -fno-trapping-math -D_POSIX_C_SOURCE=200809L
 OPTIMIZE ?= -O3 -march=$(MARCH)
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Werror
-INCLUDES  = -Isrc -Iinclude $(patsubst -I%,-isystem %,$(shell pkg-config --cflags-only-I hdf5))
+INCLUDES := -Isrc -Iinclude $(patsubst -I%,-isystem %,$(shell pkg-config --cflags-only-I hdf5 2>/dev/null))
 CFLAGS   ?= -g
-ALL_CFLAGS = $(STRICT) $(OPTIMIZE) $(WARNINGS) $(INCLUDES) $(CFLAGS) $(if $(ONCE),$(LIBRARY_FLAGS))
-# The headers of a target, whether BUILD is given as a relative path or as an absolute one.
-DEPENDENCIES = -MMD -MP $(addprefix -MT ,$(sort $@ $(abspath $@) $(patsubst $(CURDIR)/%,%,$(abspath $@))))
-LIBS      = $(shell pkg-config --libs hdf5 yaml-0.1 jansson libxxhash) -lm
+# What is written over by mistake ends the program: canaries on the stack, checked copies, tables that are read-only.
+HARDEN   ?= -fstack-protector-strong $(if $(filter -O1 -O2 -O3 -Os,$(OPTIMIZE)),-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2)
+HARDEN_LINKED := -Wl,-z,relro,-z,now
+ALL_CFLAGS = $(STRICT) $(OPTIMIZE) $(WARNINGS) $(HARDEN) $(INCLUDES) $(CFLAGS) $(if $(ONCE),$(LIBRARY_FLAGS))
+# The headers of a target, whether BUILD is given as a relative path or as an absolute one; no list can hold a path with a space.
+DEPENDENCIES = -MMD -MP $(addprefix -MT ,$(sort $@ $(if $(word 2,$(CURDIR)),,$(abspath $@) $(patsubst $(CURDIR)/%,%,$(abspath $@)))))
+LIBS     := $(shell pkg-config --libs hdf5 yaml-0.1 jansson libxxhash 2>/dev/null) -lm
 TEST_LIBS = -lcmocka -lgsl -lgslcblas -lmpfr -lgmp
 
 # Fast kernels (src/kernel): one source, an object for each instruction set of x86-64. PLAIN=1 leaves them out, and so do
 # other processors: same results. Tests compare them with the plain kernel in either case.
-PLAIN      ?= $(if $(filter x86_64%,$(shell $(CC) -dumpmachine)),,1)
-KERNELS    := $(if $(filter x86_64%,$(shell $(CC) -dumpmachine)),sse2 avx2 avx512)
+MACHINE    := $(shell $(CC) -dumpmachine 2>/dev/null)
+PLAIN      ?= $(if $(filter x86_64%,$(MACHINE)),,1)
+KERNELS    := $(if $(filter x86_64%,$(MACHINE)),sse2 avx2 avx512)
 FAST       := $(if $(PLAIN),,$(KERNELS))
 sse2_FLAGS := -msse2
 avx2_FLAGS := -mavx2
@@ -58,6 +62,7 @@ help:
 	@echo 'make counts-baseline writes that table anew (tests/counts/baseline.txt), and the one of docs/speed.md'
 	@echo 'make judge-power     what `uncross oracle judge` makes of codes with planted bugs (twelve minutes)'
 	@echo 'make stress          long runs: exact audit, linking numbers, 10^7 steps (half an hour)'
+	@echo 'make cross           the program for aarch64 under emulation gives the same bits (ten minutes; part of stress)'
 	@echo 'make lint            formatting, warnings of gcc and clang, static checks, include floors, equation table'
 	@echo 'make port            the port to NumPy: oracle check, fresh packs and traces, bugs planted in it (ports/numpy)'
 	@echo 'make measure         builds the programs behind docs/accuracy.md'
@@ -83,14 +88,20 @@ TOP := $(BUILD)/src/cli/main.o
 
 $(BUILD)/uncross: $(TOP) $(LIBRARY)
 	@echo '  LD $@'
-	@$(CC) $(ALL_CFLAGS) $^ $(LIBS) -o $@
+	@$(CC) $(ALL_CFLAGS) $(HARDEN_LINKED) $^ $(LIBS) -o $@
+
+# What is missing is said once, before anything is compiled; copies of the sources without tools/ take it for granted.
+$(BUILD)/found-%: $(wildcard tools/find-libraries)
+	@mkdir -p $(@D)
+	@$(if $<,$< $* $(CC) $(OPTIMIZE) $(CFLAGS))
+	@touch $@
 
 # All rooms, with everything visible: for the program and the tests.
 $(LIBRARY): $(filter-out $(TOP),$(OBJECTS))
 	@rm -f $@
 	@ar rcs $@ $^
 
-$(BUILD)/%.o: %.c Makefile
+$(BUILD)/%.o: %.c Makefile | $(BUILD)/found-run
 	@mkdir -p $(@D)
 	@echo '  CC $<'
 	@$(CC) $(ALL_CFLAGS) $(DEPENDENCIES) -c $< -o $@
@@ -98,7 +109,7 @@ $(BUILD)/%.o: %.c Makefile
 # Whatever OPTIMIZE asks for, of the processor a kernel may only use what its name says.
 KERNEL_CFLAGS = $(filter-out -march=% -mtune=%,$(ALL_CFLAGS)) -march=x86-64 $($*_FLAGS) -DKERNEL=kernel_$* -DKERNEL_NAME='"$*"'
 
-$(patsubst %,$(BUILD)/src/kernel/%.o,$(KERNELS) $(WIDE)): $(BUILD)/src/kernel/%.o: src/kernel/solvent.c Makefile
+$(patsubst %,$(BUILD)/src/kernel/%.o,$(KERNELS) $(WIDE)): $(BUILD)/src/kernel/%.o: src/kernel/solvent.c Makefile | $(BUILD)/found-run
 	@mkdir -p $(@D)
 	@echo '  CC $< ($*)'
 	@$(CC) $(KERNEL_CFLAGS) $(DEPENDENCIES) -c $< -o $@
@@ -124,12 +135,12 @@ libraries: $(LIBRARIES)
 
 LIBRARY_FLAGS := -fPIC -fvisibility=hidden
 ifndef ONCE
-$(BUILD)/lib/src/%.o: src/%.c Makefile
+$(BUILD)/lib/src/%.o: src/%.c Makefile | $(BUILD)/found-run
 	@mkdir -p $(@D)
 	@echo '  CC $< (library)'
 	@$(CC) $(ALL_CFLAGS) $(LIBRARY_FLAGS) $(DEPENDENCIES) -c $< -o $@
 
-$(KERNELS:%=$(BUILD)/lib/src/kernel/%.o): $(BUILD)/lib/src/kernel/%.o: src/kernel/solvent.c Makefile
+$(KERNELS:%=$(BUILD)/lib/src/kernel/%.o): $(BUILD)/lib/src/kernel/%.o: src/kernel/solvent.c Makefile | $(BUILD)/found-run
 	@mkdir -p $(@D)
 	@echo '  CC $< ($*, library)'
 	@$(CC) $(KERNEL_CFLAGS) $(LIBRARY_FLAGS) $(DEPENDENCIES) -c $< -o $@
@@ -142,7 +153,7 @@ endif
 
 $(BUILD)/lib/$(SONAME): $(LINKED_OBJECTS)
 	@echo '  LD $@'
-	@$(CC) $(ALL_CFLAGS) -shared -Wl,-soname,$(SONAME) $^ $(LIBS) -o $@
+	@$(CC) $(ALL_CFLAGS) $(HARDEN_LINKED) -shared -Wl,-soname,$(SONAME) $^ $(LIBS) -o $@
 
 $(BUILD)/lib/libuncross.so: $(BUILD)/lib/$(SONAME)
 	@ln -sf $(SONAME) $@
@@ -161,7 +172,7 @@ $(BUILD)/lib/libuncross-core.a: $(CORE_SOURCES:%.c=$(BUILD)/%.o) $(FAST:%=$(BUIL
 	@ar rcs $@ $^
 
 # Written anew only when it says something new, so that nothing is rebuilt for nothing.
-$(BUILD)/build-info.inc: force
+$(BUILD)/build-info.inc: force | $(BUILD)/found-run
 	@mkdir -p $(@D)
 	@{ echo '#define BUILD_COMMIT "$(shell git describe --always --dirty --abbrev=12 2>/dev/null || echo unknown)"'; \
 	   echo '#define BUILD_COMPILER "$(shell $(CC) --version | head -n 1)"'; \
@@ -174,7 +185,7 @@ $(BUILD_INFO): INCLUDES += -I$(BUILD)
 .PHONY: force
 force:
 
-# What is installed, one line each: mode, where it comes from, where it goes below $(PREFIX).
+# What is installed, one line each: mode (or link), where it comes from, where it goes below $(PREFIX).
 DOCUMENTS := $(shell find docs scenes examples -type f -not -path '*/.*' -not -name '*.pyc' 2>/dev/null)
 # What `uncross oracle check` holds a port against.
 REFERENCE := $(wildcard $(foreach n,pack.h5 pack.txt.gz start.h5 start.txt.gz trace.csv yaml,reference-data/*.$(n) reference-data/flow/*.$(n) reference-data/dumbbells/*.$(n) reference-data/media/*.$(n) reference-data/tubes/*.$(n) reference-data/beads/*.$(n)))
@@ -186,6 +197,7 @@ $(foreach p,$(OUTER),755 tools/$(p) libexec/uncross/$(p)
 )
 644 include/uncross.h include/uncross.h
 755 $(BUILD)/lib/$(SONAME) lib/$(SONAME)
+link $(SONAME) lib/libuncross.so
 644 $(BUILD)/lib/libuncross.a lib/libuncross.a
 644 $(BUILD)/lib/libuncross-core.a lib/libuncross-core.a
 $(foreach h,$(CORE_HEADERS),644 $(h) include/uncross-core/$(h:src/%=%)
@@ -200,23 +212,22 @@ $(foreach f,$(wildcard python/uncross/*.py python/uncross_plot/*.py python/uncro
 $(foreach f,$(DOCUMENTS) $(REFERENCE),644 $(f) share/uncross/$(f)
 )
 endef
-export INSTALLED
 INSTALL_FILES = $(addprefix $(BUILD)/install/,uncross.pc uncross-core.pc uncross.1 completion)
-DEVELOPMENT   = lib/libuncross.so
+
+# A prefix may hold any characters that a folder's name may, so only shells see it.
+install uninstall $(BUILD)/install/%.pc: export DESTDIR := $(DESTDIR)
+install uninstall $(BUILD)/install/%.pc: export PREFIX := $(PREFIX)
+install: export INSTALLED := $(INSTALLED)
 
 .PHONY: install
 install: $(BUILD)/uncross $(LIBRARIES) $(INSTALL_FILES)
-	@echo "$$INSTALLED" | while read -r mode from to; do \
-	   [ -z "$$to" ] || install -D -m $$mode "$$from" "$(DESTDIR)$(PREFIX)/$$to" || exit 1; done
-	@ln -sf $(SONAME) $(DESTDIR)$(PREFIX)/$(DEVELOPMENT)
-	@echo 'installed in $(DESTDIR)$(PREFIX)'
+	@echo "$$INSTALLED" | tools/install-files install "$$DESTDIR$$PREFIX"
+	@echo "installed in $$DESTDIR$$PREFIX"
 
-# Removes what install put there, and the folders that are empty then.
+# Removes what install put there, and the folders that it made if they are empty then.
 .PHONY: uninstall
 uninstall:
-	@rm -f $(DESTDIR)$(PREFIX)/$(DEVELOPMENT)
-	@echo "$$INSTALLED" | while read -r mode from to; do [ -z "$$to" ] || { rm -f "$(DESTDIR)$(PREFIX)/$$to"; \
-	   rmdir -p --ignore-fail-on-non-empty "$$(dirname "$(DESTDIR)$(PREFIX)/$$to")" 2>/dev/null; }; done; true
+	@tools/install-files uninstall "$$DESTDIR$$PREFIX"
 
 $(BUILD)/install/uncross.1: $(BUILD)/uncross
 	@mkdir -p $(@D)
@@ -229,23 +240,23 @@ $(BUILD)/install/completion: $(BUILD)/uncross
 # The prefix may be another one at every install.
 $(BUILD)/install/%.pc: tools/%.pc.in force
 	@mkdir -p $(@D)
-	@sed 's|@PREFIX@|$(PREFIX)|; s|@VERSION@|$(VERSION)|' $< >$@
+	@sed "s|@PREFIX@|$$(printf %s "$$PREFIX" | sed 's/[\"$$]/\\&/g; s/[\|&]/\\&/g')|; s|@VERSION@|$(VERSION)|" $< >$@
 
 # --- tests, checks, demo ----------------------------------------------------------------------------------------------
 
-$(BUILD)/tests/%: tests/%.c $(LIBRARY) Makefile
+$(BUILD)/tests/%: tests/%.c $(LIBRARY) Makefile | $(BUILD)/found-test
 	@mkdir -p $(@D)
 	@echo '  CC $<'
 	@$(CC) $(ALL_CFLAGS) -Itests $(DEPENDENCIES) $< $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
 
 # Tests of the public interface see nothing else: they are linked with the shared library.
-$(BUILD)/tests/api/test_%: tests/api/test_%.c $(BUILD)/lib/libuncross.so Makefile
+$(BUILD)/tests/api/test_%: tests/api/test_%.c $(BUILD)/lib/libuncross.so Makefile | $(BUILD)/found-test
 	@mkdir -p $(@D)
 	@echo '  CC $<'
 	@$(CC) $(filter-out -Isrc,$(ALL_CFLAGS)) -Itests $(DEPENDENCIES) $< -L$(BUILD)/lib -Wl,-rpath,'$$ORIGIN/../../lib' -luncross -lcmocka -lm -o $@
 
 # No file of the core needs HDF5, YAML or jansson: all of them are linked, whether used or not.
-$(BUILD)/tests/api/test_core: tests/api/test_core.c $(BUILD)/lib/libuncross-core.a Makefile
+$(BUILD)/tests/api/test_core: tests/api/test_core.c $(BUILD)/lib/libuncross-core.a Makefile | $(BUILD)/found-test
 	@mkdir -p $(@D)
 	@echo '  CC $<'
 	@$(CC) $(ALL_CFLAGS) $(DEPENDENCIES) $< -Wl,--whole-archive $(BUILD)/lib/libuncross-core.a -Wl,--no-whole-archive \
@@ -253,7 +264,7 @@ $(BUILD)/tests/api/test_core: tests/api/test_core.c $(BUILD)/lib/libuncross-core
 
 # Holds all kernels against the plain one, whether the program has them or not.
 ROWS := $(if $(KERNELS),$(BUILD)/src/kernel/rows.o) $(patsubst %,$(BUILD)/src/kernel/%.o,$(KERNELS) $(WIDE))
-$(filter $(BUILD)/tests/kernel/% $(BUILD)/tests/contract/test_kernels,$(TEST_PROGRAMS)): $(BUILD)/%: %.c $(ROWS) $(LIBRARY) Makefile
+$(filter $(BUILD)/tests/kernel/% $(BUILD)/tests/contract/test_kernels,$(TEST_PROGRAMS)): $(BUILD)/%: %.c $(ROWS) $(LIBRARY) Makefile | $(BUILD)/found-test
 	@mkdir -p $(@D)
 	@echo '  CC $<'
 	@$(CC) $(ALL_CFLAGS) -Itests $(DEPENDENCIES) $(filter-out Makefile,$^) $(TEST_LIBS) $(LIBS) -o $@
@@ -267,12 +278,12 @@ $(BUILD)/uncross-faults: $(TOP) $(LIBRARY) $(INJECTOR)
 	@echo '  LD $@'
 	@$(CC) $(ALL_CFLAGS) $(TOP) $(INJECT) $(LIBRARY) $(LIBS) -o $@
 
-$(BUILD)/tests/faults/test_%: tests/faults/test_%.c $(LIBRARY) $(INJECTOR) Makefile
+$(BUILD)/tests/faults/test_%: tests/faults/test_%.c $(LIBRARY) $(INJECTOR) Makefile | $(BUILD)/found-test
 	@mkdir -p $(@D)
 	@echo '  CC $<'
 	@$(CC) $(ALL_CFLAGS) -Itests $(DEPENDENCIES) $< $(INJECT) $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
 
-$(BUILD)/validation/%: validation/%.c $(LIBRARY) Makefile
+$(BUILD)/validation/%: validation/%.c $(LIBRARY) Makefile | $(BUILD)/found-test
 	@mkdir -p $(@D)
 	@echo '  CC $<'
 	@$(CC) $(ALL_CFLAGS) -Itests $(DEPENDENCIES) $< $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
@@ -281,7 +292,12 @@ $(BUILD)/validation/%: validation/%.c $(LIBRARY) Makefile
 tests: $(BUILD)/uncross $(BUILD)/uncross-faults $(LIBRARIES) $(TEST_PROGRAMS) $(BENCH_PROGRAMS)
 
 .PHONY: measure
-measure: $(MEASURE_PROGRAMS)
+measure:
+	tools/install-dependencies run measure
+	$(MAKE) -j2 measure-programs
+
+.PHONY: measure-programs
+measure-programs: $(MEASURE_PROGRAMS)
 
 # What was measured before with the same programs is kept: an interrupted run goes on where it was.
 # EFFORT=0.1 for a look.
@@ -315,7 +331,7 @@ PEER         := validation/cases/peer
 PEER_MEASURE := $(addprefix $(BUILD)/validation/measure/,solvent_vacf solvent_vacf_box_axes solvent_lammps)
 .PHONY: peer
 peer:
-	tools/install-dependencies run bench peers
+	tools/install-dependencies run measure validate peers
 	$(MAKE) -j2 $(BUILD)/uncross $(PEER_MEASURE)
 	@test "$$($(BUILD)/validation/measure/solvent_vacf 4 5 0.02 90 3 2 1 | tail -n 1)" != \
 	   "$$($(BUILD)/validation/measure/solvent_vacf_box_axes 4 5 0.02 90 3 2 1 | tail -n 1)" || \
@@ -375,9 +391,16 @@ check:
 
 .PHONY: stress
 stress:
-	tools/install-dependencies run test stress
+	tools/install-dependencies run test stress cross
 	$(MAKE) -j2 stress-programs
 	tests/run --stress $(BUILD)
+
+# The program for another processor, under emulation: the same bits (tests/stress/stress_cross.sh).
+.PHONY: cross
+cross:
+	tools/install-dependencies run test cross
+	$(MAKE) -j2 $(BUILD)/uncross
+	tests/run --stress $(BUILD) stress_cross
 
 .PHONY: stress-programs
 stress-programs: $(BUILD)/uncross $(BUILD)/uncross-faults $(STRESS_PROGRAMS)
@@ -439,7 +462,7 @@ STATISTICS := tests/fluid/test_dumbbell_stress.c tests/contract/test_thermostats
 .PHONY: sanitize
 sanitize:
 	tools/install-dependencies run hard
-	$(MAKE) -j2 CC=gcc BUILD=build/sanitize ONCE=1 OPTIMIZE=-O1 \
+	$(MAKE) -j2 CC=gcc BUILD=build/sanitize ONCE=1 OPTIMIZE=-O1 HARDEN= \
 	   CFLAGS='-g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all' exact
 	tools/sanitize build/sanitize $(filter-out $(STATISTICS),$(EXACT_TESTS))
 
@@ -449,7 +472,7 @@ coverage:
 	tools/install-dependencies run hard port
 	mkdir -p build/coverage
 	gcc -O1 -c tests/faults/child_coverage.c -o build/coverage/child.o
-	$(MAKE) -j2 CC=gcc BUILD=build/coverage ONCE=1 OPTIMIZE=-O1 CFLAGS='-g --coverage' \
+	$(MAKE) -j2 CC=gcc BUILD=build/coverage ONCE=1 OPTIMIZE=-O1 HARDEN= CFLAGS='-g --coverage' \
 	   LIBS='$(LIBS) $(CURDIR)/build/coverage/child.o -Wl,--wrap=_exit' exact
 	tools/coverage build/coverage $(filter-out $(STATISTICS),$(EXACT_TESTS))
 
@@ -463,7 +486,7 @@ FUZZ_CFLAGS := -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-reco
 .PHONY: fuzz
 fuzz:
 	tools/install-dependencies run hard
-	$(MAKE) -j2 CC=clang BUILD=build/fuzz OPTIMIZE=-O1 CFLAGS='$(FUZZ_CFLAGS)' build/fuzz/readers
+	$(MAKE) -j2 CC=clang BUILD=build/fuzz OPTIMIZE=-O1 HARDEN= CFLAGS='$(FUZZ_CFLAGS)' build/fuzz/readers
 	mkdir -p build/fuzz/corpus
 	TMPDIR=build/fuzz $(FUZZ_LIMITS) build/fuzz/readers -artifact_prefix=build/fuzz/ -max_len=4096 -timeout=60 \
 	   -rss_limit_mb=3000 -print_final_stats=1 $(FUZZ)

@@ -6,6 +6,8 @@
 #ifndef UNCROSS_BASE_PHILOX_H
 #define UNCROSS_BASE_PHILOX_H
 
+#include "base/machine.h"
+
 #include <stdint.h>
 
 enum { PHILOX_ROUNDS = 10 };

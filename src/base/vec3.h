@@ -2,6 +2,8 @@
 #ifndef UNCROSS_BASE_VEC3_H
 #define UNCROSS_BASE_VEC3_H
 
+#include "base/machine.h"
+
 #include <math.h>
 
 struct vec3 {

@@ -151,7 +151,7 @@ class Installed(unittest.TestCase):
 
         def complete(*words):
             array = " ".join(f"'{w}'" for w in words)
-            told = call("bash", "-c", f". '{script}'; COMP_WORDS=({array}); COMP_CWORD={len(words) - 1}; _uncross; "
+            told = call("bash", "-c", f". {shlex.quote(str(script))}; COMP_WORDS=({array}); COMP_CWORD={len(words) - 1}; _uncross; "
                         "printf '%s\\n' \"${COMPREPLY[@]}\"", folder=self.folder)
             return told.split()
 
@@ -183,21 +183,21 @@ class Installed(unittest.TestCase):
         other.write_text("somebody else's\n")
         make("uninstall", "/usr/local", destination)
         self.assertEqual([p for p in destination.rglob("*") if not p.is_dir()], [other])
-        other.unlink()
+        shutil.rmtree(destination / "usr")
         make("install", "/usr/local", destination)
         make("uninstall", "/usr/local", destination)
         self.assertFalse(destination.exists() and list(destination.rglob("*")))
 
     def test_uninstall_removes_its_own_alone(self):
         """Folders that were there before, even if empty, stay; so do those that a careless shell would take for the prefix."""
-        destination = self.folder / "stage of words"
+        destination = self.folder / "kept of words"
         kept = [destination / name for name in ("usr/local/share/man/man1", "usr/local/bin", "usr/local/lib", "usr/local x")]
         for folder in kept:
             folder.mkdir(parents=True)
-        other = self.folder / "stage"
+        other = self.folder / "kept"
         other.mkdir()
         (other / "file").write_text("somebody else's\n")
-        before = sorted(self.folder.glob("stage*/**/*"))
+        before = sorted(self.folder.glob("kept*/**/*"))
         make("install", "/usr/local x/y", destination)
         make("install", "/usr/local", destination)
         call("/usr/bin/python3", "-c", "import uncross", environment={  # leaves __pycache__
@@ -205,7 +205,7 @@ class Installed(unittest.TestCase):
         make("install", "/usr/local", destination)
         make("uninstall", "/usr/local", destination)
         make("uninstall", "/usr/local x/y", destination)
-        self.assertEqual(sorted(self.folder.glob("stage*/**/*")), before)
+        self.assertEqual(sorted(self.folder.glob("kept*/**/*")), before)
         told = call("make", "-s", "uninstall", f"BUILD={os.path.relpath(BUILD, TOP)}", "PREFIX=/usr/local", f"DESTDIR={destination}", code=2,
                     show=True)
         self.assertIn("nothing of uncross is installed in", told)

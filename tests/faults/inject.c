@@ -228,6 +228,19 @@ int __wrap_openat(int folder, const char *path, int flags, ...)
   return fails(INJECT_FILE) ? -1 : __real_openat(folder, path, flags, mode);
 }
 
+/* What glibc calls in their places where a program is hardened and the flags are no constants. */
+int __wrap___open_2(const char *path, int flags);
+int __wrap___open_2(const char *path, int flags)
+{
+  return __wrap_open(path, flags);
+}
+
+int __wrap___openat_2(int folder, const char *path, int flags);
+int __wrap___openat_2(int folder, const char *path, int flags)
+{
+  return __wrap_openat(folder, path, flags);
+}
+
 /* --- HDF5 -------------------------------------------------------------------------------------------------------- */
 
 #define HDF5(type, name, parameters, arguments) INSTEAD(INJECT_HDF5, type, -1, name, parameters, arguments)
