@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "contact/candidates.h"
 #include "contact/capsule.h"
+#include "contact/event_rigid.h"
 #include "contact/impulse.h"
 #include "contact/tube.h"
 #include "system/bead.h"
@@ -182,19 +183,6 @@ void event_bead_end(const struct event_drift *d)
 
 /* --- the path of the bead bends ----------------------------------------------------------------------------------- */
 
-/* Those that move rigidly with the bead go where it goes. */
-static bool take_along(const struct event_drift *d, int32_t tick)
-{
-  const struct bend_list *list = &d->contact->flights.bends;
-  for (uint32_t k = 0; d->bead->cluster && k < list->count; k++) {
-    const uint32_t i = list->at[k].vertex;
-    if (list->at[k].cluster == d->bead->cluster &&
-        (!event_steer(d, i, d->bead->visits->way.rate, tick) || !event_search_again(d, 1, &i, tick)))
-      return false;
-  }
-  return true;
-}
-
 /* The bead has another velocity from this tick on. */
 static bool bent(const struct event_drift *d, int32_t tick)
 {
@@ -207,44 +195,19 @@ static bool bent(const struct event_drift *d, int32_t tick)
   }
   for (uint32_t k = 0; k < c->count; k++)
     search(d, &c->at[k], tick);
-  return take_along(d, tick);
+  return !c->cluster || event_steer_cluster(d, c->cluster, c->visits->way.rate, tick);
+}
+
+bool event_bead_hold(const struct event_drift *d, int32_t tick)
+{
+  struct bead_visits *v = d->bead->visits;
+  if (v->way.held)
+    return true;
+  v->way.held = true;
+  return d->bead->steps->turn(d->state, d->model, v, tick, v->way.velocity, d->fault) && bent(d, tick);
 }
 
 /* --- a contact ---------------------------------------------------------------------------------------------------- */
-
-/* The bond moves rigidly with the bead for the rest of the drift, and so do the clusters of its ends. Velocities stay.
- * This ends the work on a contact that no impulse separates. */
-static bool carry(const struct event_drift *d, const uint32_t vertex[2], int32_t tick)
-{
-  struct bend_list *list = &d->contact->flights.bends;
-  struct bead_company *c = d->bead;
-  for (int e = 0; e < 2; e++) {
-    struct bend_in_path *bend = event_bend(d, vertex[e]);
-    if (!is_short(bend, d))
-      return false;
-    const uint32_t old = bend->cluster;
-    if (!c->cluster)
-      c->cluster = old ? old : d->contact->flights.bend_of[vertex[e]];
-    bend->cluster = c->cluster;
-    for (uint32_t k = 0; old && k < list->count; k++)
-      if (list->at[k].cluster == old)
-        list->at[k].cluster = c->cluster;
-  }
-  d->state->counts.rigid++;
-  return event_search_again(d, 2, vertex, tick) && take_along(d, tick);
-}
-
-/* True if an exchange may answer the contact. */
-static bool may_exchange(const struct event_drift *d, const uint32_t vertex[2])
-{
-  const struct flights *f = &d->contact->flights;
-  for (int e = 0; e < 2; e++) {
-    const struct bend_in_path *bend = &f->bends.at[f->bend_of[vertex[e]] - 1];
-    if (bend->cluster || bend->contacts >= EVENT_MOST_CONTACTS)
-      return false;
-  }
-  return true;
-}
 
 /* Where they touch: s along the bond, and the normal from there to the center. */
 static struct contact_geometry geometry_of(const struct event_drift *d, const struct bead_neighbor *n)
@@ -306,8 +269,8 @@ static bool touch(const struct event_drift *d, struct bead_neighbor n)
       return false;
   struct contact_geometry at = geometry_of(d, &n);
   struct vec3 bead = v->way.velocity;
-  if (!may_exchange(d, vertex) || !exchange(d, vertex, n.due, &at, &bead))
-    return carry(d, vertex, n.due);
+  if (event_is_rigid(d, 2, vertex) || !exchange(d, vertex, n.due, &at, &bead))
+    return event_make_rigid(d, 2, vertex, true, n.due);
   note(d, n.bond, n.due, &at);
   if (!d->bead->steps->turn(d->state, d->model, v, n.due, bead, d->fault))
     return false;

@@ -29,6 +29,9 @@ bool event_bead_answer(const struct event_drift *d);
 /* The flights of these bonds have bent at a tick. */
 bool event_bead_search_again(const struct event_drift *d, uint32_t n, const uint32_t *bond, int32_t tick);
 
+/* The bead stands from this tick on until the drift ends, and its cluster with it; its velocity stays. */
+bool event_bead_hold(const struct event_drift *d, int32_t tick);
+
 void event_bead_end(const struct event_drift *d);
 
 /* True if no bond of the fiber is nearer to the bead than it may be; else *bond is one that is, and *distance that of

@@ -24,6 +24,7 @@
 #include "contact/capsule.h"
 #include "contact/event_bead.h"
 #include "contact/event_drift.h"
+#include "contact/event_rigid.h"
 #include "contact/impulse.h"
 #include "contact/neighbors.h"
 #include "contact/rule.h"
@@ -76,70 +77,7 @@ static struct meeting meeting_of(const struct event_drift *d, const struct event
   return m;
 }
 
-/* --- rigid clusters ----------------------------------------------------------------------------------------------- */
-
-/* All members of the cluster of `from` join that of `to`, and fly as it does. */
-static bool join_cluster(const struct event_drift *d, uint32_t from, uint32_t to, struct point rate, int32_t tick)
-{
-  struct bend_list *list = &d->contact->flights.bends;
-  for (uint32_t k = 0; k < list->count; k++) {
-    if (list->at[k].cluster != from)
-      continue;
-    const uint32_t i = list->at[k].vertex;
-    list->at[k].cluster = to;
-    if (!event_steer(d, i, rate, tick) || !event_search_again(d, 1, &i, tick))
-      return false;
-  }
-  return true;
-}
-
-/* The four vertices of a contact move rigidly for the rest of the drift, with the clusters that they belong to: a
- * common displacement crosses nothing. Velocities stay. This ends the work on a contact that no impulse separates. */
-static bool make_rigid(const struct event_drift *d, const struct meeting *m)
-{
-  const int32_t tick = m->event.tick;
-  const uint32_t of_bead = d->bead ? d->bead->cluster : 0; /* this one stays */
-  struct point sum = {0, 0, 0};
-  uint32_t cluster = 0;
-  for (int k = 0; k < 4; k++) {
-    const struct bend_in_path *bend = event_bend(d, m->vertex[k]);
-    if (!bend)
-      return event_no_memory(d);
-    if (bend->cluster && (!cluster || bend->cluster == of_bead)) {
-      cluster = bend->cluster;
-      sum = flight_place((struct point){0, 0, 0}, bend->rate, 4);
-    }
-  }
-  for (int k = 0; k < 4 && !cluster; k++)
-    sum = point_plus(sum, event_rate(d, m->vertex[k]));
-  const struct point rate = {sum.x / 4, sum.y / 4, sum.z / 4};
-  cluster = cluster ? cluster : d->contact->flights.bend_of[m->vertex[0]];
-  for (int k = 0; k < 4; k++) {
-    struct bend_in_path *bend = event_bend(d, m->vertex[k]);
-    const uint32_t old = bend->cluster;
-    if (old == cluster)
-      continue;
-    bend->cluster = cluster;
-    if ((old && !join_cluster(d, old, cluster, rate, tick)) || !event_steer(d, m->vertex[k], rate, tick))
-      return false;
-  }
-  d->state->counts.rigid++;
-  return event_search_again(d, 4, m->vertex, tick);
-}
-
 /* --- answers ------------------------------------------------------------------------------------------------------ */
-
-/* True if an exchange may answer the contact: none of its vertices is rigid, or has had too many. */
-static bool may_exchange(const struct event_drift *d, const struct meeting *m)
-{
-  const struct flights *f = &d->contact->flights;
-  for (int k = 0; k < 4; k++) {
-    const uint32_t number = f->bend_of[m->vertex[k]];
-    if (number && (f->bends.at[number - 1].cluster || f->bends.at[number - 1].contacts >= EVENT_MOST_CONTACTS))
-      return false;
-  }
-  return true;
-}
 
 /* Changes the velocities of the four vertices. False if no impulse separates the bonds. */
 static bool exchange(const struct event_drift *d, struct meeting *m)
@@ -200,8 +138,8 @@ static bool answer(const struct event_drift *d, const struct event *e)
   for (int k = 0; k < 4; k++) /* before velocities change */
     if (!event_bend(d, m.vertex[k]))
       return event_no_memory(d);
-  if (!may_exchange(d, &m) || !exchange(d, &m))
-    return make_rigid(d, &m);
+  if (event_is_rigid(d, 4, m.vertex) || !exchange(d, &m))
+    return event_make_rigid(d, 4, m.vertex, false, e->tick);
   note(d, &m);
   return bend_flights(d, &m);
 }

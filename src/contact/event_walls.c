@@ -1,4 +1,4 @@
-#include "contact/event_drift.h"
+#include "contact/event_rigid.h"
 #include "contact/wall.h"
 
 /* The last tick at which a vertex that flies to a wall is not beyond it; FLIGHT_TICKS if it does not get there. */
@@ -25,22 +25,14 @@ bool event_search_walls(const struct event_drift *d)
   return true;
 }
 
-/* Vertex i goes along the wall. */
-static bool slide(const struct event_drift *d, uint32_t i, int32_t tick)
+/* Vertex i goes along the wall, and with it all that moves rigidly with it. */
+static bool slide(const struct event_drift *d, uint32_t i, uint32_t cluster, int32_t tick)
 {
   struct point rate = event_rate(d, i);
   rate.y = 0;
+  if (cluster)
+    return event_steer_cluster(d, cluster, rate, tick);
   return event_steer(d, i, rate, tick) && event_search_again(d, 1, &i, tick);
-}
-
-/* A cluster that moves rigidly goes along a wall that one of its vertices has reached. */
-static bool slide_cluster(const struct event_drift *d, uint32_t cluster, int32_t tick)
-{
-  const struct bend_list *list = &d->contact->flights.bends;
-  for (uint32_t k = 0; k < list->count; k++)
-    if (list->at[k].cluster == cluster && !slide(d, list->at[k].vertex, tick))
-      return false;
-  return true;
 }
 
 bool event_answer_wall(const struct event_drift *d, const struct event *e)
@@ -51,10 +43,8 @@ bool event_answer_wall(const struct event_drift *d, const struct event *e)
   struct bend_in_path *bend = event_bend(d, i);
   if (!bend)
     return event_no_memory(d);
-  if (bend->cluster)
-    return slide_cluster(d, bend->cluster, e->tick);
-  if (bend->contacts++ >= EVENT_MOST_CONTACTS)
-    return slide(d, i, e->tick);
+  if (bend->cluster || bend->contacts++ >= EVENT_MOST_CONTACTS)
+    return slide(d, i, bend->cluster, e->tick);
   wall_hit(d->state, d->model, d->frame, event_rate(d, i).y < 0 ? WALL_LOWER : WALL_UPPER, i,
            event_force(d, i, e->tick), event_time(d, e->tick));
   return event_steer_freely(d, i, e->tick) && event_search_again(d, 1, &i, e->tick);

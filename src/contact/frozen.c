@@ -3,7 +3,7 @@
 void frozen_set_aside(struct state *state, const struct model *model, struct vec3 *aside)
 {
   for (uint32_t v = 0; v < state->vertices; v++)
-    if (model->inverse_mass[v] == 0.0) {
+    if (model_is_held(model, v)) {
       aside[v] = state->velocity[v];
       state->velocity[v] = (struct vec3){0, 0, 0};
     }
@@ -12,6 +12,6 @@ void frozen_set_aside(struct state *state, const struct model *model, struct vec
 void frozen_give_back(struct state *state, const struct model *model, const struct vec3 *aside)
 {
   for (uint32_t v = 0; v < state->vertices; v++)
-    if (model->inverse_mass[v] == 0.0)
+    if (model_is_held(model, v))
       state->velocity[v] = aside[v];
 }

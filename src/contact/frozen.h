@@ -5,7 +5,10 @@
  * fluid is as heavy and as viscous as if the fiber moved. But it moves nothing: in a drift the velocity is set aside,
  * and is 0. Its inverse mass is 0 (system/model.h), so that no force changes it, and a fiber that meets it bounces as
  * off a wall: the velocity of the contact point of the moving bond reverses along the normal, kinetic energy is
- * conserved, and momentum goes to the obstacle and is lost. That holds under every crossing rule.
+ * conserved, and momentum goes to the obstacle and is lost. That holds under every crossing rule. A rigid cluster with
+ * such a vertex stands (contact/event_rigid.h).
+ *
+ * Every bath that has velocities keeps these at kT = 1: what a bath needs of a mass is `mass`, never the inverse one.
  */
 #ifndef UNCROSS_CONTACT_FROZEN_H
 #define UNCROSS_CONTACT_FROZEN_H

@@ -138,7 +138,7 @@ bool overdamped_move(struct state *state, const struct model *m, const struct ve
   bool ok = true;
   for (uint32_t f = 0; ok && f < m->fibers; f++) {
     struct chain chain = chain_of(m, f, scratch);
-    if (m->inverse_mass[chain.first] == 0.0)
+    if (model_is_held(m, chain.first))
       continue; /* it stands still */
     gather(state, m, force, step, &chain);
     ok = couple(m, &chain, step, fault) && move(state, m, &chain, step, fault);

@@ -52,7 +52,7 @@ static int64_t next_hit(const struct bead_way *bead, const struct bead_visit *m)
 static void set_velocity(struct bead_way *bead, struct vec3 velocity)
 {
   bead->velocity = velocity;
-  bead->rate = rate_of(velocity, bead->time);
+  bead->rate = bead->held ? (struct point){0, 0, 0} : rate_of(velocity, bead->time);
 }
 
 /* Both at the tick of their hit. */
@@ -114,7 +114,8 @@ static int64_t next_of_all(const struct state *state, struct bead_visits *all)
 /* The bead is off its free flight by this at most, a0. */
 static double off_free_flight(const struct bead_visits *all)
 {
-  return all->way.time * vec3_norm(vec3_sub(all->way.velocity, all->free));
+  const struct vec3 flown = all->way.held ? (struct vec3){0, 0, 0} : all->way.velocity;
+  return all->way.time * vec3_norm(vec3_sub(flown, all->free));
 }
 
 /* --- who meets the bead ------------------------------------------------------------------------------------------ */

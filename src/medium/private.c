@@ -16,7 +16,7 @@ bool private_collide(struct state *state, const struct model *model, struct medi
     double normal[3];
     random_normal_three(random_at(model->seed, RANDOM_BATH_VERTEX, 0, step, v), normal);
     const struct vec3 u = vec3_sub(state->velocity[v], model->flow);
-    const double noise = bath_noise(loss, model->inverse_mass[v]);
+    const double noise = bath_noise(loss, 1.0 / model->mass[v]);
     const struct vec3 change = {bath_change(u.x, loss, noise * normal[0]), bath_change(u.y, loss, noise * normal[1]),
                                 model_is_flat(model) ? 0.0 : bath_change(u.z, loss, noise * normal[2])};
     state->velocity[v] = vec3_add(state->velocity[v], change);

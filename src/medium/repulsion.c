@@ -158,7 +158,7 @@ static double free_ends(const struct near_search *s, const struct near_pairs *p,
 {
   const struct model *m = s->model;
   const uint32_t n = m->solvent.particles, i = s->medium->number[p->a[k]], j = s->medium->number[p->b[k]];
-  return (i < n || m->inverse_mass[i - n] > 0.0) + (j < n || m->inverse_mass[j - n] > 0.0);
+  return (i < n || !model_is_held(m, i - n)) + (j < n || !model_is_held(m, j - n));
 }
 
 /* Of a density's weight w at the distance r: -w' and w'' + 2 w'/r. */

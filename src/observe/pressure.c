@@ -73,7 +73,7 @@ static void add_vertices(const struct view *view, const struct vec3 *bonded, con
     if (!model_is_overdamped(model))
       add_products(s->flow, model->mass[v], w, w);
     add_products(s->flow, 1.0, point_difference(state->position[v], origin), inner);
-    s->square += model->inverse_mass[v] > 0.0 ? vec3_dot(grad, grad) : 0.0;
+    s->square += model_is_held(model, v) ? 0.0 : vec3_dot(grad, grad);
     add_bonded(model, state, v, s);
   }
 }

@@ -54,6 +54,7 @@ struct bead_way {
   int64_t radius, clock;
   struct point at, rate;
   struct vec3 velocity;
+  bool held; /* it stands until the flight ends, whatever its velocity: contact/event_rigid.h */
 };
 
 /* Those of one flight. */

@@ -297,7 +297,7 @@ struct model {
   uint32_t *fiber_of;      /* [vertices] */
   int32_t *next, *prev;    /* [vertices]: bonded neighbors along the fiber, -1 at an open end */
   double *mass;            /* [vertices] M */
-  double *inverse_mass;    /* [vertices] 1/M; 0 if frozen: no force and no contact moves it */
+  double *inverse_mass;    /* [vertices] 1/M; 0 if frozen (model_is_held). What needs M takes mass */
   double max_mass;         /* of any member of a collision cell */
   double total_mass;       /* of solvent and vertices, without a bead */
   struct wave wave;        /* of the walls' or the shear's motion */
@@ -314,6 +314,12 @@ bool model_finish_numbers(struct model *model, struct model_error *error);
 
 /* Frees the derived part, the kinds and their places. */
 void model_free(struct model *model);
+
+/* True for a vertex that nothing moves: no force, no contact, no rigid cluster. */
+static inline bool model_is_held(const struct model *model, uint32_t vertex)
+{
+  return model->inverse_mass[vertex] == 0.0;
+}
 
 /* The bonds that end at a vertex: none, one or two. Returns their number. */
 static inline int model_bonds_of(const struct model *model, uint32_t vertex, uint32_t bond[2])
