@@ -12,7 +12,9 @@
 #include <fcntl.h>
 #include <locale.h>
 #include <math.h>
+#include <pthread.h>
 #include <signal.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "uncross.h"
@@ -484,6 +486,153 @@ static void test_a_run_in_a_folder(void **unused)
   remove_folder(folder);
 }
 
+/* What a watch does to its own run at the third step. */
+enum deed { SAVE, CLOSE, CLOSE_TWICE, FREE, ADVANCE, FREE_THE_SIM, DEEDS };
+
+struct doer {
+  uncross_run *run;
+  enum deed deed;
+  int calls, code;
+};
+
+static int do_it(void *context, const uncross_run *run)
+{
+  struct doer *d = context;
+  uncross_sim *sim = (uncross_sim *)uncross_run_sim(run);
+  if (++d->calls != 3)
+    return 1;
+  if (d->deed == SAVE)
+    d->code = uncross_run_save(d->run, NULL);
+  if (d->deed == CLOSE || d->deed == CLOSE_TWICE)
+    d->code = uncross_run_close(d->run, NULL);
+  if (d->deed == CLOSE_TWICE)
+    d->code += uncross_run_close(d->run, NULL);
+  if (d->deed == FREE)
+    uncross_run_free(d->run);
+  if (d->deed == ADVANCE)
+    d->code = uncross_run_advance(d->run, 1, NULL, NULL, NULL);
+  if (d->deed == FREE_THE_SIM) {
+    uncross_sim_free(sim);
+    d->code = uncross_sim_advance(sim, 1, NULL);
+  }
+  return 1;
+}
+
+/* In a watch a run may be saved, closed and freed: the step that was made is the last one if it was closed or freed. It
+ * may not be advanced, and nobody else frees or advances the simulation of a run. */
+static void test_a_watch_that_uses_its_run(void **unused)
+{
+  (void)unused;
+  static const int code[DEEDS] = {[ADVANCE] = UNCROSS_BAD_INPUT, [FREE_THE_SIM] = UNCROSS_BAD_INPUT};
+  static const int calls[DEEDS] = {
+      [SAVE] = 10, [CLOSE] = 3, [CLOSE_TWICE] = 3, [FREE] = 3, [ADVANCE] = 10, [FREE_THE_SIM] = 10};
+  char folder[64];
+  make_folder(folder);
+  uncross_error error;
+  uncross_scene *scene = scene_of(first_text);
+  for (int deed = 0; deed < DEEDS; deed++) {
+    char name[16];
+    snprintf(name, sizeof name, "run%d", deed);
+    const char *where = in_folder(folder, name);
+    struct doer doer = {uncross_run_open(scene, where, UNCROSS_NEW, &error), (enum deed)deed, 0, 0};
+    assert_int_equal(uncross_run_advance(doer.run, 10, do_it, &doer, &error), UNCROSS_OK);
+    assert_int_equal(doer.calls, calls[deed]);
+    assert_int_equal(doer.code, code[deed]);
+    if (deed == FREE)
+      continue;
+    assert_int_equal(uncross_sim_step(uncross_run_sim(doer.run)), calls[deed]);
+    if (deed == CLOSE || deed == CLOSE_TWICE)
+      assert_int_equal(uncross_run_advance(doer.run, 1, NULL, NULL, &error), UNCROSS_BAD_INPUT);
+    assert_int_equal(uncross_run_close(doer.run, &error), UNCROSS_OK);
+    assert_int_equal(uncross_run_close(doer.run, &error), UNCROSS_OK);
+    uncross_run_free(doer.run);
+    uncross_run *again = uncross_run_open(scene, where, UNCROSS_RESUME, &error); /* the folder is free, and whole */
+    assert_int_equal(uncross_sim_step(uncross_run_sim(again)), calls[deed]);
+    assert_int_equal(uncross_run_advance(again, 100, NULL, NULL, &error), UNCROSS_OK);
+    assert_int_equal(hash_of(uncross_run_sim(again)), hash_after(first_text, 40));
+    uncross_run_free(again);
+  }
+  uncross_scene_free(scene);
+  remove_folder(folder);
+}
+
+/* Everything that the library may be asked for, by a thread whose stack is as small as that of a thread of musl. */
+static const char wide_text[] =
+    "box: [4, 64, 4]\ntime_step: 0.01\nsteps: 8\nseed: 5\n"
+    "solvent: {per_cell: 4, collision_interval: 0.02, rule: at+a, acceleration: [0.01, 0, 0]}\nwalls: {kind: no-slip}\n"
+    "fibers:\n  - {name: rod, count: 6, vertices: 6, mass: 5, bond_length: 0.5, spring: 100, bending: 8}\n"
+    "observe:\n  conserved: {every: 2}\n  temperature: {every: 2}\n  profile: {every: 2, slabs: 8}\n"
+    "  dynamics: {every: 2}\n  stress: {every: 2}\n  statics: {every: 2}\ntrajectory: {every: 4, solvent: true}\n";
+static const char dumbbells_text[] =
+    "box: [4, 32, 4]\ntime_step: 0.01\nsteps: 8\nseed: 5\nwalls: {kind: no-slip, shear_rate: 0.01}\n"
+    "solvent: {per_cell: 4, collision_interval: 0.02, rule: at-a}\ndumbbells: {spring: 20}\n"
+    "observe: {conserved: {every: 2}, stress: {every: 2}}\n";
+static const char pairs_text[] =
+    "box: [8, 8, 8]\ntime_step: 0.01\nsteps: 8\nseed: 5\n"
+    "medium: {kind: pairs, density: 5, rate: 9, draw: relax, weight: quadratic, repulsion: 25}\n"
+    "observe: {conserved: {every: 2}, pressure: {every: 2}, memory: {every: 2}}\n";
+
+struct quest {
+  const char *folder, *text;
+  uncross_error error;
+};
+
+static void *ask_for_everything(void *context)
+{
+  struct quest *q = context;
+  uncross_error *e = &q->error;
+  const char *run_folder = in_folder(q->folder, "run"), *path = in_folder(q->folder, "c.h5");
+  uncross_scene *scene = uncross_scene_parse("test.yaml", q->text, NULL, 0, e);
+  uncross_run *run = scene ? uncross_run_open(scene, run_folder, UNCROSS_NEW, e) : NULL;
+  const uncross_table *const *tables;
+  size_t count;
+  if (run && uncross_run_advance(run, 4, NULL, NULL, e) == UNCROSS_OK && uncross_run_save(run, e) == UNCROSS_OK &&
+      uncross_sim_tables(uncross_run_sim(run), &tables, &count, e) == UNCROSS_OK &&
+      uncross_run_close(run, e) == UNCROSS_OK) {
+    uncross_sim *sim = uncross_sim_start(scene, e);
+    if (uncross_sim_save(sim, path, e) == UNCROSS_OK) {
+      uncross_sim_free(sim);
+      sim = uncross_sim_resume(scene, path, e);
+    }
+    uncross_sim_free(sim);
+  }
+  uncross_run_free(run);
+  run = scene ? uncross_run_open(scene, run_folder, UNCROSS_RESUME, e) : NULL;
+  uncross_run_free(run);
+  uncross_free(uncross_scene_text(scene, NULL));
+  uncross_scene_free(scene);
+  return NULL;
+}
+
+static void test_a_small_stack(void **unused)
+{
+  (void)unused;
+  static const char *const texts[] = {first_text, second_text, wide_text, dumbbells_text, pairs_text};
+  for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) {
+    char folder[64];
+    make_folder(folder);
+    struct quest quest = {folder, texts[k], {.code = UNCROSS_OK}};
+    fflush(stdout);
+    const pid_t child = fork(); /* a stack that overflows ends the process */
+    if (child == 0) {
+      pthread_attr_t small;
+      pthread_t thread;
+      pthread_attr_init(&small);
+      pthread_attr_setstacksize(&small, (size_t)128 * 1024);
+      const int ran =
+          pthread_create(&thread, &small, ask_for_everything, &quest) == 0 && pthread_join(thread, NULL) == 0;
+      if (quest.error.code != UNCROSS_OK)
+        fprintf(stderr, "%s\n", quest.error.message);
+      _exit(ran ? quest.error.code : 9);
+    }
+    int status = -1;
+    assert_int_equal(waitpid(child, &status, 0), child);
+    if (status != 0)
+      fail_msg("scene %zu: status %d", k, status);
+    remove_folder(folder);
+  }
+}
+
 /* --- manners ----------------------------------------------------------------------------------------------------- */
 
 static void test_null(void **unused)
@@ -500,6 +649,12 @@ static void test_null(void **unused)
   assert_int_equal(error.code, UNCROSS_BAD_INPUT);
   assert_null(uncross_scene_parse(NULL, NULL, NULL, 0, &error));
   assert_null(uncross_scene_parse("a", "b", NULL, 1, &error));
+  const char *const settings[] = {"seed=1", NULL};
+  assert_null(uncross_scene_parse("a", first_text, settings, 2, &error));
+  assert_int_equal(error.code, UNCROSS_BAD_INPUT);
+  assert_string_equal(error.message, "settings[1] is NULL");
+  assert_null(uncross_scene_read("nowhere.yaml", settings, 2, &error));
+  assert_string_equal(error.message, "settings[1] is NULL");
   assert_int_equal(uncross_scene_set(NULL, "a", "b", &error), UNCROSS_BAD_INPUT);
   assert_int_equal(uncross_scene_set_steps(NULL, 1, NULL), UNCROSS_BAD_INPUT);
   assert_int_equal(uncross_scene_set_seed(NULL, 1, NULL), UNCROSS_BAD_INPUT);
@@ -536,6 +691,49 @@ static void test_null(void **unused)
   assert_int_equal(uncross_interface(), UNCROSS_INTERFACE);
   assert_int_equal(uncross_interface_age(), UNCROSS_INTERFACE_AGE);
   assert_true(strlen(uncross_version()) > 0);
+}
+
+/* Every pointer of every function in turn, with a scene, a simulation and a run that are good. */
+static void test_null_everywhere(void **unused)
+{
+  (void)unused;
+  char folder[64];
+  make_folder(folder);
+  uncross_error error;
+  uncross_scene *scene = scene_of(first_text);
+  uncross_sim *sim = start_of(first_text);
+  const uncross_table *const *tables;
+  size_t count;
+  assert_null(uncross_scene_parse("a", NULL, NULL, 0, &error));
+  assert_null(uncross_scene_parse(NULL, "steps: 1\n", NULL, 0, NULL));
+  assert_null(uncross_scene_read("a", NULL, 1, NULL));
+  assert_int_equal(uncross_scene_set(scene, NULL, "1", &error), UNCROSS_BAD_INPUT);
+  assert_int_equal(uncross_scene_set(scene, "seed", NULL, NULL), UNCROSS_BAD_INPUT);
+  assert_null(uncross_scene_get(scene, NULL, &error));
+  assert_int_equal(uncross_scene_number(scene, NULL, NULL, &error), UNCROSS_BAD_INPUT);
+  assert_int_equal(uncross_scene_number(scene, "seed", NULL, NULL), UNCROSS_BAD_INPUT);
+  assert_int_equal(uncross_scene_warnings(scene, NULL, NULL, &error), UNCROSS_BAD_INPUT);
+  assert_null(uncross_sim_resume(scene, NULL, &error));
+  assert_int_equal(uncross_sim_save(sim, NULL, &error), UNCROSS_BAD_INPUT);
+  assert_int_equal(uncross_sim_hash(sim, NULL, NULL), UNCROSS_BAD_INPUT);
+  assert_int_equal(uncross_sim_counts(sim, NULL, NULL), UNCROSS_BAD_INPUT);
+  assert_int_equal(uncross_sim_positions(sim, NULL, NULL), UNCROSS_BAD_INPUT);
+  assert_int_equal(uncross_sim_solvent(sim, NULL, NULL, NULL), UNCROSS_OK);
+  assert_int_equal(uncross_sim_conserved(sim, NULL, NULL), UNCROSS_BAD_INPUT);
+  assert_int_equal(uncross_sim_tables(sim, NULL, &count, NULL), UNCROSS_BAD_INPUT);
+  assert_int_equal(uncross_sim_tables(sim, &tables, NULL, NULL), UNCROSS_BAD_INPUT);
+  assert_null(uncross_run_open(scene, NULL, UNCROSS_NEW, &error));
+  /* an error that nobody wants to see */
+  assert_null(uncross_scene_read("/nowhere/scene.yaml", NULL, 0, NULL));
+  assert_null(uncross_scene_parse("a", "steps: [", NULL, 0, NULL));
+  assert_int_equal(uncross_scene_set(scene, "none", "1", NULL), UNCROSS_BAD_INPUT);
+  assert_null(uncross_scene_get(scene, "none", NULL));
+  assert_null(uncross_sim_resume(scene, "/nowhere/c.h5", NULL));
+  assert_int_equal(uncross_sim_save(sim, in_folder(folder, "none/c.h5"), NULL), UNCROSS_NOT_WRITTEN);
+  assert_null(uncross_run_open(scene, "/dev/null", UNCROSS_NEW, NULL));
+  uncross_scene_free(scene);
+  uncross_sim_free(sim);
+  remove_folder(folder);
 }
 
 static void take_warning(void *context, const char *text)
@@ -638,7 +836,10 @@ int main(void)
       cmocka_unit_test(test_settings),
       cmocka_unit_test(test_a_scene_by_hand),
       cmocka_unit_test(test_a_run_in_a_folder),
+      cmocka_unit_test(test_a_watch_that_uses_its_run),
+      cmocka_unit_test(test_a_small_stack),
       cmocka_unit_test(test_null),
+      cmocka_unit_test(test_null_everywhere),
       cmocka_unit_test(test_silence),
       cmocka_unit_test(test_a_locale_with_commas),
   };

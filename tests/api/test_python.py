@@ -6,9 +6,11 @@ import gc
 import json
 import os
 import pathlib
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 import numpy as np
@@ -53,6 +55,50 @@ class Python(unittest.TestCase):
         self.assertEqual(list(run.next[-4:]), [31, 32, 33, 30])
         self.assertEqual(run.kinds, ["rod", "ring"])
         self.assertEqual(list(run.fiber[[0, 4, 5, 33]]), [0, 0, 1, 6])
+
+    def test_views_cannot_be_made_writeable(self):
+        run = uncross.Run(SCENE)
+        for name in ("positions", "velocities", "mass", "next", "first", "solvent_x", "solvent_vx", "solvent_id"):
+            array = getattr(run, name)
+            for view in (array, array[1:], array.T):
+                with self.assertRaises(ValueError, msg=name):
+                    view.flags.writeable = True
+                self.assertTrue(memoryview(view).readonly, name)
+
+    def test_text_after_nul_is_not_cut(self):
+        """A text that ends early in C is refused: a path would name another file, a seed another run."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "scene.yaml"
+            path.write_text(uncross.Scene(SCENE).text)
+            run, scene, cut = uncross.Run(SCENE), uncross.Scene(SCENE), "\0 and more"
+            calls = {"path": lambda: uncross.Run(f"{path}{cut}"), "setting": lambda: uncross.Run(path, seed=f"7{cut}"),
+                     "key": lambda: uncross.Run(path, **{f"seed{cut}": 7}), "word": lambda: uncross.Scene({**SCENE, "seed": f"7{cut}"}),
+                     "text": lambda: uncross.Scene.parse(scene.text + cut), "name": lambda: uncross.Scene.parse(scene.text, f"a{cut}"),
+                     "get": lambda: scene.get(f"seed{cut}"), "number": lambda: scene.number(f"seed{cut}"),
+                     "save": lambda: run.save(f"{folder}/c.h5{cut}"), "resume": lambda: uncross.Run(scene, resume=f"{path}{cut}"),
+                     "folder": lambda: uncross.FolderRun(scene, f"{folder}/run{cut}")}
+            for name, call in calls.items():
+                with self.assertRaisesRegex(uncross.BadInput, "NUL", msg=name):
+                    call()
+            self.assertEqual(list(pathlib.Path(folder).iterdir()), [path])
+
+    def test_ctrl_c_is_seen_within_a_second(self):
+        """However long a step takes: here 64 of them take several seconds."""
+        code = (f"import sys; sys.path.insert(0, {str(TOP / 'python')!r}); import uncross, tempfile\n"
+                "scene = dict(box=[16, 16, 16], time_step=0.01, steps=100000, seed=1,\n"
+                "             medium=dict(kind='pairs', density=5, rate=9, draw='relax', weight='quadratic', repulsion=25))\n"
+                "run = uncross.Run(scene) if sys.argv[1] == 'sim' else uncross.FolderRun(scene, tempfile.mkdtemp() + '/run')\n"
+                "print('begun', flush=True)\n"
+                "run.advance(100000)\n")
+        for kind in ("sim", "run"):
+            program = subprocess.Popen(["/usr/bin/python3", "-c", code, kind], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            self.assertEqual(program.stdout.readline(), b"begun\n")
+            time.sleep(0.3)
+            program.send_signal(signal.SIGINT)
+            started = time.monotonic()
+            _, said = program.communicate(timeout=60)
+            self.assertIn(b"KeyboardInterrupt", said)
+            self.assertLess(time.monotonic() - started, 3, kind)  # a look every 0.1 s and a step, on a busy machine
 
     def test_a_view_keeps_the_run_alive(self):
         freed = []
