@@ -17,7 +17,7 @@ CFLAGS   ?= -g
 # What is written over by mistake ends the program: canaries on the stack, checked copies, tables that are read-only.
 HARDEN   ?= -fstack-protector-strong $(if $(filter -O1 -O2 -O3 -Os,$(OPTIMIZE)),-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2)
 HARDEN_LINKED := -Wl,-z,relro,-z,now
-ALL_CFLAGS = $(STRICT) $(OPTIMIZE) $(WARNINGS) $(HARDEN) $(INCLUDES) $(CFLAGS) $(if $(ONCE),$(LIBRARY_FLAGS))
+ALL_CFLAGS = $(STRICT) $(OPTIMIZE) $(WARNINGS) $(HARDEN) $(INCLUDES) -fstack-usage $(CFLAGS) $(if $(ONCE),$(LIBRARY_FLAGS))
 # The headers of a target, whether BUILD is given as a relative path or as an absolute one; no list can hold a path with a space.
 DEPENDENCIES = -MMD -MP $(addprefix -MT ,$(sort $@ $(if $(word 2,$(CURDIR)),,$(abspath $@) $(patsubst $(CURDIR)/%,%,$(abspath $@)))))
 LIBS     := $(shell pkg-config --libs hdf5 yaml-0.1 jansson libxxhash 2>/dev/null) -lm

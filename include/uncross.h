@@ -277,10 +277,11 @@ UNCROSS_API const char *uncross_run_note(const uncross_run *run);
 /* Steps wanted in all: `steps` of the scene. */
 UNCROSS_API uint64_t uncross_run_wanted(const uncross_run *run);
 
-/* The simulation of the run, to look at. It lives as long as the run. */
+/* The simulation of the run, to look at. It lives as long as the run; it is not advanced, saved or freed by itself. */
 UNCROSS_API const uncross_sim *uncross_run_sim(const uncross_run *run);
 
-/* Asked after every step; 0: stop here. */
+/* Asked after every step; 0: stop here. A watch may save, close and free its run: a run that it closed or freed makes
+ * no further step. It may not advance it. */
 typedef int uncross_run_watch(void *context, const uncross_run *run);
 
 /* Makes `steps` time steps, fewer if the run's end comes first, with all that belongs into the folder, and a checkpoint

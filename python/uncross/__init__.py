@@ -10,6 +10,7 @@ Units: a0 = kT = m = 1. Views cannot be written to; they change when the run is 
 docs/library.md explains the library, docs/scene.md the keys of a scene.
 """
 import os
+import time
 
 import numpy as np
 
@@ -65,8 +66,19 @@ def _check(function, *arguments):
     return result
 
 
-def _bytes(path):
-    return os.fsencode(path)
+def _whole(encoded):
+    """A text for C, which ends at the first NUL: one that has any would be cut."""
+    if b"\0" in encoded:
+        raise BadInput(f"{encoded!r}: holds a NUL, which would end the text")
+    return encoded
+
+
+def _path(path):
+    return _whole(os.fsencode(path))
+
+
+def _utf8(text):
+    return _whole(text.encode())
 
 
 def _text_of(value):
@@ -90,7 +102,7 @@ def _flatten(values, prefix=""):
 
 
 def _settings(overrides):
-    kept = [ffi.new("char[]", f"{path}={value}".encode()) for path, value in _flatten(overrides)]
+    kept = [ffi.new("char[]", _utf8(f"{path}={value}")) for path, value in _flatten(overrides)]
     return ffi.new("char *[]", kept), len(kept), kept
 
 
@@ -105,18 +117,18 @@ class Scene:
         if isinstance(source, dict):
             self._take(_check(lib.uncross_scene_new))
             for path, value in (*_flatten(source), *_flatten(overrides)):
-                _check(lib.uncross_scene_set, self._handle, path.encode(), value.encode())
+                _check(lib.uncross_scene_set, self._handle, _utf8(path), _utf8(value))
             _check(lib.uncross_scene_check, self._handle)
         else:
             texts, count, _kept = _settings(overrides)
-            self._take(_check(lib.uncross_scene_read, _bytes(source), texts, count))
+            self._take(_check(lib.uncross_scene_read, _path(source), texts, count))
 
     @classmethod
     def parse(cls, text, name="scene", **overrides):
         """A scene from YAML; `name` stands for the file in messages."""
         texts, count, _kept = _settings(overrides)
         scene = cls.__new__(cls)
-        scene._take(_check(lib.uncross_scene_parse, _bytes(name), text.encode(), texts, count))
+        scene._take(_check(lib.uncross_scene_parse, _path(name), _utf8(text), texts, count))
         return scene
 
     def _take(self, handle):
@@ -133,12 +145,12 @@ class Scene:
 
     def get(self, path):
         """The text of one key of the effective scene, e.g. "solvent.per_cell"."""
-        return self._text(lib.uncross_scene_get, path.encode())
+        return self._text(lib.uncross_scene_get, _utf8(path))
 
     def number(self, path):
         """The number that one key of the effective scene holds."""
         value = ffi.new("double *")
-        _check(lib.uncross_scene_number, self._handle, path.encode(), value)
+        _check(lib.uncross_scene_number, self._handle, _utf8(path), value)
         return value[0]
 
     @property
@@ -163,9 +175,8 @@ def _array(owner, pointer, *shape, dtype):
     if 0 in shape:
         return np.empty(shape, dtype)
     alive = ffi.gc(ffi.cast("char *", pointer), lambda _pointer, owner=owner: None)
-    array = np.frombuffer(ffi.buffer(alive, int(np.prod(shape)) * np.dtype(dtype).itemsize), dtype).reshape(shape)
-    array.flags.writeable = False
-    return array
+    memory = memoryview(ffi.buffer(alive, int(np.prod(shape)) * np.dtype(dtype).itemsize)).toreadonly()
+    return np.frombuffer(memory, dtype).reshape(shape)
 
 
 class _Looks:
@@ -254,7 +265,19 @@ class _Looks:
         return result
 
 
-_CHUNK = 64  # steps between two looks at Ctrl-C
+_PATIENCE = 0.1  # seconds between two looks at Ctrl-C, which Python sees only outside of the library
+
+
+def _chunks(steps):
+    """Numbers of steps that make up so many, each made in about _PATIENCE, or one step if that takes longer."""
+    chunk = 1
+    while steps > 0:
+        chunk = min(chunk, steps)
+        started = time.monotonic()
+        yield chunk
+        steps -= chunk
+        took = max(time.monotonic() - started, 1e-6)
+        chunk = max(1, int(chunk * min(2.0, _PATIENCE / took)))
 
 
 class Run(_Looks):
@@ -266,18 +289,18 @@ class Run(_Looks):
     def __init__(self, scene, *, resume=None, **overrides):
         scene = _scene(scene, overrides)
         handle = (_check(lib.uncross_sim_start, scene._handle) if resume is None
-                  else _check(lib.uncross_sim_resume, scene._handle, _bytes(resume)))
+                  else _check(lib.uncross_sim_resume, scene._handle, _path(resume)))
         self._sim = self._owner = ffi.gc(handle, lib.uncross_sim_free)
 
     def advance(self, steps=1):
         """Makes so many time steps; returns the run."""
-        for done in range(0, steps, _CHUNK):
-            _check(lib.uncross_sim_advance, self._sim, min(_CHUNK, steps - done))
+        for some in _chunks(steps):
+            _check(lib.uncross_sim_advance, self._sim, some)
         return self
 
     def save(self, path):
         """Writes a checkpoint, in the place of an earlier one if there is one; of nothing else."""
-        _check(lib.uncross_sim_save, self._sim, _bytes(path))
+        _check(lib.uncross_sim_save, self._sim, _path(path))
 
 
 class FolderRun(_Looks):
@@ -287,7 +310,7 @@ class FolderRun(_Looks):
     def __init__(self, scene, folder, *, resume=False, **overrides):
         scene = _scene(scene, overrides)
         mode = lib.UNCROSS_RESUME if resume else lib.UNCROSS_NEW
-        self._run = self._owner = ffi.gc(_check(lib.uncross_run_open, scene._handle, _bytes(folder), mode),
+        self._run = self._owner = ffi.gc(_check(lib.uncross_run_open, scene._handle, _path(folder), mode),
                                          lib.uncross_run_free)
         self._sim = lib.uncross_run_sim(self._run)
         self.note = ffi.string(lib.uncross_run_note(self._run)).decode()
@@ -298,8 +321,8 @@ class FolderRun(_Looks):
         """Makes so many steps (None: all that are wanted), up to the end; returns the run."""
         left = max(0, self.wanted - self.step)
         steps = left if steps is None else min(steps, left)
-        for done in range(0, steps, _CHUNK):
-            _check(lib.uncross_run_advance, self._run, min(_CHUNK, steps - done), ffi.NULL, ffi.NULL)
+        for some in _chunks(steps):
+            _check(lib.uncross_run_advance, self._run, some, ffi.NULL, ffi.NULL)
         return self
 
     def save(self):

@@ -34,6 +34,7 @@ struct uncross_sim {
   struct checkpoint_head head;
   struct uncross_view view;
   bool stopped;                     /* work.fault says why */
+  bool of_run;                      /* part of a struct uncross_run, which alone advances, saves and frees it */
   struct table series[OBSERVABLES]; /* rows since the start of this handle; without columns where not asked for */
   struct table *summary;            /* [summaries] of the last call of uncross_sim_tables */
   size_t summaries;
@@ -44,6 +45,8 @@ struct uncross_run {
   struct uncross_sim sim;
   struct run run;
   struct message note;
+  bool advancing; /* so this call comes from its watch */
+  bool unwanted;  /* to be freed at the end of the advance */
 };
 
 /* Surroundings of a call: numbers are read and written as in the C locale, by this thread only, and (files) HDF5 does

@@ -16,6 +16,7 @@ static int open_run(struct uncross_run *run, const struct uncross_scene *scene, 
   const struct run_parts parts = sim_parts(&run->sim);
   const enum run_code opened =
       run_open(&run->run, &parts, folder, resume, scene->has_seed ? &scene->seed : NULL, &run->note);
+  run->sim.of_run = true;
   sim_look(&run->sim);
   return opened == RUN_FINE ? UNCROSS_OK : fail(error, (int)opened, run->note.text, &run->sim.work.fault);
 }
@@ -71,7 +72,7 @@ static bool keep_on(void *context)
 {
   const struct watched *w = context;
   sim_look(&w->run->sim);
-  return !w->watch || w->watch(w->context, w->run);
+  return (!w->watch || w->watch(w->context, w->run)) && !w->run->unwanted;
 }
 
 /* A copy in a forked process. HDF5 is not called there either: another thread may have been at work in it. */
@@ -87,14 +88,21 @@ int uncross_run_advance(uncross_run *run, uint64_t steps, uncross_run_watch *wat
     return fail_null(error, "run");
   if (!run_is_ours(&run->run))
     return fail_forked(error);
+  if (run->advancing)
+    return fail(error, UNCROSS_BAD_INPUT, "run: is being advanced, and is no further by its own watch", NULL);
   struct call call;
   struct message message;
   struct watched watched = {run, watch, context};
   call_begin(&call, true);
+  run->advancing = true;
   const enum run_code code = run_advance(&run->run, steps, keep_on, &watched, &message);
+  run->advancing = false;
   sim_look(&run->sim);
   call_end(&call);
-  return code == RUN_FINE ? UNCROSS_OK : fail(error, (int)code, message.text, &run->sim.work.fault);
+  const struct fault fault = run->sim.work.fault;
+  if (run->unwanted)
+    uncross_run_free(run);
+  return code == RUN_FINE ? UNCROSS_OK : fail(error, (int)code, message.text, &fault);
 }
 
 int uncross_run_save(uncross_run *run, uncross_error *error)
@@ -130,6 +138,9 @@ int uncross_run_close(uncross_run *run, uncross_error *error)
 void uncross_run_free(uncross_run *run)
 {
   if (!run || (run->run.owner && !run_is_ours(&run->run)))
+    return;
+  run->unwanted = true;
+  if (run->advancing) /* which uses it */
     return;
   struct call call;
   call_begin(&call, true);

@@ -74,6 +74,18 @@ static uncross_scene *make(const char *name, const char *text, size_t size)
   return NULL;
 }
 
+/* Whether settings can be read: count texts. */
+static bool settings_fit(const char *const *settings, size_t count, uncross_error *error)
+{
+  char what[64] = "settings";
+  bool fit = count == 0 || settings;
+  for (size_t k = 0; fit && k < count; k++) {
+    fit = settings[k] != NULL;
+    snprintf(what, sizeof what, "settings[%zu]", k);
+  }
+  return fit || (fail_null(error, what), false);
+}
+
 /* Appends a setting, which becomes the scene's to free. */
 static int append(struct uncross_scene *scene, char *setting, uncross_error *error)
 {
@@ -105,10 +117,12 @@ static uncross_scene *make_with(const char *name, const char *text, size_t size,
 uncross_scene *uncross_scene_parse(const char *name, const char *text, const char *const *settings, size_t count,
                                    uncross_error *error)
 {
-  if (!name || !text || (count > 0 && !settings)) {
-    fail_null(error, "name, text or settings");
+  if (!name || !text) {
+    fail_null(error, "name or text");
     return NULL;
   }
+  if (!settings_fit(settings, count, error))
+    return NULL;
   struct call call;
   call_begin(&call, false);
   uncross_scene *scene = make_with(name, text, strlen(text), false, settings, count, error);
@@ -118,10 +132,12 @@ uncross_scene *uncross_scene_parse(const char *name, const char *text, const cha
 
 uncross_scene *uncross_scene_read(const char *path, const char *const *settings, size_t count, uncross_error *error)
 {
-  if (!path || (count > 0 && !settings)) {
-    fail_null(error, "path or settings");
+  if (!path) {
+    fail_null(error, "path");
     return NULL;
   }
+  if (!settings_fit(settings, count, error))
+    return NULL;
   struct call call;
   struct message message;
   size_t size;

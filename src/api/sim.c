@@ -304,10 +304,17 @@ static int advance(struct uncross_sim *sim, uint64_t steps, uncross_error *error
   return UNCROSS_OK;
 }
 
+static int fail_of_run(uncross_error *error)
+{
+  return fail(error, UNCROSS_BAD_INPUT, "sim: is that of a run, which advances and saves it", NULL);
+}
+
 int uncross_sim_advance(uncross_sim *sim, uint64_t steps, uncross_error *error)
 {
   if (!sim)
     return fail_null(error, "sim");
+  if (sim->of_run)
+    return fail_of_run(error);
   if (sim->stopped)
     return stopped(sim, error);
   struct call call;
@@ -322,6 +329,8 @@ int uncross_sim_save(uncross_sim *sim, const char *path, uncross_error *error)
 {
   if (!sim || !path)
     return fail_null(error, "sim or path");
+  if (sim->of_run)
+    return fail_of_run(error);
   if (sim->stopped)
     return stopped(sim, error);
   struct call call;
@@ -337,7 +346,7 @@ int uncross_sim_save(uncross_sim *sim, const char *path, uncross_error *error)
 
 void uncross_sim_free(uncross_sim *sim)
 {
-  if (!sim)
+  if (!sim || sim->of_run)
     return;
   sim_clear(sim);
   free(sim);

@@ -326,6 +326,10 @@ enum run_code run_advance(struct run *run, uint64_t steps, bool (*keep_on)(void 
       return stop(run, RUN_NOT_WRITTEN, message);
     if (keep_on && !keep_on(context))
       break;
+    if (run->over) { /* keep_on closed it, or could not save it */
+      message_set(message, "%s: this run is over: %s", run->name, run->reason);
+      return run->reason[0] ? RUN_NOT_WRITTEN : RUN_FINE;
+    }
   }
   return RUN_FINE;
 }

@@ -80,7 +80,7 @@ enum run_code run_open(struct run *run, const struct run_parts *parts, const cha
                        const uint64_t *seed, struct message *message);
 
 /* Makes at most `steps` steps, up to the scene's steps. keep_on: called after each step, the run pauses if it returns
- * false; NULL: not called. */
+ * false; it may save and close the run, which ends there; NULL: not called. */
 enum run_code run_advance(struct run *run, uint64_t steps, bool (*keep_on)(void *context), void *context,
                           struct message *message);
 

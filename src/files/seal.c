@@ -13,7 +13,7 @@
 #include <xxhash.h>
 
 static const char magic[16] = {'u', 'n', 'c', 'r', 'o', 's', 's', ' ', 's', 'e', 'a', 'l', ' ', 'v', '1', '\n'};
-#define BLOCK_BYTES 65536
+#define BLOCK_BYTES 16384
 
 static void put_number(unsigned char *at, uint64_t number)
 {

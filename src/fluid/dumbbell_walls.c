@@ -230,7 +230,7 @@ static int64_t follow(const struct slit *slit, struct couple *c)
 
 /* --- many dumbbells ---------------------------------------------------------------------------------------------- */
 
-enum { BLOCK = 256 };
+enum { BLOCK = 128 };
 
 /* May an event happen to a dumbbell? Numbers of those of n where one may; more of them than do. */
 static uint32_t find_near(const struct pairs *pairs, const struct slit *slit, uint32_t near[BLOCK])

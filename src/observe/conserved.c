@@ -1,6 +1,7 @@
 #include "observe/conserved.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -114,12 +115,13 @@ static void measure_vertices_in_slabs(const struct model *model, const struct st
   }
 }
 
-/* Where the solvent flows, or is not free between collisions: positions and velocities of now, and slabs along y. */
-static void measure_now(const struct model *model, const struct state *state, const struct vec3 *force,
-                        const struct vec3 *pair, struct motion *m)
+/* Where the solvent flows, or is not free between collisions: positions and velocities of now, and slabs along y:
+ * [cells], all zero. */
+static void measure_slabs(const struct model *model, const struct state *state, const struct vec3 *force,
+                          const struct vec3 *pair, struct slab *slab, struct motion *m)
 {
   const int64_t cells = model->box.cells[1];
-  struct slab slab[LATTICE_MAX_EDGE] = {{0}}, all = {0};
+  struct slab all = {0};
   bool bad = false;
   for (uint32_t first = 0; first < state->solvent.n; first += SOME) {
     const uint32_t n = state->solvent.n - first < SOME ? state->solvent.n - first : SOME;
@@ -152,6 +154,18 @@ static void measure_now(const struct model *model, const struct state *state, co
   m->solvent_sum = (struct vec3){sum[0], sum[1], sum[2]};
   m->solvent_squares = (struct vec3){squares[0], squares[1], squares[2]};
   m->slab_squares = (struct vec3){within[0], within[1], within[2]};
+}
+
+/* All is NAN if memory is short. */
+static void measure_now(const struct model *model, const struct state *state, const struct vec3 *force,
+                        const struct vec3 *pair, struct motion *m)
+{
+  struct slab *slab = calloc((size_t)model->box.cells[1], sizeof *slab);
+  if (slab)
+    measure_slabs(model, state, force, pair, slab, m);
+  else
+    m->solvent_sum = m->solvent_squares = m->slab_squares = (struct vec3){NAN, NAN, NAN};
+  free(slab);
 }
 
 /* The bead's velocity is that of the half step ahead; solvent and vertices have half of the counterforce of a step to

@@ -27,7 +27,7 @@ enum {
   QUANTITIES
 };
 
-enum { LEVELS = 24, OPEN_SUMS = 3, FLIGHT = 1024 };
+enum { LEVELS = 24, OPEN_SUMS = 3, FLIGHT = 256 };
 
 /* Reals: the blocks, [slabs][QUANTITIES][LEVELS], then the sums of the period that goes on, [slabs][OPEN_SUMS]: of
  * momentum times cosine, times sine, and of numbers. Integers: */

@@ -264,8 +264,8 @@ static double contact_speed(double a, double b)
   return sqrt(a + b) * (0.8139898469 - z * (0.0023367305 + z * (3.8942257e-5 + z * 1.5534e-6)));
 }
 
-/* Densities of bond length, one for each mass that occurs; returns the number of masses. */
-static uint32_t densities_by_mass(const struct model *model, struct density density[MODEL_MOST_KINDS])
+/* Densities of bond length, one for each mass that occurs, at most one for each kind; returns the number of masses. */
+static uint32_t densities_by_mass(const struct model *model, struct density *density)
 {
   const double volume = box_volume(&model->box);
   for (uint32_t k = 0; k < model->kinds; k++) {
@@ -284,12 +284,15 @@ static uint32_t densities_by_mass(const struct model *model, struct density dens
 
 double theory_collision_rate(const struct model *model)
 {
-  struct density density[MODEL_MOST_KINDS];
+  struct density *density = model->kinds > 0 ? calloc(model->kinds, sizeof *density) : NULL;
+  if (!density)
+    return model->kinds > 0 ? NAN : 0.0;
   const uint32_t masses = densities_by_mass(model, density);
   double sum = 0.0;
   for (uint32_t a = 0; a < masses; a++)
     for (uint32_t b = 0; b < masses; b++)
       sum += density[a].length * density[b].length * contact_speed(1.0 / density[a].mass, 1.0 / density[b].mass);
+  free(density);
   return 0.5 * box_volume(&model->box) * sum * 0.25 * pi * sqrt(2.0 / pi);
 }
 

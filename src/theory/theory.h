@@ -140,7 +140,7 @@ double theory_line_density(const struct model *model);
 /* Collisions of bonds per t0 in the whole box: that of an ideal gas of isotropic line segments of mean length <l> whose
  * ends have independent Maxwell velocities,
  *   (1/2) V sum_AB c_A <l>_A c_B <l>_B (pi/4) sqrt(2/pi) int ds ds' sqrt(w(s)/M_A + w(s')/M_B),  w(s) = (1-s)^2 + s^2.
- * That is of bonds of different fibers, or far apart along a fiber. */
+ * That is of bonds of different fibers, or far apart along a fiber. NAN if memory is short. */
 double theory_collision_rate(const struct model *model);
 
 /* Contacts per t0 in the whole box by kinetic theory: those of the ideal gas, and of fibers with themselves. */
