@@ -1,6 +1,7 @@
-"""Snapshots that no scene may start from."""
+"""Snapshots that no scene may start from, and what of another program's file is used, checked or refused."""
 import os
 import pathlib
+import shutil
 import subprocess
 import tempfile
 import unittest
@@ -17,7 +18,7 @@ trajectory: {every: 4, solvent: true, velocities: true}
 """
 
 
-class Snapshot(unittest.TestCase):
+class Start(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
@@ -30,6 +31,8 @@ class Snapshot(unittest.TestCase):
                               text=True, check=False, timeout=120)
         return done.returncode, done.stderr
 
+
+class Flow(Start):
     def test_a_flow_that_no_scene_may_have(self):
         """A way out is named only if it is one."""
         self.assertEqual(self.start(SCENE, "first")[0], 0)
@@ -48,6 +51,151 @@ class Snapshot(unittest.TestCase):
             self.assertFalse((self.dir / "second").exists())
         code, said = self.start(from_it + "flow: [150, 0, 0]\n", "second")
         self.assertIn("'150' is out of range", said)
+
+
+FIBERS = """box: [8, 8, 8]
+time_step: 0.01
+steps: 4
+solvent: {per_cell: 1, collision_interval: 0.02}
+trajectory: {every: 4, solvent: true}
+crossing: {forbidden: false}
+"""
+OPEN = "fibers: [{name: a, count: 4, vertices: 6, mass: 5, bond_length: 0.5, spring: 100}]\n"
+
+
+class Foreign(Start):
+    """Files of other programs, made of one of ours by taking out what is ours."""
+    GROUP = "particles/trajectory"
+
+    def make(self, fibers, ours=False):
+        """A trajectory, from which `again` starts."""
+        shutil.rmtree(self.dir / "first", ignore_errors=True)
+        self.assertEqual(self.start(FIBERS + fibers, "first")[0], 0)
+        if not ours:
+            self.change(lambda file: file.pop("parameters"))
+
+    def change(self, how):
+        with h5py.File(self.dir / "first/trajectory.h5", "a") as file:
+            how(file)
+
+    def again(self, fibers, words=None):
+        """Starts a run from the file, which should be refused with these words."""
+        self.tries = getattr(self, "tries", 0) + 1
+        code, said = self.start(FIBERS + fibers + "start: {snapshot: first/trajectory.h5}\n", f"again{self.tries}")
+        self.assertEqual(code, 0 if words is None else 2, said)
+        self.assertIn(words or "", said)
+        self.assertEqual((self.dir / f"again{self.tries}").exists(), words is None)
+
+    def test_bonds(self):
+        ring = OPEN.replace("spring: 100", "spring: 100, ring: true")
+        for ours in (False, True):
+            for made, asked, words in ((ring, OPEN, "vertex 5 is bonded to 0 in it, to none in the scene"),
+                                       (OPEN, ring, "vertex 5 is bonded to none in it, to 0 in the scene"),
+                                       (OPEN, OPEN.replace("count: 4, vertices: 6", "count: 6, vertices: 4"),
+                                        "vertex 3 is bonded to 4 in it, to none in the scene")):
+                with self.subTest(ours=ours, asked=asked):
+                    self.make(made, ours)
+                    self.again(asked, words)
+                    self.again(made)
+
+    def test_bonds_the_other_way_round(self):
+        """Pairs have no direction and no order."""
+        self.make(OPEN)
+
+        def turn(file):
+            pairs = file["connectivity/bonds"][:][::-1, ::-1]
+            file["connectivity/bonds"][...] = pairs
+        self.change(turn)
+        self.change(lambda file: file["connectivity/bonds"].attrs.pop("xxh64"))
+        self.again(OPEN)
+        self.again(OPEN.replace("count: 4, vertices: 6", "count: 6, vertices: 4"), "vertex 3 is bonded to 4 in it")
+
+    def test_ids(self):
+        self.make(OPEN)
+        rows = 24 + 512
+        for ids, words in ((numpy.arange(rows), None), (numpy.arange(1, rows + 1), None),
+                           (numpy.roll(numpy.arange(rows), 1), "row 1 has the id 0, after 535"),
+                           (numpy.arange(rows) * 2, "row 1 has the id 2, after 0")):
+            for timed in (False, True):
+                with self.subTest(words=words, timed=timed):
+                    self.change(lambda file, ids=ids, timed=timed: self.put(file, "id", ids, timed))
+                    self.again(OPEN, words)
+
+    def put(self, file, name, numbers, timed):
+        """An element of the group that is fixed, or of two frames."""
+        group = file[self.GROUP]
+        group.pop(name, None)
+        if timed:
+            group[f"{name}/value"] = numpy.stack([numpy.zeros_like(numbers), numbers])
+        else:
+            group[name] = numbers
+
+    def test_masses(self):
+        self.make(OPEN)
+        right = numpy.array([5.0] * 24 + [1.0] * 512)
+        self.again(OPEN.replace("mass: 5", "mass: 4"), "vertex 0 has the mass 5 in it, 4 in the scene")
+        heavy = right.copy()
+        heavy[30] = 2.0
+        self.change(lambda file: self.put(file, "mass", heavy, False))
+        self.again(OPEN, "solvent particle 6 has the mass 2 in it, 1 in the scene")
+        for numbers, timed, words in ((right.astype("f4"), False, None), (right.astype("i4"), False, None),
+                                      (right, True, "its mass is not one number for each row")):
+            self.change(lambda file, numbers=numbers, timed=timed: self.put(file, "mass", numbers, timed))
+            self.again(OPEN, words)
+        self.change(lambda file: file[self.GROUP].pop("mass"))
+        self.again(OPEN)
+
+    def test_masses_of_a_checkpoint(self):
+        self.make(OPEN)
+        code, said = self.start(FIBERS + OPEN.replace("mass: 5", "mass: 4") + "start: {snapshot: first/checkpoint.h5}\n", "no")
+        self.assertEqual(code, 2, said)
+        self.assertIn("vertex 0 has the mass 5 in it, 4 in the scene", said)
+
+    def test_kinds_in_another_order(self):
+        def kinds(*names):
+            return "fibers:\n" + "".join(f"  - {{name: {n}, count: 2, vertices: 6, mass: 5, bond_length: 0.5, spring: 100}}\n"
+                                         for n in names)
+        self.make(kinds("a", "b"))
+        self.again(kinds("b", "a"), "vertex 0 is of 'a' in it, of 'b' in the scene")
+        self.again(kinds("c", "d"))  # other names, or another grouping, are no contradiction
+        self.again(OPEN)
+
+    def test_solvent_among_the_vertices(self):
+        points = "fibers: [{name: a, count: 24, vertices: 1, mass: 1}]\n"
+        self.make(points)
+
+        def turn(file):
+            species = file[self.GROUP]["species"]
+            species[...] = species[:][::-1]
+            species.attrs.pop("xxh64")
+        self.change(turn)
+        self.again(points, "row 0 is solvent in it, a vertex in the scene")
+
+    def test_images_are_used(self):
+        """Positions in the box and image numbers are positions that are not folded."""
+        self.make(OPEN)
+        path = self.dir / "first/trajectory.h5"
+        with h5py.File(path, "a") as file:
+            value = file[self.GROUP]["position/value"]
+            value[:, :24] += numpy.array([7.9, -0.3, 16.2])  # across the boundary
+            plain = value[:]
+        self.again(OPEN)
+        with h5py.File(path, "a") as file:
+            file[self.GROUP]["image/value"] = numpy.floor(plain / 8).astype("i4")
+            file[self.GROUP]["position/value"][...] = plain - 8 * numpy.floor(plain / 8)
+        self.again(OPEN)
+        starts = []
+        for number in (1, 2):
+            with h5py.File(self.dir / f"again{number}/trajectory.h5") as file:
+                starts.append(file[self.GROUP]["position/value"][0])
+        numpy.testing.assert_allclose(starts[1], starts[0], rtol=0, atol=1e-11)
+
+    def test_what_no_run_knows_is_refused(self):
+        self.make(OPEN)
+        self.change(lambda file: file[self.GROUP].create_dataset("force/value", data=numpy.zeros((2, 536, 3))))
+        self.again(OPEN)  # forces are made anew
+        self.change(lambda file: self.put(file, "charge", numpy.ones(536), False))
+        self.again(OPEN, "it holds 'charge', of which a run knows nothing; allowed: ")
 
 
 if __name__ == "__main__":
