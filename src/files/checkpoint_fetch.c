@@ -20,6 +20,22 @@ struct wish {
 
 #define SAME "; they must be equal"
 
+static bool fits_vertices(hid_t file, const char *path, const struct model *m, struct message *message)
+{
+  const hsize_t rows[1] = {m->vertices};
+  struct message why = {"its masses cannot be read"};
+  hid_t group = h5_open_group(file, "structure");
+  const bool same = group >= 0 && structure_same_bonds(group, m);
+  double *mass = malloc(((size_t)m->vertices + 1) * sizeof *mass);
+  const bool fits = same && mass && h5_array_read(group, "mass", H5T_NATIVE_DOUBLE, 1, rows, mass) &&
+                    !structure_masses_differ(mass, m->vertices, m, &why);
+  free(mass);
+  h5_close(group);
+  if (!same)
+    return message_set(message, "%s: its bonds are not the scene's (other fibers, or a damaged file)", path);
+  return fits || message_set(message, "%s: %s", path, why.text);
+}
+
 static bool fits_model(hid_t file, const char *path, const struct checkpoint_summary *s, const struct model *m,
                        struct message *message)
 {
@@ -40,12 +56,7 @@ static bool fits_model(hid_t file, const char *path, const struct checkpoint_sum
   if ((s->beads > 0) != model_has_bead(m))
     return message_set(message, "%s: it is of a solvent %s bead, the scene has %s", path,
                        s->beads > 0 ? "around a" : "without a", s->beads > 0 ? "none" : "one");
-  hid_t group = h5_open_group(file, "structure");
-  bool same = group >= 0 && structure_same_bonds(group, m);
-  h5_close(group);
-  if (!same)
-    return message_set(message, "%s: its bonds are not the scene's (other fibers, or a damaged file)", path);
-  return true;
+  return fits_vertices(file, path, m, message);
 }
 
 /* Earlier checkpoints hold no settings; they are taken to be the scene's, or 0 if there was no such setting. */

@@ -40,10 +40,12 @@ static void end_text(char *text, size_t size)
 static bool get_structure(struct apart *apart, struct structure *s)
 {
   uint32_t particles;
-  int32_t kinds, has_mass = 0;
+  int32_t kinds, stored_bonds, has_mass = 0;
   if (!apart_get(apart, &particles, sizeof particles) || !apart_get(apart, &kinds, sizeof kinds) ||
-      !apart_get(apart, &s->bonds, sizeof s->bonds) || kinds < 0)
+      !apart_get(apart, &s->bonds, sizeof s->bonds) || !apart_get(apart, &stored_bonds, sizeof stored_bonds) ||
+      kinds < 0)
     return false;
+  s->stored_bonds = stored_bonds;
   s->particles = particles;
   s->kinds = kinds;
   s->species = calloc((size_t)particles + 1, sizeof *s->species);
@@ -71,6 +73,7 @@ static bool get_about(struct frames *f)
   end_text(about->creator, sizeof about->creator);
   end_text(about->version, sizeof about->version);
   end_text(about->author, sizeof about->author);
+  end_text(about->unfit, sizeof about->unfit);
   return true;
 }
 

@@ -20,7 +20,7 @@ struct frames_about {
   bool checked;    /* a checkpoint has a seal, or each frame of a trajectory checksums: damage does not go unseen */
   bool steps;      /* steps are stored */
   bool velocities;
-  bool bonds;      /* bonds are stored */
+  char unfit[256]; /* why no run starts from a trajectory; empty: it may */
   bool has_stream; /* a trajectory of this program */
   uint64_t stream; /* of its random numbers */
   uint64_t frames;

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "files/foreign.h"
 #include "files/frames.h"
 #include "files/trajectory.h"
 #include "scene/scene.h"
@@ -57,7 +58,6 @@ static bool open_structure(struct source *s, hid_t particles, hid_t connectivity
                            struct message *message)
 {
   bool ok = particles >= 0 && structure_read(particles, connectivity, rows, &s->structure);
-  s->about.bonds = s->structure.stored_bonds;
   return ok || h5_fail(message, s->path, "damaged, its species or bonds cannot be read");
 }
 
@@ -86,6 +86,8 @@ static bool open_trajectory(struct source *s, struct message *message)
     read_creator(t->file, &s->about);
   if (ok)
     read_stream(t->file, &s->about);
+  if (ok)
+    foreign_look(t, s->structure.mass, &s->about);
   return ok;
 }
 
@@ -197,9 +199,9 @@ static enum frame_verdict load(struct source *s, uint64_t frame, struct frame_mo
 
 static bool put_structure(struct apart *link, const struct structure *s)
 {
-  const int32_t kinds = s->kinds, has_mass = s->mass != NULL;
+  const int32_t kinds = s->kinds, has_mass = s->mass != NULL, stored_bonds = s->stored_bonds;
   return apart_put(link, &s->particles, sizeof s->particles) && apart_put(link, &kinds, sizeof kinds) &&
-         apart_put(link, &s->bonds, sizeof s->bonds) &&
+         apart_put(link, &s->bonds, sizeof s->bonds) && apart_put(link, &stored_bonds, sizeof stored_bonds) &&
          apart_put(link, s->species, s->particles * sizeof *s->species) &&
          apart_put(link, s->next, s->particles * sizeof *s->next) &&
          apart_put(link, s->name, (size_t)s->kinds * sizeof *s->name) && apart_put(link, &has_mass, sizeof has_mass) &&

@@ -42,11 +42,12 @@ static bool start_from_checkpoint(const char *path, const struct model *model, s
 }
 
 /* Rows must be in the scene's order: vertices fiber by fiber, then solvent. */
-static bool in_order(const struct structure *structure, const struct model *model, const char *path,
-                     struct message *message)
+static bool in_order(const struct frames *frames, const struct model *model, const char *path, struct message *message)
 {
-  return !structure->stored_bonds || structure_is_of(structure, model) ||
-         message_set(message, "%s: its bonds are not the scene's", path);
+  struct message why;
+  if (frames->about.unfit[0])
+    return message_set(message, "%s: %s", path, frames->about.unfit);
+  return !structure_differs(&frames->structure, model, &why) || message_set(message, "%s: %s", path, why.text);
 }
 
 static bool last_frame(struct trajectory *t, const char *path, const struct model *model, struct state *state,
@@ -63,7 +64,7 @@ static bool last_frame(struct trajectory *t, const char *path, const struct mode
   if (model_has_solvent(model) && !trajectory_has_solvent(t, model))
     return message_set(message, "%s: its frames hold %u particles; a start needs %u vertices and %u solvent particles",
                        path, t->particles, model->vertices, model->solvent.particles);
-  return in_order(&t->frames_apart->structure, model, path, message) &&
+  return in_order(t->frames_apart, model, path, message) &&
          trajectory_read(t, model, trajectory_frames(t) - 1, state, message);
 }
 

@@ -1,8 +1,13 @@
 #include "files/structure.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "base/text.h"
+
+#define MASS_ROUNDING 1e-6 /* files of other programs may hold single precision */
 
 /* --- writing ----------------------------------------------------------------------------------------------------- */
 
@@ -152,6 +157,17 @@ static bool read_mass(hid_t particles, struct structure *s)
   return ok;
 }
 
+/* A pair has no direction: it is that of a fiber, whose rows follow each other, or that from a ring's end to its
+ * beginning. */
+static void take_bond(struct structure *s, int32_t a, int32_t b)
+{
+  const int32_t low = a < b ? a : b, high = a < b ? b : a;
+  if (high == low + 1)
+    s->next[low] = high;
+  else
+    s->next[high] = low;
+}
+
 static bool read_bonds(hid_t connectivity, struct structure *s)
 {
   hsize_t dims[2] = {0, 2};
@@ -173,7 +189,7 @@ static bool read_bonds(hid_t connectivity, struct structure *s)
     ok = pair[2 * b] >= 0 && (uint32_t)pair[2 * b] < s->particles && pair[2 * b + 1] >= 0 &&
          (uint32_t)pair[2 * b + 1] < s->particles;
     if (ok)
-      s->next[pair[2 * b]] = pair[2 * b + 1];
+      take_bond(s, pair[2 * b], pair[2 * b + 1]);
   }
   s->bonds = (uint32_t)dims[0];
   free(pair);
@@ -198,6 +214,84 @@ bool structure_is_of(const struct structure *s, const struct model *model)
   return same;
 }
 
+/* --- whether it is that of a model ------------------------------------------------------------------------------- */
+
+static void tell_end(int32_t vertex, char *text, size_t size)
+{
+  snprintf(text, size, vertex < 0 ? "none" : "%d", (int)vertex);
+}
+
+static bool bonds_differ(const struct structure *s, const struct model *m, struct message *why)
+{
+  char stored[16], wanted[16];
+  for (uint32_t i = 0; i < s->particles; i++) {
+    const int32_t next = i < m->vertices ? m->next[i] : -1;
+    if (s->next[i] == next)
+      continue;
+    tell_end(s->next[i], stored, sizeof stored);
+    tell_end(next, wanted, sizeof wanted);
+    message_set(why, "its bonds are not the scene's: vertex %u is bonded to %s in it, to %s in the scene", i, stored,
+                wanted);
+    return true;
+  }
+  if (s->bonds != m->bonds)
+    message_set(why, "its bonds are not the scene's: they are %u, in the scene %u", s->bonds, m->bonds);
+  return s->bonds != m->bonds;
+}
+
+bool structure_masses_differ(const double *mass, uint32_t rows, const struct model *m, struct message *why)
+{
+  for (uint32_t i = 0; i < rows; i++) {
+    const bool vertex = i < m->vertices;
+    const double wanted = vertex ? m->mass[i] : 1.0;
+    if (fabs(mass[i] - wanted) <= MASS_ROUNDING * wanted)
+      continue;
+    message_set(why, "its masses are not the scene's: %s %u has the mass %.9g in it, %.9g in the scene",
+                vertex ? "vertex" : "solvent particle", vertex ? i : i - m->vertices, mass[i], wanted);
+    return true;
+  }
+  return false;
+}
+
+/* The kind of a row of the model by the file's numbers of species, if the file has the same kinds with as many rows
+ * each: then they must stand in the same order. Other names, or another grouping, say nothing. */
+static bool same_kinds(const struct structure *s, const struct model *m)
+{
+  bool same = true;
+  for (uint32_t k = 0; same && k < m->kinds; k++) {
+    uint32_t rows = 0;
+    for (uint32_t i = 0; i < m->vertices; i++)
+      rows += strcmp(structure_name(s, s->species[i]), m->kind[k].name) == 0;
+    same = rows == m->kind[k].count * m->kind[k].vertices;
+  }
+  return same;
+}
+
+static bool kinds_differ(const struct structure *s, const struct model *m, struct message *why)
+{
+  for (uint32_t i = 0; i < s->particles && s->kinds > 0; i++)
+    if (structure_is_solvent(s, s->species[i]) && i < m->vertices) {
+      message_set(why, "its rows are not in the scene's order: row %u is solvent in it, a vertex in the scene", i);
+      return true;
+    }
+  const uint32_t named = m->kinds > 1 && same_kinds(s, m) ? m->vertices : 0;
+  for (uint32_t i = 0; i < named; i++) {
+    const char *name = m->kind[m->fiber_kind_of[m->fiber_of[i]]].name;
+    if (strcmp(structure_name(s, s->species[i]), name) == 0)
+      continue;
+    message_set(why, "its rows are not in the scene's order: vertex %u is of '%s' in it, of '%s' in the scene", i,
+                text_shown(structure_name(s, s->species[i])), name);
+    return true;
+  }
+  return false;
+}
+
+bool structure_differs(const struct structure *s, const struct model *m, struct message *why)
+{
+  return (s->stored_bonds && bonds_differ(s, m, why)) ||
+         (s->mass && structure_masses_differ(s->mass, s->particles, m, why)) || kinds_differ(s, m, why);
+}
+
 void structure_free(struct structure *s)
 {
   free(s->species);
@@ -210,6 +304,11 @@ void structure_free(struct structure *s)
 bool structure_is_solvent(const struct structure *s, int32_t species)
 {
   return species >= 0 && species < s->kinds && strcmp(s->name[species], STRUCTURE_SOLVENT) == 0;
+}
+
+const char *structure_name(const struct structure *s, int32_t species)
+{
+  return species >= 0 && species < s->kinds ? s->name[species] : "";
 }
 
 double structure_mass(const struct structure *s, uint32_t row)

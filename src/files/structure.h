@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "base/message.h"
 #include "files/hdf5.h"
 #include "system/model.h"
 
@@ -43,6 +44,16 @@ bool structure_is_of(const struct structure *structure, const struct model *mode
 
 /* Mass of a row, m: as stored, else 1. */
 double structure_mass(const struct structure *structure, uint32_t row);
+
+/* Name of a species; empty if it has none. */
+const char *structure_name(const struct structure *structure, int32_t species);
+
+/* Whether particles that a file stores contradict the model: its bonds, masses, and the order of its kinds, as far as
+ * they are stored. If so, the message says how, without the file. */
+bool structure_differs(const struct structure *structure, const struct model *model, struct message *why);
+
+/* The same of masses alone: [rows], vertices first. */
+bool structure_masses_differ(const double *mass, uint32_t rows, const struct model *model, struct message *why);
 
 /* True if rows of this species are solvent. */
 bool structure_is_solvent(const struct structure *structure, int32_t species);

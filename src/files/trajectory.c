@@ -1,5 +1,6 @@
 /* Trajectories as HDF5 sees them. */
 #include "files/trajectory.h"
+#include "files/foreign.h"
 #include "files/frames.h"
 #include "fluid/fluid.h"
 
@@ -214,7 +215,7 @@ uint64_t frame_sum_numbers(uint64_t frame, const double *number, size_t count)
   return XXH64(number, count * sizeof *number, frame);
 }
 
-static bool read_block(hid_t dataset, uint64_t frame, int rank, hid_t type, void *data)
+bool trajectory_read_block(hid_t dataset, uint64_t frame, int rank, hid_t type, void *data)
 {
   hsize_t count[3], start[3] = {frame};
   if (h5_shape(dataset, 3, count) != rank || frame >= count[0])
@@ -233,15 +234,15 @@ static bool read_rows(const struct trajectory *t, hid_t dataset, uint64_t frame,
 {
   hsize_t dims[3];
   return h5_shape(dataset, 3, dims) == 3 && dims[1] == t->particles && dims[2] == 3 &&
-         read_block(dataset, frame, 3, H5T_NATIVE_DOUBLE, rows);
+         trajectory_read_block(dataset, frame, 3, H5T_NATIVE_DOUBLE, rows);
 }
 
 static bool read_moment(const struct trajectory *t, uint64_t frame, int64_t *step, double *time)
 {
   *step = 0;
   *time = 0.0;
-  return (t->step < 0 || read_block(t->step, frame, 1, H5T_NATIVE_INT64, step)) &&
-         (t->time < 0 || read_block(t->time, frame, 1, H5T_NATIVE_DOUBLE, time));
+  return (t->step < 0 || trajectory_read_block(t->step, frame, 1, H5T_NATIVE_INT64, step)) &&
+         (t->time < 0 || trajectory_read_block(t->time, frame, 1, H5T_NATIVE_DOUBLE, time));
 }
 
 /* H5MD allows edges as a vector or as a matrix, and for each frame or once. */
@@ -256,7 +257,7 @@ static bool read_edges(const struct trajectory *t, uint64_t frame, double *value
   *count = rank - times == 2 ? 9 : 3;
   ok = ok && (*count == 3 || dims[rank - 2] == 3) && rank == times + (*count == 9 ? 2 : 1);
   if (ok)
-    ok = per_frame ? read_block(value, frame, rank, H5T_NATIVE_DOUBLE, values)
+    ok = per_frame ? trajectory_read_block(value, frame, rank, H5T_NATIVE_DOUBLE, values)
                    : H5Dread(value, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0;
   if (per_frame)
     h5_close(value);
@@ -299,7 +300,7 @@ static bool fits_sums(const struct trajectory *t, uint64_t frame, const uint64_t
       [SUM_POSITION] = "its positions (position/value) do not fit their checksum",
       [SUM_VELOCITY] = "its velocities (velocity/value) do not fit their checksum"};
   uint64_t stored[FRAME_SUMS];
-  if (!read_block(t->checksum, frame, 2, H5T_NATIVE_UINT64, stored))
+  if (!trajectory_read_block(t->checksum, frame, 2, H5T_NATIVE_UINT64, stored))
     return odd_frame(t, frame, step, "its checksums cannot be read", message);
   for (int k = 0; k < FRAME_SUMS; k++)
     if (stored[k] != found[k])
@@ -326,6 +327,8 @@ bool trajectory_load(const struct trajectory *t, uint64_t frame, uint64_t *step,
                                       t->velocity >= 0 ? frame_sum_numbers(frame, velocity, numbers) : 0};
   if (t->checksum >= 0 && !fits_sums(t, frame, found, number, message))
     return false;
+  if (!foreign_unfold(t, frame, edge, position))
+    return odd_frame(t, frame, number, "its images (image/value) cannot be read, or have no rectangular box", message);
   return (number >= 0 && isfinite(*time)) ||
          odd_frame(t, frame, number, "its step or time is no number that a step or time can be", message);
 }

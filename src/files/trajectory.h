@@ -63,6 +63,9 @@ enum frame_sum { SUM_MOMENT, SUM_EDGES, SUM_POSITION, SUM_VELOCITY, FRAME_SUMS }
 uint64_t frame_sum_moment(uint64_t frame, int64_t step, double time);
 uint64_t frame_sum_numbers(uint64_t frame, const double *number, size_t count);
 
+/* Reads row `frame` of a dataset of this rank whose first dimension counts frames. */
+bool trajectory_read_block(hid_t dataset, uint64_t frame, int rank, hid_t type, void *data);
+
 /* Reads one frame, in a0 and a0/t0, and holds it against its checksums: step and time are 0 where they are not stored;
  * has_box is false if no box is stored, or one that is not rectangular. position, velocity: [3 particles]; velocity is
  * not touched if it is not stored. False, with a message that names what is wrong with the frame. */

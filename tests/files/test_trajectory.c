@@ -465,6 +465,48 @@ static void both_files_start_alike(void **unused)
   remove_folder(folder);
 }
 
+static void assert_no_start(const char *frames, const struct test_run *r, struct state *state, const char *words)
+{
+  struct message message = {""};
+  assert_false(read_start(frames, &r->model, state, &message));
+  if (!strstr(message.text, words))
+    fail_msg("'%s' is not in '%s'", words, message.text);
+}
+
+/* Five fibers of 8 vertices, three rings of 6, and solvent. */
+static void what_contradicts_the_scene_is_no_start(void **unused)
+{
+  (void)unused;
+  char folder[64];
+  make_folder(folder);
+  const char *frames = in_folder(folder, "trajectory.h5");
+  struct test_run r = small_run(0);
+  struct model *m = &r.model;
+  struct state start;
+  struct message message;
+  struct trajectory *t = open_or_fail(frames, m, &everything, false, 0);
+  append_or_fail(t, &r);
+  close_or_fail(t);
+  assert_true(state_alloc(&start, m));
+  if (!read_start(frames, m, &start, &message))
+    fail_msg("%s", message.text);
+  m->next[7] = 0; /* a ring */
+  m->bonds++;
+  assert_no_start(frames, &r, &start, "vertex 7 is bonded to none in it, to 0 in the scene");
+  m->next[7] = -1, m->next[3] = -1; /* shorter */
+  m->bonds -= 2;
+  assert_no_start(frames, &r, &start, "vertex 3 is bonded to 4 in it, to none in the scene");
+  m->next[3] = 4;
+  m->bonds++;
+  m->mass[57] = 4.0;
+  assert_no_start(frames, &r, &start, "vertex 57 has the mass 5 in it, 4 in the scene");
+  m->mass[57] = 5.0;
+  assert_true(read_start(frames, m, &start, &message));
+  state_free(&start);
+  test_end(&r);
+  remove_folder(folder);
+}
+
 /* Other programs store a box that does not change once, as a vector or a matrix in the place of a group of frames. */
 static void fixed_boxes_are_read(void **unused)
 {
@@ -552,6 +594,7 @@ int main(int argc, char **argv)
                                      cmocka_unit_test(full_disks_are_reported),
                                      cmocka_unit_test(both_files_start_alike),
                                      cmocka_unit_test(fixed_boxes_are_read),
+                                     cmocka_unit_test(what_contradicts_the_scene_is_no_start),
                                      cmocka_unit_test(killed_runs_leave_their_frames)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,17 @@
+/* What else an H5MD file holds of its particles: each array is used, checked, or makes the file unfit for a start. */
+#ifndef UNCROSS_FILES_FOREIGN_H
+#define UNCROSS_FILES_FOREIGN_H
+
+#include "files/frames.h"
+#include "files/trajectory.h"
+
+/* Within a process of its own (apart.h). Looks at the group of particles: whether its rows are in the order of ids, its
+ * masses are one number for each row, and nothing is there of which a run knows nothing. about->unfit says what is
+ * wrong, or stays empty. masses: they were read. */
+void foreign_look(const struct trajectory *trajectory, bool masses, struct frames_about *about);
+
+/* Adds the images of a frame (`image`, whole edges) to its positions: [3 particles]. edge: the box, or 0 where it is
+ * not known. False if there are images that cannot be read, or no box for them. */
+bool foreign_unfold(const struct trajectory *trajectory, uint64_t frame, const double edge[3], double *position);
+
+#endif
