@@ -148,10 +148,10 @@ static bool sample(struct uncross_sim *sim)
 static bool make_series(struct uncross_sim *sim)
 {
   for (int k = 0; k < OBSERVABLES; k++) {
-    const char *const *names;
+    const char *names[OBSERVE_MOST_COLUMNS];
     const struct scene *scene = &sim->scene;
     const size_t columns =
-        scene->observe.every[k] > 0 ? observe_series_columns(&scene->model, (enum observable)k, &names) : 0;
+        scene->observe.every[k] > 0 ? observe_series_columns(&scene->model, (enum observable)k, names) : 0;
     if (columns > 0 && !table_make(&sim->series[k], observable_names[k], "step", names, columns))
       return false;
   }

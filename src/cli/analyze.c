@@ -8,6 +8,7 @@
 #include "files/folder.h"
 #include "files/output.h"
 #include "files/snapshot.h"
+#include "observe/meaning.h"
 #include "scene/scene.h"
 
 static uint64_t least_common_multiple(uint64_t a, uint64_t b)
@@ -46,9 +47,10 @@ static void fit_plan(struct scene *scene, const struct trajectory *frames)
   _Static_assert(OBSERVABLES == OBSERVE_WAKE + 1, "what frames lack of a new observable");
   for (int k = 0; k < OBSERVABLES; k++) {
     uint64_t *every = &scene->observe.every[k];
-    if (*every > 0 && missing[k])
-      fprintf(stderr, "uncross: %s: left out: %s\n", observable_names[k], missing[k]);
-    *every = *every > 0 && !missing[k] ? least_common_multiple(*every, scene->trajectory_every) : 0;
+    const char *refused = meaning_refusal(&scene->model, (enum observable)k), *why = missing[k] ? missing[k] : refused;
+    if (*every > 0 && why)
+      fprintf(stderr, "uncross: %s: left out: %s\n", observable_names[k], why);
+    *every = *every > 0 && !why ? least_common_multiple(*every, scene->trajectory_every) : 0;
   }
 }
 

@@ -4,7 +4,7 @@
 #include <stdio.h>
 
 /* Columns of the time series that the scene asks for, 0 if it does not or this is none. */
-static size_t wanted_columns(const struct scene *scene, int which, const char *const **names)
+static size_t wanted_columns(const struct scene *scene, int which, const char *names[OBSERVE_MOST_COLUMNS])
 {
   const bool wanted = scene->observe.every[which] > 0;
   return wanted ? observe_series_columns(&scene->model, (enum observable)which, names) : 0;
@@ -32,9 +32,9 @@ bool output_left(const struct scene *scene, const struct observers *observers, c
                  struct message *name)
 {
   struct search search = {folder, name};
-  const char *const *names;
+  const char *names[OBSERVE_MOST_COLUMNS];
   for (int k = 0; k < OBSERVABLES; k++)
-    if (wanted_columns(scene, k, &names) > 0 && !is_absent(&search, observable_names[k]))
+    if (wanted_columns(scene, k, names) > 0 && !is_absent(&search, observable_names[k]))
       return true;
   return !observers_summaries(observers, &scene->model, take_absent, &search);
 }
@@ -51,9 +51,9 @@ void output_remove(const struct scene *scene, const struct observers *observers,
 {
   struct message name;
   struct search search = {folder, &name};
-  const char *const *names;
+  const char *names[OBSERVE_MOST_COLUMNS];
   for (int k = 0; k < OBSERVABLES; k++)
-    if (wanted_columns(scene, k, &names) > 0)
+    if (wanted_columns(scene, k, names) > 0)
       remove_table(&search, &(struct observe_table){.name = observable_names[k]});
   observers_summaries(observers, &scene->model, remove_table, &search);
   if (scene->trajectory_every > 0)
@@ -77,13 +77,13 @@ static bool same_end(const struct folder *folder, const char *file, uint64_t fou
 bool output_whole(const struct scene *scene, const struct observers *observers, const struct folder *folder,
                   uint64_t frames_end, struct message *message)
 {
-  const char *const *names;
+  const char *names[OBSERVE_MOST_COLUMNS];
   uint64_t found;
   for (int k = 0; k < OBSERVABLES; k++) {
     const uint64_t end = observers_end(observers, (enum observable)k);
     char file[64];
     snprintf(file, sizeof file, "%s.csv", observable_names[k]);
-    const size_t columns = wanted_columns(scene, k, &names);
+    const size_t columns = wanted_columns(scene, k, names);
     if (columns > 0 &&
         !(series_find_end(folder, observable_names[k], columns, names, end, &found, message) &&
           same_end(folder, file, found, end, "resume without this table in the scene's `observe`", message)))
@@ -97,17 +97,17 @@ bool output_whole(const struct scene *scene, const struct observers *observers, 
 
 /* --- what a run writes ------------------------------------------------------------------------------------------- */
 
-/* again: the run is resumed at step 0, whose samples are not in the checkpoint; its tables begin anew. */
-static bool open_series(struct output *o, const struct scene *scene, const struct observers *observers, bool again,
+/* resume: a table of which the checkpoint has no row begins anew. */
+static bool open_series(struct output *o, const struct scene *scene, const struct observers *observers, bool resume,
                         struct message *message)
 {
   for (int k = 0; k < OBSERVABLES; k++) {
-    const char *const *names;
-    size_t columns = wanted_columns(scene, k, &names);
+    const char *names[OBSERVE_MOST_COLUMNS];
+    size_t columns = wanted_columns(scene, k, names);
     const uint64_t end = observers_end(observers, (enum observable)k);
     char file[64];
     snprintf(file, sizeof file, "%s.csv", observable_names[k]);
-    if (columns > 0 && again && end == 0)
+    if (columns > 0 && resume && end == 0)
       folder_remove(o->folder, file);
     if (columns > 0 && !series_open(&o->series[k], o->folder, observable_names[k], columns, names, end, message))
       return false;
@@ -152,7 +152,7 @@ bool output_open(struct output *o, const struct scene *scene, const struct obser
   *o = (struct output){.folder = folder, .trajectory_every = scene->trajectory_every};
   message_set(message, "%s", "");
   return (o->trajectory_every == 0 || open_trajectory(o, scene, resume, frames_end, step, message)) &&
-         open_series(o, scene, observers, resume && step == 0, message);
+         open_series(o, scene, observers, resume, message);
 }
 
 struct row_context {

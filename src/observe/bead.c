@@ -5,7 +5,7 @@
 #include "observe/observer.h"
 #include "system/bead.h"
 
-static void bead_row(struct observer *observer, struct view *view, double *row)
+static bool bead_row(struct observer *observer, struct view *view, double *row)
 {
   (void)observer;
   const struct model *m = view->model;
@@ -31,6 +31,7 @@ static void bead_row(struct observer *observer, struct view *view, double *row)
                            (double)b->account.x * BEAD_ENERGY_UNIT,
                            (double)b->account.z};
   memcpy(row, values, sizeof values);
+  return true;
 }
 
 static const char *const columns[] = {"time",       "place_x", "place_y", "place_z", "velocity_x", "velocity_y",

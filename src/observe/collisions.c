@@ -20,7 +20,7 @@ static double ratio(double a, double b)
   return b > 0.0 ? a / b : 0.0;
 }
 
-static void collisions_row(struct observer *observer, struct view *view, double *row)
+static bool collisions_row(struct observer *observer, struct view *view, double *row)
 {
   const struct collision_counts *c = &view->state->counts;
   const double executed = (double)c->executed;
@@ -39,6 +39,7 @@ static void collisions_row(struct observer *observer, struct view *view, double 
   memcpy(row, values, sizeof values);
   observer->integer[LAST_STEP] = (int64_t)view->state->step;
   observer->integer[LAST_EXECUTED] = (int64_t)c->executed;
+  return true;
 }
 
 static const char *const columns[] = {"time",

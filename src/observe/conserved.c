@@ -316,13 +316,14 @@ const struct motion *view_motion(struct view *view)
   return &view->motion;
 }
 
-static void conserved_row(struct observer *observer, struct view *view, double *row)
+static bool conserved_row(struct observer *observer, struct view *view, double *row)
 {
   (void)observer;
   const struct conserved c = conserved_of(view_motion(view));
   const double values[] = {view_time(view), c.solvent_kinetic, c.vertex_kinetic, c.bond,      c.bend,
                            c.total,         c.momentum.x,      c.momentum.y,     c.momentum.z};
   memcpy(row, values, sizeof values);
+  return true;
 }
 
 static const char *const conserved_columns[] = {
@@ -334,13 +335,14 @@ const struct observer_type conserved_observer = {
     .row = conserved_row,
 };
 
-static void temperature_row(struct observer *observer, struct view *view, double *row)
+static bool temperature_row(struct observer *observer, struct view *view, double *row)
 {
   (void)observer;
   const struct temperatures t = motion_temperatures(view->model, view_motion(view));
   const double mean = (t.solvent.x + t.solvent.y + t.solvent.z) / view->model->dimensions;
   const double values[] = {view_time(view), mean, t.solvent.x, t.solvent.y, t.solvent.z, t.vertex, t.vertex_half};
   memcpy(row, values, sizeof values);
+  return true;
 }
 
 static const char *const temperature_columns[] = {"time",      "solvent", "solvent_x",       "solvent_y",

@@ -6,6 +6,7 @@
 
 #include "fiber/force.h"
 #include "mpc/stress.h"
+#include "observe/meaning.h"
 #include "observe/observer.h"
 
 static const struct observer_type *const types[OBSERVABLES] = {
@@ -41,6 +42,9 @@ struct observers {
   char block_name[MAX_BLOCKS][OBSERVER_NAME_SIZE];
   size_t blocks;
   uint64_t from; /* of the plan */
+
+  /* Of time series: the columns that the model has, and their places in a row. */
+  size_t columns[OBSERVABLES], place[OBSERVABLES][OBSERVE_MOST_COLUMNS];
 };
 
 static struct observe_block *add_block(struct observers *observers, const char *name, const char *suffix, bool integer,
@@ -71,6 +75,17 @@ static void *zeroed(size_t count, size_t size)
   return calloc(count ? count : 1, size);
 }
 
+/* The places of those columns that this model has; returns their number. */
+static size_t find_columns(const struct model *model, enum observable which, const char *const *names, size_t columns,
+                           size_t place[OBSERVE_MOST_COLUMNS])
+{
+  size_t n = 0;
+  for (size_t k = 0; k < columns; k++)
+    if (meaning_has_column(model, which, names[k]))
+      place[n++] = k;
+  return n;
+}
+
 static bool create(struct observers *observers, enum observable which, const struct observe_plan *plan,
                    const struct model *model)
 {
@@ -85,6 +100,7 @@ static bool create(struct observers *observers, enum observable which, const str
   o->size = (struct observer_size){.integers = 1};
   if (o->type->size)
     o->type->size(o, model, &o->size);
+  observers->columns[which] = find_columns(model, which, o->type->column, o->type->columns, observers->place[which]);
   o->constant = o->type->constant ? o->type->constant(model) : 0.0;
   o->real = zeroed(o->size.reals, sizeof *o->real);
   o->later = zeroed(o->size.later, sizeof *o->later);
@@ -163,26 +179,26 @@ bool observers_due(const struct observers *observers, uint64_t step)
   return any;
 }
 
-/* Columns that a model lacks are left out from the end. */
-static size_t columns_of(const struct observer_type *type, const struct model *model)
+static bool sample(struct observers *observers, enum observable which, struct view *view,
+                   const struct observe_sink *sink)
 {
-  const bool fibers = model->kinds > 0, dumbbells = fibers || model_has_dumbbells(model);
-  return type->columns - (fibers ? 0 : type->of_fibers) - (dumbbells ? 0 : type->of_dumbbells);
-}
-
-static bool sample(struct observer *o, enum observable which, struct view *view, const struct observe_sink *sink)
-{
-  double row[OBSERVER_MAX_COLUMNS];
+  struct observer *o = &observers->observer[which];
+  const size_t *place = observers->place[which], columns = observers->columns[which];
+  double row[OBSERVE_MOST_COLUMNS];
   const int64_t mark = (int64_t)view->state->step + 1;
   if (o->integer[0] == mark)
     return true;
-  o->integer[0] = mark;
   if (o->type->add) {
+    o->integer[0] = mark;
     o->type->add(o, view);
     return true;
   }
-  o->type->row(o, view, row);
-  return !sink || sink->row(sink->context, which, columns_of(o->type, view->model), row);
+  if (!o->type->row(o, view, row))
+    return true;
+  o->integer[0] = mark;
+  for (size_t k = 0; k < columns; k++) /* places rise, so that nothing is overwritten that is still to come */
+    row[k] = row[place[k]];
+  return !sink || sink->row(sink->context, which, columns, row);
 }
 
 bool observers_sample(struct observers *observers, const struct model *model, const struct state *state,
@@ -192,23 +208,53 @@ bool observers_sample(struct observers *observers, const struct model *model, co
   bool ok = true;
   for (int k = 0; ok && k < OBSERVABLES; k++)
     if (due(&observers->observer[k], state->step))
-      ok = sample(&observers->observer[k], (enum observable)k, &view, sink);
+      ok = sample(observers, (enum observable)k, &view, sink);
   return ok;
 }
 
-size_t observe_series_columns(const struct model *model, enum observable which, const char *const **names)
+size_t observe_series_columns(const struct model *model, enum observable which, const char *names[OBSERVE_MOST_COLUMNS])
 {
-  *names = types[which]->column;
-  return columns_of(types[which], model);
+  size_t place[OBSERVE_MOST_COLUMNS];
+  const size_t columns = find_columns(model, which, types[which]->column, types[which]->columns, place);
+  for (size_t k = 0; k < columns; k++)
+    names[k] = types[which]->column[place[k]];
+  return columns;
+}
+
+/* A summary on its way to whom it is for: without the columns that the model lacks. */
+struct narrowing {
+  const struct model *model;
+  enum observable which;
+  bool (*take)(void *context, const struct observe_table *table);
+  void *context;
+};
+
+static bool narrow(void *context, const struct observe_table *table)
+{
+  const struct narrowing *n = context;
+  const char *names[OBSERVE_MOST_COLUMNS];
+  size_t place[OBSERVE_MOST_COLUMNS];
+  struct observe_table less = *table;
+  less.columns = find_columns(n->model, n->which, table->column, table->columns, place);
+  less.column = names;
+  less.value = zeroed(table->rows * less.columns, sizeof *less.value);
+  for (size_t k = 0; k < less.columns; k++)
+    names[k] = table->column[place[k]];
+  for (size_t k = 0; less.value && k < table->rows * less.columns; k++)
+    less.value[k] = table->value[k / less.columns * table->columns + place[k % less.columns]];
+  const bool ok = less.value && n->take(n->context, &less);
+  free(less.value);
+  return ok;
 }
 
 bool observers_summaries(const struct observers *observers, const struct model *model,
                          bool (*take)(void *context, const struct observe_table *table), void *context)
 {
-  const struct observer_take to = {take, context};
   bool ok = true;
   for (int k = 0; ok && k < OBSERVABLES; k++) {
     const struct observer *o = &observers->observer[k];
+    struct narrowing narrowing = {model, (enum observable)k, take, context};
+    const struct observer_take to = {narrow, &narrowing};
     if (o->every > 0 && o->type->summarise)
       ok = o->type->summarise(o, model, &to);
   }

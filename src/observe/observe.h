@@ -77,8 +77,12 @@ bool observers_due(const struct observers *observers, uint64_t step);
 bool observers_sample(struct observers *observers, const struct model *model, const struct state *state,
                       const struct observe_sink *sink);
 
-/* Column names of a time series of this model, for its file's first line; 0 if `which` is not a time series. */
-size_t observe_series_columns(const struct model *model, enum observable which, const char *const **names);
+enum { OBSERVE_MOST_COLUMNS = 40 };
+
+/* Column names of a time series of this model, for its file's first line: their number; 0 if `which` is not a time
+ * series. */
+size_t observe_series_columns(const struct model *model, enum observable which,
+                              const char *names[OBSERVE_MOST_COLUMNS]);
 
 /* Summaries as they stand now. Each is given to `take`, then freed. */
 bool observers_summaries(const struct observers *observers, const struct model *model,

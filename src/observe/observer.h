@@ -57,9 +57,7 @@ struct observer_type {
   /* A time series: its columns, and the function that fills a row. */
   const char *const *column;
   size_t columns;
-  size_t of_fibers;    /* the last of these columns, that only a model with fibers has */
-  size_t of_dumbbells; /* those before them, that one with dumbbells has; with fibers alone they are 0 */
-  void (*row)(struct observer *observer, struct view *view, double *row);
+  bool (*row)(struct observer *observer, struct view *view, double *row); /* false: there is none yet */
 
   /* A summary: the function that adds a sample, and the one that makes a table for each kind of fiber. NULL for time
    * series. */
@@ -67,7 +65,7 @@ struct observer_type {
   bool (*summarise)(const struct observer *observer, const struct model *model, const struct observer_take *to);
 };
 
-enum { OBSERVER_MAX_COLUMNS = 32, OBSERVER_NAME_SIZE = MODEL_NAME_SIZE + 32 };
+enum { OBSERVER_NAME_SIZE = MODEL_NAME_SIZE + 32 };
 
 extern const struct observer_type conserved_observer, temperature_observer, statics_observer, dynamics_observer,
     collisions_observer, profile_observer, stress_observer, dumbbells_observer, orientation_observer, bead_observer,

@@ -127,7 +127,7 @@ static bool measure(struct view *view, struct sums *s)
   return ok;
 }
 
-static void pressure_row(struct observer *o, struct view *view, double *row)
+static bool pressure_row(struct observer *o, struct view *view, double *row)
 {
   (void)o;
   const struct model *model = view->model;
@@ -146,6 +146,7 @@ static void pressure_row(struct observer *o, struct view *view, double *row)
                            unknown + s.laplacian,
                            unknown + s.square / s.laplacian};
   memcpy(row, values, sizeof values);
+  return true;
 }
 
 static const char *const columns[] = {"time", "pressure",  "p_xx",         "p_yy",      "p_zz",

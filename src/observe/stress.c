@@ -86,7 +86,7 @@ static void fiber_stress(const struct view *view, double stress[STRESS_COMPONENT
 
 /* --- a row ------------------------------------------------------------------------------------------------------- */
 
-static void stress_row(struct observer *o, struct view *view, double *row)
+static bool stress_row(struct observer *o, struct view *view, double *row)
 {
   const struct model *model = view->model;
   const struct state *state = view->state;
@@ -124,6 +124,7 @@ static void stress_row(struct observer *o, struct view *view, double *row)
     o->integer[LAST_ACCOUNT + k] = state->wall_momentum[k].x;
     o->integer[LAST_TURNS + k] = (int64_t)state->wall_turns[k];
   }
+  return true;
 }
 
 static const char *const columns[] = {
@@ -133,8 +134,6 @@ static const char *const columns[] = {
 const struct observer_type stress_observer = {
     .column = columns,
     .columns = sizeof columns / sizeof *columns,
-    .of_fibers = 2,
-    .of_dumbbells = 2,
     .size = size_stress,
     .row = stress_row,
 };

@@ -1,6 +1,7 @@
-/* The tables of docs/scene.md, from the tables of keys. */
+/* The tables of docs/scene.md, from the tables of keys; and that of docs/observables.md. */
 #include <stdio.h>
 
+#include "observe/meaning.h"
 #include "scene/scene_keys.h"
 
 /* In a cell of a table a bar would end the cell. */
@@ -61,4 +62,5 @@ void scene_document(FILE *f)
 {
   document_table(f, &scene_keys);
   document_sections(f, &scene_keys);
+  meaning_document(f);
 }

@@ -9,6 +9,7 @@
 #include <unistd.h>
 #include <xxhash.h>
 
+#include "observe/meaning.h"
 #include "scene/read.h"
 #include "scene/scene_keys.h"
 #include "scene/set.h"
@@ -78,45 +79,21 @@ static bool check_force(const struct scene *scene, struct message *message)
              force, force / friction, BEAD_MOST_SPEED * friction, BEAD_MOST_SPEED);
 }
 
-/* What cannot be observed: of a bead that is not there, beside one, or where bonds have tensions. */
+/* What has no meaning here cannot be observed. */
 static bool check_observed(const struct scene *scene, struct message *message)
 {
-  const uint64_t *every = scene->observe.every;
-  const bool bead = model_has_bead(&scene->model), tense = scene->model.medium.inextensible;
-  static const char without_tension[] =
-      "the tension of bonds is not in its stress; allowed without medium.inextensible";
-  const struct {
-    bool ok;
-    const char *key, *why;
-  } rows[] = {
-      {bead || every[OBSERVE_BEAD] == 0, "observe.bead", "there is none; allowed with a bead"},
-      {(bead && scene->model.kinds > 0) || every[OBSERVE_WAKE] == 0, "observe.wake",
-       "it is that of fibers around a bead; allowed with both"},
-      {!bead || every[OBSERVE_STRESS] == 0, "observe.stress",
-       "momentum that the solvent gives to the bead is not in its stress; allowed without a bead"},
-      {!bead || every[OBSERVE_PRESSURE] == 0, "observe.pressure",
-       "momentum that the solvent gives to the bead is not in it; allowed without a bead"},
-      {!bead || every[OBSERVE_PROFILE] == 0, "observe.profile",
-       "a slab is not full of solvent where the bead is; allowed without a bead"},
-      {!tense || every[OBSERVE_PRESSURE] == 0, "observe.pressure", without_tension},
-      {!tense || every[OBSERVE_MEMORY] == 0, "observe.memory", without_tension},
-  };
-  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
-    if (!rows[i].ok)
-      return scene_refuse_at(scene, rows[i].key, rows[i].key, message, "%s", rows[i].why);
-  return !bead || check_force(scene, message);
+  for (int k = 0; k < OBSERVABLES; k++) {
+    const char *why = scene->observe.every[k] > 0 ? meaning_refusal(&scene->model, (enum observable)k) : NULL;
+    char key[64];
+    snprintf(key, sizeof key, "observe.%s", observable_names[k]);
+    if (why)
+      return scene_refuse_at(scene, key, key, message, "%s", why);
+  }
+  return true;
 }
-
-static bool check_observables(const struct scene *scene, struct message *message)
+static bool check_lags(const struct scene *scene, struct message *message)
 {
   const struct observe_plan *plan = &scene->observe;
-  if (plan->every[OBSERVE_DYNAMICS] > 0 && scene->model.shear.rate != 0.0)
-    return refuse_key(
-        scene, "observe.dynamics", message,
-        "a fiber that leaves a sheared box is replaced by an image, which moves at another speed, so it has "
-        "no displacement; allowed without shear");
-  if (!check_observed(scene, message))
-    return false;
   if (plan->longest_lag == 0 || plan->longest_lag >= plan->every[OBSERVE_DYNAMICS])
     return true;
   return scene_refuse_at(scene, "observe.dynamics.longest_lag", "observe.dynamics.longest_lag", message,
@@ -269,8 +246,10 @@ static bool read_whole(struct scene *scene, const struct scene_source *r)
   if (!set_text(scene, r, gaps.defaults) || !set_fingerprint(scene, r))
     return message_set(r->message, "%s: out of memory", r->path);
   scene->steps = r->steps ? *r->steps : scene->steps;
-  return check_observables(scene, r->message) && (r->open_end || check_from(scene, r->message)) &&
-         check_trajectory(scene, r->message) && (!r->look_for_files || check_snapshot(scene, r->message));
+  return (r->kept || check_observed(scene, r->message)) &&
+         (!model_has_bead(&scene->model) || check_force(scene, r->message)) && check_lags(scene, r->message) &&
+         (r->open_end || check_from(scene, r->message)) && check_trajectory(scene, r->message) &&
+         (!r->look_for_files || check_snapshot(scene, r->message));
 }
 
 static bool read_once(struct scene *scene, const struct scene_source *r)
@@ -320,6 +299,7 @@ bool scene_read_text(const char *path, const char *text, size_t size, struct sce
                                                   .size = size,
                                                   .missing = MISSING_ABSENT,
                                                   .open_end = true,
+                                                  .kept = true,
                                                   .message = message},
                            scene);
 }

@@ -21,6 +21,7 @@ struct scene_source {
   bool look_for_files;         /* whether the snapshot can be read */
   const uint64_t *steps;       /* instead of the scene's; NULL: none */
   bool open_end;               /* other steps may follow: observe.from is not held against them */
+  bool kept;                   /* a file has kept it: its observables are not held against it */
   bool numbers_only;           /* no lists of fibers and vertices: model_finish_numbers */
   struct message *message;
 };

@@ -10,7 +10,7 @@ enum { KEPT_TABLES = 8, KEPT_VALUES = 4096 };
 
 struct kept_table {
   char name[128];
-  const char *const *column;
+  const char *column[OBSERVE_MOST_COLUMNS];
   size_t columns, rows;
   double value[KEPT_VALUES];
 };
@@ -26,7 +26,7 @@ static inline bool keep_table(void *context, const struct observe_table *table)
   assert_true(kept->tables < KEPT_TABLES && table->columns * table->rows <= KEPT_VALUES);
   struct kept_table *t = &kept->table[kept->tables++];
   snprintf(t->name, sizeof t->name, "%s", table->name);
-  t->column = table->column;
+  memcpy(t->column, table->column, table->columns * sizeof *t->column);
   t->columns = table->columns;
   t->rows = table->rows;
   memcpy(t->value, table->value, table->columns * table->rows * sizeof *t->value);

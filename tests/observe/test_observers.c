@@ -296,8 +296,8 @@ static void cadence(void **unused)
   size_t rows[OBSERVABLES] = {0}, at = 0;
   while (at < o.rows->count) {
     const enum observable which = (enum observable)o.rows->value[at];
-    const char *const *names;
-    const size_t columns = observe_series_columns(&model, which, &names);
+    const char *names[OBSERVE_MOST_COLUMNS];
+    const size_t columns = observe_series_columns(&model, which, names);
     assert_true(columns > 0 && strcmp(names[0], "time") == 0);
     assert_close(o.rows->value[at + 1], 0.01 * (double)(rows[which]++ * everything.every[which]), 1e-12);
     at += columns + 1;
@@ -319,12 +319,12 @@ static void nobody_asked(void **unused)
   struct test_run r = test_start(suspension());
   const struct observe_plan nothing = {.longest_lag = 0};
   const struct observe_block *block;
-  const char *const *names;
+  const char *names[OBSERVE_MOST_COLUMNS];
   struct observers *observers = observers_create(&nothing, &r.model);
   assert_false(observers_due(observers, 0));
   assert_true(observers_sample(observers, &r.model, &r.state, NULL));
   assert_int_equal(observers_blocks(observers, &block), 0);
-  assert_int_equal(observe_series_columns(&r.model, OBSERVE_STATICS, &names), 0);
+  assert_int_equal(observe_series_columns(&r.model, OBSERVE_STATICS, names), 0);
   struct kept *kept = keep_summaries(observers, &r.model);
   assert_int_equal(kept->tables, 0);
   free(kept);

@@ -1,0 +1,311 @@
+#include "observe/meaning.h"
+
+#include <string.h>
+
+#include "observe/background.h"
+
+/* --- what a scene may be ----------------------------------------------------------------------------------------- */
+
+static bool anywhere(const struct model *m)
+{
+  (void)m;
+  return true;
+}
+
+static bool no_fibers(const struct model *m)
+{
+  return m->kinds == 0;
+}
+
+static bool no_fibers_no_dumbbells(const struct model *m)
+{
+  return m->kinds == 0 && !model_has_dumbbells(m);
+}
+
+static bool no_bead(const struct model *m)
+{
+  return !model_has_bead(m);
+}
+
+static bool no_network(const struct model *m)
+{
+  return !model_has_bead(m) || m->kinds == 0;
+}
+
+static bool no_trap(const struct model *m)
+{
+  return m->bead.drive.spring == 0.0;
+}
+
+static bool no_pair_forces(const struct model *m)
+{
+  return !model_repels(m);
+}
+
+static bool by_a_force_on_fibers(const struct model *m)
+{
+  bool any = false;
+  for (uint32_t k = 0; k < m->kinds; k++)
+    any |= vec3_norm(m->kind[k].force) > 0.0;
+  return any;
+}
+
+static bool accelerated(const struct model *m)
+{
+  return vec3_norm(background_acceleration(m)) > 0.0;
+}
+
+static bool in_a_bath_with_flow(const struct model *m)
+{
+  return !model_keeps_momentum(m);
+}
+
+static bool in_pairs(const struct model *m)
+{
+  return m->medium.kind == MEDIUM_PAIRS;
+}
+
+static bool permuted(const struct model *m)
+{
+  return model_has_solvent(m) && model_in_cells(m) && !m->solvent.hydrodynamics;
+}
+
+static bool inextensible(const struct model *m)
+{
+  return m->medium.inextensible;
+}
+
+static bool drift_split(const struct model *m)
+{
+  return m->scheme == SCHEME_DRIFT_SPLIT;
+}
+
+static bool thick(const struct model *m)
+{
+  return m->thickness > 0 && m->crossing.forbidden;
+}
+
+static bool beside_frozen(const struct model *m)
+{
+  return m->frozen > 0;
+}
+
+static const struct {
+  const char *words; /* of docs/observables.md */
+  bool (*holds)(const struct model *model);
+} circumstances[CIRCUMSTANCES] = {
+    [ANYWHERE] = {"anywhere else", anywhere},
+    [NO_FIBERS] = {"no fibers", no_fibers},
+    [NO_FIBERS_NO_DUMBBELLS] = {"neither fibers nor dumbbells", no_fibers_no_dumbbells},
+    [NO_BEAD] = {"no bead", no_bead},
+    [NO_NETWORK] = {"no bead, or no fibers", no_network},
+    [NO_TRAP] = {"a bead without a trap", no_trap},
+    [NO_PAIR_FORCES] = {"no forces of pairs", no_pair_forces},
+    [IN_A_PLANE] = {"two dimensions", model_is_flat},
+    [IN_SHEAR] = {"sheared box", model_is_sheared},
+    [BETWEEN_WALLS] = {"walls", model_has_walls},
+    [IN_A_FLOW] = {"a flow that differs from place to place", background_differs},
+    [BY_A_FORCE_ON_FIBERS] = {"a force on fibers", by_a_force_on_fibers},
+    [ACCELERATED] = {"a net force that nothing takes up", accelerated},
+    [IN_A_BATH_WITH_FLOW] = {"phantoms, medium private or overdamped", in_a_bath_with_flow},
+    [IN_PAIRS] = {"medium of pairs", in_pairs},
+    [PERMUTED] = {"`hydrodynamics: false`", permuted},
+    [OVERDAMPED] = {"medium overdamped", model_is_overdamped},
+    [INEXTENSIBLE] = {"inextensible", inextensible},
+    [DRIFT_SPLIT] = {"`order: drift-split`", drift_split},
+    [THICK] = {"thick fibers that cannot cross", thick},
+    [BESIDE_FROZEN] = {"frozen fibers", beside_frozen},
+    [WITH_DUMBBELLS] = {"dumbbells", model_has_dumbbells},
+    [WITH_A_BEAD] = {"bead", model_has_bead},
+};
+
+bool meaning_holds(enum circumstance where, const struct model *model)
+{
+  return circumstances[where].holds(model);
+}
+
+/* --- the table --------------------------------------------------------------------------------------------------- */
+
+/* A bead is a place at which momentum leaves what is summed. */
+#define GIVEN_TO_BEAD "momentum that the solvent gives to the bead is not in "
+#define NO_TENSION "the tension of bonds is not in its stress; allowed without medium.inextensible"
+#define NO_TUBES                                                                                                       \
+  "what thick fibers hand on at a contact is not in it; allowed with diameter: 0, or crossing.forbidden: false"
+
+const struct meaning meanings[] = {
+    {OBSERVE_CONSERVED, NO_PAIR_FORCES, LEFT_OUT, "pairs", "no pair has an energy"},
+    {OBSERVE_CONSERVED, OVERDAMPED, LEFT_OUT, "solvent_kinetic vertex_kinetic px py pz", "there are no velocities"},
+    {OBSERVE_CONSERVED, WITH_DUMBBELLS, MEANS, "bond", "with the energy of springs, and of dumbbells near walls"},
+    {OBSERVE_CONSERVED, WITH_A_BEAD, MEANS, "total px py pz", "with the bead"},
+    {OBSERVE_CONSERVED, IN_SHEAR, MEANS, "solvent_kinetic vertex_kinetic total",
+     "with the energy of the flow; a vertex beyond the box has the velocity of its image"},
+    {OBSERVE_CONSERVED, ANYWHERE, MEANS, NULL, "of the laboratory, at the step"},
+
+    {OBSERVE_TEMPERATURE, OVERDAMPED, REFUSED, NULL, "there are no velocities; allowed with another medium"},
+    {OBSERVE_TEMPERATURE, IN_A_PLANE, LEFT_OUT, "solvent_z", "nothing moves along z"},
+    {OBSERVE_TEMPERATURE, IN_SHEAR, MEANS, NULL,
+     "about the mean of the solvent in slabs of one cell; without solvent about the linear flow"},
+    {OBSERVE_TEMPERATURE, BETWEEN_WALLS, MEANS, NULL,
+     "about the mean of the solvent in slabs of one cell; without solvent about that of all vertices"},
+    {OBSERVE_TEMPERATURE, IN_A_FLOW, MEANS, NULL,
+     "with a profile, about the mean of the solvent in slabs of one cell; around a bead the flow counts"},
+    {OBSERVE_TEMPERATURE, IN_A_BATH_WITH_FLOW, MEANS, NULL, "about `flow`"},
+    {OBSERVE_TEMPERATURE, BY_A_FORCE_ON_FIBERS, MEANS, "vertex vertex_half_step",
+     "a drift v against the solvent counts, as M v²/d"},
+    {OBSERVE_TEMPERATURE, DRIFT_SPLIT, MEANS, "solvent solvent_x solvent_y solvent_z",
+     "with forces of pairs, of half a step ahead, when collisions act"},
+    {OBSERVE_TEMPERATURE, ANYWHERE, MEANS, NULL, "about the velocity of the center of mass"},
+
+    {OBSERVE_STATICS, ANYWHERE, MEANS, NULL, "of places alone"},
+
+    {OBSERVE_DYNAMICS, IN_SHEAR, REFUSED, NULL,
+     "a fiber that leaves a sheared box is replaced by an image, which moves at another speed, so it has no "
+     "displacement; allowed without shear"},
+    {OBSERVE_DYNAMICS, IN_A_FLOW, LEFT_OUT,
+     "d2 d2_contour d2_third D D_about_mean D_cumulative D_cumulative_about_mean",
+     "the flow carries a fiber off its old contour, and away from others, which is no diffusion"},
+    {OBSERVE_DYNAMICS, IN_A_FLOW, MEANS, "g g_cm g_middle g_cm_about_mean drift_x drift_y drift_z",
+     "of the laboratory between walls; with the flow's displacements"},
+    {OBSERVE_DYNAMICS, BETWEEN_WALLS, LEFT_OUT, "D D_about_mean D_cumulative D_cumulative_about_mean",
+     "the way across is bounded"},
+    {OBSERVE_DYNAMICS, BETWEEN_WALLS, MEANS, "g g_cm g_middle", "along and across together"},
+    {OBSERVE_DYNAMICS, ACCELERATED, MEANS, NULL, "about `flow` and the acceleration of everything"},
+    {OBSERVE_DYNAMICS, BESIDE_FROZEN, MEANS, NULL, "of the laboratory"},
+    {OBSERVE_DYNAMICS, IN_A_PLANE, MEANS, "D D_about_mean D_cumulative D_cumulative_about_mean", "g_cm/4t"},
+    {OBSERVE_DYNAMICS, ANYWHERE, MEANS, NULL, "about `flow`"},
+
+    {OBSERVE_COLLISIONS, THICK, LEFT_OUT, "rate_over_theory", "the theory is that of lines"},
+    {OBSERVE_COLLISIONS, BESIDE_FROZEN, LEFT_OUT, "rate_over_theory", "the theory is that of fibers which all move"},
+    {OBSERVE_COLLISIONS, IN_SHEAR, MEANS, "rate_over_theory", "over the rate at rest"},
+    {OBSERVE_COLLISIONS, BETWEEN_WALLS, MEANS, "rate_over_theory", "over the rate at rest, far from walls"},
+    {OBSERVE_COLLISIONS, ANYWHERE, MEANS, NULL, "counts"},
+
+    {OBSERVE_PROFILE, WITH_A_BEAD, REFUSED, NULL,
+     "a slab is not full of solvent where the bead is; allowed without a bead"},
+    {OBSERVE_PROFILE, DRIFT_SPLIT, MEANS, "temperature", "with forces of pairs, of half a step ahead"},
+    {OBSERVE_PROFILE, ANYWHERE, MEANS, NULL, "of the solvent; velocities of the laboratory"},
+
+    {OBSERVE_STRESS, WITH_A_BEAD, REFUSED, NULL, GIVEN_TO_BEAD "its stress; allowed without a bead"},
+    {OBSERVE_STRESS, INEXTENSIBLE, REFUSED, NULL, NO_TENSION},
+    {OBSERVE_STRESS, IN_PAIRS, REFUSED, NULL,
+     "it is that of collision cells; allowed without a medium; with this one: observe.pressure"},
+    {OBSERVE_STRESS, PERMUTED, REFUSED, NULL,
+     "velocities that are permuted carry momentum across the box; allowed with hydrodynamics: true"},
+    {OBSERVE_STRESS, BESIDE_FROZEN, REFUSED, NULL,
+     "momentum that frozen fibers take up is not in its stress; allowed without frozen fibers"},
+    {OBSERVE_STRESS, THICK, LEFT_OUT, "sigma_xy N1 pressure sigma_xy_fibers N1_fibers",
+     "what thick fibers hand on at a contact is not in them"},
+    {OBSERVE_STRESS, NO_FIBERS_NO_DUMBBELLS, LEFT_OUT, "sigma_xy_spring N1_spring", "there are no springs"},
+    {OBSERVE_STRESS, NO_FIBERS, LEFT_OUT, "sigma_xy_fibers N1_fibers", "there are no fibers"},
+    {OBSERVE_STRESS, IN_A_FLOW, MEANS, "N1 pressure", "a flow u that is not linear counts, as −ρ⟨u²⟩"},
+    {OBSERVE_STRESS, IN_A_BATH_WITH_FLOW, MEANS, NULL, "of fibers alone"},
+    {OBSERVE_STRESS, BETWEEN_WALLS, MEANS, NULL,
+     "of the bulk; of fibers, of the whole gap; about the line between both walls"},
+    {OBSERVE_STRESS, ANYWHERE, MEANS, NULL, "about `flow`, in a sheared box about its linear flow"},
+
+    {OBSERVE_DUMBBELLS, ANYWHERE, MEANS, NULL, "of vectors alone"},
+
+    {OBSERVE_ORIENTATION, IN_A_PLANE, MEANS, "S", "the larger eigenvalue of ⟨2 u u − 1⟩"},
+    {OBSERVE_ORIENTATION, ANYWHERE, MEANS, NULL, "of directions alone"},
+
+    {OBSERVE_BEAD, NO_BEAD, REFUSED, NULL, "there is none; allowed with a bead"},
+    {OBSERVE_BEAD, NO_TRAP, LEFT_OUT, "trap_x trap_y trap_z", "there is no trap"},
+    {OBSERVE_BEAD, ANYWHERE, MEANS, NULL, "of the laboratory"},
+
+    {OBSERVE_MEMORY, IN_SHEAR, REFUSED, NULL,
+     "it is that of equilibrium, and the box is sheared; allowed without shear"},
+    {OBSERVE_MEMORY, IN_A_FLOW, REFUSED, NULL,
+     "it is that of equilibrium, and the flow differs from place to place; allowed without forces, profile, sliding "
+     "walls or a bead that is pulled"},
+    {OBSERVE_MEMORY, BY_A_FORCE_ON_FIBERS, REFUSED, NULL,
+     "it is that of equilibrium, and a force pulls fibers; allowed without fibers.force"},
+    {OBSERVE_MEMORY, INEXTENSIBLE, REFUSED, NULL, NO_TENSION},
+    {OBSERVE_MEMORY, OVERDAMPED, LEFT_OUT, "vertices center", "there are no velocities"},
+    {OBSERVE_MEMORY, THICK, LEFT_OUT, "stress_memory", "what thick fibers hand on at a contact is not in it"},
+    {OBSERVE_MEMORY, BESIDE_FROZEN, MEANS, NULL, "of kinds that are not frozen; frozen ones have no table"},
+    {OBSERVE_MEMORY, ACCELERATED, MEANS, "vertices center", "about `flow` and the acceleration of everything"},
+    {OBSERVE_MEMORY, ANYWHERE, MEANS, NULL, "about `flow`"},
+
+    {OBSERVE_PRESSURE, WITH_A_BEAD, REFUSED, NULL, GIVEN_TO_BEAD "it; allowed without a bead"},
+    {OBSERVE_PRESSURE, INEXTENSIBLE, REFUSED, NULL, NO_TENSION},
+    {OBSERVE_PRESSURE, IN_A_FLOW, REFUSED, NULL,
+     "a flow that differs from place to place would count as pressure; allowed without forces between walls, profile, "
+     "or sliding walls; with them: observe.stress"},
+    {OBSERVE_PRESSURE, THICK, REFUSED, NULL, NO_TUBES},
+    {OBSERVE_PRESSURE, BESIDE_FROZEN, LEFT_OUT, "pressure p_xx p_yy p_zz p_xy", "frozen fibers hold what pushes them"},
+    {OBSERVE_PRESSURE, BETWEEN_WALLS, LEFT_OUT, "force_square laplacian configurational",
+     "walls push too, which is no force of the energy"},
+    {OBSERVE_PRESSURE, IN_A_PLANE, LEFT_OUT, "p_zz", "nothing moves along z"},
+    {OBSERVE_PRESSURE, IN_SHEAR, MEANS, "pressure p_xx p_yy p_zz p_xy", "about the linear flow"},
+    {OBSERVE_PRESSURE, BETWEEN_WALLS, MEANS, "pressure p_xx p_yy p_zz p_xy", "mean over the whole gap"},
+    {OBSERVE_PRESSURE, IN_A_BATH_WITH_FLOW, MEANS, "pressure p_xx p_yy p_zz p_xy", "of vertices alone, about `flow`"},
+    {OBSERVE_PRESSURE, BY_A_FORCE_ON_FIBERS, MEANS, "pressure p_xx p_yy p_zz p_xy",
+     "a drift v against the solvent counts, as M v² per volume"},
+    {OBSERVE_PRESSURE, DRIFT_SPLIT, MEANS, "pressure p_xx p_yy p_zz p_xy",
+     "velocities of half a step ahead, when collisions act"},
+    {OBSERVE_PRESSURE, ANYWHERE, MEANS, NULL, "about `flow`, and about the acceleration of everything"},
+
+    {OBSERVE_WAKE, NO_NETWORK, REFUSED, NULL, "it is that of fibers around a bead; allowed with both"},
+    {OBSERVE_WAKE, ANYWHERE, MEANS, NULL, "of the laboratory"},
+};
+const size_t meaning_count = sizeof meanings / sizeof *meanings;
+
+const char *meaning_refusal(const struct model *model, enum observable which)
+{
+  for (size_t k = 0; k < meaning_count; k++)
+    if (meanings[k].of == which && meanings[k].verdict == REFUSED && meaning_holds(meanings[k].where, model))
+      return meanings[k].text;
+  return NULL;
+}
+
+/* Is the word of this length in a list that blanks separate? */
+static bool listed(const char *list, const char *word, size_t length)
+{
+  bool found = false;
+  while (!found && *list) {
+    const size_t part = strcspn(list, " ");
+    found = part == length && memcmp(list, word, length) == 0;
+    list += part + (list[part] == ' ');
+  }
+  return found;
+}
+
+bool meaning_has_column(const struct model *model, enum observable which, const char *column)
+{
+  static const char error[] = "_error";
+  const size_t all = strlen(column), tail = sizeof error - 1;
+  const size_t length = all > tail && strcmp(column + all - tail, error) == 0 ? all - tail : all;
+  bool there = true;
+  for (size_t k = 0; k < meaning_count; k++) {
+    const struct meaning *m = &meanings[k];
+    there &= m->of != which || m->verdict != LEFT_OUT || !listed(m->columns, column, length) ||
+             !meaning_holds(m->where, model);
+  }
+  return there;
+}
+
+/* --- docs/observables.md ----------------------------------------------------------------------------------------- */
+
+static void write_columns(FILE *f, const char *columns)
+{
+  for (const char *c = columns ? columns : ""; *c; c += *c == ' ') {
+    const int length = (int)strcspn(c, " ");
+    fprintf(f, "%s`%.*s`", c == columns ? "" : ", ", length, c);
+    c += length;
+  }
+  fputs(columns ? "" : "all", f);
+}
+
+void meaning_document(FILE *f)
+{
+  static const char *const before[] = {[MEANS] = "", [LEFT_OUT] = "left out: ", [REFUSED] = "**refused**: "};
+  fputs("<!-- table: meanings -->\n| observable | where | columns | what is read |\n| --- | --- | --- | --- |\n", f);
+  for (size_t k = 0; k < meaning_count; k++) {
+    const struct meaning *m = &meanings[k];
+    fprintf(f, "| %s | %s | ", k == 0 || m->of != m[-1].of ? observable_names[m->of] : "",
+            circumstances[m->where].words);
+    write_columns(f, m->columns);
+    fprintf(f, " | %s%s |\n", before[m->verdict], m->text);
+  }
+  fputs("<!-- end of table -->\n", f);
+}
