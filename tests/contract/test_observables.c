@@ -1,0 +1,353 @@
+/* What is read off: each observable against a number that is known without it, where the solvent flows, in a plane, of
+ * dumbbells, with forces of pairs. Statistics: 4.5 standard errors, a false alarm in 150,000 numbers. */
+#include "exact.h"
+#include "statistics.h"
+
+#include <unistd.h>
+
+#include "../observe/tables.h"
+#include "scene/scene.h"
+
+/* --- rows by name ------------------------------------------------------------------------------------------------- */
+
+/* What a scene says, read as a run reads it. */
+static struct scene scene_of(const char *text)
+{
+  char path[] = "build/observables-XXXXXX";
+  const int file = mkstemp(path);
+  struct scene scene;
+  struct message message;
+  assert_true(file >= 0 && write(file, text, strlen(text)) == (ssize_t)strlen(text));
+  close(file);
+  if (!scene_read(path, &scene, &message))
+    fail_msg("%s", message.text);
+  unlink(path);
+  return scene;
+}
+
+/* The rows of a series, as a file has them. */
+struct rows {
+  size_t columns, count;
+  double value[1 << 16];
+};
+
+static bool add_row(void *context, enum observable which, size_t columns, const double *values)
+{
+  struct rows *r = context;
+  (void)which;
+  assert_true((r->count + 1) * columns <= sizeof r->value / sizeof *r->value);
+  memcpy(&r->value[r->count++ * columns], values, columns * sizeof *values);
+  r->columns = columns;
+  return true;
+}
+
+/* The header of a series, and the names of summaries, as a user sees them. */
+struct outcome {
+  struct scene scene;
+  struct rows rows;
+  char header[40][64];
+  size_t columns;
+  struct kept *kept;
+};
+
+static bool is_series(const struct scene *scene, enum observable which, struct outcome *o)
+{
+  const char *names[OBSERVE_MOST_COLUMNS];
+  o->columns = observe_series_columns(&scene->model, which, names);
+  for (size_t k = 0; k < o->columns; k++)
+    snprintf(o->header[k], sizeof o->header[k], "%s", names[k]);
+  return o->columns > 0;
+}
+
+/* Runs a scene that asks for this observable. */
+static struct outcome *run_of(const char *text, enum observable which)
+{
+  struct outcome *o = calloc(1, sizeof *o);
+  struct state state;
+  struct work work;
+  assert_non_null(o);
+  o->scene = scene_of(text);
+  const struct model *m = &o->scene.model;
+  const struct observe_sink sink = {add_row, &o->rows};
+  struct observers *observers = observers_create(&o->scene.observe, m);
+  assert_true(observers && state_alloc(&state, m) && work_alloc(&work, m) && start_state(&state, m, &work));
+  work.mpc.stress = observers_stress(observers);
+  assert_true(observers_sample(observers, m, &state, &sink));
+  for (uint64_t step = 0; step < o->scene.steps; step++) {
+    assert_true(step_advance(&state, m, &work, NULL));
+    assert_true(observers_sample(observers, m, &state, &sink));
+  }
+  if (!is_series(&o->scene, which, o))
+    o->kept = keep_summaries(observers, m);
+  observers_free(observers);
+  work_free(&work);
+  state_free(&state);
+  return o;
+}
+
+static void end_of(struct outcome *o)
+{
+  free(o->kept);
+  scene_free(&o->scene);
+  free(o);
+}
+
+static bool has(const struct outcome *o, const char *name)
+{
+  for (size_t k = 0; k < o->columns; k++)
+    if (strcmp(o->header[k], name) == 0)
+      return true;
+  return false;
+}
+
+static double at(const struct outcome *o, size_t row, const char *name)
+{
+  for (size_t k = 0; k < o->columns; k++)
+    if (strcmp(o->header[k], name) == 0)
+      return o->rows.value[row * o->rows.columns + k];
+  fail_msg("no column %s", name);
+  return NAN;
+}
+
+/* Mean of a column from this row on, in 20 blocks. */
+static struct sample mean_of(const struct outcome *o, const char *name, size_t from)
+{
+  struct blocks b = {.length = (o->rows.count - from) / 20};
+  for (size_t k = from; k < o->rows.count; k++)
+    blocks_add(&b, at(o, k, name));
+  return b.of_blocks;
+}
+
+#define expect(o, name, expected)                                                                                      \
+  do {                                                                                                                 \
+    const struct sample found_ = mean_of(o, name, 20);                                                                 \
+    print_message("  %s:", name);                                                                                      \
+    assert_sigma(found_.mean, sample_error(&found_), expected, 4.5);                                                   \
+  } while (0)
+
+/* --- pressure ----------------------------------------------------------------------------------------------------- */
+
+/* n_d dumbbells per volume have the pressure n_d kT: springs take away the half of that of their particles. Less the
+ * one particle that the rest of the box is not free to be: kT per volume. And two particles of a spring have the
+ * configurational temperature kT. */
+static void dumbbells_are_a_gas(void **unused)
+{
+  (void)unused;
+  test_begin_statistics();
+  struct outcome *o = run_of("box: [4, 4, 4]\ntime_step: 0.1\nsteps: 4000\nseed: 31\n"
+                             "solvent: {per_cell: 10, collision_interval: 0.1, rule: at-a}\ndumbbells: {spring: 3}\n"
+                             "observe: {pressure: {every: 4}}\n",
+                             OBSERVE_PRESSURE);
+  expect(o, "pressure", 5.0 - 1.0 / 64.0);
+  expect(o, "p_xx", 5.0 - 1.0 / 64.0);
+  expect(o, "configurational", 1.0);
+  expect(o, "potential", 0.5 * 3.0 * 320.0);
+  end_of(o);
+}
+
+/* A gas that is sheared is a gas: n kT along each axis, about its flow, whose 0.3^2 (6^2 - 1)/12 = 0.26 is no heat.
+ * p_xy is minus the kinetic stress, some eta_kin rate: 8 0.1 0.5 0.3 at most. */
+static void a_sheared_gas(void **unused)
+{
+  (void)unused;
+  test_begin_statistics();
+  struct outcome *o = run_of("box: [6, 6, 4]\ntime_step: 0.1\nsteps: 3000\nseed: 32\n"
+                             "solvent: {per_cell: 8, collision_interval: 0.1, rule: at-a}\nshear: {rate: 0.3}\n"
+                             "observe: {pressure: {every: 3}}\n",
+                             OBSERVE_PRESSURE);
+  expect(o, "p_yy", 8.0 - 1.0 / 144.0);
+  expect(o, "p_zz", 8.0 - 1.0 / 144.0);
+  /* a flight of 0.1 through the gradient: <w_x^2> = 1 + rate^2 (t^2/3 to t^2), and rate^2/6 just after a collision */
+  const struct sample xx = mean_of(o, "p_xx", 20);
+  assert_close(xx.mean, 8.0 * (1.0 + 0.5 * 0.09 / 6.0), 8.0 * 0.09 / 12.0 + 4.5 * sample_error(&xx));
+  end_of(o);
+}
+
+/* Where the force of a box without end pulls everything, the flow that it makes is no pressure. */
+static void an_accelerated_gas(void **unused)
+{
+  (void)unused;
+  struct outcome *o = run_of("box: [4, 4, 4]\ntime_step: 0.1\nsteps: 400\nseed: 33\n"
+                             "solvent: {per_cell: 5, collision_interval: 0.1, rule: at-a, acceleration: [0.05, 0, 0]}\n"
+                             "observe: {pressure: {every: 2}, }\n",
+                             OBSERVE_PRESSURE);
+  expect(o, "p_xx", 5.0 - 1.0 / 64.0); /* at the end the flow is 2 a0/t0, rho v^2 = 20 */
+  end_of(o);
+}
+
+/* The stress on walls is the pressure of a gas at rest: what particles hand to a wall that reverses them. Here by the
+ * mean over the gap, n kT, in which the momentum along each axis is free. */
+static void a_gas_between_walls(void **unused)
+{
+  (void)unused;
+  test_begin_statistics();
+  struct outcome *o = run_of("box: [6, 5, 6]\ntime_step: 0.05\nsteps: 4000\nseed: 34\n"
+                             "solvent: {per_cell: 6, collision_interval: 0.1, rule: at-a}\nwalls: {kind: no-slip}\n"
+                             "fibers: [{name: chain, count: 12, vertices: 5, mass: 3, bond_length: 0, spring: 10}]\n"
+                             "crossing: {forbidden: false}\nobserve: {pressure: {every: 4}}\n",
+                             OBSERVE_PRESSURE);
+  assert_true(has(o, "potential") && !has(o, "configurational") && !has(o, "laplacian"));
+  /* across: of the gas, and of chains as a whole. Along: the same, since the walls push at no slant. */
+  expect(o, "p_xx", 6.0 + 12.0 / 180.0);
+  end_of(o);
+}
+
+/* --- temperature -------------------------------------------------------------------------------------------------- */
+
+/* Chains in phantoms, in a sheared box of height 8: the flow would count as 5 0.1^2 8^2/12 3 = 0.089. The leap-frog of
+ * kick-split is exact at the step to second order: (omega dt)^2 is 4 20/3 0.0004 = 0.01 at most, and has no part. */
+static void vertices_in_shear(void **unused)
+{
+  (void)unused;
+  test_begin_statistics();
+  struct outcome *o = run_of("box: [8, 8, 8]\ntime_step: 0.02\nsteps: 6000\nseed: 35\n"
+                             "solvent: {per_cell: 5, collision_interval: 0.02, bath: phantoms, hydrodynamics: false}\n"
+                             "shear: {rate: 0.1}\n"
+                             "fibers: [{name: chain, count: 40, vertices: 5, mass: 5, bond_length: 0, spring: 20}]\n"
+                             "crossing: {forbidden: false}\nobserve: {temperature: {every: 5}}\n",
+                             OBSERVE_TEMPERATURE);
+  /* phantoms of a cell have its middle's flow: at most rate^2/12 M is added to the heat bath's kT */
+  const struct sample t = mean_of(o, "vertex", 20);
+  print_message("  vertex %.5f +- %.5f\n", t.mean, sample_error(&t));
+  assert_close(t.mean, 1.0, 4.5 * sample_error(&t) + 0.01 * 5.0 / 12.0);
+  end_of(o);
+}
+
+/* DPD by drift-split: kT = 1 is that of half a step ahead. Half a step later the repulsion has changed it by
+ * omega^2 dt^2/4, at dt = 0.06 some 4 %. Temperature, profile and the kinetic part of the pressure. */
+static void pairs_by_halves(void **unused)
+{
+  (void)unused;
+  test_begin_statistics();
+  static const char text[] =
+      "box: [5, 5, 5]\ntime_step: 0.06\nsteps: 1500\nseed: 36\norder: drift-split\n"
+      "medium: {kind: pairs, rate: 9, draw: cayley, weight: quadratic, density: 3, repulsion: 25}\n"
+      "observe: {from: 100, %s}\n";
+  char scene[512];
+  snprintf(scene, sizeof scene, text, "temperature: {every: 5}");
+  struct outcome *o = run_of(scene, OBSERVE_TEMPERATURE);
+  const struct sample t = mean_of(o, "solvent", 20);
+  print_message("  solvent %.5f +- %.5f\n", t.mean, sample_error(&t));
+  assert_close(t.mean, 1.0, 4.5 * sample_error(&t) + 0.003); /* the error of fourth order, and of Shardlow's pairs */
+  end_of(o);
+  snprintf(scene, sizeof scene, text, "profile: {every: 5, slabs: 1}");
+  o = run_of(scene, OBSERVE_PROFILE);
+  const double heat = kept_value(o->kept, "profile", 0, "temperature"),
+               error = kept_value(o->kept, "profile", 0, "temperature_error");
+  assert_close(heat, 1.0, 4.5 * error + 0.003);
+  end_of(o);
+}
+
+/* --- energies ----------------------------------------------------------------------------------------------------- */
+
+/* The columns of energies make up the total. */
+static void parts_make_the_total(void **unused)
+{
+  (void)unused;
+  struct outcome *o =
+      run_of("box: [4, 4, 4]\ntime_step: 0.02\nsteps: 20\nseed: 37\n"
+             "medium: {kind: pairs, rate: 9, draw: relax, weight: quadratic, density: 3, repulsion: 25}\n"
+             "fibers: [{name: chain, count: 5, vertices: 5, mass: 1, bond_length: 0, spring: 20}]\n"
+             "crossing: {forbidden: false}\nobserve: {conserved: {every: 5}}\n",
+             OBSERVE_CONSERVED);
+  for (size_t k = 0; k < o->rows.count; k++) {
+    double sum = 0.0;
+    for (size_t c = 1; strcmp(o->header[c], "total") != 0; c++)
+      sum += at(o, k, o->header[c]);
+    assert_close(sum, at(o, k, "total"), 1e-9 * fabs(sum));
+    assert_true(at(o, k, "total") > 1000.0);
+  }
+  end_of(o);
+}
+
+/* --- motion ------------------------------------------------------------------------------------------------------- */
+
+/* Beads that go at v, whatever forces say: the drift is v where nothing accelerates everything, v - a t/2 less where a
+ * force does. */
+static void drift_is_that_of_the_places(void **unused)
+{
+  (void)unused;
+  static const struct {
+    const char *name, *box;
+    double background; /* acceleration of everything */
+  } rows[] = {
+      {"no-slip",
+       "solvent: {per_cell: 5, collision_interval: 0.1, acceleration: [0.05, 0, 0]}\nwalls: {kind: no-slip}\n", 0.0},
+      {"slip", "solvent: {per_cell: 5, collision_interval: 0.1, acceleration: [0.05, 0, 0]}\nwalls: {kind: slip}\n",
+       0.05 * 320.0 / 328.0},
+      {"sine", "solvent: {per_cell: 5, collision_interval: 0.1, acceleration: [0.05, 0, 0], profile: sine}\n", 0.0},
+      {"reverse", "solvent: {per_cell: 5, collision_interval: 0.1, acceleration: [0.05, 0, 0], profile: reverse}\n",
+       0.0},
+      {"periodic", "solvent: {per_cell: 5, collision_interval: 0.1, acceleration: [0.05, 0, 0]}\n",
+       0.05 * 320.0 / 328.0},
+      {"private", "medium: {kind: private, rate: 1}\n", 0.0},
+  };
+  for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+    char text[512];
+    snprintf(text, sizeof text,
+             "box: [4, 4, 4]\ntime_step: 0.1\nsteps: 16\n%sfibers: [{name: bead, count: 4, vertices: 1, mass: 2}]\n"
+             "observe: {dynamics: {every: 1}}\n",
+             rows[k].box);
+    struct scene scene = scene_of(text);
+    struct state state;
+    struct observers *o = observers_create(&scene.observe, &scene.model);
+    assert_true(state_alloc(&state, &scene.model));
+    for (state.step = 0; state.step <= 16; state.step++) {
+      for (uint32_t v = 0; v < 4; v++)
+        state.position[v] =
+            point_move((struct point){0, LATTICE_CELL, 0}, (struct vec3){0.3 * 0.1 * (double)state.step, 0, 0});
+      assert_true(observers_sample(o, &scene.model, &state, NULL));
+    }
+    struct kept *kept = keep_summaries(o, &scene.model);
+    size_t row = 0;
+    while (kept_value(kept, "dynamics-bead", row, "time") < 1.55)
+      row++;
+    print_message("  %s: %.17g\n", rows[k].name, kept_value(kept, "dynamics-bead", row, "drift_x"));
+    assert_close(kept_value(kept, "dynamics-bead", row, "drift_x"), 0.3 - 0.5 * rows[k].background * 1.6, 1e-9);
+    free(kept);
+    observers_free(o);
+    state_free(&state);
+    scene_free(&scene);
+  }
+}
+
+/* In a plane directions at random have S = 0 in the mean of many; that of space would be 1/4 there. */
+static void order_in_a_plane(void **unused)
+{
+  (void)unused;
+  struct outcome *o = run_of("box: [40, 40, 1]\ndimensions: 2\ntime_step: 0.02\nsteps: 0\nseed: 38\n"
+                             "solvent: {per_cell: 3, collision_interval: 0.02}\n"
+                             "fibers: [{name: rod, count: 2000, vertices: 2, mass: 3, bond_length: 0.5, spring: 100}]\n"
+                             "crossing: {forbidden: false}\nobserve: {orientation: {every: 1}}\n",
+                             OBSERVE_ORIENTATION);
+  /* n independent directions: sqrt(pi/4n) in the mean, its scatter half of it */
+  assert_close(kept_value(o->kept, "orientation-rod", 0, "S"), 0.0198, 5.0 * 0.0104);
+  end_of(o);
+}
+
+/* The first row of the stress is the first that has an average. */
+static void stress_begins_with_an_average(void **unused)
+{
+  (void)unused;
+  struct outcome *o =
+      run_of("box: [4, 4, 4]\ntime_step: 0.05\nsteps: 20\nsolvent: {per_cell: 5, collision_interval: 0.1}\n"
+             "walls: {kind: no-slip, shear_rate: 0.1}\nobserve: {stress: {every: 1}}\n",
+             OBSERVE_STRESS);
+  assert_close(at(o, 0, "time"), 0.1, 1e-12);
+  for (size_t k = 0; k < o->rows.count; k++)
+    assert_true(isfinite(at(o, k, "sigma_lower")));
+  assert_true(isfinite(at(o, 0, "sigma_xy")));
+  end_of(o);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(dumbbells_are_a_gas),  cmocka_unit_test(a_sheared_gas),
+      cmocka_unit_test(an_accelerated_gas),   cmocka_unit_test(a_gas_between_walls),
+      cmocka_unit_test(vertices_in_shear),    cmocka_unit_test(pairs_by_halves),
+      cmocka_unit_test(parts_make_the_total), cmocka_unit_test(drift_is_that_of_the_places),
+      cmocka_unit_test(order_in_a_plane),     cmocka_unit_test(stress_begins_with_an_average),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
