@@ -40,7 +40,7 @@ static bool flows_as_said(const struct scene *scene, const struct state *state, 
   const struct motion motion = motion_measure(m, state, work->fiber.force);
   const double mass = m->total_mass + m->bead.mass;
   const struct vec3 vertices = vec3_add(motion.vertex.momentum, motion.bead.momentum);
-  const struct vec3 found = vec3_scale(1.0 / mass, vec3_add(motion.solvent_sum, vertices));
+  const struct vec3 found = vec3_scale(1.0 / mass, vec3_add(motion.solvent.sum, vertices));
   const struct vec3 off = vec3_sub(found, m->flow);
   const double most = vec3_norm(m->flow) > 0.0 ? FLOW_ROUNDING : FLOW_HEAT / sqrt(mass);
   return (fabs(off.x) <= most && fabs(off.y) <= most && fabs(off.z) <= most) || refuse_flow(scene, found, message);

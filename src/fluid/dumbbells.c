@@ -1,6 +1,7 @@
 /* A fluid of dumbbells, and of independent particles among them (Tao, Goetze and Gompper 2008). */
 #include <math.h>
 
+#include "base/exact_sum.h"
 #include "base/normal.h"
 #include "fluid/dumbbell.h"
 #include "fluid/fluid.h"
@@ -171,7 +172,8 @@ struct vec3 fluid_dumbbell_now(const struct state *state, const struct model *mo
 
 double fluid_dumbbell_energy(const struct state *state, const struct model *model)
 {
-  double squares = 0.0, walls = 0.0;
+  struct exact_sum sum = {0, 0};
+  bool large = false;
   const bool potential = model_has_walls(model) && model->dumbbells.depth != 0.0;
   const struct span span = boundary_lag(state, model);
   const struct swing swing = swing_for(model->dumbbells.frequency, span.time);
@@ -179,11 +181,13 @@ double fluid_dumbbell_energy(const struct state *state, const struct model *mode
     struct point x;
     struct vec3 v, apart;
     fly_one(state, model, &span, &swing, 2 * p, &x, &v, &apart);
-    squares += vec3_dot(apart, apart);
+    double energy = 0.5 * model->dumbbells.spring * vec3_dot(apart, apart);
     if (potential)
-      walls += dumbbell_wall_energy(model, (double)x.y * LATTICE_UNIT - 0.5 * apart.y);
+      energy += dumbbell_wall_energy(model, (double)x.y * LATTICE_UNIT - 0.5 * apart.y);
+    large |= !(energy < EXACT_LARGEST);
+    exact_add(&sum, energy < EXACT_LARGEST ? energy : 0.0);
   }
-  return 0.5 * model->dumbbells.spring * squares + walls;
+  return large ? INFINITY : exact_value(&sum);
 }
 
 const struct fluid fluid_dumbbells = {

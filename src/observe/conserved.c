@@ -4,38 +4,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/exact_sum.h"
 #include "base/memory.h"
 #include "fiber/force.h"
 #include "fluid/fluid.h"
 #include "medium/repulsion.h"
+#include "observe/background.h"
 #include "observe/observer.h"
 #include "system/bead.h"
 #include "system/shear.h"
 
-/* A sum that does not depend on the order of its terms: each is split into a multiple of 2^-16 and a multiple of 2^-50
- * (rounded), and integers are summed. Terms below 2^34; 2^29 terms. */
-struct exact_sum {
-  int64_t coarse, fine;
-};
-
-#define COARSE_SCALE 0x1p16
-#define COARSE_UNIT 0x1p-16
-#define FINE_SCALE 0x1p50
-#define FINE_UNIT 0x1p-50
 #define LARGEST_VELOCITY 0x1p17
-
-static inline void exact_add(struct exact_sum *sum, double x)
-{
-  const double coarse =
-      (x * COARSE_SCALE + 0x1.8p52) - 0x1.8p52; /* the integer that lattice_round gives, as a double */
-  sum->coarse += lattice_round(x * COARSE_SCALE);
-  sum->fine += lattice_round((x - coarse * COARSE_UNIT) * FINE_SCALE);
-}
-
-static double exact_value(const struct exact_sum *sum)
-{
-  return (double)sum->coarse * COARSE_UNIT + (double)sum->fine * FINE_UNIT;
-}
 
 /* Sums of v and v^2 of one component, v = velocity + gain. */
 static void solvent_component(const struct state *state, const double *velocity, double gain, double *sum,
@@ -87,17 +66,21 @@ enum { SOME = 256 };
 
 /* M w^2/2 of a vertex, w: relative to the mean velocity of the solvent in its slab. That mean has a variance itself, as
  * if the n particles were one of mass n, which is taken out. A vertex beyond a sheared box has the velocity of its
- * image in the box. */
+ * image in the box. Without solvent there: relative to the flow of the boundary. */
 static double kinetic_in_slab(const struct model *model, const struct state *state, const struct slab *slab, uint32_t i,
                               struct vec3 v)
 {
   const int64_t y = state->position[i].y, image = lattice_image(y, model->box.edge[1]),
                 row = box_inside(&model->box, 1, y) >> LATTICE_BITS, cells = model->box.cells[1];
   const struct slab *s = &slab[row < cells ? row : cells - 1];
+  if (s->n == 0) {
+    const struct vec3 w = vec3_sub(v, background_flow(model, state, (double)y * LATTICE_UNIT));
+    return 0.5 * model->mass[i] * vec3_dot(w, w);
+  }
   if (model_is_sheared(model))
     v.x -= (double)image * shear_rate(model, shear_interval(model, state->solvent_time + state->solvent_lag)) *
            model->box.cells[1];
-  const double n = s->n > 0 ? 1.0 / s->n : 0.0, mass = model->mass[i];
+  const double n = 1.0 / s->n, mass = model->mass[i];
   const struct vec3 sum = {exact_value(&s->v[0]), exact_value(&s->v[1]), exact_value(&s->v[2])},
                     w = vec3_add_scaled(v, -n, sum);
   return 0.5 * mass * vec3_dot(w, w) / (1.0 + mass * n);
@@ -110,15 +93,33 @@ static void measure_vertices_in_slabs(const struct model *model, const struct st
   for (uint32_t i = 0; i < state->vertices; i++) {
     const struct vec3 ahead = state->velocity[i],
                       now = vec3_add_scaled(ahead, -half * model->inverse_mass[i], force[i]);
-    m->vertex.in_slabs += kinetic_in_slab(model, state, slab, i, now);
-    m->vertex_half.in_slabs += kinetic_in_slab(model, state, slab, i, ahead);
+    m->vertex.about_flow += kinetic_in_slab(model, state, slab, i, now);
+    m->vertex_half.about_flow += kinetic_in_slab(model, state, slab, i, ahead);
   }
 }
 
+/* About the linear flow of a sheared box, of velocities taken back by this time; a mean that is kept is taken out. */
+static double kinetic_in_shear(const struct model *model, const struct state *state, const struct vec3 *force,
+                               double back)
+{
+  struct vec3 momentum = {0, 0, 0};
+  double kinetic = 0.0, mass = 0.0;
+  for (uint32_t i = 0; i < state->vertices; i++) {
+    const struct vec3 v = vec3_add_scaled(state->velocity[i], -back * model->inverse_mass[i], force[i]);
+    const double y = (double)state->position[i].y * LATTICE_UNIT + (0.5 * model->time_step - back) * v.y;
+    const struct vec3 w = vec3_sub(v, background_flow(model, state, y));
+    kinetic += 0.5 * model->mass[i] * vec3_dot(w, w);
+    momentum = vec3_add_scaled(momentum, model->mass[i], w);
+    mass += model->mass[i];
+  }
+  return kinetic - (model_keeps_momentum(model) ? 0.5 * vec3_dot(momentum, momentum) / mass : 0.0);
+}
+
 /* Where the solvent flows, or is not free between collisions: positions and velocities of now, and slabs along y:
- * [cells], all zero. */
+ * [cells], all zero. back: by which time velocities are taken back under the forces of pairs, t0. */
 static void measure_slabs(const struct model *model, const struct state *state, const struct vec3 *force,
-                          const struct vec3 *pair, struct slab *slab, struct motion *m)
+                          const struct vec3 *pair, double back, struct slab *slab, struct motion *m,
+                          struct solvent_motion *of)
 {
   const int64_t cells = model->box.cells[1];
   struct slab all = {0};
@@ -129,7 +130,7 @@ static void measure_slabs(const struct model *model, const struct state *state, 
     struct vec3 v[SOME];
     fluid_of(model)->now(state, model, first, n, at, v);
     for (uint32_t i = 0; pair && i < n; i++)
-      v[i] = vec3_add_scaled(v[i], -0.5 * model->time_step, pair[state->solvent.id[first + i]]);
+      v[i] = vec3_add_scaled(v[i], -back, pair[state->solvent.id[first + i]]);
     for (uint32_t i = 0; i < n; i++) {
       const int64_t row = at[i].y >> LATTICE_BITS;
       const bool wild =
@@ -147,24 +148,27 @@ static void measure_slabs(const struct model *model, const struct state *state, 
     for (int64_t row = 0; row < cells; row++)
       within[k] += bad ? NAN : slab[row].n > 0 ? slab_within(&slab[row], k) : 0.0;
   }
+  m->slabs = 0;
   for (int64_t row = 0; row < cells && flows(model); row++)
     m->slabs += slab[row].n > 0;
+  m->vertex.about_flow = m->vertex_half.about_flow = 0.0;
   if (m->slabs > 0)
     measure_vertices_in_slabs(model, state, force, slab, m);
-  m->solvent_sum = (struct vec3){sum[0], sum[1], sum[2]};
-  m->solvent_squares = (struct vec3){squares[0], squares[1], squares[2]};
-  m->slab_squares = (struct vec3){within[0], within[1], within[2]};
+  *of = (struct solvent_motion){.sum = {sum[0], sum[1], sum[2]},
+                                .squares = {squares[0], squares[1], squares[2]},
+                                .slab_squares = {within[0], within[1], within[2]}};
 }
 
 /* All is NAN if memory is short. */
 static void measure_now(const struct model *model, const struct state *state, const struct vec3 *force,
-                        const struct vec3 *pair, struct motion *m)
+                        const struct vec3 *pair, double back, struct motion *m, struct solvent_motion *of)
 {
+  const struct vec3 unknown = {NAN, NAN, NAN};
   struct slab *slab = calloc((size_t)model->box.cells[1], sizeof *slab);
   if (slab)
-    measure_slabs(model, state, force, pair, slab, m);
+    measure_slabs(model, state, force, pair, back, slab, m, of);
   else
-    m->solvent_sum = m->solvent_squares = m->slab_squares = (struct vec3){NAN, NAN, NAN};
+    *of = (struct solvent_motion){unknown, unknown, unknown};
   free(slab);
 }
 
@@ -179,13 +183,17 @@ static void measure_solvent(const struct model *model, const struct state *state
                             const struct vec3 *pair, struct motion *m)
 {
   if (flows(model) || model_has_dumbbells(model) || pair) {
-    measure_now(model, state, force, pair, m);
+    measure_now(model, state, force, pair, 0.5 * model->time_step, m, &m->solvent);
+    m->colliding = m->solvent;
+    if (pair && background_ahead(model) == 0.0)
+      measure_now(model, state, force, pair, 0.0, m, &m->colliding);
     return;
   }
   const struct vec3 gain = vec3_add(fluid_gain(state, model), counter_gain(model, state));
-  solvent_component(state, state->solvent.vx, gain.x, &m->solvent_sum.x, &m->solvent_squares.x);
-  solvent_component(state, state->solvent.vy, gain.y, &m->solvent_sum.y, &m->solvent_squares.y);
-  solvent_component(state, state->solvent.vz, gain.z, &m->solvent_sum.z, &m->solvent_squares.z);
+  solvent_component(state, state->solvent.vx, gain.x, &m->solvent.sum.x, &m->solvent.squares.x);
+  solvent_component(state, state->solvent.vy, gain.y, &m->solvent.sum.y, &m->solvent.squares.y);
+  solvent_component(state, state->solvent.vz, gain.z, &m->solvent.sum.z, &m->solvent.squares.z);
+  m->colliding = m->solvent;
 }
 
 static void vertex_add(struct vertex_motion *sum, double mass, struct vec3 v)
@@ -232,6 +240,11 @@ struct motion motion_measure(const struct model *model, const struct state *stat
   const bool known = memory_take(&need, 1) && repulsion_measure(state, model, pair, &pairs);
   measure_vertices(model, state, force, pair, &m);
   measure_solvent(model, state, force, pair, &m);
+  m.linear = model_is_sheared(model) && m.slabs == 0;
+  if (m.linear) {
+    m.vertex.about_flow = kinetic_in_shear(model, state, force, 0.5 * model->time_step);
+    m.vertex_half.about_flow = kinetic_in_shear(model, state, force, 0.0);
+  }
   memory_release(&need, 1);
   m.pairs = known ? pairs.energy : NAN;
   if (model_has_dumbbells(model))
@@ -243,14 +256,15 @@ struct motion motion_measure(const struct model *model, const struct state *stat
 
 static struct conserved conserved_of(const struct motion *m)
 {
-  const double solvent = 0.5 * (m->solvent_squares.x + m->solvent_squares.y + m->solvent_squares.z);
+  const double solvent = 0.5 * (m->solvent.squares.x + m->solvent.squares.y + m->solvent.squares.z);
   const double kinetic = solvent + m->vertex.kinetic;
   struct conserved c = {solvent,
                         m->vertex.kinetic,
                         m->bond,
                         m->bend,
+                        m->pairs,
                         kinetic + m->bond + m->bend + m->pairs,
-                        vec3_add(m->solvent_sum, m->vertex.momentum)};
+                        vec3_add(m->solvent.sum, m->vertex.momentum)};
   if (m->bead.kinetic > 0.0) {
     c.total += m->bead.kinetic;
     c.momentum = vec3_add(c.momentum, m->bead.momentum);
@@ -262,7 +276,7 @@ struct conserved observe_conserved(const struct model *model, const struct state
 {
   struct fiber scratch;
   if (!fiber_alloc(&scratch, model))
-    return (struct conserved){NAN, NAN, NAN, NAN, NAN, {NAN, NAN, NAN}};
+    return (struct conserved){NAN, NAN, NAN, NAN, NAN, NAN, {NAN, NAN, NAN}};
   const struct motion motion = motion_measure(model, state, scratch.force);
   fiber_free(&scratch);
   return conserved_of(&motion);
@@ -275,12 +289,12 @@ static double squares_about(double squares, double sum, double n, double u)
 }
 
 /* Temperature of vertices whose total mass is m, of n degrees of freedom, about u; where the solvent flows, about the
- * mean of its slabs. */
+ * mean of its slabs, or the linear flow. */
 static double vertex_temperature(const struct motion *m, const struct vertex_motion *v, double mass, double freedom,
                                  struct vec3 u)
 {
-  if (m->slabs > 0)
-    return 2.0 * v->in_slabs / freedom;
+  if (m->slabs > 0 || m->linear)
+    return 2.0 * v->about_flow / freedom;
   return 2.0 * (v->kinetic - vec3_dot(u, v->momentum) + 0.5 * mass * vec3_dot(u, u)) / freedom;
 }
 
@@ -295,11 +309,12 @@ struct temperatures motion_temperatures(const struct model *model, const struct 
   const double solvent_freedom = n * (1.0 - 1.0 / moving);
   const double vertex_freedom =
       model->dimensions * (model->vertices - (kept && m->slabs == 0 ? vertices / total : 0.0));
-  const struct vec3 squares = {squares_about(m->solvent_squares.x, m->solvent_sum.x, n, u.x),
-                               squares_about(m->solvent_squares.y, m->solvent_sum.y, n, u.y),
-                               squares_about(m->solvent_squares.z, m->solvent_sum.z, n, u.z)};
+  const struct solvent_motion *s = &m->colliding;
+  const struct vec3 squares = {squares_about(s->squares.x, s->sum.x, n, u.x),
+                               squares_about(s->squares.y, s->sum.y, n, u.y),
+                               squares_about(s->squares.z, s->sum.z, n, u.z)};
   const struct vec3 solvent =
-      m->slabs > 0 ? vec3_scale(1.0 / (n - m->slabs), m->slab_squares) : vec3_scale(1.0 / solvent_freedom, squares);
+      m->slabs > 0 ? vec3_scale(1.0 / (n - m->slabs), s->slab_squares) : vec3_scale(1.0 / solvent_freedom, squares);
   if (model_is_overdamped(model)) /* there are no velocities */
     return (struct temperatures){solvent, NAN, NAN};
   return (struct temperatures){solvent, vertex_temperature(m, &m->vertex, vertices, vertex_freedom, u),
@@ -320,14 +335,14 @@ static bool conserved_row(struct observer *observer, struct view *view, double *
 {
   (void)observer;
   const struct conserved c = conserved_of(view_motion(view));
-  const double values[] = {view_time(view), c.solvent_kinetic, c.vertex_kinetic, c.bond,      c.bend,
-                           c.total,         c.momentum.x,      c.momentum.y,     c.momentum.z};
+  const double values[] = {view_time(view), c.solvent_kinetic, c.vertex_kinetic, c.bond,       c.bend,
+                           c.pairs,         c.total,           c.momentum.x,     c.momentum.y, c.momentum.z};
   memcpy(row, values, sizeof values);
   return true;
 }
 
 static const char *const conserved_columns[] = {
-    "time", "solvent_kinetic", "vertex_kinetic", "bond", "bend", "total", "px", "py", "pz"};
+    "time", "solvent_kinetic", "vertex_kinetic", "bond", "bend", "pairs", "total", "px", "py", "pz"};
 
 const struct observer_type conserved_observer = {
     .column = conserved_columns,

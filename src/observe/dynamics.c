@@ -4,17 +4,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "observe/background.h"
 #include "observe/observer.h"
 #include "observe/tally.h"
-#include "theory/theory.h"
-
-struct vec3 dynamics_drift(const struct model *model, double from, double to)
-{
-  if (!model_keeps_momentum(model))
-    return vec3_scale(to - from, model->flow);
-  const double half_squares = 0.5 * (to - from) * (to + from) / model->total_mass;
-  return vec3_add_scaled(vec3_scale(to - from, model->flow), half_squares, theory_net_force(model));
-}
 
 /* --- all lags ---------------------------------------------------------------------------------------------------- */
 
@@ -294,8 +286,8 @@ static struct interval interval_of(const struct observer *observer, const struct
   const double start = (double)from * model->time_step;
   const bool halves = half && *half->mark == (int64_t)middle + 1;
   return (struct interval){lag->origin, halves ? half->origin : NULL, state->position,
-                           dynamics_drift(model, start, (double)state->step * model->time_step),
-                           dynamics_drift(model, start, (double)middle * model->time_step)};
+                           background_displacement(model, start, (double)state->step * model->time_step),
+                           background_displacement(model, start, (double)middle * model->time_step)};
 }
 
 /* A lag whose time has come is compared and begins anew; so does, without comparison, one that missed it: no sample was

@@ -10,7 +10,7 @@
  * The displacement of the centres of mass that all fibers of a kind share is its drift. What is left about it gives a
  * diffusion coefficient under a force; see add_drift in dynamics.c.
  *
- * Displacements are exact differences of lattice points, minus the common displacement of everything (dynamics_drift).
+ * Displacements are exact differences of lattice points, minus the common displacement of everything (background.h).
  */
 #ifndef UNCROSS_OBSERVE_DYNAMICS_H
 #define UNCROSS_OBSERVE_DYNAMICS_H
@@ -58,10 +58,6 @@ static inline uint32_t dynamics_third_vertex(const struct fiber_kind *kind, uint
   const uint32_t third = kind->vertices / 3;
   return third + (2 * k + 1) * third / (2 * dynamics_third(kind));
 }
-
-/* Displacement of the center of mass of everything between two times (t0), in a0: the flow of the start, and half the
- * net body force's acceleration times the difference of squared times. */
-struct vec3 dynamics_drift(const struct model *model, double from, double to);
 
 /* Lag number k = 0, 1, 2, ..., in samples. */
 static inline uint64_t dynamics_lag(uint32_t k)

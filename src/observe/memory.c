@@ -6,14 +6,15 @@
  *   stress     <s(0) s(t)> of one fiber, kT^2: s_ab = sum of r_a F_b, F the forces of bonds and bends, averaged over
  * xy, xz, yz. Over kT and the volume per fiber it is the relaxation modulus G(t) (Green and Kubo).
  *
- * Velocities are relative to the flow and half a step ahead, at both ends of a lag. Each lag has an origin of its own:
- * when the lag has passed, the present becomes the origin.
+ * Velocities are relative to the motion of everything (background.h) and half a step ahead, at both ends of a lag. Each
+ * lag has an origin of its own: when the lag has passed, the present becomes the origin.
  */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "fiber/force.h"
+#include "observe/background.h"
 #include "observe/dynamics.h"
 #include "observe/observer.h"
 #include "observe/tally.h"
@@ -92,9 +93,10 @@ static void take(const struct view *view, double *sample)
 {
   const struct model *m = view->model;
   struct fault ignored = {.code = FAULT_NONE}; /* a bond too long for the box stops the run, not its observers */
+  const struct vec3 background = background_velocity(m, ((double)view->state->step + 0.5) * m->time_step);
   fiber_forces(view->state, m, view->force, view->state->step, &ignored);
   for (uint32_t v = 0; v < m->vertices; v++) {
-    const struct vec3 w = vec3_sub(view->state->velocity[v], m->flow);
+    const struct vec3 w = vec3_sub(view->state->velocity[v], background);
     memcpy(&sample[3 * v], (const double[]){w.x, w.y, w.z}, 3 * sizeof *sample);
   }
   for (uint32_t f = 0; f < m->fibers; f++)
@@ -173,13 +175,12 @@ static const char *const columns[] = {"time",         "vertices",      "vertices
 
 enum { COLUMNS = sizeof columns / sizeof *columns };
 
-static void fill_row(const struct model *m, const struct tally_shape *shape, const double *tally, double *row)
+static void fill_row(const struct tally_shape *shape, const double *tally, double *row)
 {
-  const double none = model_is_overdamped(m) ? NAN : 0.0; /* there are no velocities */
-  row[1] = none + tally_mean(shape, tally, VERTICES_CENTER, 0);
-  row[2] = none + tally_error(shape, tally, VERTICES_CENTER, 1.0, 0.0);
-  row[3] = none + tally_mean(shape, tally, VERTICES_CENTER, 1);
-  row[4] = none + tally_error(shape, tally, VERTICES_CENTER, 0.0, 1.0);
+  row[1] = tally_mean(shape, tally, VERTICES_CENTER, 0);
+  row[2] = tally_error(shape, tally, VERTICES_CENTER, 1.0, 0.0);
+  row[3] = tally_mean(shape, tally, VERTICES_CENTER, 1);
+  row[4] = tally_error(shape, tally, VERTICES_CENTER, 0.0, 1.0);
   row[5] = tally_mean(shape, tally, STRESS, 0);
   row[6] = tally_error(shape, tally, STRESS, 1.0, 0.0);
   row[7] = tally_count(shape, tally);
@@ -199,11 +200,11 @@ static bool summarise_memory(const struct observer *o, const struct model *m, co
       if (!(tally_count(&shape, tally) > 0.0))
         continue;
       rows[n][0] = (double)(lag_of(lag) * o->every) * m->time_step;
-      fill_row(m, &shape, tally, rows[n++]);
+      fill_row(&shape, tally, rows[n++]);
     }
     snprintf(name, sizeof name, "memory-%s", m->kind[k].name);
     const struct observe_table table = {name, columns, COLUMNS, n, rows[0]};
-    ok = to->take(to->context, &table);
+    ok = m->kind[k].frozen || to->take(to->context, &table); /* its vertices do not move */
     offset += tally_size(&shape);
   }
   return ok;

@@ -108,8 +108,8 @@ uint64_t observers_end(const struct observers *observers, enum observable which)
 /* Energy and momentum of a state, at the time of the step (conserved.h); independent of memory order. NaN if memory is
  * short. */
 struct conserved {
-  double solvent_kinetic, vertex_kinetic, bond, bend, total; /* kT */
-  struct vec3 momentum;                                      /* m a0/t0 */
+  double solvent_kinetic, vertex_kinetic, bond, bend, pairs, total; /* kT */
+  struct vec3 momentum;                                             /* m a0/t0 */
 };
 struct conserved observe_conserved(const struct model *model, const struct state *state);
 

@@ -78,6 +78,12 @@ static double largest_order(const struct moments *m)
   return x;
 }
 
+/* In a plane: the larger eigenvalue of 2 m - trace m. */
+static double largest_order_in_plane(const struct moments *m)
+{
+  return sqrt((m->xx - m->yy) * (m->xx - m->yy) + 4.0 * m->xy * m->xy);
+}
+
 static bool is_bonded(const struct fiber_kind *kind)
 {
   return kind->count > 0 && kind->vertices > 1;
@@ -116,7 +122,8 @@ static void add_kind(struct observer *o, const struct view *view, uint32_t k, ui
   block_add(blocks_of(o, k, BONDS_ALONG), LEVELS, directions.xx, directions.yy);
   block_add(blocks_of(o, k, BONDS_ACROSS), LEVELS, directions.xy, directions.zz);
   block_add(blocks_of(o, k, BONDS_ANGLE), LEVELS, directions.xy, directions.xx - directions.yy);
-  block_add(blocks_of(o, k, ORDER), LEVELS, largest_order(&directions), 0.0);
+  block_add(blocks_of(o, k, ORDER), LEVELS,
+            model_is_flat(model) ? largest_order_in_plane(&directions) : largest_order(&directions), 0.0);
   if (o->integer[SEEN])
     block_add(blocks_of(o, k, TURNING), LEVELS, turning, 0.0);
 }

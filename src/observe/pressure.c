@@ -3,10 +3,10 @@
  *
  *   p_ab = (1/V) [sum of m w_a w_b + sum of r_a F_b],   T = <sum of |grad U|^2>/<laplacian of U>
  *
- * (Rugh 1997; Butler, Ayton, Jepps and Evans, J. Chem. Phys. 109, 6519 (1998)). U is the energy of bonds, bends and of
- * the medium's pairs; w velocities relative to the flow, taken back by the half step that states are ahead. Means are
- * what to compare: T of one row has a bias of the order of 1 over the number of members. Fibers that stand still have
- * no part in the second.
+ * (Rugh 1997; Butler, Ayton, Jepps and Evans, J. Chem. Phys. 109, 6519 (1998)). U is the energy of bonds, bends,
+ * springs of dumbbells, and of the medium's pairs; w velocities relative to the flow of the place, of the time at which
+ * collisions act (background.h). Means are what to compare: T of one row has a bias of the order of 1 over the number
+ * of members. Fibers that stand still have no part in the second. What a scene must not be is in meaning.c.
  */
 #include <math.h>
 #include <string.h>
@@ -15,6 +15,7 @@
 #include "fiber/force.h"
 #include "fluid/fluid.h"
 #include "medium/repulsion.h"
+#include "observe/background.h"
 #include "observe/observer.h"
 
 struct sums {
@@ -61,14 +62,12 @@ static void add_vertices(const struct view *view, const struct vec3 *bonded, con
 {
   const struct model *model = view->model;
   const struct state *state = view->state;
-  const double half = 0.5 * model->time_step;
   for (uint32_t v = 0; v < state->vertices; v++) {
     const uint32_t fiber = model->fiber_of[v];
     const struct vec3 outer = model->kind[model->fiber_kind_of[fiber]].force, inner = vec3_sub(bonded[v], outer),
                       more = pair ? pair[state->solvent.n + v] : (struct vec3){0, 0, 0},
                       all = vec3_add(bonded[v], more), grad = vec3_add(inner, more),
-                      now = vec3_add_scaled(state->velocity[v], -half * model->inverse_mass[v], all),
-                      w = vec3_sub(now, model->flow);
+                      w = background_peculiar(model, state, v, all, background_flow);
     const struct point origin = state->position[model->fiber_first[fiber]];
     if (!model_is_overdamped(model))
       add_products(s->flow, model->mass[v], w, w);
@@ -78,18 +77,36 @@ static void add_vertices(const struct view *view, const struct vec3 *bonded, con
   }
 }
 
-/* In the order of their numbers, so that sums do not depend on the order in memory. by_number: [particles]. */
+/* Sums are made in the order of numbers, so that they do not depend on the order in memory. by_number: [particles]. */
 static void add_particles(const struct view *view, const struct vec3 *pair, struct vec3 *by_number, struct sums *s)
 {
   const struct state *state = view->state;
-  const double half = 0.5 * view->model->time_step;
-  for (uint32_t i = 0; i < state->solvent.n; i++)
-    fluid_of(view->model)->now(state, view->model, i, 1, NULL, &by_number[state->solvent.id[i]]);
+  const struct model *model = view->model;
+  const double back = background_ahead(model);
   for (uint32_t i = 0; i < state->solvent.n; i++) {
-    const struct vec3 force = pair ? pair[i] : (struct vec3){0, 0, 0},
-                      w = vec3_sub(vec3_add_scaled(by_number[i], -half, force), view->model->flow);
+    struct point at;
+    struct vec3 v;
+    fluid_of(model)->now(state, model, i, 1, &at, &v);
+    by_number[state->solvent.id[i]] = vec3_sub(v, background_flow(model, state, (double)at.y * LATTICE_UNIT));
+  }
+  for (uint32_t i = 0; i < state->solvent.n; i++) {
+    const struct vec3 force = pair ? pair[i] : (struct vec3){0, 0, 0}, w = vec3_add_scaled(by_number[i], -back, force);
     add_products(s->flow, 1.0, w, w);
     s->square += vec3_dot(force, force);
+  }
+}
+
+/* The same of springs, U = K r^2/2. by_number: [dumbbells] at least. */
+static void add_springs(const struct view *view, struct vec3 *by_number, struct sums *s)
+{
+  const struct dumbbells *d = &view->state->dumbbells;
+  const double spring = view->model->dumbbells.spring;
+  for (uint32_t p = 0; p < d->n; p++)
+    by_number[d->id[p]] = fluid_dumbbell_now(view->state, view->model, p);
+  for (uint32_t p = 0; p < d->n; p++) {
+    add_products(s->flow, -spring, by_number[p], by_number[p]);
+    s->square += 2.0 * spring * spring * vec3_dot(by_number[p], by_number[p]);
+    s->laplacian += 2.0 * view->model->dimensions * spring;
   }
 }
 
@@ -117,11 +134,12 @@ static bool measure(struct view *view, struct sums *s)
   if (state->vertices > 0)
     fiber_forces(state, model, view->force, state->step, &ignored);
   const struct fiber_energy energy = fiber_energies(state, model);
-  s->potential = energy.bond + energy.bend;
+  s->potential = energy.bond + energy.bend + (state->dumbbells.n > 0 ? fluid_dumbbell_energy(state, model) : 0.0);
   add_vertices(view, view->force, pair, s);
   for (int k = STRESS_XX; k <= STRESS_ZZ && model_is_overdamped(model); k++)
     s->flow[k] += state->vertices; /* kT of each: velocities have been averaged over */
   add_particles(view, pair, by_number, s);
+  add_springs(view, by_number, s);
   add_pairs(&pairs, s);
   memory_release(need, 2);
   return ok;

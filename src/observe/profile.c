@@ -13,7 +13,10 @@
 #include <string.h>
 
 #include "base/elementary.h"
+#include "base/memory.h"
 #include "fluid/fluid.h"
+#include "medium/repulsion.h"
+#include "observe/background.h"
 #include "observe/block.h"
 #include "observe/observer.h"
 
@@ -74,22 +77,39 @@ static void slab_add(struct slab *s, struct vec3 v)
   s->squares += lattice_round(FIXED * vec3_dot(v, v));
 }
 
+/* Velocities are those of the time at which collisions act: under forces of pairs those of the state may be ahead of
+ * it. pair: these forces by number; NULL: none. */
+static void now_colliding(const struct view *view, uint32_t first, uint32_t n, const struct vec3 *pair,
+                          struct point *at, struct vec3 *v)
+{
+  const struct state *state = view->state;
+  fluid_of(view->model)->now(state, view->model, first, n, at, v);
+  for (uint32_t i = 0; pair && i < n; i++)
+    v[i] = vec3_add_scaled(v[i], -background_ahead(view->model), pair[state->solvent.id[first + i]]);
+}
+
 static void sum_slabs(const struct observer *o, const struct view *view, struct slab *slab)
 {
   const struct model *model = view->model;
   const struct state *state = view->state;
-  const struct fluid *fluid = fluid_of(model);
   struct point at[FLIGHT];
-  struct vec3 v[FLIGHT];
+  struct vec3 v[FLIGHT], *pair;
+  struct repulsion_sums ignored;
+  const size_t members = model_repels(model) ? (size_t)state->solvent.n + state->vertices : 0;
+  const struct memory_need need = {(void **)&pair, members, sizeof *pair};
+  const bool known = memory_take(&need, 1) && repulsion_measure(state, model, pair, &ignored);
   memset(slab, 0, o->slabs * sizeof *slab);
   for (uint32_t first = 0; first < state->solvent.n; first += FLIGHT) {
     const uint32_t rest = state->solvent.n - first, n = rest < FLIGHT ? rest : FLIGHT;
-    fluid->now(state, model, first, n, at, v);
+    now_colliding(view, first, n, pair, at, v);
     for (uint32_t i = 0; i < n; i++) {
       const uint64_t k = (uint64_t)at[i].y * o->slabs / (uint64_t)model->box.edge[1];
       slab_add(&slab[k < o->slabs ? k : o->slabs - 1], v[i]); /* a particle may stand on the upper wall */
     }
   }
+  for (uint64_t k = 0; k < o->slabs; k++)
+    slab[k].wild += !known;
+  memory_release(&need, 1);
 }
 
 /* --- the first harmonic ------------------------------------------------------------------------------------------ */

@@ -12,9 +12,9 @@
 
 #include "fiber/force.h"
 #include "mpc/stress.h"
+#include "observe/background.h"
 #include "observe/observer.h"
 #include "system/account.h"
-#include "system/shear.h"
 
 enum { ROWS = WALLS * ACCOUNT_SHARES };
 enum { MARK, LAST_STEP, LAST_ACCOUNT, LAST_TURNS = LAST_ACCOUNT + ROWS, INTEGERS = LAST_TURNS + ROWS };
@@ -40,19 +40,6 @@ static double given(const struct observer *o, const struct state *state, enum wa
 
 /* --- fibers ------------------------------------------------------------------------------------------------------ */
 
-/* The flow that the boundary asks for, at a height y, a0; now. */
-static struct vec3 applied_flow(const struct view *view, double y)
-{
-  const struct model *model = view->model;
-  const uint64_t interval = shear_interval(model, view->state->solvent_time + view->state->solvent_lag);
-  const double edge = model->box.cells[1];
-  if (model_has_walls(model)) {
-    const struct vec3 low = shear_wall_velocity(model, WALL_LOWER, interval);
-    return vec3_add_scaled(low, y / edge, vec3_sub(shear_wall_velocity(model, WALL_UPPER, interval), low));
-  }
-  return vec3_add(model->flow, (struct vec3){shear_rate(model, interval) * (y - 0.5 * edge), 0, 0});
-}
-
 static void add_products(double sum[STRESS_COMPONENTS], double factor, struct vec3 a, struct vec3 b)
 {
   sum[STRESS_XY] += factor * a.x * b.y;
@@ -61,12 +48,12 @@ static void add_products(double sum[STRESS_COMPONENTS], double factor, struct ve
   sum[STRESS_ZZ] += factor * a.z * b.z;
 }
 
-/* Sums over all vertices. Velocities are those of half a step ahead: they are taken back to now. */
+/* Sums over all vertices. */
 static void fiber_stress(const struct view *view, double stress[STRESS_COMPONENTS])
 {
   const struct model *model = view->model;
   const struct state *state = view->state;
-  const double half = 0.5 * model->time_step, scale = -1.0 / box_volume(&model->box);
+  const double scale = -1.0 / box_volume(&model->box);
   struct fault ignored = {.code = FAULT_NONE}; /* a bond too long for the box stops the run, not its observers */
   double sum[STRESS_COMPONENTS] = {0};
   if (state->vertices > 0)
@@ -75,34 +62,52 @@ static void fiber_stress(const struct view *view, double stress[STRESS_COMPONENT
     const uint32_t fiber = model->fiber_of[i];
     const struct point at = state->position[i];
     const struct vec3 force = view->force[i], outer = model->kind[model->fiber_kind_of[fiber]].force,
-                      v = vec3_add_scaled(state->velocity[i], -half * model->inverse_mass[i], force),
-                      w = vec3_sub(v, applied_flow(view, (double)at.y * LATTICE_UNIT));
-    add_products(sum, model->mass[i], w, w);
+                      w = background_peculiar(model, state, i, force, background_applied);
+    if (!model_is_overdamped(model))
+      add_products(sum, model->mass[i], w, w);
     add_products(sum, 1.0, vec3_sub(force, outer), point_difference(at, state->position[model->fiber_first[fiber]]));
   }
+  for (int k = STRESS_XX; k <= STRESS_ZZ && model_is_overdamped(model); k++)
+    sum[k] += state->vertices; /* kT of each: velocities have been averaged over */
   for (int k = 0; k < STRESS_COMPONENTS; k++)
     stress[k] = scale * sum[k];
 }
 
 /* --- a row ------------------------------------------------------------------------------------------------------- */
 
+/* From here on the next row counts. */
+static void begin(struct observer *o, const struct model *model, const struct state *state)
+{
+  memset(o->real, 0, stress_doubles(model) * sizeof(double));
+  o->integer[LAST_STEP] = (int64_t)state->step;
+  for (uint32_t k = 0; k < (model_has_walls(model) ? ROWS : 0); k++) {
+    o->integer[LAST_ACCOUNT + k] = state->wall_momentum[k].x;
+    o->integer[LAST_TURNS + k] = (int64_t)state->wall_turns[k];
+  }
+}
+
+/* A row that has nothing to average over is left out: the next one averages over its time as well. */
 static bool stress_row(struct observer *o, struct view *view, double *row)
 {
   const struct model *model = view->model;
   const struct state *state = view->state;
-  struct mpc_stress *s = (struct mpc_stress *)o->real;
+  const struct mpc_stress *s = (struct mpc_stress *)o->real;
   const double area = (double)model->box.cells[0] * model->box.cells[2], n = s->collisions;
   const double passed = (double)((int64_t)state->step - o->integer[LAST_STEP]) * model->time_step;
-  const bool walls = model_has_walls(model) && passed > 0.0;
+  const bool walls = model_has_walls(model), solvent = model_has_solvent(model);
   double kinetic[STRESS_COMPONENTS], collisional[STRESS_COMPONENTS], spring[STRESS_COMPONENTS] = {0};
   double total[STRESS_COMPONENTS], fibers[STRESS_COMPONENTS];
+  if (passed == 0.0)
+    begin(o, model, state);
+  if ((solvent && n == 0.0) || (walls && passed == 0.0))
+    return false;
   fiber_stress(view, fibers);
   for (int k = 0; k < STRESS_COMPONENTS; k++) {
     kinetic[k] = n > 0.0 ? -s->kinetic[k] / n : NAN;
     collisional[k] = n > 0.0 ? -s->collisional[k] / (n * model_collision_interval(model)) : NAN;
     if (model_has_dumbbells(model))
       spring[k] = n > 0.0 ? s->spring[k] / n : NAN;
-    total[k] = (model_has_solvent(model) ? kinetic[k] + collisional[k] + spring[k] : 0.0) + fibers[k];
+    total[k] = (solvent ? kinetic[k] + collisional[k] + spring[k] : 0.0) + fibers[k];
   }
   const double trace = total[STRESS_XX] + total[STRESS_YY] + (model->dimensions > 2 ? total[STRESS_ZZ] : 0.0);
   const double values[] = {view_time(view),
@@ -118,12 +123,7 @@ static bool stress_row(struct observer *o, struct view *view, double *row)
                            fibers[STRESS_XY],
                            fibers[STRESS_XX] - fibers[STRESS_YY]};
   memcpy(row, values, sizeof values);
-  memset(s, 0, stress_doubles(model) * sizeof(double));
-  o->integer[LAST_STEP] = (int64_t)state->step;
-  for (uint32_t k = 0; k < (model_has_walls(model) ? ROWS : 0); k++) {
-    o->integer[LAST_ACCOUNT + k] = state->wall_momentum[k].x;
-    o->integer[LAST_TURNS + k] = (int64_t)state->wall_turns[k];
-  }
+  begin(o, model, state);
   return true;
 }
 

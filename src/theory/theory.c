@@ -346,7 +346,8 @@ double theory_executed_rate(const struct model *model)
 
 struct vec3 theory_net_force(const struct model *model)
 {
-  struct vec3 force = vec3_scale(model->solvent.particles, model->solvent.acceleration);
+  const bool uniform = model->solvent.profile == PROFILE_UNIFORM; /* that of a profile has the mean 0 */
+  struct vec3 force = vec3_scale(uniform ? model->solvent.particles : 0.0, model->solvent.acceleration);
   for (uint32_t k = 0; k < model->kinds; k++) {
     const struct fiber_kind *kind = &model->kind[k];
     force = vec3_add_scaled(force, (double)kind->count * kind->vertices, kind->force);

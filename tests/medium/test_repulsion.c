@@ -182,11 +182,14 @@ enum { TIME, PRESSURE, XX, YY, ZZ, XY, POTENTIAL, SQUARE, LAPLACIAN, CONFIGURATI
 
 static bool keep_row(void *context, enum observable which, size_t columns, const double *values)
 {
-  assert_int_equal(columns, which == OBSERVE_PRESSURE ? COLUMNS : columns);
+  double *row = context;
+  const bool flat = which == OBSERVE_PRESSURE && columns == COLUMNS - 1; /* without p_zz */
+  assert_true(which != OBSERVE_PRESSURE || flat || columns == COLUMNS);
+  for (size_t k = 0; k < columns && which == OBSERVE_PRESSURE; k++)
+    row[flat && k >= ZZ ? k + 1 : k] = values[k];
   if (which == OBSERVE_PRESSURE)
-    memcpy(context, values, COLUMNS * sizeof *values);
-  else
-    memcpy((double *)context + COLUMNS, values, 2 * sizeof *values);
+    return true;
+  memcpy(row + COLUMNS, values, 2 * sizeof *values);
   return true;
 }
 

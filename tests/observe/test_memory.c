@@ -15,9 +15,12 @@ struct kept {
 static bool keep(void *context, const struct observe_table *table)
 {
   struct kept *k = context;
-  assert_int_equal(table->columns, COLUMNS);
-  assert_true(table->rows <= 40);
-  memcpy(k->row, table->value, table->rows * sizeof k->row[0]);
+  const bool still = table->columns == COLUMNS - 4; /* without velocities: their columns are left out */
+  assert_true(table->rows <= 40 && (still || table->columns == COLUMNS));
+  assert_string_equal(table->column[still ? 1 : STRESS], "stress_memory");
+  for (size_t n = 0; n < table->rows; n++)
+    for (size_t c = 0; c < table->columns; c++)
+      k->row[n][still && c > 0 ? c + 4 : c] = table->value[n * table->columns + c];
   k->rows = table->rows;
   return true;
 }
@@ -88,9 +91,8 @@ static void stress_of_chains(void **unused)
   k->mass = 1.0;
   k->bond_length = k->bending = 0.0;
   k->spring = 3.0;
-  k->force = (struct vec3){1, 2, 3};
+  k->force = (struct vec3){1, 2, 3}; /* no such scene can be asked for it; a uniform force leaves the shape alone */
   const struct kept kept = watch(m, 5000);
-  assert_true(isnan(kept.row[0][VERTICES]) && isnan(kept.row[0][CENTER]));
   for (size_t n = 0; n < kept.rows && kept.row[n][TIME] < 3.0; n++) {
     double expected = 0.0;
     for (int p = 1; p < N; p++) {

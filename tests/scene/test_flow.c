@@ -1,5 +1,5 @@
 /* What scenes of a flow may not say (system/flow.c), and what they are warned of. */
-#include "scene/scene.h"
+#include "scene/scene_keys.h"
 #include "support.h"
 
 /* A solvent, with further lines. */
@@ -9,7 +9,13 @@ static bool read_flow(const char *solvent, const char *more, struct scene *scene
   snprintf(text, sizeof text,
            "box: [6, 8, 6]\ntime_step: 0.1\nsteps: 10\nsolvent:\n  per_cell: 5\n  collision_interval: 0.1\n%s\n%s\n",
            solvent, more);
-  return scene_read_text("flow.yaml", text, strlen(text), scene, message);
+  return scene_read_source(&(struct scene_source){.keys = &scene_keys,
+                                                  .path = "flow.yaml",
+                                                  .text = text,
+                                                  .size = strlen(text),
+                                                  .missing = MISSING_ABSENT,
+                                                  .message = message},
+                           scene);
 }
 
 static const struct refusal {

@@ -1,5 +1,5 @@
 /* What scenes may not say of a medium, where it stands, and that nothing else is said. */
-#include "scene/scene.h"
+#include "scene/scene_keys.h"
 #include "support.h"
 
 #define FIBER "\nfibers: [{name: a, count: 2, vertices: 3, mass: 1, bond_length: 0.5, spring: 100}]"
@@ -77,7 +77,13 @@ static bool read_scene(const char *first, const char *last, struct scene *scene,
 {
   char text[1024];
   snprintf(text, sizeof text, "%s\ntime_step: 0.1\nsteps: 10\norder: drift-split\n%s\n", first, last);
-  return scene_read_text("m.yaml", text, strlen(text), scene, message);
+  return scene_read_source(&(struct scene_source){.keys = &scene_keys,
+                                                  .path = "m.yaml",
+                                                  .text = text,
+                                                  .size = strlen(text),
+                                                  .missing = MISSING_ABSENT,
+                                                  .message = message},
+                           scene);
 }
 
 static void expect(const char *first, const char *last, const char *place, const char *says)
