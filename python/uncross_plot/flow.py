@@ -164,8 +164,9 @@ class Flow:
             if self.stress is not None and not self.force:
                 found.append(self._over(self.mean_stress("sigma_lower", "sigma_upper"), slope, "viscosity",
                                         "stress on the walls over the rate in the bulk"))
-                found.append(self._over(self.mean_stress("sigma_xy"), slope, "viscosity",
-                                        "stress in the bulk over the rate in the bulk"))
+                if "sigma_xy" in self.stress.data:
+                    found.append(self._over(self.mean_stress("sigma_xy"), slope, "viscosity",
+                                            "stress in the bulk over the rate in the bulk"))
         return found + ([] if self.force else self._normal())  # stress.csv is relative to a linear flow
 
     def _shear(self):
@@ -173,7 +174,7 @@ class Flow:
         rate = self.numbers["shear rate"]
         slope = self.fit([numpy.ones_like(about), about])[1]
         found = [Measured("slope of the profile", *slope, "1/t0", rate, "all slabs")]
-        if self.stress is not None:
+        if self.stress is not None and "sigma_xy" in self.stress.data:
             found.append(self._over(self.mean_stress("sigma_xy"), (rate, 0.0), "viscosity", "stress over the rate"))
         return found + self._normal() + self._dumbbells(rate)
 
@@ -186,7 +187,7 @@ class Flow:
                 Measured("viscosity", eta, eta * abs(error / amplitude), "m/a0 t0", self.eta, "force over this amplitude")]
 
     def _normal(self):
-        if self.stress is None:
+        if self.stress is None or "N1" not in self.stress.data:
             return []
         return [Measured("first normal stress difference", *self.mean_stress("N1"), "kT/a0³",
                          self.numbers.get("first normal stress difference", math.nan), "mean in time")]
@@ -235,7 +236,7 @@ class Flow:
 
     def _moduli(self):
         """G' and G'' of stress = rate/omega (G'' cos + G' sin): period by period, from whose scatter the error comes."""
-        if self.stress is None or "period" not in self.numbers:
+        if self.stress is None or "sigma_xy" not in self.stress.data or "period" not in self.numbers:
             return []
         period, time = self.numbers["period"], self.stress.data["time"]
         every = time[1] - time[0] if len(time) > 1 else period

@@ -94,7 +94,7 @@ static const struct {
   const char *words; /* of docs/observables.md */
   bool (*holds)(const struct model *model);
 } circumstances[CIRCUMSTANCES] = {
-    [ANYWHERE] = {"anywhere else", anywhere},
+    [ANYWHERE] = {"anywhere", anywhere},
     [NO_FIBERS] = {"no fibers", no_fibers},
     [NO_FIBERS_NO_DUMBBELLS] = {"neither fibers nor dumbbells", no_fibers_no_dumbbells},
     [NO_BEAD] = {"no bead", no_bead},

@@ -4,6 +4,8 @@
 #include <stdio.h>
 
 #include "mpc/rule.h"
+#include "observe/background.h"
+#include "observe/meaning.h"
 #include "scene/load_words.h"
 #include "scene/scene.h"
 #include "system/fiber_kind.h"
@@ -86,13 +88,11 @@ static void warn_force(struct teller *t, const struct model *m)
     scale += (double)m->kind[k].count * m->kind[k].vertices * vec3_norm(m->kind[k].force);
   const struct vec3 net = theory_net_force(m), a = m->solvent.acceleration;
   const double n = m->solvent.particles;
-  char remedy[256] = "without a solvent, forces have to balance each other";
-  if (n > 0.0)
+  char remedy[256] = "the forces have to balance each other";
+  if (n > 0.0 && m->solvent.profile == PROFILE_UNIFORM)
     snprintf(remedy, sizeof remedy, "solvent.acceleration: [%.17g, %.17g, %.17g] balances it%s", a.x - net.x / n,
              a.y - net.y / n, a.z - net.z / n,
              model_is_isothermal(m) ? "" : ", with solvent.thermostat: rescale, since forces do work");
-  if (m->solvent.profile != PROFILE_UNIFORM)
-    return;                                                               /* its mean is taken out */
   const bool held = model_has_walls(m) && m->walls.kind == WALL_NO_SLIP;  /* walls take the momentum up */
   if (!held && model_keeps_momentum(m) && vec3_norm(net) > 1e-12 * scale) /* a bath takes the momentum up */
     warn(t,
@@ -284,10 +284,10 @@ static void warn_heating(struct teller *t, const struct scene *scene)
 static void warn_drift(struct teller *t, const struct scene *scene)
 {
   const struct model *m = &scene->model;
-  const bool pulls_solvent = model_has_solvent(m) && vec3_norm(m->solvent.acceleration) > 0.0;
+  const bool carries = background_differs(m) || (model_has_solvent(m) && vec3_norm(m->solvent.acceleration) > 0.0);
   uint32_t drifting = 0, first = 0, most = 0;
   for (uint32_t k = 0; k < m->kinds; k++)
-    if (pulls_solvent || vec3_norm(m->kind[k].force) > 0.0) {
+    if (carries || vec3_norm(m->kind[k].force) > 0.0) {
       first = drifting++ ? first : k;
       most = m->kind[k].count > most ? m->kind[k].count : most;
     }
@@ -296,12 +296,15 @@ static void warn_drift(struct teller *t, const struct scene *scene)
   char others[48] = "";
   if (drifting > 1)
     snprintf(others, sizeof others, " and %" PRIu32 " more kind%s", drifting - 1, drifting > 2 ? "s" : "");
-  warn(t,
-       "observe.dynamics: a force acts, so fibers drift, and g_cm and D = g_cm/6t of '%s'%s contain (v t)^2; use %s "
-       "(docs/observables.md)",
-       m->kind[first].name, others,
-       most > 1 ? "the columns g_cm_about_mean, D_about_mean and drift_x, drift_y, drift_z"
-                : "the columns drift_x, drift_y, drift_z, or two fibers or more");
+  char squares[48] = "g_cm";
+  if (meaning_has_column(m, OBSERVE_DYNAMICS, "D"))
+    snprintf(squares, sizeof squares, "g_cm and D = g_cm/%" PRIu32 "t", 2 * m->dimensions);
+  warn(t, "observe.dynamics: %s, so fibers drift, and %s of '%s'%s contain (v t)^2; use %s (docs/observables.md)",
+       background_differs(m) ? "a flow carries fibers" : "a force acts", squares, m->kind[first].name, others,
+       most <= 1 ? "the columns drift_x, drift_y, drift_z, or two fibers or more"
+       : meaning_has_column(m, OBSERVE_DYNAMICS, "D_about_mean")
+           ? "the columns g_cm_about_mean, D_about_mean and drift_x, drift_y, drift_z"
+           : "the columns g_cm_about_mean and drift_x, drift_y, drift_z; a diffusion coefficient is none of them");
 }
 
 #define MOST_SWING 3.14159265358979324 /* radians: half a period */

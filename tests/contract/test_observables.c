@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "../observe/tables.h"
+#include "observe/meaning.h"
 #include "scene/scene.h"
 
 /* --- rows by name ------------------------------------------------------------------------------------------------- */
@@ -340,14 +341,196 @@ static void stress_begins_with_an_average(void **unused)
   end_of(o);
 }
 
+/* --- the whole table -----------------------------------------------------------------------------------------------
+ */
+
+#define CELLS "solvent: {per_cell: 3, collision_interval: 0.02}\n"
+#define CHAINS "fibers: [{name: chain, count: 3, vertices: 4, mass: 3, bond_length: 0.5, spring: 100, bending: 2%s}]\n"
+
+/* A scene for each circumstance; %s: more keys of the fibers. */
+static const struct {
+  const char *before, *more;
+  bool bare; /* without fibers */
+} examples[CIRCUMSTANCES] = {
+    [ANYWHERE] = {CELLS, ""},
+    [NO_FIBERS] = {CELLS "dumbbells: {spring: 20}\n", "", true},
+    [NO_FIBERS_NO_DUMBBELLS] = {CELLS, "", true},
+    [NO_BEAD] = {CELLS, ""},
+    [NO_NETWORK] = {CELLS "bead: {radius: 1.5, center: [4, 4, 4]}\n", "", true},
+    [NO_TRAP] = {CELLS "bead: {radius: 1.5, center: [4, 4, 4]}\n", "", true},
+    [NO_PAIR_FORCES] = {CELLS, ""},
+    [IN_A_PLANE] = {CELLS "dimensions: 2\ncrossing: {forbidden: false}\n", ""},
+    [IN_SHEAR] = {CELLS "shear: {rate: 0.1}\n", ""},
+    [BETWEEN_WALLS] = {CELLS "walls: {kind: no-slip}\n", ""},
+    [IN_A_FLOW] = {CELLS "walls: {kind: no-slip, shear_rate: 0.1}\n", ""},
+    [BY_A_FORCE_ON_FIBERS] = {"medium: {kind: private, rate: 1}\n", ", force: [1, 0, 0]"},
+    [ACCELERATED] = {"solvent: {per_cell: 3, collision_interval: 0.02, acceleration: [0.1, 0, 0]}\n", ""},
+    [IN_A_BATH_WITH_FLOW] = {"solvent: {per_cell: 3, collision_interval: 0.02, bath: phantoms, hydrodynamics: false}\n",
+                             ""},
+    [IN_PAIRS] = {"medium: {kind: pairs, rate: 4, density: 3, repulsion: 25}\ncrossing: {forbidden: false}\n", ""},
+    [PERMUTED] = {"solvent: {per_cell: 3, collision_interval: 0.02, hydrodynamics: false}\n", ""},
+    [OVERDAMPED] = {"medium: {kind: overdamped, rate: 1}\ncrossing: {forbidden: false}\n", ""},
+    [INEXTENSIBLE] = {"medium: {kind: overdamped, rate: 1, inextensible: true}\ncrossing: {forbidden: false}\n", ""},
+    [DRIFT_SPLIT] = {CELLS "order: drift-split\n", ""},
+    [THICK] = {CELLS "crossing: {rule: event-driven}\n", ", diameter: 0.1"},
+    [BESIDE_FROZEN] = {CELLS, ", frozen: true"},
+    [WITH_DUMBBELLS] = {CELLS "dumbbells: {spring: 20}\n", ""},
+    [WITH_A_BEAD] = {CELLS
+                     "bead: {radius: 1.5, center: [4, 4, 4], drive: {spring: 10}}\ncrossing: {rule: event-driven}\n",
+                     ""},
+};
+
+static void example(enum circumstance where, const char *observe, char *text, size_t size)
+{
+  char chains[256];
+  snprintf(chains, sizeof chains, CHAINS, examples[where].more);
+  snprintf(text, size, "box: [8, 8, %d]\ntime_step: 0.02\nsteps: 8\n%s%sobserve:%s\n", where == IN_A_PLANE ? 1 : 8,
+           examples[where].before, examples[where].bare ? "" : chains, observe);
+}
+
+/* A scene that asks for what has no meaning is refused at the key, with the words of the table. */
+static void refuses(enum circumstance where, enum observable which)
+{
+  char observe[64], text[1024], path[] = "build/observables-XXXXXX", place[32];
+  snprintf(observe, sizeof observe, "\n  %s: {every: 2%s}", observable_names[which],
+           which == OBSERVE_PROFILE ? ", slabs: 2" : "");
+  example(where, observe, text, sizeof text);
+  const int file = mkstemp(path);
+  struct scene scene;
+  struct message message;
+  assert_true(write(file, text, strlen(text)) == (ssize_t)strlen(text));
+  close(file);
+  if (scene_read(path, &scene, &message))
+    fail_msg("taken: %s", text);
+  unlink(path);
+  size_t lines = 0;
+  for (const char *c = strstr(text, "observe:"); c > text; c--)
+    lines += c[-1] == '\n';
+  snprintf(place, sizeof place, ":%zu:", lines + 2);
+  if (!strstr(message.text, place) || !strstr(message.text, observable_names[which]) ||
+      !strstr(message.text, "; allowed "))
+    fail_msg("%s\n%s", text, message.text);
+}
+
+/* A row of the table as it should be: those columns are there that no row of meanings leaves out, and hold numbers. */
+static void has_columns(const struct model *m, enum observable which, size_t columns, const char *const *names)
+{
+  for (size_t k = 0; k < meaning_count; k++) {
+    const struct meaning *row = &meanings[k];
+    char list[256];
+    snprintf(list, sizeof list, "%s", row->columns ? row->columns : "");
+    for (char *word = strtok(list, " "); word && row->of == which && row->verdict == LEFT_OUT;
+         word = strtok(NULL, " ")) {
+      bool there = false;
+      for (size_t c = 0; c < columns; c++)
+        there |= strncmp(names[c], word, strlen(word)) == 0 &&
+                 (names[c][strlen(word)] == '\0' || strcmp(names[c] + strlen(word), "_error") == 0);
+      if (there && meaning_holds(row->where, m))
+        fail_msg("%s of %s is there", word, observable_names[which]);
+    }
+  }
+}
+
+struct check {
+  const struct model *model;
+  enum observable which;
+  size_t tables;
+};
+
+static bool check_summary(void *context, const struct observe_table *table)
+{
+  struct check *c = context;
+  has_columns(c->model, c->which, table->columns, table->column);
+  c->tables++;
+  return true;
+}
+
+static bool check_series(void *context, enum observable which, size_t columns, const double *values)
+{
+  struct check *c = context;
+  const char *names[OBSERVE_MOST_COLUMNS];
+  assert_int_equal(observe_series_columns(c->model, which, names), columns);
+  has_columns(c->model, which, columns, names);
+  (void)values;
+  c->tables++;
+  return true;
+}
+
+/* Whether a word of the table names a column that some scene has. */
+static bool named[512];
+
+static void mark(enum observable which, size_t columns, const char *const *names)
+{
+  for (size_t k = 0; k < meaning_count; k++)
+    for (size_t c = 0; c < columns && meanings[k].of == which && meanings[k].columns; c++)
+      named[k] |= strstr(meanings[k].columns, names[c]) != NULL;
+}
+
+static bool mark_summary(void *context, const struct observe_table *table)
+{
+  mark(*(enum observable *)context, table->columns, table->column);
+  return true;
+}
+
+/* Each observable in each circumstance: taken, and its table is as it says; or refused. */
+static void everything_everywhere(void **unused)
+{
+  (void)unused;
+  for (int where = 0; where < CIRCUMSTANCES; where++) {
+    char text[1024];
+    example((enum circumstance)where, " {}", text, sizeof text);
+    struct scene scene = scene_of(text);
+    if (!meaning_holds((enum circumstance)where, &scene.model))
+      fail_msg("no example:\n%s", text);
+    struct state state;
+    struct work work;
+    assert_true(state_alloc(&state, &scene.model) && work_alloc(&work, &scene.model) &&
+                start_state(&state, &scene.model, &work));
+    for (int k = 0; k < OBSERVABLES; k++) {
+      if (meaning_refusal(&scene.model, (enum observable)k)) {
+        refuses((enum circumstance)where, (enum observable)k);
+        continue;
+      }
+      struct observe_plan plan = {.slabs = 2};
+      plan.every[k] = 2;
+      struct observers *o = observers_create(&plan, &scene.model);
+      struct check check = {&scene.model, (enum observable)k, 0};
+      const struct observe_sink sink = {check_series, &check};
+      work.mpc.stress = observers_stress(o);
+      for (int step = 0; step < 8; step++) {
+        assert_true(observers_sample(o, &scene.model, &state, &sink));
+        assert_true(step_advance(&state, &scene.model, &work, NULL));
+      }
+      assert_true(observers_summaries(o, &scene.model, check_summary, &check));
+      assert_true(observers_summaries(o, &scene.model, mark_summary, &check.which));
+      const char *names[OBSERVE_MOST_COLUMNS];
+      mark((enum observable)k, observe_series_columns(&scene.model, (enum observable)k, names), names);
+      observers_free(o);
+    }
+    work_free(&work);
+    state_free(&state);
+    scene_free(&scene);
+  }
+  assert_true(meaning_count < sizeof named);
+  for (size_t k = 0; k < meaning_count; k++)
+    if (meanings[k].columns && !named[k])
+      fail_msg("no table has a column of '%s'", meanings[k].columns);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(dumbbells_are_a_gas),  cmocka_unit_test(a_sheared_gas),
-      cmocka_unit_test(an_accelerated_gas),   cmocka_unit_test(a_gas_between_walls),
-      cmocka_unit_test(vertices_in_shear),    cmocka_unit_test(pairs_by_halves),
-      cmocka_unit_test(parts_make_the_total), cmocka_unit_test(drift_is_that_of_the_places),
-      cmocka_unit_test(order_in_a_plane),     cmocka_unit_test(stress_begins_with_an_average),
+      cmocka_unit_test(dumbbells_are_a_gas),
+      cmocka_unit_test(a_sheared_gas),
+      cmocka_unit_test(an_accelerated_gas),
+      cmocka_unit_test(a_gas_between_walls),
+      cmocka_unit_test(vertices_in_shear),
+      cmocka_unit_test(pairs_by_halves),
+      cmocka_unit_test(parts_make_the_total),
+      cmocka_unit_test(drift_is_that_of_the_places),
+      cmocka_unit_test(everything_everywhere),
+      cmocka_unit_test(order_in_a_plane),
+      cmocka_unit_test(stress_begins_with_an_average),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1151,6 +1151,23 @@ static void keys_are_documented(void **unused)
   free(text);
 }
 
+/* docs/observables.md holds the table of what observables mean. */
+static void meanings_are_documented(void **unused)
+{
+  (void)unused;
+  char *text = whole_file("docs/observables.md"), *said = NULL;
+  size_t size;
+  FILE *stream = open_memstream(&said, &size);
+  scene_document(stream);
+  fclose(stream);
+  const char *table = strstr(said, "<!-- table: meanings -->");
+  assert_true(table && strlen(table) > 4000);
+  if (!strstr(text, table))
+    fail_msg("docs/observables.md is out of date: run tools/document-keys");
+  free(said);
+  free(text);
+}
+
 /* The example in docs/scene.md is a scene. */
 static void documented_example_is_read(void **unused)
 {
@@ -1206,6 +1223,7 @@ int main(void)
       cmocka_unit_test(report),
       cmocka_unit_test(rings_are_linked),
       cmocka_unit_test(keys_are_documented),
+      cmocka_unit_test(meanings_are_documented),
       cmocka_unit_test(documented_example_is_read),
       cmocka_unit_test(near_words),
   };
