@@ -231,7 +231,7 @@ class Folder(unittest.TestCase):
         svg = self.page.picture([i for i, a in enumerate(self.page.images) if a["title"] == "Motion of 'rods'"][0]).decode()
         self.assertGreater(svg.count('id="LineCollection_'), 5)  # a collection of bars for each series with errors
         table = tables.read(self.run_dir / "dynamics-rods.csv", "dynamics-rods")
-        self.assertEqual(columns.column("D").label, r"diffusion coefficient $D(t) = g_\mathrm{cm}/6t$ / $(a_0^2/t_0)$")
+        self.assertEqual(columns.column("D").label, r"diffusion coefficient $D(t) = g_\mathrm{cm}/2dt$ / $(a_0^2/t_0)$")
         bare = tables.Table("dynamics-rods", {k: v for k, v in table.data.items() if not k.endswith("_error")})
         self.assertNotIn('id="LineCollection_', tables.figure(bare))
 
