@@ -88,7 +88,8 @@ bool scene_write(const struct scene *scene, FILE *f, bool physics_only);
  * be together is not in it. */
 void scene_schema(FILE *f);
 
-/* Writes the tables of docs/scene.md and of docs/observables.md, each between the comments that tools/document-keys looks for. */
+/* Writes the tables of docs/scene.md and of docs/observables.md, each between the comments that tools/document-keys
+ * looks for. */
 void scene_document(FILE *f);
 
 /* Calls `tell` once for each of the paper's limits that the scene exceeds; returns the number of calls. */
