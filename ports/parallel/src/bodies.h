@@ -261,12 +261,11 @@ struct TotalRelative {
   int64_t *total; // of each shard: members - 1, relative / 2^32, relative mod 2^32
   BODY void operator()(int64_t cell, int shard) const
   {
-    const int64_t sum = take_relative(from, shards, cell);
-    if (!turn[cell].active)
-      return;
-    add_whole(total + 3 * shard, turn[cell].active - 1);
-    add_whole(total + 3 * shard + 1, sum >> 32);
-    add_whole(total + 3 * shard + 2, sum & 0xffffffff);
+    const int64_t sum = take_relative(from, shards, cell), members = turn[cell].active; // 0 and 0: not active
+    int64_t *const to = total + 3 * total_shard(shard);
+    add_together(to, members > 0 ? members - 1 : 0);
+    add_together(to + 1, sum >> 32);
+    add_together(to + 2, sum & 0xffffffff);
   }
 };
 

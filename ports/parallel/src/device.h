@@ -59,6 +59,32 @@ __device__ inline void add_whole(int64_t *to, int64_t number)
   atomicAdd((unsigned long long *)to, (unsigned long long)number);
 }
 
+// Copies of a sum that all threads add to: by blocks, so that few wait for each other.
+constexpr int total_copies = 64;
+inline int total_shards()
+{
+  return total_copies;
+}
+__device__ inline int total_shard(int)
+{
+  return (int)(blockIdx.x % total_copies);
+}
+
+// All threads of a warp add to one place: their numbers are summed first. In whole numbers the order changes nothing.
+__device__ inline void add_together(int64_t *to, int64_t number)
+{
+#ifdef __CUDA_ARCH__
+  if (__activemask() == 0xffffffffu) {
+    for (int far = 16; far > 0; far /= 2)
+      number += __shfl_xor_sync(0xffffffffu, (long long)number, far);
+    if ((threadIdx.x & 31) == 0)
+      add_whole(to, number);
+    return;
+  }
+#endif
+  add_whole(to, number);
+}
+
 __device__ inline int64_t fetch_add_whole(int64_t *to, int64_t number)
 {
   return (int64_t)atomicAdd((unsigned long long *)to, (unsigned long long)number);
@@ -101,7 +127,20 @@ inline int shard_count()
 #endif
 }
 
+inline int total_shards()
+{
+  return shard_count();
+}
+inline int total_shard(int shard)
+{
+  return shard;
+}
+
 inline void add_whole(int64_t *to, int64_t number)
+{
+  *to += number;
+}
+inline void add_together(int64_t *to, int64_t number)
 {
   *to += number;
 }

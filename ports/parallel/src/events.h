@@ -2,17 +2,12 @@
 #pragma once
 
 #include <queue>
-#include <stdexcept>
 #include <vector>
 
 #include "contact.h"
 #include "fibers.h"
 #include "pairs.h"
-
-// A run that must stop: a bond, a move or a vertex is beyond its limit.
-struct Stopped : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
+#include "stopped.h"
 
 // A contact that was answered.
 struct ContactRow {

@@ -6,15 +6,15 @@
 #include <cstring>
 #include <exception>
 
-#include "pack.h"
+#include "operators.h"
 #include "run.h"
 
 static const char usage[] = "usage: port PACK OUT           outputs of all operators of a pack (text)\n"
                             "       port --trace START OUT  the trace of a start (text)\n"
                             "       port --run START [option ...]          runs a start, prints the state hash\n"
                             "       port --solvent X,Y,Z [option ...]      the same of a solvent that is drawn here\n"
-                            "options: --steps N  --warm N (steps before the clock)  --sort N  --transposed\n"
-                            "         --unfused  --per-cell N  --interval N  --dt T  --seed S\n"
+                            "options: --steps N  --warm N (steps before the clock)  --sort N\n"
+                            "         --apart (on a GPU each thread adds alone)  --unfused  --per-cell N  --interval N  --dt T  --seed S\n"
                             "         --degrees A  --thermostat 0, 1 or 2  --at-a\n";
 
 // Number and hash of the contacts since the row before.
@@ -71,8 +71,8 @@ static Options read_options(int count, char **word)
   o.model.time_step = 0.02, o.model.sine = 1.0, o.model.seed = 1;
   for (int k = 0; k < count; k++) {
     const std::string name = word[k];
-    if (name == "--transposed") {
-      o.settings.transposed = 1;
+    if (name == "--apart") {
+      o.settings.transposed = 0;
     } else if (name == "--unfused") {
       o.settings.fused = false;
     } else if (name == "--at-a") {
@@ -148,6 +148,8 @@ int main(int count, char **word)
     const std::string first = count > 1 ? word[1] : "";
     if (first == "--trace" && count == 4) {
       write_file(word[3], trace(Pack(read_file(word[2]))));
+    } else if (count == 3 && first.substr(0, 2) != "--") {
+      write_file(word[2], operators_of(Pack(read_file(word[1]))));
     } else if (first == "--run" && count >= 3) {
       const Options o = read_options(count - 3, word + 3);
       const Pack pack(read_file(word[2]));

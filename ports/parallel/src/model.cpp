@@ -1,5 +1,18 @@
 #include "model.h"
 
+std::vector<uint32_t> permutation(const Source &source, uint32_t draw, uint32_t size)
+{
+  std::vector<uint32_t> order(size);
+  for (uint32_t k = 0; k < size; k++)
+    order[k] = k;
+  __extension__ typedef unsigned __int128 Wide;
+  for (uint32_t k = size; k-- > 1;) {
+    const uint64_t random = integer_of(words_of(source, draw, k / 2), k % 2);
+    std::swap(order[k], order[(size_t)((Wide)(k + (uint64_t)1) * random >> 64)]);
+  }
+  return order;
+}
+
 uint64_t state_hash(const State &state)
 {
   WordHash hash;

@@ -103,6 +103,9 @@ private:
   uint64_t count = 0;
 };
 
+// Fisher and Yates: docs/conventions.md, *Permutation*
+std::vector<uint32_t> permutation(const Source &source, uint32_t draw, uint32_t size);
+
 uint64_t state_hash(const State &state);
 
 // The start of a solvent without fibers, as uncross draws it: for boxes whose starts would be long texts.

@@ -196,8 +196,6 @@ static void read_run(const Pack &pack, Model &model)
   model.andersen = rule == 1;
   if (rule > 1 || model.thermostat > MAXWELL_BOLTZMANN || model.scheme > DRIFT_SPLIT)
     throw BadInput("this port has no such rule of collision, thermostat or order");
-  if (model.forbidden && model.vertices() > 0 && !model.event_driven)
-    throw BadInput("this port has no rule of crossing but event-driven");
 }
 
 Model read_model(const Pack &pack)

@@ -1,7 +1,7 @@
 #include "run.h"
 
 Run::Run(const Model &model, State &state, const Settings &settings)
-    : model(model), state(state), solvent(model, state, settings), fibers(model), contacts(model, fibers)
+    : model(model), state(state), solvent(model, state, settings), fibers(model), contacts(model, fibers), sweep(model)
 {
 }
 
@@ -53,8 +53,11 @@ void Run::one_step()
 // A drift adds 2 to the lag, half a drift 1.
 void Run::drift(uint64_t number, double time, uint32_t which)
 {
-  if (!state.vertex.empty())
+  if (!state.vertex.empty() && model.event_driven)
     contacts.drift(time, which == 0 ? -0.5 * model.time_step : 0.0, state.vertex, state.vertex_velocity, rows);
+  else if (!state.vertex.empty())
+    sweep.move(time, permutation(model.source(VERTEX_ORDER, number), which, (uint32_t)model.vertices()), state.vertex,
+               state.vertex_velocity, nullptr);
   state.lag += time == model.time_step ? 2 : 1;
   told(number, "drift");
 }

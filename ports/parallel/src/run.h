@@ -8,6 +8,7 @@
 #include "fibers.h"
 #include "model.h"
 #include "solvent.h"
+#include "sweep.h"
 
 class Run
 {
@@ -34,6 +35,7 @@ private:
   Solvent solvent;
   uint64_t last = 0; // step of this call of `steps`
   Fibers fibers;
-  EventDrift contacts;
+  EventDrift contacts; // by the rule event-driven
+  Sweep sweep;         // by the rule sequential, or where fibers may cross
   std::vector<Vector> forces;
 };

@@ -6,7 +6,7 @@
 
 #include "bodies.h"
 
-static void upload_columns(Array<int64_t> *place, Array<double> *velocity, Array<uint32_t> &id, const State &state)
+void upload_columns(Array<int64_t> *place, Array<double> *velocity, Array<uint32_t> &id, const State &state)
 {
   const size_t n = state.solvent.size();
   std::vector<int64_t> x(n);
@@ -42,7 +42,7 @@ Solvent::Solvent(const Model &model, const State &state, const Settings &setting
   turn.resize((size_t)cell_count);
   sums.clear();
   if (model.thermostat != NO_THERMOSTAT) {
-    relative.resize((size_t)(cell_count * shards)), total.resize(3 * (size_t)shards);
+    relative.resize((size_t)(cell_count * shards)), total.resize(3 * (size_t)total_shards());
     relative.clear();
   }
   vertex.resize(state.vertex.size()), vertex_velocity.resize(state.vertex.size());
@@ -79,7 +79,7 @@ void Solvent::sort()
   id.swap(sorted_id);
 }
 
-static Point grid_shift(const Model &model, uint64_t step)
+Point grid_shift(const Model &model, uint64_t step)
 {
   const Words w = words_of(model.source(GRID_SHIFT, step), 0, 0);
   return {(int64_t)w.word[0] << 8, (int64_t)w.word[1] << 8, (int64_t)w.word[2] << 8};
@@ -116,6 +116,19 @@ void Solvent::solve(uint64_t step)
   for_each(cell_count, SolveCell{sums.data(), shards, cell_count, turn.data(), model.source(ROTATION_AXIS, step)});
 }
 
+double rescale_factor(const Array<int64_t> &total)
+{
+  std::vector<int64_t> parts(total.size());
+  total.download(parts.data(), parts.size());
+  __extension__ typedef __int128 Wide;
+  Wide found = 0, wanted = 0;
+  for (size_t k = 0; k < parts.size(); k += 3) {
+    wanted += parts[k];
+    found += ((Wide)parts[k + 1] << 32) + parts[k + 2];
+  }
+  return found > 0 ? std::sqrt(3.0 * (double)wanted / ((double)found * (1.0 / energy_per_unit))) : 1.0;
+}
+
 void Solvent::apply_thermostat(uint64_t step)
 {
   const Relative to = {relative.data(), cell_count};
@@ -128,22 +141,13 @@ void Solvent::apply_thermostat(uint64_t step)
   }
   total.clear();
   for_each(cell_count, TotalRelative{turn.data(), to, shards, total.data()});
-  std::vector<int64_t> parts(3 * (size_t)shards);
-  total.download(parts.data(), parts.size());
-  __extension__ typedef __int128 Wide;
-  Wide found = 0, wanted = 0;
-  for (int k = 0; k < shards; k++) {
-    wanted += parts[3 * (size_t)k];
-    found += ((Wide)parts[3 * (size_t)k + 1] << 32) + parts[3 * (size_t)k + 2];
-  }
-  const double factor = found > 0 ? std::sqrt(3.0 * (double)wanted / ((double)found * (1.0 / energy_per_unit))) : 1.0;
-  for_each(cell_count, SetFactor{turn.data(), factor});
+  for_each(cell_count, SetFactor{turn.data(), rescale_factor(total)});
 }
 
 // The rule at-a.
 void Solvent::collide_drawn(uint64_t step, State &state)
 {
-  const Sums to = {sums.data(), cell_count, 0};
+  const Sums to = {sums.data(), cell_count, settings.transposed};
   const Source particle = model.source(DRAWN_PARTICLE, step), of_vertex = model.source(DRAWN_VERTEX, step);
   const int64_t vertices = (int64_t)vertex.size();
   for_each(n, DrawSum{columns(), at_collision, to, particle});
@@ -200,19 +204,6 @@ void Solvent::fly_ahead(uint64_t step, double time)
   ahead = true;
 }
 
-std::vector<uint32_t> permutation(const Source &source, uint32_t draw, uint32_t size)
-{
-  std::vector<uint32_t> order(size);
-  for (uint32_t k = 0; k < size; k++)
-    order[k] = k;
-  __extension__ typedef unsigned __int128 Wide;
-  for (uint32_t k = size; k-- > 1;) {
-    const uint64_t random = integer_of(words_of(source, draw, k / 2), k % 2);
-    std::swap(order[k], order[(size_t)((Wide)(k + (uint64_t)1) * random >> 64)]);
-  }
-  return order;
-}
-
 void Solvent::swap_velocities(uint64_t step)
 {
   std::vector<uint32_t> number((size_t)n);
@@ -232,15 +223,22 @@ void Solvent::swap_velocities(uint64_t step)
 void Solvent::fetch(State &state)
 {
   finish_turn();
-  std::vector<uint32_t> number((size_t)n);
-  id.download(number.data(), (size_t)n);
-  std::vector<int64_t> x((size_t)n);
-  std::vector<double> v((size_t)n);
+  download_columns(place, velocity, id, state);
+}
+
+void download_columns(const Array<int64_t> *place, const Array<double> *velocity, const Array<uint32_t> &id,
+                      State &state)
+{
+  const size_t n = state.solvent.size();
+  std::vector<uint32_t> number(n);
+  id.download(number.data(), n);
+  std::vector<int64_t> x(n);
+  std::vector<double> v(n);
   for (int axis = 0; axis < 3; axis++) {
-    place[axis].download(x.data(), (size_t)n);
-    velocity[axis].download(v.data(), (size_t)n);
+    place[axis].download(x.data(), n);
+    velocity[axis].download(v.data(), n);
 #pragma omp parallel for
-    for (int64_t i = 0; i < n; i++) {
+    for (int64_t i = 0; i < (int64_t)n; i++) {
       const size_t at = (size_t)i, to = number[at];
       Point &p = state.solvent[to];
       Vector &w = state.solvent_velocity[to];

@@ -31,9 +31,17 @@ struct Grid {
 
 struct Settings {
   int sort_every = 64; // collisions between two sortings
-  int transposed = 0;  // on a GPU: neighbors in a warp add the four numbers of one particle together
+  int transposed = 1;  // on a GPU: neighbors in a warp add the four numbers of one particle together
   bool fused = true;   // turn and the next flight in one pass
 };
+
+// Solvent by ids into columns, and back.
+void upload_columns(Array<int64_t> *place, Array<double> *velocity, Array<uint32_t> &id, const State &state);
+void download_columns(const Array<int64_t> *place, const Array<double> *velocity, const Array<uint32_t> &id,
+                      State &state);
+// The factor of `rescale`: of each copy of the totals members - 1, relative / 2^32, relative mod 2^32.
+double rescale_factor(const Array<int64_t> &total);
+Point grid_shift(const Model &model, uint64_t step);
 
 class Solvent
 {
