@@ -64,7 +64,7 @@ help:
 	@echo 'make stress          long runs: exact audit, linking numbers, 10^7 steps (half an hour)'
 	@echo 'make cross           the program for aarch64 under emulation gives the same bits (ten minutes; part of stress)'
 	@echo 'make lint            formatting, warnings of gcc and clang, static checks, include floors, equation table'
-	@echo 'make port            the port to NumPy: oracle check, fresh packs and traces, bugs planted in it (ports/numpy)'
+	@echo 'make port            the ports to NumPy and to all cores (ports/numpy, ports/parallel): oracle check, fresh packs and traces, planted bugs'
 	@echo 'make measure         builds the programs behind docs/accuracy.md'
 	@echo 'make bench           speed, scaling, run time against error: build/bench/bench.json; BENCH=speed,... chooses sections'
 	@echo 'make bench-docs      the same, and its tables and figures into docs/'
@@ -442,6 +442,7 @@ port:
 	$(MAKE) -j2 $(BUILD)/uncross
 	ports/numpy/check-elementary
 	ports/numpy/check $(BUILD)/uncross
+	ports/parallel/check $(BUILD)/uncross
 
 .PHONY: demo
 demo:

@@ -1,5 +1,9 @@
 #include "fibers.h"
 
+#include <algorithm>
+
+#include "stopped.h"
+
 Fibers::Fibers(const Model &model) : model(model)
 {
   for (int32_t j = 0; j < model.vertices(); j++)
@@ -58,6 +62,16 @@ void Fibers::add_forces(int32_t begin, int32_t end, const std::vector<Point> &po
 void Fibers::forces(const std::vector<Point> &position, int parts, std::vector<Vector> &force) const
 {
   force.resize(position.size());
+  double longest = 0.0;
+#pragma omp parallel for reduction(max : longest) schedule(static)
+  for (size_t j = 0; j < position.size(); j++)
+    if (model.next[j] >= 0) {
+      const Vector r = in_a0(position[(size_t)model.next[j]] - position[j]);
+      longest = std::max(longest, dot(r, r));
+    }
+  const double limit = 0.5 * (double)std::min({model.cells[0], model.cells[1], model.cells[2]});
+  if (parts == ALL_FORCES && longest > limit * limit)
+    throw Stopped("a bond is longer than half the shortest edge");
 #pragma omp parallel for schedule(static)
   for (size_t k = 0; k < first.size() - 1; k++)
     add_forces(first[k], first[k + 1], position, parts, force);
