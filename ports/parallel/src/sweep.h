@@ -1,5 +1,5 @@
-// The rule `sequential`: vertices move one at a time. docs/porting.md, *Sweep*; docs/conventions.md, "The crossing test".
-// It is serial by its words; only the list of pairs is made by all cores.
+// The rule `sequential`: vertices move one at a time. docs/porting.md, *Sweep*; docs/conventions.md, "The crossing
+// test". It is serial by its words; only the list of pairs is made by all cores.
 #pragma once
 
 #include "pairs.h"
