@@ -50,7 +50,7 @@ class Structure:
         found = []
         for name in self.kinds:
             text = re.search(rf"name:\s*[\"']?{re.escape(name)}\b.*?(?=name:|\Z)", self.scene, re.S)
-            number = re.search(r"^[^#]*\bdiameter:\s*([0-9.eE+-]+)", text[0], re.M) if text else None
+            number = re.search(r"^[^#]*\bdiameter:\s*(\d+\.?\d*(?:[eE][+-]?\d+)?)", text[0], re.M) if text else None
             found.append(float(number[1]) if number else 0.0)
         return found
 

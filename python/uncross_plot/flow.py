@@ -46,7 +46,7 @@ class Flow:
             return
         places = self.profile.data["y"]
         begins = re.search(r"(?m)^ +from: (\d+)", run.scene)
-        self.begins = int(begins[1]) if begins else 0  # the step at which averages begin
+        self.begins = float(begins[1]) if begins else 0.0  # the step at which averages begin
         self.edge = places[-1] + places[0]
         self.oscillates = "vx_in_phase" in self.profile.data
         self.eta = self.numbers["viscosity"]

@@ -1,5 +1,6 @@
 """The page: what a run, or two, come to as one HTML file. page.html.jinja is its form."""
 import dataclasses
+import functools
 import math
 import os
 import re
@@ -47,13 +48,16 @@ class Section:
     words: str = ""
 
 
+@functools.cache
+def _form():
+    here = os.path.dirname(os.path.abspath(__file__))
+    return jinja2.Environment(loader=jinja2.FileSystemLoader(here), autoescape=True, trim_blocks=True,
+                              undefined=jinja2.ChainableUndefined).get_template("page.html.jinja")
+
+
 def render(title, front, sections, lead=""):
     """HTML of a page. front: (label, text) or (label, [text, item, ...]) for each line of its box."""
-    here = os.path.dirname(os.path.abspath(__file__))
-    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(here), autoescape=True, trim_blocks=True,
-                                     undefined=jinja2.ChainableUndefined)
-    form = environment.get_template("page.html.jinja")
-    return form.render(title=title, front=front, sections=[s for s in sections if s.blocks], lead=lead)
+    return _form().render(title=title, front=front, sections=[s for s in sections if s.blocks], lead=lead)
 
 
 def with_error(value, error):
@@ -229,8 +233,9 @@ def _result(run):
         series = heat.data["solvent"]
         words.append(f"temperature of the solvent {with_error(series.mean(), tables.blocked_error(series))} kT/kB")
     record = run.record or {}
-    if "start" in record and "end" in record:
-        words.append(f"energy {record['end']['energy']:.6g} kT, changed by {record['end']['energy'] - record['start']['energy']:+.3g}")
+    begun, ended = (record.get(when, {}).get("energy") for when in ("start", "end"))
+    if begun is not None and ended is not None:
+        words.append(f"energy {ended:.6g} kT, changed by {ended - begun:+.3g}")
     if record.get("collisions", {}).get("executed"):
         words.append(f"{record['collisions']['executed']} contacts answered")
     for table in run.tables:
@@ -285,6 +290,7 @@ def front(run):
 
 # --- pages -------------------------------------------------------------------------------------------------------------
 
+MOST_SHOWN = 1000  # characters of a value
 LONG = ("scene", "warnings", "start", "end", "collisions")
 
 
@@ -292,8 +298,8 @@ def provenance(run):
     record = run.record
     if not record:
         return []
-    rows = [(key.replace("_", " "), "none" if value is None else value if isinstance(value, str) else f"{value}")
-            for key, value in record.items() if key not in LONG]
+    rows = [(key.replace("_", " "), (value if isinstance(value, str) else f"{value}")[:MOST_SHOWN]) for key, value in record.items()
+            if key not in LONG]
     rows.append(("run.json written", time.strftime("%Y-%m-%d %H:%M:%S UTC", time.gmtime(run.written))))
     rows.append(("again", "uncross run SCENE --out NEW-FOLDER, with the scene below: equal seed and version give the same "
                  "state hash"))

@@ -1,6 +1,5 @@
 """What a folder or file holds, and what a reader should know of it: run.json, tables, the numbers of `uncross check`."""
 import dataclasses
-import json
 import math
 import os
 import re
@@ -10,6 +9,7 @@ import tempfile
 import numpy
 
 from uncross_sweep import plateau
+from uncross_sweep import record as records
 from uncross_sweep.opening import reading
 
 from . import columns, fibers, tables
@@ -183,12 +183,10 @@ def read(path, units=""):
 
 def _read_record(run, path):
     try:
-        with open(path, encoding="utf-8", opener=reading) as file:
-            record = json.load(file)
-        if not isinstance(record, dict):
-            raise ValueError("not a mapping")
-        run.record, run.written = record, os.stat(path).st_mtime
-    except (OSError, ValueError) as error:
+        run.record, run.written = records.read(path), os.stat(path).st_mtime
+    except records.Foreign as error:
+        raise BadInput(str(error)) from error
+    except OSError as error:
         run.trouble.append(f"{path}: cannot be read: {_one_line(error)}")
 
 
@@ -303,7 +301,7 @@ def _unsteady(run, end, tau):
     told = any("the flow starts at rest" in text for text in (run.record or {}).get("warnings", []))
     steps = (run.record or {}).get("steps")
     found = re.search(r"(?m)^ +from: (\d+)", run.scene)
-    begin = int(found[1]) * end / steps if found and steps else 0.0
+    begin = float(found[1]) * end / steps if found and steps else 0.0
     if told or not means or end <= begin or re.search(r"\bsnapshot:", run.scene):
         return
     share = tau / (end - begin) * (math.exp(-begin / tau) - math.exp(-end / tau))

@@ -14,6 +14,22 @@ KEYS = ("step", "time")  # columns that say which row it is
 COUNTS = ("samples", "intervals")  # columns that are added up
 
 
+class BadTable(ValueError):
+    """A table of a run that is none; the message begins with the file."""
+
+
+def table_of(path):
+    """{column: numbers} of a table."""
+    try:
+        table = columns(read_text(path))
+    except (ValueError, IndexError, csv.Error) as error:
+        raise BadTable(f"{path}: not a table: {error}") from error
+    bad = next((name for name, values in table.items() if values.dtype.kind != "f"), None)
+    if bad is not None:
+        raise BadTable(f"{path}: not a table: column {bad} holds what is no number")
+    return table
+
+
 def blocked_mean(series, least=LEAST_BLOCKS):
     """(mean, standard error) of a correlated series: Flyvbjerg and Petersen, J. Chem. Phys. 91, 461 (1989). Blocks of 1,
     2, 4, ... values; the largest error among levels of at least `least` blocks. nan if there are fewer values."""
@@ -110,7 +126,7 @@ def final_numbers(folders, averages, start):
     """One row: averages of time series from step `start` on, the table of statics, and the dynamics of the longest lag
     that has enough intervals in each run (plateau.py). folders: of the runs; averages: their tables, averaged."""
     row = {}
-    series = {name: [columns(read_text(folder / f"{name}.csv")) for folder in folders]
+    series = {name: [table_of(folder / f"{name}.csv") for folder in folders]
               for name in ("temperature", "collisions") if name in averages}
     for name, (table, column, intervals) in SERIES.items():
         if table in series and all(column in one for one in series[table]):
@@ -166,7 +182,7 @@ def write_rows(path, names, rows):
 def write_averages(folder, folders):
     """Averages the tables of the run folders into `folder`; returns them. Tables that not all runs have are left out."""
     names = sorted(path.stem for path in folders[0].glob("*.csv") if all((run / path.name).exists() for run in folders))
-    made = {name: average([columns(read_text(run / f"{name}.csv")) for run in folders]) for name in names}
+    made = {name: average([table_of(run / f"{name}.csv") for run in folders]) for name in names}
     for name, table in made.items():
         rows = [dict(zip(table, map(float, values))) for values in zip(*table.values())]
         write_rows(folder / f"{name}.csv", list(table), rows)

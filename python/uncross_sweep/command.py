@@ -1,12 +1,17 @@
 """The command line. The options are declared in src/cli/options.c too, which has looked at them before."""
 import argparse
 import collections
+import os
 import pathlib
 import sys
 
 from . import averages, grid, jobs, slurm
 
 DONE, BAD_INPUT, NOT_WRITTEN = 0, 2, 4
+
+
+class Full(Exception):
+    """Standard output cannot be written: exit code 4."""
 
 
 def read_arguments(words):
@@ -89,10 +94,19 @@ def run_all(sweep, options):
         done = write_results(sweep, runs)
     failed = [run for run in runs if run.code not in (None, 0, jobs.INTERRUPTED) and not (pool.stopped_by and run.code < 0)]
     if not options.quiet:
-        print(f"{done} of {len(runs)} runs finished\nresults in {sweep.out}/summary.csv")
+        say(f"{done} of {len(runs)} runs finished\nresults in {sweep.out}/summary.csv")
         if done < len(runs):
-            print("go on with the same command and --resume")
+            say("go on with the same command and --resume")
     return abs(failed[0].code) if failed else DONE if done == len(runs) else jobs.INTERRUPTED
+
+
+def say(text):
+    """On standard output."""
+    try:
+        print(text, flush=True)
+    except OSError as error:
+        sys.stdout = open(os.devnull, "w", encoding="ascii")  # what could not be written is not tried again at the end
+        raise Full(f"standard output: cannot write: {error.strerror}") from error
 
 
 def main(words):
@@ -100,15 +114,15 @@ def main(words):
     try:
         sweep = make_sweep(options)
         if options.list:
-            print("".join(run.words() + "\n" for run in sweep.runs()), end="")
+            say("\n".join(run.words() for run in sweep.runs()))
             return DONE
         if options.slurm:
-            print(slurm.script(sweep.runs(), sweep.out), end="")
+            say(slurm.script(sweep.runs(), sweep.out).removesuffix("\n"))
             return DONE
         return run_all(sweep, options)
-    except grid.Refused as refused:
+    except (grid.Refused, averages.BadTable) as refused:
         code, text = BAD_INPUT, refused
-    except (jobs.Busy, OSError) as trouble:
+    except (jobs.Busy, Full, OSError) as trouble:
         code, text = NOT_WRITTEN, trouble
         if isinstance(trouble, OSError) and trouble.filename is not None:
             text = f"{trouble.filename}: {trouble.strerror}"

@@ -2,7 +2,6 @@
 import contextlib
 import ctypes
 import fcntl
-import json
 import os
 import signal
 import subprocess
@@ -10,7 +9,8 @@ import sys
 import tempfile
 import time
 
-from .files import duration, read_json, take_lock
+from . import record
+from .files import duration, take_lock
 from .grid import Refused, is_begun
 from .opening import writing
 
@@ -44,22 +44,26 @@ def locked(folder):
 def record_of(run):
     """run.json, or nothing; one that cannot be read is refused."""
     try:
-        return read_json(run.folder / "run.json")
-    except (ValueError, OSError) as error:
-        raise Refused(f"{run.folder}/run.json: cannot be read: {error}") from error
+        return record.read(run.folder / "run.json")
+    except FileNotFoundError:
+        return {}
+    except record.Foreign as error:
+        raise Refused(str(error)) from error
+    except OSError as error:
+        raise Refused(f"{run.folder}/run.json: cannot be read: {error.strerror or error}") from error
 
 
 def is_finished(run):
     """Whether the folder holds the whole run. A run of another scene or seed is refused."""
-    record = record_of(run)
-    if not record:
+    told = record_of(run)
+    if not told:
         return False
     # a fingerprint of today may differ from that of a run that was begun with older defaults: `uncross run` decides
-    if str(record.get("seed")) != str(run.seed):  # a string where JSON numbers have too few bits
-        raise Refused(f"{run.folder}: holds a run of seed {record.get('seed')}, not {run.seed}")
-    done = record.get("status") == "finished" and record.get("steps", 0) >= run.point.steps
-    if done and record.get("scene_fingerprint") != run.point.fingerprint:
-        raise Refused(f"{run.folder}: holds a finished run of another scene (fingerprint {record.get('scene_fingerprint')}, not "
+    if str(told.get("seed")) != str(run.seed):  # a string where JSON numbers have too few bits
+        raise Refused(f"{run.folder}: holds a run of seed {told.get('seed')}, not {run.seed}")
+    done = told.get("status") == "finished" and told.get("steps", 0) >= run.point.steps
+    if done and told.get("scene_fingerprint") != run.point.fingerprint:
+        raise Refused(f"{run.folder}: holds a finished run of another scene (fingerprint {told.get('scene_fingerprint')}, not "
                       f"{run.point.fingerprint}); name another folder, or leave this one's scene as it was")
     return done
 
@@ -179,14 +183,14 @@ def processors():
 
 def stream_of(run):
     """Which random numbers a run draws, and the state of the snapshot that it begins with; "" where there is none."""
-    record = record_of(run) or {}
-    return record.get("stream", ""), (record.get("stream_from") or {}).get("state", "")
+    told = record_of(run)
+    return told.get("stream", ""), told.get("stream_from", {}).get("state", "")
 
 
 def status_of(run):
     """(status, steps, state hash) that run.json tells."""
     try:
-        record = read_json(run.folder / "run.json")
-    except (json.JSONDecodeError, OSError):
-        record = {}
-    return record.get("status", "none"), record.get("steps", 0), record.get("state_hash", "")
+        told = record_of(run)
+    except Refused:
+        told = {}
+    return told.get("status", "none"), told.get("steps", 0), told.get("state_hash", "")
