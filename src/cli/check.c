@@ -5,6 +5,7 @@
 #include "cli/check_bead.h"
 #include "cli/check_dumbbells.h"
 #include "cli/check_flow.h"
+#include "cli/check_head.h"
 #include "cli/check_medium.h"
 #include "cli/check_start.h"
 #include "cli/check_walls.h"
@@ -339,8 +340,8 @@ static void report_cost(const struct scene *scene)
   const double cells = solvent_rate * rule_cost[m->solvent.rule] * boundary_cost[m->box.boundary[1]];
   const double solvent = model_in_cells(m) ? cells : check_medium_cost(m);
   const double step = 1e-9 * (solvent * m->solvent.particles * collisions + (vertex + phantoms) * m->vertices);
-  sheet_heading("Cost (an estimate, without observables and files)");
-  sheet_row(NULL, "memory", "", (double)work_bytes(m) / 1048576.0, "MiB", "");
+  sheet_heading("Cost (an estimate; of time without observables and files)");
+  check_memory(scene);
   sheet_row(NULL, "steps per second", "", 1.0 / step, "1/s", "");
   sheet_row(NULL, "time", "", step * (double)scene->steps, "s", "");
   printf("  from %.0f ns per solvent particle and collision, %.0f ns per vertex and step\n", solvent, vertex);
@@ -356,8 +357,9 @@ void scene_report(const struct scene *scene, const struct stream *stream, const 
                   const struct si_scale *si)
 {
   const struct model *m = &scene->model;
-  printf("# The effective scene of %s, every default filled in (fingerprint %016" PRIx64 ")\n\n",
-         text_shown(scene->path), scene->fingerprint);
+  printf("# The effective scene of %s, every default filled in (fingerprint %016" PRIx64 ")\n", text_shown(scene->path),
+         scene->fingerprint);
+  check_head(scene);
   scene_write(scene, stdout, false);
   report_table_1(si, m);
   if (model_has_solvent(m) && model_in_cells(m))

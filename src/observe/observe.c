@@ -86,20 +86,41 @@ static size_t find_columns(const struct model *model, enum observable which, con
   return n;
 }
 
+/* An observer without its memory. */
+static struct observer sized(enum observable which, const struct observe_plan *plan, const struct model *model)
+{
+  struct observer o = {.type = types[which],
+                       .every = plan->every[which],
+                       .longest_lag = plan->longest_lag,
+                       .from = plan->from,
+                       .slabs = plan->slabs};
+  if (o.every == 0)
+    return o;
+  o.size = (struct observer_size){.integers = 1};
+  if (o.type->size)
+    o.type->size(&o, model, &o.size);
+  return o;
+}
+
+uint64_t observers_bytes(const struct observe_plan *plan, const struct model *model, uint64_t *scratch)
+{
+  uint64_t kept = 0;
+  *scratch = 0;
+  for (int k = 0; k < OBSERVABLES; k++) {
+    const struct observer_size size = sized((enum observable)k, plan, model).size;
+    kept += sizeof(double) * (size.reals + size.later) + sizeof(int64_t) * size.integers;
+    *scratch += sizeof(double) * size.scratch;
+  }
+  return kept;
+}
+
 static bool create(struct observers *observers, enum observable which, const struct observe_plan *plan,
                    const struct model *model)
 {
   struct observer *o = &observers->observer[which];
-  *o = (struct observer){.type = types[which],
-                         .every = plan->every[which],
-                         .longest_lag = plan->longest_lag,
-                         .from = plan->from,
-                         .slabs = plan->slabs};
+  *o = sized(which, plan, model);
   if (o->every == 0)
     return true;
-  o->size = (struct observer_size){.integers = 1};
-  if (o->type->size)
-    o->type->size(o, model, &o->size);
   observers->columns[which] = find_columns(model, which, o->type->column, o->type->columns, observers->place[which]);
   o->constant = o->type->constant ? o->type->constant(model) : 0.0;
   o->real = zeroed(o->size.reals, sizeof *o->real);

@@ -62,6 +62,10 @@ struct observe_sink {
 struct observers *observers_create(const struct observe_plan *plan, const struct model *model);
 void observers_free(struct observers *observers);
 
+/* Bytes that the observers of this plan keep, which a checkpoint stores; scratch: those that they need beside. The
+ * model's numbers are enough (model_finish_numbers). */
+uint64_t observers_bytes(const struct observe_plan *plan, const struct model *model, uint64_t *scratch);
+
 struct mpc_stress;
 
 /* Where collisions are to sum the stress (mpc->stress, mpc/stress.h): the observer's own memory. NULL if the plan does
