@@ -106,6 +106,34 @@ class RunFolder(FolderTest):
         steps = [int(row.split(",")[0]) for row in (self.run_folder / "conserved.csv").read_text().splitlines()[1:]]
         self.assertEqual(steps, list(range(0, self.record()["steps"] + 1, 2)))
 
+    def test_dumbbells_in_two_parts(self):
+        """Sums over springs do not know where dumbbells stand in memory: a checkpoint sorts them. Nor is a table without a row
+        yet in the way of a resume."""
+        text = ("box: [6, 6, 6]\ntime_step: 0.02\nseed: 5\nsteps: 60\nsolvent: {per_cell: 3, collision_interval: 0.02}\n"
+                "dumbbells: {spring: 10}\nobserve: {conserved: {every: 5}, pressure: {every: 5}, stress: {every: 40}, "
+                "temperature: {every: 5}, dumbbells: {every: 5}}\n")
+        self.run_scene(text, folder=self.dir / "whole")
+        self.run_scene(text, "--steps", 30)
+        self.run_scene(text, "--resume", "--steps", 60)
+        tables = {path.name: path.read_bytes() for path in (self.dir / "whole").glob("*.csv")}
+        self.assertEqual(len(tables), 5)
+        self.assertEqual({path.name: path.read_bytes() for path in self.run_folder.glob("*.csv")}, tables)
+        self.assertEqual(self.record()["end"], json.loads((self.dir / "whole/run.json").read_text())["end"])
+
+    def test_numbers_and_units_of_tables(self):
+        """The shortest decimals that read back, and a unit for each column."""
+        self.run_scene(SCENE)
+        units = self.record()["units"]
+        self.assertEqual(units["time"], "t0")
+        self.assertEqual(units["total"], "kT")
+        for path in self.run_folder.glob("*.csv"):
+            names, *rows = [line.split(",") for line in path.read_text().splitlines()]
+            self.assertEqual([n for n in names if n != "step" and n.removesuffix("_error") not in units], [], path.name)
+            for text in (cell for row in rows for cell in row if cell != "nan"):
+                digits = re.sub(r"e.*|[-.]", "", text).strip("0")
+                shortest = re.sub(r"e.*|[-.]", "", repr(float(text))).strip("0")
+                self.assertEqual(len(digits), len(shortest), text)
+
     def test_two_new_runs_in_one_folder(self):
         """Without a trajectory nothing else told one of the other before the first checkpoint."""
         first = self.start(SCENE, "conserved.csv", *FOR_EVER)
