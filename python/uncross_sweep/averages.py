@@ -165,7 +165,9 @@ def put_cell(row, name, table, column, k):
 
 def cell(value):
     if isinstance(value, float):
-        return "nan" if math.isnan(value) else f"{value:.17g}"
+        if math.isnan(value):
+            return "nan"
+        return next(text for digits in (15, 16, 17) if float(text := f"{value:.{digits}g}") == value)
     return value
 
 

@@ -1,6 +1,7 @@
 #include "base/text.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 size_t text_character(const char *text, uint32_t *code)
@@ -66,4 +67,12 @@ const char *text_escape(const char *text, char *to, size_t size)
   }
   to[at] = '\0';
   return to;
+}
+
+void text_shortest(double x, char text[TEXT_REAL_SIZE])
+{
+  int digits = 15;
+  do
+    snprintf(text, TEXT_REAL_SIZE, "%.*g", digits, text_real(x));
+  while (digits++ < 17 && strtod(text, NULL) != x && !isnan(x));
 }

@@ -29,4 +29,9 @@ static inline double text_real(double x)
   return isnan(x) ? fabs(x) : x;
 }
 
+enum { TEXT_REAL_SIZE = 32 };
+
+/* The number in the fewest digits that read back to it (%.15g, %.16g or %.17g). */
+void text_shortest(double x, char text[TEXT_REAL_SIZE]);
+
 #endif

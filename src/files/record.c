@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "files/build_info.h"
+#include "observe/units.h"
 #include "version.h"
 
 /* JSON knows no NaN: null. */
@@ -74,11 +75,25 @@ static json_t *warnings(const struct scene *scene, const struct record *r)
   return list;
 }
 
+static void add_unit(void *units, const char *column, const char *unit)
+{
+  json_object_set_new(units, column, json_string(unit));
+}
+
+/* Of the columns of tables: not in their header, where names would no longer be names. */
+static json_t *units(const struct scene *scene)
+{
+  json_t *of = json_object();
+  observe_units(&scene->observe, &scene->model, add_unit, of);
+  return of;
+}
+
 bool record_write(const struct folder *folder, const struct scene *scene, const struct record *r,
                   struct message *message)
 {
   json_t *root = json_pack(
-      "{s:s, s:s?, s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:o, s:I, s:I, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:o, s:s}",
+      "{s:s, s:s?, s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:o, s:I, s:I, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:o, s:o, "
+      "s:s}",
       "status", r->status, "reason", r->reason, "program", "uncross", "version", UNCROSS_VERSION, "commit",
       build_info.commit, "compiler", build_info.compiler, "flags", build_info.flags, "seed", seed(scene->seed),
       "stream", seed(r->stream.key), "stream_from", parent(&r->stream), "scene_fingerprint",
@@ -86,7 +101,7 @@ bool record_write(const struct folder *folder, const struct scene *scene, const 
       (double)r->step * scene->model.time_step, "wall_seconds", r->wall_seconds, "steps_per_second",
       r->steps_per_second, "collisions", counts(&r->counts), "warnings", warnings(scene, r), "start",
       conserved(r->start_energy, r->start_momentum), "end", conserved(r->now.total, r->now.momentum), "state_hash",
-      hexadecimal(r->state_hash), "scene", scene->text);
+      hexadecimal(r->state_hash), "units", units(scene), "scene", scene->text);
   char *text = root ? json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) : NULL;
   message_set(message, "%s/run.json: no memory, or a scene that is not UTF-8", folder->name);
   bool ok = text && file_replace(folder, "run.json", text, strlen(text), message);

@@ -28,8 +28,11 @@ static void write_header(FILE *file, const char *first, size_t columns, const ch
 
 static void write_values(FILE *file, const char *between, size_t columns, const double *values)
 {
-  for (size_t k = 0; k < columns; k++, between = ",")
-    fprintf(file, "%s%.17g", between, text_real(values[k]));
+  char text[TEXT_REAL_SIZE];
+  for (size_t k = 0; k < columns; k++, between = ",") {
+    text_shortest(values[k], text);
+    fprintf(file, "%s%s", between, text);
+  }
   fputc('\n', file);
 }
 

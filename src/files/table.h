@@ -1,4 +1,4 @@
-/* Tables of numbers as CSV: a header line of column names, then rows with 17 significant digits. */
+/* Tables of numbers as CSV: a header line of column names, then rows of the shortest decimals that read back. */
 #ifndef UNCROSS_FILES_TABLE_H
 #define UNCROSS_FILES_TABLE_H
 

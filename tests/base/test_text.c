@@ -91,10 +91,49 @@ static void test_nan_has_no_sign(void **unused)
   assert_string_equal(text, "nan nan -inf -0");
 }
 
+/* Bits at random, and numbers of few digits: what is written reads back, and no shorter text does. */
+static void test_shortest_that_reads_back(void **unused)
+{
+  (void)unused;
+  char text[TEXT_REAL_SIZE], shorter[400];
+  static const struct {
+    double x;
+    const char *text;
+  } known[] = {{0.8, "0.8"},
+               {0.1 + 0.2, "0.30000000000000004"},
+               {1.0 / 3.0, "0.3333333333333333"},
+               {-0.0, "-0"},
+               {1e300, "1e+300"},
+               {-NAN, "nan"},
+               {INFINITY, "inf"},
+               {9007199254740993.0, "9007199254740992"}};
+  for (size_t k = 0; k < sizeof known / sizeof *known; k++) {
+    text_shortest(known[k].x, text);
+    assert_string_equal(text, known[k].text);
+  }
+  uint64_t bits = 88172645463325252u;
+  for (int k = 0; k < 20000; k++) {
+    double x;
+    bits ^= bits << 13, bits ^= bits >> 7, bits ^= bits << 17; /* Marsaglia 2003 */
+    memcpy(&x, &bits, sizeof x);
+    if (!isnormal(x))
+      continue;
+    text_shortest(x, text);
+    assert_true(strtod(text, NULL) == x);
+    for (int digits = 1; digits <= 17; digits++) {
+      snprintf(shorter, sizeof shorter, "%.*g", digits, x);
+      assert_true(strtod(shorter, NULL) != x || strlen(text) <= strlen(shorter));
+    }
+  }
+}
+
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_what_acts_is_escaped), cmocka_unit_test(test_nothing_acts),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_what_acts_is_escaped),
+                                     cmocka_unit_test(test_nothing_acts),
                                      cmocka_unit_test(test_it_is_cut_between_characters),
-                                     cmocka_unit_test(test_messages), cmocka_unit_test(test_nan_has_no_sign)};
+                                     cmocka_unit_test(test_messages),
+                                     cmocka_unit_test(test_nan_has_no_sign),
+                                     cmocka_unit_test(test_shortest_that_reads_back)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,6 +7,7 @@
 
 #include "../observe/tables.h"
 #include "observe/meaning.h"
+#include "observe/units.h"
 #include "scene/scene.h"
 
 /* --- rows by name ------------------------------------------------------------------------------------------------- */
@@ -441,6 +442,9 @@ static bool check_summary(void *context, const struct observe_table *table)
 {
   struct check *c = context;
   has_columns(c->model, c->which, table->columns, table->column);
+  for (size_t k = 0; k < table->columns; k++)
+    if (!observe_unit(table->column[k]))
+      fail_msg("%s has no unit", table->column[k]);
   c->tables++;
   return true;
 }
@@ -451,6 +455,9 @@ static bool check_series(void *context, enum observable which, size_t columns, c
   const char *names[OBSERVE_MOST_COLUMNS];
   assert_int_equal(observe_series_columns(c->model, which, names), columns);
   has_columns(c->model, which, columns, names);
+  for (size_t k = 0; k < columns; k++)
+    if (!observe_unit(names[k]))
+      fail_msg("%s has no unit", names[k]);
   (void)values;
   c->tables++;
   return true;

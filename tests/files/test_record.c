@@ -127,7 +127,7 @@ static void everything_reads_back(void **unused)
   static const char *const build[] = {"commit", "compiler", "flags"};
   for (int k = 0; k < 3; k++)
     assert_true(json_string_length(json_object_get(root, build[k])) > 0);
-  assert_int_equal(json_object_size(root), 22);
+  assert_int_equal(json_object_size(root), 23);
   json_decref(root);
   forget(&scene, &r);
   remove_folder(folder);

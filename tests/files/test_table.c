@@ -148,7 +148,7 @@ static void test_a_full_disk_is_noticed(void **unused)
   make_folder(folder);
   struct series s;
   struct message m = {""};
-  const double row[2] = {0.1, 0.2};
+  const double row[2] = {1.0 / 3.0, 2.0 / 3.0};
   assert_true(series_open(&s, by_name(folder), "t", 2, names, 0, &m));
   limit_files(64);
   assert_true(series_row(&s, 1, 2, row, &m));
