@@ -151,7 +151,8 @@ $(LINKED_OBJECTS): $(BUILD)/lib/%.o: $(BUILD)/%.o
 	@cp $< $@
 endif
 
-$(BUILD)/lib/$(SONAME): $(LINKED_OBJECTS)
+# The library reads HDF5 files by the program, of the same build.
+$(BUILD)/lib/$(SONAME): $(LINKED_OBJECTS) | $(BUILD)/uncross
 	@echo '  LD $@'
 	@$(CC) $(ALL_CFLAGS) $(HARDEN_LINKED) -shared -Wl,-soname,$(SONAME) $^ $(LIBS) -o $@
 
@@ -159,7 +160,7 @@ $(BUILD)/lib/libuncross.so: $(BUILD)/lib/$(SONAME)
 	@ln -sf $(SONAME) $@
 
 # One object whose other names are local, so that they cannot meet those of a program.
-$(BUILD)/lib/libuncross.a: $(LINKED_OBJECTS)
+$(BUILD)/lib/libuncross.a: $(LINKED_OBJECTS) | $(BUILD)/uncross
 	@echo '  LD $@'
 	@$(CC) -r -nostdlib $^ -o $(BUILD)/lib/uncross.o
 	@objcopy --localize-hidden $(BUILD)/lib/uncross.o
@@ -176,7 +177,8 @@ $(BUILD)/build-info.inc: force | $(BUILD)/found-run
 	@mkdir -p $(@D)
 	@{ echo '#define BUILD_COMMIT "$(shell git describe --always --dirty --abbrev=12 2>/dev/null || echo unknown)"'; \
 	   echo '#define BUILD_COMPILER "$(shell $(CC) --version | head -n 1)"'; \
-	   echo '#define BUILD_FLAGS "$(STRICT) $(OPTIMIZE)"'; } > $@.new
+	   echo '#define BUILD_FLAGS "$(STRICT) $(OPTIMIZE)"'; \
+   echo '#define BUILD_PREFIX "$(PREFIX)"'; } > $@.new
 	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
 BUILD_INFO := $(BUILD)/src/files/build_info.o $(BUILD)/lib/src/files/build_info.o
 $(BUILD_INFO): $(BUILD)/build-info.inc
@@ -244,10 +246,13 @@ $(BUILD)/install/%.pc: tools/%.pc.in force
 
 # --- tests, checks, demo ----------------------------------------------------------------------------------------------
 
-$(BUILD)/tests/%: tests/%.c $(LIBRARY) Makefile | $(BUILD)/found-test
+# Programs that are linked with all rooms read HDF5 files by a process of their own kind (src/files/reader.h).
+READER := $(BUILD)/tests/reader.o
+
+$(BUILD)/tests/%: tests/%.c $(READER) $(LIBRARY) Makefile | $(BUILD)/found-test
 	@mkdir -p $(@D)
 	@echo '  CC $<'
-	@$(CC) $(ALL_CFLAGS) -Itests $(DEPENDENCIES) $< $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
+	@$(CC) $(ALL_CFLAGS) -Itests $(DEPENDENCIES) $< $(READER) $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
 
 # Tests of the public interface see nothing else: they are linked with the shared library.
 $(BUILD)/tests/api/test_%: tests/api/test_%.c $(BUILD)/lib/libuncross.so Makefile | $(BUILD)/found-test
@@ -264,7 +269,7 @@ $(BUILD)/tests/api/test_core: tests/api/test_core.c $(BUILD)/lib/libuncross-core
 
 # Holds all kernels against the plain one, whether the program has them or not.
 ROWS := $(if $(KERNELS),$(BUILD)/src/kernel/rows.o) $(patsubst %,$(BUILD)/src/kernel/%.o,$(KERNELS) $(WIDE))
-$(filter $(BUILD)/tests/kernel/% $(BUILD)/tests/contract/test_kernels,$(TEST_PROGRAMS)): $(BUILD)/%: %.c $(ROWS) $(LIBRARY) Makefile | $(BUILD)/found-test
+$(filter $(BUILD)/tests/kernel/% $(BUILD)/tests/contract/test_kernels,$(TEST_PROGRAMS)): $(BUILD)/%: %.c $(ROWS) $(READER) $(LIBRARY) Makefile | $(BUILD)/found-test
 	@mkdir -p $(@D)
 	@echo '  CC $<'
 	@$(CC) $(ALL_CFLAGS) -Itests $(DEPENDENCIES) $(filter-out Makefile,$^) $(TEST_LIBS) $(LIBS) -o $@
@@ -278,15 +283,15 @@ $(BUILD)/uncross-faults: $(TOP) $(LIBRARY) $(INJECTOR)
 	@echo '  LD $@'
 	@$(CC) $(ALL_CFLAGS) $(TOP) $(INJECT) $(LIBRARY) $(LIBS) -o $@
 
-$(BUILD)/tests/faults/test_%: tests/faults/test_%.c $(LIBRARY) $(INJECTOR) Makefile | $(BUILD)/found-test
+$(BUILD)/tests/faults/test_%: tests/faults/test_%.c $(READER) $(LIBRARY) $(INJECTOR) Makefile | $(BUILD)/found-test
 	@mkdir -p $(@D)
 	@echo '  CC $<'
-	@$(CC) $(ALL_CFLAGS) -Itests $(DEPENDENCIES) $< $(INJECT) $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
+	@$(CC) $(ALL_CFLAGS) -Itests $(DEPENDENCIES) $< $(READER) $(INJECT) $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
 
-$(BUILD)/validation/%: validation/%.c $(LIBRARY) Makefile | $(BUILD)/found-test
+$(BUILD)/validation/%: validation/%.c $(READER) $(LIBRARY) Makefile | $(BUILD)/found-test
 	@mkdir -p $(@D)
 	@echo '  CC $<'
-	@$(CC) $(ALL_CFLAGS) -Itests $(DEPENDENCIES) $< $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
+	@$(CC) $(ALL_CFLAGS) -Itests $(DEPENDENCIES) $< $(READER) $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
 
 .PHONY: tests
 tests: $(BUILD)/uncross $(BUILD)/uncross-faults $(LIBRARIES) $(TEST_PROGRAMS) $(BENCH_PROGRAMS)
@@ -492,7 +497,7 @@ fuzz:
 	TMPDIR=build/fuzz $(FUZZ_LIMITS) build/fuzz/readers -artifact_prefix=build/fuzz/ -max_len=4096 -timeout=60 \
 	   -rss_limit_mb=3000 -print_final_stats=1 $(FUZZ)
 
-$(BUILD)/readers: $(BUILD)/tests/fuzz/fuzz_readers.o $(LIBRARY)
+$(BUILD)/readers: $(BUILD)/tests/fuzz/fuzz_readers.o $(READER) $(LIBRARY)
 	@echo '  LD $@'
 	@$(CC) $(ALL_CFLAGS) -fsanitize=fuzzer $^ $(LIBS) -o $@
 

@@ -9,7 +9,11 @@
 #include "cli/check_start.h"
 #include "cli/command.h"
 #include "files/build_info.h"
+#include "files/checkpoint.h"
+#include "files/frames_apart.h"
 #include "files/hdf5.h"
+#include "files/reader.h"
+#include "oracle/pack.h"
 #include "scene/scene.h"
 #include "version.h"
 
@@ -240,10 +244,18 @@ static void keep_streams(void)
     close(fd);
 }
 
+/* What this program does as a process that reads a file (files/reader.h). */
+static const struct apart_work works[] = {{"checkpoint", checkpoint_serve},
+                                          {"frames", frames_serve},
+                                          {"sort", sort_serve},
+                                          {"pack", pack_serve},
+                                          {NULL, NULL}};
+
 int main(int count, char **words)
 {
   keep_streams();
   h5_own_process();
+  reader_is_here(count, words, works);
   if (count < 2) {
     help_all(stderr);
     return EXIT_BAD_INPUT;

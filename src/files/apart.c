@@ -2,101 +2,30 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
+#include <math.h>
+#include <poll.h>
 #include <signal.h>
+#include <spawn.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#define LEAST_SECONDS 60.0      /* of processor time, for a small file */
-#define BYTES_PER_SECOND 20e6   /* slower than any machine reads and checks */
-#define LEAST_MEMORY (1u << 30) /* bytes, besides what the parent has */
-#define MEMORY_PER_BYTE 8       /* of the file: its numbers, some of them twice */
+#include "base/clock.h"
+#include "files/build_info.h"
+#include "files/reader.h"
+#include "version.h"
 
-/* --- the child --------------------------------------------------------------------------------------------------- */
+#define LEAST_SECONDS 60.0    /* of processor time, for a small file */
+#define BYTES_PER_SECOND 20e6 /* slower than any machine reads and checks */
+#define PATIENCE 10.0         /* times as long by the clock: the machine may be busy, the disk slow */
 
-/* Bytes of address space in use, 0 if that is unknown. */
-static uint64_t address_space(void)
-{
-  char line[64] = "";
-  FILE *file = fopen("/proc/self/statm", "r");
-  if (!file)
-    return 0;
-  const uint64_t pages = fgets(line, sizeof line, file) ? strtoull(line, NULL, 10) : 0;
-  fclose(file);
-  return pages * (uint64_t)sysconf(_SC_PAGESIZE);
-}
-
-static void lower(int resource, uint64_t value)
-{
-  struct rlimit limit;
-  if (getrlimit(resource, &limit) == 0 && (limit.rlim_cur == RLIM_INFINITY || value < limit.rlim_cur)) {
-    limit.rlim_cur = (rlim_t)value;
-    setrlimit(resource, &limit);
-  }
-}
-
-static void limit_memory(uint64_t file_bytes)
-{
-  const uint64_t used = address_space();
-  if (used > 0 && file_bytes < UINT64_MAX / MEMORY_PER_BYTE / 2)
-    lower(RLIMIT_AS, used + LEAST_MEMORY + MEMORY_PER_BYTE * file_bytes);
-}
-
-/* A terminal sends its signals to both processes: the parent decides what they mean. */
-static void keep_signals_away(void)
-{
-  static const int ignored[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGUSR1, SIGUSR2};
-  static const int plain[] = {SIGXCPU, SIGSEGV, SIGBUS, SIGFPE, SIGABRT, SIGILL, SIGPIPE};
-  for (size_t k = 0; k < sizeof ignored / sizeof *ignored; k++)
-    signal(ignored[k], SIG_IGN);
-  for (size_t k = 0; k < sizeof plain / sizeof *plain; k++)
-    signal(plain[k], SIG_DFL);
-}
-
-void apart_shut(void)
-{
-  lower(RLIMIT_NOFILE, 0);
-}
-
-void apart_go_on(const struct apart *link)
-{
-  struct rusage used;
-  struct rlimit limit;
-  if (getrusage(RUSAGE_SELF, &used) != 0 || getrlimit(RLIMIT_CPU, &limit) != 0)
-    return;
-  const double spent = (double)used.ru_utime.tv_sec + (double)used.ru_stime.tv_sec;
-  const rlim_t end = (rlim_t)(spent + link->seconds) + 2;
-  limit.rlim_cur = limit.rlim_max == RLIM_INFINITY || end < limit.rlim_max ? end : limit.rlim_max;
-  setrlimit(RLIMIT_CPU, &limit);
-}
-
-/* HDF5 writes of some damages to standard error before it aborts; the parent says it in one sentence. */
-static void hush(void)
-{
-  const int nowhere = open("/dev/null", O_WRONLY);
-  if (nowhere >= 0)
-    dup2(nowhere, STDERR_FILENO);
-  if (nowhere > STDERR_FILENO)
-    close(nowhere);
-}
-
-static void be_child(struct apart *link, uint64_t file_bytes, void (*work)(struct apart *, void *), void *context)
-{
-  keep_signals_away();
-  hush();
-  const struct rlimit no_core = {0, 0};
-  setrlimit(RLIMIT_CORE, &no_core);
-  limit_memory(file_bytes);
-  apart_go_on(link);
-  work(link, context);
-  _exit(0);
-}
+extern char **environ;
 
 /* --- the parent -------------------------------------------------------------------------------------------------- */
 
@@ -127,30 +56,74 @@ static bool regular_size(const char *path, uint64_t *bytes, struct message *mess
   return known || message_set(message, "%s: cannot be read: %s", path, strerror(errno));
 }
 
-bool apart_start(struct apart *parent, const char *path, void (*work)(struct apart *link, void *context), void *context,
-                 struct message *message)
+void apart_build(char build[APART_BUILD])
+{
+  memset(build, 0, APART_BUILD);
+  snprintf(build, APART_BUILD, "uncross %s %s", UNCROSS_VERSION, build_info.commit);
+}
+
+/* Starts the program at the other end of the socket, which it has as READER_SOCKET; 0, or errno. It has no standard
+ * streams: of some damages HDF5 tells standard error before it aborts, and the parent says it in one sentence. */
+static int spawn(const char *program, int socket, pid_t *child)
+{
+  char word[] = READER_ASKED;
+  char *const words[] = {(char *)(uintptr_t)program, word, NULL};
+  posix_spawn_file_actions_t files;
+  int code = posix_spawn_file_actions_init(&files);
+  if (code != 0)
+    return code;
+  for (int fd = 0; code == 0 && fd < READER_SOCKET; fd++)
+    if (fd != socket)
+      code = posix_spawn_file_actions_addopen(&files, fd, "/dev/null", O_RDWR, 0);
+  if (code == 0)
+    code = posix_spawn_file_actions_adddup2(&files, socket, READER_SOCKET);
+  if (code == 0)
+    code = posix_spawn(child, program, &files, NULL, words, environ);
+  posix_spawn_file_actions_destroy(&files);
+  return code;
+}
+
+/* What the other side is must be known before anything is sent, or understood. */
+static bool greet(struct apart *parent, const char *program, const char *work, uint64_t bytes, struct message *message)
+{
+  char ours[APART_BUILD], theirs[APART_BUILD] = "";
+  struct apart_hello hello = {.seconds = parent->seconds, .bytes = bytes};
+  snprintf(hello.work, sizeof hello.work, "%s", work);
+  snprintf(hello.path, sizeof hello.path, "%s", parent->path);
+  apart_build(ours);
+  if (apart_get(parent, theirs, sizeof theirs) && memcmp(ours, theirs, sizeof ours) == 0)
+    return apart_put(parent, &hello, sizeof hello) || apart_lost(parent, message);
+  return message_set(message, "%s: cannot be read: %s, the program that is to do it, is not of this build (%s)",
+                     parent->path, program, ours);
+}
+
+bool apart_start(struct apart *parent, const char *path, const char *work, struct message *message)
 {
   uint64_t bytes = 0;
   int pair[2];
+  char program[PATH_MAX];
+  struct message why;
   *parent = (struct apart){.path = path, .socket = -1, .broken = true};
   if (!regular_size(path, &bytes, message))
     return false;
+  if (!reader_find(program, sizeof program, &why))
+    return message_set(message, "%s: cannot be read: %s", path, why.text);
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair) != 0)
     return message_set(message, "%s: no connection to a process that reads it: %s", path, strerror(errno));
   const double seconds = LEAST_SECONDS + (double)bytes / BYTES_PER_SECOND;
-  const pid_t child = fork();
-  if (child == 0) {
-    close(pair[0]);
-    be_child(&(struct apart){.path = path, .socket = pair[1], .seconds = seconds}, bytes, work, context);
-  }
-  const int why = errno;
+  pid_t child = 0;
+  const int code = spawn(program, pair[1], &child);
   close(pair[1]);
-  if (child < 0) {
+  if (code != 0) {
     close(pair[0]);
-    return message_set(message, "%s: no process to read it: %s", path, strerror(why));
+    return message_set(message, "%s: no process to read it (%s): %s", path, program, strerror(code));
   }
-  *parent = (struct apart){.path = path, .socket = pair[0], .child = child, .seconds = seconds};
-  return true;
+  *parent = (struct apart){
+      .path = path, .socket = pair[0], .child = child, .seconds = seconds, .patience = PATIENCE * seconds};
+  if (greet(parent, program, work, bytes, message))
+    return true;
+  apart_end(parent);
+  return false;
 }
 
 /* Waits for the child, which a host may have done already. */
@@ -178,6 +151,8 @@ void apart_end(struct apart *parent)
 int apart_lost(struct apart *parent, struct message *message)
 {
   int status = 0;
+  if (parent->silent)
+    return message_set(message, "%s: the process that reads it does not answer", parent->path);
   const bool known = parent->child > 0 && wait_for(parent->child, &status, 0) == parent->child;
   if (known)
     parent->child = 0;
@@ -207,9 +182,22 @@ bool apart_put(struct apart *link, const void *data, size_t bytes)
   return !link->broken;
 }
 
+/* A parent's patience has an end, by the clock; a child waits as long as its parent lives. */
+static bool bytes_come(struct apart *link)
+{
+  struct pollfd end = {.fd = link->socket, .events = POLLIN};
+  const double until = clock_seconds() + link->patience;
+  double left = link->patience;
+  while (link->child > 0 && left > 0.0 && poll(&end, 1, (int)fmin(1e3 * left + 1.0, 1e6)) <= 0)
+    left = until - clock_seconds();
+  link->silent = link->child > 0 && left <= 0.0;
+  link->broken = link->silent;
+  return !link->broken;
+}
+
 bool apart_get(struct apart *link, void *data, size_t bytes)
 {
-  for (size_t done = 0; !link->broken && done < bytes;)
+  for (size_t done = 0; !link->broken && done < bytes && bytes_come(link);)
     done += moved(link, recv(link->socket, (char *)data + done, bytes - done, 0));
   return !link->broken;
 }

@@ -3,17 +3,23 @@
  *
  * HDF5 1.10.8 cannot be trusted with a file that comes from anywhere: on a damaged one it may free memory twice, loop,
  * or ask for any amount of memory; and a file may name other files that HDF5 then opens. So no file is read by the
- * process that needs its contents. A child does it; if it dies, the file is called damaged and the parent goes on.
+ * process that needs its contents. A child does it, the reader; if it dies, the file is called damaged and the parent
+ * goes on.
  *
- * The child ignores the signals that end a run, has limits of its own for memory and for processor time (both grow with
- * the file), and can open no other file once apart_shut is called. It never writes. It ends with its work, or when the
- * parent lets go.
+ * The reader is the program uncross, started afresh: a mere copy of the parent (fork) would wait for ever for a lock
+ * that another thread of the parent has, in HDF5 or elsewhere. It says first of which build it is, since what is sent
+ * are plain structs. reader.h says how it is found.
+ *
+ * The reader ignores the signals that end a run, has limits of its own for memory and for processor time (both grow
+ * with the file), and can open no other file once apart_shut is called. It never writes. It ends with its work, when
+ * the parent lets go, and within a second of the parent's end. A parent waits for an answer for a limited time.
  */
 #ifndef UNCROSS_FILES_APART_H
 #define UNCROSS_FILES_APART_H
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 #include <sys/types.h>
 
 #include "base/message.h"
@@ -26,23 +32,20 @@ int open_regular(const char *path, struct message *message);
 struct apart {
   const char *path; /* the file, for messages; must outlive this */
   int socket;
-  pid_t child;    /* 0: this is the child */
-  double seconds; /* of processor time that one piece of work may take */
-  bool broken;    /* the other side is gone: nothing more is sent or received */
-  bool died;      /* the child did, and of the file */
+  pid_t child;     /* 0: this is the child */
+  double seconds;  /* of processor time that one piece of work may take */
+  double patience; /* s; so long the parent waits for the next bytes */
+  bool broken;     /* the other side is gone: nothing more is sent or received */
+  bool died;       /* the child did, and of the file */
+  bool silent;     /* the child did not answer */
 };
 
-/* Calls work(link, context) in a child that sees everything as it is now. A path that is not that of a regular file is
- * refused before. False, with a message, if there can be no child; then there is nothing to end. */
-bool apart_start(struct apart *parent, const char *path, void (*work)(struct apart *link, void *context), void *context,
-                 struct message *message);
+/* Has a reader do the work of this name (struct apart_work, reader.h) with a file. A path that is not that of a regular
+ * file is refused before. False, with a message, if there can be no reader; then there is nothing to end. */
+bool apart_start(struct apart *parent, const char *path, const char *work, struct message *message);
 
 /* Ends the child, whatever it does. */
 void apart_end(struct apart *parent);
-
-/* In the child. apart_shut: from now on no file can be opened. apart_go_on: processor time is counted anew. */
-void apart_shut(void);
-void apart_go_on(const struct apart *link);
 
 /* Sends or receives so many bytes. False if the other side is gone. */
 bool apart_put(struct apart *link, const void *data, size_t bytes);
@@ -59,5 +62,15 @@ int apart_get_verdict(struct apart *parent, struct message *message);
 
 /* Says that, and if it is known how, the child died. Returns 0. */
 int apart_lost(struct apart *parent, struct message *message);
+
+/* What both sides say first: the child its build; the parent this, and what the work itself asks for. */
+#define APART_WORD 32
+#define APART_BUILD 128
+struct apart_hello {
+  char work[APART_WORD], path[4096]; /* PATH_MAX of Linux */
+  double seconds;
+  uint64_t bytes; /* of the file */
+};
+void apart_build(char build[APART_BUILD]);
 
 #endif

@@ -6,6 +6,7 @@ struct build_info {
   const char *commit;   /* git commit, "-dirty" appended if the tree had changes; "unknown" outside a checkout */
   const char *compiler; /* name and version */
   const char *flags;
+  const char *prefix; /* where `make install` puts it */
 };
 
 extern const struct build_info build_info;

@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "base/message.h"
+#include "files/apart.h"
 #include "files/hdf5.h"
 #include "files/snapshot.h"
 
@@ -45,6 +46,9 @@ bool checkpoint_find(hid_t file, const char *path, bool sealed, struct checkpoin
  * does. */
 bool checkpoint_read_state(hid_t file, const char *path, const struct checkpoint_summary *summary, struct state *state,
                            struct message *message);
+
+/* The work "checkpoint" (reader.h). */
+void checkpoint_serve(struct apart *link);
 
 /* --- everywhere -------------------------------------------------------------------------------------------------- */
 

@@ -5,40 +5,121 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "files/apart.h"
 #include "files/checkpoint_parts.h"
+#include "files/reader.h"
 #include "files/structure.h"
 
-/* What is asked of a file. The process apart has a copy of it all. */
-struct wish {
-  const char *path;
-  const struct model *model; /* NULL: only the summary */
-  const struct state *state;
-  const struct observe_block *blocks;
-  size_t block_count;
+/* After the verdict about the file and the summary, requests for arrays are answered until the link is cut: with a
+ * verdict (enum answer), and the bytes if it is 0. */
+struct request {
+  char group[32], name[256];
+  uint64_t dims[2], rank;
+  uint64_t type; /* as wide as the others, so that no unset byte is sent */
 };
+
+enum type { REALS, INTEGERS, SHORT_INTEGERS, TYPES };
+enum answer { FINE, ABSENT, BROKEN };
+
+static const size_t bytes_of[TYPES] = {sizeof(double), sizeof(int64_t), sizeof(int32_t)};
+
+/* --- the reader's side ------------------------------------------------------------------------------------------- */
+
+static hid_t type_of(uint64_t type)
+{
+  const hid_t types[TYPES] = {H5T_NATIVE_DOUBLE, H5T_NATIVE_INT64, H5T_NATIVE_INT32};
+  return types[type];
+}
+
+static enum answer read_array(hid_t file, const struct request *r, void *data)
+{
+  hid_t group = h5_open_group(file, r->group);
+  const int found = group < 0 ? -1 : h5_look(group, r->name);
+  const hsize_t dims[2] = {r->dims[0], r->dims[1]};
+  const bool ok = found > 0 && h5_array_read(group, r->name, type_of(r->type), (int)r->rank, dims, data);
+  h5_close(group);
+  return ok ? FINE : found == 0 ? ABSENT : BROKEN;
+}
+
+static void answer(struct apart *link, hid_t file, const struct request *r)
+{
+  const size_t bytes = bytes_of[r->type] * (size_t)r->dims[0] * (size_t)(r->rank > 1 ? r->dims[1] : 1);
+  struct message message = {""};
+  void *data = malloc(bytes + 1);
+  const enum answer how = data ? read_array(file, r, data) : BROKEN;
+  if (!data)
+    message_set(&message, "%s: out of memory", link->path);
+  else if (how != FINE)
+    h5_fail(&message, link->path, "damaged checkpoint: its positions or velocities cannot be read or fail their check");
+  apart_put_verdict(link, (int)how, &message);
+  if (how == FINE)
+    apart_put(link, data, bytes);
+  free(data);
+}
+
+void checkpoint_serve(struct apart *link)
+{
+  struct checkpoint_summary summary;
+  struct message message = {""};
+  struct request request;
+  enum h5_trouble trouble;
+  bool sealed;
+  unsigned failures;
+  hid_t file = h5_open(link->path, false, &sealed, &trouble, &message);
+  apart_shut();
+  h5_watch(&failures);
+  bool ok =
+      file >= 0 && checkpoint_find(file, link->path, sealed, &summary, &message) &&
+      (failures == 0 || message_set(&message, "%s: damaged checkpoint: HDF5 cannot read some part of it", link->path));
+  apart_put_verdict(link, ok ? 0 : 1, &message);
+  ok = ok && apart_put(link, &summary, sizeof summary);
+  while (ok && apart_get(link, &request, sizeof request)) {
+    apart_go_on(link);
+    answer(link, file, &request);
+  }
+}
+
+/* --- the side that asks ------------------------------------------------------------------------------------------ */
+
+/* -1, with a message: the reader is gone. ABSENT and BROKEN: with one, too, that speaks of positions. */
+static int ask(struct apart *apart, const char *group, const char *name, enum type type, uint64_t rows,
+               uint64_t columns, void *data, struct message *message)
+{
+  struct request r = {.dims = {rows, columns}, .rank = columns > 0 ? 2 : 1, .type = type};
+  snprintf(r.group, sizeof r.group, "%s", group);
+  snprintf(r.name, sizeof r.name, "%s", name);
+  apart_put(apart, &r, sizeof r);
+  const int how = apart_get_verdict(apart, message);
+  const size_t bytes = bytes_of[type] * (size_t)rows * (size_t)(columns > 0 ? columns : 1);
+  if (how != FINE || apart_get(apart, data, bytes))
+    return how;
+  apart_lost(apart, message);
+  return -1;
+}
 
 #define SAME "; they must be equal"
 
-static bool fits_vertices(hid_t file, const char *path, const struct model *m, struct message *message)
+static bool fits_vertices(struct apart *apart, const struct model *m, struct message *message)
 {
-  const hsize_t rows[1] = {m->vertices};
   struct message why = {"its masses cannot be read"};
-  hid_t group = h5_open_group(file, "structure");
-  const bool same = group >= 0 && structure_same_bonds(group, m);
-  double *mass = malloc(((size_t)m->vertices + 1) * sizeof *mass);
-  const bool fits = same && mass && h5_array_read(group, "mass", H5T_NATIVE_DOUBLE, 1, rows, mass) &&
-                    !structure_masses_differ(mass, m->vertices, m, &why);
-  free(mass);
-  h5_close(group);
-  if (!same)
-    return message_set(message, "%s: its bonds are not the scene's (other fibers, or a damaged file)", path);
-  return fits || message_set(message, "%s: %s", path, why.text);
+  void *stored = malloc(((size_t)m->bonds + m->vertices + 1) * 8); /* pairs of numbers, then masses */
+  if (!stored)
+    return message_set(message, "%s: out of memory", apart->path);
+  int how = ask(apart, "structure", "bonds", SHORT_INTEGERS, m->bonds, 2, stored, message);
+  const bool same = how == FINE && structure_same_bonds(stored, m);
+  if (!same && how >= 0)
+    message_set(message, "%s: its bonds are not the scene's (other fibers, or a damaged file)", apart->path);
+  how = same ? ask(apart, "structure", "mass", REALS, m->vertices, 0, stored, message) : -1;
+  const bool fits = how == FINE && !structure_masses_differ(stored, m->vertices, m, &why);
+  if (!fits && how >= 0)
+    message_set(message, "%s: %s", apart->path, why.text);
+  free(stored);
+  return fits;
 }
 
-static bool fits_model(hid_t file, const char *path, const struct checkpoint_summary *s, const struct model *m,
+static bool fits_model(struct apart *apart, const struct checkpoint_summary *s, const struct model *m,
                        struct message *message)
 {
+  const char *path = apart->path;
   const int *cells = m->box.cells;
   if (memcmp(s->cells, cells, sizeof s->cells) != 0)
     return message_set(message, "%s: its box is %d x %d x %d cells, the scene's %d x %d x %d" SAME, path, s->cells[0],
@@ -56,126 +137,61 @@ static bool fits_model(hid_t file, const char *path, const struct checkpoint_sum
   if ((s->beads > 0) != model_has_bead(m))
     return message_set(message, "%s: it is of a solvent %s bead, the scene has %s", path,
                        s->beads > 0 ? "around a" : "without a", s->beads > 0 ? "none" : "one");
-  return fits_vertices(file, path, m, message);
+  return fits_vertices(apart, m, message);
 }
 
 /* Earlier checkpoints hold no settings; they are taken to be the scene's, or 0 if there was no such setting. */
-static bool same_setting(hid_t group, const char *name, const char *path, const struct observe_block *block,
+static bool same_setting(struct apart *apart, const char *name, const struct observe_block *block,
                          struct message *message)
 {
-  const hsize_t dims[1] = {1};
   const int64_t wanted = *(const int64_t *)block->data;
-  int64_t stored = block->later ? 0 : wanted;
-  if (group >= 0 && h5_has(group, name) && !h5_array_read(group, name, H5T_NATIVE_INT64, 1, dims, &stored))
-    return message_set(message, "%s: damaged checkpoint: '%s' cannot be read", path, name);
+  int64_t stored;
+  const int how = ask(apart, "observers", name, INTEGERS, 1, 0, &stored, message);
+  if (how == ABSENT)
+    stored = block->later ? 0 : wanted;
+  if (how == BROKEN)
+    message_set(message, "%s: damaged checkpoint: '%s' cannot be read", apart->path, name);
+  if (how != FINE && how != ABSENT)
+    return false;
   return stored == wanted ||
          message_set(message,
                      "observe.%s: %" PRId64 " in the scene, but %" PRId64 " in the run so far (%s), whose averages go "
                      "on; a resumed run keeps it",
-                     name, wanted, stored, path);
+                     name, wanted, stored, apart->path);
 }
 
-/* Numbers of a block come into `data`, which has room for one more. */
-static bool read_block(hid_t group, const char *path, const struct observe_block *block, void *data,
-                       struct message *message)
+static bool get_block(struct apart *apart, const struct observe_block *block, struct message *message)
 {
   char name[256];
-  const hsize_t dims[1] = {block->count};
   checkpoint_block_name(block, name, sizeof name);
   if (block->setting)
-    return same_setting(group, name, path, block, message);
-  if (block->later && group >= 0 && !h5_has(group, name)) {
+    return same_setting(apart, name, block, message);
+  const int how =
+      ask(apart, "observers", name, block->integer ? INTEGERS : REALS, block->count, 0, block->data, message);
+  if (how == ABSENT && block->later) {
     for (size_t k = 0; k < block->count; k++)
-      ((double *)data)[k] = NAN;
+      ((double *)block->data)[k] = NAN;
     return true;
   }
-  return (group >= 0 && h5_has(group, name) &&
-          h5_array_read(group, name, checkpoint_block_type(block), 1, dims, data)) ||
-         message_set(
-             message,
-             "%s: no memory of the observable '%s' in this size (damaged, or not sampled by this run so far: resume "
-             "without it, or begin a run from this checkpoint with start.snapshot)",
-             path, block->name);
-}
-
-static void serve_arrays(struct apart *link, hid_t file, const struct wish *wish)
-{
-  struct message message = {""};
-  struct checkpoint_arrays from = {h5_open_group(file, "state"), wish->path};
-  struct state_group group[STATE_GROUPS];
-  state_groups(wish->state, group);
-  for (int g = 0; g < STATE_GROUPS; g++)
-    for (size_t f = 0; f < group[g].fields && checkpoint_has_group(&group[g]); f++) {
-      const size_t bytes = (size_t)group[g].rows * 24;
-      void *rows = malloc(bytes + 1);
-      const bool ok = rows ? checkpoint_rows_of_file(&from, &group[g], &group[g].field[f], rows, &message)
-                           : message_set(&message, "%s: out of memory", wish->path);
-      apart_put_verdict(link, ok ? 0 : 1, &message);
-      if (ok)
-        apart_put(link, rows, bytes);
-      free(rows);
-      if (!ok)
-        return;
-    }
-}
-
-static void serve_blocks(struct apart *link, hid_t file, const struct wish *wish)
-{
-  hid_t group = h5_open_group(file, "observers");
-  for (size_t b = 0; b < wish->block_count; b++) {
-    const struct observe_block *block = &wish->blocks[b];
-    struct message message = {""};
-    void *data = malloc((block->count + 1) * sizeof(double));
-    const bool ok = data ? read_block(group, wish->path, block, data, &message)
-                         : message_set(&message, "%s: out of memory", wish->path);
-    apart_put_verdict(link, ok ? 0 : 1, &message);
-    if (ok && !block->setting)
-      apart_put(link, data, block->count * sizeof(double));
-    free(data);
-    if (!ok)
-      return;
-  }
-}
-
-static void serve(struct apart *link, void *context)
-{
-  const struct wish *wish = context;
-  struct checkpoint_summary summary;
-  struct message message = {""};
-  enum h5_trouble trouble;
-  bool sealed;
-  unsigned failures;
-  hid_t file = h5_open(wish->path, false, &sealed, &trouble, &message);
-  apart_shut();
-  h5_watch(&failures);
-  const bool ok =
-      file >= 0 && checkpoint_find(file, wish->path, sealed, &summary, &message) &&
-      (!wish->model || fits_model(file, wish->path, &summary, wish->model, &message)) &&
-      (failures == 0 || message_set(&message, "%s: damaged checkpoint: HDF5 cannot read some part of it", wish->path));
-  apart_put_verdict(link, ok ? 0 : 1, &message);
-  if (!ok || !apart_put(link, &summary, sizeof summary) || !wish->model)
-    return;
-  serve_arrays(link, file, wish);
-  serve_blocks(link, file, wish);
+  return how == FINE || how < 0
+             ? how == FINE
+             : message_set(message,
+                           "%s: no memory of the observable '%s' in this size (damaged, or not sampled by this run so "
+                           "far: resume without it, or begin a run from this checkpoint with start.snapshot)",
+                           apart->path, block->name);
 }
 
 static bool get_rows(void *from, const struct state_group *group, const struct state_field *field, void *rows,
                      struct message *message)
 {
-  struct apart *apart = from;
-  (void)field;
-  return apart_get_verdict(apart, message) == 0 &&
-         (apart_get(apart, rows, (size_t)group->rows * 24) || apart_lost(apart, message));
+  return ask(from, "state", field->name, field->integer ? INTEGERS : REALS, group->rows, 3, rows, message) == FINE;
 }
 
 static bool get_blocks(struct apart *apart, const struct observe_block *blocks, size_t count, struct message *message)
 {
   bool ok = true;
-  for (size_t b = 0; ok && b < count; b++) {
-    ok = apart_get_verdict(apart, message) == 0;
-    if (ok && !blocks[b].setting && blocks[b].count > 0)
-      ok = apart_get(apart, blocks[b].data, blocks[b].count * sizeof(double)) || apart_lost(apart, message);
-  }
+  for (size_t b = 0; ok && b < count; b++)
+    ok = get_block(apart, &blocks[b], message);
   return ok;
 }
 
@@ -191,9 +207,8 @@ static bool get_summary(struct apart *apart, struct checkpoint_summary *summary,
 
 bool checkpoint_look(const char *path, struct checkpoint_summary *summary, struct message *message)
 {
-  struct wish wish = {.path = path};
   struct apart apart;
-  if (!apart_start(&apart, path, serve, &wish, message))
+  if (!apart_start(&apart, path, "checkpoint", message))
     return false;
   const bool ok = get_summary(&apart, summary, message);
   apart_end(&apart);
@@ -204,11 +219,10 @@ bool checkpoint_fetch(const char *path, const struct model *model, struct checkp
                       struct state *state, const struct observe_block *blocks, size_t block_count,
                       struct message *message)
 {
-  struct wish wish = {path, model, state, blocks, block_count};
   struct apart apart;
-  if (!apart_start(&apart, path, serve, &wish, message))
+  if (!apart_start(&apart, path, "checkpoint", message))
     return false;
-  const bool ok = get_summary(&apart, summary, message) &&
+  const bool ok = get_summary(&apart, summary, message) && fits_model(&apart, summary, model, message) &&
                   checkpoint_each_array(state, get_rows, &apart, path, message) &&
                   get_blocks(&apart, blocks, block_count, message);
   apart_end(&apart);

@@ -21,7 +21,7 @@ bool h5_find_sort(const char *path, enum h5_sort *sort, enum h5_trouble *trouble
 {
   struct apart apart;
   *trouble = H5_UNREADABLE;
-  if (!apart_start(&apart, path, sort_serve, (void *)(uintptr_t)path, message))
+  if (!apart_start(&apart, path, "sort", message))
     return false;
   const int verdict = apart_get_verdict(&apart, message);
   const bool ok = verdict == H5_FINE && (apart_get(&apart, sort, sizeof *sort) || apart_lost(&apart, message));
@@ -94,7 +94,7 @@ struct frames *frames_open(const char *path, enum h5_trouble *trouble, struct me
     message_set(message, "%s: out of memory", path);
     return NULL;
   }
-  if (!apart_start(&f->apart, f->path, frames_serve, f->path, message))
+  if (!apart_start(&f->apart, f->path, "frames", message))
     return give_up(f);
   const int verdict = apart_get_verdict(&f->apart, message);
   bool ok = verdict == H5_FINE;

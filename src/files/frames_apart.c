@@ -7,6 +7,7 @@
 
 #include "files/foreign.h"
 #include "files/frames.h"
+#include "files/reader.h"
 #include "files/trajectory.h"
 #include "scene/scene.h"
 
@@ -231,9 +232,9 @@ static void let_go(struct source *s)
   free(s->velocity);
 }
 
-void frames_serve(struct apart *link, void *path)
+void frames_serve(struct apart *link)
 {
-  struct source s = {.path = path};
+  struct source s = {.path = link->path};
   struct message message = {""};
   struct frame_request request;
   enum h5_trouble trouble;
@@ -266,19 +267,19 @@ static bool find_sort(hid_t file, enum h5_sort *sort)
   return particles >= 0;
 }
 
-void sort_serve(struct apart *link, void *path)
+void sort_serve(struct apart *link)
 {
   struct message message = {""};
   enum h5_trouble trouble;
   bool sealed;
   unsigned failures = 0;
-  hid_t file = h5_open(path, false, &sealed, &trouble, &message);
+  hid_t file = h5_open(link->path, false, &sealed, &trouble, &message);
   apart_shut();
   h5_watch(&failures);
   enum h5_sort sort = H5_OTHER;
   if (file >= 0 && (!find_sort(file, &sort) || failures > 0)) {
     trouble = H5_DAMAGED;
-    message_set(&message, "%s: damaged: HDF5 cannot read some part of it", (const char *)path);
+    message_set(&message, "%s: damaged: HDF5 cannot read some part of it", link->path);
   }
   apart_put_verdict(link, (int)trouble, &message);
   if (trouble == H5_FINE)

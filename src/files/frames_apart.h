@@ -22,10 +22,10 @@ struct frame_moment {
   double edge[3];
 };
 
-/* The work of the process apart; path: const char *. */
-void frames_serve(struct apart *link, void *path);
+/* The work of the process apart, "frames". */
+void frames_serve(struct apart *link);
 
-/* The same for h5_find_sort: a verdict, and enum h5_sort. */
-void sort_serve(struct apart *link, void *path);
+/* The same for h5_find_sort, "sort": a verdict, and enum h5_sort. */
+void sort_serve(struct apart *link);
 
 #endif

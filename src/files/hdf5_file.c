@@ -1,6 +1,7 @@
 /* Files of HDF5: opened, made on disk or in memory, given room. */
 #include <errno.h>
 #include <fcntl.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -105,8 +106,12 @@ hid_t h5_create(const char *path)
 hid_t h5_create_in_memory(size_t bytes)
 {
   hid_t access = new_format();
+  /* HDF5 takes two files of one name for one file: another thread may have one open, too. A thread has one at a time.
+   */
+  char name[64];
+  snprintf(name, sizeof name, "memory of %p", (void *)name);
   H5Pset_fapl_core(access, bytes + 65536, false);
-  return create("memory", H5F_ACC_TRUNC, access);
+  return create(name, H5F_ACC_TRUNC, access);
 }
 
 /* H5Fget_file_image says how many bytes are in use (the memory is a multiple of the increment), but its copy is not

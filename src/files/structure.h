@@ -18,8 +18,8 @@ bool structure_write_particles(hid_t group, const struct model *model, bool solv
 /* Writes dataset `bonds` of pairs of vertices into a group. */
 bool structure_write_bonds(hid_t group, const struct model *model);
 
-/* True if the group's `bonds` are this model's. */
-bool structure_same_bonds(hid_t group, const struct model *model);
+/* True if these bonds, [model->bonds][2], are this model's. */
+bool structure_same_bonds(const int32_t *stored, const struct model *model);
 
 /* The same as read back, without a model. */
 struct structure {

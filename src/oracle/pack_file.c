@@ -6,6 +6,7 @@
 
 #include "files/apart.h"
 #include "files/hdf5.h"
+#include "files/reader.h"
 #include "oracle/pack.h"
 #include "oracle/pack_text.h"
 
@@ -197,12 +198,11 @@ static size_t bytes_of(const struct pack_table *t)
   return (size_t)t->rows * t->columns * sizeof(int64_t);
 }
 
-static void serve(struct apart *link, void *context)
+void pack_serve(struct apart *link)
 {
-  const char *path = context;
   struct pack pack = {0};
   struct message message = {""};
-  const bool ok = read_file(path, &pack, &message);
+  const bool ok = read_file(link->path, &pack, &message);
   const uint64_t count = pack.count;
   apart_put_verdict(link, ok ? 0 : 1, &message);
   if (!ok || !apart_put(link, &count, sizeof count))
@@ -243,7 +243,7 @@ static bool get_tables(struct apart *apart, struct pack *pack)
 static bool read_hdf5(const char *path, struct pack *pack, struct message *message)
 {
   struct apart apart;
-  if (!apart_start(&apart, path, serve, (void *)(uintptr_t)path, message))
+  if (!apart_start(&apart, path, "pack", message))
     return false;
   bool ok = apart_get_verdict(&apart, message) == 0;
   if (ok && !get_tables(&apart, pack))

@@ -26,7 +26,7 @@ struct plan {
   bool on, hit;
 };
 
-static struct plan *plan; /* shared with the processes that read files (files/apart.h) */
+static struct plan *plan; /* shared with the processes that read files (files/reader.h) */
 static FILE *bad;         /* the file that has an error */
 static bool held;         /* of this process alone */
 
@@ -61,12 +61,38 @@ static bool fails(enum inject_kind kind)
   return true;
 }
 
-__attribute__((constructor)) static void begin(void)
+#define PLAN "UNCROSS_FAULT_PLAN" /* the file that a parent shares with its readers */
+
+/* The plan of the process that started this one as its reader, or a new one. */
+static bool share_plan(void)
 {
-  void *shared = mmap(NULL, sizeof *plan, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  char name[] = "/dev/shm/uncross-faults-XXXXXX", path[64];
+  const char *parents = getenv(PLAN);
+  int fd = parents ? open(parents, O_RDWR | O_CLOEXEC) : -1;
+  const bool known = fd >= 0;
+  if (!known && (fd = mkstemp(name)) < 0)
+    abort();
+  if (!known && (unlink(name) != 0 || ftruncate(fd, sizeof *plan) != 0))
+    abort();
+  void *shared = mmap(NULL, sizeof *plan, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
   if (shared == MAP_FAILED)
     abort();
   plan = shared;
+  if (known) {
+    close(fd);
+    return true;
+  }
+  fcntl(fd, F_SETFD, FD_CLOEXEC); /* it stays open: readers open it by its name in /proc */
+  snprintf(path, sizeof path, "/proc/%d/fd/%d", (int)getpid(), fd);
+  setenv(PLAN, path, 1);
+  return false;
+}
+
+/* Before the constructor of tests/reader.c, which may not return. */
+__attribute__((constructor(101))) static void begin(void)
+{
+  if (share_plan())
+    return;
   const char *wish = getenv("UNCROSS_FAIL");
   for (int kind = 0; wish && kind < INJECT_KINDS; kind++) {
     size_t length = strlen(kind_names[kind]);
