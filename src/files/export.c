@@ -10,8 +10,10 @@
 #include "files/export_format.h"
 #include "files/snapshot.h"
 #include "scene/scene.h"
+#include "system/shear.h"
 
-static const struct export_format *const export_formats[] = {&export_xyz, &export_lammps, &export_vtf};
+static const struct export_format *const export_formats[] = {&export_xyz, &export_lammps, &export_lammps_dump,
+                                                             &export_vtf};
 enum { FORMATS = sizeof export_formats / sizeof export_formats[0] };
 
 static const struct export_format *find_format(const char *name, struct message *message)
@@ -90,12 +92,44 @@ static double fold(double x, double edge)
   return r < edge ? r : 0.0;
 }
 
-double export_coordinate(const struct export_view *v, uint32_t row, int axis, double *image)
+/* A frame stands at a whole step: two half steps each. */
+static struct export_cell cell_of(const struct export_view *v)
 {
-  const double x = v->frames->picture.position[3 * (size_t)row + (size_t)axis], edge = v->frames->picture.edge[axis];
-  const double folded = fold(x, edge);
-  *image = round((x - folded) / edge);
-  return v->wrapped ? folded : x;
+  const struct picture *p = &v->frames->picture;
+  const struct model *m = v->model;
+  struct export_cell c = {.edge = {p->edge[0], p->edge[1], p->edge[2]}};
+  for (int k = 0; k < 3; k++)
+    c.periodic[k] = m ? m->box.boundary[k] != BOUNDARY_WALL : !v->frames->about.closed[k];
+  c.leans = m && model_is_sheared(m);
+  if (!c.leans)
+    return c;
+  const double slid = (double)shear_offset(m, 2 * p->step) * LATTICE_UNIT;
+  c.tilt = slid > 0.5 * c.edge[0] ? slid - c.edge[0] : slid;
+  c.speed = shear_rate(m, shear_interval(m, 2 * p->step)) * c.edge[1];
+  return c;
+}
+
+void export_place(const struct export_view *v, uint32_t row, double x[3], double image[3])
+{
+  const struct export_cell *c = &v->cell;
+  for (int k = 0; k < 3; k++)
+    x[k] = v->frames->picture.position[3 * (size_t)row + (size_t)k], image[k] = 0.0;
+  for (int k = 2; k >= 0 && v->wrapped; k--) { /* x is last: it slides when y is folded */
+    const double begin = k == 0 ? c->tilt * (x[1] / c->edge[1]) : 0.0, folded = fold(x[k] - begin, c->edge[k]) + begin;
+    image[k] = c->periodic[k] ? round((x[k] - folded) / c->edge[k]) : 0.0;
+    x[k] = c->periodic[k] ? folded : x[k];
+    x[0] -= k == 1 ? image[1] * c->tilt : 0.0;
+  }
+}
+
+bool export_velocity(const struct export_view *v, uint32_t row, double u[3])
+{
+  const double *velocity = v->frames->picture.velocity;
+  double x[3], image[3];
+  export_place(v, row, x, image);
+  for (int k = 0; velocity && k < 3; k++)
+    u[k] = velocity[3 * (size_t)row + (size_t)k] - (k == 0 ? image[1] * v->cell.speed : 0.0);
+  return velocity != NULL;
 }
 
 void export_name(FILE *out, const char *name)
@@ -136,7 +170,7 @@ static bool choose(const struct frames *s, const struct export_options *options,
   return true;
 }
 
-static bool print_frames(struct frames *s, const struct export_format *format, const struct export_view *v, FILE *out,
+static bool print_frames(struct frames *s, const struct export_format *format, struct export_view *v, FILE *out,
                          struct message *message)
 {
   const struct export_options *options = v->options;
@@ -149,6 +183,7 @@ static bool print_frames(struct frames *s, const struct export_format *format, c
   for (;; frame += stride) {
     if (!fetch(s, frame, options, &fine, message))
       return false;
+    v->cell = cell_of(v);
     if (fine && printed++ == 0 && format->begin)
       format->begin(out, v);
     if (fine)
@@ -178,8 +213,11 @@ static int32_t *number_rows(struct export_view *v)
 {
   const uint32_t rows = v->frames->about.rows;
   int32_t *number = malloc((rows + (size_t)1) * sizeof *number);
+  v->solvent = true;
+  for (uint32_t row = 0; row < rows && !v->options->solvent; row++)
+    v->solvent = v->solvent && export_is_solvent(v, row);
   for (uint32_t row = 0; number && row < rows; row++)
-    number[row] = v->options->solvent || !export_is_solvent(v, row) ? (int32_t)v->shown++ : -1;
+    number[row] = v->solvent || !export_is_solvent(v, row) ? (int32_t)v->shown++ : -1;
   return number;
 }
 

@@ -1,5 +1,7 @@
-/* LAMMPS data: https://docs.lammps.org/read_data.html, atom_style molecular. Coordinates are always in the box, with
- * the images that unwrap them. Numbers count from 1. */
+/* LAMMPS data: https://docs.lammps.org/read_data.html, atom_style molecular; and its dump files:
+ * https://docs.lammps.org/dump.html, style custom. Data hold one frame with bonds and angles, a dump all frames; types
+ * and numbers are the same, so that programs read both together. Coordinates are always in the cell, with the images
+ * that unwrap them. Numbers count from 1. */
 #include <inttypes.h>
 #include <math.h>
 
@@ -105,14 +107,17 @@ static void print_head(FILE *out, const struct export_view *v, int32_t n)
   double mass[MOST_TYPES];
   int32_t odd;
   find_masses(v, mass, &odd);
+  const struct export_cell *c = &v->cell;
   const uint32_t bonds = count(v, has_bond), angles = count(v, has_angle);
-  fprintf(out, "# uncross: step %" PRIu64 ", time %.17g t0; units lj, atom_style molecular\n\n", p->step,
-          text_real(p->time));
+  fprintf(out, "# uncross: step %" PRIu64 ", time %.17g t0; units lj, atom_style molecular, boundary %c %c %c\n\n",
+          p->step, text_real(p->time), "fp"[c->periodic[0]], "fp"[c->periodic[1]], "fp"[c->periodic[2]]);
   fprintf(out, "%" PRIu32 " atoms\n%" PRIu32 " bonds\n%" PRIu32 " angles\n", v->shown, bonds, angles);
   fprintf(out, "%" PRId32 " atom types\n%" PRId32 " bond types\n%" PRId32 " angle types\n\n", n, bonds > 0 ? n : 0,
           angles > 0 ? n : 0);
   for (int k = 0; k < 3; k++)
-    fprintf(out, "0 %.17g %clo %chi\n", p->edge[k], "xyz"[k], "xyz"[k]);
+    fprintf(out, "0 %.17g %clo %chi\n", c->edge[k], "xyz"[k], "xyz"[k]);
+  if (c->leans)
+    fprintf(out, "%.17g 0 0 xy xz yz\n", c->tilt);
   fputs("\nMasses\n\n", out);
   for (int32_t type = 1; type <= n; type++) {
     fprintf(out, "%" PRId32 " %.17g", type, mass[type - 1]);
@@ -140,27 +145,28 @@ static void print_coefficients(FILE *out, const struct export_view *v, int32_t n
   }
 }
 
+static int32_t molecule_of(const struct export_view *v, uint32_t row)
+{
+  return export_is_solvent(v, row) ? 0 : v->place[row].fiber + 1;
+}
+
 static void print_atoms(FILE *out, const struct export_view *v)
 {
-  const double *velocity = v->frames->picture.velocity;
+  double x[3], image[3], u[3];
   fputs("\nAtoms # molecular\n\n", out);
   for (uint32_t row = 0; row < v->frames->about.rows; row++) {
-    double x[3], image[3];
     if (v->number[row] < 0)
       continue;
-    for (int k = 0; k < 3; k++)
-      x[k] = export_coordinate(v, row, k, &image[k]);
-    const int32_t molecule = export_is_solvent(v, row) ? 0 : v->place[row].fiber + 1;
-    fprintf(out, "%" PRId32 " %" PRId32 " %" PRId32 " %.17g %.17g %.17g %.0f %.0f %.0f\n", v->number[row] + 1, molecule,
-            species_of(v, row) + 1, x[0], x[1], x[2], image[0], image[1], image[2]);
+    export_place(v, row, x, image);
+    fprintf(out, "%" PRId32 " %" PRId32 " %" PRId32 " %.17g %.17g %.17g %.0f %.0f %.0f\n", v->number[row] + 1,
+            molecule_of(v, row), species_of(v, row) + 1, x[0], x[1], x[2], image[0], image[1], image[2]);
   }
-  if (!velocity)
+  if (!v->frames->picture.velocity)
     return;
   fputs("\nVelocities\n\n", out);
   for (uint32_t row = 0; row < v->frames->about.rows; row++)
-    if (v->number[row] >= 0)
-      fprintf(out, "%" PRId32 " %.17g %.17g %.17g\n", v->number[row] + 1, velocity[3 * (size_t)row],
-              velocity[3 * (size_t)row + 1], velocity[3 * (size_t)row + 2]);
+    if (v->number[row] >= 0 && export_velocity(v, row, u))
+      fprintf(out, "%" PRId32 " %.17g %.17g %.17g\n", v->number[row] + 1, u[0], u[1], u[2]);
 }
 
 static void print_links(FILE *out, const struct export_view *v)
@@ -191,4 +197,42 @@ static void print_frame(FILE *out, const struct export_view *v)
   print_links(out, v);
 }
 
+/* --- dump ------------------------------------------------------------------------------------------------------- */
+
+/* Of a cell that leans the bounds are those of the box around it. */
+static void print_bounds(FILE *out, const struct export_cell *c)
+{
+  static const char *const words[] = {"ff", "pp"};
+  fprintf(out, "ITEM: BOX BOUNDS%s", c->leans ? " xy xz yz" : "");
+  for (int k = 0; k < 3; k++)
+    fprintf(out, " %s", words[c->periodic[k]]);
+  fputc('\n', out);
+  for (int k = 0; k < 3; k++) {
+    const double tilt = k == 0 ? c->tilt : 0.0;
+    fprintf(out, "%.17g %.17g", fmin(0.0, tilt), c->edge[k] + fmax(0.0, tilt));
+    if (c->leans)
+      fprintf(out, " %.17g", tilt);
+    fputc('\n', out);
+  }
+}
+
+static void print_dump(FILE *out, const struct export_view *v)
+{
+  double x[3], image[3], u[3];
+  fprintf(out, "ITEM: TIMESTEP\n%" PRIu64 "\nITEM: NUMBER OF ATOMS\n%" PRIu32 "\n", v->frames->picture.step, v->shown);
+  print_bounds(out, &v->cell);
+  fprintf(out, "ITEM: ATOMS id mol type x y z ix iy iz%s\n", v->frames->picture.velocity ? " vx vy vz" : "");
+  for (uint32_t row = 0; row < v->frames->about.rows; row++) {
+    if (v->number[row] < 0)
+      continue;
+    export_place(v, row, x, image);
+    fprintf(out, "%" PRId32 " %" PRId32 " %" PRId32 " %.17g %.17g %.17g %.0f %.0f %.0f", v->number[row] + 1,
+            molecule_of(v, row), species_of(v, row) + 1, x[0], x[1], x[2], image[0], image[1], image[2]);
+    if (export_velocity(v, row, u))
+      fprintf(out, " %.17g %.17g %.17g", u[0], u[1], u[2]);
+    fputc('\n', out);
+  }
+}
+
 const struct export_format export_lammps = {"lammps", "LAMMPS data", true, true, allows, NULL, print_frame};
+const struct export_format export_lammps_dump = {"lammps-dump", "a LAMMPS dump", false, true, NULL, NULL, print_dump};

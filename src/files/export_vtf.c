@@ -1,5 +1,6 @@
 /* VTF, for VMD: https://github.com/olenz/vtfplugin/wiki/VTF-format. Atoms and bonds once, then coordinates. */
 #include <inttypes.h>
+#include <math.h>
 
 #include "base/text.h"
 #include "files/export_format.h"
@@ -7,15 +8,21 @@
 #define SOLVENT_RADIUS 0.1 /* a0, as shown */
 #define VERTEX_RADIUS 0.25 /* a0: a_h of the paper's Table II */
 
-static void print_cell(FILE *out, const struct picture *p)
+#define DEGREES 57.295779513082321 /* in a radian */
+
+/* Lengths of the edges; and the angles between them, where they are not right ones. */
+static void print_cell(FILE *out, const struct export_cell *c)
 {
-  fprintf(out, "unitcell %.17g %.17g %.17g\n", p->edge[0], p->edge[1], p->edge[2]);
+  fprintf(out, "unitcell %.17g %.17g %.17g", c->edge[0], hypot(c->tilt, c->edge[1]), c->edge[2]);
+  if (c->leans)
+    fprintf(out, " 90 90 %.17g", DEGREES * atan2(c->edge[1], c->tilt));
+  fputc('\n', out);
 }
 
 static void print_structure(FILE *out, const struct export_view *v)
 {
   const struct structure *is = &v->frames->structure;
-  print_cell(out, &v->frames->picture);
+  print_cell(out, &v->cell);
   for (uint32_t row = 0; row < v->frames->about.rows; row++) {
     if (v->number[row] < 0)
       continue;
@@ -34,13 +41,14 @@ static void print_structure(FILE *out, const struct export_view *v)
 static void print_frame(FILE *out, const struct export_view *v)
 {
   const struct picture *p = &v->frames->picture;
-  double image;
+  double x[3], image[3];
   fprintf(out, "\ntimestep ordered\n# step %" PRIu64 " time %.17g\n", p->step, text_real(p->time));
-  print_cell(out, p);
+  print_cell(out, &v->cell);
   for (uint32_t row = 0; row < v->frames->about.rows; row++)
-    if (v->number[row] >= 0)
-      fprintf(out, "%.17g %.17g %.17g\n", text_real(export_coordinate(v, row, 0, &image)),
-              text_real(export_coordinate(v, row, 1, &image)), text_real(export_coordinate(v, row, 2, &image)));
+    if (v->number[row] >= 0) {
+      export_place(v, row, x, image);
+      fprintf(out, "%.17g %.17g %.17g\n", text_real(x[0]), text_real(x[1]), text_real(x[2]));
+    }
 }
 
 const struct export_format export_vtf = {"vtf", "VTF", false, false, NULL, print_structure, print_frame};

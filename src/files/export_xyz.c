@@ -18,15 +18,17 @@ static void print_comment(FILE *out, const struct export_view *v)
 {
   const struct frames *s = v->frames;
   const struct picture *p = &s->picture;
+  const struct export_cell *c = &v->cell;
   const char *between = "";
-  fprintf(
-      out,
-      "Lattice=\"%.17g 0 0 0 %.17g 0 0 0 %.17g\" Properties=species:S:1:pos:R:3%s:id:I:1:next:I:1:fiber:I:1:place:I:1",
-      p->edge[0], p->edge[1], p->edge[2], p->velocity ? ":velo:R:3" : "");
-  fprintf(out, " pbc=\"T T T\" Step=%" PRIu64 " Time=%.17g kinds=\"", p->step, text_real(p->time));
+  fprintf(out,
+          "Lattice=\"%.17g 0 0 %.17g %.17g 0 0 0 %.17g\" "
+          "Properties=species:S:1:pos:R:3%s:id:I:1:next:I:1:fiber:I:1:place:I:1",
+          c->edge[0], c->tilt, c->edge[1], c->edge[2], p->velocity ? ":velo:R:3" : "");
+  fprintf(out, " pbc=\"%c %c %c\" Step=%" PRIu64 " Time=%.17g kinds=\"", "FT"[c->periodic[0]], "FT"[c->periodic[1]],
+          "FT"[c->periodic[2]], p -> step, text_real(p->time));
   for (int k = 0; k < s->structure.kinds; k++) {
     bool is_solvent = structure_is_solvent(&s->structure, k);
-    if (is_solvent && !v->options->solvent)
+    if (is_solvent && !v->solvent)
       continue;
     fprintf(out, "%s%s:", between, is_solvent ? SOLVENT_SYMBOL : symbol_of(k));
     export_name(out, s->structure.name[k]);
@@ -38,13 +40,14 @@ static void print_comment(FILE *out, const struct export_view *v)
 static void print_row(FILE *out, const struct export_view *v, uint32_t row)
 {
   const struct structure *is = &v->frames->structure;
-  const double *velocity = v->frames->picture.velocity;
-  double image;
+  double x[3], image[3], u[3];
   fputs(export_is_solvent(v, row) ? SOLVENT_SYMBOL : symbol_of(is->species[row]), out);
+  export_place(v, row, x, image);
+  const bool has_velocity = export_velocity(v, row, u);
   for (int k = 0; k < 3; k++)
-    fprintf(out, " %.17g", text_real(export_coordinate(v, row, k, &image)));
-  for (int k = 0; velocity && k < 3; k++)
-    fprintf(out, " %.17g", text_real(velocity[3 * (size_t)row + (size_t)k]));
+    fprintf(out, " %.17g", text_real(x[k]));
+  for (int k = 0; has_velocity && k < 3; k++)
+    fprintf(out, " %.17g", text_real(u[k]));
   const struct place none = {-1, -1}, at = row < is->particles ? v->place[row] : none;
   fprintf(out, " %" PRIu32 " %" PRId32 " %" PRId32 " %" PRId32 "\n", row, row < is->particles ? is->next[row] : -1,
           at.fiber, at.along);

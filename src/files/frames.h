@@ -25,6 +25,7 @@ struct frames_about {
   uint64_t stream; /* of its random numbers */
   uint64_t frames;
   uint32_t rows;                     /* particles of a frame */
+  bool closed[3];                    /* the file says that its box is not periodic along this axis */
   struct checkpoint_summary summary; /* of a checkpoint */
   char creator[128], version[64], author[128];
 };

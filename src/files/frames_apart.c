@@ -55,6 +55,31 @@ static void read_stream(hid_t file, struct frames_about *about)
   H5Eclear2(H5E_DEFAULT);
 }
 
+/* True if the attribute holds words of fixed length: only these are read. */
+static bool has_words(hid_t object, const char *name)
+{
+  hid_t attribute = object >= 0 && H5Aexists(object, name) > 0 ? H5Aopen(object, name, H5P_DEFAULT) : -1;
+  hid_t stored = attribute < 0 ? -1 : H5Aget_type(attribute);
+  const bool ok = stored >= 0 && H5Tget_class(stored) == H5T_STRING && H5Tis_variable_str(stored) == 0;
+  h5_close(stored);
+  h5_close(attribute);
+  return ok;
+}
+
+static void read_boundary(const struct trajectory *t, struct frames_about *about)
+{
+  enum { LENGTH = 16 };
+  char word[3][LENGTH] = {""};
+  hid_t box = h5_open_group(t->group, "box"), type = H5Tcopy(H5T_C_S1);
+  H5Tset_size(type, LENGTH);
+  const bool known = has_words(box, "boundary") && h5_get(box, "boundary", type, 3, word);
+  for (int k = 0; k < 3; k++)
+    about->closed[k] = known && strncmp(word[k], "none", LENGTH) == 0;
+  h5_close(type);
+  h5_close(box);
+  H5Eclear2(H5E_DEFAULT);
+}
+
 static bool open_structure(struct source *s, hid_t particles, hid_t connectivity, uint32_t rows,
                            struct message *message)
 {
@@ -89,6 +114,8 @@ static bool open_trajectory(struct source *s, struct message *message)
     read_stream(t->file, &s->about);
   if (ok)
     foreign_look(t, s->structure.mass, &s->about);
+  if (ok)
+    read_boundary(t, &s->about);
   return ok;
 }
 

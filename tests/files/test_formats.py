@@ -245,7 +245,7 @@ run 0
 
     def test_formats(self):
         self.assertEqual(self.export(), self.export("--format", "xyz"))
-        self.assertIn("--format pdb: no such format; there are xyz, lammps, vtf", self.export("--format", "pdb", code=2))
+        self.assertIn("--format pdb: no such format; there are xyz, lammps, lammps-dump, vtf", self.export("--format", "pdb", code=2))
 
     def test_checkpoint_between_collisions(self):
         """What is between collisions flies as the scene says, with springs and in the shear, from a checkpoint as in the frame of the same step."""
