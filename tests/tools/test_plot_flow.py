@@ -17,7 +17,7 @@ from support import TOP, UNCROSS  # noqa: E402
 
 os.environ["UNCROSS"] = str(UNCROSS)
 sys.path.insert(0, str(TOP / "python"))
-from uncross_plot import flow, page, runs  # noqa: E402
+from uncross_plot import compare, flow, page, runs  # noqa: E402
 
 ETA, SLIP, EDGE, RHO = 30.0, 0.4, 20, 10.0
 SOLVENT = """box: [8, 20, 1]
@@ -193,6 +193,21 @@ fibers: [{name: point, count: 8000, vertices: 1, mass: 5}]
         told = str(dict(page.front(run))["What came out"])
         self.assertRegex(told, r"Viscosity 30\.\d* ± 0\.\d+ m/a0 t0, 2\.682\d ± 0\.0011 times that of the solvent alone")
         self.assertNotIn("theory 11", told)
+
+    def test_two_flows(self):
+        """The comparison has the table of the flow: viscosities of 30 and 33, errors from the scatter of the stress."""
+        with tempfile.TemporaryDirectory() as folder:
+            found = []
+            for name, xy in (("a", 3.0), ("b", 3.3)):
+                (pathlib.Path(folder) / name).mkdir()
+                tell(pathlib.Path(folder) / name, SOLVENT % ("", "shear: {rate: 0.1}"), profile(lambda y: 0.1 * (y - EDGE / 2)),
+                     {**stress(0.0), "sigma_xy": [xy + 0.01 * (-1)**k for k in range(64)]})
+                found.append(runs.read(f"{folder}/{name}"))
+            rows = {row[0]: row for row in compare.flow_table(*found, ("a", "b")).blocks[0].rows}
+        error = 0.01 * math.sqrt(64 / 63) / math.sqrt(64) / 0.1
+        self.assertEqual(rows["viscosity"][1:3], (page.with_error(30.0, error), page.with_error(33.0, error)))
+        self.assertEqual(rows["viscosity"][4], f"{3.0 / (error * math.sqrt(2.0)):+.1f}")
+        self.assertEqual(compare.flow_table(found[0], runs.Run("x"), ("a", "x")).blocks, [])
 
     def test_a_profile_that_has_not_become_steady(self):
         """tau = L^2/(pi^2 nu), nu = 37.62/10 of check: 10.8 t0. A run of 20 t0 still has 2 * exp(-2)... of the start in its mean; one of 500 t0
