@@ -4,7 +4,7 @@ import math
 import os
 
 
-from . import columns, page, runs, style, tables
+from . import columns, flow, page, runs, style, tables
 
 DOUBT = 4.0  # a difference of more errors than this is named on the front page
 
@@ -57,10 +57,9 @@ def _section(name, ours, theirs, names):
         words = f"{names[0]}: filled or full; {names[1]}: open or dashed. Below: {names[1]} minus {names[0]}"
         words += (", over its error; dashed: two errors." if ours.has_errors and theirs.has_errors else ".")
         words += f" {shared} rows are at the same place."
-        for number, svg in enumerate(tables.compare(ours, theirs, names)):
-            title = columns.title(name) + (" (continued)" if number else "")
-            alt = f"{columns.title(name)} of {names[0]} and {names[1]}, and their difference."
-            blocks.append(page.Figure(title, style.data_uri(svg), alt, words, name))
+        panels = [(style.data_uri(svg), False) for svg in tables.compare(ours, theirs, names)]
+        alt = f"{columns.title(name)} of {names[0]} and {names[1]}, and their difference."
+        blocks += [page.Figure(columns.title(name), "", alt, words, name, panels=panels)] if panels else []
     else:
         svg = tables.compare_rows(ours, theirs, names)
         blocks += [page.Figure(columns.title(name), style.data_uri(svg), f"{columns.title(name)}: differences over their errors.",
@@ -71,6 +70,23 @@ def _section(name, ours, theirs, names):
         blocks.append(page.Rows(f"{columns.title(name)}, in numbers", rows,
                                 ("", "symbol", names[0], names[1], "difference / error", ""), caption, (2, 3, 4), "" if blocks else name))
     return page.Section(columns.title(name), blocks), found
+
+
+def flow_table(a, b, names):
+    """What both have of a flow (flow.py), side by side; a section without blocks if one of them has no flow."""
+    ours, theirs = (flow.Flow(run).measured() for run in (a, b))
+    rows, left = [], list(theirs)
+    for one in ours:
+        other = next((m for m in left if m.name == one.name), None)  # of two viscosities the first goes with the first
+        if other is None:
+            continue
+        left.remove(other)
+        error = math.hypot(one.error, other.error)
+        rows.append((one.name, page.with_error(one.value, one.error), page.with_error(other.value, other.error), one.unit,
+                     f"{(other.value - one.value) / error:+.1f}" if error > 0 else "", one.source.partition(";")[0]))
+    return page.Section("Flow", [page.Rows("The flow, measured", rows, ("", *names, "unit", "difference / error", "from"),
+                                           "Of profile.csv and stress.csv. Errors of fits are bounds, so that differences over them are "
+                                           "too small rather than too large.", (1, 2, 4))] if rows else [])
 
 
 def page_of(a, b, movie=False):
@@ -96,7 +112,7 @@ def page_of(a, b, movie=False):
     pictures = [page.picture_of(run.frames, movie and run.moving) for run in (a, b) if run.frames and run.frames.structure.kinds]
     for section, name in zip(pictures, [n for n, run in zip(names, (a, b)) if run.frames is not None]):
         section.title = f"Fibers of {name}"
-    return page.render(f"{names[0]} and {names[1]}", front, pictures + sections + [
+    return page.render(f"{names[0]} and {names[1]}", front, pictures + sections + [flow_table(a, b, names)] + [
         page.Section(f"Provenance of {name}", page.provenance(run)) for name, run in zip(names, (a, b))])
 
 

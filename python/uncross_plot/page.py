@@ -23,6 +23,7 @@ class Figure:
     hollow: tuple = ()  # numbers of keys
     round: tuple = ()
     width: int = 0  # pixels, at most; 0: that of the page
+    panels: list = dataclasses.field(default_factory=list)  # (address, whether it is wide): in place of src
 
 
 @dataclasses.dataclass
@@ -170,8 +171,8 @@ def figure_of(run, table):
     if table.rows == 0:
         return [Figure(columns.title(table.name), style.data_uri(tables.nothing("No row yet")), alt, words, table.name)]
     if table.rows > 1:
-        svg = tables.figure(table, guides(run, kind) if name == "dynamics" else flow_guides(run) if name == "profile" else ())
-        return [Figure(columns.title(table.name), style.data_uri(svg), alt, words, table.name)]
+        drawn = tables.figure(table, guides(run, kind) if name == "dynamics" else flow_guides(run) if name == "profile" else ())
+        return [Figure(columns.title(table.name), "", alt, words, table.name, panels=[(style.data_uri(svg), wide) for svg, wide in drawn])]
     exact = run.exact(table)
     rows = []
     for c in shown:

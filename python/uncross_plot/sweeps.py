@@ -101,7 +101,7 @@ def figure(rows, keys, name):
     places, words = _places(rows, keys[0])
     others = list(dict.fromkeys(tuple(row[key] for key in keys[1:]) for row in rows))
     with style.styled():
-        drawing, axes = style.plain(6.6, 3.4)
+        drawing, axes = style.plain(4.4, 3.0)
         for number, other in enumerate(others[:MOST_SERIES]):
             mine = [row for row in rows if tuple(row[key] for key in keys[1:]) == other and math.isfinite(_number(row[name]))]
             x = [places[row[keys[0]]] for row in mine]

@@ -9,7 +9,6 @@ from uncross_sweep.opening import reading
 
 from . import columns, style
 
-WIDE = 3  # panels in a row of a comparison
 EXACT = {"l": ("mean bond length", 1), "cos": ("mean cosine of a bend", 1),  # statics: rows of `uncross check`, and powers
          "lp": ("effective persistence length", 1), "Ree2": ("end-to-end distance, rms", 2)}
 
@@ -114,7 +113,7 @@ def _draw(axes, table, panel, guides=()):
     axes.set(title=panel.title, xlabel=columns.LAG_LABEL if panel.log_x else columns.column(table.x).label,
              ylabel=panel.y or columns.column(panel.columns[0]).label)
     if len(panel.columns) > 1 or len(axes.get_legend_handles_labels()[0]) > 1:
-        style.legend(axes, fontsize=7.5, loc="upper left", bbox_to_anchor=(-0.02, -0.2), borderaxespad=0.0)
+        style.legend(axes, fontsize=7.5, loc="upper left", bbox_to_anchor=(-0.02, -0.26), borderaxespad=0.0)
 
 
 def _alike(table, names):
@@ -142,34 +141,31 @@ def _guide(axes, panel, guides, x):
             style.theory(axes, places[seen], y[seen], label=label, linestyle=stroke)
 
 
-def figure(table, guides=(), wide=7.0):
-    """SVG of all panels of a table of several rows."""
+NARROW, WIDE = 3.4, 4.4  # inches: letters of 9 points can be read where a panel is as wide as a telephone
+
+
+def figure(table, guides=()):
+    """[(SVG, whether it is wide)] of the panels of a table of several rows, each a picture of its own: pages put them beside
+    each other, or below each other where there is no room."""
     shown = columns.panels(table.name, [c for c in table.values if c not in table.empty])
     if not shown:
-        return nothing("No numbers: nan in every row")
-    rows = _rows(shown)
-    heights = [3.9 if row[0].wide else 2.7 for row in rows]  # inches: those of dynamics together fit on a sheet
+        return [(nothing("No numbers: nan in every row"), True)]
+    narrow = [panel for panel in shown if not panel.wide]
+    alone = narrow[:len(narrow) % 2]
+    drawn = []
     with style.styled():
-        drawing = style.pyplot.figure(figsize=(wide, sum(heights)))
-        grid = drawing.add_gridspec(len(rows), 2, height_ratios=heights)
-        for place, row in enumerate(rows):
-            for side, panel in enumerate(row):
-                _draw(drawing.add_subplot(grid[place, :] if len(row) == 1 else grid[place, side]), table, panel, guides)
-        return style.svg(drawing)
-
-
-def _rows(shown):
-    """Panels as they stand in rows: wide ones and one that is left over alone, others in pairs."""
-    narrow = [p for p in shown if not p.wide]
-    odd = len(narrow) % 2
-    return [[p] for p in shown if p.wide] + [[p] for p in narrow[:odd]] + [narrow[k:k + 2] for k in
-                                                                          range(odd, len(narrow), 2)]
+        for panel in [p for p in shown if p.wide] + narrow:
+            wide = panel.wide or panel in alone
+            drawing, axes = style.plain(WIDE if wide else NARROW, 3.0 if wide else 2.7)
+            _draw(axes, table, panel, guides)
+            drawn.append((style.svg(drawing), wide))
+    return drawn
 
 
 def nothing(text):
     """SVG that says why there is no figure."""
     with style.styled():
-        drawing, axes = style.plain(7.0, 0.7)
+        drawing, axes = style.plain(WIDE, 0.7)
         axes.set_axis_off()
         axes.text(0.5, 0.5, text, ha="center", va="center", color=style.PALE)
         return style.svg(drawing)
@@ -189,7 +185,7 @@ def single_row(table, exact):
     if not names:
         return None
     with style.styled():
-        drawing, axes = style.plain(7.0, 0.6 + 0.34 * max(3, len(names)))
+        drawing, axes = style.plain(WIDE, 0.6 + 0.34 * max(3, len(names)))
         axes.axvline(0.0, color=style.INK, linewidth=0.8)
         for place, name in enumerate(reversed(names)):
             value, error = table.data[name][0], table.errors(name)[0]
@@ -260,19 +256,15 @@ def summary(a, b, name):
 
 
 def compare(a, b, names):
-    """SVGs that hold two tables of several rows: for each column both, and below the difference over its error."""
+    """SVGs that hold two tables of several rows: for each column both, and below the difference over its error. The first of
+    them names the runs."""
     shown = [(panel, c) for panel in columns.panels(a.name, [v for v in a.values if v in b.values])
              for c in panel.columns if numpy.isfinite(a.data[c]).any() or numpy.isfinite(b.data[c]).any()]
     pictures = []
     with style.styled():
-        for start in range(0, len(shown), WIDE):
-            row = shown[start:start + WIDE]
-            drawing, grid = style.pyplot.subplots(2, WIDE, figsize=(7.4, 3.7), sharex="col",
-                                                  gridspec_kw={"height_ratios": [1.0, 0.4]})
-            for unused in grid[:, len(row):].flat:
-                unused.remove()
-            for axes, below, (panel, name) in zip(*grid, row):
-                _draw_pair(axes, below, a, b, panel, name, names if name == row[0][1] else None)
+        for number, (panel, name) in enumerate(shown):
+            drawing, grid = style.pyplot.subplots(2, 1, figsize=(NARROW, 3.7), sharex="col", gridspec_kw={"height_ratios": [1.0, 0.4]})
+            _draw_pair(*grid, a, b, panel, name, None if number else names)
             pictures.append(style.svg(drawing))
     return pictures
 
@@ -312,7 +304,7 @@ def compare_rows(a, b, names):
     if not told:
         return None
     with style.styled():
-        drawing, axes = style.plain(7.0, 0.6 + 0.34 * max(3, len(told)))
+        drawing, axes = style.plain(WIDE, 0.6 + 0.34 * max(3, len(told)))
         for z in (-2.0, 0.0, 2.0):
             axes.axvline(z, color=style.PALE if z else style.INK, linewidth=0.8, linestyle=(0, (4, 3)) if z else "-")
         style.points(axes, [z for _, z in reversed(told)], range(len(told)), None, 3)
