@@ -21,27 +21,31 @@ gives() { # gives CODE TEXT PROGRAM ARGUMENTS ...: the exit code, and a line of 
   ok $? "${*//"$dir"\//}: $code, $text"
 }
 
-mkdir -p "$dir/tree/build/other" "$dir/tree/tools" "$dir/prefix/bin" "$dir/prefix/libexec/uncross" "$dir/alone/bin"
-for place in tree/build tree/build/other prefix/bin alone/bin; do cp "$uncross" "$dir/$place/uncross"; done
+# A build folder has its own libexec, an installed program that of its prefix. What else stands beside a program is nobody's.
+mkdir -p "$dir"/{tree/build/libexec,tree/tools,tree/bin/libexec,tree/libexec/uncross,prefix/bin,prefix/libexec/uncross,alone/bin,libexec/uncross}
+for place in tree/build tree/bin tree/tools prefix/bin alone/bin; do cp "$uncross" "$dir/$place/uncross"; done
 # shellcheck disable=SC2016 # the script expands it
 script='#!/bin/sh
 echo "$UNCROSS" "$@" /
 exit 7'
-echo "$script" >"$dir/tree/tools/uncross-plot"
-echo "$script" >"$dir/prefix/libexec/uncross/uncross-plot"
-chmod +x "$dir/tree/tools/uncross-plot" "$dir/prefix/libexec/uncross/uncross-plot"
+for place in tree/build/libexec tree/bin/libexec prefix/libexec/uncross; do echo "$script" >"$dir/$place/uncross-plot"; done
+for place in tree/tools tree/libexec/uncross libexec/uncross tree; do echo 'echo planted' >"$dir/$place/uncross-plot"; done
+find "$dir" -name uncross-plot -exec chmod +x {} +
 
 gives 7 "$dir/tree/build/uncross one two words /" "$dir/tree/build/uncross" plot one 'two words'
-gives 7 "$dir/tree/build/other/uncross --movie --out=x one /" "$dir/tree/build/other/uncross" plot one --movie --out=x
+gives 7 "$dir/tree/bin/uncross --movie --out=x one /" "$dir/tree/bin/uncross" plot one --movie --out=x
 gives 7 "$dir/prefix/bin/uncross --compare -- one -two /" "$dir/prefix/bin/uncross" plot --compare -- one -two
 ln -s "$dir/prefix/bin/uncross" "$dir/alone/link"
 gives 7 "$dir/prefix/bin/uncross one /" "$dir/alone/link" plot one
-gives 1 "uncross: plot: there is no program uncross-plot in ../libexec/uncross or ../tools beside this one" \
-  "$dir/alone/bin/uncross" plot one
+none="uncross: plot: there is no program uncross-plot: make puts it into libexec/ beside the program, make install into ../libexec/uncross"
+gives 1 "$none" "$dir/alone/bin/uncross" plot one
+gives 1 "$none" "$dir/tree/tools/uncross" plot one
+rm "$dir/tree/build/libexec/uncross-plot"
+gives 1 "$none" "$dir/tree/build/uncross" plot one
+cp "$dir/prefix/libexec/uncross/uncross-plot" "$dir/tree/build/libexec/"
 chmod -x "$dir/prefix/libexec/uncross/uncross-plot"
-gives 1 "uncross: plot: there is no program uncross-plot in ../libexec/uncross or ../tools beside this one" \
-  "$dir/prefix/bin/uncross" plot one
-sed -i '1s|.*|#!/nowhere/python3|' "$dir/tree/tools/uncross-plot"
+gives 1 "$none" "$dir/prefix/bin/uncross" plot one
+sed -i '1s|.*|#!/nowhere/python3|' "$dir/tree/build/libexec/uncross-plot"
 "$dir/tree/build/uncross" plot one >"$dir/out" 2>&1
 [ $? = 1 ] && grep -qF "there is no /usr/bin/python3; it comes with \`tools/install-dependencies plot\`" "$dir/out"
 ok $? "an interpreter that is not there: 1, and the command that installs it"
