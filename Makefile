@@ -86,7 +86,14 @@ help:
 
 TOP := $(BUILD)/src/cli/main.o
 
-$(BUILD)/uncross: $(TOP) $(LIBRARY)
+# Commands that other programs do: src/cli/outer.c looks for them beside the program.
+OUTER   := uncross-plot uncross-sweep
+HELPERS := $(OUTER:%=$(BUILD)/libexec/%)
+$(HELPERS): $(BUILD)/libexec/%:
+	@mkdir -p $(@D)
+	@ln -sfn '$(CURDIR)/tools/$*' $@
+
+$(BUILD)/uncross: $(TOP) $(LIBRARY) | $(HELPERS)
 	@echo '  LD $@'
 	@$(CC) $(ALL_CFLAGS) $(HARDEN_LINKED) $^ $(LIBS) -o $@
 
@@ -191,8 +198,6 @@ force:
 DOCUMENTS := $(shell find docs scenes examples -type f -not -path '*/.*' -not -name '*.pyc' 2>/dev/null)
 # What `uncross oracle check` holds a port against.
 REFERENCE := $(wildcard $(foreach n,pack.h5 pack.txt.gz start.h5 start.txt.gz trace.csv yaml,reference-data/*.$(n) reference-data/flow/*.$(n) reference-data/dumbbells/*.$(n) reference-data/media/*.$(n) reference-data/tubes/*.$(n) reference-data/beads/*.$(n)))
-# Commands that other programs do: src/cli/outer.c finds them.
-OUTER := uncross-plot uncross-sweep
 define INSTALLED
 755 $(BUILD)/uncross bin/uncross
 $(foreach p,$(OUTER),755 tools/$(p) libexec/uncross/$(p)

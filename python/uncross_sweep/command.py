@@ -5,7 +5,7 @@ import os
 import pathlib
 import sys
 
-from . import averages, grid, jobs, slurm
+from . import averages, escape, grid, jobs, slurm
 
 DONE, BAD_INPUT, NOT_WRITTEN = 0, 2, 4
 
@@ -42,7 +42,7 @@ def tell_warnings(sweep):
     told = collections.Counter(warning for point in sweep.points for warning in point.warnings)
     for warning, count in told.items():
         where = "" if len(sweep.points) == 1 else f" ({count} of {len(sweep.points)} points)"
-        print(f"uncross: warning: {warning}{where}", file=sys.stderr)
+        print(f"uncross: warning: {escape.shown(warning)}{where}", file=sys.stderr)
 
 
 def check_folder(sweep, runs, resume):
@@ -94,7 +94,7 @@ def run_all(sweep, options):
         done = write_results(sweep, runs)
     failed = [run for run in runs if run.code not in (None, 0, jobs.INTERRUPTED) and not (pool.stopped_by and run.code < 0)]
     if not options.quiet:
-        say(f"{done} of {len(runs)} runs finished\nresults in {sweep.out}/summary.csv")
+        say(f"{done} of {len(runs)} runs finished\nresults in {escape.shown(sweep.out)}/summary.csv")
         if done < len(runs):
             say("go on with the same command and --resume")
     return abs(failed[0].code) if failed else DONE if done == len(runs) else jobs.INTERRUPTED
@@ -126,5 +126,5 @@ def main(words):
         code, text = NOT_WRITTEN, trouble
         if isinstance(trouble, OSError) and trouble.filename is not None:
             text = f"{trouble.filename}: {trouble.strerror}"
-    print(f"uncross: {text}", file=sys.stderr)
+    print(f"uncross: {escape.shown(text)}", file=sys.stderr)
     return code

@@ -6,6 +6,7 @@ import sys
 
 import numpy
 
+from . import escape
 from .opening import read_text, write_text
 
 
@@ -43,7 +44,7 @@ def take_lock(file, how, what):
     except BlockingIOError:
         raise
     except OSError as error:
-        print(f"uncross: {file.name}: locks cannot be had here ({error.strerror}): see to it yourself that no other process "
+        print(f"uncross: {escape.shown(file.name)}: locks cannot be had here ({error.strerror}): see to it yourself that no other process "
               f"{what}", file=sys.stderr, flush=True)
 
 

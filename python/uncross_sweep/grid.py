@@ -5,8 +5,9 @@ import itertools
 import os
 import pathlib
 import re
-import shlex
 import subprocess
+
+from . import escape
 
 MOST_RUNS = 1000000
 MOST_NAME = 120  # characters of a point's folder
@@ -109,7 +110,7 @@ class Sweep:
         """Asks `uncross check` about each point. Refused, with its message, if a scene cannot be read."""
         for point in self.points:
             steps = [] if self.steps is None else [f"steps={self.steps}"]
-            words = [self.uncross, "check", self.scene, *self.settings(point, steps)]
+            words = [self.uncross, "check", escape.path(self.scene), *self.settings(point, steps)]
             done = subprocess.run(words, capture_output=True, text=True, errors="replace", check=False)
             if done.returncode != 0:
                 raise Refused(done.stderr.strip().removeprefix("uncross: ") or f"check ends with {done.returncode}")
@@ -161,11 +162,11 @@ class Run:
         """Its words, without --resume."""
         s = self.sweep
         steps = [] if s.steps is None else ["--steps", str(s.steps)]
-        return [s.uncross, "run", s.scene, "--out", str(self.folder), "--seed", str(self.seed), *steps,
+        return [s.uncross, "run", escape.path(s.scene), "--out", escape.path(self.folder), "--seed", str(self.seed), *steps,
                 *s.settings(self.point), "--quiet"]
 
     def words(self):
-        return shlex.join(self.command())
+        return escape.words(self.command())
 
 
 def is_begun(run):

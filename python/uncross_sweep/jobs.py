@@ -9,7 +9,7 @@ import sys
 import tempfile
 import time
 
-from . import record
+from . import escape, record
 from .files import duration, take_lock
 from .grid import Refused, is_begun
 from .opening import writing
@@ -170,7 +170,7 @@ class Progress:
     def say(self, text, always):
         if always or not self.quiet:
             self.end()
-            print(f"uncross sweep: {text}", file=sys.stderr, flush=True)
+            print(f"uncross sweep: {escape.shown(text)}", file=sys.stderr, flush=True)
 
     def end(self):
         if self.terminal and not self.quiet:

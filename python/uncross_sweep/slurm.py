@@ -1,6 +1,7 @@
 """The runs of a sweep as a Slurm job array: one script, which holds them all."""
 import pathlib
-import shlex
+
+from . import escape
 
 HEAD = """#!/bin/bash
 # Runs of {out}, a task for each; written by `uncross sweep --slurm`. Submit it with sbatch, whose options override these
@@ -31,7 +32,7 @@ run_task "$folder" "$@"
 
 
 def script(runs, out):
-    lines = "".join(f"  {k}) folder={shlex.quote(str(run.folder))}; set -- {run.words()} ;;\n" for k, run in enumerate(runs))
+    lines = "".join(f"  {k}) folder={escape.word(escape.path(run.folder))}; set -- {run.words()} ;;\n" for k, run in enumerate(runs))
     task = (pathlib.Path(__file__).parent / "task.sh").read_text()
-    return (HEAD.format(out=out, last=len(runs) - 1, here=shlex.quote(str(pathlib.Path.cwd()))) +
+    return (HEAD.format(out=escape.shown(out), last=len(runs) - 1, here=escape.word(str(pathlib.Path.cwd()))) +
             CHOICE.format(lines=lines) + task + TAIL)

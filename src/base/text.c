@@ -76,3 +76,75 @@ void text_shortest(double x, char text[TEXT_REAL_SIZE])
     snprintf(text, TEXT_REAL_SIZE, "%.*g", digits, text_real(x));
   while (digits++ < 17 && strtod(text, NULL) != x && !isnan(x));
 }
+
+void text_print(FILE *file, const char *text)
+{
+  while (*text) {
+    char shown[17];
+    text += show(text, shown);
+    fputs(shown, file);
+  }
+}
+
+static bool acts_somewhere(const char *text)
+{
+  bool acts = false;
+  while (*text && !acts) {
+    uint32_t code = 0;
+    const size_t bytes = text_character(text, &code);
+    acts = bytes == 0 || text_acts(code);
+    text += bytes;
+  }
+  return acts;
+}
+
+/* Within $'...' each byte that is not ASCII, or acts, is \xNN. */
+static void print_bytes(FILE *file, const char *text)
+{
+  for (; *text; text++) {
+    const unsigned char c = (unsigned char)*text;
+    if (c < 0x20 || c > 0x7e)
+      fprintf(file, "\\x%02x", c);
+    else
+      fprintf(file, "%s%c", c == '\'' || c == '\\' ? "\\" : "", c);
+  }
+}
+
+void text_print_word(FILE *file, const char *word)
+{
+  static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./=:,+-";
+  if (*word && word[strspn(word, plain)] == '\0') {
+    fputs(word, file);
+    return;
+  }
+  const bool acts = acts_somewhere(word);
+  fputs(acts ? "$'" : "'", file);
+  if (acts)
+    print_bytes(file, word);
+  for (const char *c = word; !acts && *c; c++)
+    if (*c == '\'')
+      fputs("'\\''", file);
+    else
+      fputc(*c, file);
+  fputc('\'', file);
+}
+
+ssize_t text_line(char **line, size_t *room, FILE *in)
+{
+  size_t length = 0;
+  int c = 0;
+  if (*room <= TEXT_LONGEST_LINE) {
+    char *whole = realloc(*line, TEXT_LONGEST_LINE + 1);
+    if (!whole)
+      return -1;
+    *line = whole;
+    *room = TEXT_LONGEST_LINE + 1;
+  }
+  while (c != '\n' && (c = getc_unlocked(in)) != EOF) {
+    if (length == TEXT_LONGEST_LINE)
+      return TEXT_TOO_LONG;
+    (*line)[length++] = (char)c;
+  }
+  (*line)[length] = '\0';
+  return length > 0 && !ferror(in) ? (ssize_t)length : -1;
+}

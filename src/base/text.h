@@ -6,6 +6,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
+#include <sys/types.h>
 
 /* The number of the character at the beginning of a text, and its bytes; 0 bytes if they are no UTF-8. */
 size_t text_character(const char *text, uint32_t *code);
@@ -22,6 +24,18 @@ const char *text_escape(const char *text, char *to, size_t size);
 
 /* The same, in memory of the enclosing block. */
 #define text_shown(text) text_escape((text), (char[1024]){""}, 1024)
+
+/* Prints the same, whole: for comments too, which end with the line. */
+void text_print(FILE *file, const char *text);
+
+/* Prints a word as bash takes it, which a terminal only shows. */
+void text_print_word(FILE *file, const char *word);
+
+#define TEXT_LONGEST_LINE 65535 /* bytes with the end; no file of ours has one of a tenth of this */
+#define TEXT_TOO_LONG (-2)      /* what text_line returns then */
+
+/* As getline of POSIX, but a longer line is not read whole: files of others may have no end of a line at all. */
+ssize_t text_line(char **line, size_t *room, FILE *in);
 
 /* The number, but NaN never with a sign: printf would show -nan, on some machines and not on others. */
 static inline double text_real(double x)

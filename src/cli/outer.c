@@ -8,9 +8,12 @@
 #include "base/text.h"
 #include "cli/command.h"
 
-/* From the folder of this program: where `make install` puts programs, or in the source tree, where BUILD may be a
- * folder of build/. */
-static const char *const places[] = {"/../libexec/uncross/", "/../tools/", "/../../tools/"};
+/* From the folder of this program: in a build folder, where the Makefile puts links to tools/; and where `make install`
+ * puts programs. Nothing else that stands beside a build folder is looked at. */
+static const struct {
+  const char *folder; /* what the program's folder must be called; NULL: anything */
+  const char *place;
+} places[] = {{NULL, "/libexec/"}, {"bin", "/../libexec/uncross/"}};
 
 /* True, and its path, if there is such a program; the path of this one too. */
 static bool find(const struct command *c, char ours[PATH_MAX - 128], char path[PATH_MAX])
@@ -20,7 +23,11 @@ static bool find(const struct command *c, char ours[PATH_MAX - 128], char path[P
   const char *slash = strrchr(ours, '/');
   const int folder = slash ? (int)(slash - ours) : 0;
   for (size_t k = 0; k < sizeof places / sizeof *places; k++) {
-    snprintf(path, PATH_MAX, "%.*s%suncross-%s", folder, ours, places[k], c->name);
+    snprintf(path, PATH_MAX, "%.*s", folder, ours);
+    const char *last = strrchr(path, '/'), *wanted = places[k].folder;
+    if (wanted && !(last && strcmp(last + 1, wanted) == 0))
+      continue;
+    snprintf(path, PATH_MAX, "%.*s%suncross-%s", folder, ours, places[k].place, c->name);
     if (access(path, X_OK) == 0)
       return true;
   }
@@ -31,8 +38,11 @@ enum exit_code outer_run(const struct command *c, char **words)
 {
   char ours[PATH_MAX - 128], path[PATH_MAX];
   if (!find(c, ours, path)) {
-    fprintf(stderr, "uncross: %s: there is no program uncross-%s in ../libexec/uncross or ../tools beside this one\n",
-            c->name, c->name);
+    fprintf(
+        stderr,
+        "uncross: %s: there is no program uncross-%s: make puts it into libexec/ beside the program, make install into "
+        "../libexec/uncross\n",
+        c->name, c->name);
     return EXIT_TROUBLE;
   }
   fflush(NULL);

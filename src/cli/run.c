@@ -99,21 +99,17 @@ static enum exit_code loop(uncross_run *run, struct progress *progress, uncross_
   return done ? EXIT_DONE : EXIT_INTERRUPTED;
 }
 
-/* A word as a shell takes it. */
 static void print_word(const char *word)
 {
-  static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./=:,+-";
-  if (*word && word[strspn(word, plain)] == '\0') {
-    printf(" %s", word);
-    return;
-  }
-  printf(" '");
-  for (const char *shown = text_shown(word); *shown; shown++)
-    if (*shown == '\'')
-      fputs("'\\''", stdout);
-    else
-      putchar(*shown);
-  printf("'");
+  putchar(' ');
+  text_print_word(stdout, word);
+}
+
+/* A path, which shall not be taken for an option. */
+static void print_path(const char *path)
+{
+  printf(" %s", *path == '-' ? "./" : "");
+  text_print_word(stdout, path);
 }
 
 /* The command that continues this run. */
@@ -122,9 +118,9 @@ static void tell_resume(const struct arguments *a)
   printf("go on with: ");
   print_word(a->program);
   printf(" run");
-  print_word(a->file[0]);
+  print_path(a->file[0]);
   printf(" --out");
-  print_word(a->out);
+  print_path(a->out);
   printf(" --resume");
   if (a->has_steps)
     printf(" --steps %" PRIu64, a->steps);

@@ -9,6 +9,7 @@
 #include <unistd.h>
 #include <xxhash.h>
 
+#include "base/text.h"
 #include "observe/meaning.h"
 #include "scene/read.h"
 #include "scene/scene_keys.h"
@@ -195,13 +196,6 @@ static bool set_fingerprint(struct scene *scene, const struct scene_source *r)
   return ok;
 }
 
-/* Into a comment, which ends with the line. */
-static void write_comment(FILE *f, const char *text)
-{
-  for (const unsigned char *c = (const unsigned char *)text; *c; c++)
-    fputc(*c < 0x20 || *c == 0x7f ? '?' : *c, f);
-}
-
 /* The effective scene, with a comment that says where it is from; to be freed. */
 static char *effective_text(const struct scene *scene, const struct scene_source *r)
 {
@@ -211,11 +205,11 @@ static char *effective_text(const struct scene *scene, const struct scene_source
   if (!stream)
     return NULL;
   fputs("# The effective scene of ", stream);
-  write_comment(stream, r->path);
+  text_print(stream, r->path);
   fputs(", every default filled in", stream);
   for (size_t i = 0; r->settings && i < r->settings->count; i++) {
     fputs("; --set ", stream);
-    write_comment(stream, r->settings->option[i]);
+    text_print(stream, r->settings->option[i]);
   }
   fputs("\n", stream);
   bool ok = keys_write(r->keys, scene, stream, false);
