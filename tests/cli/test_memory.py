@@ -1,0 +1,109 @@
+"""Bounds before memory: what a file claims does not decide how much memory is taken; and what `uncross check` says of memory is
+what a run takes. Needs UNCROSS."""
+import os
+import pathlib
+import re
+import subprocess
+import tempfile
+import unittest
+
+TOP = pathlib.Path(__file__).resolve().parents[2]
+UNCROSS = os.path.abspath(os.environ.get("UNCROSS", "build/uncross"))
+MOST = 64.0  # MiB; the program with a small scene takes some 15
+FACTOR = 1.25  # between the estimate and the largest resident memory
+
+# Observables that remember much, of systems that do not.
+DYNAMICS = """box: [40, 40, 40]
+time_step: 0.01
+steps: 1000000000
+fibers: [{name: a, count: 2000, vertices: 20, mass: 5, bond_length: 0.5, spring: 100}, {name: b, count: 20000, vertices: 1, mass: 5}]
+crossing: {forbidden: false}
+observe: {dynamics: {every: 1}, memory: {every: 1}}
+"""
+PROFILE = """box: [4, 4, 4]
+time_step: 0.02
+steps: 5
+solvent: {per_cell: 3, collision_interval: 0.02}
+observe: {profile: {every: 1, slabs: 8192}}
+"""
+
+
+class Memory(unittest.TestCase):
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.folder = pathlib.Path(self.temporary.name)
+
+    def tearDown(self):
+        self.temporary.cleanup()
+
+    def run_words(self, *words):
+        """Exit code, output, largest resident memory in MiB."""
+        with tempfile.TemporaryFile() as said:
+            program = subprocess.Popen([UNCROSS, *words], cwd=self.folder, stdout=said, stderr=subprocess.STDOUT)
+            _, status, usage = os.wait4(program.pid, 0)
+            program.returncode = os.waitstatus_to_exitcode(status)
+            said.seek(0)
+            return program.returncode, said.read().decode(errors="replace"), usage.ru_maxrss / 1024
+
+    def small(self, wanted, *words):
+        code, said, memory = self.run_words(*words)
+        self.assertEqual(code, wanted, said)
+        self.assertLess(memory, MOST, words)
+        return said
+
+    def test_rows_that_are_claimed(self):
+        """Each table claims two million rows, in one line."""
+        lines = [f"o {k} 2097152 t.x 1" for k in range(300)]
+        (self.folder / "pack.txt").write_text("\n".join(lines) + "\n")
+        said = self.small(2, "oracle", "dump", "pack.txt")
+        self.assertRegex(said, r"pack.txt:\d+:\d+: so many rows cannot be in a file of this size")
+
+    def test_files_with_holes(self):
+        """A port's output, a table, a trace, a record: 300 GB of nothing, and of one line."""
+        for name in "out", "table.csv", "run.json":
+            for begin in b"", b"# uncross pack 2\n" if name == "out" else b"step,time\n":
+                with open(self.folder / name, "wb") as file:
+                    file.write(begin)
+                    file.truncate(300 * 2**30)
+                for words in (["oracle", "dump", name], ["oracle", "compare", name, name], ["verify", name], ["info", name],
+                              ["export", name]):
+                    code, said, memory = self.run_words(*words)
+                    self.assertLess(memory, MOST, words)
+                    self.assertFalse(code == 0 and words[0] != "info", (words, said))
+        (self.folder / "port").write_text('#!/bin/sh\nfor out; do :; done\ntruncate -s 200G "$out"\n')
+        (self.folder / "port").chmod(0o755)
+        said = self.small(7, "oracle", "check", "./port", "--only", "rotate")
+        self.assertRegex(said, "failed: .*(a line of more than|NUL byte)")
+
+    def test_long_lines(self):
+        for name, begin in (("pack.txt", b"# uncross pack 2\n"), ("table.csv", b"step,time\n0,0\n"), ("run.json", b'{"a": "')):
+            with open(self.folder / name, "wb") as file:
+                file.write(begin)
+                for _ in range(200):  # a process begins with the size of the one that started it: this one stays small
+                    file.write(b"7" * 2**20)
+        self.small(2, "oracle", "dump", "pack.txt")
+        self.assertIn("more than 65535 bytes", self.small(9, "verify", "table.csv"))
+        self.assertIn("larger than", self.small(9, "verify", "run.json"))
+        self.small(2, "info", "run.json")
+
+    def test_the_estimate(self):
+        scenes = [self.folder / "dynamics.yaml", self.folder / "profile.yaml"]
+        scenes[0].write_text(DYNAMICS)
+        scenes[1].write_text(PROFILE)
+        scenes += [TOP / f"scenes/{name}.yaml" for name in ("semidilute", "bead-fibers", "dumbbells", "couette", "thick", "rings")]
+        for scene in scenes:
+            code, said, _ = self.run_words("check", scene)
+            self.assertEqual(code, 0, said)
+            wanted = float(re.search(r"^  memory +(\S+) MiB", said, re.M)[1])
+            on_disk = float(re.search(r"^  checkpoint +(\S+) MiB", said, re.M)[1])
+            out = self.folder / scene.stem
+            code, said, memory = self.run_words("run", scene, "--out", out, "--steps", "1", "--set", "observe.from=0", "--quiet")
+            self.assertEqual(code, 0, said)
+            size = (out / "checkpoint.h5").stat().st_size / 2**20
+            print(f"# {scene.stem}: memory {memory:.1f} MiB, said {wanted:.1f}; checkpoint {size:.2f} MiB, said {on_disk:.2f}")
+            self.assertTrue(1 / FACTOR < memory / wanted < FACTOR, scene)
+            self.assertTrue(1 / FACTOR < (size + 0.1) / (on_disk + 0.1) < FACTOR, scene)
+
+
+if __name__ == "__main__":
+    unittest.main()
