@@ -99,7 +99,7 @@ void check_head(const struct scene *scene)
   tell_files(scene);
 }
 
-#define COPIES 3.0 /* of a checkpoint, at most, while it is made: measured */
+#define COPIES 2.06 /* of a checkpoint, while it is made: one with room to grow (files/checkpoint_write.c) */
 
 void check_memory(const struct scene *scene)
 {

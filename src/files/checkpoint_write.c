@@ -110,7 +110,7 @@ static void *make_image(struct contents *c, size_t *bytes, const char *path, str
   size_t estimate = ((size_t)c->state->solvent.n + c->state->vertices) * 64;
   for (size_t b = 0; b < c->block_count; b++)
     estimate += c->blocks[b].count * sizeof(double) + 1024;
-  hid_t file = h5_create_in_memory(estimate);
+  hid_t file = h5_create_in_memory(estimate + estimate / 16);
   void *image = file >= 0 && write_contents(file, c) ? h5_image(file, bytes) : NULL;
   if (!image)
     h5_fail(message, path, "the checkpoint could not be put together (memory?)");

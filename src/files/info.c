@@ -10,6 +10,7 @@
 
 #include "base/text.h"
 #include "files/frames.h"
+#include "files/record.h"
 #include "files/verify.h"
 #include "scene/yaml.h"
 
@@ -110,10 +111,20 @@ static bool tell_hdf5(const struct look *look, struct message *message)
 
 /* --- JSON -------------------------------------------------------------------------------------------------------- */
 
+static json_t *load(const char *path, json_error_t *error)
+{
+  struct message message;
+  const int fd = open_regular(path, &message);
+  if (fd < 0)
+    *error = (json_error_t){.line = 1, .column = 1, .text = "cannot be opened"};
+  return fd < 0 ? NULL : record_load(fd, error);
+}
+
 /* By its name, or since it can be read as JSON: a scene in braces cannot, or is both. */
 static bool is_json(const struct look *look)
 {
-  json_t *root = ends_with(look->path, ".json") ? NULL : json_load_file(look->path, 0, NULL);
+  json_error_t ignored;
+  json_t *root = ends_with(look->path, ".json") ? NULL : load(look->path, &ignored);
   json_decref(root);
   return root || ends_with(look->path, ".json");
 }
@@ -136,7 +147,7 @@ static void tell_value(const char *key, const json_t *value)
 static bool tell_json(const struct look *look, struct message *message)
 {
   json_error_t error;
-  json_t *root = json_load_file(look->path, 0, &error);
+  json_t *root = load(look->path, &error);
   if (!root)
     return message_set(message, "%s:%d:%d: not JSON: %s", look->path, error.line, error.column, error.text);
   printf("%s: %s\n", text_shown(look->path), json_object_get(root, "state_hash") ? "record of a run" : "JSON");
@@ -216,7 +227,9 @@ static void tell_sections(const char *path, const struct node *root)
     printf("%s%.100s", between, key ? text_shown(key) : "?");
     between = ", ";
   }
-  printf("\n  `uncross check %s` says what it means\n", text_shown(path));
+  printf("\n  `uncross check ");
+  text_print_word(stdout, path);
+  printf("` says what it means\n");
 }
 
 /* Any text may be one; libyaml knows. Where it errs is of use if the text is meant as YAML, which its name says. */

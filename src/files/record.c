@@ -1,10 +1,11 @@
 #include "files/record.h"
 
 #include <inttypes.h>
-#include <jansson.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "files/build_info.h"
 #include "observe/units.h"
@@ -103,9 +104,23 @@ bool record_write(const struct folder *folder, const struct scene *scene, const 
       conserved(r->start_energy, r->start_momentum), "end", conserved(r->now.total, r->now.momentum), "state_hash",
       hexadecimal(r->state_hash), "units", units(scene), "scene", scene->text);
   char *text = root ? json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) : NULL;
-  message_set(message, "%s/run.json: no memory, or a scene that is not UTF-8", folder->name);
+  message_set(message, "%s/run.json: no memory for it", folder->name);
   bool ok = text && file_replace(folder, "run.json", text, strlen(text), message);
   free(text);
   json_decref(root);
   return ok;
+}
+
+json_t *record_load(int fd, json_error_t *error)
+{
+  struct stat status;
+  json_t *root = NULL;
+  if (fstat(fd, &status) == 0 && status.st_size <= RECORD_MOST_BYTES) {
+    root = json_loadfd(fd, JSON_REJECT_DUPLICATES, error);
+  } else {
+    error->line = error->column = 1;
+    snprintf(error->text, sizeof error->text, "larger than %d bytes, or cannot be read", RECORD_MOST_BYTES);
+  }
+  close(fd);
+  return root;
 }

@@ -2,6 +2,8 @@
 #ifndef UNCROSS_FILES_RECORD_H
 #define UNCROSS_FILES_RECORD_H
 
+#include <jansson.h>
+
 #include "base/message.h"
 #include "files/folder.h"
 #include "observe/observe.h"
@@ -26,5 +28,10 @@ struct record {
 /* Writes run.json in the folder, in place of an earlier one. */
 bool record_write(const struct folder *folder, const struct scene *scene, const struct record *record,
                   struct message *message);
+
+#define RECORD_MOST_BYTES (16 << 20)
+
+/* Any JSON of an open file, which is closed; NULL, with the error, if it is none, or larger than a record can be. */
+json_t *record_load(int fd, json_error_t *error);
 
 #endif

@@ -71,7 +71,7 @@ static bool find_kept(FILE *file, size_t columns, const char *const *names, uint
   size_t room = 0;
   ssize_t length;
   *kept = (struct kept){0, 0};
-  for (bool header = true; (length = getline(&line, &room, file)) > 0; header = false) {
+  for (bool header = true; (length = text_line(&line, &room, file)) > 0; header = false) {
     char *rest = line;
     const uint64_t step = header ? 0 : strtoull(line, &rest, 10);
     const bool whole = line[length - 1] == '\n' && (header ? is_header(line, (size_t)length, columns, names)
@@ -81,7 +81,7 @@ static bool find_kept(FILE *file, size_t columns, const char *const *names, uint
     kept->bytes += length;
     kept->end = header ? 0 : step + 1;
   }
-  bool read = length > 0 || feof(file);
+  bool read = length > 0 || length == TEXT_TOO_LONG || feof(file);
   free(line);
   return read;
 }

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "base/text.h"
+#include "files/record.h"
 
 #define MOST_COLUMNS 4096
 
@@ -137,7 +138,7 @@ static bool odd_table(FILE *in, const char *path, uint64_t *rows, bool *cut, str
   size_t room = 0, columns = 0;
   ssize_t length;
   bool odd = false;
-  for (uint64_t number = 1; !odd && (length = getline(&line, &room, in)) >= 0; number++) {
+  for (uint64_t number = 1; !odd && (length = text_line(&line, &room, in)) >= 0; number++) {
     *cut = line[length - 1] != '\n';
     line[strcspn(line, "\r\n")] = '\0';
     if (number == 1)
@@ -148,7 +149,9 @@ static bool odd_table(FILE *in, const char *path, uint64_t *rows, bool *cut, str
       message_set(message, "%s:%" PRIu64 ": damaged: a row of %zu numbers is wanted", path, number, columns);
   }
   free(line);
-  if (!odd && (ferror(in) || columns == 0))
+  if (length == TEXT_TOO_LONG)
+    odd = !message_set(message, "%s: damaged: a line has more than %d bytes", path, TEXT_LONGEST_LINE);
+  else if (!odd && (ferror(in) || columns == 0))
     odd = !message_set(message, "%s: damaged: cannot be read, or empty", path);
   return odd;
 }
@@ -185,11 +188,9 @@ static json_t *read_json(const char *path, struct message *message)
 {
   json_error_t error;
   const int fd = open_regular(path, message);
-  json_t *root = fd < 0 ? NULL : json_loadfd(fd, JSON_REJECT_DUPLICATES, &error);
+  json_t *root = fd < 0 ? NULL : record_load(fd, &error);
   if (fd >= 0 && !root)
     message_set(message, "%s:%d:%d: damaged: not JSON: %s", path, error.line, error.column, error.text);
-  if (fd >= 0)
-    close(fd);
   return root;
 }
 

@@ -20,6 +20,7 @@ struct trace {
   const char *path;
   FILE *in;
   size_t columns, line, room;
+  bool too_long; /* so no more lines were read */
   char name[COLUMNS][NAME];
   char *text, *value[COLUMNS];
 };
@@ -41,7 +42,9 @@ static size_t split(char *text, char *value[COLUMNS])
 /* The next line, cut. False at the end. */
 static bool next_row(struct trace *t, size_t *values)
 {
-  if (getline(&t->text, &t->room, t->in) < 0)
+  const ssize_t length = text_line(&t->text, &t->room, t->in);
+  t->too_long |= length == TEXT_TOO_LONG;
+  if (length < 0)
     return false;
   t->line++;
   *values = split(t->text, t->value);
@@ -188,6 +191,10 @@ static bool compare_rows(struct trace *ours, struct trace *theirs, FILE *out, st
   size_t mine = 0, its = 0;
   for (;;) {
     const bool more = next_row(ours, &mine), there = next_row(theirs, &its);
+    if (ours->too_long || theirs->too_long) {
+      const struct trace *bad = theirs->too_long ? theirs : ours;
+      return message_at(message, bad->path, bad->line + 1, 1, "a line of more than %d bytes", TEXT_LONGEST_LINE);
+    }
     if (!more && !there)
       return true;
     if ((more && mine != ours->columns) || (there && its != theirs->columns)) {

@@ -51,12 +51,17 @@ bool pack_dump(const struct pack *pack, bool decimal, FILE *out)
 /* One line. A value that is a whole number in decimal digits is kept exactly. */
 struct line {
   struct pack_place place;
-  uint32_t row, most_row; /* allowed: each row needs a line of its own, so that no claimed number asks for memory */
-  size_t column;          /* where the name begins, counted from 1 */
+  uint32_t row;
+  size_t column; /* where the name begins, counted from 1 */
   char table[PACK_WORD], component[PACK_WORD];
   bool real;
   int64_t integer;
   double number;
+};
+
+/* Rows of all tables of a file. Each row needs a line of its own, so no claimed number asks for memory. */
+struct budget {
+  uint64_t rows, most;
 };
 
 /* What is known of a table while its lines come in, in any order of rows; columns in the order first met. */
@@ -112,7 +117,7 @@ static bool parse_word(const char *text, enum word which, struct line *line)
   case STEP:
     return parse_whole(text, UINT64_MAX, &line->place.step);
   case ROW:
-    if (!parse_whole(text, line->most_row, &row))
+    if (!parse_whole(text, MOST_ROWS, &row))
       return false;
     line->row = (uint32_t)row;
     return true;
@@ -194,7 +199,8 @@ static size_t table_of(struct pack *pack, const struct line *line)
 }
 
 /* NULL, or what is wrong. */
-static const char *take(struct pack *pack, struct draft drafts[MOST_TABLES], const struct line *line)
+static const char *take(struct pack *pack, struct draft drafts[MOST_TABLES], struct budget *budget,
+                        const struct line *line)
 {
   size_t n = table_of(pack, line);
   if (n == SIZE_MAX)
@@ -204,6 +210,12 @@ static const char *take(struct pack *pack, struct draft drafts[MOST_TABLES], con
   int column = column_of(t, line->component);
   if (column < 0)
     return "more than 16 components in one table";
+  if (line->row >= t->rows) {
+    budget->rows += line->row + 1 - t->rows;
+    t->rows = line->row + 1;
+  }
+  if (budget->rows > budget->most)
+    return "so many rows cannot be in a file of this size: each has a line";
   if (!make_room(d, line->row))
     return "memory is short";
   const unsigned bit = 1u << column;
@@ -215,7 +227,6 @@ static const char *take(struct pack *pack, struct draft drafts[MOST_TABLES], con
   d->integer[at] = line->integer;
   d->values++;
   t->real |= line->real;
-  t->rows = line->row >= t->rows ? line->row + 1 : t->rows;
   return NULL;
 }
 
@@ -243,10 +254,10 @@ static bool finish(struct pack_table *t, const struct draft *d, const char *path
 }
 
 /* Takes line number `number` in, comments and empty lines aside. */
-static bool read_line(char *text, uint32_t most_row, const char *path, size_t number, struct pack *pack,
+static bool read_line(char *text, struct budget *budget, const char *path, size_t number, struct pack *pack,
                       struct draft drafts[MOST_TABLES], struct message *message)
 {
-  struct line line = {.most_row = most_row};
+  struct line line = {.row = 0};
   text[strcspn(text, "\r\n")] = '\0';
   if (text[0] == '#' || text[0] == '\0')
     return true;
@@ -254,20 +265,21 @@ static bool read_line(char *text, uint32_t most_row, const char *path, size_t nu
   if (column > 0)
     return message_at(message, path, number, column,
                       "not understood; a line is `operator step row table.component value`");
-  const char *wrong = take(pack, drafts, &line);
+  const char *wrong = take(pack, drafts, budget, &line);
   return !wrong || message_at(message, path, number, line.column, "%s", wrong);
 }
 
 #define LEAST_LINE 12        /* bytes of `o 0 0 t.x 1` and its end */
 #define FREE_ROWS (1u << 21) /* so many rows may be claimed for nothing: they cost two bytes each */
 
-/* The largest number of a row that a file of this size may have; one that leaves out rows is told what is missing. */
-static uint32_t most_row_of(FILE *in)
+/* The rows that a file of this size may have; one that leaves out some is told what is missing. Of a file with holes,
+ * what is on the disk counts, which a file system may have compressed. */
+static struct budget budget_of(FILE *in)
 {
   struct stat status;
-  const uint64_t lines =
-      fstat(fileno(in), &status) == 0 ? (uint64_t)status.st_size / LEAST_LINE + FREE_ROWS : MOST_ROWS;
-  return lines < MOST_ROWS ? (uint32_t)lines : MOST_ROWS;
+  const bool known = fstat(fileno(in), &status) == 0 && status.st_size > 0;
+  const uint64_t size = known ? (uint64_t)status.st_size : 0, on_disk = known ? (uint64_t)status.st_blocks * 512 : 0;
+  return (struct budget){0, FREE_ROWS + (size < 32 * on_disk ? size : 32 * on_disk) / LEAST_LINE};
 }
 
 static bool read_lines(FILE *in, const char *path, struct pack *pack, struct draft drafts[MOST_TABLES],
@@ -275,16 +287,19 @@ static bool read_lines(FILE *in, const char *path, struct pack *pack, struct dra
 {
   char *text = NULL;
   size_t room = 0;
-  const uint32_t most_row = most_row_of(in);
+  struct budget budget = budget_of(in);
   bool ok = true;
-  ssize_t length;
-  for (size_t number = 1; ok && (length = getline(&text, &room, in)) >= 0; number++) {
+  ssize_t length = 0;
+  for (size_t number = 1; ok && (length = text_line(&text, &room, in)) >= 0; number++) {
     const size_t zero = strlen(text);
     ok = zero == (size_t)length
-             ? read_line(text, most_row, path, number, pack, drafts, message)
+             ? read_line(text, &budget, path, number, pack, drafts, message)
              : message_at(message, path, number, zero + 1, "a NUL byte; a pack is HDF5 or lines of text");
   }
   free(text);
+  if (ok && length == TEXT_TOO_LONG)
+    return message_set(message, "%s: a line of more than %d bytes; a pack is HDF5 or lines of text", path,
+                       TEXT_LONGEST_LINE);
   return ok && (feof(in) || message_set(message, "%s: cannot be read", path));
 }
 
@@ -294,8 +309,8 @@ bool pack_text_begins(FILE *in)
   char *text = NULL;
   size_t room = 0;
   bool begins = false, more = true;
-  while (!begins && more && getline(&text, &room, in) >= 0) {
-    struct line line = {.most_row = MOST_ROWS};
+  while (!begins && more && text_line(&text, &room, in) >= 0) {
+    struct line line = {.row = 0};
     text[strcspn(text, "\r\n")] = '\0';
     begins = strncmp(text, ours, sizeof ours - 1) == 0;
     more = text[0] == '#' || text[0] == '\0';

@@ -10,6 +10,7 @@ import unittest
 TOP = pathlib.Path(__file__).resolve().parents[2]
 UNCROSS = os.path.abspath(os.environ.get("UNCROSS", "build/uncross"))
 MOST = 64.0  # MiB; the program with a small scene takes some 15
+PROGRAM = 14.0  # MiB of the program and its libraries, with no scene
 FACTOR = 1.25  # between the estimate and the largest resident memory
 
 # Observables that remember much, of systems that do not.
@@ -94,15 +95,12 @@ class Memory(unittest.TestCase):
         for scene in scenes:
             code, said, _ = self.run_words("check", scene)
             self.assertEqual(code, 0, said)
-            wanted = float(re.search(r"^  memory +(\S+) MiB", said, re.M)[1])
-            on_disk = float(re.search(r"^  checkpoint +(\S+) MiB", said, re.M)[1])
+            wanted = PROGRAM + float(re.search(r"^  \.\.\. while a checkpoint is written +(\S+) MiB", said, re.M)[1])
             out = self.folder / scene.stem
             code, said, memory = self.run_words("run", scene, "--out", out, "--steps", "1", "--set", "observe.from=0", "--quiet")
             self.assertEqual(code, 0, said)
-            size = (out / "checkpoint.h5").stat().st_size / 2**20
-            print(f"# {scene.stem}: memory {memory:.1f} MiB, said {wanted:.1f}; checkpoint {size:.2f} MiB, said {on_disk:.2f}")
+            print(f"# {scene.stem}: memory {memory:.1f} MiB, said {wanted:.1f}")
             self.assertTrue(1 / FACTOR < memory / wanted < FACTOR, scene)
-            self.assertTrue(1 / FACTOR < (size + 0.1) / (on_disk + 0.1) < FACTOR, scene)
 
 
 if __name__ == "__main__":
