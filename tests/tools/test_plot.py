@@ -301,6 +301,47 @@ class Folder(unittest.TestCase):
         # The box is some 700 pixels wide and 8 a0; a bond is shorter than 1 a0.
         self.assertLess(max(math.hypot(x1 - x0, y1 - y0) for _, (x0, y0, x1, y1) in pieces), 110)
 
+    def test_sheared_images_slide(self):
+        """Bonds of a sheared box: points along each, folded by hand with the slide, lie on its pieces, and pieces lie in the box."""
+        random = numpy.random.default_rng(7)
+        edges, slide = numpy.array([4.0, 5.0, 6.0]), 1.3
+        a = random.uniform(-9, 9, (200, 3))
+        step = random.uniform(-1.9, 1.9, (200, 3))
+        bonds = numpy.stack([numpy.arange(200), numpy.arange(200) + 200], 1)
+        structure = fibers.Structure("", edges, ["x"], numpy.zeros(400, int), bonds, numpy.zeros(400, int), "")
+        ends, number = fibers.pieces(structure, numpy.concatenate([a, a + step]), slide)
+        self.assertTrue(((ends > -1e-9) & (ends < edges + 1e-9)).all())
+        self.assertTrue(numpy.allclose(numpy.bincount(number, numpy.linalg.norm(ends[:, 1] - ends[:, 0], axis=1), 200), numpy.linalg.norm(step, axis=1)))
+        for part in (0.03, 0.31, 0.77):
+            for bond in range(200):
+                x, y, z = a[bond] + part * step[bond]
+                over = math.floor(y / edges[1])
+                place = numpy.array([(x - over * slide) % edges[0], y - over * edges[1], z % edges[2]])
+                mine = ends[number == bond]
+                along = mine[:, 1] - mine[:, 0]
+                t = numpy.clip(((place - mine[:, 0]) * along).sum(1) / (along**2).sum(1), 0.0, 1.0)
+                self.assertLess(numpy.linalg.norm(mine[:, 0] + t[:, None] * along - place, axis=1).min(), 1e-9)
+
+    def test_the_slide_is_that_of_the_run(self):
+        """Against wrapped places that uncross exports, modulo the edge along x; a steady shear, and one that oscillates."""
+        for number, shear in enumerate(("{rate: 0.37}", "{rate: 0.9, period: 4}")):
+            (self.dir / "shear.yaml").write_text(
+                f"box: [4, 4, 4]\ntime_step: 0.01\nsteps: 700\nshear: {shear}\nsolvent: {{per_cell: 3, collision_interval: 0.02, thermostat: maxwell-boltzmann}}\n"
+                "fibers: [{name: rods, count: 20, vertices: 3, mass: 3, bond_length: 0.5, spring: 50}]\ncrossing: {forbidden: false}\ntrajectory: {every: 350}\n")
+            folder = self.dir / f"shear{number}"
+            self.assertEqual(uncross("run", self.dir / "shear.yaml", "--out", folder, "--quiet")[0], 0)
+            code, told, error = uncross("export", folder / "trajectory.h5", "--format", "xyz", "--wrapped")
+            self.assertEqual(code, 0, error)
+            rows = [line.split() for line in told.splitlines()]
+            there = numpy.array([[float(word) for word in row[1:4]] for row in rows if row and row[0] == "C"]).reshape(3, 60, 3)
+            with fibers.File(str(folder / "trajectory.h5")) as file:
+                for frame in range(3):
+                    points = fibers.folded(file.structure, file.positions(frame), file.slide(frame))
+                    gap = points - there[frame]
+                    gap[:, 0] -= 4.0 * numpy.round(gap[:, 0] / 4.0)
+                    self.assertLess(abs(gap).max(), 1e-3)
+                self.assertGreater(abs(file.positions(2)[:, 1] // 4).max(), 0)  # some have gone round
+
     def test_pieces_are_the_bond(self):
         """Random bonds through faces, edges and corners: lengths add up, pieces lie in the box, ends meet at faces."""
         random = numpy.random.default_rng(5)
