@@ -135,20 +135,40 @@ class File:
     def positions(self, frame):
         return self.value[frame][self.rows] * self.unit
 
+    def slide(self, frame):
+        """How far the image beyond y = L of a sheared box has slid along x, a0: the strain times L."""
+        shear = re.search(r"(?m)^shear:(.*\n?(?:[ \t]+.*\n?)*)", self.structure.scene)
+        keys = dict(re.findall(r"\b(rate|period): *([-+.\deE]+)", shear[1])) if shear else {}
+        try:
+            rate, period = float(keys.get("rate", 0.0)), float(keys.get("period", 0.0))
+        except ValueError:
+            return 0.0
+        time = float(self.times[frame])
+        phase = 2.0 * math.pi * time / period if period > 0.0 else 0.0
+        return rate * self.structure.edges[1] * (math.sin(phase) * period / (2.0 * math.pi) if period > 0.0 else time)
+
 
 # --- geometry ----------------------------------------------------------------------------------------------------------
 
-def pieces(structure, points):
+def folded(structure, points, slide=0.0):
+    """Places in the box. slide: that of the image beyond y = L along x."""
+    edges, places = structure.edges, points.copy()
+    places[:, 0] -= slide * numpy.floor(places[:, 1] / edges[1])
+    return places - edges * numpy.floor(places / edges)
+
+
+def pieces(structure, points, slide=0.0):
     """(ends [n][2][3] within the box, number of the bond [n]): the parts of bonds in each image of the box."""
     edges = structure.edges
+    slide -= edges[0] * round(slide / edges[0])
     a = points[structure.bonds[:, 0]]
     step = points[structure.bonds[:, 1]] - a
     step -= edges * numpy.round(step / edges)  # the shortest image: bonds are below half the shortest edge
-    a = a - edges * numpy.floor(a / edges)
+    a = folded(structure, a, slide)
     ends, numbers = [], []
     images = numpy.stack(numpy.meshgrid(*[[-1, 0, 1]] * 3, indexing="ij"), -1).reshape(-1, 3)
     for image in images:
-        start = a - image * edges
+        start = a - image * edges - numpy.array([slide * image[1], 0.0, 0.0])
         with numpy.errstate(divide="ignore", invalid="ignore"):
             faces = numpy.stack([-start / step, (edges - start) / step])
         outside = (step == 0.0) & ((start < 0.0) | (start >= edges))
@@ -241,9 +261,9 @@ class Mark:
     hollow: bool = False
 
 
-def marks(structure, points, camera):
+def marks(structure, points, camera, slide=0.0):
     """All bonds and beads as they are painted, far ones first."""
-    ends, bond = pieces(structure, points)
+    ends, bond = pieces(structure, points, slide)
     beads = structure.beads
     colours, marked = fiber_colours(structure), marked_fiber(structure)
     line = min(0.16, 0.05 + 0.8 / max(1.0, len(structure.kind))**0.5)  # a0, for what has no diameter
@@ -258,7 +278,7 @@ def marks(structure, points, camera):
         colour = _mix(colours[fiber], WHITE, 1.0 if fiber == marked else 0.4 + 0.6 * near)
         found.append(Mark(near, tuple(piece[0, :2]), tuple(piece[1, :2]), width, colour, int(number),
                           is_hollow(kind)))
-    inside = points[beads] - structure.edges * numpy.floor(points[beads] / structure.edges)
+    inside = folded(structure, points[beads], slide)
     for place, row in zip(camera(inside) if len(beads) else (), beads):
         colour = _mix(colours[structure.fiber[row]], WHITE, 0.4 + 0.6 * place[3])
         found.append(Mark(place[3], tuple(place[:2]), tuple(place[:2]), max(2.0, 2 * BEAD * place[2]), colour, int(row),
@@ -352,7 +372,7 @@ def picture(file, frame=-1):
     """The address of a picture of one frame: vectors, or pixels where there are very many bonds."""
     structure = file.structure
     camera = Camera(structure.edges)
-    found = marks(structure, file.positions(frame % len(file.steps)), camera)
+    found = marks(structure, file.positions(frame % len(file.steps)), camera, file.slide(frame % len(file.steps)))
     if len(found) <= MOST_VECTORS:
         return style.data_uri(draw_svg(structure, found, camera, words(structure)))
     out = io.BytesIO()
@@ -365,7 +385,7 @@ def movie(file, width=640):
     count = len(file.steps)
     numbers = numpy.unique(numpy.linspace(0, count - 1, min(count, MOST_FRAMES)).round().astype(int))
     camera = Camera(file.structure.edges)
-    images = [draw_pixels(marks(file.structure, file.positions(n), camera), camera, width) for n in numbers]
+    images = [draw_pixels(marks(file.structure, file.positions(n), camera, file.slide(n)), camera, width) for n in numbers]
     out = io.BytesIO()
     images[0].save(out, "WEBP", save_all=True, append_images=images[1:], duration=round(1000 / FRAMES_PER_SECOND),
                    loop=0, quality=55, method=2)

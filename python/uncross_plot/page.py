@@ -85,7 +85,9 @@ def plain(text):
 
 
 WALLED = " between two walls, in a box"
-PLACES = ((r"(?m)^walls:", WALLED), (r"(?m)^shear:", " in a sheared box"),
+SHEARED = " in a sheared box"
+ENDS = {WALLED: ", except at the walls, which nothing crosses", SHEARED: "; images across the shear have slid along x"}
+PLACES = ((r"(?m)^walls:", WALLED), (r"(?m)^shear:", SHEARED),
           (r"\bprofile: *(sine|reverse)\b", ", driven by a force with a profile, in a periodic box"))
 
 
@@ -100,7 +102,7 @@ def picture_of(frames, movie=False):
     structure = frames.structure
     box = " × ".join(f"{e:g}" for e in structure.edges)
     shown = f"{fibers.words(structure)}{place(structure.scene)} of {box} a0"
-    ways = "" if place(structure.scene) != WALLED else ", except at the walls, which nothing crosses"
+    ways = ENDS.get(place(structure.scene), "")
     keys = []
     for kind, name in enumerate(structure.kinds):
         keys.append((style.COLORS[kind % len(style.COLORS)], name))
