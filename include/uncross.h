@@ -14,9 +14,12 @@
  * Memory: whatever is returned as a pointer to const belongs to its handle. A text that is returned as `char *` is the
  * caller's, who gives it back with uncross_free.
  *
- * Threads: different handles may be used by different threads at the same time, with one exception: HDF5 is not safe
- * for threads as Debian builds it, so only one thread of a process may be in a function that reads or writes files.
- * These functions are marked FILES. One handle is for one thread at a time.
+ * Threads: different handles may be used by different threads at the same time. One handle is for one thread at a time.
+ * Functions that read or write files are marked FILES: they call HDF5. Debian builds HDF5 for threads
+ * (H5is_library_threadsafe); with an HDF5 that is not, only one thread of a process may be in such a function.
+ *
+ * Readers: HDF5 files are read by a process of its own, the program uncross of the same build. It is looked for in
+ * $UNCROSS_READER (an absolute path), beside the library, in ../bin, and in bin of the prefix that was built for.
  *
  * Processes: a process that forks off (fork) has a copy of every handle. A simulation may be used in both; each has its
  * own. A run in a folder stays with the process that opened it. In the other one it can be looked at; advance and save
