@@ -180,12 +180,13 @@ $(BUILD)/lib/libuncross-core.a: $(CORE_SOURCES:%.c=$(BUILD)/%.o) $(FAST:%=$(BUIL
 	@ar rcs $@ $^
 
 # Written anew only when it says something new, so that nothing is rebuilt for nothing.
+$(BUILD)/build-info.inc: export PREFIX := $(PREFIX)
 $(BUILD)/build-info.inc: force | $(BUILD)/found-run
 	@mkdir -p $(@D)
 	@{ echo '#define BUILD_COMMIT "$(shell git describe --always --dirty --abbrev=12 2>/dev/null || echo unknown)"'; \
 	   echo '#define BUILD_COMPILER "$(shell $(CC) --version | head -n 1)"'; \
 	   echo '#define BUILD_FLAGS "$(STRICT) $(OPTIMIZE)"'; \
-   echo '#define BUILD_PREFIX "$(PREFIX)"'; } > $@.new
+	   printf '#define BUILD_PREFIX "%s"\n' "$$(printf %s "$$PREFIX" | sed 's/[\"]/\\&/g')"; } > $@.new
 	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
 BUILD_INFO := $(BUILD)/src/files/build_info.o $(BUILD)/lib/src/files/build_info.o
 $(BUILD_INFO): $(BUILD)/build-info.inc
