@@ -130,7 +130,7 @@ void help_all(FILE *out)
 {
   fprintf(out, "uncross: %s\n(%s)\n\nusage:\n", title, method);
   list(out, "");
-  fputs("  uncross --help, uncross --version\n"
+  fputs("  uncross --help, uncross --version, uncross --cite\n"
         "`uncross COMMAND --help` lists the options of one.\n",
         out);
   print_codes(out, NULL);
@@ -179,7 +179,7 @@ void help_man(FILE *out)
     roff(out, words);
     fputs("\n.br\n", out);
   }
-  fputs(".B uncross \\-\\-help\n.br\n.B uncross \\-\\-version\n.SH DESCRIPTION\n", out);
+  fputs(".B uncross \\-\\-help\n.br\n.B uncross \\-\\-version\n.br\n.B uncross \\-\\-cite\n.SH DESCRIPTION\n", out);
   roff(out, method);
   fputs(".\nScenes are YAML files.\n", out);
   for (int command = 0; command < COMMANDS; command++) {
@@ -237,7 +237,7 @@ void help_completion(FILE *out)
         "    1:*) words=\"",
         out);
   complete_names(out, "");
-  fputs("help --help --version\" ;;\n    2:oracle) words=\"", out);
+  fputs("help --help --version --cite\" ;;\n    2:oracle) words=\"", out);
   complete_names(out, "oracle ");
   fputs("--help\" ;;\n  esac\n  if [ -z \"$words\" ]; then case $command in\n", out);
   for (int command = 0; command < COMMANDS; command++)

@@ -180,6 +180,21 @@ static enum exit_code version(void)
   return EXIT_DONE;
 }
 
+static enum exit_code cite(void)
+{
+  printf("@article{padding2009,\n"
+         "  author = {Padding, J. T.},\n"
+         "  title = {Efficient simulation of noncrossing fibers and chains in a hydrodynamic solvent},\n"
+         "  journal = {The Journal of Chemical Physics},\n"
+         "  volume = {130},\n  pages = {144903},\n  year = {2009},\n  doi = {10.1063/1.3105339}\n}\n"
+         "@software{uncross,\n"
+         "  author = {{uncross contributors}},\n"
+         "  title = {uncross: noncrossing fibers and chains in a hydrodynamic solvent},\n"
+         "  version = {%s, commit %s}\n}\n",
+         UNCROSS_VERSION, build_info.commit);
+  return EXIT_DONE;
+}
+
 /* The command of this name: "run"; or "oracle" and "emit". COMMANDS if there is none. */
 static enum command_code find_command(const char *first, const char *second)
 {
@@ -265,6 +280,8 @@ int main(int count, char **words)
     return told(help(count - 1, words + 1));
   if (strcmp(words[1], "--version") == 0)
     return told(version());
+  if (strcmp(words[1], "--cite") == 0)
+    return told(cite());
   if (strcmp(words[1], "oracle") == 0)
     return oracle(words[0], count - 1, words + 1);
   const enum command_code command = find_command(words[1], NULL);

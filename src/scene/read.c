@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/vec3.h"
+#include "scene/synonyms.h"
 #include "scene/value.h"
 #include "scene/words.h"
 #include "system/model.h"
@@ -30,9 +31,9 @@ static bool refuse_value(const struct reading *r, const struct node *node, const
   char allowed[512];
   key_describe(r->key, allowed, sizeof allowed);
   const char *text = node_text(node);
+  const char *what = text ? text : node->type == NODE_LIST ? "a list" : "a mapping";
   return node_refuse(node, r->message, "%s%s%s: %s%.60s%s%s; allowed: %s", r->table->path, *r->table->path ? "." : "",
-                     r->key->name, text ? "'" : "", text ? text : "a list or mapping", text ? "' " : " ", problem,
-                     allowed);
+                     r->key->name, text ? "'" : "", what, text ? "' " : " ", problem, allowed);
 }
 
 static bool read_whole(const struct reading *r, const struct node *node, uint64_t *value)
@@ -253,7 +254,9 @@ bool keys_refuse(const struct node *node, const char *name, const struct key_tab
   words[collect_words(table, words, 0)] = NULL;
   char hint[512];
   suggest_word(name, words, hint, sizeof hint);
-  return node_refuse(node, message, "unknown key '%.60s'%s%s; %s", name, *table->path ? " in " : "", table->path, hint);
+  const char *meant = synonym_hint(name);
+  return node_refuse(node, message, "unknown key '%.60s'%s%s; %s", name, *table->path ? " in " : "", table->path,
+                     meant ? meant : hint);
 }
 
 /* Every key of the mapping is known, and given once. Known keys are few, so a mapping with many has one twice early. */
