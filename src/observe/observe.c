@@ -1,5 +1,6 @@
 #include "observe/observe.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -138,7 +139,7 @@ static bool create(struct observers *observers, enum observable which, const str
   struct observe_block *later = add_block(observers, observable_names[which], "later", false, o->size.later, o->later);
   if (later)
     later->later = true;
-  return o->real && o->later && o->integer && o->scratch;
+  return o->real && o->later && o->integer && o->scratch && !isnan(o->constant);
 }
 
 static bool has_averages(const struct observe_plan *plan)

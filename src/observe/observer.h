@@ -51,7 +51,8 @@ struct observer_type {
   /* Adds the memory that the type needs beyond integer[0]; NULL if none. */
   void (*size)(const struct observer *observer, const struct model *model, struct observer_size *size);
 
-  /* A number that the type needs at each sample, and that the model alone decides; NULL if none. */
+  /* A number that the type needs at each sample, and that the model alone decides; NAN if memory is short. NULL if
+   * none. */
   double (*constant)(const struct model *model);
 
   /* A time series: its columns, and the function that fills a row. */
