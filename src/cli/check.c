@@ -7,6 +7,7 @@
 #include "cli/check_flow.h"
 #include "cli/check_head.h"
 #include "cli/check_medium.h"
+#include "cli/check_observed.h"
 #include "cli/check_start.h"
 #include "cli/check_walls.h"
 #include "cli/command.h"
@@ -239,7 +240,8 @@ static void report_suspension(const struct si_scale *si, const struct model *m)
   double self = 0.0;
   for (uint32_t k = 0; k < m->kinds; k++)
     self += theory_self_collision_rate(&m->kind[k]);
-  sheet_row(si, "collisions of bonds", "", theory_collision_rate(m), "1/t0", "ideal gas of bonds");
+  sheet_row(si, "collisions of bonds", "", theory_collision_rate(m), "1/t0",
+            m->thickness > 0 ? "ideal gas of lines; thick fibers meet more often" : "ideal gas of bonds");
   sheet_row(si, "... of flexible fibers with themselves", "", self, "1/t0", "Gaussian chains");
   sheet_row(si, "... that the rule answers", "", theory_executed_rate(m), "1/t0",
             m->crossing.rule == CROSSING_SEQUENTIAL ? "sequential: 1.15 of them" : "");
@@ -385,6 +387,7 @@ void scene_report(const struct scene *scene, const struct stream *stream, const 
   if (si)
     units_report(units, m, si);
   check_stream(scene->seed, stream);
+  check_observed(scene);
   report_parts(scene);
   report_cost(scene);
   sheet_heading("Warnings");

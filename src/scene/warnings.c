@@ -296,7 +296,7 @@ static void warn_drift(struct teller *t, const struct scene *scene)
   char others[48] = "";
   if (drifting > 1)
     snprintf(others, sizeof others, " and %" PRIu32 " more kind%s", drifting - 1, drifting > 2 ? "s" : "");
-  char squares[48] = "g_cm";
+  char squares[48] = "g and g_cm";
   if (meaning_has_column(m, OBSERVE_DYNAMICS, "D"))
     snprintf(squares, sizeof squares, "g_cm and D = g_cm/%" PRIu32 "t", 2 * m->dimensions);
   warn(t, "observe.dynamics: %s, so fibers drift, and %s of '%s'%s contain (v t)^2; use %s (docs/observables.md)",

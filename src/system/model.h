@@ -406,7 +406,8 @@ static inline bool model_is_overdamped(const struct model *model)
 /* Something holds kT = 1: the rule, a thermostat, or a bath. */
 static inline bool model_is_isothermal(const struct model *model)
 {
-  return model_rule_is_thermal(model) || model->solvent.thermostat != THERMOSTAT_NONE || !model_in_cells(model);
+  return model_rule_is_thermal(model) || model->solvent.thermostat != THERMOSTAT_NONE || !model_in_cells(model) ||
+         model->solvent.bath == BATH_PHANTOMS;
 }
 
 /* True if the box has walls at y = 0 and y = L. */

@@ -3,27 +3,31 @@
 #include "exact.h"
 #include "statistics.h"
 
-#include <unistd.h>
-
 #include "../observe/tables.h"
 #include "observe/meaning.h"
 #include "observe/units.h"
-#include "scene/scene.h"
+#include "scene/scene_keys.h"
 
 /* --- rows by name ------------------------------------------------------------------------------------------------- */
 
 /* What a scene says, read as a run reads it. */
+static bool read_whole(const char *text, struct scene *scene, struct message *message)
+{
+  return scene_read_source(&(struct scene_source){.keys = &scene_keys,
+                                                  .path = "scene.yaml",
+                                                  .text = text,
+                                                  .size = strlen(text),
+                                                  .missing = MISSING_ABSENT,
+                                                  .message = message},
+                           scene);
+}
+
 static struct scene scene_of(const char *text)
 {
-  char path[] = "build/observables-XXXXXX";
-  const int file = mkstemp(path);
   struct scene scene;
   struct message message;
-  assert_true(file >= 0 && write(file, text, strlen(text)) == (ssize_t)strlen(text));
-  close(file);
-  if (!scene_read(path, &scene, &message))
+  if (!read_whole(text, &scene, &message))
     fail_msg("%s", message.text);
-  unlink(path);
   return scene;
 }
 
@@ -392,18 +396,14 @@ static void example(enum circumstance where, const char *observe, char *text, si
 /* A scene that asks for what has no meaning is refused at the key, with the words of the table. */
 static void refuses(enum circumstance where, enum observable which)
 {
-  char observe[64], text[1024], path[] = "build/observables-XXXXXX", place[32];
+  char observe[64], text[1024], place[32];
   snprintf(observe, sizeof observe, "\n  %s: {every: 2%s}", observable_names[which],
            which == OBSERVE_PROFILE ? ", slabs: 2" : "");
   example(where, observe, text, sizeof text);
-  const int file = mkstemp(path);
   struct scene scene;
   struct message message;
-  assert_true(write(file, text, strlen(text)) == (ssize_t)strlen(text));
-  close(file);
-  if (scene_read(path, &scene, &message))
+  if (read_whole(text, &scene, &message))
     fail_msg("taken: %s", text);
-  unlink(path);
   size_t lines = 0;
   for (const char *c = strstr(text, "observe:"); c > text; c--)
     lines += c[-1] == '\n';

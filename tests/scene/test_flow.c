@@ -189,10 +189,12 @@ static void warned(void **unused)
   assert_int_equal(warnings_of(at, "observe: {profile: {every: 1, slabs: 8}, stress: {every: 1}}").unseen, 0);
   assert_int_equal(warnings_of("  rule: at-a\n  acceleration: [1, 0, 0]", "walls: {kind: no-slip}").mach, 1);
   assert_int_equal(warnings_of("", "shear: {rate: 0.1}").shear_heat, 1);
-  assert_int_equal(warnings_of("  hydrodynamics: false\n  bath: phantoms",
-                               "shear: {rate: 0.1}\nfibers: [{name: a, count: 1, vertices: 1, mass: 5}]")
-                       .shear_heat,
-                   0); /* phantoms are a bath */
+  assert_int_equal(
+      warnings_of(
+          "  hydrodynamics: false\n  bath: phantoms",
+          "shear: {rate: 0.1}\nfibers: [{name: a, count: 1, vertices: 1, mass: 5}]\ncrossing: {forbidden: false}")
+          .shear_heat,
+      0); /* phantoms are a bath */
 }
 
 /* Is a run of this length warned that it observes the start of its flow? nu is 0.7426 and L 8, so that the start falls
