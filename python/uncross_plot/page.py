@@ -294,7 +294,7 @@ def front(run):
 # --- pages -------------------------------------------------------------------------------------------------------------
 
 MOST_SHOWN = 1000  # characters of a value
-LONG = ("scene", "warnings", "start", "end", "collisions")
+LONG = ("scene", "warnings", "start", "end", "collisions", "units")
 
 
 def provenance(run):
