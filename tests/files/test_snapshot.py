@@ -198,5 +198,55 @@ class Foreign(Start):
         self.again(OPEN, "it holds 'charge', of which a run knows nothing; allowed: ")
 
 
+class Outside(Start):
+    """Solvent that is not in the box: an image of a place in it where the box is periodic, else refused."""
+    FLUID = "box: [4, 4, 4]\ntime_step: 0.01\nsteps: 4\nsolvent: {per_cell: 3, collision_interval: 0.02}\n" \
+            "trajectory: {every: 4, solvent: true}\n"
+    AGAIN = "start: {snapshot: first/trajectory.h5}\n"
+
+    def make(self, boundary, shift):
+        """A frame whose solvent is moved as a whole."""
+        self.assertEqual(self.start(self.FLUID + boundary, "first")[0], 0)
+        with h5py.File(self.dir / "first/trajectory.h5", "a") as file:
+            file.pop("parameters")
+            file["particles/trajectory/position/value"][-1] += numpy.array(shift)
+            return file["particles/trajectory/position/value"][-1]
+
+    def test_walls(self):
+        moved = self.make("walls: {kind: no-slip}\n", [-2, -2, -2])  # the origin in the middle of the box
+        code, said = self.start(self.FLUID + "walls: {kind: no-slip}\n" + self.AGAIN, "second")
+        self.assertEqual(code, 2, said)
+        first = int(numpy.flatnonzero(moved[:, 1] < 0)[0])
+        self.assertIn(f"solvent particle {first} is at y = {moved[first, 1]:.6g}, beyond the walls at 0 and 4", said)
+        self.assertFalse((self.dir / "second").exists())
+        done = subprocess.run([UNCROSS, "check", self.dir / "scene.yaml"], capture_output=True, text=True, check=False, timeout=60)
+        self.assertEqual((done.returncode, done.stderr), (2, said))
+
+    def test_shear(self):
+        moved = self.make("shear: {rate: 0.1}\n", [0, 1, 0])
+        code, said = self.start(self.FLUID + "shear: {rate: 0.1}\n" + self.AGAIN, "second")
+        self.assertEqual(code, 2, said)
+        first = int(numpy.flatnonzero(moved[:, 1] >= 4)[0])
+        self.assertIn(f"solvent particle {first} is at y = {moved[first, 1]:.6g}, outside of a sheared box, whose images "
+                      "along y slide and have other velocities; allowed: 0 to 4", said)
+
+    def test_periodic(self):
+        moved = self.make("", [-2, 3, 9])
+        code, said = self.start(self.FLUID + self.AGAIN, "second")
+        self.assertEqual(code, 0, said)
+        with h5py.File(self.dir / "second/trajectory.h5") as file:
+            start = file["particles/trajectory/position/value"][0]
+        numpy.testing.assert_allclose(start, moved % 4, rtol=0, atol=2**-40)
+
+    def test_vertices_beyond_walls(self):
+        fibers = "fibers: [{name: a, count: 4, vertices: 2, mass: 3, bond_length: 0.5, spring: 100}]\nwalls: {kind: no-slip}\n"
+        self.make(fibers, [0, 0, 0])
+        with h5py.File(self.dir / "first/trajectory.h5", "a") as file:
+            file["particles/trajectory/position/value"][-1, 3, 1] = -0.01
+        code, said = self.start(self.FLUID + fibers + self.AGAIN, "second")
+        self.assertEqual(code, 2, said)
+        self.assertIn("vertex 3", said)
+
+
 if __name__ == "__main__":
     unittest.main()
