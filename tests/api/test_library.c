@@ -150,11 +150,14 @@ static void test_save_and_resume(void **unused)
   uncross_scene_set(scene, "fibers.0.spring", "101", NULL);
   assert_null(uncross_sim_resume(scene, path, &error));
   assert_int_equal(error.code, UNCROSS_BAD_INPUT);
-  assert_non_null(strstr(error.message, "is of another scene than"));
+  assert_non_null(strstr(error.message, "fibers.0.spring is 101 there, 100 in the run so far"));
   uncross_scene_set(scene, "fibers.0.spring", "100", NULL);
   uncross_scene *other = scene_of(second_text);
   assert_null(uncross_sim_resume(other, path, &error));
   assert_int_equal(error.code, UNCROSS_BAD_INPUT);
+  uncross_scene_set(scene, "seed", "12", NULL);
+  assert_null(uncross_sim_resume(scene, path, &error));
+  assert_non_null(strstr(error.message, "was run with seed 11"));
   uncross_scene_set_seed(scene, 12, NULL);
   assert_null(uncross_sim_resume(scene, path, &error));
   assert_non_null(strstr(error.message, "was run with seed 11"));

@@ -200,9 +200,11 @@ gives 2 'holds a run already (checkpoint.h5)' run "$scene" --out "$run"
 gives 0 '' run "$scene" --out "$run" --resume --steps 21 --seed 1 --quiet
 gives 2 "seed 1; a resumed run keeps its seed" run "$scene" --out "$run" --resume --steps 22 --seed 2
 sed 's/seed: 1/seed: 2/' "$scene" >"$dir/other.yaml"
-gives 0 '' run "$dir/other.yaml" --out "$run" --resume --steps 22
+gives 2 "seed 1; a resumed run keeps its seed" run "$dir/other.yaml" --out "$run" --resume --steps 22
+gives 2 "seed 1; a resumed run keeps its seed" run "$scene" --out "$run" --resume --steps 22 --set seed=2
+gives 0 '' run "$scene" --out "$run" --resume --steps 22
 sed 's/bending: 4/bending: 5/' "$scene" >"$dir/other.yaml"
-gives 2 'is of another scene' run "$dir/other.yaml" --out "$run" --resume --steps 23
+gives 2 'bending is 5 there, 4 in the run so far' run "$dir/other.yaml" --out "$run" --resume --steps 23
 sed 's/conserved: {every: 1}/statics: {every: 1}/' "$scene" >"$dir/other.yaml"
 gives 2 'no memory of the observable' run "$dir/other.yaml" --out "$run" --resume --steps 23
 "$uncross" run "$scene" --out "$dir/stop'd here" --set "box=[4, 4, 5]" --steps 100000000 >"$dir/out" 2>"$dir/err" &
