@@ -12,6 +12,7 @@
 #include "base/clock.h"
 #include "files/checkpoint.h"
 #include "files/folder.h"
+#include "files/same_run.h"
 #include "version.h"
 
 /* --- how it starts ----------------------------------------------------------------------------------------------- */
@@ -102,17 +103,10 @@ enum run_code run_continue(const struct run_parts *p, const char *path, const ui
 {
   const struct observe_block *blocks;
   const size_t count = observers_blocks(p->observers, &blocks);
-  if (!checkpoint_read(path, &p->scene->model, head, p->state, blocks, count, message))
+  if (!same_run_as_begun(p->scene, path, seed, message) ||
+      !checkpoint_read(path, &p->scene->model, head, p->state, blocks, count, message) ||
+      !same_run(p->scene, head, NULL, seed, path, message)) /* the file may have been another one meanwhile */
     return RUN_BAD_INPUT;
-  if (head->fingerprint != p->scene->fingerprint) {
-    message_set(message, "%s: is of another scene than %s; resume with the scene of the run (it is kept in run.json)",
-                path, p->scene->path);
-    return RUN_BAD_INPUT;
-  }
-  if (seed && *seed != head->seed) {
-    message_set(message, "%s: was run with seed %" PRIu64 "; a resumed run keeps its seed", path, head->seed);
-    return RUN_BAD_INPUT;
-  }
   p->scene->seed = head->seed;
   p->scene->model.seed = head->stream.key;
   return RUN_FINE;

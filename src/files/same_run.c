@@ -1,0 +1,55 @@
+#include "files/same_run.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "files/frames.h"
+#include "scene/differ.h"
+
+/* Why the scenes of a run and of its resume are not the same: the key, if it can be found. */
+static void tell_other_scene(const struct scene *scene, const struct scene *then, const char *path,
+                             struct message *message)
+{
+  struct scene_difference d;
+  char key[384] = "";
+  if (then && scene_differs(scene, then, &d))
+    snprintf(key, sizeof key, ": %s is %s there, %s in the run so far", d.key, d.value, d.other);
+  message_set(message,
+              "%s: is of another scene than %s%s; a resumed run keeps the scene of the run (it is kept in run.json)",
+              path, scene->path, key);
+}
+
+/* Fingerprint and seed must be those of the checkpoint. A scene may say the seed that the run's own scene says,
+ * although the run was begun with another one (--seed). seed: set from outside, or NULL. */
+bool same_run(const struct scene *scene, const struct checkpoint_head *head, const struct scene *then,
+              const uint64_t *seed, const char *path, struct message *message)
+{
+  if (head->fingerprint != scene->fingerprint) {
+    tell_other_scene(scene, then, path, message);
+    return false;
+  }
+  const bool same = seed ? *seed == head->seed : scene->seed == head->seed || !then || scene->seed == then->seed;
+  return same ||
+         message_set(message, "%s: was run with seed %" PRIu64 "; a resumed run keeps its seed", path, head->seed);
+}
+
+/* Before the checkpoint is read as one of the scene: a message about a key says more than one about numbers. True if
+ * the file cannot be read here, which is told later. */
+bool same_run_as_begun(const struct scene *scene, const char *path, const uint64_t *seed, struct message *message)
+{
+  enum h5_trouble trouble;
+  struct message ignored;
+  struct scene then;
+  struct frames *f = frames_open(path, &trouble, &ignored);
+  if (!f || !f->about.checkpoint) {
+    frames_close(f);
+    return true;
+  }
+  const bool known = f->scene && scene_read_text(path, f->scene, strlen(f->scene), &then, &ignored);
+  const bool same = same_run(scene, &f->about.summary.head, known ? &then : NULL, seed, path, message);
+  if (known)
+    scene_free(&then);
+  frames_close(f);
+  return same;
+}

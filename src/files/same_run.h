@@ -1,0 +1,18 @@
+/* Whether a checkpoint is of the run that is to be resumed: what a resumed run keeps, whoever says otherwise. */
+#ifndef UNCROSS_FILES_SAME_RUN_H
+#define UNCROSS_FILES_SAME_RUN_H
+
+#include "files/snapshot.h"
+#include "scene/scene.h"
+
+/* Fingerprint and seed must be those of the checkpoint. A scene may say the seed that the run's own scene says,
+ * although the run was begun with another one (--seed). then: the run's own scene, NULL if not known. seed: set from
+ * outside, or NULL. False, with a message that names the key. */
+bool same_run(const struct scene *scene, const struct checkpoint_head *head, const struct scene *then,
+              const uint64_t *seed, const char *path, struct message *message);
+
+/* The same of a file. To be asked before the checkpoint is read as one of the scene: a message about a key says more
+ * than one about numbers. True if the file cannot be read here. */
+bool same_run_as_begun(const struct scene *scene, const char *path, const uint64_t *seed, struct message *message);
+
+#endif
