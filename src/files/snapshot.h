@@ -86,8 +86,8 @@ struct trajectory *trajectory_open(const char *path, const struct model *model,
                                    const struct trajectory_options *options, bool resume, uint64_t keep_to_step,
                                    const char *scene_text, struct message *message);
 /* Appends the state as a frame, and flushes. Positions are unwrapped for vertices, wrapped for the solvent, which is
- * shown where it is now. Refuses vertices 8192 a0 or more from the origin, where doubles no longer hold every lattice
- * point. */
+ * shown where it is now. Doubles hold every lattice point up to 8192 a0 from the origin; further out it is the nearest
+ * double, at most 1.2e-10 a0 away. */
 bool trajectory_append(struct trajectory *trajectory, const struct model *model, const struct state *state,
                        struct message *message);
 /* Waits until all frames are on the disk. */

@@ -9,8 +9,8 @@
 #include "files/hdf5.h"
 #include "files/snapshot.h"
 
-#define TRAJECTORY_VERSION 2    /* with checksums; version 1 has none */
-#define TRAJECTORY_LIMIT 8192.0 /* a0: below this a double holds every lattice point */
+#define TRAJECTORY_VERSION 2                                    /* with checksums; version 1 has none */
+#define TRAJECTORY_REACH ((double)LATTICE_REACH * LATTICE_UNIT) /* a0: no vertex is further out */
 
 struct frames;
 

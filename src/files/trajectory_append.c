@@ -1,5 +1,4 @@
 /* Frames are appended to a trajectory. */
-#include <math.h>
 #include <string.h>
 
 #include "files/frames.h"
@@ -25,18 +24,6 @@ static bool append_block(hid_t dataset, uint64_t frame, int rank, const hsize_t 
   h5_close(memory);
   h5_close(file_space);
   return ok;
-}
-
-/* Frames hold every lattice point within the limit. */
-static bool within_limit(const struct trajectory *t, const struct state *state, struct message *message)
-{
-  for (uint32_t v = 0; v < state->vertices; v++) {
-    const double *r = &t->row[3 * (size_t)v];
-    if (!(fabs(r[0]) < TRAJECTORY_LIMIT && fabs(r[1]) < TRAJECTORY_LIMIT && fabs(r[2]) < TRAJECTORY_LIMIT))
-      return message_set(message, "%s: step %llu: vertex %u is at (%.6g, %.6g, %.6g), unwrapped; frames hold %g a0",
-                         t->path, (unsigned long long)state->step, v, r[0], r[1], r[2], TRAJECTORY_LIMIT);
-  }
-  return true;
 }
 
 /* The step comes last: a frame without it does not count. A file of version 1 is continued without checksums. */
@@ -84,7 +71,7 @@ bool trajectory_append(struct trajectory *t, const struct model *model, const st
   if (t->slot)
     state_solvent_slots(state, t->slot);
   frame_positions(state, model, t->slot, t->row);
-  if (!within_limit(t, state, message) || !trajectory_reserve(t, frame_bytes(t), message))
+  if (!trajectory_reserve(t, frame_bytes(t), message))
     return false;
   bool ok = write_frame(t, model, state);
   h5_trim(t->file);

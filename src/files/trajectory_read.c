@@ -78,15 +78,15 @@ static bool fits_model(const struct trajectory *t, const struct model *m, struct
   return true;
 }
 
-/* Positions must be below the limit; that all numbers are finite has been looked at. */
+/* Positions must be within reach; that all numbers are finite has been looked at. */
 static bool within_limit(const struct trajectory *t, uint64_t frame, struct message *message)
 {
   const double *position = t->frames_apart->picture.position;
   for (size_t k = 0; k < 3 * (size_t)t->particles; k++)
-    if (!(fabs(position[k]) < TRAJECTORY_LIMIT))
+    if (!(fabs(position[k]) <= TRAJECTORY_REACH))
       return message_set(message,
-                         "%s: frame %" PRIu64 ": a position of particle %zu is %g; allowed are numbers below %g",
-                         t->path, frame, k / 3, position[k], TRAJECTORY_LIMIT);
+                         "%s: frame %" PRIu64 ": a position of particle %zu is %g; allowed are numbers up to %.7g",
+                         t->path, frame, k / 3, position[k], TRAJECTORY_REACH);
   return true;
 }
 
@@ -94,6 +94,28 @@ static bool within_limit(const struct trajectory *t, uint64_t frame, struct mess
 static int64_t to_lattice(double x)
 {
   return llrint(x * LATTICE_PER_A0);
+}
+
+/* Along a periodic edge solvent may be in any image; beyond a wall nothing is, and images that slide have velocities of
+ * their own. */
+static bool solvent_inside(const struct trajectory *t, const struct model *m, struct message *message)
+{
+  const double *row = t->frames_apart->picture.position + 3 * (size_t)m->vertices;
+  const enum boundary_kind kind = m->box.boundary[1];
+  if (kind == BOUNDARY_PERIODIC || !trajectory_has_solvent(t, m))
+    return true;
+  for (uint32_t i = 0; i < m->solvent.particles; i++) {
+    const int64_t y = to_lattice(row[3 * (size_t)i + 1]);
+    if (y >= 0 && y < m->box.edge[1] + (kind == BOUNDARY_WALL)) /* on a wall is inside */
+      continue;
+    return message_set(message,
+                       kind == BOUNDARY_WALL
+                           ? "%s: solvent particle %u is at y = %.6g, beyond the walls at 0 and %d"
+                           : "%s: solvent particle %u is at y = %.6g, outside of a sheared box, whose images along y "
+                             "slide and have other velocities; allowed: 0 to %d",
+                       t->path, i, row[3 * (size_t)i + 1], m->box.cells[1]);
+  }
+  return true;
 }
 
 static void take_positions(const struct trajectory *t, const struct model *m, struct state *state)
@@ -107,7 +129,8 @@ static void take_positions(const struct trajectory *t, const struct model *m, st
   for (uint32_t i = 0; i < p->n; i++, row += 3) {
     p->id[i] = i;
     p->x[i] = lattice_fold(to_lattice(row[0]), m->box.edge[0]);
-    p->y[i] = box_inside(&m->box, 1, to_lattice(row[1]));
+    p->y[i] = m->box.boundary[1] == BOUNDARY_PERIODIC ? lattice_fold(to_lattice(row[1]), m->box.edge[1])
+                                                      : to_lattice(row[1]); /* solvent_inside */
     p->z[i] = lattice_fold(to_lattice(row[2]), m->box.edge[2]);
   }
 }
@@ -129,7 +152,8 @@ bool trajectory_read(struct trajectory *t, const struct model *model, uint64_t f
 {
   const enum frame_verdict verdict = frames_read(t->frames_apart, frame, message);
   t->damaged = verdict == FRAME_DAMAGED;
-  if (verdict != FRAME_FINE || !fits_model(t, model, message) || !within_limit(t, frame, message))
+  if (verdict != FRAME_FINE || !fits_model(t, model, message) || !within_limit(t, frame, message) ||
+      !solvent_inside(t, model, message))
     return false;
   state->step = t->frames_apart->picture.step;
   state->solvent_lag = 0;

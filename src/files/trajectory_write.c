@@ -249,12 +249,12 @@ static bool same_contents(const struct frames *frames, const struct model *model
 {
   const struct frames_about *about = &frames->about;
   if (about->rows != rows_wanted(model, options) || about->velocities != options->velocities)
-    return message_set(
-        message,
-        "%s: its frames hold %u particles %s velocities, the scene asks for %u %s; move the file away, or "
-        "resume with the interrupted run's settings",
-        frames->path, about->rows, about->velocities ? "with" : "without", rows_wanted(model, options),
-        options->velocities ? "with" : "without");
+    return message_set(message,
+                       "%s: its frames hold %u particles %s velocities, the scene asks for %u %s (trajectory.solvent, "
+                       "trajectory.velocities); move the file away, or "
+                       "resume with the interrupted run's settings",
+                       frames->path, about->rows, about->velocities ? "with" : "without", rows_wanted(model, options),
+                       options->velocities ? "with" : "without");
   return structure_is_of(&frames->structure, model) ||
          message_set(message, "%s: its bonds are not the scene's; move the file away", frames->path);
 }

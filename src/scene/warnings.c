@@ -81,6 +81,16 @@ static void warn_flow(struct teller *t, const struct model *m)
     warn(t, "the flow's Mach number is %.3g > 0.1 (harmless while it is uniform: paper, Sec. V B 1)", mach);
 }
 
+/* Vertices are unwrapped, and a run stops where their coordinates end. */
+static void warn_reach(struct teller *t, const struct scene *scene)
+{
+  const struct vec3 v = scene->model.flow;
+  const double way = fmax(fabs(v.x), fmax(fabs(v.y), fabs(v.z))) * scene->model.time_step * (double)scene->steps;
+  const double reach = (double)LATTICE_REACH * LATTICE_UNIT;
+  if (scene->model.kinds > 0 && way > reach)
+    warn(t, "the flow carries vertices %.3g a0 during the run, which stops at %.7g a0; use fewer steps", way, reach);
+}
+
 static void warn_force(struct teller *t, const struct model *m)
 {
   double scale = m->solvent.particles * vec3_norm(m->solvent.acceleration);
@@ -396,6 +406,7 @@ int scene_warnings(const struct scene *scene, void (*tell)(void *context, const 
     warn_walls(&t, m);
   if (model_is_sheared(m) && model_collides(m))
     warn_shear(&t, m);
+  warn_reach(&t, scene);
   if (m->solvent.profile != PROFILE_UNIFORM && model_collides(m))
     warn_profile(&t, m);
   for (uint32_t k = 0; k < m->kinds; k++)

@@ -239,7 +239,7 @@ class Outside(Start):
         numpy.testing.assert_allclose(start, moved % 4, rtol=0, atol=2**-40)
 
     def test_vertices_beyond_walls(self):
-        fibers = "fibers: [{name: a, count: 4, vertices: 2, mass: 3, bond_length: 0.5, spring: 100}]\nwalls: {kind: no-slip}\n"
+        fibers = "fibers: [{name: a, count: 4, vertices: 1, mass: 3}]\nwalls: {kind: no-slip}\n"
         self.make(fibers, [0, 0, 0])
         with h5py.File(self.dir / "first/trajectory.h5", "a") as file:
             file["particles/trajectory/position/value"][-1, 3, 1] = -0.01
