@@ -13,12 +13,16 @@
 #include "system/model.h"
 #include "system/state.h"
 
+/* start.stream: which random numbers a run from a snapshot draws. */
+enum scene_stream { SCENE_STREAM_OWN, SCENE_STREAM_SEED };
+
 struct scene {
   struct model model; /* finished (model_finish) */
   uint64_t steps;     /* length of the whole run */
   uint64_t seed;      /* as the scene says it; model.seed is the stream that the run makes of it (system/stream.h) */
   char *snapshot; /* start from this file instead of each kind's `start`; NULL: none. As the scene says it: relative to
                      the scene file's folder (scene_snapshot_path). */
+  enum scene_stream stream;
   struct observe_plan observe;
   double observe_from_time;   /* t0; as the scene says it, observe.from is made of it; 0: not said */
   uint64_t trajectory_every;  /* steps between frames; 0: no trajectory */

@@ -6,6 +6,7 @@
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define IN_SCENE(member) offsetof(struct scene, member)
 
+static const char *const stream_words[] = {"own", "seed", NULL};
 static const struct key start_keys[] = {
     {.name = "snapshot",
      .text = "A checkpoint, or an H5MD file with velocities; relative to the folder of the scene file. Replaces the "
@@ -14,6 +15,15 @@ static const struct key start_keys[] = {
      .type = KEY_TEXT,
      .offset = IN_SCENE(snapshot),
      .first_format = true},
+    {.name = "stream",
+     .text =
+         "Which random numbers follow. `own`: those of a stream that is made of the seed and the snapshot, so that two "
+         "runs never share their noise. `seed`: those of the seed, which every other run with this seed has at the "
+         "same steps.",
+     .type = KEY_CHOICE,
+     .absent = "own",
+     .choice = stream_words,
+     .offset = IN_SCENE(stream)},
 };
 static const struct key_table start_table = {"start", NULL, COUNT(start_keys), start_keys};
 

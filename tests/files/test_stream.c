@@ -105,6 +105,29 @@ static void a_snapshot_makes_a_stream(void **unused)
   remove_folder(folder);
 }
 
+/* start.stream: seed. Traces of reference-data have it by their scenes. */
+static void a_scene_may_ask_for_the_stream_of_its_seed(void **unused)
+{
+  (void)unused;
+  char folder[64];
+  make_folder(folder);
+  struct begun own, asked;
+  struct message message;
+  const char *first = in_folder(folder, "first.h5");
+  begin(&own, NULL);
+  advance(&own, 3);
+  save(&own, first);
+  prepare(&asked, first);
+  assert_int_equal(asked.scene.stream, SCENE_STREAM_OWN);
+  asked.scene.stream = SCENE_STREAM_SEED;
+  const struct run_parts of = parts_of(&asked);
+  if (run_begin(&of, &asked.head, &message) != RUN_FINE)
+    fail_msg("%s", message.text);
+  assert_true(asked.head.stream.key == 77 && asked.head.stream.from == STREAM_SEED && asked.scene.model.seed == 77);
+  end(&own), end(&asked);
+  remove_folder(folder);
+}
+
 static void a_resume_keeps_its_stream(void **unused)
 {
   (void)unused;
@@ -136,6 +159,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_snapshot_makes_a_stream),
+      cmocka_unit_test(a_scene_may_ask_for_the_stream_of_its_seed),
       cmocka_unit_test(a_resume_keeps_its_stream),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
