@@ -7,70 +7,26 @@
  *   e, f   the same of a checkpoint or trajectory, which is exported and verified
  *   p      the same of a pack, which is compared with the whole one, and dumped
  *   C, E, P  as c, e, p, with the seal made anew, so that what is behind it is reached
- * Another first byte stands for one of these. FUZZ_READERS=soj in the environment: these readers only.
- * A change is four bytes: position (three, modulo the length) and what is xor-ed there; at most 16 of them, and if
- * their number is odd the file also ends at the last position. HDF5 itself is not the target: it runs in a process of
- * its own, which may die, but not of our own code.
+ *   h      the rest are changes of a trajectory without checksums, as other programs write them, from which a run
+ * starts H      the same, but each change gives a number of the frame another value (number_of) r      the rest is a
+ * port's trace, as text: it is compared with ours R      the rest are changes of our trace, which is then compared with
+ * ours Another first byte stands for one of these. FUZZ_READERS=soj in the environment: these readers only. A change is
+ * four bytes: position (three, modulo the length) and what is xor-ed there; at most 16 of them, and if their number is
+ * odd the file also ends at the last position. HDF5 itself is not the target: it runs in a process of its own, which
+ * may die, but not of our own code.
  *
  * What is asserted: a scene that is read is also written and read back with the same fingerprint; what is read of a
- * changed checkpoint, or of a changed trajectory or pack with its checksums, is what was written; nothing is refused
+ * changed checkpoint, or of a changed trajectory or pack with its checksums, is what was written; a state that a run
+ * starts from is sound, and can be stepped on; a trace is the same as ours only if its hashes are; nothing is refused
  * without a word.
  */
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
-
-#include "files/seal.h"
-#include "files/snapshot.h"
 #include "files/verify.h"
-#include "oracle/oracle.h"
-#include "scene/scene.h"
+#include "foreign.h"
 #include "scene/scene_keys.h"
 #include "start/start.h"
 
 int LLVMFuzzerInitialize(int *count, char ***words);
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-static const char scene_text[] = "box: [4, 4, 4]\ntime_step: 0.01\nsteps: 2\nseed: 1\nsolvent: {per_cell: 2, "
-                                 "collision_interval: 0.02}\nfibers:\n  - {name: a, count: 2, vertices: 4, mass: 5, "
-                                 "bond_length: 0.5, spring: 100, bending: 4}\n";
-
-/* A valid file in memory, and where it is put, changed, to be read. */
-struct victim {
-  uint8_t *data;
-  size_t size;
-  char path[64];
-};
-
-static struct {
-  struct scene scene;
-  struct state state;
-  struct victim checkpoint, trajectory, pack;
-  struct pack whole;
-  uint64_t hash;
-  char *frame, *dump; /* the export of the whole trajectory, and the text of the whole pack */
-  char text[64];      /* where tables and records are put */
-  const char *readers;
-} all;
-
-static void require(bool what, const char *name)
-{
-  if (what)
-    return;
-  fprintf(stderr, "fuzz_readers: %s\n", name);
-  abort();
-}
-
-static void take_file(struct victim *victim)
-{
-  FILE *file = fopen(victim->path, "rb");
-  require(file != NULL, "fopen");
-  victim->data = malloc(1 << 20);
-  victim->size = fread(victim->data, 1, 1 << 20, file);
-  fclose(file);
-}
 
 static void make_files(void)
 {
@@ -90,6 +46,8 @@ static void make_files(void)
   take_file(&all.checkpoint);
   take_file(&all.trajectory);
   take_file(&all.pack);
+  make_foreign();
+  make_trace();
 }
 
 static void end(void)
@@ -97,42 +55,22 @@ static void end(void)
   remove(all.checkpoint.path);
   remove(all.trajectory.path);
   remove(all.pack.path);
+  remove(all.foreign.path);
+  remove(all.ours.path);
   remove(all.text);
   free(all.checkpoint.data);
   free(all.trajectory.data);
   free(all.pack.data);
+  free(all.foreign.data);
+  free(all.ours.data);
+  work_free(&all.work);
   free(all.frame);
   free(all.dump);
   pack_free(&all.whole);
   state_free(&all.state);
   scene_free(&all.scene);
+  scene_free(&all.starter);
   memset(&all, 0, sizeof all);
-}
-
-/* A word of the reader about a failure that is the file's, not one of our own code in the process that reads it. */
-static void require_reason(const struct message *message, const char *name)
-{
-  require(message->text[0] != '\0' && !strstr(message->text, "ended early"), name);
-}
-
-/* What goes to a stream, to be freed. */
-struct sink {
-  FILE *stream;
-  char *text;
-  size_t size;
-};
-
-static void sink_open(struct sink *sink)
-{
-  sink->text = NULL;
-  sink->stream = open_memstream(&sink->text, &sink->size);
-  require(sink->stream != NULL, "memory");
-}
-
-static char *sink_close(struct sink *sink)
-{
-  fclose(sink->stream);
-  return sink->text;
 }
 
 /* Text of a file's frames, to be freed; NULL with a message if it cannot be exported. */
@@ -161,18 +99,18 @@ int LLVMFuzzerInitialize(int *count, char ***words)
 {
   (void)count, (void)words;
   struct message message;
-  struct work work;
   const char *readers = getenv("FUZZ_READERS");
-  all.readers = readers && *readers ? readers : "sokjctefpCEP";
+  all.readers = readers && *readers ? readers : "sokjctefpCEPhHrR";
   require(scene_read_text("seed", scene_text, strlen(scene_text), &all.scene, &message), message.text);
-  require(state_alloc(&all.state, &all.scene.model) && work_alloc(&work, &all.scene.model), "memory");
-  require(start_state(&all.state, &all.scene.model, &work), "start");
-  work_free(&work);
+  require(state_alloc(&all.state, &all.scene.model) && work_alloc(&all.work, &all.scene.model), "memory");
+  require(start_state(&all.state, &all.scene.model, &all.work), "start");
   all.hash = state_hash(&all.state);
   const char *folder = getenv("TMPDIR") ? getenv("TMPDIR") : ".";
   snprintf(all.checkpoint.path, sizeof all.checkpoint.path, "%.40s/uncross-fuzz-%d-c.h5", folder, (int)getpid());
   snprintf(all.trajectory.path, sizeof all.trajectory.path, "%.40s/uncross-fuzz-%d-t.h5", folder, (int)getpid());
   snprintf(all.pack.path, sizeof all.pack.path, "%.40s/uncross-fuzz-%d-p.h5", folder, (int)getpid());
+  snprintf(all.foreign.path, sizeof all.foreign.path, "%.40s/uncross-fuzz-%d-h.h5", folder, (int)getpid());
+  snprintf(all.ours.path, sizeof all.ours.path, "%.40s/uncross-fuzz-%d-r.csv", folder, (int)getpid());
   make_files();
   all.frame = exported(all.trajectory.path, &message);
   all.dump = dumped(&all.whole);
@@ -219,34 +157,6 @@ static void read_scene(const uint8_t *data, size_t size)
   free(text);
   scene_free(&again);
   scene_free(&scene);
-}
-
-static void put(const char *path, const uint8_t *data, size_t size)
-{
-  FILE *file = fopen(path, "wb");
-  require(file && fwrite(data, 1, size, file) == size, "fwrite");
-  fclose(file);
-}
-
-/* Puts the changed file where it is read. */
-static void damage(const struct victim *victim, bool sealed, const uint8_t *data, size_t size)
-{
-  uint8_t *copy = malloc(victim->size);
-  size_t changes = size / 4 < 16 ? size / 4 : 16, end = victim->size - (sealed ? SEAL_BYTES : 0);
-  const size_t room = end;
-  memcpy(copy, victim->data, victim->size);
-  for (size_t k = 0; k < changes; k++) {
-    const uint8_t *c = data + 4 * k;
-    size_t at = ((size_t)c[0] << 16 | (size_t)c[1] << 8 | c[2]) % room;
-    copy[at] ^= c[3];
-    end = changes % 2 && !sealed ? at : end;
-  }
-  if (sealed) {
-    seal_make(copy, end, copy + end);
-    end += SEAL_BYTES;
-  }
-  put(victim->path, copy, end);
-  free(copy);
 }
 
 static void read_checkpoint(void)
@@ -384,6 +294,20 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
   case 'P':
     damage(&all.pack, reader == 'P', rest, size);
     read_pack(all.pack.path, true);
+    break;
+  case 'h':
+    damage(&all.foreign, false, rest, size);
+    start_from_foreign();
+    break;
+  case 'H':
+    damage_numbers(rest, size);
+    start_from_foreign();
+    break;
+  case 'r':
+    compare_trace(rest, size);
+    break;
+  case 'R':
+    compare_changed_trace(rest, size);
     break;
   default:
     break;
