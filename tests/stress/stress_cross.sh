@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # The same bits on another processor: the program for aarch64, run by QEMU, against this machine's, in all shipped scenes. Equal are
 # state hashes, tables and trajectories, byte for byte; a checkpoint of one is finished by the other; packs of every operator agree.
+# The process that reads checkpoints is started by the kernel, so that part needs one that runs aarch64 by itself (qemu-user-binfmt).
 # Prints TAP. Needs: UNCROSS, the program (default build/uncross); Debian's cross compiler, QEMU and packages, else it is skipped.
 # Builds the other program into the build folder first.
 set -u
@@ -30,7 +31,8 @@ cd "$top" || exit 1
 tools/cross-root arm64 "$root"
 MAKEFLAGS='' PKG_CONFIG_SYSROOT_DIR=$root PKG_CONFIG_LIBDIR=$root/usr/lib/aarch64-linux-gnu/pkgconfig \
   make -s -j2 CC="$compiler --sysroot=$root" OPTIMIZE=-O2 BUILD="$build" "$build/uncross" >"$dir/log" 2>&1 || cat "$dir/log"
-other=(qemu-aarch64 -L "$root" "$build/uncross")
+export QEMU_LD_PREFIX=$root
+other=(qemu-aarch64 "$build/uncross")
 "${other[@]}" --version
 ok $? "the program for aarch64 runs"
 if [ $failures != 0 ]; then
@@ -38,9 +40,16 @@ if [ $failures != 0 ]; then
   exit 1
 fi
 
+by_kernel=no
+if "$build/uncross" --version >"$dir/log" 2>&1; then
+  by_kernel=yes
+else
+  echo "# checkpoints are not changed from one to the other: this kernel does not start programs for aarch64"
+fi
+
 short() { # short SCENE: few steps, and observables that begin within them
-  awk '/^[a-z]/ { skip = /^(observe|trajectory)/ } !skip' "$1" | sed 's/^steps:.*/steps: 100/'
-  printf 'observe: {conserved: {every: 5}, temperature: {every: 5}}\ntrajectory: {every: 20, velocities: true, solvent: true}\n'
+  awk '/^[a-z]/ { skip = /^(observe|trajectory)/ } !skip' "$1" | sed 's/^steps:.*/steps: 40/'
+  printf 'observe: {conserved: {every: 5}, temperature: {every: 5}}\ntrajectory: {every: 10, velocities: true, solvent: true}\n'
 }
 
 field() { sed -n "s/.*\"$1\": \"\\([0-9a-f]*\\)\".*/\\1/p" "$2/run.json"; }
@@ -56,10 +65,10 @@ for scene in scenes/*.yaml; do
   differ=0
   for path in "$dir"/ours/*.csv "$dir/ours/trajectory.h5"; do cmp "$path" "$dir/theirs/${path##*/}" || differ=1; done
   ok $differ "$scene: the same tables and trajectory"
-  case $scene in
-    *semidilute* | *dense.yaml | *shear.yaml | *dumbbells.yaml)
-      "$uncross" run "$file" --out "$dir/first" --steps 30 --quiet &&
-        "${other[@]}" run "$file" --out "$dir/first" --resume --steps 70 --quiet &&
+  case $by_kernel$scene in
+    yes*semidilute* | yes*dense.yaml | yes*shear.yaml | yes*dumbbells.yaml)
+      "$uncross" run "$file" --out "$dir/first" --steps 10 --quiet &&
+        "${other[@]}" run "$file" --out "$dir/first" --resume --steps 25 --quiet &&
         "$uncross" run "$file" --out "$dir/first" --resume --quiet && [ "$hash" = "$(field state_hash "$dir/first")" ]
       ok $? "$scene: begun on one, taken up by the other, finished on the first"
       ;;
