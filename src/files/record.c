@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/utsname.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "files/build_info.h"
@@ -51,6 +53,40 @@ static json_t *parent(const struct stream *s)
     return json_null();
   return json_pack("{s:o, s:I, s:o}", "stream", s->from == STREAM_SNAPSHOT ? seed(s->parent) : json_null(), "step",
                    (json_int_t)s->parent_step, "state", hexadecimal(s->parent_state));
+}
+
+/* When it was written, UTC. */
+static json_t *date(void)
+{
+  char text[32] = "";
+  struct tm parts;
+  const time_t now = time(NULL);
+  if (gmtime_r(&now, &parts))
+    strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return json_string(text);
+}
+
+static json_t *host(void)
+{
+  struct utsname name;
+  return uname(&name) == 0 ? json_string(name.nodename) : json_null();
+}
+
+/* As Linux calls it; null where it does not say. */
+static json_t *processor(void)
+{
+  char line[256];
+  json_t *found = NULL;
+  FILE *file = fopen("/proc/cpuinfo", "r");
+  while (file && !found && fgets(line, sizeof line, file))
+    if (strncmp(line, "model name", 10) == 0 && strchr(line, ':')) {
+      const char *name = strchr(line, ':') + 1;
+      name += strspn(name, " \t");
+      found = json_stringn(name, strcspn(name, "\n"));
+    }
+  if (file)
+    fclose(file);
+  return found ? found : json_null();
 }
 
 static void add_text(void *list, const char *text)
@@ -103,6 +139,11 @@ bool record_write(const struct folder *folder, const struct scene *scene, const 
       r->steps_per_second, "collisions", counts(&r->counts), "warnings", warnings(scene, r), "start",
       conserved(r->start_energy, r->start_momentum), "end", conserved(r->now.total, r->now.momentum), "state_hash",
       hexadecimal(r->state_hash), "units", units(scene), "scene", scene->text);
+  if (root) {
+    json_object_set_new(root, "date", date());
+    json_object_set_new(root, "host", host());
+    json_object_set_new(root, "processor", processor());
+  }
   char *text = root ? json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) : NULL;
   message_set(message, "%s/run.json: no memory for it", folder->name);
   bool ok = text && file_replace(folder, "run.json", text, strlen(text), message);

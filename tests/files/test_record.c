@@ -3,6 +3,8 @@
 
 #include <inttypes.h>
 #include <jansson.h>
+#include <sys/utsname.h>
+#include <time.h>
 
 #include "files/record.h"
 #include "version.h"
@@ -66,6 +68,14 @@ static void assert_conserved(const json_t *root, const char *key, double energy,
                expected[k]);
 }
 
+static void utc_now(char said[32])
+{
+  struct tm parts;
+  const time_t now = time(NULL);
+  assert_non_null(gmtime_r(&now, &parts));
+  assert_int_equal(strftime(said, 32, "%Y-%m-%dT%H:%M:%SZ", &parts), 20);
+}
+
 static void everything_reads_back(void **unused)
 {
   (void)unused;
@@ -87,6 +97,8 @@ static void everything_reads_back(void **unused)
                                 .now = now,
                                 .state_hash = state_hash(&r.state)};
   struct message message;
+  char before[32];
+  utc_now(before);
   if (!record_write(by_name(folder), &scene, &record, &message))
     fail_msg("%s", message.text);
   snprintf(hash, sizeof hash, "%016" PRIx64, state_hash(&r.state));
@@ -104,6 +116,14 @@ static void everything_reads_back(void **unused)
   assert_true(json_integer_value(json_object_get(from, "step")) == 9007199254740993);
   assert_text(root, "scene_fingerprint", "00000000000012ab");
   assert_text(root, "state_hash", hash);
+  struct utsname name;
+  assert_int_equal(uname(&name), 0);
+  assert_text(root, "host", name.nodename);
+  char after[32];
+  utc_now(after);
+  const char *date = json_string_value(json_object_get(root, "date")); /* such texts stand in the order of time */
+  assert_true(date && strcmp(before, date) <= 0 && strcmp(date, after) <= 0);
+  assert_non_null(json_object_get(root, "processor"));
   assert_text(root, "scene", text);
   assert_int_equal(json_integer_value(json_object_get(root, "steps")), 4);
   assert_true(json_integer_value(json_object_get(root, "steps_wanted")) == INT64_MAX);
@@ -127,7 +147,7 @@ static void everything_reads_back(void **unused)
   static const char *const build[] = {"commit", "compiler", "flags"};
   for (int k = 0; k < 3; k++)
     assert_true(json_string_length(json_object_get(root, build[k])) > 0);
-  assert_int_equal(json_object_size(root), 23);
+  assert_int_equal(json_object_size(root), 26);
   json_decref(root);
   forget(&scene, &r);
   remove_folder(folder);
@@ -178,7 +198,7 @@ static void the_old_record_stays(void **unused)
   assert_non_null(strstr(message.text, "/run.json: cannot write"));
   record.status = "\xff"; /* not UTF-8 */
   assert_false(record_write(by_name(folder), &scene, &record, &message));
-  assert_non_null(strstr(message.text, "not UTF-8"));
+  assert_non_null(strstr(message.text, "/run.json: no memory"));
   assert_false(record_write(by_name(in_folder(folder, "none")), &scene, &record, &message));
 
   char *after = slurp(in_folder(folder, "run.json"), &again);

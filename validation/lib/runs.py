@@ -306,6 +306,7 @@ def harvest(run, work, kept):
         return False
     if "run.json" in files:
         files["run.json"] = files["run.json"].replace(f"{source}/".encode(), f"build/campaign/{run.case}/{run.name}/".encode())
+        files["run.json"] = re.sub(rb'"host": "[^"]*"', b'"host": null', files["run.json"])
     target.mkdir(parents=True, exist_ok=True)
     for name, content in files.items():
         (target / name).write_bytes(content)
