@@ -23,20 +23,30 @@ static bool say_in_use(const char *path, struct message *message)
   return message_set(message, "%s: in use by another process (a run that still writes it?)", path);
 }
 
-/* A pipe would block. */
-static bool readable(const char *path, bool writable, struct message *message)
+/* A run that writes a frame has the file to itself for that moment (trajectory_append). */
+static enum lock lock_for(int fd, bool writable)
+{
+  return lock_wait(fd, writable, writable ? 0.0 : 2.0);
+}
+
+/* The file, locked until it is closed; below 0, with a message. A pipe would block. */
+static int open_locked(const char *path, bool writable, struct message *message)
 {
   int fd = open(path, (writable ? O_RDWR : O_RDONLY) | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
-  if (fd < 0)
-    return message_set(message, "%s: cannot be opened for %s: %s", path, writable ? "writing" : "reading",
-                       strerror(errno));
+  if (fd < 0) {
+    message_set(message, "%s: cannot be opened for %s: %s", path, writable ? "writing" : "reading", strerror(errno));
+    return -1;
+  }
   struct stat status;
-  bool regular = fstat(fd, &status) == 0 && S_ISREG(status.st_mode);
-  const bool in_use = regular && lock_take(fd, writable) == LOCK_IN_USE;
+  const bool regular = fstat(fd, &status) == 0 && S_ISREG(status.st_mode);
+  if (regular && lock_for(fd, writable) != LOCK_IN_USE)
+    return fd;
   close(fd);
-  if (!regular)
-    return message_set(message, "%s: not a file but a folder, a pipe or a device", path);
-  return !in_use || say_in_use(path, message);
+  if (regular)
+    say_in_use(path, message);
+  else
+    message_set(message, "%s: not a file but a folder, a pipe or a device", path);
+  return -1;
 }
 
 /* HDF5's own locks are off: it takes a file system without locks for a damaged file. lock.h does it. */
@@ -48,12 +58,8 @@ static hid_t new_format(void)
   return access;
 }
 
-hid_t h5_open(const char *path, bool writable, bool *sealed, enum h5_trouble *trouble, struct message *message)
+static hid_t open_hdf5(const char *path, bool writable, bool *sealed, enum h5_trouble *trouble, struct message *message)
 {
-  silence();
-  *trouble = H5_UNREADABLE;
-  if (!readable(path, writable, message))
-    return -1;
   const enum seal seal = seal_check(path, message);
   *sealed = seal == SEAL_FITS;
   *trouble = seal == SEAL_UNREADABLE ? H5_UNREADABLE : H5_DAMAGED;
@@ -72,7 +78,7 @@ hid_t h5_open(const char *path, bool writable, bool *sealed, enum h5_trouble *tr
     h5_fail(message, path, "damaged HDF5 file");
     return -1;
   }
-  if (lock_take(h5_descriptor(file), writable) != LOCK_IN_USE) {
+  if (lock_for(h5_descriptor(file), writable) != LOCK_IN_USE) {
     *trouble = H5_FINE;
     return file;
   }
@@ -80,6 +86,22 @@ hid_t h5_open(const char *path, bool writable, bool *sealed, enum h5_trouble *tr
   say_in_use(path, message);
   h5_close(file);
   return -1;
+}
+
+hid_t h5_open(const char *path, bool writable, bool *sealed, enum h5_trouble *trouble, struct message *message)
+{
+  silence();
+  *trouble = H5_UNREADABLE;
+  const int fd = open_locked(path, writable, message);
+  if (fd < 0)
+    return -1;
+  if (writable) /* HDF5's descriptor is to have the lock alone; readers share theirs, so that no frame comes in between
+                 */
+    close(fd);
+  const hid_t file = open_hdf5(path, writable, sealed, trouble, message);
+  if (!writable)
+    close(fd);
+  return file;
 }
 
 static hid_t create(const char *path, unsigned how, hid_t access)

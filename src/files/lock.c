@@ -2,6 +2,9 @@
 
 #include <errno.h>
 #include <sys/file.h>
+#include <time.h>
+
+#include "base/clock.h"
 
 enum lock lock_take(int fd, bool alone)
 {
@@ -9,6 +12,15 @@ enum lock lock_take(int fd, bool alone)
     if (errno != EINTR)
       return errno == EWOULDBLOCK ? LOCK_IN_USE : LOCK_NONE;
   return LOCK_TAKEN;
+}
+
+enum lock lock_wait(int fd, bool alone, double seconds)
+{
+  const double until = clock_seconds() + seconds;
+  enum lock lock;
+  while ((lock = lock_take(fd, alone)) == LOCK_IN_USE && clock_seconds() < until)
+    nanosleep(&(struct timespec){.tv_nsec = 5000000}, NULL);
+  return lock;
 }
 
 void lock_leave(int fd)

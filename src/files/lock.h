@@ -20,6 +20,9 @@ enum lock {
 /* Asks once for the lock of an open file or folder; it lasts until lock_leave, or until the last copy of fd is closed.
  * alone: no other process may have it; else all of them may share it. */
 enum lock lock_take(int fd, bool alone);
+
+/* Asks again and again for so many seconds, as long as another process has it. */
+enum lock lock_wait(int fd, bool alone, double seconds);
 void lock_leave(int fd);
 
 #endif

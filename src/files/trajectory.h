@@ -27,6 +27,7 @@ struct trajectory {
   bool solvent;       /* frames hold the solvent; when writing */
   bool unread;        /* something that is there could not be read */
   bool broken;        /* a write failed: nothing more is written */
+  bool read;          /* by another process, when the last frame was written */
   bool damaged;       /* the last frame that was to be read is */
   double *row;        /* [3 particles] */
   uint32_t *slot;     /* [solvent particles]; when writing solvent */
@@ -43,6 +44,9 @@ struct trajectory *trajectory_give_up(struct trajectory *trajectory);
 
 /* Asks the file system for so many bytes more, before HDF5 writes them. False, with a message, if there is no room. */
 bool trajectory_reserve(const struct trajectory *trajectory, size_t bytes, struct message *message);
+
+/* Once the file is whole and flushed: from now on others may read it, but not write it. */
+void trajectory_let_readers_in(struct trajectory *trajectory);
 
 /* Finds the datasets of a file that is open, and checks that it is one of ours of a known version, or another's. False,
  * with a message, on failure. */

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "files/frames.h"
+#include "files/lock.h"
 #include "files/trajectory.h"
 
 bool trajectory_reserve(const struct trajectory *t, size_t bytes, struct message *message)
@@ -51,6 +52,20 @@ static bool write_frame(struct trajectory *t, const struct model *model, const s
          append_block(t->step, t->frames, 1, NULL, H5T_NATIVE_INT64, &step) && H5Fflush(t->file, H5F_SCOPE_GLOBAL) >= 0;
 }
 
+/* Between frames the file is whole, and its lock is one that readers share: HDF5 in another program finds nothing else
+ * than what was flushed. While a frame is written the run has the file to itself. A reader that stays is waited for
+ * once; then frames are written all the same, until it has gone. */
+static void keep_readers_out(struct trajectory *t)
+{
+  const int fd = h5_descriptor(t->file);
+  t->read = lock_wait(fd, true, t->read ? 0.0 : 1.0) == LOCK_IN_USE;
+}
+
+void trajectory_let_readers_in(struct trajectory *t)
+{
+  lock_take(h5_descriptor(t->file), false);
+}
+
 /* The most that a frame can take: a new chunk of every dataset. */
 static size_t frame_bytes(const struct trajectory *t)
 {
@@ -71,10 +86,13 @@ bool trajectory_append(struct trajectory *t, const struct model *model, const st
   if (t->slot)
     state_solvent_slots(state, t->slot);
   frame_positions(state, model, t->slot, t->row);
-  if (!trajectory_reserve(t, frame_bytes(t), message))
-    return false;
-  bool ok = write_frame(t, model, state);
+  keep_readers_out(t);
+  const bool room = trajectory_reserve(t, frame_bytes(t), message);
+  const bool ok = room && write_frame(t, model, state);
   h5_trim(t->file);
+  trajectory_let_readers_in(t);
+  if (!room)
+    return false;
   if (!ok) {
     t->broken = true;
     return h5_fail(message, t->path, "a frame could not be written");

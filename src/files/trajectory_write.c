@@ -174,6 +174,7 @@ static struct trajectory *create(const char *path, const struct model *model, co
   if (ok && !(make_room(t, model) && create_contents(t, model, options, scene_text)))
     ok = h5_fail(message, path, "trajectory cannot be created");
   h5_trim(t->file);
+  trajectory_let_readers_in(t);
   if (ok)
     return t;
   const struct place place = place_of(path, options);
@@ -339,6 +340,7 @@ static struct trajectory *resume_existing(const char *path, const struct model *
   }
   if (!kept.checked && kept.frames > 0)
     message_set(message, "%s: an earlier program wrote it without checksums; its frames are kept as they are", path);
+  trajectory_let_readers_in(t);
   return t;
 }
 
