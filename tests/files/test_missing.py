@@ -1,0 +1,89 @@
+#!/usr/bin/python3
+"""Files of a run that are not there, or not there yet: what was deleted is said, and a run at work is not damaged."""
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+sys.dont_write_bytecode = True  # nothing is left in the source tree
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from support import UNCROSS, uncross  # noqa: E402
+
+SCENE = """box: [6, 6, 6]
+time_step: 0.01
+steps: {steps}
+solvent: {{per_cell: 3, collision_interval: 0.02}}
+fibers:
+  - {{name: fiber, count: 4, vertices: 8, mass: 2, bond_length: 0.5, spring: 100, bending: 4}}
+observe: {{conserved: {{every: 10}}, collisions: {{every: 10}}, statics: {{every: 10}}}}
+trajectory: {{every: 10}}
+checkpoint: {{seconds: 0.2}}
+"""
+FILES = ["checkpoint.h5", "trajectory.h5", "conserved.csv", "collisions.csv", "statics-fiber.csv"]
+
+
+class Missing(unittest.TestCase):
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(self.temporary.cleanup)
+        self.dir = pathlib.Path(self.temporary.name)
+
+    def begin(self, steps, name="r"):
+        """A run at work, with its first checkpoint written."""
+        (self.dir / "s.yaml").write_text(SCENE.format(steps=steps))
+        run = subprocess.Popen([UNCROSS, "run", "s.yaml", "--out", name, "--quiet"], cwd=self.dir, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(run.stderr.close)
+        self.addCleanup(run.wait)
+        self.addCleanup(run.kill)
+        return run
+
+    def wait_for(self, path):
+        end = time.monotonic() + 60
+        while not path.exists():
+            self.assertLess(time.monotonic(), end, path)
+            time.sleep(0.01)
+
+    def test_verify_knows_what_a_run_has(self):
+        (self.dir / "s.yaml").write_text(SCENE.format(steps=40))
+        uncross("run", "s.yaml", "--out", "r", cwd=self.dir, check=True)
+        self.assertEqual(uncross("verify", "r", cwd=self.dir).returncode, 0)
+        for name in FILES:
+            os.rename(self.dir / "r" / name, self.dir / "aside")
+            done = uncross("verify", "r", cwd=self.dir)
+            self.assertNotEqual(done.returncode, 0, name)
+            self.assertIn(f"r/{name}: missing", done.stdout)
+            os.rename(self.dir / "aside", self.dir / "r" / name)
+        self.assertEqual(uncross("verify", "r", cwd=self.dir).returncode, 0)
+
+    def test_what_is_deleted_is_said(self):
+        """At the next checkpoint."""
+        for name in ("trajectory.h5", "conserved.csv"):
+            run = self.begin(10 ** 8, name)
+            self.wait_for(self.dir / name / "conserved.csv")
+            self.wait_for(self.dir / name / "statics-fiber.csv")
+            os.unlink(self.dir / name / name)
+            _, said = run.communicate(timeout=100)
+            self.assertEqual(run.returncode, 4, said)
+            self.assertIn(name, said)
+            self.assertIn('"stopped"', (self.dir / name / "run.json").read_text())
+
+    def test_a_run_at_work_is_not_damaged(self):
+        """From its first moment on."""
+        run = self.begin(10 ** 8)
+        self.wait_for(self.dir / "r/checkpoint.h5")
+        for _ in range(8):
+            done = uncross("verify", "r", cwd=self.dir)
+            self.assertNotIn("damaged", done.stdout)
+            self.assertNotIn("missing", done.stdout)
+            self.assertIn("being written", done.stdout)
+        run.send_signal(signal.SIGTERM)
+        self.assertEqual(run.wait(60), 5)
+        self.assertEqual(uncross("verify", "r", cwd=self.dir).returncode, 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
