@@ -100,6 +100,24 @@ class Python(unittest.TestCase):
             self.assertIn(b"KeyboardInterrupt", said)
             self.assertLess(time.monotonic() - started, 3, kind)  # a look every 0.1 s and a step, on a busy machine
 
+    def test_a_run_goes_forward(self):
+        run = uncross.Run(SCENE)
+        for steps in (-1, -2 ** 70):
+            with self.assertRaisesRegex(uncross.BadInput, "allowed: whole number 0 or more"):
+                run.advance(steps)
+        self.assertEqual(run.advance(0).step, 0)
+        with tempfile.TemporaryDirectory() as folder, uncross.FolderRun(SCENE, f"{folder}/r") as kept:
+            with self.assertRaisesRegex(uncross.BadInput, "allowed: whole number 0 or more"):
+                kept.advance(-1)
+
+    def test_an_empty_section_is_there(self):
+        """As in YAML: refused where a key is missing."""
+        with self.assertRaisesRegex(uncross.BadInput, "walls: key 'kind' is missing"):
+            uncross.Scene(SCENE, walls={})
+        with self.assertRaisesRegex(uncross.BadInput, "walls: key 'kind' is missing"):
+            uncross.Scene({**SCENE, "walls": {}})
+        uncross.Scene(SCENE, crossing={})
+
     def test_a_view_keeps_the_run_alive(self):
         freed = []
         run = uncross.Run(SCENE).advance(2)
