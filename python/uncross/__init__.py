@@ -9,6 +9,7 @@
 Units: a0 = kT = m = 1. Views cannot be written to; they change when the run is advanced, and keep it alive.
 docs/library.md explains the library, docs/scene.md the keys of a scene.
 """
+import operator
 import os
 import time
 
@@ -95,7 +96,9 @@ def _flatten(values, prefix=""):
     for key, value in values.items():
         if isinstance(value, (list, tuple)) and value and isinstance(value[0], dict):
             value = dict(enumerate(value))
-        if isinstance(value, dict):
+        if isinstance(value, dict) and not value:
+            yield prefix + str(key), "{}"  # a section that is there, as in a file
+        elif isinstance(value, dict):
             yield from _flatten(value, f"{prefix}{key}.")
         else:
             yield prefix + str(key), _text_of(value)
@@ -268,6 +271,14 @@ class _Looks:
 _PATIENCE = 0.1  # seconds between two looks at Ctrl-C, which Python sees only outside of the library
 
 
+def _wanted(steps):
+    """A number of steps: a whole one, 0 or more."""
+    steps = operator.index(steps)
+    if steps < 0:
+        raise BadInput(f"advance: {steps} steps; allowed: whole number 0 or more")
+    return steps
+
+
 def _chunks(steps):
     """Numbers of steps that make up so many, each made in about _PATIENCE, or one step if that takes longer."""
     chunk = 1
@@ -294,7 +305,7 @@ class Run(_Looks):
 
     def advance(self, steps=1):
         """Makes so many time steps; returns the run."""
-        for some in _chunks(steps):
+        for some in _chunks(_wanted(steps)):
             _check(lib.uncross_sim_advance, self._sim, some)
         return self
 
@@ -320,7 +331,7 @@ class FolderRun(_Looks):
     def advance(self, steps=None):
         """Makes so many steps (None: all that are wanted), up to the end; returns the run."""
         left = max(0, self.wanted - self.step)
-        steps = left if steps is None else min(steps, left)
+        steps = left if steps is None else min(_wanted(steps), left)
         for some in _chunks(steps):
             _check(lib.uncross_run_advance, self._run, some, ffi.NULL, ffi.NULL)
         return self

@@ -131,6 +131,15 @@ bool folder_lock(struct folder *folder, struct message *message)
   return true;
 }
 
+bool folder_in_use(const char *name)
+{
+  const int fd = open(name, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const bool in_use = fd >= 0 && lock_take(fd, false) == LOCK_IN_USE;
+  if (fd >= 0)
+    close(fd);
+  return in_use;
+}
+
 void folder_close(struct folder *folder)
 {
   if (folder->fd >= 0)

@@ -42,6 +42,9 @@ void folder_unmake(const char *name, size_t made);
  * that there are no locks here (lock.h). */
 bool folder_lock(struct folder *folder, struct message *message);
 
+/* True if another process has the lock of this folder: it writes into it. */
+bool folder_in_use(const char *name);
+
 /* Closes the folder, and so unlocks it. */
 void folder_close(struct folder *folder);
 

@@ -39,25 +39,43 @@ bool output_left(const struct scene *scene, const struct observers *observers, c
   return !observers_summaries(observers, &scene->model, take_absent, &search);
 }
 
-static bool remove_table(void *context, const struct observe_table *table)
+struct listing {
+  void (*take)(void *context, const char *file);
+  void *context;
+};
+
+static bool list_table(void *context, const struct observe_table *table)
 {
-  struct search *s = context;
-  message_set(s->name, "%s.csv", table->name);
-  folder_remove(s->folder, s->name->text);
+  const struct listing *l = context;
+  char file[128];
+  snprintf(file, sizeof file, "%s.csv", table->name);
+  l->take(l->context, file);
   return true;
+}
+
+void output_files(const struct scene *scene, const struct observers *observers,
+                  void (*take)(void *context, const char *file), void *context)
+{
+  struct listing listing = {take, context};
+  const char *names[OBSERVE_MOST_COLUMNS];
+  for (int k = 0; k < OBSERVABLES; k++)
+    if (wanted_columns(scene, k, names) > 0)
+      list_table(&listing, &(struct observe_table){.name = observable_names[k]});
+  if (observers)
+    observers_summaries(observers, &scene->model, list_table, &listing);
+  if (scene->trajectory_every > 0)
+    take(context, "trajectory.h5");
+}
+
+static void remove_file(void *folder, const char *file)
+{
+  folder_remove(folder, file);
 }
 
 void output_remove(const struct scene *scene, const struct observers *observers, const struct folder *folder)
 {
-  struct message name;
-  struct search search = {folder, &name};
-  const char *names[OBSERVE_MOST_COLUMNS];
-  for (int k = 0; k < OBSERVABLES; k++)
-    if (wanted_columns(scene, k, names) > 0)
-      remove_table(&search, &(struct observe_table){.name = observable_names[k]});
-  observers_summaries(observers, &scene->model, remove_table, &search);
-  if (scene->trajectory_every > 0)
-    folder_remove(folder, "trajectory.h5");
+  struct folder of_run = *folder;
+  output_files(scene, observers, remove_file, &of_run);
 }
 
 /* Ends are 1 + a step, 0 before the first. */
@@ -181,12 +199,25 @@ bool output_sample(struct output *o, struct observers *observers, const struct m
          trajectory_append(o->trajectory, model, state, message);
 }
 
+/* A file whose name is gone would end with the run, and nobody would know. */
+static bool still_named(const struct output *o, const char *file, int fd, struct message *message)
+{
+  struct message why;
+  return folder_holds(o->folder, file, fd, &why) ||
+         message_set(message, "%s/%s: was deleted or replaced while the run wrote it", o->folder->name, file);
+}
+
 bool output_sync(struct output *o, struct message *message)
 {
-  for (int k = 0; k < OBSERVABLES; k++)
-    if (!series_sync(&o->series[k], message))
+  for (int k = 0; k < OBSERVABLES; k++) {
+    char file[64];
+    snprintf(file, sizeof file, "%s.csv", observable_names[k]);
+    if (!series_sync(&o->series[k], message) ||
+        (o->series[k].file && !still_named(o, file, fileno(o->series[k].file), message)))
       return false;
-  return !o->trajectory || trajectory_sync(o->trajectory, message);
+  }
+  return !o->trajectory || (trajectory_sync(o->trajectory, message) &&
+                            still_named(o, "trajectory.h5", trajectory_descriptor(o->trajectory), message));
 }
 
 struct table_context {

@@ -21,7 +21,11 @@ struct output {
 bool output_left(const struct scene *scene, const struct observers *observers, const struct folder *folder,
                  struct message *name);
 
-/* Removes all files that output_open and output_summaries make for the scene. */
+/* Names all files that output_open and output_summaries make for the scene; observers NULL: without the summaries. */
+void output_files(const struct scene *scene, const struct observers *observers,
+                  void (*take)(void *context, const char *file), void *context);
+
+/* Removes them. */
 void output_remove(const struct scene *scene, const struct observers *observers, const struct folder *folder);
 
 /* True if tables and trajectory reach as far as the checkpoint from which the observers were filled; frames_end: from
@@ -39,7 +43,8 @@ bool output_open(struct output *output, const struct scene *scene, const struct 
 bool output_sample(struct output *output, struct observers *observers, const struct model *model,
                    const struct state *state, struct message *message);
 
-/* Waits until everything written so far is on the disk: tables must reach at least as far as the next checkpoint. */
+/* Waits until everything written so far is on the disk: tables must reach at least as far as the next checkpoint.
+ * False, with a message, if that fails, or if a file was deleted or replaced in the folder. */
 bool output_sync(struct output *output, struct message *message);
 
 /* Writes the summaries as they stand now. */

@@ -92,6 +92,8 @@ bool trajectory_append(struct trajectory *trajectory, const struct model *model,
                        struct message *message);
 /* Waits until all frames are on the disk. */
 bool trajectory_sync(struct trajectory *trajectory, struct message *message);
+/* Of its open file. */
+int trajectory_descriptor(const struct trajectory *trajectory);
 /* 1 + the step of the last frame of a trajectory that is being written; 0 if there is none, or for NULL. */
 uint64_t trajectory_end(const struct trajectory *trajectory);
 /* The same of a file, counting frames up to a step only; false if it is not there, is damaged, or is in use. */

@@ -108,6 +108,11 @@ bool trajectory_sync(struct trajectory *t, struct message *message)
   return error == 0 || message_set(message, "%s: not synced: %s", t->path, strerror(error));
 }
 
+int trajectory_descriptor(const struct trajectory *t)
+{
+  return h5_descriptor(t->file);
+}
+
 uint64_t trajectory_end(const struct trajectory *t)
 {
   return t && t->frames > 0 ? t->last_step + 1 : 0;

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "base/text.h"
+#include "files/output.h"
 #include "files/record.h"
 
 #define MOST_COLUMNS 4096
@@ -302,7 +303,8 @@ static bool is_finished(const char *folder)
   return finished;
 }
 
-static enum condition verify_listed(const char *folder, struct dirent **list, int count, FILE *out)
+/* Files that grow while a run is at work are looked at when it has ended. */
+static enum condition verify_listed(const char *folder, bool at_work, struct dirent **list, int count, FILE *out)
 {
   const bool running = !is_finished(folder);
   enum condition condition = CONDITION_WHOLE;
@@ -310,29 +312,90 @@ static enum condition verify_listed(const char *folder, struct dirent **list, in
     char path[4096];
     bool other;
     snprintf(path, sizeof path, "%.3800s/%.255s", folder, list[k]->d_name);
-    condition = worse(condition, verify_one(path, running, &other, out));
+    if (!at_work || strcmp(list[k]->d_name, "checkpoint.h5") == 0)
+      condition = worse(condition, verify_one(path, running, &other, out));
   }
   return condition;
+}
+
+struct expecting {
+  const char *folder, *why;
+  FILE *out;
+  enum condition condition;
+};
+
+static void expect_file(void *context, const char *file)
+{
+  struct expecting *e = context;
+  char path[4096];
+  snprintf(path, sizeof path, "%.3800s/%.255s", e->folder, file);
+  if (access(path, F_OK) == 0)
+    return;
+  fprintf(e->out, "%s: missing: %s\n", text_shown(path), e->why);
+  e->condition = CONDITION_DAMAGED;
+}
+
+#define MOST_MEMORY ((uint64_t)1 << 28) /* bytes, of observers that are asked for the names of their tables */
+
+/* All that the scene in the checkpoint asks for. */
+static enum condition verify_complete(const char *folder, const char *checkpoint, FILE *out)
+{
+  struct expecting e = {folder, "the scene in the checkpoint asks for it", out, CONDITION_WHOLE};
+  struct message ignored;
+  enum h5_trouble trouble;
+  struct scene scene;
+  uint64_t scratch;
+  struct frames *f = frames_open(checkpoint, &trouble, &ignored);
+  if (f && f->scene && scene_read_text(checkpoint, f->scene, strlen(f->scene), &scene, &ignored)) {
+    const bool small = observers_bytes(&scene.observe, &scene.model, &scratch) + scratch <= MOST_MEMORY;
+    struct observers *observers = small ? observers_create(&scene.observe, &scene.model) : NULL;
+    output_files(&scene, observers, expect_file, &e);
+    observers_free(observers);
+    scene_free(&scene);
+  }
+  frames_close(f);
+  return e.condition;
+}
+
+/* How the files of a run that has ended fit each other. Every run begins with a checkpoint, and writes run.json next.
+ */
+static enum condition verify_together(const char *folder, FILE *out)
+{
+  struct expecting e = {folder, "every run writes it", out, CONDITION_WHOLE};
+  struct checkpoint_summary summary;
+  struct message ignored;
+  char path[4096], record[4096];
+  snprintf(path, sizeof path, "%.4000s/checkpoint.h5", folder);
+  snprintf(record, sizeof record, "%.4000s/run.json", folder);
+  if (access(record, F_OK) == 0)
+    expect_file(&e, "checkpoint.h5");
+  if (access(path, F_OK) != 0 || !checkpoint_look(path, &summary, &ignored))
+    return e.condition;
+  if (summary.numbers.step > 0)
+    expect_file(&e, "run.json");
+  if (summary.numbers.step > 0 || is_finished(folder))
+    e.condition = worse(e.condition, verify_complete(folder, path, out));
+  return worse(e.condition, worse(same_state(folder, &summary, out), same_frames(folder, &summary, out)));
 }
 
 enum condition verify_folder(const char *folder, FILE *out)
 {
   struct dirent **list = NULL;
-  struct checkpoint_summary summary;
-  struct message ignored;
-  char path[4096];
+  const bool at_work = folder_in_use(folder);
   const int count = scandir(folder, &list, is_of_run, by_name);
-  if (count <= 0) {
+  if (count <= 0 && !at_work) {
     fprintf(out, "%s: %s\n", text_shown(folder), count < 0 ? strerror(errno) : "a folder without files of a run");
     free(list);
     return CONDITION_UNKNOWN;
   }
-  enum condition condition = verify_listed(folder, list, count, out);
+  enum condition condition = verify_listed(folder, at_work, list, count, out);
   for (int k = 0; k < count; k++)
     free(list[k]);
   free(list);
-  snprintf(path, sizeof path, "%.4000s/checkpoint.h5", folder);
-  if (access(path, F_OK) == 0 && checkpoint_look(path, &summary, &ignored))
-    condition = worse(condition, worse(same_state(folder, &summary, out), same_frames(folder, &summary, out)));
-  return condition;
+  if (!at_work)
+    return worse(condition, verify_together(folder, out));
+  fprintf(out,
+          "%s: being written by another process: tables, trajectory and run.json are looked at when it has ended\n",
+          text_shown(folder));
+  return worse(condition, CONDITION_UNKNOWN);
 }

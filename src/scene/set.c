@@ -132,6 +132,8 @@ static bool set_in_mapping(struct way *w, struct node *mapping, const struct key
     struct node *inner = enter(w, mapping, key->type == KEY_LIST ? NODE_LIST : NODE_MAPPING);
     return inner && (key->type == KEY_LIST ? set_in_list(w, inner, key->keys) : set_in_mapping(w, inner, key->keys));
   }
+  if (key->type == KEY_SECTION && strcmp(w->value, "{}") == 0) /* it is there, as in a file */
+    return enter(w, mapping, NODE_MAPPING) != NULL;
   if (nests)
     return refuse(w, "has keys of its own", "a path to one of them");
   if (*w->rest)
