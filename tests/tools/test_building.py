@@ -11,7 +11,7 @@ TOP = pathlib.Path(__file__).resolve().parents[2]
 # The Debian package of each library that programs of the Makefile are linked with.
 PACKAGES = {"hdf5": "libhdf5-dev", "yaml": "libyaml-dev", "jansson": "libjansson-dev", "xxhash": "libxxhash-dev", "cmocka": "libcmocka-dev",
             "gsl": "libgsl-dev", "gslcblas": "libgsl-dev", "mpfr": "libmpfr-dev", "gmp": "libgmp-dev"}
-SYSTEM_TOOLS = ("make", "bash", "sh", "find", "sort", "sed", "git", "mkdir", "touch", "rm", "cat", "head", "cmp", "mv", "mktemp", "dirname", "env", "cut", "tr", "uname")
+SYSTEM_TOOLS = ("make", "bash", "sh", "find", "sort", "sed", "git", "mkdir", "ln", "printf", "touch", "rm", "cat", "head", "cmp", "mv", "mktemp", "dirname", "env", "cut", "tr", "uname")
 
 
 def make(*words, environment=None):
