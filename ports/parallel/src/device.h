@@ -8,6 +8,8 @@
 #include <cstring>
 #include <new>
 
+#include <sys/mman.h>
+
 #include "arithmetic.h"
 
 #ifdef _OPENMP
@@ -117,6 +119,48 @@ template <class Body> void for_each(int64_t n, Body body)
   }
 }
 
+// The same, of bodies that are long.
+template <class Body> void for_each_block(int64_t n, Body body)
+{
+#pragma omp parallel
+  {
+#ifdef _OPENMP
+    const int shard = omp_get_thread_num();
+#else
+    const int shard = 0;
+#endif
+#pragma omp for schedule(static)
+    for (int64_t i = 0; i < n; i++)
+      body(i, shard);
+  }
+}
+
+// Large pages for what is large: members of a cell are looked up all over the arrays. Arrays begin at unlike places
+// within pages, so that one particle's columns do not take each other's place in the nearest cache.
+constexpr size_t large_page = (size_t)1 << 21;
+
+inline void *take_memory(size_t bytes)
+{
+  const bool large = bytes >= large_page / 4;
+  static size_t taken = 0;
+  const size_t begin = large ? (taken++ % 13) * 73 * 64 : 0, unit = large ? large_page : 64;
+  const size_t whole = (bytes + begin + unit - 1) / unit * unit;
+  char *const memory = (char *)std::aligned_alloc(unit, whole);
+  if (!memory)
+    throw std::bad_alloc();
+#ifdef MADV_HUGEPAGE
+  if (large)
+    (void)madvise(memory, whole, MADV_HUGEPAGE); // a wish
+#endif
+  return memory + begin;
+}
+
+inline void give_memory(void *memory, size_t bytes)
+{
+  const size_t unit = bytes >= large_page / 4 ? large_page : 64;
+  std::free((void *)((uintptr_t)memory / unit * unit));
+}
+
 // On the host a copy of the sum for each thread.
 inline int shard_count()
 {
@@ -176,9 +220,7 @@ public:
 #ifdef __CUDACC__
     device_check(cudaMalloc((void **)&at, n * sizeof(T)), "memory of the GPU");
 #else
-    at = (T *)std::aligned_alloc(64, (n * sizeof(T) + 63) / 64 * 64);
-    if (!at)
-      throw std::bad_alloc();
+    at = (T *)take_memory(n * sizeof(T));
 #endif
   }
 
@@ -232,7 +274,7 @@ private:
 #ifdef __CUDACC__
     cudaFree(at);
 #else
-    std::free(at);
+    give_memory(at, count * sizeof(T));
 #endif
     at = nullptr;
     count = 0;

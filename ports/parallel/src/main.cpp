@@ -9,14 +9,14 @@
 #include "operators.h"
 #include "run.h"
 
-static const char usage[] =
-    "usage: port PACK OUT           outputs of all operators of a pack (text)\n"
-    "       port --trace START OUT  the trace of a start (text)\n"
-    "       port --run START [option ...]          runs a start, prints the state hash\n"
-    "       port --solvent X,Y,Z [option ...]      the same of a solvent that is drawn here\n"
-    "options: --steps N  --warm N (steps before the clock)  --sort N\n"
-    "         --apart (on a GPU each thread adds alone)  --unfused  --per-cell N  --interval N  --dt T  --seed S\n"
-    "         --degrees A  --thermostat 0, 1 or 2  --at-a\n";
+static const char usage[] = "usage: port PACK OUT           outputs of all operators of a pack (text)\n"
+                            "       port --trace START OUT  the trace of a start (text)\n"
+                            "       port --run START [option ...]          runs a start, prints the state hash\n"
+                            "       port --solvent X,Y,Z [option ...]      the same of a solvent that is drawn here\n"
+                            "options: --steps N  --warm N (steps before the clock)  --sort N\n"
+                            "         --apart (on a GPU each thread adds alone)  --unfused  --one-by-one\n"
+                            "         --per-cell N  --interval N  --dt T  --seed S\n"
+                            "         --degrees A  --thermostat 0, 1 or 2  --at-a\n";
 
 // Number and hash of the contacts since the row before.
 static std::string columns_of(std::vector<ContactRow> &rows)
@@ -74,6 +74,8 @@ static Options read_options(int count, char **word)
     const std::string name = word[k];
     if (name == "--apart") {
       o.settings.transposed = 0;
+    } else if (name == "--one-by-one") {
+      o.settings.one_by_one = true;
     } else if (name == "--unfused") {
       o.settings.fused = false;
     } else if (name == "--at-a") {

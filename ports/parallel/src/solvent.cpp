@@ -5,6 +5,9 @@
 #include <vector>
 
 #include "bodies.h"
+#ifndef __CUDACC__
+#include "columns.h"
+#endif
 
 void upload_columns(Array<int64_t> *place, Array<double> *velocity, Array<uint32_t> &id, const State &state)
 {
@@ -102,18 +105,38 @@ void Solvent::fly_and_sum(double time, const Grid &next)
     finish_turn();
     sort();
   }
-  if (pending && model.cosine == 0.0)
-    for_each(n, TurnFlySum<true>{columns(), at_collision, turn.data(), model.cosine, model.sine, flight, next, to});
-  else if (pending)
-    for_each(n, TurnFlySum<false>{columns(), at_collision, turn.data(), model.cosine, model.sine, flight, next, to});
+  const FlySum fly = {columns(), flight, next, to};
+  const TurnFlySum<true> right = {columns(), at_collision, turn.data(), model.cosine, model.sine, flight, next, to};
+  const TurnFlySum<false> any = {columns(), at_collision, turn.data(), model.cosine, model.sine, flight, next, to};
+#ifndef __CUDACC__
+  const Pass pass = {columns(), at_collision, next, turn.data(), model.cosine, model.sine, flight, to};
+  const bool whole = !settings.one_by_one && cell_count < INT32_MAX;
+  if (whole && pending && model.cosine == 0.0)
+    pass_over<true, true>(n, pass, right);
+  else if (whole && pending)
+    pass_over<true, false>(n, pass, any);
+  else if (whole)
+    pass_over<false, false>(n, pass, fly);
   else
-    for_each(n, FlySum{columns(), flight, next, to});
+#endif
+      if (pending && model.cosine == 0.0)
+    for_each(n, right);
+  else if (pending)
+    for_each(n, any);
+  else
+    for_each(n, fly);
   pending = false;
 }
 
 void Solvent::solve(uint64_t step)
 {
-  for_each(cell_count, SolveCell{sums.data(), shards, cell_count, turn.data(), model.source(ROTATION_AXIS, step)});
+  const SolveCell body = {sums.data(), shards, cell_count, turn.data(), model.source(ROTATION_AXIS, step)};
+#ifndef __CUDACC__
+  if (!settings.one_by_one)
+    for_each_block((cell_count + lanes - 1) / lanes, SolveBlock{body});
+  else
+#endif
+    for_each(cell_count, body);
 }
 
 double rescale_factor(const Array<int64_t> &total)

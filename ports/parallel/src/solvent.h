@@ -30,9 +30,10 @@ struct Grid {
 };
 
 struct Settings {
-  int sort_every = 64; // collisions between two sortings
-  int transposed = 1;  // on a GPU: neighbors in a warp add the four numbers of one particle together
-  bool fused = true;   // turn and the next flight in one pass
+  int sort_every = 64;     // collisions between two sortings
+  int transposed = 1;      // on a GPU: neighbors in a warp add the four numbers of one particle together
+  bool one_by_one = false; // on a CPU: loops over single particles, as on a GPU
+  bool fused = true;       // turn and the next flight in one pass
 };
 
 // Solvent by ids into columns, and back.
