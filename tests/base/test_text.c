@@ -83,6 +83,57 @@ static void test_messages(void **unused)
   assert_int_equal(strlen(m.text), 1020);
 }
 
+static const char *word_of(const char *word)
+{
+  static char *text;
+  size_t size;
+  free(text);
+  FILE *stream = open_memstream(&text, &size);
+  text_print_word(stream, word);
+  fclose(stream);
+  return text;
+}
+
+/* As bash reads them: by hand. */
+static void test_words_for_a_shell(void **unused)
+{
+  (void)unused;
+  assert_string_equal(word_of("runs/a-1.yaml"), "runs/a-1.yaml");
+  assert_string_equal(word_of(""), "''");
+  assert_string_equal(word_of("a b"), "'a b'");
+  assert_string_equal(word_of("$(x) `y` \\"), "'$(x) `y` \\'");
+  assert_string_equal(word_of("it's"), "'it'\\''s'");
+  assert_string_equal(word_of("\xc3\xa9"), "'\xc3\xa9'");
+  assert_string_equal(word_of("a\n'\\"), "$'a\\x0a\\'\\\\'");
+  assert_string_equal(word_of("\xff$(x)"), "$'\\xff$(x)'");
+}
+
+/* Lines of n letters: the longest, and one more. */
+static void test_lines_have_a_bound(void **unused)
+{
+  (void)unused;
+  char *line = NULL;
+  size_t room = 0;
+  FILE *file = tmpfile();
+  for (int k = 0; k < 2; k++) {
+    for (int i = 0; i < TEXT_LONGEST_LINE - 1 + k; i++)
+      fputc('x', file);
+    fputs("\nb", file);
+  }
+  rewind(file);
+  assert_int_equal(text_line(&line, &room, file), TEXT_LONGEST_LINE);
+  assert_int_equal(line[TEXT_LONGEST_LINE - 1], '\n');
+  assert_int_equal(text_line(&line, &room, file), TEXT_TOO_LONG);
+  rewind(file);
+  fputs("a", file);
+  rewind(file);
+  assert_int_equal(ftruncate(fileno(file), 3), 0);
+  assert_int_equal(text_line(&line, &room, file), 3); /* the last has no end */
+  assert_int_equal(text_line(&line, &room, file), -1);
+  free(line);
+  fclose(file);
+}
+
 static void test_nan_has_no_sign(void **unused)
 {
   (void)unused;
@@ -145,6 +196,8 @@ int main(void)
                                      cmocka_unit_test(test_nothing_acts),
                                      cmocka_unit_test(test_it_is_cut_between_characters),
                                      cmocka_unit_test(test_messages),
+                                     cmocka_unit_test(test_words_for_a_shell),
+                                     cmocka_unit_test(test_lines_have_a_bound),
                                      cmocka_unit_test(test_nan_has_no_sign),
                                      cmocka_unit_test(test_shortest_that_reads_back)};
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -141,6 +141,29 @@ class Hostile(unittest.TestCase):
             for words in ["export", "--solvent", "bad.h5"], ["verify", "bad.h5"], ["info", "bad.h5"]:
                 self.refused(f"{group}/{name} = {value}", *words)
 
+    def test_whole_numbers_that_no_run_has(self):
+        """Differences of them, and sums with a few more, must be 64-bit numbers: what is remembered of steps, places and counts."""
+        observed = damage.SCENE.partition("trajectory")[0] + ("observe: {collisions: {every: 5}, dynamics: {every: 5}, memory: {every: 5}, "
+                                                              "orientation: {every: 5}, statics: {every: 5}, profile: {every: 5, slabs: 4}}\n")
+        (self.folder / "observed.yaml").write_text(observed)
+        self.run_words("run", "observed.yaml", "--out", "observed", "--quiet")
+        whole = (self.folder / "observed/checkpoint.h5").read_bytes()
+        with h5py.File(self.folder / "observed/checkpoint.h5") as file:
+            blocks = [name for name, data in file["observers"].items() if name.endswith("-integers")]
+            counts = [name for name in file["state"].attrs if name in ("executed", "moves", "solvent_time", "softened")]
+        self.assertGreaterEqual(len(blocks), 5)
+        self.assertEqual(len(counts), 4)
+        resume = ["run", "observed.yaml", "--out", "observed", "--resume", "--steps", "30", "--quiet"]
+        for name, value in [*((block, value) for block in blocks for value in (-2**63, 2**63 - 1)), *((count, 2**63) for count in counts)]:
+            (self.folder / "observed/checkpoint.h5").write_bytes(whole)
+            with h5py.File(self.folder / "observed/checkpoint.h5", "r+") as file:  # as version 1: no seal to make anew
+                file.attrs.modify("format_version", 1)
+                if name in blocks:
+                    file["observers"][name][1:] = value  # the first says which step was last
+                else:
+                    file["state"].attrs.modify(name, value)
+            self.refused(f"{name} = {value}", *resume)
+
     def test_packs_without_a_seal_are_read(self):
         """Those of ports are made by h5py; one that says it has a seal must have it."""
         self.run_words("oracle", "emit", "s.yaml", "--out", "p.h5")
