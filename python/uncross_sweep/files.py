@@ -7,7 +7,7 @@ import sys
 import numpy
 
 from . import escape
-from .opening import read_text, write_text
+from .opening import MOST_JSON, read_text, write_text
 
 
 def columns(text):
@@ -27,7 +27,7 @@ def columns(text):
 
 def read_json(path):
     try:
-        return json.loads(read_text(path))
+        return json.loads(read_text(path, MOST_JSON))
     except FileNotFoundError:
         return {}
 

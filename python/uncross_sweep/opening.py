@@ -36,8 +36,14 @@ def writing(path, flags):
     return fd
 
 
-def read_text(path):
+MOST_JSON = 16 << 20  # bytes; RECORD_MOST_BYTES of src/files/record.h
+
+
+def read_text(path, most=None):
+    """most: bytes; a larger file is refused before memory is taken for it."""
     with open(path, encoding="utf-8", opener=reading) as file:
+        if most is not None and os.fstat(file.fileno()).st_size > most:
+            raise ValueError(f"larger than {most} bytes")
         return file.read()
 
 

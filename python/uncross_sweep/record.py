@@ -5,7 +5,7 @@ One table says what a key may hold. Keys that are not in it may hold anything, a
 import json
 import math
 
-from .opening import read_text
+from .opening import MOST_JSON, read_text
 
 MOST_COUNT = 2**64 - 1
 NAMES = {type(None): "null", bool: "true or false", int: "a number", float: "a number", str: "text", list: "a list", dict: "a mapping"}
@@ -70,7 +70,7 @@ def _no_number(word):
 def read(path, text=None):
     """A record, a dict of which KEYS are as they should be. Foreign if the file is none; OSError if it cannot be read."""
     try:
-        return _checked(json.loads(read_text(path) if text is None else text, parse_constant=_no_number), KEYS)
+        return _checked(json.loads(read_text(path, MOST_JSON) if text is None else text, parse_constant=_no_number), KEYS)
     except RecursionError as error:
         raise Foreign(f"{path}: lists within lists without end") from error
     except ValueError as error:

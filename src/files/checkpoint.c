@@ -85,6 +85,8 @@ static double value_of(const struct field *f, const struct checkpoint_summary *s
   }
 }
 
+#define MOST_COUNT ((uint64_t)1 << 62) /* of steps and counts, so that their differences are 64-bit numbers */
+
 static bool in_range(const struct checkpoint_summary *summary, const char *path, struct message *message)
 {
   for (size_t n = 0; n < sizeof fields / sizeof *fields; n++)
@@ -95,9 +97,15 @@ static bool in_range(const struct checkpoint_summary *summary, const char *path,
         return message_set(message, "%s: damaged checkpoint: %s/%s is %.17g; allowed: %.10g to %.10g", path, f->group,
                            f->name, value, f->least, f->most);
     }
-  return summary->numbers.step <= INT64_MAX ||
-         message_set(message, "%s: damaged checkpoint: its step is %" PRIu64 "; allowed: at most 9223372036854775807",
-                     path, summary->numbers.step);
+  for (size_t k = 0; k < state_number_count; k++) {
+    const struct state_number *n = &state_numbers[k];
+    uint64_t value = 0;
+    memcpy(&value, (const char *)&summary->numbers + n->offset, n->bytes);
+    if (!n->wraps && value > MOST_COUNT)
+      return message_set(message, "%s: damaged checkpoint: state/%s is %" PRIu64 "; allowed: at most %" PRIu64, path,
+                         n->name, value, MOST_COUNT);
+  }
+  return true;
 }
 
 /* The state's numbers, from one to another. */

@@ -160,6 +160,16 @@ static bool same_setting(struct apart *apart, const char *name, const struct obs
                      name, wanted, stored, apart->path);
 }
 
+static bool fits_integers(const struct observe_block *block)
+{
+  bool fit = true;
+  for (size_t k = 0; block->integer && !block->wraps && k < block->count; k++) {
+    const int64_t number = ((const int64_t *)block->data)[k];
+    fit &= number > -OBSERVE_MOST_INTEGER && number < OBSERVE_MOST_INTEGER;
+  }
+  return fit;
+}
+
 static bool get_block(struct apart *apart, const struct observe_block *block, struct message *message)
 {
   char name[256];
@@ -168,6 +178,9 @@ static bool get_block(struct apart *apart, const struct observe_block *block, st
     return same_setting(apart, name, block, message);
   const int how =
       ask(apart, "observers", name, block->integer ? INTEGERS : REALS, block->count, 0, block->data, message);
+  if (how == FINE && !fits_integers(block))
+    return message_set(message, "%s: damaged checkpoint: the memory of '%s' holds a number that no run has",
+                       apart->path, block->name);
   if (how == ABSENT && block->later) {
     for (size_t k = 0; k < block->count; k++)
       ((double *)block->data)[k] = NAN;

@@ -135,7 +135,8 @@ static bool create(struct observers *observers, enum observable which, const str
   if (which == OBSERVE_PROFILE)
     add_setting(observers, observable_names[which], ".slabs", &o->slabs);
   add_block(observers, observable_names[which], "reals", false, o->size.reals, o->real);
-  add_block(observers, observable_names[which], "integers", true, o->size.integers, o->integer);
+  add_block(observers, observable_names[which], "integers", true, o->size.integers, o->integer)->wraps =
+      which == OBSERVE_STRESS; /* sums that wrap: system/account.h */
   struct observe_block *later = add_block(observers, observable_names[which], "later", false, o->size.later, o->later);
   if (later)
     later->later = true;

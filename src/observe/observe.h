@@ -102,7 +102,9 @@ struct observe_block {
   bool setting; /* not memory, but a key of the scene that determines the memory: it must be unchanged in a resume */
   bool later;   /* checkpoints of earlier programs have none: such a setting was 0, such memory (doubles) is unknown,
                    NaN, as are all columns made of it */
+  bool wraps;   /* integers of any size; others are marks of steps, places and counts, below OBSERVE_MOST_INTEGER */
 };
+#define OBSERVE_MOST_INTEGER ((int64_t)1 << 62) /* so that the difference of two is a 64-bit number */
 size_t observers_blocks(struct observers *observers, const struct observe_block **blocks);
 
 /* 1 + the last step that this observer has sampled, 0 if none; part of its memory. A time series has a row for that

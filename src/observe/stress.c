@@ -93,7 +93,7 @@ static bool stress_row(struct observer *o, struct view *view, double *row)
   const struct state *state = view->state;
   const struct mpc_stress *s = (struct mpc_stress *)o->real;
   const double area = (double)model->box.cells[0] * model->box.cells[2], n = s->collisions;
-  const double passed = (double)((int64_t)state->step - o->integer[LAST_STEP]) * model->time_step;
+  const double passed = (double)(int64_t)(state->step - (uint64_t)o->integer[LAST_STEP]) * model->time_step;
   const bool walls = model_has_walls(model), solvent = model_has_solvent(model);
   double kinetic[STRESS_COMPONENTS], collisional[STRESS_COMPONENTS], spring[STRESS_COMPONENTS] = {0};
   double total[STRESS_COMPONENTS], fibers[STRESS_COMPONENTS];

@@ -22,6 +22,7 @@ static inline uint32_t account_row(enum account_share share, enum wall wall)
 }
 
 __extension__ typedef __int128 account_wide;
+__extension__ typedef unsigned __int128 account_unsigned;
 
 /* Adds a momentum, m a0/t0, below 2^19 in size, to a sum in momentum units. turns: how often x has passed the upper end
  * of its range, less how often the lower one; a signed number in two's complement. */
@@ -56,7 +57,8 @@ static inline void account_enter(struct account account, enum wall wall, struct 
 static inline double account_along(int64_t before, uint64_t turns_before, int64_t after, uint64_t turns_after)
 {
   const int64_t turns = (int64_t)(turns_after - turns_before);
-  return (double)((account_wide)after - before + turns * ((account_wide)1 << 64)) * ACCOUNT_UNIT;
+  const account_unsigned sum = (account_unsigned)((account_wide)after - before) + ((account_unsigned)turns << 64);
+  return (double)(account_wide)sum * ACCOUNT_UNIT;
 }
 
 /* What came in between two sums, m a0/t0, right below 2^19. */

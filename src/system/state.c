@@ -88,19 +88,19 @@ void state_solvent_slots(const struct state *s, uint32_t *slot)
 /* --- fields ------------------------------------------------------------------------------------------------------ */
 
 const struct state_number state_numbers[] = {
-    {"step", 8, true, false, offsetof(struct state, step)},
-    {"solvent_lag", 4, true, false, offsetof(struct state, solvent_lag)},
-    {"solvent_time", 8, false, true, offsetof(struct state, solvent_time)},
-    {"moves", 8, false, false, offsetof(struct state, counts.moves)},
-    {"possible", 8, false, false, offsetof(struct state, counts.possible)},
-    {"executed", 8, false, false, offsetof(struct state, counts.executed)},
-    {"negative", 8, false, false, offsetof(struct state, counts.negative)},
-    {"softened", 8, false, true, offsetof(struct state, counts.softened)},
-    {"rigid", 8, false, true, offsetof(struct state, counts.rigid)},
-    {"wall_turns_0", 8, false, true, offsetof(struct state, wall_turns[0])},
-    {"wall_turns_1", 8, false, true, offsetof(struct state, wall_turns[1])},
-    {"wall_turns_2", 8, false, true, offsetof(struct state, wall_turns[2])},
-    {"wall_turns_3", 8, false, true, offsetof(struct state, wall_turns[3])},
+    {"step", 8, true, false, false, offsetof(struct state, step)},
+    {"solvent_lag", 4, true, false, false, offsetof(struct state, solvent_lag)},
+    {"solvent_time", 8, false, true, false, offsetof(struct state, solvent_time)},
+    {"moves", 8, false, false, false, offsetof(struct state, counts.moves)},
+    {"possible", 8, false, false, false, offsetof(struct state, counts.possible)},
+    {"executed", 8, false, false, false, offsetof(struct state, counts.executed)},
+    {"negative", 8, false, false, false, offsetof(struct state, counts.negative)},
+    {"softened", 8, false, true, false, offsetof(struct state, counts.softened)},
+    {"rigid", 8, false, true, false, offsetof(struct state, counts.rigid)},
+    {"wall_turns_0", 8, false, true, true, offsetof(struct state, wall_turns[0])},
+    {"wall_turns_1", 8, false, true, true, offsetof(struct state, wall_turns[1])},
+    {"wall_turns_2", 8, false, true, true, offsetof(struct state, wall_turns[2])},
+    {"wall_turns_3", 8, false, true, true, offsetof(struct state, wall_turns[3])},
 };
 const size_t state_number_count = sizeof state_numbers / sizeof *state_numbers;
 

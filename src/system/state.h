@@ -118,6 +118,7 @@ struct state_number {
   uint8_t bytes;    /* 4 or 8: an unsigned integer of this size */
   bool hashed;
   bool late;     /* a file without it was written before it came: it is 0 there */
+  bool wraps;    /* any value is one; others are counts below 2^62 */
   size_t offset; /* in struct state */
 };
 
