@@ -1,6 +1,8 @@
 /* Foreign text on a terminal: which bytes pass, and none that act. */
 #include "support.h"
 
+#include <unistd.h>
+
 #include "base/message.h"
 #include "base/text.h"
 
@@ -108,7 +110,7 @@ static void test_words_for_a_shell(void **unused)
   assert_string_equal(word_of("\xff$(x)"), "$'\\xff$(x)'");
 }
 
-/* Lines of n letters: the longest, and one more. */
+/* The longest line, and a longer one. */
 static void test_lines_have_a_bound(void **unused)
 {
   (void)unused;

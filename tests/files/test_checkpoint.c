@@ -16,9 +16,9 @@ static const struct memory some_memory = {{-0.0, 0x1.fffffffffffffp-1000, INFINI
 
 static void list_blocks(struct memory *memory, struct observe_block blocks[3])
 {
-  blocks[0] = (struct observe_block){"dynamics/kind1/sums", false, 3, memory->sums, false, false};
-  blocks[1] = (struct observe_block){"dynamics/kind1/counts", true, 2, memory->counts, false, false};
-  blocks[2] = (struct observe_block){"nothing yet", false, 0, NULL, false, false};
+  blocks[0] = (struct observe_block){"dynamics/kind1/sums", false, 3, memory->sums, false, false, false};
+  blocks[1] = (struct observe_block){"dynamics/kind1/counts", true, 2, memory->counts, false, false, true};
+  blocks[2] = (struct observe_block){"nothing yet", false, 0, NULL, false, false, false};
 }
 
 static const struct checkpoint_head some_head = {.fingerprint = 0xfedcba9876543210u,

@@ -149,9 +149,9 @@ class Hostile(unittest.TestCase):
         self.run_words("run", "observed.yaml", "--out", "observed", "--quiet")
         whole = (self.folder / "observed/checkpoint.h5").read_bytes()
         with h5py.File(self.folder / "observed/checkpoint.h5") as file:
-            blocks = [name for name, data in file["observers"].items() if name.endswith("-integers")]
+            blocks = [name for name, data in file["observers"].items() if name.endswith("-integers") and data.size > 1]
             counts = [name for name in file["state"].attrs if name in ("executed", "moves", "solvent_time", "softened")]
-        self.assertGreaterEqual(len(blocks), 5)
+        self.assertGreaterEqual(len(blocks), 4)
         self.assertEqual(len(counts), 4)
         resume = ["run", "observed.yaml", "--out", "observed", "--resume", "--steps", "30", "--quiet"]
         for name, value in [*((block, value) for block in blocks for value in (-2**63, 2**63 - 1)), *((count, 2**63) for count in counts)]:
