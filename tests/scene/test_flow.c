@@ -42,6 +42,8 @@ static const struct refusal {
     {"  acceleration: [0, 0.1, 0]", "shear: {rate: 0.1}", "the solvent would be moved across the shear"},
     {"  acceleration: [0.1, 0, 0]\n  profile: sine", "walls: {kind: no-slip}", "the profile repeats with the box"},
     {"  acceleration: [0.1, 0, 0]\n  profile: sine", "shear: {rate: 0.1}", "the profile repeats with the box"},
+    {"  acceleration: [0.1, 0, 0]\n  profile: sine\n  hydrodynamics: false", "",
+     "velocities that are permuted have no profile"},
     {"  acceleration: [0.1, 0.1, 0]\n  profile: sine", "", "compresses the solvent"},
     {"", "walls: {kind: no-slip, lower: [1, 0, 0]}", "a wall at 1 a0/t0; allowed: below the speed of sound"},
     {"", "walls: {kind: no-slip, upper: [0, 0, -2]}", "a wall at 2 a0/t0; allowed: below the speed of sound"},

@@ -117,6 +117,8 @@ static void bounds(void **unused)
       "medium: {kind: pairs, rate: 1000, density: 3, draw: relax, weight: quadratic}",
       ("medium: {kind: private, rate: 10}" FIBER),
       "medium: {kind: pairs, rate: 1, density: 3, repulsion: -40, many_body: {repulsion: 25}}",
+      "medium: {kind: overdamped, rate: 1, inextensible: true}\ncrossing: {forbidden: false}\nfibers:\n"
+      "  - {name: f, count: 1, vertices: 3, mass: 5, bond_length: 0.5, spring: 1000000}", /* which has no effect */
       "medium: {kind: pairs, rate: 1, density: 3, repulsion: 25, second: {share: 1, repulsion: 50, start: slab}}",
   };
   for (size_t k = 0; k < sizeof lines / sizeof *lines; k++) {
