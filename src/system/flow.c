@@ -50,6 +50,8 @@ static bool check_force(const struct model *m, struct model_error *error)
        "the profile repeats with the box; allowed between walls and with shear: uniform"},
       {profiled && m->solvent.acceleration.y != 0.0, "solvent.acceleration",
        "a force along y that depends on y compresses the solvent; allowed with this profile: a y component of 0"},
+      {profiled && !m->solvent.hydrodynamics && !model_has_phantoms(m), "solvent.hydrodynamics",
+       "velocities that are permuted have no profile; allowed with this profile: true"},
       {profiled && model_has_phantoms(m), "solvent.profile", "phantoms are not accelerated; allowed: uniform"},
       {walls && m->solvent.acceleration.y != 0.0, "solvent.acceleration",
        "the solvent would be pressed against a wall; allowed between walls: a y component of 0"},
