@@ -107,7 +107,9 @@ void PairList::add_pair(int32_t bond, int32_t other, Point image, std::vector<Pa
     return;
   const Point edge = model.edge(), shift = {image.x * edge.x, image.y * edge.y, image.z * edge.z};
   const Vector p = in_a0(reference[i1] - reference[i]), q = in_a0(reference[j1] - reference[j]);
-  if (bond_distance(p, q, in_a0(reference[j] + shift - reference[i])) >= skin)
+  const Vector w = in_a0(reference[j] + shift - reference[i]), n = cross(p, q);
+  const double between_lines = dot(w, n);
+  if (between_lines * between_lines > (1.000001 * skin * skin) * dot(n, n) || bond_distance(p, q, w) >= skin)
     return;
   if (bond < other)
     found.push_back({bond, other, {(int32_t)image.x, (int32_t)image.y, (int32_t)image.z}});
