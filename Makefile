@@ -278,7 +278,7 @@ ROWS := $(if $(KERNELS),$(BUILD)/src/kernel/rows.o) $(patsubst %,$(BUILD)/src/ke
 $(filter $(BUILD)/tests/kernel/% $(BUILD)/tests/contract/test_kernels,$(TEST_PROGRAMS)): $(BUILD)/%: %.c $(ROWS) $(READER) $(LIBRARY) Makefile | $(BUILD)/found-test
 	@mkdir -p $(@D)
 	@echo '  CC $<'
-	@$(CC) $(ALL_CFLAGS) -Itests $(DEPENDENCIES) $(filter-out Makefile,$^) $(TEST_LIBS) $(LIBS) -o $@
+	@$(CC) $(ALL_CFLAGS) -Itests $(DEPENDENCIES) $(filter %.c %.o %.a,$^) $(TEST_LIBS) $(LIBS) -o $@
 
 # Memory, files and HDF5 that fail on demand (tests/faults/inject.h): the program, and the tests of tests/faults.
 INJECTOR := $(BUILD)/tests/faults/inject.o
