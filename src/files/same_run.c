@@ -1,5 +1,6 @@
 #include "files/same_run.h"
 
+#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
@@ -41,12 +42,18 @@ bool same_run_as_begun(const struct scene *scene, const char *path, const uint64
   enum h5_trouble trouble;
   struct message ignored;
   struct scene then;
+  errno = 0;
   struct frames *f = frames_open(path, &trouble, &ignored);
+  const bool known =
+      f && f->about.checkpoint && f->scene && scene_read_text(path, f->scene, strlen(f->scene), &then, &ignored);
+  if (!known && errno == ENOMEM) {
+    frames_close(f);
+    return message_set(message, "%s: no memory to compare its scene", path);
+  }
   if (!f || !f->about.checkpoint) {
     frames_close(f);
     return true;
   }
-  const bool known = f->scene && scene_read_text(path, f->scene, strlen(f->scene), &then, &ignored);
   const bool same = same_run(scene, &f->about.summary.head, known ? &then : NULL, seed, path, message);
   if (known)
     scene_free(&then);
