@@ -103,8 +103,13 @@ enum run_code run_continue(const struct run_parts *p, const char *path, const ui
 {
   const struct observe_block *blocks;
   const size_t count = observers_blocks(p->observers, &blocks);
-  if (!same_run_as_begun(p->scene, path, seed, message) ||
-      !checkpoint_read(path, &p->scene->model, head, p->state, blocks, count, message) ||
+  struct message why;
+  const enum same_run same = same_run_as_begun(p->scene, path, seed, &why);
+  const bool read =
+      same != OTHER_RUN && checkpoint_read(path, &p->scene->model, head, p->state, blocks, count, message);
+  if (same == OTHER_RUN || (read && same == SAME_RUN_UNKNOWN))
+    *message = why;
+  if (!read || same != SAME_RUN ||
       !same_run(p->scene, head, NULL, seed, path, message)) /* the file may have been another one meanwhile */
     return RUN_BAD_INPUT;
   p->scene->seed = head->seed;

@@ -35,26 +35,25 @@ bool same_run(const struct scene *scene, const struct checkpoint_head *head, con
          message_set(message, "%s: was run with seed %" PRIu64 "; a resumed run keeps its seed", path, head->seed);
 }
 
-/* Before the checkpoint is read as one of the scene: a message about a key says more than one about numbers. True if
- * the file cannot be read here, which is told later. */
-bool same_run_as_begun(const struct scene *scene, const char *path, const uint64_t *seed, struct message *message)
+enum same_run same_run_as_begun(const struct scene *scene, const char *path, const uint64_t *seed,
+                                struct message *message)
 {
   enum h5_trouble trouble;
   struct message ignored;
   struct scene then;
+  struct frames *f = frames_open(path, &trouble, message);
+  if (!f)
+    return SAME_RUN_UNKNOWN;
   errno = 0;
-  struct frames *f = frames_open(path, &trouble, &ignored);
   const bool known =
-      f && f->about.checkpoint && f->scene && scene_read_text(path, f->scene, strlen(f->scene), &then, &ignored);
-  if (!known && errno == ENOMEM) {
-    frames_close(f);
-    return message_set(message, "%s: no memory to compare its scene", path);
-  }
-  if (!f || !f->about.checkpoint) {
-    frames_close(f);
-    return true;
-  }
-  const bool same = same_run(scene, &f->about.summary.head, known ? &then : NULL, seed, path, message);
+      f->about.checkpoint && f->scene && scene_read_text(path, f->scene, strlen(f->scene), &then, &ignored);
+  enum same_run same = SAME_RUN_UNKNOWN;
+  if (!known && errno == ENOMEM)
+    message_set(message, "%s: no memory to compare its scene", path);
+  else if (!f->about.checkpoint)
+    message_set(message, "%s: not a checkpoint", path);
+  else
+    same = same_run(scene, &f->about.summary.head, known ? &then : NULL, seed, path, message) ? SAME_RUN : OTHER_RUN;
   if (known)
     scene_free(&then);
   frames_close(f);

@@ -11,8 +11,11 @@
 bool same_run(const struct scene *scene, const struct checkpoint_head *head, const struct scene *then,
               const uint64_t *seed, const char *path, struct message *message);
 
+enum same_run { SAME_RUN, OTHER_RUN, SAME_RUN_UNKNOWN };
+
 /* The same of a file. To be asked before the checkpoint is read as one of the scene: a message about a key says more
- * than one about numbers. True if the file cannot be read here. */
-bool same_run_as_begun(const struct scene *scene, const char *path, const uint64_t *seed, struct message *message);
+ * than one about numbers. With a message that names the key, or says why the file cannot be compared. */
+enum same_run same_run_as_begun(const struct scene *scene, const char *path, const uint64_t *seed,
+                                struct message *message);
 
 #endif

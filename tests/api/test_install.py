@@ -27,14 +27,27 @@ def call(*words, environment=None, folder=TOP, code=0, show=False):
     return done.stdout + done.stderr * show
 
 
-def make(target, prefix, destination=""):
-    return call("make", "-s", target, f"BUILD={os.path.relpath(BUILD, TOP)}", f"PREFIX={prefix}", f"DESTDIR={destination}")
+def copy_build(to):
+    """A build folder of our own: another prefix links program and library anew, and other tests are running them."""
+    to.mkdir()
+    for path in BUILD.iterdir():
+        if path.name in ("src", "lib", "libexec"):
+            shutil.copytree(path, to / path.name, symlinks=True)
+        elif path.is_file() and (path.name in ("uncross", "everything.a", "build-info.inc") or path.name.startswith("found-")):
+            shutil.copy2(path, to)
+    return to
+
+
+def make(target, prefix, destination="", code=0, **more):
+    return call("make", "-s", target, f"BUILD={os.path.relpath(Installed.build, TOP)}", f"PREFIX={prefix}", f"DESTDIR={destination}",
+                code=code, **more)
 
 
 class Installed(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = pathlib.Path(tempfile.mkdtemp(dir=BUILD))
+        Installed.build = copy_build(cls.folder / "build")
         cls.prefix = cls.folder / "a b & 'c' | \"d\""  # as a user may call a folder
         make("install", cls.prefix)
         cls.environment = {"PKG_CONFIG_PATH": str(cls.prefix / "lib/pkgconfig"),
@@ -178,7 +191,7 @@ class Installed(unittest.TestCase):
         installed = sorted(p.relative_to(destination) for p in destination.rglob("*") if not p.is_dir())
         self.assertIn(pathlib.Path("usr/local/share/uncross/docs/scene.md"), installed)
         self.assertIn("prefix=/usr/local\n", (destination / "usr/local/lib/pkgconfig/uncross.pc").read_text())
-        self.assertTrue(filecmp.cmp(destination / "usr/local/lib/libuncross.so", BUILD / "lib/libuncross.so.0"))
+        self.assertTrue(filecmp.cmp(destination / "usr/local/lib/libuncross.so", self.build / "lib/libuncross.so.0"))
         other = destination / "usr/local/bin/other"
         other.write_text("somebody else's\n")
         make("uninstall", "/usr/local", destination)
@@ -206,8 +219,7 @@ class Installed(unittest.TestCase):
         make("uninstall", "/usr/local", destination)
         make("uninstall", "/usr/local x/y", destination)
         self.assertEqual(sorted(self.folder.glob("kept*/**/*")), before)
-        told = call("make", "-s", "uninstall", f"BUILD={os.path.relpath(BUILD, TOP)}", "PREFIX=/usr/local", f"DESTDIR={destination}", code=2,
-                    show=True)
+        told = make("uninstall", "/usr/local", destination, code=2, show=True)
         self.assertIn("nothing of uncross is installed in", told)
 
     def test_hardened(self):
