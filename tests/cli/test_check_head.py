@@ -3,6 +3,7 @@
 measure of what it says it would write; its tau_r is that of the rows below."""
 import pathlib
 import re
+import resource
 import sys
 import unittest
 
@@ -17,6 +18,20 @@ solvent: {per_cell: 5, collision_interval: 0.02}
 fibers: [{name: rod, count: 40, vertices: 12, mass: 5, bond_length: 0.5, spring: 100, persistence_length: 50}]
 observe: {dynamics: {every: 1, longest_lag: 100}, statics: {every: 10}}
 trajectory: {every: 4, velocities: true}
+"""
+BROWNIAN = """box: [40, 40, 40]
+time_step: 0.001
+steps: {steps}
+medium: {{kind: overdamped, rate: 10, tensor: {tensor}{more}}}
+fibers: [{{name: a, count: {count}, vertices: {vertices}, mass: 1, {bonds}}}]
+crossing: {{forbidden: false}}
+"""
+FREE, HELD = "bond_length: 0, spring: 3", "bond_length: 0.5, spring: 100, bending: 20"
+TUBES = """box: [6, 6, 6]
+time_step: 0.01
+steps: 1
+solvent: {{per_cell: 3, collision_interval: 0.02}}
+fibers: [{{name: tube, count: {count}, vertices: 2, mass: 1, bond_length: 0.5, spring: 100, diameter: 0.5}}]
 """
 
 
@@ -67,6 +82,45 @@ class Head(FolderTest):
         self.assertGreater(most, 3 * real)
         self.assertAlmostEqual(self.size(head, "checkpoint") / real, 1.0, delta=0.05)
         self.assertIn("that for observables", head)
+
+    def cost(self, vertices, count=1, steps=1000000, tensor="rpy, radius: 0.25", bonds=FREE, more=""):
+        """The scene, and the seconds that `check` foresees for it."""
+        text = BROWNIAN.format(vertices=vertices, count=count, steps=steps, tensor=tensor, bonds=bonds, more=more)
+        return text, float(re.search(r"^  time +(\S+) s", self.head(text)[1], re.M)[1])
+
+    def test_cost_of_a_tensor_grows_as_its_root(self):
+        """The root of 3N rows takes (3N)^3/6 multiplications: 8 times as many for 2N, while all else grows less. Fibers are alone."""
+        held = {"bonds": HELD, "more": ", inextensible: true"}
+        one = self.cost(256)[1]
+        self.assertAlmostEqual(self.cost(512)[1] / one, 8.0, delta=0.5)
+        self.assertAlmostEqual(self.cost(256, 10)[1] / one, 10.0, delta=0.1)
+        self.assertLess(self.cost(64, tensor="none")[1], self.cost(64)[1] / 10)
+        # 16 times as many bonds: the matrix of their tensions grows by 256, its root by 4096.
+        ratio = self.cost(4096, tensor="none", **held)[1] / self.cost(256, tensor="none", **held)[1]
+        self.assertGreater(ratio, 500)
+        self.assertLess(ratio, 4096)
+        self.assertGreater(self.cost(256, **held)[1], self.cost(256, tensor="none", **held)[1])
+
+    def test_cost_of_a_tensor_is_that_of_a_run(self):
+        """By processor time, within a factor of 10: builds with sanitizers and without optimization are among those tested."""
+        text, foreseen = self.cost(64, count=5, steps=100)
+        (self.dir / "scene.yaml").write_text(text)
+        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+        self.assertEqual(uncross("run", self.dir / "scene.yaml", "--out", self.dir / "run", "--quiet").returncode, 0)
+        took = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+        print(f"# foreseen {foreseen:.3g} s, took {took:.3g} s")
+        self.assertLess(foreseen / 10, took)
+        self.assertLess(took, 10 * foreseen)
+
+    def test_tubes_that_cannot_be_laid(self):
+        """4000 tubes of 0.18 a0^3 or more would fill three times the box. A run refuses, and `check` with the same words."""
+        for command in (("check",), ("run", "--out", self.dir / "run")):
+            (self.dir / "scene.yaml").write_text(TUBES.format(count=4000))
+            done = uncross(command[0], self.dir / "scene.yaml", *command[1:])
+            self.assertEqual(done.returncode, 2, command)
+            self.assertRegex(done.stderr, r"scene.yaml:5:\d+: .*fiber \d+ of 4000 overlaps with others wherever it is laid, 100000 times; "
+                             "allowed: thinner or fewer fibers, a larger box, or start.snapshot")
+        self.head(TUBES.format(count=200))
 
 
 if __name__ == "__main__":

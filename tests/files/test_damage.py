@@ -75,6 +75,22 @@ class Damage(unittest.TestCase):
             self.assertEqual(code, 0, output)
             self.assertIn(b"trajectory.h5: readable: 6 frames", output)
 
+    def test_what_a_file_lacks_is_named(self):
+        """Version 2 promises checksums: without them nothing vouches for the frames, and every reader says that they are missing."""
+        with tempfile.TemporaryDirectory() as folder:
+            bench = damage.Bench(folder)
+            damages = {rb"its checksums \(parameters/uncross/checksum\) are missing": lambda own: own.__delitem__("checksum"),
+                       rb"its version is 3; allowed: 1 to 2": lambda own: own.attrs.modify("format_version", 3)}
+            for says, spoil in damages.items():
+                bench.put("trajectory", bench.data["trajectory"])
+                with h5py.File(bench.folder / "victim.h5", "r+") as file:
+                    spoil(file["parameters/uncross"])
+                for reader in ("info", "export", "verify", "analyze", "start"):
+                    code, output, told = getattr(bench, reader)()
+                    self.assertEqual(code, 9 if reader == "verify" else 2, (reader, told))
+                    self.assertRegex(output + told, says, reader)
+                    self.assertNotIn(b"unknown HDF5 error", output + told, reader)
+
 
 if __name__ == "__main__":
     unittest.main()
