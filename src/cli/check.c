@@ -336,7 +336,8 @@ static void report_cost(const struct scene *scene)
 {
   const struct model *m = &scene->model;
   const bool search = m->crossing.forbidden && m->bonds > 0;
-  const double vertex = search ? crossing_rate + crossing_density_rate * theory_line_density(m) : vertex_rate;
+  const double vertex = check_medium_vertex_cost(m) +
+                        (search ? crossing_rate + crossing_density_rate * theory_line_density(m) : vertex_rate);
   const double collisions = model_collides(m) ? 1.0 / m->solvent.interval_steps : 0.0;
   const double phantoms = model_has_phantoms(m) ? phantom_rate * collisions : 0.0;
   const double cells = solvent_rate * rule_cost[m->solvent.rule] * boundary_cost[m->box.boundary[1]];

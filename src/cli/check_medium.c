@@ -115,6 +115,30 @@ void check_medium_vertex(const struct si_scale *si, const struct model *m, const
   check_times(si, m, bond, d0);
 }
 
+/* Rates in ns, for rows of matrices: of a tensor three for each vertex, of tensions one for each bond. Measured with 2
+ * to 256 vertices. */
+static const double root_rate = 0.36 / 6.0; /* per cube of the rows: the root (fiber/mobility.c) */
+static const double tensor_rate = 2.0;      /* per square: the tensor, and products with it */
+static const double tension_rate = 10.0;    /* per square: the matrix of tensions (fiber/tension.c) */
+static const double brownian_rate = 110.0;  /* per vertex: three normal numbers, and the move */
+
+static double fiber_cost(const struct medium_model *b, const struct fiber_kind *k)
+{
+  const double rows = 3.0 * k->vertices, bonds = b->inextensible ? k->vertices - 1.0 : 0.0;
+  const bool coupled = b->tensor != TENSOR_NONE;
+  return brownian_rate * k->vertices + (coupled ? tensor_rate * rows * rows : 0.0) +
+         (coupled && !b->inextensible ? root_rate * pow(rows, 3) : 0.0) + tension_rate * bonds * bonds +
+         root_rate * pow(bonds, 3);
+}
+
+double check_medium_vertex_cost(const struct model *m)
+{
+  double sum = 0.0;
+  for (uint32_t k = 0; model_is_overdamped(m) && k < m->kinds; k++)
+    sum += m->kind[k].frozen ? 0.0 : m->kind[k].count * fiber_cost(&m->medium, &m->kind[k]);
+  return m->vertices > 0 ? sum / m->vertices : 0.0;
+}
+
 double check_medium_cost(const struct model *m)
 {
   const double pairs = pairs_per_particle(m);

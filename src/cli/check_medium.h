@@ -19,4 +19,8 @@ void check_times(const struct si_scale *si, const struct model *model, double l,
 /* Time per particle and step, ns, measured on one core of an x86-64 of the 2020s: for a guess within a factor of 2. */
 double check_medium_cost(const struct model *model);
 
+/* The same per vertex and step of overdamped motion: the mean over all fibers, each with its own tensor, whose root
+ * takes a time that grows as the cube of its vertices. 0 in other baths. */
+double check_medium_vertex_cost(const struct model *model);
+
 #endif

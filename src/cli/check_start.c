@@ -5,10 +5,13 @@
 
 #include "cli/sheet.h"
 #include "files/start.h"
+#include "start/fibers.h"
 
 /* scene: read as a whole, with its lists of vertices. */
-static bool start_from_snapshot(struct scene *scene, struct stream *stream, struct message *message)
+static bool start_whole(struct scene *scene, struct stream *stream, struct message *message)
 {
+  if (!scene->snapshot)
+    return scene_has_room(scene, message);
   struct state state = {0};
   struct work work = {0};
   message_set(message, "%s: no memory for the start", scene->path);
@@ -24,11 +27,11 @@ bool check_start(const char *path, const struct scene_settings *settings, const 
 {
   struct scene whole;
   *stream = stream_of_seed(scene->seed);
-  if (!scene->snapshot)
+  if (!scene->snapshot && !start_is_crowded(&scene->model))
     return true;
   if (!scene_read_set(path, settings, &whole, message))
     return false;
-  const bool ok = start_from_snapshot(&whole, stream, message);
+  const bool ok = start_whole(&whole, stream, message);
   scene_free(&whole);
   return ok;
 }

@@ -5,8 +5,10 @@
 
 #include "files/snapshot.h"
 #include "files/start.h"
+#include "fluid/bead.h"
 #include "observe/conserved.h"
 #include "scene/scene.h"
+#include "start/fibers.h"
 #include "start/start.h"
 #include "system/sound.h"
 
@@ -85,7 +87,7 @@ static bool refuse_start(const struct scene *scene, const struct fault *fault, s
     key_of_fiber(m, (uint32_t)fault->entity, key, sizeof key);
     return scene_refuse_at(scene, key, key, message,
                            "fiber %" PRId64 " of %" PRIu32 " overlaps with others wherever it is laid, %.0f times; "
-                           "allowed: thinner or fewer fibers",
+                           "allowed: thinner or fewer fibers, a larger box, or start.snapshot of a state that has room",
                            fault->entity, m->fibers, fault->value);
   }
   if (fault->code != FAULT_OVERLAP && fault->code != FAULT_BEAD_OVERLAP)
@@ -140,5 +142,22 @@ bool scene_start(struct scene *scene, struct state *state, struct work *work, st
                       ? start_from_snapshot(scene, state, work, stream, message)
                       : start_state(state, &scene->model, work) || refuse_start(scene, &work->fault, message);
   scene->model.seed = stream->key;
+  return ok;
+}
+
+bool scene_has_room(const struct scene *scene, struct message *message)
+{
+  struct model alone = scene->model;
+  struct state state;
+  struct fault fault = {0};
+  if (scene->snapshot || !start_is_crowded(&alone))
+    return true;
+  alone.solvent.particles = alone.dumbbells.pairs = 0;
+  if (!state_alloc(&state, &alone))
+    return message_set(message, "%s: no memory to lay its fibers", scene->path);
+  if (state.beads > 0)
+    bead_start(&state, &alone);
+  const bool ok = start_fibers(&state, &alone, &fault) || refuse_start(scene, &fault, message);
+  state_free(&state);
   return ok;
 }

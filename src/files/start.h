@@ -13,4 +13,8 @@
 bool scene_start(struct scene *scene, struct state *state, struct work *work, struct stream *stream,
                  struct message *message);
 
+/* Lays the fibers of a drawn start where they exclude each other or a bead, and forgets them. True if each has room, as
+ * in a run; else a message as that of scene_start. It takes the time of a run's start, but no memory for solvent. */
+bool scene_has_room(const struct scene *scene, struct message *message);
+
 #endif

@@ -117,23 +117,41 @@ static hid_t find_series(struct trajectory *t, hid_t parent, const char *name, i
 }
 
 /* What we wrote says so in parameters/uncross, with a version; version 2 has checksums. */
-static bool find_checksums(struct trajectory *t)
+static void find_checksums(struct trajectory *t)
 {
   hsize_t dims[3];
-  int32_t version = 0;
   hid_t parameters = find_object(t, t->file, "parameters"), own = find_object(t, parameters, "uncross");
   const bool ours = own >= 0 && H5Aexists(own, "format_version") != 0;
-  bool ok = !ours || (h5_get(own, "format_version", H5T_NATIVE_INT32, 0, &version) && version >= 1 &&
-                      version <= TRAJECTORY_VERSION);
-  if (ok && version >= 2) {
+  t->unread |= ours && !h5_get(own, "format_version", H5T_NATIVE_INT32, 0, &t->version);
+  if (ours && t->version >= 2)
     t->checksum = find_series(t, own, "checksum", 2);
-    ok = t->checksum >= 0 && h5_shape(t->checksum, 2, dims) == 2 && dims[1] == FRAME_SUMS && t->step >= 0 &&
-         t->time >= 0;
+  if (t->checksum >= 0 && (h5_shape(t->checksum, 2, dims) != 2 || dims[1] != FRAME_SUMS)) {
+    h5_close(t->checksum);
+    t->checksum = -1;
   }
+  t->ours = ours;
   h5_close(own);
   h5_close(parameters);
-  t->unread |= !ok;
-  return ok;
+}
+
+static bool is_known(const struct trajectory *t)
+{
+  return !t->ours || (t->version >= 1 && t->version <= TRAJECTORY_VERSION);
+}
+
+/* What a file of ours lacks though its version promises it, or NULL. */
+static const char *what_is_missing(const struct trajectory *t)
+{
+  const struct {
+    hid_t object;
+    const char *text;
+  } promised[] = {{t->step, "its steps (position/step)"},
+                  {t->time, "its times (position/time)"},
+                  {t->checksum, "its checksums (parameters/uncross/checksum)"}};
+  for (size_t k = 0; t->version >= 2 && k < sizeof promised / sizeof *promised; k++)
+    if (promised[k].object < 0)
+      return promised[k].text;
+  return NULL;
 }
 
 static bool find_contents(struct trajectory *t)
@@ -152,17 +170,26 @@ static bool find_contents(struct trajectory *t)
   h5_close(edges);
   h5_close(box);
   h5_close(element);
-  return find_checksums(t) && !t->unread;
+  find_checksums(t);
+  return !t->unread && is_known(t) && !what_is_missing(t);
 }
 
 bool trajectory_find(struct trajectory *t, struct message *message)
 {
   if (find_contents(t))
     return true;
-  return t->unread
-             ? h5_fail(message, t->path, "damaged, or its contents cannot be used")
-             : message_set(message, "%s: an HDF5 file without an H5MD trajectory (particles/trajectory/position/value)",
-                           t->path);
+  if (t->unread)
+    return h5_fail(message, t->path, "damaged, or its contents cannot be used");
+  if (t->position < 0)
+    return message_set(message, "%s: an HDF5 file without an H5MD trajectory (particles/trajectory/position/value)",
+                       t->path);
+  if (!is_known(t))
+    return message_set(message, "%s: damaged, or of a later program: its version is %" PRId32 "; allowed: 1 to %d",
+                       t->path, t->version, TRAJECTORY_VERSION);
+  return message_set(message,
+                     "%s: damaged: %s are missing, or of another shape; no trajectory of version 2 is read "
+                     "without them",
+                     t->path, what_is_missing(t));
 }
 
 int trajectory_read_scene(const struct trajectory *t, char **text)

@@ -26,6 +26,8 @@ struct trajectory {
   uint32_t particles; /* rows of a frame */
   bool solvent;       /* frames hold the solvent; when writing */
   bool unread;        /* something that is there could not be read */
+  bool ours;          /* this program wrote it, in a format of this ... */
+  int32_t version;    /* ... when reading */
   bool broken;        /* a write failed: nothing more is written */
   bool read;          /* by another process, when the last frame was written */
   bool damaged;       /* the last frame that was to be read is */

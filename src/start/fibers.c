@@ -28,8 +28,7 @@ static enum fiber_verdict judge_fiber(void *context, const struct point *positio
   return g->model->thickness > 0 ? verdicts[laying_add(&g->laying, position, fiber)] : FIBER_STAYS;
 }
 
-/* Does it matter where fibers are? */
-static bool is_crowded(const struct model *model)
+bool start_is_crowded(const struct model *model)
 {
   return model->thickness > 0 || model_has_bead(model);
 }
@@ -61,7 +60,7 @@ bool start_fibers(struct state *state, const struct model *model, struct fault *
   const struct fiber_room room = {judge_fiber, &ground};
   uint32_t fiber = 0;
   enum fiber_start_end end = FIBERS_NO_MEMORY;
-  if (!is_crowded(model))
+  if (!start_is_crowded(model))
     end = fiber_start(state, model, NULL, &fiber);
   else if (model->thickness == 0 || laying_begin(&ground.laying, model))
     end = fiber_start(state, model, &room, &fiber);
@@ -76,7 +75,7 @@ bool start_sound(const struct state *state, const struct model *model, struct fa
       [FIBER_STAYS] = FIBERS_LAID, [FIBER_OVERLAPS] = FIBERS_OVERLAP, [FIBER_NO_MEMORY] = FIBERS_NO_MEMORY};
   struct ground ground = {.state = state, .model = model};
   enum fiber_start_end end = FIBERS_LAID;
-  if (!is_crowded(model))
+  if (!start_is_crowded(model))
     return true;
   if (model->thickness > 0 && !laying_begin(&ground.laying, model))
     end = FIBERS_NO_MEMORY;

@@ -27,7 +27,7 @@ fibers: [{{name: a, count: {count}, vertices: {vertices}, mass: 1, {bonds}}}]
 crossing: {{forbidden: false}}
 """
 FREE, HELD = "bond_length: 0, spring: 3", "bond_length: 0.5, spring: 100, bending: 20"
-TUBES = """box: [6, 6, 6]
+TUBES = """box: [3, 3, 3]
 time_step: 0.01
 steps: 1
 solvent: {{per_cell: 3, collision_interval: 0.02}}
@@ -113,14 +113,14 @@ class Head(FolderTest):
         self.assertLess(took, 10 * foreseen)
 
     def test_tubes_that_cannot_be_laid(self):
-        """4000 tubes of 0.18 a0^3 or more would fill three times the box. A run refuses, and `check` with the same words."""
+        """500 tubes of 0.17 a0^3 or more (0.1 a cylinder of 0.5, 0.07 its caps) would fill three times the box. A run refuses, and `check` with the same words."""
         for command in (("check",), ("run", "--out", self.dir / "run")):
-            (self.dir / "scene.yaml").write_text(TUBES.format(count=4000))
+            (self.dir / "scene.yaml").write_text(TUBES.format(count=500))
             done = uncross(command[0], self.dir / "scene.yaml", *command[1:])
             self.assertEqual(done.returncode, 2, command)
-            self.assertRegex(done.stderr, r"scene.yaml:5:\d+: .*fiber \d+ of 4000 overlaps with others wherever it is laid, 100000 times; "
+            self.assertRegex(done.stderr, r"scene.yaml:5:\d+: .*fiber \d+ of 500 overlaps with others wherever it is laid, 100000 times; "
                              "allowed: thinner or fewer fibers, a larger box, or start.snapshot")
-        self.head(TUBES.format(count=200))
+        self.head(TUBES.format(count=25))
 
 
 if __name__ == "__main__":
