@@ -78,6 +78,8 @@ YAML
 gives 2 'thick.yaml:15:18: .*overlaps with another: their axes are 0.2 a0 apart; allowed: more than 0.3' run "$dir/thick.yaml" --out "$dir/thick"
 [ ! -e "$dir/thick" ]
 ok $? "thick fibers that overlap leave no folder"
+sed -e 's/diameter: 0.3/bending: 0/; s/4, 4.2/4, 4/' "$dir/thick.yaml" >"$dir/thin.yaml"
+gives 2 'thin.yaml:15:18: .*bond . of fiber 1 touches another; allowed: bonds that are apart' run "$dir/thin.yaml" --out "$dir/thin"
 sed -e '/start:/,/- {center: .*1, 0\]/d' -e 's/count: 2/count: 2000/; s/diameter: 0.3/diameter: 0.5/' "$dir/thick.yaml" >"$dir/full.yaml"
 gives 2 'full.yaml:11:15: .*overlaps with others wherever it is laid' run "$dir/full.yaml" --out "$dir/thick"
 # tubes thicker than bonds are long; without contacts at their own time; a snapshot of thin lines whose tubes overlap

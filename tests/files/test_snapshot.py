@@ -197,6 +197,51 @@ class Foreign(Start):
         self.change(lambda file: self.put(file, "charge", numpy.ones(536), False))
         self.again(OPEN, "it holds 'charge', of which a run knows nothing; allowed: ")
 
+    # Thin bonds that touch at the start: neither is on a side of the other. Two fibers of four vertices on lines.
+    RODS = "fibers: [{name: a, count: 2, vertices: 4, mass: 5, bond_length: 1, spring: 100}]\n"
+    X, Y, Z = (numpy.array(e, float) for e in ((1, 0, 0), (0, 1, 0), (0, 0, 1)))
+
+    def rods(self, second, along, crossable=False, words=None, length=1.125):
+        """The first rod begins at (3, 4, 4) and goes along x."""
+        steps = numpy.arange(4)[:, None] * length
+
+        def lay(file):
+            value = file[self.GROUP + "/position/value"]
+            place = value[-1]
+            place[:4] = [3, 4, 4] + steps * self.X
+            place[4:8] = second + steps * along
+            value[-1] = place
+            file[self.GROUP + "/velocity/value"][-1, :8] = 0
+        self.change(lay)
+        rods = self.RODS.replace("}]", ", frozen: true}]") if crossable == "frozen" else self.RODS
+        scene = FIBERS if crossable is True else FIBERS.replace("crossing: {forbidden: false}\n", "")
+        for rule in (("event-driven", "sequential") if crossable is not True else (None,)):
+            text = scene + rods + (f"crossing: {{rule: {rule}}}\n" if rule else "")
+            out = f"again{len(list(self.dir.iterdir()))}"
+            code, said = self.start(text + "start: {snapshot: first/trajectory.h5}\n", out)
+            self.assertEqual(code, 2 if words else 0, said)
+            self.assertIn(words or "", said)
+            self.assertEqual((self.dir / out).exists(), not words)
+
+    def test_thin_bonds_that_touch(self):
+        self.make(self.RODS)
+        words = "scene.yaml:8:19: start.snapshot: bond 4 of fiber 1 touches another"
+        for second, along in (((3, 4, 4), self.X), ((6.375, 4, 4), -self.X),     # on each other
+                              ((3.5, 4, 4), self.X), ((11, 4, 4), self.X),       # in part; an image
+                              ((6.375, 4, 4), self.X), ((3, 4, 4), self.Y),      # end on end
+                              ((3.5, 4, 4), self.Y), ((4.125, 4, 4), self.Z)):   # an end on a side, on a vertex
+            with self.subTest(second=second, along=along):
+                self.rods(second, along, words=words)
+        with self.subTest("across"):
+            self.rods((3.5, 3, 4), self.Y, words=words)
+        with self.subTest("crossable"):
+            self.rods((3.5, 3, 4), self.Y, crossable=True)
+        with self.subTest("frozen"):
+            self.rods((3.5, 3, 4), self.Y, crossable="frozen")
+        for second, along in (((3, 4, 4.000001), self.X), ((3.5, 3, 4.000001), self.Y), ((6.5, 4, 4), self.X)):
+            with self.subTest(second=second, along=along):
+                self.rods(second, along)
+
 
 class Outside(Start):
     """Solvent that is not in the box: an image of a place in it where the box is periodic, else refused."""
