@@ -76,6 +76,21 @@ static bool step_on(const struct cells *c, int64_t cell[3])
 
 /* --- bonds -------------------------------------------------------------------------------------------------------- */
 
+/* Thin bonds that stand do not touch, exactly. */
+static bool lines_apart(const struct flight_pair *standing)
+{
+  return flight_excluded(standing, 0, 1);
+}
+
+/* Bonds that never meet each other, whether or not they touch. image: of another image of the box. */
+static bool never_meet(const struct model *m, uint32_t bond, uint32_t other, bool image)
+{
+  if (model_reach(m, bond, other) > 0)
+    return bond == other || (!image && model_tube_is_blind(m, bond, other));
+  return !laying_minds_lines(m) || model_is_flat(m) || model_share_vertex(m, bond, other) ||
+         (m->kind[m->fiber_kind_of[m->fiber_of[bond]]].frozen && m->kind[m->fiber_kind_of[m->fiber_of[other]]].frozen);
+}
+
 /* A bond against an entry of a cell of its own, in which it is this image of itself. */
 static bool overlaps(struct laying *l, const struct point *position, uint32_t bond, const int32_t image[3],
                      const struct laying_entry *e)
@@ -83,13 +98,13 @@ static bool overlaps(struct laying *l, const struct point *position, uint32_t bo
   const struct model *m = l->model;
   const int32_t its[3] = {image[0] - e->image[0], image[1] - e->image[1], image[2] - e->image[2]};
   const int64_t reach = model_reach(m, bond, e->bond);
-  if (e->bond == bond || reach == 0 || (!its[0] && !its[1] && !its[2] && model_tube_is_blind(m, bond, e->bond)))
+  if (never_meet(m, bond, e->bond, its[0] || its[1] || its[2]))
     return false;
   const struct point at = position[bond], other = position[e->bond];
   const struct flight_pair pair = {.p = point_minus(position[m->next[bond]], at),
                                    .q = point_minus(position[m->next[e->bond]], other),
                                    .w = point_minus(point_image(other, its, &m->box), at)};
-  if (tube_excluded(&pair, reach, 0, 0))
+  if (reach > 0 ? tube_excluded(&pair, reach, 0, 0) : (its[1] && model_has_walls(m)) || lines_apart(&pair))
     return false;
   l->bond = bond, l->other = e->bond;
   l->distance = capsule_distance(point_in_a0(pair.p), point_in_a0(pair.q), point_in_a0(pair.w));

@@ -1,5 +1,7 @@
 /*
- * Thick fibers laid one after another: does a new one overlap with those that lie there? For starting states.
+ * Fibers laid one after another: does a new one overlap with those that lie there? For starting states. Thin ones
+ * overlap where they touch, by the rule `event-driven`: then neither is on a side of the other, and each tick of a
+ * drift is one of a contact. (`sequential` takes a volume of 0 for positive, so each bond has a side.)
  *
  * A grid of cells lists every bond in each cell that the box around its tube touches, with the image of the bond that
  * lies there. A new bond is compared with those of its cells.
@@ -26,6 +28,12 @@ struct laying {
   uint32_t bond, other; /* the last two that were found to overlap */
   double distance;      /* of their axes, a0 */
 };
+
+/* Whether thin bonds that touch count as an overlap. */
+static inline bool laying_minds_lines(const struct model *model)
+{
+  return model->crossing.forbidden && model->crossing.rule == CROSSING_EVENT_DRIVEN;
+}
 
 /* An empty box. False if memory is short. laying_end frees it in any case. */
 bool laying_begin(struct laying *laying, const struct model *model);

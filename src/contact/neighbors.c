@@ -51,18 +51,14 @@ static bool leave_cell(struct neighbors *nb, const struct model *model, uint32_t
   return true;
 }
 
-static bool share_vertex(const struct model *model, uint32_t a, uint32_t b)
-{
-  return a == b || model->next[a] == (int32_t)b || model->next[b] == (int32_t)a;
-}
-
 /* Thick fibers that are never partners: a bond and its image; those that share a vertex; those that are near along the
  * contour. */
 static bool never_touch(const struct model *model, uint32_t bond, const struct neighbor *n)
 {
   const uint32_t other = (uint32_t)n->bond;
   const bool image = n->image[0] != 0 || n->image[1] != 0 || n->image[2] != 0;
-  return bond == other || (!image && (share_vertex(model, bond, other) || model_tube_is_blind(model, bond, other)));
+  return bond == other ||
+         (!image && (model_share_vertex(model, bond, other) || model_tube_is_blind(model, bond, other)));
 }
 
 /* Between walls there are no images along y. */
@@ -132,7 +128,8 @@ static bool settle(struct neighbors *nb, const struct model *model, struct searc
   for (uint32_t k = 0; k < found->count; k++) {
     const struct overlap *c = &found->at[k];
     const uint32_t bond = (uint32_t)c->mine.bond;
-    if (thin && share_vertex(model, bond, (uint32_t)c->its.bond)) /* thin lines cannot cross these, or their images */
+    /* thin lines cannot cross these, or their images */
+    if (thin && model_share_vertex(model, bond, (uint32_t)c->its.bond))
       continue;
     if (c->mine.bond != home_of)
       home = search_image(nb, nb->reference[bond].at, &model->box), home_of = c->mine.bond;

@@ -99,6 +99,11 @@ static bool refuse_start(const struct scene *scene, const struct fault *fault, s
                            "bond %" PRId64 " of fiber %" PRIu32 " overlaps with the bead: its axis is %.9g a0 from the "
                            "center; allowed: more than %.9g",
                            fault->entity, m->fiber_of[fault->entity], fault->value, fault->limit);
+  if (fault->limit == 0.0)
+    return scene_refuse_at(scene, scene->snapshot ? "start.snapshot" : key, scene->snapshot ? "start.snapshot" : key,
+                           message,
+                           "bond %" PRId64 " of fiber %" PRIu32 " touches another; allowed: bonds that are apart",
+                           fault->entity, m->fiber_of[fault->entity]);
   return scene_refuse_at(scene, scene->snapshot ? "start.snapshot" : key, scene->snapshot ? "start.snapshot" : key,
                          message,
                          "bond %" PRId64 " of fiber %" PRIu32 " overlaps with another: their axes are %.9g a0 apart; "

@@ -6,11 +6,11 @@
 #include "start/start.h"
 #include "system/bead.h"
 
-/* Where fibers are laid: among thick ones, and beside a bead. */
+/* Where fibers are laid: among others, and beside a bead. */
 struct ground {
   const struct state *state;
   const struct model *model;
-  struct laying laying; /* empty if all are thin */
+  struct laying laying; /* nothing if nobody asks which fibers are there */
   bool in_bead;         /* the last fiber that overlaps does so with the bead: */
   uint32_t bond;        /* this bond of it, */
   double distance;      /* whose axis is so far from the center, a0 */
@@ -25,12 +25,27 @@ static enum fiber_verdict judge_fiber(void *context, const struct point *positio
   g->in_bead = s->beads > 0 && !event_bead_clear(g->model, s->bead->position, position, fiber, &g->bond, &g->distance);
   if (g->in_bead)
     return FIBER_OVERLAPS;
-  return g->model->thickness > 0 ? verdicts[laying_add(&g->laying, position, fiber)] : FIBER_STAYS;
+  return g->laying.model ? verdicts[laying_add(&g->laying, position, fiber)] : FIBER_STAYS;
+}
+
+/* Does it matter where fibers are beside each other? Thin ones at random do not touch: at_will says that not all are.
+ */
+static bool is_crowded(const struct model *model, bool at_will)
+{
+  return model->thickness > 0 || (at_will && laying_minds_lines(model) && model->bonds > 1);
+}
+
+static bool have_places(const struct model *model)
+{
+  bool have = false;
+  for (uint32_t k = 0; k < model->kinds; k++)
+    have = have || model->kind[k].placed > 0;
+  return have;
 }
 
 bool start_is_crowded(const struct model *model)
 {
-  return model->thickness > 0 || model_has_bead(model);
+  return is_crowded(model, have_places(model)) || model_has_bead(model);
 }
 
 static bool record_overlap(const struct ground *g, struct fault *fault)
@@ -60,10 +75,8 @@ bool start_fibers(struct state *state, const struct model *model, struct fault *
   const struct fiber_room room = {judge_fiber, &ground};
   uint32_t fiber = 0;
   enum fiber_start_end end = FIBERS_NO_MEMORY;
-  if (!start_is_crowded(model))
-    end = fiber_start(state, model, NULL, &fiber);
-  else if (model->thickness == 0 || laying_begin(&ground.laying, model))
-    end = fiber_start(state, model, &room, &fiber);
+  if (!is_crowded(model, have_places(model)) || laying_begin(&ground.laying, model))
+    end = fiber_start(state, model, ground.laying.model || model_has_bead(model) ? &room : NULL, &fiber);
   const bool ok = record_start(&ground, end, fiber, fault);
   laying_end(&ground.laying);
   return ok;
@@ -75,9 +88,7 @@ bool start_sound(const struct state *state, const struct model *model, struct fa
       [FIBER_STAYS] = FIBERS_LAID, [FIBER_OVERLAPS] = FIBERS_OVERLAP, [FIBER_NO_MEMORY] = FIBERS_NO_MEMORY};
   struct ground ground = {.state = state, .model = model};
   enum fiber_start_end end = FIBERS_LAID;
-  if (!start_is_crowded(model))
-    return true;
-  if (model->thickness > 0 && !laying_begin(&ground.laying, model))
+  if (is_crowded(model, true) && !laying_begin(&ground.laying, model))
     end = FIBERS_NO_MEMORY;
   for (uint32_t fiber = 0; end == FIBERS_LAID && fiber < model->fibers; fiber++)
     end = ends[judge_fiber(&ground, state->position, fiber)];

@@ -10,7 +10,8 @@
  * if one has no room, or does not fit where the scene places it. */
 bool start_fibers(struct state *state, const struct model *model, struct fault *fault);
 
-/* Does it matter where fibers are? True if some are thick, and with a bead. */
+/* Does it matter where fibers are? True if some are thick, with a bead, and for lines at places where none may touch.
+ */
 bool start_is_crowded(const struct model *model);
 
 #endif

@@ -13,8 +13,8 @@ bool start_state(struct state *state, const struct model *model, struct work *wo
  * of and behind the drive (system/bead.h). Nothing without a driven bead. */
 void start_begin_drive(struct state *state, const struct model *model);
 
-/* True if no tubes of thick fibers overlap, and none with a bead; else the fault says which. For states that come from
- * files. */
+/* True if no tubes of thick fibers overlap, and none with a bead, and no thin bonds touch by the rule `event-driven`;
+ * else the fault says which. For states that come from files. */
 bool start_sound(const struct state *state, const struct model *model, struct fault *fault);
 
 #endif

@@ -24,7 +24,7 @@ enum fault_code {
   FAULT_BEAD_MOVE,      /* a bead, or solvent near it, is so fast that its image may be hit too, or not a number */
   FAULT_IN_BEAD,        /* a solvent particle is in the bead (in a file: a run keeps them outside) */
   FAULT_BOND_TOO_LONG,  /* a bond is longer than half the shortest edge */
-  FAULT_OVERLAP,        /* the tubes of two bonds overlap at the start: one of them, and the distance of their axes */
+  FAULT_OVERLAP,        /* two bonds overlap or touch at the start: one of them, and the distance of their axes */
   FAULT_BEAD_OVERLAP,   /* a bond overlaps with the bead at the start: the distance of its axis from the center */
   FAULT_NO_ROOM,        /* a thick fiber overlaps with others wherever it is laid: its number, and the attempts */
   FAULT_MOBILITY,       /* the diffusion tensor of a fiber is not positive: its first vertex, and a pivot over D0 */

@@ -353,6 +353,12 @@ static inline int64_t model_reach(const struct model *model, uint32_t bond, uint
          model->kind[model->fiber_kind_of[model->fiber_of[other]]].radius;
 }
 
+/* True if two bonds have a vertex in common, or are the same. */
+static inline bool model_share_vertex(const struct model *model, uint32_t bond, uint32_t other)
+{
+  return bond == other || model->next[bond] == (int32_t)other || model->next[other] == (int32_t)bond;
+}
+
 /* True if a bond of a thick fiber does not see another one of it, since they are near along the contour. */
 bool model_tube_is_blind(const struct model *model, uint32_t bond, uint32_t other);
 
