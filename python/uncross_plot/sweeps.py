@@ -70,7 +70,8 @@ def _moving(row):
     for name in row:
         column, kind = _parts(name)
         change = f"change_{name}"
-        if column in plateau.OCTAVES and change in row and math.isfinite(_number(row[name])):
+        is_error = any(name.endswith(end) and name[:-len(end)] in row for end in ("_block_error", "_error"))
+        if column in plateau.OCTAVES and not is_error and change in row and math.isfinite(_number(row[name])):
             base = abs(_number(row.get(f"{plateau.OCTAVES[column]}_{kind}", "nan"))) or math.nan
             found = plateau.Plateau(_lag(row, kind), _number(row[change]) / base, _error(row, change) / base)
             words = found.doubt(f"D{'' if column == 'D' else ' about its drift'} of '{kind}'")

@@ -110,6 +110,7 @@ class Pages(FolderTest):
         with unittest.mock.patch.object(sweeps, "figure", lambda *_: ""):  # words are tested here, and figures take seconds
             text = sweeps.page_of(str(out))
         self.assertNotIn("Nothing that this page looks for", text)
+        self.assertNotIn("micelle_", text[text.index("What to distrust"):text.index("What to distrust") + 2000])  # errors are no kinds
         self.assertRegex(text, rf"<li>all: D of &#39;micelle&#39; is not final: it grows by \d+% from one octave of lags to the next, at lag {lag:.3g} t0")
         self.assertIn(f"at lag {lag:.3g} t0", text.partition("<figcaption")[2])  # beside each D
         both = [runs.read(str(out / "all" / f"seed-{seed}")) for seed in (1, 2)]
