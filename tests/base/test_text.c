@@ -106,7 +106,7 @@ static void test_words_for_a_shell(void **unused)
   assert_string_equal(word_of("$(x) `y` \\"), "'$(x) `y` \\'");
   assert_string_equal(word_of("it's"), "'it'\\''s'");
   assert_string_equal(word_of("\xc3\xa9"), "'\xc3\xa9'");
-  assert_string_equal(word_of("a\n'\\"), "$'a\\x0a\\'\\\\'");
+  assert_string_equal(word_of("a\n'\\"), "$'a\\x0a\\x27\\\\'");
   assert_string_equal(word_of("\xff$(x)"), "$'\\xff$(x)'");
 }
 

@@ -88,6 +88,15 @@ class HostileNames(unittest.TestCase):
             self.assertEqual({path for path in self.folder.iterdir() if path.is_dir()} - before, {self.folder / f"{name}.d"})
             self.assertFalse(list(self.folder.rglob("PWNED")))
 
+    def test_shells_that_are_not_bash(self):
+        """A name that acts is a word of bash: $'...'. Another shell may take it for another name, but runs nothing of it."""
+        for name in ("a\n'; touch PWNED; #", "a\\\n'; touch PWNED; #", "\x1b'`touch PWNED`'"):
+            (self.folder / name).write_text(SCENE.format(steps=2))
+            code, script = self.run_words("sweep", f"--out={name}.d", "--list", "--", name)
+            self.assertEqual(code, 0, script)
+            subprocess.run(["/bin/sh", "-c", script], cwd=self.folder, capture_output=True, check=False)
+            self.assertFalse(list(self.folder.rglob("PWNED")), script)
+
     def test_scripts_of_sweeps(self):
         for name in NAMES[:4]:
             (self.folder / name).write_text(SCENE.format(steps=2))
