@@ -17,12 +17,13 @@ def shown(text):
 
 
 def word(text):
-    """A word as bash takes it, which a terminal only shows."""
+    """A word as bash takes it, which a terminal only shows. Another shell may take it for another word, but never for more than
+    one: there is no \\' in it, which ends a word where $ before a quote is not known."""
     if re.fullmatch(r"[A-Za-z0-9_./=:,+-]+", text):
         return text
     if not _ACTS.search(text):
         return "'" + text.replace("'", "'\\''") + "'"
-    quoted = re.sub(r"[\\']", r"\\\g<0>", text)
+    quoted = text.replace("\\", "\\\\").replace("'", "\\x27")
     return "$'" + _ACTS.sub(lambda m: _bytes_of(m[0]), quoted) + "'"
 
 

@@ -98,15 +98,16 @@ static bool acts_somewhere(const char *text)
   return acts;
 }
 
-/* Within $'...' each byte that is not ASCII, or acts, is \xNN. */
+/* Within $'...' each byte that is not ASCII, or acts, is \xNN. So is the quote: shells that do not know $ before a
+ * quote take a backslash for itself, and would end the word at \'. */
 static void print_bytes(FILE *file, const char *text)
 {
   for (; *text; text++) {
     const unsigned char c = (unsigned char)*text;
-    if (c < 0x20 || c > 0x7e)
+    if (c < 0x20 || c > 0x7e || c == '\'')
       fprintf(file, "\\x%02x", c);
     else
-      fprintf(file, "%s%c", c == '\'' || c == '\\' ? "\\" : "", c);
+      fprintf(file, "%s%c", c == '\\' ? "\\" : "", c);
   }
 }
 

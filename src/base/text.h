@@ -28,7 +28,8 @@ const char *text_escape(const char *text, char *to, size_t size);
 /* Prints the same, whole: for comments too, which end with the line. */
 void text_print(FILE *file, const char *text);
 
-/* Prints a word as bash takes it, which a terminal only shows. */
+/* Prints a word as bash takes it, which a terminal only shows. Another shell may take it for another word, but never
+ * for more than one. */
 void text_print_word(FILE *file, const char *word);
 
 #define TEXT_LONGEST_LINE 65535 /* bytes with the end; no file of ours has one of a tenth of this */
