@@ -78,7 +78,7 @@ ok $? "run -o DIR --set ... --set ..."
 ok $? "what is set is as if the scene said it"
 "$uncross" run "$dir/scene.yaml" -o "$dir/set" --resume --quiet --steps 6 --set solvent.per_cell=5 --set fibers.0.count=3
 ok $? "and so it is in a resumed run"
-gives 2 'it holds 320 solvent particles, the scene 192' run "$dir/scene.yaml" -o "$dir/set" --resume --steps 8
+gives 2 'solvent.per_cell is 3 there, 5 in the run so far' run "$dir/scene.yaml" -o "$dir/set" --resume --steps 8
 gives 0 'per_cell: 7' check "$dir/scene.yaml" --set solvent.per_cell=7
 gives 2 'per_cel' check "$dir/scene.yaml" --set solvent.per_cel=7
 gives 2 'requires an argument' check "$dir/scene.yaml" --set
