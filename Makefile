@@ -464,7 +464,7 @@ demo:
 # The exact tests under other flags, in folders of their own. Physics tests are long and add nothing here; those of
 # validation/ run little but Python.
 EXACT_TESTS := $(filter-out tests/physics/% tests/validation/% tests/stress/% tests/mutants/% tests/tools/% tests/cli/test_bits.sh \
-   tests/api/%.py, \
+   tests/api/%.py tests/cli/test_memory.py, \
    $(sort $(shell find tests -name 'test_*.c' -o -name 'test_*.py' -o -name 'test_*.sh')))
 .PHONY: exact
 exact: $(BUILD)/uncross $(BUILD)/uncross-faults $(LIBRARIES) $(patsubst %.c,$(BUILD)/%,$(filter %.c,$(EXACT_TESTS)))
