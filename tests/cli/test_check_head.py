@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """The head of `uncross check`: how long a run is beside what it has to last, and what it writes. Files of a real run are the
 measure of what it says it would write; its tau_r is that of the rows below."""
+import os
 import pathlib
 import re
 import resource
@@ -102,15 +103,16 @@ class Head(FolderTest):
         self.assertGreater(self.cost(256, **held)[1], self.cost(256, tensor="none", **held)[1])
 
     def test_cost_of_a_tensor_is_that_of_a_run(self):
-        """By processor time, within a factor of 10: builds with sanitizers and without optimization are among those tested."""
+        """By processor time, within a factor of 10; a program with sanitizers is some ten times as slow."""
+        factor = 100 if "ASAN_OPTIONS" in os.environ else 10
         text, foreseen = self.cost(64, count=5, steps=100)
         (self.dir / "scene.yaml").write_text(text)
         before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
         self.assertEqual(uncross("run", self.dir / "scene.yaml", "--out", self.dir / "run", "--quiet").returncode, 0)
         took = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
         print(f"# foreseen {foreseen:.3g} s, took {took:.3g} s")
-        self.assertLess(foreseen / 10, took)
-        self.assertLess(took, 10 * foreseen)
+        self.assertLess(foreseen / factor, took)
+        self.assertLess(took, factor * foreseen)
 
     def test_tubes_that_cannot_be_laid(self):
         """500 tubes of 0.17 a0^3 or more (0.1 a cylinder of 0.5, 0.07 its caps) would fill three times the box. A run refuses, and `check` with the same words."""

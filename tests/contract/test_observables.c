@@ -352,17 +352,16 @@ static void stress_begins_with_an_average(void **unused)
 #define CELLS "solvent: {per_cell: 3, collision_interval: 0.02}\n"
 #define CHAINS "fibers: [{name: chain, count: 3, vertices: 4, mass: 3, bond_length: 0.5, spring: 100, bending: 2%s}]\n"
 
-/* A scene for each circumstance; %s: more keys of the fibers. */
+/* A scene for each circumstance, and more keys of its fibers; NULL: without fibers. */
 static const struct {
   const char *before, *more;
-  bool bare; /* without fibers */
 } examples[CIRCUMSTANCES] = {
     [ANYWHERE] = {CELLS, ""},
-    [NO_FIBERS] = {CELLS "dumbbells: {spring: 20}\n", "", true},
-    [NO_FIBERS_NO_DUMBBELLS] = {CELLS, "", true},
+    [NO_FIBERS] = {CELLS "dumbbells: {spring: 20}\n", NULL},
+    [NO_FIBERS_NO_DUMBBELLS] = {CELLS, NULL},
     [NO_BEAD] = {CELLS, ""},
-    [NO_NETWORK] = {CELLS "bead: {radius: 1.5, center: [4, 4, 4]}\n", "", true},
-    [NO_TRAP] = {CELLS "bead: {radius: 1.5, center: [4, 4, 4]}\n", "", true},
+    [NO_NETWORK] = {CELLS "bead: {radius: 1.5, center: [4, 4, 4]}\n", NULL},
+    [NO_TRAP] = {CELLS "bead: {radius: 1.5, center: [4, 4, 4]}\n", NULL},
     [NO_PAIR_FORCES] = {CELLS, ""},
     [IN_A_PLANE] = {CELLS "dimensions: 2\ncrossing: {forbidden: false}\n", ""},
     [IN_SHEAR] = {CELLS "shear: {rate: 0.1}\n", ""},
@@ -387,10 +386,11 @@ static const struct {
 
 static void example(enum circumstance where, const char *observe, char *text, size_t size)
 {
-  char chains[256];
-  snprintf(chains, sizeof chains, CHAINS, examples[where].more);
+  char chains[256] = "";
+  if (examples[where].more)
+    snprintf(chains, sizeof chains, CHAINS, examples[where].more);
   snprintf(text, size, "box: [8, 8, %d]\ntime_step: 0.02\nsteps: 8\n%s%sobserve:%s\n", where == IN_A_PLANE ? 1 : 8,
-           examples[where].before, examples[where].bare ? "" : chains, observe);
+           examples[where].before, chains, observe);
 }
 
 /* A scene that asks for what has no meaning is refused at the key, with the words of the table. */
