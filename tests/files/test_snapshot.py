@@ -160,6 +160,18 @@ class Foreign(Start):
         self.again(kinds("c", "d"))  # other names, or another grouping, are no contradiction
         self.again(OPEN)
 
+    def test_kinds_of_a_checkpoint(self):
+        """Kinds of equal numbers and masses that change their places are other fibers: their springs differ."""
+        def kinds(*springs):
+            return "fibers:\n" + "".join(f"  - {{name: s{s}, count: 2, vertices: 6, mass: 5, bond_length: 0.5, spring: {s}}}\n"
+                                         for s in springs)
+        self.make(kinds(100, 200), ours=True)
+        again = "start: {snapshot: first/checkpoint.h5}\n"
+        for springs, words in (((200, 100), "vertex 0 is of 's100' in it, of 's200' in the scene"), ((100, 200), None)):
+            code, said = self.start(FIBERS + kinds(*springs) + again, f"of-{springs[0]}")
+            self.assertEqual(code, 2 if words else 0, said)
+            self.assertIn(words or "", said)
+
     def test_solvent_among_the_vertices(self):
         points = "fibers: [{name: a, count: 24, vertices: 1, mass: 1}]\n"
         self.make(points)
