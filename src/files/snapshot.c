@@ -8,6 +8,15 @@
 #include "files/structure.h"
 #include "files/trajectory.h"
 
+/* Rows must be in the scene's order: vertices fiber by fiber, then solvent. */
+static bool in_order(const struct frames *frames, const struct model *model, const char *path, struct message *message)
+{
+  struct message why;
+  if (frames->about.unfit[0])
+    return message_set(message, "%s: %s", path, frames->about.unfit);
+  return !structure_differs(&frames->structure, model, &why) || message_set(message, "%s: %s", path, why.text);
+}
+
 /* Streams the solvent to where it is now. */
 static bool make_up_lag(struct state *state, const struct model *model, struct message *message)
 {
@@ -29,7 +38,13 @@ static bool start_from_checkpoint(const char *path, const struct model *model, s
                                   struct snapshot_origin *origin, struct message *message)
 {
   struct checkpoint_summary summary;
+  enum h5_trouble trouble;
   if (!checkpoint_fetch(path, model, &summary, state, NULL, 0, message))
+    return false;
+  struct frames *frames = frames_open(path, &trouble, message);
+  const bool same = frames && in_order(frames, model, path, message);
+  frames_close(frames);
+  if (!same)
     return false;
   *origin = (struct snapshot_origin){true, summary.head.stream.key, state->step};
   /* The lag is time that passed under the checkpoint's own time step and body force. */
@@ -39,15 +54,6 @@ static bool start_from_checkpoint(const char *path, const struct model *model, s
   struct fault fault = {.code = FAULT_NONE};
   return make_up_lag(state, &then, message) &&
          (bead_sound(state, model, &fault) || (message_fault(message, &fault), false));
-}
-
-/* Rows must be in the scene's order: vertices fiber by fiber, then solvent. */
-static bool in_order(const struct frames *frames, const struct model *model, const char *path, struct message *message)
-{
-  struct message why;
-  if (frames->about.unfit[0])
-    return message_set(message, "%s: %s", path, frames->about.unfit);
-  return !structure_differs(&frames->structure, model, &why) || message_set(message, "%s: %s", path, why.text);
 }
 
 static bool last_frame(struct trajectory *t, const char *path, const struct model *model, struct state *state,
