@@ -1,9 +1,10 @@
 /* The keys of a model: the one place where each is declared. */
 #include "system/model_keys.h"
 
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
-#define IN_MODEL(member) offsetof(struct model, member)
-#define IN_KIND(member) offsetof(struct fiber_kind, member)
+#include "system/key_rows.h"
+
+#define IN_MODEL(member) AT(struct model, member)
+#define IN_KIND(member) AT(struct fiber_kind, member)
 
 static const char *const scheme_words[] = {"paper", "kick-split", "drift-split", NULL};
 static const char *const rule_words[] = {"srd", "at-a", "at+a", NULL};
@@ -25,788 +26,285 @@ static const char *const size_words[] = {"end-to-end", "gyration", NULL};
 static const char *const start_words[] = {"equilibrium", "straight", "circle", NULL};
 
 static const struct key solvent_keys[] = {
-    {.name = "per_cell",
-     .text = "Mean number of particles per cell. Times the number of cells, rounded, it is the number of particles: 1 "
-             "to 2147483647.",
-     .type = KEY_NUMBER,
-     .low = 0,
-     .above = true,
-     .high = 10000,
-     .offset = IN_MODEL(solvent.per_cell),
-     .unit = "1/a0^3",
-     .symbol = "gamma",
-     .first_format = true},
-    {.name = "collision_interval",
-     .text =
-         "Time between collisions: a whole multiple of `time_step` (to 1e-9 of it). Above 0.1 a warning: no liquid.",
-     .type = KEY_NUMBER,
-     .low = 0,
-     .above = true,
-     .high = 10,
-     .offset = IN_MODEL(solvent.collision_interval),
-     .unit = "t0",
-     .symbol = "dt_c",
-     .first_format = true},
-    {.name = "rotation_angle",
-     .text = "90 takes the cheap path, without cosine and sine. Below 90 or above 170 a warning.",
-     .type = KEY_NUMBER,
-     .absent = "90",
-     .low = 0,
-     .above = true,
-     .high = 180,
-     .offset = IN_MODEL(solvent.rotation_angle),
-     .unit = "degrees",
-     .symbol = "alpha",
-     .first_format = true},
-    {.name = "rule",
-     .text =
-         "What happens in a collision cell. `srd`: velocities relative to the cell's centre of mass are turned "
-         "about a random axis. `at-a`: they are drawn anew from the Maxwell distribution, with the cell's momentum "
-         "kept (Andersen thermostat without angular momentum; Noguchi et al. 2007). `at+a`: the same with the cell's "
-         "angular momentum kept too. Both are thermostats by themselves, and `rotation_angle` has no meaning.",
-     .type = KEY_CHOICE,
-     .absent = "srd",
-     .choice = rule_words,
-     .offset = IN_MODEL(solvent.rule)},
-    {.name = "thermostat",
-     .text = "`rescale`: one factor for all relative velocities, d(n-1) degrees of freedom per cell. "
-             "`maxwell-boltzmann`: each cell's relative kinetic energy drawn from its canonical distribution (Huang et "
-             "al. 2010). `rescale-layers`: as `rescale`, with a factor for each layer of cells along y (Tao et al. "
-             "2008).",
-     .type = KEY_CHOICE,
-     .absent = "none",
-     .choice = thermostat_words,
-     .offset = IN_MODEL(solvent.thermostat),
-     .first_format = true},
-    {.name = "hydrodynamics",
-     .text = "false: velocities of solvent particles are permuted at random after each collision, which keeps "
-             "diffusion and friction but no hydrodynamic interactions.",
-     .type = KEY_SWITCH,
-     .absent = "true",
-     .offset = IN_MODEL(solvent.hydrodynamics),
-     .symbol = "HI",
-     .first_format = true},
-    {.name = "bath",
-     .text = "`phantoms`: no solvent particles at all; at each collision the vertices of a cell collide with a "
-             "Poisson(`per_cell`) number of velocities drawn anew, about `flow`. Needs `hydrodynamics: false`. See "
-             "[below](#a-bath-of-phantoms).",
-     .type = KEY_CHOICE,
-     .absent = "particles",
-     .choice = bath_words,
-     .offset = IN_MODEL(solvent.bath),
-     .first_format = true},
-    {.name = "acceleration",
-     .text = "Constant body force per mass on each solvent particle. A net force on the whole is a warning.",
-     .type = KEY_VECTOR,
-     .absent = "[0, 0, 0]",
-     .low = -100,
-     .high = 100,
-     .offset = IN_MODEL(solvent.acceleration),
-     .unit = "a0/t0^2",
-     .symbol = "f/m",
-     .first_format = true},
-    {.name = "profile",
-     .text = "Where the acceleration acts. `uniform`: everywhere. `sine`: sin(2 pi y/L) of it at y (Kolmogorov flow). "
-             "`reverse`: all of it below y = L/2, minus that above (two opposite Poiseuille flows).",
-     .type = KEY_CHOICE,
-     .absent = "uniform",
-     .choice = profile_words,
-     .offset = IN_MODEL(solvent.profile)},
+    {"per_cell", NUMBER_ABOVE(0, 10000), IN_MODEL(solvent.per_cell), UNIT("1/a0^3"), SYMBOL("gamma"), FIRST_FORMAT,
+     TEXT("Mean number of particles per cell. Times the number of cells, rounded, it is the number of particles: 1 to "
+          "2147483647.")},
+    {"collision_interval", NUMBER_ABOVE(0, 10), IN_MODEL(solvent.collision_interval), UNIT("t0"), SYMBOL("dt_c"),
+     FIRST_FORMAT,
+     TEXT("Time between collisions: a whole multiple of `time_step` (to 1e-9 of it). Above 0.1 a warning: no liquid.")},
+    {"rotation_angle", NUMBER_ABOVE(0, 180), IN_MODEL(solvent.rotation_angle), UNIT("degrees"), SYMBOL("alpha"),
+     ABSENT("90"), FIRST_FORMAT,
+     TEXT("90 takes the cheap path, without cosine and sine. Below 90 or above 170 a warning.")},
+    {"rule", CHOICE(rule_words), IN_MODEL(solvent.rule), ABSENT("srd"),
+     TEXT("What happens in a collision cell. `srd`: velocities relative to the cell's centre of mass are turned about "
+          "a random axis. `at-a`: they are drawn anew from the Maxwell distribution, with the cell's momentum kept "
+          "(Andersen thermostat without angular momentum; Noguchi et al. 2007). `at+a`: the same with the cell's "
+          "angular momentum kept too. Both are thermostats by themselves, and `rotation_angle` has no meaning.")},
+    {"thermostat", CHOICE(thermostat_words), IN_MODEL(solvent.thermostat), ABSENT("none"), FIRST_FORMAT,
+     TEXT("`rescale`: one factor for all relative velocities, d(n-1) degrees of freedom per cell. `maxwell-boltzmann`: "
+          "each cell's relative kinetic energy drawn from its canonical distribution (Huang et al. 2010). "
+          "`rescale-layers`: as `rescale`, with a factor for each layer of cells along y (Tao et al. 2008).")},
+    {"hydrodynamics", SWITCH, IN_MODEL(solvent.hydrodynamics), SYMBOL("HI"), ABSENT("true"), FIRST_FORMAT,
+     TEXT("false: velocities of solvent particles are permuted at random after each collision, which keeps diffusion "
+          "and friction but no hydrodynamic interactions.")},
+    {"bath", CHOICE(bath_words), IN_MODEL(solvent.bath), ABSENT("particles"), FIRST_FORMAT,
+     TEXT("`phantoms`: no solvent particles at all; at each collision the vertices of a cell collide with a "
+          "Poisson(`per_cell`) number of velocities drawn anew, about `flow`. Needs `hydrodynamics: false`. See "
+          "[below](#a-bath-of-phantoms).")},
+    {"acceleration", VECTOR(-100, 100), IN_MODEL(solvent.acceleration), UNIT("a0/t0^2"), SYMBOL("f/m"),
+     ABSENT("[0, 0, 0]"), FIRST_FORMAT,
+     TEXT("Constant body force per mass on each solvent particle. A net force on the whole is a warning.")},
+    {"profile", CHOICE(profile_words), IN_MODEL(solvent.profile), ABSENT("uniform"),
+     TEXT("Where the acceleration acts. `uniform`: everywhere. `sine`: sin(2 pi y/L) of it at y (Kolmogorov flow). "
+          "`reverse`: all of it below y = L/2, minus that above (two opposite Poiseuille flows).")},
 };
-static const struct key_table solvent_table = {"solvent", NULL, COUNT(solvent_keys), solvent_keys};
+static const struct key_table solvent_table = {"solvent", NULL, ROWS(solvent_keys)};
 
 static const struct key second_keys[] = {
-    {.name = "share",
-     .text =
-         "Of the particles that are of the second group: those with the highest numbers. Vertices are of the first.",
-     .type = KEY_NUMBER,
-     .low = 0,
-     .above = true,
-     .high = 1,
-     .offset = IN_MODEL(medium.second.share)},
-    {.name = "repulsion",
-     .text = "Between members of the two groups, instead of `medium.repulsion`.",
-     .type = KEY_NUMBER,
-     .low = 0,
-     .above = true,
-     .high = 1000,
-     .offset = IN_MODEL(medium.second.repulsion),
-     .unit = "kT/a0",
-     .symbol = "a_AB"},
-    {.name = "start",
-     .text =
-         "Where the second group is laid. `mixed`: anywhere. `slab`: below `share` times the box's edge along y, the "
-         "first group above.",
-     .type = KEY_CHOICE,
-     .absent = "mixed",
-     .choice = layout_words,
-     .offset = IN_MODEL(medium.second.start)},
+    {"share", NUMBER_ABOVE(0, 1), IN_MODEL(medium.second.share),
+     TEXT("Of the particles that are of the second group: those with the highest numbers. Vertices are of the first.")},
+    {"repulsion", NUMBER_ABOVE(0, 1000), IN_MODEL(medium.second.repulsion), UNIT("kT/a0"), SYMBOL("a_AB"),
+     TEXT("Between members of the two groups, instead of `medium.repulsion`.")},
+    {"start", CHOICE(layout_words), IN_MODEL(medium.second.start), ABSENT("mixed"),
+     TEXT("Where the second group is laid. `mixed`: anywhere. `slab`: below `share` times the box's edge along y, the "
+          "first group above.")},
 };
-static const struct key_table second_table = {"medium.second", NULL, COUNT(second_keys), second_keys};
+static const struct key_table second_table = {"medium.second", NULL, ROWS(second_keys)};
 
 static const struct key many_keys[] = {
-    {.name = "repulsion",
-     .text = "B of the force B (rho_i + rho_j) (1 - r/range) between members, rho_i being the density about member i.",
-     .type = KEY_NUMBER,
-     .low = 0,
-     .above = true,
-     .high = 1000,
-     .offset = IN_MODEL(medium.many.repulsion),
-     .unit = "kT a0^2",
-     .symbol = "B"},
-    {.name = "range",
-     .text = "Range of the weight 15/(2 pi range^3) (1 - r/range)^2 of that density.",
-     .type = KEY_NUMBER,
-     .absent = "0.75",
-     .low = 0.1,
-     .high = 1,
-     .offset = IN_MODEL(medium.many.range),
-     .unit = "a0",
-     .symbol = "r_d"},
+    {"repulsion", NUMBER_ABOVE(0, 1000), IN_MODEL(medium.many.repulsion), UNIT("kT a0^2"), SYMBOL("B"),
+     TEXT("B of the force B (rho_i + rho_j) (1 - r/range) between members, rho_i being the density about member i.")},
+    {"range", NUMBER(0.1, 1), IN_MODEL(medium.many.range), UNIT("a0"), SYMBOL("r_d"), ABSENT("0.75"),
+     TEXT("Range of the weight 15/(2 pi range^3) (1 - r/range)^2 of that density.")},
 };
-static const struct key_table many_table = {"medium.many_body", NULL, COUNT(many_keys), many_keys};
+static const struct key_table many_table = {"medium.many_body", NULL, ROWS(many_keys)};
 
 static const struct key medium_keys[] = {
-    {.name = "kind",
-     .text =
-         "With whom velocities mix, once in each time step. `private`: each vertex with a bath of its own (Langevin, "
-         "Andersen), without solvent particles. `pairs`: any two members nearer than 1 a0, by the component of their "
-         "relative velocity along the line between them; members are vertices and particles of mass 1 "
-         "(Lowe-Andersen, Peters, Shardlow). `overdamped`: vertices have no velocities, and move by forces and noise "
-         "(Ermak and McCammon 1978). See [media.md](media.md).",
-     .type = KEY_CHOICE,
-     .choice = medium_words,
-     .first = MEDIUM_PRIVATE,
-     .offset = IN_MODEL(medium.kind)},
-    {.name = "rate",
-     .text = "Rate at which a velocity is forgotten: that of a vertex, or the relative one of a pair at weight 1. The "
-             "friction of a private bath, and of overdamped motion, is M times it; gamma of DPD is the reduced mass "
-             "times it. "
-             "With `draw: replace` "
-             "at most 1/`time_step`.",
-     .type = KEY_NUMBER,
-     .low = 0,
-     .above = true,
-     .high = 1e6,
-     .offset = IN_MODEL(medium.rate),
-     .unit = "1/t0",
-     .symbol = "Gamma"},
-    {.name = "draw",
-     .text =
-         "`replace`: with the probability rate times dt the velocity is drawn anew (Andersen, Lowe-Andersen). "
-         "`relax`: it keeps exp(-rate dt) of itself (Langevin, Peters). `cayley`: it keeps (1 - e)/(1 + e), e = rate "
-         "dt/2 (Shardlow).",
-     .type = KEY_CHOICE,
-     .absent = "replace",
-     .choice = draw_words,
-     .offset = IN_MODEL(medium.draw)},
-    {.name = "weight",
-     .text =
-         "Of pairs: how the rate depends on the distance r. `hat`: not at all below 1 a0. `quadratic`: as (1 - r)^2.",
-     .type = KEY_CHOICE,
-     .absent = "hat",
-     .choice = weight_words,
-     .offset = IN_MODEL(medium.weight)},
-    {.name = "density",
-     .text =
-         "Of pairs: particles of mass 1 per volume. Times the volume, rounded, it is their number; with the vertices "
-         "at most 16777216.",
-     .type = KEY_NUMBER,
-     .optional = true,
-     .low = 0,
-     .high = 100,
-     .offset = IN_MODEL(medium.density),
-     .unit = "1/a0^3",
-     .symbol = "rho"},
-    {.name = "tensor",
-     .text =
-         "Of overdamped motion: how vertices of one fiber move each other through the fluid. `none`: not at all. "
-         "`rpy`: "
-         "as spheres that may overlap (Rotne, Prager, Yamakawa). `oseen`: as points, which stops with an error where "
-         "vertices come so near that the tensor is not positive.",
-     .type = KEY_CHOICE,
-     .absent = "none",
-     .choice = tensor_words,
-     .offset = IN_MODEL(medium.tensor)},
-    {.name = "radius",
-     .text = "Of overdamped motion with a tensor: hydrodynamic radius of a vertex. The viscosity is `rate` M/(6 pi "
-             "radius).",
-     .type = KEY_NUMBER,
-     .optional = true,
-     .low = 0,
-     .high = 100,
-     .offset = IN_MODEL(medium.radius),
-     .unit = "a0",
-     .symbol = "a_h"},
-    {.name = "inextensible",
-     .text =
-         "Of overdamped motion: bonds keep `bond_length` by tension, and there is no noise (kT = 0). Springs have no "
-         "effect then. See [media.md](media.md#filaments).",
-     .type = KEY_SWITCH,
-     .absent = "false",
-     .offset = IN_MODEL(medium.inextensible)},
-    {.name = "repulsion",
-     .text =
-         "Of pairs: a of the force a (1 - r) between any two members nearer than 1 a0 (DPD). Below 0 an attraction, "
-         "which needs `many_body`.",
-     .type = KEY_NUMBER,
-     .absent = "0",
-     .low = -1000,
-     .high = 1000,
-     .offset = IN_MODEL(medium.repulsion),
-     .unit = "kT/a0",
-     .symbol = "a"},
-    {.name = "second",
-     .text = "A second group of particles; absent: none.",
-     .type = KEY_SECTION,
-     .optional = true,
-     .keys = &second_table,
-     .line = true},
-    {.name = "many_body",
-     .text = "A repulsion that grows with the density (Warren, Phys. Rev. E 68, 066702 (2003)); absent: none.",
-     .type = KEY_SECTION,
-     .optional = true,
-     .keys = &many_table,
-     .line = true},
+    {"kind", CHOICE_FROM(MEDIUM_PRIVATE, medium_words), IN_MODEL(medium.kind),
+     TEXT("With whom velocities mix, once in each time step. `private`: each vertex with a bath of its own (Langevin, "
+          "Andersen), without solvent particles. `pairs`: any two members nearer than 1 a0, by the component of their "
+          "relative velocity along the line between them; members are vertices and particles of mass 1 (Lowe-Andersen, "
+          "Peters, Shardlow). `overdamped`: vertices have no velocities, and move by forces and noise (Ermak and "
+          "McCammon 1978). See [media.md](media.md).")},
+    {"rate", NUMBER_ABOVE(0, 1e6), IN_MODEL(medium.rate), UNIT("1/t0"), SYMBOL("Gamma"),
+     TEXT("Rate at which a velocity is forgotten: that of a vertex, or the relative one of a pair at weight 1. The "
+          "friction of a private bath, and of overdamped motion, is M times it; gamma of DPD is the reduced mass times "
+          "it. With `draw: replace` at most 1/`time_step`.")},
+    {"draw", CHOICE(draw_words), IN_MODEL(medium.draw), ABSENT("replace"),
+     TEXT("`replace`: with the probability rate times dt the velocity is drawn anew (Andersen, Lowe-Andersen). "
+          "`relax`: it keeps exp(-rate dt) of itself (Langevin, Peters). `cayley`: it keeps (1 - e)/(1 + e), e = rate "
+          "dt/2 (Shardlow).")},
+    {"weight", CHOICE(weight_words), IN_MODEL(medium.weight), ABSENT("hat"),
+     TEXT(
+         "Of pairs: how the rate depends on the distance r. `hat`: not at all below 1 a0. `quadratic`: as (1 - r)^2.")},
+    {"density", NUMBER(0, 100), IN_MODEL(medium.density), UNIT("1/a0^3"), SYMBOL("rho"), OPTIONAL,
+     TEXT("Of pairs: particles of mass 1 per volume. Times the volume, rounded, it is their number; with the vertices "
+          "at most 16777216.")},
+    {"tensor", CHOICE(tensor_words), IN_MODEL(medium.tensor), ABSENT("none"),
+     TEXT("Of overdamped motion: how vertices of one fiber move each other through the fluid. `none`: not at all. "
+          "`rpy`: as spheres that may overlap (Rotne, Prager, Yamakawa). `oseen`: as points, which stops with an error "
+          "where vertices come so near that the tensor is not positive.")},
+    {"radius", NUMBER(0, 100), IN_MODEL(medium.radius), UNIT("a0"), SYMBOL("a_h"), OPTIONAL,
+     TEXT("Of overdamped motion with a tensor: hydrodynamic radius of a vertex. The viscosity is `rate` M/(6 pi "
+          "radius).")},
+    {"inextensible", SWITCH, IN_MODEL(medium.inextensible), ABSENT("false"),
+     TEXT("Of overdamped motion: bonds keep `bond_length` by tension, and there is no noise (kT = 0). Springs have no "
+          "effect then. See [media.md](media.md#filaments).")},
+    {"repulsion", NUMBER(-1000, 1000), IN_MODEL(medium.repulsion), UNIT("kT/a0"), SYMBOL("a"), ABSENT("0"),
+     TEXT("Of pairs: a of the force a (1 - r) between any two members nearer than 1 a0 (DPD). Below 0 an attraction, "
+          "which needs `many_body`.")},
+    {"second", SECTION(second_table), OPTIONAL, ONE_LINE, TEXT("A second group of particles; absent: none.")},
+    {"many_body", SECTION(many_table), OPTIONAL, ONE_LINE,
+     TEXT("A repulsion that grows with the density (Warren, Phys. Rev. E 68, 066702 (2003)); absent: none.")},
 };
-static const struct key_table medium_table = {"medium", NULL, COUNT(medium_keys), medium_keys};
+static const struct key_table medium_table = {"medium", NULL, ROWS(medium_keys)};
 
 static const struct key place_keys[] = {
-    {.name = "center",
-     .text = "Middle of the straight fiber, or of the circle.",
-     .type = KEY_VECTOR,
-     .low = -LATTICE_MAX_EDGE,
-     .high = LATTICE_MAX_EDGE,
-     .offset = offsetof(struct fiber_place, center),
-     .unit = "a0",
-     .first_format = true},
-    {.name = "direction",
-     .text = "Along the straight fiber, or normal to the circle; any length but 0.",
-     .type = KEY_VECTOR,
-     .low = -1000,
-     .high = 1000,
-     .offset = offsetof(struct fiber_place, direction),
-     .first_format = true},
+    {"center", VECTOR(-LATTICE_MAX_EDGE, LATTICE_MAX_EDGE), AT(struct fiber_place, center), UNIT("a0"), FIRST_FORMAT,
+     TEXT("Middle of the straight fiber, or of the circle.")},
+    {"direction", VECTOR(-1000, 1000), AT(struct fiber_place, direction), FIRST_FORMAT,
+     TEXT("Along the straight fiber, or normal to the circle; any length but 0.")},
 };
 static const struct key_table place_table = {"fibers.places", "A list, one item per fiber that has a place of its own.",
-                                             COUNT(place_keys), place_keys};
+                                             ROWS(place_keys)};
 
 static const struct key fiber_keys[] = {
-    {.name = "name",
-     .text = "Names the kind in tables and trajectories; each kind has its own.",
-     .type = KEY_NAME,
-     .offset = IN_KIND(name),
-     .first_format = true},
-    {.name = "count",
-     .text = "Fibers of this kind. All kinds together have at most 2147483647 vertices.",
-     .type = KEY_WHOLE32,
-     .least = 1,
-     .most = INT32_MAX,
-     .offset = IN_KIND(count),
-     .symbol = "N_c",
-     .first_format = true},
-    {.name = "vertices",
-     .text = "Vertices of each fiber; 1 is a free point, which needs no `bond_length` and no `spring`; a ring has 3 or "
-             "more. The paper's L is `vertices` times `bond_length`.",
-     .type = KEY_WHOLE32,
-     .least = 1,
-     .most = INT32_MAX,
-     .offset = IN_KIND(vertices),
-     .symbol = "N_v",
-     .first_format = true},
-    {.name = "ring",
-     .text = "true: the last vertex is bonded to the first.",
-     .type = KEY_SWITCH,
-     .absent = "false",
-     .offset = IN_KIND(ring),
-     .first_format = true},
-    {.name = "frozen",
-     .text = "true: these fibers stand still. In collisions their vertices take part as those of other fibers do, with "
-             "velocities of their own, which move nothing; a moving fiber meets them as if they were infinitely heavy.",
-     .type = KEY_SWITCH,
-     .absent = "false",
-     .offset = IN_KIND(frozen)},
-    {.name = "mass",
-     .text = "Mass of a vertex, rounded to a multiple of 2^-16 m (1.5e-5), so that the mass of a cell is summed "
-             "exactly. Should be about `per_cell`; a warning beyond a factor of 2.",
-     .type = KEY_NUMBER,
-     .low = 0,
-     .above = true,
-     .high = 65536,
-     .offset = IN_KIND(mass),
-     .unit = "m",
-     .symbol = "M",
-     .first_format = true},
-    {.name = "bond_length",
-     .text = "Rest length of a bond, Eq. (1); 0 makes Gaussian springs. The *mean* length is larger (0.538 for 0.5 and "
-             "spring 100) and must be below half the shortest edge of the box. Above 1 a warning.",
-     .type = KEY_NUMBER,
-     .low = 0,
-     .high = 512,
-     .idle_with = "vertices",
-     .idle = "0",
-     .offset = IN_KIND(bond_length),
-     .unit = "a0",
-     .symbol = "l0",
-     .first_format = true},
-    {.name = "spring",
-     .text = "Spring constant of a bond, k in k/2 (R - l0)^2. The paper's K is this times `bond_length`.",
-     .type = KEY_NUMBER,
-     .low = 0,
-     .above = true,
-     .high = 1e9,
-     .idle_with = "vertices",
-     .idle = "1",
-     .offset = IN_KIND(spring),
-     .unit = "kT/a0^2",
-     .symbol = "K/l0",
-     .first_format = true},
-    {.name = "bending",
-     .text = "kappa in kappa (1 - cos theta), Eq. (2); 0: no bend forces. Give this or `persistence_length`.",
-     .type = KEY_NUMBER,
-     .absent = "0",
-     .low = 0,
-     .high = MODEL_MOST_BENDING,
-     .offset = IN_KIND(bending),
-     .unit = "kT",
-     .symbol = "kT l_p/l0",
-     .first_format = true},
-    {.name = "persistence_length",
-     .text = "Sets `bending` to l_p/l0; needs a `bond_length` above 0.",
-     .type = KEY_NUMBER,
-     .optional = true,
-     .low = 0,
-     .high = 1e9,
-     .offset = IN_KIND(persistence_length),
-     .unit = "a0",
-     .symbol = "l_p",
-     .excludes = "bending",
-     .derives = true},
-    {.name = "stands_for",
-     .text = "Vertices of a finer Gaussian chain which this one stands for. `spring` is given of the finer chain then; "
-             "that of this one follows, so that `keeps` stays. Needs `bond_length: 0`, open chains, no bending. See "
-             "[media.md](media.md#effective-potentials).",
-     .type = KEY_WHOLE32,
-     .optional = true,
-     .least = 0,
-     .most = 1000000000,
-     .offset = IN_KIND(stands_for),
-     .derives = true},
-    {.name = "keeps",
-     .text =
-         "With `stands_for`: what both chains have in common, the mean square of the `end-to-end` distance, or of the "
-         "radius of `gyration`.",
-     .type = KEY_CHOICE,
-     .absent = "end-to-end",
-     .choice = size_words,
-     .offset = IN_KIND(keeps),
-     .derives = true},
-    {.name = "diameter",
-     .text = "Diameter of the tube around each bond, with half spheres at its ends; 0: a thin line. From 0.0001 to the "
-             "mean length of a bond. Needs `crossing: {rule: event-driven}` and two or more vertices; see "
-             "[thick.md](thick.md).",
-     .type = KEY_NUMBER,
-     .absent = "0",
-     .low = 0,
-     .high = 512,
-     .offset = IN_KIND(diameter),
-     .unit = "a0",
-     .symbol = "D"},
-    {.name = "force",
-     .text = "Constant force on each vertex. A net force on the whole is a warning.",
-     .type = KEY_VECTOR,
-     .absent = "[0, 0, 0]",
-     .low = -1e6,
-     .high = 1e6,
-     .offset = IN_KIND(force),
-     .unit = "kT/a0",
-     .symbol = "F",
-     .first_format = true},
-    {.name = "start",
-     .text = "`equilibrium`: exact sample of the phantom chain, open fibers only. `straight`: evenly spaced, open "
-             "fibers only. `circle`: evenly spaced, rings only. If absent: equilibrium, for rings circle.",
-     .type = KEY_CHOICE,
-     .optional = true,
-     .choice = start_words,
-     .first = START_EQUILIBRIUM,
-     .offset = IN_KIND(start),
-     .first_format = true},
-    {.name = "places",
-     .text = "Where the first fibers of the kind are laid (`straight` and `circle`); the rest is placed at random. At "
-             "most `count`.",
-     .type = KEY_LIST,
-     .optional = true,
-     .keys = &place_table,
-     .item_size = sizeof(struct fiber_place),
-     .offset = IN_KIND(place),
-     .count_offset = IN_KIND(placed),
-     .line = true},
+    {"name", NAME, IN_KIND(name), FIRST_FORMAT,
+     TEXT("Names the kind in tables and trajectories; each kind has its own.")},
+    {"count", WHOLE32(1, INT32_MAX), IN_KIND(count), SYMBOL("N_c"), FIRST_FORMAT,
+     TEXT("Fibers of this kind. All kinds together have at most 2147483647 vertices.")},
+    {"vertices", WHOLE32(1, INT32_MAX), IN_KIND(vertices), SYMBOL("N_v"), FIRST_FORMAT,
+     TEXT("Vertices of each fiber; 1 is a free point, which needs no `bond_length` and no `spring`; a ring has 3 or "
+          "more. The paper's L is `vertices` times `bond_length`.")},
+    {"ring", SWITCH, IN_KIND(ring), ABSENT("false"), FIRST_FORMAT,
+     TEXT("true: the last vertex is bonded to the first.")},
+    {"frozen", SWITCH, IN_KIND(frozen), ABSENT("false"),
+     TEXT("true: these fibers stand still. In collisions their vertices take part as those of other fibers do, with "
+          "velocities of their own, which move nothing; a moving fiber meets them as if they were infinitely heavy.")},
+    {"mass", NUMBER_ABOVE(0, 65536), IN_KIND(mass), UNIT("m"), SYMBOL("M"), FIRST_FORMAT,
+     TEXT("Mass of a vertex, rounded to a multiple of 2^-16 m (1.5e-5), so that the mass of a cell is summed exactly. "
+          "Should be about `per_cell`; a warning beyond a factor of 2.")},
+    {"bond_length", NUMBER(0, 512), IN_KIND(bond_length), UNIT("a0"), SYMBOL("l0"), IDLE_WITH("vertices", "0"),
+     FIRST_FORMAT,
+     TEXT("Rest length of a bond, Eq. (1); 0 makes Gaussian springs. The *mean* length is larger (0.538 for 0.5 and "
+          "spring 100) and must be below half the shortest edge of the box. Above 1 a warning.")},
+    {"spring", NUMBER_ABOVE(0, 1e9), IN_KIND(spring), UNIT("kT/a0^2"), SYMBOL("K/l0"), IDLE_WITH("vertices", "1"),
+     FIRST_FORMAT, TEXT("Spring constant of a bond, k in k/2 (R - l0)^2. The paper's K is this times `bond_length`.")},
+    {"bending", NUMBER(0, MODEL_MOST_BENDING), IN_KIND(bending), UNIT("kT"), SYMBOL("kT l_p/l0"), ABSENT("0"),
+     FIRST_FORMAT,
+     TEXT("kappa in kappa (1 - cos theta), Eq. (2); 0: no bend forces. Give this or `persistence_length`.")},
+    {"persistence_length", NUMBER(0, 1e9), IN_KIND(persistence_length), UNIT("a0"), SYMBOL("l_p"), EXCLUDES("bending"),
+     OPTIONAL, DERIVES, TEXT("Sets `bending` to l_p/l0; needs a `bond_length` above 0.")},
+    {"stands_for", WHOLE32(0, 1000000000), IN_KIND(stands_for), OPTIONAL, DERIVES,
+     TEXT("Vertices of a finer Gaussian chain which this one stands for. `spring` is given of the finer chain then; "
+          "that of this one follows, so that `keeps` stays. Needs `bond_length: 0`, open chains, no bending. See "
+          "[media.md](media.md#effective-potentials).")},
+    {"keeps", CHOICE(size_words), IN_KIND(keeps), ABSENT("end-to-end"), DERIVES,
+     TEXT("With `stands_for`: what both chains have in common, the mean square of the `end-to-end` distance, or of the "
+          "radius of `gyration`.")},
+    {"diameter", NUMBER(0, 512), IN_KIND(diameter), UNIT("a0"), SYMBOL("D"), ABSENT("0"),
+     TEXT("Diameter of the tube around each bond, with half spheres at its ends; 0: a thin line. From 0.0001 to the "
+          "mean length of a bond. Needs `crossing: {rule: event-driven}` and two or more vertices; see "
+          "[thick.md](thick.md).")},
+    {"force", VECTOR(-1e6, 1e6), IN_KIND(force), UNIT("kT/a0"), SYMBOL("F"), ABSENT("[0, 0, 0]"), FIRST_FORMAT,
+     TEXT("Constant force on each vertex. A net force on the whole is a warning.")},
+    {"start", CHOICE_FROM(START_EQUILIBRIUM, start_words), IN_KIND(start), OPTIONAL, FIRST_FORMAT,
+     TEXT("`equilibrium`: exact sample of the phantom chain, open fibers only. `straight`: evenly spaced, open fibers "
+          "only. `circle`: evenly spaced, rings only. If absent: equilibrium, for rings circle.")},
+    {"places", LIST(place_table, struct fiber_place, offsetof(struct fiber_kind, placed)), IN_KIND(place), OPTIONAL,
+     ONE_LINE,
+     TEXT("Where the first fibers of the kind are laid (`straight` and `circle`); the rest is placed at random. At "
+          "most `count`.")},
 };
-static const struct key_table fiber_table = {"fibers", "A list, one item per kind of fiber.", COUNT(fiber_keys),
-                                             fiber_keys};
+static const struct key_table fiber_table = {"fibers", "A list, one item per kind of fiber.", ROWS(fiber_keys)};
 
 static const struct key wall_keys[] = {
-    {.name = "kind",
-     .text = "What happens to a particle that hits a wall. `no-slip`: its velocity relative to the wall is reversed, "
-             "and cells that the wall cuts hold virtual particles (`fill`). `slip`: only the velocity's y component is "
-             "reversed.",
-     .type = KEY_CHOICE,
-     .choice = wall_words,
-     .first = WALL_NO_SLIP,
-     .offset = IN_MODEL(walls.kind)},
-    {.name = "fill",
-     .text = "Virtual particles of a cell that a no-slip wall cuts. `planar`: a Poisson number, as if the solvent went "
-             "on beyond the wall. `paper`: `per_cell` less the members of the cell (Tao et al. 2008). `none`: none.",
-     .type = KEY_CHOICE,
-     .absent = "planar",
-     .choice = fill_words,
-     .offset = IN_MODEL(walls.fill)},
-    {.name = "lower",
-     .text = "Velocity of the wall at y = 0, without y component. With a `period`, its amplitude.",
-     .type = KEY_VECTOR,
-     .absent = "[0, 0, 0]",
-     .low = -100,
-     .high = 100,
-     .offset = IN_MODEL(walls.lower),
-     .unit = "a0/t0",
-     .symbol = "v_w"},
-    {.name = "upper",
-     .text = "The same of the wall at y = L.",
-     .type = KEY_VECTOR,
-     .absent = "[0, 0, 0]",
-     .low = -100,
-     .high = 100,
-     .offset = IN_MODEL(walls.upper),
-     .unit = "a0/t0",
-     .symbol = "v_w"},
-    {.name = "shear_rate",
-     .text = "Applied shear rate: sets `lower` and `upper` to -1/2 and 1/2 of it times L, along x.",
-     .type = KEY_NUMBER,
-     .optional = true,
-     .low = -10,
-     .high = 10,
-     .offset = IN_MODEL(walls.shear_rate),
-     .unit = "1/t0",
-     .excludes = "lower",
-     .derives = true},
-    {.name = "strain",
-     .text = "Amplitude of an oscillating strain: sets `shear_rate` to 2 pi/`period` of it.",
-     .type = KEY_NUMBER,
-     .optional = true,
-     .low = 0,
-     .high = 1000,
-     .offset = IN_MODEL(walls.strain),
-     .excludes = "shear_rate",
-     .derives = true},
-    {.name = "period",
-     .text = "Period of the walls' motion, cos(2 pi t/period): a whole number of collision intervals, 4 or more. 0: "
-             "they move at a constant velocity.",
-     .type = KEY_NUMBER,
-     .absent = "0",
-     .low = 0,
-     .high = 1e6,
-     .offset = IN_MODEL(walls.period),
-     .unit = "t0"},
+    {"kind", CHOICE_FROM(WALL_NO_SLIP, wall_words), IN_MODEL(walls.kind),
+     TEXT("What happens to a particle that hits a wall. `no-slip`: its velocity relative to the wall is reversed, and "
+          "cells that the wall cuts hold virtual particles (`fill`). `slip`: only the velocity's y component is "
+          "reversed.")},
+    {"fill", CHOICE(fill_words), IN_MODEL(walls.fill), ABSENT("planar"),
+     TEXT("Virtual particles of a cell that a no-slip wall cuts. `planar`: a Poisson number, as if the solvent went on "
+          "beyond the wall. `paper`: `per_cell` less the members of the cell (Tao et al. 2008). `none`: none.")},
+    {"lower", VECTOR(-100, 100), IN_MODEL(walls.lower), UNIT("a0/t0"), SYMBOL("v_w"), ABSENT("[0, 0, 0]"),
+     TEXT("Velocity of the wall at y = 0, without y component. With a `period`, its amplitude.")},
+    {"upper", VECTOR(-100, 100), IN_MODEL(walls.upper), UNIT("a0/t0"), SYMBOL("v_w"), ABSENT("[0, 0, 0]"),
+     TEXT("The same of the wall at y = L.")},
+    {"shear_rate", NUMBER(-10, 10), IN_MODEL(walls.shear_rate), UNIT("1/t0"), EXCLUDES("lower"), OPTIONAL, DERIVES,
+     TEXT("Applied shear rate: sets `lower` and `upper` to -1/2 and 1/2 of it times L, along x.")},
+    {"strain", NUMBER(0, 1000), IN_MODEL(walls.strain), EXCLUDES("shear_rate"), OPTIONAL, DERIVES,
+     TEXT("Amplitude of an oscillating strain: sets `shear_rate` to 2 pi/`period` of it.")},
+    {"period", NUMBER(0, 1e6), IN_MODEL(walls.period), UNIT("t0"), ABSENT("0"),
+     TEXT("Period of the walls' motion, cos(2 pi t/period): a whole number of collision intervals, 4 or more. 0: they "
+          "move at a constant velocity.")},
 };
-static const struct key_table wall_table = {"walls", NULL, COUNT(wall_keys), wall_keys};
+static const struct key_table wall_table = {"walls", NULL, ROWS(wall_keys)};
 
 static const struct key dumbbell_keys[] = {
-    {.name = "spring",
-     .text = "Constant K of the spring between the two particles of a dumbbell: the energy is K r^2/2 at a distance r.",
-     .type = KEY_NUMBER,
-     .low = 0,
-     .above = true,
-     .high = 1e6,
-     .offset = IN_MODEL(dumbbells.spring),
-     .unit = "kT/a0^2",
-     .symbol = "K"},
-    {.name = "fraction",
-     .text = "Share of the solvent's particles that are in dumbbells; the others are independent.",
-     .type = KEY_NUMBER,
-     .absent = "1",
-     .low = 0,
-     .above = true,
-     .high = 1,
-     .offset = IN_MODEL(dumbbells.fraction)},
-    {.name = "depth",
-     .text = "Between walls: the centers of dumbbells are attracted by each wall, with the energy -`depth` at the wall "
-             "that rises to 0 in a straight line (2 c_2 of Tao et al. 2008).",
-     .type = KEY_NUMBER,
-     .absent = "0",
-     .low = 0,
-     .high = 100,
-     .offset = IN_MODEL(dumbbells.depth),
-     .unit = "kT"},
-    {.name = "range",
-     .text = "Reach of this attraction, in units of sqrt(kT/K) (c_1).",
-     .type = KEY_NUMBER,
-     .absent = "1.2",
-     .low = 0,
-     .above = true,
-     .high = 100,
-     .offset = IN_MODEL(dumbbells.range)},
+    {"spring", NUMBER_ABOVE(0, 1e6), IN_MODEL(dumbbells.spring), UNIT("kT/a0^2"), SYMBOL("K"),
+     TEXT("Constant K of the spring between the two particles of a dumbbell: the energy is K r^2/2 at a distance r.")},
+    {"fraction", NUMBER_ABOVE(0, 1), IN_MODEL(dumbbells.fraction), ABSENT("1"),
+     TEXT("Share of the solvent's particles that are in dumbbells; the others are independent.")},
+    {"depth", NUMBER(0, 100), IN_MODEL(dumbbells.depth), UNIT("kT"), ABSENT("0"),
+     TEXT("Between walls: the centers of dumbbells are attracted by each wall, with the energy -`depth` at the wall "
+          "that rises to 0 in a straight line (2 c_2 of Tao et al. 2008).")},
+    {"range", NUMBER_ABOVE(0, 100), IN_MODEL(dumbbells.range), ABSENT("1.2"),
+     TEXT("Reach of this attraction, in units of sqrt(kT/K) (c_1).")},
 };
-static const struct key_table dumbbell_table = {"dumbbells", NULL, COUNT(dumbbell_keys), dumbbell_keys};
+static const struct key_table dumbbell_table = {"dumbbells", NULL, ROWS(dumbbell_keys)};
 
 static const struct key drive_keys[] = {
-    {.name = "force",
-     .text = "Constant force on the bead. If absent: none.",
-     .type = KEY_VECTOR,
-     .optional = true,
-     .low = -1e6,
-     .high = 1e6,
-     .offset = IN_MODEL(bead.drive.force),
-     .unit = "kT/a0",
-     .symbol = "F"},
-    {.name = "spring",
-     .text =
-         "Constant k of a harmonic trap, k x^2/2 per component, whose middle is at `center` at the start. If absent: "
-         "no trap.",
-     .type = KEY_NUMBER,
-     .optional = true,
-     .low = 0,
-     .high = 1e6,
-     .offset = IN_MODEL(bead.drive.spring),
-     .unit = "kT/a0^2",
-     .symbol = "k"},
-    {.name = "velocity",
-     .text = "Constant velocity of the trap. If absent: it stands.",
-     .type = KEY_VECTOR,
-     .optional = true,
-     .low = -100,
-     .high = 100,
-     .offset = IN_MODEL(bead.drive.velocity),
-     .unit = "a0/t0"},
-    {.name = "amplitude",
-     .text = "Amplitude of an oscillation of the trap, sin(2 pi t/period). If absent: none.",
-     .type = KEY_VECTOR,
-     .optional = true,
-     .low = -1024,
-     .high = 1024,
-     .offset = IN_MODEL(bead.drive.amplitude),
-     .unit = "a0"},
-    {.name = "period",
-     .text = "Period of this oscillation, at least 8 time steps.",
-     .type = KEY_NUMBER,
-     .optional = true,
-     .low = 0,
-     .high = 1e9,
-     .offset = IN_MODEL(bead.drive.period),
-     .unit = "t0"},
+    {"force", VECTOR(-1e6, 1e6), IN_MODEL(bead.drive.force), UNIT("kT/a0"), SYMBOL("F"), OPTIONAL,
+     TEXT("Constant force on the bead. If absent: none.")},
+    {"spring", NUMBER(0, 1e6), IN_MODEL(bead.drive.spring), UNIT("kT/a0^2"), SYMBOL("k"), OPTIONAL,
+     TEXT("Constant k of a harmonic trap, k x^2/2 per component, whose middle is at `center` at the start. If absent: "
+          "no trap.")},
+    {"velocity", VECTOR(-100, 100), IN_MODEL(bead.drive.velocity), UNIT("a0/t0"), OPTIONAL,
+     TEXT("Constant velocity of the trap. If absent: it stands.")},
+    {"amplitude", VECTOR(-1024, 1024), IN_MODEL(bead.drive.amplitude), UNIT("a0"), OPTIONAL,
+     TEXT("Amplitude of an oscillation of the trap, sin(2 pi t/period). If absent: none.")},
+    {"period", NUMBER(0, 1e9), IN_MODEL(bead.drive.period), UNIT("t0"), OPTIONAL,
+     TEXT("Period of this oscillation, at least 8 time steps.")},
 };
-static const struct key_table drive_table = {"bead.drive", NULL, COUNT(drive_keys), drive_keys};
+static const struct key_table drive_table = {"bead.drive", NULL, ROWS(drive_keys)};
 
 static const struct key bead_keys[] = {
-    {.name = "radius",
-     .text = "Radius R. Smaller ones are not resolved by the cells. The box has edges of at least 2 R + 4 and 40 "
-             "collision intervals.",
-     .type = KEY_NUMBER,
-     .low = 1.5,
-     .high = 512,
-     .offset = IN_MODEL(bead.radius),
-     .unit = "a0",
-     .symbol = "R"},
-    {.name = "mass",
-     .text = "Mass, at least that of the solvent it displaces. If absent: that.",
-     .type = KEY_NUMBER,
-     .optional = true,
-     .low = 0,
-     .high = 1e12,
-     .offset = IN_MODEL(bead.mass),
-     .unit = "m",
-     .symbol = "M"},
-    {.name = "center",
-     .text = "Where its center is at the start.",
-     .type = KEY_VECTOR,
-     .absent = "[0, 0, 0]",
-     .low = -LATTICE_MAX_EDGE,
-     .high = LATTICE_MAX_EDGE,
-     .offset = IN_MODEL(bead.center),
-     .unit = "a0"},
-    {.name = "drive",
-     .text = "What pulls it; absent: nothing.",
-     .type = KEY_SECTION,
-     .optional = true,
-     .keys = &drive_table},
+    {"radius", NUMBER(1.5, 512), IN_MODEL(bead.radius), UNIT("a0"), SYMBOL("R"),
+     TEXT("Radius R. Smaller ones are not resolved by the cells. The box has edges of at least 2 R + 4 and 40 "
+          "collision intervals.")},
+    {"mass", NUMBER(0, 1e12), IN_MODEL(bead.mass), UNIT("m"), SYMBOL("M"), OPTIONAL,
+     TEXT("Mass, at least that of the solvent it displaces. If absent: that.")},
+    {"center", VECTOR(-LATTICE_MAX_EDGE, LATTICE_MAX_EDGE), IN_MODEL(bead.center), UNIT("a0"), ABSENT("[0, 0, 0]"),
+     TEXT("Where its center is at the start.")},
+    {"drive", SECTION(drive_table), OPTIONAL, TEXT("What pulls it; absent: nothing.")},
 };
-static const struct key_table bead_table = {"bead", NULL, COUNT(bead_keys), bead_keys};
+static const struct key_table bead_table = {"bead", NULL, ROWS(bead_keys)};
 
 static const struct key shear_keys[] = {
-    {.name = "rate",
-     .text = "Shear rate dv_x/dy. With a `period`, its amplitude.",
-     .type = KEY_NUMBER,
-     .optional = true,
-     .low = -10,
-     .high = 10,
-     .offset = IN_MODEL(shear.rate),
-     .unit = "1/t0"},
-    {.name = "strain",
-     .text = "Amplitude of an oscillating strain: sets `rate` to 2 pi/`period` of it.",
-     .type = KEY_NUMBER,
-     .optional = true,
-     .low = 0,
-     .high = 1000,
-     .offset = IN_MODEL(shear.strain),
-     .excludes = "rate",
-     .derives = true},
-    {.name = "period",
-     .text = "Period of the rate, cos(2 pi t/period): a whole number of collision intervals, 4 or more. 0: the rate is "
-             "constant.",
-     .type = KEY_NUMBER,
-     .optional = true,
-     .low = 0,
-     .high = 1e6,
-     .offset = IN_MODEL(shear.period),
-     .unit = "t0"},
+    {"rate", NUMBER(-10, 10), IN_MODEL(shear.rate), UNIT("1/t0"), OPTIONAL,
+     TEXT("Shear rate dv_x/dy. With a `period`, its amplitude.")},
+    {"strain", NUMBER(0, 1000), IN_MODEL(shear.strain), EXCLUDES("rate"), OPTIONAL, DERIVES,
+     TEXT("Amplitude of an oscillating strain: sets `rate` to 2 pi/`period` of it.")},
+    {"period", NUMBER(0, 1e6), IN_MODEL(shear.period), UNIT("t0"), OPTIONAL,
+     TEXT("Period of the rate, cos(2 pi t/period): a whole number of collision intervals, 4 or more. 0: the rate is "
+          "constant.")},
 };
-static const struct key_table shear_table = {"shear", NULL, COUNT(shear_keys), shear_keys};
+static const struct key_table shear_table = {"shear", NULL, ROWS(shear_keys)};
 
 static const struct key crossing_keys[] = {
-    {.name = "forbidden",
-     .text = "false: fibers pass through each other.",
-     .type = KEY_SWITCH,
-     .absent = "true",
-     .offset = IN_MODEL(crossing.forbidden),
-     .first_format = true},
-    {.name = "rule",
-     .text =
-         "How bonds are kept from crossing. sequential: one vertex moves at a time, and a move that would cross a bond "
-         "is rejected (the paper). event-driven: all vertices move at once, and bonds exchange momentum at the time "
-         "when they touch.",
-     .type = KEY_CHOICE,
-     .absent = "sequential",
-     .fallback = "event-driven",
-     .choice = crossing_words,
-     .first = CROSSING_SEQUENTIAL,
-     .offset = IN_MODEL(crossing.rule)},
-    {.name = "exclusion",
-     .text = "Bonds that a moving bond is not tested against: those that share a vertex with it, or, as the paper "
-             "literally says, all that are linked to either of the two moving bonds.",
-     .type = KEY_CHOICE,
-     .absent = "shared-vertex",
-     .choice = exclusion_words,
-     .offset = IN_MODEL(crossing.exclusion),
-     .first_format = true},
-    {.name = "refusal",
-     .text = "What a vertex does whose move would cross a bond, after the exchange of momentum. stay: it stays where "
-             "it is (the paper). bounce: it finishes the step with its new velocity if that crosses nothing; less heat "
-             "([accuracy.md](accuracy.md#what-a-rejected-move-costs)).",
-     .type = KEY_CHOICE,
-     .absent = "stay",
-     .choice = rejection_words,
-     .offset = IN_MODEL(crossing.rejection),
-     .first_format = true},
-    {.name = "frame",
-     .text = "The frame in which moves are made. laboratory: rejected vertices stand, and so lag behind a flow (the "
-             "paper). flow: they go with the scene's `flow`; no lag.",
-     .type = KEY_CHOICE,
-     .absent = "laboratory",
-     .choice = frame_words,
-     .offset = IN_MODEL(crossing.frame),
-     .first_format = true},
+    {"forbidden", SWITCH, IN_MODEL(crossing.forbidden), ABSENT("true"), FIRST_FORMAT,
+     TEXT("false: fibers pass through each other.")},
+    {"rule", CHOICE_FROM(CROSSING_SEQUENTIAL, crossing_words), IN_MODEL(crossing.rule), ABSENT("sequential"),
+     FALLBACK("event-driven"),
+     TEXT("How bonds are kept from crossing. sequential: one vertex moves at a time, and a move that would cross a "
+          "bond is rejected (the paper). event-driven: all vertices move at once, and bonds exchange momentum at the "
+          "time when they touch.")},
+    {"exclusion", CHOICE(exclusion_words), IN_MODEL(crossing.exclusion), ABSENT("shared-vertex"), FIRST_FORMAT,
+     TEXT("Bonds that a moving bond is not tested against: those that share a vertex with it, or, as the paper "
+          "literally says, all that are linked to either of the two moving bonds.")},
+    {"refusal", CHOICE(rejection_words), IN_MODEL(crossing.rejection), ABSENT("stay"), FIRST_FORMAT,
+     TEXT("What a vertex does whose move would cross a bond, after the exchange of momentum. stay: it stays where it "
+          "is (the paper). bounce: it finishes the step with its new velocity if that crosses nothing; less heat "
+          "([accuracy.md](accuracy.md#what-a-rejected-move-costs)).")},
+    {"frame", CHOICE(frame_words), IN_MODEL(crossing.frame), ABSENT("laboratory"), FIRST_FORMAT,
+     TEXT("The frame in which moves are made. laboratory: rejected vertices stand, and so lag behind a flow (the "
+          "paper). flow: they go with the scene's `flow`; no lag.")},
 };
-static const struct key_table crossing_table = {"crossing", NULL, COUNT(crossing_keys), crossing_keys};
+static const struct key_table crossing_table = {"crossing", NULL, ROWS(crossing_keys)};
 
 static const struct key top_keys[] = {
-    {.name = "box",
-     .text = "Edge lengths of the periodic box, in whole collision cells. Edges may differ.",
-     .type = KEY_CELLS,
-     .least = 1,
-     .most = LATTICE_MAX_EDGE,
-     .offset = IN_MODEL(box.cells),
-     .unit = "a0",
-     .symbol = "L_b",
-     .first_format = true},
-    {.name = "time_step",
-     .text = "Step of the fibers' motion. `omega dt >= 2` for the fastest vibration of a fiber is an error, above 0.5 "
-             "a warning.",
-     .type = KEY_NUMBER,
-     .low = 0,
-     .above = true,
-     .high = 1,
-     .offset = IN_MODEL(time_step),
-     .unit = "t0",
-     .symbol = "dt",
-     .first_format = true},
-    {.name = "seed",
-     .text =
-         "Key of every random number, all 64 bits of it; `--seed` says otherwise. With a `snapshot` the key is made of "
-         "the seed and the snapshot ([conventions.md](conventions.md#streams)).",
-     .type = KEY_WHOLE64,
-     .absent = "1",
-     .most = UINT64_MAX,
-     .offset = IN_MODEL(seed),
-     .aside = true},
-    {.name = "order",
-     .text = "Where the collision stands between drift and kick: see `src/step.c` and docs/accuracy.md. `paper` is the "
-             "paper's list, literally.",
-     .type = KEY_CHOICE,
-     .absent = "kick-split",
-     .choice = scheme_words,
-     .offset = IN_MODEL(scheme),
-     .first_format = true},
-    {.name = "flow",
-     .text = "Uniform velocity given to everything at the start. The total momentum is 0 but for it. A `snapshot` is "
-             "given nothing: it must flow so already.",
-     .type = KEY_VECTOR,
-     .absent = "[0, 0, 0]",
-     .low = -MODEL_MOST_FLOW,
-     .high = MODEL_MOST_FLOW,
-     .offset = IN_MODEL(flow),
-     .unit = "a0/t0",
-     .symbol = "v_flow",
-     .first_format = true},
-    {.name = "dimensions",
-     .text =
-         "2: everything moves in the plane of x and y. The box is then one cell thick, and fibers pass through each "
-         "other.",
-     .type = KEY_WHOLE32,
-     .absent = "3",
-     .least = 2,
-     .most = 3,
-     .offset = IN_MODEL(dimensions),
-     .symbol = "d"},
-    {.name = "solvent",
-     .text = "The SRD solvent; absent: none, and no collisions.",
-     .type = KEY_SECTION,
-     .optional = true,
-     .keys = &solvent_table},
-    {.name = "medium",
-     .text = "A bath instead of an SRD solvent; absent: none.",
-     .type = KEY_SECTION,
-     .optional = true,
-     .keys = &medium_table},
-    {.name = "dumbbells",
-     .text = "Pairs of solvent particles with a harmonic spring (Tao, Goetze and Gompper 2008); absent: none.",
-     .type = KEY_SECTION,
-     .optional = true,
-     .keys = &dumbbell_table},
-    {.name = "bead",
-     .text = "A sphere in the solvent, on which particles do not slip ([bead.md](bead.md)); absent: none.",
-     .type = KEY_SECTION,
-     .optional = true,
-     .keys = &bead_table},
-    {.name = "walls",
-     .text = "Walls at y = 0 and y = L; absent: none.",
-     .type = KEY_SECTION,
-     .optional = true,
-     .keys = &wall_table},
-    {.name = "shear",
-     .text = "A shear of the box, by images that slide along x (Lees and Edwards 1972); absent: none.",
-     .type = KEY_SECTION,
-     .optional = true,
-     .keys = &shear_table},
-    {.name = "fibers",
-     .text = "Kinds of fibers, each with keys of its own; absent: none.",
-     .type = KEY_LIST,
-     .optional = true,
-     .keys = &fiber_table,
-     .item_size = sizeof(struct fiber_kind),
-     .offset = IN_MODEL(kind),
-     .count_offset = IN_MODEL(kinds)},
-    {.name = "crossing", .text = "May fibers cross?", .type = KEY_SECTION, .optional = true, .keys = &crossing_table},
+    {"box", CELLS(1, LATTICE_MAX_EDGE), IN_MODEL(box.cells), UNIT("a0"), SYMBOL("L_b"), FIRST_FORMAT,
+     TEXT("Edge lengths of the periodic box, in whole collision cells. Edges may differ.")},
+    {"time_step", NUMBER_ABOVE(0, 1), IN_MODEL(time_step), UNIT("t0"), SYMBOL("dt"), FIRST_FORMAT,
+     TEXT("Step of the fibers' motion. `omega dt >= 2` for the fastest vibration of a fiber is an error, above 0.5 a "
+          "warning.")},
+    {"seed", WHOLE64(0, UINT64_MAX), IN_MODEL(seed), ABSENT("1"), ASIDE,
+     TEXT("Key of every random number, all 64 bits of it; `--seed` says otherwise. With a `snapshot` the key is made "
+          "of the seed and the snapshot ([conventions.md](conventions.md#streams)).")},
+    {"order", CHOICE(scheme_words), IN_MODEL(scheme), ABSENT("kick-split"), FIRST_FORMAT,
+     TEXT("Where the collision stands between drift and kick: see `src/step.c` and docs/accuracy.md. `paper` is the "
+          "paper's list, literally.")},
+    {"flow", VECTOR(-MODEL_MOST_FLOW, MODEL_MOST_FLOW), IN_MODEL(flow), UNIT("a0/t0"), SYMBOL("v_flow"),
+     ABSENT("[0, 0, 0]"), FIRST_FORMAT,
+     TEXT("Uniform velocity given to everything at the start. The total momentum is 0 but for it. A `snapshot` is "
+          "given nothing: it must flow so already.")},
+    {"dimensions", WHOLE32(2, 3), IN_MODEL(dimensions), SYMBOL("d"), ABSENT("3"),
+     TEXT("2: everything moves in the plane of x and y. The box is then one cell thick, and fibers pass through each "
+          "other.")},
+    {"solvent", SECTION(solvent_table), OPTIONAL, TEXT("The SRD solvent; absent: none, and no collisions.")},
+    {"medium", SECTION(medium_table), OPTIONAL, TEXT("A bath instead of an SRD solvent; absent: none.")},
+    {"dumbbells", SECTION(dumbbell_table), OPTIONAL,
+     TEXT("Pairs of solvent particles with a harmonic spring (Tao, Goetze and Gompper 2008); absent: none.")},
+    {"bead", SECTION(bead_table), OPTIONAL,
+     TEXT("A sphere in the solvent, on which particles do not slip ([bead.md](bead.md)); absent: none.")},
+    {"walls", SECTION(wall_table), OPTIONAL, TEXT("Walls at y = 0 and y = L; absent: none.")},
+    {"shear", SECTION(shear_table), OPTIONAL,
+     TEXT("A shear of the box, by images that slide along x (Lees and Edwards 1972); absent: none.")},
+    {"fibers", LIST(fiber_table, struct fiber_kind, offsetof(struct model, kinds)), IN_MODEL(kind), OPTIONAL,
+     TEXT("Kinds of fibers, each with keys of its own; absent: none.")},
+    {"crossing", SECTION(crossing_table), OPTIONAL, TEXT("May fibers cross?")},
 };
-const struct key_table model_keys = {"", NULL, COUNT(top_keys), top_keys};
+const struct key_table model_keys = {"", NULL, ROWS(top_keys)};
 
 const char *model_start_word(enum fiber_start start)
 {
