@@ -18,7 +18,7 @@
  * What a contact reverses is not the relative velocity of the drift but that of the present: a leap-frog's velocity v
  * is that of the middle of the drift, and a time tau later it is u = v + tau F/M, F being the forces at the contact.
  * With u, the exchange conserves the energy of the leap-frog to first order in tau, and is reversible
- * (docs/heat-free.md).
+ * (docs/contacts.md).
  */
 #include "contact/candidates.h"
 #include "contact/capsule.h"

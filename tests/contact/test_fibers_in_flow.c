@@ -266,7 +266,7 @@ static double energy_of(struct test_run *r)
 }
 
 /* THEORY: a hit that reverses the velocity of its own time conserves the leap-frog's energy to second order, as
- * contacts do (docs/heat-free.md): some 3e-5 kT each at this time step. 150 vertices of mass 5 at 1.5 per a0^3 hit 50
+ * contacts do (docs/contacts.md): some 3e-5 kT each at this time step. 150 vertices of mass 5 at 1.5 per a0^3 hit 50
  * a0^2 of walls 13 times per t0: in 40 t0 that is 0.02 kT. The energy of the leap-frog differs from this sum by a few
  * tenths of a kT at most. The rule `sequential` reverses the velocity of the middle of the drift, at walls and at
  * contacts, and heats. */

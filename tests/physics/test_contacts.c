@@ -1,5 +1,5 @@
 /* Contacts at their own time: they do not heat, they balance, they return, they know no frame, and there are as many as
- * kinetic theory says (docs/heat-free.md). */
+ * kinetic theory says (docs/contacts.md). */
 #include "../../validation/measure/contacts.h"
 #include "../../validation/measure/needles.h"
 #include "../../validation/measure/reversal.h"

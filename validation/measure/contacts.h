@@ -1,5 +1,5 @@
 /* What contacts of the rule `event-driven` do to the energy of the leap-frog: shared by `contact_heat`
- * (docs/accuracy.md, docs/heat-free.md) and the test of it.
+ * (docs/accuracy.md, docs/contacts.md) and the test of it.
  *
  * The leap-frog conserves, to fourth order in dt (Hairer, Lubich, Wanner, Geometric Numerical Integration, Sec. IX.3),
  *
@@ -11,7 +11,7 @@
  *
  *   heat      Delta H: heat of this contact, kT. Mean over contacts: what a contact heats.
  *   balance   q = J exp(-Delta H), J = (a'/a) |da'/da|, a and a' being the speeds of approach and of rebound along the
- *             normal. In equilibrium, <q> = 1 over contacts of a map that is reversible (docs/heat-free.md).
+ *             normal. In equilibrium, <q> = 1 over contacts of a map that is reversible (docs/contacts.md).
  *   bilinear  Delta H (1 - q)/2: its mean over contacts is that of Delta H in equilibrium, if the map is reversible,
  *             and its scatter is smaller by an order of dt.
  *
