@@ -192,7 +192,7 @@ beside it.
 ## Within the theory's stated allowance
 
 The difference is larger than the error bars explain. It is smaller than what the theory is stated, beforehand, to be off by; z counts
-standard errors.
+standard errors. The report has each statement and the source of each expected number.
 
 | | measured | expected | allowed | z |
 | --- | --- | --- | --- | --- |
@@ -200,7 +200,7 @@ standard errors.
 
 ## Not reproduced
 
-The measured number differs from the paper's, or from that of a formula that the paper uses. The last column gives the reason, where it is known.
+The measured number differs from the paper's, or from the number of a formula that the paper uses. The last column gives the reason, where it is known.
 
 | | measured | expected | why |
 | --- | --- | --- | --- |
@@ -242,12 +242,12 @@ def standing(summed):
                       f"{have - len(part['unfinished'])}, {have}, {have + len(part['absent'])} | {part['cpu_seconds'] / 3600.0:.1f} |")
         failed += [f"| `{row['id']}`: {cell(row['statement'])} | {plusminus(row['measured'], row['error'])} | "
                    f"{plusminus(row['expected'], row['expected_error'])} ({cell(row['source'])}) | {signed(row['z'])} |" for row in rows(name, "fail")]
-        covered += [f"| `{row['id']}`: {cell(row['statement'])} | {plusminus(row['measured'], row['error'])} | "
-                    f"{plusminus(row['expected'], row['expected_error'])} ({cell(row['source'])}) | {number(row['allowed'])} | "
-                    f"{signed(row['z'])} |" for row in rows(name, "within allowance")]
+        covered += [f"| `{row['id']}` | {plusminus(row['measured'], row['error'])} | {plusminus(row['expected'], row['expected_error'])} | "
+                    f"{number(row['allowed'])} | {signed(row['z'])} |" for row in rows(name, "within allowance")]
+        reasons = [cell(row["reason"]) for row in rows(name, "not reproduced")]
         findings += [f"| `{row['id']}`: {cell(row['statement'])} | {plusminus(row['measured'], row['error'])} | "
-                     f"{plusminus(row['expected'], row['expected_error'])} ({cell(row['source'])}) | {cell(row['reason'])} |"
-                     for row in rows(name, "not reproduced")]
+                     f"{plusminus(row['expected'], row['expected_error'])} | {'as above' if reason == last else reason} |"
+                     for row, reason, last in zip(rows(name, "not reproduced"), reasons, [None, *reasons])]
         undecided += [f"| `{row['id']}`: {cell(row['statement'])} | {plusminus(row['measured'], row['error'])} | "
                       f"{plusminus(row['expected'], row['expected_error'])} |" for row in rows(name, "undecided")]
     return STANDING.format(hours=math.fsum(part["cpu_seconds"] for part in summed["sections"]) / 3600.0,
