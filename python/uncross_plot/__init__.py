@@ -1,1 +1,1 @@
-"""Pages of runs: `uncross plot` (docs/plot.md). It reads files only, so it needs no library of uncross."""
+"""Pages of runs: `uncross plot` (docs/running.md). It reads files only, so it needs no library of uncross."""

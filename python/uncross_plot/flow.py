@@ -1,6 +1,6 @@
 """What a flow of the solvent comes to: its profile beside theory, and viscosity, slip and moduli from profile and stress.
 
-Formulas: docs/walls.md and docs/observables.md. Theory is that of `uncross check`.
+Formulas: docs/flow.md and docs/observables.md. Theory is that of `uncross check`.
 """
 import dataclasses
 import math

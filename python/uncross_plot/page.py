@@ -322,7 +322,7 @@ def sections_of(run, movie=False):
     return pictures + [
         Section("Observables", [block for table in run.tables for block in figure_of(run, table)],
                 "docs/observables.md says how each column is measured."),
-        Section("Flow", measured_flow(run), "docs/walls.md and docs/observables.md have the formulas."),
+        Section("Flow", measured_flow(run), "docs/flow.md and docs/observables.md have the formulas."),
         Section("Derived numbers", derived(run), "What uncross check computes from the scene alone."),
         Section("Provenance", provenance(run) + ([Text("The scene", run.scene)] if run.scene else []))]
 

@@ -109,7 +109,7 @@ def _reason(told, path):
 
 
 def _of_sweep(path):
-    """What can be shown of a sweep: docs/sweep.md."""
+    """What can be shown of a sweep: docs/running.md."""
     folder = path if os.path.isdir(path) else os.path.dirname(path) or "."
     points = sorted(entry for entry in os.listdir(folder) if os.path.isdir(os.path.join(folder, entry)))
     return (f"{path}: of a sweep; give the folder of one of its points, whose tables are averages over seeds, or of one "

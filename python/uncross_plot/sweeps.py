@@ -1,4 +1,4 @@
-"""The page of a sweep (docs/sweep.md): final numbers over the values of the grid, with the errors of summary.csv."""
+"""The page of a sweep (docs/running.md): final numbers over the values of the grid, with the errors of summary.csv."""
 import csv
 import math
 import os
@@ -41,7 +41,7 @@ def _number(text):
 
 
 def _error(row, name):
-    """Of the two errors that of blocks, unless there is none: with few seeds it is the better known (docs/sweep.md)."""
+    """Of the two errors that of blocks, unless there is none: with few seeds it is the better known (docs/running.md)."""
     found = [_number(row.get(f"{name}{part}", "nan")) for part in ("_block_error", "_error")]
     return next((e for e in found if math.isfinite(e)), math.nan)
 
@@ -165,6 +165,6 @@ def page_of(path):
                            "of blocks of the runs where they have one, else of the scatter over seeds.", name) for name in shown]
     table = page.Rows("Final numbers", [[row[key] for key in keys] + [page.with_error(_number(row[name]), _error(row, name))
                                                                       for name in results] for row in rows],
-                      (*keys, *results), "docs/sweep.md says how each is made.", tuple(range(len(keys) + len(results))))
+                      (*keys, *results), "docs/running.md says how each is made.", tuple(range(len(keys) + len(results))))
     return page.render(os.path.basename(os.path.abspath(folder)), front,
                        [page.Section("Final numbers over the grid", figures), page.Section("In numbers", [table])])

@@ -121,14 +121,14 @@ const struct command commands[COMMANDS] = {
                          command_analyze},
     [COMMAND_PLOT] = {"plot", "FOLDER|FILE ...", 1, WRITES,
                       "a page of a run, table, trajectory or checkpoint: fibers, figures, what to distrust",
-                      "One HTML file that needs no other (docs/plot.md). Nothing is written over.\n", NULL},
+                      "One HTML file that needs no other (docs/running.md). Nothing is written over.\n", NULL},
     [COMMAND_SWEEP] =
         {"sweep", "SCENE", 1, MAY(EXIT_STOPPED) | WRITES | MAY(EXIT_INTERRUPTED),
          "runs a scene over a grid of values and seeds, and averages",
          "Each run gets a folder below DIR, as `uncross run` makes it. Then DIR gets averages over seeds of "
          "all tables,\n"
          "summary.csv with a row for each point of the grid, and runs.csv with the exit code of each run "
-         "(docs/sweep.md).\n"
+         "(docs/running.md).\n"
          "Nothing is written over. The exit code is that of the first run that failed.\n",
          NULL},
     [COMMAND_EMIT] = {"oracle emit", "SCENE", 1, WRITES,

@@ -134,7 +134,7 @@ def hasimoto(ratio):
     return 1.0 / (1.0 - 2.837297 * ratio + 4.0 / 3.0 * math.pi * ratio**3 - 27.4 * ratio**6)
 
 
-SLIP = {"srd": 0.078, "at-a": 0.131}  # a0: of a flat wall (docs/walls.md), at 5 particles per cell and dt 0.1
+SLIP = {"srd": 0.078, "at-a": 0.131}  # a0: of a flat wall (docs/flow.md), at 5 particles per cell and dt 0.1
 
 
 def drag(rule, box, radius=RADIUS):
