@@ -1,14 +1,17 @@
 #!/usr/bin/python3
 """Ports as a whole: `uncross oracle check`, columns by name, traces against traces, tolerances of single precision. The ports
-are scripts that copy a pack, which holds our outputs too, and change something in it.
+are scripts. What they are given has no outputs, so those that are right copy the pack of reference-data, and the others change
+something in it.
 """
 import gzip
 import json
 import os
 import pathlib
 import random
+import signal
 import subprocess
 import tempfile
+import time
 import unittest
 
 import h5py
@@ -236,6 +239,8 @@ class TracesTest(Folder):
 
 
 class PortTest(Folder):
+    OURS = f'grep -q "kick[ .]3" "$1" && ours={DATA}/mixed || ours={DATA}/coarse; '  # which pack it is; HDF5 names its groups
+
     def setUp(self):
         super().setUp()
         for name in ("coarse", "mixed"):
@@ -250,6 +255,12 @@ class PortTest(Folder):
         path.chmod(0o755)
         return path
 
+    def right(self, then=":"):
+        return self.OURS + f'cp $ours.pack.h5 "$2"; {then}'
+
+    def text(self, change="cat"):
+        return self.OURS + f'gzip -dc $ours.pack.txt.gz | {change} >"$2"'
+
     def check(self, port, *options):
         report = self.dir / "report.json"
         report.unlink(missing_ok=True)
@@ -258,7 +269,7 @@ class PortTest(Folder):
 
     def test_right(self):
         trace = f"{UNCROSS} oracle dump $1 | grep -q 'in.run.steps 8' && cp {DATA}/coarse.trace.csv $2 || cp {DATA}/mixed.trace.csv $2"
-        code, said, checks, _ = self.check(self.port('cp "$1" "$2"', trace))
+        code, said, checks, _ = self.check(self.port(self.right(), trace))
         self.assertEqual(code, 0, said)
         self.assertEqual([(c["name"], c["kind"], c["verdict"]) for c in checks],
                          [("coarse.pack", "pack", "same"), ("mixed.pack", "pack", "same"),
@@ -266,13 +277,39 @@ class PortTest(Folder):
         self.assertIn("same 4, close 0, different 0", said)
 
     def test_text(self):
-        code, said, checks, _ = self.check(self.port("grep -v ' in[.]' $1 >$2"), "--text", "--no-traces")
+        code, said, checks, _ = self.check(self.port(self.text("grep -v ' in[.]'")), "--text", "--no-traces")
         self.assertEqual((code, len(checks)), (0, 2), said)
         code, said, _, _ = self.check(self.port("grep -v ' in[.]' $1 >$2"), "--no-traces")
         self.assertEqual(code, 7, said)
 
+    def test_no_answers_are_given(self):
+        """Neither outputs nor bounds, in either form."""
+        seen = self.dir / "seen"
+        seen.mkdir()
+        self.check(self.port(f'cp "$1" {seen}/$RANDOM$RANDOM.h5; exit 3'), "--no-traces")
+        self.check(self.port(f'cp "$1" {seen}/$RANDOM$RANDOM.txt; exit 3'), "--text", "--no-traces")
+        tables = 0
+        for path in seen.glob("*.h5"):
+            with h5py.File(path) as file:
+                names = [name for group in file.values() for name in group]
+                self.assertEqual([name for name in names if not name.startswith("in.")], [])
+                tables += len(names)
+        for path in seen.glob("*.txt"):
+            lines = [line for line in path.read_text().splitlines() if not line.startswith("#")]
+            self.assertEqual([line for line in lines if not line.split()[3].startswith("in.")], [])
+            tables += len(lines)
+        self.assertEqual(len(list(seen.iterdir())), 4)
+        self.assertGreater(tables, 1000)
+
+    def test_what_was_given_is_no_answer(self):
+        """The script of shared/faults/port-copy."""
+        for options in ((), ("--text",)):
+            code, said, checks, _ = self.check(self.port('cp "$1" "$2"'), "--no-traces", *options)
+            self.assertEqual((code, {c["verdict"] for c in checks}), (7, {"failed"}), said)
+            self.assertIn("the port has sent back what it was given: no table out.", checks[0]["trouble"])
+
     def test_wrong(self):
-        code, said, checks, _ = self.check(self.port("sed '/^kick 1 0 out.velocity.x/s/ [^ ]*$/ 7.5/' $1 >$2"), "--text", "--no-traces")
+        code, said, checks, _ = self.check(self.port(self.text("sed '/^kick 1 0 out.velocity.x/s/ [^ ]*$/ 7.5/'")), "--text", "--no-traces")
         self.assertEqual(code, 7)
         self.assertIn("first difference: kick, step 1, vertex 0, out.velocity.x", said)
         self.assertEqual([c["verdict"] for c in checks], ["differs", "same"])
@@ -281,13 +318,14 @@ class PortTest(Folder):
 
     def test_wrong_trace(self):
         change = f"sed '5s/,[0-9a-f]*,/,0123456789abcdef,/' {DATA}/coarse.trace.csv >$2"
-        code, said, checks, _ = self.check(self.port('cp "$1" "$2"', change))
+        code, said, checks, _ = self.check(self.port(self.right(), change))
         self.assertEqual(code, 7, said)
         self.assertRegex(checks[2]["first_difference"], "^step [0-9]+, stage [a-z]+$")
 
+    LAST_DIGIT = "sed -E '/^kick 3 0 out.velocity.x/s/[0-8]$/9/'"
+
     def test_close(self):
-        code, said, checks, _ = self.check(
-            self.port("sed -E '/^kick 3 0 out.velocity.x/s/[0-8]$/9/' $1 >$2"), "--text", "--no-traces")
+        code, said, checks, _ = self.check(self.port(self.text(self.LAST_DIGIT)), "--text", "--no-traces")
         self.assertEqual(code, 6, said)
         self.assertEqual(["same", "close"], [c["verdict"] for c in checks])
 
@@ -300,11 +338,61 @@ class PortTest(Folder):
             self.assertIn(word, checks[0]["trouble"])
             self.assertIn("failed: ", said)
 
+    def test_all_that_hangs_is_ended(self):
+        """A port that ignores signals, or waits for a child in the same group: one second each, not the child's time."""
+        for does in ("trap '' ALRM TERM; sleep 8; sleep 8", "sleep 8"):
+            began = time.monotonic()
+            code, _, checks, _ = self.check(self.port(does), "--no-traces", "--seconds", 1)
+            self.assertEqual((code, {c["verdict"] for c in checks}), (7, {"failed"}))
+            self.assertIn("took more than 1 s", checks[0]["trouble"])
+            self.assertLess(time.monotonic() - began, 8)
+
+    def test_no_child_writes_into_the_next_output(self):
+        """The wrapper ends at once, what it has started would write later."""
+        late = self.right(f'(sleep 0.6; echo late >{self.dir}/late; echo nonsense >"$2") & exit 0')
+        code, said, _, _ = self.check(self.port(late), "--no-traces")
+        self.assertEqual(code, 0, said)
+        time.sleep(0.8)
+        self.assertFalse((self.dir / "late").exists())
+
+    def test_the_pack_that_runs_is_named(self):
+        """Before it is done: within the minute that the port takes."""
+        words = [UNCROSS, "oracle", "check", self.port("sleep 60"), "--packs", self.dir, "--no-traces"]
+        with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as program:
+            said = b""
+            while b"coarse.pack" not in said:
+                more = os.read(program.stdout.fileno(), 1000)
+                self.assertTrue(more)
+                said += more
+            self.assertIsNone(program.poll())
+            program.send_signal(signal.SIGTERM)
+            self.assertEqual(program.wait(timeout=10), -signal.SIGTERM)
+
+    def test_repeat(self):
+        """The second answer differs in a last digit: within tolerance, but not the same."""
+        count = self.dir / "count"
+        (self.dir / "coarse.pack.h5").unlink()
+        unlike = f"echo >>{count}; [ $(wc -l <{count}) = 2 ] && last=9 || last=0; " + self.text(
+            "sed -E \"/^kick 3 0 out.velocity.x/s/[0-9]$/$last/\"")
+        code, said, checks, _ = self.check(self.port(unlike), "--no-traces", "--text", "--repeat", 3)
+        self.assertEqual((code, [c["verdict"] for c in checks]), (7, ["failed"]), said)
+        self.assertIn("call 2 gives other bits than call 1: kick, step 3, vertex 0, out.velocity.x", checks[0]["trouble"])
+        code, said, _, _ = self.check(self.port(self.right()), "--no-traces", "--repeat", 2)
+        self.assertEqual(code, 0, said)
+
+    def test_repeated_traces(self):
+        count = self.dir / "count"
+        trace = f"echo >>{count}; sed \"$(wc -l <{count})s/,[0-9a-f]*,/,0123456789abcdef,/\" {DATA}/coarse.trace.csv >$2"
+        (self.dir / "mixed.trace.csv").unlink()
+        code, said, checks, _ = self.check(self.port(self.right(), trace), "--repeat", 2)
+        self.assertEqual(code, 7, said)
+        self.assertIn("call 2 gives other bits than call 1: step 0, stage start", checks[2]["trouble"])
+
     def test_what_the_port_prints(self):
         """It goes to standard error, and nothing of it into the table; nothing is left in TMPDIR."""
         scratch = self.dir / "scratch"
         scratch.mkdir()
-        done = subprocess.run([UNCROSS, "oracle", "check", self.port('echo chatter; cp "$1" "$2"'), "--packs", self.dir,
+        done = subprocess.run([UNCROSS, "oracle", "check", self.port(f"echo chatter; {self.right()}"), "--packs", self.dir,
                                "--no-traces"], capture_output=True, text=True, check=False, env={**os.environ, "TMPDIR": scratch})
         self.assertEqual(done.returncode, 0)
         self.assertNotIn("chatter", done.stdout)
@@ -312,13 +400,13 @@ class PortTest(Folder):
         self.assertEqual(list(scratch.iterdir()), [])
 
     def test_only_and_single(self):
-        code, _, checks, _ = self.check(self.port('cp "$1" "$2"'), "--only", "kick,bin")
+        code, _, checks, _ = self.check(self.port(self.right()), "--only", "kick,bin")
         self.assertEqual((code, len(checks)), (0, 2))
-        code, _, checks, _ = self.check(self.port('cp "$1" "$2"'), "--single")
+        code, _, checks, _ = self.check(self.port(self.right()), "--single")
         self.assertEqual((code, len(checks)), (0, 2))
 
     def test_bad_input(self):
-        port = self.port('cp "$1" "$2"')
+        port = self.port(self.right())
         (self.dir / "there.json").write_text("mine")
         empty = self.dir / "empty"
         empty.mkdir()
