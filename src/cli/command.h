@@ -46,7 +46,7 @@ struct arguments {
   const char *seeds; /* "1..4" */
   uint64_t jobs;
   bool text, no_traces;
-  uint64_t seconds;
+  uint64_t seconds, repeat, every;
   const char *units;
 };
 

@@ -76,6 +76,8 @@ const struct option_row option_rows[] = {
      .text = "the port makes no whole steps"},
     {"seconds", "N", OF(CHECK_PORT), 0, OPTION_WHOLE, 0, AT(seconds), ONLY_VALUE, .least = 1, .most = 1000000,
      .text = "how long each call of the port may take; 600 without it"},
+    {"repeat", "N", OF(CHECK_PORT), 0, OPTION_WHOLE, 0, AT(repeat), ONLY_VALUE, .least = 1, .most = 1000000,
+     .text = "calls of the port with each input, which must give the same bits; 1 without it"},
     {"single", NULL, OF(COMPARE) | OF(CHECK_PORT), 0, OPTION_SWITCH, 0, AT(oracle.single), ONLY_VALUE,
      .text = "tolerances of single precision instead of double"},
     {"only", "NAME[,NAME ...]", OF(COMPARE) | OF(CHECK_PORT), 0, OPTION_TEXT, 0, AT(oracle.only), ONLY_VALUE,

@@ -161,7 +161,8 @@ enum exit_code oracle_compare_files(const struct arguments *a)
 
 enum exit_code oracle_check_port(const struct arguments *a)
 {
-  const struct check_options options = {a->file[0], a->packs, a->out, a->text, a->no_traces, a->seconds, a->oracle};
+  const struct check_options options = {a->file[0],   a->packs,   a->out,    a->text,
+                                        a->no_traces, a->seconds, a->repeat, a->oracle};
   struct message message;
   enum oracle_verdict verdict = ORACLE_DIFFERS;
   return oracle_check(&options, stdout, &verdict, &message) ? codes_of_verdicts[verdict]

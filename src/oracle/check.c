@@ -7,9 +7,9 @@
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
+#include "oracle/called.h"
 #include "version.h"
 
 /* One pack or one trace, and how the port did. */
@@ -84,50 +84,21 @@ static bool list(struct checks *c, const char *ending, bool trace)
   return code == 0 || code == GLOB_NOMATCH;
 }
 
-/* --- running the port -------------------------------------------------------------------------------------------- */
+/* --- what the port is given -------------------------------------------------------------------------------------- */
 
-/* What the port prints goes to standard error. */
-static void become_port(const struct check_options *o, bool trace, const char *in, const char *out)
-{
-  char *const pack[] = {(char *)o->port, (char *)in, (char *)out, NULL};
-  char *const start[] = {(char *)o->port, "--trace", (char *)in, (char *)out, NULL};
-  alarm((unsigned)o->seconds); /* outlives the call, and ends the port */
-  dup2(STDERR_FILENO, STDOUT_FILENO);
-  execvp(o->port, trace ? start : pack);
-  _exit(127);
-}
-
-static bool run_port(const struct check_options *o, struct check *k, const char *in, const char *out)
-{
-  int status = 0;
-  fflush(NULL);
-  const pid_t child = fork();
-  if (child == 0)
-    become_port(o, k->trace, in, out);
-  while (child > 0 && waitpid(child, &status, 0) < 0 && errno == EINTR)
-    continue;
-  if (child < 0)
-    snprintf(k->trouble, sizeof k->trouble, "cannot be run: %s", strerror(errno));
-  else if (WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM)
-    snprintf(k->trouble, sizeof k->trouble, "the port took more than %" PRIu64 " s", o->seconds);
-  else if (WIFSIGNALED(status))
-    snprintf(k->trouble, sizeof k->trouble, "the port was ended by signal %d", WTERMSIG(status));
-  else if (WEXITSTATUS(status) != 0)
-    snprintf(k->trouble, sizeof k->trouble, "the port's exit code is %d%s", WEXITSTATUS(status),
-             WEXITSTATUS(status) == 127 ? ": is it a program?" : "");
-  else if (access(out, R_OK) != 0)
-    snprintf(k->trouble, sizeof k->trouble, "the port has not written its output");
-  return k->trouble[0] == '\0';
-}
-
-/* The pack as the port is to read it. */
+/* The pack as the port is to read it: without answers, nor bounds of them. */
 static bool write_input(const struct check_options *o, const struct pack *pack, const char *path,
                         struct message *message)
 {
   FILE *out = fopen(path, "wbx");
   if (!out)
     return message_set(message, "%s: cannot create: %s", path, strerror(errno));
-  bool ok = o->text ? pack_dump(pack, true, out) : pack_write(pack, out, path, message);
+  struct pack inputs = {0, malloc((pack->count + 1) * sizeof *inputs.table), false};
+  for (size_t k = 0; inputs.table && k < pack->count; k++)
+    if (strncmp(pack->table[k].name, "in.", 3) == 0)
+      inputs.table[inputs.count++] = pack->table[k]; /* its numbers stay the pack's */
+  bool ok = inputs.table && (o->text ? pack_dump(&inputs, true, out) : pack_write(&inputs, out, path, message));
+  free(inputs.table);
   ok = fclose(out) == 0 && ok;
   return ok || message_set(message, "%s: cannot write", path);
 }
@@ -148,39 +119,75 @@ static bool has_operator(const struct pack *pack, const char *only)
   return !only;
 }
 
-static bool take_trouble(struct check *k, const struct message *message)
+static void take_trouble(struct check *k, const struct message *message)
 {
   snprintf(k->trouble, sizeof k->trouble, "%.255s", message->text);
-  return true;
 }
 
-static bool check_pack(struct checks *c, struct check *k, const char *in, const char *out, FILE *details,
-                       struct message *message)
+static bool has_outputs(const struct pack *pack)
 {
-  const struct check_options *o = c->options;
+  for (size_t k = 0; k < pack->count; k++)
+    if (strncmp(pack->table[k].name, "out.", 4) == 0)
+      return true;
+  return false;
+}
+
+/* A pack or a trace, and what the port has written. */
+static bool compare_files(const struct check *k, const char *path, const char *out,
+                          const struct oracle_options *options, FILE *details, struct oracle_summary *summary,
+                          struct message *wrong)
+{
   struct pack ours, theirs;
-  struct message wrong;
-  if (!pack_read(k->path, &ours, message))
+  if (k->trace)
+    return oracle_compare_traces(path, out, details, summary, wrong);
+  if (!pack_read(path, &ours, wrong))
     return false;
   oracle_sort(&ours);
-  k->skipped = !has_operator(&ours, o->compare.only);
-  bool ok = k->skipped || write_input(o, &ours, in, message);
-  if (ok && !k->skipped && run_port(o, k, in, out)) {
-    if (!pack_read(out, &theirs, &wrong)) {
-      take_trouble(k, &wrong);
-    } else {
-      if (!oracle_align(&ours, &theirs, &wrong) ||
-          !oracle_compare(&ours, &theirs, &o->compare, details, &k->summary, &wrong))
-        take_trouble(k, &wrong);
-      pack_free(&theirs);
-    }
+  bool ok = pack_read(out, &theirs, wrong);
+  if (ok) {
+    ok = (has_outputs(&theirs) ||
+          message_set(wrong, "the port has sent back what it was given: no table out. is in its pack")) &&
+         oracle_align(&ours, &theirs, wrong) && oracle_compare(&ours, &theirs, options, details, summary, wrong);
+    pack_free(&theirs);
   }
   pack_free(&ours);
   return ok;
 }
 
+/* Another call of the port with the same input: the same bits are wanted, whatever they are. */
+static bool call_again(const struct checks *c, struct check *k, uint64_t call, const char *in, const char *first)
+{
+  char out[PATH_MAX];
+  struct message wrong = {""};
+  struct oracle_summary summary = {.verdict = ORACLE_SAME};
+  snprintf(out, sizeof out, "%s/out.%" PRIu64, c->scratch, call);
+  FILE *nobody = fopen("/dev/null", "w");
+  bool ok = nobody && called_port(c->options, k->trace, c->scratch, in, out, &wrong) &&
+            compare_files(k, first, out, &c->options->compare, nobody, &summary, &wrong) &&
+            (summary.verdict == ORACLE_SAME ||
+             message_set(&wrong, "call %" PRIu64 " gives other bits than call 1: %s", call, summary.first));
+  if (!ok)
+    take_trouble(k, &wrong);
+  if (nobody)
+    fclose(nobody);
+  remove(out);
+  return ok;
+}
+
+static bool write_pack(const struct check_options *o, struct check *k, const char *in, struct message *message)
+{
+  struct pack ours;
+  if (!pack_read(k->path, &ours, message))
+    return false;
+  oracle_sort(&ours);
+  k->skipped = !has_operator(&ours, o->compare.only);
+  const bool ok = k->skipped || write_input(o, &ours, in, message);
+  pack_free(&ours);
+  return ok;
+}
+
 /* The scene of a trace stands beside it. */
-static bool write_start(const struct check_options *o, const struct check *k, const char *in, struct message *message)
+static bool write_start(const struct check_options *o, struct check *k, const char *in, struct message *message)
 {
   char path[PATH_MAX + 8];
   struct scene scene;
@@ -194,32 +201,39 @@ static bool write_start(const struct check_options *o, const struct check *k, co
   return ok;
 }
 
-static bool check_trace(struct checks *c, struct check *k, const char *in, const char *out, FILE *details,
-                        struct message *message)
+static void call_port(const struct checks *c, struct check *k, const char *in, FILE *details)
 {
-  struct message wrong;
-  if (!write_start(c->options, k, in, message))
-    return false;
-  if (run_port(c->options, k, in, out) && !oracle_compare_traces(k->path, out, details, &k->summary, &wrong))
+  char out[PATH_MAX];
+  struct message wrong = {""};
+  snprintf(out, sizeof out, "%s/out.1", c->scratch);
+  bool ok = called_port(c->options, k->trace, c->scratch, in, out, &wrong) &&
+            compare_files(k, k->path, out, &c->options->compare, details, &k->summary, &wrong);
+  if (!ok)
     take_trouble(k, &wrong);
-  return true;
+  for (uint64_t call = 2; ok && call <= c->options->repeat; call++)
+    ok = call_again(c, k, call, in, out);
+  remove(out);
 }
 
-static bool check_one(struct checks *c, struct check *k, struct message *message)
+/* Its name is printed before the port runs. */
+static bool check_one(const struct checks *c, struct check *k, FILE *out, struct message *message)
 {
-  char in[PATH_MAX], out[PATH_MAX];
+  char in[PATH_MAX];
   size_t size;
   snprintf(in, sizeof in, "%s/in.%s", c->scratch, c->options->text ? "txt" : "h5");
-  snprintf(out, sizeof out, "%s/out", c->scratch);
   FILE *details = open_memstream(&k->details, &size);
   if (!details)
     return message_set(message, "memory is short");
-  const bool ok = (k->trace ? check_trace : check_pack)(c, k, in, out, details, message);
+  const bool ok = (k->trace ? write_start : write_pack)(c->options, k, in, message);
+  if (ok && !k->skipped) {
+    fprintf(out, "%-20s ", k->name);
+    fflush(out);
+    call_port(c, k, in, details);
+  }
   fclose(details);
   if (k->trouble[0])
     k->summary.verdict = ORACLE_DIFFERS;
   remove(in);
-  remove(out);
   return ok;
 }
 
@@ -231,12 +245,13 @@ static const char *word_of(const struct check *k)
   return k->skipped ? "-" : k->trouble[0] ? "failed" : words[k->summary.verdict];
 }
 
+/* After its name. */
 static void print_row(const struct check *k, FILE *out)
 {
   const struct oracle_summary *s = &k->summary;
   if (k->skipped)
     return;
-  fprintf(out, "%-20s %8" PRIu64 " %8" PRIu64 " %8" PRIu64 "  ", k->name, s->values, s->different, s->beyond);
+  fprintf(out, "%8" PRIu64 " %8" PRIu64 " %8" PRIu64 "  ", s->values, s->different, s->beyond);
   if (s->largest > 0.0)
     fprintf(out, "%9.2g", s->largest);
   else
@@ -303,7 +318,7 @@ static bool run_all(struct checks *c, FILE *out, enum oracle_verdict *verdict, s
   size_t counts[ORACLE_DIFFERS + 1] = {0};
   fprintf(out, "%-20s %8s %8s %8s  %9s  %s\n", "pack or trace", "values", "differ", "beyond", "of toler.", "verdict");
   for (size_t k = 0; k < c->count; k++) {
-    if (!check_one(c, &c->check[k], message))
+    if (!check_one(c, &c->check[k], out, message))
       return false;
     print_row(&c->check[k], out);
     fflush(out);
@@ -336,6 +351,6 @@ bool oracle_check(const struct check_options *o, FILE *out, enum oracle_verdict 
   for (size_t k = 0; k < c.count; k++)
     free(c.check[k].details);
   free(c.check);
-  rmdir(c.scratch);
+  called_clean(c.scratch);
   return ok;
 }

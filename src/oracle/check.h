@@ -19,6 +19,7 @@ struct check_options {
   bool text;          /* packs and starts are given as text */
   bool no_traces;
   uint64_t seconds; /* for each call of the port */
+  uint64_t repeat;  /* calls with the same input, which must give the same bits */
   struct oracle_options compare;
 };
 

@@ -1,0 +1,112 @@
+#include "oracle/called.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <limits.h>
+#include <signal.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+/* A port that computes in a group of its own is out of reach of the keyboard: its interrupts come by way of us. */
+static const int interrupts[] = {SIGINT, SIGTERM, SIGHUP};
+
+static void watched_signals(sigset_t *set)
+{
+  sigemptyset(set);
+  sigaddset(set, SIGCHLD);
+  for (size_t k = 0; k < sizeof interrupts / sizeof *interrupts; k++)
+    sigaddset(set, interrupts[k]);
+}
+
+static void become_port(const struct check_options *o, bool trace, const char *in, const char *out,
+                        const sigset_t *before)
+{
+  char *const pack[] = {(char *)o->port, (char *)in, (char *)out, NULL};
+  char *const start[] = {(char *)o->port, "--trace", (char *)in, (char *)out, NULL};
+  const int nothing = open("/dev/null", O_RDONLY);
+  setpgid(0, 0);
+  sigprocmask(SIG_SETMASK, before, NULL);
+  dup2(nothing, STDIN_FILENO);
+  dup2(STDERR_FILENO, STDOUT_FILENO);
+  execvp(o->port, trace ? start : pack);
+  _exit(127);
+}
+
+/* Until the child ends (0), its time is over (SIGALRM), or this program is to end (the signal). */
+static int wait_for(pid_t child, uint64_t seconds, const sigset_t *watched, int *status)
+{
+  struct timespec now, end;
+  clock_gettime(CLOCK_MONOTONIC, &end);
+  end.tv_sec += (time_t)seconds;
+  for (;;) {
+    if (waitpid(child, status, WNOHANG) == child)
+      return 0;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    struct timespec left = {end.tv_sec - now.tv_sec, end.tv_nsec - now.tv_nsec};
+    if (left.tv_nsec < 0)
+      left = (struct timespec){left.tv_sec - 1, left.tv_nsec + 1000000000L};
+    if (left.tv_sec < 0)
+      return SIGALRM;
+    const int signal = sigtimedwait(watched, NULL, &left);
+    if (signal > 0 && signal != SIGCHLD)
+      return signal;
+  }
+}
+
+static bool tell(int status, const char *out, struct message *message)
+{
+  if (WIFSIGNALED(status))
+    return message_set(message, "the port was ended by signal %d", WTERMSIG(status));
+  if (WEXITSTATUS(status) != 0)
+    return message_set(message, "the port's exit code is %d%s", WEXITSTATUS(status),
+                       WEXITSTATUS(status) == 127 ? ": is it a program?" : "");
+  return access(out, R_OK) == 0 || message_set(message, "the port has not written its output");
+}
+
+void called_clean(const char *folder)
+{
+  char path[PATH_MAX];
+  DIR *open = opendir(folder);
+  for (struct dirent *entry; open && (entry = readdir(open));)
+    if (snprintf(path, sizeof path, "%s/%s", folder, entry->d_name) < (int)sizeof path)
+      unlink(path);
+  if (open)
+    closedir(open);
+  rmdir(folder);
+}
+
+bool called_port(const struct check_options *o, bool trace, const char *folder, const char *in, const char *out,
+                 struct message *message)
+{
+  int status = 0;
+  sigset_t watched, before;
+  watched_signals(&watched);
+  fflush(NULL);
+  sigprocmask(SIG_BLOCK, &watched, &before);
+  const pid_t child = fork();
+  if (child == 0)
+    become_port(o, trace, in, out, &before);
+  int ended = 0;
+  const int why = errno;
+  if (child > 0) {
+    setpgid(child, child); /* whoever of both comes first */
+    ended = wait_for(child, o->seconds, &watched, &status);
+    kill(-child, SIGKILL);
+    if (ended)
+      waitpid(child, &status, 0);
+  }
+  sigprocmask(SIG_SETMASK, &before, NULL);
+  if (ended && ended != SIGALRM) {
+    called_clean(folder);
+    raise(ended);
+  }
+  if (child < 0)
+    return message_set(message, "the port cannot be run: %s", strerror(why));
+  if (ended)
+    return message_set(message, "the port took more than %" PRIu64 " s", o->seconds);
+  return tell(status, out, message);
+}
