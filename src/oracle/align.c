@@ -81,7 +81,8 @@ bool oracle_align(const struct pack *ours, struct pack *theirs, struct message *
     struct pack_table *its = &theirs->table[k];
     const struct pack_table *mine = pack_find(ours, &its->place, its->name);
     int from[PACK_COLUMNS];
-    if (!mine && strncmp(its->name, "bound.", 6) != 0 && has_place(ours, &its->place))
+    const bool known = strncmp(its->name, "bound.", 6) == 0 || strcmp(its->name, "in.step") == 0;
+    if (!mine && !known && has_place(ours, &its->place))
       return refuse(its, message, "unknown table", its->name, NULL);
     if (!mine || its->unnamed)
       continue;

@@ -86,6 +86,26 @@ static bool list(struct checks *c, const char *ending, bool trace)
 
 /* --- what the port is given -------------------------------------------------------------------------------------- */
 
+static bool has_inputs(const struct pack *pack, const struct pack_place *place)
+{
+  for (size_t k = 0; k < pack->count; k++)
+    if (strncmp(pack->table[k].name, "in.", 3) == 0 && pack->table[k].place.step == place->step &&
+        strcmp(pack->table[k].place.operator_name, place->operator_name) == 0)
+      return true;
+  return false;
+}
+
+/* An operator that takes nothing but the step's number gets it as a table: without one nothing would ask for it. */
+static void ask(struct pack *pack)
+{
+  for (size_t k = 0; k < pack->count && !pack->failed; k++) {
+    const struct pack_place place = pack->table[k].place;
+    int64_t *step = has_inputs(pack, &place) ? NULL : pack_put_integers(pack, &place, "in.step", "step", 1);
+    if (step)
+      *step = (int64_t)place.step;
+  }
+}
+
 /* The pack as the port is to read it: without answers, nor bounds of them. */
 static bool write_input(const struct check_options *o, const struct pack *pack, const char *path,
                         struct message *message)
@@ -179,6 +199,7 @@ static bool write_pack(const struct check_options *o, struct check *k, const cha
   struct pack ours;
   if (!pack_read(k->path, &ours, message))
     return false;
+  ask(&ours);
   oracle_sort(&ours);
   k->skipped = !has_operator(&ours, o->compare.only);
   const bool ok = k->skipped || write_input(o, &ours, in, message);

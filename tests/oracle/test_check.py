@@ -283,7 +283,7 @@ class PortTest(Folder):
         self.assertEqual(code, 7, said)
 
     def test_no_answers_are_given(self):
-        """Neither outputs nor bounds, in either form."""
+        """Neither outputs nor bounds, in either form. Operators without inputs are asked for by the number of the step."""
         seen = self.dir / "seen"
         seen.mkdir()
         self.check(self.port(f'cp "$1" {seen}/$RANDOM$RANDOM.h5; exit 3'), "--no-traces")
@@ -292,9 +292,11 @@ class PortTest(Folder):
         for path in seen.glob("*.h5"):
             with h5py.File(path) as file:
                 names = [name for group in file.values() for name in group]
+                self.assertLessEqual({"order.1", "shift.8"} if "kick.1" in file else {"order.3", "shift.30"}, set(file))
                 self.assertEqual([name for name in names if not name.startswith("in.")], [])
                 tables += len(names)
         for path in seen.glob("*.txt"):
+            self.assertRegex(path.read_text(), "\nshift (8|30) 0 in.step.step (8|30)\n")
             lines = [line for line in path.read_text().splitlines() if not line.startswith("#")]
             self.assertEqual([line for line in lines if not line.split()[3].startswith("in.")], [])
             tables += len(lines)

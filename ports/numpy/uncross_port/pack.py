@@ -19,6 +19,7 @@ COLUMNS = {
     "hit": "time s s_standing normal_x normal_y normal_z momentum",
 }
 COLUMNS |= {
+    "step": "step",  # of an operator without other inputs
     "time": "dt",
     "solvent_cell": "cell",
     "vertex_cell": "cell",
