@@ -109,6 +109,8 @@ COLUMNS = {
     "N1_spring": Column("springs", r"$N_1^\mathrm{spr}$", S),
     "sigma_xy_fibers": Column("fibers", r"$\sigma_{xy}^\mathrm{fib}$", S),
     "N1_fibers": Column("fibers", r"$N_1^\mathrm{fib}$", S),
+    "sigma_xy_contacts": Column("contacts", r"$\sigma_{xy}^\mathrm{con}$", S),
+    "N1_contacts": Column("contacts", r"$N_1^\mathrm{con}$", S),
     # memory
     "vertices": Column("vertices", r"$\langle v(0)v(t)\rangle$", "(kT/m)"),
     "center": Column("centres of mass", r"$\langle V(0)V(t)\rangle$", "(kT/m)"),
@@ -122,6 +124,7 @@ COLUMNS = {
     "force_square": Column("forces squared", r"$|\nabla U|^2$", "kT²/a0²"),
     "laplacian": Column("Laplacian", r"$\nabla^2 U$", "kT/a0²"),
     "configurational": Column("configurational", r"$T_\mathrm{conf}$", "kT"),
+    "pressure_contacts": Column("of contacts", r"$p^\mathrm{con}$", S),
     # wake
     "distance": Column("distance from the bead's center", "$r$", A),
     "cosine": Column("cosine of the angle with the drive", r"$\cos\theta$"),
@@ -234,12 +237,12 @@ PANELS = {
     ),
     "stress": (
         Panel("Shear stress", ("sigma_xy", "sigma_lower", "sigma_upper"), rf"stress $\sigma_{{xy}}$ / {S}"),
-        Panel("Its parts in the bulk", ("sigma_xy_kinetic", "sigma_xy_collisional", "sigma_xy_spring", "sigma_xy_fibers"), rf"stress $\sigma_{{xy}}$ / {S}"),
-        Panel("Normal stress difference", ("N1", "N1_spring", "N1_fibers"), level=0.0),
+        Panel("Its parts in the bulk", ("sigma_xy_kinetic", "sigma_xy_collisional", "sigma_xy_spring", "sigma_xy_fibers", "sigma_xy_contacts"), rf"stress $\sigma_{{xy}}$ / {S}"),
+        Panel("Normal stress difference", ("N1", "N1_spring", "N1_fibers", "N1_contacts"), level=0.0),
         Panel("Pressure", ("pressure",)),
     ),
     "pressure": (
-        Panel("Pressure", ("pressure", "p_xx", "p_yy", "p_zz"), rf"pressure / {S}"),
+        Panel("Pressure", ("pressure", "p_xx", "p_yy", "p_zz", "pressure_contacts"), rf"pressure / {S}"),
         Panel("Shear", ("p_xy",), level=0.0),
         Panel("Potential energy", ("potential",)),
         Panel("Configurational temperature", ("configurational",), level=1.0),

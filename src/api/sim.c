@@ -294,7 +294,7 @@ static int stopped(const struct uncross_sim *sim, uncross_error *error)
 static int advance(struct uncross_sim *sim, uint64_t steps, uncross_error *error)
 {
   for (uint64_t k = 0; k < steps; k++) {
-    if (!step_advance(&sim->state, &sim->scene.model, &sim->work, NULL)) {
+    if (!step_advance(&sim->state, &sim->scene.model, &sim->work, observers_contacts(sim->observers))) {
       sim->stopped = true;
       return stopped(sim, error);
     }

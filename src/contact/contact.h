@@ -224,9 +224,10 @@ struct contact_event {
   struct crossing_hit hit;
   bool executed;  /* true for the first of this move's hits; the others have no effect */
   double impulse; /* dP, m a0/t0, if executed; else 0 */
+  double gap;     /* between the points of contact of two bonds that move at once, a0: that of their tubes; else 0 */
 };
 
-/* Receives each hit, for oracles and tests. NULL in runs. */
+/* Receives each hit, for oracles, tests, and observables of what contacts hand on. NULL: nobody asks. */
 struct contact_log {
   void (*record)(void *context, const struct contact_event *event);
   void *context;

@@ -80,7 +80,7 @@ static void test_bond(const struct state *state, const struct model *model, cons
     if (model->crossing.exclusion == EXCLUSION_PAPER && linked_to_moving(model, t->vertex, n))
       continue;
     struct contact_event event = {
-        t->vertex, bond, (uint32_t)n->bond, {n->image[0], n->image[1], n->image[2]}, {.time = 0.0}, false, 0.0};
+        t->vertex, bond, (uint32_t)n->bond, {n->image[0], n->image[1], n->image[2]}, {.time = 0.0}, false, 0.0, 0.0};
     if (crossing_find(&q, &event.hit))
       note_hit(t, event);
   }

@@ -317,7 +317,7 @@ enum run_code run_advance(struct run *run, uint64_t steps, bool (*keep_on)(void 
     return RUN_BAD_INPUT;
   }
   for (uint64_t k = 0; k < steps && p->state->step < p->scene->steps; k++) {
-    if (!step_advance(p->state, &p->scene->model, p->work, NULL)) {
+    if (!step_advance(p->state, &p->scene->model, p->work, observers_contacts(p->observers))) {
       message_fault(message, &p->work->fault);
       return stop(run, RUN_STOPPED, message);
     }

@@ -85,6 +85,11 @@ static bool thick(const struct model *m)
   return m->thickness > 0 && m->crossing.forbidden;
 }
 
+static bool no_tubes(const struct model *m)
+{
+  return !thick(m);
+}
+
 static bool beside_frozen(const struct model *m)
 {
   return m->frozen > 0;
@@ -101,6 +106,7 @@ static const struct {
     [NO_NETWORK] = {"no bead, or no fibers", no_network},
     [NO_TRAP] = {"a bead without a trap", no_trap},
     [NO_PAIR_FORCES] = {"no forces of pairs", no_pair_forces},
+    [NO_TUBES] = {"no thick fibers that cannot cross", no_tubes},
     [IN_A_PLANE] = {"two dimensions", model_is_flat},
     [IN_SHEAR] = {"sheared box", model_is_sheared},
     [BETWEEN_WALLS] = {"walls", model_has_walls},
@@ -129,8 +135,8 @@ bool meaning_holds(enum circumstance where, const struct model *model)
 /* A bead is a place at which momentum leaves what is summed. */
 #define GIVEN_TO_BEAD "momentum that the solvent gives to the bead is not in "
 #define NO_TENSION "the tension of bonds is not in its stress; allowed without medium.inextensible"
-#define NO_TUBES                                                                                                       \
-  "what thick fibers hand on at a contact is not in it; allowed with diameter: 0, or crossing.forbidden: false"
+#define HANDED_ON                                                                                                      \
+  "with what contacts hand on, a mean since the row before; contacts that are called rigid hand on nothing"
 
 const struct meaning meanings[] = {
     {OBSERVE_CONSERVED, NO_PAIR_FORCES, LEFT_OUT, "pairs", "no pair has an energy"},
@@ -193,10 +199,10 @@ const struct meaning meanings[] = {
      "velocities that are permuted carry momentum across the box; allowed with hydrodynamics: true"},
     {OBSERVE_STRESS, BESIDE_FROZEN, REFUSED, NULL,
      "momentum that frozen fibers take up is not in its stress; allowed without frozen fibers"},
-    {OBSERVE_STRESS, THICK, LEFT_OUT, "sigma_xy N1 pressure sigma_xy_fibers N1_fibers",
-     "what thick fibers hand on at a contact is not in them"},
     {OBSERVE_STRESS, NO_FIBERS_NO_DUMBBELLS, LEFT_OUT, "sigma_xy_spring N1_spring", "there are no springs"},
     {OBSERVE_STRESS, NO_FIBERS, LEFT_OUT, "sigma_xy_fibers N1_fibers", "there are no fibers"},
+    {OBSERVE_STRESS, NO_TUBES, LEFT_OUT, "sigma_xy_contacts N1_contacts", "thin fibers hand on nothing at a contact"},
+    {OBSERVE_STRESS, THICK, MEANS, "sigma_xy N1 pressure sigma_xy_contacts N1_contacts", HANDED_ON},
     {OBSERVE_STRESS, IN_A_FLOW, MEANS, "N1 pressure", "a flow u that is not linear counts, as −ρ⟨u²⟩"},
     {OBSERVE_STRESS, IN_A_BATH_WITH_FLOW, MEANS, NULL, "of fibers alone"},
     {OBSERVE_STRESS, BETWEEN_WALLS, MEANS, NULL,
@@ -231,11 +237,13 @@ const struct meaning meanings[] = {
     {OBSERVE_PRESSURE, IN_A_FLOW, REFUSED, NULL,
      "a flow that differs from place to place would count as pressure; allowed without forces between walls, profile, "
      "or sliding walls; with them: observe.stress"},
-    {OBSERVE_PRESSURE, THICK, REFUSED, NULL, NO_TUBES},
-    {OBSERVE_PRESSURE, BESIDE_FROZEN, LEFT_OUT, "pressure p_xx p_yy p_zz p_xy", "frozen fibers hold what pushes them"},
+    {OBSERVE_PRESSURE, NO_TUBES, LEFT_OUT, "pressure_contacts", "thin fibers hand on nothing at a contact"},
+    {OBSERVE_PRESSURE, BESIDE_FROZEN, LEFT_OUT, "pressure p_xx p_yy p_zz p_xy pressure_contacts",
+     "frozen fibers hold what pushes them"},
     {OBSERVE_PRESSURE, BETWEEN_WALLS, LEFT_OUT, "force_square laplacian configurational",
      "walls push too, which is no force of the energy"},
     {OBSERVE_PRESSURE, IN_A_PLANE, LEFT_OUT, "p_zz", "nothing moves along z"},
+    {OBSERVE_PRESSURE, THICK, MEANS, "pressure p_xx p_yy p_zz p_xy pressure_contacts", HANDED_ON},
     {OBSERVE_PRESSURE, IN_SHEAR, MEANS, "pressure p_xx p_yy p_zz p_xy", "about the linear flow"},
     {OBSERVE_PRESSURE, BETWEEN_WALLS, MEANS, "pressure p_xx p_yy p_zz p_xy", "mean over the whole gap"},
     {OBSERVE_PRESSURE, IN_A_BATH_WITH_FLOW, MEANS, "pressure p_xx p_yy p_zz p_xy", "of vertices alone, about `flow`"},

@@ -21,7 +21,8 @@ enum circumstance {
   NO_NETWORK,
   NO_TRAP,
   NO_PAIR_FORCES,
-  NOTHING_OF_THE_KIND = NO_PAIR_FORCES, /* the last of those */
+  NO_TUBES,
+  NOTHING_OF_THE_KIND = NO_TUBES, /* the last of those */
   IN_A_PLANE,
   IN_SHEAR,
   BETWEEN_WALLS,

@@ -42,7 +42,8 @@ struct observers {
   struct observe_block block[MAX_BLOCKS];
   char block_name[MAX_BLOCKS][OBSERVER_NAME_SIZE];
   size_t blocks;
-  uint64_t from; /* of the plan */
+  uint64_t from;               /* of the plan */
+  struct contact_log contacts; /* without `record` if no observer asks for them */
 
   /* Of time series: the columns that the model has, and their places in a row. */
   size_t columns[OBSERVABLES], place[OBSERVABLES][OBSERVE_MOST_COLUMNS];
@@ -115,6 +116,14 @@ uint64_t observers_bytes(const struct observe_plan *plan, const struct model *mo
   return kept;
 }
 
+static void show_contact(void *context, const struct contact_event *event)
+{
+  struct observers *observers = context;
+  for (int k = 0; k < OBSERVABLES; k++)
+    if (observers->observer[k].every > 0 && observers->observer[k].type->contact)
+      observers->observer[k].type->contact(&observers->observer[k], event);
+}
+
 static bool create(struct observers *observers, enum observable which, const struct observe_plan *plan,
                    const struct model *model)
 {
@@ -134,6 +143,8 @@ static bool create(struct observers *observers, enum observable which, const str
     add_setting(observers, observable_names[which], ".longest_lag", &o->longest_lag);
   if (which == OBSERVE_PROFILE)
     add_setting(observers, observable_names[which], ".slabs", &o->slabs);
+  if (o->type->contact && meaning_holds(THICK, model)) /* no others hand on something at a contact */
+    observers->contacts = (struct contact_log){show_contact, observers};
   add_block(observers, observable_names[which], "reals", false, o->size.reals, o->real);
   add_block(observers, observable_names[which], "integers", true, o->size.integers, o->integer)->wraps =
       which == OBSERVE_STRESS; /* sums that wrap: system/account.h */
@@ -187,6 +198,11 @@ struct mpc_stress *observers_stress(struct observers *observers)
 {
   const struct observer *o = &observers->observer[OBSERVE_STRESS];
   return o->every > 0 ? (struct mpc_stress *)o->real : NULL;
+}
+
+const struct contact_log *observers_contacts(const struct observers *observers)
+{
+  return observers->contacts.record ? &observers->contacts : NULL;
 }
 
 static bool due(const struct observer *observer, uint64_t step)

@@ -10,6 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "contact/contact.h"
 #include "system/model.h"
 #include "system/state.h"
 
@@ -71,6 +72,9 @@ struct mpc_stress;
 /* Where collisions are to sum the stress (mpc->stress, mpc/stress.h): the observer's own memory. NULL if the plan does
  * not ask for it. */
 struct mpc_stress *observers_stress(struct observers *observers);
+
+/* What is to receive the contacts of each step (step_advance). NULL if no observer asks for them. */
+const struct contact_log *observers_contacts(const struct observers *observers);
 
 /* True if an observer is due at this step. */
 bool observers_due(const struct observers *observers, uint64_t step);

@@ -60,6 +60,9 @@ struct observer_type {
   size_t columns;
   bool (*row)(struct observer *observer, struct view *view, double *row); /* false: there is none yet */
 
+  /* A time series: adds a contact of thick fibers (observe/handed_on.h). NULL if it needs none. */
+  void (*contact)(struct observer *observer, const struct contact_event *event);
+
   /* A summary: the function that adds a sample, and the one that makes a table for each kind of fiber. NULL for time
    * series. */
   void (*add)(struct observer *observer, struct view *view);

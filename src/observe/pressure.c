@@ -1,7 +1,8 @@
 /*
  * The pressure tensor and the configurational temperature, at the step of the row:
  *
- *   p_ab = (1/V) [sum of m w_a w_b + sum of r_a F_b],   T = <sum of |grad U|^2>/<laplacian of U>
+ *   p_ab = (1/V) [sum of m w_a w_b + sum of r_a F_b + what contacts hand on],   T = <sum of |grad U|^2>/<laplacian of
+ * U>
  *
  * (Rugh 1997; Butler, Ayton, Jepps and Evans, J. Chem. Phys. 109, 6519 (1998)). U is the energy of bonds, bends,
  * springs of dumbbells, and of the medium's pairs; w velocities relative to the flow of the place, of the time at which
@@ -16,6 +17,7 @@
 #include "fluid/fluid.h"
 #include "medium/repulsion.h"
 #include "observe/background.h"
+#include "observe/handed_on.h"
 #include "observe/observer.h"
 
 struct sums {
@@ -145,16 +147,26 @@ static bool measure(struct view *view, struct sums *s)
   return ok;
 }
 
+static double trace(const double p[STRESS_COMPONENTS], double dimensions)
+{
+  return p[STRESS_XX] + p[STRESS_YY] + (dimensions > 2 ? p[STRESS_ZZ] : 0.0);
+}
+
+/* With thick fibers the first row has no time to average over, and is left out. */
 static bool pressure_row(struct observer *o, struct view *view, double *row)
 {
-  (void)o;
   const struct model *model = view->model;
   const double volume = box_volume(&model->box), d = model->dimensions;
   struct sums s = {.potential = 0.0};
+  double contacts[STRESS_COMPONENTS];
+  if (!handed_on_mean(o, view, contacts))
+    return false;
   const double unknown = measure(view, &s) ? 0.0 : NAN;
-  const double *p = s.flow;
+  double *p = s.flow;
+  for (int k = 0; k < STRESS_COMPONENTS; k++)
+    p[k] += contacts[k];
   const double values[] = {view_time(view),
-                           unknown + (p[STRESS_XX] + p[STRESS_YY] + (d > 2 ? p[STRESS_ZZ] : 0.0)) / (d * volume),
+                           unknown + trace(p, d) / (d * volume),
                            unknown + p[STRESS_XX] / volume,
                            unknown + p[STRESS_YY] / volume,
                            unknown + p[STRESS_ZZ] / volume,
@@ -162,16 +174,28 @@ static bool pressure_row(struct observer *o, struct view *view, double *row)
                            unknown + s.potential,
                            unknown + s.square,
                            unknown + s.laplacian,
-                           unknown + s.square / s.laplacian};
+                           unknown + s.square / s.laplacian,
+                           trace(contacts, d) / (d * volume)};
   memcpy(row, values, sizeof values);
   return true;
 }
 
-static const char *const columns[] = {"time", "pressure",  "p_xx",         "p_yy",      "p_zz",
-                                      "p_xy", "potential", "force_square", "laplacian", "configurational"};
+static const char *const columns[] = {"time",
+                                      "pressure",
+                                      "p_xx",
+                                      "p_yy",
+                                      "p_zz",
+                                      "p_xy",
+                                      "potential",
+                                      "force_square",
+                                      "laplacian",
+                                      "configurational",
+                                      "pressure_contacts"};
 
 const struct observer_type pressure_observer = {
     .column = columns,
     .columns = sizeof columns / sizeof *columns,
+    .size = handed_on_size,
     .row = pressure_row,
+    .contact = handed_on_add,
 };

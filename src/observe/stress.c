@@ -1,11 +1,11 @@
 /*
  * The stress of the solvent, averaged over the collisions since the row before (mpc/stress.h); that of fibers at the
- * step of the row; and the stress on walls, from the momentum that they have given since the row before
- * (system/account.h).
+ * step of the row; that of contacts of thick fibers since the row before (observe/handed_on.h); and the stress on
+ * walls, from the momentum that they have given since the row before (system/account.h).
  *
  * Fibers: -(1/volume) sum of M w_a w_b + F_a r_b, w being the velocity of a vertex relative to the applied flow, F the
  * force of its bonds and bends, and r its place. These forces have no sum within a fiber, so the origin does not
- * matter. At a contact both bonds are at one place and get opposite impulses: contacts add nothing.
+ * matter. At a contact thin bonds are at one place and get opposite impulses: such contacts add nothing.
  */
 #include <math.h>
 #include <string.h>
@@ -13,6 +13,7 @@
 #include "fiber/force.h"
 #include "mpc/stress.h"
 #include "observe/background.h"
+#include "observe/handed_on.h"
 #include "observe/observer.h"
 #include "system/account.h"
 
@@ -21,9 +22,9 @@ enum { MARK, LAST_STEP, LAST_ACCOUNT, LAST_TURNS = LAST_ACCOUNT + ROWS, INTEGERS
 
 static void size_stress(const struct observer *observer, const struct model *model, struct observer_size *size)
 {
-  (void)observer;
   size->reals = stress_doubles(model);
   size->integers = INTEGERS;
+  handed_on_size(observer, model, size);
 }
 
 /* Momentum along x that a wall has given since the row before, m a0/t0. */
@@ -96,10 +97,10 @@ static bool stress_row(struct observer *o, struct view *view, double *row)
   const double passed = (double)(int64_t)(state->step - (uint64_t)o->integer[LAST_STEP]) * model->time_step;
   const bool walls = model_has_walls(model), solvent = model_has_solvent(model);
   double kinetic[STRESS_COMPONENTS], collisional[STRESS_COMPONENTS], spring[STRESS_COMPONENTS] = {0};
-  double total[STRESS_COMPONENTS], fibers[STRESS_COMPONENTS];
+  double total[STRESS_COMPONENTS], fibers[STRESS_COMPONENTS], contacts[STRESS_COMPONENTS];
   if (passed == 0.0)
     begin(o, model, state);
-  if ((solvent && n == 0.0) || (walls && passed == 0.0))
+  if ((solvent && n == 0.0) || (walls && passed == 0.0) || !handed_on_mean(o, view, contacts))
     return false;
   fiber_stress(view, fibers);
   for (int k = 0; k < STRESS_COMPONENTS; k++) {
@@ -107,7 +108,8 @@ static bool stress_row(struct observer *o, struct view *view, double *row)
     collisional[k] = n > 0.0 ? -s->collisional[k] / (n * model_collision_interval(model)) : NAN;
     if (model_has_dumbbells(model))
       spring[k] = n > 0.0 ? s->spring[k] / n : NAN;
-    total[k] = (solvent ? kinetic[k] + collisional[k] + spring[k] : 0.0) + fibers[k];
+    contacts[k] /= -box_volume(&model->box);
+    total[k] = (solvent ? kinetic[k] + collisional[k] + spring[k] : 0.0) + fibers[k] + contacts[k];
   }
   const double trace = total[STRESS_XX] + total[STRESS_YY] + (model->dimensions > 2 ? total[STRESS_ZZ] : 0.0);
   const double values[] = {view_time(view),
@@ -121,19 +123,33 @@ static bool stress_row(struct observer *o, struct view *view, double *row)
                            spring[STRESS_XY],
                            spring[STRESS_XX] - spring[STRESS_YY],
                            fibers[STRESS_XY],
-                           fibers[STRESS_XX] - fibers[STRESS_YY]};
+                           fibers[STRESS_XX] - fibers[STRESS_YY],
+                           contacts[STRESS_XY],
+                           contacts[STRESS_XX] - contacts[STRESS_YY]};
   memcpy(row, values, sizeof values);
   begin(o, model, state);
   return true;
 }
 
-static const char *const columns[] = {
-    "time",        "sigma_xy",        "sigma_xy_kinetic", "sigma_xy_collisional", "N1",       "pressure", "sigma_lower",
-    "sigma_upper", "sigma_xy_spring", "N1_spring",        "sigma_xy_fibers",      "N1_fibers"};
+static const char *const columns[] = {"time",
+                                      "sigma_xy",
+                                      "sigma_xy_kinetic",
+                                      "sigma_xy_collisional",
+                                      "N1",
+                                      "pressure",
+                                      "sigma_lower",
+                                      "sigma_upper",
+                                      "sigma_xy_spring",
+                                      "N1_spring",
+                                      "sigma_xy_fibers",
+                                      "N1_fibers",
+                                      "sigma_xy_contacts",
+                                      "N1_contacts"};
 
 const struct observer_type stress_observer = {
     .column = columns,
     .columns = sizeof columns / sizeof *columns,
     .size = size_stress,
     .row = stress_row,
+    .contact = handed_on_add,
 };

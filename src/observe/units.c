@@ -35,7 +35,7 @@ static const struct {
     {OBSERVE_STRESS, "t0", "time"},
     {OBSERVE_STRESS, "kT/a0^3",
      "sigma_xy sigma_xy_kinetic sigma_xy_collisional N1 pressure sigma_lower sigma_upper sigma_xy_spring N1_spring "
-     "sigma_xy_fibers N1_fibers"},
+     "sigma_xy_fibers N1_fibers sigma_xy_contacts N1_contacts"},
     {OBSERVE_DUMBBELLS, "a0^2", "r2 rxrx ryry rzrz rxry"},
     {OBSERVE_DUMBBELLS, "1", "extension samples"},
     {OBSERVE_DUMBBELLS, "degrees", "chi"},
@@ -54,7 +54,7 @@ static const struct {
     {OBSERVE_MEMORY, "(kT)^2", "stress_memory"},
     {OBSERVE_MEMORY, "1", "intervals"},
     {OBSERVE_PRESSURE, "t0", "time"},
-    {OBSERVE_PRESSURE, "kT/a0^3", "pressure p_xx p_yy p_zz p_xy"},
+    {OBSERVE_PRESSURE, "kT/a0^3", "pressure p_xx p_yy p_zz p_xy pressure_contacts"},
     {OBSERVE_PRESSURE, "kT", "potential configurational"},
     {OBSERVE_PRESSURE, "(kT/a0)^2", "force_square"},
     {OBSERVE_PRESSURE, "kT/a0^2", "laplacian"},

@@ -80,7 +80,7 @@ static struct outcome *run_of(const char *text, enum observable which)
   work.mpc.stress = observers_stress(observers);
   assert_true(observers_sample(observers, m, &state, &sink));
   for (uint64_t step = 0; step < o->scene.steps; step++) {
-    assert_true(step_advance(&state, m, &work, NULL));
+    assert_true(step_advance(&state, m, &work, observers_contacts(observers)));
     assert_true(observers_sample(observers, m, &state, &sink));
   }
   if (!is_series(&o->scene, which, o))
@@ -389,6 +389,7 @@ static const struct {
     [NO_NETWORK] = {CELLS "bead: {radius: 1.5, center: [4, 4, 4]}\n", NULL},
     [NO_TRAP] = {CELLS "bead: {radius: 1.5, center: [4, 4, 4]}\n", NULL},
     [NO_PAIR_FORCES] = {CELLS, ""},
+    [NO_TUBES] = {CELLS, ""},
     [IN_A_PLANE] = {CELLS "dimensions: 2\ncrossing: {forbidden: false}\n", ""},
     [IN_SHEAR] = {CELLS "shear: {rate: 0.1}\n", ""},
     [BETWEEN_WALLS] = {CELLS "walls: {kind: no-slip}\n", ""},
@@ -532,7 +533,7 @@ static void everything_everywhere(void **unused)
       work.mpc.stress = observers_stress(o);
       for (int step = 0; step < 8; step++) {
         assert_true(observers_sample(o, &scene.model, &state, &sink));
-        assert_true(step_advance(&state, &scene.model, &work, NULL));
+        assert_true(step_advance(&state, &scene.model, &work, observers_contacts(o)));
       }
       assert_true(observers_summaries(o, &scene.model, check_summary, &check));
       assert_true(observers_summaries(o, &scene.model, mark_summary, &check.which));

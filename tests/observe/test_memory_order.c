@@ -57,7 +57,7 @@ static struct bytes run(const struct scene *scene, struct dice *dice)
     if (dice)
       shuffle_memory(&state, dice);
     assert_true(observers_sample(o, m, &state, &sink));
-    assert_true(step == STEPS || step_advance(&state, m, &work, NULL));
+    assert_true(step == STEPS || step_advance(&state, m, &work, observers_contacts(o)));
   }
   const struct conserved end = observe_conserved(m, &state); /* as run.json has it */
   append(&found, &end, sizeof end);
