@@ -1,8 +1,10 @@
-/* The tables of docs/scene.md, from the tables of keys; and that of docs/observables.md. */
+/* The tables of docs/scene.md, from the tables of keys and of refusals; and that of docs/observables.md. */
 #include <stdio.h>
+#include <string.h>
 
 #include "observe/meaning.h"
 #include "scene/scene_keys.h"
+#include "system/refusals.h"
 
 /* In a cell of a table a bar would end the cell. */
 static void write_cell(FILE *f, const char *text)
@@ -58,9 +60,41 @@ static void document_sections(FILE *f, const struct key_table *table)
   }
 }
 
+/* The key that follows this one in the alphabet, of those that are refused; NULL after the last. */
+static const char *next_refused(const char *key)
+{
+  const char *next = NULL;
+  for (size_t i = 0; i < refusal_count; i++)
+    if ((!key || strcmp(refusals[i].key, key) > 0) && (!next || strcmp(refusals[i].key, next) < 0))
+      next = refusals[i].key;
+  return next;
+}
+
+static void document_refusals(FILE *f)
+{
+  fputs("<!-- keys: What may not stand together -->\n## What may not stand together\n\n"
+        "A scene that says so is refused at the key of the first column.\n\n"
+        "| key | what is wrong; what is allowed |\n| --- | --- |\n",
+        f);
+  for (const char *key = next_refused(NULL); key; key = next_refused(key)) {
+    bool told = false;
+    for (size_t i = 0; i < refusal_count; i++) {
+      if (strcmp(refusals[i].key, key) != 0)
+        continue;
+      const char *quote = told || !*key ? "" : "`";
+      fprintf(f, "| %s%s%s | ", quote, told ? "" : *key ? key : "the whole", quote);
+      write_cell(f, refusals[i].why);
+      fputs(" |\n", f);
+      told = true;
+    }
+  }
+  fputs("\n<!-- end of keys -->\n", f);
+}
+
 void scene_document(FILE *f)
 {
   document_table(f, &scene_keys);
   document_sections(f, &scene_keys);
+  document_refusals(f);
   meaning_document(f);
 }

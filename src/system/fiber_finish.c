@@ -9,6 +9,7 @@
 #include "system/fiber_kind.h"
 #include "system/model.h"
 #include "system/model_keys.h"
+#include "system/refusals.h"
 #include "system/topology.h"
 
 /* A kind of fiber that is being checked. */
@@ -33,6 +34,11 @@ static bool reject_kind(const struct look *look, const char *key, const char *fo
   return false;
 }
 
+static bool refuses_none(const struct look *look, enum refusal_moment when)
+{
+  return refusals_check(when, look->model, look->kind, look->error);
+}
+
 /* Masses are summed exactly, in multiples of MODEL_MASS_UNIT. */
 static bool round_mass(const struct look *look)
 {
@@ -50,14 +56,10 @@ static bool round_mass(const struct look *look)
 static bool derive_bending(const struct look *look)
 {
   struct fiber_kind *k = look->kind;
+  if (!refuses_none(look, AT_BENDING))
+    return false;
   if (k->persistence_length == 0.0)
     return true;
-  if (k->bending != 0.0)
-    return reject_kind(look, "persistence_length", "bending is given too; allowed: one of the two");
-  if (k->bond_length == 0.0)
-    return reject_kind(look, "persistence_length",
-                       "bending = persistence_length/bond_length needs a bond_length above 0; allowed: give bending "
-                       "instead");
   k->bending = k->persistence_length / k->bond_length;
   return k->bending <= MODEL_MOST_BENDING ||
          reject_kind(look, "persistence_length",
@@ -69,12 +71,10 @@ static bool derive_bending(const struct look *look)
 static bool derive_spring(const struct look *look)
 {
   struct fiber_kind *k = look->kind;
+  if (!refuses_none(look, AT_SPRING))
+    return false;
   if (k->stands_for == 0)
-    return k->keeps == SIZE_ENDS || reject_kind(look, "keeps", "there is no finer chain; allowed with stands_for");
-  if (k->bond_length != 0.0 || k->bending != 0.0 || k->ring || k->vertices < 2)
-    return reject_kind(look, "stands_for",
-                       "only an open Gaussian chain of 2 vertices or more stands for another one; allowed: bond_length "
-                       "0, no bending, no ring");
+    return true;
   if (k->stands_for < k->vertices)
     return reject_kind(look, "stands_for", "%u vertices for a finer chain of %u; allowed: %u and more", k->vertices,
                        k->stands_for, k->vertices);
@@ -92,25 +92,6 @@ static bool check_shape(const struct look *look)
   if (k->ring != (k->start == START_CIRCLE))
     return reject_kind(look, "start", "%s for %s; allowed: %s", model_start_word(k->start),
                        k->ring ? "a ring" : "an open fiber", k->ring ? "circle" : "equilibrium | straight");
-  return true;
-}
-
-/* What would move a frozen fiber, or what it would stand still in. */
-static bool check_frozen(const struct look *look)
-{
-  const struct model *m = look->model;
-  const struct fiber_kind *k = look->kind;
-  const struct {
-    bool is;
-    const char *what;
-  } rows[] = {{k->force.x != 0.0 || k->force.y != 0.0 || k->force.z != 0.0, "a force"},
-              {m->flow.x != 0.0 || m->flow.y != 0.0 || m->flow.z != 0.0, "a flow"},
-              {m->walls.kind != WALL_ABSENT, "walls"},
-              {model_is_sheared(m), "shear"}};
-  for (size_t i = 0; i < sizeof rows / sizeof *rows && k->frozen; i++)
-    if (rows[i].is)
-      return reject_kind(look, "frozen", "frozen fibers together with %s; allowed: false, or a periodic box at rest",
-                         rows[i].what);
   return true;
 }
 
@@ -150,12 +131,8 @@ static bool check_places(const struct look *look)
 {
   const struct fiber_kind *k = look->kind;
   char key[64];
-  if (k->placed == 0)
-    return true;
-  if (k->start == START_EQUILIBRIUM)
-    return reject_kind(look, "places",
-                       "fibers that start in equilibrium are placed at random; allowed with start: straight, or for "
-                       "rings");
+  if (!refuses_none(look, AT_PLACES))
+    return false;
   if (k->placed > k->count) {
     snprintf(key, sizeof key, "places.%" PRIu32, k->count);
     return reject_kind(look, key, "%" PRIu32 " places; allowed: at most as many as fibers, %" PRIu32, k->placed,
@@ -213,11 +190,9 @@ static bool check_plane(const struct look *look)
 {
   const struct fiber_kind *k = look->kind;
   char key[64];
-  if (!model_is_flat(look->model))
-    return true;
-  if (k->force.z != 0.0)
-    return reject_kind(look, "force", "with dimensions: 2 nothing moves along z; allowed: a z component of 0");
-  for (uint32_t i = 0; i < k->placed; i++) {
+  if (!refuses_none(look, AT_PLANE))
+    return false;
+  for (uint32_t i = 0; i < k->placed && model_is_flat(look->model); i++) {
     const struct fiber_place *p = &k->place[i];
     snprintf(key, sizeof key, "places.%" PRIu32 ".%s", i, p->center.z != 0.0 ? "center" : "direction");
     if (p->center.z != 0.0)
@@ -258,28 +233,6 @@ static bool check_gap(const struct look *look)
 /* a0: far above the motion in a tick, which turns the normal by its part of the diameter. */
 #define THINNEST_TUBE 1e-4
 
-/* What a scene with tubes must be. */
-static bool check_tube_scene(const struct look *look)
-{
-  const struct model *m = look->model;
-  const struct {
-    bool ok;
-    const char *why;
-  } rows[] = {
-      {look->kind->vertices > 1, "a free point has no bond, and so no tube; allowed: 0"},
-      {m->crossing.forbidden, "with crossing: {forbidden: false} fibers pass through each other; allowed: 0"},
-      {m->crossing.rule == CROSSING_EVENT_DRIVEN,
-       "the rule sequential knows thin lines only; allowed: 0, or crossing: {rule: event-driven}"},
-      {m->walls.kind == WALL_ABSENT, "walls know the axes of fibers only; allowed between walls: 0"},
-      {m->box.boundary[1] != BOUNDARY_SHEAR,
-       "in a sheared box bonds move in sheared coordinates, where tubes are not round; allowed there: 0"},
-  };
-  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
-    if (!rows[i].ok)
-      return reject_kind(look, "diameter", "%s", rows[i].why);
-  return true;
-}
-
 /* How many bonds away a tube sees others of its fiber. With n bonds between them, two may touch at any bend if n bonds
  * are shorter than pi D/2, and without a bend if they are shorter than D. Lengths scatter by the width of a bond's
  * spring: three times that leaves their distribution as it is (docs/thick.md). */
@@ -298,10 +251,10 @@ static bool derive_tube(const struct look *look)
   struct fiber_kind *k = look->kind;
   const double bond = fiber_mean_bond(k);
   k->radius = 0, k->blind = 0;
+  if (!refuses_none(look, AT_TUBE))
+    return false;
   if (k->diameter == 0.0)
     return true;
-  if (!check_tube_scene(look))
-    return false;
   if (!(k->diameter >= THINNEST_TUBE && k->diameter <= bond))
     return reject_kind(look, "diameter",
                        "%.6g for bonds of a mean length of %.6g a0; allowed: 0, a thin line, or from %g to the length "
@@ -315,7 +268,7 @@ static bool derive_tube(const struct look *look)
 static bool finish_kind(const struct look *look, uint64_t *vertices)
 {
   return round_mass(look) && derive_bending(look) && derive_spring(look) && check_shape(look) &&
-         check_count(look, vertices) && check_frozen(look) && check_extent(look) && check_places(look) &&
+         check_count(look, vertices) && refuses_none(look, AT_FROZEN) && check_extent(look) && check_places(look) &&
          check_plane(look) && check_gap(look) && check_stability(look) && derive_tube(look);
 }
 
