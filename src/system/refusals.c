@@ -61,7 +61,7 @@ static bool has_walls(const struct model *m)
 
 static bool is_sheared(const struct model *m)
 {
-  return m->shear.rate != 0.0;
+  return m->shear.rate != 0.0 || m->shear.strain != 0.0;
 }
 
 static bool has_boundary(const struct model *m)

@@ -21,7 +21,7 @@ REFUSE(AT_MEDIUM, "walls", has_walls(m),
        "only a solvent of collision cells has rules for walls; allowed without a medium")
 REFUSE(AT_MEDIUM, "medium.inextensible", m->medium.inextensible && !model_is_overdamped(m),
        "only vertices without velocities are held by tension; allowed with kind: overdamped")
-REFUSE(AT_MEDIUM, "shear", m->shear.rate != 0.0 || m->shear.strain != 0.0,
+REFUSE(AT_MEDIUM, "shear", is_sheared(m),
        "only a solvent of collision cells has rules for images that slide; allowed without a medium")
 
 REFUSE(AT_MEDIUM_KIND, "medium.kind", is_private(m) && m->kinds == 0,
