@@ -191,11 +191,9 @@ beside it.
 {failed}
 ## Within the theory's stated allowance
 
-The difference is larger than the error bars explain. It is smaller than what the theory is stated, beforehand, to be off by; z counts
-standard errors. The report has each statement and the source of each expected number.
+The difference is larger than the error bars explain. It is smaller than what the theory is stated, beforehand, to be off by. Measured (expected, allowed; difference in
+standard errors); the report has each statement and the source of each expected number.
 
-| | measured | expected | allowed | z |
-| --- | --- | --- | --- | --- |
 {covered}
 
 ## Not reproduced
@@ -242,8 +240,9 @@ def standing(summed):
                       f"{have - len(part['unfinished'])}, {have}, {have + len(part['absent'])} | {part['cpu_seconds'] / 3600.0:.1f} |")
         failed += [f"| `{row['id']}`: {cell(row['statement'])} | {plusminus(row['measured'], row['error'])} | "
                    f"{plusminus(row['expected'], row['expected_error'])} ({cell(row['source'])}) | {signed(row['z'])} |" for row in rows(name, "fail")]
-        covered += [f"| `{row['id']}` | {plusminus(row['measured'], row['error'])} | {plusminus(row['expected'], row['expected_error'])} | "
-                    f"{number(row['allowed'])} | {signed(row['z'])} |" for row in rows(name, "within allowance")]
+        near = [f"`{row['id'].removeprefix(name + '.')}` {plusminus(row['measured'], row['error'])} ({plusminus(row['expected'], row['expected_error'])}, "
+                f"{number(row['allowed'])}; {signed(row['z'])})" for row in rows(name, "within allowance")]
+        covered += [f"- [{name}]({name}.md): {', '.join(near)}"] if near else []
         reasons = [cell(row["reason"]) for row in rows(name, "not reproduced")]
         findings += [f"| `{row['id']}`: {cell(row['statement'])} | {plusminus(row['measured'], row['error'])} | "
                      f"{plusminus(row['expected'], row['expected_error'])} | {'as above' if reason == last else reason} |"
@@ -252,7 +251,7 @@ def standing(summed):
                       f"{plusminus(row['expected'], row['expected_error'])} |" for row in rows(name, "undecided")]
     return STANDING.format(hours=math.fsum(part["cpu_seconds"] for part in summed["sections"]) / 3600.0,
                            planned=math.fsum(part["hours_estimated"] for part in summed["sections"]),
-                           cases="\n".join(table), failed=FAILED.format(failed="\n".join(failed)) if failed else "", covered="\n".join(covered) or "| nothing | | | | |", findings="\n".join(findings), undecided="\n".join(undecided) or "| nothing | | |")
+                           cases="\n".join(table), failed=FAILED.format(failed="\n".join(failed)) if failed else "", covered="\n".join(covered) or "- nothing", findings="\n".join(findings), undecided="\n".join(undecided) or "| nothing | | |")
 
 
 def write_standing(summed, page):
