@@ -306,7 +306,7 @@ static int advance(struct uncross_sim *sim, uint64_t steps, uncross_error *error
 
 static int fail_of_run(uncross_error *error)
 {
-  return fail(error, UNCROSS_BAD_INPUT, "sim: is that of a run, which advances and saves it", NULL);
+  return fail(error, UNCROSS_BAD_INPUT, "sim: it belongs to a run, which advances and saves it", NULL);
 }
 
 int uncross_sim_advance(uncross_sim *sim, uint64_t steps, uncross_error *error)

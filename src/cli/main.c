@@ -129,7 +129,7 @@ const struct command commands[COMMANDS] = {
          "all tables,\n"
          "summary.csv with a row for each point of the grid, and runs.csv with the exit code of each run "
          "(docs/running.md).\n"
-         "Nothing is written over. The exit code is that of the first run that failed.\n",
+         "Nothing is written over. The exit code is the code of the first run that failed.\n",
          NULL},
     [COMMAND_EMIT] = {"oracle emit", "SCENE", 1, WRITES,
                       "inputs and outputs of every operator, at two steps, as a pack", NULL, oracle_emit_file},

@@ -177,7 +177,7 @@ static void write_differences(FILE *out, const struct given *f, const struct uni
   fputs("# - Between contacts fibers have no width: no excluded volume.\n", out);
   if (p->kind.bending == 0.0)
     fprintf(out,
-            "# - A bond is longer than l_p: the chain has no stiffness. Its R_e is that of the wormlike chain, %s.\n",
+            "# - A bond is longer than l_p: the chain has no stiffness. It has the R_e of the wormlike chain, %s.\n",
             quantity_text(sqrt(si_wormlike_square(f->length, f->persistence)), "m", true, text[0], sizeof text[0]));
 }
 

@@ -7,8 +7,8 @@
  * directions are not the same: normals of contacts are taken back (drift_normal, drift_true).
  *
  * Places are whole numbers of lattice units in both coordinates, and the map between them has an inverse: contacts
- * found on one side of it are contacts on the other. The place of a vertex at the end of a drift is that of its
- * straight path in the laboratory. Between, a path that is straight in sheared coordinates is off the laboratory's by
+ * found on one side of it are contacts on the other. At the end of a drift a vertex is at the end of its straight path
+ * in the laboratory. Between, a path that is straight in sheared coordinates is off the laboratory's by
  * at most a quarter of rate |v_y| dt^2, 1e-6 a0.
  */
 #ifndef UNCROSS_CONTACT_DRIFT_H

@@ -15,8 +15,8 @@
  * At every tick up to the one at hand, all bonds are apart: each piece of path that is flown was searched. So no bond
  * passes through another.
  *
- * What a contact reverses is not the relative velocity of the drift but that of the present: a leap-frog's velocity v
- * is that of the middle of the drift, and a time tau later it is u = v + tau F/M, F being the forces at the contact.
+ * A contact reverses the relative velocity of the present, not the drift's: a leap-frog's velocity v belongs to the
+ * middle of the drift, and a time tau later the velocity is u = v + tau F/M, with the forces F at the contact.
  * With u, the exchange conserves the energy of the leap-frog to first order in tau, and is reversible
  * (docs/contacts.md).
  */
@@ -33,8 +33,8 @@
 
 /* --- a contact ---------------------------------------------------------------------------------------------------- */
 
-/* The four vertices of a contact: ends of the first bond, then of the other. touching: the bonds have no gap at all. In
- * a drift that began with bonds apart this happens at no tick. */
+/* The four vertices of a contact: ends of the first bond, then of the other. touching: the bonds touch already, which
+ * cannot happen in a drift that began with all bonds apart. */
 struct meeting {
   bool touching;
   struct event event;

@@ -15,8 +15,9 @@
 bool event_is_rigid(const struct event_drift *d, uint32_t n, const uint32_t *vertex);
 
 /* These vertices, and the clusters that they belong to, are one cluster from a tick on; with_bead: together with the
- * bead. Its rate is that of the bead if the bead belongs to it; else that of the first vertex in this order that
- * belonged to a cluster; else the mean of theirs, cut toward zero. False, with the fault recorded, as event_steer. */
+ * bead. Its rate is the bead's, if the bead belongs to it; else the rate of the first vertex in this order that
+ * belonged to a cluster; else the mean of all their rates, cut toward zero. False, with the fault recorded, as
+ * event_steer. */
 bool event_make_rigid(const struct event_drift *d, uint32_t n, const uint32_t *vertex, bool with_bead, int32_t tick);
 
 /* All members of a cluster have this rate from a tick on. False as event_make_rigid. */

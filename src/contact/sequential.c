@@ -98,7 +98,7 @@ static void add_along_x(struct state *state, const struct model *model, uint32_t
   state->velocity[model->next[bond]].x += speed;
 }
 
-/* The bonds exchange momentum. The velocity of an image in a sheared box is that of the bond and the image's own. */
+/* The bonds exchange momentum. In a sheared box an image has the velocity of the bond plus the image's own. */
 static void exchange(struct state *state, const struct model *model, const struct drift_frame *frame,
                      struct contact_event *e)
 {

@@ -27,8 +27,8 @@ static double volume_at(const struct flight_pair *pair, int32_t tick)
 }
 
 /* Perpendicular to both bonds. Parallel bonds have no such direction; and where both lie in one plane, an end meets a
- * bond from the side. Then it is the direction of the gap between them; if that cannot be told, that of their relative
- * velocity perpendicular to q. */
+ * bond from the side. Then it is the direction of the gap between them; if the gap has none, the direction of their
+ * relative velocity perpendicular to q. */
 static bool line_normal(const struct flight_pair *pair, int32_t tick, const struct shape_contact *at,
                         struct vec3 *normal)
 {

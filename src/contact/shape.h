@@ -22,8 +22,8 @@ struct bond_shape {
    * to 1. */
   void (*points)(struct vec3 p, struct vec3 q, struct vec3 w, double *s, double *t);
 
-  /* The unit vector along which they push each other, from the first to the other. False if they have no gap at all, as
-   * at no tick of a drift that began with bonds apart. */
+  /* The unit vector along which they push each other, from the first to the other. False if they touch already, which
+   * cannot happen in a drift that began with all bonds apart. */
   bool (*normal)(const struct flight_pair *pair, int32_t tick, const struct shape_contact *at, struct vec3 *n);
 };
 

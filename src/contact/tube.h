@@ -2,7 +2,7 @@
  * Two tubes in straight flight: when do they touch?
  *
  * A tube is all within D/2 of a bond, its axis: a cylinder with half a sphere at each end. Two tubes touch when the
- * distance of their axes falls to the reach, the sum of their radii. Flights and ticks are those of contact/flight.h.
+ * distance of their axes falls to the reach, the sum of their radii. contact/flight.h explains flights and ticks.
  *
  * The points w + s' q - s p, 0 <= s, s' <= 1, are a parallelogram that moves in time. The axes are as far apart as it
  * is from the origin. At time u of an interval, 0 <= u <= 1, its corners are c(u) = (1 - u) c0 + u c1. Take any two

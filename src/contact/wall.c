@@ -22,7 +22,7 @@ struct point wall_inside(const struct box *box, struct point p)
   return p;
 }
 
-/* The velocity after a hit. acceleration: F/M, a0/t0^2. Along y the speed is that of a contact's rebound. */
+/* The velocity after a hit. acceleration: F/M, a0/t0^2. Along y it rebounds as a contact does. */
 static struct vec3 after_hit(const struct model *model, enum wall wall, struct vec3 w, struct vec3 v,
                              struct vec3 acceleration, double tau)
 {

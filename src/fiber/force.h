@@ -44,7 +44,7 @@ struct plan;
 void fiber_plan_forces(struct plan *plan, const struct model *model, size_t room, const char *name);
 void fiber_plan_kick(struct plan *plan, const struct model *model, size_t room, double fraction, const char *name);
 
-/* The same of an overdamped move. */
+/* Appends an overdamped move to a plan, in the same way. */
 void fiber_plan_move(struct plan *plan, const struct model *model, size_t room, const char *name);
 
 struct fiber_energy {

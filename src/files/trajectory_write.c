@@ -224,7 +224,7 @@ static bool find_kept(struct frames *frames, uint64_t keep_to_step, uint64_t *ke
     if (verdict != FRAME_FINE)
       return false;
     if (*keep > 0 && step <= *last_step)
-      return message_set(message, "%s: the step of frame %" PRIu64 " is %" PRIu64 ", that of the frame before %" PRIu64,
+      return message_set(message, "%s: frame %" PRIu64 " is of step %" PRIu64 ", the frame before it of step %" PRIu64,
                          frames->path, *keep, step, *last_step);
     *last_step = step;
   }

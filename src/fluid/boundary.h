@@ -2,8 +2,8 @@
  * The boundary of the box, for particles in flight. This is the contract of the rows in boundary.c, one for each kind
  * of boundary along y; x and z are periodic.
  *
- * A flight is that of a particle on its own: free flight, and whatever happens at the boundary, at the exact
- * time at which it happens. `fly` and `now` give the same positions and velocities, to the bit.
+ * Each particle flies on its own: free flight, and whatever happens at the boundary, at the exact time at which it
+ * happens. `fly` and `now` give the same positions and velocities, to the bit.
  */
 #ifndef UNCROSS_FLUID_BOUNDARY_H
 #define UNCROSS_FLUID_BOUNDARY_H

@@ -1,8 +1,8 @@
 /*
  * How a collision goes through many solvent particles and cells: the contract of the rows in src/kernel/. The plain
  * kernel, in collide.c, calls the functions of the scene's fluid, border and rule one after the other. A fast kernel
- * does some of this at once, for several particles in one register. It gives the same bits: positions, velocities,
- * sums, turns and faults are those of the plain one (tests/kernel/).
+ * does some of this at once, for several particles in one register. It gives the same bits of positions, velocities,
+ * sums, turns and faults as the plain one (tests/kernel/).
  */
 #ifndef UNCROSS_MPC_KERNEL_H
 #define UNCROSS_MPC_KERNEL_H

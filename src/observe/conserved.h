@@ -1,7 +1,7 @@
 /*
  * Motion of a whole state: momentum, energies, temperatures.
  *
- * Velocities of vertices in a state are those of the half step ahead. Energy and momentum are those of the step itself:
+ * Velocities of vertices in a state belong to the half step ahead, energy and momentum to the step itself:
  * v(t) = v(t + dt/2) - F(t) dt / (2 M), with the forces computed anew. So measured, the energy of a leap-frog
  * fluctuates by O(dt^2) and does not drift; with half-step velocities it would fluctuate by O(dt). Solvent particles
  * fly freely since they were last streamed; under a constant acceleration a they have gained a x lag, which is added.

@@ -194,7 +194,7 @@ const struct meaning meanings[] = {
     {OBSERVE_STRESS, WITH_A_BEAD, REFUSED, NULL, GIVEN_TO_BEAD "its stress; allowed without a bead"},
     {OBSERVE_STRESS, INEXTENSIBLE, REFUSED, NULL, NO_TENSION},
     {OBSERVE_STRESS, IN_PAIRS, REFUSED, NULL,
-     "it is that of collision cells; allowed without a medium; with this one: observe.pressure"},
+     "it sums what collisions of cells do; allowed without a medium; with this one: observe.pressure"},
     {OBSERVE_STRESS, PERMUTED, REFUSED, NULL,
      "velocities that are permuted carry momentum across the box; allowed with hydrodynamics: true"},
     {OBSERVE_STRESS, BESIDE_FROZEN, REFUSED, NULL,
@@ -219,12 +219,12 @@ const struct meaning meanings[] = {
     {OBSERVE_BEAD, ANYWHERE, MEANS, NULL, "of the laboratory"},
 
     {OBSERVE_MEMORY, IN_SHEAR, REFUSED, NULL,
-     "it is that of equilibrium, and the box is sheared; allowed without shear"},
+     "it belongs to equilibrium, and the box is sheared; allowed without shear"},
     {OBSERVE_MEMORY, IN_A_FLOW, REFUSED, NULL,
-     "it is that of equilibrium, and the flow differs from place to place; allowed without forces, profile, sliding "
+     "it belongs to equilibrium, and the flow differs from place to place; allowed without forces, profile, sliding "
      "walls or a bead that is pulled"},
     {OBSERVE_MEMORY, BY_A_FORCE_ON_FIBERS, REFUSED, NULL,
-     "it is that of equilibrium, and a force pulls fibers; allowed without fibers.force"},
+     "it belongs to equilibrium, and a force pulls fibers; allowed without fibers.force"},
     {OBSERVE_MEMORY, INEXTENSIBLE, REFUSED, NULL, NO_TENSION},
     {OBSERVE_MEMORY, OVERDAMPED, LEFT_OUT, "vertices center", "there are no velocities"},
     {OBSERVE_MEMORY, THICK, LEFT_OUT, "stress_memory", "what thick fibers hand on at a contact is not in it"},
@@ -253,7 +253,7 @@ const struct meaning meanings[] = {
      "velocities of half a step ahead, when collisions act"},
     {OBSERVE_PRESSURE, ANYWHERE, MEANS, NULL, "about `flow`, and about the acceleration of everything"},
 
-    {OBSERVE_WAKE, NO_NETWORK, REFUSED, NULL, "it is that of fibers around a bead; allowed with both"},
+    {OBSERVE_WAKE, NO_NETWORK, REFUSED, NULL, "it looks at the fibers around a bead; allowed with both"},
     {OBSERVE_WAKE, ANYWHERE, MEANS, NULL, "of the laboratory"},
 };
 const size_t meaning_count = sizeof meanings / sizeof *meanings;

@@ -2,9 +2,9 @@
  * state: exactly what a restart needs. Everything else in a run is either model (it never changes) or work (it can be
  * rebuilt).
  *
- * Between steps the velocities of vertices are those of the half step ahead, v(t + dt/2): the leap-frog of Padding's
+ * Between steps the velocities of vertices belong to the half step ahead, v(t + dt/2): the leap-frog of Padding's
  * Eqs. (3), (4), (7), (8). Solvent particles fly freely between collisions, so they are streamed once per collision
- * interval: the stored positions are those of solvent_lag half steps ago.
+ * interval: the stored positions are solvent_lag half steps old.
  */
 #ifndef UNCROSS_SYSTEM_STATE_H
 #define UNCROSS_SYSTEM_STATE_H

@@ -262,7 +262,7 @@ static void bad_beads_are_refused(void **unused)
       {"{radius: 2}", "{pressure: {every: 1}}", 6, 21, "observe.pressure: momentum that the solvent gives to the bead"},
       {"{radius: 2}", "{profile: {every: 1, slabs: 4}}", 6, 20, "observe.profile: a slab is not full of solvent"},
       {"{radius: 2}", "{wake: {every: 1}}", 6, 17,
-       "observe.wake: it is that of fibers around a bead; allowed with both"},
+       "observe.wake: it looks at the fibers around a bead; allowed with both"},
   };
   int wrong = 0;
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
