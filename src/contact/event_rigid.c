@@ -16,8 +16,8 @@ bool event_is_rigid(const struct event_drift *d, uint32_t n, const uint32_t *ver
   return false;
 }
 
-/* The cluster to which these vertices belong from now on: the bead's, else the first that one of them has, else a new
- * one. */
+/* The cluster that these vertices are of from now on: that of the bead, that of the first that has one, or a new one.
+ */
 static uint32_t choose_cluster(const struct event_drift *d, uint32_t n, const uint32_t *vertex, bool with_bead)
 {
   const uint32_t of_bead = d->bead ? d->bead->cluster : 0;
