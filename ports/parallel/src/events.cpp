@@ -2,318 +2,428 @@
 
 #include <algorithm>
 
-constexpr int most_contacts = 1000;
-constexpr double usual_skin = 0.3;
+#ifdef _OPENMP
+#include <omp.h>
+#endif
 
-bool EventDrift::Later::operator()(const Event &a, const Event &b) const
+constexpr double usual_skin = 0.35;
+
+static int thread_count()
 {
-  if (a.tick != b.tick)
-    return a.tick > b.tick;
-  if (a.bond != b.bond)
-    return a.bond > b.bond;
-  if (a.other != b.other)
-    return a.other > b.other;
-  return std::lexicographical_compare(b.image, b.image + 3, a.image, a.image + 3);
+#ifdef _OPENMP
+  return omp_get_max_threads();
+#else
+  return 1;
+#endif
 }
 
-static Point rate_of(double time, Vector velocity)
+static int thread_number()
 {
-  return nearest(0x1p24 * (time * velocity));
+#ifdef _OPENMP
+  return omp_get_thread_num();
+#else
+  return 0;
+#endif
 }
 
-static double length_of(Point a)
-{
-  const Vector r = in_a0(a);
-  return std::sqrt(dot(r, r));
-}
+/* --- a drift ---------------------------------------------------------------------------------------------------- */
 
-/* --- a drift -------------------------------------------------------------------------------------------------------
- */
-
-void EventDrift::drift(double drift_time, double drift_start, std::vector<Point> &r, std::vector<Vector> &v,
-                       std::vector<ContactRow> *told)
+void EventDrift::drift(double time, double start, std::vector<Point> &r, std::vector<Vector> &v,
+                       std::vector<ContactRow> *rows)
 {
   position = &r, velocity = &v;
-  take_off(drift_time);
-  if (!model.forbidden) {
-    land();
-    return;
-  }
-  const std::vector<Vector> before = v;
-  const size_t rows_before = told ? told->size() : 0;
-  while (!fly(drift_time, drift_start, told)) { // a vertex came too far for the list: again, with a wider one
-    v = before;
-    if (told)
-      told->resize(rows_before);
-    take_off(drift_time);
-    renew_list(beyond);
-  }
-  land();
-}
-
-// Rates, and places of tick 0.
-void EventDrift::take_off(double drift_time)
-{
-  const size_t n = position->size();
-  time = drift_time;
-  origin = *position;
-  rate.resize(n);
-  bent_number.assign(n, 0);
-  bent.clear();
-  clusters = 0;
-  events = {};
-  version.resize(n);
   const double limit = 0.5 * (double)std::min({model.cells[0], model.cells[1], model.cells[2]});
-  double longest = 0.0;
-#pragma omp parallel for reduction(max : longest) schedule(static)
-  for (size_t i = 0; i < n; i++) {
-    rate[i] = rate_of(time, (*velocity)[i]);
-    longest = std::max(longest, length_of(ticks * rate[i]));
-  }
+  const double longest = take_off(time);
   if (longest >= limit)
     throw Stopped("a vertex would move by half the shortest edge or more");
   margin = 1e-4 * std::max(1.0, 4.0 * longest);
+  components.clear();
+  if (model.forbidden) {
+    if (!list.built)
+      renew_list(0.0);
+    const Flights flights = {model, fibers, list,   r.data(), rate.data(),    v.data(),
+                             time,  start,  margin, limit,    rows != nullptr};
+    double beyond = furthest();
+    if (2.0 * beyond + margin > list.skin) {
+      renew_list(0.0);
+      beyond = furthest();
+    }
+    while (!fly(flights, beyond)) { // a vertex comes too far for the list: again, with a wider one
+      for (const Component &component : components)
+        beyond = std::max(beyond, component.beyond);
+      renew_list(beyond);
+    }
+    if (rows)
+      tell(*rows);
+  }
+  land(v);
+}
+
+// Rates, and the length of the longest flight. Sizes below 2^51 are rounded by a sum: `nearest`.
+double EventDrift::take_off(double time)
+{
+  const int64_t n = (int64_t)position->size();
+  constexpr double magic = 0x1.8p52;
+  rate.resize(n), way.resize(n);
+  const double *const v = n > 0 ? &velocity->data()->x : nullptr;
+  int64_t *const u = n > 0 ? &rate.data()->x : nullptr;
+  double longest = 0.0;
+#pragma omp parallel reduction(max : longest)
+  {
+#pragma omp for schedule(static) nowait
+    for (int64_t block = 0; block < (n + 127) / 128; block++) {
+      const int64_t first = 128 * block, last = std::min(first + 128, n);
+      for (int64_t k = 3 * first; k < 3 * last; k++)
+        u[k] = (int64_t)(bits_of(0x1p24 * (time * v[k]) + magic) - bits_of(magic));
+      for (int64_t i = first; i < last; i++) {
+        const double x = time * v[3 * i], y = time * v[3 * i + 1], z = time * v[3 * i + 2];
+        way[i] = std::sqrt((x * x + y * y) + z * z) + 0x1p-24; // rates are rounded
+      }
+      for (int64_t i = first; i < last; i++)
+        longest = way[i] > longest ? way[i] : longest;
+      for (int64_t i = first; i < last; i++)
+        longest = way[i] >= 0.0 ? longest : 0x1p60; // not a number
+    }
+  }
+  return longest;
+}
+
+// The longest distance from its reference that a vertex comes to, if all fly straight.
+double EventDrift::furthest() const
+{
+  const int64_t n = (int64_t)position->size();
+  double most = 0.0;
+#pragma omp parallel for reduction(max : most) schedule(static)
+  for (int64_t i = 0; i < n; i++)
+    most = std::max(most, list.moved((int32_t)i, at_tick((*position)[i], rate[i], ticks)));
+  return std::sqrt(most);
 }
 
 // All pairs that may touch while no vertex is further than `need` from where it is now.
 void EventDrift::renew_list(double need)
 {
   list.build(*position, std::max(usual_skin, 3.0 * need + margin));
-  const size_t n = position->size();
-  path.assign(n, 0.0);
-  pair_due.assign(list.pairs.size(), 0.0);
+  path.assign(position->size(), 0.0);
+  due = list.apart;
+  counts.lists++;
 }
 
-bool EventDrift::fly(double, double drift_start, std::vector<ContactRow> *told)
+// False if the list is too narrow.
+bool EventDrift::fly(const Flights &flights, double straight)
 {
-  const size_t n = position->size();
-  start = drift_start, rows = told;
-  if (!list.built)
-    renew_list(0.0);
-  for (int attempt = 0; attempt < 2; attempt++) {
-    double furthest = 0.0;
-#pragma omp parallel for reduction(max : furthest) schedule(static)
-    for (size_t i = 0; i < n; i++)
-      furthest = std::max(furthest, list.moved((int32_t)i, at_tick(origin[i], rate[i], ticks)));
-    beyond = std::sqrt(furthest);
-    if (2.0 * beyond + margin <= list.skin)
-      break;
-    renew_list(attempt == 0 ? 0.0 : beyond);
-  }
-  if (2.0 * beyond + margin > list.skin)
+  components.clear();
+  if (2.0 * straight + margin > list.skin)
     return false;
-  search_list();
-  while (!events.empty()) {
-    const Event event = events.top();
-    events.pop();
-    if (event.version == version[(size_t)event.bond] + version[(size_t)event.other])
-      answer(event);
-    if (2.0 * beyond + margin > list.skin)
-      return false;
+  search_list(flights);
+  part_events();
+  std::vector<int32_t> numbers(components.size());
+  for (size_t k = 0; k < numbers.size(); k++)
+    numbers[k] = (int32_t)k;
+  work(flights, numbers);
+  for (;;) {
+    for (const Component &component : components)
+      if (component.late)
+        return false;
+    const size_t before = components.size();
+    if (before == 1 || !join_components())
+      break;
+    numbers.clear();
+    for (size_t k = 0; k < components.size(); k++)
+      if (components[k].bent.empty())
+        numbers.push_back((int32_t)k);
+    counts.joined += (int64_t)(before - components.size());
+    work(flights, numbers);
+  }
+  counts.events += (int64_t)found.size(), counts.components += (int64_t)components.size();
+  for (const Component &component : components) {
+    counts.largest = std::max(counts.largest, (int64_t)component.answered.size());
+    if (component.fails)
+      throw Stopped("a vertex would move by half the shortest edge or more");
   }
   return true;
 }
 
-void EventDrift::land()
+void EventDrift::work(const Flights &flights, const std::vector<int32_t> &numbers)
 {
-  const size_t n = position->size();
+  workers.resize((size_t)std::max(thread_count(), (int)workers.size()));
+#pragma omp parallel for schedule(dynamic)
+  for (size_t k = 0; k < numbers.size(); k++)
+    workers[thread_number()].run(flights, components[numbers[k]]);
+}
+
+void EventDrift::land(std::vector<Vector> &v)
+{
+  const int64_t n = (int64_t)position->size();
 #pragma omp parallel for schedule(static)
-  for (size_t i = 0; i < n; i++)
-    (*position)[i] = at_tick(origin[i], rate[i], ticks);
+  for (int64_t i = 0; i < n; i++)
+    (*position)[i] = at_tick((*position)[i], rate[i], ticks);
   if (!model.forbidden)
     return;
-  for (Bent &b : bent) {
-    b.path += length_of((ticks - b.since) * rate[(size_t)b.vertex]);
-    for (const int32_t bond : {b.vertex, model.prev[(size_t)b.vertex]})
-      if (bond >= 0 && model.next[(size_t)bond] >= 0)
-        flown[(size_t)bond] = std::max(flown[(size_t)bond], b.path);
+  path.swap(reach);
+  for (const Component &component : components)
+    for (const Bent &b : component.bent) {
+      (*position)[b.vertex] = at_tick(b.origin, b.rate, ticks);
+      v[b.vertex] = b.velocity;
+      for (const int32_t bond : {b.vertex, model.prev[b.vertex]})
+        if (bond >= 0 && model.next[bond] >= 0) // `reach` has the paths before this drift now
+          path[bond] = std::max(path[bond], reach[bond] + b.path);
+    }
+}
+
+// Rows in the order of all answers: of the components' next answers the earliest comes first.
+void EventDrift::tell(std::vector<ContactRow> &rows) const
+{
+  struct Head {
+    const Answered *at, *end;
+  };
+  const auto later = [](const Head &a, const Head &b) { return is_earlier(b.at->event, a.at->event); };
+  std::vector<Head> heads;
+  for (const Component &component : components)
+    if (!component.answered.empty())
+      heads.push_back({component.answered.data(), component.answered.data() + component.answered.size()});
+  std::make_heap(heads.begin(), heads.end(), later);
+  while (!heads.empty()) {
+    std::pop_heap(heads.begin(), heads.end(), later);
+    Head &head = heads.back();
+    const Answered &a = *head.at;
+    const Event &e = a.event;
+    if (a.told)
+      rows.push_back({e.bond, e.other, {e.image[0], e.image[1], e.image[2]}, e.tick, a.contact, a.momentum});
+    if (++head.at == head.end)
+      heads.pop_back();
+    else
+      std::push_heap(heads.begin(), heads.end(), later);
   }
+}
+
+/* --- contacts to come ------------------------------------------------------------------------------------------- */
+
+namespace
+{
+// Pairs that are due are measured 64 at a time.
+struct Search {
+  const Flights &flights;
+  const std::vector<double> &path, &reach;
+  std::vector<double> &due;
+  std::vector<Event> found;
+  PairColumns columns;
+
+  void look(int32_t number)
+  {
+    const Pair &p = flights.list.pairs[number];
+    const int32_t i = p.bond, j = p.other, i1 = flights.model.next[i], j1 = flights.model.next[j];
+    const Point edge = flights.model.edge(), shift = {p.image[0] * edge.x, p.image[1] * edge.y, p.image[2] * edge.z};
+    const Point *const at = flights.origin;
+    columns.add(number, in_a0(at[i1] - at[i]), in_a0(at[j1] - at[j]), in_a0((at[j] + shift) - at[i]));
+    if (columns.count == pair_lanes)
+      measure();
+  }
+
+  void measure()
+  {
+    columns.measure();
+    for (int k = 0; k < columns.count; k++) {
+      const int32_t number = columns.number[k];
+      const Pair &p = flights.list.pairs[number];
+      due[number] = path[p.bond] + path[p.other] + columns.apart[k];
+      if (reach[p.bond] + reach[p.other] + flights.margin < due[number])
+        continue;
+      const int64_t tick = first_contact(flights.straight(p.bond, p.other, p.image), 0);
+      if (tick < ticks)
+        found.push_back({(int32_t)tick, p.bond, p.other, {p.image[0], p.image[1], p.image[2]}, 0});
+    }
+    columns.count = 0;
+  }
+};
+} // namespace
+
+// All pairs of the list that touch in this drift, if paths stay straight.
+void EventDrift::search_list(const Flights &flights)
+{
+  const int64_t n = (int64_t)position->size(), pairs = (int64_t)list.pairs.size();
+  reach.resize(n);
+  found.clear();
 #pragma omp parallel for schedule(static)
-  for (size_t i = 0; i < n; i++)
-    path[i] += flown[i];
-}
-
-/* --- contacts to come ----------------------------------------------------------------------------------------------
- */
-
-Flight3 EventDrift::flight_of(int32_t bond, int32_t other, const int32_t *image) const
-{
-  const size_t i = (size_t)bond, i1 = (size_t)model.next[i], j = (size_t)other, j1 = (size_t)model.next[j];
-  const Point edge = model.edge(), shift = {image[0] * edge.x, image[1] * edge.y, image[2] * edge.z};
-  return {origin[i1] - origin[i], origin[j1] - origin[j], (origin[j] + shift) - origin[i],
-          rate[i1] - rate[i],     rate[j1] - rate[j],     rate[j] - rate[i]};
-}
-
-void EventDrift::search_pair(int32_t number, int64_t from, std::vector<Event> &found) const
-{
-  const Pair &p = list.pairs[(size_t)number];
-  const int64_t tick = first_contact(flight_of(p.bond, p.other, p.image), from);
-  if (tick < ticks)
-    found.push_back({(int32_t)tick,
-                     p.bond,
-                     p.other,
-                     {p.image[0], p.image[1], p.image[2]},
-                     version[(size_t)p.bond] + version[(size_t)p.other]});
-}
-
-// All pairs of the list that may touch in this drift, if paths stay straight.
-void EventDrift::search_list()
-{
-  const size_t n = position->size();
-  flown.assign(n, 0.0);
-#pragma omp parallel for schedule(static)
-  for (size_t i = 0; i < n; i++)
-    if (model.next[i] >= 0)
-      flown[i] = std::max(length_of(ticks * rate[i]), length_of(ticks * rate[(size_t)model.next[i]]));
+  for (int64_t i = 0; i < n; i++)
+    reach[i] = path[i] + std::max(way[i], way[model.next[i] < 0 ? i : model.next[i]]);
 #pragma omp parallel
   {
-    std::vector<Event> found;
+    Search search = {flights, path, reach, due, {}, {}};
 #pragma omp for schedule(static) nowait
-    for (size_t k = 0; k < list.pairs.size(); k++) {
+    for (int64_t k = 0; k < pairs; k++) {
       const Pair &p = list.pairs[k];
-      const size_t i = (size_t)p.bond, j = (size_t)p.other;
-      const double here = path[i] + path[j], way = flown[i] + flown[j] + margin;
-      if (here + way < pair_due[k])
-        continue;
-      const Flight3 f = flight_of(p.bond, p.other, p.image);
-      const double apart = bond_distance(in_a0(f.p), in_a0(f.q), in_a0(f.w));
-      pair_due[k] = here + apart;
-      if (way >= apart)
-        search_pair((int32_t)k, 0, found);
+      if (reach[p.bond] + reach[p.other] + margin >= due[k])
+        search.look((int32_t)k);
     }
+    search.measure();
 #pragma omp critical
-    for (const Event &event : found)
-      events.push(event);
+    found.insert(found.end(), search.found.begin(), search.found.end());
   }
 }
 
-/* --- answers ---------------------------------------------------------------------------------------------------------
- */
+/* --- components ------------------------------------------------------------------------------------------------- */
 
-EventDrift::Bent &EventDrift::bent_of(int32_t vertex)
+namespace
 {
-  int32_t &number = bent_number[(size_t)vertex];
-  if (!number) {
-    bent.push_back({vertex, 0, 0, 0.0, 0});
-    number = (int32_t)bent.size();
+struct Groups {
+  std::vector<int32_t> parent;
+
+  explicit Groups(size_t n) : parent(n)
+  {
+    for (size_t k = 0; k < n; k++)
+      parent[k] = (int32_t)k;
   }
-  return bent[(size_t)number - 1];
-}
+  int32_t root(int32_t k)
+  {
+    while (parent[k] != k)
+      k = parent[k] = parent[parent[k]];
+    return k;
+  }
+  void join(int32_t a, int32_t b)
+  {
+    parent[root(a)] = root(b);
+  }
+};
 
-// A new rate, with the place at this tick kept.
-void EventDrift::bend(int32_t vertex, Point new_rate, int64_t tick)
+// Calls `act` with a vertex and those up to two further along its fiber: they pull at it.
+template <class Act> void for_those_near(const Model &model, int32_t vertex, const Act &act)
 {
-  const size_t i = (size_t)vertex;
-  Bent &b = bent_of(vertex);
-  b.path += length_of((tick - b.since) * rate[i]);
-  b.since = (int32_t)tick;
-  origin[i] = at_tick(at_tick(origin[i], rate[i], tick), new_rate, -tick);
-  rate[i] = new_rate;
-  beyond = std::max(beyond, std::sqrt(list.moved(vertex, at_tick(origin[i], new_rate, ticks))));
-  const Point whole = at_tick(origin[i], new_rate, ticks) - (*position)[i];
-  if (length_of(whole) >= 0.5 * (double)std::min({model.cells[0], model.cells[1], model.cells[2]}))
-    throw Stopped("a vertex would move by half the shortest edge or more");
+  act(vertex);
+  for (int32_t k = 0, j = model.next[vertex]; k < 2 && j >= 0; k++, j = model.next[j])
+    act(j);
+  for (int32_t k = 0, j = model.prev[vertex]; k < 2 && j >= 0; k++, j = model.prev[j])
+    act(j);
 }
+} // namespace
 
-void EventDrift::answer(const Event &event)
+// First components: events that share vertices, or have some that pull at each other. One thread works on all at once.
+void EventDrift::part_events()
 {
-  const int32_t vertex[4] = {event.bond, model.next[(size_t)event.bond], event.other, model.next[(size_t)event.other]};
-  const Flight3 f = flight_of(event.bond, event.other, event.image);
-  Vector v[4];
-  for (int k = 0; k < 4; k++)
-    v[k] = (*velocity)[(size_t)vertex[k]];
-  Contact contact;
-  if (!find_contact(at_tick(f.p, f.p_rate, event.tick), at_tick(f.q, f.q_rate, event.tick),
-                    at_tick(f.w, f.w_rate, event.tick), v, contact)) {
-    Event again = event;
-    again.tick = (int32_t)first_contact(f, event.tick + 1);
-    if (again.tick < ticks)
-      events.push(again);
+  components.clear();
+  if (found.empty())
+    return;
+  if (thread_count() == 1) {
+    components.resize(1);
+    components[0].first = found;
     return;
   }
-  bool worn = false;
-  for (const int32_t j : vertex) {
-    const int32_t number = bent_number[(size_t)j];
-    worn = worn || (number && (bent[(size_t)number - 1].cluster || bent[(size_t)number - 1].contacts >= most_contacts));
-  }
-  if (worn || !exchange(event, vertex, contact))
-    freeze(event, vertex);
-}
-
-bool EventDrift::exchange(const Event &event, const int32_t vertex[4], const Contact &contact)
-{
-  const auto place = [&](int32_t j) { return at_tick(origin[(size_t)j], rate[(size_t)j], event.tick); };
-  Ends ends;
-  for (int k = 0; k < 4; k++) {
-    ends.velocity[k] = (*velocity)[(size_t)vertex[k]];
-    ends.force[k] = fibers.force_on(vertex[k], place);
-    ends.mass[k] = model.mass[(size_t)vertex[k]];
-  }
-  double momentum;
-  if (impulse(ends, contact, start + time * ((double)event.tick * 0x1p-16), momentum) == NO_IMPULSE)
-    return false;
-  for (int k = 0; k < 4; k++) {
-    (*velocity)[(size_t)vertex[k]] = ends.velocity[k];
-    bend(vertex[k], rate_of(time, ends.velocity[k]), event.tick);
-    bent_of(vertex[k]).contacts++;
-  }
-  if (rows)
-    rows->push_back(
-        {event.bond, event.other, {event.image[0], event.image[1], event.image[2]}, event.tick, contact, momentum});
-  search_again({vertex, vertex + 4}, event.tick);
-  return true;
-}
-
-// The last resort: a cluster with one rate until the drift ends.
-void EventDrift::freeze(const Event &event, const int32_t vertex[4])
-{
-  Point common = {0, 0, 0};
-  bool led = false;
-  for (int k = 0; k < 4; k++)
-    if (!led && bent_of(vertex[k]).cluster)
-      common = rate[(size_t)vertex[k]], led = true;
-  for (int k = 0; k < 4 && !led; k++)
-    common = common + rate[(size_t)vertex[k]];
-  if (!led)
-    common = {common.x / 4, common.y / 4, common.z / 4};
-  const int32_t number = ++clusters;
-  int32_t old[4];
-  for (int k = 0; k < 4; k++) {
-    old[k] = bent_of(vertex[k]).cluster;
-    bent_of(vertex[k]).cluster = number;
-  }
-  std::vector<int32_t> members;
-  for (Bent &b : bent) {
-    for (const int32_t k : old)
-      if (k && b.cluster == k)
-        b.cluster = number;
-    if (b.cluster == number)
-      members.push_back(b.vertex);
-  }
-  for (const int32_t j : members)
-    bend(j, common, event.tick);
-  search_again(members, event.tick);
-}
-
-// Drops the events of all bonds of these vertices, and searches their pairs anew.
-void EventDrift::search_again(const std::vector<int32_t> &vertices, int64_t tick)
-{
-  std::vector<int32_t> bonds;
-  for (const int32_t j : vertices)
-    for (const int32_t bond : {j, model.prev[(size_t)j]})
-      if (bond >= 0 && model.next[(size_t)bond] >= 0)
-        bonds.push_back(bond);
-  std::sort(bonds.begin(), bonds.end());
-  bonds.erase(std::unique(bonds.begin(), bonds.end()), bonds.end());
-  for (const int32_t bond : bonds)
-    version[(size_t)bond]++;
-  std::vector<Event> found;
-  for (const int32_t bond : bonds)
-    for (int32_t k = list.first[(size_t)bond]; k < list.first[(size_t)bond + 1]; k++) {
-      const Near &other = list.near[(size_t)k];
-      if (other.other > bond || !std::binary_search(bonds.begin(), bonds.end(), other.other))
-        search_pair(other.pair, tick, found);
+  owner.resize(position->size(), 0), place.resize(position->size(), 0);
+  Groups groups(found.size());
+  std::vector<int32_t> marked;
+  for (size_t k = 0; k < found.size(); k++)
+    for (const int32_t bond : {found[k].bond, found[k].other})
+      for (const int32_t vertex : {bond, model.next[bond]})
+        for_those_near(model, vertex, [&](int32_t j) {
+          if (owner[j])
+            groups.join((int32_t)k, owner[j] - 1);
+          else
+            owner[j] = (int32_t)k + 1, marked.push_back(j);
+        });
+  for (const int32_t j : marked)
+    owner[j] = 0;
+  std::vector<int32_t> number(found.size(), -1);
+  for (size_t k = 0; k < found.size(); k++) {
+    int32_t &its = number[groups.root((int32_t)k)];
+    if (its < 0) {
+      its = (int32_t)components.size();
+      components.emplace_back();
     }
-  for (const Event &event : found)
-    events.push(event);
+    components[its].first.push_back(found[k]);
+  }
+}
+
+Box EventDrift::box_of(int32_t bond) const
+{
+  Box box;
+  bool begun = false;
+  for (const int32_t j : {bond, model.next[bond]}) {
+    const Point from = (*position)[j];
+    const Box its = owner[j] ? components[owner[j] - 1].bent[place[j]].box : Box{from, from};
+    if (!begun)
+      box = its, begun = true;
+    box.add(its.low), box.add(its.high);
+    if (!owner[j])
+      box.add(at_tick(from, rate[j], ticks));
+  }
+  return box;
+}
+
+bool EventDrift::boxes_meet(const Box &a, int32_t other, const int32_t *image) const
+{
+  const Point edge = model.edge(), shift = {image[0] * edge.x, image[1] * edge.y, image[2] * edge.z};
+  const Box b = box_of(other);
+  const Point low = b.low + shift, high = b.high + shift;
+  return a.low.x <= high.x && low.x <= a.high.x && a.low.y <= high.y && low.y <= a.high.y && a.low.z <= high.z &&
+         low.z <= a.high.z;
+}
+
+// Other components that this one is not independent of.
+void EventDrift::find_meetings(int32_t number, std::vector<std::pair<int32_t, int32_t>> &meetings) const
+{
+  for (const Bent &b : components[number].bent) {
+    for_those_near(model, b.vertex, [&](int32_t j) {
+      if (owner[j] && owner[j] - 1 != number)
+        meetings.push_back({number, owner[j] - 1});
+    });
+    for (const int32_t bond : {b.vertex, model.prev[b.vertex]}) {
+      if (bond < 0 || model.next[bond] < 0)
+        continue;
+      const Box box = box_of(bond);
+      for (int32_t k = list.first[bond]; k < list.first[bond + 1]; k++) {
+        const Near &near = list.near[k];
+        const int32_t one = owner[near.other], its = one ? one : owner[model.next[near.other]];
+        if (its > 0 && its - 1 != number && boxes_meet(box, near.other, near.image))
+          meetings.push_back({number, its - 1});
+      }
+    }
+  }
+}
+
+// Joins components that are not independent. False if all are.
+bool EventDrift::join_components()
+{
+  std::vector<std::pair<int32_t, int32_t>> meetings;
+  for (size_t c = 0; c < components.size(); c++)
+    for (size_t k = 0; k < components[c].bent.size(); k++) {
+      const int32_t j = components[c].bent[k].vertex;
+      if (owner[j])
+        meetings.push_back({(int32_t)c, owner[j] - 1});
+      owner[j] = (int32_t)c + 1, place[j] = (int32_t)k;
+    }
+#pragma omp parallel
+  {
+    std::vector<std::pair<int32_t, int32_t>> some;
+#pragma omp for schedule(dynamic, 16) nowait
+    for (size_t c = 0; c < components.size(); c++)
+      find_meetings((int32_t)c, some);
+#pragma omp critical
+    meetings.insert(meetings.end(), some.begin(), some.end());
+  }
+  for (const Component &component : components)
+    for (const Bent &b : component.bent)
+      owner[b.vertex] = 0;
+  merge(meetings);
+  return !meetings.empty();
+}
+
+// What is left of joined components are their first events.
+void EventDrift::merge(const std::vector<std::pair<int32_t, int32_t>> &pairs)
+{
+  if (pairs.empty())
+    return;
+  Groups groups(components.size());
+  for (const auto &pair : pairs)
+    groups.join(pair.first, pair.second);
+  for (size_t c = 0; c < components.size(); c++) {
+    const int32_t root = groups.root((int32_t)c);
+    if (root == (int32_t)c)
+      continue;
+    Component &to = components[root], &from = components[c];
+    to.first.insert(to.first.end(), from.first.begin(), from.first.end());
+    to.bent.clear();
+    from.first.clear();
+  }
+  components.erase(
+      std::remove_if(components.begin(), components.end(), [](const Component &c) { return c.first.empty(); }),
+      components.end());
 }

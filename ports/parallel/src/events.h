@@ -1,20 +1,24 @@
-// A drift of all vertices at once: docs/porting.md, "Contacts at their own time", *Events* and *Clusters*.
+// A drift of all vertices at once: docs/porting.md, "Contacts at their own time", *Events*, *Components* and
+// *Clusters*.
 #pragma once
 
-#include <queue>
 #include <vector>
 
-#include "contact.h"
-#include "fibers.h"
-#include "pairs.h"
+#include "component.h"
 #include "stopped.h"
 
-// A contact that was answered.
+// A contact that was answered by an impulse.
 struct ContactRow {
   int32_t bond, other, image[3];
   int64_t tick;
   Contact contact;
   double momentum;
+};
+
+// Since the start: first contacts of drifts, components, how many were joined to others, the most answers of one, lists
+// of pairs. With one thread a drift has one component.
+struct DriftCounts {
+  int64_t events = 0, components = 0, largest = 0, joined = 0, lists = 0;
 };
 
 class EventDrift
@@ -27,50 +31,38 @@ public:
   // `start` is the time from the middle between two kicks to the beginning. Rows are appended.
   void drift(double time, double start, std::vector<Point> &position, std::vector<Vector> &velocity,
              std::vector<ContactRow> *rows);
+  DriftCounts counts;
 
 private:
-  // A contact to come. Out of date if the bonds' versions have changed.
-  struct Event {
-    int32_t tick, bond, other, image[3];
-    uint32_t version;
-  };
-  struct Later {
-    bool operator()(const Event &a, const Event &b) const;
-  };
-  struct Bent {
-    int32_t vertex;
-    int32_t contacts, cluster; // cluster 0: none
-    double path;               // flown on pieces that are over, a0
-    int32_t since;             // tick at which this piece began
-  };
-
-  bool fly(double time, double start, std::vector<ContactRow> *rows);
-  void take_off(double time);
+  double take_off(double time);
+  double furthest() const;
   void renew_list(double need);
-  void search_list();
-  void search_pair(int32_t number, int64_t from, std::vector<Event> &found) const;
-  Flight3 flight_of(int32_t bond, int32_t other, const int32_t *image) const;
-  void answer(const Event &event);
-  bool exchange(const Event &event, const int32_t vertex[4], const Contact &contact);
-  void freeze(const Event &event, const int32_t vertex[4]);
-  void bend(int32_t vertex, Point rate, int64_t tick);
-  Bent &bent_of(int32_t vertex);
-  void search_again(const std::vector<int32_t> &vertices, int64_t tick);
-  void land();
+  bool fly(const Flights &flights, double straight);
+  void search_list(const Flights &flights);
+  void part_events();
+  void work(const Flights &flights, const std::vector<int32_t> &numbers);
+  bool join_components();
+  void find_meetings(int32_t number, std::vector<std::pair<int32_t, int32_t>> &meetings) const;
+  bool boxes_meet(const Box &a, int32_t other, const int32_t *image) const;
+  Box box_of(int32_t bond) const;
+  void merge(const std::vector<std::pair<int32_t, int32_t>> &pairs);
+  void land(std::vector<Vector> &velocity);
+  void tell(std::vector<ContactRow> &rows) const;
 
   const Model &model;
   const Fibers &fibers;
   PairList list;
-  std::vector<double> pair_due;    // by when, in `path` of both bonds, a pair must be looked at again
-  std::vector<double> path, flown; // of each bond: the longer way of its ends until now, and in this drift
-  std::vector<uint32_t> version;
-  std::vector<Point> origin, rate;
-  std::vector<int32_t> bent_number; // of a vertex, 0: flies straight
-  std::vector<Bent> bent;
-  std::priority_queue<Event, std::vector<Event>, Later> events;
   std::vector<Point> *position = nullptr;
-  std::vector<Vector> *velocity = nullptr;
-  std::vector<ContactRow> *rows = nullptr;
-  double time = 0, start = 0, margin = 0, beyond = 0; // beyond: how far from its reference a vertex would come
-  int32_t clusters = 0;
+  const std::vector<Vector> *velocity = nullptr;
+  std::vector<Point> rate;
+  std::vector<double> way;   // of each vertex in this drift, if it flies straight
+  std::vector<double> due;   // by when, in `path` of both bonds, a pair must be looked at again
+  std::vector<double> path;  // of each bond: the longer way of its ends until now
+  std::vector<double> reach; // the same with this drift, if it flies straight
+  std::vector<Event> found;  // contacts if all fly straight
+  std::vector<Component> components;
+  std::vector<Worker> workers; // of each thread
+  std::vector<int32_t> owner;  // of each vertex: 1 + component that answers for it, or 0
+  std::vector<int32_t> place;  // of each vertex in its owner's list
+  double margin = 0;
 };

@@ -20,7 +20,7 @@ public:
   template <class Place> Vector force_on(int32_t j, const Place &at) const
   {
     const auto pull = [&](int32_t first) {
-      return first < 0 ? Vector{0, 0, 0} : bond(first, in_a0(at(model.next[(size_t)first]) - at(first)), false);
+      return first < 0 ? Vector{0, 0, 0} : bond(first, in_a0(at(model.next[(size_t)first]) - at(first)));
     };
     const size_t number = (size_t)j;
     const bool whole = model.next[number] >= 0;
@@ -45,11 +45,13 @@ public:
   }
 
 private:
-  Vector bond(int32_t j, Vector r, bool of_step) const;
+  struct Columns; // of one fiber
+  Vector bond(int32_t j, Vector r) const;
   void bend(int32_t j, Vector before, Vector after, Vector &a, Vector &b) const;
-  void add_forces(int32_t first, int32_t last, const std::vector<Point> &position, int parts,
-                  std::vector<Vector> &force) const;
+  double fill(int32_t first, int32_t last, const std::vector<Point> &position, bool of_step, Columns &c) const;
+  void add_forces(int32_t first, int32_t last, const Columns &c, int parts, std::vector<Vector> &force) const;
 
   const Model &model;
   std::vector<int32_t> first; // vertex of each fiber, and the number of all
+  std::vector<double> inverse_mass;
 };

@@ -126,13 +126,16 @@ static void run_and_report(const Model &model, State &state, const Options &o)
   const double seconds = now() - begin, particles = (double)state.solvent.size();
   const double collisions = (double)(steps - warm) / (double)model.interval;
   const uint64_t hash = state_hash(run.now());
+  const DriftCounts &counts = run.contact_counts();
   std::printf("{\"hash\": \"%016" PRIx64 "\", \"cells\": [%" PRId64 ", %" PRId64 ", %" PRId64 "], "
               "\"particles\": %zu, \"vertices\": %zu, \"steps\": %" PRId64 ", \"timed_steps\": %" PRId64 ", "
-              "\"seconds\": %.6f, \"ms_per_step\": %.6f, \"ns_per_particle_and_collision\": %.4f, \"gpu\": %s}\n",
+              "\"seconds\": %.6f, \"ms_per_step\": %.6f, \"ns_per_particle_and_collision\": %.4f, \"gpu\": %s, "
+              "\"events\": %" PRId64 ", \"components\": %" PRId64 ", \"joined\": %" PRId64 ", \"largest\": %" PRId64
+              ", \"lists\": %" PRId64 "}\n",
               hash, model.cells[0], model.cells[1], model.cells[2], state.solvent.size(), state.vertex.size(), steps,
               steps - warm, seconds, steps > warm ? 1e3 * seconds / (double)(steps - warm) : 0.0,
               collisions > 0 && particles > 0 ? 1e9 * seconds / (particles * collisions) : 0.0,
-              on_gpu ? "true" : "false");
+              on_gpu ? "true" : "false", counts.events, counts.components, counts.joined, counts.largest, counts.lists);
 }
 
 static void run_solvent(const char *cells, Options &o)

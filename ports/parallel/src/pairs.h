@@ -3,6 +3,7 @@
 // pair can touch.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "model.h"
@@ -18,6 +19,25 @@ struct Pair {
   int32_t image[3];
 };
 
+// Vectors of pairs in columns, which compilers turn into vector instructions: p, q, w of each, a0.
+constexpr int pair_lanes = 64;
+struct PairColumns {
+  int count = 0;
+  int32_t number[pair_lanes];
+  alignas(64) double p[3][pair_lanes], q[3][pair_lanes], w[3][pair_lanes], apart[pair_lanes];
+
+  void add(int32_t its_number, Vector its_p, Vector its_q, Vector its_w)
+  {
+    number[count] = its_number;
+    p[0][count] = its_p.x, p[1][count] = its_p.y, p[2][count] = its_p.z;
+    q[0][count] = its_q.x, q[1][count] = its_q.y, q[2][count] = its_q.z;
+    w[0][count] = its_w.x, w[1][count] = its_w.y, w[2][count] = its_w.z;
+    count++;
+  }
+  // Fills `apart`: distances of bonds, wrong by less than 1e-7 of their lengths.
+  void measure();
+};
+
 class PairList
 {
 public:
@@ -29,27 +49,29 @@ public:
   // Square of the distance that this place of a vertex has from its reference, a0.
   double moved(int32_t vertex, Point place) const
   {
-    const Vector d = in_a0(place - reference[(size_t)vertex]);
+    const Vector d = in_a0(place - reference[vertex]);
     return dot(d, d);
   }
 
   bool built = false;
   double skin = 0;
   std::vector<Pair> pairs;
+  std::vector<double> apart;  // of each pair at its reference
   std::vector<int32_t> first; // of the entries of each bond in `near`
   std::vector<Near> near;
 
 private:
-  void find(const std::vector<int32_t> &bonds);
-  void find_by_cells(const std::vector<int32_t> &bonds, const int64_t cells[3]);
-  void find_around(const struct Sorted &s, size_t k, const int64_t cells[3], std::vector<Pair> &found) const;
-  void add_pair(int32_t bond, int32_t other, Point image, std::vector<Pair> &found) const;
-  void add_images(int32_t bond, int32_t other, double reach, std::vector<Pair> &found) const;
+  struct Sorted;
+  struct Found; // by one thread
+  void find();
+  void sort_bonds(Sorted &s) const;
+  void find_around(const Sorted &s, size_t k, Found &found) const;
+  void find_images(int32_t bond, int32_t other, double reach, Found &found) const;
+  void add(int32_t bond, int32_t other, Point image, Found &found) const;
+  void keep_near(Found &found) const;
   void index();
 
   const Model &model;
-  std::vector<Point> reference, middle; // of vertices, of bonds
+  std::vector<int32_t> bonds;
+  std::vector<Point> reference, middle;
 };
-
-// The distance of two bonds p and q, w from the first vertex of one to that of the other.
-double bond_distance(Vector p, Vector q, Vector w);

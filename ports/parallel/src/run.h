@@ -17,6 +17,10 @@ public:
   void steps(int64_t number);
   // The state of now, by ids.
   const State &now();
+  const DriftCounts &contact_counts() const
+  {
+    return contacts.counts;
+  }
   // Contacts since they were last cleared, if asked for.
   std::vector<ContactRow> *rows = nullptr;
   // Called after each stage with its name, and the number of the step in progress.
