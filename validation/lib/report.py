@@ -244,7 +244,7 @@ def standing(summed):
                 f"{number(row['allowed'])}; {signed(row['z'])})" for row in rows(name, "within allowance")]
         covered += [f"- [{name}]({name}.md): {', '.join(near)}"] if near else []
         reasons = [cell(row["reason"]) for row in rows(name, "not reproduced")]
-        findings += [f"| `{row['id']}`: {cell(row['statement'])} | {plusminus(row['measured'], row['error'])} | "
+        findings += [f"| `{row['id']}`{'' if reason == last else ': ' + cell(row['statement'])} | {plusminus(row['measured'], row['error'])} | "
                      f"{plusminus(row['expected'], row['expected_error'])} | {'as above' if reason == last else reason} |"
                      for row, reason, last in zip(rows(name, "not reproduced"), reasons, [None, *reasons])]
         undecided += [f"| `{row['id']}`: {cell(row['statement'])} | {plusminus(row['measured'], row['error'])} | "
