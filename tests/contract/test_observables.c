@@ -357,6 +357,23 @@ static void order_in_a_plane(void **unused)
   end_of(o);
 }
 
+/* The first row of contacts is the first that has a time before it. */
+static void contacts_begin_with_a_rate(void **unused)
+{
+  (void)unused;
+  struct outcome *o =
+      run_of("box: [4, 4, 4]\ntime_step: 0.05\nsteps: 20\nmedium: {kind: private, rate: 1}\n"
+             "fibers: [{name: chain, count: 20, vertices: 5, mass: 3, bond_length: 0.5, spring: 100, bending: 2}]\n"
+             "observe: {collisions: {every: 4}}\n",
+             OBSERVE_COLLISIONS);
+  assert_int_equal(o->rows.count, 5);
+  assert_close(at(o, 0, "time"), 0.2, 1e-12);
+  for (size_t k = 0; k < 5; k++)
+    assert_true(isfinite(at(o, k, "rate_over_theory")));
+  assert_close(at(o, 0, "rate_per_vertex"), at(o, 0, "executed") / (0.2 * 100.0), 1e-12);
+  end_of(o);
+}
+
 /* The first row of the stress is the first that has an average. */
 static void stress_begins_with_an_average(void **unused)
 {
@@ -482,10 +499,12 @@ static bool check_series(void *context, enum observable which, size_t columns, c
   const char *names[OBSERVE_MOST_COLUMNS];
   assert_int_equal(observe_series_columns(c->model, which, names), columns);
   has_columns(c->model, which, columns, names);
-  for (size_t k = 0; k < columns; k++)
+  for (size_t k = 0; k < columns; k++) {
     if (!observe_unit(names[k]))
       fail_msg("%s has no unit", names[k]);
-  (void)values;
+    if (!isfinite(values[k]))
+      fail_msg("%s: %s is no number at time %g", observable_names[which], names[k], values[0]);
+  }
   c->tables++;
   return true;
 }
@@ -566,6 +585,7 @@ int main(void)
       cmocka_unit_test(everything_everywhere),
       cmocka_unit_test(order_in_a_plane),
       cmocka_unit_test(stress_begins_with_an_average),
+      cmocka_unit_test(contacts_begin_with_a_rate),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -877,6 +877,19 @@ static void warnings(void **unused)
   balanced.observe.every[OBSERVE_DYNAMICS] = 0;
   assert_int_equal(scene_warnings(&balanced, NULL, NULL), 0);
   scene_free(&balanced);
+  /* What is frozen does not drift. */
+  struct scene posts =
+      read_with(17, "    bending: 10\n  - {name: post, count: 3, vertices: 2, mass: 5, bond_length: 0.5, "
+                    "spring: 100, frozen: true}");
+  posts.model.solvent.acceleration.z = 0.001;
+  all[0] = '\0';
+  scene_warnings(&posts, collect, all);
+  assert_non_null(strstr(all, "of 'a' contain (v t)^2"));
+  posts.model.kind[0].frozen = true;
+  all[0] = '\0';
+  scene_warnings(&posts, collect, all);
+  assert_null(strstr(all, "(v t)^2"));
+  scene_free(&posts);
   /* A bath takes momentum and heat, and has no mean free path. */
   struct scene bath = read_with(8, "  collision_interval: 0.2\n  hydrodynamics: false\n  bath: phantoms");
   bath.model.kind[0].force.z = 1.0;

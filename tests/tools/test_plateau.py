@@ -52,6 +52,19 @@ def table_of(walk):
             "D": found[:, 0], "D_error": found[:, 1], "D_cumulative": found[:, 0], "D_cumulative_error": found[:, 1]}
 
 
+class TestIntervals(unittest.TestCase):
+    """A row of collisions.csv tells of the time since the row before; the first one of the time since the start. Tables of
+    earlier programs begin with a row of step 0, which tells of no time."""
+
+    def test_rows_whose_whole_interval_is_observed(self):
+        table = {"step": numpy.array([10, 20, 30, 45]), "rate": numpy.array([1.0, 2.0, 3.0, 4.0])}
+        earlier = {name: numpy.concatenate(([0], column)) for name, column in table.items()}
+        for start, expected in ((0, [1, 2, 3, 4]), (1, [2, 3, 4]), (10, [2, 3, 4]), (15, [3, 4]), (30, [4]), (31, [])):
+            for one in table, earlier:
+                self.assertEqual(list(averages.since(one, "rate", start, True)), expected)
+        self.assertEqual(list(averages.since(table, "rate", 20, False)), [2, 3, 4])
+
+
 def walks(fibers, intervals, trials, growth=0.0):
     """Tables of random walks; growth: the part of each step that is that of two steps ago."""
     random = numpy.random.default_rng(36)
