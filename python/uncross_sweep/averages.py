@@ -101,10 +101,11 @@ def average_column(made, name, has_error, order, runs):
 # --- final numbers ----------------------------------------------------------------------------------------------------
 
 def since(table, name, start, intervals):
-    """A column of a time series from step `start` on. intervals: each row tells of the time since the row before."""
-    first = 1 if intervals else 0
-    steps = table["step"][:-1] if intervals else table["step"]
-    return table[name][first:][steps >= start]
+    """A column of a time series from step `start` on. intervals: each row tells of the time since the row before, the first one
+    of the time since step 0; earlier programs wrote one for step 0, which tells of no time."""
+    steps = table["step"]
+    begins = numpy.concatenate(([0], steps[:-1])) if intervals and len(steps) else steps
+    return table[name][(begins >= start) & (steps > begins if intervals else True)]
 
 
 SERIES = {  # column of the summary: table, column, whether it tells of intervals

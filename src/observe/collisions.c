@@ -24,6 +24,8 @@ static bool collisions_row(struct observer *observer, struct view *view, double 
 {
   const struct collision_counts *c = &view->state->counts;
   const double executed = (double)c->executed;
+  if (view->state->step == 0) /* no time has passed */
+    return false;
   const double time = (double)((int64_t)view->state->step - observer->integer[LAST_STEP]) * view->model->time_step;
   const double new = (double)((int64_t)c->executed - observer->integer[LAST_EXECUTED]);
   const double values[] = {view_time(view),

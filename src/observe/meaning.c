@@ -42,6 +42,30 @@ static bool no_pair_forces(const struct model *m)
   return !model_repels(m);
 }
 
+static bool no_particles(const struct model *m)
+{
+  return !model_has_solvent(m);
+}
+
+static bool no_walls(const struct model *m)
+{
+  return !model_has_walls(m);
+}
+
+static bool no_bonds(const struct model *m)
+{
+  return m->bonds == 0;
+}
+
+/* That move something: those between frozen vertices do not. */
+static bool no_forces(const struct model *m)
+{
+  bool none = !model_has_dumbbells(m) && !model_repels(m);
+  for (uint32_t k = 0; k < m->kinds; k++)
+    none &= m->kind[k].frozen || m->kind[k].vertices < 2;
+  return none;
+}
+
 static bool by_a_force_on_fibers(const struct model *m)
 {
   bool any = false;
@@ -107,6 +131,10 @@ static const struct {
     [NO_TRAP] = {"a bead without a trap", no_trap},
     [NO_PAIR_FORCES] = {"no forces of pairs", no_pair_forces},
     [NO_TUBES] = {"no thick fibers that cannot cross", no_tubes},
+    [NO_PARTICLES] = {"no solvent particles", no_particles},
+    [NO_WALLS] = {"no walls", no_walls},
+    [NO_BONDS] = {"no bonds", no_bonds},
+    [NO_FORCES] = {"no bonds that move, no dumbbells, no forces of pairs", no_forces},
     [IN_A_PLANE] = {"two dimensions", model_is_flat},
     [IN_SHEAR] = {"sheared box", model_is_sheared},
     [BETWEEN_WALLS] = {"walls", model_has_walls},
@@ -148,6 +176,8 @@ const struct meaning meanings[] = {
     {OBSERVE_CONSERVED, ANYWHERE, MEANS, NULL, "of the laboratory, at the step"},
 
     {OBSERVE_TEMPERATURE, OVERDAMPED, REFUSED, NULL, "there are no velocities; allowed with another medium"},
+    {OBSERVE_TEMPERATURE, NO_PARTICLES, LEFT_OUT, "solvent solvent_x solvent_y solvent_z", "there are no particles"},
+    {OBSERVE_TEMPERATURE, NO_FIBERS, LEFT_OUT, "vertex vertex_half_step", "there are no fibers"},
     {OBSERVE_TEMPERATURE, IN_A_PLANE, LEFT_OUT, "solvent_z", "nothing moves along z"},
     {OBSERVE_TEMPERATURE, IN_SHEAR, MEANS, NULL,
      "about the mean of the solvent in slabs of one cell; without solvent particles about the linear flow"},
@@ -180,6 +210,7 @@ const struct meaning meanings[] = {
     {OBSERVE_DYNAMICS, IN_A_PLANE, MEANS, "D D_about_mean D_cumulative D_cumulative_about_mean", "g_cm/4t"},
     {OBSERVE_DYNAMICS, ANYWHERE, MEANS, NULL, "about `flow`"},
 
+    {OBSERVE_COLLISIONS, NO_BONDS, LEFT_OUT, "rate_over_theory", "there is nothing that touches"},
     {OBSERVE_COLLISIONS, THICK, LEFT_OUT, "rate_over_theory", "the theory is that of lines"},
     {OBSERVE_COLLISIONS, BESIDE_FROZEN, LEFT_OUT, "rate_over_theory", "the theory is that of fibers which all move"},
     {OBSERVE_COLLISIONS, IN_SHEAR, MEANS, "rate_over_theory", "over the rate at rest"},
@@ -199,6 +230,8 @@ const struct meaning meanings[] = {
      "velocities that are permuted carry momentum across the box; allowed with hydrodynamics: true"},
     {OBSERVE_STRESS, BESIDE_FROZEN, REFUSED, NULL,
      "momentum that frozen fibers take up is not in its stress; allowed without frozen fibers"},
+    {OBSERVE_STRESS, NO_PARTICLES, LEFT_OUT, "sigma_xy_kinetic sigma_xy_collisional", "there are no particles"},
+    {OBSERVE_STRESS, NO_WALLS, LEFT_OUT, "sigma_lower sigma_upper", "there are no walls"},
     {OBSERVE_STRESS, NO_FIBERS_NO_DUMBBELLS, LEFT_OUT, "sigma_xy_spring N1_spring", "there are no springs"},
     {OBSERVE_STRESS, NO_FIBERS, LEFT_OUT, "sigma_xy_fibers N1_fibers", "there are no fibers"},
     {OBSERVE_STRESS, NO_TUBES, LEFT_OUT, "sigma_xy_contacts N1_contacts", "thin fibers hand on nothing at a contact"},
@@ -237,6 +270,7 @@ const struct meaning meanings[] = {
     {OBSERVE_PRESSURE, IN_A_FLOW, REFUSED, NULL,
      "a flow that differs from place to place would count as pressure; allowed without forces between walls, profile, "
      "or sliding walls; with them: observe.stress"},
+    {OBSERVE_PRESSURE, NO_FORCES, LEFT_OUT, "configurational", "there is nothing to tell it from"},
     {OBSERVE_PRESSURE, NO_TUBES, LEFT_OUT, "pressure_contacts", "thin fibers hand on nothing at a contact"},
     {OBSERVE_PRESSURE, BESIDE_FROZEN, LEFT_OUT, "pressure p_xx p_yy p_zz p_xy pressure_contacts",
      "frozen fibers hold what pushes them"},

@@ -22,7 +22,11 @@ enum circumstance {
   NO_TRAP,
   NO_PAIR_FORCES,
   NO_TUBES,
-  NOTHING_OF_THE_KIND = NO_TUBES, /* the last of those */
+  NO_PARTICLES,
+  NO_WALLS,
+  NO_BONDS,
+  NO_FORCES,
+  NOTHING_OF_THE_KIND = NO_FORCES, /* the last of those */
   IN_A_PLANE,
   IN_SHEAR,
   BETWEEN_WALLS,

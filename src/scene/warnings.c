@@ -306,7 +306,7 @@ static void warn_drift(struct teller *t, const struct scene *scene)
   const bool carries = background_differs(m) || (model_has_solvent(m) && vec3_norm(m->solvent.acceleration) > 0.0);
   uint32_t drifting = 0, first = 0, most = 0;
   for (uint32_t k = 0; k < m->kinds; k++)
-    if (carries || vec3_norm(m->kind[k].force) > 0.0) {
+    if (!m->kind[k].frozen && (carries || vec3_norm(m->kind[k].force) > 0.0)) {
       first = drifting++ ? first : k;
       most = m->kind[k].count > most ? m->kind[k].count : most;
     }

@@ -72,6 +72,20 @@ static inline bool keep_row(void *context, enum observable which, size_t columns
   return true;
 }
 
+/* A value by row, from 0 on, and column; of rows of one observable alone. */
+static inline double kept_cell(const struct kept_rows *kept, const struct model *model, enum observable which,
+                               size_t row, const char *column)
+{
+  const char *names[OBSERVE_MOST_COLUMNS];
+  const size_t columns = observe_series_columns(model, which, names);
+  assert_true(row < kept->rows && kept->count == kept->rows * (columns + 1));
+  for (size_t k = 0; k < columns; k++)
+    if (strcmp(names[k], column) == 0)
+      return kept->value[row * (columns + 1) + 1 + k];
+  fail_msg("no column %s", column);
+  return NAN;
+}
+
 /* A state whose positions a test moves by itself: no solvent, no dynamics. */
 struct puppet {
   struct model model;
