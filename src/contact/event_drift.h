@@ -77,6 +77,9 @@ bool event_steer_freely(const struct event_drift *d, uint32_t i, int32_t tick);
  * searched anew. */
 bool event_search_again(const struct event_drift *d, uint32_t n, const uint32_t *vertex, int32_t tick);
 
+/* Answers what was queued, if it is not out of date. False, with the fault recorded, as event_steer. */
+bool event_answer(const struct event_drift *d, const struct event *e);
+
 /* --- walls -------------------------------------------------------------------------------------------------------- */
 
 /* Queue the hit of a wall that a vertex is flying to, if any; and those of all vertices. False as event_search_pair. */

@@ -163,8 +163,7 @@ static bool answer(const struct event_drift *d, const struct event *e)
   return bend_flights(d, &m);
 }
 
-/* Answers what was queued, if it is not out of date. */
-static bool answer_queued(const struct event_drift *d, const struct event *e)
+bool event_answer(const struct event_drift *d, const struct event *e)
 {
   if (e->other == EVENT_WALL)
     return event_answer_wall(d, e);
@@ -181,7 +180,7 @@ static bool answer_beside_bead(const struct event_drift *d)
   for (;;) {
     const int32_t bead = event_bead_next(d);
     if (queue->count > 0 && queue->at[0].tick < bead) {
-      if (event_queue_pop(&d->contact->flights.queue, &e) && !answer_queued(d, &e))
+      if (event_queue_pop(&d->contact->flights.queue, &e) && !event_answer(d, &e))
         return false;
     } else if (bead == FLIGHT_TICKS) {
       event_bead_end(d);
@@ -207,7 +206,7 @@ static bool drift_event_driven(struct state *state, const struct model *model, s
   if (bead && !answer_beside_bead(&d))
     return false;
   while (event_queue_pop(&contact->flights.queue, &e))
-    if (!answer_queued(&d, &e))
+    if (!event_answer(&d, &e))
       return false;
   event_land(&d);
   state->counts.moves += state->vertices;

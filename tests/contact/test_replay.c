@@ -13,8 +13,9 @@ static void dense_suspensions(void **unused)
 /* --- clusters of contacts ----------------------------------------------------------------------------------------- */
 
 /* A contact changes the flights of its four vertices, and depends on those of all that pull at them, two further along
- * their fibers. Contacts that share such a vertex are a cluster. The clusters of a drift are worked on one after the
- * other, in any order: the velocities and places at the end are the drift's, to the bit. Parallel ports need that. */
+ * their fibers. Contacts that share such a vertex are a cluster. The clusters of a finished list of contacts are worked
+ * on one after the other, in any order: the velocities and places at the end are the drift's, to the bit. Before the
+ * list is known an answer can make new contacts: contact/schedules.h. */
 struct told {
   struct contact_event event;
   int32_t tick;
