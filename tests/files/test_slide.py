@@ -61,8 +61,9 @@ class Slide(unittest.TestCase):
             group = file["particles/trajectory"]
             return group["position/value"][-1], group["velocity/value"][-1]
 
-    def same_motion(self, text, rounding):
+    def same_motion(self, text):
         """A run as a whole, against its second part from a checkpoint, and from a frame."""
+        rounding = 2 * ALL * 2.0**-41 + 1e-10  # images slide a whole number of 2^-40 a0 in each half step; places
         self.run_to(text, ALL, "whole")
         self.run_to(text, FIRST, "first")
         place, velocity = self.frame("whole")
@@ -80,21 +81,23 @@ class Slide(unittest.TestCase):
 
     def test_fibers_meet_the_same_partners(self):
         """Each position and velocity is taken on as it is, so the motion is the same to the bit, but for images."""
-        self.same_motion(FIBERS, 1e-9)
+        self.same_motion(FIBERS)
         contacts = json.loads((self.dir / "whole/run.json").read_text())
         self.assertGreater(contacts["collisions"]["executed"], 20)
 
     def test_solvent_comes_back_at_the_same_places(self):
-        """Free flight, rounded to 2^-40 a0 once more."""
-        self.same_motion(SOLVENT, 1e-10)
+        self.same_motion(SOLVENT)
 
     def test_snapshot_of_a_snapshot_and_resume(self):
-        self.run_to(FIBERS, ALL, "whole")
-        self.run_to(FIBERS, 200, "first")
-        self.run_to(FIBERS, 100, "second", "first/checkpoint.h5")
-        self.call("run", "second.yaml", "--out", "second", "--resume", "--steps", "200")
-        self.run_to(FIBERS, 100, "third", "second/checkpoint.h5")
-        self.assertLessEqual(apart(self.frame("third")[0], self.frame("whole")[0], ALL), 1e-9)
+        for name, text in (("fibers", FIBERS), ("solvent", SOLVENT)):
+            with self.subTest(name):
+                whole, first, second, third = (f"{name}-{k}" for k in range(4))
+                self.run_to(text, ALL, whole)
+                self.run_to(text, 200, first)
+                self.run_to(text, 100, second, f"{first}/checkpoint.h5")
+                self.call("run", f"{second}.yaml", "--out", second, "--resume", "--steps", "200")
+                self.run_to(text, 100, third, f"{second}/checkpoint.h5")
+                self.assertLessEqual(apart(self.frame(third)[0], self.frame(whole)[0], ALL), 1e-9)
 
     def test_export_knows_where_the_images_are(self):
         self.run_to(FIBERS, FIRST, "first")
@@ -112,6 +115,51 @@ class Slide(unittest.TestCase):
         for what in ("start", "trace", "emit"):
             said = self.call("oracle", what, "second.yaml", "--out", what, code=2).stderr
             self.assertIn("start.snapshot: the images of its sheared box have slid", said)
+
+    def change(self, out, how):
+        """A trajectory as an earlier program wrote it: frames without checksums."""
+        with h5py.File(self.dir / out / "trajectory.h5", "a") as file:
+            own = file["parameters/uncross"]
+            own.pop("checksum", None)
+            own.attrs.modify("format_version", numpy.int32(1))
+            how(file)
+
+    def test_bonds_touch_across_the_faces_where_images_are(self):
+        rods = SHEARED + "crossing: {rule: event-driven}\n" \
+                         "fibers: [{name: r, count: 2, vertices: 2, mass: 1, bond_length: 1, spring: 20}]\n"
+        self.run_to(rods, FIRST, "first")
+        for x, touch in ((3 - slide(FIRST), True), (3, False)):
+            def lay(file, x=x):
+                place = file["particles/trajectory/position/value"]
+                place[-1] = [[3, 5.5, 3], [3, 6.5, 3], [x - 0.5, 0.25, 3], [x + 0.5, 0.25, 3]]
+                file["particles/trajectory/velocity/value"][-1] = 0
+            self.change("first", lay)
+            if touch:
+                (self.dir / "no.yaml").write_text(f"{rods}steps: 1\nstart: {{snapshot: first/trajectory.h5}}\n")
+                self.assertIn("touches another", self.call("run", "no.yaml", "--out", "no", code=2).stderr)
+            else:
+                self.run_to(rods, 1, "yes", "first/trajectory.h5")
+
+    def test_files_that_say_less(self):
+        """An earlier program's file has no slide, which was 0 at its step 0. Another program's has nothing."""
+        self.run_to(FIBERS, ALL, "whole")
+        self.run_to(FIBERS, FIRST, "first")
+        self.change("first", lambda file: file["parameters/uncross"].attrs.pop("slide", None))
+        self.run_to(FIBERS, ALL - FIRST, "old", "first/trajectory.h5")
+        self.assertLessEqual(apart(self.frame("old")[0], self.frame("whole")[0], ALL), 1e-9)
+        self.change("first", lambda file: file["parameters/uncross"].pop("scene"))
+        (self.dir / "no.yaml").write_text(f"{FIBERS}steps: 1\nstart: {{snapshot: first/trajectory.h5}}\n")
+        said = self.call("run", "no.yaml", "--out", "no", code=2).stderr
+        self.assertIn("its scene cannot be read, so nobody knows how far the images of a sheared box have slid", said)
+        with h5py.File(self.dir / "first/trajectory.h5", "a") as file:
+            file.pop("parameters")
+        words = "start.snapshot: the file does not say how far the images of the sheared box have slid"
+        for stream in ("own", "seed"):
+            start = f"start: {{snapshot: first/trajectory.h5, stream: {stream}}}\n"
+            self.assertIn("warning: " + words, self.run_to(f"{FIBERS}{start}", 1, stream).stderr)
+            self.call("run", f"{stream}.yaml", "--out", stream, "--resume", "--steps", "2")
+            self.assertIn(words, " ".join(json.loads((self.dir / stream / "run.json").read_text())["warnings"]))
+            self.assertIn(words, self.call("check", f"{stream}.yaml").stdout)
 
 
 if __name__ == "__main__":

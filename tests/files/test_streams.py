@@ -148,6 +148,24 @@ class Streams(unittest.TestCase):
         self.assertEqual(half["stream"], whole["stream"])
         self.assertNotEqual(whole["stream"], whole["seed"])
 
+    def test_the_noise_of_the_snapshot_is_asked_for(self):
+        """start.stream: seed, of the run that made the snapshot: its noise once more is what somebody asked for, and warned of."""
+        scene = HEAD + BATHS["overdamped"][0] + FIBERS
+        words = "start.stream: this seed is the stream of the run that made the snapshot"
+        self.run_scene("first", scene)
+        self.run_scene("still", scene, "--steps", "0")
+        for file in ("checkpoint", "trajectory"):
+            for seed, of, warned in ((1, "first", True), (2, "first", False), (1, "still", False)):
+                out = f"{of}-{file}-{seed}"
+                start = f"start: {{snapshot: {of}/{file}.h5, stream: seed}}\n"
+                told = self.run_scene(out, scene + start, "--seed", str(seed), "--steps", "4")["warnings"]
+                again = self.run_scene(out, scene + start, "--resume", "--steps", "8")
+                check = subprocess.run([UNCROSS, "check", self.dir / f"{out}.yaml", "--set", f"seed={seed}"], check=True,
+                                       capture_output=True, text=True, timeout=60).stdout
+                self.assertEqual((again["stream"], again["stream_from"]), (str(seed), None))
+                for text in (" ".join(told), " ".join(again["warnings"]), check):
+                    self.assertEqual(words in text, warned, out)
+
     def test_ports_and_check_are_told_the_stream(self):
         """Who calls random numbers by a key gets the one that is used; docs/porting.md calls it the seed."""
         scene = HEAD + BATHS["andersen"][0] + FIBERS
