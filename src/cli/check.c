@@ -12,6 +12,7 @@
 #include "cli/check_walls.h"
 #include "cli/command.h"
 #include "cli/sheet.h"
+#include "files/start.h"
 #include "mpc/drive.h"
 #include "mpc/rule.h"
 #include "scene/scene.h"
@@ -392,6 +393,6 @@ void scene_report(const struct scene *scene, const struct stream *stream, const 
   report_parts(scene);
   report_cost(scene);
   sheet_heading("Warnings");
-  if (scene_warnings(scene, tell_warning, NULL) == 0)
+  if (scene_warnings(scene, tell_warning, NULL) + start_warnings(scene, stream, tell_warning, NULL) == 0)
     printf("  none: within the paper's limits\n");
 }

@@ -241,6 +241,8 @@ bool trajectory_export(const char *path, const struct export_options *options, F
     return false;
   struct scene scene;
   const bool has_scene = read_model(frames, &scene);
+  if (has_scene)
+    shear_begin(&scene.model, frames->about.slide);
   struct place *place = places_of(&frames->structure);
   int32_t *prev = bonds_back(&frames->structure);
   struct export_view v = {.frames = frames, .options = options, .place = place, .prev = prev};

@@ -23,6 +23,7 @@ struct frames_about {
   char unfit[256]; /* why no run starts from a trajectory; empty: it may */
   bool has_stream; /* a trajectory of this program */
   uint64_t stream; /* of its random numbers */
+  uint64_t slide;  /* of a sheared box's images at step 0: model.shear.slid */
   uint64_t frames;
   uint32_t rows;                     /* particles of a frame */
   bool closed[3];                    /* the file says that its box is not periodic along this axis */

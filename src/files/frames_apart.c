@@ -10,6 +10,7 @@
 #include "files/reader.h"
 #include "files/trajectory.h"
 #include "scene/scene.h"
+#include "system/shear.h"
 
 #define LOST_NUMBER 2 /* verdicts that are sent are not negative */
 
@@ -44,12 +45,14 @@ static void read_creator(hid_t file, struct frames_about *about)
   H5Eclear2(H5E_DEFAULT);
 }
 
-/* Earlier trajectories of ours hold the seed only, which was the stream. */
+/* Earlier trajectories of ours hold the seed only, which was the stream; and no slide, which was 0. */
 static void read_stream(hid_t file, struct frames_about *about)
 {
   hid_t parameters = h5_open_group(file, "parameters"), own = h5_open_group(parameters, "uncross");
   about->has_stream = own >= 0 && (h5_get(own, "stream", H5T_NATIVE_UINT64, 0, &about->stream) ||
                                    h5_get(own, "seed", H5T_NATIVE_UINT64, 0, &about->stream));
+  if (own < 0 || !h5_get(own, "slide", H5T_NATIVE_UINT64, 0, &about->slide))
+    about->slide = 0;
   h5_close(own);
   h5_close(parameters);
   H5Eclear2(H5E_DEFAULT);
@@ -130,6 +133,7 @@ static bool open_checkpoint(struct source *s, struct message *message)
   s->about.frames = 1;
   s->about.rows = summary->vertices + summary->particles;
   s->about.steps = s->about.velocities = true;
+  s->about.slide = summary->head.slide;
   s->scene = ok ? h5_text_read(s->file, "scene") : NULL;
   return ok && (s->scene || h5_fail(message, s->path, "damaged checkpoint: its scene cannot be read"));
 }
@@ -174,6 +178,7 @@ static bool read_model(const struct source *s, struct scene *scene)
   if (!scene_read_text(s->path, s->scene, strlen(s->scene), scene, &ignored))
     return false;
   const struct model *m = &scene->model;
+  shear_begin(&scene->model, summary->head.slide);
   if (m->solvent.particles == summary->particles && m->vertices == summary->vertices &&
       m->dumbbells.pairs == summary->dumbbells && memcmp(m->box.cells, summary->cells, sizeof summary->cells) == 0)
     return true;

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "files/build_info.h"
+#include "files/start.h"
 #include "observe/units.h"
 #include "version.h"
 
@@ -99,6 +100,7 @@ static json_t *warnings(const struct scene *scene, const struct record *r)
 {
   json_t *list = json_array();
   scene_warnings(scene, add_text, list);
+  start_warnings(scene, &r->stream, add_text, list);
   char text[256];
   if (r->counts.rigid > 0) {
     snprintf(

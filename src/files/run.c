@@ -13,6 +13,7 @@
 #include "files/checkpoint.h"
 #include "files/folder.h"
 #include "files/same_run.h"
+#include "system/shear.h"
 #include "version.h"
 
 /* --- how it starts ----------------------------------------------------------------------------------------------- */
@@ -114,6 +115,7 @@ enum run_code run_continue(const struct run_parts *p, const char *path, const ui
     return RUN_BAD_INPUT;
   p->scene->seed = head->seed;
   p->scene->model.seed = head->stream.key;
+  shear_begin(&p->scene->model, head->slide);
   return RUN_FINE;
 }
 
@@ -282,6 +284,20 @@ static void close_all(struct run *run)
   run->over = true;
 }
 
+/* Adds a sentence to a note. */
+static void add_note(void *note, const char *text)
+{
+  struct message *message = note;
+  message_set(message, "%s%s%s", message->text, message->text[0] != '\0' ? "; " : "", text);
+}
+
+static void add_warning(void *note, const char *text)
+{
+  struct message warning;
+  message_set(&warning, "warning: %s", text);
+  add_note(note, warning.text);
+}
+
 enum run_code run_open(struct run *run, const struct run_parts *parts, const char *folder, bool resume,
                        const uint64_t *seed, struct message *message)
 {
@@ -298,7 +314,9 @@ enum run_code run_open(struct run *run, const struct run_parts *parts, const cha
     if (parts->state->step <= parts->scene->steps)
       code = open_files(run, message);
     if (code == RUN_FINE && run->unlocked[0] != '\0')
-      message_set(message, "%s%s%s", run->unlocked, message->text[0] ? "; " : "", message->text);
+      add_note(message, run->unlocked);
+    if (code == RUN_FINE)
+      start_warnings(parts->scene, &run->head.stream, add_warning, message);
   }
   if (code != RUN_FINE) {
     close_all(run);

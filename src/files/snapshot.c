@@ -1,12 +1,16 @@
 /* States that scenes start from: checkpoints, and last frames of trajectories. */
 #include "files/snapshot.h"
-#include "fluid/fluid.h"
-#include "system/bead.h"
+
+#include <string.h>
 
 #include "files/checkpoint.h"
 #include "files/frames.h"
 #include "files/structure.h"
 #include "files/trajectory.h"
+#include "fluid/fluid.h"
+#include "scene/scene.h"
+#include "system/bead.h"
+#include "system/shear.h"
 
 /* Rows must be in the scene's order: vertices fiber by fiber, then solvent. */
 static bool in_order(const struct frames *frames, const struct model *model, const char *path, struct message *message)
@@ -34,26 +38,85 @@ static bool make_up_lag(struct state *state, const struct model *model, struct m
   return true;
 }
 
+/* What a file says of the run that made it. */
+struct past {
+  bool known; /* else nothing below */
+  struct scene scene;
+};
+
+/* The scene, if it can be read and is of a box as this one. */
+static void look_back(struct past *past, const struct frames *frames, const struct model *model)
+{
+  struct message ignored;
+  past->known =
+      frames->scene && scene_read_text(frames->path, frames->scene, strlen(frames->scene), &past->scene, &ignored);
+  if (!past->known)
+    return;
+  past->known = memcmp(past->scene.model.box.cells, model->box.cells, sizeof model->box.cells) == 0;
+  if (past->known)
+    shear_begin(&past->scene.model, frames->about.slide);
+  else
+    scene_free(&past->scene);
+}
+
+static void forget(struct past *past)
+{
+  if (past->known)
+    scene_free(&past->scene);
+}
+
+/* Where the images of a sheared box are by now. No other program's file says it: they begin without a slide, and
+ * start_warnings tells. */
+static bool find_slide(const struct past *past, const struct model *model, uint64_t step,
+                       struct snapshot_origin *origin, const char *path, struct message *message)
+{
+  origin->slide = past->known ? (uint64_t)shear_offset(&past->scene.model, 2 * step) : 0;
+  return past->known || !origin->has_stream || !model_is_sheared(model) ||
+         message_set(message,
+                     "%s: its scene cannot be read, so nobody knows how far the images of a sheared box have "
+                     "slid; allowed: a whole file of this program, or a box that is not sheared",
+                     path);
+}
+
+/* A state of one model is one of the other. */
+static bool same_form(const struct model *m, const struct model *other)
+{
+  return m->solvent.particles == other->solvent.particles && m->vertices == other->vertices &&
+         m->dumbbells.pairs == other->dumbbells.pairs && model_has_bead(m) == model_has_bead(other) &&
+         model_has_walls(m) == model_has_walls(other);
+}
+
+/* The lag is time that passed in the run that made the checkpoint: its walls, images and forces were there. */
+static bool make_up_lag_of(const struct past *past, const struct checkpoint_summary *summary, struct state *state,
+                           const struct model *model, struct message *message)
+{
+  struct model then = past->known && same_form(&past->scene.model, model) ? past->scene.model : *model;
+  then.time_step = summary->time_step;
+  then.solvent.acceleration = summary->acceleration;
+  return make_up_lag(state, &then, message);
+}
+
 static bool start_from_checkpoint(const char *path, const struct model *model, struct state *state,
                                   struct snapshot_origin *origin, struct message *message)
 {
   struct checkpoint_summary summary;
   enum h5_trouble trouble;
+  struct fault fault = {.code = FAULT_NONE};
+  struct past past;
   if (!checkpoint_fetch(path, model, &summary, state, NULL, 0, message))
     return false;
   struct frames *frames = frames_open(path, &trouble, message);
-  const bool same = frames && in_order(frames, model, path, message);
-  frames_close(frames);
-  if (!same)
+  if (!frames)
     return false;
-  *origin = (struct snapshot_origin){true, summary.head.stream.key, state->step};
-  /* The lag is time that passed under the checkpoint's own time step and body force. */
-  struct model then = *model;
-  then.time_step = summary.time_step;
-  then.solvent.acceleration = summary.acceleration;
-  struct fault fault = {.code = FAULT_NONE};
-  return make_up_lag(state, &then, message) &&
-         (bead_sound(state, model, &fault) || (message_fault(message, &fault), false));
+  look_back(&past, frames, model);
+  *origin = (struct snapshot_origin){true, summary.head.stream.key, state->step, 0};
+  const bool ok = in_order(frames, model, path, message) &&
+                  find_slide(&past, model, state->step, origin, path, message) &&
+                  make_up_lag_of(&past, &summary, state, model, message) &&
+                  (bead_sound(state, model, &fault) || message_fault(message, &fault));
+  forget(&past);
+  frames_close(frames);
+  return ok;
 }
 
 static bool last_frame(struct trajectory *t, const char *path, const struct model *model, struct state *state,
@@ -81,9 +144,13 @@ static bool start_from_trajectory(const char *path, const struct model *model, s
   if (!t)
     return false;
   struct message ignored;
+  struct past past;
   const struct frames_about *about = &t->frames_apart->about;
+  look_back(&past, t->frames_apart, model);
   bool ok = last_frame(t, path, model, state, message);
-  *origin = (struct snapshot_origin){about->has_stream, about->stream, state->step};
+  *origin = (struct snapshot_origin){about->has_stream, about->stream, state->step, 0};
+  ok = ok && find_slide(&past, model, state->step, origin, path, message);
+  forget(&past);
   trajectory_close(t, &ignored);
   return ok;
 }

@@ -26,6 +26,7 @@ struct checkpoint_head {
   double wall_seconds; /* spent so far, over all sessions */
   double start_energy; /* kT, at step 0, for run.json of a resumed run */
   struct vec3 start_momentum;
+  uint64_t slide; /* of a sheared box's images at step 0: model.shear.slid */
   char version[64];
 };
 
@@ -55,6 +56,7 @@ bool checkpoint_read(const char *path, const struct model *model, struct checkpo
 struct snapshot_origin {
   bool has_stream;
   uint64_t stream, step;
+  uint64_t slide; /* lattice units: of the images of its sheared box; 0 for another box, and where nobody knows it */
 };
 
 /* Reads a starting state: a checkpoint, or the last frame of an H5MD file with positions and velocities of vertices

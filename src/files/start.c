@@ -10,6 +10,7 @@
 #include "scene/scene.h"
 #include "start/fibers.h"
 #include "start/start.h"
+#include "system/shear.h"
 #include "system/sound.h"
 
 /* Whether a scene may say this flow. */
@@ -115,15 +116,17 @@ static bool refuse_start(const struct scene *scene, const struct fault *fault, s
 static bool find_stream(const struct scene *scene, const struct snapshot_origin *origin, const struct state *state,
                         struct stream *stream, struct message *message)
 {
-  if (scene->stream == SCENE_STREAM_SEED)
-    return true; /* as it is */
+  if (scene->stream == SCENE_STREAM_SEED) {
+    *stream = stream_asked(scene->seed, origin->has_stream, origin->stream, origin->step);
+    return true;
+  }
   const uint64_t hash = state_hash(state);
   *stream = stream_of_snapshot(scene->seed, origin->has_stream, origin->stream, origin->step, hash);
   return hash != 0 || message_set(message, "no memory to look at the starting state");
 }
 
-static bool start_from_snapshot(const struct scene *scene, struct state *state, struct work *work,
-                                struct stream *stream, struct message *message)
+static bool start_from_snapshot(struct scene *scene, struct state *state, struct work *work, struct stream *stream,
+                                struct message *message)
 {
   const struct model *m = &scene->model;
   struct snapshot_origin origin;
@@ -131,6 +134,8 @@ static bool start_from_snapshot(const struct scene *scene, struct state *state, 
   message_set(message, "no memory for the path of the snapshot");
   bool ok = path && snapshot_read_start(path, m, state, &origin, message);
   free(path);
+  if (ok)
+    shear_begin(&scene->model, origin.slide);
   ok = ok && (state_sound(state, m, &work->fault) || message_fault(message, &work->fault)) &&
        is_flat_as_said(scene, state, message) && flows_as_said(scene, state, work, message) &&
        (start_sound(state, m, &work->fault) || refuse_start(scene, &work->fault, message));
@@ -148,6 +153,31 @@ bool scene_start(struct scene *scene, struct state *state, struct work *work, st
                       : start_state(state, &scene->model, work) || refuse_start(scene, &work->fault, message);
   scene->model.seed = stream->key;
   return ok;
+}
+
+/* The streams may meet, and the noise is drawn once more. */
+static bool noise_returns(const struct stream *s)
+{
+  return s->from == STREAM_ASKED && s->parent_step > 0 && s->parent == s->key;
+}
+
+static bool is_foreign(const struct stream *s)
+{
+  return s->from == STREAM_FOREIGN || (s->from == STREAM_ASKED && s->parent == 0 && s->parent_step == 0);
+}
+
+int start_warnings(const struct scene *scene, const struct stream *stream,
+                   void (*tell)(void *context, const char *text), void *context)
+{
+  const bool returns = noise_returns(stream), slides = is_foreign(stream) && model_is_sheared(&scene->model);
+  if (returns)
+    tell(context, "start.stream: this seed is the stream of the run that made the snapshot, so its random numbers are "
+                  "drawn once more, and the two runs are not independent; use another seed, or start.stream: own");
+  if (slides)
+    tell(context, "start.snapshot: the file does not say how far the images of the sheared box have slid: they begin "
+                  "without a slide, and particles near y = 0 and y = L may get other neighbors across the boundary; "
+                  "leave out what follows until they are forgotten");
+  return returns + slides;
 }
 
 bool scene_has_room(const struct scene *scene, struct message *message)

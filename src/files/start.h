@@ -13,6 +13,11 @@
 bool scene_start(struct scene *scene, struct state *state, struct work *work, struct stream *stream,
                  struct message *message);
 
+/* What a reader of a run's results should know of how it began: calls `tell` for each; returns the number of calls.
+ * stream: the run's. */
+int start_warnings(const struct scene *scene, const struct stream *stream,
+                   void (*tell)(void *context, const char *text), void *context);
+
 /* Lays the fibers of a drawn start where they exclude each other or a bead, and forgets them. True if each has room, as
  * in a run; else a message as that of scene_start. It takes the time of a run's start, but no memory for solvent. */
 bool scene_has_room(const struct scene *scene, struct message *message);

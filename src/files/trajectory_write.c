@@ -36,6 +36,7 @@ static bool write_parameters(struct trajectory *t, const struct model *model, co
   bool ok = h5_put(own, "format_version", H5T_NATIVE_INT32, 0, &version) &&
             h5_put(own, "seed", H5T_NATIVE_UINT64, 0, &options->seed) &&
             h5_put(own, "stream", H5T_NATIVE_UINT64, 0, &options->stream) &&
+            h5_put(own, "slide", H5T_NATIVE_UINT64, 0, &model->shear.slid) &&
             h5_put(own, "time_step", H5T_NATIVE_DOUBLE, 0, &model->time_step) &&
             h5_put(own, "vertices", H5T_NATIVE_UINT32, 0, &model->vertices) &&
             h5_text_write(own, "scene", scene_text ? scene_text : "");

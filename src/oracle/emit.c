@@ -25,6 +25,18 @@ static bool advance_to(struct oracle_stage *g, uint64_t step, const struct conta
   return true;
 }
 
+/* Ports know where images are by the time, which begins at 0. */
+static bool start_for_ports(struct scene *scene, struct state *state, struct work *work, struct message *message)
+{
+  struct stream stream;
+  return scene_start(scene, state, work, &stream, message) &&
+         (scene->model.shear.slid == 0 ||
+          message_set(message,
+                      "%s: start.snapshot: the images of its sheared box have slid; packs and traces begin without a "
+                      "slide; allowed: a snapshot of a box at rest, or none",
+                      scene->path));
+}
+
 /* A scene's run of its own, for one part of a pack: what it leaves behind is no state of the scene's run. The model
  * comes first in a pack, with the stream of the run. */
 typedef bool in_run(struct oracle_stage *stage, const struct scene *scene, uint64_t step, struct message *message);
@@ -34,13 +46,12 @@ static bool with_run(struct scene *scene, in_run *put, uint64_t step, struct pac
   const struct model *model = &scene->model;
   struct state state = {0};
   struct work work = {0};
-  struct stream stream;
   uint32_t *slot = malloc(((size_t)model->solvent.particles + 1) * sizeof *slot);
   bool ok = slot && state_alloc(&state, model) && work_alloc(&work, model) && work_add_everything(&work, model);
   message_set(message, "no memory for this scene");
   if (ok) {
     struct oracle_stage g = {model, &state, &work, pack, {"", 0}, slot, NULL};
-    ok = scene_start(scene, &state, &work, &stream, message);
+    ok = start_for_ports(scene, &state, &work, message);
     if (ok && pack->count == 0)
       oracle_put_model(pack, model);
     ok = ok && put(&g, scene, step, message);
@@ -261,7 +272,6 @@ bool oracle_trace(struct scene *scene, FILE *out, struct message *message)
 {
   struct state state = {0};
   struct work work = {0};
-  struct stream stream;
   struct tracer t = {.model = &scene->model, .out = out};
   t.slot = malloc(((size_t)scene->model.solvent.particles + 1) * sizeof *t.slot);
   const bool events = oracle_has_events(&scene->model);
@@ -270,7 +280,7 @@ bool oracle_trace(struct scene *scene, FILE *out, struct message *message)
   message_set(message, "no memory for this scene");
   if (ok && events)
     XXH64_reset(t.together, 0);
-  ok = ok && scene_start(scene, &state, &work, &stream, message) && trace_steps(scene, &state, &work, &t, message);
+  ok = ok && start_for_ports(scene, &state, &work, message) && trace_steps(scene, &state, &work, &t, message);
   work_free(&work);
   state_free(&state);
   XXH64_freeState(t.together);

@@ -81,15 +81,6 @@ static void warn_flow(struct teller *t, const struct model *m)
     warn(t, "the flow's Mach number is %.3g > 0.1 (harmless while it is uniform: paper, Sec. V B 1)", mach);
 }
 
-/* Time begins anew with a snapshot. */
-static void warn_slide(struct teller *t, const struct scene *scene)
-{
-  if (scene->snapshot && model_is_sheared(&scene->model))
-    warn(t, "start.snapshot: the images of the sheared box begin without a slide, whatever it was in the snapshot: "
-            "particles near y = 0 and y = L get other neighbors across the boundary; leave out what follows until they "
-            "are forgotten, or go on with --resume");
-}
-
 /* Vertices are unwrapped, and a run stops where their coordinates end. */
 static void warn_reach(struct teller *t, const struct scene *scene)
 {
@@ -416,7 +407,6 @@ int scene_warnings(const struct scene *scene, void (*tell)(void *context, const 
   if (model_is_sheared(m) && model_collides(m))
     warn_shear(&t, m);
   warn_reach(&t, scene);
-  warn_slide(&t, scene);
   if (m->solvent.profile != PROFILE_UNIFORM && model_collides(m))
     warn_profile(&t, m);
   for (uint32_t k = 0; k < m->kinds; k++)

@@ -1,5 +1,9 @@
 #include "start/fibers.h"
 
+#include <stdlib.h>
+
+#include "base/memory.h"
+#include "contact/drift.h"
 #include "contact/event_bead.h"
 #include "contact/laying.h"
 #include "fiber/start.h"
@@ -82,17 +86,29 @@ bool start_fibers(struct state *state, const struct model *model, struct fault *
   return ok;
 }
 
+/* Vertices as the moves see them: in coordinates in which images stand still. To be freed; NULL if memory is short. */
+static struct point *places_in_frame(const struct state *state, const struct model *model)
+{
+  const struct drift_frame frame = drift_frame_now(state, model, 1.0, 0, true);
+  struct point *place = memory_alloc((size_t)state->vertices + 1, sizeof *place);
+  for (uint32_t i = 0; place && i < state->vertices; i++)
+    place[i] = frame.sheared ? drift_enter(&frame, state->position[i]) : state->position[i];
+  return place;
+}
+
 bool start_sound(const struct state *state, const struct model *model, struct fault *fault)
 {
   static const enum fiber_start_end ends[] = {
       [FIBER_STAYS] = FIBERS_LAID, [FIBER_OVERLAPS] = FIBERS_OVERLAP, [FIBER_NO_MEMORY] = FIBERS_NO_MEMORY};
   struct ground ground = {.state = state, .model = model};
   enum fiber_start_end end = FIBERS_LAID;
-  if (is_crowded(model, true) && !laying_begin(&ground.laying, model))
+  struct point *place = places_in_frame(state, model);
+  if (!place || (is_crowded(model, true) && !laying_begin(&ground.laying, model)))
     end = FIBERS_NO_MEMORY;
   for (uint32_t fiber = 0; end == FIBERS_LAID && fiber < model->fibers; fiber++)
-    end = ends[judge_fiber(&ground, state->position, fiber)];
+    end = ends[judge_fiber(&ground, place, fiber)];
   const bool ok = record_start(&ground, end, 0, fault);
   laying_end(&ground.laying);
+  free(place);
   return ok;
 }

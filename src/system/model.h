@@ -260,6 +260,7 @@ struct shear_model {
   double rate;   /* dv_x/dy, 1/t0; with a period, its amplitude */
   double strain; /* amplitude of the strain: sets rate to 2 pi strain/period; 0: not given */
   double period; /* t0; 0: the rate is constant */
+  uint64_t slid; /* lattice units, below the edge: of the image beyond y = L along x at step 0; shear_begin */
 };
 
 /* The part of a velocity or rate that holds at each half collision interval of a period: system/shear.h. */

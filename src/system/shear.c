@@ -95,7 +95,12 @@ int64_t shear_offset(const struct model *m, uint64_t half_steps)
   if (!model_is_sheared(m))
     return 0;
   const uint64_t edge = (uint64_t)m->box.edge[0];
-  return (int64_t)((slide_until(m, half_steps + early(m)) + edge - slide_until(m, early(m))) % edge);
+  return (int64_t)((slide_until(m, half_steps + early(m)) + edge - slide_until(m, early(m)) + m->shear.slid) % edge);
+}
+
+void shear_begin(struct model *m, uint64_t slid)
+{
+  m->shear.slid = model_is_sheared(m) ? slid % (uint64_t)m->box.edge[0] : 0;
 }
 
 /* --- the table --------------------------------------------------------------------------------------------------- */

@@ -1,6 +1,6 @@
 /*
  * How walls move, and how far sheared images have slid. Both follow from the time alone, which is counted in half time
- * steps, so nothing of it is part of the state.
+ * steps, and from where the images of a snapshot were at step 0. So nothing of it is part of the state.
  *
  * The motion is constant during a collision interval: that of the interval's middle. An oscillation takes a whole
  * number of intervals, and its cosines stand in a table (elementary_circle_turns), so that all machines have the same
@@ -33,6 +33,10 @@ struct vec3 shear_wall_velocity_at_end(const struct model *model, enum wall wall
  * interval it slides a whole number of lattice units in each half step, so that it is exact at all times. 0 for a box
  * that is not sheared. */
 int64_t shear_offset(const struct model *model, uint64_t half_steps);
+
+/* The images begin where those of a snapshot are: that beyond y = L has slid by so many lattice units at step 0. Taken
+ * modulo the edge; nothing happens to a box that is not sheared. */
+void shear_begin(struct model *model, uint64_t slid);
 
 /* Fills the table of the motion, once everything else of the model is derived. False if memory is short. */
 bool shear_finish(struct model *model);

@@ -7,6 +7,14 @@ struct stream stream_of_seed(uint64_t seed)
   return (struct stream){.key = seed, .from = STREAM_SEED};
 }
 
+struct stream stream_asked(uint64_t seed, bool has_parent, uint64_t parent, uint64_t parent_step)
+{
+  return (struct stream){.key = seed,
+                         .from = STREAM_ASKED,
+                         .parent = has_parent ? parent : 0,
+                         .parent_step = has_parent ? parent_step : 0};
+}
+
 struct stream stream_of_snapshot(uint64_t seed, bool has_parent, uint64_t parent, uint64_t parent_step,
                                  uint64_t parent_state)
 {

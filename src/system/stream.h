@@ -16,13 +16,15 @@ enum stream_from {
   STREAM_UNTOLD,   /* an earlier program's checkpoint does not say: the stream is the seed */
   STREAM_SEED,     /* the scene's own start */
   STREAM_SNAPSHOT, /* a snapshot of this program */
-  STREAM_FOREIGN   /* a snapshot of another program, which has no stream */
+  STREAM_FOREIGN,  /* a snapshot of another program, which has no stream */
+  STREAM_ASKED     /* the seed, though the run begins with a snapshot: start.stream */
 };
 
 struct stream {
   uint64_t key; /* of every random number: model.seed */
   uint32_t from;
-  uint64_t parent, parent_step, parent_state; /* of a snapshot: stream (0: none), step, hash of the state it gives */
+  uint64_t parent, parent_step, parent_state; /* of a snapshot: stream (0: none), step, hash of the state it gives (not
+                                               * of STREAM_ASKED) */
 };
 
 struct stream stream_of_seed(uint64_t seed);
@@ -32,7 +34,10 @@ struct stream stream_of_seed(uint64_t seed);
 struct stream stream_of_snapshot(uint64_t seed, bool has_parent, uint64_t parent, uint64_t parent_step,
                                  uint64_t parent_state);
 
-/* Whether it comes from a snapshot. */
+/* The seed of a run that begins with a snapshot all the same. */
+struct stream stream_asked(uint64_t seed, bool has_parent, uint64_t parent, uint64_t parent_step);
+
+/* Whether it is made of a snapshot. */
 static inline bool stream_has_parent(const struct stream *stream)
 {
   return stream->from == STREAM_SNAPSHOT || stream->from == STREAM_FOREIGN;

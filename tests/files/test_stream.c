@@ -123,7 +123,8 @@ static void a_scene_may_ask_for_the_stream_of_its_seed(void **unused)
   const struct run_parts of = parts_of(&asked);
   if (run_begin(&of, &asked.head, &message) != RUN_FINE)
     fail_msg("%s", message.text);
-  assert_true(asked.head.stream.key == 77 && asked.head.stream.from == STREAM_SEED && asked.scene.model.seed == 77);
+  assert_true(asked.head.stream.key == 77 && asked.head.stream.from == STREAM_ASKED && asked.scene.model.seed == 77);
+  assert_true(asked.head.stream.parent == 77 && asked.head.stream.parent_step == 3);
   end(&own), end(&asked);
   remove_folder(folder);
 }

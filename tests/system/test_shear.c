@@ -158,12 +158,36 @@ static void offset_is_the_strain(void **unused)
   model_free(&m);
 }
 
+/* Images that begin elsewhere are elsewhere by as much at all times; a box that is not sheared has none. */
+static void images_begin_where_a_snapshot_has_them(void **unused)
+{
+  (void)unused;
+  const uint64_t begins[] = {0, 1, 12345678901, 5 * (uint64_t)LATTICE_CELL - 1, 5 * (uint64_t)LATTICE_CELL, UINT64_MAX};
+  for (int scheme = 0; scheme < SCHEMES; scheme++)
+    for (int k = 0; k < 6; k++) {
+      struct model m = box_with(scheme, 2, -0.3, k < 3 ? 0.0 : 0.02, k < 3 ? 0.0 : 5.0);
+      shear_begin(&m, begins[k]);
+      wide sum = begins[k];
+      for (uint64_t half = 0; half < 40; sum += slide_of_half_step(&m, ++half))
+        assert_true(shear_offset(&m, half) == folded(sum, m.box.edge[0]));
+      model_free(&m);
+    }
+  struct model still = box_with(SCHEME_PAPER, 2, 0.0, 0.0, 0.0);
+  shear_begin(&still, 7);
+  assert_true(shear_offset(&still, 0) == 0 && still.shear.slid == 0);
+  model_free(&still);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(intervals_end_at_collisions),   cmocka_unit_test(rate_is_that_of_the_middle),
-      cmocka_unit_test(walls_follow_the_wave),         cmocka_unit_test(offset_is_the_sum_of_slides),
-      cmocka_unit_test(nothing_is_lost_in_long_times), cmocka_unit_test(offset_is_the_strain),
+      cmocka_unit_test(intervals_end_at_collisions),
+      cmocka_unit_test(rate_is_that_of_the_middle),
+      cmocka_unit_test(walls_follow_the_wave),
+      cmocka_unit_test(offset_is_the_sum_of_slides),
+      cmocka_unit_test(nothing_is_lost_in_long_times),
+      cmocka_unit_test(offset_is_the_strain),
+      cmocka_unit_test(images_begin_where_a_snapshot_has_them),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
