@@ -1,4 +1,5 @@
 """Snapshots that no scene may start from, and what of another program's file is used, checked or refused."""
+import json
 import os
 import pathlib
 import shutil
@@ -275,7 +276,7 @@ class Outside(Start):
         code, said = self.start(self.FLUID + "walls: {kind: no-slip}\n" + self.AGAIN, "second")
         self.assertEqual(code, 2, said)
         first = int(numpy.flatnonzero(moved[:, 1] < 0)[0])
-        self.assertIn(f"solvent particle {first} is at y = {moved[first, 1]:.6g}, beyond the walls at 0 and 4", said)
+        self.assertIn(f"solvent particle {first} is at y = {moved[first, 1]}, beyond the walls at 0 and 4", said)
         self.assertFalse((self.dir / "second").exists())
         done = subprocess.run([UNCROSS, "check", self.dir / "scene.yaml"], capture_output=True, text=True, check=False, timeout=60)
         self.assertEqual((done.returncode, done.stderr), (2, said))
@@ -285,8 +286,8 @@ class Outside(Start):
         code, said = self.start(self.FLUID + "shear: {rate: 0.1}\n" + self.AGAIN, "second")
         self.assertEqual(code, 2, said)
         first = int(numpy.flatnonzero(moved[:, 1] >= 4)[0])
-        self.assertIn(f"solvent particle {first} is at y = {moved[first, 1]:.6g}, outside of a sheared box, whose images "
-                      "along y slide and have other velocities; allowed: 0 to 4", said)
+        self.assertIn(f"solvent particle {first} is at y = {moved[first, 1]}, outside of a sheared box, whose images "
+                      "along y slide and have other velocities; allowed: 0 to below 4", said)
 
     def test_periodic(self):
         moved = self.make("", [-2, 3, 9])
@@ -296,6 +297,22 @@ class Outside(Start):
             start = file["particles/trajectory/position/value"][0]
         numpy.testing.assert_allclose(start, moved % 4, rtol=0, atol=2**-40)
 
+    def test_just_beyond_a_wall(self):
+        """A place on a wall is inside. One that is beyond by a hair is not shown as if it were on it."""
+        fibers = "fibers: [{name: a, count: 4, vertices: 1, mass: 3}]\nwalls: {kind: no-slip}\n"
+        above = 4 + 2.0**-40
+        self.make(fibers, [0, 0, 0])
+        for row, y, words in ((20, 4, None), (20, above, f"solvent particle 16 is at y = {above}, beyond the walls at 0 and 4"),
+                              (3, 4, None), (3, above, f"vertex 3 is beyond a wall, at y = {above} a0; at most 4 is allowed")):
+            with self.subTest(row=row, y=y):
+                with h5py.File(self.dir / "first/trajectory.h5", "a") as file:
+                    place = file["particles/trajectory/position/value"]
+                    place[-1, 20, 1] = place[-1, 3, 1] = 1
+                    place[-1, row, 1] = y
+                code, said = self.start(self.FLUID + fibers + self.AGAIN, f"again-{row}-{y == 4}")
+                self.assertEqual(code, 2 if words else 0, said)
+                self.assertIn(words or "", said)
+
     def test_vertices_beyond_walls(self):
         fibers = "fibers: [{name: a, count: 4, vertices: 1, mass: 3}]\nwalls: {kind: no-slip}\n"
         self.make(fibers, [0, 0, 0])
@@ -304,6 +321,77 @@ class Outside(Start):
         code, said = self.start(self.FLUID + fibers + self.AGAIN, "second")
         self.assertEqual(code, 2, said)
         self.assertIn("vertex 3", said)
+
+
+class Boundary(Start):
+    """What a file says of its box is compared with the scene: a box between walls is no periodic one."""
+    FLUID = Outside.FLUID
+    SCENES = {"periodic": "", "walls": "walls: {kind: no-slip}\n", "shear": "shear: {rate: 0.1}\n"}
+
+    def test_our_files(self):
+        """A frame gets the answer that a checkpoint gets."""
+        for made in self.SCENES:
+            self.assertEqual(self.start(self.FLUID + self.SCENES[made], made)[0], 0)
+            for asked in self.SCENES:
+                for file in ("checkpoint", "trajectory"):
+                    with self.subTest(made=made, asked=asked, file=file):
+                        code, said = self.start(f"{self.FLUID}{self.SCENES[asked]}start: {{snapshot: {made}/{file}.h5}}\n",
+                                                f"{made}-{asked}-{file}")
+                        differ = (made == "walls") != (asked == "walls")
+                        self.assertEqual(code, 2 if differ else 0, said)
+                        self.assertIn(f"it is of a box {'between' if made == 'walls' else 'without'} walls, the scene's box "
+                                      f"has {'none' if made == 'walls' else 'walls'}" if differ else "", said)
+
+    def test_files_of_others(self):
+        """Words of fixed and of variable length; a file that says nothing is believed."""
+        for asked in self.SCENES:
+            self.assertEqual(self.start(self.FLUID + self.SCENES[asked], asked)[0], 0)
+        words = {"periodic": "the scene's is periodic along y", "walls": "the scene has walls along y", "shear": None}
+        for number, (said, fits) in enumerate(((["periodic"] * 3, ("periodic", "shear")),
+                                               (["periodic", "none", "periodic"], ("walls", "shear")),
+                                               (["none"] * 3, ()), (["periodic", "periodic", "none"], ()),
+                                               (["open", "", "periodic"], tuple(self.SCENES)), (None, tuple(self.SCENES)))):
+            for kind in ("S8", h5py.string_dtype()):
+                for asked in self.SCENES:
+                    with self.subTest(said=said, kind=kind, asked=asked):
+                        with h5py.File(self.dir / asked / "trajectory.h5", "a") as file:
+                            file.pop("parameters", None)
+                            about = file["particles/trajectory/box"].attrs
+                            about.pop("boundary", None)
+                            if said:
+                                about.create("boundary", numpy.array(said, dtype=kind if kind == "S8" else object), dtype=kind)
+                        code, told = self.start(f"{self.FLUID}{self.SCENES[asked]}start: {{snapshot: {asked}/trajectory.h5}}\n",
+                                                f"{number}-{kind}-{asked}")
+                        self.assertEqual(code, 0 if asked in fits else 2, told)
+                        if asked not in fits:
+                            along_y = said[1] == ("none" if asked == "periodic" else "periodic") and asked != "shear"
+                            axis = "x" if said[0] == "none" else "y" if along_y else "z"
+                            self.assertIn(f"its box is {said['xyz'.index(axis)].replace('none', 'not periodic')} along {axis}", told)
+                            self.assertIn(words[asked] if axis == "y" else f"the scene's is periodic along {axis}", told)
+
+
+class Untold(Start):
+    def test_bonds_that_no_file_tells(self):
+        """Nothing tells a ring from an open fiber then: the scene's bonds are taken, with a warning."""
+        ring = OPEN.replace("spring: 100", "spring: 100, ring: true")
+        points = "fibers: [{name: a, count: 24, vertices: 1, mass: 5}]\n"
+        words = "start.snapshot: the file says nothing of bonds, so the scene's are taken, right or wrong"
+        for fibers, bonded in ((ring, True), (points, False)):
+            self.assertEqual(self.start(FIBERS + fibers, f"first{bonded}")[0], 0)
+            with h5py.File(self.dir / f"first{bonded}/trajectory.h5", "a") as file:
+                file.pop("parameters")
+                file.pop("connectivity")
+            for asked in (fibers, OPEN) if bonded else (fibers,):
+                out = f"{bonded}{asked == OPEN}"
+                code, said = self.start(f"{FIBERS}{asked}start: {{snapshot: first{bonded}/trajectory.h5}}\n", out)
+                self.assertEqual((code, words in said), (0, bonded), said)
+                done = subprocess.run([UNCROSS, "run", self.dir / "scene.yaml", "--out", self.dir / out, "--resume", "--steps", "8"],
+                                      capture_output=True, text=True, check=True, timeout=60)
+                self.assertEqual(words in done.stderr, bonded)
+                told = json.loads((self.dir / out / "run.json").read_text())["warnings"]
+                check = subprocess.run([UNCROSS, "check", self.dir / "scene.yaml"], capture_output=True, text=True, check=True,
+                                       timeout=60)
+                self.assertEqual((words in " ".join(told), words in check.stdout), (bonded, bonded))
 
 
 if __name__ == "__main__":
