@@ -30,6 +30,7 @@ static const struct field fields[] = {
     {"head", "seed", U64, 0, AT(head.seed), ANY, false},
     {"head", "stream", U64, 0, AT(head.stream.key), ANY, true},
     {"head", "stream_from", U32, 0, AT(head.stream.from), 0.0, STREAM_ASKED, true},
+    {"head", "untold", U32, 0, AT(head.stream.untold), 0.0, UNTOLD_ALL, true},
     {"head", "parent_stream", U64, 0, AT(head.stream.parent), ANY, true},
     {"head", "parent_step", U64, 0, AT(head.stream.parent_step), ANY, true},
     {"head", "parent_state", U64, 0, AT(head.stream.parent_state), ANY, true},

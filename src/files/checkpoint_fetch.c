@@ -121,6 +121,7 @@ static bool fits_model(struct apart *apart, const struct checkpoint_summary *s, 
 {
   const char *path = apart->path;
   const int *cells = m->box.cells;
+  struct message why;
   if (memcmp(s->cells, cells, sizeof s->cells) != 0)
     return message_set(message, "%s: its box is %d x %d x %d cells, the scene's %d x %d x %d" SAME, path, s->cells[0],
                        s->cells[1], s->cells[2], cells[0], cells[1], cells[2]);
@@ -131,9 +132,8 @@ static bool fits_model(struct apart *apart, const struct checkpoint_summary *s, 
     return message_set(message, "%s: it holds %u fiber vertices, the scene %u" SAME, path, s->vertices, m->vertices);
   if (s->dumbbells != m->dumbbells.pairs)
     return message_set(message, "%s: it holds %u dumbbells, the scene %u" SAME, path, s->dumbbells, m->dumbbells.pairs);
-  if ((s->wall_rows > 0) != model_has_walls(m))
-    return message_set(message, "%s: it is of a box %s walls, the scene's box has %s", path,
-                       s->wall_rows > 0 ? "between" : "without", s->wall_rows > 0 ? "none" : "walls");
+  if (structure_walls_differ(s->wall_rows > 0, m, &why))
+    return message_set(message, "%s: %s", path, why.text);
   if ((s->beads > 0) != model_has_bead(m))
     return message_set(message, "%s: it is of a solvent %s bead, the scene has %s", path,
                        s->beads > 0 ? "around a" : "without a", s->beads > 0 ? "none" : "one");

@@ -26,7 +26,8 @@ struct frames_about {
   uint64_t slide;  /* of a sheared box's images at step 0: model.shear.slid */
   uint64_t frames;
   uint32_t rows;                     /* particles of a frame */
-  bool closed[3];                    /* the file says that its box is not periodic along this axis */
+  bool bounded;                      /* the file says along which axes its box is periodic */
+  bool closed[3];                    /* it is not, along this one; false where the file does not say it */
   struct checkpoint_summary summary; /* of a checkpoint */
   char creator[128], version[64], author[128];
 };

@@ -2,6 +2,7 @@
 #include "files/frames_apart.h"
 
 #include <inttypes.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -58,12 +59,28 @@ static void read_stream(hid_t file, struct frames_about *about)
   H5Eclear2(H5E_DEFAULT);
 }
 
-/* True if the attribute holds words of fixed length: only these are read. */
-static bool has_words(hid_t object, const char *name)
+enum { WORD = 16, AXES = 3 };
+
+/* Three words of an attribute, cut to their first letters. Others write them with variable lengths. */
+static bool read_words(hid_t object, const char *name, char word[AXES][WORD])
 {
   hid_t attribute = object >= 0 && H5Aexists(object, name) > 0 ? H5Aopen(object, name, H5P_DEFAULT) : -1;
-  hid_t stored = attribute < 0 ? -1 : H5Aget_type(attribute);
-  const bool ok = stored >= 0 && H5Tget_class(stored) == H5T_STRING && H5Tis_variable_str(stored) == 0;
+  hid_t stored = attribute < 0 ? -1 : H5Aget_type(attribute), space = attribute < 0 ? -1 : H5Aget_space(attribute);
+  hid_t type = H5Tcopy(H5T_C_S1);
+  H5Tset_size(type, WORD);
+  bool ok = stored >= 0 && H5Tget_class(stored) == H5T_STRING && H5Sget_simple_extent_npoints(space) == AXES;
+  if (ok && H5Tis_variable_str(stored) > 0) {
+    char *text[AXES] = {NULL};
+    ok = H5Aread(attribute, stored, text) >= 0;
+    for (int k = 0; ok && k < AXES; k++)
+      snprintf(word[k], WORD, "%s", text[k] ? text[k] : "");
+    H5Dvlen_reclaim(stored, space, H5P_DEFAULT, text);
+  } else if (ok) {
+    H5Tset_cset(type, H5Tget_cset(stored));
+    ok = H5Aread(attribute, type, word) >= 0;
+  }
+  h5_close(type);
+  h5_close(space);
   h5_close(stored);
   h5_close(attribute);
   return ok;
@@ -71,14 +88,13 @@ static bool has_words(hid_t object, const char *name)
 
 static void read_boundary(const struct trajectory *t, struct frames_about *about)
 {
-  enum { LENGTH = 16 };
-  char word[3][LENGTH] = {""};
-  hid_t box = h5_open_group(t->group, "box"), type = H5Tcopy(H5T_C_S1);
-  H5Tset_size(type, LENGTH);
-  const bool known = has_words(box, "boundary") && h5_get(box, "boundary", type, 3, word);
-  for (int k = 0; k < 3; k++)
-    about->closed[k] = known && strncmp(word[k], "none", LENGTH) == 0;
-  h5_close(type);
+  char word[AXES][WORD] = {""};
+  hid_t box = h5_open_group(t->group, "box");
+  about->bounded = read_words(box, "boundary", word);
+  for (int k = 0; k < AXES; k++) {
+    about->closed[k] = strncmp(word[k], "none", WORD) == 0;
+    about->bounded = about->bounded && (about->closed[k] || strncmp(word[k], "periodic", WORD) == 0);
+  }
   h5_close(box);
   H5Eclear2(H5E_DEFAULT);
 }

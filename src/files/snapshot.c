@@ -71,6 +71,7 @@ static bool find_slide(const struct past *past, const struct model *model, uint6
                        struct snapshot_origin *origin, const char *path, struct message *message)
 {
   origin->slide = past->known ? (uint64_t)shear_offset(&past->scene.model, 2 * step) : 0;
+  origin->untold |= !past->known && model_is_sheared(model) ? UNTOLD_SLIDE : 0;
   return past->known || !origin->has_stream || !model_is_sheared(model) ||
          message_set(message,
                      "%s: its scene cannot be read, so nobody knows how far the images of a sheared box have "
@@ -109,7 +110,7 @@ static bool start_from_checkpoint(const char *path, const struct model *model, s
   if (!frames)
     return false;
   look_back(&past, frames, model);
-  *origin = (struct snapshot_origin){true, summary.head.stream.key, state->step, 0};
+  *origin = (struct snapshot_origin){.has_stream = true, .stream = summary.head.stream.key, .step = state->step};
   const bool ok = in_order(frames, model, path, message) &&
                   find_slide(&past, model, state->step, origin, path, message) &&
                   make_up_lag_of(&past, &summary, state, model, message) &&
@@ -117,6 +118,24 @@ static bool start_from_checkpoint(const char *path, const struct model *model, s
   forget(&past);
   frames_close(frames);
   return ok;
+}
+
+/* What the file says of its box: by its scene, else by its words, which know no images that slide. */
+static bool same_boundary(const struct past *past, const struct frames_about *about, const struct model *m,
+                          const char *path, struct message *message)
+{
+  struct message why;
+  if (past->known)
+    return !structure_walls_differ(model_has_walls(&past->scene.model), m, &why) ||
+           message_set(message, "%s: %s", path, why.text);
+  for (int k = 0; k < 3 && about->bounded; k++) {
+    const bool walls = m->box.boundary[k] == BOUNDARY_WALL,
+               any = k == 1 ? model_is_sheared(m) : k == 2 && m->dimensions == 2;
+    if (!any && about->closed[k] != walls)
+      return message_set(message, "%s: its box is %speriodic along %c; the scene%s along %c", path,
+                         about->closed[k] ? "not " : "", "xyz"[k], walls ? " has walls" : "'s is periodic", "xyz"[k]);
+  }
+  return true;
 }
 
 static bool last_frame(struct trajectory *t, const char *path, const struct model *model, struct state *state,
@@ -146,9 +165,13 @@ static bool start_from_trajectory(const char *path, const struct model *model, s
   struct message ignored;
   struct past past;
   const struct frames_about *about = &t->frames_apart->about;
+  const struct structure *s = &t->frames_apart->structure;
   look_back(&past, t->frames_apart, model);
-  bool ok = last_frame(t, path, model, state, message);
-  *origin = (struct snapshot_origin){about->has_stream, about->stream, state->step, 0};
+  bool ok = same_boundary(&past, about, model, path, message) && last_frame(t, path, model, state, message);
+  *origin = (struct snapshot_origin){.has_stream = about->has_stream,
+                                     .stream = about->stream,
+                                     .step = state->step,
+                                     .untold = model->bonds > 0 && !s->stored_bonds ? UNTOLD_BONDS : 0};
   ok = ok && find_slide(&past, model, state->step, origin, path, message);
   forget(&past);
   trajectory_close(t, &ignored);

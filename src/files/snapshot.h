@@ -56,7 +56,8 @@ bool checkpoint_read(const char *path, const struct model *model, struct checkpo
 struct snapshot_origin {
   bool has_stream;
   uint64_t stream, step;
-  uint64_t slide; /* lattice units: of the images of its sheared box; 0 for another box, and where nobody knows it */
+  uint64_t slide;  /* lattice units: of the images of its sheared box; 0 for another box, and where nobody knows it */
+  uint32_t untold; /* what its file does not say: bits of enum stream_untold */
 };
 
 /* Reads a starting state: a checkpoint, or the last frame of an H5MD file with positions and velocities of vertices

@@ -116,12 +116,11 @@ static bool refuse_start(const struct scene *scene, const struct fault *fault, s
 static bool find_stream(const struct scene *scene, const struct snapshot_origin *origin, const struct state *state,
                         struct stream *stream, struct message *message)
 {
-  if (scene->stream == SCENE_STREAM_SEED) {
-    *stream = stream_asked(scene->seed, origin->has_stream, origin->stream, origin->step);
-    return true;
-  }
+  const bool asked = scene->stream == SCENE_STREAM_SEED;
   const uint64_t hash = state_hash(state);
-  *stream = stream_of_snapshot(scene->seed, origin->has_stream, origin->stream, origin->step, hash);
+  *stream = asked ? stream_asked(scene->seed, origin->has_stream, origin->stream, origin->step)
+                  : stream_of_snapshot(scene->seed, origin->has_stream, origin->stream, origin->step, hash);
+  stream->untold = origin->untold;
   return hash != 0 || message_set(message, "no memory to look at the starting state");
 }
 
@@ -161,23 +160,31 @@ static bool noise_returns(const struct stream *s)
   return s->from == STREAM_ASKED && s->parent_step > 0 && s->parent == s->key;
 }
 
-static bool is_foreign(const struct stream *s)
-{
-  return s->from == STREAM_FOREIGN || (s->from == STREAM_ASKED && s->parent == 0 && s->parent_step == 0);
-}
-
 int start_warnings(const struct scene *scene, const struct stream *stream,
                    void (*tell)(void *context, const char *text), void *context)
 {
-  const bool returns = noise_returns(stream), slides = is_foreign(stream) && model_is_sheared(&scene->model);
-  if (returns)
-    tell(context, "start.stream: this seed is the stream of the run that made the snapshot, so its random numbers are "
-                  "drawn once more, and the two runs are not independent; use another seed, or start.stream: own");
-  if (slides)
-    tell(context, "start.snapshot: the file does not say how far the images of the sheared box have slid: they begin "
-                  "without a slide, and particles near y = 0 and y = L may get other neighbors across the boundary; "
-                  "leave out what follows until they are forgotten");
-  return returns + slides;
+  const struct {
+    bool is;
+    const char *text;
+  } rows[] = {
+      {noise_returns(stream),
+       "start.stream: this seed is the stream of the run that made the snapshot, so its random numbers are drawn once "
+       "more, and the two runs are not independent; use another seed, or start.stream: own"},
+      {(stream->untold & UNTOLD_SLIDE) && model_is_sheared(&scene->model),
+       "start.snapshot: the file does not say how far the images of the sheared box have slid: they begin without a "
+       "slide, and particles near y = 0 and y = L may get other neighbors across the boundary; leave out what follows "
+       "until they are forgotten"},
+      {stream->untold & UNTOLD_BONDS,
+       "start.snapshot: the file says nothing of bonds, so the scene's are taken, right or wrong: nothing tells rings "
+       "from open fibers; use a file with connectivity/bonds"},
+  };
+  int told = 0;
+  for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
+    if (rows[k].is) {
+      tell(context, rows[k].text);
+      told++;
+    }
+  return told;
 }
 
 bool scene_has_room(const struct scene *scene, struct message *message)

@@ -288,6 +288,14 @@ bool structure_differs(const struct structure *s, const struct model *m, struct 
          (s->mass && structure_masses_differ(s->mass, s->particles, m, why)) || kinds_differ(s, m, why);
 }
 
+bool structure_walls_differ(bool between, const struct model *m, struct message *why)
+{
+  if (between != model_has_walls(m))
+    message_set(why, "it is of a box %s walls, the scene's box has %s", between ? "between" : "without",
+                between ? "none" : "walls");
+  return between != model_has_walls(m);
+}
+
 void structure_free(struct structure *s)
 {
   free(s->species);

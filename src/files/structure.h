@@ -52,6 +52,9 @@ const char *structure_name(const struct structure *structure, int32_t species);
  * they are stored. If so, the message says how, without the file. */
 bool structure_differs(const struct structure *structure, const struct model *model, struct message *why);
 
+/* The same of walls; between: the file's box is between them. */
+bool structure_walls_differ(bool between, const struct model *model, struct message *why);
+
 /* The same of masses alone: [rows], vertices first. */
 bool structure_masses_differ(const double *mass, uint32_t rows, const struct model *model, struct message *why);
 

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "files/frames.h"
 #include "files/trajectory.h"
 
@@ -108,12 +109,14 @@ static bool solvent_inside(const struct trajectory *t, const struct model *m, st
     const int64_t y = to_lattice(row[3 * (size_t)i + 1]);
     if (y >= 0 && y < m->box.edge[1] + (kind == BOUNDARY_WALL)) /* on a wall is inside */
       continue;
+    char place[TEXT_REAL_SIZE];
+    text_shortest(row[3 * (size_t)i + 1], place); /* may be beyond by a hair */
     return message_set(message,
                        kind == BOUNDARY_WALL
-                           ? "%s: solvent particle %u is at y = %.6g, beyond the walls at 0 and %d"
-                           : "%s: solvent particle %u is at y = %.6g, outside of a sheared box, whose images along y "
-                             "slide and have other velocities; allowed: 0 to %d",
-                       t->path, i, row[3 * (size_t)i + 1], m->box.cells[1]);
+                           ? "%s: solvent particle %u is at y = %s, beyond the walls at 0 and %d"
+                           : "%s: solvent particle %u is at y = %s, outside of a sheared box, whose images along y "
+                             "slide and have other velocities; allowed: 0 to below %d",
+                       t->path, i, place, m->box.cells[1]);
   }
   return true;
 }

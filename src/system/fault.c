@@ -3,6 +3,7 @@
 #include <inttypes.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "base/text.h"
 
@@ -54,9 +55,14 @@ void fault_describe(const struct fault *fault, char *text, size_t size)
   }
   const char *hint =
       !wording[fault->code].heated ? "" : " (a time step that is too large, or a heated system, is the usual cause)";
-  snprintf(text, size, "step %" PRIu64 ": %s %" PRId64 " %s %.8g %s; at %s %.8g is allowed%s", fault->step,
-           wording[fault->code].entity, fault->entity, wording[fault->code].what, text_real(fault->value),
-           wording[fault->code].unit, wording[fault->code].least ? "least" : "most", fault->limit, hint);
+  char value[TEXT_REAL_SIZE], limit[TEXT_REAL_SIZE];
+  snprintf(value, sizeof value, "%.8g", text_real(fault->value));
+  snprintf(limit, sizeof limit, "%.8g", fault->limit);
+  if (strcmp(value, limit) == 0) /* it is beyond by a hair */
+    text_shortest(fault->value, value);
+  snprintf(text, size, "step %" PRIu64 ": %s %" PRId64 " %s %s %s; at %s %s is allowed%s", fault->step,
+           wording[fault->code].entity, fault->entity, wording[fault->code].what, value, wording[fault->code].unit,
+           wording[fault->code].least ? "least" : "most", limit, hint);
 }
 
 int message_fault(struct message *message, const struct fault *fault)

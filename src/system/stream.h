@@ -20,9 +20,12 @@ enum stream_from {
   STREAM_ASKED     /* the seed, though the run begins with a snapshot: start.stream */
 };
 
+/* What the file of a snapshot does not say, so that the run begins without it: bits. */
+enum stream_untold { UNTOLD_SLIDE = 1, UNTOLD_BONDS = 2, UNTOLD_ALL = 3 };
+
 struct stream {
   uint64_t key; /* of every random number: model.seed */
-  uint32_t from;
+  uint32_t from, untold;
   uint64_t parent, parent_step, parent_state; /* of a snapshot: stream (0: none), step, hash of the state it gives (not
                                                * of STREAM_ASKED) */
 };
