@@ -99,15 +99,15 @@ static int append(struct uncross_scene *scene, char *setting, uncross_error *err
   return UNCROSS_OK;
 }
 
-static uncross_scene *make_with(const char *name, const char *text, size_t size, bool look_for_files,
-                                const char *const *settings, size_t count, uncross_error *error)
+static uncross_scene *make_with(const char *name, const char *text, size_t size, const char *const *settings,
+                                size_t count, uncross_error *error)
 {
   uncross_scene *scene = make(name, text, size);
   int code = scene ? UNCROSS_OK : fail(error, UNCROSS_NO_MEMORY, "no memory for this scene", NULL);
   for (size_t k = 0; code == UNCROSS_OK && k < count; k++)
     code = append(scene, strdup(settings[k]), error);
   if (code == UNCROSS_OK)
-    code = check(scene, look_for_files, true, error); /* uncross_scene_set_steps may follow */
+    code = check(scene, false, true, error); /* uncross_scene_set_steps may follow, or a resume without the snapshot */
   if (code == UNCROSS_OK)
     return scene;
   uncross_scene_free(scene);
@@ -125,7 +125,7 @@ uncross_scene *uncross_scene_parse(const char *name, const char *text, const cha
     return NULL;
   struct call call;
   call_begin(&call, false);
-  uncross_scene *scene = make_with(name, text, strlen(text), false, settings, count, error);
+  uncross_scene *scene = make_with(name, text, strlen(text), settings, count, error);
   call_end(&call);
   return scene;
 }
@@ -143,7 +143,7 @@ uncross_scene *uncross_scene_read(const char *path, const char *const *settings,
   size_t size;
   call_begin(&call, false);
   char *text = yaml_read_file(path, &size, &message);
-  uncross_scene *scene = text ? make_with(path, text, size, true, settings, count, error) : NULL;
+  uncross_scene *scene = text ? make_with(path, text, size, settings, count, error) : NULL;
   if (!text)
     fail(error, UNCROSS_BAD_INPUT, message.text, NULL);
   free(text);

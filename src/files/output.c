@@ -92,6 +92,15 @@ static bool same_end(const struct folder *folder, const char *file, uint64_t fou
                                      folder->name, file, where, end - 1, otherwise);
 }
 
+static struct trajectory_options options_of(const struct scene *scene, const struct folder *folder)
+{
+  return (struct trajectory_options){.solvent = scene->trajectory_solvent,
+                                     .velocities = scene->trajectory_velocities,
+                                     .seed = scene->seed,
+                                     .stream = scene->model.seed,
+                                     .folder = folder};
+}
+
 bool output_whole(const struct scene *scene, const struct observers *observers, const struct folder *folder,
                   uint64_t frames_end, struct message *message)
 {
@@ -109,8 +118,10 @@ bool output_whole(const struct scene *scene, const struct observers *observers, 
   }
   char path[4096];
   folder_path(folder, "trajectory.h5", path, sizeof path);
+  const struct trajectory_options options = options_of(scene, folder);
   return scene->trajectory_every == 0 || frames_end == 0 || !trajectory_find_end(path, frames_end - 1, &found) ||
-         same_end(folder, "trajectory.h5", found, frames_end, "move it away to begin another", message);
+         (same_end(folder, "trajectory.h5", found, frames_end, "move it away to begin another", message) &&
+          trajectory_fits(path, &scene->model, &options, message));
 }
 
 /* --- what a run writes ------------------------------------------------------------------------------------------- */
@@ -152,11 +163,7 @@ static bool open_trajectory(struct output *o, const struct scene *scene, bool re
   char path[4096];
   folder_path(o->folder, "trajectory.h5", path, sizeof path);
   const bool there = folder_has(o->folder, "trajectory.h5");
-  const struct trajectory_options options = {.solvent = scene->trajectory_solvent,
-                                             .velocities = scene->trajectory_velocities,
-                                             .seed = scene->seed,
-                                             .stream = scene->model.seed,
-                                             .folder = o->folder};
+  const struct trajectory_options options = options_of(scene, o->folder);
   o->trajectory = trajectory_open(path, &scene->model, &options, resume, step, scene->text, message);
   if (o->trajectory && resume && step > 0 && message->text[0] == '\0')
     tell_gap(o, path, there, frames_end, step, message);

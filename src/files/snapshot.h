@@ -101,6 +101,9 @@ int trajectory_descriptor(const struct trajectory *trajectory);
 uint64_t trajectory_end(const struct trajectory *trajectory);
 /* The same of a file, counting frames up to a step only; false if it is not there, is damaged, or is in use. */
 bool trajectory_find_end(const char *path, uint64_t keep_to_step, uint64_t *end);
+/* False if a readable file has frames of other particles than asked for, with a message. */
+bool trajectory_fits(const char *path, const struct model *model, const struct trajectory_options *options,
+                     struct message *message);
 /* Closes it, NULL too; the handle is freed in any case. False, with a message, if data could not be written. */
 bool trajectory_close(struct trajectory *trajectory, struct message *message);
 

@@ -129,6 +129,8 @@ static bool start_from_snapshot(struct scene *scene, struct state *state, struct
 {
   const struct model *m = &scene->model;
   struct snapshot_origin origin;
+  if (!scene_finds_snapshot(scene, message))
+    return false;
   char *path = scene_snapshot_path(scene);
   message_set(message, "no memory for the path of the snapshot");
   bool ok = path && snapshot_read_start(path, m, state, &origin, message);

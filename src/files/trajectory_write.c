@@ -261,6 +261,17 @@ static bool same_contents(const struct frames *frames, const struct model *model
          message_set(message, "%s: its bonds are not the scene's; move the file away", frames->path);
 }
 
+bool trajectory_fits(const char *path, const struct model *model, const struct trajectory_options *options,
+                     struct message *message)
+{
+  enum h5_trouble trouble;
+  struct message ignored;
+  struct frames *frames = frames_open(path, &trouble, &ignored);
+  const bool fits = !frames || same_contents(frames, model, options, message);
+  frames_close(frames);
+  return fits;
+}
+
 /* Renames a damaged file to the first free NAME.damaged.N.h5. */
 static bool set_aside(const struct place *place, const char *path, const char *why, struct message *message)
 {

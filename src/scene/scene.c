@@ -143,7 +143,7 @@ static char *beside(const char *path, const char *name)
   return joined;
 }
 
-static bool check_snapshot(const struct scene *scene, struct message *message)
+bool scene_finds_snapshot(const struct scene *scene, struct message *message)
 {
   char *path = scene_snapshot_path(scene);
   const bool ok = !scene->snapshot || (path && access(path, R_OK) == 0);
@@ -243,7 +243,7 @@ static bool read_whole(struct scene *scene, const struct scene_source *r)
   return (r->kept || check_observed(scene, r->message)) &&
          (!model_has_bead(&scene->model) || check_force(scene, r->message)) && check_lags(scene, r->message) &&
          (r->open_end || check_from(scene, r->message)) && check_trajectory(scene, r->message) &&
-         (!r->look_for_files || check_snapshot(scene, r->message));
+         (!r->look_for_files || scene_finds_snapshot(scene, r->message));
 }
 
 static bool read_once(struct scene *scene, const struct scene_source *r)
@@ -344,13 +344,10 @@ bool scene_read(const char *path, struct scene *scene, struct message *message)
 bool scene_read_as(const char *path, const struct scene_settings *settings, uint64_t fingerprint, struct scene *scene,
                    struct message *message)
 {
-  return read_file(&(struct scene_source){.keys = &scene_keys,
-                                          .path = path,
-                                          .settings = settings,
-                                          .fingerprint = &fingerprint,
-                                          .look_for_files = true,
-                                          .message = message},
-                   scene);
+  return read_file(
+      &(struct scene_source){
+          .keys = &scene_keys, .path = path, .settings = settings, .fingerprint = &fingerprint, .message = message},
+      scene);
 }
 
 /* --- files ------------------------------------------------------------------------------------------------------- */

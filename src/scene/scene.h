@@ -59,7 +59,7 @@ bool scene_read_numbers(const char *path, const struct scene_settings *settings,
 /* The same for a run that is resumed; fingerprint: that of its checkpoint. Missing keys take the defaults of today. If
  * the fingerprint then differs, the scene is read again with the keys' `absent` values, because a default may have
  * changed since the run began. If the fingerprint still differs, the result is that of scene_read_set, and the caller
- * has to compare fingerprints. */
+ * has to compare fingerprints. The snapshot with which the run began may be gone: the checkpoint has its state. */
 bool scene_read_as(const char *path, const struct scene_settings *settings, uint64_t fingerprint, struct scene *scene,
                    struct message *message);
 
@@ -78,6 +78,9 @@ bool scene_refuse_at(const struct scene *scene, const char *path, const char *ke
 
 /* True if the scene's file, or a setting, gives the key of this path. */
 bool scene_says(const struct scene *scene, const char *path);
+
+/* Whether the snapshot of the scene, if it has one, can be read; else a message at its key. */
+bool scene_finds_snapshot(const struct scene *scene, struct message *message);
 
 /* Where the snapshot file is, seen from the working folder: to be freed; NULL if the scene has none, or memory is
  * short. */

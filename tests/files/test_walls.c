@@ -109,12 +109,50 @@ static void positions_are_between_the_walls(void **unused)
   test_end(&r);
 }
 
+/* A frame with one particle at each height; those of 0 and 5 are on the walls. */
+static void frames_have_no_solvent_beyond_the_walls(void **unused)
+{
+  (void)unused;
+  char folder[64];
+  make_folder(folder);
+  const char *path = in_folder(folder, "trajectory.h5");
+  const struct trajectory_options options = {.solvent = true};
+  const struct {
+    int64_t y;
+    const char *words;
+  } rows[] = {{0, NULL},
+              {5 * LATTICE_CELL, NULL},
+              {-LATTICE_CELL / 8, "solvent particle 7 is at y = -0.125, beyond the walls at 0 and 5"},
+              {5 * LATTICE_CELL + 1, "solvent particle 7 is at y = 5.0000000000009095, beyond the walls at 0 and 5"}};
+  struct test_run r = test_start(between_walls());
+  struct state back;
+  struct message message = {""};
+  assert_true(state_alloc(&back, &r.model));
+  for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+    remove(path);
+    r.state.solvent.y[7] = rows[k].y;
+    struct trajectory *t = trajectory_open(path, &r.model, &options, false, 0, "", &message);
+    assert_true(t && trajectory_append(t, &r.model, &r.state, &message) && trajectory_close(t, &message));
+    t = trajectory_open_read(path, &message);
+    assert_non_null(t);
+    assert_int_equal(trajectory_read(t, &r.model, 0, &back, &message), !rows[k].words);
+    if (rows[k].words && !strstr(message.text, rows[k].words))
+      fail_msg("%s", message.text);
+    assert_true(rows[k].words || back.solvent.y[7] == rows[k].y);
+    trajectory_close(t, &message);
+  }
+  state_free(&back);
+  test_end(&r);
+  remove_folder(folder);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(checkpoints_hold_the_account),
       cmocka_unit_test(periodic_files_have_no_account),
       cmocka_unit_test(positions_are_between_the_walls),
+      cmocka_unit_test(frames_have_no_solvent_beyond_the_walls),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
