@@ -277,12 +277,13 @@ class RunFolder(FolderTest):
         table = self.run_folder / "conserved.csv"
         rows = table.read_text()
         for damaged, where in ((rows[:-5], "ends at step 38"), (rows[:rows.rindex("\n20,") + 1], "ends at step 18"),
-                               (rows[:20], "is missing or holds nothing of this run"), ("\0" * len(rows), "is missing or holds nothing of this run"),
+                               (rows[:20], "is missing, has other columns, or holds nothing of this run"), ("\0" * len(rows), "is missing, has other columns, or holds nothing of this run"),
+                               (rows.replace("bend", "bent", 1), "is missing, has other columns, or holds nothing of this run"),
                                (rows.replace("\n30,", "\n\0\0,"), "ends at step 28")):
             table.write_text(damaged)
             self.refused(SCENE, f"conserved.csv: {where}, but went to step 40", "--resume", "--steps", 50)
         table.unlink()
-        self.refused(SCENE, "conserved.csv: is missing or holds nothing of this run, but went to step 40", "--resume", "--steps", 50)
+        self.refused(SCENE, "conserved.csv: is missing, has other columns, or holds nothing of this run, but went to step 40", "--resume", "--steps", 50)
         table.write_text(rows)
         self.run_scene(SCENE, "--resume", "--steps", 50)
         self.assertTrue(table.read_text().startswith(rows))
