@@ -82,7 +82,7 @@ void output_remove(const struct scene *scene, const struct observers *observers,
 static bool same_end(const struct folder *folder, const char *file, uint64_t found, uint64_t end, const char *otherwise,
                      struct message *message)
 {
-  char where[64] = "is missing or holds nothing of this run";
+  char where[64] = "is missing, has other columns, or holds nothing of this run";
   if (found > 0)
     snprintf(where, sizeof where, "ends at step %" PRIu64, found - 1);
   return found == end || message_set(message,
