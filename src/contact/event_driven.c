@@ -40,6 +40,7 @@ struct meeting {
   struct event event;
   uint32_t vertex[4];
   struct contact_geometry geometry;
+  struct vec3 gap; /* from the point of contact of the first bond to that of the other, a0 */
 };
 
 /* By how much the other bond's image is faster along x than the bond itself, in a sheared box. */
@@ -54,35 +55,26 @@ static struct vec3 in_space(const struct event_drift *d, struct point r, int32_t
   return drift_true(d->frame, point_in_a0(r), (double)tick / FLIGHT_TICKS);
 }
 
-/* Two bonds at the tick of their contact: their vectors, and from the first end of one to that of the other; a0. */
-struct spread {
-  struct vec3 p, q, w;
-};
-
-static struct spread spread_of(const struct event_drift *d, const struct event *e, const struct flight_pair *pair)
-{
-  return (struct spread){in_space(d, flight_place(pair->p, pair->p_rate, e->tick), e->tick),
-                         in_space(d, flight_place(pair->q, pair->q_rate, e->tick), e->tick),
-                         in_space(d, flight_place(pair->w, pair->w_rate, e->tick), e->tick)};
-}
-
 static struct meeting meeting_of(const struct event_drift *d, const struct event *e)
 {
   const struct flight_pair pair = event_pair(d, e->bond, e->other, e->image);
   struct meeting m = {.event = *e};
   m.vertex[0] = e->bond, m.vertex[1] = (uint32_t)d->model->next[e->bond];
   m.vertex[2] = e->other, m.vertex[3] = (uint32_t)d->model->next[e->other];
-  const struct spread b = spread_of(d, e, &pair);
+  const struct vec3 p = in_space(d, flight_place(pair.p, pair.p_rate, e->tick), e->tick),
+                    q = in_space(d, flight_place(pair.q, pair.q_rate, e->tick), e->tick),
+                    w = in_space(d, flight_place(pair.w, pair.w_rate, e->tick), e->tick);
   double s, t;
   const struct bond_shape *shape = bond_shape_of(model_reach(d->model, e->bond, e->other));
-  shape->points(b.p, b.q, b.w, &s, &t);
+  shape->points(p, q, w, &s, &t);
   const double lever[4] = {1.0 - s, s, t - 1.0, -t};
   struct vec3 velocity = {0, 0, 0};
   for (int k = 0; k < 4; k++)
     velocity = vec3_add_scaled(velocity, lever[k], d->state->velocity[m.vertex[k]]);
   velocity.x -= image_speed(d, e); /* the levers of the other bond have the sum -1 */
   m.geometry.s = s, m.geometry.t = t;
-  const struct shape_contact at = {b.p, b.q, capsule_between(b.p, b.q, b.w, s, t), velocity};
+  const struct shape_contact at = {p, q, capsule_between(p, q, w, s, t), velocity};
+  m.gap = at.gap;
   m.touching = !shape->normal(&pair, e->tick, &at, &m.geometry.normal);
   return m;
 }
@@ -107,14 +99,6 @@ static bool exchange(const struct event_drift *d, struct meeting *m)
   return answer != CONTACT_NONE;
 }
 
-/* Before flights bend. */
-static double gap_of(const struct event_drift *d, const struct meeting *m)
-{
-  const struct flight_pair pair = event_pair(d, m->event.bond, m->event.other, m->event.image);
-  const struct spread b = spread_of(d, &m->event, &pair);
-  return vec3_norm(capsule_between(b.p, b.q, b.w, m->geometry.s, m->geometry.t));
-}
-
 static void note(const struct event_drift *d, const struct meeting *m)
 {
   struct collision_counts *counts = &d->state->counts;
@@ -130,7 +114,7 @@ static void note(const struct event_drift *d, const struct meeting *m)
                                      {(double)e->tick / FLIGHT_TICKS, m->geometry.s, m->geometry.t, m->geometry.normal},
                                      true,
                                      m->geometry.impulse,
-                                     gap_of(d, m)};
+                                     vec3_norm(m->gap)};
   d->log->record(d->log->context, &told);
 }
 
