@@ -139,8 +139,10 @@ class Foreign(Start):
         heavy[30] = 2.0
         self.change(lambda file: self.put(file, "mass", heavy, False))
         self.again(OPEN, "solvent particle 6 has the mass 2 in it, 1 in the scene")
-        for numbers, timed, words in ((right.astype("f4"), False, None),
-                                      (right, True, "its mass is not one real number for each row")):
+        for numbers, timed, words in ((right.astype("f4"), False, None), (right.astype("i4"), False, None),
+                                      (heavy.astype("u1"), False, "solvent particle 6 has the mass 2 in it, 1 in the scene"),
+                                      (right, True, "its mass is not one number for each row"),
+                                      (numpy.full(536, "1", "S1"), False, "its mass is not one number for each row")):
             self.change(lambda file, numbers=numbers, timed=timed: self.put(file, "mass", numbers, timed))
             self.again(OPEN, words)
         self.change(lambda file: file[self.GROUP].pop("mass"))
@@ -208,7 +210,11 @@ class Foreign(Start):
         self.change(lambda file: file[self.GROUP].create_dataset("force/value", data=numpy.zeros((2, 536, 3))))
         self.again(OPEN)  # forces are made anew
         self.change(lambda file: self.put(file, "charge", numpy.ones(536), False))
-        self.again(OPEN, "it holds 'charge', of which a run knows nothing; allowed: ")
+        self.again(OPEN, "it holds 'charge', of which a run knows nothing; allowed: position, ")
+        self.change(lambda file: file[self.GROUP].pop("charge"))
+        self.again(OPEN)
+        self.change(lambda file: file["connectivity"].create_dataset("angles", data=numpy.array([[0, 1, 2]])))
+        self.again(OPEN, "it holds 'connectivity/angles', of which a run knows nothing; allowed: bonds")
 
     # Thin bonds that touch at the start: neither is on a side of the other. Two fibers of four vertices on lines.
     RODS = "fibers: [{name: a, count: 2, vertices: 4, mass: 5, bond_length: 1, spring: 100}]\n"
