@@ -9,30 +9,38 @@
 
 /* --- what is there ----------------------------------------------------------------------------------------------- */
 
-static const char *const known[] = {"position", "velocity", "force", "image", "mass", "species", "id", "box"};
+/* Groups, and the arrays in them that are used or checked. */
+static const struct known {
+  const char *group; /* below the file, with a slash; "": the particles */
+  const char *array[9];
+  const char *allowed;
+} known[] = {
+    {"",
+     {"position", "velocity", "force", "image", "mass", "species", "id", "box"},
+     "position, velocity, force, image, mass, species, id, box"},
+    {"connectivity/", {"bonds"}, "bonds"},
+};
 
-static bool is_known(const char *name)
+static bool is_known(const struct known *in, const char *name)
 {
   size_t k = 0;
-  while (k < sizeof known / sizeof *known && strcmp(known[k], name) != 0)
+  while (in->array[k] && strcmp(in->array[k], name) != 0)
     k++;
-  return k < sizeof known / sizeof *known;
+  return in->array[k];
 }
 
 /* The first array of which a run knows nothing. */
-static void find_strange(hid_t group, char *unfit, size_t size)
+static void find_strange(hid_t group, const struct known *in, char *unfit, size_t size)
 {
   H5G_info_t info;
   char name[64], shown[64];
-  if (H5Gget_info(group, &info) < 0)
+  if (group < 0 || H5Gget_info(group, &info) < 0)
     return;
   for (hsize_t k = 0; k < info.nlinks && !*unfit; k++)
     if (H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, k, name, sizeof name, H5P_DEFAULT) > 0 &&
-        !is_known(name))
-      snprintf(unfit, size,
-               "it holds '%s', of which a run knows nothing; allowed: position, velocity, force, image, mass, species, "
-               "id, box",
-               text_escape(name, shown, sizeof shown));
+        !is_known(in, name))
+      snprintf(unfit, size, "it holds '%s%s', of which a run knows nothing; allowed: %s", in->group,
+               text_escape(name, shown, sizeof shown), in->allowed);
 }
 
 /* --- ids --------------------------------------------------------------------------------------------------------- */
@@ -78,9 +86,13 @@ void foreign_look(const struct trajectory *t, bool masses, struct frames_about *
 {
   char *unfit = about->unfit;
   const size_t size = sizeof about->unfit;
-  find_strange(t->group, unfit, size);
+  hid_t connectivity = h5_has(t->file, "connectivity") ? h5_open_group(t->file, "connectivity") : -1;
+  find_strange(t->group, &known[0], unfit, size);
+  if (!*unfit)
+    find_strange(connectivity, &known[1], unfit, size);
+  h5_close(connectivity);
   if (!*unfit && !masses && h5_has(t->group, "mass"))
-    snprintf(unfit, size, "its mass is not one real number for each row");
+    snprintf(unfit, size, "its mass is not one number for each row");
   if (!*unfit)
     check_ids(t, unfit, size);
 }

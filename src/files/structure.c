@@ -134,6 +134,17 @@ static bool read_species(hid_t particles, struct structure *s)
   return ok;
 }
 
+/* As real numbers. */
+static bool read_whole_masses(hid_t particles, hsize_t n, double *mass)
+{
+  int64_t *whole = malloc(((size_t)n + 1) * sizeof *whole);
+  const bool ok = whole && h5_array_read(particles, "mass", H5T_NATIVE_INT64, 1, &n, whole);
+  for (hsize_t i = 0; ok && i < n; i++)
+    mass[i] = (double)whole[i];
+  free(whole);
+  return ok;
+}
+
 /* In files of other programs masses may be missing, or be of another form: they are not stored then. */
 static bool read_mass(hid_t particles, struct structure *s)
 {
@@ -142,11 +153,13 @@ static bool read_mass(hid_t particles, struct structure *s)
   const int there = h5_look(particles, "mass");
   hid_t object = h5_open_object(particles, "mass");
   hid_t type = object >= 0 && H5Iget_type(object) == H5I_DATASET ? H5Dget_type(object) : -1;
-  const bool fits = type >= 0 && h5_shape(object, 1, &found) == 1 && found == n && H5Tget_class(type) == H5T_FLOAT;
+  const H5T_class_t class = type < 0 ? H5T_NO_CLASS : H5Tget_class(type);
+  const bool fits = (class == H5T_FLOAT || class == H5T_INTEGER) && h5_shape(object, 1, &found) == 1 && found == n;
   bool ok = there == 0 || object >= 0;
   if (ok && fits) {
     s->mass = malloc(((size_t)n + 1) * sizeof *s->mass);
-    ok = s->mass && h5_array_read(particles, "mass", H5T_NATIVE_DOUBLE, 1, &n, s->mass);
+    ok = s->mass && (class == H5T_FLOAT ? h5_array_read(particles, "mass", H5T_NATIVE_DOUBLE, 1, &n, s->mass)
+                                        : read_whole_masses(particles, n, s->mass));
   }
   h5_close(type);
   h5_close(object);
