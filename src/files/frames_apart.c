@@ -72,9 +72,10 @@ static bool read_words(hid_t object, const char *name, char word[AXES][WORD])
   if (ok && H5Tis_variable_str(stored) > 0) {
     char *text[AXES] = {NULL};
     ok = H5Aread(attribute, stored, text) >= 0;
-    for (int k = 0; ok && k < AXES; k++)
-      snprintf(word[k], WORD, "%s", text[k] ? text[k] : "");
-    H5Dvlen_reclaim(stored, space, H5P_DEFAULT, text);
+    for (int k = 0; k < AXES; k++) {
+      snprintf(word[k], WORD, "%s", ok && text[k] ? text[k] : "");
+      H5free_memory(text[k]);
+    }
   } else if (ok) {
     H5Tset_cset(type, H5Tget_cset(stored));
     ok = H5Aread(attribute, type, word) >= 0;
