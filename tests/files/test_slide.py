@@ -6,6 +6,7 @@ compared modulo the box, whose image beyond y = L has slid by rate L t.
 import json
 import os
 import pathlib
+import resource
 import subprocess
 import tempfile
 import unittest
@@ -45,8 +46,8 @@ class Slide(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.dir = pathlib.Path(folder.name)
 
-    def call(self, *arguments, code=0):
-        done = subprocess.run([UNCROSS, *arguments], capture_output=True, text=True, check=False, timeout=120, cwd=self.dir)
+    def call(self, *arguments, code=0, **more):
+        done = subprocess.run([UNCROSS, *arguments], capture_output=True, text=True, check=False, timeout=120, cwd=self.dir, **more)
         self.assertEqual(done.returncode, code, done.stderr)
         return done
 
@@ -160,6 +161,21 @@ class Slide(unittest.TestCase):
             self.call("run", f"{stream}.yaml", "--out", stream, "--resume", "--steps", "2")
             self.assertIn(words, " ".join(json.loads((self.dir / stream / "run.json").read_text())["warnings"]))
             self.assertIn(words, self.call("check", f"{stream}.yaml").stdout)
+
+    def test_a_scene_that_claims_memory(self):
+        """A file's scene is read for its shear and its time step. How many fibers it claims costs nothing: 12 GB in lists."""
+        self.run_to(FIBERS, ALL, "whole")
+        self.run_to(FIBERS, FIRST, "first")
+
+        def claim(file):
+            own = file["parameters/uncross"]
+            text = own["scene"][()].replace(b"count: 24", b"count: 100000000")
+            del own["scene"]
+            own["scene"] = numpy.bytes_(text)
+        self.change("first", claim)
+        (self.dir / "again.yaml").write_text(f"{FIBERS}steps: {ALL - FIRST}\nstart: {{snapshot: first/trajectory.h5}}\n")
+        self.call("run", "again.yaml", "--out", "again", preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (2**31, 2**31)))
+        self.assertLessEqual(apart(self.frame("again")[0], self.frame("whole")[0], ALL), 1e-9)
 
 
 if __name__ == "__main__":
