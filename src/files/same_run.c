@@ -46,7 +46,7 @@ enum same_run same_run_as_begun(const struct scene *scene, const char *path, con
     return SAME_RUN_UNKNOWN;
   errno = 0;
   const bool known =
-      f->about.checkpoint && f->scene && scene_read_text(path, f->scene, strlen(f->scene), &then, &ignored);
+      f->about.checkpoint && f->scene && scene_read_text_numbers(path, f->scene, strlen(f->scene), &then, &ignored);
   enum same_run same = SAME_RUN_UNKNOWN;
   if (!known && errno == ENOMEM)
     message_set(message, "%s: no memory to compare its scene", path);

@@ -48,13 +48,14 @@ struct past {
 static void look_back(struct past *past, const struct frames *frames, const struct model *model)
 {
   struct message ignored;
-  past->known =
-      frames->scene && scene_read_text(frames->path, frames->scene, strlen(frames->scene), &past->scene, &ignored);
+  past->known = frames->scene &&
+                scene_read_text_numbers(frames->path, frames->scene, strlen(frames->scene), &past->scene, &ignored);
   if (!past->known)
     return;
-  past->known = memcmp(past->scene.model.box.cells, model->box.cells, sizeof model->box.cells) == 0;
+  struct model *m = &past->scene.model;
+  past->known = memcmp(m->box.cells, model->box.cells, sizeof model->box.cells) == 0 && shear_finish(m);
   if (past->known)
-    shear_begin(&past->scene.model, frames->about.slide);
+    shear_begin(m, frames->about.slide);
   else
     scene_free(&past->scene);
 }

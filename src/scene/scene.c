@@ -285,17 +285,30 @@ void scene_free(struct scene *scene)
   memset(scene, 0, sizeof *scene);
 }
 
+static struct scene_source kept_text(const char *path, const char *text, size_t size, struct message *message)
+{
+  return (struct scene_source){.keys = &scene_keys,
+                               .path = path,
+                               .text = text,
+                               .size = size,
+                               .missing = MISSING_ABSENT,
+                               .open_end = true,
+                               .kept = true,
+                               .message = message};
+}
+
 bool scene_read_text(const char *path, const char *text, size_t size, struct scene *scene, struct message *message)
 {
-  return scene_read_source(&(struct scene_source){.keys = &scene_keys,
-                                                  .path = path,
-                                                  .text = text,
-                                                  .size = size,
-                                                  .missing = MISSING_ABSENT,
-                                                  .open_end = true,
-                                                  .kept = true,
-                                                  .message = message},
-                           scene);
+  const struct scene_source source = kept_text(path, text, size, message);
+  return scene_read_source(&source, scene);
+}
+
+bool scene_read_text_numbers(const char *path, const char *text, size_t size, struct scene *scene,
+                             struct message *message)
+{
+  struct scene_source source = kept_text(path, text, size, message);
+  source.numbers_only = true;
+  return scene_read_source(&source, scene);
 }
 
 bool scene_make(const struct scene_settings *settings, struct scene *scene, struct message *message)
