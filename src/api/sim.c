@@ -56,7 +56,7 @@ int sim_make(struct uncross_sim *sim, const struct uncross_scene *scene, const c
   sim->observers = observers_create(&sim->scene.observe, &sim->scene.model);
   if (!sim->observers || !state_alloc(&sim->state, &sim->scene.model) || !work_alloc(&sim->work, &sim->scene.model))
     return fail(error, UNCROSS_NO_MEMORY, "no memory for this scene; `uncross check` says how much it needs", NULL);
-  sim->work.mpc.stress = observers_stress(sim->observers);
+  observers_watch(sim->observers, &sim->work);
   set_view(sim);
   return UNCROSS_OK;
 }

@@ -9,6 +9,7 @@
 #include "mpc/stress.h"
 #include "observe/meaning.h"
 #include "observe/observer.h"
+#include "work.h"
 
 static const struct observer_type *const types[OBSERVABLES] = {
     [OBSERVE_CONSERVED] = &conserved_observer,
@@ -194,10 +195,10 @@ void observers_free(struct observers *observers)
   free(observers);
 }
 
-struct mpc_stress *observers_stress(struct observers *observers)
+void observers_watch(struct observers *observers, struct work *work)
 {
   const struct observer *o = &observers->observer[OBSERVE_STRESS];
-  return o->every > 0 ? (struct mpc_stress *)o->real : NULL;
+  work->mpc.stress = o->every > 0 ? (struct mpc_stress *)o->real : NULL;
 }
 
 const struct contact_log *observers_contacts(const struct observers *observers)

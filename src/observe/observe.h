@@ -67,11 +67,10 @@ void observers_free(struct observers *observers);
  * model's numbers are enough (model_finish_numbers). */
 uint64_t observers_bytes(const struct observe_plan *plan, const struct model *model, uint64_t *scratch);
 
-struct mpc_stress;
+struct work;
 
-/* Where collisions are to sum the stress (mpc->stress, mpc/stress.h): the observer's own memory. NULL if the plan does
- * not ask for it. */
-struct mpc_stress *observers_stress(struct observers *observers);
+/* Has the steps of this work sum what observers read of them: after work_alloc, and when observers are new. */
+void observers_watch(struct observers *observers, struct work *work);
 
 /* What is to receive the contacts of each step (step_advance). NULL if no observer asks for them. */
 const struct contact_log *observers_contacts(const struct observers *observers);

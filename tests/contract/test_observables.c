@@ -77,7 +77,7 @@ static struct outcome *run_of(const char *text, enum observable which)
   const struct observe_sink sink = {add_row, &o->rows};
   struct observers *observers = observers_create(&o->scene.observe, m);
   assert_true(observers && state_alloc(&state, m) && work_alloc(&work, m) && start_state(&state, m, &work));
-  work.mpc.stress = observers_stress(observers);
+  observers_watch(observers, &work);
   assert_true(observers_sample(observers, m, &state, &sink));
   for (uint64_t step = 0; step < o->scene.steps; step++) {
     assert_true(step_advance(&state, m, &work, observers_contacts(observers)));
@@ -553,7 +553,7 @@ static void everything_everywhere(void **unused)
       struct observers *o = observers_create(&plan, &scene.model);
       struct check check = {&scene.model, (enum observable)k, 0};
       const struct observe_sink sink = {check_series, &check};
-      work.mpc.stress = observers_stress(o);
+      observers_watch(o, &work);
       for (int step = 0; step < 8; step++) {
         assert_true(observers_sample(o, &scene.model, &state, &sink));
         assert_true(step_advance(&state, &scene.model, &work, observers_contacts(o)));

@@ -30,7 +30,7 @@ static struct watched watch(struct model model, struct observe_plan plan)
   struct watched w = {.run = test_start(model), .rows = calloc(1, sizeof *w.rows)};
   assert_non_null(w.rows);
   assert_non_null(w.observers = observers_create(&plan, &w.run.model));
-  w.run.work.mpc.stress = observers_stress(w.observers);
+  observers_watch(w.observers, &w.run.work);
   return w;
 }
 

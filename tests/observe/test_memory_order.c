@@ -52,7 +52,7 @@ static struct bytes run(const struct scene *scene, struct dice *dice)
   struct work work;
   const struct observe_block *block;
   assert_true(o && state_alloc(&state, m) && work_alloc(&work, m) && start_state(&state, m, &work));
-  work.mpc.stress = observers_stress(o);
+  observers_watch(o, &work);
   for (int step = 0; step <= STEPS; step++) {
     if (dice)
       shuffle_memory(&state, dice);

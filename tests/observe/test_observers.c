@@ -252,7 +252,7 @@ static struct outcome observed_run(uint64_t stop)
   struct outcome o = {.rows = calloc(1, sizeof *o.rows)};
   struct observers *observers = observers_create(&everything, &r.model);
   const struct observe_sink sink = {keep_row, o.rows};
-  r.work.mpc.stress = observers_stress(observers);
+  observers_watch(observers, &r.work);
   for (uint64_t step = 0;; step++) {
     if (observers_due(observers, step))
       assert_true(observers_sample(observers, &r.model, &r.state, &sink));
@@ -260,7 +260,7 @@ static struct outcome observed_run(uint64_t stop)
       break;
     if (step == stop && stop > 0) {
       observers = checkpoint(observers, &r.model);
-      r.work.mpc.stress = observers_stress(observers);
+      observers_watch(observers, &r.work);
       put_in_id_order(&r.state);
     }
     test_steps(&r, 1);
