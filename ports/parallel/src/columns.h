@@ -260,64 +260,89 @@ struct SolveBlock {
 
 /* --- the passes ------------------------------------------------------------------------------------------------- */
 
-// What a pass does with 16 particles: turn (if it turns), flight, sums.
+// What a pass does with 16 particles: turn (if it turns), flight, sums. `cell` has the cells of the last collision, and
+// gets those of the next one.
 struct Pass {
   Columns c;
-  Grid grid, next;
+  Grid next;
   const CellTurn *turn;
   double cosine, sine;
   Flight flight;
   Sums sums;
+  int32_t *cell;
 };
 
+// What 16 particles add to their cells.
+struct Addends {
+  Cells cell;
+  Places momentum;
+};
+
+constexpr int together = 4; // times 16 particles: their cells' sums are on the way while others are computed
+constexpr int ahead = 2 * lanes;
+
 // False if something is out of the usual range; then nothing has changed.
-template <bool turns, bool right_angle> bool pass_lanes(const Pass &pass, int64_t first, int shard)
+template <bool turns, bool right_angle> bool pass_lanes(const Pass &pass, int64_t first, int shard, Addends &add)
 {
   const Columns &c = pass.c;
   const Flight &f = pass.flight;
-  Places p, momentum;
+  Places p;
   Three v;
-  Cells cell;
   load(c.x + first, p.x), load(c.y + first, p.y), load(c.z + first, p.z);
   load(c.vx + first, v.x), load(c.vy + first, v.y), load(c.vz + first, v.z);
   if (turns) {
-    if (!cells_of(pass.grid, p, cell))
-      return false;
+    Cells cell;
+    for (int k = 0; k < lanes; k++) {
+      cell.at[k] = pass.cell[first + k];
+      __builtin_prefetch(pass.turn + pass.cell[first + ahead + k]);
+    }
     Turns t;
     gather(pass.turn, cell, t);
     turn_all<right_angle>(t, pass.cosine, pass.sine, v);
   }
   const Point edge = pass.next.edge;
-  const bool usual = fly_all(f.time, f.fall.x, f.gain.x, edge.x, p.x, v.x) &
-                     fly_all(f.time, f.fall.y, f.gain.y, edge.y, p.y, v.y) &
-                     fly_all(f.time, f.fall.z, f.gain.z, edge.z, p.z, v.z) & cells_of(pass.next, p, cell) &
-                     nearest_of(momentum_per_unit, v.x, momentum.x) & nearest_of(momentum_per_unit, v.y, momentum.y) &
-                     nearest_of(momentum_per_unit, v.z, momentum.z);
+  const bool usual =
+      fly_all(f.time, f.fall.x, f.gain.x, edge.x, p.x, v.x) & fly_all(f.time, f.fall.y, f.gain.y, edge.y, p.y, v.y) &
+      fly_all(f.time, f.fall.z, f.gain.z, edge.z, p.z, v.z) & cells_of(pass.next, p, add.cell) &
+      nearest_of(momentum_per_unit, v.x, add.momentum.x) & nearest_of(momentum_per_unit, v.y, add.momentum.y) &
+      nearest_of(momentum_per_unit, v.z, add.momentum.z);
   if (!usual)
     return false;
+  for (int k = 0; k < lanes; k++) {
+    pass.cell[first + k] = add.cell.at[k];
+    __builtin_prefetch(pass.sums.at + shard * pass.sums.cell_count + add.cell.at[k], 1);
+  }
   store(p.x, c.x + first), store(p.y, c.y + first), store(p.z, c.z + first);
   store(v.x, c.vx + first), store(v.y, c.vy + first), store(v.z, c.vz + first);
-  add_members(pass.sums.at + shard * pass.sums.cell_count, cell, momentum);
   return true;
 }
 
-// The body of a loop over blocks of 16 particles. `Body` is that for a single one.
+// The body of a loop over blocks of particles. `Body` is that for a single one.
 template <bool turns, bool right_angle, class Body> struct PassBlock {
   Pass pass;
   Body body;
   int64_t n;
   void operator()(int64_t block, int shard) const
   {
-    const int64_t first = block * lanes, last = first + lanes;
-    if (last <= n && pass_lanes<turns, right_angle>(pass, first, shard))
-      return;
-    for (int64_t i = first; i < last && i < n; i++)
-      body(i, shard);
+    Addends add[together];
+    bool whole[together];
+    for (int k = 0; k < together; k++) {
+      const int64_t first = (block * together + k) * lanes, last = first + lanes;
+      whole[k] = last <= n && pass_lanes<turns, right_angle>(pass, first, shard, add[k]);
+      for (int64_t i = first; !whole[k] && i < last && i < n; i++) {
+        body(i, shard);
+        pass.cell[i] = (int32_t)cell_of(pass.next, place_of(pass.c, i));
+      }
+    }
+    for (int k = 0; k < together; k++)
+      if (whole[k])
+        add_members(pass.sums.at + shard * pass.sums.cell_count, add[k].cell, add[k].momentum);
   }
 };
 
 // FlySum, or TurnFlySum, over all particles.
 template <bool turns, bool right_angle, class Body> void pass_over(int64_t n, const Pass &pass, const Body &body)
 {
-  for_each_block((n + lanes - 1) / lanes, PassBlock<turns, right_angle, Body>{pass, body, n});
+  constexpr int each = together * lanes;
+  for_each_block((n + each - 1) / each, PassBlock<turns, right_angle, Body>{pass, body, n});
 }

@@ -41,6 +41,10 @@ Solvent::Solvent(const Model &model, const State &state, const Settings &setting
   }
   id.resize((size_t)n), sorted_id.resize((size_t)n);
   count.resize((size_t)cell_count + 1);
+  if (!on_gpu) {
+    cell.resize((size_t)n + block_size); // some more: pass_lanes looks ahead
+    cell.clear();
+  }
   sums.resize((size_t)(cell_count * shards));
   turn.resize((size_t)cell_count);
   sums.clear();
@@ -109,7 +113,7 @@ void Solvent::fly_and_sum(double time, const Grid &next)
   const TurnFlySum<true> right = {columns(), at_collision, turn.data(), model.cosine, model.sine, flight, next, to};
   const TurnFlySum<false> any = {columns(), at_collision, turn.data(), model.cosine, model.sine, flight, next, to};
 #ifndef __CUDACC__
-  const Pass pass = {columns(), at_collision, next, turn.data(), model.cosine, model.sine, flight, to};
+  const Pass pass = {columns(), next, turn.data(), model.cosine, model.sine, flight, to, cell.data()};
   const bool whole = !settings.one_by_one && cell_count < INT32_MAX;
   if (whole && pending && model.cosine == 0.0)
     pass_over<true, true>(n, pass, right);

@@ -79,6 +79,7 @@ private:
   Array<int64_t> place[3], sorted_place[3], count, relative, total;
   Array<double> velocity[3], sorted_velocity[3];
   Array<uint32_t> id, sorted_id;
+  Array<int32_t> cell; // of each particle at the last collision, for the passes of columns.h
   Array<CellSum> sums;
   Array<CellTurn> turn;
   Array<Point> vertex;
