@@ -192,6 +192,35 @@ static void test_the_physics_stops(void **unused)
   uncross_sim_free(sim);
 }
 
+/* Steps are whole numbers below 2^63, as those of a scene; more are refused before the first is made. */
+static void test_steps_that_no_run_has(void **unused)
+{
+  (void)unused;
+  static const uint64_t many[] = {(uint64_t)1 << 63, UINT64_MAX, (uint64_t)INT64_MAX};
+  uncross_error error;
+  char folder[64];
+  uncross_sim *sim = start_of(first_text);
+  assert_int_equal(uncross_sim_advance(sim, 2, NULL), UNCROSS_OK);
+  for (size_t k = 0; k < sizeof many / sizeof *many; k++) { /* the last: 2 + 2^63 - 1 */
+    assert_int_equal(uncross_sim_advance(sim, many[k], &error), UNCROSS_BAD_INPUT);
+    assert_non_null(strstr(error.message, "allowed: 0 .. 9223372036854775805"));
+    assert_int_equal(uncross_sim_step(sim), 2);
+  }
+  uncross_sim_free(sim);
+  uncross_scene *scene = uncross_scene_parse("first", first_text, NULL, 0, NULL);
+  make_folder(folder);
+  uncross_run *run = uncross_run_open(scene, in_folder(folder, "run"), UNCROSS_NEW, NULL);
+  for (size_t k = 0; k < 2; k++) {
+    assert_int_equal(uncross_run_advance(run, many[k], NULL, NULL, &error), UNCROSS_BAD_INPUT);
+    assert_non_null(strstr(error.message, "allowed: 0 .. 9223372036854775807"));
+    assert_int_equal(uncross_sim_step(uncross_run_sim(run)), 0);
+  }
+  assert_int_equal(uncross_scene_set_steps(scene, many[0], &error), UNCROSS_BAD_INPUT);
+  uncross_run_free(run);
+  uncross_scene_free(scene);
+  remove_folder(folder);
+}
+
 /* --- looking ----------------------------------------------------------------------------------------------------- */
 
 static void test_the_view_shows_the_state_without_copies(void **unused)
@@ -832,6 +861,7 @@ int main(void)
       cmocka_unit_test(test_two_at_once),
       cmocka_unit_test(test_save_and_resume),
       cmocka_unit_test(test_the_physics_stops),
+      cmocka_unit_test(test_steps_that_no_run_has),
       cmocka_unit_test(test_the_view_shows_the_state_without_copies),
       cmocka_unit_test(test_the_solvent_now),
       cmocka_unit_test(test_tables),
