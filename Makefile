@@ -491,7 +491,7 @@ coverage:
 # Inputs that find something new go to build/fuzz/corpus; what was found is a file crash-* there, which FUZZ=file runs again.
 SECONDS ?= 60
 # A scene may ask for any amount of memory: what it gets here is none above 64 MB, and it must bear that.
-FUZZ_LIMITS := ASAN_OPTIONS=max_allocation_size_mb=64:allocator_may_return_null=1 \
+FUZZ_LIMITS := ASAN_OPTIONS=max_allocation_size_mb=64:allocator_may_return_null=1:quarantine_size_mb=8:suppressions=tests/fuzz/suppressed \
    LSAN_OPTIONS=suppressions=tests/fuzz/leaks:print_suppressions=0
 FUZZ    ?= -max_total_time=$(SECONDS) build/fuzz/corpus tests/fuzz/corpus
 FUZZ_CFLAGS := -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
@@ -500,15 +500,17 @@ fuzz:
 	tools/install-dependencies run hard
 	$(MAKE) -j2 CC=clang BUILD=build/fuzz OPTIMIZE=-O1 HARDEN= CFLAGS='$(FUZZ_CFLAGS)' build/fuzz/readers
 	mkdir -p build/fuzz/corpus
-	TMPDIR=build/fuzz $(FUZZ_LIMITS) build/fuzz/readers -artifact_prefix=build/fuzz/ -max_len=4096 -timeout=60 \
+	@folder=$$(mktemp -d -p /dev/shm fuzz-XXXX 2>/dev/null || mktemp -d -p build/fuzz) && trap "rm -r $$folder" EXIT && \
+	 TMPDIR=$$folder $(FUZZ_LIMITS) build/fuzz/readers -artifact_prefix=build/fuzz/ -max_len=4096 -timeout=60 \
 	   -rss_limit_mb=3000 -print_final_stats=1 $(FUZZ)
 
-$(BUILD)/readers: $(BUILD)/tests/fuzz/fuzz_readers.o $(READER) $(LIBRARY)
+STANDING := -Wl,--wrap=apart_start,--wrap=apart_end,--wrap=apart_lost,--wrap=apart_shut,--wrap=apart_go_on
+$(BUILD)/readers: $(BUILD)/tests/fuzz/fuzz_readers.o $(BUILD)/tests/fuzz/standing_reader.o $(LIBRARY)
 	@echo '  LD $@'
-	@$(CC) $(ALL_CFLAGS) -fsanitize=fuzzer $^ $(LIBS) -o $@
+	@$(CC) $(ALL_CFLAGS) -fsanitize=fuzzer $(STANDING) $^ $(LIBS) -o $@
 
 .PHONY: clean
 clean:
 	rm -rf $(BUILD)
 
--include $(OBJECTS:.o=.d) $(ROWS:.o=.d) $(LINKED_OBJECTS:.o=.d) $(TEST_PROGRAMS:=.d) $(STRESS_PROGRAMS:=.d) $(MEASURE_PROGRAMS:=.d) $(BENCH_PROGRAMS:=.d)
+-include $(OBJECTS:.o=.d) $(wildcard $(BUILD)/tests/fuzz/*.d) $(ROWS:.o=.d) $(LINKED_OBJECTS:.o=.d) $(TEST_PROGRAMS:=.d) $(STRESS_PROGRAMS:=.d) $(MEASURE_PROGRAMS:=.d) $(BENCH_PROGRAMS:=.d)

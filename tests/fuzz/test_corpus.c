@@ -26,10 +26,10 @@ static void test_all_kept_inputs_are_borne(void **unused)
     free(data);
   }
   closedir(corpus);
-  for (const char *c = "sokjctefpCEPhHrR"; *c; c++)
+  for (const char *c = "sokjctefpCEPKhHqrR"; *c; c++)
     print_message("  %u of reader %c\n", readers[(uint8_t)*c], *c);
   assert_true(readers['s'] > 100 && readers['c'] > 10 && readers['t'] > 10);
-  for (const char *c = "okjefpCEPhHrR"; *c; c++)
+  for (const char *c = "okjefpCEPKhHqrR"; *c; c++)
     if (readers[(uint8_t)*c] < 3)
       fail_msg("reader %c has only %u inputs", *c, readers[(uint8_t)*c]);
   end();
