@@ -162,9 +162,9 @@ UNCROSS_API uncross_sim *uncross_sim_start(const uncross_scene *scene, uncross_e
  * differ). Averages go on too; time series begin anew. FILES. */
 UNCROSS_API uncross_sim *uncross_sim_resume(const uncross_scene *scene, const char *path, uncross_error *error);
 
-/* Makes `steps` time steps and samples what the scene's `observe` asks for. On an error the simulation stands at the
- * step that could not be finished: it may be looked at and must be freed, and every further advance fails in the same
- * way. */
+/* Makes `steps` time steps and samples what the scene's `observe` asks for. Those made before and these are fewer than
+ * 2^63, or none is made. On an error the simulation stands at the step that could not be finished: it may be looked at
+ * and must be freed, and every further advance fails in the same way. */
 UNCROSS_API int uncross_sim_advance(uncross_sim *sim, uint64_t steps, uncross_error *error);
 
 /* Writes a checkpoint: the file is at every moment either the old one or the new one. Nothing is replaced but a
@@ -288,9 +288,9 @@ UNCROSS_API const uncross_sim *uncross_run_sim(const uncross_run *run);
  * no further step. It may not advance it. */
 typedef int uncross_run_watch(void *context, const uncross_run *run);
 
-/* Makes `steps` time steps, fewer if the run's end comes first, with all that belongs into the folder, and a checkpoint
- * whenever the scene's `checkpoint.seconds` have passed. watch: NULL if nobody wants to be asked. On an error the run
- * is over, and run.json says why; the last checkpoint stays. */
+/* Makes `steps` time steps (below 2^63), fewer if the run's end comes first, with all that belongs into the folder, and
+ * a checkpoint whenever the scene's `checkpoint.seconds` have passed. watch: NULL if nobody wants to be asked. On an
+ * error the run is over, and run.json says why; the last checkpoint stays. */
 UNCROSS_API int uncross_run_advance(uncross_run *run, uint64_t steps, uncross_run_watch *watch, void *context,
                                     uncross_error *error);
 

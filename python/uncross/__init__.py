@@ -271,11 +271,11 @@ class _Looks:
 _PATIENCE = 0.1  # seconds between two looks at Ctrl-C, which Python sees only outside of the library
 
 
-def _wanted(steps):
-    """A number of steps: a whole one, 0 or more."""
-    steps = operator.index(steps)
-    if steps < 0:
-        raise BadInput(f"advance: {steps} steps; allowed: whole number 0 or more")
+def _wanted(steps, done):
+    """A number of steps that a run can make after those that it has made. The library sees only parts of it."""
+    steps, most = operator.index(steps), 2**63 - 1 - done
+    if not 0 <= steps <= most:
+        raise BadInput(f"advance: {steps} steps; allowed: whole number 0 .. {most}")
     return steps
 
 
@@ -305,7 +305,7 @@ class Run(_Looks):
 
     def advance(self, steps=1):
         """Makes so many time steps; returns the run."""
-        for some in _chunks(_wanted(steps)):
+        for some in _chunks(_wanted(steps, self.step)):
             _check(lib.uncross_sim_advance, self._sim, some)
         return self
 
@@ -331,7 +331,7 @@ class FolderRun(_Looks):
     def advance(self, steps=None):
         """Makes so many steps (None: all that are wanted), up to the end; returns the run."""
         left = max(0, self.wanted - self.step)
-        steps = left if steps is None else min(_wanted(steps), left)
+        steps = left if steps is None else min(_wanted(steps, self.step), left)
         for some in _chunks(steps):
             _check(lib.uncross_run_advance, self._run, some, ffi.NULL, ffi.NULL)
         return self

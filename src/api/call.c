@@ -1,4 +1,5 @@
 /* What every call does: errors as values, the C locale for this thread, no words of HDF5. */
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,6 +44,13 @@ int fail(uncross_error *error, int code, const char *message, const struct fault
   }
   snprintf(error->message, sizeof error->message, "%s", message);
   return code;
+}
+
+int fail_steps(uncross_error *error, uint64_t most)
+{
+  char text[128];
+  snprintf(text, sizeof text, "steps: too many; allowed: 0 .. %" PRIu64, most);
+  return fail(error, UNCROSS_BAD_INPUT, text, NULL);
 }
 
 int fail_null(uncross_error *error, const char *what)

@@ -66,6 +66,10 @@ int fail(uncross_error *error, int code, const char *message, const struct fault
 /* For a handle, or another pointer, that is NULL. */
 int fail_null(uncross_error *error, const char *what);
 
+/* For steps that are more than so many. */
+#define MOST_STEPS ((uint64_t)INT64_MAX) /* of a run, as the scene's key says */
+int fail_steps(uncross_error *error, uint64_t most);
+
 /* The scene as it is read, with the steps and the seed that were set: to be freed with scene_free. checkpoint: of a run
  * that goes on and keeps what its scene meant when it was begun (scene_read_as), or NULL. */
 int handle_read(const struct uncross_scene *from, const char *checkpoint, struct scene *scene, uncross_error *error);

@@ -90,6 +90,8 @@ int uncross_run_advance(uncross_run *run, uint64_t steps, uncross_run_watch *wat
     return fail_forked(error);
   if (run->advancing)
     return fail(error, UNCROSS_BAD_INPUT, "run: is being advanced, and is no further by its own watch", NULL);
+  if (steps > MOST_STEPS)
+    return fail_steps(error, MOST_STEPS);
   struct call call;
   struct message message;
   struct watched watched = {run, watch, context};

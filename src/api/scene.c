@@ -214,8 +214,8 @@ int uncross_scene_set_steps(uncross_scene *scene, uint64_t steps, uncross_error 
 {
   if (!scene)
     return fail_null(error, "scene");
-  if (steps > INT64_MAX)
-    return fail(error, UNCROSS_BAD_INPUT, "steps: too many; allowed: whole number 0 .. 9223372036854775807", NULL);
+  if (steps > MOST_STEPS)
+    return fail_steps(error, MOST_STEPS);
   scene->has_steps = true;
   scene->steps = steps;
   return UNCROSS_OK;

@@ -315,6 +315,8 @@ int uncross_sim_advance(uncross_sim *sim, uint64_t steps, uncross_error *error)
     return fail_null(error, "sim");
   if (sim->of_run)
     return fail_of_run(error);
+  if (steps > MOST_STEPS - sim->state.step)
+    return fail_steps(error, MOST_STEPS - sim->state.step);
   if (sim->stopped)
     return stopped(sim, error);
   struct call call;

@@ -91,7 +91,7 @@ static int after_step(void *context, const uncross_run *run)
 static enum exit_code loop(uncross_run *run, struct progress *progress, uncross_error *error)
 {
   const uint64_t wanted = uncross_run_wanted(run);
-  const bool ok = interrupted || uncross_run_advance(run, UINT64_MAX, after_step, progress, error) == UNCROSS_OK;
+  const bool ok = interrupted || uncross_run_advance(run, wanted, after_step, progress, error) == UNCROSS_OK;
   progress_end(progress);
   const bool done = step_of(run) >= wanted;
   if (!ok || uncross_run_close(run, error) != UNCROSS_OK)

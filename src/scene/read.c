@@ -159,14 +159,14 @@ static bool read_text(const struct reading *r)
 static bool read_mapping(const struct reading *r, const struct node *mapping, const struct key_table *table, void *to);
 
 /* "is not a mapping, as {every: 100}": the keys that the section must have, or its first. */
-static void describe_missing_mapping(const struct key_table *table, char *text, size_t size)
+static void describe_missing_mapping(const struct key_table *table, const char *what, char *text, size_t size)
 {
   static const char *const example[] = {
       [KEY_WHOLE64] = "100",     [KEY_WHOLE32] = "100", [KEY_NUMBER] = "0.5", [KEY_VECTOR] = "[0, 0, 1]",
       [KEY_CELLS] = "[8, 8, 8]", [KEY_SWITCH] = "true", [KEY_NAME] = "a",     [KEY_TEXT] = "file",
       [KEY_SECTION] = "{...}",   [KEY_LIST] = "[...]",  [KEY_INCLUDE] = "",
   };
-  size_t used = (size_t)snprintf(text, size, "is not a mapping, as {"), required = 0;
+  size_t used = (size_t)snprintf(text, size, "%s, as {", what), required = 0;
   for (size_t k = 0; k < table->count; k++)
     required += key_is_required(&table->key[k]);
   const char *between = "";
@@ -186,8 +186,13 @@ static bool read_section(const struct reading *r)
 {
   char problem[256];
   if (r->node->type != NODE_MAPPING) {
-    describe_missing_mapping(r->key->keys, problem, sizeof problem);
+    describe_missing_mapping(r->key->keys, "is not a mapping", problem, sizeof problem);
     return refuse_value(r, r->node, problem);
+  }
+  if (r->node->count == 0) {
+    describe_missing_mapping(r->key->keys, "at least one key", problem, sizeof problem);
+    return node_refuse(r->node, r->message, "%s%s%s: is empty; allowed: %s, or no such section", r->table->path,
+                       *r->table->path ? "." : "", r->key->name, problem);
   }
   return read_mapping(r, r->node, r->key->keys, r->to);
 }

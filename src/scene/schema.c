@@ -169,7 +169,7 @@ static void write_exclusions(FILE *f, const struct key_table *table)
 
 static void write_mapping(FILE *f, const struct key_table *table, int indent)
 {
-  fputs("\"type\": \"object\", \"additionalProperties\": false, ", f);
+  fputs("\"type\": \"object\", \"additionalProperties\": false, \"minProperties\": 1, ", f);
   write_exclusions(f, table);
   write_idle(f, table);
   fputs("\"required\": [", f);

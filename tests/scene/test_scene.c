@@ -246,19 +246,24 @@ static void bad_beads_are_refused(void **unused)
     size_t line, column;
     const char *says;
   } rows[] = {
-      {"{radius: 5}", "{}", 5, 16, "bead.radius: 5 a0 in a box whose shortest edge is 16 a0; allowed: at most 4 a0"},
-      {"{radius: 20}", "{}", 5, 16, "allowed: at most 4 a0"},
-      {"{radius: 1.2}", "{}", 5, 16, "bead.radius: '1.2' is out of range"},
-      {"{radius: 2, mass: 100}", "{}", 5, 25, "bead.mass: 100 m, and the solvent it displaces has 167.5"},
-      {"{radius: 2, drive: {velocity: [0.1, 0, 0]}}", "{}", 5, 37, "there is no trap to move; allowed with a spring"},
-      {"{radius: 2, drive: {spring: 1, amplitude: [1, 0, 0]}}", "{}", 5, 49, "an oscillation needs a period"},
-      {"{radius: 2, drive: {spring: 1, period: 10}}", "{}", 5, 46, "nothing oscillates; allowed with an amplitude"},
-      {"{radius: 2, drive: {spring: 1, amplitude: [0.1, 0, 0], period: 0.5}}", "{}", 5, 70, "allowed: 8 time steps"},
-      {"{radius: 2, drive: {spring: 1, amplitude: [5, 0, 0], period: 10}}", "{}", 5, 49, "largest speed, 2 pi/period"},
-      {"{radius: 2, drive: {spring: 1, velocity: [0.3, 0.3, 0.3]}}", "{}", 5, 48, "allowed: at most 0.5"},
-      {"{radius: 2, drive: {spring: 5000}}", "{}", 5, 35, "allowed: at most 0.5, a spring of 4188.79"},
-      {"{radius: 2, drive: {force: [0, 0, 200]}}", "{}", 5, 34, "too near the speed of sound; allowed: at most"},
-      {"{radius: 2, drive: {pull: 1}}", "{}", 5, 27, "unknown key 'pull' in bead.drive"},
+      {"{radius: 5}", "{from: 0}", 5, 16,
+       "bead.radius: 5 a0 in a box whose shortest edge is 16 a0; allowed: at most 4 a0"},
+      {"{radius: 20}", "{from: 0}", 5, 16, "allowed: at most 4 a0"},
+      {"{radius: 1.2}", "{from: 0}", 5, 16, "bead.radius: '1.2' is out of range"},
+      {"{radius: 2, mass: 100}", "{from: 0}", 5, 25, "bead.mass: 100 m, and the solvent it displaces has 167.5"},
+      {"{radius: 2, drive: {velocity: [0.1, 0, 0]}}", "{from: 0}", 5, 37,
+       "there is no trap to move; allowed with a spring"},
+      {"{radius: 2, drive: {spring: 1, amplitude: [1, 0, 0]}}", "{from: 0}", 5, 49, "an oscillation needs a period"},
+      {"{radius: 2, drive: {spring: 1, period: 10}}", "{from: 0}", 5, 46,
+       "nothing oscillates; allowed with an amplitude"},
+      {"{radius: 2, drive: {spring: 1, amplitude: [0.1, 0, 0], period: 0.5}}", "{from: 0}", 5, 70,
+       "allowed: 8 time steps"},
+      {"{radius: 2, drive: {spring: 1, amplitude: [5, 0, 0], period: 10}}", "{from: 0}", 5, 49,
+       "largest speed, 2 pi/period"},
+      {"{radius: 2, drive: {spring: 1, velocity: [0.3, 0.3, 0.3]}}", "{from: 0}", 5, 48, "allowed: at most 0.5"},
+      {"{radius: 2, drive: {spring: 5000}}", "{from: 0}", 5, 35, "allowed: at most 0.5, a spring of 4188.79"},
+      {"{radius: 2, drive: {force: [0, 0, 200]}}", "{from: 0}", 5, 34, "too near the speed of sound; allowed: at most"},
+      {"{radius: 2, drive: {pull: 1}}", "{from: 0}", 5, 27, "unknown key 'pull' in bead.drive"},
       {"{radius: 2}", "{stress: {every: 1}}", 6, 19, "observe.stress: momentum that the solvent gives to the bead"},
       {"{radius: 2}", "{pressure: {every: 1}}", 6, 21, "observe.pressure: momentum that the solvent gives to the bead"},
       {"{radius: 2}", "{profile: {every: 1, slabs: 4}}", 6, 20, "observe.profile: a slab is not full of solvent"},
@@ -756,27 +761,25 @@ static void settings_make_a_scene(void **unused)
   assert_false(scene_make(&none, &s, &message));
 }
 
-/* Every section of a table, and those within, as the only thing that a scene holds. Their number. */
+/* Every section of a table in a scene that holds else what it must. Their number. */
 static unsigned sections_are_refused(const struct key_table *table, const char *before, const char *after)
 {
   unsigned count = 0;
   for (size_t k = 0; k < table->count; k++) {
     const struct key *key = &table->key[k];
-    char opened[200], closed[50], text[300], says[100];
+    char text[300], says[100];
+    struct scene scene;
+    struct message message = {""};
     if (key->type == KEY_INCLUDE)
       count += sections_are_refused(key->keys, before, after);
     if (key->type != KEY_SECTION)
       continue;
-    snprintf(text, sizeof text, "%s%s: {}%s\n", before, key->name, after);
+    snprintf(text, sizeof text, "box: [4, 4, 4]\ntime_step: 0.1\nsteps: 1\n%s%s: {}%s\n", before, key->name, after);
     snprintf(says, sizeof says, "%s: is empty", key->name);
-    struct scene scene;
-    struct message message = {""};
     assert_false(scene_read_text("s", text, strlen(text), &scene, &message));
     if (!strstr(message.text, says))
       fail_msg("%s is not called empty, but: %s", text, message.text);
-    snprintf(opened, sizeof opened, "%s%s: {", before, key->name);
-    snprintf(closed, sizeof closed, "}%s", after);
-    count += 1 + sections_are_refused(key->keys, opened, closed);
+    count += 1 + (strcmp(key->name, "observe") == 0 ? sections_are_refused(key->keys, "observe: {", "}") : 0);
   }
   return count;
 }

@@ -76,6 +76,7 @@ class Schema(unittest.TestCase):
         self.refuse("is not one of", lambda s: s.update(order="kicksplit"))
         self.refuse("is not of type 'boolean'", lambda s: s["crossing"].update(forbidden="yes"))
         self.refuse("does not match", lambda s: s["fibers"][0].update(name="a b"))
+        self.refuse("does not have enough properties", lambda s: s.update(shear={}))
         self.refuse("should not be valid", lambda s: s["fibers"][0].update(bending=1, persistence_length=1))
 
     def test_texts_and_defaults(self):
