@@ -52,17 +52,6 @@ struct collision_rule {
   /* Changes the velocities of all members by the turns of their cells. `scaled`: relative velocities are multiplied by
    * the thermostat's factor. */
   void (*apply)(struct state *state, const struct model *model, const struct mpc *mpc, bool scaled);
-
-  /* Molecular chaos, in d dimensions (2 or 3), cosine: of the rotation angle. */
-
-  /* The fraction of its velocity that a member of this mass loses in a collision with so many others of mass 1. */
-  double (*velocity_loss)(double cosine, uint32_t d, double mass, uint32_t others);
-
-  /* Averages over cells of Poisson occupation with a mean of n members of mass 1, weighted by the members.
-   * stress_loss: the fraction of the kinetic stress that a collision removes. handed_on: the momentum that passes
-   * through a cell, m a0^2. Of SRD and AT-a both have the factor P_n = n - 1 + exp(-n). */
-  double (*stress_loss)(double cosine, uint32_t d, double n);
-  double (*handed_on)(double cosine, uint32_t d, double n);
 };
 
 extern const struct collision_rule srd_rule, at_a_rule, at_plus_a_rule;
@@ -73,9 +62,6 @@ static inline struct vec3 rule_virtual_velocity(const struct model *model, const
   const struct vec3 v = members->velocity;
   return (struct vec3){v.x, v.y, model_is_flat(model) ? 0.0 : v.z};
 }
-
-/* P_n = n - 1 + exp(-n): mean of the members but one over the cells that have any, their number Poisson of mean n. */
-double rule_partners(double n);
 
 /* The rule of a model. */
 const struct collision_rule *collision_rule_of(const struct model *model);

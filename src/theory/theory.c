@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "system/fiber_kind.h"
+#include "theory/chaos.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -10,7 +11,7 @@ static const double pi = 3.14159265358979323846;
 
 double theory_partners(double gamma)
 {
-  return rule_partners(gamma);
+  return chaos_partners(gamma);
 }
 
 /* D or eta_kin of whatever keeps the share `retention` per collision: the Green-Kubo sum 1/2 + c + c^2 + ... */
@@ -22,13 +23,13 @@ static double green_kubo(double retention)
 double theory_viscosity_kinetic(const struct collision_rule *rule, uint32_t d, double gamma, double cosine,
                                 double interval)
 {
-  return gamma * interval * green_kubo(1.0 - rule->stress_loss(cosine, d, gamma));
+  return gamma * interval * green_kubo(1.0 - chaos_of(rule)->stress_loss(cosine, d, gamma));
 }
 
 double theory_viscosity_collisional(const struct collision_rule *rule, uint32_t d, double gamma, double cosine,
                                     double interval)
 {
-  return rule->handed_on(cosine, d, gamma) / interval;
+  return chaos_of(rule)->handed_on(cosine, d, gamma) / interval;
 }
 
 double theory_viscosity(const struct collision_rule *rule, uint32_t d, double gamma, double cosine, double interval)
@@ -66,7 +67,7 @@ double theory_vertex_retention(const struct collision_rule *rule, uint32_t d, do
   const int last = (int)(gamma + 40.0 * sqrt(gamma) + 40.0);
   double loss = 0.0;
   for (int n = 1; n <= last; n++)
-    loss += exp(n * log(gamma) - gamma - lgamma(n + 1.0)) * rule->velocity_loss(cosine, d, mass, (uint32_t)n);
+    loss += exp(n * log(gamma) - gamma - lgamma(n + 1.0)) * chaos_of(rule)->velocity_loss(cosine, d, mass, (uint32_t)n);
   return 1.0 - loss;
 }
 

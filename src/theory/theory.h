@@ -20,11 +20,11 @@
 double theory_partners(double gamma);
 
 /* Kinetic viscosity, m/(a0 t0): gamma dt_c [1/(1 - c) - 1/2], where the fraction c of the kinetic stress remains after
- * a collision (rule->stress_loss). For SRD: Padding 2009, Eq. (30). */
+ * a collision (stress_loss of theory/chaos.h). For SRD: Padding 2009, Eq. (30). */
 double theory_viscosity_kinetic(const struct collision_rule *rule, uint32_t d, double gamma, double cosine,
                                 double interval);
 
-/* Collisional viscosity, m/(a0 t0): the momentum that a collision hands on (rule->handed_on), divided by dt_c.
+/* Collisional viscosity, m/(a0 t0): the momentum that a collision hands on (handed_on), divided by dt_c.
  * For SRD: Padding 2009, Eq. (31). */
 double theory_viscosity_collisional(const struct collision_rule *rule, uint32_t d, double gamma, double cosine,
                                     double interval);

@@ -1,5 +1,6 @@
 /* Every collision rule keeps the contract of mpc/rule.h. */
 #include "contract/contract.h"
+#include "theory/chaos.h"
 
 static void over_rules(void (*check)(struct choice))
 {
@@ -104,7 +105,7 @@ static void thermal_rules_have_no_thermostat(void **unused)
       assert_true(contract_accepts((struct choice){.rule = rule, .thermostat = k}) == contract_together(rule, k));
 }
 
-/* What theory takes from a row: losses are shares of what is there, in both dimensions. */
+/* What theory knows of a row: losses are shares of what is there, in both dimensions. */
 static void losses_are_shares(void **unused)
 {
   (void)unused;
@@ -112,7 +113,7 @@ static void losses_are_shares(void **unused)
     for (double cosine = -1.0; cosine <= 0.99; cosine += 0.01)
       for (uint32_t d = 2; d <= 3; d++)
         for (double n = 1.0; n <= 16.0; n *= 2.0) {
-          const struct collision_rule *row = contract_rule(rule);
+          const struct chaos *row = chaos_of(contract_rule(rule));
           assert_true(row->velocity_loss(cosine, d, 2.5, 0) == 0.0);
           assert_true(row->velocity_loss(cosine, d, 1.0, (uint32_t)n) > 0.0);
           assert_true(row->velocity_loss(cosine, d, 1.0, (uint32_t)n) <= 2.0);

@@ -7,6 +7,7 @@
 
 #include "fiber/force.h"
 #include "system/fiber_kind.h"
+#include "theory/chaos.h"
 #include "theory/dumbbell.h"
 #include "theory/flow.h"
 #include "theory/load.h"
@@ -109,8 +110,8 @@ static void heavy_vertex_of_at_plus_a(void **unused)
   const double in_plane[][2] = {{1, .91667}, {2, .80393}, {3, .71958}, {4, .65179}, {7, .51195}, {15, .32824}};
   const double in_space[][2] = {{1, .94444}, {2, .87069}, {3, .79051}, {4, .72652}, {7, .58872}, {15, .39542}};
   for (int k = 0; k < 6; k++) {
-    assert_close(1.0 - at_plus_a_rule.velocity_loss(0.0, 2, 5.0, (uint32_t)in_plane[k][0]), in_plane[k][1], 0.015);
-    assert_close(1.0 - at_plus_a_rule.velocity_loss(0.0, 3, 5.0, (uint32_t)in_space[k][0]), in_space[k][1], 0.015);
+    assert_close(1.0 - chaos_at_plus_a.velocity_loss(0.0, 2, 5.0, (uint32_t)in_plane[k][0]), in_plane[k][1], 0.015);
+    assert_close(1.0 - chaos_at_plus_a.velocity_loss(0.0, 3, 5.0, (uint32_t)in_space[k][0]), in_space[k][1], 0.015);
   }
 }
 

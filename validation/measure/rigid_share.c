@@ -1,5 +1,5 @@
 /* What a collision of MPC-AT+a does to velocity and stress, averaged over the places of N particles in one cell: the
- * table in src/mpc/rules/at_plus_a_theory.c.
+ * table in src/theory/chaos_at_plus_a.c.
  *
  * A collision replaces the velocities of a cell by their projection on rigid motions (translations and rotations), H,
  * plus noise: v' = H v + (1 - H) xi. Averaged over places that are uniform in the cell, all of mass 1 but the first:

@@ -106,25 +106,6 @@ static void apply(struct state *state, const struct model *model, const struct m
   andersen_turn_from(state, c, 0);
 }
 
-/* A member keeps its share of V only. */
-static double velocity_loss(double cosine, uint32_t d, double mass, uint32_t others)
-{
-  (void)cosine, (void)d;
-  return others / (mass + others);
-}
-
-static double stress_loss(double cosine, uint32_t d, double n)
-{
-  (void)cosine, (void)d;
-  return rule_partners(n) / n;
-}
-
-static double handed_on(double cosine, uint32_t d, double n)
-{
-  (void)cosine, (void)d;
-  return rule_partners(n) / 12.0;
-}
-
 const struct collision_rule at_a_rule = {.name = "at-a",
                                          .thermal = true,
                                          .add_particles = add_particles,
@@ -132,7 +113,4 @@ const struct collision_rule at_a_rule = {.name = "at-a",
                                          .add_virtual = add_virtual,
                                          .virtual_gain = virtual_gain,
                                          .solve = solve,
-                                         .apply = apply,
-                                         .velocity_loss = velocity_loss,
-                                         .stress_loss = stress_loss,
-                                         .handed_on = handed_on};
+                                         .apply = apply};

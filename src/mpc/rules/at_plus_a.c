@@ -9,7 +9,6 @@
  */
 #include "mpc/rule.h"
 #include "mpc/rules/andersen.h"
-#include "mpc/rules/at_plus_a_theory.h"
 #include "mpc/rules/spin.h"
 
 /* Places, as they are when the collision takes place: those of images where a border has moved members there. */
@@ -199,7 +198,4 @@ const struct collision_rule at_plus_a_rule = {.name = "at+a",
                                               .add_virtual = add_virtual,
                                               .virtual_gain = virtual_gain,
                                               .solve = solve,
-                                              .apply = apply,
-                                              .velocity_loss = at_plus_a_velocity_loss,
-                                              .stress_loss = at_plus_a_stress_loss,
-                                              .handed_on = at_plus_a_handed_on};
+                                              .apply = apply};

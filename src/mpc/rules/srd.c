@@ -209,34 +209,10 @@ static void apply(struct state *state, const struct model *model, const struct m
   srd_turn_from(state, model, c, 0, scaled);
 }
 
-/* --- molecular chaos --------------------------------------------------------------------------------------------- */
-
-/* In space a third of a velocity is along the axis, and is not turned; in a plane nothing is. */
-static double velocity_loss(double cosine, uint32_t d, double mass, uint32_t others)
-{
-  return (d == 2 ? 1.0 : 2.0 / 3.0) * (1.0 - cosine) * others / (mass + others);
-}
-
-/* cos 2 alpha = 2 cos^2 alpha - 1. Of theory_viscosity_kinetic; in a plane the stress is turned by 2 alpha. */
-static double stress_loss(double cosine, uint32_t d, double n)
-{
-  const double twice = 2.0 * cosine * cosine - 1.0;
-  return (d == 2 ? 1.0 - twice : (4.0 - 2.0 * cosine - 2.0 * twice) / 5.0) * rule_partners(n) / n;
-}
-
-/* Of theory_viscosity_collisional. */
-static double handed_on(double cosine, uint32_t d, double n)
-{
-  return (1.0 - cosine) / (d == 2 ? 12.0 : 18.0) * rule_partners(n);
-}
-
 const struct collision_rule srd_rule = {.name = "srd",
                                         .add_particles = add_particles,
                                         .add_vertices = add_vertices,
                                         .add_virtual = add_virtual,
                                         .virtual_gain = virtual_gain,
                                         .solve = solve,
-                                        .apply = apply,
-                                        .velocity_loss = velocity_loss,
-                                        .stress_loss = stress_loss,
-                                        .handed_on = handed_on};
+                                        .apply = apply};

@@ -3,11 +3,9 @@
  * velocity and stress is the mean of that projection over the places of the members. Means of N members were computed
  * by validation/measure/rigid_share.c, to 0.1 %; here they are averaged over N.
  */
-#include "mpc/rules/at_plus_a_theory.h"
+#include "theory/chaos.h"
 
 #include <math.h>
-
-#include "mpc/rule.h"
 
 /* Rotations of so many members that change their velocities: none of one, about all axes but their line of two. */
 static double rotations(uint32_t d, uint32_t members)
@@ -22,7 +20,7 @@ static double rotations(uint32_t d, uint32_t members)
  * to the others' centre it has its share of the moment of inertia, estimated by the means of squared distances, and in
  * one about the line none.
  */
-double at_plus_a_velocity_loss(double cosine, uint32_t d, double mass, uint32_t others)
+static double velocity_loss(double cosine, uint32_t d, double mass, uint32_t others)
 {
   (void)cosine;
   const double n = others, all = mass + n, axes = d - 1.0;
@@ -76,14 +74,16 @@ static double mean(double (*value)(uint32_t, uint32_t), uint32_t d, double n)
   return sum;
 }
 
-double at_plus_a_stress_loss(double cosine, uint32_t d, double n)
+static double stress_loss(double cosine, uint32_t d, double n)
 {
   (void)cosine;
   return 1.0 - mean(kept, d, n) / n;
 }
 
-double at_plus_a_handed_on(double cosine, uint32_t d, double n)
+static double handed_on(double cosine, uint32_t d, double n)
 {
   (void)cosine;
   return mean(handed, d, n);
 }
+
+const struct chaos chaos_at_plus_a = {velocity_loss, stress_loss, handed_on};
