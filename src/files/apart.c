@@ -17,6 +17,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "base/opening.h"
 #include "files/build_info.h"
 #include "files/reader.h"
 #include "version.h"
@@ -28,21 +29,6 @@
 extern char **environ;
 
 /* --- the parent -------------------------------------------------------------------------------------------------- */
-
-int open_regular(const char *path, struct message *message)
-{
-  struct stat status;
-  const int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
-  if (fd < 0) {
-    message_set(message, "%s: cannot be opened for reading: %s", path, strerror(errno));
-    return -1;
-  }
-  if (fstat(fd, &status) == 0 && S_ISREG(status.st_mode))
-    return fd;
-  close(fd);
-  message_set(message, "%s: not a file but a folder, a pipe or a device", path);
-  return -1;
-}
 
 static bool regular_size(const char *path, uint64_t *bytes, struct message *message)
 {

@@ -24,10 +24,6 @@
 
 #include "base/message.h"
 
-/* Opens a file for reading, if it is a regular one; below 0, with a message, if it is not. A pipe or a device is not
- * waited for. */
-int open_regular(const char *path, struct message *message);
-
 /* One end of the connection between the two processes. */
 struct apart {
   const char *path; /* the file, for messages; must outlive this */

@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/opening.h"
 #include "base/text.h"
 #include "files/frames.h"
 #include "files/record.h"
@@ -196,9 +197,10 @@ static bool is_table(const struct look *look)
 
 static bool tell_table(const struct look *look, struct message *message)
 {
-  FILE *file = fopen(look->path, "r");
+  uint64_t bytes;
+  FILE *file = open_input(look->path, &bytes, message);
   if (!file)
-    return message_set(message, "%s: cannot be read: %s", look->path, strerror(errno));
+    return false;
   size_t header = strcspn(look->head, "\r\n"), columns = 1;
   uint64_t lines = 0;
   for (size_t k = 0; k < header; k++)
@@ -267,19 +269,13 @@ static const struct sort {
 static bool look_at(const char *path, struct look *look, struct message *message)
 {
   *look = (struct look){.path = path};
-  const int fd = open_regular(path, message);
-  if (fd < 0)
-    return false;
-  FILE *file = fdopen(fd, "rb");
-  if (file)
-    look->bytes = fread(look->head, 1, HEAD_BYTES, file);
-  bool ok = file && !ferror(file);
-  if (!ok)
-    message_set(message, "%s: cannot be read: %s", path, strerror(errno));
+  uint64_t bytes;
+  FILE *file = open_input(path, &bytes, message);
   if (!file)
-    close(fd);
-  else
-    fclose(file);
+    return false;
+  look->bytes = fread(look->head, 1, HEAD_BYTES, file);
+  const bool ok = !ferror(file) || message_set(message, "%s: cannot be read: %s", path, strerror(errno));
+  fclose(file);
   return ok;
 }
 

@@ -1,7 +1,6 @@
 #include "files/seal.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <inttypes.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -11,6 +10,8 @@
 
 #define XXH_STATIC_LINKING_ONLY /* the size of XXH64_state_t */
 #include <xxhash.h>
+
+#include "base/opening.h"
 
 static const char magic[16] = {'u', 'n', 'c', 'r', 'o', 's', 's', ' ', 's', 'e', 'a', 'l', ' ', 'v', '1', '\n'};
 #define BLOCK_BYTES 16384
@@ -102,11 +103,9 @@ static enum seal check(int fd, const char *path, struct message *message)
 
 enum seal seal_check(const char *path, struct message *message)
 {
-  const int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-  if (fd < 0) {
-    message_set(message, "%s: cannot be opened for reading: %s", path, strerror(errno));
+  const int fd = open_regular(path, message);
+  if (fd < 0)
     return SEAL_UNREADABLE;
-  }
   const enum seal seal = check(fd, path, message);
   close(fd);
   return seal;

@@ -9,6 +9,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/opening.h"
 #include "base/text.h"
 #include "files/output.h"
 #include "files/record.h"
@@ -162,13 +163,10 @@ static enum condition verify_table(const char *path, bool running, FILE *out)
   bool cut = false;
   struct message message;
   uint64_t rows = 0;
-  const int fd = open_regular(path, &message);
-  FILE *in = fd < 0 ? NULL : fdopen(fd, "r");
-  if (!in) {
-    if (fd >= 0)
-      close(fd);
-    return fd < 0 ? say(out, CONDITION_UNKNOWN, &message) : CONDITION_UNKNOWN;
-  }
+  uint64_t bytes;
+  FILE *in = open_input(path, &bytes, &message);
+  if (!in)
+    return say(out, CONDITION_UNKNOWN, &message);
   const bool odd = odd_table(in, path, &rows, &cut, &message);
   fclose(in);
   if (odd)

@@ -4,10 +4,9 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
+#include "base/opening.h"
 #include "base/text.h"
-#include "files/apart.h"
 #include "oracle/check.h"
 
 enum { COLUMNS = 16, NAME = 32 };
@@ -59,14 +58,13 @@ static int column_of(const struct trace *t, const char *name)
   return -1;
 }
 
-/* A pipe that nobody writes to is not waited for. */
 static bool open_trace(const char *path, struct trace *t, struct message *message)
 {
-  const int file = open_regular(path, message);
-  *t = (struct trace){.path = path, .in = file >= 0 ? fdopen(file, "r") : NULL};
-  if (file >= 0 && !t->in)
-    close(file);
-  if (!t->in || !next_row(t, &t->columns))
+  uint64_t bytes;
+  *t = (struct trace){.path = path, .in = open_input(path, &bytes, message)};
+  if (!t->in)
+    return false;
+  if (!next_row(t, &t->columns))
     return message_set(message, "%s: cannot be read; a trace is wanted", path);
   for (size_t k = 0; k < t->columns; k++) {
     snprintf(t->name[k], NAME, "%s", t->value[k]);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/opening.h"
 #include "oracle/judge.h"
 
 enum column { NAME, VALUE, ERROR, BLOCKS, TIME, THEORY, RESOLVE, BOUND, COLUMNS };
@@ -212,9 +213,10 @@ bool observable_means_read(const char *path, const struct observable_means *refe
 {
   means->count = 0;
   struct reader reader = {.path = path, .reference = reference, .means = means, .message = message};
-  FILE *in = fopen(path, "r");
+  uint64_t bytes;
+  FILE *in = open_input(path, &bytes, message);
   if (!in)
-    return message_set(message, "%s: cannot open: %s", path, strerror(errno));
+    return false;
   const bool ok = read_lines(&reader, in);
   fclose(in);
   return ok;

@@ -2,8 +2,8 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
+#include "base/opening.h"
 #include "files/apart.h"
 #include "files/hdf5.h"
 #include "files/reader.h"
@@ -257,12 +257,8 @@ static FILE *open_pack(const char *path, bool *hdf5, struct message *message)
 {
   static const unsigned char signature[4] = {0x89, 'H', 'D', 'F'};
   unsigned char head[4] = {0};
-  const int fd = open_regular(path, message);
-  FILE *in = fd < 0 ? NULL : fdopen(fd, "rb");
-  if (!in && fd >= 0) {
-    close(fd);
-    message_set(message, "%s: out of memory", path);
-  }
+  uint64_t bytes;
+  FILE *in = open_input(path, &bytes, message);
   if (!in)
     return NULL;
   *hdf5 = fread(head, 1, sizeof head, in) == sizeof head && memcmp(head, signature, sizeof head) == 0;

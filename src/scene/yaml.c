@@ -6,6 +6,8 @@
 #include <string.h>
 #include <yaml.h>
 
+#include "base/opening.h"
+
 static bool refuse_at(const char *path, yaml_mark_t mark, struct message *message, const char *what)
 {
   return message_at(message, path, mark.line + 1, mark.column + 1, "%s", what);
@@ -211,28 +213,22 @@ bool yaml_read(struct tree *tree, const char *path, const char *text, size_t siz
 
 char *yaml_read_file(const char *path, size_t *size, struct message *message)
 {
-  FILE *file = fopen(path, "rb");
-  char *text = NULL;
-  size_t room = 1 << 14;
+  uint64_t bytes = 0;
   *size = 0;
-  bool ok = file && (text = malloc(room)) != NULL;
-  while (ok && !feof(file)) {
-    *size += fread(text + *size, 1, room - *size, file);
-    if (ferror(file) || *size > YAML_MOST_BYTES) {
-      ok = false;
-    } else if (*size == room) {
-      char *more = realloc(text, room *= 2);
-      ok = more != NULL;
-      text = more ? more : text;
-    }
-  }
-  if (!ok) {
+  FILE *file = open_input(path, &bytes, message);
+  if (!file)
+    return NULL;
+  const bool large = bytes > YAML_MOST_BYTES;
+  char *text = large ? NULL : malloc((size_t)bytes + 1);
+  if (text)
+    *size = fread(text, 1, (size_t)bytes, file); /* what is written meanwhile is not looked for */
+  if (!text || ferror(file)) {
     message_set(message, "%s: cannot be read: %s; a scene is a YAML file of at most 64 MiB", path,
-                *size > YAML_MOST_BYTES ? "too large" : strerror(errno));
+                large ? "too large" : strerror(errno));
+    *size = large ? YAML_MOST_BYTES + 1 : 0;
     free(text);
     text = NULL;
   }
-  if (file)
-    fclose(file);
+  fclose(file);
   return text;
 }

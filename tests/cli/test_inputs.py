@@ -28,7 +28,7 @@ class Inputs(unittest.TestCase):
         self.folder = pathlib.Path(self.temporary.name)
         (self.folder / "s.yaml").write_text(SCENE)
         (self.folder / "start.yaml").write_text(f"{SCENE}start: {{snapshot: {IN}}}\n")
-        (self.folder / "o.csv").write_text("observable,value,error,blocks\na,1,0.01,40\n")
+        (self.folder / "o.csv").write_text("observable,value,error,blocks,time,resolve\na,1,0.01,40,10,0.02\n")
         self.assertEqual(self.run_words("oracle", "emit", "s.yaml", "--out", "p.h5")[0], 0)
 
     def tearDown(self):

@@ -19,6 +19,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "base/opening.h"
 #include "files/checkpoint.h"
 #include "files/frames_apart.h"
 #include "files/hdf5.h"

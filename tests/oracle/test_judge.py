@@ -244,7 +244,7 @@ class JudgeTest(unittest.TestCase):
     def test_bad_words(self):
         self.assertEqual(judge(REFERENCE)[0], 2)
         code, said = judge(REFERENCE, self.dir / "missing.csv")
-        self.assertEqual((code, "cannot open" in said), (2, True), said)
+        self.assertEqual((code, "cannot be opened" in said), (2, True), said)
         self.assertEqual(judge(REFERENCE, self.dir)[0], 2)
 
     def test_reference_agrees_with_theory_where_it_should(self):

@@ -307,7 +307,7 @@ static void whole_files_are_refused(void **unused)
   struct scene scene;
   struct message message;
   assert_false(scene_read("no-such-folder/scene.yaml", &scene, &message));
-  assert_non_null(strstr(message.text, "no-such-folder/scene.yaml: cannot be read: No such file"));
+  assert_non_null(strstr(message.text, "no-such-folder/scene.yaml: cannot be opened for reading: No such file"));
   assert_false(scene_read("scenes", &scene, &message));
   assert_non_null(strstr(message.text, "scenes: cannot be read"));
 }
