@@ -309,7 +309,7 @@ static void whole_files_are_refused(void **unused)
   assert_false(scene_read("no-such-folder/scene.yaml", &scene, &message));
   assert_non_null(strstr(message.text, "no-such-folder/scene.yaml: cannot be opened for reading: No such file"));
   assert_false(scene_read("scenes", &scene, &message));
-  assert_non_null(strstr(message.text, "scenes: cannot be read"));
+  assert_non_null(strstr(message.text, "scenes: not a file but a folder"));
 }
 
 /* The good scene cut off anywhere is read or refused, never worse (valgrind and sanitizers see to that). */
