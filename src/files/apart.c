@@ -221,7 +221,7 @@ void apart_put_verdict(struct apart *link, int verdict, const struct message *me
 
 int apart_get_verdict(struct apart *parent, struct message *message)
 {
-  int32_t number;
+  int32_t number = -1;
   if (apart_get(parent, &number, sizeof number) &&
       (number == 0 || apart_get(parent, message->text, sizeof message->text))) {
     message->text[sizeof message->text - 1] = '\0';
