@@ -15,7 +15,7 @@ from damage import SCENE  # noqa: E402
 from support import uncross  # noqa: E402
 
 # what file systems answer: FUSE, NFS without its lock daemon, old kernels, some network file systems
-ANSWERS = errno.EOPNOTSUPP, errno.ENOLCK, errno.ENOSYS, errno.EINVAL
+ANSWERS = errno.EOPNOTSUPP, errno.ENOLCK, errno.ENOSYS, errno.EINVAL, errno.EINTR
 SOURCE = """#include <errno.h>
 #include <stdlib.h>
 int flock(int fd, int how);
