@@ -126,6 +126,12 @@ UNCROSS_API int uncross_scene_set(uncross_scene *scene, const char *path, const 
 UNCROSS_API int uncross_scene_set_steps(uncross_scene *scene, uint64_t steps, uncross_error *error);
 UNCROSS_API int uncross_scene_set_seed(uncross_scene *scene, uint64_t seed, uncross_error *error);
 
+/* Asked, whenever a fiber is laid that excludes others, by those that start from this scene; 0: the start is given up,
+ * with UNCROSS_BAD_INPUT. Many thick fibers take seconds. watch: NULL if nobody wants to be asked. */
+typedef int uncross_start_watch(void *context);
+UNCROSS_API int uncross_scene_watch_start(uncross_scene *scene, uncross_start_watch *watch, void *context,
+                                          uncross_error *error);
+
 /* Whether the scene can be run: types, ranges, stability. */
 UNCROSS_API int uncross_scene_check(const uncross_scene *scene, uncross_error *error);
 

@@ -12,13 +12,22 @@
 #include "mpc/mpc.h"
 #include "system/plan.h"
 
+/* Asked while fibers are laid, which may take long: false gives the start up. keep_on: NULL if nobody wants to be
+ * asked.
+ */
+struct start_watch {
+  bool (*keep_on)(void *context);
+  void *context;
+};
+
 struct work {
   struct mpc mpc;
   struct contact contact;
   struct fiber fiber;
   struct medium medium;
   struct plan plan[2]; /* [0]: of a step without a collision, [1]: with one */
-  struct fault fault;  /* code FAULT_NONE while all is well */
+  struct start_watch watch;
+  struct fault fault; /* code FAULT_NONE while all is well */
 };
 
 /* Allocates the scratch that this model uses, and makes the plans of its steps. False if memory is short; nothing needs

@@ -15,6 +15,8 @@ struct uncross_scene {
   size_t settings;
   bool has_steps, has_seed;
   uint64_t steps, seed; /* instead of the text's */
+  uncross_start_watch *watch;
+  void *context; /* of the watch */
 };
 
 /* A table that the library owns. */

@@ -230,6 +230,15 @@ int uncross_scene_set_seed(uncross_scene *scene, uint64_t seed, uncross_error *e
   return UNCROSS_OK;
 }
 
+int uncross_scene_watch_start(uncross_scene *scene, uncross_start_watch *watch, void *context, uncross_error *error)
+{
+  if (!scene)
+    return fail_null(error, "scene");
+  scene->watch = watch;
+  scene->context = context;
+  return UNCROSS_OK;
+}
+
 /* --- looking ----------------------------------------------------------------------------------------------------- */
 
 int uncross_scene_check(const uncross_scene *scene, uncross_error *error)

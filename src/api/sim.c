@@ -48,6 +48,12 @@ static void set_view(struct uncross_sim *sim)
   sim_look(sim);
 }
 
+static bool keep_on(void *context)
+{
+  const struct uncross_scene *scene = context;
+  return scene->watch(scene->context) != 0;
+}
+
 int sim_make(struct uncross_sim *sim, const struct uncross_scene *scene, const char *checkpoint, uncross_error *error)
 {
   const int code = handle_read(scene, checkpoint, &sim->scene, error);
@@ -57,6 +63,7 @@ int sim_make(struct uncross_sim *sim, const struct uncross_scene *scene, const c
   if (!sim->observers || !state_alloc(&sim->state, &sim->scene.model) || !work_alloc(&sim->work, &sim->scene.model))
     return fail(error, UNCROSS_NO_MEMORY, "no memory for this scene; `uncross check` says how much it needs", NULL);
   observers_watch(sim->observers, &sim->work);
+  sim->work.watch = (struct start_watch){scene->watch ? keep_on : NULL, (void *)(uintptr_t)scene};
   set_view(sim);
   return UNCROSS_OK;
 }

@@ -13,7 +13,8 @@ static const char *const code_text[EXIT_CODES] = {
          "checkpoint stays"),
     [EXIT_NOT_WRITTEN] = ("a file or DIR could not be written, or another process writes into DIR; a checkpoint that "
                           "was there stays"),
-    [EXIT_INTERRUPTED] = "interrupted by a signal; a checkpoint was written, --resume goes on",
+    [EXIT_INTERRUPTED] =
+        "interrupted by a signal; a checkpoint was written, --resume goes on (or nothing was, before step 0)",
     [EXIT_CLOSE] = "oracle compare: different, but within the derived tolerances",
     [EXIT_DIFFERS] = "oracle compare: different beyond them, or something is missing; oracle judge: different",
     [EXIT_DAMAGED] = "verify: a file is damaged",

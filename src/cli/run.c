@@ -177,6 +177,12 @@ static void tell_warning(void *file, const char *text)
   fprintf(file, "uncross: warning: %s\n", text_shown(text));
 }
 
+static int not_interrupted(void *unused)
+{
+  (void)unused;
+  return !interrupted;
+}
+
 enum exit_code command_run(const struct arguments *a)
 {
   uncross_error error;
@@ -189,8 +195,11 @@ enum exit_code command_run(const struct arguments *a)
     return complain(&error);
   }
   watch_signals();
+  uncross_scene_watch_start(scene, not_interrupted, NULL, &error);
   uncross_run *run = uncross_run_open(scene, a->out, a->resume ? UNCROSS_RESUME : UNCROSS_NEW, &error);
-  const enum exit_code code = run ? run_to_end(run, a, &error) : complain(&error);
+  const enum exit_code code = run                                                 ? run_to_end(run, a, &error)
+                              : complain(&error) == EXIT_BAD_INPUT && interrupted ? EXIT_INTERRUPTED
+                                                                                  : (enum exit_code)error.code;
   uncross_run_free(run);
   uncross_scene_free(scene);
   return code;

@@ -178,8 +178,10 @@ static enum fiber_verdict judge(const struct fiber_room *room, const struct stat
   return room ? room->judge(room->context, state->position, fiber) : FIBER_STAYS;
 }
 
-static const enum fiber_start_end ends[] = {
-    [FIBER_STAYS] = FIBERS_LAID, [FIBER_OVERLAPS] = FIBERS_OVERLAP, [FIBER_NO_MEMORY] = FIBERS_NO_MEMORY};
+static const enum fiber_start_end ends[] = {[FIBER_STAYS] = FIBERS_LAID,
+                                            [FIBER_OVERLAPS] = FIBERS_OVERLAP,
+                                            [FIBER_NO_MEMORY] = FIBERS_NO_MEMORY,
+                                            [FIBER_GIVEN_UP] = FIBERS_GIVEN_UP};
 
 /* Lays a fiber at random. A fiber that would be beyond a wall, or that overlaps, is drawn anew, shape and place: what
  * is kept is in equilibrium between the walls. */

@@ -6,7 +6,7 @@
 #include "system/state.h"
 
 /* Where thick fibers are laid: whether this one, which has just been laid, may stay. */
-enum fiber_verdict { FIBER_STAYS, FIBER_OVERLAPS, FIBER_NO_MEMORY };
+enum fiber_verdict { FIBER_STAYS, FIBER_OVERLAPS, FIBER_NO_MEMORY, FIBER_GIVEN_UP };
 struct fiber_room {
   enum fiber_verdict (*judge)(void *context, const struct point *position, uint32_t fiber);
   void *context;
@@ -15,7 +15,7 @@ struct fiber_room {
 #define FIBER_MOST_ATTEMPTS 100000 /* to lay one fiber at random */
 
 /* What became of a start; fiber: the one that overlaps, or has no room. */
-enum fiber_start_end { FIBERS_LAID, FIBERS_OVERLAP, FIBERS_NO_ROOM, FIBERS_NO_MEMORY };
+enum fiber_start_end { FIBERS_LAID, FIBERS_OVERLAP, FIBERS_NO_ROOM, FIBERS_NO_MEMORY, FIBERS_GIVEN_UP };
 
 /* Sets positions by each kind's `start`, and velocities from the Maxwell distribution (kT = 1).
  *

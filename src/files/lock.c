@@ -6,12 +6,17 @@
 
 #include "base/clock.h"
 
+/* More signals do not come while one call is made; some file systems say EINTR whatever comes. */
+#define MOST_INTERRUPTIONS 100
+
 enum lock lock_take(int fd, bool alone)
 {
-  while (flock(fd, (alone ? LOCK_EX : LOCK_SH) | LOCK_NB) != 0)
-    if (errno != EINTR)
+  for (int k = 0; k < MOST_INTERRUPTIONS; k++)
+    if (flock(fd, (alone ? LOCK_EX : LOCK_SH) | LOCK_NB) == 0)
+      return LOCK_TAKEN;
+    else if (errno != EINTR)
       return errno == EWOULDBLOCK ? LOCK_IN_USE : LOCK_NONE;
-  return LOCK_TAKEN;
+  return LOCK_NONE;
 }
 
 enum lock lock_wait(int fd, bool alone, double seconds)

@@ -91,6 +91,8 @@ static bool refuse_start(const struct scene *scene, const struct fault *fault, s
                            "allowed: thinner or fewer fibers, a larger box, or start.snapshot of a state that has room",
                            fault->entity, m->fibers, fault->value);
   }
+  if (fault->code == FAULT_GIVEN_UP)
+    return message_set(message, "given up while fiber %" PRId64 " of %" PRIu32 " was laid", fault->entity, m->fibers);
   if (fault->code != FAULT_OVERLAP && fault->code != FAULT_BEAD_OVERLAP)
     return message_fault(message, fault);
   key_of_fiber(m, m->fiber_of[fault->entity], key, sizeof key);
@@ -201,7 +203,7 @@ bool scene_has_room(const struct scene *scene, struct message *message)
     return message_set(message, "%s: no memory to lay its fibers", scene->path);
   if (state.beads > 0)
     bead_start(&state, &alone);
-  const bool ok = start_fibers(&state, &alone, &fault) || refuse_start(scene, &fault, message);
+  const bool ok = start_fibers(&state, &alone, NULL, &fault) || refuse_start(scene, &fault, message);
   state_free(&state);
   return ok;
 }

@@ -12,6 +12,7 @@
 
 /* Where fibers are laid: among others, and beside a bead. */
 struct ground {
+  const struct start_watch *watch; /* or NULL */
   const struct state *state;
   const struct model *model;
   struct laying laying; /* nothing if nobody asks which fibers are there */
@@ -26,6 +27,8 @@ static enum fiber_verdict judge_fiber(void *context, const struct point *positio
       [LAYING_FITS] = FIBER_STAYS, [LAYING_OVERLAPS] = FIBER_OVERLAPS, [LAYING_NO_MEMORY] = FIBER_NO_MEMORY};
   struct ground *g = context;
   const struct state *s = g->state;
+  if (g->watch && g->watch->keep_on && !g->watch->keep_on(g->watch->context))
+    return FIBER_GIVEN_UP;
   g->in_bead = s->beads > 0 && !event_bead_clear(g->model, s->bead->position, position, fiber, &g->bond, &g->distance);
   if (g->in_bead)
     return FIBER_OVERLAPS;
@@ -70,12 +73,14 @@ static bool record_start(const struct ground *g, enum fiber_start_end end, uint3
     return record_overlap(g, fault);
   if (end == FIBERS_NO_ROOM)
     return fault_record(fault, FAULT_NO_ROOM, 0, fiber, FIBER_MOST_ATTEMPTS, FIBER_MOST_ATTEMPTS);
+  if (end == FIBERS_GIVEN_UP)
+    return fault_record(fault, FAULT_GIVEN_UP, 0, fiber, 0.0, 0.0);
   return end == FIBERS_LAID || fault_no_memory(fault, 0);
 }
 
-bool start_fibers(struct state *state, const struct model *model, struct fault *fault)
+bool start_fibers(struct state *state, const struct model *model, const struct start_watch *watch, struct fault *fault)
 {
-  struct ground ground = {.state = state, .model = model};
+  struct ground ground = {.watch = watch, .state = state, .model = model};
   const struct fiber_room room = {judge_fiber, &ground};
   uint32_t fiber = 0;
   enum fiber_start_end end = FIBERS_NO_MEMORY;

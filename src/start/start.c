@@ -91,7 +91,7 @@ bool start_state(struct state *state, const struct model *model, struct work *wo
   state->solvent_time = 0;
   contact_forget_places(&work->contact);
   fluid_of(model)->start(state, model);
-  if (!start_fibers(state, model, &work->fault))
+  if (!start_fibers(state, model, &work->watch, &work->fault))
     return false;
   if (model_is_overdamped(model)) {
     memset(state->velocity, 0, state->vertices * sizeof *state->velocity);

@@ -34,6 +34,7 @@ static const struct {
     [FAULT_BOND_TOO_LONG] = {"bond", "is longer than half the shortest box edge:", "a0", true, false},
     [FAULT_OVERLAP] = {"bond", "overlaps with another one: their axes are apart by", "a0", false, true},
     [FAULT_BEAD_OVERLAP] = {"bond", "overlaps with the bead: its axis is from the center by", "a0", false, true},
+    [FAULT_GIVEN_UP] = {"fiber", "was being laid when the start was given up:", "", false, false},
     [FAULT_NO_ROOM] = {"fiber", "overlaps with others wherever it is laid:", "attempts", false, false},
     [FAULT_MOBILITY] =
         {"the fiber of vertex",

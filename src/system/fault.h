@@ -26,6 +26,7 @@ enum fault_code {
   FAULT_BOND_TOO_LONG,  /* a bond is longer than half the shortest edge */
   FAULT_OVERLAP,        /* two bonds overlap or touch at the start: one of them, and the distance of their axes */
   FAULT_BEAD_OVERLAP,   /* a bond overlaps with the bead at the start: the distance of its axis from the center */
+  FAULT_GIVEN_UP,       /* whoever waits for the start wants it no more: the fiber that was being laid */
   FAULT_NO_ROOM,        /* a thick fiber overlaps with others wherever it is laid: its number, and the attempts */
   FAULT_MOBILITY,       /* the diffusion tensor of a fiber is not positive: its first vertex, and a pivot over D0 */
   FAULT_TENSION,        /* the tensions of a fiber's bonds cannot be found: its first vertex, and a pivot */
