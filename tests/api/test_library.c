@@ -690,6 +690,7 @@ static void test_null(void **unused)
   assert_int_equal(uncross_scene_set(NULL, "a", "b", &error), UNCROSS_BAD_INPUT);
   assert_int_equal(uncross_scene_set_steps(NULL, 1, NULL), UNCROSS_BAD_INPUT);
   assert_int_equal(uncross_scene_set_seed(NULL, 1, NULL), UNCROSS_BAD_INPUT);
+  assert_int_equal(uncross_scene_watch_start(NULL, NULL, NULL, NULL), UNCROSS_BAD_INPUT);
   assert_int_equal(uncross_scene_check(NULL, NULL), UNCROSS_BAD_INPUT);
   assert_int_equal(uncross_scene_warnings(NULL, NULL, NULL, NULL), UNCROSS_BAD_INPUT);
   assert_int_equal(uncross_scene_number(NULL, "a", &x, NULL), UNCROSS_BAD_INPUT);
