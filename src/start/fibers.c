@@ -103,8 +103,10 @@ static struct point *places_in_frame(const struct state *state, const struct mod
 
 bool start_sound(const struct state *state, const struct model *model, struct fault *fault)
 {
-  static const enum fiber_start_end ends[] = {
-      [FIBER_STAYS] = FIBERS_LAID, [FIBER_OVERLAPS] = FIBERS_OVERLAP, [FIBER_NO_MEMORY] = FIBERS_NO_MEMORY};
+  static const enum fiber_start_end ends[] = {[FIBER_STAYS] = FIBERS_LAID,
+                                              [FIBER_OVERLAPS] = FIBERS_OVERLAP,
+                                              [FIBER_NO_MEMORY] = FIBERS_NO_MEMORY,
+                                              [FIBER_GIVEN_UP] = FIBERS_GIVEN_UP};
   struct ground ground = {.state = state, .model = model};
   enum fiber_start_end end = FIBERS_LAID;
   struct point *place = places_in_frame(state, model);
