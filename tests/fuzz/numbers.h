@@ -46,7 +46,7 @@ static bool take_nothing(void *context, const struct observe_table *table)
 /* Some steps, seen by all observers. */
 static void go_on(struct state *state, struct work *work, int steps)
 {
-  work->mpc.stress = observers_stress(observed.observers);
+  observers_watch(observed.observers, work);
   for (int k = 0; k < steps && step_advance(state, &observed.scene.model, work, NULL); k++)
     require(observers_sample(observed.observers, &observed.scene.model, state, NULL), "nothing is observed");
   require(observers_summaries(observed.observers, &observed.scene.model, take_nothing, NULL), "no tables");
