@@ -10,7 +10,6 @@ import unittest
 TOP = pathlib.Path(__file__).resolve().parents[2]
 UNCROSS = os.path.abspath(os.environ.get("UNCROSS", "build/uncross"))
 MOST = 64.0  # MiB; the program with a small scene takes some 15
-PROGRAM = 14.0  # MiB of the program and its libraries, with no scene
 FACTOR = 1.25  # between the estimate and the largest resident memory
 
 # Observables that remember much, of systems that do not.
@@ -95,12 +94,13 @@ class Memory(unittest.TestCase):
         for scene in scenes:
             code, said, _ = self.run_words("check", scene)
             self.assertEqual(code, 0, said)
-            wanted = PROGRAM + float(re.search(r"^  \.\.\. while a checkpoint is written +(\S+) MiB", said, re.M)[1])
+            wanted = float(re.search(r"^  \.\.\. while a checkpoint is written +(\S+) MiB", said, re.M)[1])
             out = self.folder / scene.stem
             code, said, memory = self.run_words("run", scene, "--out", out, "--steps", "1", "--set", "observe.from=0", "--quiet")
             self.assertEqual(code, 0, said)
             print(f"# {scene.stem}: memory {memory:.1f} MiB, said {wanted:.1f}")
-            self.assertTrue(1 / FACTOR < memory / wanted < FACTOR, scene)
+            factor = 1.05 if "profile" in scene.stem else FACTOR  # all of it is memory of observables, and of the program
+            self.assertTrue(1 / factor < memory / wanted < factor, (scene, memory, wanted))
 
 
 if __name__ == "__main__":

@@ -203,6 +203,15 @@ class RoundTrip(unittest.TestCase):
                             with self.subTest(box=box, name=name, form=form, file=file, words=words):
                                 self.check(box, name, form, file, words)
 
+    def test_numbers_are_short(self):
+        """As tables have them: no more digits than Python needs to read back the same number."""
+        for form in READERS:
+            said, many = uncross("export", self.folder / "sheared-fibers/trajectory.h5", "--format", form).stdout, 0
+            for word in re.findall(r"(?<![\w.])-?\d+\.\d+(?:e[-+]\d+)?", said):
+                many += 1
+                self.assertLessEqual(len(re.sub(r"e.*|\D", "", word).lstrip("0")), len(re.sub(r"e.*|\D", "", repr(float(word))).lstrip("0")), (form, word))
+            self.assertGreater(many, 100)
+
     def test_vertices_leave_the_box(self):
         """Or nothing above is folded: along y, some of them, when the image has slid by no whole number of boxes."""
         with h5py.File(self.folder / "sheared-fibers/trajectory.h5") as h5:
