@@ -77,6 +77,15 @@ void text_shortest(double x, char text[TEXT_REAL_SIZE])
   while (digits++ < 17 && strtod(text, NULL) != x && !isnan(x));
 }
 
+void text_print_reals(FILE *file, size_t count, const double *x)
+{
+  char text[TEXT_REAL_SIZE];
+  for (size_t k = 0; k < count; k++) {
+    text_shortest(x[k], text);
+    fprintf(file, "%s%s", k > 0 ? " " : "", text);
+  }
+}
+
 void text_print(FILE *file, const char *text)
 {
   while (*text) {

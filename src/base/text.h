@@ -49,4 +49,7 @@ enum { TEXT_REAL_SIZE = 32 };
 /* The number in the fewest digits that read back to it (%.15g, %.16g or %.17g). */
 void text_shortest(double x, char text[TEXT_REAL_SIZE]);
 
+/* So many of them, with spaces between. */
+void text_print_reals(FILE *file, size_t count, const double *x);
+
 #endif

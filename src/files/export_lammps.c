@@ -101,6 +101,13 @@ static bool allows(const struct export_view *v, struct message *message)
                      v->frames->path, odd);
 }
 
+static void print_numbered(FILE *out, int32_t number, size_t count, const double *x)
+{
+  fprintf(out, "%" PRId32 " ", number);
+  text_print_reals(out, count, x);
+  fputc('\n', out);
+}
+
 static void print_head(FILE *out, const struct export_view *v, int32_t n)
 {
   const struct picture *p = &v->frames->picture;
@@ -109,18 +116,23 @@ static void print_head(FILE *out, const struct export_view *v, int32_t n)
   find_masses(v, mass, &odd);
   const struct export_cell *c = &v->cell;
   const uint32_t bonds = count(v, has_bond), angles = count(v, has_angle);
-  fprintf(out, "# uncross: step %" PRIu64 ", time %.17g t0; units lj, atom_style molecular, boundary %c %c %c\n\n",
-          p->step, text_real(p->time), "fp"[c->periodic[0]], "fp"[c->periodic[1]], "fp"[c->periodic[2]]);
+  fprintf(out, "# uncross: step %" PRIu64 ", time ", p->step);
+  text_print_reals(out, 1, &p->time);
+  fprintf(out, " t0; units lj, atom_style molecular, boundary %c %c %c\n\n", "fp"[c->periodic[0]], "fp"[c->periodic[1]],
+          "fp"[c->periodic[2]]);
   fprintf(out, "%" PRIu32 " atoms\n%" PRIu32 " bonds\n%" PRIu32 " angles\n", v->shown, bonds, angles);
   fprintf(out, "%" PRId32 " atom types\n%" PRId32 " bond types\n%" PRId32 " angle types\n\n", n, bonds > 0 ? n : 0,
           angles > 0 ? n : 0);
-  for (int k = 0; k < 3; k++)
-    fprintf(out, "0 %.17g %clo %chi\n", c->edge[k], "xyz"[k], "xyz"[k]);
-  if (c->leans)
-    fprintf(out, "%.17g 0 0 xy xz yz\n", c->tilt);
+  for (int k = 0; k < 3; k++) {
+    text_print_reals(out, 2, (const double[]){0.0, c->edge[k]});
+    fprintf(out, " %clo %chi\n", "xyz"[k], "xyz"[k]);
+  }
+  text_print_reals(out, c->leans ? 1 : 0, &c->tilt);
+  fputs(c->leans ? " 0 0 xy xz yz\n" : "", out);
   fputs("\nMasses\n\n", out);
   for (int32_t type = 1; type <= n; type++) {
-    fprintf(out, "%" PRId32 " %.17g", type, mass[type - 1]);
+    fprintf(out, "%" PRId32 " ", type);
+    text_print_reals(out, 1, &mass[type - 1]);
     fputs(type <= v->frames->structure.kinds ? " # " : "", out);
     export_name(out, type <= v->frames->structure.kinds ? v->frames->structure.name[type - 1] : "");
     fputc('\n', out);
@@ -135,13 +147,14 @@ static void print_coefficients(FILE *out, const struct export_view *v, int32_t n
     fputs("\nBond Coeffs # harmonic\n\n", out);
     for (int32_t type = 1; type <= n; type++) {
       const struct fiber_kind *k = kind_of(v, type - 1);
-      fprintf(out, "%" PRId32 " %.17g %.17g\n", type, k ? 0.5 * k->spring : 0.0, k ? k->bond_length : 0.0);
+      const double coefficients[2] = {k ? 0.5 * k->spring : 0.0, k ? k->bond_length : 0.0};
+      print_numbered(out, type, 2, coefficients);
     }
   }
   if (count(v, has_angle) > 0) {
     fputs("\nAngle Coeffs # cosine\n\n", out);
     for (int32_t type = 1; type <= n; type++)
-      fprintf(out, "%" PRId32 " %.17g\n", type, kind_of(v, type - 1) ? kind_of(v, type - 1)->bending : 0.0);
+      print_numbered(out, type, 1, &(double){kind_of(v, type - 1) ? kind_of(v, type - 1)->bending : 0.0});
   }
 }
 
@@ -150,23 +163,32 @@ static int32_t molecule_of(const struct export_view *v, uint32_t row)
   return export_is_solvent(v, row) ? 0 : v->place[row].fiber + 1;
 }
 
+/* Number, molecule, type, place, images. */
+static void print_atom(FILE *out, const struct export_view *v, uint32_t row)
+{
+  double x[3], image[3];
+  export_place(v, row, x, image);
+  fprintf(out, "%" PRId32 " %" PRId32 " %" PRId32 " ", v->number[row] + 1, molecule_of(v, row), species_of(v, row) + 1);
+  text_print_reals(out, 3, x);
+  fprintf(out, " %.0f %.0f %.0f", image[0], image[1], image[2]);
+}
+
 static void print_atoms(FILE *out, const struct export_view *v)
 {
-  double x[3], image[3], u[3];
+  double u[3];
   fputs("\nAtoms # molecular\n\n", out);
   for (uint32_t row = 0; row < v->frames->about.rows; row++) {
     if (v->number[row] < 0)
       continue;
-    export_place(v, row, x, image);
-    fprintf(out, "%" PRId32 " %" PRId32 " %" PRId32 " %.17g %.17g %.17g %.0f %.0f %.0f\n", v->number[row] + 1,
-            molecule_of(v, row), species_of(v, row) + 1, x[0], x[1], x[2], image[0], image[1], image[2]);
+    print_atom(out, v, row);
+    fputc('\n', out);
   }
   if (!v->frames->picture.velocity)
     return;
   fputs("\nVelocities\n\n", out);
   for (uint32_t row = 0; row < v->frames->about.rows; row++)
     if (v->number[row] >= 0 && export_velocity(v, row, u))
-      fprintf(out, "%" PRId32 " %.17g %.17g %.17g\n", v->number[row] + 1, u[0], u[1], u[2]);
+      print_numbered(out, v->number[row] + 1, 3, u);
 }
 
 static void print_links(FILE *out, const struct export_view *v)
@@ -209,27 +231,25 @@ static void print_bounds(FILE *out, const struct export_cell *c)
   fputc('\n', out);
   for (int k = 0; k < 3; k++) {
     const double tilt = k == 0 ? c->tilt : 0.0;
-    fprintf(out, "%.17g %.17g", fmin(0.0, tilt), c->edge[k] + fmax(0.0, tilt));
-    if (c->leans)
-      fprintf(out, " %.17g", tilt);
+    const double bounds[3] = {fmin(0.0, tilt), c->edge[k] + fmax(0.0, tilt), tilt};
+    text_print_reals(out, c->leans ? 3 : 2, bounds);
     fputc('\n', out);
   }
 }
 
 static void print_dump(FILE *out, const struct export_view *v)
 {
-  double x[3], image[3], u[3];
+  double u[3];
   fprintf(out, "ITEM: TIMESTEP\n%" PRIu64 "\nITEM: NUMBER OF ATOMS\n%" PRIu32 "\n", v->frames->picture.step, v->shown);
   print_bounds(out, &v->cell);
   fprintf(out, "ITEM: ATOMS id mol type x y z ix iy iz%s\n", v->frames->picture.velocity ? " vx vy vz" : "");
   for (uint32_t row = 0; row < v->frames->about.rows; row++) {
     if (v->number[row] < 0)
       continue;
-    export_place(v, row, x, image);
-    fprintf(out, "%" PRId32 " %" PRId32 " %" PRId32 " %.17g %.17g %.17g %.0f %.0f %.0f", v->number[row] + 1,
-            molecule_of(v, row), species_of(v, row) + 1, x[0], x[1], x[2], image[0], image[1], image[2]);
-    if (export_velocity(v, row, u))
-      fprintf(out, " %.17g %.17g %.17g", u[0], u[1], u[2]);
+    print_atom(out, v, row);
+    const bool moves = export_velocity(v, row, u);
+    fputs(moves ? " " : "", out);
+    text_print_reals(out, moves ? 3 : 0, u);
     fputc('\n', out);
   }
 }

@@ -20,12 +20,15 @@ static void print_comment(FILE *out, const struct export_view *v)
   const struct picture *p = &s->picture;
   const struct export_cell *c = &v->cell;
   const char *between = "";
-  fprintf(out,
-          "Lattice=\"%.17g 0 0 %.17g %.17g 0 0 0 %.17g\" "
-          "Properties=species:S:1:pos:R:3%s:id:I:1:next:I:1:fiber:I:1:place:I:1",
-          c->edge[0], c->tilt, c->edge[1], c->edge[2], p->velocity ? ":velo:R:3" : "");
-  fprintf(out, " pbc=\"%c %c %c\" Step=%" PRIu64 " Time=%.17g kinds=\"", "FT"[c->periodic[0]], "FT"[c->periodic[1]],
-          "FT"[c->periodic[2]], p -> step, text_real(p->time));
+  const double lattice[9] = {c->edge[0], 0.0, 0.0, c->tilt, c->edge[1], 0.0, 0.0, 0.0, c->edge[2]};
+  fputs("Lattice=\"", out);
+  text_print_reals(out, 9, lattice);
+  fprintf(out, "\" Properties=species:S:1:pos:R:3%s:id:I:1:next:I:1:fiber:I:1:place:I:1",
+          p->velocity ? ":velo:R:3" : "");
+  fprintf(out, " pbc=\"%c %c %c\" Step=%" PRIu64 " Time=", "FT"[c->periodic[0]], "FT"[c->periodic[1]],
+          "FT"[c->periodic[2]], p -> step);
+  text_print_reals(out, 1, &p->time);
+  fputs(" kinds=\"", out);
   for (int k = 0; k < s->structure.kinds; k++) {
     bool is_solvent = structure_is_solvent(&s->structure, k);
     if (is_solvent && !v->solvent)
@@ -44,10 +47,10 @@ static void print_row(FILE *out, const struct export_view *v, uint32_t row)
   fputs(export_is_solvent(v, row) ? SOLVENT_SYMBOL : symbol_of(is->species[row]), out);
   export_place(v, row, x, image);
   const bool has_velocity = export_velocity(v, row, u);
-  for (int k = 0; k < 3; k++)
-    fprintf(out, " %.17g", text_real(x[k]));
-  for (int k = 0; has_velocity && k < 3; k++)
-    fprintf(out, " %.17g", text_real(u[k]));
+  fputc(' ', out);
+  text_print_reals(out, 3, x);
+  fputs(has_velocity ? " " : "", out);
+  text_print_reals(out, has_velocity ? 3 : 0, u);
   const struct place none = {-1, -1}, at = row < is->particles ? v->place[row] : none;
   fprintf(out, " %" PRIu32 " %" PRId32 " %" PRId32 " %" PRId32 "\n", row, row < is->particles ? is->next[row] : -1,
           at.fiber, at.along);

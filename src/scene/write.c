@@ -12,16 +12,9 @@
 
 /* --- values ------------------------------------------------------------------------------------------------------ */
 
-/* The shortest decimal number that reads back to the same double. */
 static void write_number(FILE *f, double x)
 {
-  char text[32];
-  for (int digits = 15; digits <= 17; digits++) {
-    snprintf(text, sizeof text, "%.*g", digits, x);
-    if (strtod(text, NULL) == x)
-      break;
-  }
-  fputs(text, f);
+  text_print_reals(f, 1, &x);
 }
 
 /* A text in double quotes, as YAML reads it. */
