@@ -100,6 +100,13 @@ class Python(unittest.TestCase):
             self.assertIn(b"KeyboardInterrupt", said)
             self.assertLess(time.monotonic() - started, 3, kind)  # a look every 0.1 s and a step, on a busy machine
 
+    def test_what_is_missing_is_named(self):
+        """A package that Python has not: as if it were not installed."""
+        for name in "cffi", "numpy":
+            done = subprocess.run([sys.executable, "-c", f"import sys; sys.modules['{name}'] = None; import uncross"], capture_output=True, text=True,
+                                  check=False, env={**os.environ, "PYTHONPATH": str(TOP / "python")})
+            self.assertIn(f"uncross needs {name}: install python3-{name}", done.stderr)
+
     def test_a_run_goes_forward(self):
         run = uncross.Run(SCENE)
         for steps in (-1, -2 ** 70):

@@ -70,10 +70,13 @@ class Memory(unittest.TestCase):
                     code, said, memory = self.run_words(*words)
                     self.assertLess(memory, MOST, words)
                     self.assertFalse(code == 0 and words[0] != "info", (words, said))
-        (self.folder / "port").write_text('#!/bin/sh\nfor out; do :; done\ntruncate -s 200G "$out"\n')
+        (self.folder / "port").write_text('#!/bin/sh\nfor out; do :; done\ntruncate -s 200M "$out"\n')
         (self.folder / "port").chmod(0o755)
         said = self.small(7, "oracle", "check", "./port", "--only", "rotate")
         self.assertRegex(said, "failed: .*(a line of more than|NUL byte)")
+        (self.folder / "port").write_text('#!/bin/sh\nfor out; do :; done\ntruncate -s 300M "$out"\n')
+        said = self.small(7, "oracle", "check", "./port", "--only", "rotate")
+        self.assertRegex(said, "failed: .*the port writes a file of more than 268435456 bytes")
 
     def test_long_lines(self):
         for name, begin in (("pack.txt", b"# uncross pack 2\n"), ("table.csv", b"step,time\n0,0\n"), ("run.json", b'{"a": "')):

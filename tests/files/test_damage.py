@@ -14,6 +14,12 @@ TABLES = [("particles/trajectory/position/value", (2, 7, 1), b"positions"),
           ("particles/trajectory/position/time", (2,), b"step or time")]
 
 
+def bond_to_nowhere(own):
+    bonds = own.file["connectivity/bonds"]
+    del bonds.attrs["xxh64"]
+    bonds[0] = [0, 99999999]
+
+
 class Damage(unittest.TestCase):
     def test_no_damage_is_taken_for_good(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -79,7 +85,9 @@ class Damage(unittest.TestCase):
         """Version 2 promises checksums: without them nothing vouches for the frames, and every reader says that they are missing."""
         with tempfile.TemporaryDirectory() as folder:
             bench = damage.Bench(folder)
-            damages = {rb"its checksums \(parameters/uncross/checksum\) are missing": lambda own: own.__delitem__("checksum"),
+            damages = {rb"its species or bonds cannot be read(?!: unknown)": lambda own: own.file["particles/trajectory"].__delitem__("species"),
+                       rb"its species or bonds cannot be read": bond_to_nowhere,
+                       rb"its checksums \(parameters/uncross/checksum\) are missing": lambda own: own.__delitem__("checksum"),
                        rb"its version is 3; allowed: 1 to 2": lambda own: own.attrs.modify("format_version", 3)}
             for says, spoil in damages.items():
                 bench.put("trajectory", bench.data["trajectory"])
