@@ -13,9 +13,7 @@ import operator
 import os
 import time
 
-import numpy as np
-
-from ._library import ffi, lib
+from ._library import ffi, lib, np
 
 __all__ = ["BadInput", "Error", "FolderRun", "LATTICE_UNIT", "NoMemory", "NotWritten", "Run", "Scene", "Stopped",
            "version"]

@@ -3,7 +3,12 @@ import os
 import pathlib
 import re
 
-import cffi
+try:
+    import cffi
+    import numpy as np
+except ModuleNotFoundError as missing:
+    raise ModuleNotFoundError(f"uncross needs {missing.name}: install python3-{missing.name} (Debian, Ubuntu), or `pip install {missing.name}`",
+                              name=missing.name) from None
 
 HERE = pathlib.Path(__file__).resolve().parent
 

@@ -14,6 +14,17 @@ class Full(Exception):
     """Standard output cannot be written: exit code 4."""
 
 
+def _joined(words):
+    """A value of its own word may begin with a dash, as a folder's name may: argparse takes it for an option."""
+    takes, made = ("--out", "-o", "--grid", "--seeds", "--set", "--steps", "--jobs"), []
+    for word in words:
+        if made and made[-1] in takes:
+            made[-1] += word if made[-1] == "-o" else f"={word}"
+        else:
+            made.append(word)
+    return made
+
+
 def read_arguments(words):
     parser = argparse.ArgumentParser(prog="uncross sweep", allow_abbrev=True)
     parser.add_argument("scene")
@@ -25,7 +36,7 @@ def read_arguments(words):
     parser.add_argument("--jobs", type=int, default=jobs.processors())
     for switch in "--resume", "--list", "--slurm", "--quiet":
         parser.add_argument(switch, action="store_true")
-    return parser.parse_args(words)
+    return parser.parse_args(_joined(words))
 
 
 def make_sweep(options):

@@ -29,7 +29,12 @@ def reading(path, flags):
 
 def writing(path, flags):
     """The same. A file that is there is emptied (mode "w") only once it is known to be one."""
-    fd = os.open(path, flags & ~os.O_TRUNC | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC | os.O_NOCTTY, 0o666)
+    try:
+        fd = os.open(path, flags & ~os.O_TRUNC | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC | os.O_NOCTTY, 0o666)
+    except OSError as error:  # a link; a pipe that nobody reads
+        if error.errno in (errno.ELOOP, errno.ENXIO):
+            raise NoFile(errno.EINVAL, "is a link, a folder, a pipe or a device; nothing is written there", str(path)) from None
+        raise
     _regular(fd, path)
     if flags & os.O_TRUNC:
         os.ftruncate(fd, 0)

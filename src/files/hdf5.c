@@ -45,8 +45,9 @@ void h5_reason(char *text, size_t size)
 int h5_fail(struct message *message, const char *path, const char *doing)
 {
   char reason[256];
+  const bool known = H5Eget_num(H5E_DEFAULT) > 0;
   h5_reason(reason, sizeof reason);
-  return message_set(message, "%s: %s: %s", path, doing, reason);
+  return message_set(message, "%s: %s%s%s", path, doing, known ? ": " : "", known ? reason : "");
 }
 
 static herr_t count_failure(hid_t stack, void *context)

@@ -29,7 +29,7 @@ void h5_watch(unsigned *failures);
 /* The innermost entry of HDF5's error stack as a sentence; "unknown HDF5 error" if the stack is empty. */
 void h5_reason(char *text, size_t size);
 
-/* Says `path: doing: reason`, the reason from the error stack. Returns 0. */
+/* Says `path: doing: reason`, the reason from the error stack if HDF5 put one there. Returns 0. */
 int h5_fail(struct message *message, const char *path, const char *doing);
 
 /* Opens a file. Tests before whether it exists, is a regular file, is not in use, fits its seal (seal.h) if it has one,

@@ -79,6 +79,12 @@ static void key_of_fiber(const struct model *m, uint32_t fiber, char *key, size_
     snprintf(key, size, "fibers.%" PRIu32 ".diameter", kind);
 }
 
+/* With what a fiber that is laid may overlap. */
+static const char *what_is_there(const struct model *m)
+{
+  return !model_has_bead(m) ? "others" : m->thickness > 0 && m->fibers > 1 ? "the bead or with others" : "the bead";
+}
+
 /* Tells what is wrong with the start, at the key of the scene that is to blame. Always returns false. */
 static bool refuse_start(const struct scene *scene, const struct fault *fault, struct message *message)
 {
@@ -87,9 +93,9 @@ static bool refuse_start(const struct scene *scene, const struct fault *fault, s
   if (fault->code == FAULT_NO_ROOM) {
     key_of_fiber(m, (uint32_t)fault->entity, key, sizeof key);
     return scene_refuse_at(scene, key, key, message,
-                           "fiber %" PRId64 " of %" PRIu32 " overlaps with others wherever it is laid, %.0f times; "
+                           "fiber %" PRId64 " of %" PRIu32 " overlaps with %s wherever it is laid, %.0f times; "
                            "allowed: thinner or fewer fibers, a larger box, or start.snapshot of a state that has room",
-                           fault->entity, m->fibers, fault->value);
+                           fault->entity, m->fibers, what_is_there(m), fault->value);
   }
   if (fault->code == FAULT_GIVEN_UP)
     return message_set(message, "given up while fiber %" PRId64 " of %" PRIu32 " was laid", fault->entity, m->fibers);

@@ -18,8 +18,8 @@ __extension__ typedef unsigned __int128 energy_sum;
 
 /* Of all cells together. */
 struct solved {
-  uint64_t
-      loads; /* the OR of all loads: in bits 0 to 39, and in bits 40 to 63, at least as large as each load of a cell */
+  /* The OR of all loads: in bits 0 to 39, and in bits 40 to 63, at least as large as each load of a cell. */
+  uint64_t loads;
   uint64_t others; /* members but the first one, of all cells that have some: degrees of freedom per dimension where
                     * there are no virtual members (else cell_freedoms) */
 };

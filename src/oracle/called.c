@@ -7,6 +7,7 @@
 #include <limits.h>
 #include <signal.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -22,6 +23,19 @@ static void watched_signals(sigset_t *set)
     sigaddset(set, interrupts[k]);
 }
 
+#define MOST_BYTES ((uint64_t)1 << 28) /* of a file that a port writes; ours have some megabytes, as text */
+#define SHELL_ADDS 128                 /* to the signal that ended what a shell has run */
+
+/* So no port fills the disk. */
+static void limit_files(void)
+{
+  struct rlimit limit;
+  if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && (limit.rlim_cur == RLIM_INFINITY || limit.rlim_cur > MOST_BYTES)) {
+    limit.rlim_cur = MOST_BYTES;
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+}
+
 static void become_port(const struct check_options *o, bool trace, const char *in, const char *out,
                         const sigset_t *before)
 {
@@ -29,6 +43,7 @@ static void become_port(const struct check_options *o, bool trace, const char *i
   char *const start[] = {(char *)o->port, "--trace", (char *)in, (char *)out, NULL};
   const int nothing = open("/dev/null", O_RDONLY);
   setpgid(0, 0);
+  limit_files();
   sigprocmask(SIG_SETMASK, before, NULL);
   dup2(nothing, STDIN_FILENO);
   dup2(STDERR_FILENO, STDOUT_FILENO);
@@ -59,6 +74,9 @@ static int wait_for(pid_t child, uint64_t seconds, const sigset_t *watched, int 
 
 static bool tell(int status, const char *out, struct message *message)
 {
+  if ((WIFSIGNALED(status) && WTERMSIG(status) == SIGXFSZ) ||
+      (WIFEXITED(status) && WEXITSTATUS(status) == SHELL_ADDS + SIGXFSZ))
+    return message_set(message, "the port writes a file of more than %" PRIu64 " bytes", MOST_BYTES);
   if (WIFSIGNALED(status))
     return message_set(message, "the port was ended by signal %d", WTERMSIG(status));
   if (WEXITSTATUS(status) != 0)
