@@ -93,7 +93,7 @@ static void numbers_survive(void **unused)
     line = next_line(line);
     const char comment[] =
         "Lattice=\"6 0 0 0 5 0 0 0 7\" Properties=species:S:1:pos:R:3:velo:R:3:id:I:1:next:I:1:fiber:I:1:place:I:1 "
-        "pbc=\"T T T\" Step=7 Time=0.070000000000000007 kinds=\"C:kind1 N:kind2 H:solvent\"\n";
+        "pbc=\"T T T\" Step=7 Time=0.07 kinds=\"C:kind1 N:kind2 H:solvent\"\n";
     assert_memory_equal(line, comment, strlen(comment));
     for (uint32_t v = 0; v < r.state.vertices; v++) {
       struct row row = parse_row(line = next_line(line));
