@@ -546,18 +546,6 @@ class OracleTest(unittest.TestCase):
             self.assertEqual(run(action, scene, "-o", self.dir / "nowhere" / "out")[0], 4)
         self.assertEqual(run("dump", DATA / "dense.pack.h5", "-o", there)[0], 2)
 
-    def test_phantoms(self):
-        """A bath of phantoms is traced; packs hold none of its operators."""
-        scene, pack = self.dir / "bath.yaml", self.dir / "bath.h5"
-        scene.write_text("box: [4, 4, 4]\ntime_step: 0.02\nsteps: 4\n"
-                         "solvent: {per_cell: 5, collision_interval: 0.02, hydrodynamics: false, bath: phantoms}\n"
-                         "fibers: [{name: a, count: 2, vertices: 3, mass: 5, bond_length: 0.5, spring: 100}]\n")
-        status, said = run("emit", scene, "-o", pack)
-        self.assertEqual((status, pack.exists()), (2, False))
-        self.assertIn("solvent.bath: it is phantoms; packs hold", said)
-        status, said = run("trace", scene)
-        self.assertEqual((status, said.count(",collide,")), (0, 4))
-
     def test_scenes_that_use_little(self):
         """Packs hold every operator of particles and vertices, also where the scene uses few: free crossings, lone vertices."""
         kinds = {"free": "fibers: [{name: a, count: 2, vertices: 3, mass: 5, bond_length: 0.5, spring: 100}]\n"
@@ -592,33 +580,6 @@ class OracleTest(unittest.TestCase):
             self.assertEqual(status, 0)
             self.assertLessEqual({"draw", "sum"} | own, operators)
             self.assertFalse(operators & (others | {"solve", "rotate", "rescale", "maxwell_boltzmann"}))
-            status, said = run("trace", scene)
-            self.assertEqual((status, said.count(",collide,")), (0, 4))
-
-    def test_packs_of_other_boxes(self):
-        """Packs hold the operators of a box in space, with a uniform acceleration; traces hold any box."""
-        for key, solvent, box, why in (
-                ("", ", profile: sine, acceleration: [0.1, 0, 0]", "[4, 4, 4]", "solvent.profile: it is not uniform; packs hold uniform"),
-                ("dimensions: 2", "", "[4, 4, 1]", "dimensions: they are 2; packs hold the operators of a box in space only")):
-            scene, pack = self.dir / "flow.yaml", self.dir / "flow.h5"
-            scene.write_text(f"box: {box}\ntime_step: 0.02\nsteps: 4\n"
-                             f"solvent: {{per_cell: 5, collision_interval: 0.02{solvent}}}\n{key}\n")
-            status, said = run("emit", scene, "-o", pack)
-            self.assertEqual((status, pack.exists()), (2, False))
-            self.assertIn(why, said)
-            status, said = run("trace", scene)
-            self.assertEqual((status, said.count(",collide,")), (0, 4))
-
-    def test_other_rules_of_refusal(self):
-        """Packs hold the paper's sweeps only; traces hold any."""
-        for rule in ("refusal: bounce", "frame: flow"):
-            scene, pack = self.dir / "rule.yaml", self.dir / "rule.h5"
-            scene.write_text("box: [4, 4, 4]\ntime_step: 0.02\nsteps: 4\nsolvent: {per_cell: 5, collision_interval: 0.02}\n"
-                             "fibers: [{name: a, count: 2, vertices: 3, mass: 5, bond_length: 0.5, spring: 100}]\n"
-                             f"crossing: {{rule: sequential, {rule}}}\n")
-            status, said = run("emit", scene, "-o", pack)
-            self.assertEqual((status, pack.exists()), (2, False))
-            self.assertIn("not the paper's; packs hold drifts with stay and laboratory only", said)
             status, said = run("trace", scene)
             self.assertEqual((status, said.count(",collide,")), (0, 4))
 
