@@ -36,7 +36,7 @@ KEYS = {
     "steps": COUNT, "steps_wanted": COUNT, "time": NUMBER, "wall_seconds": NUMBER, "steps_per_second": NUMBER,
     "collisions": {name: COUNT for name in ("moves", "possible", "executed", "negative", "softened", "rigid")},
     "warnings": [TEXT], "start": {"energy": NUMBER, "momentum": [NUMBER]}, "end": {"energy": NUMBER, "momentum": [NUMBER]},
-    "state_hash": TEXT, "scene": TEXT,
+    "state_hash": TEXT, "state_digest": TEXT, "scene": TEXT,
 }
 
 

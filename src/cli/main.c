@@ -138,7 +138,7 @@ const struct command commands[COMMANDS] = {
                        NULL, oracle_edges_file},
     [COMMAND_START] = {"oracle start", "SCENE", 1, WRITES,
                        "what a run of the scene starts from, as a pack: for ports' traces", NULL, oracle_start_file},
-    [COMMAND_TRACE] = {"oracle trace", "SCENE", 1, WRITES,
+    [COMMAND_TRACE] = {"oracle trace", "SCENE", 1, WRITES | MAY(EXIT_STOPPED),
                        "state hashes and sums after every stage of the scene's steps, as CSV", NULL, oracle_trace_file},
     [COMMAND_DUMP] = {"oracle dump", "PACK", 1, WRITES, "a pack as text", NULL, oracle_dump_file},
     [COMMAND_COMPARE] = {"oracle compare", "OURS THEIRS", 2, WRITES | MAY(EXIT_CLOSE) | MAY(EXIT_DIFFERS),

@@ -68,6 +68,8 @@ const struct option_row option_rows[] = {
      .text = "reals in 17 decimal digits, exact too, instead of hexadecimal ones"},
     {"contacts", NULL, OF(EDGES), 0, OPTION_SWITCH, 0, AT(contacts), ONLY_VALUE,
      .text = "those of contacts at their own time (crossing.rule: event-driven)"},
+    {"every", "N", OF(TRACE), 0, OPTION_WHOLE, 0, AT(every), ONLY_VALUE, .least = 1, .most = UINT64_MAX,
+     .text = "the end of each N-th step, and of the last one, instead of every stage"},
     {"packs", "DIR", OF(CHECK_PORT), 0, OPTION_TEXT, 0, AT(packs), ONLY_VALUE,
      .text = "the folder of packs and traces; without it those that belong to this program"},
     {"text", NULL, OF(CHECK_PORT), 0, OPTION_SWITCH, 0, AT(text), ONLY_VALUE,

@@ -36,7 +36,7 @@ static enum exit_code close_output(FILE *out, enum exit_code code, const char *p
     message_set(message, "%s: cannot write", path ? path : "standard output");
     code = EXIT_NOT_WRITTEN;
   }
-  if (code != EXIT_DONE && path)
+  if (code != EXIT_DONE && code != EXIT_STOPPED && path)
     remove(path);
   return code == EXIT_DONE ? code : complain(message, code);
 }
@@ -106,8 +106,11 @@ enum exit_code oracle_trace_file(const struct arguments *a)
     return complain(&message, EXIT_BAD_INPUT);
   FILE *out;
   enum exit_code code = open_output(a->out, &out);
-  if (code == EXIT_DONE)
-    code = close_output(out, oracle_trace(&scene, out, &message) ? EXIT_DONE : EXIT_BAD_INPUT, a->out, &message);
+  if (code == EXIT_DONE) {
+    bool stopped;
+    const bool ok = oracle_trace(&scene, a->every, out, &stopped, &message);
+    code = close_output(out, ok ? EXIT_DONE : stopped ? EXIT_STOPPED : EXIT_BAD_INPUT, a->out, &message);
+  }
   scene_free(&scene);
   return code;
 }

@@ -35,6 +35,7 @@ static const struct field fields[] = {
     {"head", "parent_step", U64, 0, AT(head.stream.parent_step), ANY, true},
     {"head", "parent_state", U64, 0, AT(head.stream.parent_state), ANY, true},
     {"head", "state_hash", U64, 0, AT(head.state_hash), ANY, false},
+    {"head", "state_digest", U64, 0, AT(head.state_digest), ANY, true},
     {"head", "wall_seconds", REAL, 0, AT(head.wall_seconds), 0.0, 1e12, false},
     {"head", "start_energy", REAL, 0, AT(head.start_energy), ANY, false},
     {"head", "start_momentum", REAL, 3, AT(head.start_momentum), ANY, false},
@@ -306,6 +307,10 @@ bool checkpoint_check(const struct state *state, const struct checkpoint_summary
   if (hash != summary->head.state_hash)
     return message_set(message, "%s: damaged checkpoint: its state has hash %016llx, it should be %016llx", path,
                        (unsigned long long)hash, (unsigned long long)summary->head.state_hash);
+  const uint64_t digest = state_digest(state);
+  if (summary->head.state_digest != 0 && digest != summary->head.state_digest)
+    return message_set(message, "%s: damaged checkpoint: its state has digest %016llx, it should be %016llx", path,
+                       (unsigned long long)digest, (unsigned long long)summary->head.state_digest);
   if (state_sound(state, &then, &fault))
     return true;
   fault_describe(&fault, why, sizeof why);

@@ -126,6 +126,7 @@ bool checkpoint_write_in(const struct folder *folder, const char *file, struct c
   folder_path(folder, file, path, sizeof path);
   head->state_hash = state_hash(state);
   head->slide = model->shear.slid;
+  head->state_digest = state_digest(state);
   struct contents contents = {summary_of(head, model, state), model, state, blocks, block_count, scene_text};
   size_t bytes;
   if (head->state_hash == 0)

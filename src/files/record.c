@@ -132,7 +132,7 @@ bool record_write(const struct folder *folder, const struct scene *scene, const 
 {
   json_t *root = json_pack(
       "{s:s, s:s?, s:s, s:s, s:s, s:s, s:s, s:o, s:o, s:o, s:o, s:I, s:I, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:o, s:o, "
-      "s:s}",
+      "s:o, s:s}",
       "status", r->status, "reason", r->reason, "program", "uncross", "version", UNCROSS_VERSION, "commit",
       build_info.commit, "compiler", build_info.compiler, "flags", build_info.flags, "seed", seed(scene->seed),
       "stream", seed(r->stream.key), "stream_from", parent(&r->stream), "scene_fingerprint",
@@ -140,7 +140,8 @@ bool record_write(const struct folder *folder, const struct scene *scene, const 
       (double)r->step * scene->model.time_step, "wall_seconds", r->wall_seconds, "steps_per_second",
       r->steps_per_second, "collisions", counts(&r->counts), "warnings", warnings(scene, r), "start",
       conserved(r->start_energy, r->start_momentum), "end", conserved(r->now.total, r->now.momentum), "state_hash",
-      hexadecimal(r->state_hash), "units", units(scene), "scene", scene->text);
+      hexadecimal(r->state_hash), "state_digest", hexadecimal(r->state_digest), "units", units(scene), "scene",
+      scene->text);
   if (root) {
     json_object_set_new(root, "date", date());
     json_object_set_new(root, "host", host());

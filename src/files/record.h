@@ -22,7 +22,7 @@ struct record {
   double start_energy;     /* kT */
   struct vec3 start_momentum;
   struct conserved now;
-  uint64_t state_hash;
+  uint64_t state_hash, state_digest;
 };
 
 /* Writes run.json in the folder, in place of an earlier one. */

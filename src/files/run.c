@@ -90,6 +90,7 @@ enum run_code run_begin(const struct run_parts *p, struct checkpoint_head *head,
                                    .seed = p->scene->seed,
                                    .stream = stream,
                                    .state_hash = state_hash(p->state),
+                                   .state_digest = state_digest(p->state),
                                    .start_energy = start.total,
                                    .start_momentum = start.momentum,
                                    .version = UNCROSS_VERSION};
@@ -170,7 +171,8 @@ static void take_record(struct run *run, const char *status)
                                 .start_energy = run->head.start_energy,
                                 .start_momentum = run->head.start_momentum,
                                 .now = observe_conserved(&p->scene->model, p->state),
-                                .state_hash = run->head.state_hash};
+                                .state_hash = run->head.state_hash,
+                                .state_digest = run->head.state_digest};
 }
 
 static bool write_record(const struct run *run, struct message *message)

@@ -21,10 +21,11 @@ struct checkpoint_head {
   uint64_t fingerprint; /* of the scene: scene.h */
   uint64_t seed;        /* of the scene */
   struct stream stream;
-  uint64_t state_hash; /* of the state as written; checked when read */
-  uint64_t frames_end; /* 1 + the step of the trajectory's last frame; 0: none, or not known */
-  double wall_seconds; /* spent so far, over all sessions */
-  double start_energy; /* kT, at step 0, for run.json of a resumed run */
+  uint64_t state_hash;   /* of the state as written; checked when read */
+  uint64_t state_digest; /* the same; 0: the file is from before there were digests */
+  uint64_t frames_end;   /* 1 + the step of the trajectory's last frame; 0: none, or not known */
+  double wall_seconds;   /* spent so far, over all sessions */
+  double start_energy;   /* kT, at step 0, for run.json of a resumed run */
   struct vec3 start_momentum;
   uint64_t slide; /* of a sheared box's images at step 0: model.shear.slid */
   char version[64];

@@ -72,11 +72,12 @@ static bool open_trace(const char *path, struct trace *t, struct message *messag
       if (strcmp(t->name[j], t->name[k]) == 0)
         return message_at(message, path, 1, 1, "there are two columns %.31s", t->name[k]);
   }
-  static const char *const needed[] = {"step", "stage", "state_hash"};
-  for (size_t k = 0; k < sizeof needed / sizeof *needed; k++)
-    if (column_of(t, needed[k]) < 0)
-      return message_at(message, path, 1, 1, "no column %s; a trace has step, stage, state_hash and sums", needed[k]);
-  return true;
+  const char *missing = column_of(t, "step") < 0                                       ? "step"
+                        : column_of(t, "stage") < 0                                    ? "stage"
+                        : column_of(t, "state_hash") < 0 && column_of(t, "digest") < 0 ? "state_hash or digest"
+                                                                                       : NULL;
+  return !missing ||
+         message_at(message, path, 1, 1, "no column %s; a trace has step, stage, state_hash, digest and sums", missing);
 }
 
 static void close_trace(struct trace *t)
@@ -114,9 +115,21 @@ static double sum_of(const struct trace *t, const char *name)
 
 enum difference { NONE, PLACE, HASH, SUM };
 
+/* Hashes, of states and of contacts: a trace may have either of each. */
+static const char *const hashes[] = {"state_hash", "digest", "contacts_hash", "contacts_digest"};
+enum { OF_STATES = 2, HASHES = sizeof hashes / sizeof *hashes };
+
+static bool is_among(const char *name, size_t first)
+{
+  for (size_t k = 0; k < first; k++)
+    if (strcmp(name, hashes[k]) == 0)
+      return true;
+  return false;
+}
+
 static bool is_sum(const char *name)
 {
-  return strcmp(name, "step") != 0 && strcmp(name, "stage") != 0 && strcmp(name, "state_hash") != 0;
+  return strcmp(name, "step") != 0 && strcmp(name, "stage") != 0 && !is_among(name, OF_STATES);
 }
 
 static bool same_hash(const char *a, const char *b)
@@ -126,11 +139,18 @@ static bool same_hash(const char *a, const char *b)
   return *a == *b;
 }
 
+/* A hash that both have. */
+static bool hash_differs(const struct trace *ours, const struct trace *theirs, const char *name)
+{
+  const char *mine = value_of(ours, name), *its = value_of(theirs, name);
+  return mine && its && !same_hash(mine, its);
+}
+
 /* Their sum of this name is not ours; or their hash, of contacts. */
 static bool sum_differs(const struct trace *ours, const struct trace *theirs, const char *name)
 {
-  if (strcmp(name, "contacts_hash") == 0)
-    return !same_hash(value_of(ours, name), value_of(theirs, name));
+  if (is_among(name, HASHES))
+    return hash_differs(ours, theirs, name);
   const double x = sum_of(ours, name), y = sum_of(theirs, name);
   const double size = 1.0 + fabs(x) + sum_of(ours, "solvent_kinetic") + sum_of(ours, "vertex_kinetic");
   return !(fabs(x - y) <= SUMS * size);
@@ -141,8 +161,9 @@ static enum difference compare_row(const struct trace *ours, const struct trace 
   if (strtoull(value_of(ours, "step"), NULL, 10) != strtoull(value_of(theirs, "step"), NULL, 10) ||
       strcmp(value_of(ours, "stage"), value_of(theirs, "stage")) != 0)
     return PLACE;
-  if (!same_hash(value_of(ours, "state_hash"), value_of(theirs, "state_hash")))
-    return HASH;
+  for (size_t k = 0; k < OF_STATES; k++)
+    if (hash_differs(ours, theirs, hashes[k]))
+      return HASH;
   for (size_t k = 0; k < theirs->columns; k++)
     if (is_sum(theirs->name[k]) && sum_differs(ours, theirs, theirs->name[k]))
       return SUM;
@@ -174,8 +195,10 @@ static void print_first(const struct trace *ours, const struct trace *theirs, en
     fprintf(out, "step %s, stage %s there\n", SHOWN(theirs, "step"), SHOWN(theirs, "stage"));
   else if (what == SUM)
     fputs("the same state, other sums\n", out);
-  else
+  else if (hash_differs(ours, theirs, "state_hash"))
     fprintf(out, "state hash %s here, %s there\n", SHOWN(ours, "state_hash"), SHOWN(theirs, "state_hash"));
+  else
+    fprintf(out, "state digest %s here, %s there\n", SHOWN(ours, "digest"), SHOWN(theirs, "digest"));
   if (what != PLACE)
     print_sums(ours, theirs, out);
 }
@@ -218,7 +241,7 @@ static bool compare_rows(struct trace *ours, struct trace *theirs, FILE *out, st
 static bool columns_are_known(const struct trace *ours, const struct trace *theirs, struct message *message)
 {
   for (size_t k = 0; k < theirs->columns; k++)
-    if (column_of(ours, theirs->name[k]) < 0)
+    if (column_of(ours, theirs->name[k]) < 0 && !is_among(theirs->name[k], HASHES))
       return message_at(message, theirs->path, 1, 1, "unknown column %.31s", theirs->name[k]);
   return true;
 }

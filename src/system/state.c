@@ -170,20 +170,21 @@ void state_field_set(const struct state_group *group, const struct state_field *
 
 /* --- hash -------------------------------------------------------------------------------------------------------- */
 
-/* Numbers of state and rows of groups, 64 bits each. */
-static void hash_numbers(XXH64_state_t *hash, const struct state *s, const struct state_group *group)
+enum { HEAD_WORDS = 8 + STATE_GROUPS };
+
+/* Numbers of state and rows of groups, 64 bits each: how many there are. */
+static size_t head_words(const struct state *s, const struct state_group *group, uint64_t word[HEAD_WORDS])
 {
+  size_t n = 0;
   for (size_t k = 0; k < state_number_count; k++) {
-    uint64_t number = 0;
-    memcpy(&number, (const char *)s + state_numbers[k].offset, state_numbers[k].bytes); /* little-endian */
-    if (state_numbers[k].hashed)
-      XXH64_update(hash, &number, sizeof number);
+    word[n] = 0;
+    memcpy(&word[n], (const char *)s + state_numbers[k].offset, state_numbers[k].bytes); /* little-endian */
+    n += state_numbers[k].hashed;
   }
-  for (int g = 0; g < STATE_GROUPS; g++) {
-    const uint64_t rows = group[g].rows;
-    if (rows > 0 || !group[g].optional)
-      XXH64_update(hash, &rows, sizeof rows);
-  }
+  for (int g = 0; g < STATE_GROUPS; g++)
+    if (group[g].rows > 0 || !group[g].optional)
+      word[n++] = group[g].rows;
+  return n;
 }
 
 /* Rows in the order of their numbers, the fields of a row one after the other: little-endian on every machine that this
@@ -203,6 +204,7 @@ static void hash_group(XXH64_state_t *hash, const struct state_group *g, uint32_
 uint64_t state_hash(const struct state *s)
 {
   struct state_group group[STATE_GROUPS];
+  uint64_t word[HEAD_WORDS];
   state_groups(s, group);
   XXH64_state_t *hash = XXH64_createState();
   uint32_t most = 0;
@@ -212,12 +214,29 @@ uint64_t state_hash(const struct state *s)
   uint64_t digest = 0;
   if (hash && slot) {
     XXH64_reset(hash, 0);
-    hash_numbers(hash, s, group);
+    XXH64_update(hash, word, head_words(s, group, word) * sizeof *word);
     for (int g = 0; g < STATE_GROUPS; g++)
       hash_group(hash, &group[g], slot);
     digest = XXH64_digest(hash);
   }
   XXH64_freeState(hash);
   free(slot);
+  return digest;
+}
+
+uint64_t state_digest(const struct state *s)
+{
+  struct state_group group[STATE_GROUPS];
+  uint64_t head[1 + HEAD_WORDS] = {0};
+  state_groups(s, group);
+  uint64_t digest = XXH64(head, (1 + head_words(s, group, head + 1)) * sizeof *head, 0);
+  for (int g = 0; g < STATE_GROUPS; g++)
+    for (uint32_t i = 0; i < group[g].rows; i++) {
+      uint64_t row[2 + STATE_FIELDS * 3] = {1 + (uint64_t)g, group[g].id ? group[g].id[i] : i}, *to = &row[2];
+      for (size_t f = 0; f < group[g].fields; f++)
+        for (int c = 0; c < 3; c++)
+          memcpy(to++, place_in(&group[g].field[f], c, i), sizeof *to);
+      digest += XXH64(row, (size_t)(to - row) * sizeof *row, 0);
+    }
   return digest;
 }

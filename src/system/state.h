@@ -105,6 +105,10 @@ void state_solvent_slots(const struct state *state, uint32_t *slot);
 /* 64-bit hash (XXH64, seed 0) of everything above but counts, in id order: docs/conventions.md lists the bytes. */
 uint64_t state_hash(const struct state *state);
 
+/* The same for codes without an order: the sum, modulo 2^64, of a hash (XXH64, seed 0) of the numbers of the state and
+ * of one for each particle, vertex and other row (docs/conventions.md). */
+uint64_t state_digest(const struct state *state);
+
 /* --- fields ------------------------------------------------------------------------------------------------------ */
 
 /*

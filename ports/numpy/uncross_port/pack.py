@@ -34,6 +34,7 @@ COLUMNS |= {
     "chain": "next prev fiber",
     "run": "steps scheme thermostat hydrodynamics",
     "counters": "step lag",
+    "switches": "version crossing exclusion collision thermostat order swap boundary dumbbells medium repulsion thick",
     "tick": "tick",
     "tau": "tau",
     "answer": "answer",
@@ -97,6 +98,9 @@ for drift in ("event_drift", "long_event_drift"):
     COLUMNS_AT[drift, "out.hit"] = "s t normal_x normal_y normal_z momentum"
 
 
+LARGEST = dict(zip(COLUMNS["switches"].split(), (2, 2, 1, 2, 3, 2, 1, 2, 1, 3, 1, 1)))  # values of switches that this port knows
+
+
 class Tables(dict):
     """Tables of one operator by name. The text form has no lines for a table without rows, so a missing one is empty."""
 
@@ -109,6 +113,13 @@ def columns(operator, name):
     if name.startswith("bound."):
         return "condition"
     return COLUMNS_AT.get((operator, name)) or COLUMNS.get(name.partition(".")[2], "x y z")
+
+
+def refuse_unknown(switches):
+    """{name: value}: what this port does not know is other physics. A start of version 1 has none."""
+    for name, value in switches.items():
+        if not 0 <= value <= LARGEST.get(name, 0):
+            raise SystemExit(f"port: this port does not know the switch {name} with the value {value}")
 
 
 def read(path):
@@ -128,6 +139,8 @@ def ordered(operator, name, data):
     """The columns of a dataset in our order."""
     names = data.attrs["components"]
     names = (names.decode() if isinstance(names, bytes) else names).split()
+    if name == "in.switches":
+        refuse_unknown(dict(zip(names, data[0])))
     return data[:][:, [names.index(word) for word in columns(operator, name).split()]]
 
 
@@ -153,6 +166,8 @@ def read_text(path):
         pack[group] = {}
         for table, rows in tables.items():
             names = columns(group[0], table).split()
+            if table == "in.switches":
+                refuse_unknown(rows[0])
             pack[group][table] = np.array([[rows[row][name] for name in names] for row in range(len(rows))])
     return pack
 

@@ -19,8 +19,13 @@ COLLIDING = {
 }
 OVERDAMPED = [("force", None), ("move", None)]
 THERMOSTATS = ["none", "rescale", "maxwell-boltzmann", "rescale-layers"]
-CONTACT_COLUMNS = ["contacts", "contacts_hash"]
-COLUMNS = "momentum_x momentum_y momentum_z solvent_kinetic vertex_kinetic bond bend".split()
+CONTACT_COLUMNS = ["contacts", "contacts_hash", "contacts_digest"]
+COLUMNS = "momentum_x momentum_y momentum_z solvent_kinetic vertex_kinetic bond bend digest".split()
+
+
+def digest_of(rows):
+    """Sum of the hashes of rows of 64-bit words."""
+    return sum(xxhash.xxh64(row.tobytes()).intdigest() for row in np.asarray(rows, "<i8")) % 2**64
 
 
 @dataclass
@@ -260,12 +265,24 @@ class System:
             digest.update(self.account.astype("<i8").tobytes())
         return digest.hexdigest()
 
+    def digest(self):
+        """The sum of a hash for each row of the state."""
+        tables = [(1, self.solvent, self.solvent_velocity.view(np.int64)), (2, self.vertex, self.vertex_velocity.view(np.int64))]
+        optional = [(3, table) for table in (self.vector,) if table is not None] + [(4, table) for table in (self.account,) if table is not None]
+        head = [0, self.finished, self.lag, *(len(table[1]) for table in tables + optional)]
+        total = digest_of([head])
+        for kind, *parts in tables + optional:
+            n = len(parts[0])
+            if n:
+                total += digest_of(np.hstack([np.full((n, 1), kind), np.arange(n)[:, None], *parts]))
+        return f"{total % 2**64:016x}"
+
     def take_contacts(self):
-        """Number of contacts since it was asked last, and the hash of their rows; nothing where drifts have no events."""
+        """Number of contacts since it was asked last, hash and digest of their rows; nothing where drifts have no events."""
         if not self.event_driven:
             return []
         rows, self.contacts = self.contacts, []
-        return [len(rows), xxhash.xxh64(np.asarray(rows, "<i8").tobytes()).hexdigest()]
+        return [len(rows), xxhash.xxh64(np.asarray(rows, "<i8").tobytes()).hexdigest(), f"{digest_of(rows):016x}"]
 
     def sums(self):
         """Momentum, kinetic energies of solvent and vertices, bond and bend energy: plain sums."""
@@ -288,10 +305,10 @@ class System:
 def trace(model, start):
     """Rows of a trace: step, stage, hash, sums, contacts. start: {name: table} of the operator `start`."""
     system = System(model, start)
-    yield 0, "start", system.state_hash(), system.sums(), system.take_contacts()
+    yield 0, "start", system.state_hash(), [*system.sums(), system.digest()], system.take_contacts()
     for step in range(1, system.scene.steps + 1):
         for stage in system.step():
-            yield step, stage, system.state_hash(), system.sums(), system.take_contacts()
+            yield step, stage, system.state_hash(), [*system.sums(), system.digest()], system.take_contacts()
 
 
 def write_trace(start, path):
@@ -301,4 +318,4 @@ def write_trace(start, path):
         table = csv.writer(file, lineterminator="\n")
         table.writerow(["step", "stage", "state_hash", *COLUMNS, *(CONTACT_COLUMNS if tables["rule"].any() else [])])
         for number, stage, state_hash, sums, contacts in trace(model, tables):
-            table.writerow([number, stage, state_hash, *(f"{value:.17g}" for value in sums), *contacts])
+            table.writerow([number, stage, state_hash, *(f"{value:.17g}" for value in sums[:-1]), sums[-1], *contacts])

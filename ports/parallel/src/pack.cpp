@@ -167,7 +167,7 @@ static void refuse_unknown(const Pack &pack)
     std::vector<std::string> tables;
   } known[] = {
       {"model", {"box", "numbers", "reals", "chain", "vertex"}},
-      {"start", {"run", "counters", "rule", "collision", "solvent", "solvent_velocity", "vertex", "vertex_velocity"}}};
+      {"start", {"run", "counters", "rule", "collision", "switches", "solvent", "solvent_velocity", "vertex", "vertex_velocity"}}};
   for (const auto &of : known)
     for (const auto &group : pack.groups) {
       if (group.first.first != of.name)
@@ -184,8 +184,28 @@ static void refuse_unknown(const Pack &pack)
     }
 }
 
+// The largest value of each switch that this port knows; what it does not know is another physics, too. A start of
+// version 1 has none.
+static void refuse_unknown_switches(const Group &start)
+{
+  const std::map<std::string_view, int64_t> largest = {{"version", 2},    {"crossing", 2}, {"exclusion", 1},
+                                                       {"collision", 1},  {"order", 2},    {"swap", 1},
+                                                       {"thermostat", MAXWELL_BOLTZMANN}};
+  const std::string_view table = "in.switches.";
+  for (const auto &column : start.columns) {
+    if (column.first.substr(0, table.size()) != table)
+      continue;
+    const std::string name(column.first.substr(table.size()));
+    const auto known = largest.find(name);
+    const int64_t value = start.integer("switches", name);
+    if (value < 0 || value > (known == largest.end() ? 0 : known->second))
+      throw BadInput("this port does not know the switch " + name + " with the value " + std::to_string(value));
+  }
+}
+
 static void read_run(const Pack &pack, Model &model)
 {
+  refuse_unknown_switches(pack.group("start", 0));
   const Group &start = pack.group("start", 0);
   model.steps = start.integer("run", "steps");
   model.scheme = (int)start.integer("run", "scheme");

@@ -63,6 +63,13 @@ impl<'a> Group<'a> {
         self.numbers(table, name)
     }
 
+    /// All columns of a table of integers, by name.
+    pub fn columns_of(&self, table: &str) -> Vec<(String, Vec<i64>)> {
+        let prefix = format!("in.{}.", table);
+        let names = self.columns.keys().filter_map(|full| full.strip_prefix(prefix.as_str()));
+        names.map(|name| (name.to_string(), self.integers(table, name))).collect()
+    }
+
     pub fn integer(&self, table: &str, name: &str) -> i64 {
         self.integers(table, name)[0]
     }

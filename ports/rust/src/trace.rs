@@ -4,7 +4,7 @@
 use crate::collision::{self as mpc, Members};
 use crate::events;
 use crate::forces;
-use crate::pack::Pack;
+use crate::pack::{Group, Pack};
 use crate::random::VERTEX_ORDER;
 use crate::scene::Scene;
 use crate::sweep::sweep;
@@ -32,8 +32,30 @@ struct Run {
     table: String,
 }
 
+/// The largest value of each switch that this port knows: what it does not know is other physics.
+const SWITCHES: [(&str, i64); 7] = [
+    ("version", 2),
+    ("crossing", 2),
+    ("exclusion", 1),
+    ("collision", 1),
+    ("thermostat", 2),
+    ("order", 2),
+    ("swap", 1),
+];
+
+fn refuse_unknown(start: &Group) -> Result<(), String> {
+    for (name, values) in start.columns_of("switches") {
+        let largest = SWITCHES.iter().find(|known| known.0 == name).map_or(0, |known| known.1);
+        if values.iter().any(|value| *value < 0 || *value > largest) {
+            return Err(format!("this port does not know the switch {} with the values {:?}", name, values));
+        }
+    }
+    Ok(())
+}
+
 pub fn trace(pack: &Pack) -> Result<String, String> {
     let start = pack.group("start", 0)?;
+    refuse_unknown(start)?;
     let mut run = Run {
         scene: Scene::read(pack)?,
         scheme: start.integer("run", "scheme"),
