@@ -13,6 +13,6 @@ bool contract_covers(const struct scene *scene, bool packs, struct message *mess
 bool contract_start(struct scene *scene, struct state *state, struct work *work, struct message *message);
 
 /* Puts `in.switches` of a start: 0 for what is as in a scene that says nothing. */
-void contract_put_switches(struct oracle_stage *stage);
+void contract_put_switches(struct oracle_stage *g);
 
 #endif

@@ -95,7 +95,8 @@ static void everything_reads_back(void **unused)
                                 .start_energy = -1e300,
                                 .start_momentum = {0.1, -0.2, 0.3},
                                 .now = now,
-                                .state_hash = state_hash(&r.state)};
+                                .state_hash = state_hash(&r.state),
+                                .state_digest = 0xfeedu};
   struct message message;
   char before[32];
   utc_now(before);
@@ -116,6 +117,7 @@ static void everything_reads_back(void **unused)
   assert_true(json_integer_value(json_object_get(from, "step")) == 9007199254740993);
   assert_text(root, "scene_fingerprint", "00000000000012ab");
   assert_text(root, "state_hash", hash);
+  assert_text(root, "state_digest", "000000000000feed");
   struct utsname name;
   assert_int_equal(uname(&name), 0);
   assert_text(root, "host", name.nodename);
@@ -147,7 +149,7 @@ static void everything_reads_back(void **unused)
   static const char *const build[] = {"commit", "compiler", "flags"};
   for (int k = 0; k < 3; k++)
     assert_true(json_string_length(json_object_get(root, build[k])) > 0);
-  assert_int_equal(json_object_size(root), 26);
+  assert_int_equal(json_object_size(root), 27);
   json_decref(root);
   forget(&scene, &r);
   remove_folder(folder);
