@@ -86,17 +86,18 @@ static void everything_reads_back(void **unused)
   scene.fingerprint = 0x12ab;
   r.state.counts = (struct collision_counts){9007199254740993u, 30, 20, 10, 5, 2}; /* 2^53 + 1: no double holds it */
   const struct conserved now = observe_conserved(&r.model, &r.state);
-  const struct record record = {.status = "finished",
-                                .stream = {0xfedcba9876543210u, STREAM_SNAPSHOT, UINT64_MAX, 9007199254740993u, 0xabcu},
-                                .step = r.state.step,
-                                .counts = r.state.counts,
-                                .wall_seconds = 1.0 / 3.0,
-                                .steps_per_second = 5e-324,
-                                .start_energy = -1e300,
-                                .start_momentum = {0.1, -0.2, 0.3},
-                                .now = now,
-                                .state_hash = state_hash(&r.state),
-                                .state_digest = 0xfeedu};
+  const struct record record = {
+      .status = "finished",
+      .stream = {0xfedcba9876543210u, STREAM_SNAPSHOT, 0, UINT64_MAX, 9007199254740993u, 0xabcu},
+      .step = r.state.step,
+      .counts = r.state.counts,
+      .wall_seconds = 1.0 / 3.0,
+      .steps_per_second = 5e-324,
+      .start_energy = -1e300,
+      .start_momentum = {0.1, -0.2, 0.3},
+      .now = now,
+      .state_hash = state_hash(&r.state),
+      .state_digest = 0xfeedu};
   struct message message;
   char before[32];
   utc_now(before);
