@@ -43,6 +43,13 @@ class Folder(unittest.TestCase):
 
 
 class ColumnsTest(Folder):
+    def test_every_value_is_judged(self):
+        """In doubles no tolerance of any pack is infinite, or as large as its column's values."""
+        for path in sorted(DATA.glob("**/*.pack.h5")):
+            code, said, _ = run("compare", path, path)
+            self.assertEqual(code, 0, said)
+            self.assertNotIn("not judged", said, path.name)
+
     def test_any_order_of_lines(self):
         lines = self.text_of("coarse")
         random.Random(12).shuffle(lines)
@@ -158,6 +165,27 @@ class SingleTest(Folder):
                      "rotate", "swap"):
             code, said, _ = run("compare", DATA / "mixed.pack.h5", path, "--single", "--only", name)
             self.assertEqual(code, 7, (name, said))
+
+    def test_factors_have_the_tolerance_of_energies(self):
+        """A port whose relative energies are off by one unit, as by a sum in doubles, and whose factors are right for these."""
+        for operator, step, ours in (("rescale", 2, "dense"), ("maxwell_boltzmann", 2, "dense")):
+            lines, place = self.text_of(ours), f"{operator} {step} "
+            values = {(int(k), c): float(v) for _, _, k, c, v in (line.split() for line in lines if line.startswith(place))}
+            energy = {k: v for (k, c), v in values.items() if c == "out.relative.energy"}
+            total = sum(v + 1 for v in energy.values() if v) / sum(energy.values())
+            for at, line in enumerate(lines):
+                words = line.split()
+                if not line.startswith(place) or not energy[int(words[2])] if words[3].startswith("out.") else True:
+                    continue
+                e = energy[int(words[2])]
+                if words[3] == "out.relative.energy":
+                    lines[at] = " ".join([*words[:4], str(int(e) + 1)])
+                if words[3] == "out.factor.factor":
+                    ratio = total if operator == "rescale" else (e + 1) / e
+                    lines[at] = " ".join([*words[:4], repr(float(words[4]) / ratio**0.5)])
+            code, said, _ = self.compare(lines, "--only", operator, ours=ours)
+            self.assertEqual(code, 6, said)
+            self.assertRegex(said, "out.factor +of [0-9]+ values [0-9]{2,} differ, 0 beyond")
 
     def test_nan_is_called_nan(self):
         lines = self.text_of("mixed")
@@ -275,6 +303,7 @@ class PortTest(Folder):
                          [("coarse.pack", "pack", "same"), ("mixed.pack", "pack", "same"),
                           ("coarse.trace", "trace", "same"), ("mixed.trace", "trace", "same")])
         self.assertIn("same 4, close 0, different 0", said)
+        self.assertRegex(said, "not judged: 0 of 1[0-9]{4} values of packs, 0 %")
 
     def test_text(self):
         code, said, checks, _ = self.check(self.port(self.text("grep -v ' in[.]'")), "--text", "--no-traces")
