@@ -290,9 +290,10 @@ static void print_details(const struct checks *c, FILE *out)
 static json_t *json_of(const struct check *k)
 {
   const struct oracle_summary *s = &k->summary;
-  json_t *o = json_pack("{s:s, s:s, s:s, s:I, s:I, s:I, s:f}", "name", k->name, "kind", k->trace ? "trace" : "pack",
-                        "verdict", word_of(k), "values", (json_int_t)s->values, "different", (json_int_t)s->different,
-                        "beyond_tolerance", (json_int_t)s->beyond, "largest_over_tolerance", s->largest);
+  json_t *o = json_pack("{s:s, s:s, s:s, s:I, s:I, s:I, s:I, s:f}", "name", k->name, "kind",
+                        k->trace ? "trace" : "pack", "verdict", word_of(k), "values", (json_int_t)s->values,
+                        "different", (json_int_t)s->different, "beyond_tolerance", (json_int_t)s->beyond, "not_judged",
+                        (json_int_t)s->unjudged, "largest_over_tolerance", s->largest);
   if (o && s->first[0])
     json_object_set_new(o, "first_difference", json_string(s->first));
   if (o && s->meaning[0])
@@ -334,6 +335,22 @@ static enum oracle_verdict worst_of(const struct checks *c, size_t counts[ORACLE
   return worst;
 }
 
+/* Of how many values the tolerance says nothing. */
+static void print_unjudged(const struct checks *c, FILE *out)
+{
+  uint64_t values = 0, unjudged = 0;
+  for (size_t k = 0; k < c->count; k++) {
+    values += c->check[k].trace ? 0 : c->check[k].summary.values;
+    unjudged += c->check[k].summary.unjudged;
+  }
+  if (values > 0)
+    fprintf(out,
+            "not judged: %" PRIu64 " of %" PRIu64
+            " values of packs, %.2g %%: their tolerance is not below the largest size in "
+            "their table\n",
+            unjudged, values, 100.0 * (double)unjudged / (double)values);
+}
+
 static bool run_all(struct checks *c, FILE *out, enum oracle_verdict *verdict, struct message *message)
 {
   size_t counts[ORACLE_DIFFERS + 1] = {0};
@@ -350,6 +367,7 @@ static bool run_all(struct checks *c, FILE *out, enum oracle_verdict *verdict, s
   print_details(c, out);
   fprintf(out, "\nsame %zu, close %zu, different %zu\n", counts[ORACLE_SAME], counts[ORACLE_CLOSE],
           counts[ORACLE_DIFFERS]);
+  print_unjudged(c, out);
   return write_report(c, *verdict, message);
 }
 

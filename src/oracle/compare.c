@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "oracle/operators.h"
 #include "oracle/oracle.h"
+#include "oracle/tolerance.h"
 
 /* Doubles in the order of their values, as integers: neighbors differ by one, -0 and +0 by none. */
 static int64_t rank_of(double x)
@@ -40,7 +41,8 @@ static double difference(const struct oracle_pair *p, uint32_t row, uint32_t col
 struct tally {
   uint64_t values, different, beyond, worst; /* worst: ulps */
   uint64_t nans;                             /* of theirs, where ours is a number */
-  double largest, largest_of_all;            /* difference over tolerance, where there is one; of the table, of all */
+  uint64_t unjudged;
+  double largest, largest_of_all; /* difference over tolerance, where there is one; of the table, of all */
   char first_words[256], meaning[ORACLE_TEXT];
   bool found, found_beyond; /* a first one is known, and beyond tolerance if any is */
   struct oracle_pair first;
@@ -48,11 +50,13 @@ struct tally {
   double tolerance;
 };
 
-static void tally_value(struct tally *t, const struct oracle_pair *p, uint32_t row, uint32_t column)
+/* largest: size in our table. */
+static void tally_value(struct tally *t, const struct oracle_pair *p, double largest, uint32_t row, uint32_t column)
 {
   const uint64_t ulps = distance(p, (size_t)row * p->ours->columns + column);
+  const double tolerance = oracle_tolerance(p, row, column), size = difference(p, row, column);
   t->values++;
-  const double size = difference(p, row, column);
+  t->unjudged += largest > 0.0 && tolerance > 0.0 && !(tolerance < largest);
   if (ulps == 0 && size == 0.0)
     return;
   t->different++;
@@ -60,7 +64,6 @@ static void tally_value(struct tally *t, const struct oracle_pair *p, uint32_t r
     t->nans++;
   else
     t->worst = ulps > t->worst ? ulps : t->worst;
-  const double tolerance = oracle_tolerance(p, row, column);
   if (tolerance > 0.0 && isfinite(size))
     t->largest = fmax(t->largest, size / tolerance);
   const bool beyond = !(size <= tolerance);
@@ -197,11 +200,12 @@ static void tally_table(struct tally *t, const struct oracle_pair *p, FILE *out)
     t->beyond++;
     return;
   }
+  const double largest = tolerance_largest(p->ours, 0, PACK_COLUMNS);
   t->worst = t->nans = 0;
   t->largest = 0.0;
   for (uint32_t row = 0; row < rows; row++)
     for (uint32_t column = 0; column < p->ours->columns; column++)
-      tally_value(t, p, row, column);
+      tally_value(t, p, largest, row, column);
   if (t->different > before.different) {
     print_place(out, p->ours);
     fprintf(out, " of %" PRIu64 " values %" PRIu64 " differ, %" PRIu64 " beyond tolerance, by up to %" PRIu64 " %s%s",
@@ -335,13 +339,16 @@ bool oracle_compare(const struct pack *ours, const struct pack *theirs, const st
   const enum oracle_verdict verdict = t.beyond ? ORACLE_DIFFERS : t.different ? ORACLE_CLOSE : ORACLE_SAME;
   fprintf(out, "%" PRIu64 " values compared, %" PRIu64 " differ, %" PRIu64 " beyond tolerance\n", t.values, t.different,
           t.beyond);
+  if (t.unjudged > 0)
+    fprintf(out, "%" PRIu64 " values not judged: their tolerance is not below the largest size in their table\n",
+            t.unjudged);
   prefer_earlier_hit(&t);
   print_shape(&t, out);
   fprintf(out, "%s\n",
           verdict == ORACLE_SAME    ? "same: every bit"
           : verdict == ORACLE_CLOSE ? "close: all differences within tolerance"
                                     : "differs");
-  *summary = (struct oracle_summary){verdict, t.values, t.different, t.beyond, t.largest_of_all, "", ""};
+  *summary = (struct oracle_summary){verdict, t.values, t.different, t.beyond, t.unjudged, t.largest_of_all, "", ""};
   memcpy(summary->first, t.first_words, sizeof summary->first);
   snprintf(summary->meaning, sizeof summary->meaning, "%s", t.meaning);
   return true;

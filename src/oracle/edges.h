@@ -22,7 +22,7 @@ enum { EDGES_PAIRS = 44, EDGES_CHAINS = 10 };
 
 /* Settings of the scene of contacts at their own time: the same pairs and chains, so that the same states can be built,
  * and needles, chains with bends, and rings. */
-enum { EDGES_NEEDLES = 20, EDGES_STIFF = 10, EDGES_RINGS = 4 };
+enum { EDGES_NEEDLES = 20, EDGES_STIFF = 10, EDGES_RINGS = 4, EDGES_FAR = 8 };
 #define EDGES_EVENT_SETTINGS                                                                                           \
   {                                                                                                                    \
     "box=[4, 5, 3]", "time_step=0.0078125", "steps=1", "seed=1311768467463790320", "crossing.rule=event-driven",       \
@@ -34,13 +34,25 @@ enum { EDGES_NEEDLES = 20, EDGES_STIFF = 10, EDGES_RINGS = 4 };
         "fibers.3.vertices=4", "fibers.3.mass=3", "fibers.3.bond_length=0.3", "fibers.3.spring=100",                   \
         "fibers.3.bending=5", "fibers.3.force=[0.5, -2, 1]", "fibers.4.name=ring", "fibers.4.count=4",                 \
         "fibers.4.vertices=4", "fibers.4.ring=true", "fibers.4.mass=7.5", "fibers.4.bond_length=0.3",                  \
-        "fibers.4.spring=50", "fibers.4.bending=2"                                                                     \
+        "fibers.4.spring=50", "fibers.4.bending=2", "fibers.5.name=far", "fibers.5.count=8", "fibers.5.vertices=2",    \
+        "fibers.5.mass=2", "fibers.5.bond_length=0.5", "fibers.5.spring=20"                                            \
   }
+
+#define EDGES_PART (LATTICE_CELL / 16)
 
 /* A unit vector, along an axis now and then; a place along a bond, an end now and then. */
 struct dice; /* oracle/dice.h */
 struct vec3 edges_normal(struct dice *d);
 double edges_place(struct dice *d);
+
+/* Sets the needles behind all others for a drift of so many t0: two that are long for their box, and two clusters that
+ * fly, and join, at `corner`. */
+void edges_long_needles(struct oracle_stage *g, uint32_t first, double drift);
+void edges_joining_clusters(struct oracle_stage *g, uint32_t first, struct point corner, double drift);
+
+/* Two needles of some lattice units, at `middle`, that are answered in tick 2, where they part already: no impulse
+ * separates them. fly: rate of both, lattice units in a tick. */
+void edges_tiny_pair(struct oracle_stage *g, uint32_t first, struct point middle, struct vec3 fly, double drift);
 
 /* Sets pairs and chains so that within 32 dt bonds touch at exactly half of the time, several at once, some boxes away;
  * all other vertices are at rest. */

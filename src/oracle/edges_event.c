@@ -270,7 +270,7 @@ bool oracle_edges_impulse(struct oracle_stage *g)
 
 /* --- a drift ----------------------------------------------------------------------------------------------------- */
 
-#define PART (LATTICE_CELL / 16)
+#define PART EDGES_PART
 #define DRIFT 0.25 /* t0 */
 
 /* A needle: its ends in parts of a slot, how far both move in the drift (parts), and lattice units to be added to y. */
@@ -326,17 +326,11 @@ static void stand_needles(struct oracle_stage *g, uint32_t first)
   }
 }
 
-/* Two needles of some lattice units that are answered in tick 2, where they part already: no impulse separates them.
- * And a third one that meets both later. */
+/* A pair that no impulse separates, and a third needle that meets both later. */
 static void stand_cluster(struct oracle_stage *g, uint32_t first)
 {
-  static const struct point place[4] = {{1, -9, -2}, {-2, 2, -5}, {2, 7, 1}, {-7, 2, -11}};
-  static const struct vec3 rate[4] = {{3, 2, -2}, {1, 0, 0}, {1, -3, -3}, {-2, 3, 3}};
   const int slot = 25, low[3] = {0, 4, -4}, high[3] = {0, 4, 4}, middle[3] = {0, 8, 0};
-  for (uint32_t k = 0; k < 4; k++) {
-    g->state->position[first + k] = point_plus(in_slot(slot, middle), place[k]);
-    g->state->velocity[first + k] = vec3_scale(0x1p-24 / DRIFT, rate[k]);
-  }
+  edges_tiny_pair(g, first, in_slot(slot, middle), (struct vec3){0, 0, 0}, DRIFT);
   for (uint32_t k = 4; k < 6; k++) {
     g->state->position[first + k] = in_slot(slot, k == 4 ? low : high);
     g->state->velocity[first + k] = (struct vec3){0, 0.5 / DRIFT, 0};
@@ -366,5 +360,8 @@ bool oracle_edges_event_drift(struct oracle_stage *g)
   stand_needles(g, first);
   stand_cluster(g, first + 2 * NEEDLES);
   tangle(g, first + 2 * EDGES_NEEDLES, EDGES_STIFF + EDGES_RINGS, 1.5);
+  const uint32_t far = g->state->vertices - 2 * EDGES_FAR;
+  edges_long_needles(g, far, DRIFT);
+  edges_joining_clusters(g, far + 4, corner_of(29), DRIFT);
   return oracle_event_drift_for(g, DRIFT, -0.5 * DRIFT);
 }

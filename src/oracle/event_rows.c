@@ -171,7 +171,26 @@ void oracle_put_events(struct oracle_stage *g, const struct oracle_events *e)
     condition[k] = e->at[k].condition;
 }
 
-/* Of nearly parallel bonds, s and t are inexact. The normal of tubes is the direction of a short vector. */
+/* Whether doubles make a product, and so any other arithmetic of 53 bits, fused or not. */
+static bool is_exact(double a, double b)
+{
+  return fma(a, b, -(a * b)) == 0.0;
+}
+
+/* Bonds so parallel that nothing is rounded on the way to their s and t. */
+static bool exactly_parallel(struct vec3 p, struct vec3 q, struct vec3 w)
+{
+  const double *of[3] = {&p.x, &q.x, &w.x};
+  bool exact = vec3_norm(vec3_cross(p, q)) == 0.0;
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++)
+      for (int k = 0; k < 9; k++)
+        exact = exact && is_exact(of[a][k / 3], of[b][k % 3]);
+  return exact && is_exact(vec3_dot(p, w), vec3_dot(q, q)) && is_exact(vec3_dot(p, q), vec3_dot(q, w));
+}
+
+/* Of nearly parallel bonds, s and t are inexact. The normal of tubes, and of parallel bonds, is the direction of a
+ * short vector. */
 static double condition_of(const struct oracle_stage *g, const struct contact_event *v, int32_t tick)
 {
   const struct model *m = g->model;
@@ -180,12 +199,16 @@ static double condition_of(const struct oracle_stage *g, const struct contact_ev
   struct point at[4];
   for (int k = 0; k < 4; k++)
     at[k] = place_of(g, four[k], tick);
-  const struct vec3 p = point_difference(at[1], at[0]), q = point_difference(at[3], at[2]);
-  const double parallel = vec3_norm(p) * vec3_norm(q) / vec3_norm(vec3_cross(p, q));
+  const struct vec3 p = point_difference(at[1], at[0]), q = point_difference(at[3], at[2]),
+                    w = point_difference(point_image(at[2], v->image, &m->box), at[0]);
   const double reach = (double)model_reach(m, v->moving_bond, v->standing_bond) * LATTICE_UNIT,
-               both = vec3_norm(p) + vec3_norm(q);
-  return parallel * parallel * (1.0 + both / fmin(vec3_norm(p), vec3_norm(q))) *
-         (reach > 0.0 ? 1.0 + both / reach : 1.0);
+               both = vec3_norm(p) + vec3_norm(q), lengths = 1.0 + both / fmin(vec3_norm(p), vec3_norm(q));
+  if (reach == 0.0 && exactly_parallel(p, q, w)) {
+    const struct vec3 gap = vec3_add_scaled(vec3_add_scaled(w, v->hit.s_standing, q), -v->hit.s, p);
+    return lengths * (1.0 + (vec3_norm(gap) > 0.0 ? both / vec3_norm(gap) : 0.0));
+  }
+  const double parallel = vec3_norm(p) * vec3_norm(q) / vec3_norm(vec3_cross(p, q));
+  return parallel * parallel * lengths * (reach > 0.0 ? 1.0 + both / reach : 1.0);
 }
 
 static void take_event(void *context, const struct contact_event *v)

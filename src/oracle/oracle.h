@@ -51,6 +51,7 @@ struct oracle_options {
 struct oracle_summary {
   enum oracle_verdict verdict;
   uint64_t values, different, beyond; /* beyond: tolerance, or something is missing */
+  uint64_t unjudged;                  /* whose tolerance is not below the largest size in their table */
   double largest;                     /* of difference over tolerance, where there is a tolerance */
   char first[256], meaning[640];      /* the first difference, and what its pattern usually means; or empty */
 };

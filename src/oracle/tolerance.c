@@ -100,38 +100,52 @@ static double axis(const struct oracle_pair *p, uint32_t row, uint32_t column)
 
 /* --- fibers and solvent ------------------------------------------------------------------------------------------ */
 
-/* Longest and shortest bond of the positions that went in. */
-static void bonds(const struct oracle_pair *p, double *longest, double *shortest)
+/* Length of the bond from a vertex to its neighbor (0: next, 1: the one before) in the positions that went in; 0 for
+ * none. */
+static double bond_to(const struct oracle_pair *p, uint32_t v, uint32_t way)
 {
   const struct pack_table *r = oracle_sibling(p, "in.position"), *chain = tolerance_of_model(p, "in.chain");
-  *longest = 0.0;
-  *shortest = INFINITY;
-  for (uint32_t v = 0; r && chain && v < r->rows; v++) {
-    const double next = pack_value(chain, v, 0) < r->rows ? pack_value(chain, v, 0) : -1.0;
-    double squared = 0.0;
-    for (uint32_t k = 0; next >= 0.0 && k < 3; k++) {
-      const double d = (pack_value(r, (uint32_t)next, k) - pack_value(r, v, k)) * LATTICE_UNIT;
-      squared += d * d;
-    }
-    *longest = fmax(*longest, sqrt(squared));
-    *shortest = next >= 0.0 ? fmin(*shortest, sqrt(squared)) : *shortest;
+  const double other = r && chain ? pack_value(chain, v, way) : -1.0;
+  double squared = 0.0;
+  for (uint32_t k = 0; other >= 0.0 && other < r->rows && k < 3; k++) {
+    const double d = (pack_value(r, (uint32_t)other, k) - pack_value(r, v, k)) * LATTICE_UNIT;
+    squared += d * d;
   }
+  return sqrt(squared);
+}
+
+static double longest_bond(const struct oracle_pair *p)
+{
+  const struct pack_table *r = oracle_sibling(p, "in.position");
+  double longest = 0.0;
+  for (uint32_t v = 0; r && v < r->rows; v++)
+    longest = fmax(longest, bond_to(p, v, 0));
+  return longest;
+}
+
+/* The largest kappa over a bond's length, of all vertices with a bend. */
+static double strongest_bend(const struct oracle_pair *p)
+{
+  const struct pack_table *r = oracle_sibling(p, "in.position"), *kinds = tolerance_of_model(p, "in.vertex");
+  double most = 0.0;
+  for (uint32_t v = 0; r && kinds && v < r->rows; v++) {
+    const double shortest = fmin(bond_to(p, v, 0), bond_to(p, v, 1)), bending = pack_value(kinds, v, BENDING);
+    if (shortest > 0.0 && bending > 0.0)
+      most = fmax(most, bending / shortest);
+  }
+  return most;
 }
 
 static double bond_force(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
-  double longest, shortest;
   (void)row, (void)column;
-  bonds(p, &longest, &shortest);
-  return 26.0 * 2.0 * most_of(p, SPRING) * (longest + most_of(p, BOND_LENGTH)) * p->rounding;
+  return 26.0 * 2.0 * most_of(p, SPRING) * (longest_bond(p) + most_of(p, BOND_LENGTH)) * p->rounding;
 }
 
 static double bend_force(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
-  double longest, shortest;
   (void)row, (void)column;
-  bonds(p, &longest, &shortest);
-  return 50.0 * 8.0 * most_of(p, BENDING) / shortest * p->rounding;
+  return 50.0 * 8.0 * strongest_bend(p) * p->rounding;
 }
 
 static double force(const struct oracle_pair *p, uint32_t row, uint32_t column)
@@ -141,10 +155,8 @@ static double force(const struct oracle_pair *p, uint32_t row, uint32_t column)
 
 double tolerance_strongest(const struct oracle_pair *p)
 {
-  double longest, shortest;
-  bonds(p, &longest, &shortest);
-  return 4.0 * most_of(p, SPRING) * (longest + most_of(p, BOND_LENGTH)) +
-         (shortest > 0.0 ? 8.0 * most_of(p, BENDING) / shortest : 0.0) + most_of(p, FORCE);
+  return 4.0 * most_of(p, SPRING) * (longest_bond(p) + most_of(p, BOND_LENGTH)) + 8.0 * strongest_bend(p) +
+         most_of(p, FORCE);
 }
 
 static double kick(const struct oracle_pair *p, uint32_t row, uint32_t column)
@@ -202,16 +214,31 @@ static double relative(const struct oracle_pair *p, uint32_t row, uint32_t colum
   return 0.5 * n + 1.0 + 0x1p32 * n * (n + 16.0) * 3.0 * tolerance_heaviest(p) * w * w * p->rounding;
 }
 
+/* A factor is the root over the sum of relative energies that it belongs to: that of its cell, or of all cells that
+ * have the same factor. Half of the relative error of the sum is allowed in it. */
+static double of_relative(const struct oracle_pair *p, uint32_t row, bool of_all)
+{
+  const struct pack_table *energy = oracle_sibling(p, "out.relative");
+  const double factor = pack_value(p->ours, row, 0);
+  double sum = 0.0, error = 0.0;
+  for (uint32_t k = 0; energy && k < energy->rows; k++)
+    if (pack_value(energy, k, 0) != 0.0 && (of_all ? pack_value(p->ours, k, 0) == factor : k == row)) {
+      sum += pack_value(energy, k, 0);
+      error += relative(p, k, 0);
+    }
+  return sum > 0.0 ? 0.5 * factor * error / sum : 0.0;
+}
+
 static double rescale(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
-  (void)row, (void)column;
-  return (p->ours->rows + 10.0) * tolerance_largest(p->ours, 0, 1) * p->rounding;
+  (void)column;
+  return (p->ours->rows + 10.0) * tolerance_largest(p->ours, 0, 1) * p->rounding + of_relative(p, row, true);
 }
 
 static double boltzmann(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
-  (void)row, (void)column;
-  return 256.0 * tolerance_largest(p->ours, 0, 1) * p->rounding;
+  (void)column;
+  return 256.0 * tolerance_largest(p->ours, 0, 1) * p->rounding + of_relative(p, row, false);
 }
 
 static double rotate(const struct oracle_pair *p, uint32_t row, uint32_t column)

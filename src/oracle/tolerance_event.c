@@ -104,25 +104,51 @@ static double speeds(const struct oracle_pair *p)
   return tolerance_size_of(p, "in.velocity") + tau * tolerance_strongest(p) / tolerance_lightest(p);
 }
 
-/* A number that is no vertex is none of the event's. */
-static bool is_end(const struct oracle_pair *p, const struct pack_table *event, uint32_t row, uint32_t vertex)
+/* The four vertices of an event, and those up to two further along their fibers, whose places its forces depend on; a
+ * vertex may come twice. Numbers that are no vertices are left out. */
+static uint32_t reached_by(const struct pack_table *chain, const struct pack_table *event, uint32_t row,
+                           uint32_t vertex[20])
 {
-  const struct pack_table *chain = pack_find(p->pack, &(struct pack_place){"model", 0}, "in.chain");
-  for (uint32_t k = 0; chain && k < 2; k++) {
+  uint32_t n = 0;
+  for (uint32_t k = 0; k < 2; k++) {
     const double bond = pack_value(event, row, k);
-    if (bond == vertex || (bond >= 0.0 && bond < chain->rows && pack_value(chain, (uint32_t)bond, 0) == vertex))
-      return true;
+    const double ends[2] = {bond, bond >= 0.0 && bond < chain->rows ? pack_value(chain, (uint32_t)bond, 0) : -1.0};
+    for (int e = 0; e < 2; e++)
+      if (ends[e] >= 0.0 && ends[e] < chain->rows)
+        vertex[n++] = (uint32_t)ends[e];
   }
-  return false;
+  const uint32_t own = n;
+  for (uint32_t k = 0; k < own; k++)
+    for (uint32_t way = 0; way < 2; way++) {
+      double at = vertex[k];
+      for (int far = 0; far < 2; far++) {
+        at = pack_value(chain, (uint32_t)at, way);
+        if (!(at >= 0.0 && at < chain->rows))
+          break;
+        vertex[n++] = (uint32_t)at;
+      }
+    }
+  return n;
 }
 
-static bool has_contact(const struct oracle_pair *p, uint32_t vertex)
+/* The largest condition number among the contacts that a vertex's flight depends on: its own, and those before them of
+ * all who took part. 0: it had no contact. */
+static double worst_of(const struct oracle_pair *p, uint32_t vertex)
 {
-  const struct pack_table *event = oracle_sibling(p, "out.event");
-  for (uint32_t row = 0; event && row < event->rows; row++)
-    if (is_end(p, event, row, vertex))
-      return true;
-  return false;
+  const struct pack_table *event = oracle_sibling(p, "out.event"), *chain = tolerance_of_model(p, "in.chain");
+  double *worst = chain ? calloc((size_t)chain->rows + 1, sizeof *worst) : NULL;
+  uint32_t at[20];
+  for (uint32_t row = 0; worst && event && row < event->rows; row++) {
+    double most = condition(p, row);
+    const uint32_t n = reached_by(chain, event, row, at);
+    for (uint32_t k = 0; k < n; k++)
+      most = fmax(most, worst[at[k]]);
+    for (uint32_t k = 0; k < 4 && k < n; k++)
+      worst[at[k]] = most;
+  }
+  const double found = worst && vertex < chain->rows ? worst[vertex] : 0.0;
+  free(worst);
+  return found;
 }
 
 double tolerance_event_hit(const struct oracle_pair *p, uint32_t row, uint32_t column)
@@ -133,17 +159,16 @@ double tolerance_event_hit(const struct oracle_pair *p, uint32_t row, uint32_t c
 
 double tolerance_event_velocity(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
-  const double exchange =
-      64.0 * tolerance_size_of(p, "bound.hit") * 200.0 * tolerance_heaviest(p) / tolerance_lightest(p);
+  const double exchange = 64.0 * worst_of(p, row) * 200.0 * tolerance_heaviest(p) / tolerance_lightest(p);
   (void)column;
-  return ((has_contact(p, row) ? exchange : 0.0) + (tolerance_single(p) ? 1.0 : 0.0)) * speeds(p) * p->rounding;
+  return (exchange + (tolerance_single(p) ? 1.0 : 0.0)) * speeds(p) * p->rounding;
 }
 
 /* A rate may fall to the next integer: a unit in each tick. Velocities that go in are exact, but in single precision.
  */
 double tolerance_event_position(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
-  const bool inexact = tolerance_single(p) || has_contact(p, row);
+  const bool inexact = tolerance_single(p) || worst_of(p, row) > 0.0;
   return inexact ? 0x1p16 + LATTICE_PER_A0 * length_of(p) *
                                 (tolerance_event_velocity(p, row, column) + 4.0 * speeds(p) * p->rounding)
                  : 0.0;

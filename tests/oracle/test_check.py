@@ -44,11 +44,13 @@ class Folder(unittest.TestCase):
 
 class ColumnsTest(Folder):
     def test_every_value_is_judged(self):
-        """In doubles no tolerance of any pack is infinite, or as large as its column's values."""
+        """In doubles tolerances are below the largest size of their table, but for the shares that docs/porting.md states."""
         for path in sorted(DATA.glob("**/*.pack.h5")):
             code, said, _ = run("compare", path, path)
             self.assertEqual(code, 0, said)
-            self.assertNotIn("not judged", said, path.name)
+            values = int(said.split()[0])
+            unjudged = int(said.splitlines()[1].split()[0]) if "not judged" in said else 0
+            self.assertLessEqual(unjudged / values, 0.03 if path.name == "spin.pack.h5" else 0.01, path.name)
 
     def test_any_order_of_lines(self):
         lines = self.text_of("coarse")

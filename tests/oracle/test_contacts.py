@@ -176,7 +176,40 @@ class Contacts(unittest.TestCase):
             straight = tuple(x + TICKS * round(Fraction(time) * Fraction(y) * 2**24) for x, y in zip(a, v))
             if straight != b and vertex not in touched:
                 bent.append(vertex)
-        self.assertEqual(len(bent), 6)  # the cluster, of three bonds: it has no rows
+        self.assertEqual(len(bent), 6 + 12)  # three clusters, of three bonds each, two of which join: they have no rows
+
+    FAR = 214  # the first of the last 16 vertices
+
+    def test_bonds_that_are_long_for_their_box(self):
+        """They touch in an image that is not the nearest one: their first ends are further apart than half of the edge."""
+        events = self.pack.rows("event_drift", 1, "out.event", "bond other image_x image_y image_z")
+        start = self.pack.rows("event_drift", 1, "in.position")
+        edge = self.pack.rows("model", 0, "in.box")[0][2] << 40
+        self.assertIn((self.FAR, self.FAR + 2, 0, 0, 0), events)
+        apart = start[self.FAR + 2][2] - start[self.FAR][2]
+        self.assertEqual(round(Fraction(apart, edge)), 1)
+
+    def test_clusters_that_fly_and_join(self):
+        """A pair is one cluster from tick 2 on, at the mean rate of its ends, cut toward zero; when the needle of the one meets that of
+        the other, all have the rate of the first."""
+        start, end, velocity = (self.pack.rows("event_drift", 1, name) for name in ("in.position", "out.position", "in.velocity"))
+        (time,), = self.pack.rows("event_drift", 1, "in.time", "dt")
+        rate = [tuple(int(Fraction(time) * Fraction(y) * 2**24) for y in v) for v in velocity]
+        first, second = range(self.FAR + 4, self.FAR + 8), range(self.FAR + 10, self.FAR + 14)
+        means = [tuple(Fraction(sum(rate[v][c] for v in pair), 4) for c in range(3)) for pair in (first, second)]
+        cut = [tuple(map(int, mean)) for mean in means]  # int() cuts toward zero
+        self.assertNotIn(cut[0], ((0, 0, 0), tuple(map(round, means[0])), tuple(x.numerator // x.denominator for x in means[0])))
+        for v in first:
+            self.assertEqual(end[v], plus(plus(start[v], rate[v], 2), cut[0], TICKS - 2))
+        ticks = set()
+        for v in second:
+            alone = plus(plus(start[v], rate[v], 2), cut[1], TICKS - 2)
+            moved = plus(end[v], alone, -1)
+            late = Fraction(moved[1], cut[0][1] - cut[1][1])  # ticks with the rate of the first
+            self.assertEqual(moved, tuple(late * (a - b) for a, b in zip(*cut)))
+            ticks.add(TICKS - late)
+        self.assertEqual(len(ticks), 1)
+        self.assertTrue(30000 < min(ticks) < 60000 and min(ticks).denominator == 1, ticks)
 
 
 if __name__ == "__main__":
