@@ -355,6 +355,15 @@ class PortTest(Folder):
         self.assertEqual(code, 7, said)
         self.assertRegex(checks[2]["first_difference"], "^step [0-9]+, stage [a-z]+$")
 
+    def test_close_packs_beside_other_traces(self):
+        """What is close may be why a trace differs: it is told on the terminal, too."""
+        change = f"sed '5s/,[0-9a-f]*,/,0123456789abcdef,/' {DATA}/coarse.trace.csv >$2"
+        code, said, _, _ = self.check(self.port(self.text(self.LAST_DIGIT), change))
+        self.assertEqual(code, 7, said)
+        self.assertRegex(said, "\nmixed.pack\n(.*\n)+first difference: kick, step 3, vertex 0, out.velocity.x(.*\n)+this pattern: ")
+        code, said, _, _ = self.check(self.port(self.text(self.LAST_DIGIT)), "--no-traces")
+        self.assertNotIn("this pattern", said)
+
     LAST_DIGIT = "sed -E '/^kick 3 0 out.velocity.x/s/[0-8]$/9/'"
 
     def test_close(self):
