@@ -280,10 +280,15 @@ static void print_row(const struct check *k, FILE *out)
   fprintf(out, "  %s%s%s\n", word_of(k), k->trouble[0] ? ": " : "", k->trouble);
 }
 
+/* Of what differs; where a trace does, of packs that are close, too: they may be why. */
 static void print_details(const struct checks *c, FILE *out)
 {
+  enum oracle_verdict least = ORACLE_DIFFERS;
   for (size_t k = 0; k < c->count; k++)
-    if (c->check[k].summary.verdict == ORACLE_DIFFERS && !c->check[k].trouble[0])
+    if (c->check[k].trace && c->check[k].summary.verdict == ORACLE_DIFFERS)
+      least = ORACLE_CLOSE;
+  for (size_t k = 0; k < c->count; k++)
+    if (c->check[k].summary.verdict >= least && !c->check[k].trouble[0])
       fprintf(out, "\n%s\n%s", c->check[k].name, c->check[k].details);
 }
 
