@@ -6,11 +6,50 @@
 #include <inttypes.h>
 #include <limits.h>
 #include <signal.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
+
+/* --- what the port is given -------------------------------------------------------------------------------------- */
+
+static bool has_inputs(const struct pack *pack, const struct pack_place *place)
+{
+  for (size_t k = 0; k < pack->count; k++)
+    if (strncmp(pack->table[k].name, "in.", 3) == 0 && pack->table[k].place.step == place->step &&
+        strcmp(pack->table[k].place.operator_name, place->operator_name) == 0)
+      return true;
+  return false;
+}
+
+void called_ask(struct pack *pack)
+{
+  for (size_t k = 0; k < pack->count && !pack->failed; k++) {
+    const struct pack_place place = pack->table[k].place;
+    int64_t *step = has_inputs(pack, &place) ? NULL : pack_put_integers(pack, &place, "in.step", "step", 1);
+    if (step)
+      *step = (int64_t)place.step;
+  }
+}
+
+bool called_give(const struct check_options *o, const struct pack *pack, const char *path, struct message *message)
+{
+  FILE *out = fopen(path, "wbx");
+  if (!out)
+    return message_set(message, "%s: cannot create: %s", path, strerror(errno));
+  struct pack inputs = {0, malloc((pack->count + 1) * sizeof *inputs.table), false};
+  for (size_t k = 0; inputs.table && k < pack->count; k++)
+    if (strncmp(pack->table[k].name, "in.", 3) == 0)
+      inputs.table[inputs.count++] = pack->table[k]; /* its numbers stay the pack's */
+  bool ok = inputs.table && (o->text ? pack_dump(&inputs, true, out) : pack_write(&inputs, out, path, message));
+  free(inputs.table);
+  ok = fclose(out) == 0 && ok;
+  return ok || message_set(message, "%s: cannot write", path);
+}
+
+/* --- calls ------------------------------------------------------------------------------------------------------- */
 
 /* A port that computes in a group of its own is out of reach of the keyboard: its interrupts come by way of us. */
 static const int interrupts[] = {SIGINT, SIGTERM, SIGHUP};

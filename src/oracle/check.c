@@ -84,45 +84,6 @@ static bool list(struct checks *c, const char *ending, bool trace)
   return code == 0 || code == GLOB_NOMATCH;
 }
 
-/* --- what the port is given -------------------------------------------------------------------------------------- */
-
-static bool has_inputs(const struct pack *pack, const struct pack_place *place)
-{
-  for (size_t k = 0; k < pack->count; k++)
-    if (strncmp(pack->table[k].name, "in.", 3) == 0 && pack->table[k].place.step == place->step &&
-        strcmp(pack->table[k].place.operator_name, place->operator_name) == 0)
-      return true;
-  return false;
-}
-
-/* An operator that takes nothing but the step's number gets it as a table: without one nothing would ask for it. */
-static void ask(struct pack *pack)
-{
-  for (size_t k = 0; k < pack->count && !pack->failed; k++) {
-    const struct pack_place place = pack->table[k].place;
-    int64_t *step = has_inputs(pack, &place) ? NULL : pack_put_integers(pack, &place, "in.step", "step", 1);
-    if (step)
-      *step = (int64_t)place.step;
-  }
-}
-
-/* The pack as the port is to read it: without answers, nor bounds of them. */
-static bool write_input(const struct check_options *o, const struct pack *pack, const char *path,
-                        struct message *message)
-{
-  FILE *out = fopen(path, "wbx");
-  if (!out)
-    return message_set(message, "%s: cannot create: %s", path, strerror(errno));
-  struct pack inputs = {0, malloc((pack->count + 1) * sizeof *inputs.table), false};
-  for (size_t k = 0; inputs.table && k < pack->count; k++)
-    if (strncmp(pack->table[k].name, "in.", 3) == 0)
-      inputs.table[inputs.count++] = pack->table[k]; /* its numbers stay the pack's */
-  bool ok = inputs.table && (o->text ? pack_dump(&inputs, true, out) : pack_write(&inputs, out, path, message));
-  free(inputs.table);
-  ok = fclose(out) == 0 && ok;
-  return ok || message_set(message, "%s: cannot write", path);
-}
-
 /* --- one of them ------------------------------------------------------------------------------------------------- */
 
 static bool has_operator(const struct pack *pack, const char *only)
@@ -199,10 +160,10 @@ static bool write_pack(const struct check_options *o, struct check *k, const cha
   struct pack ours;
   if (!pack_read(k->path, &ours, message))
     return false;
-  ask(&ours);
+  called_ask(&ours);
   oracle_sort(&ours);
   k->skipped = !has_operator(&ours, o->compare.only);
-  const bool ok = k->skipped || write_input(o, &ours, in, message);
+  const bool ok = k->skipped || called_give(o, &ours, in, message);
   pack_free(&ours);
   return ok;
 }
@@ -216,7 +177,7 @@ static bool write_start(const struct check_options *o, struct check *k, const ch
   snprintf(path, sizeof path, "%.*s.yaml", (int)(strlen(k->path) - strlen(".trace.csv")), k->path);
   if (!scene_read(path, &scene, message))
     return false;
-  const bool ok = oracle_start(&scene, &pack, message) && write_input(o, &pack, in, message);
+  const bool ok = oracle_start(&scene, &pack, message) && called_give(o, &pack, in, message);
   pack_free(&pack);
   scene_free(&scene);
   return ok;
