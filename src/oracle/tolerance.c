@@ -107,7 +107,7 @@ static double bond_to(const struct oracle_pair *p, uint32_t v, uint32_t way)
   const struct pack_table *r = oracle_sibling(p, "in.position"), *chain = tolerance_of_model(p, "in.chain");
   const double other = r && chain ? pack_value(chain, v, way) : -1.0;
   double squared = 0.0;
-  for (uint32_t k = 0; other >= 0.0 && other < r->rows && k < 3; k++) {
+  for (uint32_t k = 0; r && other >= 0.0 && other < r->rows && k < 3; k++) {
     const double d = (pack_value(r, (uint32_t)other, k) - pack_value(r, v, k)) * LATTICE_UNIT;
     squared += d * d;
   }
