@@ -27,8 +27,8 @@ bool oracle_edges(bool contacts, struct pack *pack, struct message *message);
 bool oracle_start(struct scene *scene, struct pack *pack, struct message *message);
 
 /* Writes the trace of the whole scene as CSV: one row per stage of each step. every: only the end of each step whose
- * number is a multiple of it, and of the last one; 0: all. stopped: the physics could not go on; the rows until then are
- * written. */
+ * number is a multiple of it, and of the last one; 0: all. stopped: the physics could not go on; the rows until then
+ * are written. */
 bool oracle_trace(struct scene *scene, uint64_t every, FILE *out, bool *stopped, struct message *message);
 
 /* Puts a pack's tables in the order of steps, and of operators within a step: files keep them by name. */
