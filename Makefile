@@ -472,14 +472,15 @@ exact: $(BUILD)/uncross $(BUILD)/uncross-faults $(LIBRARIES) $(patsubst %.c,$(BU
 STATISTICS := tests/fluid/test_dumbbell_stress.c tests/contract/test_thermostats.c
 # By clang, as `make check` builds by gcc: so the hashes and packs of the tests are those of two compilers. Its counters of what
 # is reached are those of the source, whatever sanitizers add. -O1 takes a third of the time of -O0.
+SANITIZE_CFLAGS := -g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all \
+   -fprofile-instr-generate -fcoverage-mapping
 .PHONY: sanitize
 sanitize:
 	tools/install-dependencies run hard
 	mkdir -p build/sanitize
 	clang -O1 -c tests/faults/child_reached.c -o build/sanitize/child.o
-	LLVM_PROFILE_FILE=/dev/null $(MAKE) -j2 CC=clang BUILD=build/sanitize ONCE=1 OPTIMIZE=-O1 HARDEN= CFLAGS='-g -fno-omit-frame-pointer \
-	   -fsanitize=address,undefined -fno-sanitize-recover=all -fprofile-instr-generate -fcoverage-mapping' \
-	   LIBS='$(LIBS) $(CURDIR)/build/sanitize/child.o -Wl,--wrap=_exit' exact
+	LLVM_PROFILE_FILE=/dev/null $(MAKE) -j2 CC=clang BUILD=build/sanitize ONCE=1 OPTIMIZE=-O1 HARDEN= \
+	   CFLAGS='$(SANITIZE_CFLAGS)' LIBS='$(LIBS) $(CURDIR)/build/sanitize/child.o -Wl,--wrap=_exit' exact
 	tools/sanitize build/sanitize $(filter-out $(STATISTICS),$(EXACT_TESTS))
 
 # Inputs that find something new go to build/fuzz/corpus; what was found is a file crash-* there, which FUZZ=file runs again.
