@@ -36,13 +36,14 @@ static struct point free_rate(const struct event_drift *d, uint32_t n, const uin
   struct point sum = {0, 0, 0};
   if (d->bead && d->bead->cluster == cluster)
     return d->bead->visits->way.rate;
-  for (uint32_t k = 0; k < n; k++) {
+  uint32_t k = 0;
+  do {
     const struct bend_in_path *bend = bend_of(d, vertex[k]);
     if (bend->cluster == cluster)
       return bend->rate;
     sum = point_plus(sum, bend->rate);
-  }
-  return (struct point){sum.x / n, sum.y / n, sum.z / n};
+  } while (++k < n);
+  return (struct point){sum.x / k, sum.y / k, sum.z / k};
 }
 
 static void join(const struct event_drift *d, uint32_t n, const uint32_t *vertex, uint32_t cluster)
