@@ -41,7 +41,7 @@ class HostileNames(unittest.TestCase):
 
     def run_words(self, *words, program=UNCROSS, **more):
         """Standard output and error, which no byte of acts on a terminal; and the exit code."""
-        done = subprocess.run([program, *words], cwd=self.folder, capture_output=True, timeout=60, check=False, **more)
+        done = subprocess.run([program, *words], cwd=self.folder, capture_output=True, timeout=600, check=False, **more)
         said = (done.stdout + done.stderr).decode()  # UTF-8
         self.assertFalse([c for c in said if not (c.isprintable() or c == "\n")], (words, said))
         self.assertFalse(list(self.folder.rglob("PWNED")), words)

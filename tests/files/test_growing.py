@@ -25,15 +25,20 @@ trajectory: {every: 500, velocities: true}
 POSITION = "particles/trajectory/position"
 
 
-def read(path):
-    """(steps, positions); a frame that is just written locks the file for a moment."""
+def opened(path):
+    """The file; a frame that is just written locks it for a moment."""
     for _ in range(200):
         try:
-            with h5py.File(path, "r") as file:
-                return file[POSITION]["step"][:], file[POSITION]["value"][:]
+            return h5py.File(path, "r")
         except BlockingIOError:
             time.sleep(0.01)
     raise TimeoutError(path)
+
+
+def read(path):
+    """(steps, positions)"""
+    with opened(path) as file:
+        return file[POSITION]["step"][:], file[POSITION]["value"][:]
 
 
 class Growing(FolderTest):
@@ -62,9 +67,12 @@ class Growing(FolderTest):
         self.finish()
 
     def test_a_reader_that_stays_does_not_stop_it(self):
-        with h5py.File(self.path, "r") as file:
+        with opened(self.path) as file:
             before = len(file[POSITION]["step"])
             time.sleep(2.5)
+        give_up = time.monotonic() + 60  # on a busy machine
+        while len(read(self.path)[0]) <= before + 2 and time.monotonic() < give_up:
+            time.sleep(0.1)
         self.assertGreater(len(read(self.path)[0]), before + 2)
         self.finish()
 
