@@ -73,8 +73,9 @@ static void make_port(void)
 static void make_trace(void)
 {
   struct message message;
+  bool stopped;
   FILE *out = fopen(all.ours.path, "wb");
-  require(out && oracle_trace(&all.scene, out, &message), "a trace");
+  require(out && oracle_trace(&all.scene, 0, out, &stopped, &message), "a trace");
   fclose(out);
   take_file(&all.ours);
 }
