@@ -69,24 +69,27 @@ void __wrap_apart_go_on(const struct apart *link)
   setrlimit(RLIMIT_CPU, &limit);
 }
 
-/* Objects before the files that they are in: HDF5 keeps such a file open. */
+/* Objects before the files that they are in: HDF5 keeps such a file open. What stays open, of a damaged file, ends this
+ * process. */
 static void close_everything(void)
 {
-  hid_t open[64];
-  ssize_t count;
+  static const unsigned order[] = {H5F_OBJ_ALL & ~H5F_OBJ_FILE, H5F_OBJ_FILE};
+  hid_t open[256];
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-  while ((count = H5Fget_obj_ids(H5F_OBJ_ALL, H5F_OBJ_ALL & ~H5F_OBJ_FILE, 64, open)) > 0)
-    for (ssize_t k = 0; k < count && k < 64; k++)
-      if (!h5_close(open[k]))
-        _exit(1);
-  while ((count = H5Fget_obj_ids(H5F_OBJ_ALL, H5F_OBJ_FILE, 64, open)) > 0)
-    for (ssize_t k = 0; k < count && k < 64; k++)
-      if (!h5_close(open[k]))
-        _exit(1);
+  for (size_t k = 0; k < sizeof order / sizeof *order; k++) {
+    const ssize_t count = H5Fget_obj_ids(H5F_OBJ_ALL, order[k], sizeof open / sizeof *open, open);
+    for (ssize_t i = 0; i < count; i++)
+      h5_close(open[i]);
+  }
+  if (H5Fget_obj_count(H5F_OBJ_ALL, H5F_OBJ_ALL) != 0)
+    _exit(0);
 }
 
+/* Says first that it is ready: nothing is handed over to a reader that dies of the input before. */
 static bool receive(int control, struct apart_hello *hello, int *connection)
 {
+  if (send(control, "", 1, MSG_NOSIGNAL) != 1)
+    return false;
   struct iovec part = {hello, sizeof *hello};
   union {
     char room[CMSG_SPACE(sizeof(int))];
@@ -171,7 +174,9 @@ static void begin(void)
   if (standing.process < 0)
     fail("fork");
   if (standing.process == 0) {
-    close(pair[0]);
+    for (int fd = 3; fd < 256; fd++) /* connections of others would never end */
+      if (fd != pair[1])
+        close(fd);
     serve_for_ever(pair[1]);
     _exit(0);
   }
@@ -185,6 +190,9 @@ static void begin(void)
 static bool hand_over(const struct apart_hello *hello, int connection)
 {
   struct iovec part = {(void *)(uintptr_t)hello, sizeof *hello};
+  char ready;
+  if (recv(standing.control, &ready, 1, 0) != 1)
+    return false;
   union {
     char room[CMSG_SPACE(sizeof(int))];
     struct cmsghdr align;
