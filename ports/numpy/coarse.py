@@ -44,6 +44,7 @@ def set_state(path, **tables):
         system.vertex, system.vertex_velocity = state["vertex_position"][:], state["vertex_velocity"][:]
         system.finished, system.lag = int(state.attrs["step"]), int(state.attrs["solvent_lag"])
         file["head"].attrs.modify("state_hash", np.uint64(int(system.state_hash(), 16)))
+        file["head"].attrs.modify("state_digest", np.uint64(int(system.digest(), 16)))
     set_seal(Path(path))
 
 

@@ -535,7 +535,7 @@ static void everything_everywhere(void **unused)
   (void)unused;
   for (int where = 0; where < CIRCUMSTANCES; where++) {
     char text[1024];
-    example((enum circumstance)where, " {}", text, sizeof text);
+    example((enum circumstance)where, " {from: 0}", text, sizeof text);
     struct scene scene = scene_of(text);
     if (!meaning_holds((enum circumstance)where, &scene.model))
       fail_msg("no example:\n%s", text);
