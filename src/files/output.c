@@ -242,6 +242,7 @@ bool output_summaries(struct output *o, const struct observers *observers, const
                       struct message *message)
 {
   struct table_context context = {o->folder, message};
+  message_set(message, "%s: no memory for the tables", o->folder->name); /* unless a table says what failed */
   return observers_summaries(observers, model, take_table, &context);
 }
 
