@@ -238,7 +238,7 @@ static void averages_begin_late(void **unused)
       assert_true(observers_sample(b, &m, &state, NULL));
   }
   struct kept *from = keep_summaries(a, &m), *since = keep_summaries(b, &m);
-  assert_int_equal(rows->rows, 3 * 41);
+  assert_int_equal(rows->rows, 3 * 41 - 1); /* collisions have no rate at the first step */
   assert_int_equal(from->tables, 2);
   for (size_t k = 0; k < from->tables; k++) {
     assert_int_equal(from->table[k].rows, since->table[k].rows);
