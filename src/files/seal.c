@@ -30,7 +30,7 @@ static uint64_t get_number(const unsigned char *at)
   return number;
 }
 
-static void fill(uint64_t bytes, uint64_t hash, unsigned char seal[SEAL_BYTES])
+static void put_seal(uint64_t bytes, uint64_t hash, unsigned char seal[SEAL_BYTES])
 {
   memcpy(seal, magic, sizeof magic);
   put_number(seal + sizeof magic, bytes);
@@ -39,7 +39,7 @@ static void fill(uint64_t bytes, uint64_t hash, unsigned char seal[SEAL_BYTES])
 
 void seal_make(const void *data, size_t bytes, unsigned char seal[SEAL_BYTES])
 {
-  fill(bytes, XXH64(data, bytes, 0), seal);
+  put_seal(bytes, XXH64(data, bytes, 0), seal);
 }
 
 static bool read_all(int fd, void *data, size_t bytes)
@@ -91,7 +91,7 @@ static enum seal check(int fd, const char *path, struct message *message)
     message_set(message, "%s: cannot be read: %s", path, strerror(errno));
     return SEAL_UNREADABLE;
   }
-  fill(bytes, hash, right);
+  put_seal(bytes, hash, right);
   if (memcmp(found, right, sizeof right) == 0)
     return SEAL_FITS;
   message_set(message,

@@ -64,7 +64,7 @@ static bool put(const struct way *w, struct node *mapping, struct node *node)
 }
 
 /* The node under this key of a mapping: the one that is there, if it is of this type, or a new one. */
-static struct node *enter(const struct way *w, struct node *mapping, enum node_type type)
+static struct node *inner_node(const struct way *w, struct node *mapping, enum node_type type)
 {
   struct node *node = node_value(mapping, w->part);
   if (node && node->type != type) {
@@ -129,11 +129,11 @@ static bool set_in_mapping(struct way *w, struct node *mapping, const struct key
   }
   const bool nests = key->type == KEY_SECTION || key->type == KEY_LIST;
   if (nests && *w->rest) {
-    struct node *inner = enter(w, mapping, key->type == KEY_LIST ? NODE_LIST : NODE_MAPPING);
+    struct node *inner = inner_node(w, mapping, key->type == KEY_LIST ? NODE_LIST : NODE_MAPPING);
     return inner && (key->type == KEY_LIST ? set_in_list(w, inner, key->keys) : set_in_mapping(w, inner, key->keys));
   }
   if (key->type == KEY_SECTION && strcmp(w->value, "{}") == 0) /* it is there, as in a file */
-    return enter(w, mapping, NODE_MAPPING) != NULL;
+    return inner_node(w, mapping, NODE_MAPPING) != NULL;
   if (nests)
     return refuse(w, "has keys of its own", "a path to one of them");
   if (*w->rest)
