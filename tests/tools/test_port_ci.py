@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""docs/port-ci.yml, the workflow for a port's repository: its shell steps are run here, in a folder of their own, with a port
-that copies. The step that installs packages is not run; its packages are held against tools/install-dependencies. Compiling
+"""docs/port-ci.yml, the workflow for a port's repository: its shell steps are run here, in a folder of their own, with the
+port to NumPy. The step that installs packages is not run; its packages are held against tools/install-dependencies. Compiling
 takes a minute, so make is stood in for by a copy of the program, unless UNCROSS_TEST_PORT_CI=whole.
 """
 import json
@@ -73,7 +73,7 @@ class PortCiTest(unittest.TestCase):
         self.environment["UNCROSS_REPOSITORY"] = str(self.repository())
         if not WHOLE:
             self.stand_in()
-        self.port('cp "$1" "$2"')
+        self.port(f'exec {TOP}/ports/numpy/port "$1" "$2"')
         for name in ("Oracle", "Port", "Check"):
             done = self.run_step(name)
             self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
