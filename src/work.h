@@ -12,9 +12,7 @@
 #include "mpc/mpc.h"
 #include "system/plan.h"
 
-/* Asked while fibers are laid, which may take long: false gives the start up. keep_on: NULL if nobody wants to be
- * asked.
- */
+/* Asked while fibers are laid, which may take long: false gives the start up. keep_on: NULL if nobody asks. */
 struct start_watch {
   bool (*keep_on)(void *context);
   void *context;

@@ -1,8 +1,8 @@
 /*
  * The pressure tensor and the configurational temperature, at the step of the row:
  *
- *   p_ab = (1/V) [sum of m w_a w_b + sum of r_a F_b + what contacts hand on],   T = <sum of |grad U|^2>/<laplacian of
- * U>
+ *   p_ab = (1/V) [sum of m w_a w_b + sum of r_a F_b + what contacts hand on],
+ *   T = <sum of |grad U|^2>/<laplacian of U>
  *
  * (Rugh 1997; Butler, Ayton, Jepps and Evans, J. Chem. Phys. 109, 6519 (1998)). U is the energy of bonds, bends,
  * springs of dumbbells, and of the medium's pairs; w velocities relative to the flow of the place, of the time at which

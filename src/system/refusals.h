@@ -1,8 +1,7 @@
 /*
- * What the keys of a model may not say together: one table, whose rows stand in refusals_list.h. docs/scene.md prints
- * it
- * (`uncross schema --document`), and tests/scene/test_refusals.c has a scene for each row. What depends on a number
- * that is told in the message is checked where this number is made: model_finish.c, medium.c, flow.c, fiber_finish.c,
+ * What the keys of a model may not say together: one table, whose rows stand in refusals_list.h. docs/scene.md has
+ * it as `uncross schema --document` prints it, and tests/scene/test_refusals.c has a scene for each row. Where a
+ * message tells a number, the check stands where this number is made: model_finish.c, medium.c, flow.c, fiber_finish.c,
  * bead.c.
  */
 #ifndef UNCROSS_SYSTEM_REFUSALS_H
