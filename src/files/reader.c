@@ -111,22 +111,23 @@ static void close_others(void)
 
 /* --- work -------------------------------------------------------------------------------------------------------- */
 
-static void serve(struct apart *link, const struct apart_work *works)
+static void serve(const struct apart_work *works)
 {
+  struct apart link = {.path = "", .socket = READER_SOCKET};
   struct apart_hello hello;
   char build[APART_BUILD];
   apart_build(build);
-  if (!apart_put(link, build, sizeof build) || !apart_get(link, &hello, sizeof hello))
+  if (!apart_put(&link, build, sizeof build) || !apart_get(&link, &hello, sizeof hello))
     return;
   hello.work[sizeof hello.work - 1] = hello.path[sizeof hello.path - 1] = '\0';
-  link->path = hello.path;
-  link->seconds = hello.seconds;
+  link.path = hello.path;
+  link.seconds = hello.seconds;
   limit_memory(hello.bytes);
-  apart_go_on(link);
+  apart_go_on(&link);
   while (works->name && strcmp(works->name, hello.work) != 0)
     works++;
   if (works->name)
-    works->serve(link);
+    works->serve(&link);
 }
 
 void reader_is_here(int count, char **words, const struct apart_work *works)
@@ -143,7 +144,6 @@ void reader_is_here(int count, char **words, const struct apart_work *works)
   set_signals();
   close_others();
   setrlimit(RLIMIT_CORE, &no_core);
-  struct apart link = {.path = "", .socket = READER_SOCKET};
-  serve(&link, works);
+  serve(works);
   _exit(0);
 }
