@@ -183,7 +183,8 @@ static void print_sums(const struct trace *ours, const struct trace *theirs, FIL
       any = true;
     }
   }
-  fputs(any ? "\n" : sums ? "no sum differs there\n" : "their trace has no sums\n", out);
+  const char *none = sums ? "no sum differs there; the hash is of step and lag, too\n" : "their trace has no sums\n";
+  fputs(any ? "\n" : none, out);
 }
 
 static void print_first(const struct trace *ours, const struct trace *theirs, enum difference what, FILE *out,
