@@ -357,6 +357,49 @@ static void order_in_a_plane(void **unused)
   end_of(o);
 }
 
+/* What a net force accelerates is no equilibrium: it pulls the solvent, behind which fibers lag. */
+static void no_memory_of_what_is_accelerated(void **unused)
+{
+  (void)unused;
+  struct scene scene = scene_of("box: [6, 6, 6]\ntime_step: 0.1\nsteps: 1\n"
+                                "solvent: {per_cell: 5, collision_interval: 0.1, acceleration: [2, 0, 0]}\n"
+                                "fibers: [{name: point, count: 60, vertices: 1, mass: 5}]\n");
+  assert_non_null(meaning_refusal(&scene.model, OBSERVE_MEMORY));
+  scene_free(&scene);
+}
+
+/* Gaussian chains of four in a bath, in a plane and in space. A mean over components is one over those that there are:
+ * <v.v>/d = kT/M of vertices and kT/4M of centers. A bond of such a chain has <b_x^2> K = kT, whatever d, so each of
+ * three adds (kT)^2 to <s_ab^2> of every shear component, of which a plane has one. The leap-frog's bonds have
+ * 1/(1 - (omega dt)^2/4) of it, omega^2 = K (2 - sqrt 2, 2, 2 + sqrt 2)/M: 0.25 % in the mean of the squares. */
+static void means_over_the_components_that_there_are(void **unused)
+{
+  (void)unused;
+  test_begin_statistics();
+  for (int d = 2; d <= 3; d++) {
+    char text[512];
+    snprintf(text, sizeof text,
+             "box: [10, 10, %d]\ndimensions: %d\ntime_step: 0.05\nsteps: 4000\nseed: 43\n"
+             "medium: {kind: private, rate: 1}\n"
+             "fibers: [{name: chain, count: 60, vertices: 4, mass: 2, bond_length: 0, spring: 2}]\n"
+             "crossing: {forbidden: false}\nobserve: {memory: {every: 10}}\n",
+             d == 2 ? 1 : 10, d);
+    struct outcome *o = run_of(text, OBSERVE_MEMORY);
+    const struct {
+      const char *column;
+      double expected;
+    } rows[] = {{"vertices", 0.5}, {"center", 0.125}, {"stress_memory", 3.0 * 1.0025}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+      char error[64];
+      snprintf(error, sizeof error, "%s_error", rows[k].column);
+      print_message("  %s in %d dimensions:", rows[k].column, d);
+      assert_sigma(kept_value(o->kept, "memory-chain", 0, rows[k].column),
+                   kept_value(o->kept, "memory-chain", 0, error), rows[k].expected, 4.5);
+    }
+    end_of(o);
+  }
+}
+
 /* The first row of contacts is the first that has a time before it. */
 static void contacts_begin_with_a_rate(void **unused)
 {
@@ -588,6 +631,8 @@ int main(void)
       cmocka_unit_test(drift_is_that_of_the_places),
       cmocka_unit_test(everything_everywhere),
       cmocka_unit_test(order_in_a_plane),
+      cmocka_unit_test(no_memory_of_what_is_accelerated),
+      cmocka_unit_test(means_over_the_components_that_there_are),
       cmocka_unit_test(stress_begins_with_an_average),
       cmocka_unit_test(contacts_begin_with_a_rate),
   };
