@@ -163,6 +163,7 @@ bool meaning_holds(enum circumstance where, const struct model *model)
 /* A bead is a place at which momentum leaves what is summed. */
 #define GIVEN_TO_BEAD "momentum that the solvent gives to the bead is not in "
 #define NO_TENSION "the tension of bonds is not in its stress; allowed without medium.inextensible"
+#define LAG "fibers lag behind the accelerated solvent by some v, which counts, as "
 #define HANDED_ON                                                                                                      \
   "with what contacts hand on, a mean since the row before; contacts that are called rigid hand on nothing"
 
@@ -188,6 +189,7 @@ const struct meaning meanings[] = {
     {OBSERVE_TEMPERATURE, IN_A_BATH_WITH_FLOW, MEANS, NULL, "about `flow`; in a sheared box about its linear flow"},
     {OBSERVE_TEMPERATURE, BY_A_FORCE_ON_FIBERS, MEANS, "vertex vertex_half_step",
      "a drift v against the solvent counts, as M v²/d"},
+    {OBSERVE_TEMPERATURE, ACCELERATED, MEANS, "vertex vertex_half_step", LAG "M v²/d"},
     {OBSERVE_TEMPERATURE, DRIFT_SPLIT, MEANS, "solvent solvent_x solvent_y solvent_z",
      "with forces of pairs, of half a step ahead, when collisions act"},
     {OBSERVE_TEMPERATURE, ANYWHERE, MEANS, NULL, "about the velocity of the center of mass"},
@@ -258,11 +260,14 @@ const struct meaning meanings[] = {
      "walls or a bead that is pulled"},
     {OBSERVE_MEMORY, BY_A_FORCE_ON_FIBERS, REFUSED, NULL,
      "it belongs to equilibrium, and a force pulls fibers; allowed without fibers.force"},
+    {OBSERVE_MEMORY, ACCELERATED, REFUSED, NULL,
+     "it belongs to equilibrium, and fibers lag behind what a net force accelerates; allowed without a net force"},
     {OBSERVE_MEMORY, INEXTENSIBLE, REFUSED, NULL, NO_TENSION},
     {OBSERVE_MEMORY, OVERDAMPED, LEFT_OUT, "vertices center", "there are no velocities"},
     {OBSERVE_MEMORY, THICK, LEFT_OUT, "stress_memory", "what thick fibers hand on at a contact is not in it"},
     {OBSERVE_MEMORY, BESIDE_FROZEN, MEANS, NULL, "of kinds that are not frozen; frozen ones have no table"},
-    {OBSERVE_MEMORY, ACCELERATED, MEANS, "vertices center", "about `flow` and the acceleration of everything"},
+    {OBSERVE_MEMORY, IN_A_PLANE, MEANS, "vertices center", "⟨v(0)·v(t)⟩/2"},
+    {OBSERVE_MEMORY, IN_A_PLANE, MEANS, "stress_memory", "of xy alone"},
     {OBSERVE_MEMORY, ANYWHERE, MEANS, NULL, "about `flow`"},
 
     {OBSERVE_PRESSURE, WITH_A_BEAD, REFUSED, NULL, GIVEN_TO_BEAD "it; allowed without a bead"},
@@ -283,6 +288,7 @@ const struct meaning meanings[] = {
     {OBSERVE_PRESSURE, IN_A_BATH_WITH_FLOW, MEANS, "pressure p_xx p_yy p_zz p_xy", "of vertices alone, about `flow`"},
     {OBSERVE_PRESSURE, BY_A_FORCE_ON_FIBERS, MEANS, "pressure p_xx p_yy p_zz p_xy",
      "a drift v against the solvent counts, as M v² per volume"},
+    {OBSERVE_PRESSURE, ACCELERATED, MEANS, "pressure p_xx p_yy p_zz p_xy", LAG "M v² per volume"},
     {OBSERVE_PRESSURE, DRIFT_SPLIT, MEANS, "pressure p_xx p_yy p_zz p_xy",
      "velocities of half a step ahead, when collisions act"},
     {OBSERVE_PRESSURE, ANYWHERE, MEANS, NULL, "about `flow`, and about the acceleration of everything"},

@@ -2,9 +2,10 @@
  * How long velocities and the stress of fibers are remembered, per kind of fiber: a table "memory-KIND" with a row per
  * lag, 0 and those of dynamics.h up to LONGEST samples.
  *
- *   vertices   <v(0).v(t)>/3 of vertices          center  the same of centres of mass
+ *   vertices   <v(0).v(t)>/d of vertices          center  the same of centres of mass
  *   stress     <s(0) s(t)> of one fiber, kT^2: s_ab = sum of r_a F_b, F the forces of bonds and bends, averaged over
- * xy, xz, yz. Over kT and the volume per fiber it is the relaxation modulus G(t) (Green and Kubo).
+ * xy, xz, yz, in a plane of xy alone. Over kT and the volume per fiber it is the relaxation modulus G(t) (Green and
+ * Kubo).
  *
  * Velocities are relative to the motion of everything (background.h) and half a step ahead, at both ends of a lag. Each
  * lag has an origin of its own: when the lag has passed, the present becomes the origin.
@@ -103,9 +104,10 @@ static void take(const struct view *view, double *sample)
     take_stress(view, f, &sample[3 * (size_t)m->vertices + STRESSES * (size_t)f]);
 }
 
+/* Those that leave the plane are 0 in it. */
 static double product(const double *a, const double *b)
 {
-  return (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) / 3.0;
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 /* Products of a fiber's values at both ends of a lag. */
@@ -113,17 +115,18 @@ static void correlate(const struct model *m, uint32_t fiber, const double *then,
 {
   const uint32_t first = m->fiber_first[fiber], n = m->fiber_first[fiber + 1] - first;
   const size_t stress = 3 * (size_t)m->vertices + STRESSES * (size_t)fiber;
+  const double d = m->dimensions, shears = 0.5 * d * (d - 1.0);
   double sum[2][3] = {{0.0}}, vertices = 0.0;
   for (uint32_t v = first; v < first + n; v++) {
-    vertices += product(&then[3 * v], &now[3 * v]) / n;
+    vertices += product(&then[3 * v], &now[3 * v]) / (d * n);
     for (int k = 0; k < 3; k++) {
       sum[0][k] += then[3 * v + (uint32_t)k] / n;
       sum[1][k] += now[3 * v + (uint32_t)k] / n;
     }
   }
   values[VERTICES_CENTER][0] = vertices;
-  values[VERTICES_CENTER][1] = product(sum[0], sum[1]);
-  values[STRESS][0] = product(&then[stress], &now[stress]);
+  values[VERTICES_CENTER][1] = product(sum[0], sum[1]) / d;
+  values[STRESS][0] = product(&then[stress], &now[stress]) / shears;
   values[STRESS][1] = 0.0;
 }
 
