@@ -309,7 +309,7 @@ class Outside(Start):
         above = 4 + 2.0**-40
         self.make(fibers, [0, 0, 0])
         for row, y, words in ((20, 4, None), (20, above, f"solvent particle 16 is at y = {above}, beyond the walls at 0 and 4"),
-                              (3, 4, None), (3, above, f"vertex 3 is beyond a wall, at y = {above} a0; at most 4 is allowed")):
+                              (3, 4, None), (3, above, f"vertex 3 is beyond a wall, at y = {above} a0; 0 to 4 is allowed")):
             with self.subTest(row=row, y=y):
                 with h5py.File(self.dir / "first/trajectory.h5", "a") as file:
                     place = file["particles/trajectory/position/value"]
