@@ -13,40 +13,111 @@
 #include "system/shear.h"
 #include "system/sound.h"
 
+/* --- what flows -------------------------------------------------------------------------------------------------- */
+
+#define FLOW_ROUNDING 1e-6 /* a0/t0 */
+#define FLOW_HEAT 6.0      /* standard deviations of the thermal velocity of a center of mass */
+#define FASTEST 131072.0   /* a0/t0, in the sums of motion_measure */
+
+/* Along y nothing may be said to flow across walls or shear. */
+static bool may_flow_along_y(const struct model *m)
+{
+  return m->box.boundary[1] == BOUNDARY_PERIODIC;
+}
+
 /* Whether a scene may say this flow. */
 static bool may_be_said(struct vec3 flow)
 {
   return fmax(fabs(flow.x), fmax(fabs(flow.y), fabs(flow.z))) <= MODEL_MOST_FLOW;
 }
 
-/* Where the scene says what flows, or else from what it starts. */
-static bool refuse_flow(const struct scene *scene, struct vec3 found, struct message *message)
+/* Where the scene says what flows, or else from what it starts. crossed: along y, where nothing may. */
+static bool refuse_flow(const struct scene *scene, struct vec3 found, bool crossed, struct message *message)
 {
-  return scene_refuse_at(scene, scene_says(scene, "flow") ? "flow" : "start.snapshot", "flow", message,
-                         "the center of mass of '%s' moves at [%.9g, %.9g, %.9g] a0/t0, and a snapshot is given no "
-                         "other velocity; %s (a flow is at most %g along each axis)",
+  const struct model *m = &scene->model;
+  const char *key = scene_says(scene, "flow") ? "flow" : "start.snapshot";
+  if (!isfinite(found.x + found.y + found.z))
+    return scene_refuse_at(scene, "start.snapshot", "start.snapshot", message,
+                           "a velocity in '%s' is beyond what can be summed; allowed: up to %g a0/t0", scene->snapshot,
+                           FASTEST);
+  found.y = may_flow_along_y(m) || crossed ? found.y : 0.0;
+  return scene_refuse_at(scene, key, "flow", message,
+                         "the center of mass of '%s' moves at [%.9g, %.9g, %.9g] a0/t0%s, and a snapshot is given no "
+                         "other velocity; %s (a flow is at most %g along each axis%s)",
                          scene->snapshot, found.x, found.y, found.z,
-                         may_be_said(found) ? "allowed: that one" : "no scene starts from it", MODEL_MOST_FLOW);
+                         model_is_sheared(m) ? " about the linear flow" : "",
+                         may_be_said(found) && !crossed ? "allowed: that one" : "no scene starts from it",
+                         MODEL_MOST_FLOW, may_flow_along_y(m) ? "" : ", none along y across walls or shear");
 }
 
-#define FLOW_ROUNDING 1e-6 /* a0/t0 */
-#define FLOW_HEAT 6.0      /* standard deviations of the thermal velocity of a center of mass */
+/* Sums over all particles: m (y - L/2), of a vertex of its image there, and M^2 of what moves by itself. */
+struct heights {
+  double moment, squares;
+};
+
+static struct heights sum_heights(const struct model *m, const struct state *state)
+{
+  const double middle = 0.5 * m->box.cells[1];
+  struct heights h = {0.0, state->solvent.n};
+  for (uint32_t i = 0; i < state->solvent.n; i++)
+    h.moment += (double)state->solvent.y[i] * LATTICE_UNIT - middle;
+  for (uint32_t f = 0; f < m->fibers; f++) {
+    double mass = 0.0;
+    for (uint32_t v = m->fiber_first[f]; v < m->fiber_first[f + 1]; v++) {
+      mass += m->mass[v];
+      h.moment += m->mass[v] * ((double)state->position[v].y * LATTICE_UNIT - middle);
+    }
+    h.squares += mass * mass;
+  }
+  return h;
+}
+
+/* The velocity of the center of mass, and how much of it is no flow, along each axis. */
+struct center {
+  struct vec3 velocity, most;
+};
+
+/* Images of a sheared box hand momentum on: that of the laboratory is rate M <y - L/2> off at any time. About the
+ * linear flow nothing is handed on, while the rate stays the same; while it changes, <y> has the scatter of so many
+ * bodies. */
+static void look_at_shear(const struct model *m, const struct state *state, double mass, struct center *c)
+{
+  const double rate = shear_rate(m, 0), edge = m->box.cells[1];
+  const struct heights h = sum_heights(m, state);
+  if (m->wave.intervals == 0)
+    c->velocity.x -= rate * h.moment / mass;
+  else
+    c->most.x =
+        FLOW_HEAT * sqrt(1.0 / mass + m->shear.rate * m->shear.rate * edge * edge / 12.0 * h.squares / (mass * mass));
+}
+
+static struct center look_at_center(const struct model *m, const struct state *state, struct work *work)
+{
+  const struct motion motion = motion_measure(m, state, work->fiber.force);
+  const double mass = m->total_mass + m->bead.mass;
+  const double heat = FLOW_HEAT / sqrt(mass), most = vec3_norm(m->flow) > 0.0 ? FLOW_ROUNDING : heat;
+  const struct vec3 vertices = vec3_add(motion.vertex.momentum, motion.bead.momentum);
+  struct center c = {vec3_scale(1.0 / mass, vec3_add(motion.solvent.sum, vertices)),
+                     {most, may_flow_along_y(m) ? most : heat, most}};
+  if (model_is_sheared(m))
+    look_at_shear(m, state, mass, &c);
+  return c;
+}
 
 /* A snapshot's displacements are counted from the scene's flow, and its moves may be made in that frame: so it must
- * flow like that. A bath, in which momentum is not kept, takes any snapshot along. */
+ * flow like that. What takes momentum up, a bath, walls, frozen fibers, takes any snapshot along. */
 static bool flows_as_said(const struct scene *scene, const struct state *state, struct work *work,
                           struct message *message)
 {
   const struct model *m = &scene->model;
-  if (!model_keeps_momentum(m))
+  const struct vec3 axes = start_conserved_axes(m);
+  if (m->frozen > 0 || vec3_norm(axes) == 0.0)
     return true;
-  const struct motion motion = motion_measure(m, state, work->fiber.force);
-  const double mass = m->total_mass + m->bead.mass;
-  const struct vec3 vertices = vec3_add(motion.vertex.momentum, motion.bead.momentum);
-  const struct vec3 found = vec3_scale(1.0 / mass, vec3_add(motion.solvent.sum, vertices));
-  const struct vec3 off = vec3_sub(found, m->flow);
-  const double most = vec3_norm(m->flow) > 0.0 ? FLOW_ROUNDING : FLOW_HEAT / sqrt(mass);
-  return (fabs(off.x) <= most && fabs(off.y) <= most && fabs(off.z) <= most) || refuse_flow(scene, found, message);
+  const struct center c = look_at_center(m, state, work);
+  const struct vec3 off = vec3_sub(c.velocity, m->flow);
+  const bool along_y = axes.y * fabs(off.y) <= c.most.y;
+  return (fabs(off.x) <= c.most.x && along_y && fabs(off.z) <= c.most.z) ||
+         refuse_flow(scene, c.velocity, !along_y && !may_flow_along_y(m), message);
 }
 
 /* A scene in a plane takes no snapshot of something in space. */

@@ -8,9 +8,7 @@
 #include "system/bead.h"
 #include "system/shear.h"
 
-/* The axes along which the total momentum is conserved. A random solvent and walls take up momentum, slip walls only
- * along y. */
-static struct vec3 conserved_axes(const struct model *model)
+struct vec3 start_conserved_axes(const struct model *model)
 {
   const double y = !model_has_walls(model), along = y != 0.0 || model->walls.kind == WALL_SLIP;
   return !model_keeps_momentum(model) || model->total_mass == 0.0 ? (struct vec3){0, 0, 0}
@@ -31,7 +29,7 @@ static void set_total_momentum(struct state *state, const struct model *model)
   if (state->beads > 0)
     p = vec3_add_scaled(p, model->bead.mass, state->bead->velocity);
 
-  const struct vec3 axes = conserved_axes(model);
+  const struct vec3 axes = start_conserved_axes(model);
   const double mass = model->total_mass + model->bead.mass, each = mass > 0.0 ? -1.0 / mass : 0.0;
   const struct vec3 change =
       vec3_add_scaled(model->flow, each, (struct vec3){axes.x * p.x, axes.y * p.y, axes.z * p.z});

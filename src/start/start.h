@@ -9,6 +9,10 @@
  * if a bond does not fit the box. The work may have served another state. */
 bool start_state(struct state *state, const struct model *model, struct work *work);
 
+/* 1 along the axes along which the total momentum is conserved, else 0. A random solvent and walls take up momentum,
+ * slip walls only along y. */
+struct vec3 start_conserved_axes(const struct model *model);
+
 /* Gives the velocities of a state that was made without a drive those of a start: total momentum, and half steps ahead
  * of and behind the drive (system/bead.h). Nothing without a driven bead. */
 void start_begin_drive(struct state *state, const struct model *model);

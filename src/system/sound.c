@@ -80,7 +80,7 @@ static bool dumbbells_sound(const struct state *s, const struct model *m, struct
       const bool wall = m->box.boundary[k] == BOUNDARY_WALL, slides = k == 0 && m->box.boundary[1] == BOUNDARY_SHEAR;
       if (r < -longest || r > longest || (wall && r != between) ||
           (!wall && !slides && lattice_fold(r, m->box.edge[k]) != lattice_fold(between, m->box.edge[k])))
-        return fault_record(fault, FAULT_DUMBBELL, s->step, d->id[p], (double)r * LATTICE_UNIT, LATTICE_MAX_MOVE);
+        return fault_record(fault, FAULT_DUMBBELL, s->step, d->id[p], fabs((double)r * LATTICE_UNIT), LATTICE_MAX_MOVE);
     }
   return true;
 }
