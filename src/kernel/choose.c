@@ -1,5 +1,7 @@
 #include "kernel/choose.h"
 
+#include "kernel/collide.h"
+
 /* Boundaries that leave particles alone that are clear of both ends of the box (enum course in solvent.c). */
 static const bool free_inside[BOUNDARIES] = {
     [BOUNDARY_PERIODIC] = true, [BOUNDARY_WALL] = true, [BOUNDARY_SHEAR] = true};
@@ -20,12 +22,16 @@ struct kernel_parts kernel_parts_for(const struct model *m)
 struct kernel kernel_mix(const struct kernel *fast, const struct model *model)
 {
   const struct kernel_parts parts = kernel_parts_for(model);
+  const struct kernel_ways *plain = &kernel_short.ways;
+  if (fast == &kernel_plain)
+    return kernel_plain;
   return (struct kernel){.name = fast->name,
-                         .gather = parts.gather ? fast->gather : kernel_plain.gather,
-                         .solve = parts.solve ? fast->solve : kernel_plain.solve,
-                         .energies = parts.turn ? fast->energies : kernel_plain.energies,
-                         .canonical = parts.solve ? fast->canonical : kernel_plain.canonical,
-                         .turn = parts.turn ? fast->turn : kernel_plain.turn};
+                         .collide = fast->collide,
+                         .ways = {.gather = parts.gather ? fast->ways.gather : plain->gather,
+                                  .solve = parts.solve ? fast->ways.solve : plain->solve,
+                                  .energies = parts.turn ? fast->ways.energies : plain->energies,
+                                  .canonical = parts.solve ? fast->ways.canonical : plain->canonical,
+                                  .turn = parts.turn ? fast->ways.turn : plain->turn}};
 }
 
 struct kernel kernel_choose(const struct model *model)

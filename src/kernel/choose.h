@@ -12,18 +12,19 @@ struct kernel_row {
 
 extern const struct kernel kernel_sse2, kernel_avx2, kernel_avx512;
 
-/* All of them. Built with PLAIN=1 there is none. */
+/* All of them. Built with PLAIN=1 there is kernel_short only (kernel/collide.h). */
 extern const struct kernel_row kernel_rows[];
 extern const size_t kernel_row_count;
 
-/* Which parts of a fast kernel a scene can use. The others are done by the plain one. */
+/* Which ways of a fast kernel a scene can use. The others are those that suit every scene (kernel/collide.h). */
 struct kernel_parts {
   bool gather, solve, turn;
 };
 
 struct kernel_parts kernel_parts_for(const struct model *model);
 
-/* The parts of a fast kernel that the model can use, and those of the plain one for the rest. */
+/* A fast kernel with the ways that the model can use, and those that suit every scene for the rest. The plain one is
+ * returned as it is. */
 struct kernel kernel_mix(const struct kernel *fast, const struct model *model);
 
 /* The kernel for this model on this processor. */

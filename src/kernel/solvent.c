@@ -11,6 +11,7 @@
 #include "fluid/flight_lanes.h"
 #include "fluid/fluid.h"
 #include "kernel/choose.h"
+#include "kernel/collide.h"
 #include "mpc/border.h"
 #include "mpc/gather_lanes.h"
 #include "mpc/members.h"
@@ -87,7 +88,7 @@ INLINE bool gather_all(struct state *state, const struct model *model, struct mp
   for (uint32_t m; i < whole; i += m) {
     m = whole - i < chunk ? whole - i : chunk;
     if (course == COURSE_CLEAR && !flight_stays_lanes(&f[1], i, m, clear)) {
-      if (!kernel_plain.gather(state, model, c, step, i, m, span, fault))
+      if (!kernel_short.ways.gather(state, model, c, step, i, m, span, fault))
         return false;
       continue;
     }
@@ -113,7 +114,7 @@ INLINE bool gather_all(struct state *state, const struct model *model, struct mp
     *span |= size;
   }
   if (course != COURSE_THERE)
-    return i == end || kernel_plain.gather(state, model, c, step, i, end - i, span, fault);
+    return i == end || kernel_short.ways.gather(state, model, c, step, i, end - i, span, fault);
   bin_and_add(state, model, c, step, i, end - i, span);
   return true;
 }
@@ -242,14 +243,14 @@ static uint64_t energies_fast(const struct state *state, struct mpc *c, uint32_t
       store_words(&energy[k], e);
     }
     if (any(size) >= CELL_LANES_MOST)
-      return span | kernel_plain.energies(state, c, i, end - i, total);
+      return span | kernel_short.ways.energies(state, c, i, end - i, total);
     if (total)
       *total += sum_of(sums);
     for (uint32_t k = 0; k < m && !total; k++)
       sum[c->solvent_cell[i + k]] += (uint64_t)energy[k];
     span |= any(size);
   }
-  return span | kernel_plain.energies(state, c, whole, end - whole, total);
+  return span | kernel_short.ways.energies(state, c, whole, end - whole, total);
 }
 
 /* --- turns ------------------------------------------------------------------------------------------------------- */
@@ -294,8 +295,9 @@ static void turn_fast(struct state *state, const struct model *model, const stru
 }
 
 const struct kernel KERNEL = {.name = KERNEL_NAME,
-                              .gather = gather_fast,
-                              .solve = solve_fast,
-                              .energies = energies_fast,
-                              .canonical = thermostat_canonical_lanes,
-                              .turn = turn_fast};
+                              .collide = kernel_collide,
+                              .ways = {.gather = gather_fast,
+                                       .solve = solve_fast,
+                                       .energies = energies_fast,
+                                       .canonical = thermostat_canonical_lanes,
+                                       .turn = turn_fast}};

@@ -86,4 +86,10 @@ static inline double cell_energy(const struct cell_turn *turn, double mass, stru
   return turn->active * mass * vec3_dot(w, w);
 }
 
+/* The same in units of 2^-32 kT, as cells sum it; beyond their range it has the sign bit. */
+static inline uint64_t cell_whole_energy(const struct cell_turn *turn, double mass, struct vec3 v)
+{
+  return (uint64_t)llrint(CELL_ENERGY_SCALE * cell_energy(turn, mass, v));
+}
+
 #endif

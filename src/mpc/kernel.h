@@ -1,8 +1,7 @@
 /*
- * How a collision goes through many solvent particles and cells: the contract of the rows in src/kernel/. The plain
- * kernel, in collide.c, calls the functions of the scene's fluid, border and rule one after the other. A fast kernel
- * does some of this at once, for several particles in one register. It gives the same bits of positions, velocities,
- * sums, turns and faults as the plain one (tests/kernel/).
+ * How a collision is done: the plain way (collide.c) or a faster one (src/kernel/). A faster one goes through several
+ * particles or cells at once, and shorter ways where nobody reads the sums of cells. It gives the same bits of
+ * positions, velocities, sums, turns and faults as the plain one (tests/contract/test_kernels, tests/kernel/).
  */
 #ifndef UNCROSS_MPC_KERNEL_H
 #define UNCROSS_MPC_KERNEL_H
@@ -24,9 +23,8 @@ struct solved {
                     * there are no virtual members (else cell_freedoms) */
 };
 
-struct kernel {
-  const char *name;
-
+/* Private to src/kernel/collide.c: what it puts a collision together of. */
+struct kernel_ways {
   /* n particles, from place `first` of memory on, fly for the time by which the solvent is late, which is not 0. They
    * get their cells (mpc->solvent_cell, on the grid of mpc->shift) and are added to the sums there. The bitwise or of
    * what add_particles of struct collision_rule returns goes into *span. False, with the fault recorded, if one would
@@ -35,7 +33,7 @@ struct kernel {
                  uint32_t n, uint64_t *span, struct fault *fault);
 
   /* solve of struct collision_rule. Cells with fewer than two members get any finite center, and any axis. Returns
-   * what all cells have together. `last`: nobody reads the sums after this. A kernel may then clear them, and sets
+   * what all cells have together. `last`: nobody reads the sums after this. They may then be cleared, which sets
    * mpc->sum_is_clear. */
   struct solved (*solve)(const struct model *model, struct mpc *mpc, uint64_t step, bool last);
 
@@ -49,6 +47,15 @@ struct kernel {
 
   /* apply of struct collision_rule. */
   void (*turn)(struct state *state, const struct model *model, const struct mpc *mpc, bool scaled);
+};
+
+struct kernel {
+  const char *name;
+
+  /* mpc_collide (collide.h). */
+  bool (*collide)(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step, struct fault *fault);
+
+  struct kernel_ways ways; /* empty: the plain one */
 };
 
 extern const struct kernel kernel_plain;

@@ -49,11 +49,9 @@ struct mpc {
   struct point shift;     /* of the grid (grid_shift), lattice units */
   uint32_t cells;         /* all cells of the box; with a random solvent, those that hold a vertex */
   struct cell_sum *sum;   /* [cells] */
-  bool sum_is_clear;      /* all of `sum` is 0: the kernel cleared each cell when nobody needed it any more */
-  bool keeps_sums;        /* for tests: it never does */
   struct cell_turn *turn; /* [cells] */
   int64_t *relative;      /* [cells] twice the kinetic energy relative to v_cm, 2^-32 kT; thermostat only, else NULL.
-                           * Not filled where one sum of all cells will do (collide.c) */
+                           * Not filled where one sum of all cells will do (kernel/collide.c) */
   uint32_t *solvent_cell; /* [particles] the same for particles, in memory order */
   uint32_t *vertex_cell;  /* [vertices] place of the vertex's cell in sum and turn */
   uint32_t *occupied;     /* [vertices] numbers of the cells that hold a vertex; random solvent only, else NULL */
@@ -75,6 +73,8 @@ struct mpc {
   struct mpc_bead bead;      /* empty without one */
   bool prefetch;             /* sums and turns of cells are far in memory: they are asked for ahead of their use */
   uint32_t since_sort;       /* collisions since particles were last sorted by cell */
+  bool sum_is_clear;         /* of src/kernel/: all of `sum` is 0, cleared when nobody needed it any more */
+  bool keeps_sums;           /* of src/kernel/, for tests: it never clears them */
 };
 
 /* Allocates the scratch for the collisions of this model. `everything`: also what only other scenes need, for callers

@@ -107,9 +107,9 @@ void thermostat_set_factor(struct mpc *c, double freedoms, energy_sum energy)
 
 /* One factor for all cells: a cell of N members has d (N-1) degrees of freedom with kT/2 each
  * (Padding 2009, step 4: "rescale velocities relative to center-of-mass velocity"). */
-static void rescale(struct mpc *c, const struct model *model, uint64_t step, bool last)
+static void rescale(struct mpc *c, const struct model *model, uint64_t step)
 {
-  (void)step, (void)last;
+  (void)step;
   struct heat heat = {0};
   heat_add(&heat, c, model, 0, c->cells);
   thermostat_set_factor(c, heat.freedoms, heat.energy);
@@ -153,19 +153,16 @@ void thermostat_canonical(const struct model *model, struct mpc *c, uint64_t ste
   }
 }
 
-static void maxwell_boltzmann(struct mpc *c, const struct model *model, uint64_t step, bool last)
+static void maxwell_boltzmann(struct mpc *c, const struct model *model, uint64_t step)
 {
-  if (c->filled)
-    thermostat_canonical(model, c, step, 0);
-  else
-    c->kernel.canonical(model, c, step, last);
+  thermostat_canonical(model, c, step, 0);
 }
 
 /* A factor for each row of cells of the shifted grid along y: Tao, Goetze and Gompper, J. Chem. Phys. 128, 144902
  * (2008). Cell (z Ry + y) Lx + x is in row y. */
-static void rescale_layers(struct mpc *c, const struct model *model, uint64_t step, bool last)
+static void rescale_layers(struct mpc *c, const struct model *model, uint64_t step)
 {
-  (void)step, (void)last;
+  (void)step;
   const uint32_t lx = (uint32_t)model->box.rows[0], ly = (uint32_t)model->box.rows[1];
   for (uint32_t row = 0; row < ly; row++) {
     struct heat heat = {0};

@@ -8,12 +8,10 @@ struct thermostat {
   const char *name; /* as in scenes */
 
   bool layered; /* fixes the energy of each row of cells along y; else that of none, or of all together */
-  bool common;  /* one factor for all cells. Where nobody reads sums of cells, thermostat_set_factor takes the place of
-                 * `factors`, and mpc->relative is not filled */
+  bool common;  /* one factor for all cells: thermostat_set_factor may take the place of `factors` (src/kernel/) */
 
-  /* Sets the factor of every cell that has members to collide, from the relative kinetic energies (mpc->relative).
-   * last: nobody reads the sums of cells after this. They may then be cleared (mpc->sum_is_clear). */
-  void (*factors)(struct mpc *mpc, const struct model *model, uint64_t step, bool last);
+  /* Sets the factor of every cell that has members to collide, from the relative kinetic energies (mpc->relative). */
+  void (*factors)(struct mpc *mpc, const struct model *model, uint64_t step);
 };
 
 /* The thermostat of this kind; NULL: none. */

@@ -59,7 +59,7 @@ static void every_choice_ends_in_the_same_state(void **unused)
         for (uint32_t bits = 0; bits < 8; bits++)
           compare_if_accepted(with((struct choice){.rule = rule, .thermostat = thermostat, .bath = bath}, bits));
   print_message("  %u runs compared with those of the plain kernel\n", compared);
-  assert_true(compared > 0 || kernel_row_count == 0);
+  assert_true(compared > 0);
 }
 
 int main(void)

@@ -813,13 +813,13 @@ static void runs_get_the_best(void **unused)
   for (size_t k = 0; k < kernel_row_count; k++)
     best = kernel_rows[k].runs() ? kernel_rows[k].kernel : best;
   struct test_run r = test_start(dense());
-  assert_ptr_equal(r.work.mpc.kernel.gather, best->gather);
-  assert_ptr_equal(r.work.mpc.kernel.solve, best->solve);
-  assert_ptr_equal(r.work.mpc.kernel.energies, best->energies);
-  assert_ptr_equal(r.work.mpc.kernel.canonical, best->canonical);
-  assert_ptr_equal(r.work.mpc.kernel.turn, best->turn);
+  assert_ptr_equal(r.work.mpc.kernel.ways.gather, best->ways.gather);
+  assert_ptr_equal(r.work.mpc.kernel.ways.solve, best->ways.solve);
+  assert_ptr_equal(r.work.mpc.kernel.ways.energies, best->ways.energies);
+  assert_ptr_equal(r.work.mpc.kernel.ways.canonical, best->ways.canonical);
+  assert_ptr_equal(r.work.mpc.kernel.ways.turn, best->ways.turn);
   assert_true(work_add_everything(&r.work, &r.model));
-  assert_ptr_equal(r.work.mpc.kernel.gather, best->gather);
+  assert_ptr_equal(r.work.mpc.kernel.ways.gather, best->ways.gather);
   test_end(&r);
 }
 
