@@ -48,6 +48,21 @@ with uncross.FolderRun(SCENE, "run") as run:
         assert pool.map(work, range(4)) == [0, 1, 4, 9]
     run.advance()
 """
+# The child lives on, and has copies of all that the parent had open, while the parent closes its run and goes on with it.
+LIVES = """
+reading, writing = os.pipe()
+with uncross.FolderRun(SCENE, "run") as run:
+    run.advance(20)
+    child = os.fork()
+    if child == 0:
+        os.close(writing)
+        os.read(reading, 1)
+        os._exit(0)
+with uncross.FolderRun(SCENE, "run", resume=True) as run:
+    run.advance()
+os.close(writing)
+assert os.waitpid(child, 0)[1] == 0
+"""
 STUBBORN = """
         for act in (lambda: run.advance(3), run.save):
             try:
@@ -61,7 +76,7 @@ STUBBORN = """
         sys.exit(0)
 """
 WAYS = {"sys.exit": FORK % "sys.exit(0)", "os._exit": FORK % "os._exit(0)", "close": FORK % "run.close(); sys.exit(0)",
-        "exec": FORK % 'os.execvp("true", ["true"])', "stubborn": FORK % STUBBORN.strip(), "pool": POOL}
+        "exec": FORK % 'os.execvp("true", ["true"])', "stubborn": FORK % STUBBORN.strip(), "pool": POOL, "lives": LIVES}
 
 
 class Fork(FolderTest):

@@ -1,6 +1,6 @@
 """Threads of a host that use HDF5 at the same time, by h5py or by other runs: the library reads its files all the same.
 
-Needs BUILD, the build folder, with the libraries in it.
+Needs BUILD, the build folder, with the libraries in it, and UNCROSS.
 """
 import os
 import pathlib
@@ -9,7 +9,7 @@ import sys
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from support import BUILD, TOP, FolderTest  # noqa: E402
+from support import BUILD, TOP, FolderTest, uncross  # noqa: E402
 
 BEGIN = """import os, sys, threading
 import h5py, numpy
@@ -58,6 +58,24 @@ for k in range(4):
     work(f"alone-{k}", k)
     assert hashes[f"alone-{k}"] == hashes[f"at-once-{k}"], k
 """
+# The process that writes a trajectory looks at it by h5py, between frames and while another thread writes frames.
+OWN = """
+with uncross.FolderRun(SCENE, "run") as run:
+    run.advance(10)
+    with h5py.File("run/trajectory.h5") as file:
+        assert list(file["particles/trajectory/position/step"]) == [0, 2, 4, 6, 8, 10]
+    thread = threading.Thread(target=run.advance, args=(20,))
+    thread.start()
+    while thread.is_alive():
+        try:
+            with h5py.File("run/trajectory.h5") as file:
+                assert len(file["particles/trajectory/position/value"]) >= 6
+        except BlockingIOError:  # a frame is being written
+            pass
+    thread.join()
+    with h5py.File("run/trajectory.h5") as file:
+        assert len(file["particles/trajectory/position/value"]) == 16
+"""
 
 
 class Threads(FolderTest):
@@ -72,6 +90,10 @@ class Threads(FolderTest):
         self.run_script('uncross.Run(SCENE).advance(5).save("saved.h5")')
         for _ in range(2):
             self.run_script(BUSY)
+
+    def test_the_own_trajectory(self):
+        self.run_script(OWN)
+        self.assertEqual(uncross("verify", self.dir / "run").returncode, 0)
 
     def test_runs_in_many_threads(self):
         self.run_script(MANY)

@@ -274,6 +274,37 @@ static void a_reader_is_found_or_missed(void **unused)
   remove_folder(folder);
 }
 
+/* Nothing that the host has open, and did not keep from its children, is there when the reader begins: a lock of
+ * another thread would stay until the reader has closed it. The reader is a script here, which lists what it has. */
+static void it_begins_with_nothing_of_its_host(void **unused)
+{
+  (void)unused;
+  char folder[64], ours[PATH_MAX], text[2 * PATH_MAX], seen[4096] = "";
+  make_folder(folder);
+  const char *path = in_folder(folder, "f"), *lister = in_folder(folder, "uncross"), *list = in_folder(folder, "list");
+  struct apart parent;
+  struct message message = {""};
+  spill(path, "data", 4);
+  snprintf(ours, sizeof ours, "%s", getenv("UNCROSS_READER"));
+  const int length =
+      snprintf(text, sizeof text, "#!/bin/sh\nfor fd in /proc/$$/fd/*; do readlink $fd; done >%s\n", list);
+  spill(lister, text, (size_t)length);
+  assert_int_equal(chmod(lister, 0755), 0);
+  setenv("UNCROSS_READER", lister, 1);
+  assert_int_equal(dup2(open(path, O_RDONLY), 50), 50); /* not closed by exec */
+  assert_false(apart_start(&parent, path, "leave", &message));
+  setenv("UNCROSS_READER", ours, 1);
+  FILE *file = fopen(list, "r");
+  assert_non_null(file);
+  assert_true(fread(seen, 1, sizeof seen - 1, file) > 0);
+  fclose(file);
+  close(50);
+  assert_non_null(strstr(seen, "socket"));
+  if (strstr(seen, path))
+    fail_msg("a reader has its host's file: %s", seen);
+  remove_folder(folder);
+}
+
 static void it_reaches_nothing_else(void **unused)
 {
   (void)unused;
@@ -300,10 +331,13 @@ static void it_reaches_nothing_else(void **unused)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(numbers_are_handed_over), cmocka_unit_test(every_end_is_told),
-      cmocka_unit_test(the_parent_may_let_go),   cmocka_unit_test(patience_has_an_end),
-      cmocka_unit_test(it_ends_with_its_parent), cmocka_unit_test(a_reader_is_found_or_missed),
-      cmocka_unit_test(it_reaches_nothing_else)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(numbers_are_handed_over),
+                                     cmocka_unit_test(every_end_is_told),
+                                     cmocka_unit_test(the_parent_may_let_go),
+                                     cmocka_unit_test(patience_has_an_end),
+                                     cmocka_unit_test(it_ends_with_its_parent),
+                                     cmocka_unit_test(a_reader_is_found_or_missed),
+                                     cmocka_unit_test(it_begins_with_nothing_of_its_host),
+                                     cmocka_unit_test(it_reaches_nothing_else)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

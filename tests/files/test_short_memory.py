@@ -1,0 +1,81 @@
+"""Memory that runs short while a run is begun or resumed (ulimit -v): the program says so with an exit code of its own. No file
+is called damaged or moved for it, and a resumed folder stays as it was. Needs UNCROSS."""
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+from damage import SCENE  # noqa: E402
+from support import UNCROSS, uncross  # noqa: E402
+
+STEP = 200  # KiB; windows in which one sort of failure was seen are 200 to 1000 KiB wide
+BELOW = 60  # limits below the first one with which all goes well
+
+
+@unittest.skipIf("ASAN_OPTIONS" in os.environ, "sanitizers map terabytes")
+class ShortMemory(unittest.TestCase):
+    def setUp(self):
+        place = tempfile.TemporaryDirectory()
+        self.addCleanup(place.cleanup)
+        self.dir = pathlib.Path(place.name)
+        (self.dir / "s.yaml").write_text(SCENE)
+        uncross("run", "s.yaml", "--out", "begun", "--steps", "10", "--quiet", cwd=self.dir, check=True)
+
+    def limited(self, kib, *words):
+        return subprocess.run(["bash", "-c", f'ulimit -v {kib}; exec "$@"', "limited", UNCROSS, *words], cwd=self.dir,
+                              capture_output=True, text=True, check=False)
+
+    def try_all(self, act):
+        """act(limit): True if the work was done. From a limit that is enough, downwards."""
+        few, many = 4000, 400000
+        self.assertTrue(act(many))
+        while many - few > STEP:
+            middle = (few + many) // 2
+            few, many = (few, middle) if act(middle) else (middle, many)
+        for k in range(1, BELOW):
+            act(many - k * STEP)
+
+    def test_resume(self):
+        folder = self.dir / "run"
+        whole = {path.name: path.read_bytes() for path in (self.dir / "begun").iterdir()}
+
+        def act(limit):
+            shutil.rmtree(folder, ignore_errors=True)
+            shutil.copytree(self.dir / "begun", folder)
+            done = self.limited(limit, "run", "s.yaml", "--out", "run", "--resume", "--quiet")
+            told = f"ulimit -v {limit}: {done.returncode}: {done.stderr}"
+            self.assertIn(done.returncode, (0, 1, 2, 4, 127), told)  # 127: not even the program can be loaded
+            self.assertNotRegex(done.stderr, "damaged|dies of it", told)
+            self.assertEqual(list(folder.glob("*.damaged*")), [], told)
+            if done.returncode != 0:
+                self.assertNotEqual(done.stderr, "", told)
+                left = {path.name: path.read_bytes() for path in folder.iterdir() if path.name != "run.json"}
+                self.assertEqual([name for name in whole if name != "run.json" and left.get(name) != whole[name]], [], told)
+            return done.returncode == 0
+
+        self.try_all(act)
+
+    def test_new_run(self):
+        folder = self.dir / "run"
+
+        def act(limit):
+            shutil.rmtree(folder, ignore_errors=True)
+            done = self.limited(limit, "run", "s.yaml", "--out", "run", "--quiet")
+            told = f"ulimit -v {limit}: {done.returncode}: {done.stderr}"
+            self.assertIn(done.returncode, (0, 1, 2, 4, 127), told)
+            self.assertTrue(done.returncode == 0 or done.stderr, told)
+            self.assertFalse(re.search("damaged|exists", done.stderr), told)
+            self.assertTrue(done.returncode == 0 or not folder.exists() or (folder / "checkpoint.h5").exists(), told)
+            return done.returncode == 0
+
+        self.try_all(act)
+
+
+if __name__ == "__main__":
+    unittest.main()
