@@ -1,4 +1,4 @@
-#define _DEFAULT_SOURCE /* madvise. NOLINT(bugprone-reserved-identifier) */
+#define _DEFAULT_SOURCE /* madvise, MAP_ANONYMOUS. NOLINT(bugprone-reserved-identifier) */
 #include "base/memory.h"
 
 #include <stdint.h>
@@ -62,6 +62,12 @@ void memory_release(const struct memory_need *need, size_t needs)
     free(*need[k].where);
     *need[k].where = NULL;
   }
+}
+
+bool memory_to_spare(size_t bytes)
+{
+  void *room = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  return room != MAP_FAILED && munmap(room, bytes) == 0;
 }
 
 uint64_t memory_bytes(const struct memory_need *need, size_t needs)

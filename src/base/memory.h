@@ -31,6 +31,10 @@ bool memory_take(const struct memory_need *need, size_t needs);
 /* Frees all of them, and sets them to NULL. */
 void memory_release(const struct memory_need *need, size_t needs);
 
+/* Whether so many bytes could be had now; they are not taken, nor written to. For what is to happen before a library is
+ * called that does not bear to be refused memory. */
+bool memory_to_spare(size_t bytes);
+
 /* Bytes of all of them. */
 uint64_t memory_bytes(const struct memory_need *need, size_t needs);
 

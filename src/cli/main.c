@@ -5,6 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/memory.h"
 #include "base/text.h"
 #include "cli/check_start.h"
 #include "cli/command.h"
@@ -16,6 +17,8 @@
 #include "oracle/pack.h"
 #include "scene/scene.h"
 #include "version.h"
+
+#define LEAST_MEMORY ((size_t)4 << 20) /* bytes: some libraries crash when they are refused a little */
 
 /* What was to be printed must have arrived where it went. After a failure nothing more is said. */
 static enum exit_code told(enum exit_code code)
@@ -284,6 +287,10 @@ int main(int count, char **words)
     return told(cite());
   if (strcmp(words[1], "oracle") == 0)
     return oracle(words[0], count - 1, words + 1);
+  if (!memory_to_spare(LEAST_MEMORY)) {
+    fprintf(stderr, "uncross: no memory: there are not %zu MiB to spare\n", LEAST_MEMORY >> 20);
+    return EXIT_TROUBLE;
+  }
   const enum command_code command = find_command(words[1], NULL);
   return command < COMMANDS ? dispatch(words[0], command, count - 1, words + 1)
                             : usage_error("", "unknown command %s", words[1]);

@@ -1,3 +1,4 @@
+#define _GNU_SOURCE /* posix_spawn_file_actions_addclosefrom_np. NOLINT(bugprone-reserved-identifier) */
 #include "files/apart.h"
 
 #include <errno.h>
@@ -48,6 +49,19 @@ void apart_build(char build[APART_BUILD])
   snprintf(build, APART_BUILD, "uncross %s %s", UNCROSS_VERSION, build_info.commit);
 }
 
+/* What the host has open and did not keep from its children would hold its locks until the reader closes it. Older C
+ * libraries cannot say this; there the reader closes all, once it is loaded. */
+static int close_others(posix_spawn_file_actions_t *files)
+{
+#ifdef __GLIBC__
+#if __GLIBC_PREREQ(2, 34)
+  return posix_spawn_file_actions_addclosefrom_np(files, READER_SOCKET + 1);
+#endif
+#endif
+  (void)files;
+  return 0;
+}
+
 /* Starts the program at the other end of the socket, which it has as READER_SOCKET; 0, or errno. It has no standard
  * streams: of some damages HDF5 tells standard error before it aborts, and the parent says it in one sentence. */
 static int spawn(const char *program, int socket, pid_t *child)
@@ -63,6 +77,8 @@ static int spawn(const char *program, int socket, pid_t *child)
       code = posix_spawn_file_actions_addopen(&files, fd, "/dev/null", O_RDWR, 0);
   if (code == 0)
     code = posix_spawn_file_actions_adddup2(&files, socket, READER_SOCKET);
+  if (code == 0)
+    code = close_others(&files);
   if (code == 0)
     code = posix_spawn(child, program, &files, NULL, words, environ);
   posix_spawn_file_actions_destroy(&files);

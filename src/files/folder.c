@@ -134,16 +134,20 @@ bool folder_lock(struct folder *folder, struct message *message)
 bool folder_in_use(const char *name)
 {
   const int fd = open(name, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  const bool in_use = fd >= 0 && lock_take(fd, false) == LOCK_IN_USE;
+  const enum lock lock = fd >= 0 ? lock_take(fd, false) : LOCK_NONE;
+  if (lock == LOCK_TAKEN)
+    lock_leave(fd);
   if (fd >= 0)
     close(fd);
-  return in_use;
+  return lock == LOCK_IN_USE;
 }
 
 void folder_close(struct folder *folder)
 {
-  if (folder->fd >= 0)
+  if (folder->fd >= 0) {
+    lock_leave(folder->fd); /* of which a child may have a copy */
     close(folder->fd);
+  }
   folder->fd = FOLDER_BY_NAME;
 }
 

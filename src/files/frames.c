@@ -14,7 +14,7 @@
 
 static enum h5_trouble trouble_of(int verdict, const struct apart *apart)
 {
-  return verdict == H5_DAMAGED || apart->died ? H5_DAMAGED : H5_UNREADABLE;
+  return verdict == H5_DAMAGED ? H5_DAMAGED : apart->died ? H5_DEADLY : H5_UNREADABLE;
 }
 
 bool h5_find_sort(const char *path, enum h5_sort *sort, enum h5_trouble *trouble, struct message *message)

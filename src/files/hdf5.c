@@ -66,7 +66,6 @@ void h5_watch(unsigned *failures)
 
 void h5_own_process(void)
 {
-  setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1);
   H5dont_atexit();
 }
 

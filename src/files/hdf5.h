@@ -17,8 +17,8 @@
 #include "base/message.h"
 
 /* For a program, before anything else; a library must not decide this for its host. HDF5 does nothing at exit: it would
- * try once more to close a file that it could not write, and crash (1.10.8); our files are closed by then. And whatever
- * HDF5_USE_FILE_LOCKING says, it locks no file: lock.h does. */
+ * try once more to close a file that it could not write, and crash (1.10.8); our files are closed by then.
+ */
 void h5_own_process(void);
 
 /* From now on, until the next file is opened, counts the calls of HDF5 that fail. Readers never make a call that fails
@@ -37,13 +37,21 @@ int h5_fail(struct message *message, const char *path, const char *doing);
  * (apart.h). */
 enum h5_trouble {
   H5_FINE,
-  H5_UNREADABLE, /* not there, no permission, or in use by another process */
-  H5_DAMAGED     /* not HDF5, truncated, or its checksums are wrong */
+  H5_UNREADABLE, /* not there, no permission, in use by another process, or no memory: nothing is known of its bytes */
+  H5_DAMAGED,    /* not HDF5, truncated, or its checksums are wrong */
+  H5_DEADLY      /* the process that read it died: of its bytes, as far as can be known */
 };
 hid_t h5_open(const char *path, bool writable, bool *sealed, enum h5_trouble *trouble, struct message *message);
 
-/* Creates a file on disk; below 0, with errno, if it cannot be, or if there is one already. */
-hid_t h5_create(const char *path);
+/* Creates a file on disk; below 0, with a message, if it cannot be, or if there is one already. */
+hid_t h5_create(const char *path, struct message *message);
+
+/* Closes a file on disk, and leaves its lock even if a child of this process has a copy of its descriptor. */
+bool h5_close_locked(hid_t file);
+
+/* False, with a message, if there is not so much memory besides what HDF5 needs for itself. HDF5 1.10.8 crashes, or
+ * takes a whole file for damaged, where it is refused memory; so it is asked for before. */
+bool h5_has_memory(const char *path, size_t bytes, struct message *message);
 
 /* Creates a file in memory, with room for about so many bytes; h5_image gives its bytes and their seal,
  * to be freed. */

@@ -18,7 +18,8 @@ enum lock {
 };
 
 /* Asks once for the lock of an open file or folder; it lasts until lock_leave, or until the last copy of fd is closed.
- * alone: no other process may have it; else all of them may share it. */
+ * A child that was forked meanwhile has a copy, so whoever closes fd leaves the lock first; no child does that. alone:
+ * no other process may have it; else all of them may share it. */
 enum lock lock_take(int fd, bool alone);
 
 /* Asks again and again for so many seconds, as long as another process has it. */

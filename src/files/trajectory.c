@@ -32,10 +32,11 @@ bool trajectory_close(struct trajectory *t, struct message *message)
 {
   if (!t)
     return true;
-  const hid_t handles[] = {t->position, t->velocity, t->edges, t->step, t->time, t->checksum, t->group, t->file};
+  const hid_t handles[] = {t->position, t->velocity, t->edges, t->step, t->time, t->checksum, t->group};
   bool ok = true;
   for (size_t k = 0; k < sizeof handles / sizeof *handles; k++)
     ok &= h5_close(handles[k]);
+  ok &= h5_close_locked(t->file);
   if (!ok)
     h5_fail(message, t->path, "not closed properly, its last frames may be lost");
   frames_close(t->frames_apart);

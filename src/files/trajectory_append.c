@@ -87,7 +87,8 @@ bool trajectory_append(struct trajectory *t, const struct model *model, const st
     state_solvent_slots(state, t->slot);
   frame_positions(state, model, t->slot, t->row);
   keep_readers_out(t);
-  const bool room = trajectory_reserve(t, frame_bytes(t), message);
+  const size_t most = frame_bytes(t);
+  const bool room = h5_has_memory(t->path, most, message) && trajectory_reserve(t, most, message);
   const bool ok = room && write_frame(t, model, state);
   h5_trim(t->file);
   trajectory_let_readers_in(t);

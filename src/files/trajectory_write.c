@@ -161,11 +161,9 @@ static struct trajectory *create(const char *path, const struct model *model, co
   }
   t->solvent = options->solvent && model_has_solvent(model);
   t->particles = rows_wanted(model, options);
-  t->file = h5_create(path);
-  if (t->file < 0) {
-    message_set(message, "%s: cannot be created: %s", path, strerror(errno));
+  t->file = h5_create(path, message);
+  if (t->file < 0)
     return trajectory_give_up(t);
-  }
   if (!in_place(t, options, message)) {
     remove(path); /* it was made just now, wherever it is */
     return trajectory_give_up(t);
@@ -208,28 +206,32 @@ static bool set_frames(struct trajectory *t, uint64_t frames)
 }
 
 /* How many frames are of steps up to this one, and the last step among them. Each of them is held against its
- * checksums. False, with a message, if one is damaged, or if steps do not increase. A frame that comes later may be
- * damaged: it is not kept. */
-static bool find_kept(struct frames *frames, uint64_t keep_to_step, uint64_t *keep, uint64_t *last_step,
-                      struct message *message)
+ * checksums. FRAME_DAMAGED, with a message, if one is damaged, or if steps do not increase; FRAME_LOST if that cannot
+ * be found out. A frame that comes later may be damaged: it is not kept. */
+static enum frame_verdict find_kept(struct frames *frames, uint64_t keep_to_step, uint64_t *keep, uint64_t *last_step,
+                                    struct message *message)
 {
   const struct frames_about *about = &frames->about;
-  if (about->checkpoint || !about->steps)
-    return message_set(message, "%s: not a trajectory of this program", frames->path);
+  if (about->checkpoint || !about->steps) {
+    message_set(message, "%s: not a trajectory of this program", frames->path);
+    return FRAME_DAMAGED;
+  }
   *last_step = 0;
   for (*keep = 0; *keep < about->frames; ++*keep) {
     const enum frame_verdict verdict = frames_check(frames, *keep, message);
     const uint64_t step = frames->picture.step;
     if (verdict != FRAME_LOST && step > keep_to_step)
-      return true;
+      return FRAME_FINE;
     if (verdict != FRAME_FINE)
-      return false;
-    if (*keep > 0 && step <= *last_step)
-      return message_set(message, "%s: frame %" PRIu64 " is of step %" PRIu64 ", the frame before it of step %" PRIu64,
-                         frames->path, *keep, step, *last_step);
+      return verdict;
+    if (*keep > 0 && step <= *last_step) {
+      message_set(message, "%s: frame %" PRIu64 " is of step %" PRIu64 ", the frame before it of step %" PRIu64,
+                  frames->path, *keep, step, *last_step);
+      return FRAME_DAMAGED;
+    }
     *last_step = step;
   }
-  return true;
+  return FRAME_FINE;
 }
 
 bool trajectory_find_end(const char *path, uint64_t keep_to_step, uint64_t *end)
@@ -238,7 +240,7 @@ bool trajectory_find_end(const char *path, uint64_t keep_to_step, uint64_t *end)
   struct message ignored;
   uint64_t keep, last_step;
   struct frames *frames = frames_open(path, &trouble, &ignored);
-  const bool ok = frames && find_kept(frames, keep_to_step, &keep, &last_step, &ignored);
+  const bool ok = frames && find_kept(frames, keep_to_step, &keep, &last_step, &ignored) == FRAME_FINE;
   if (ok)
     *end = keep > 0 ? last_step + 1 : 0;
   frames_close(frames);
@@ -293,7 +295,16 @@ static bool set_aside(const struct place *place, const char *path, const char *w
   return message_set(message, "%s: damaged, and cannot be renamed: move it away", path);
 }
 
-/* What is there, as a process of its own finds it: how many frames stay. Nothing is written before this. */
+/* The process that read the file died, or could not be asked. That may be for want of memory, too: so the file stays.
+ */
+static bool leave_alone(const char *path, struct message *message)
+{
+  return message_set(message, "%.600s; %s is left as it is (if `uncross verify` calls it damaged, move it away)",
+                     message->text, path);
+}
+
+/* What is there, as a process of its own finds it: how many frames stay. Nothing is written before this. damaged: that
+ * process says so. */
 static bool look_at(const char *path, const struct model *model, const struct trajectory_options *options,
                     uint64_t keep_to_step, struct kept *kept, bool *damaged, struct message *message)
 {
@@ -301,17 +312,20 @@ static bool look_at(const char *path, const struct model *model, const struct tr
   struct frames *frames = frames_open(path, &trouble, message);
   *damaged = trouble == H5_DAMAGED;
   if (!frames)
-    return false;
-  bool ok = same_contents(frames, model, options, message);
-  if (ok && !find_kept(frames, keep_to_step, &kept->frames, &kept->last_step, message)) {
-    *damaged = true;
-    ok = false;
-  }
+    return trouble == H5_DEADLY ? leave_alone(path, message) : false;
+  enum frame_verdict verdict = FRAME_FINE;
+  const bool same = same_contents(frames, model, options, message);
+  if (same)
+    verdict = find_kept(frames, keep_to_step, &kept->frames, &kept->last_step, message);
+  *damaged = verdict == FRAME_DAMAGED;
   kept->checked = frames->about.checked;
   frames_close(frames);
-  return ok;
+  if (verdict == FRAME_LOST)
+    return leave_alone(path, message);
+  return same && !*damaged;
 }
 
+/* What is removed has not been read before. */
 static bool drop_after(struct trajectory *t, const struct kept *kept)
 {
   t->last_step = kept->last_step;
@@ -334,11 +348,7 @@ static struct trajectory *resume_existing(const char *path, const struct model *
     return NULL;
   }
   t->file = h5_open(path, true, &sealed, &trouble, message);
-  *damaged = trouble == H5_DAMAGED;
-  if (t->file < 0 || !in_place(t, options, message))
-    return trajectory_give_up(t);
-  *damaged = !trajectory_find(t, message);
-  if (*damaged)
+  if (t->file < 0 || !in_place(t, options, message) || !trajectory_find(t, message))
     return trajectory_give_up(t);
   t->solvent = options->solvent && model_has_solvent(model);
   if (!make_room(t, model)) {

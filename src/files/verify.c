@@ -86,7 +86,7 @@ enum condition verify_frames(struct frames *f, FILE *out)
 
 static enum condition condition_of(enum h5_trouble trouble)
 {
-  return trouble == H5_DAMAGED ? CONDITION_DAMAGED : CONDITION_UNKNOWN;
+  return trouble == H5_DAMAGED || trouble == H5_DEADLY ? CONDITION_DAMAGED : CONDITION_UNKNOWN;
 }
 
 static enum condition verify_hdf5(const char *path, bool *other, FILE *out)
