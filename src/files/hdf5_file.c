@@ -78,6 +78,8 @@ static void leave_and_close(int fd)
  * that the host opens itself, by the whole driver, is then another one to HDF5, though of the same name. */
 static bool never_lock(hid_t access)
 {
+  if (H5Pset_fapl_sec2(access) < 0) /* HDF5_DRIVER names another one for lists that name none */
+    return false;
   H5FD_t *any = H5FDopen("/", H5F_ACC_RDONLY, access, HADDR_UNDEF); /* to see what the driver is made of */
   if (!any)
     return false;
@@ -126,7 +128,8 @@ static hid_t open_hdf5(const char *path, bool writable, bool *sealed, enum h5_tr
   hid_t file = access < 0 ? -1 : H5Fopen(path, writable ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access);
   h5_close(access);
   if (file < 0) {
-    h5_fail(message, path, "damaged HDF5 file");
+    *trouble = access < 0 ? H5_UNREADABLE : H5_DAMAGED;
+    h5_fail(message, path, access < 0 ? "HDF5 cannot be told how to open it" : "damaged HDF5 file");
     return -1;
   }
   if (lock_for(h5_descriptor(file), writable) != LOCK_IN_USE) {
