@@ -65,6 +65,51 @@ class HostileFolders(FolderTest):
                     path.write_bytes(before)
         self.assertEqual(self.call(*words).returncode, 0)
 
+    def test_sweeps_replace_their_own_tables_only(self):
+        """Texts of somebody else under the names of a sweep's tables, and in the folder of a point: refused before a run."""
+        words = "sweep", "scene.yaml", "--out", "sweep", "--seeds", "1..2", "--quiet", "--resume"
+        for name in "summary.csv", "runs.csv", "all/temperature.csv":
+            path = self.dir / "sweep" / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text("my,own,table\n1,2,3\n")
+            told = self.refused(name, 2, *words)
+            self.assertIn("is no table of a sweep", told)
+            self.assertEqual(path.read_text(), "my,own,table\n1,2,3\n")
+            path.unlink()
+        (self.dir / "sweep" / "notes.csv").write_text("mine\n")
+        (self.dir / "sweep" / "all" / "notes.csv").write_text("mine\n")
+        for _ in range(2):
+            self.assertEqual(self.call(*words).returncode, 0)
+        for path in (self.dir / "sweep").rglob("notes.csv"):
+            self.assertEqual(path.read_text(), "mine\n")
+
+    def test_sweeps_go_into_no_folder_elsewhere(self):
+        words = "sweep", "scene.yaml", "--out", "sweep", "--seeds", "1..1", "--quiet", "--resume"
+        elsewhere = self.dir / "elsewhere"
+        elsewhere.mkdir()
+        for name in "all", "all/seed-1":
+            link = self.dir / "sweep" / name
+            link.parent.mkdir(parents=True, exist_ok=True)
+            link.symlink_to(elsewhere)
+            self.refused(f"{name}: is a link", 2, *words)
+            self.assertEqual(list(elsewhere.iterdir()), [])
+            link.unlink()
+
+    def test_pages_of_sweeps_wait_for_no_pipe(self):
+        self.assertEqual(self.call("sweep", "scene.yaml", "--out", "sweep", "--seeds", "1..2", "--quiet").returncode, 0)
+        for name in "summary.csv", "runs.csv":
+            path = self.dir / "sweep" / name
+            before = path.read_bytes()
+            path.unlink()
+            for make in os.mkfifo, os.mkdir:
+                make(path)
+                done = self.call("plot", "sweep", "--out", "page.html")
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertIn(f"{name}: not a file but a folder, a pipe or a device", done.stderr)
+                self.assertNotIn("Traceback", done.stderr)
+                path.rmdir() if path.is_dir() else path.unlink()
+            path.write_bytes(before)
+
     def test_folders_begin_with_a_dash(self):
         done = self.call("sweep", "scene.yaml", "--out", "-x", "--quiet")
         self.assertEqual(done.returncode, 0, done.stderr)

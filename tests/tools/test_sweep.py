@@ -185,6 +185,26 @@ class SweepTest(FolderTest):
 
     # --- bad input
 
+    def test_tables_that_are_not_whole(self):
+        """A finished run whose table is gone, emptied, cut or of other columns: no average is made of the rest."""
+        self.sweep("--seeds", "1..2", "--steps", "300")
+        before = tables(self.out)
+        for name in "temperature.csv", "statics-rods.csv", "dynamics-rods.csv":
+            path = self.out / "all" / "seed-2" / name
+            text = path.read_text()
+            lines = text.splitlines(True)
+            damages = {"gone": None, "empty": "", "precious": "precious\n", "cut": "".join(lines[:-1]),
+                       "other": text.replace(lines[0].split(",")[-1].strip(), "other", 1)}
+            for what, damage in damages.items():
+                path.unlink() if damage is None else path.write_text(damage)
+                told = self.sweep("--seeds", "1..2", "--steps", "300", "--resume", code=2).stderr
+                self.assertIn(f"seed-2/{name}", told, what)
+                path.write_text(text)
+                self.assertEqual(tables(self.out), before, f"{name}: {what}")
+        self.sweep("--seeds", "1..2", "--steps", "300", "--resume", code=0)
+        (self.out / "all" / "seed-2" / "statics-rods.csv").unlink()  # of the only run that is asked for
+        self.sweep("--seeds", "2..2", "--steps", "300", "--resume", code=2, says="statics-rods.csv")
+
     def test_bad_grids(self):
         for grid, says in (("fibers.rods.cuont=5,9", "--set fibers.rods.cuont=5: unknown key 'cuont' in fibers; did you mean"),
                            ("time_step=0.01,2", "--set time_step=2: time_step: '2' is out of range"),
