@@ -51,6 +51,20 @@ class Memory(unittest.TestCase):
         self.assertLess(memory, MOST, words)
         return said
 
+    def test_tables_without_an_end(self):
+        """Of 200 GB of holes, and of one line of 200 MB: pages and averages refuse them by the line."""
+        (self.folder / "s.yaml").write_text(PROFILE.replace("observe: {profile: {every: 1, slabs: 8192}}", "observe: {conserved: {every: 1}}"))
+        self.assertEqual(self.run_words("sweep", "s.yaml", "--out", "sweep", "--quiet")[0], 0)
+        table = next((self.folder / "sweep/all").glob("seed-*/conserved.csv"))
+        for hole in True, False:
+            with open(table, "w", encoding="ascii") as file:
+                file.truncate(200 << 30) if hole else file.write("1" * 200_000_000)
+            for words in ("plot", str(table), "--out", "page.html"), ("sweep", "s.yaml", "--out", "sweep", "--resume"):
+                code, said, memory = self.run_words(*words)
+                self.assertEqual(code, 2, said)
+                self.assertIn("line 1 has more than 65535 characters", said)
+                self.assertLess(memory, 250.0, words)  # NumPy and matplotlib take some 120
+
     def test_rows_that_are_claimed(self):
         """Each table claims two million rows, in one line."""
         lines = [f"o {k} 2097152 t.x 1" for k in range(300)]
