@@ -6,7 +6,7 @@ import os
 import numpy
 
 from uncross_sweep import averages, plateau
-from uncross_sweep.opening import reading
+from uncross_sweep.opening import read_table
 
 from . import columns, page, style
 
@@ -26,8 +26,10 @@ def is_sweep(path):
 
 def _read(path):
     """[{column: text}] of a table; ValueError if it has no line of names."""
-    with open(path, encoding="utf-8", newline="", opener=reading) as file:
-        rows = list(csv.reader(file))
+    try:
+        rows = list(csv.reader(read_table(path).splitlines()))
+    except (csv.Error, ValueError) as error:
+        raise ValueError(f"{path}: not a table of a sweep: {error}") from error
     if not rows or any(len(row) != len(rows[0]) for row in rows):
         raise ValueError(f"{path}: not a table of a sweep: rows of different lengths")
     return rows[0], [dict(zip(rows[0], row)) for row in rows[1:]]

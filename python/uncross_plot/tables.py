@@ -5,7 +5,7 @@ import math
 import numpy
 
 from uncross_sweep import averages
-from uncross_sweep.opening import reading
+from uncross_sweep.opening import read_table
 
 from . import columns, style
 
@@ -48,12 +48,11 @@ class Table:
 
 def read(path, name, growing=False):
     """A table; ValueError, with file, line and column, if it is none. Of one that is growing the last line may be a part."""
-    with open(path, encoding="utf-8", newline="", opener=reading) as file:
-        try:
-            text = file.read()
-            lines = list(csv.reader((text[:text.rfind("\n") + 1] if growing else text).splitlines()))
-        except (csv.Error, UnicodeDecodeError) as error:
-            raise ValueError(f"{path}: not a table: {error}") from error
+    try:
+        text = read_table(path)
+        lines = list(csv.reader((text[:text.rfind("\n") + 1] if growing else text).splitlines()))
+    except (csv.Error, ValueError) as error:
+        raise ValueError(f"{path}: not a table: {error}") from error
     if not lines or not lines[0] or len(set(lines[0])) != len(lines[0]) or not all(lines[0]):
         raise ValueError(f"{path}:1:1: not a table: a first line of column names is needed")
     rows = []

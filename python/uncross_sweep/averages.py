@@ -2,12 +2,14 @@
 import csv
 import io
 import math
+import os
+import stat
 
 import numpy
 
 from . import plateau
 from .files import columns
-from .opening import read_text, write_text
+from .opening import NoFile, read_table, write_text
 
 LEAST_BLOCKS = 16  # of a series
 KEYS = ("step", "time")  # columns that say which row it is
@@ -21,7 +23,11 @@ class BadTable(ValueError):
 def table_of(path):
     """{column: numbers} of a table."""
     try:
-        table = columns(read_text(path))
+        table = columns(read_table(path))
+    except FileNotFoundError as error:
+        raise BadTable(f"{path}: is missing; a finished run has it") from error
+    except NoFile:
+        raise
     except (ValueError, IndexError, csv.Error) as error:
         raise BadTable(f"{path}: not a table: {error}") from error
     bad = next((name for name, values in table.items() if values.dtype.kind != "f"), None)
@@ -162,6 +168,27 @@ def put_cell(row, name, table, column, k):
         put(row, name, [table[column + part][k] for part in ("", "_error", "_block_error")])
 
 
+# --- tables that are whole ---------------------------------------------------------------------------------------------
+
+def row_names(table):
+    """Rows by step or lag without that of step 0, which some earlier programs wrote and some did not."""
+    return {key for key in rows_of(table) if key[:1] != (0.0,)}
+
+
+def look_at(tables, steps):
+    """tables: {file: its table}, of one name, of the finished runs of a point; steps: how many each run has done. Runs as long
+    as each other have the same columns and rows, or one of the files is not what its run wrote."""
+    first = {}
+    for (path, table), count in zip(tables.items(), steps):
+        if not table:
+            raise BadTable(f"{path}: not a table: it has no line of names")
+        known, names, rows = first.setdefault(count, (path, list(table), row_names(table)))
+        if list(table) != names:
+            raise BadTable(f"{path}: other columns than in {known}; `uncross verify` says whether its run is whole")
+        if row_names(table) != rows:
+            raise BadTable(f"{path}: other rows than in {known}, of a run as long; `uncross verify` says whether its run is whole")
+
+
 # --- files ------------------------------------------------------------------------------------------------------------
 
 def cell(value):
@@ -172,8 +199,30 @@ def cell(value):
     return value
 
 
+OWN = {"summary.csv": {"folder", "seeds"}, "runs.csv": {"folder", "state_hash"}}  # columns that say who made it
+
+
+def refuse_others(path):
+    """Nothing is written over that no sweep wrote."""
+    try:
+        if not stat.S_ISREG(os.lstat(path).st_mode):
+            return  # write_text refuses it
+    except FileNotFoundError:
+        return
+    if not OWN.get(path.name, {"seeds"}) <= set(_names(path)):
+        raise BadTable(f"{path}: is no table of a sweep, and nothing is written over: move it away")
+
+
+def _names(path):
+    try:
+        return next(csv.reader(read_table(path).splitlines()[:1]), [])
+    except (ValueError, csv.Error):
+        return []
+
+
 def write_rows(path, names, rows):
-    """Rows are dicts; what a row lacks is nan."""
+    """Rows are dicts; what a row lacks is nan. In place of an earlier table of a sweep."""
+    refuse_others(path)
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(names)
@@ -182,10 +231,21 @@ def write_rows(path, names, rows):
     write_text(path, text.getvalue())
 
 
-def write_averages(folder, folders):
-    """Averages the tables of the run folders into `folder`; returns them. Tables that not all runs have are left out."""
-    names = sorted(path.stem for path in folders[0].glob("*.csv") if all((run / path.name).exists() for run in folders))
-    made = {name: average([table_of(run / f"{name}.csv") for run in folders]) for name in names}
+def made_before(folder):
+    """Names of the tables that a sweep made here."""
+    return {path.stem for path in folder.glob("*.csv") if "seeds" in _names(path)}
+
+
+def write_averages(folder, folders, steps):
+    """Averages the tables of the run folders into `folder`; returns them. All of them have the same tables, and those of an
+    earlier average. steps: of each run."""
+    names = sorted({path.stem for run in folders for path in run.glob("*.csv")} | made_before(folder))
+    found = {name: {run / f"{name}.csv": table_of(run / f"{name}.csv") for run in folders} for name in names}
+    for tables in found.values():
+        look_at(tables, steps)
+    made = {name: average(list(tables.values())) for name, tables in found.items()}
+    for name in names:
+        refuse_others(folder / f"{name}.csv")
     for name, table in made.items():
         rows = [dict(zip(table, map(float, values))) for values in zip(*table.values())]
         write_rows(folder / f"{name}.csv", list(table), rows)

@@ -64,6 +64,11 @@ def check_folder(sweep, runs, resume):
     left = sorted(path.name for path in out.iterdir() if path.name != ".lock") if out.is_dir() else []
     if left and not resume:
         raise grid.Refused(f"{out}: holds {left[0]} already; go on with --resume, or name another folder")
+    for folder in dict.fromkeys(path for run in runs for path in (run.folder.parent, run.folder)):
+        if folder.is_symlink():
+            raise grid.Refused(f"{folder}: is a link; nothing is written there")
+    for name in averages.OWN:
+        averages.refuse_others(out / name)
     return [run for run in runs if not jobs.is_finished(run)]
 
 
@@ -82,10 +87,10 @@ def write_results(sweep, runs):
                         ["folder", *keys, "seed", "stream", "start_state", "exit_code", "status", "steps", "state_hash", "message"], listed)
     rows = []
     for point in sweep.points:
-        folders = [run.folder for run in runs if run.point is point and id(run) in done]
-        numbers = {}
+        finished = [run for run in runs if run.point is point and id(run) in done]
+        folders, numbers = [run.folder for run in finished], {}
         if folders:
-            tables = averages.write_averages(sweep.out / point.name, folders)
+            tables = averages.write_averages(sweep.out / point.name, folders, [jobs.status_of(run)[1] for run in finished])
             numbers = averages.final_numbers(folders, tables, point.start)
         rows.append({"folder": point.name, **point.values, "seeds": len(folders), **numbers})
     names = list(dict.fromkeys(name for row in rows for name in row))

@@ -52,6 +52,21 @@ def read_text(path, most=None):
         return file.read()
 
 
+MOST_LINE = 65535  # characters of a line of a table; TEXT_LINE of src/base/text.h
+
+
+def read_table(path):
+    """The text of a table. A line that is longer than any that a run writes is refused before it is in memory: a file of one
+    line, or of holes."""
+    lines = []
+    with open(path, encoding="utf-8", newline="", opener=reading) as file:
+        while line := file.readline(MOST_LINE + 1):
+            if len(line) > MOST_LINE:
+                raise ValueError(f"line {len(lines) + 1} has more than {MOST_LINE} characters")
+            lines.append(line)
+    return "".join(lines)
+
+
 def _look(path):
     """Nothing is put in the place of what is no file."""
     with contextlib.suppress(FileNotFoundError):

@@ -66,7 +66,7 @@ class HostileFolders(FolderTest):
         self.assertEqual(self.call(*words).returncode, 0)
 
     def test_sweeps_replace_their_own_tables_only(self):
-        """Texts of somebody else under the names of a sweep's tables, and in the folder of a point: refused before a run."""
+        """Texts of somebody else under the names of a sweep's tables, and in the folder of a point: refused."""
         words = "sweep", "scene.yaml", "--out", "sweep", "--seeds", "1..2", "--quiet", "--resume"
         for name in "summary.csv", "runs.csv", "all/temperature.csv":
             path = self.dir / "sweep" / name
