@@ -3,8 +3,7 @@ import difflib
 import math
 import os
 
-
-from . import columns, flow, page, runs, style, tables
+from . import columns, distrust, flow, page, runs, style, tables
 
 DOUBT = 4.0  # a difference of more errors than this is named on the front page
 
@@ -107,22 +106,10 @@ def page_of(a, b, movie=False):
              ("Scenes", ["They differ in:", *changes] if changes else
               "The same." if a.scene and b.scene else "Not known of both."),
              ("What came out", [came + (":" if found else "."), *(far[:8] or [text for _, text in found[:1]])]),
-             ("What to distrust", page._doubts(
-                 [f"{name}: {text}" for name, run in zip(names, (a, b)) for text in runs.distrust(run)] + _kin(a, b)))]
+             ("What to distrust", page._doubts(distrust.of_pair(names, a, b)))]
     pictures = [page.picture_of(run.frames, movie and run.moving) for run in (a, b) if run.frames and run.frames.structure.kinds]
     for section, name in zip(pictures, [n for n, run in zip(names, (a, b)) if run.frames is not None]):
         section.title = f"Fibers of {name}"
     return page.render(f"{names[0]} and {names[1]}", front, pictures + sections + [flow_table(a, b, names)] + [
         page.Section(f"Provenance of {name}", page.provenance(run)) for name, run in zip(names, (a, b))])
 
-
-def _kin(a, b):
-    """Differences are judged as if the runs were independent."""
-    streams, starts = zip(*(runs.stream_and_start(run.record) for run in (a, b)))
-    said = []
-    if streams[0] and streams[0] == streams[1]:
-        said.append(f"Both draw the same random numbers (stream {streams[0]}): their fluctuations may be alike, and "
-                    "differences over errors too small.")
-    if starts[0] and starts[0] == starts[1]:
-        said.append("Both begin with the same state of a snapshot: they are alike until it is forgotten.")
-    return said

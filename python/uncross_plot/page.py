@@ -9,7 +9,7 @@ import time
 import jinja2
 import numpy
 
-from . import columns, fibers, flow, runs, style, tables
+from . import columns, distrust, fibers, flow, style, tables
 
 
 @dataclasses.dataclass
@@ -199,6 +199,8 @@ SHOWN = ("viscosity", "slip length")  # of a flow, on top of the page
 
 
 def _what(run):
+    if run.members:
+        return f"A point of a sweep: averages over {len(run.members)} run{'s' if len(run.members) > 1 else ''}."
     structure = run.frames.structure if run.frames else None
     parts = []
     for kind, name in enumerate(structure.kinds) if structure else ():
@@ -212,6 +214,8 @@ def _what(run):
 
 
 def _how(run):
+    if run.members:
+        return f"{', '.join(name for name, _ in run.members)}; the shortest lasted {run.time or math.nan:g} t0."
     record = run.record or {}
     words = []
     if run.frames is not None and not record:
@@ -254,7 +258,7 @@ def _result(run):
 
 def _diffusion(run, table):
     """The diffusion coefficient, its lag, and whether it has stopped moving with the lag."""
-    found = runs.diffusion(run, table)
+    found = distrust.diffusion(run, table)
     if found is None:
         return []
     column, row, plateau = found
@@ -288,7 +292,7 @@ def front(run):
     where += f"; {len(run.frames.steps)} frames of a trajectory" if run.moving else ""
     return [("What ran", _what(run)), ("How", _how(run)), ("What came out", _result(run)),
             *([("In SI units", _in_si(run))] if run.units and run.derived else []),
-            ("What is here", where[:1].upper() + where[1:] + "."), ("What to distrust", _doubts(runs.distrust(run)))]
+            ("What is here", where[:1].upper() + where[1:] + "."), ("What to distrust", _doubts(distrust.of_run(run)))]
 
 
 # --- pages -------------------------------------------------------------------------------------------------------------
@@ -328,14 +332,14 @@ def sections_of(run, movie=False):
 
 
 def page_of(run, movie=False):
-    if run.record is None and run.frames is None and len(run.tables) == 1 and not run.trouble:  # a table alone
+    if run.record is None and run.frames is None and not run.members and len(run.tables) == 1 and not run.trouble:  # a table alone
         return render(columns.title(run.tables[0].name), [], sections_of(run))
     return render(run.name, front(run), sections_of(run, movie))
 
 
 def page_of_many(all_runs, movie=False):
     lead, sections = f"{len(all_runs)} runs.", []
-    box = [(run.path, [_how(run), _what(run), _result(run), *runs.distrust(run)]) for run in all_runs]
+    box = [(run.path, [_how(run), _what(run), _result(run), *distrust.of_run(run)]) for run in all_runs]
     for run in all_runs:
         for section in sections_of(run, movie and run.moving):
             section.title = f"{run.name}: {section.title}"

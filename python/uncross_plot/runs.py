@@ -1,4 +1,4 @@
-"""What a folder or file holds, and what a reader should know of it: run.json, tables, the numbers of `uncross check`."""
+"""What a folder or file holds: run.json, tables, the numbers of `uncross check`."""
 import dataclasses
 import math
 import os
@@ -6,15 +6,11 @@ import re
 import subprocess
 import tempfile
 
-import numpy
-
-from uncross_sweep import plateau
 from uncross_sweep import record as records
 from uncross_sweep.opening import reading
 
 from . import columns, fibers, tables
 
-LEAST_PAIRS = plateau.LEAST_PAIRS
 PROGRAM = os.environ.get("UNCROSS", "uncross")
 
 
@@ -47,10 +43,27 @@ class Run:
     units: str = ""  # that SI values are made of, as `uncross check --units` takes them
     units_words: list = dataclasses.field(default_factory=list)  # what is right and what is wrong with them
     trouble: list = dataclasses.field(default_factory=list)  # files that are damaged, numbers that are missing
+    members: list = dataclasses.field(default_factory=list)  # of a point of a sweep: (folder, record or None) of each run
 
     @property
     def name(self):
         return os.path.basename(os.path.abspath(self.path))
+
+    @property
+    def records(self):
+        """Of the run itself, or of the runs that are averaged; those that are there."""
+        return [record for _, record in self.members if record] or ([self.record] if self.record else [])
+
+    @property
+    def warnings(self):
+        """All of run.json, of any of the runs."""
+        return [text for record in self.records for text in record.get("warnings", [])]
+
+    @property
+    def time(self):
+        """That the run lasted, t0, or the shortest run; None if not known."""
+        lasted = [record["time"] for record in self.records if record.get("time")]
+        return min(lasted) if lasted else self.frames.times[-1] if self.frames else None
 
     @property
     def rings(self):
@@ -139,15 +152,33 @@ def read_folder(path, units=""):
                 run.frames = None
     if "runs.csv" in names and "summary.csv" in names:
         raise BadInput(_of_sweep(path))
-    if run.record is None and run.frames is None and not run.tables:
+    elif run.record is None and run.frames is None:
+        _read_members(run, names)
+    if run.record is None and run.frames is None and not run.tables and not run.members:
         raise BadInput(run.trouble[0] if run.trouble else f"{path}: not the folder of a run: no run.json, table, "
                        "trajectory or checkpoint is in it")
     order = list(columns.TITLES)
     run.tables.sort(key=lambda t: (order.index(columns.split(t.name)[0]) if columns.split(t.name)[0] in order
                                    else len(order), t.name))
-    run.scene = (run.record or {}).get("scene") or (run.frames.structure.scene if run.frames else "")
+    run.scene = next((r["scene"] for r in run.records if r.get("scene")), run.frames.structure.scene if run.frames else "")
     _derive(run)
     return run
+
+
+def record_of(folder):
+    """The record of a run's folder, or None if there is none that can be read."""
+    try:
+        return records.read(os.path.join(folder, "run.json"))
+    except (records.Foreign, OSError):
+        return None
+
+
+def _read_members(run, names):
+    """The runs below a point of a sweep (docs/running.md), whose averages its tables are."""
+    for name in names:
+        folder = os.path.join(run.path, name)
+        if name.startswith("seed-") and os.path.isdir(folder):
+            run.members.append((name, record_of(folder)))
 
 
 def read_file(path, units=""):
@@ -232,136 +263,3 @@ def _number(line, has_si):
     if not has_si:
         return Number(*cells[:3], cells[3] or cells[5], cells[4])
     return Number(*cells[:3], cells[3] or cells[7], cells[5], cells[4] or cells[6])
-
-
-# --- what to distrust --------------------------------------------------------------------------------------------------
-
-def stream_and_start(record):
-    """Which random numbers a run draws, and the state of the snapshot that it begins with; of each None if not known or none."""
-    record = record or {}
-    return record.get("stream", record.get("seed")), (record.get("stream_from") or {}).get("state")
-
-
-def distrust(run):
-    """Sentences, the gravest first; an empty list if nothing is known against the run."""
-    return [*_ended(run), *run.trouble, *(run.record or {}).get("warnings", []), *_faults(run), *_short(run),
-            *_moving(run), *_unconverged(run), *_off_theory(run)]
-
-
-def _ended(run):
-    record = run.record
-    if record is None:
-        return ["There is no run.json: how the run ended is not known."] if os.path.isdir(run.path) else []
-    status, done, wanted = record.get("status"), record.get("steps", 0), record.get("steps_wanted", 0)
-    if status == "finished" and done >= wanted:
-        return []
-    why = f": {record['reason']}" if record.get("reason") else ""
-    return [f"The run did not finish: it is '{status}' at step {done} of {wanted}{why}."]
-
-
-def _faults(run):
-    rigid = (run.record or {}).get("collisions", {}).get("rigid", 0)
-    told = any("rigid" in text for text in (run.record or {}).get("warnings", []))
-    return [f"{rigid} contacts made bonds move rigidly for the rest of a drift."] if rigid and not told else []
-
-
-def _short(run):
-    """Times that the run is too short for, and averages of too few values."""
-    time = (run.record or {}).get("time") or (run.frames.times[-1] if run.frames else None)
-    for heading, rows in run.derived:
-        for row in rows:
-            if row.name.startswith("rotational relaxation") and time and time < float(row.value):
-                yield (f"{heading}: the run lasted {time:.4g} t0, and a fiber turns in {float(row.value):.4g} t0: "
-                       "averages still show the start.")
-            if row.name.startswith("slowest Rouse mode") and time and time < float(row.value):
-                yield (f"{heading}: the run lasted {time:.4g} t0, and the slowest mode of a chain, without hydrodynamics, takes "
-                       f"{float(row.value):.4g} t0: averages still show the start.")
-            if row.name == "time to become steady" and time:
-                yield from _unsteady(run, time, float(row.value))
-    few = {}
-    for table in run.tables:
-        lost = [c for c in table.values if table.errors(c) is not None
-                and (numpy.isfinite(table.data[c]) & numpy.isnan(table.errors(c))).any()]
-        if lost:
-            yield f"{table.name}: too few values for an error of {', '.join(lost)}."
-        pairs = table.data.get("intervals")
-        if pairs is not None and (pairs < LEAST_PAIRS).any():
-            few.setdefault(f"{table.data['time'][pairs < LEAST_PAIRS][0]:.4g}", []).append(table.name)
-    for lag, names in few.items():
-        yield (f"{', '.join(names)}: from lag {lag} t0 on, fewer than {LEAST_PAIRS} pairs of times were compared: errors "
-               "there are the scatter over fibers alone.")
-
-
-MOST_START = 0.01  # of a mean over time: as src/scene/warnings.c has it
-
-
-def _unsteady(run, end, tau):
-    """Profiles and stresses of a flow that starts at rest. A run from a snapshot starts as that ended."""
-    means = [table.name for table in run.tables if table.name in ("profile", "stress")]
-    told = any("the flow starts at rest" in text for text in (run.record or {}).get("warnings", []))
-    steps = (run.record or {}).get("steps")
-    found = re.search(r"(?m)^ +from: (\d+)", run.scene)
-    begin = float(found[1]) * end / steps if found and steps else 0.0
-    if told or not means or end <= begin or re.search(r"\bsnapshot:", run.scene):
-        return
-    share = tau / (end - begin) * (math.exp(-begin / tau) - math.exp(-end / tau))
-    if share > MOST_START:
-        yield (f"{', '.join(means)}: the flow has not become steady: it starts at rest and needs {tau:.3g} t0 for each factor of e; "
-               f"means from {begin:.4g} to {end:.4g} t0 hold {100.0 * share:.2g} % of the start.")
-
-
-def diffusion(run, table):
-    """(column, row, Plateau) of the D that the page shows of a table: at the longest lag that enough intervals have, about the
-    drift where a force acts; None if it has none."""
-    column = "D_about_mean" if any("contain (v t)^2" in text for text in (run.record or {}).get("warnings", [])) else "D"
-    row = plateau.last_lag(table.data) if column in table.data else None
-    if row is None or not numpy.isfinite(table.data[column][row]):
-        return None
-    return column, row, plateau.plateau(table.data, row, column)
-
-
-def _moving(run):
-    """Diffusion coefficients that still depend on the lag."""
-    for table in run.tables:
-        found = diffusion(run, table)
-        if found:
-            doubt = found[2].doubt(f"D of '{columns.split(table.name)[1] or table.name}'")
-            if doubt:
-                yield doubt
-
-
-def _unconverged(run):
-    """Time series whose halves differ by more than chance."""
-    for table in run.tables:
-        sort = columns.split(table.name)[0]
-        if table.has_errors or table.rows < 64 or sort not in ("conserved", "temperature"):
-            continue
-        for name in table.values if sort == "temperature" else ("bond", "bend"):
-            series = table.data.get(name)
-            if series is None or not numpy.isfinite(series).all():
-                continue
-            halves = numpy.array_split(series, 2)
-            error = math.hypot(*(tables.blocked_error(half) for half in halves))
-            gap = halves[1].mean() - halves[0].mean()
-            if error > 0 and abs(gap) > 4 * error:
-                yield (f"{table.name}: {name} is not steady: its second half differs from the first by {gap:.3g}, "
-                       f"{abs(gap) / error:.1f} standard errors.")
-
-
-def _off_theory(run):
-    """Averages that must have the values of the phantom chain, and have not."""
-    for table in run.tables:
-        for name, exact in run.exact(table).items():
-            if table.errors(name) is None:
-                continue
-            value, error = table.data[name][0], table.errors(name)[0]
-            if error > 0 and abs(value - exact) > 5 * error:
-                yield (f"{table.name}: {name} = {value:.5g} ± {error:.2g}, where theory has {exact:.5g}: "
-                       f"{abs(value - exact) / error:.1f} standard errors apart.")
-    heat = run.table("temperature")
-    series = heat.data.get("solvent") if heat is not None else None
-    if series is not None and len(series) and numpy.isfinite(series).all():
-        error = tables.blocked_error(series)
-        if abs(series.mean() - 1.0) > 5 * error and abs(series.mean() - 1.0) > 0.01:
-            yield (f"temperature: that of the solvent is {series.mean():.4f} ± {error:.1g} kT/kB: averages are not "
-                   "those of equilibrium at 1.")

@@ -5,10 +5,10 @@ import os
 
 import numpy
 
-from uncross_sweep import averages, plateau
+from uncross_sweep import averages
 from uncross_sweep.opening import read_table
 
-from . import columns, page, style
+from . import columns, distrust, page, runs, style
 
 RESULTS = "seeds"  # columns before it are the grid's, those after it final numbers
 MOST_SERIES = 8
@@ -66,22 +66,6 @@ def _lag(row, kind):
     return _number(row.get(f"lag_{kind}", "nan"))
 
 
-def _moving(row):
-    """A sentence for each kind whose diffusion coefficient still depends on the lag."""
-    doubts = {}
-    for name in row:
-        column, kind = _parts(name)
-        change = f"change_{name}"
-        is_error = any(name.endswith(end) and name[:-len(end)] in row for end in ("_block_error", "_error"))
-        if column in plateau.OCTAVES and not is_error and change in row and math.isfinite(_number(row[name])):
-            base = abs(_number(row.get(f"{plateau.OCTAVES[column]}_{kind}", "nan"))) or math.nan
-            found = plateau.Plateau(_lag(row, kind), _number(row[change]) / base, _error(row, change) / base)
-            words = found.doubt(f"D{'' if column == 'D' else ' about its drift'} of '{kind}'")
-            if words:
-                doubts.setdefault(kind, words)
-    return list(doubts.values())
-
-
 def _at_lag(rows, name):
     """Of the caption of a number that is taken at a lag."""
     column, kind = _parts(name)
@@ -121,46 +105,38 @@ def figure(rows, keys, name):
         return style.svg(drawing)
 
 
-def _kin(runs, keys):
-    """What runs have in common that are averaged, or compared, as if they were independent."""
-    said, points = [], {}
-    for run in runs:
-        points.setdefault(tuple(run[key] for key in keys), []).append(run)
-    for mine in points.values():
-        streams = [run["stream"] for run in mine if run.get("stream")]
-        if len(set(streams)) < len(streams):
-            said.append(f"{mine[0]['folder']}: runs that are averaged draw the same random numbers (a stream twice in runs.csv): "
-                        "errors are too small.")
-    if any(len(starts) > len(set(starts)) for starts in (
-            [run["start_state"] for run in mine if run.get("start_state")] for mine in points.values())):
-        said.append("Runs of one point begin with the same state of a snapshot: they are independent only when it is forgotten.")
-    shared = set.intersection(*({run["stream"] for run in mine if run.get("stream")} for mine in points.values())) if points else ()
-    if shared and len(points) > 1:
-        said.append("All points have the same seeds, and draw the same random numbers: values of two points may be off in the same "
-                    "way, and the error of their difference is not that of independent runs. Other seeds for each point end this.")
-    return said
+def _points(folder, rows):
+    """{name: Run} of the folders that are there."""
+    found = {}
+    for name in (row["folder"] for row in rows if "folder" in row):
+        try:
+            found[name] = runs.read(os.path.join(folder, name))
+        except runs.BadInput:  # nothing is known of its runs, which `of_sweep` says
+            continue
+    return found
 
 
 def page_of(path):
     """HTML of a sweep's page; ValueError if its tables are none."""
     folder = path if os.path.isdir(path) else os.path.dirname(path) or "."
     names, rows = _read(os.path.join(folder, "summary.csv"))
-    _, runs = _read(os.path.join(folder, "runs.csv"))
+    _, made = _read(os.path.join(folder, "runs.csv"))
     if RESULTS not in names or names.index(RESULTS) < 1:
         raise ValueError(f"{folder}/summary.csv: not the summary of a sweep: no column {RESULTS}")
     keys = names[1:names.index(RESULTS)] or [names[0]]
     results = [name for name in names[names.index(RESULTS) + 1:]
                if not name.endswith("_error") and any(math.isfinite(_number(row[name])) for row in rows)]
-    unfinished = [run for run in runs if run.get("exit_code") != "0"]
+    unfinished = [run for run in made if run.get("exit_code") != "0"]
+    for run in made:
+        run["record"] = runs.record_of(os.path.join(folder, run["folder"]))
     front = [("What was swept", ["Each combination of:", *(f"{key}: {', '.join(dict.fromkeys(r[key] for r in rows))}" for key in keys)]),
-             ("How", f"{len(runs)} runs of {len(rows)} points; seeds {', '.join(dict.fromkeys(run['seed'] for run in runs))}."),
+             ("How", f"{len(made)} runs of {len(rows)} points; seeds {', '.join(dict.fromkeys(run['seed'] for run in made))}."),
              ("What came out", f"{len(results)} final numbers of each point: summary.csv."),
              ("What is here", f"Averages over seeds in a folder for each point, such as {rows[0][names[0]]}; "
               "uncross plot shows them, and each run below it.") if rows else ("What is here", "No point is finished."),
              ("What to distrust", page._doubts([f"{run['folder']}: exit code {run['exit_code']}, {run['status']}. {run['message']}".strip()
                                                 for run in unfinished] +
-                                               [f"{row[names[0]]}: {text}" for row in rows for text in _moving(row)] +
-                                               _kin(runs, keys)))]
+                                               distrust.of_sweep(_points(folder, rows), made)))]
     shown = [name for name in results if not name.startswith(("lag_", "change_"))]
     figures = [page.Figure(page.plain(_label(name)), style.data_uri(figure(rows, keys, name)),
                            f"{page.plain(_label(name))} over {keys[0]}.", f"{name} of summary.csv.{_at_lag(rows, name)} Error bars: one standard error, "

@@ -22,10 +22,12 @@ class Table:
         self.values = [c for c in data if c not in (self.x, "step") and not self.is_error(c)]
 
     def is_error(self, name):
-        return name.endswith("_error") and name[:-len("_error")] in self.data
+        return any(name.endswith(end) and name[:-len(end)] in self.data for end in ("_error", "_block_error"))
 
     def errors(self, name):
-        return self.data.get(name + "_error")
+        """Of two errors of an average over seeds that of blocks, where there is one: with few seeds it is the better known."""
+        scatter, blocks = self.data.get(name + "_error"), self.data.get(name + "_block_error")
+        return scatter if blocks is None else numpy.where(numpy.isfinite(blocks), blocks, scatter)
 
     @property
     def places(self):

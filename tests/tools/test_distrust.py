@@ -45,7 +45,8 @@ def doubts(text):
 class Pages(FolderTest):
     def setUp(self):
         super().setUp()
-        for where, name, none in ((sweeps, "figure", ""), (page, "figure_of", []), (page, "picture_of", page.Section("", [])), (compare, "_section", (page.Section("", []), []))):
+        nothing = page.Section("", [])
+        for where, name, none in ((sweeps, "figure", ""), (page, "figure_of", []), (page, "picture_of", nothing), (compare, "_section", (nothing, []))):
             patch = unittest.mock.patch.object(where, name, lambda *_, none=none: none)  # words are tested here, and figures take seconds
             patch.start()
             self.addCleanup(patch.stop)
@@ -76,12 +77,12 @@ class Pages(FolderTest):
         self.assertIn("(2 of 2 runs)", self.one(told, "the flow starts at rest"))
         self.assertEqual([text for text in told if "run.json" in text], [])
         both = doubts(compare.page_of(*(runs.read(str(out / "fibers.p.mass=5" / f"seed-{seed}")) for seed in (1, 2))))
-        self.assertIn("(2 of 2", self.one(both, "Vertices load the fluid"))
+        self.assertIn("(both)", self.one(both, "Vertices load the fluid"))
         # a warning of one run is counted as that, and one whose record is lost is named
         path = out / "fibers.p.mass=6" / "seed-2" / "run.json"
         path.write_text(json.dumps({**json.loads(path.read_text()), "warnings": ["a contact was odd"]}))
         told = doubts(sweeps.page_of(str(out)))
-        self.assertIn("(1 of 4 runs)", self.one(told, "contact was odd"))
+        self.assertIn("(1 of 4 runs: fibers.p.mass=6/seed-2)", self.one(told, "contact was odd"))
         self.assertIn("(3 of 4 runs", self.one(told, "Vertices load the fluid"))
         path.unlink()
         self.one(doubts(sweeps.page_of(str(out))), "fibers.p.mass=6/seed-2", "run.json")

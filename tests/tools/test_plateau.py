@@ -19,7 +19,7 @@ from support import TOP, UNCROSS, FolderTest, uncross  # noqa: E402
 
 os.environ["UNCROSS"] = str(UNCROSS)
 sys.path.insert(0, str(TOP / "python"))
-from uncross_plot import compare, page, runs, sweeps, tables  # noqa: E402
+from uncross_plot import compare, distrust, page, runs, sweeps, tables  # noqa: E402
 from uncross_sweep import averages, plateau  # noqa: E402
 
 SHORT = """box: [16, 16, 16]
@@ -128,7 +128,7 @@ class Pages(FolderTest):
         self.assertIn(f"at lag {lag:.3g} t0", text.partition("<figcaption")[2])  # beside each D
         both = [runs.read(str(out / "all" / f"seed-{seed}")) for seed in (1, 2)]
         for run in both:
-            told = [text for text in runs.distrust(run) if "is not final" in text]
+            told = [text for text in distrust.of_run(run) if "is not final" in text]
             self.assertEqual(len(told), 1)
             self.assertIn(f"at lag {lag:.3g} t0 (still moving)", page._result(run))
         with unittest.mock.patch.object(tables, "compare", lambda *_: []), unittest.mock.patch.object(page, "picture_of", lambda *_: page.Section("", [])):

@@ -31,7 +31,7 @@ from support import TOP, UNCROSS, load  # noqa: E402
 
 os.environ["UNCROSS"] = str(UNCROSS)
 sys.path.insert(0, str(TOP / "python"))
-from uncross_plot import columns, compare, fibers, page, runs, sweeps, tables  # noqa: E402
+from uncross_plot import columns, distrust, fibers, page, runs, sweeps, tables  # noqa: E402
 
 SCENE = """box: [8, 8, 10]
 time_step: 0.01
@@ -139,7 +139,7 @@ class Folder(unittest.TestCase):
         where = self.copy(name)
         record = json.loads((where / "run.json").read_text())
         (where / "run.json").write_text(json.dumps({**record, **changes}))
-        return runs.distrust(runs.read(str(where)))
+        return distrust.of_run(runs.read(str(where)))
 
     # --- the page ---
 
@@ -227,7 +227,8 @@ class Folder(unittest.TestCase):
         svg = made.picture(0).decode()
         self.assertEqual(svg.count('id="LineCollection_'), 4)  # error bars of a series for each start, and of its entry in the legend
         self.assertIn("6 runs of 6 points; seeds 1.", made.said)
-        self.assertIn("2 things:", made.said)  # two runs have not finished
+        self.assertIn("3 things:", made.said)  # two runs have not finished, and what the others warned of is lost
+        self.assertIn("what the run warned of is not known (4 of 6 runs)", made.said)
         self.assertIn("k=40_start=a/seed-1: exit code 3", made.said)
         self.assertIn("0.0500 ± 0.0010", made.said)
         self.assertEqual(plot(folder)[0], 2)  # nothing is written over
@@ -416,7 +417,7 @@ class Folder(unittest.TestCase):
         self.assertIn("'running' at step 0 of 200", self.record("runs", status="running", steps=0)[0])
         counts = {"executed": 3, "possible": 3, "moves": 9, "negative": 0, "rigid": 2}
         self.assertTrue(any("2 contacts made bonds move rigidly" in t for t in self.record("rigid", collisions=counts)))
-        self.assertFalse(any("rigid" in t or "finish" in t for t in runs.distrust(runs.read(str(self.run_dir)))))
+        self.assertFalse(any("rigid" in t or "finish" in t for t in distrust.of_run(runs.read(str(self.run_dir)))))
 
     def test_a_damaged_file_is_named_and_not_drawn(self):
         where = self.copy("damaged")
@@ -426,7 +427,7 @@ class Folder(unittest.TestCase):
             (where / name).write_bytes(data)
         run = runs.read(str(where))
         self.assertIsNone(run.frames)
-        told = " ".join(runs.distrust(run))
+        told = " ".join(distrust.of_run(run))
         self.assertRegex(told, r"trajectory\.h5: .*damaged|trajectory\.h5: .*checksum")
         self.assertRegex(told, r"checkpoint\.h5: ")
         code, _, error = plot(where / "checkpoint.h5")
@@ -436,7 +437,7 @@ class Folder(unittest.TestCase):
     def synthetic(self, name, data):
         run = runs.Run("nowhere")
         run.tables.append(tables.Table(name, {k: numpy.array(v, float) for k, v in data.items()}))
-        return runs.distrust(run)
+        return distrust.of_run(run)
 
     def test_unsteady_short_and_wrong_averages(self):
         random = numpy.random.default_rng(1)
@@ -463,7 +464,7 @@ class Folder(unittest.TestCase):
         self.assertAlmostEqual(exact["Ree2"], 5.82559**2, places=3)
         table = run.table("statics-rods")
         table.data["l"] = exact["l"] + 6 * table.errors("l")
-        self.assertTrue(any("statics-rods: l = " in text and "6.0 standard errors" in text for text in runs.distrust(run)))
+        self.assertTrue(any("statics-rods: l = " in text and "6.0 standard errors" in text for text in distrust.of_run(run)))
 
     # --- single files, two runs ---
 
@@ -513,20 +514,17 @@ class Folder(unittest.TestCase):
         self.assertIn(f'<td class="n">{z:+.1f}</td>', row)
         self.assertNotIn("the same random numbers", both.said)
         same = runs.read(str(self.dir / "one"))
-        self.assertEqual(compare._kin(same, same)[0][:52], "Both draw the same random numbers (stream 5): their f"[:52])
+        self.assertEqual(distrust.kin_of_pair(same, same)[0][:52], "Both draw the same random numbers (stream 5): their f"[:52])
         begun, other = ({"stream": stream, "stream_from": {"stream": "1", "step": 3, "state": "0f"}} for stream in "34")
-        told = compare._kin(types.SimpleNamespace(record=begun), types.SimpleNamespace(record=other))
+        told = distrust.kin_of_pair(types.SimpleNamespace(records=[begun]), types.SimpleNamespace(records=[other]))
         self.assertEqual([text[:40] for text in told], ["Both begin with the same state of a snap"])
 
     def test_runs_of_a_sweep_that_are_no_independent_ones(self):
-        def told(*rows):
-            return sweeps._kin([dict(zip(("folder", "k", "stream", "start_state"), row)) for row in rows], ["k"])
-
-        self.assertEqual(told(("a", "1", "5", ""), ("b", "1", "6", ""), ("c", "2", "7", "")), [])
-        twice, apart = told(("a", "1", "5", ""), ("b", "1", "5", "")), told(("a", "1", "5", ""), ("b", "2", "5", ""))
+        self.assertEqual(distrust.kin({"a": [("5", ""), ("6", "")], "b": [("7", "")]}), [])
+        twice, apart = distrust.kin({"a": [("5", ""), ("5", "")]}), distrust.kin({"a": [("5", "")], "b": [("5", "")]})
         self.assertIn("a: runs that are averaged draw the same random numbers", twice[0])
         self.assertIn("All points have the same seeds", apart[0])
-        begun = told(("a", "1", "5", "0f"), ("b", "1", "6", "0f"))
+        begun = distrust.kin({"a": [("5", "0f"), ("6", "0f")]})
         self.assertIn("begin with the same state of a snapshot", begun[0])
         self.assertEqual([len(twice), len(apart), len(begun)], [1, 1, 1])
 

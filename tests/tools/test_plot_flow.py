@@ -17,7 +17,7 @@ from support import TOP, UNCROSS  # noqa: E402
 
 os.environ["UNCROSS"] = str(UNCROSS)
 sys.path.insert(0, str(TOP / "python"))
-from uncross_plot import compare, flow, page, runs  # noqa: E402
+from uncross_plot import compare, distrust, flow, page, runs  # noqa: E402
 
 ETA, SLIP, EDGE, RHO = 30.0, 0.4, 20, 10.0
 SOLVENT = """box: [8, 20, 1]
@@ -218,7 +218,7 @@ fibers: [{name: point, count: 8000, vertices: 1, mass: 5}]
                 tell(pathlib.Path(folder), scene % begins, profile(lambda y: 0.01 * y * (EDGE - y)))
                 record = {"scene": scene % begins, "steps": steps, "time": 0.02 * steps, "status": "finished"}
                 (pathlib.Path(folder) / "run.json").write_text(json.dumps(record), encoding="utf-8")
-                doubts = [text for text in runs.distrust(runs.read(folder)) if "has not become steady" in text]
+                doubts = [text for text in distrust.of_run(runs.read(folder)) if "has not become steady" in text]
             self.assertEqual(len(doubts), told, (steps, begins))
 
     def test_captions_know_the_box(self):
