@@ -5,8 +5,16 @@
 #include "files/frames.h"
 #include "files/trajectory.h"
 
+/* Within a process of its own (apart.h). False, with a message, if nobody knows which frame is meant: there are several
+ * groups of particles, or elements of frames that are not of the steps of the positions. */
+bool foreign_is_one(const struct trajectory *trajectory, struct message *message);
+
+/* The ids of its rows, [particles], to be freed: those of the last frame, if they change. NULL: there are none. */
+int64_t *foreign_ids(const struct trajectory *trajectory);
+
 /* Within a process of its own (apart.h). Looks at the group of particles: whether its rows are in the order of ids, its
- * masses are one number for each row, and nothing is there of which a run knows nothing. about->unfit says what is
+ * masses are one number for each row, its box has words that are known, its numbers no units, and nothing is there of
+ * which a run knows nothing. about->unfit says what is
  * wrong, or stays empty. masses: they were read. */
 void foreign_look(const struct trajectory *trajectory, bool masses, struct frames_about *about);
 

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "files/foreign.h"
 #include "files/frames.h"
 #include "files/reader.h"
@@ -89,28 +90,40 @@ static bool read_words(hid_t object, const char *name, char word[AXES][WORD])
 
 static void read_boundary(const struct trajectory *t, struct frames_about *about)
 {
+  static const char allowed[] = "periodic, none";
   char word[AXES][WORD] = {""};
   hid_t box = h5_open_group(t->group, "box");
   about->bounded = read_words(box, "boundary", word);
-  for (int k = 0; k < AXES; k++) {
+  if (!about->bounded && box >= 0 && H5Aexists(box, "boundary") > 0 && !about->unfit[0])
+    snprintf(about->unfit, sizeof about->unfit, "its box has a boundary that is not three words; allowed: %s", allowed);
+  for (int k = 0; k < AXES && about->bounded; k++) {
     about->closed[k] = strncmp(word[k], "none", WORD) == 0;
-    about->bounded = about->bounded && (about->closed[k] || strncmp(word[k], "periodic", WORD) == 0);
+    const bool known = about->closed[k] || strncmp(word[k], "periodic", WORD) == 0;
+    char text[WORD + 1] = "", shown[4 * WORD + 1];
+    memcpy(text, word[k], WORD);
+    if (!known && !about->unfit[0])
+      snprintf(about->unfit, sizeof about->unfit, "its box is '%s' along %c; allowed: %s",
+               text_escape(text, shown, sizeof shown), "xyz"[k], allowed);
   }
   h5_close(box);
   H5Eclear2(H5E_DEFAULT);
 }
 
-static bool open_structure(struct source *s, hid_t particles, hid_t connectivity, uint32_t rows,
+/* id: of the rows, NULL: none. */
+static bool open_structure(struct source *s, hid_t particles, hid_t connectivity, const int64_t *id, uint32_t rows,
                            struct message *message)
 {
-  bool ok = particles >= 0 && structure_read(particles, connectivity, rows, &s->structure);
+  struct message why = {""};
+  bool ok = particles >= 0 && structure_read(particles, connectivity, id, rows, &s->structure, &why);
+  if (!ok && why.text[0])
+    return message_set(message, "%s: %s", s->path, why.text);
   return ok || h5_fail(message, s->path, "damaged, its species or bonds cannot be read");
 }
 
 static bool open_trajectory(struct source *s, struct message *message)
 {
   struct trajectory *t = s->trajectory;
-  if (!trajectory_find(t, message))
+  if (!trajectory_find(t, message) || !foreign_is_one(t, message))
     return false;
   const int found = h5_look(t->file, "connectivity");
   hid_t connectivity = h5_open_object(t->file, "connectivity");
@@ -123,8 +136,11 @@ static bool open_trajectory(struct source *s, struct message *message)
   bool ok = none || connectivity >= 0 || h5_fail(message, s->path, "damaged, its bonds cannot be read");
   /* Without a frame only this dataset proves how many particles there are. */
   const hsize_t rows[1] = {t->particles};
-  if (ok && (t->frames > 0 || h5_array_is(t->group, "species", 1, rows)))
-    ok = open_structure(s, t->group, connectivity, t->particles, message);
+  if (ok && (t->frames > 0 || h5_array_is(t->group, "species", 1, rows))) {
+    int64_t *id = foreign_ids(t);
+    ok = open_structure(s, t->group, connectivity, id, t->particles, message);
+    free(id);
+  }
   h5_close(connectivity);
   const int told = ok ? trajectory_read_scene(t, &s->scene) : 0;
   ok = ok && (told >= 0 || h5_fail(message, s->path, "damaged, its scene cannot be read"));
@@ -145,7 +161,7 @@ static bool open_checkpoint(struct source *s, struct message *message)
   if (!checkpoint_find(s->file, s->path, s->about.checked, summary, message))
     return false;
   hid_t group = h5_open_group(s->file, "structure");
-  const bool ok = open_structure(s, group, group, summary->vertices, message);
+  const bool ok = open_structure(s, group, group, NULL, summary->vertices, message);
   h5_close(group);
   s->about.frames = 1;
   s->about.rows = summary->vertices + summary->particles;

@@ -98,6 +98,15 @@ static bool make_up_lag_of(const struct past *past, const struct checkpoint_summ
   return make_up_lag(state, &then, message);
 }
 
+/* By its scene, or else by its own word; 0: none. */
+static bool same_dimensions(const struct past *past, uint32_t dimensions, const struct model *m, const char *path,
+                            struct message *message)
+{
+  const uint32_t its = past->known ? past->scene.model.dimensions : dimensions;
+  return its == 0 || its == m->dimensions ||
+         message_set(message, "%s: it is of a scene with dimensions: %u, this one has %u", path, its, m->dimensions);
+}
+
 static bool start_from_checkpoint(const char *path, const struct model *model, struct state *state,
                                   struct snapshot_origin *origin, struct message *message)
 {
@@ -112,7 +121,8 @@ static bool start_from_checkpoint(const char *path, const struct model *model, s
     return false;
   look_back(&past, frames, model);
   *origin = (struct snapshot_origin){.has_stream = true, .stream = summary.head.stream.key, .step = state->step};
-  const bool ok = in_order(frames, model, path, message) &&
+  const bool ok = same_dimensions(&past, summary.dimensions, model, path, message) &&
+                  in_order(frames, model, path, message) &&
                   find_slide(&past, model, state->step, origin, path, message) &&
                   make_up_lag_of(&past, &summary, state, model, message) &&
                   (bead_sound(state, model, &fault) || message_fault(message, &fault));
@@ -168,7 +178,8 @@ static bool start_from_trajectory(const char *path, const struct model *model, s
   const struct frames_about *about = &t->frames_apart->about;
   const struct structure *s = &t->frames_apart->structure;
   look_back(&past, t->frames_apart, model);
-  bool ok = same_boundary(&past, about, model, path, message) && last_frame(t, path, model, state, message);
+  bool ok = same_dimensions(&past, 0, model, path, message) && same_boundary(&past, about, model, path, message) &&
+            last_frame(t, path, model, state, message);
   *origin = (struct snapshot_origin){.has_stream = about->has_stream,
                                      .stream = about->stream,
                                      .step = state->step,

@@ -1,5 +1,6 @@
 #include "files/structure.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -102,9 +103,9 @@ static bool read_names(hid_t dataset, struct structure *s)
   for (int k = 0; s->name && ok && k < members; k++) {
     int32_t value = -1;
     char *name = H5Tget_member_name(type, (unsigned)k);
-    ok = name && H5Tget_member_value(type, (unsigned)k, &value) >= 0 && value == k;
-    if (ok)
-      snprintf(s->name[k], sizeof s->name[k], "%s", name);
+    ok = name && H5Tget_member_value(type, (unsigned)k, &value) >= 0 && value >= 0 && value < members;
+    if (ok) /* others write them in the order of names */
+      snprintf(s->name[value], sizeof s->name[value], "%s", name);
     H5free_memory(name);
   }
   s->kinds = members;
@@ -177,7 +178,45 @@ static void take_bond(struct structure *s, int32_t a, int32_t b)
     s->next[high] = low;
 }
 
-static bool read_bonds(hid_t connectivity, struct structure *s)
+struct named {
+  int64_t id;
+  int32_t row;
+};
+
+static int compare_ids(const void *a, const void *b)
+{
+  const int64_t x = ((const struct named *)a)->id, y = ((const struct named *)b)->id;
+  return (x > y) - (x < y);
+}
+
+/* The rows by their ids, to be freed; NULL if memory is short. */
+static struct named *sort_rows(const int64_t *id, uint32_t rows)
+{
+  struct named *by_id = malloc(((size_t)rows + 1) * sizeof *by_id);
+  for (uint32_t i = 0; by_id && i < rows; i++)
+    by_id[i] = (struct named){id ? id[i] : i, (int32_t)i};
+  if (by_id && id)
+    qsort(by_id, rows, sizeof *by_id, compare_ids);
+  return by_id;
+}
+
+static bool take_bonds(struct structure *s, const int32_t *pair, hsize_t bonds, const struct named *by_id,
+                       struct message *why)
+{
+  for (hsize_t b = 0; b < bonds; b++) {
+    const struct named *end[2];
+    for (int k = 0; k < 2; k++) {
+      const struct named wanted = {.id = pair[2 * b + (hsize_t)k]};
+      end[k] = bsearch(&wanted, by_id, s->particles, sizeof *by_id, compare_ids);
+      if (!end[k])
+        return message_set(why, "its bonds name particle %" PRId64 ", and no row is that", wanted.id);
+    }
+    take_bond(s, end[0]->row, end[1]->row);
+  }
+  return true;
+}
+
+static bool read_bonds(hid_t connectivity, const int64_t *id, struct structure *s, struct message *why)
 {
   hsize_t dims[2] = {0, 2};
   s->next = malloc(((size_t)s->particles + 1) * sizeof *s->next);
@@ -193,23 +232,22 @@ static bool read_bonds(hid_t connectivity, struct structure *s)
   bool ok = h5_shape(dataset, 2, dims) == 2 && dims[1] == 2 && dims[0] <= INT32_MAX;
   h5_close(dataset);
   int32_t *pair = ok ? malloc((dims[0] + 1) * 2 * sizeof *pair) : NULL;
-  ok = pair && h5_array_read(connectivity, "bonds", H5T_NATIVE_INT32, 2, dims, pair);
-  for (hsize_t b = 0; ok && b < dims[0]; b++) {
-    ok = pair[2 * b] >= 0 && (uint32_t)pair[2 * b] < s->particles && pair[2 * b + 1] >= 0 &&
-         (uint32_t)pair[2 * b + 1] < s->particles;
-    if (ok)
-      take_bond(s, pair[2 * b], pair[2 * b + 1]);
-  }
+  struct named *by_id = ok ? sort_rows(id, s->particles) : NULL;
+  ok = pair && by_id && h5_array_read(connectivity, "bonds", H5T_NATIVE_INT32, 2, dims, pair) &&
+       take_bonds(s, pair, dims[0], by_id, why);
   s->bonds = (uint32_t)dims[0];
+  free(by_id);
   free(pair);
   return ok;
 }
 
-bool structure_read(hid_t particles, hid_t connectivity, uint32_t rows, struct structure *s)
+bool structure_read(hid_t particles, hid_t connectivity, const int64_t *id, uint32_t rows, struct structure *s,
+                    struct message *why)
 {
   memset(s, 0, sizeof *s);
+  why->text[0] = '\0';
   s->particles = rows;
-  bool ok = read_species(particles, s) && read_mass(particles, s) && read_bonds(connectivity, s);
+  bool ok = read_species(particles, s) && read_mass(particles, s) && read_bonds(connectivity, id, s, why);
   if (!ok)
     structure_free(s);
   return ok;
@@ -262,37 +300,53 @@ bool structure_masses_differ(const double *mass, uint32_t rows, const struct mod
   return false;
 }
 
-/* The kind of a row of the model by the file's numbers of species, if the file has the same kinds with as many rows
- * each: then they must stand in the same order. Other names, or another grouping, say nothing. */
-static bool same_kinds(const struct structure *s, const struct model *m)
+static bool is_named(const struct structure *s, uint32_t row, const char *name)
 {
-  bool same = true;
-  for (uint32_t k = 0; same && k < m->kinds; k++) {
-    uint32_t rows = 0;
-    for (uint32_t i = 0; i < m->vertices; i++)
-      rows += strcmp(structure_name(s, s->species[i]), m->kind[k].name) == 0;
-    same = rows == m->kind[k].count * m->kind[k].vertices;
+  return strcmp(structure_name(s, s->species[row]), name) == 0;
+}
+
+/* The file has a kind of this name with as many rows: it must be this one. Another grouping says nothing. */
+static bool same_kind(const struct structure *s, const struct model *m, uint32_t kind)
+{
+  uint32_t rows = 0;
+  for (uint32_t i = 0; i < m->vertices; i++)
+    rows += is_named(s, i, m->kind[kind].name);
+  return rows > 0 && rows == m->kind[kind].count * m->kind[kind].vertices;
+}
+
+static bool vertices_differ(const struct structure *s, const struct model *m, struct message *why)
+{
+  for (uint32_t k = 0, first = 0; k < m->kinds; first += m->kind[k].count * m->kind[k].vertices, k++) {
+    const uint32_t rows = same_kind(s, m, k) ? m->kind[k].count * m->kind[k].vertices : 0;
+    for (uint32_t i = first; i < first + rows; i++)
+      if (!is_named(s, i, m->kind[k].name))
+        return !message_set(why,
+                            "its rows are not in the scene's order: vertex %u is of '%s' in it, of '%s' in the scene",
+                            i, text_shown(structure_name(s, s->species[i])), m->kind[k].name);
   }
-  return same;
+  return false;
+}
+
+static bool is_kind(const struct model *m, const char *name)
+{
+  bool any = false;
+  for (uint32_t k = 0; k < m->kinds; k++)
+    any |= strcmp(m->kind[k].name, name) == 0;
+  return any;
 }
 
 static bool kinds_differ(const struct structure *s, const struct model *m, struct message *why)
 {
-  for (uint32_t i = 0; i < s->particles && s->kinds > 0; i++)
-    if (structure_is_solvent(s, s->species[i]) && i < m->vertices) {
-      message_set(why, "its rows are not in the scene's order: row %u is solvent in it, a vertex in the scene", i);
-      return true;
-    }
-  const uint32_t named = m->kinds > 1 && same_kinds(s, m) ? m->vertices : 0;
-  for (uint32_t i = 0; i < named; i++) {
-    const char *name = m->kind[m->fiber_kind_of[m->fiber_of[i]]].name;
-    if (strcmp(structure_name(s, s->species[i]), name) == 0)
-      continue;
-    message_set(why, "its rows are not in the scene's order: vertex %u is of '%s' in it, of '%s' in the scene", i,
-                text_shown(structure_name(s, s->species[i])), name);
-    return true;
+  for (uint32_t i = 0; i < s->particles && s->kinds > 0; i++) {
+    const char *name = structure_name(s, s->species[i]);
+    if (i < m->vertices && structure_is_solvent(s, s->species[i]))
+      return !message_set(why, "its rows are not in the scene's order: row %u is solvent in it, a vertex in the scene",
+                          i);
+    if (i >= m->vertices && is_kind(m, name) && !structure_is_solvent(s, s->species[i]))
+      return !message_set(why, "its rows are not in the scene's order: row %u is of '%s' in it, solvent in the scene",
+                          i, text_shown(name));
   }
-  return false;
+  return s->kinds > 0 && vertices_differ(s, m, why);
 }
 
 bool structure_differs(const struct structure *s, const struct model *m, struct message *why)

@@ -34,9 +34,11 @@ struct structure {
 };
 
 /* Reads `species` and `mass` of `particles`, and `bonds` of `connectivity` (below 0: there are none), for this number
- * of rows. A file of another program without fixed species has one species without a name. False if they do not fit
- * together or memory is short; nothing needs freeing then. */
-bool structure_read(hid_t particles, hid_t connectivity, uint32_t rows, struct structure *structure);
+ * of rows. Bonds are pairs of ids: [rows]; NULL: of numbers of rows. A file of another program without fixed species
+ * has one species without a name. False if they do not fit together or memory is short, with a message if it is known
+ * why, else an empty one; nothing needs freeing then. */
+bool structure_read(hid_t particles, hid_t connectivity, const int64_t *id, uint32_t rows, struct structure *structure,
+                    struct message *why);
 void structure_free(struct structure *structure);
 
 /* True if its bonds are this model's, between its first rows. */

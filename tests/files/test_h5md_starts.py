@@ -140,7 +140,7 @@ class Foreign(unittest.TestCase):
         self.make(self.named(numbers, "a", "b", "solvent"))
         self.again("row 200 is of 'a' in it, solvent in the scene")
         self.make(self.named(self.species, "a", "b", "solvent"))
-        self.again("vertex 0 is of 'a' in it, of 'c' in the scene", SOLVENT + KINDS.replace("name: a", "name: c").replace("name: b", "name: a"))
+        self.again("vertex 8 is of 'b' in it, of 'a' in the scene", SOLVENT + KINDS.replace("name: a", "name: c").replace("name: b", "name: a"))
         self.make(self.named(self.species, "x", "y", "water"))  # names that say nothing
         self.again()
 
@@ -148,9 +148,9 @@ class Foreign(unittest.TestCase):
         for change, words in ((lambda file: file["particles/all/box"].create_dataset("offset", data=[-4.0] * 3),
                                "it holds 'box/offset', of which a run knows nothing; allowed: edges"),
                               (lambda file: file["particles/all/box"].attrs.modify("dimension", 2), "its box has 2 dimensions; allowed: 3"),
-                              (lambda file: file["particles/all/box"].attrs.modify("boundary", numpy.array([b"periodic", b"reflect", b"none"])),
+                              (lambda file: file["particles/all/box"].attrs.modify("boundary", numpy.array([b"periodic", b"reflect", b"periodic"])),
                                "its box is 'reflect' along y; allowed: periodic, none"),
-                              (lambda file: file["particles/all/box"].attrs.modify("boundary", b"periodic"),
+                              (lambda file: file["particles/all/box"].attrs.create("boundary", numpy.bytes_(b"periodic")),
                                "its box has a boundary that is not three words; allowed: periodic, none")):
             with self.subTest(words):
                 self.make(change)
@@ -161,7 +161,7 @@ class Foreign(unittest.TestCase):
             for unit in ("nm", numpy.bytes_(b"nm")):
                 with self.subTest(name=name, unit=unit):
                     self.make(lambda file, name=name, unit=unit: file[f"particles/all/{name}"].attrs.create("unit", unit))
-                    self.again(f"its {name} has the unit 'nm'; allowed: none, numbers in a0, t0 and m")
+                    self.again(f"its {name.replace('/value', '').replace('box/', '')} has the unit 'nm'; allowed: none, numbers in a0, t0 and m")
 
 
 class Dimensions(unittest.TestCase):
