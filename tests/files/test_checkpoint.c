@@ -270,8 +270,8 @@ static const struct {
     {long_bond, "bond 0 is longer than half the shortest box edge: 2.5 a0; at most 2.5 is allowed"},
     {vertex_nan, "moves too far in one time step: nan a0"},
     {solvent_infinite, "moves too far in one collision interval: -inf a0"},
-    {solvent_below, "is not in the box: -9.094947e-13 a0; at most 6 is allowed"},
-    {solvent_at_the_edge, "is not in the box: 5 a0; at most 5 is allowed"},
+    {solvent_below, "is not in the box: -9.094947e-13 a0; 0 to 6 is allowed"},
+    {solvent_at_the_edge, "is not in the box: 5 a0; 0 to 5 is allowed"},
 };
 
 /* Their hashes are right. A resume and a start both refuse them, with the same words. */
