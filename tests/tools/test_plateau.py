@@ -38,18 +38,23 @@ def of_interval(walk, lag):
     half = numpy.diff(walk[::lag // 2], axis=0)
     half = half[:len(half) // 2 * 2]
     a, b = half[::2], half[1::2]
-    grown = (((a + b)**2).sum(-1) - ((a**2).sum(-1) + (b**2).sum(-1)) / 2.0) / (3.0 * lag)
-    time = averages.blocked_mean(grown.mean(axis=1))[1]
-    fiber = grown.mean(axis=0)
+    return errors_of((((a + b)**2).sum(-1) - ((a**2).sum(-1) + (b**2).sum(-1)) / 2.0) / (3.0 * lag))
+
+
+def errors_of(values):
+    """(mean, error) of values [intervals][fibers]: the larger of the errors in time and over fibers."""
+    time = averages.blocked_mean(values.mean(axis=1))[1]
+    fiber = values.mean(axis=0)
     over = fiber.std(ddof=1) / numpy.sqrt(len(fiber)) if len(fiber) >= 8 else numpy.nan
-    return grown.mean(), float(numpy.fmax(time, over))
+    return values.mean(), float(numpy.fmax(time, over))
 
 
 def table_of(walk):
     """A table of dynamics at the lags 2 and 4 of a walk [times][fibers][3]."""
     found = numpy.array([of_interval(walk, lag) for lag in (2, 4)])
+    total = numpy.array([errors_of((numpy.diff(walk[::lag], axis=0)**2).sum(-1) / (6.0 * lag)) for lag in (2, 4)])
     return {"time": numpy.array([2.0, 4.0]), "intervals": numpy.array([len(walk) // 2, len(walk) // 4]),
-            "D": found[:, 0], "D_error": found[:, 1], "D_cumulative": found[:, 0], "D_cumulative_error": found[:, 1]}
+            "D": total[:, 0], "D_error": total[:, 1], "D_cumulative": found[:, 0], "D_cumulative_error": found[:, 1]}
 
 
 class TestIntervals(unittest.TestCase):
@@ -106,7 +111,21 @@ class Rule(unittest.TestCase):
             self.assertIn("no two octaves", plateau.plateau(table, row).doubt("D"))
         table["D_cumulative_error"][:] = table["D_error"][:] = 0.01
         table["D_cumulative"][1] = 4.0
+        table["D"][1] = table["D"][3] = 4.0
         self.assertEqual(plateau.plateau(table, 3).doubt("D"), "")
+
+    def test_the_number_that_is_shown_is_tested(self):
+        """Langevin particles: g = 6 D (t - tau), so that octaves have D, and g/6t has D (1 - tau/t). With tau/t = 1/20 it is 5 % below."""
+        lag, tau = numpy.array([2.5, 5.0, 10.0]), 0.5
+        table = {"time": lag, "D": 3.0 * (1.0 - tau / lag), "D_error": 0.03 * numpy.ones(3), "D_cumulative": 3.0 * numpy.ones(3),
+                 "D_cumulative_error": 0.04 * numpy.ones(3)}
+        found = plateau.plateau(table, 2)
+        self.assertAlmostEqual(found.change, 0.0, 14)
+        self.assertTrue(found.moves)  # 0.15 and sqrt(0.03^2 + 0.04^2)/2 = 0.025: 6 errors
+        self.assertEqual(found.word, "still moving")
+        self.assertRegex(found.doubt("D"), r"D is not final: it is 5% below .* at lag 10 t0 \(6\.0 errors\)")
+        table["D_cumulative_error"][:] = 0.2
+        self.assertFalse(plateau.plateau(table, 2).moves)  # 1.5 errors
 
 
 class Pages(FolderTest):
