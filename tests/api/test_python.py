@@ -101,6 +101,26 @@ class Python(unittest.TestCase):
             self.assertIn(b"KeyboardInterrupt", said)
             self.assertLess(time.monotonic() - started, 3, kind)  # a look every 0.1 s and a step, on a busy machine
 
+    def test_ctrl_c_is_seen_while_a_start_is_laid(self):
+        """Thick fibers that do not fit: laying them goes on for many seconds before it is given up."""
+        code = (f"import signal, sys; sys.path.insert(0, {str(TOP / 'python')!r}); import uncross, tempfile\n"
+                "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+                "scene = uncross.Scene(dict(box=[12, 12, 12], time_step=0.01, steps=1, solvent=dict(per_cell=3, collision_interval=0.02),\n"
+                "             fibers=[dict(name='f', count=900, vertices=10, mass=5, bond_length=0.5, spring=1000, bending=100, diameter=0.5)]))\n"
+                "print('begun', flush=True)\n"
+                "run = uncross.Run(scene) if sys.argv[1] == 'sim' else uncross.FolderRun(scene, tempfile.mkdtemp() + '/run')\n")
+        for kind in ("sim", "run"):
+            program = subprocess.Popen(["/usr/bin/python3", "-c", code, kind], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            self.assertEqual(program.stdout.readline(), b"begun\n")
+            time.sleep(0.3)
+            self.assertIsNone(program.poll())
+            program.send_signal(signal.SIGINT)
+            started = time.monotonic()
+            _, said = program.communicate(timeout=120)
+            self.assertTrue(said.rstrip().endswith(b"KeyboardInterrupt"), said)
+            self.assertNotIn(b"From cffi", said)
+            self.assertLess(time.monotonic() - started, 3, kind)
+
     def test_what_is_missing_is_named(self):
         """A package that Python has not: as if it were not installed."""
         for name in "cffi", "numpy":

@@ -5,6 +5,7 @@ import os
 import pathlib
 import re
 import resource
+import shutil
 import sys
 import unittest
 
@@ -71,6 +72,17 @@ class Head(FolderTest):
             real = (self.dir / "run" / f"{what}.h5").stat().st_size
             self.assertLess(self.size(head, what), 1.1 * real, what)
             self.assertGreater(self.size(head, what), 0.4 * real, what)
+
+    def test_small_files(self):
+        """Few vertices, few and many frames: room is taken in whole chunks."""
+        small = SCENE.replace("count: 40, vertices: 12", "count: 2, vertices: 4")
+        for text in small, small.replace("every: 4, ", "every: 1, ").replace("steps: 400", "steps: 3000"):
+            head, _ = self.head(text)
+            self.assertEqual(uncross("run", self.dir / "scene.yaml", "--out", self.dir / "run", "--quiet").returncode, 0)
+            for what in ("checkpoint", "trajectory"):
+                real = (self.dir / "run" / f"{what}.h5").stat().st_size
+                self.assertAlmostEqual(self.size(head, what) / real, 1.0, delta=0.15, msg=what)
+            shutil.rmtree(self.dir / "run")
 
     def test_memory_of_observables(self):
         """A checkpoint holds what they keep, and memory holds it before: here more than all else."""

@@ -57,6 +57,15 @@ class HostileNames(unittest.TestCase):
                 self.assertNotEqual(code, 0, (command, name))
                 self.assertIn(shown, said, command)
 
+    def test_options_that_are_none(self):
+        """As a glob makes them of files' names."""
+        for name in "\x1b]0;pwn\x07", "\x9b31m", "\u202egnp", "a\nb":
+            for command in ("check", "run", "info", "verify", "export", "analyze", "map", "sweep", "plot", "compare"):
+                for word in f"--{name}", f"-{name}", f"--out{name}=1":
+                    code, said = self.run_words(command, word, "s.yaml")
+                    self.assertEqual(code, 2, (command, word))
+                    self.assertIn("uncross", said)
+
     def test_what_is_there(self):
         self.run_words("run", "s.yaml", "--out", "whole", "--quiet")
         for name, shown in zip(NAMES, SHOWN):
