@@ -217,11 +217,22 @@ static enum exit_code check_words(enum command_code command, int files, const st
   return EXIT_DONE;
 }
 
+/* What getopt_long did not take. It would print the word as it is, which may act on a terminal. */
+static enum exit_code refuse_word(enum command_code command, const char *word)
+{
+  const char *const name = commands[command].name;
+  const struct option_row *row = optopt ? row_of(command, optopt) : NULL;
+  if (row)
+    return row->argument
+               ? usage_error(name, "%s: option '--%s' requires an argument (%s)", name, row->name, row->argument)
+               : usage_error(name, "%s: option '--%s' takes no argument", name, row->name);
+  return optopt ? usage_error(name, "%s: unrecognized option '-%c'", name, optopt)
+                : usage_error(name, "%s: unrecognized option '%s', or several begin like it", name, word);
+}
+
 enum exit_code arguments_read(enum command_code command, int count, char **words, struct arguments *a)
 {
-  const struct command *c = &commands[command];
   struct getopt_table table;
-  char name[64]; /* under which getopt_long complains */
   int code;
   *a = (struct arguments){.export = {.last = UINT64_MAX, .stride = 1}, .false_alarm = 1e-3, .seconds = 600};
   a->set = calloc((size_t)count + 1, sizeof *a->set);
@@ -229,13 +240,12 @@ enum exit_code arguments_read(enum command_code command, int count, char **words
     fprintf(stderr, "uncross: no memory to begin with\n");
     return EXIT_TROUBLE;
   }
-  snprintf(name, sizeof name, "uncross %s", c->name);
-  words[0] = name;
   make_table(command, &table);
+  opterr = 0;
   while ((code = getopt_long(count, words, table.letters, table.option, NULL)) != -1) {
     const struct option_row *row = row_of(command, code);
     if (!row)
-      return usage_error(c->name, "wrong options"); /* getopt_long has said which */
+      return refuse_word(command, words[optind - 1]);
     if (!take(row, optarg, a))
       return EXIT_BAD_INPUT;
   }

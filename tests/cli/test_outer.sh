@@ -51,7 +51,7 @@ sed -i '1s|.*|#!/nowhere/python3|' "$dir/tree/build/libexec/uncross-plot"
 ok $? "an interpreter that is not there: 1, and the command that installs it"
 gives 2 "uncross: plot: a file is missing; \`uncross plot --help\` lists what is allowed" "$dir/alone/bin/uncross" plot
 "$dir/alone/bin/uncross" plot one --fly >"$dir/out" 2>&1
-[ $? = 2 ] && grep -q 'wrong options' "$dir/out"
+[ $? = 2 ] && grep -q 'unrecognized option' "$dir/out"
 ok $? "an option that is none: 2, before the other program is looked for"
 "$dir/alone/bin/uncross" plot --help | grep -q '^  --movie '
 ok $? "help needs no other program"

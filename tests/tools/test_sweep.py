@@ -216,7 +216,7 @@ class SweepTest(FolderTest):
         for seeds in "4..1", "1,1", "1..18446744073709551616":
             self.sweep(f"--seeds={seeds}", code=2, says="--seeds")
         self.sweep("--jobs", "0", code=2, says="--jobs 0: not a whole number from 1")
-        self.sweep("--flavour", "x", code=2, says="uncross sweep: unrecognized option '--flavour'")
+        self.sweep("--flavour", "x", code=2, says="uncross: sweep: unrecognized option '--flavour'")
         self.assertFalse(self.out.exists())
         (self.dir / "mine").mkdir()
         (self.dir / "mine/notes.txt").write_text("mine\n")
