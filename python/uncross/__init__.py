@@ -133,7 +133,19 @@ class Scene:
         return scene
 
     def _take(self, handle):
-        self._handle = ffi.gc(handle, lib.uncross_scene_free)
+        """Ctrl-C is seen while a start is laid, which may take long: Python raises it in the callback, which then answers 0."""
+        self._handle, self._raised = ffi.gc(handle, lib.uncross_scene_free), []
+        self._watch = ffi.callback("uncross_start_watch", lambda _context: 1, error=0,
+                                   onerror=lambda _kind, error, _trace: self._raised.append(error))
+        _check(lib.uncross_scene_watch_start, self._handle, self._watch, ffi.NULL)
+
+    def _start(self, function, *arguments):
+        try:
+            return _check(function, self._handle, *arguments)
+        except BadInput:
+            if self._raised:
+                raise self._raised.pop() from None
+            raise
 
     def _text(self, function, *arguments):
         text = ffi.gc(_check(function, self._handle, *arguments), lib.uncross_free)
@@ -297,8 +309,8 @@ class Run(_Looks):
 
     def __init__(self, scene, *, resume=None, **overrides):
         scene = _scene(scene, overrides)
-        handle = (_check(lib.uncross_sim_start, scene._handle) if resume is None
-                  else _check(lib.uncross_sim_resume, scene._handle, _path(resume)))
+        handle = (scene._start(lib.uncross_sim_start) if resume is None
+                  else scene._start(lib.uncross_sim_resume, _path(resume)))
         self._sim = self._owner = ffi.gc(handle, lib.uncross_sim_free)
 
     def advance(self, steps=1):
@@ -319,8 +331,7 @@ class FolderRun(_Looks):
     def __init__(self, scene, folder, *, resume=False, **overrides):
         scene = _scene(scene, overrides)
         mode = lib.UNCROSS_RESUME if resume else lib.UNCROSS_NEW
-        self._run = self._owner = ffi.gc(_check(lib.uncross_run_open, scene._handle, _path(folder), mode),
-                                         lib.uncross_run_free)
+        self._run = self._owner = ffi.gc(scene._start(lib.uncross_run_open, _path(folder), mode), lib.uncross_run_free)
         self._sim = lib.uncross_run_sim(self._run)
         self.note = ffi.string(lib.uncross_run_note(self._run)).decode()
 
