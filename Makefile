@@ -248,7 +248,7 @@ $(BUILD)/install/completion: $(BUILD)/uncross
 # The prefix may be another one at every install.
 $(BUILD)/install/%.pc: tools/%.pc.in force
 	@mkdir -p $(@D)
-	@sed "s|@PREFIX@|$$(printf %s "$$PREFIX" | sed 's/[\"$$]/\\&/g; s/[\|&]/\\&/g')|; s|@VERSION@|$(VERSION)|" $< >$@
+	@sed "s|@PREFIX@|$$(printf %s "$$PREFIX" | sed 's/[\"$$#]/\\&/g; s/[\|&]/\\&/g')|; s|@VERSION@|$(VERSION)|" $< >$@
 
 # --- tests, checks, demo ----------------------------------------------------------------------------------------------
 

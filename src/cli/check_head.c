@@ -2,10 +2,12 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "base/text.h"
 #include "cli/sheet.h"
 #include "cli/units.h"
+#include "files/snapshot.h"
 #include "mpc/rule.h"
 #include "system/fiber_kind.h"
 #include "theory/flow.h"
@@ -73,7 +75,7 @@ static void tell_bytes(double bytes, const char *what, const char *before)
 }
 
 #define MEBI 1048576.0
-#define ROW 24 /* bytes of a vector in a frame */
+#define CHECKPOINT_REST 6e3 /* bytes: what HDF5 writes about the arrays of a checkpoint, and what each has one of */
 
 /* Frames are not compressed; tables are small beside them. */
 static void tell_files(const struct scene *scene)
@@ -81,14 +83,15 @@ static void tell_files(const struct scene *scene)
   const struct model *m = &scene->model;
   uint64_t scratch;
   const uint64_t state = state_bytes(m), observed = observers_bytes(&scene->observe, m, &scratch);
+  const double text = (double)strlen(scene->text);
   printf("# It writes");
-  tell_bytes((double)(state + observed), "checkpoint", " about ");
+  tell_bytes((double)(state + observed) + CHECKPOINT_REST + text, "checkpoint", " about ");
   if (observed > state)
     tell_bytes((double)observed, "that for observables", ", ");
   if (scene->trajectory_every > 0) {
     const uint64_t frames = 1 + scene->steps / scene->trajectory_every;
-    const double rows = m->vertices + (scene->trajectory_solvent ? (double)m->solvent.particles : 0.0);
-    tell_bytes((double)frames * rows * (scene->trajectory_velocities ? 2 * ROW : ROW), "trajectory", ", ");
+    const uint64_t rows = (uint64_t)m->vertices + (scene->trajectory_solvent ? m->solvent.particles : 0);
+    tell_bytes(trajectory_bytes(rows, m->bonds, scene->trajectory_velocities, frames) + text, "trajectory", ", ");
   }
   printf(", and tables.\n\n");
 }

@@ -94,6 +94,8 @@ struct trajectory *trajectory_open(const char *path, const struct model *model,
  * double, at most 1.2e-10 a0 away. */
 bool trajectory_append(struct trajectory *trajectory, const struct model *model, const struct state *state,
                        struct message *message);
+/* About how many bytes a file of so many frames takes, without the scene's text. rows: particles of a frame. */
+double trajectory_bytes(uint64_t rows, uint64_t bonds, bool velocities, uint64_t frames);
 /* Waits until all frames are on the disk. */
 bool trajectory_sync(struct trajectory *trajectory, struct message *message);
 /* Of its open file. */
