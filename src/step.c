@@ -76,6 +76,7 @@ static void plan_drift(struct plan *plan, const struct model *m, double fraction
 {
   if (model_has_bead(m) && m->vertices > 0)
     plan_append(plan, (struct stage){.act = act_beside});
+  mpc_plan_drift(plan, m, offsetof(struct work, mpc));
   bead_plan_counter(plan, m);
   contact_plan_drift(plan, m, offsetof(struct work, contact), fraction, drift);
   bead_plan_counter(plan, m);

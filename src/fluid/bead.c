@@ -15,7 +15,7 @@
  * the middle of the flight: they get half of its kick before, half of it after. They end where the others would.
  *
  * Only those particles follow ticks that come within the slack of the bead's free flight. All others are further from
- * it than the bead can be off that flight; if it is off further, all is done again with more slack.
+ * it than the bead can be off that flight; if it is off further, there is more slack, and more follow ticks.
  */
 #include "fluid/bead.h"
 
@@ -140,29 +140,6 @@ static bool take(struct bead_visits *all, struct bead_visit m, uint64_t step, st
 
 #define ROUNDING 1e-6 /* a0: more than what ticks and doubles round */
 
-static bool find_meetings(const struct state *state, const struct model *model, const struct span *span,
-                          const uint32_t *near, uint32_t n, double slack, struct bead_visits *all, struct fault *fault)
-{
-  const struct solvent *s = &state->solvent;
-  const struct bead *bead = state->bead;
-  const double reach = model->bead.radius + slack + ROUNDING, t = span->time;
-  const struct vec3 a = span->acceleration;
-  for (uint32_t k = 0; k < n; k++) {
-    const uint32_t i = near[k];
-    const struct vec3 end = solvent_velocity(s, i), v = vec3_add_scaled(end, -0.5 * t, a),
-                      begin = vec3_add_scaled(end, -t, a);
-    const struct point start = {s->x[i] - boundary_flight(begin.x, a.x, t), s->y[i] - boundary_flight(begin.y, a.y, t),
-                                s->z[i] - boundary_flight(begin.z, a.z, t)};
-    const struct point at = bead_to_image(&model->box, bead->position, start);
-    if (!comes_within(point_in_a0(at), vec3_scale(t, vec3_sub(v, bead->velocity)), reach))
-      continue;
-    if (!take(all, (struct bead_visit){.place = i, .at = at, .rate = rate_of(v, t), .velocity = v}, state->step + 1,
-              fault))
-      return false;
-  }
-  return true;
-}
-
 /* --- the flight -------------------------------------------------------------------------------------------------- */
 
 /* The bead at its start; no one meets it yet. */
@@ -173,17 +150,6 @@ static void set_out(const struct state *state, const struct model *model, double
   all->free = state->bead->velocity;
   all->way = (struct bead_way){.time = time, .mass = model->bead.mass, .radius = bead_radius(model)};
   set_velocity(&all->way, all->free);
-}
-
-/* Answers all hits. False if the bead is off its free flight by more than the slack. */
-static bool fly(const struct state *state, struct bead_visits *all, double slack)
-{
-  while (next_of_all(state, all) < BEAD_TICKS) {
-    answer(all);
-    if (!(off_free_flight(all) <= slack))
-      return false;
-  }
-  return true;
 }
 
 /* Where particles and bead are at the end. */
@@ -201,20 +167,6 @@ static void land(const struct model *model, const struct state *state, const str
   all->bead.position = point_plus(origin, end);
   all->bead.velocity = bead->velocity;
 }
-
-bool bead_meet(const struct state *state, const struct model *model, const uint32_t *near, uint32_t n, double slack,
-               struct bead_visits *all, struct fault *fault)
-{
-  const struct span span = boundary_lag(state, model);
-  set_out(state, model, span.time, all);
-  if (!find_meetings(state, model, &span, near, n, slack, all, fault))
-    return false;
-  all->enough = fly(state, all, slack);
-  land(model, state, &span, all);
-  return true;
-}
-
-/* --- hit by hit -------------------------------------------------------------------------------------------------- */
 
 /* The drift that begins now: it takes a time step. */
 static struct span whole_step(const struct state *state, const struct model *model)
@@ -373,8 +325,24 @@ static void steps_end(const struct state *state, const struct model *model, stru
   land(model, state, &span, all);
 }
 
-const struct bead_steps bead_flight_steps = {
-    .begin = steps_begin, .next = next_of_all, .answer = steps_answer, .turn = steps_turn, .end = steps_end};
+static bool steps_alone(const struct state *state, const struct model *model, struct bead_visits *all,
+                        struct fault *fault)
+{
+  if (!steps_begin(state, model, all, fault))
+    return false;
+  while (next_of_all(state, all) < BEAD_TICKS)
+    if (!steps_answer(state, model, all, fault))
+      return false;
+  steps_end(state, model, all);
+  return true;
+}
+
+const struct bead_steps bead_flight_steps = {.begin = steps_begin,
+                                             .next = next_of_all,
+                                             .answer = steps_answer,
+                                             .turn = steps_turn,
+                                             .end = steps_end,
+                                             .alone = steps_alone};
 
 /* --- start ------------------------------------------------------------------------------------------------------- */
 

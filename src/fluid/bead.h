@@ -18,10 +18,6 @@ int64_t bead_touch(const struct approach *approach, int64_t radius, int64_t most
 /* The state's bead at the start: at its place, with a velocity from the Maxwell distribution. */
 void bead_start(struct state *state, const struct model *model);
 
-/* `meet` of struct fluid. */
-bool bead_meet(const struct state *state, const struct model *model, const uint32_t *near, uint32_t n, double slack,
-               struct bead_visits *meetings, struct fault *fault);
-
 /* `steps` of struct fluid. */
 extern const struct bead_steps bead_flight_steps;
 

@@ -76,9 +76,5 @@ static void points_now(const struct state *state, const struct model *model, uin
   }
 }
 
-const struct fluid fluid_points = {.name = "points",
-                                   .start = start_points,
-                                   .stream = stream_points,
-                                   .now = points_now,
-                                   .meet = bead_meet,
-                                   .steps = &bead_flight_steps};
+const struct fluid fluid_points = {
+    .name = "points", .start = start_points, .stream = stream_points, .now = points_now, .steps = &bead_flight_steps};

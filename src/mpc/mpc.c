@@ -25,7 +25,7 @@ static size_t count_cells(const struct model *m)
   return model_has_cells(m) ? cells : 0;
 }
 
-enum { NEEDS = 18 };
+enum { NEEDS = 17 };
 
 /* The single list of the scratch that the collisions of a model use. */
 static void list_needs(struct mpc *c, const struct model *m, bool everything, struct memory_need need[NEEDS])
@@ -55,7 +55,6 @@ static void list_needs(struct mpc *c, const struct model *m, bool everything, st
       {(void **)&c->drawn_vertex, drawing ? colliding : 0, sizeof *c->drawn_vertex},
       {(void **)&c->spin, spinning, sizeof *c->spin},
       {(void **)&c->middle, spinning, sizeof *c->middle},
-      {(void **)&c->bead.mask, model_has_bead(m) ? cells : 0, sizeof *c->bead.mask},
   };
   memcpy(need, all, sizeof all);
 }

@@ -32,7 +32,6 @@ struct mpc_stress;
 
 /* Of collisions around a bead: mpc/bead.c. */
 struct mpc_bead {
-  uint8_t *mask;               /* [cells] 1 where particles may have met the bead in their flight; all 0 between uses */
   struct bead_visits meetings; /* of the flight */
   struct bead_cut *cut;        /* [cuts] cells that its surface cuts and that have members */
   uint32_t *number;            /* [cuts] their numbers */

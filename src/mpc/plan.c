@@ -1,4 +1,4 @@
-/* The collision's part of a plan. */
+/* The parts of collision and solvent in a plan. */
 #include "mpc/plan.h"
 
 #include "mpc/collide.h"
@@ -40,6 +40,19 @@ static bool kick_affine(void *room, const struct moment *now, const struct stage
   (void)room, (void)stage;
   drive_affine_kick(now->state, now->model);
   return true;
+}
+
+static bool fly_bead(void *room, const struct moment *now, const struct stage *stage)
+{
+  struct mpc *mpc = room;
+  (void)stage;
+  return mpc->fluid->steps->alone(now->state, now->model, &mpc->bead.meetings, now->fault);
+}
+
+void mpc_plan_drift(struct plan *plan, const struct model *m, size_t room)
+{
+  if (model_has_bead(m) && m->vertices == 0)
+    plan_append(plan, (struct stage){.act = fly_bead, .room = room});
 }
 
 typedef bool act(void *, const struct moment *, const struct stage *);

@@ -1,8 +1,11 @@
-/* The collision's part of a plan. */
+/* The parts of collision and solvent in a plan. */
 #ifndef UNCROSS_MPC_PLAN_H
 #define UNCROSS_MPC_PLAN_H
 
 #include "system/plan.h"
+
+/* Appends the flight of a bead that is alone in the solvent. room: offset of struct mpc in struct work. */
+void mpc_plan_drift(struct plan *plan, const struct model *model, size_t room);
 
 /* Appends the collision of this model to a plan, if the model has collisions. room: offset of struct mpc in struct
  * work. name: as in struct stage. */

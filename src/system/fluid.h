@@ -61,7 +61,6 @@ struct bead_way {
 struct bead_visits {
   struct bead_visit *at;
   uint32_t n, room;
-  bool enough;      /* none is missing: the bead has kept to the slack that was allowed for */
   struct bead bead; /* after the flight */
   struct bead_way way;
   struct vec3 free;         /* the bead's velocity at the start, a0/t0 */
@@ -69,8 +68,8 @@ struct bead_visits {
   struct bead_visit *first; /* of all, the next that hits the bead */
 };
 
-/* The flight of the bead hit by hit, for a drift in which it meets bonds as well (contact/event_bead.c). It begins
- * while the solvent still stands where the drift begins. */
+/* The flight of the bead in a drift, hit by hit: it may meet bonds as well (contact/event_bead.c). It begins while the
+ * solvent still stands where the drift begins. */
 struct bead_steps {
   /* Who may meet the bead. False, with the fault recorded, if memory is short; so do answer and turn. */
   bool (*begin)(const struct state *state, const struct model *model, struct bead_visits *all, struct fault *fault);
@@ -85,8 +84,12 @@ struct bead_steps {
   bool (*turn)(const struct state *state, const struct model *model, struct bead_visits *all, int64_t tick,
                struct vec3 velocity, struct fault *fault);
 
-  /* Where all are at the end, as after `meet` of struct fluid. */
+  /* Where all are at the end: `at` is then the position of a particle in the box, `velocity` its velocity there. The
+   * state is left as it is. */
   void (*end)(const struct state *state, const struct model *model, struct bead_visits *all);
+
+  /* All of this, where there are no bonds. */
+  bool (*alone)(const struct state *state, const struct model *model, struct bead_visits *all, struct fault *fault);
 };
 
 struct fluid {
@@ -115,13 +118,7 @@ struct fluid {
   void (*flux)(const struct state *state, const struct model *model, const struct flux_frame *frame,
                struct flux_sum *sum);
 
-  /* Who of n particles, at these places of memory, meets the bead in the flight that has been made as if there were no
-   * bead, and how the flights of these and of the bead really end: `at` is the position of a particle in the box,
-   * `velocity` its velocity then. The state is left as it is. near: all particles within reach. slack: a0, how far the
-   * bead may be off its free flight. False, with the fault recorded, if memory is short. NULL: no bead. */
-  bool (*meet)(const struct state *state, const struct model *model, const uint32_t *near, uint32_t n, double slack,
-               struct bead_visits *meetings, struct fault *fault);
-  const struct bead_steps *steps; /* the same hit by hit; NULL: no bead */
+  const struct bead_steps *steps; /* NULL: no bead */
 };
 
 #endif
