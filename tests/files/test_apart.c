@@ -264,6 +264,13 @@ static void a_reader_is_found_or_missed(void **unused)
   assert_false(apart_start(&parent, path, "leave", &message));
   assert_non_null(strstr(message.text, "is not of this build"));
   assert_non_null(strstr(message.text, other));
+  static const char dies[] = "#!/bin/sh\nkill -KILL $$\n"; /* of what, nobody knows: it has read nothing yet */
+  spill(other, dies, sizeof dies - 1);
+  assert_int_equal(chmod(other, 0755), 0);
+  assert_false(apart_start(&parent, path, "leave", &message));
+  assert_null(strstr(message.text, "build"));
+  assert_null(strstr(message.text, "damaged"));
+  assert_non_null(strstr(message.text, "ended before it began: Killed"));
   if (geteuid() == 0) { /* it belongs to somebody else */
     assert_int_equal(chown(other, 12345, 12345), 0);
     assert_false(reader_find(found, sizeof found, &message) && strcmp(found, other) == 0);
