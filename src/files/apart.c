@@ -15,6 +15,7 @@
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "base/clock.h"
@@ -85,6 +86,33 @@ static int spawn(const char *program, int socket, pid_t *child)
   return code;
 }
 
+/* Waits for the child, which a host may have done already. */
+static pid_t wait_for(pid_t child, int *status, int how)
+{
+  pid_t found;
+  do
+    found = waitpid(child, status, how);
+  while (found < 0 && errno == EINTR);
+  return found;
+}
+
+/* The program has not said what it is: of the file nothing was read yet. */
+static bool never_began(struct apart *parent, const char *program, struct message *message)
+{
+  int status = 0;
+  if (parent->silent)
+    return message_set(message, "%s: cannot be read: %s, the program that is to do it, does not answer", parent->path,
+                       program);
+  bool known = false; /* it closed the socket as it ended, or goes on without it */
+  for (int k = 0; k < 100 && !known; k++, nanosleep(&(struct timespec){.tv_nsec = 10000000}, NULL))
+    known = wait_for(parent->child, &status, WNOHANG) == parent->child;
+  if (known)
+    parent->child = 0;
+  return message_set(message, "%s: cannot be read: %s, the program that is to do it, ended before it began: %s",
+                     parent->path, program,
+                     known && WIFSIGNALED(status) ? strsignal(WTERMSIG(status)) : "it is no uncross, or cannot start");
+}
+
 /* What the other side is must be known before anything is sent, or understood. */
 static bool greet(struct apart *parent, const char *program, const char *work, uint64_t bytes, struct message *message)
 {
@@ -93,7 +121,9 @@ static bool greet(struct apart *parent, const char *program, const char *work, u
   snprintf(hello.work, sizeof hello.work, "%s", work);
   snprintf(hello.path, sizeof hello.path, "%s", parent->path);
   apart_build(ours);
-  if (apart_get(parent, theirs, sizeof theirs) && memcmp(ours, theirs, sizeof ours) == 0)
+  if (!apart_get(parent, theirs, sizeof theirs))
+    return never_began(parent, program, message);
+  if (memcmp(ours, theirs, sizeof ours) == 0)
     return apart_put(parent, &hello, sizeof hello) || apart_lost(parent, message);
   return message_set(message, "%s: cannot be read: %s, the program that is to do it, is not of this build (%s)",
                      parent->path, program, ours);
@@ -126,16 +156,6 @@ bool apart_start(struct apart *parent, const char *path, const char *work, struc
     return true;
   apart_end(parent);
   return false;
-}
-
-/* Waits for the child, which a host may have done already. */
-static pid_t wait_for(pid_t child, int *status, int how)
-{
-  pid_t found;
-  do
-    found = waitpid(child, status, how);
-  while (found < 0 && errno == EINTR);
-  return found;
 }
 
 void apart_end(struct apart *parent)
