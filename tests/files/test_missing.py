@@ -59,6 +59,23 @@ class Missing(unittest.TestCase):
             os.rename(self.dir / "aside", self.dir / "r" / name)
         self.assertEqual(uncross("verify", "r", cwd=self.dir).returncode, 0)
 
+    def test_verify_knows_how_far_tables_go(self):
+        """Tables that are well formed, and are not what the run wrote; the run has five rows and one."""
+        (self.dir / "s.yaml").write_text(SCENE.format(steps=40))
+        uncross("run", "s.yaml", "--out", "r", cwd=self.dir, check=True)
+        for name in "conserved.csv", "statics-fiber.csv":
+            path = self.dir / "r" / name
+            text = path.read_text()
+            lines = text.splitlines(True)
+            for damage in "precious\n", lines[0], "".join(lines[:-1]), text.replace(lines[0].split(",")[1], "other", 1), text + lines[-1]:
+                path.write_text(damage)
+                done = uncross("verify", "r", cwd=self.dir)
+                expected = 0 if name == "conserved.csv" and damage == text + lines[-1] else 9
+                self.assertEqual(done.returncode, expected, f"{name}: {damage[:80]}: {done.stdout}")
+                self.assertTrue(expected == 0 or f"r/{name}: " in done.stdout)
+            path.write_text(text)
+        self.assertEqual(uncross("verify", "r", cwd=self.dir).returncode, 0)
+
     def test_what_is_deleted_is_said(self):
         """At the next checkpoint."""
         for name in ("trajectory.h5", "conserved.csv"):
