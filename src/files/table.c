@@ -177,3 +177,36 @@ bool table_write(const struct folder *folder, const struct observe_table *table,
   free(text);
   return ok;
 }
+
+/* Lines of a file, and whether the first one is this header. */
+static size_t count_lines(FILE *file, const char *header, bool *same)
+{
+  char *line = NULL;
+  size_t room = 0, lines = 0;
+  for (*same = false; text_line(&line, &room, file) > 0; lines++)
+    *same = lines == 0 ? strcmp(line, header) == 0 : *same;
+  free(line);
+  return lines;
+}
+
+bool table_fits(const struct folder *folder, const struct observe_table *table, struct message *message)
+{
+  char path[4096], name[256], *header = NULL;
+  size_t bytes, lines = 0;
+  bool same = false;
+  folder_path(folder, file_name(table->name, name), path, sizeof path);
+  FILE *made = open_memstream(&header, &bytes), *file = open_stream(folder, name, O_RDONLY, "r");
+  if (made)
+    write_header(made, NULL, table->columns, table->column);
+  const bool known = made && fclose(made) == 0 && file;
+  if (known)
+    lines = count_lines(file, header, &same);
+  if (file)
+    fclose(file);
+  free(header);
+  if (!known)
+    return failed(message, path, "read");
+  return (same && lines == table->rows + 1) ||
+         message_set(message, "%s: damaged: %s; the checkpoint makes %zu rows of %zu columns", path,
+                     same ? "it has another number of rows" : "its first line is another", table->rows, table->columns);
+}

@@ -33,4 +33,8 @@ bool series_close(struct series *series, struct message *message);
 /* Writes a summary as folder/name.csv, in place of an earlier one. */
 bool table_write(const struct folder *folder, const struct observe_table *table, struct message *message);
 
+/* Whether folder/name.csv has the columns of this summary, and as many rows; false, with a message, if not. Numbers are
+ * not compared. */
+bool table_fits(const struct folder *folder, const struct observe_table *table, struct message *message);
+
 #endif

@@ -11,7 +11,7 @@
 
 #include "base/opening.h"
 #include "base/text.h"
-#include "files/output.h"
+#include "files/complete.h"
 #include "files/record.h"
 
 #define MOST_COLUMNS 4096
@@ -316,64 +316,26 @@ static enum condition verify_listed(const char *folder, bool at_work, struct dir
   return condition;
 }
 
-struct expecting {
-  const char *folder, *why;
-  FILE *out;
-  enum condition condition;
-};
-
-static void expect_file(void *context, const char *file)
-{
-  struct expecting *e = context;
-  char path[4096];
-  snprintf(path, sizeof path, "%.3800s/%.255s", e->folder, file);
-  if (access(path, F_OK) == 0)
-    return;
-  fprintf(e->out, "%s: missing: %s\n", text_shown(path), e->why);
-  e->condition = CONDITION_DAMAGED;
-}
-
-#define MOST_MEMORY ((uint64_t)1 << 28) /* bytes, of observers that are asked for the names of their tables */
-
-/* All that the scene in the checkpoint asks for. */
-static enum condition verify_complete(const char *folder, const char *checkpoint, FILE *out)
-{
-  struct expecting e = {folder, "the scene in the checkpoint asks for it", out, CONDITION_WHOLE};
-  struct message ignored;
-  enum h5_trouble trouble;
-  struct scene scene;
-  uint64_t scratch;
-  struct frames *f = frames_open(checkpoint, &trouble, &ignored);
-  if (f && f->scene && scene_read_text(checkpoint, f->scene, strlen(f->scene), &scene, &ignored)) {
-    const bool small = observers_bytes(&scene.observe, &scene.model, &scratch) + scratch <= MOST_MEMORY;
-    struct observers *observers = small ? observers_create(&scene.observe, &scene.model) : NULL;
-    output_files(&scene, observers, expect_file, &e);
-    observers_free(observers);
-    scene_free(&scene);
-  }
-  frames_close(f);
-  return e.condition;
-}
-
 /* How the files of a run that has ended fit each other. Every run begins with a checkpoint, and writes run.json next.
  */
 static enum condition verify_together(const char *folder, FILE *out)
 {
-  struct expecting e = {folder, "every run writes it", out, CONDITION_WHOLE};
+  static const char why[] = "every run writes it";
+  enum condition condition = CONDITION_WHOLE;
   struct checkpoint_summary summary;
   struct message ignored;
   char path[4096], record[4096];
   snprintf(path, sizeof path, "%.4000s/checkpoint.h5", folder);
   snprintf(record, sizeof record, "%.4000s/run.json", folder);
   if (access(record, F_OK) == 0)
-    expect_file(&e, "checkpoint.h5");
+    condition = complete_has(folder, "checkpoint.h5", why, out);
   if (access(path, F_OK) != 0 || !checkpoint_look(path, &summary, &ignored))
-    return e.condition;
+    return condition;
   if (summary.numbers.step > 0)
-    expect_file(&e, "run.json");
+    condition = worse(condition, complete_has(folder, "run.json", why, out));
   if (summary.numbers.step > 0 || is_finished(folder))
-    e.condition = worse(e.condition, verify_complete(folder, path, out));
-  return worse(e.condition, worse(same_state(folder, &summary, out), same_frames(folder, &summary, out)));
+    condition = worse(condition, complete_check(folder, path, is_finished(folder), out));
+  return worse(condition, worse(same_state(folder, &summary, out), same_frames(folder, &summary, out)));
 }
 
 enum condition verify_folder(const char *folder, FILE *out)

@@ -1,0 +1,92 @@
+#include "files/complete.h"
+
+#include <string.h>
+#include <unistd.h>
+
+#include "base/text.h"
+#include "files/output.h"
+#include "version.h"
+
+#define MOST_MEMORY ((uint64_t)1 << 28) /* bytes, of observers that are asked for their tables */
+
+struct complete {
+  const char *folder;
+  FILE *out;
+  enum condition condition;
+};
+
+enum condition complete_has(const char *folder, const char *file, const char *why, FILE *out)
+{
+  char path[4096];
+  snprintf(path, sizeof path, "%.3800s/%.255s", folder, file);
+  if (access(path, F_OK) == 0)
+    return CONDITION_WHOLE;
+  fprintf(out, "%s: missing: %s\n", text_shown(path), why);
+  return CONDITION_DAMAGED;
+}
+
+static void expect_file(void *context, const char *file)
+{
+  struct complete *c = context;
+  if (complete_has(c->folder, file, "the scene in the checkpoint asks for it", c->out) != CONDITION_WHOLE)
+    c->condition = CONDITION_DAMAGED;
+}
+
+static void damaged(struct complete *c, const struct message *message)
+{
+  fprintf(c->out, "%s\n", message->text);
+  c->condition = CONDITION_DAMAGED;
+}
+
+static bool hold_table(void *context, const struct observe_table *table)
+{
+  struct complete *c = context;
+  struct message message;
+  const struct folder folder = {c->folder, FOLDER_BY_NAME};
+  if (!table_fits(&folder, table, &message))
+    damaged(c, &message);
+  return true;
+}
+
+/* With the observers as they were when the checkpoint was written. */
+static void check_ends(struct complete *c, const struct scene *scene, struct observers *observers,
+                       const char *checkpoint, bool finished)
+{
+  const struct folder folder = {c->folder, FOLDER_BY_NAME};
+  const struct observe_block *blocks;
+  const size_t count = observers_blocks(observers, &blocks);
+  struct checkpoint_head head;
+  struct state state;
+  struct message message;
+  if (!state_alloc(&state, &scene->model))
+    return;
+  if (checkpoint_read(checkpoint, &scene->model, &head, &state, blocks, count, &message) &&
+      strcmp(head.version, UNCROSS_VERSION) == 0) { /* tables of other versions may have other columns */
+    if (!output_whole(scene, observers, &folder, head.frames_end, &message))
+      damaged(c, &message);
+    if (finished)
+      observers_summaries(observers, &scene->model, hold_table, c);
+  }
+  state_free(&state);
+}
+
+enum condition complete_check(const char *folder, const char *checkpoint, bool finished, FILE *out)
+{
+  struct complete c = {folder, out, CONDITION_WHOLE};
+  struct message ignored;
+  enum h5_trouble trouble;
+  struct scene scene;
+  uint64_t scratch;
+  struct frames *f = frames_open(checkpoint, &trouble, &ignored);
+  if (f && f->scene && scene_read_text(checkpoint, f->scene, strlen(f->scene), &scene, &ignored)) {
+    const bool small = observers_bytes(&scene.observe, &scene.model, &scratch) + scratch <= MOST_MEMORY;
+    struct observers *observers = small ? observers_create(&scene.observe, &scene.model) : NULL;
+    output_files(&scene, observers, expect_file, &c);
+    if (observers && c.condition == CONDITION_WHOLE)
+      check_ends(&c, &scene, observers, checkpoint, finished);
+    observers_free(observers);
+    scene_free(&scene);
+  }
+  frames_close(f);
+  return c.condition;
+}
