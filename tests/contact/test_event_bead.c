@@ -219,7 +219,8 @@ static void fly(struct test_run *r, struct seen *seen)
   }
   r->state.solvent_lag = 2;
   assert_true(fluid_stream(&r->state, &r->model, &r->work.fault));
-  for (const struct bead_visit *m = all->at; m < all->at + all->n; m++) {
+  for (uint32_t k = 0; k < all->n; k++) {
+    const struct bead_visit *m = &all->at[k];
     s->x[m->place] = m->at.x, s->y[m->place] = m->at.y, s->z[m->place] = m->at.z;
     s->vx[m->place] = m->velocity.x, s->vy[m->place] = m->velocity.y, s->vz[m->place] = m->velocity.z;
   }

@@ -168,7 +168,8 @@ static void fly_all(struct test_run *r)
   assert_true(fluid_points.steps->alone(&r->state, &r->model, &all, &r->work.fault));
   r->state.solvent_lag = 2;
   assert_true(fluid_points.stream(&r->state, &r->model, 0, s->n, &r->work.fault));
-  for (const struct bead_visit *m = all.at; m < all.at + all.n; m++) {
+  for (uint32_t k = 0; k < all.n; k++) {
+    const struct bead_visit *m = &all.at[k];
     s->x[m->place] = m->at.x, s->y[m->place] = m->at.y, s->z[m->place] = m->at.z;
     set_solvent_v(&r->state, m->place, m->velocity);
   }

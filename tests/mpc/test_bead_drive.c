@@ -164,7 +164,8 @@ static void who_misses_the_bead_flies_as_others(void **unused)
   r.state.solvent_lag = 2;
   assert_true(fluid->stream(&r.state, &r.model, 0, r.state.solvent.n, &fault));
   assert_true(all.n > 50 && all.bead.account.z > 0);
-  for (const struct bead_visit *v = all.at; v < all.at + all.n; v++) {
+  for (uint32_t k = 0; k < all.n; k++) {
+    const struct bead_visit *v = &all.at[k];
     const struct solvent *s = &r.state.solvent;
     if (!(vec3_norm(vec3_sub(v->velocity, solvent_velocity(s, v->place))) < 1e-14))
       continue;
