@@ -2,6 +2,7 @@
 is not touched, and a pipe is not waited for. Needs UNCROSS."""
 import os
 import pathlib
+import signal
 import sys
 import unittest
 
@@ -16,6 +17,11 @@ solvent: {per_cell: 3, collision_interval: 0.02}
 observe:
   temperature: {every: 5}
 """
+
+
+def undo():
+    """What runs behind a shell has SIGINT ignored."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 class HostileFolders(FolderTest):
@@ -145,6 +151,15 @@ class HostileFolders(FolderTest):
         said = done.stderr + (self.dir / "page.html").read_text()
         for name in pipes:
             self.assertIn(f"{name}: not a file but a folder, a pipe or a device", said)
+
+    def test_ctrl_c_while_packages_are_read(self):
+        """The signal ends the program, without a word; it comes while NumPy is read, from a package of that name."""
+        self.assertEqual(self.call("run", "scene.yaml", "--out", "run", "--quiet").returncode, 0)
+        (self.dir / "packages/numpy").mkdir(parents=True)
+        (self.dir / "packages/numpy/__init__.py").write_text("import os, signal, time\nos.kill(os.getpid(), signal.SIGINT)\ntime.sleep(9)\n")
+        for words in ("plot", "run", "--out", "page.html"), ("sweep", "scene.yaml", "--out", "sweep"):
+            done = uncross(*words, cwd=self.dir, env=dict(os.environ, PYTHONPATH=str(self.dir / "packages")), preexec_fn=undo)
+            self.assertEqual((done.returncode, done.stderr), (-signal.SIGINT, ""), words)
 
     def test_pages_are_new_files(self):
         self.assertEqual(self.call("run", "scene.yaml", "--out", "run", "--quiet").returncode, 0)
