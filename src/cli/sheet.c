@@ -51,7 +51,7 @@ void sheet_row(const struct si_scale *si, const char *name, const char *symbol, 
                const char *source)
 {
   char text[64] = "";
-  if (isnan(value)) /* such as a quotient of two that are 0 */
+  if (!isfinite(value)) /* such as a quotient by 0 */
     return;
   if (si)
     in_si(si, value, unit, text, sizeof text);
