@@ -104,6 +104,15 @@ class Memory(unittest.TestCase):
         self.assertIn("more than 65535 bytes", self.small(9, "verify", "table.csv"))
         self.assertIn("larger than", self.small(9, "verify", "run.json"))
         self.small(2, "info", "run.json")
+        self.assertIn("more than 65535 bytes", self.small(2, "info", "table.csv"))
+
+    def test_all_columns_of_a_table_are_told(self):
+        """Of a first line that is longer than what tells sorts of files apart."""
+        names = [f"column_{k:03}" for k in range(500)]
+        (self.folder / "wide.csv").write_text(f"{','.join(names)}\n{','.join('0' * 500)}\n")
+        said = self.small(0, "info", "wide.csv")
+        self.assertIn("table of 500 columns and 1 rows", said)
+        self.assertIn(f"columns: {','.join(names)}\n", said)
 
     def test_the_estimate(self):
         scenes = [self.folder / "dynamics.yaml", self.folder / "profile.yaml"]
