@@ -12,6 +12,7 @@
 #include "base/text.h"
 #include "files/frames.h"
 #include "files/record.h"
+#include "files/table.h"
 #include "files/verify.h"
 #include "scene/yaml.h"
 
@@ -197,21 +198,29 @@ static bool is_table(const struct look *look)
 
 static bool tell_table(const struct look *look, struct message *message)
 {
-  uint64_t bytes;
+  uint64_t bytes, lines = 0;
+  char *line = NULL, *header = NULL;
+  size_t room = 0;
+  ssize_t length;
   FILE *file = open_input(look->path, &bytes, message);
   if (!file)
     return false;
-  size_t header = strcspn(look->head, "\r\n"), columns = 1;
-  uint64_t lines = 0;
-  for (size_t k = 0; k < header; k++)
-    columns += look->head[k] == ',';
-  for (int c = fgetc(file); c != EOF; c = fgetc(file))
-    lines += c == '\n';
+  for (; (length = text_line(&line, &room, file)) >= 0; lines++)
+    if (!header)
+      header = strndup(line, strcspn(line, "\r\n"));
   fclose(file);
-  printf("%s: table of %zu columns and %" PRIu64 " rows\n", text_shown(look->path), columns, lines > 0 ? lines - 1 : 0);
-  fputs("  columns: ", stdout);
-  print_line(look->head, header);
-  return true;
+  free(line);
+  const bool ok = length == TEXT_TOO_LONG ? message_set(message, "%s: not a table: a line has more than %d bytes",
+                                                        look->path, TEXT_LONGEST_LINE)
+                                          : header || message_set(message, "%s: no memory", look->path);
+  if (ok) {
+    printf("%s: table of %zu columns and %" PRIu64 " rows\n  columns: ", text_shown(look->path), table_columns(header),
+           lines - 1);
+    text_print(stdout, header);
+    putchar('\n');
+  }
+  free(header);
+  return ok;
 }
 
 static bool tell_neither(const struct look *look, struct message *message)

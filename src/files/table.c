@@ -210,3 +210,11 @@ bool table_fits(const struct folder *folder, const struct observe_table *table, 
          message_set(message, "%s: damaged: %s; the checkpoint makes %zu rows of %zu columns", path,
                      same ? "it has another number of rows" : "its first line is another", table->rows, table->columns);
 }
+
+size_t table_columns(const char *line)
+{
+  size_t columns = 1;
+  for (; *line; line++)
+    columns += *line == ',';
+  return columns;
+}

@@ -37,4 +37,7 @@ bool table_write(const struct folder *folder, const struct observe_table *table,
  * not compared. */
 bool table_fits(const struct folder *folder, const struct observe_table *table, struct message *message);
 
+/* Number of columns that a first line names. */
+size_t table_columns(const char *line);
+
 #endif

@@ -13,8 +13,7 @@
 #include "base/text.h"
 #include "files/complete.h"
 #include "files/record.h"
-
-#define MOST_COLUMNS 4096
+#include "files/table.h"
 
 static enum condition worse(enum condition a, enum condition b)
 {
@@ -111,14 +110,6 @@ static enum condition verify_hdf5(const char *path, bool *other, FILE *out)
 
 /* --- tables ------------------------------------------------------------------------------------------------------ */
 
-static size_t count_columns(const char *line)
-{
-  size_t columns = 1;
-  for (; *line; line++)
-    columns += *line == ',';
-  return columns;
-}
-
 /* True if a line holds so many numbers. */
 static bool holds_numbers(const char *line, size_t columns)
 {
@@ -132,53 +123,88 @@ static bool holds_numbers(const char *line, size_t columns)
   return true;
 }
 
-/* What is wrong with the lines of a table, of which `rows` are sound; false if nothing is. `cut`: the last line has no
- * end, as the table of a run that was killed may have. */
-static bool odd_table(FILE *in, const char *path, uint64_t *rows, bool *cut, struct message *message)
+/* What a table holds, line by line. Of a series rows come one after the other in steps. */
+struct rows {
+  uint64_t count; /* that are sound */
+  size_t columns; /* 0: there is no first line */
+  bool series;
+  double step, gap; /* of the last row, and to it from the one before; 0 where there is none */
+  bool uneven;      /* the gaps differ */
+  bool cut;         /* the last line has no end, as the table of a run that was killed may have */
+};
+
+static const char *odd_step(struct rows *r, const char *line)
+{
+  const double step = strtod(line, NULL), gap = r->count > 0 ? step - r->step : 0.0;
+  if (r->count > 0 && !(gap > 0.0))
+    return "its step does not come after that of the row before";
+  r->uneven |= r->gap > 0.0 && gap != r->gap;
+  r->step = step;
+  r->gap = gap;
+  return NULL;
+}
+
+/* What is wrong with a line, or NULL. */
+static const char *odd_line(struct rows *r, const char *line)
+{
+  const char *odd = NULL;
+  if (r->columns == 0) {
+    r->columns = table_columns(line);
+    r->series = strncmp(line, "step,", 5) == 0;
+    return NULL;
+  }
+  if (!r->cut)
+    odd = !holds_numbers(line, r->columns) ? "a row of numbers is wanted, one for each column"
+          : r->series                      ? odd_step(r, line)
+                                           : NULL;
+  r->count += !odd;
+  return odd;
+}
+
+/* True, with a message, if something is wrong with the lines of a table. */
+static bool odd_table(FILE *in, const char *path, struct rows *rows, struct message *message)
 {
   char *line = NULL;
-  size_t room = 0, columns = 0;
+  size_t room = 0;
   ssize_t length;
-  bool odd = false;
+  const char *odd = NULL;
+  *rows = (struct rows){0};
   for (uint64_t number = 1; !odd && (length = text_line(&line, &room, in)) >= 0; number++) {
-    *cut = line[length - 1] != '\n';
+    rows->cut = line[length - 1] != '\n';
     line[strcspn(line, "\r\n")] = '\0';
-    if (number == 1)
-      columns = count_columns(line);
-    odd = !*cut && number > 1 && !holds_numbers(line, columns);
-    *rows = number - 1;
+    odd = odd_line(rows, line);
     if (odd)
-      message_set(message, "%s:%" PRIu64 ": damaged: a row of %zu numbers is wanted", path, number, columns);
+      message_set(message, "%s:%" PRIu64 ": damaged: %s", path, number, odd);
   }
   free(line);
   if (length == TEXT_TOO_LONG)
-    odd = !message_set(message, "%s: damaged: a line has more than %d bytes", path, TEXT_LONGEST_LINE);
-  else if (!odd && (ferror(in) || columns == 0))
-    odd = !message_set(message, "%s: damaged: cannot be read, or empty", path);
+    return !message_set(message, "%s: damaged: a line has more than %d bytes", path, TEXT_LONGEST_LINE);
+  if (!odd && (ferror(in) || rows->columns == 0))
+    return !message_set(message, "%s: damaged: cannot be read, or empty", path);
   return odd;
 }
 
 static enum condition verify_table(const char *path, bool running, FILE *out)
 {
-  bool cut = false;
   struct message message;
-  uint64_t rows = 0;
+  struct rows rows;
   uint64_t bytes;
   FILE *in = open_input(path, &bytes, &message);
   if (!in)
     return say(out, CONDITION_UNKNOWN, &message);
-  const bool odd = odd_table(in, path, &rows, &cut, &message);
+  const bool odd = odd_table(in, path, &rows, &message);
   fclose(in);
   if (odd)
     return say(out, CONDITION_DAMAGED, &message);
-  if (cut)
+  if (rows.cut)
     fprintf(out,
             running ? "%s: readable: %" PRIu64 " rows, the last without an end; --resume makes it again\n"
                     : "%s: damaged: the last of %" PRIu64 " rows has no end\n",
-            text_shown(path), rows);
+            text_shown(path), rows.count);
   else
-    fprintf(out, "%s: readable: rows: %" PRIu64 "; a table carries no checksum\n", text_shown(path), rows);
-  return cut && !running ? CONDITION_DAMAGED : CONDITION_WHOLE;
+    fprintf(out, "%s: readable: rows: %" PRIu64 "%s; a table carries no checksum\n", text_shown(path), rows.count,
+            rows.uneven ? ", at steps that are not evenly spaced: rows are missing, or a resume changed `every`" : "");
+  return rows.cut && !running ? CONDITION_DAMAGED : CONDITION_WHOLE;
 }
 
 /* --- run.json ---------------------------------------------------------------------------------------------------- */
