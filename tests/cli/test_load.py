@@ -54,7 +54,7 @@ class Load(FolderTest):
         return done.stdout
 
     def number(self, told, name):
-        return float(re.search(rf"^ +{name} .*?(\S+)(?: [m1]/a0\S*.*)?$", told, re.M)[1].split()[0])
+        return next(float(line[50:].split()[0]) for line in told.splitlines() if line[2:40].strip() == name)
 
     def test_check_says_how_viscous_the_fluid_is(self):
         for mass, per_cell, count in ((5, 5, 6939), (0.7, 5, 3000), (12, 9, 2000)):
@@ -87,6 +87,47 @@ class Load(FolderTest):
         told = self.check(HEAVY.replace("shear: {rate: 0.05}", "").replace("per_cell: 5,", "per_cell: 5, hydrodynamics: false,"))
         self.assertNotIn("loaded fluid", told)
         self.assertNotIn("load the fluid", told)
+
+
+    def test_rows_of_a_flow_are_of_the_loaded_fluid(self):
+        """Couette and Poiseuille flow, and a force with a profile: stress, velocity, Reynolds number and transient of the fluid with its
+        vertices, whose mass goes along; the force is on the solvent alone."""
+        _, eta = viscosity(5, 6939 / 12**3, 5)
+        nu = eta / (5 + 5 * 6939 / 12**3)
+        walled = HEAVY.replace("shear: {rate: 0.05}", "walls: {kind: no-slip, shear_rate: 0.05}")
+        told = self.check(walled)
+        slip, effective = self.number(told, "slip length"), self.number(told, "effective shear rate")
+        self.assertAlmostEqual(effective, 0.05 / (1 + 2 * slip / 12), delta=1e-7)
+        self.assertAlmostEqual(self.number(told, "shear stress") / (eta * effective), 1.0, delta=1e-5)
+        self.assertAlmostEqual(self.number(told, "Reynolds number") / (0.3 * 12 / nu), 1.0, delta=1e-5)
+        self.assertAlmostEqual(self.number(told, "time to become steady") / (144 / (4 * math.pi**2 * nu)), 1.0, delta=1e-5)
+        pushed = HEAVY.replace("shear: {rate: 0.05}", "walls: {kind: no-slip}").replace("per_cell: 5,", "per_cell: 5, acceleration: [0.02, 0, 0],")
+        self.assertAlmostEqual(self.number(self.check(pushed), "largest velocity by the force") /
+                               (5 * 0.02 * 144 / (8 * eta) * (1 + 4 * slip / 12)), 1.0, delta=1e-5)
+        waves = HEAVY.replace("shear: {rate: 0.05}", "").replace("per_cell: 5,", "per_cell: 5, acceleration: [0.02, 0, 0], profile: sine,")
+        told, k = self.check(waves), 2 * math.pi / 12
+        self.assertAlmostEqual(self.number(told, "largest velocity") / (5 * 0.02 / (eta * k * k)), 1.0, delta=1e-5)
+        self.assertAlmostEqual(self.number(told, "time to become steady") * nu * k * k, 1.0, delta=1e-5)
+
+    def test_frozen_vertices_do_not_go_with_the_flow(self):
+        scene = HEAVY.replace("shear: {rate: 0.05}", "").replace("mass: 5}", "mass: 5, frozen: true}")
+        told = self.check(scene)
+        for words in ("load the fluid", "eta_l", "  mass per cell "):
+            self.assertFalse(words in told, words)
+        mixed = self.check(scene + "  - {name: loose, count: 3000, vertices: 1, mass: 5}\n")
+        self.assertAlmostEqual(self.number(mixed, "viscosity of the loaded fluid") / viscosity(5, 3000 / 12**3, 5)[1], 1.0, delta=1e-5)
+
+    def test_a_fluid_of_pairs(self):
+        """A pair hands on momentum as its reduced mass: sum n_i n_j 2 mu_ij in place of rho^2, 1.736 vertices of mass 10 beside 3."""
+        scene = "\n".join(line for line in HEAVY.replace("mass: 5}", "mass: 10}").replace("6939", "3000").splitlines()
+                          if not line.startswith(("shear", "solvent"))) + "\nmedium: {kind: pairs, density: 3, rate: 9, draw: relax}\n"
+        told, n = self.check(scene, "--units", "a0=50nm,T=300K,eta=1mPas"), 3000 / 12**3
+        collisional = self.number(told, "collisional viscosity")
+        expected = self.number(told, "viscosity") + collisional * ((9 + 2 * 3 * n * 20 / 11 + n * n * 10) / 9 - 1)
+        self.assertAlmostEqual(self.number(told, "viscosity of the loaded fluid") / expected, 1.0, delta=1e-4)
+        self.assertAlmostEqual(self.number(told, "mass per cell"), 3 + 10 * n, delta=1e-3)
+        self.assertRegex(told, r"vertices load the fluid: they add 17\.4 m per a0\^3 to the solvent's 3 .*medium\.density=12")
+        self.assertNotIn("viscosity governs", re.search(r"^  right: .*$", told, re.M)[0])
 
 
 class Map(FolderTest):

@@ -6,6 +6,7 @@ import json
 import math
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -113,6 +114,17 @@ class Flows(unittest.TestCase):
         reverse = self.found(SOLVENT % (", acceleration: [0.02, 0, 0], profile: reverse", ""),
                              profile(lambda y: (1 if y < half else -1) * force / (2 * ETA) * (y % half) * (half - y % half)))
         self.near(self.one(reverse, "viscosity", "force"), ETA)
+
+    def test_loose_vertices_are_a_fluid_of_their_own(self):
+        """Vertices without bonds: theory is that of the fluid with them, and the force is that on the solvent alone."""
+        force, scene = RHO * 0.02, SOLVENT % (", acceleration: [0.02, 0, 0]", "walls: {kind: no-slip}\nfibers: [{name: p, count: 320, vertices: 1, mass: 5}]\ncrossing: {forbidden: false}")
+        found = self.found(scene, profile(lambda y: force / (2 * ETA) * (y * (EDGE - y) + SLIP * EDGE)), stress(0.0))
+        self.near(self.one(found, "viscosity", "curvature"), ETA)
+        done = subprocess.run([str(UNCROSS), "check", "/dev/stdin"], input=scene, capture_output=True, text=True, check=True)
+        loaded = float(re.search(r"eta_l +(\S+)", done.stdout)[1])
+        self.assertAlmostEqual(self.one(found, "viscosity", "curvature").theory, loaded, delta=1e-4 * loaded)
+        own = float(re.search(r"viscosity +eta +(\S+)", done.stdout)[1])
+        self.near(self.one(found, "viscosity over the solvent's, η_r", "curvature"), ETA / own)
 
     def test_sheared(self):
         found = self.found(SOLVENT % ("", "shear: {rate: 0.1}"), profile(lambda y: 0.1 * (y - EDGE / 2)), stress(0.1 * ETA))
