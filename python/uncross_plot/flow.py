@@ -16,14 +16,16 @@ BETWEEN = 1.0  # a0: at walls the parabola is not fitted nearer than this
 
 @dataclasses.dataclass
 class Measured:
-    """A number with a bound of its standard error; theory, or nan. alone: that theory is of the solvent without its fibers."""
+    """A number with a bound of its standard error; theory, or nan. fluid: what theory is of, if it is not all that flows here. over:
+    in a suspension, the viscosity of the solvent alone."""
     name: str
     value: float
     error: float
     unit: str = ""
     theory: float = math.nan
     source: str = ""
-    alone: bool = False
+    fluid: str = ""
+    over: float = math.nan
 
 
 EXACT = ("slope of the profile",)  # of the box itself: it holds for a suspension, too
@@ -49,7 +51,8 @@ class Flow:
         self.begins = float(begins[1]) if begins else 0.0  # the step at which averages begin
         self.edge = places[-1] + places[0]
         self.oscillates = "vx_in_phase" in self.profile.data
-        self.eta = self.numbers["viscosity"]
+        self.eta_alone = self.numbers["viscosity"]
+        self.eta = self.numbers.get("viscosity of the loaded fluid", self.eta_alone)  # with loose vertices
         self.slip = self.numbers.get("slip length", 0.0)
 
     # --- theory ---
@@ -120,17 +123,30 @@ class Flow:
         return self.numbers.get("vertices", 0.0) > 0.0
 
     def _of_suspension(self, found):
-        """With fibers in the solvent, its theory is that of the solvent alone; what they add is eta_r."""
+        """With fibers in the solvent, theory is that of loose vertices in it; bonds make it another fluid, and nobody knows the slip.
+        What all of them add to the solvent is eta_r."""
         if not self.is_suspension:
             return found
         told, loaded = [], self.numbers.get("... over that of the solvent", math.nan)
         for one in found:
-            told.append(dataclasses.replace(one, alone=one.name not in EXACT and math.isfinite(one.theory)))
-            if one.name == "viscosity":
-                loose = f"; loose vertices would make it {loaded:.4g}" if math.isfinite(loaded) else ""
-                told.append(Measured("viscosity over the solvent's, η_r", one.value / self.eta, one.error / self.eta,
-                                     source=f"{one.source}, over that of the solvent alone{loose}"))
+            known = math.isfinite(one.theory) and one.name not in EXACT
+            fluid = self.fluid if one.name != "slip length" else "solvent alone"
+            if one.name != "viscosity":
+                told.append(dataclasses.replace(one, fluid=fluid if known else ""))
+                continue
+            loose = f"; loose vertices would make it {loaded:.4g}" if math.isfinite(loaded) and fluid else ""
+            told += [dataclasses.replace(one, fluid=fluid if known else "", over=self.eta_alone),
+                     Measured("viscosity over the solvent's, η_r", one.value / self.eta_alone, one.error / self.eta_alone,
+                              source=f"{one.source}, over that of the solvent alone{loose}")]
         return told
+
+    @property
+    def fluid(self):
+        """What theory is of; empty if it is all that flows here."""
+        if not self.is_suspension:
+            return ""
+        loaded = "viscosity of the loaded fluid" in self.numbers
+        return "solvent alone" if not loaded else "loose vertices" if self.numbers.get("bonds", 0.0) > 0.0 else ""
 
     def _over(self, stress, rate, name, source):
         value = stress[0] / rate[0]

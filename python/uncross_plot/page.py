@@ -144,7 +144,7 @@ def flow_guides(run):
     found = flow.Flow(run)
     y = None if not found.kind else numpy.linspace(0.0, found.edge, 200)
     expected = None if y is None else found.expected(y)
-    return [] if expected is None else [("theory" + (", solvent alone" if found.is_suspension else ""), lambda t: float(numpy.interp(t, y, expected)), "--")]
+    return [] if expected is None else [("theory" + (f", {found.fluid}" if found.fluid else ""), lambda t: float(numpy.interp(t, y, expected)), "--")]
 
 
 def measured_flow(run):
@@ -152,13 +152,13 @@ def measured_flow(run):
     rows = []
     for m in flow.Flow(run).measured():
         known = math.isfinite(m.theory)
-        away = f"{(m.value - m.theory) / m.error:+.1f}" if known and m.error > 0 and not m.alone else ""
-        theory = f"{m.theory:.6g}{', solvent alone' if m.alone else ''}" if known else ""
+        away = f"{(m.value - m.theory) / m.error:+.1f}" if known and m.error > 0 and not m.fluid else ""
+        theory = f"{m.theory:.6g}{f', {m.fluid}' if m.fluid else ''}" if known else ""
         rows.append((m.name, with_error(m.value, m.error), m.unit, theory, away, m.source))
     return [Rows("The flow, measured", rows, ("", "value ± error", "unit", "theory", "difference / error", "from"),
                  "Of profile.csv and stress.csv. Errors of fits are bounds: those of slabs are added as if all went the same way. "
-                 "Theory: molecular chaos, some per cent off at a short mean free path; it is no exact number. Solvent alone: of a flow "
-                 "without fibers, with which a suspension need not agree.", (1, 3, 4))] if rows else []
+                 "Theory: molecular chaos, some per cent off at a short mean free path; it is no exact number. Loose vertices: of "
+                 "the solvent with vertices that no bonds join; solvent alone: without them. A suspension need not agree with either.", (1, 3, 4))] if rows else []
 
 
 def figure_of(run, table):
@@ -250,8 +250,8 @@ def _result(run):
             words += _diffusion(run, table)
     for m in flow.Flow(run).measured():
         if m.name in SHOWN and math.isfinite(m.value) and math.isfinite(m.error):
-            beside = (f"{with_error(m.value / m.theory, m.error / m.theory)} times that of the solvent alone" if m.alone else
-                      f"theory {m.theory:.4g}")
+            beside = (f"{with_error(m.value / m.over, m.error / m.over)} times that of the solvent alone" if math.isfinite(m.over) else
+                      f"theory{f', {m.fluid},' if m.fluid else ''} {m.theory:.4g}")
             words.append(f"{m.name} {with_error(m.value, m.error)} {m.unit}, {beside} ({m.source})")
     return ("; ".join(words)[:1].upper() + "; ".join(words)[1:] + ".") if words else "No observable was asked for."
 

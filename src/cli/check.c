@@ -215,7 +215,7 @@ static void report_load(const struct si_scale *si, const struct model *m)
   const double filled = theory_line_density(m) * 0.25 * 3.14159265358979323846 * 0.6 * 0.6;
   if (!theory_is_loaded(m))
     return;
-  sheet_row(si, "mass per cell", "rho", m->solvent.per_cell + theory_load(m), "m/a0^3", "solvent and vertices");
+  sheet_row(si, "mass per cell", "rho", theory_loaded_density(m), "m/a0^3", "solvent and vertices");
   sheet_row(si, "viscosity of the loaded fluid", "eta_l", theory_loaded_viscosity(m), "m/a0 t0",
             "loose vertices; bonds add to it");
   sheet_row(si, "... over that of the solvent", "", theory_loaded_viscosity(m) / units_viscosity(m), "", "");

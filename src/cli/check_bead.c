@@ -4,15 +4,15 @@
 #include <stdio.h>
 
 #include "cli/quantity.h"
-#include "cli/units.h"
 #include "system/bead.h"
 #include "theory/bead.h"
+#include "theory/load.h"
 #include "theory/theory.h"
 
 static void report_drive(const struct si_scale *si, const struct model *m, double friction)
 {
   const struct bead_drive *d = &m->bead.drive;
-  const double force = vec3_norm(d->force), speed = force / friction, nu = units_viscosity(m) / m->solvent.per_cell;
+  const double force = vec3_norm(d->force), speed = force / friction, nu = theory_loaded_kinematic(m);
   if (force > 0.0) {
     sheet_row(si, "speed under the force", "", speed, "a0/t0", "F/xi, relative to the mean of everything");
     sheet_row(si, "Reynolds number", "Re", speed * m->bead.radius / nu, "",

@@ -3,7 +3,6 @@
 #include <stdio.h>
 
 #include "cli/quantity.h"
-#include "cli/units.h"
 #include "theory/flow.h"
 #include "theory/load.h"
 #include "theory/theory.h"
@@ -36,7 +35,7 @@ void check_shear(const struct si_scale *si, const struct model *m)
 
 void check_drive(const struct si_scale *si, const struct model *m)
 {
-  const double height = m->box.cells[1], gamma = m->solvent.per_cell, eta = units_viscosity(m);
+  const double height = m->box.cells[1], gamma = m->solvent.per_cell, eta = theory_loaded_viscosity(m);
   const double speed = theory_profile_speed(m->solvent.profile, gamma, vec3_norm(m->solvent.acceleration), height, eta);
   const bool isothermal = model_is_isothermal(m);
   sheet_heading("Flow by a force with a profile");
@@ -44,8 +43,8 @@ void check_drive(const struct si_scale *si, const struct model *m)
             m->solvent.profile == PROFILE_SINE ? "rho g/(eta k^2), k = 2 pi/L" : "rho g L^2/(32 eta)");
   sheet_row(si, "Mach number", "Ma", theory_mach(speed, theory_sound_speed(isothermal, m->dimensions)), "",
             "v_max/c_s; keep below 0.5");
-  sheet_row(si, "Reynolds number", "Re", theory_profile_reynolds(speed, height, eta / gamma), "",
+  sheet_row(si, "Reynolds number", "Re", theory_profile_reynolds(speed, height, theory_loaded_kinematic(m)), "",
             "v_max/(nu k); stable below sqrt(2)");
-  sheet_row(si, "time to become steady", "", theory_flow_transient(m, eta / gamma), "t0",
+  sheet_row(si, "time to become steady", "", theory_flow_transient(m, theory_loaded_kinematic(m)), "t0",
             "1/(nu k^2): the start falls to 1/e; observe from 5 of these on");
 }

@@ -144,7 +144,7 @@ static void report_right(const struct model *m, const struct choice *c)
   if (factor > THEORY_HEAVY_LOAD)
     printf("  right:  %s\n  wrong:  viscosity and density of the fluid with its vertices, %.3g and %.3g times the "
            "solvent's, and so the times of diffusion, relaxation and drag; %s\n",
-           c->loaded, factor, (gamma + theory_load(m)) / gamma, c->wrong);
+           c->loaded, factor, theory_loaded_density(m) / gamma, c->wrong);
   else
     printf("  right:  %s\n  wrong:  %s\n", c->right, c->wrong);
 }

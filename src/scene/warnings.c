@@ -117,7 +117,7 @@ static void warn_force(struct teller *t, const struct model *m)
 /* Flow between walls: the profile of the temperature, compressibility, heat (Tao, Goetze and Gompper 2008). */
 static void warn_walls(struct teller *t, const struct model *m)
 {
-  const double height = m->box.cells[1], eta = theory_model_viscosity(m);
+  const double height = m->box.cells[1], eta = theory_loaded_viscosity(m);
   const struct vec3 slide = vec3_sub(m->walls.upper, m->walls.lower);
   const double rate = m->walls.kind == WALL_NO_SLIP ? vec3_norm(slide) / height : 0.0;
   const double driven =
@@ -126,7 +126,7 @@ static void warn_walls(struct teller *t, const struct model *m)
           : 0.0;
   const double speed = fmax(driven, fmax(vec3_norm(m->walls.lower), vec3_norm(m->walls.upper)));
   const double mach = theory_mach(speed, theory_sound_speed(model_is_isothermal(m), m->dimensions));
-  const double heating = theory_flow_heating(theory_loaded_viscosity(m), rate, m->solvent.per_cell, m->dimensions);
+  const double heating = theory_flow_heating(eta, rate, m->solvent.per_cell, m->dimensions);
   if (m->solvent.thermostat == THERMOSTAT_RESCALE)
     warn(t,
          "thermostat rescale has one factor for the whole box, but flow between walls heats unevenly, and walls hold "
@@ -170,10 +170,10 @@ static void warn_shear(struct teller *t, const struct model *m)
 /* A force with a profile: compressibility, and the instability of Kolmogorov flow. */
 static void warn_profile(struct teller *t, const struct model *m)
 {
-  const double height = m->box.cells[1], gamma = m->solvent.per_cell, eta = theory_model_viscosity(m);
+  const double height = m->box.cells[1], gamma = m->solvent.per_cell, eta = theory_loaded_viscosity(m);
   const double speed = theory_profile_speed(m->solvent.profile, gamma, vec3_norm(m->solvent.acceleration), height, eta);
   const double mach = theory_mach(speed, theory_sound_speed(model_is_isothermal(m), m->dimensions));
-  const double reynolds = theory_profile_reynolds(speed, height, eta / gamma);
+  const double reynolds = theory_profile_reynolds(speed, height, theory_loaded_kinematic(m));
   if (mach > MOST_WALL_MACH)
     warn(t, "the Mach number of the driven flow is expected to be %.3g > %g: use a smaller acceleration", mach,
          MOST_WALL_MACH);
@@ -378,7 +378,7 @@ static void warn_transient(struct teller *t, const struct scene *scene)
 {
   const struct model *m = &scene->model;
   const struct observe_plan *plan = &scene->observe;
-  const double tau = theory_flow_transient(m, theory_model_viscosity(m) / m->solvent.per_cell);
+  const double tau = theory_flow_transient(m, theory_loaded_kinematic(m));
   const double from = (double)plan->from * m->time_step, end = (double)scene->steps * m->time_step;
   if (tau == 0.0 || end <= from || (plan->every[OBSERVE_PROFILE] == 0 && plan->every[OBSERVE_STRESS] == 0))
     return;
@@ -412,7 +412,7 @@ int scene_warnings(const struct scene *scene, void (*tell)(void *context, const 
   for (uint32_t k = 0; k < m->kinds; k++)
     warn_kind(&t, scene, &m->kind[k]);
   char heavy[448];
-  if (load_words(m, "mass", "solvent.per_cell", heavy, sizeof heavy))
+  if (load_words(m, "mass", model_in_cells(m) ? "solvent.per_cell" : "medium.density", heavy, sizeof heavy))
     warn(&t, "%s", heavy);
   if (model_has_dumbbells(m) && model_collides(m))
     warn_dumbbells(&t, m);

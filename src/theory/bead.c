@@ -2,8 +2,8 @@
 
 #include <math.h>
 
-#include "theory/dumbbell.h"
 #include "theory/flow.h"
+#include "theory/load.h"
 #include "theory/theory.h"
 
 static const double pi = 3.14159265358979323846;
@@ -40,5 +40,5 @@ double theory_model_bead_slip(const struct model *model)
 double theory_model_bead_friction(const struct model *model)
 {
   const double radius = theory_bead_radius(model->bead.radius, theory_model_bead_slip(model));
-  return theory_bead_stokes(theory_model_viscosity(model), radius);
+  return theory_bead_stokes(theory_loaded_viscosity(model), radius);
 }

@@ -3,17 +3,18 @@
 #include <math.h>
 
 #include "theory/dumbbell.h"
+#include "theory/medium.h"
 #include "theory/theory.h"
 
 bool theory_is_loaded(const struct model *m)
 {
-  return m->vertices > 0 && model_in_cells(m) && model_has_solvent(m) && m->solvent.hydrodynamics;
+  return theory_load(m) > 0.0 && model_has_solvent(m) && m->solvent.hydrodynamics;
 }
 
 static double per_cell(const struct model *m, uint32_t kind)
 {
   const struct fiber_kind *k = &m->kind[kind];
-  return (double)k->count * k->vertices / box_volume(&m->box);
+  return k->frozen ? 0.0 : (double)k->count * k->vertices / box_volume(&m->box);
 }
 
 double theory_load(const struct model *m)
@@ -56,9 +57,32 @@ static double handed_on(const struct model *m, double masses, double gamma)
   return total - STEP * sum;
 }
 
+/* sum n_i n_j 2 mu_ij over kinds of members of pairs: a pair hands on momentum as its reduced mass, 1/2 of two
+ * particles */
+static double handed_on_by_pairs(const struct model *m, double masses, double gamma)
+{
+  double sum = gamma * gamma;
+  for (uint32_t i = 0; i < m->kinds; i++) {
+    const double mass = masses * m->kind[i].mass;
+    sum += 4.0 * gamma * per_cell(m, i) * mass / (1.0 + mass);
+    for (uint32_t j = 0; j < m->kinds; j++) {
+      const double other = masses * m->kind[j].mass;
+      sum += 2.0 * per_cell(m, i) * per_cell(m, j) * mass * other / (mass + other);
+    }
+  }
+  return sum;
+}
+
 /* kinetic, collisional viscosity of the solvent alone at gamma particles per cell */
 static void solvent_viscosity(const struct model *m, double gamma, double eta[2])
 {
+  if (!model_in_cells(m)) {
+    struct model other = *m;
+    other.medium.density = gamma;
+    eta[0] = theory_medium_viscosity_kinetic(&other);
+    eta[1] = theory_medium_viscosity_collisional(&other);
+    return;
+  }
   const struct collision_rule *rule = collision_rule_of(m);
   const double cosine = m->solvent.cosine, interval = model_collision_interval(m);
   eta[0] = theory_viscosity_kinetic(rule, m->dimensions, gamma, cosine, interval);
@@ -71,7 +95,9 @@ double theory_load_factor(const struct model *m, double masses, double gamma)
   if (!theory_is_loaded(m))
     return 1.0;
   solvent_viscosity(m, gamma, eta);
-  return (eta[0] + eta[1] * handed_on(m, masses, gamma) / theory_partners(gamma)) / (eta[0] + eta[1]);
+  const double more = model_in_cells(m) ? handed_on(m, masses, gamma) / theory_partners(gamma)
+                                        : handed_on_by_pairs(m, masses, gamma) / (gamma * gamma);
+  return (eta[0] + eta[1] * more) / (eta[0] + eta[1]);
 }
 
 double theory_loaded_viscosity(const struct model *m)
@@ -79,5 +105,16 @@ double theory_loaded_viscosity(const struct model *m)
   const double eta = theory_model_viscosity(m);
   if (!theory_is_loaded(m))
     return eta;
-  return eta + (theory_load_factor(m, 1.0, m->solvent.per_cell) - 1.0) * theory_model_viscosity_of_solvent(m);
+  const double own = model_in_cells(m) ? theory_model_viscosity_of_solvent(m) : eta;
+  return eta + (theory_load_factor(m, 1.0, model_solvent_density(m)) - 1.0) * own;
+}
+
+double theory_loaded_density(const struct model *m)
+{
+  return model_solvent_density(m) + (theory_is_loaded(m) ? theory_load(m) : 0.0);
+}
+
+double theory_loaded_kinematic(const struct model *m)
+{
+  return theory_loaded_viscosity(m) / theory_loaded_density(m);
 }
