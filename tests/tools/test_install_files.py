@@ -41,6 +41,41 @@ class InstallFiles(FolderTest):
             done = self.call("uninstall")
             self.assertEqual((done.returncode, installed.exists()), (0, False), done.stderr)
 
+    def test_links_that_lead_out(self):
+        """A folder that uncross has made, and somebody has put elsewhere: below the prefix it is as good as the folder, else refused."""
+        prefix = self.dir / "prefix"
+        package = prefix / "lib/python3/dist-packages/uncross"
+        files = "755 from bin/uncross\n644 from lib/python3/dist-packages/uncross/v.py\n"
+        victim = self.dir / "victim"
+        for name in "v.py", "v.1.pyc":
+            (victim / name).write_text("mine\n")
+        before = sorted(victim.rglob("*"))
+        for link, code in (package, 1), (package.parent, 1), (package / "__pycache__", 0):
+            self.assertEqual(self.call("install", files).returncode, 0)
+            if link.exists():
+                link.rename(self.dir / "aside")
+            link.symlink_to(victim)
+            done = self.call("uninstall")
+            self.assertEqual(done.returncode, code, f"{link}: {done.stderr}")
+            self.assertEqual(sorted(victim.rglob("*")), before, link)
+            if code:
+                self.assertIn(f"{prefix}/share/uncross/installed: names what lies outside of {prefix}; nothing is removed", done.stderr)
+                self.assertTrue((prefix / "bin/uncross").exists())
+            link.unlink()
+            if (self.dir / "aside").exists():
+                (self.dir / "aside").rename(link)
+        self.assertEqual(self.call("install", files).returncode, 0)
+        (prefix / "lib").rename(prefix / "lib64")
+        (prefix / "lib").symlink_to("lib64")
+        self.assertEqual(self.call("uninstall").returncode, 0)
+        self.assertFalse([path for path in prefix.rglob("*") if path.is_file()])
+
+    def test_a_prefix_of_two_lines(self):
+        done = subprocess.run(["make", "-s", f"{self.dir}/build/build-info.inc", f"BUILD={self.dir}/build", "PREFIX=/usr\nlocal"], cwd=TOP, capture_output=True,
+                              text=True, check=False)
+        self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 2), done.stderr)
+        self.assertIn("PREFIX has a line feed in it", done.stderr)
+
 
 if __name__ == "__main__":
     unittest.main()
