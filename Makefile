@@ -182,6 +182,7 @@ $(BUILD)/lib/libuncross-core.a: $(CORE_SOURCES:%.c=$(BUILD)/%.o) $(FAST:%=$(BUIL
 # Written anew only when it says something new, so that nothing is rebuilt for nothing.
 $(BUILD)/build-info.inc: export PREFIX := $(PREFIX)
 $(BUILD)/build-info.inc: force | $(BUILD)/found-run
+	@[ "$$(printf %s "$$PREFIX" | wc -l)" = 0 ] || { echo 'uncross: PREFIX has a line feed in it, which no list of files can hold' >&2; exit 1; }
 	@mkdir -p $(@D)
 	@{ echo '#define BUILD_COMMIT "$(shell git describe --always --dirty --abbrev=12 2>/dev/null || echo unknown)"'; \
 	   echo '#define BUILD_COMPILER "$(shell $(CC) --version | head -n 1)"'; \
