@@ -73,13 +73,11 @@ static int spawn(const char *program, int socket, pid_t *child)
   int code = posix_spawn_file_actions_init(&files);
   if (code != 0)
     return code;
+  code = posix_spawn_file_actions_adddup2(&files, socket, READER_SOCKET);
+  if (code == 0)
+    code = close_others(&files); /* before anything else */
   for (int fd = 0; code == 0 && fd < READER_SOCKET; fd++)
-    if (fd != socket)
-      code = posix_spawn_file_actions_addopen(&files, fd, "/dev/null", O_RDWR, 0);
-  if (code == 0)
-    code = posix_spawn_file_actions_adddup2(&files, socket, READER_SOCKET);
-  if (code == 0)
-    code = close_others(&files);
+    code = posix_spawn_file_actions_addopen(&files, fd, "/dev/null", O_RDWR, 0);
   if (code == 0)
     code = posix_spawn(child, program, &files, NULL, words, environ);
   posix_spawn_file_actions_destroy(&files);
