@@ -70,6 +70,7 @@ static void tally_value(struct tally *t, const struct oracle_pair *p, double lar
   const bool earlier = t->found && beyond == t->found_beyond && oracle_flow(p->ours, t->first.ours) < 0;
   if ((beyond && !t->found_beyond) || !t->found || earlier) {
     t->first = *p;
+    t->first.known = NULL;
     t->row = row, t->column = column, t->tolerance = tolerance;
     t->found = true;
     t->found_beyond = beyond;
@@ -203,9 +204,13 @@ static void tally_table(struct tally *t, const struct oracle_pair *p, FILE *out)
   const double largest = tolerance_largest(p->ours, 0, PACK_COLUMNS);
   t->worst = t->nans = 0;
   t->largest = 0.0;
+  struct tolerance_known known = {0};
+  struct oracle_pair pair = *p;
+  pair.known = &known;
   for (uint32_t row = 0; row < rows; row++)
     for (uint32_t column = 0; column < p->ours->columns; column++)
-      tally_value(t, p, largest, row, column);
+      tally_value(t, &pair, largest, row, column);
+  tolerance_forget(&known);
   if (t->different > before.different) {
     print_place(out, p->ours);
     fprintf(out, " of %" PRIu64 " values %" PRIu64 " differ, %" PRIu64 " beyond tolerance, by up to %" PRIu64 " %s%s",
@@ -272,7 +277,7 @@ static void look_at(struct tally *t, const struct pack *ours, const struct pack 
   const struct pack_table *its = pack_find(theirs, &mine->place, mine->name);
   const char *other = NULL;
   if (its && same_inputs(ours, theirs, &mine->place, &other)) {
-    tally_table(t, &(struct oracle_pair){ours, theirs, mine, its, rounding}, out);
+    tally_table(t, &(struct oracle_pair){ours, theirs, mine, its, rounding, NULL}, out);
   } else if (its || mine->rows > 0) {
     if (!t->first_words[0])
       snprintf(t->first_words, sizeof t->first_words, "%s, step %" PRIu64 ", %s: not %s%s",

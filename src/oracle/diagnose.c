@@ -154,7 +154,7 @@ static void know_others(struct search *s)
     if (ours == p->ours || strncmp(ours->name, "out.", 4) != 0 || !theirs || theirs->columns != ours->columns ||
         memcmp(&ours->place, &p->ours->place, sizeof ours->place) != 0)
       continue;
-    const struct oracle_pair pair = {p->pack, p->pack_theirs, ours, theirs, p->rounding};
+    const struct oracle_pair pair = {p->pack, p->pack_theirs, ours, theirs, p->rounding, NULL};
     s->others += evidence_load(&pair, &s->other[s->others]);
   }
   s->others_known = true;
@@ -354,8 +354,8 @@ static bool moves_are_right(const struct oracle_pair *p)
 {
   static const char *const names[] = {"out.position", "out.velocity"};
   for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
-    const struct oracle_pair pair = {p->pack, p->pack_theirs, oracle_sibling(p, names[k]),
-                                     oracle_sibling_of_theirs(p, names[k]), p->rounding};
+    const struct oracle_pair pair = {
+        p->pack, p->pack_theirs, oracle_sibling(p, names[k]), oracle_sibling_of_theirs(p, names[k]), p->rounding, NULL};
     if (!pair.ours || !pair.theirs || pair.ours->columns != pair.theirs->columns || !table_is_right(&pair))
       return false;
   }

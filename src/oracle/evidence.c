@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "oracle/tolerance.h"
+
 static bool takes_part(const struct pack_table *ours, const struct pack_table *theirs, const struct oracle_pair *pair)
 {
   return theirs && ours->columns == pair->ours->columns && theirs->columns == ours->columns &&
@@ -19,7 +21,7 @@ static void find_parts(const struct oracle_pair *pair, struct evidence *e)
     if (!takes_part(ours, theirs, pair))
       continue;
     struct evidence_part *part = &e->part[e->parts++];
-    *part = (struct evidence_part){{pair->pack, pair->pack_theirs, ours, theirs, pair->rounding}, 0, e->rows};
+    *part = (struct evidence_part){{pair->pack, pair->pack_theirs, ours, theirs, pair->rounding, NULL}, 0, e->rows};
     part->rows = ours->rows < theirs->rows ? ours->rows : theirs->rows;
     e->rows += part->rows;
   }
@@ -29,17 +31,21 @@ static void take_values(struct evidence *e)
 {
   for (uint32_t k = 0; k < e->parts; k++) {
     const struct evidence_part *part = &e->part[k];
+    struct tolerance_known known = {0};
+    struct oracle_pair pair = part->pair;
+    pair.known = &known;
     for (uint32_t row = 0; row < part->rows; row++)
       for (uint32_t column = 0; column < e->columns; column++) {
         const size_t at = (size_t)(part->first + row) * e->columns + column;
         e->ours[at] = pack_value(part->pair.ours, row, column);
         e->theirs[at] = pack_value(part->pair.theirs, row, column);
-        e->tolerance[at] = oracle_tolerance(&part->pair, row, column);
+        e->tolerance[at] = oracle_tolerance(&pair, row, column);
         e->different[at] = e->ours[at] != e->theirs[at];
         e->wrong[at] = !(fabs(e->ours[at] - e->theirs[at]) <= e->tolerance[at]);
         e->differences += e->different[at];
         e->wrongs += e->wrong[at];
       }
+    tolerance_forget(&known);
   }
 }
 

@@ -149,7 +149,7 @@ static bool describe(const struct oracle_pair *p, const struct judged *j, char t
   }
   bool said = false;
   if (!ours.failed && !theirs.failed && missed + invented > 0) {
-    const struct oracle_pair pair = {&ours, &theirs, &ours.table[2], &theirs.table[0], p->rounding};
+    const struct oracle_pair pair = {&ours, &theirs, &ours.table[2], &theirs.table[0], p->rounding, NULL};
     struct evidence e = {0};
     char rows[ROWS_TEXT];
     said = evidence_take(&pair, &e);
@@ -200,7 +200,7 @@ void oracle_count_hits(const struct oracle_pair *p, uint32_t *hits, uint32_t *wr
         !theirs)
       continue;
     struct judged j = {0};
-    judge_all(&(struct oracle_pair){p->pack, p->pack_theirs, ours, theirs, p->rounding}, &j);
+    judge_all(&(struct oracle_pair){p->pack, p->pack_theirs, ours, theirs, p->rounding, NULL}, &j);
     for (uint32_t n = 0; n < j.count; n++)
       *wrong += j.found[n][0] != j.found[n][1];
     *hits += j.count;
@@ -261,7 +261,7 @@ bool oracle_judge_reports(const struct oracle_pair *p, char text[ORACLE_TEXT])
     invented += count_alike(mine, its, k) == 0;
   char rows[ROWS_TEXT] = "";
   if (!ours.failed && !theirs.failed && missed > 0) {
-    const struct oracle_pair pair = {&ours, &theirs, &ours.table[1], &theirs.table[0], p->rounding};
+    const struct oracle_pair pair = {&ours, &theirs, &ours.table[1], &theirs.table[0], p->rounding, NULL};
     struct evidence e = {0};
     if (evidence_take(&pair, &e))
       oracle_describe_rows(&e, rows);

@@ -10,7 +10,8 @@ struct oracle_pair {
   const struct pack *pack;        /* ours: inputs, model */
   const struct pack *pack_theirs; /* their outputs */
   const struct pack_table *ours, *theirs;
-  double rounding; /* u: 2^-53 or 2^-24 */
+  double rounding;               /* u: 2^-53 or 2^-24 */
+  struct tolerance_known *known; /* of this table; NULL: computed for each value anew */
 };
 
 /* Bound on |ours - theirs| in this column, if both made the operator's roundings and no mistake: docs/porting.md. */

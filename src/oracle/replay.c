@@ -125,7 +125,7 @@ bool oracle_makes_all(const struct oracle_pair *p,
     if (strcmp(ours->place.operator_name, p->ours->place.operator_name) != 0 || strcmp(ours->name, "out.event") != 0 ||
         !theirs)
       continue;
-    const struct oracle_pair pair = {p->pack, p->pack_theirs, ours, theirs, p->rounding};
+    const struct oracle_pair pair = {p->pack, p->pack_theirs, ours, theirs, p->rounding, NULL};
     if (!makes(&pair, twist, tolerance))
       return false;
     any = true;

@@ -45,20 +45,35 @@ static double most_of(const struct oracle_pair *p, enum vertex_column column)
                            (uint32_t)column + (column == FORCE ? 3 : 1));
 }
 
-double tolerance_heaviest(const struct oracle_pair *p)
+static double heaviest(const struct oracle_pair *p)
 {
   return fmax(1.0, most_of(p, MASS));
 }
 
-double tolerance_lightest(const struct oracle_pair *p)
+double tolerance_heaviest(const struct oracle_pair *p)
+{
+  return tolerance_once(p, heaviest);
+}
+
+static double lightest(const struct oracle_pair *p)
 {
   return smallest(tolerance_of_model(p, "in.vertex"), MASS);
 }
 
-double tolerance_velocities(const struct oracle_pair *p)
+double tolerance_lightest(const struct oracle_pair *p)
+{
+  return tolerance_once(p, lightest);
+}
+
+static double velocities(const struct oracle_pair *p)
 {
   return fmax(tolerance_size_of(p, "in.velocity"),
               fmax(tolerance_size_of(p, "in.solvent"), tolerance_size_of(p, "in.vertex")));
+}
+
+double tolerance_velocities(const struct oracle_pair *p)
+{
+  return tolerance_once(p, velocities);
 }
 
 /* --- rules: what n S is; times u it is the tolerance ------------------------------------------------------------- */
@@ -153,10 +168,15 @@ static double force(const struct oracle_pair *p, uint32_t row, uint32_t column)
   return bond_force(p, row, column) + bend_force(p, row, column) + 14.0 * most_of(p, FORCE) * p->rounding;
 }
 
-double tolerance_strongest(const struct oracle_pair *p)
+static double strongest(const struct oracle_pair *p)
 {
   return 4.0 * most_of(p, SPRING) * (longest_bond(p) + most_of(p, BOND_LENGTH)) + 8.0 * strongest_bend(p) +
          most_of(p, FORCE);
+}
+
+double tolerance_strongest(const struct oracle_pair *p)
+{
+  return tolerance_once(p, strongest);
 }
 
 static double kick(const struct oracle_pair *p, uint32_t row, uint32_t column)
@@ -220,11 +240,12 @@ static double of_relative(const struct oracle_pair *p, uint32_t row, bool of_all
 {
   const struct pack_table *energy = oracle_sibling(p, "out.relative");
   const double factor = pack_value(p->ours, row, 0);
+  const double of_each = relative(p, row, 0);
   double sum = 0.0, error = 0.0;
   for (uint32_t k = 0; energy && k < energy->rows; k++)
     if (pack_value(energy, k, 0) != 0.0 && (of_all ? pack_value(p->ours, k, 0) == factor : k == row)) {
       sum += pack_value(energy, k, 0);
-      error += relative(p, k, 0);
+      error += of_each;
     }
   return sum > 0.0 ? 0.5 * factor * error / sum : 0.0;
 }
@@ -265,116 +286,130 @@ static double give(const struct oracle_pair *p, uint32_t row, uint32_t column)
          p->rounding;
 }
 
-static const struct {
+/* of_table: one bound for the whole table, which is computed once. */
+static const struct tolerance_row {
   const char *operator_name, *table;
   tolerance_rule *tolerance;
+  bool of_table;
 } rules[] = {
-    {"private_bath", "out.velocity", tolerance_private_bath},
-    {"pairs", "out.along", tolerance_pair_along},
-    {"pairs", "out.bath", tolerance_pair_draw},
-    {"pair_bath", "out.solvent", tolerance_pair_bath},
-    {"pair_bath", "out.vertex", tolerance_pair_bath},
-    {"crowd", "out.crowd", tolerance_crowd},
-    {"repulsion", "out.force", tolerance_repulsion},
-    {"repulsion_kick", "out.solvent", tolerance_repulsion_kick},
-    {"repulsion_kick", "out.vertex", tolerance_repulsion_kick},
-    {"mobility", "out.tensor", tolerance_mobility},
-    {"root", "out.root", tolerance_root},
-    {"move", "out.position", tolerance_move},
-    {"dumbbell_start", "out.position", tolerance_drawn_place},
-    {"dumbbell_start", "out.vector", tolerance_drawn_place},
-    {"dumbbell_stream", "out.position", tolerance_swing_position},
-    {"dumbbell_stream", "out.velocity", tolerance_swing_velocity},
-    {"dumbbell_stream", "out.vector", tolerance_swing_position},
-    {"dumbbell_wall_stream", "out.position", tolerance_swing_position},
-    {"dumbbell_wall_stream", "out.velocity", tolerance_swing_velocity},
-    {"dumbbell_wall_stream", "out.vector", tolerance_swing_position},
-    {"dumbbell_wall_stream", "out.given", tolerance_swing_given},
-    {"dumbbell_shear_stream", "out.position", tolerance_swing_position},
-    {"dumbbell_shear_stream", "out.velocity", tolerance_swing_velocity},
-    {"dumbbell_shear_stream", "out.vector", tolerance_swing_position},
-    {"wall_motion", "out.flight", tolerance_motion},
-    {"wall_motion", "out.end", tolerance_motion},
-    {"shear_motion", "out.rate", tolerance_motion},
-    {"wall_stream", "out.position", tolerance_wall_position},
-    {"wall_stream", "out.velocity", tolerance_wall_velocity},
-    {"wall_stream", "out.given", tolerance_wall_given},
-    {"shear_stream", "out.position", tolerance_wall_position},
-    {"shear_stream", "out.velocity", tolerance_slid},
-    {"enter", "out.velocity", tolerance_slid},
-    {"leave", "out.velocity", tolerance_slid},
-    {"affine_kick", "out.velocity", tolerance_affine},
-    {"fill", "out.filled", tolerance_filled},
-    {"fill", "out.momentum", tolerance_filled_momentum},
-    {"account", "out.given", tolerance_account_given},
-    {"rescale_layers", "out.relative", relative},
-    {"rescale_layers", "out.factor", rescale},
-    {"random", "out.uniform", uniform},
-    {"random", "out.normal", normal_pair},
-    {"random", "out.axis", axis},
-    {"crossing", "out.hit", tolerance_crossing_hit},
-    {"exchange", "out.momentum", tolerance_exchange_momentum},
-    {"exchange", "out.moving", tolerance_exchange_velocity},
-    {"exchange", "out.pivot", tolerance_exchange_velocity},
-    {"exchange", "out.a", tolerance_exchange_velocity},
-    {"exchange", "out.b", tolerance_exchange_velocity},
-    {"sweep", "out.hit", tolerance_sweep_hit},
-    {"sweep", "out.position", tolerance_sweep_position},
-    {"sweep", "out.velocity", tolerance_sweep_velocity},
-    {"tube_search", "out.tick", tolerance_tube_tick},
-    {"tube_contact", "out.contact", tolerance_tube_points},
-    {"tube_contact", "out.normal", tolerance_tube_normal},
-    {"bead_search", "out.tick", tolerance_tube_tick},
-    {"bead_contact", "out.contact", tolerance_tube_points},
-    {"bead_contact", "out.normal", tolerance_tube_normal},
-    {"impulse", "out.answer", tolerance_impulse_answer},
-    {"impulse", "out.momentum", tolerance_impulse_momentum},
-    {"impulse", "out.p0", tolerance_impulse_velocity},
-    {"impulse", "out.p1", tolerance_impulse_velocity},
-    {"impulse", "out.q0", tolerance_impulse_velocity},
-    {"impulse", "out.q1", tolerance_impulse_velocity},
-    {"event_drift", "out.hit", tolerance_event_hit},
-    {"event_drift", "out.position", tolerance_event_position},
-    {"event_drift", "out.velocity", tolerance_event_velocity},
-    {"bond_force", "out.force", bond_force},
-    {"bend_force", "out.force", bend_force},
-    {"force", "out.force", force},
-    {"kick", "out.velocity", kick},
-    {"stream", "out.position", stream_position},
-    {"stream", "out.velocity", stream_velocity},
-    {"draw", "out.solvent", drawn},
-    {"draw", "out.vertex", drawn},
-    {"sum", "out.momentum", momentum},
-    {"solve", "out.center", center},
-    {"mean", "out.center", center},
-    {"solve", "out.axis", axis},
-    {"rescale", "out.relative", relative},
-    {"rescale", "out.factor", rescale},
-    {"maxwell_boltzmann", "out.relative", relative},
-    {"maxwell_boltzmann", "out.factor", boltzmann},
-    {"rotate", "out.solvent", rotate},
-    {"rotate", "out.vertex", rotate},
-    {"give", "out.solvent", give},
-    {"give", "out.vertex", give},
-    {"moments", "out.middle", tolerance_spin_middle},
-    {"moments", "out.beyond", tolerance_spin_beyond},
-    {"moments", "out.second", tolerance_spin_second},
-    {"moments", "out.angular", tolerance_spin_angular},
-    {"spin", "out.center", tolerance_spin_center},
-    {"spin", "out.omega", tolerance_spin_rate},
-    {"give_spin", "out.solvent", tolerance_give_spin},
-    {"give_spin", "out.vertex", tolerance_give_spin},
-    {"swap", "out.velocity", copied_velocity},
+    {"private_bath", "out.velocity", tolerance_private_bath, true},
+    {"pairs", "out.along", tolerance_pair_along, true},
+    {"pairs", "out.bath", tolerance_pair_draw, false},
+    {"pair_bath", "out.solvent", tolerance_pair_bath, true},
+    {"pair_bath", "out.vertex", tolerance_pair_bath, true},
+    {"crowd", "out.crowd", tolerance_crowd, true},
+    {"repulsion", "out.force", tolerance_repulsion, true},
+    {"repulsion_kick", "out.solvent", tolerance_repulsion_kick, true},
+    {"repulsion_kick", "out.vertex", tolerance_repulsion_kick, true},
+    {"mobility", "out.tensor", tolerance_mobility, true},
+    {"root", "out.root", tolerance_root, false},
+    {"move", "out.position", tolerance_move, true},
+    {"dumbbell_start", "out.position", tolerance_drawn_place, true},
+    {"dumbbell_start", "out.vector", tolerance_drawn_place, true},
+    {"dumbbell_stream", "out.position", tolerance_swing_position, true},
+    {"dumbbell_stream", "out.velocity", tolerance_swing_velocity, true},
+    {"dumbbell_stream", "out.vector", tolerance_swing_position, true},
+    {"dumbbell_wall_stream", "out.position", tolerance_swing_position, true},
+    {"dumbbell_wall_stream", "out.velocity", tolerance_swing_velocity, true},
+    {"dumbbell_wall_stream", "out.vector", tolerance_swing_position, true},
+    {"dumbbell_wall_stream", "out.given", tolerance_swing_given, true},
+    {"dumbbell_shear_stream", "out.position", tolerance_swing_position, true},
+    {"dumbbell_shear_stream", "out.velocity", tolerance_swing_velocity, true},
+    {"dumbbell_shear_stream", "out.vector", tolerance_swing_position, true},
+    {"wall_motion", "out.flight", tolerance_motion, true},
+    {"wall_motion", "out.end", tolerance_motion, true},
+    {"shear_motion", "out.rate", tolerance_motion, true},
+    {"wall_stream", "out.position", tolerance_wall_position, true},
+    {"wall_stream", "out.velocity", tolerance_wall_velocity, true},
+    {"wall_stream", "out.given", tolerance_wall_given, true},
+    {"shear_stream", "out.position", tolerance_wall_position, true},
+    {"shear_stream", "out.velocity", tolerance_slid, true},
+    {"enter", "out.velocity", tolerance_slid, true},
+    {"leave", "out.velocity", tolerance_slid, true},
+    {"affine_kick", "out.velocity", tolerance_affine, true},
+    {"fill", "out.filled", tolerance_filled, false},
+    {"fill", "out.momentum", tolerance_filled_momentum, false},
+    {"account", "out.given", tolerance_account_given, true},
+    {"rescale_layers", "out.relative", relative, true},
+    {"rescale_layers", "out.factor", rescale, false},
+    {"random", "out.uniform", uniform, true},
+    {"random", "out.normal", normal_pair, false},
+    {"random", "out.axis", axis, false},
+    {"crossing", "out.hit", tolerance_crossing_hit, false},
+    {"exchange", "out.momentum", tolerance_exchange_momentum, false},
+    {"exchange", "out.moving", tolerance_exchange_velocity, false},
+    {"exchange", "out.pivot", tolerance_exchange_velocity, false},
+    {"exchange", "out.a", tolerance_exchange_velocity, false},
+    {"exchange", "out.b", tolerance_exchange_velocity, false},
+    {"sweep", "out.hit", tolerance_sweep_hit, false},
+    {"sweep", "out.position", tolerance_sweep_position, false},
+    {"sweep", "out.velocity", tolerance_sweep_velocity, false},
+    {"tube_search", "out.tick", tolerance_tube_tick, false},
+    {"tube_contact", "out.contact", tolerance_tube_points, false},
+    {"tube_contact", "out.normal", tolerance_tube_normal, false},
+    {"bead_search", "out.tick", tolerance_tube_tick, false},
+    {"bead_contact", "out.contact", tolerance_tube_points, false},
+    {"bead_contact", "out.normal", tolerance_tube_normal, false},
+    {"impulse", "out.answer", tolerance_impulse_answer, false},
+    {"impulse", "out.momentum", tolerance_impulse_momentum, false},
+    {"impulse", "out.p0", tolerance_impulse_velocity, false},
+    {"impulse", "out.p1", tolerance_impulse_velocity, false},
+    {"impulse", "out.q0", tolerance_impulse_velocity, false},
+    {"impulse", "out.q1", tolerance_impulse_velocity, false},
+    {"event_drift", "out.hit", tolerance_event_hit, false},
+    {"event_drift", "out.position", tolerance_event_position, false},
+    {"event_drift", "out.velocity", tolerance_event_velocity, false},
+    {"bond_force", "out.force", bond_force, true},
+    {"bend_force", "out.force", bend_force, true},
+    {"force", "out.force", force, true},
+    {"kick", "out.velocity", kick, true},
+    {"stream", "out.position", stream_position, true},
+    {"stream", "out.velocity", stream_velocity, true},
+    {"draw", "out.solvent", drawn, false},
+    {"draw", "out.vertex", drawn, false},
+    {"sum", "out.momentum", momentum, true},
+    {"solve", "out.center", center, true},
+    {"mean", "out.center", center, true},
+    {"solve", "out.axis", axis, false},
+    {"rescale", "out.relative", relative, true},
+    {"rescale", "out.factor", rescale, false},
+    {"maxwell_boltzmann", "out.relative", relative, true},
+    {"maxwell_boltzmann", "out.factor", boltzmann, false},
+    {"rotate", "out.solvent", rotate, true},
+    {"rotate", "out.vertex", rotate, true},
+    {"give", "out.solvent", give, true},
+    {"give", "out.vertex", give, true},
+    {"moments", "out.middle", tolerance_spin_middle, false},
+    {"moments", "out.beyond", tolerance_spin_beyond, false},
+    {"moments", "out.second", tolerance_spin_second, false},
+    {"moments", "out.angular", tolerance_spin_angular, false},
+    {"spin", "out.center", tolerance_spin_center, true},
+    {"spin", "out.omega", tolerance_spin_rate, false},
+    {"give_spin", "out.solvent", tolerance_give_spin, false},
+    {"give_spin", "out.vertex", tolerance_give_spin, false},
+    {"swap", "out.velocity", copied_velocity, true},
 };
 
-double oracle_tolerance(const struct oracle_pair *p, uint32_t row, uint32_t column)
+static const struct tolerance_row *rule_of(const struct pack_table *t)
 {
-  tolerance_rule *found = exact;
-  const char *operator_name = p->ours->place.operator_name;
+  static const struct tolerance_row none = {"", "", exact, true};
+  const char *operator_name = t->place.operator_name;
   if (strncmp(operator_name, "long_", strlen("long_")) == 0)
     operator_name += strlen("long_");
   for (size_t k = 0; k < sizeof rules / sizeof *rules; k++)
-    if (strcmp(rules[k].operator_name, operator_name) == 0 && strcmp(rules[k].table, p->ours->name) == 0)
-      found = rules[k].tolerance;
-  return found(p, row, column);
+    if (strcmp(rules[k].operator_name, operator_name) == 0 && strcmp(rules[k].table, t->name) == 0)
+      return &rules[k];
+  return &none;
+}
+
+double oracle_tolerance(const struct oracle_pair *p, uint32_t row, uint32_t column)
+{
+  struct tolerance_known *known = p->known;
+  if (!known)
+    return rule_of(p->ours)->tolerance(p, row, column);
+  if (!known->rule) {
+    known->rule = rule_of(p->ours);
+    known->bound = known->rule->of_table ? known->rule->tolerance(p, UINT32_MAX, UINT32_MAX) : NAN;
+  }
+  return known->rule->of_table ? known->bound : known->rule->tolerance(p, row, column);
 }

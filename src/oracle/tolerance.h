@@ -4,6 +4,23 @@
 
 #include "oracle/pair.h"
 
+/* What is known of one table of a pair (oracle_pair.known): nothing at first. */
+enum { TOLERANCE_SIZES = 8 };
+struct tolerance_known {
+  const struct tolerance_row *rule; /* of the table; NULL: not yet looked for */
+  double bound;                     /* of all its values, if the rule gives one for all */
+  size_t sizes;
+  struct tolerance_size {
+    double (*of)(const struct oracle_pair *);
+    double is;
+  } size[TOLERANCE_SIZES];
+  double *of_vertex; /* [vertices] what a rule has made of the pair's events */
+};
+void tolerance_forget(struct tolerance_known *known);
+
+/* of(pair), computed once where the pair has a place to keep it. */
+double tolerance_once(const struct oracle_pair *pair, double (*of)(const struct oracle_pair *));
+
 /* The largest size in columns from .. to - 1; 0 for no table. */
 double tolerance_largest(const struct pack_table *table, uint32_t from, uint32_t to);
 

@@ -77,11 +77,15 @@ static double inherited_by_event(const struct oracle_pair *p, uint32_t row)
 
 static double inherited_by_vertex(const struct oracle_pair *p, uint32_t vertex)
 {
-  double *error = malloc(MOST_INHERITING * sizeof *error), most = 0.0;
-  if (error && inherit(p, UINT32_MAX, error) && vertex < MOST_INHERITING)
-    most = error[vertex];
-  free(error);
-  return most;
+  double *error = p->known ? p->known->of_vertex : NULL;
+  if (!error && (error = calloc(MOST_INHERITING, sizeof *error)) && !inherit(p, UINT32_MAX, error))
+    memset(error, 0, MOST_INHERITING * sizeof *error);
+  const double found = error && vertex < MOST_INHERITING ? error[vertex] : 0.0;
+  if (p->known)
+    p->known->of_vertex = error;
+  else
+    free(error);
+  return found;
 }
 
 double tolerance_sweep_hit(const struct oracle_pair *p, uint32_t row, uint32_t column)

@@ -97,11 +97,16 @@ static double length_of(const struct oracle_pair *p)
 }
 
 /* Speeds, of vertices and of what forces add to them in tau. */
-static double speeds(const struct oracle_pair *p)
+static double find_speeds(const struct oracle_pair *p)
 {
   const struct pack_table *time = oracle_sibling(p, "in.time");
   const double tau = length_of(p) + tolerance_largest(time, 1, 2);
   return tolerance_size_of(p, "in.velocity") + tau * tolerance_strongest(p) / tolerance_lightest(p);
+}
+
+static double speeds(const struct oracle_pair *p)
+{
+  return tolerance_once(p, find_speeds);
 }
 
 /* The four vertices of an event, and those up to two further along their fibers, whose places its forces depend on; a
@@ -131,11 +136,11 @@ static uint32_t reached_by(const struct pack_table *chain, const struct pack_tab
   return n;
 }
 
-/* The largest condition number among the contacts that a vertex's flight depends on: its own, and those before them of
- * all who took part. 0: it had no contact. */
-static double worst_of(const struct oracle_pair *p, uint32_t vertex)
+/* worst[v]: the largest condition number among the contacts that the flight of vertex v depends on: its own, and those
+ * before them of all who took part. 0: it had no contact. NULL if memory is short, or without a chain. */
+static double *find_worst(const struct oracle_pair *p, const struct pack_table *chain)
 {
-  const struct pack_table *event = oracle_sibling(p, "out.event"), *chain = tolerance_of_model(p, "in.chain");
+  const struct pack_table *event = oracle_sibling(p, "out.event");
   double *worst = chain ? calloc((size_t)chain->rows + 1, sizeof *worst) : NULL;
   uint32_t at[20];
   for (uint32_t row = 0; worst && event && row < event->rows; row++) {
@@ -146,8 +151,18 @@ static double worst_of(const struct oracle_pair *p, uint32_t vertex)
     for (uint32_t k = 0; k < 4 && k < n; k++)
       worst[at[k]] = most;
   }
+  return worst;
+}
+
+static double worst_of(const struct oracle_pair *p, uint32_t vertex)
+{
+  const struct pack_table *chain = tolerance_of_model(p, "in.chain");
+  double *worst = p->known && p->known->of_vertex ? p->known->of_vertex : find_worst(p, chain);
   const double found = worst && vertex < chain->rows ? worst[vertex] : 0.0;
-  free(worst);
+  if (p->known)
+    p->known->of_vertex = worst;
+  else
+    free(worst);
   return found;
 }
 

@@ -193,7 +193,7 @@ static void tolerances_of_an_exchange(void **state)
   const struct oracle_exchange e = {
       .velocity = {{2, 0, 0}}, .mass = {1, 1, 1, 1}, .s = 0.5, .s_standing = 0.5, .normal = {1, 0, 0}};
   oracle_put_exchanges(&g, &e, 1);
-  struct oracle_pair p = {&pack, &pack, NULL, NULL, 0x1p-53};
+  struct oracle_pair p = {&pack, &pack, NULL, NULL, 0x1p-53, NULL};
   p.ours = p.theirs = table(&pack, "exchange", "out.momentum");
   assert_close(p.ours->value.number[0], 2.0, 0.0);
   const double momentum = 26.0 * 4.0 + 2.0 * (8.0 * 2.0 + 20.0);
