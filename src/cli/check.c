@@ -200,7 +200,8 @@ static void report_kind(const struct si_scale *si, const struct model *m, const 
   if (k->vertices < 2)
     return;
   report_statics(si, m, k);
-  report_frequencies(si, m, k);
+  if (!model_is_overdamped(m) && !k->frozen)
+    report_frequencies(si, m, k);
   if (model_is_flat(m))
     return; /* what follows is of fibers in space */
   if (model_has_solvent(m))

@@ -76,15 +76,17 @@ static void report_overdamped(const struct si_scale *si, const struct model *m, 
               "F L^2/(kappa b)");
     sheet_row(si, "  time of bending", "", pow(length, 4) / (d0 * k->bending * k->bond_length), "t0",
               "L^4/(D_0 kappa b)");
-    sheet_row(si, "  fastest bending in a time step", "",
-              16.0 * k->bending * d0 * m->time_step / (k->bond_length * k->bond_length), "",
+    sheet_row(si, "  fastest bending in a time step", "", theory_medium_bend_step(m, k), "",
               "16 kappa D_0 dt/b^2, without HI; unstable from 2 on");
     return;
   }
   sheet_row(si, "  hydrodynamic radius over the rms bond", "a/b", b->radius / bond, "",
             "1/4: D of a chain scales from few vertices on");
-  sheet_row(si, "  fastest relaxation in a time step", "", 4.0 * k->spring * d0 * m->time_step, "",
+  sheet_row(si, "  fastest relaxation in a time step", "", theory_medium_spring_step(m, k), "",
             "4 k D_0 dt, without HI; unstable from 2 on");
+  if (k->bending > 0.0)
+    sheet_row(si, "  fastest bending in a time step", "", theory_medium_bend_step(m, k), "",
+              "16 kappa D_0 dt/<l>^2, without HI; unstable from 2 on");
   if (k->bending == 0.0 && k->bond_length == 0.0 && !k->ring)
     sheet_row(si, "  diffusion of the chain, Kirkwood", "D_K",
               d0 * theory_kirkwood(b->tensor, k->vertices, b->radius / bond), "a0^2/t0",

@@ -12,6 +12,7 @@
 #include "theory/dumbbell.h"
 #include "theory/flow.h"
 #include "theory/load.h"
+#include "theory/medium.h"
 #include "theory/theory.h"
 
 struct teller {
@@ -232,10 +233,39 @@ static void warn_long_bonds(struct teller *t, const struct scene *scene, const s
        k->name, expected, limit, edge);
 }
 
+#define MOST_EXCESS 0.02 /* of a mean square, or of an energy */
+
+/* What the time step does to the fastest mode of a leap-frog. */
+static void warn_leap_frog(struct teller *t, const struct model *m, const struct fiber_kind *k)
+{
+  const double phase = fiber_highest_frequency(k) * m->time_step;
+  if (phase > 0.5)
+    warn(t,
+         "fibers '%s': omega dt = %.3g: stable below 2, but its energies are off by %.0f %%; with time_step %.6g they "
+         "are off by 2 %% at most",
+         k->name, phase, 25.0 * phase * phase, time_step_below(m, m->time_step * sqrt(MOST_EXCESS / 0.25) / phase));
+}
+
+/* And of motion without velocities. Filaments have no noise, and so no mean squares. */
+static void warn_overdamped(struct teller *t, const struct model *m, const struct fiber_kind *k)
+{
+  const double step = fmax(theory_medium_spring_step(m, k), theory_medium_bend_step(m, k));
+  const double excess = 0.5 * step / (1.0 - 0.5 * step), wanted = 2.0 * MOST_EXCESS / (1.0 + MOST_EXCESS);
+  if (step >= 2.0)
+    warn(t, "fibers '%s': the step is unstable: %.3g of the fastest relaxation, and 2 is too much; use time_step %.6g",
+         k->name, step, time_step_below(m, m->time_step * (m->medium.inextensible ? 0.5 : wanted) / step));
+  else if (excess > MOST_EXCESS && !m->medium.inextensible)
+    warn(t,
+         "fibers '%s': a time step is %.3g of the fastest relaxation, so that mean squares of the fastest modes are "
+         "%.0f %% too large, and pressure and stress are off, too (docs/media.md); with time_step %.6g they are off by "
+         "2 %% at most",
+         k->name, step, 100.0 * excess, time_step_below(m, m->time_step * wanted / step));
+}
+
 static void warn_kind(struct teller *t, const struct scene *scene, const struct fiber_kind *k)
 {
   const struct model *m = &scene->model;
-  const double gamma = m->solvent.per_cell, phase = fiber_highest_frequency(k) * m->time_step;
+  const double gamma = m->solvent.per_cell;
   if (model_has_cells(m) && (k->mass > 2.0 * gamma || k->mass < 0.5 * gamma))
     warn(t,
          "fibers '%s': mass %.6g is far from gamma = %.6g, the mass of the solvent in a cell (paper, Sec. IV A); use "
@@ -250,17 +280,15 @@ static void warn_kind(struct teller *t, const struct scene *scene, const struct 
         "separate beads and not like a thread; the paper's is 0.5, twice the hydrodynamic radius (Sec. IV A); use 1 or "
         "less",
         k->name, k->bond_length);
-  if (phase > 0.5)
-    warn(t,
-         "fibers '%s': omega dt = %.3g: stable below 2, but its energies are off by %.0f %%; with time_step %.6g they "
-         "are off by 2 %% at most",
-         k->name, phase, 25.0 * phase * phase, time_step_below(m, m->time_step * sqrt(0.02 / 0.25) / phase));
+  if (!k->frozen)
+    (model_is_overdamped(m) ? warn_overdamped : warn_leap_frog)(t, m, k);
   if (model_has_solvent(m) && m->scheme == SCHEME_PAPER && !model_is_isothermal(m))
     warn(t,
          "fibers '%s': the order 'paper' heats springs at every collision (docs/accuracy.md), and there is no "
          "thermostat; kick-split does not",
          k->name);
-  warn_long_bonds(t, scene, k);
+  if (!m->medium.inextensible)
+    warn_long_bonds(t, scene, k);
   warn_images(t, m, k);
 }
 
@@ -275,7 +303,7 @@ static void warn_heating(struct teller *t, const struct scene *scene)
     return;
   double phase = 0.0;
   for (uint32_t k = 0; k < m->kinds; k++)
-    phase = fmax(phase, fiber_highest_frequency(&m->kind[k]) * m->time_step);
+    phase = fmax(phase, m->kind[k].frozen ? 0.0 : fiber_highest_frequency(&m->kind[k]) * m->time_step);
   const double time = (double)scene->steps * m->time_step;
   const double each =
       m->crossing.rule == CROSSING_SEQUENTIAL ? 0.7 * phase * phase : 0.09 * phase * phase * phase * phase;

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "medium/bath.h"
+#include "system/fiber_kind.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -42,6 +43,18 @@ double theory_medium_diffusion(const struct model *m, double mass)
   if (model_is_overdamped(m))
     return 1.0 / (mass * m->medium.rate);
   return m->time_step / mass * (1.0 / theory_medium_loss(m, mass) - 0.5);
+}
+
+double theory_medium_spring_step(const struct model *m, const struct fiber_kind *k)
+{
+  const double free = 4.0 * k->spring * theory_medium_diffusion(m, k->mass) * m->time_step;
+  return k->vertices < 2 || m->medium.inextensible ? 0.0 : free;
+}
+
+double theory_medium_bend_step(const struct model *m, const struct fiber_kind *k)
+{
+  const double bond = m->medium.inextensible ? k->bond_length : fiber_mean_bond(k);
+  return k->vertices < 3 ? 0.0 : 16.0 * k->bending * theory_medium_diffusion(m, k->mass) * m->time_step / (bond * bond);
 }
 
 double theory_medium_viscosity_kinetic(const struct model *m)

@@ -16,6 +16,12 @@ double theory_medium_loss(const struct model *model, double mass);
 /* D = (kT dt/M) [1/loss - 1/2], a0^2/t0. */
 double theory_medium_diffusion(const struct model *model, double mass);
 
+/* lambda dt of the fastest mode of an overdamped fiber, without hydrodynamics; unstable from 2 on. 4 k D_0 dt of
+ * springs, which filaments have none of, 16 kappa D_0 dt/b^2 of bends. A mode's mean square is 1/(1 - lambda dt/2) of
+ * its own. */
+double theory_medium_spring_step(const struct model *model, const struct fiber_kind *kind);
+double theory_medium_bend_step(const struct model *model, const struct fiber_kind *kind);
+
 /* eta of pairs, m/(a0 t0), 0 of the private bath. Kinetic: rho dt [1/loss - 1/2] of the kinetic stress, of which a
  * step takes the part 4 pi rho int r^2 [<1 - c>/3 - <(1 - c)^2>/15] dr. Collisional: (pi/15) rho^2 int r^4 <1 - c>/dt
  * dr. */

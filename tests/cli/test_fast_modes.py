@@ -37,7 +37,7 @@ class Modes(FolderTest):
         said = self.warning(told)
         self.assertIn("11 % too large", said)
         step = float(re.search(r"time_step ([\d.e-]+)", said)[1])
-        self.assertTrue(0.7 * 0.00196 < step <= 0.00196, step)
+        self.assertTrue(0.5 * 0.00196 < step <= 0.00196, step)
         self.assertNotIn("too large", self.warning(self.check(dt=step)))
         self.assertNotIn("too large", self.warning(self.check(spring=5)))
 
