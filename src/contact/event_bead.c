@@ -287,9 +287,11 @@ static bool touch(const struct event_drift *d, struct bead_neighbor n)
 static const struct bead_neighbor *first_of(const struct bead_company *c)
 {
   const struct bead_neighbor *first = c->at;
-  for (const struct bead_neighbor *n = c->at; n < c->at + c->count; n++)
+  for (uint32_t k = 0; k < c->count; k++) {
+    const struct bead_neighbor *n = &c->at[k];
     if (n->due < first->due || (n->due == first->due && n->bond < first->bond))
       first = n;
+  }
   return first;
 }
 

@@ -96,17 +96,19 @@ static void answer(struct bead_visits *all)
 static struct bead_visit *first_due(const struct bead_visits *all, const uint32_t *id)
 {
   struct bead_visit *first = all->at;
-  for (struct bead_visit *m = all->at; m < all->at + all->n; m++)
+  for (uint32_t k = 0; k < all->n; k++) {
+    struct bead_visit *m = &all->at[k];
     if (m->due < first->due || (m->due == first->due && id[m->place] < id[first->place]))
       first = m;
+  }
   return first;
 }
 
 /* Looks for the next hit of all. Its tick, or BEAD_TICKS. */
 static int64_t next_of_all(const struct state *state, struct bead_visits *all)
 {
-  for (struct bead_visit *m = all->at; m < all->at + all->n; m++)
-    m->due = next_hit(&all->way, m);
+  for (uint32_t k = 0; k < all->n; k++)
+    all->at[k].due = next_hit(&all->way, &all->at[k]);
   all->first = first_due(all, state->solvent.id);
   return all->n > 0 ? all->first->due : BEAD_TICKS;
 }
@@ -157,7 +159,8 @@ static void land(const struct model *model, const struct state *state, const str
 {
   const struct bead_way *bead = &all->way;
   const struct point end = later(bead->at, bead->rate, BEAD_TICKS - bead->clock), origin = state->bead->position;
-  for (struct bead_visit *m = all->at; m < all->at + all->n; m++) {
+  for (uint32_t k = 0; k < all->n; k++) {
+    struct bead_visit *m = &all->at[k];
     const struct point at = m->rigid ? point_plus(end, m->at) : later(m->at, m->rate, BEAD_TICKS - m->clock);
     m->at = (struct point){lattice_fold(origin.x + at.x, model->box.edge[0]),
                            lattice_fold(origin.y + at.y, model->box.edge[1]),

@@ -113,8 +113,8 @@ static bool rebound(struct state *state, const struct model *model, struct mpc *
   const struct bead_visits *all = &c->bead.meetings;
   if (!one_image(state, model, all->slack, fastest(c, *span), step, fault))
     return false;
-  for (const struct bead_visit *m = all->at; m < all->at + all->n; m++)
-    write_flight(state, model, c, step, m, span);
+  for (uint32_t k = 0; k < all->n; k++)
+    write_flight(state, model, c, step, &all->at[k], span);
   *state->bead = all->bead;
   return true;
 }

@@ -122,7 +122,8 @@ bool bead_fill(const struct state *state, const struct model *model, struct mpc 
       if (!cut_line(&s, &law, model, c, y, z, step, fault))
         return false;
   draw_velocities(state->bead, model, &c->bead, step);
-  for (const struct bead_cut *cut = c->bead.cut; cut < c->bead.cut + c->bead.cuts; cut++) {
+  for (uint32_t k = 0; k < c->bead.cuts; k++) {
+    const struct bead_cut *cut = &c->bead.cut[k];
     if (!virtual_room(&c->sum[cut->cell], cut->n, step, cut->cell, FAULT_SOLVENT_SPEED, fault))
       return false;
     c->rule->add_virtual(model, c, step, cut->cell, &cut->members);
@@ -138,7 +139,8 @@ void bead_take_gain(struct state *state, const struct model *model, struct mpc *
   uint64_t turns = 0;
   struct bead *bead = state->bead;
   int64_t taken = 0;
-  for (const struct bead_cut *cut = c->bead.cut; cut < c->bead.cut + c->bead.cuts; cut++) {
+  for (uint32_t k = 0; k < c->bead.cuts; k++) {
+    const struct bead_cut *cut = &c->bead.cut[k];
     const struct vec3 gain = c->rule->virtual_gain(model, c, step, cut->cell, &cut->members, false);
     account_add(&sum, &turns, gain);
     bead_account(&taken, vec3_dot(gain, vec3_add_scaled(cut->members.velocity, 0.5 / cut->n, gain)));
