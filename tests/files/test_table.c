@@ -249,7 +249,11 @@ static void test_an_open_folder_may_be_moved(void **unused)
   assert_non_null(strstr(m.text, "another file was opened"));
   fclose(other);
   fclose(ours);
+  const int copy = dup(open.fd); /* as a child has one */
+  assert_true(folder_in_use(there));
   folder_close(&open);
+  assert_false(folder_in_use(there));
+  close(copy);
   remove(in_folder(folder, "here/f"));
   remove(in_folder(folder, "there/f"));
   remove(here);
