@@ -138,7 +138,7 @@ static void momentum_is_that_of_the_body_force(void **unused)
         p[2] += (long double)new.z - old.z;
         sizes += vec3_norm(old) + vec3_norm(new);
         if (i < first || i >= first + some)
-          assert_memory_equal(&before[i], &after[i], sizeof after[i]);
+          assert_true(memcmp(&old, &new, sizeof new) == 0 && before[i].cell == after[i].cell);
       }
       assert_close((double)p[0], some * a.x * t, 0x1p-52 * sizes);
       assert_close((double)p[1], some * a.y * t, 0x1p-52 * sizes);
