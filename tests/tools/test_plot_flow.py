@@ -208,6 +208,12 @@ fibers: [{name: dimer, count: 4000, vertices: 2, mass: 5, bond_length: 0.5, spri
         self.assertRegex(told, r"Viscosity 30\.\d* ± 0\.\d+ m/a0 t0, 2\.682\d ± 0\.0011 times that of the solvent alone")
         self.assertNotIn("theory 11", told)
 
+    def test_springs_have_a_viscosity_only_where_they_are(self):
+        """The column is there in every sheared box; without dumbbells it is 0, and no result."""
+        springs = {**stress(3.0), "sigma_xy_spring": [0.0] * 64}
+        found = self.found(SOLVENT % ("", "shear: {rate: 0.1}"), profile(lambda y: 0.1 * (y - EDGE / 2)), springs)
+        self.assertEqual([m for m in found if "springs" in m.name], [])
+
     def test_two_flows(self):
         """The comparison has the table of the flow: viscosities of 30 and 33, errors from the scatter of the stress."""
         with tempfile.TemporaryDirectory() as folder:
