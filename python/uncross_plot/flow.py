@@ -211,7 +211,7 @@ class Flow:
     def _dumbbells(self, rate):
         """Springs of a sheared box: their part of the viscosity, and their shape."""
         found = []
-        if self.stress is not None and "sigma_xy_spring" in self.stress.data:
+        if self.stress is not None and "sigma_xy_spring" in self.stress.data and self.numbers.get("dumbbells", 0.0) > 0.0:
             value, error = self.mean_stress("sigma_xy_spring")
             found.append(Measured("viscosity of the springs", value / rate, error / abs(rate), "m/a0 t0",
                                   self.numbers.get("viscosity of the springs", math.nan), "their stress over the rate"))

@@ -244,7 +244,7 @@ static void report_suspension(const struct si_scale *si, const struct model *m)
     self += theory_self_collision_rate(&m->kind[k]);
   sheet_row(si, "collisions of bonds", "", theory_collision_rate(m), "1/t0",
             m->thickness > 0 ? "ideal gas of lines; thick fibers meet more often" : "ideal gas of bonds");
-  sheet_row(si, "... of flexible fibers with themselves", "", self, "1/t0", "Gaussian chains");
+  sheet_row(si, "... of flexible fibers with themselves", "", self, "1/t0", "Gaussian chains; 0 with bending");
   sheet_row(si, "... that the rule answers", "", theory_executed_rate(m), "1/t0",
             m->crossing.rule == CROSSING_SEQUENTIAL ? "sequential: 1.15 of them" : "");
 }

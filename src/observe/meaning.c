@@ -3,6 +3,8 @@
 #include <string.h>
 
 #include "observe/background.h"
+#include "system/fiber_kind.h"
+#include "theory/theory.h"
 
 /* --- what a scene may be ----------------------------------------------------------------------------------------- */
 
@@ -119,6 +121,15 @@ static bool beside_frozen(const struct model *m)
   return m->frozen > 0;
 }
 
+static bool long_and_bending(const struct model *m)
+{
+  bool any = false;
+  for (uint32_t k = 0; k < m->kinds; k++)
+    any |= m->kind[k].vertices > 3 && m->kind[k].bending > 0.0 &&
+           fiber_contour(&m->kind[k]) > theory_effective_persistence(&m->kind[k]);
+  return any;
+}
+
 static const struct {
   const char *words; /* of docs/observables.md */
   bool (*holds)(const struct model *model);
@@ -149,6 +160,7 @@ static const struct {
     [DRIFT_SPLIT] = {"`order: drift-split`", drift_split},
     [THICK] = {"thick fibers that cannot cross", thick},
     [BESIDE_FROZEN] = {"frozen fibers", beside_frozen},
+    [LONG_AND_BENDING] = {"fibers that bend, longer than their persistence length", long_and_bending},
     [WITH_DUMBBELLS] = {"dumbbells", model_has_dumbbells},
     [WITH_A_BEAD] = {"bead", model_has_bead},
 };
@@ -215,6 +227,8 @@ const struct meaning meanings[] = {
     {OBSERVE_COLLISIONS, NO_BONDS, LEFT_OUT, "rate_over_theory", "there is nothing that touches"},
     {OBSERVE_COLLISIONS, THICK, LEFT_OUT, "rate_over_theory", "the theory is that of lines"},
     {OBSERVE_COLLISIONS, BESIDE_FROZEN, LEFT_OUT, "rate_over_theory", "the theory is that of fibers which all move"},
+    {OBSERVE_COLLISIONS, LONG_AND_BENDING, MEANS, "rate_over_theory",
+     "the theory has no contacts of such fibers with themselves: above 1 by as many as there are"},
     {OBSERVE_COLLISIONS, IN_SHEAR, MEANS, "rate_over_theory", "over the rate at rest"},
     {OBSERVE_COLLISIONS, BETWEEN_WALLS, MEANS, "rate_over_theory", "over the rate at rest, far from walls"},
     {OBSERVE_COLLISIONS, ANYWHERE, MEANS, NULL, "counts"},

@@ -41,6 +41,7 @@ enum circumstance {
   DRIFT_SPLIT,
   THICK,
   BESIDE_FROZEN,
+  LONG_AND_BENDING, /* fibers that bend so much that they touch themselves, and no chains without bending */
   WITH_DUMBBELLS,
   WITH_A_BEAD,
   CIRCUMSTANCES
