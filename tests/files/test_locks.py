@@ -1,7 +1,6 @@
 """File systems without locks, and files that are locked: what cannot be locked is not damaged, and work goes on with one
 line of warning. Locks are taken away by a library that is loaded before all others. Needs UNCROSS and a C compiler."""
 import errno
-import json
 import os
 import pathlib
 import subprocess
@@ -73,13 +72,6 @@ class Locks(unittest.TestCase):
         """Whatever the user's surroundings say of HDF5's locks, our files have our own."""
         self.without(errno.EOPNOTSUPP, "run", "s.yaml", "--out", "told", "--quiet", how="TRUE")
         self.without(errno.EOPNOTSUPP, "verify", "told", how="TRUE")
-
-    def test_sweeps_go_on(self):
-        done = self.without(errno.ENOLCK, "sweep", "s.yaml", "--out", "sweep", "--seeds", "1..2")
-        self.assertIn("uncross: sweep/.lock: locks cannot be had here (No locks available): see to it yourself that no "
-                      "other process sweeps in this folder\n", done.stderr)
-        records = list((self.dir / "sweep").glob("**/run.json"))
-        self.assertEqual([json.loads(record.read_text())["status"] for record in records], ["finished"] * 2)
 
 
 if __name__ == "__main__":
