@@ -75,7 +75,6 @@ static void tell_bytes(double bytes, const char *what, const char *before)
 }
 
 #define MEBI 1048576.0
-#define CHECKPOINT_REST 6e3 /* bytes: what HDF5 writes about the arrays of a checkpoint, and what each has one of */
 
 /* Frames are not compressed; tables are small beside them. */
 static void tell_files(const struct scene *scene)
@@ -85,7 +84,7 @@ static void tell_files(const struct scene *scene)
   const uint64_t state = state_bytes(m), observed = observers_bytes(&scene->observe, m, &scratch);
   const double text = (double)strlen(scene->text);
   printf("# It writes");
-  tell_bytes((double)(state + observed) + CHECKPOINT_REST + text, "checkpoint", " about ");
+  tell_bytes(checkpoint_bytes(m, observed) + text, "checkpoint", " about ");
   if (observed > state)
     tell_bytes((double)observed, "that for observables", ", ");
   if (scene->trajectory_every > 0) {

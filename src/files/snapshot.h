@@ -43,6 +43,8 @@ bool checkpoint_write_in(const struct folder *folder, const char *file, struct c
 bool checkpoint_write(const char *path, struct checkpoint_head *head, const struct model *model,
                       const struct state *state, const struct observe_block *blocks, size_t block_count,
                       const char *scene_text, struct message *message);
+/* About how many bytes it takes, without the scene's text. observed: bytes of the memory of observers. */
+double checkpoint_bytes(const struct model *model, uint64_t observed);
 
 /* Reads a checkpoint into a state allocated for this model. Checks that it is one, is whole, has this model's numbers
  * of particles and vertices, its box and its bonds, and that the state hash is right. Particles come back in id order.

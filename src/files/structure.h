@@ -11,6 +11,10 @@
 
 #define STRUCTURE_SOLVENT "solvent" /* name of the last species */
 
+/* Bytes of all that stands in a file for a particle and for a bond. */
+#define STRUCTURE_PARTICLE 16.0
+#define STRUCTURE_BOND 8.0
+
 /* Writes into a group: `species` (enumeration: kinds of fiber, then the solvent), `mass` (m) and `id`, one row per
  * vertex and, if asked for, per solvent particle. The id of a row is its number. */
 bool structure_write_particles(hid_t group, const struct model *model, bool solvent);

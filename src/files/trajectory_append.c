@@ -3,6 +3,7 @@
 
 #include "files/frames.h"
 #include "files/lock.h"
+#include "files/structure.h"
 #include "files/trajectory.h"
 
 #define CHUNK_PLACE 80 /* bytes of the index for a chunk: its nodes are more than half full */
@@ -86,7 +87,7 @@ static double in_chunks(uint64_t rows, uint64_t row, uint64_t chunk)
 double trajectory_bytes(uint64_t rows, uint64_t bonds, bool velocities, uint64_t frames)
 {
   const uint64_t vectors = 24 * rows, few = vectors < TRAJECTORY_CHUNK && vectors > 0 ? TRAJECTORY_CHUNK / vectors : 1;
-  const double structure = 16.0 * (double)rows + 8.0 * (double)bonds;
+  const double structure = STRUCTURE_PARTICLE * (double)rows + STRUCTURE_BOND * (double)bonds;
   return HEADERS + structure + (velocities ? 2.0 : 1.0) * in_chunks(frames, vectors, few) +
          in_chunks(frames, 72, TRAJECTORY_CHUNK / 72) + 2.0 * in_chunks(frames, 8, 1024) +
          in_chunks(frames, 8 * FRAME_SUMS, 1024 / FRAME_SUMS);
