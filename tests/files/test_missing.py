@@ -104,6 +104,23 @@ class Missing(unittest.TestCase):
             self.assertIn(name, said)
             self.assertIn('"stopped"', (self.dir / name / "run.json").read_text())
 
+    def test_before_the_second_checkpoint(self):
+        """What grows is there from the beginning on; averages only from the second checkpoint."""
+        (self.dir / "s.yaml").write_text(SCENE.format(steps=10 ** 8).replace("seconds: 0.2", "seconds: 0"))
+        run = subprocess.Popen([UNCROSS, "run", "s.yaml", "--out", "r", "--quiet"], cwd=self.dir)
+        self.wait_for(self.dir / "r/run.json")
+        run.kill()
+        run.wait()
+        done = uncross("verify", "r", cwd=self.dir)
+        self.assertEqual(done.returncode, 0, done.stdout)
+        for name in ("conserved.csv", "trajectory.h5"):
+            os.rename(self.dir / "r" / name, self.dir / "aside")
+            done = uncross("verify", "r", cwd=self.dir)
+            self.assertEqual(done.returncode, 9, name)
+            self.assertIn(f"r/{name}: missing", done.stdout)
+            self.assertNotIn("statics", done.stdout)
+            os.rename(self.dir / "aside", self.dir / "r" / name)
+
     def test_a_run_at_work_is_not_damaged(self):
         """From its first moment on."""
         run = self.begin(10 ** 8)

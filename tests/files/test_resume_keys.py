@@ -56,6 +56,15 @@ class Resume(unittest.TestCase):
                 self.scene.write_text(SCENE)
                 self.assertTrue(self.kept() == before)
 
+    def test_a_value_that_the_scene_left_out(self):
+        """It is told, too: a default is a value."""
+        self.resume("--set", "crossing.rule=event-driven", code=0)
+        self.assertIn("crossing.rule is sequential there, event-driven in the run so far", self.resume("--resume", "--set", "crossing.rule=sequential"))
+        self.assertIn("flow is [0.5, 0, 0] there, [0, 0, 0] in the run so far",
+                      self.resume("--resume", "--set", "crossing.rule=event-driven", "--set", "flow=[0.5, 0, 0]"))
+        self.assertIn("walls is given there, none in the run so far",
+                      self.resume("--resume", "--set", "crossing.rule=event-driven", "--set", "walls.kind=slip"))
+
     def test_a_seed_from_outside(self):
         """--seed stands above the scene's, whose own seed stays what it was."""
         self.resume("--seed", "9", code=0)

@@ -183,6 +183,15 @@ class SweepTest(FolderTest):
         self.assertEqual(set(read(self.out / "all/statics-rods.csv")["seeds"]), {"3"})
         self.sweep("--seeds", "1..3", "--set", "box=[6, 5, 5]", "--resume", code=2, says="a finished run of another scene")
 
+    def test_what_is_observed_stays(self):
+        """Averages are over runs that observed alike."""
+        self.sweep("--seeds", "1", "--steps", "300")
+        before = tables(self.out)
+        for change in ("observe.from=200", "observe.statics.every=20", "observe.temperature.every=60", "observe.memory.every=10"):
+            self.sweep("--seeds", "1..2", "--steps", "300", "--set", change, "--resume", code=2, says="holds a finished run that observed otherwise")
+        self.assertEqual(tables(self.out), before)
+        self.sweep("--seeds", "1..2", "--steps", "300", "--resume", says="2 of 2 runs finished")
+
     # --- bad input
 
     def test_tables_that_are_not_whole(self):
