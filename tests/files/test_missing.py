@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """Files of a run that are not there, or not there yet: what was deleted is said, and a run at work is not damaged."""
+import json
 import os
 import pathlib
 import signal
@@ -91,6 +92,19 @@ class Missing(unittest.TestCase):
         self.assertIn("r/conserved.csv: readable: rows: 4, at steps that are not evenly spaced: rows are missing", done.stdout)
         path.write_text("".join(lines))
         self.assertNotIn("evenly", uncross("verify", "r", cwd=self.dir).stdout)
+
+    def test_a_record_of_another_state(self):
+        """run.json and checkpoint of one step have one state."""
+        (self.dir / "s.yaml").write_text(SCENE.format(steps=40))
+        uncross("run", "s.yaml", "--out", "r", cwd=self.dir, check=True)
+        record = self.dir / "r/run.json"
+        told = json.loads(record.read_text())
+        record.write_text(json.dumps({**told, "state_hash": "0123456789abcdef"}))
+        done = uncross("verify", "r", cwd=self.dir)
+        self.assertEqual(done.returncode, 9, done.stdout)
+        self.assertIn("damaged: at step 40 the state hash is 0123456789abcdef, in the checkpoint of this step " + told["state_hash"], done.stdout)
+        record.write_text(json.dumps({**told, "state_hash": "0123456789abcdef", "steps": 30}))  # as of a run that was killed
+        self.assertEqual(uncross("verify", "r", cwd=self.dir).returncode, 0)
 
     def test_what_is_deleted_is_said(self):
         """At the next checkpoint."""
