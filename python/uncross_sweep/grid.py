@@ -67,6 +67,7 @@ class Point:
     seed: int = 0  # of the scene
     steps: int = 0
     start: int = 0  # observe.from
+    observe: str = ""  # lines of the effective scene
     seconds: float = 0.0  # estimated time of a run
     warnings: tuple = ()
 
@@ -126,6 +127,12 @@ class Sweep:
         return [Run(self, point, point.seed if seed is None else seed) for seed in seeds for point in self.points]
 
 
+def observed(text):
+    """The lines of an effective scene that say what is observed."""
+    found = re.search(r"^observe:\n((?:  .*\n)*)", text, re.M)
+    return found[1] if found else ""
+
+
 def read_report(point, report):
     """Takes from the report of `uncross check` what a sweep needs."""
     def find(pattern, absent=None):
@@ -138,6 +145,7 @@ def read_report(point, report):
     point.seed = int(find(r"^seed: (\d+)$"))
     point.steps = int(find(r"^steps: (\d+)$"))
     point.start = int(find(r"^observe:\n  from: (\d+)$", "0"))
+    point.observe = observed(report)
     point.seconds = float(find(r"^  time +(\S+) s$", "0"))
     point.warnings = tuple(re.findall(r"^  warning: (.*)$", report, re.M))
 

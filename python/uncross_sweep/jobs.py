@@ -11,7 +11,7 @@ import time
 
 from . import escape, record
 from .files import duration, take_lock
-from .grid import Refused, is_begun
+from .grid import Refused, is_begun, observed
 from .opening import writing
 
 INTERRUPTED = 5  # exit code of `uncross run` after a signal
@@ -65,6 +65,10 @@ def is_finished(run):
     if done and told.get("scene_fingerprint") != run.point.fingerprint:
         raise Refused(f"{run.folder}: holds a finished run of another scene (fingerprint {told.get('scene_fingerprint')}, not "
                       f"{run.point.fingerprint}); name another folder, or leave this one's scene as it was")
+    scene = told.get("scene")
+    if done and isinstance(scene, str) and observed(scene) != run.point.observe:
+        raise Refused(f"{run.folder}: holds a finished run that observed otherwise; averages are over runs that observe the same. Name "
+                      "another folder, or leave the section observe as it was")
     return done
 
 

@@ -268,23 +268,41 @@ enum condition verify_file(const char *path, bool *other, FILE *out)
 
 /* --- folders ----------------------------------------------------------------------------------------------------- */
 
-/* run.json is written after its checkpoint: it may be older, but of the same step it has the same state. */
-static enum condition same_state(const char *folder, const struct checkpoint_summary *summary, FILE *out)
+/* What run.json tells. */
+struct told {
+  bool there, finished;
+  uint64_t step;
+  char hash[17]; /* empty: none */
+};
+
+static struct told told_of(const char *folder)
 {
-  char path[4096], hash[32];
-  struct message message;
+  char path[4096];
+  struct message ignored;
   snprintf(path, sizeof path, "%.4000s/run.json", folder);
-  json_t *root = access(path, F_OK) == 0 ? read_json(path, &message) : NULL;
-  const char *told = json_string_value(json_object_get(root, "state_hash"));
-  const json_t *step = json_object_get(root, "step");
-  snprintf(hash, sizeof hash, "%016" PRIx64, summary->head.state_hash);
-  const bool same = !told || !json_is_integer(step) || (uint64_t)json_integer_value(step) != summary->numbers.step ||
-                    strcmp(told, hash) == 0;
-  if (!same)
-    fprintf(out, "%s: damaged: at step %" PRIu64 " the state hash is %s, in the checkpoint of this step %s\n",
-            text_shown(path), summary->numbers.step, told, hash);
+  struct told told = {.there = access(path, F_OK) == 0};
+  json_t *root = told.there ? read_json(path, &ignored) : NULL;
+  const char *status = json_string_value(json_object_get(root, "status"));
+  const json_int_t step = json_integer_value(json_object_get(root, "steps"));
+  const char *hash = json_string_value(json_object_get(root, "state_hash"));
+  told.finished = status && strcmp(status, "finished") == 0;
+  told.step = step > 0 ? (uint64_t)step : 0;
+  snprintf(told.hash, sizeof told.hash, "%s", hash ? hash : "");
   json_decref(root);
-  return same ? CONDITION_WHOLE : CONDITION_DAMAGED;
+  return told;
+}
+
+/* run.json is written after its checkpoint: it may be older, but of the same step it has the same state. */
+static enum condition same_state(const char *folder, const struct told *told, const struct checkpoint_summary *summary,
+                                 FILE *out)
+{
+  char hash[17], shown[4 * sizeof told->hash];
+  snprintf(hash, sizeof hash, "%016" PRIx64, summary->head.state_hash);
+  if (!told->hash[0] || told->step != summary->numbers.step || strcmp(told->hash, hash) == 0)
+    return CONDITION_WHOLE;
+  fprintf(out, "%s/run.json: damaged: at step %" PRIu64 " the state hash is %s, in the checkpoint of this step %s\n",
+          text_shown(folder), told->step, text_escape(told->hash, shown, sizeof shown), hash);
+  return CONDITION_DAMAGED;
 }
 
 /* The frames that were there when the checkpoint was written are synced before it. */
@@ -314,23 +332,10 @@ static int is_of_run(const struct dirent *entry)
                                         strcmp(name, "run.json") == 0 || ends_with(name, ".csv"));
 }
 
-/* Whether a run ended here; one that was killed has written so no more. */
-static bool is_finished(const char *folder)
-{
-  char path[4096];
-  struct message ignored;
-  snprintf(path, sizeof path, "%.4000s/run.json", folder);
-  json_t *root = access(path, F_OK) == 0 ? read_json(path, &ignored) : NULL;
-  const char *status = json_string_value(json_object_get(root, "status"));
-  const bool finished = status && strcmp(status, "finished") == 0;
-  json_decref(root);
-  return finished;
-}
-
 /* Files that grow while a run is at work are looked at when it has ended. */
 static enum condition verify_listed(const char *folder, bool at_work, struct dirent **list, int count, FILE *out)
 {
-  const bool running = !is_finished(folder);
+  const bool running = !told_of(folder).finished; /* or killed, and has written so no more */
   enum condition condition = CONDITION_WHOLE;
   for (int k = 0; k < count; k++) {
     char path[4096];
@@ -342,26 +347,27 @@ static enum condition verify_listed(const char *folder, bool at_work, struct dir
   return condition;
 }
 
-/* How the files of a run that has ended fit each other. Every run begins with a checkpoint, and writes run.json next.
- */
+/* How the files of a run that has ended fit. It begins with a checkpoint, opens what grows, and writes run.json; later
+ * averages come between each checkpoint and its run.json. */
 static enum condition verify_together(const char *folder, FILE *out)
 {
   static const char why[] = "every run writes it";
   enum condition condition = CONDITION_WHOLE;
   struct checkpoint_summary summary;
   struct message ignored;
-  char path[4096], record[4096];
+  char path[4096];
+  const struct told told = told_of(folder);
   snprintf(path, sizeof path, "%.4000s/checkpoint.h5", folder);
-  snprintf(record, sizeof record, "%.4000s/run.json", folder);
-  if (access(record, F_OK) == 0)
+  if (told.there)
     condition = complete_has(folder, "checkpoint.h5", why, out);
   if (access(path, F_OK) != 0 || !checkpoint_look(path, &summary, &ignored))
     return condition;
-  if (summary.numbers.step > 0)
+  const bool later = summary.numbers.step > 0;
+  if (later)
     condition = worse(condition, complete_has(folder, "run.json", why, out));
-  if (summary.numbers.step > 0 || is_finished(folder))
-    condition = worse(condition, complete_check(folder, path, is_finished(folder), out));
-  return worse(condition, worse(same_state(folder, &summary, out), same_frames(folder, &summary, out)));
+  if (later || told.there)
+    condition = worse(condition, complete_check(folder, path, told.finished || told.step > 0, told.finished, out));
+  return worse(condition, worse(same_state(folder, &told, &summary, out), same_frames(folder, &summary, out)));
 }
 
 enum condition verify_folder(const char *folder, FILE *out)

@@ -6,15 +6,15 @@
 
 #include "scene/yaml.h"
 
-/* The effective physics as a tree, which stays empty if memory is short. */
-static void tree_of(const struct scene *scene, struct tree *tree)
+/* The effective scene as a tree, which stays empty if memory is short. */
+static void tree_of(const struct scene *scene, bool physics_only, struct tree *tree)
 {
   char *text = NULL;
   size_t size = 0;
   struct message ignored;
   FILE *stream = open_memstream(&text, &size);
   *tree = (struct tree){0};
-  bool ok = stream && scene_write(scene, stream, true);
+  bool ok = stream && scene_write(scene, stream, physics_only);
   if (stream)
     ok = fclose(stream) == 0 && ok;
   if (ok && !yaml_read(tree, "scene", text, size, &ignored))
@@ -88,13 +88,34 @@ static bool compare(const struct node *a, const struct node *b, struct scene_dif
   return strcmp(d->value, d->other) != 0;
 }
 
+/* Physics leaves out what is a default: the whole scene has it. */
+static void tell_default(const struct scene *scene, const char *key, char *text, size_t size)
+{
+  struct tree tree;
+  tree_of(scene, false, &tree);
+  const struct node *node = tree.root;
+  while (node && *key) {
+    char part[128];
+    const size_t length = strcspn(key, ".");
+    snprintf(part, sizeof part, "%.*s", (int)length, key);
+    node = node->type == NODE_LIST ? node_item(node, strtoul(part, NULL, 10)) : node_value(node, part);
+    key += length + (key[length] == '.');
+  }
+  tell(node, text, size);
+  tree_free(&tree);
+}
+
 bool scene_differs(const struct scene *scene, const struct scene *other, struct scene_difference *d)
 {
   struct tree a, b;
   *d = (struct scene_difference){.key = ""};
-  tree_of(scene, &a);
-  tree_of(other, &b);
+  tree_of(scene, true, &a);
+  tree_of(other, true, &b);
   const bool differ = a.root && b.root && compare(a.root, b.root, d);
+  if (differ && strcmp(d->value, "none") == 0)
+    tell_default(scene, d->key, d->value, sizeof d->value);
+  if (differ && strcmp(d->other, "none") == 0)
+    tell_default(other, d->key, d->other, sizeof d->other);
   tree_free(&a);
   tree_free(&b);
   return differ;
