@@ -701,6 +701,7 @@ static void test_null(void **unused)
   assert_int_equal(uncross_sim_advance(NULL, 1, &error), UNCROSS_BAD_INPUT);
   assert_int_equal(uncross_sim_save(NULL, "a", &error), UNCROSS_BAD_INPUT);
   assert_int_equal(uncross_sim_hash(NULL, &hash, &error), UNCROSS_BAD_INPUT);
+  assert_int_equal(uncross_sim_warnings(NULL, NULL, NULL, &error), UNCROSS_BAD_INPUT);
   assert_int_equal(uncross_sim_counts(NULL, &counts, &error), UNCROSS_BAD_INPUT);
   assert_int_equal(uncross_sim_conserved(NULL, &conserved, &error), UNCROSS_BAD_INPUT);
   assert_int_equal(uncross_sim_tables(NULL, &tables, &count, &error), UNCROSS_BAD_INPUT);

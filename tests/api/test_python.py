@@ -56,6 +56,17 @@ class Python(unittest.TestCase):
         self.assertEqual(run.kinds, ["rod", "ring"])
         self.assertEqual(list(run.fiber[[0, 4, 5, 33]]), [0, 0, 1, 6])
 
+    def test_warnings_of_a_start(self):
+        """A run in memory tells what `uncross run` tells: here that its noise is drawn once more."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "first.h5"
+            uncross.Run(SCENE).advance(3).save(path)
+            for stream, again in (("seed", True), ("own", False)):
+                scene = uncross.Scene(SCENE, start={"snapshot": str(path), "stream": stream})
+                run = uncross.Run(scene)
+                self.assertEqual([w for w in run.warnings if w.startswith("start.stream:")] != [], again, run.warnings)
+                self.assertEqual([w for w in run.warnings if not w.startswith("start.")], scene.warnings)
+
     def test_views_cannot_be_made_writeable(self):
         run = uncross.Run(SCENE)
         for name in ("positions", "velocities", "mass", "next", "first", "solvent_x", "solvent_vx", "solvent_id"):

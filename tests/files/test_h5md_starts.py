@@ -164,6 +164,23 @@ class Foreign(unittest.TestCase):
                     self.again(f"its {name.replace('/value', '').replace('box/', '')} has the unit 'nm'; allowed: none, numbers in a0, t0 and m")
 
 
+class Bodies(unittest.TestCase):
+    def test_a_hole_is_no_solvent(self):
+        """Frames of a bead, or of dumbbells, are no start without them."""
+        fluid = SOLVENT.replace("per_cell: 1", "per_cell: 2").replace("time_step: 0.01", "time_step: 0.02")
+        for body, words in (("bead: {radius: 1.5, center: [4, 4, 4]}\n", "it is of a solvent around a bead, the scene has none"),
+                            ("dumbbells: {spring: 2}\n", "dumbbells, the scene has none")):
+            with self.subTest(body), tempfile.TemporaryDirectory() as folder:
+                path = pathlib.Path(folder)
+                self.assertEqual(run(path, fluid + body, "first").returncode, 0)
+                with h5py.File(path / "first/trajectory.h5") as file:
+                    count = file["particles/trajectory/position/value"].shape[1]
+                again = fluid.replace("per_cell: 2", f"per_cell: {count / 512:.17g}") + "start: {snapshot: first/trajectory.h5}\n"
+                done = run(path, again, "again")
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertIn(words, done.stderr)
+
+
 class Dimensions(unittest.TestCase):
     def test_a_plane_is_no_slice_of_space(self):
         """The file's scene says of how many dimensions its state is."""
