@@ -168,11 +168,16 @@ class Scene:
 
     @property
     def warnings(self):
-        """Sentences on the limits of the paper that the scene leaves."""
-        told = []
-        tell = ffi.callback("void(void *, const char *)", lambda _context, text: told.append(ffi.string(text).decode()))
-        _check(lib.uncross_scene_warnings, self._handle, tell, ffi.NULL)
-        return told
+        """Sentences on the limits of the paper that the scene leaves. A run has those on its start, too."""
+        return _told(lib.uncross_scene_warnings, self._handle)
+
+
+def _told(function, handle):
+    """The sentences that the library tells of a handle."""
+    told = []
+    tell = ffi.callback("void(void *, const char *)", lambda _context, text: told.append(ffi.string(text).decode()))
+    _check(function, handle, tell, ffi.NULL)
+    return told
 
 
 def _scene(scene, overrides):
@@ -235,6 +240,11 @@ class _Looks:
         value = ffi.new("uint64_t *")
         _check(lib.uncross_sim_hash, self._sim, value)
         return value[0]
+
+    @property
+    def warnings(self):
+        """Sentences on what a reader of the results should know: those of the scene, and how a snapshot began the run."""
+        return _told(lib.uncross_sim_warnings, self._sim)
 
     @property
     def counts(self):

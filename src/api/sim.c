@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "api/handle.h"
+#include "files/start.h"
 #include "fluid/fluid.h"
 
 _Static_assert(sizeof(struct point) == 3 * sizeof(int64_t), "positions are shown as int64_t [n][3]");
@@ -379,6 +380,19 @@ int uncross_sim_hash(const uncross_sim *sim, uint64_t *hash, uncross_error *erro
     return fail_null(error, "sim or hash");
   *hash = state_hash(&sim->state);
   return *hash ? UNCROSS_OK : fail(error, UNCROSS_NO_MEMORY, "no memory for the hash", NULL);
+}
+
+int uncross_sim_warnings(const uncross_sim *sim, void (*tell)(void *context, const char *text), void *context,
+                         uncross_error *error)
+{
+  if (!sim || !tell)
+    return fail_null(error, "sim or tell");
+  struct call call;
+  call_begin(&call, false);
+  scene_warnings(&sim->scene, tell, context);
+  start_warnings(&sim->scene, &sim->head.stream, tell, context);
+  call_end(&call);
+  return UNCROSS_OK;
 }
 
 int uncross_sim_counts(const uncross_sim *sim, uncross_counts *counts, uncross_error *error)

@@ -167,6 +167,16 @@ static bool last_frame(struct trajectory *t, const char *path, const struct mode
          trajectory_read(t, model, trajectory_frames(t) - 1, state, message);
 }
 
+/* Frames hold neither beads nor springs, and are none of a scene with them. */
+static bool same_bodies(const struct past *past, const struct model *m, const char *path, struct message *message)
+{
+  const struct model *then = &past->scene.model;
+  if (past->known && model_has_bead(then) && !model_has_bead(m))
+    return message_set(message, "%s: it is of a solvent around a bead, the scene has none", path);
+  return !past->known || !model_has_dumbbells(then) || model_has_dumbbells(m) ||
+         message_set(message, "%s: it is of %u dumbbells, the scene has none", path, then->dumbbells.pairs);
+}
+
 static bool start_from_trajectory(const char *path, const struct model *model, struct state *state,
                                   struct snapshot_origin *origin, struct message *message)
 {
@@ -178,8 +188,8 @@ static bool start_from_trajectory(const char *path, const struct model *model, s
   const struct frames_about *about = &t->frames_apart->about;
   const struct structure *s = &t->frames_apart->structure;
   look_back(&past, t->frames_apart, model);
-  bool ok = same_dimensions(&past, 0, model, path, message) && same_boundary(&past, about, model, path, message) &&
-            last_frame(t, path, model, state, message);
+  bool ok = same_dimensions(&past, 0, model, path, message) && same_bodies(&past, model, path, message) &&
+            same_boundary(&past, about, model, path, message) && last_frame(t, path, model, state, message);
   *origin = (struct snapshot_origin){.has_stream = about->has_stream,
                                      .stream = about->stream,
                                      .step = state->step,
