@@ -188,8 +188,8 @@ UNCROSS_API double uncross_sim_time(const uncross_sim *sim);
  * memory. The same number as `state_hash` of run.json. */
 UNCROSS_API int uncross_sim_hash(const uncross_sim *sim, uint64_t *hash, uncross_error *error);
 
-/* Calls `tell` for what a reader of the results should know: what uncross_scene_warnings tells, and how a snapshot began
- * the simulation. */
+/* Calls `tell` for what a reader of the results should know: what uncross_scene_warnings tells, and how a snapshot
+ * began the simulation. */
 UNCROSS_API int uncross_sim_warnings(const uncross_sim *sim, void (*tell)(void *context, const char *text),
                                      void *context, uncross_error *error);
 
