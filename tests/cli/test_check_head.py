@@ -79,7 +79,7 @@ class Head(FolderTest):
         for count, vertices, every, more, steps in ((1, 1, 8, "", 8), (2, 4, 1, "", 3000), (400, 12, 1, ", solvent: true", 4),
                                                     (1000, 12, 2, "", 4), (1, 4, 1, ", velocities: true, solvent: true", 20)):
             text = SCENE.replace(fibers, f"count: {count}, vertices: {vertices}").replace(frames, f"every: {every}{more}")
-            head, _ = self.head(text.replace("steps: 400", f"steps: {steps}").replace("longest_lag: 100", f"longest_lag: {min(steps, 100)}"))
+            head, _ = self.head(text.replace("steps: 400", f"steps: {steps}").replace("dynamics: {every: 1, longest_lag: 100}, ", ""))
             done = uncross("run", self.dir / "scene.yaml", "--out", self.dir / "run", "--quiet")
             self.assertEqual(done.returncode, 0, done.stderr)
             for what in ("checkpoint", "trajectory"):
