@@ -206,12 +206,14 @@ static bool tell_table(const struct look *look, struct message *message)
   if (!file)
     return false;
   for (; (length = text_line(&line, &room, file)) >= 0; lines++)
-    if (!header)
+    if (lines == 0)
       header = strndup(line, strcspn(line, "\r\n"));
+  const bool read = !ferror(file);
   fclose(file);
   free(line);
   const bool ok = length == TEXT_TOO_LONG ? message_set(message, "%s: not a table: a line has more than %d bytes",
                                                         look->path, TEXT_LONGEST_LINE)
+                  : !read                 ? message_set(message, "%s: cannot be read to its end", look->path)
                                           : header || message_set(message, "%s: no memory", look->path);
   if (ok) {
     printf("%s: table of %zu columns and %" PRIu64 " rows\n  columns: ", text_shown(look->path), table_columns(header),

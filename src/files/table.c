@@ -198,9 +198,10 @@ bool table_fits(const struct folder *folder, const struct observe_table *table, 
   FILE *made = open_memstream(&header, &bytes), *file = open_stream(folder, name, O_RDONLY, "r");
   if (made)
     write_header(made, NULL, table->columns, table->column);
-  const bool known = made && fclose(made) == 0 && file;
+  bool known = made && fclose(made) == 0 && file;
   if (known)
     lines = count_lines(file, header, &same);
+  known = known && !ferror(file);
   if (file)
     fclose(file);
   free(header);
