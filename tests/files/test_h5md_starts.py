@@ -91,6 +91,11 @@ class Foreign(unittest.TestCase):
         self.refused_by_all("its velocity has 2 rows, its position 3")
         self.make(places=two, velocities=faster, steps=(0, 10), velocity_steps=(0, 10, 20))
         self.refused_by_all("its velocity has 3 rows, its position 2")
+        for which in "steps", "velocity_steps":  # fewer than rows, or none that can be read
+            for few in (0, 10), ["a", "b", "c"]:
+                self.make(places=three, velocities=faster, **{"steps": (0, 10, 20), "velocity_steps": (0, 10, 20), which: few})
+                name = "position" if which == "steps" else "velocity"
+                self.refused_by_all(f"its {name} has no step that can be read for each of its 3 rows")
         # a fixed increment, and the same steps one by one
         self.make(places=three, velocities=faster, steps=10, velocity_steps=(0, 10, 20))
         self.again()

@@ -93,6 +93,22 @@ class Missing(unittest.TestCase):
         path.write_text("".join(lines))
         self.assertNotIn("evenly", uncross("verify", "r", cwd=self.dir).stdout)
 
+    def test_a_table_that_cannot_be_read(self):
+        """A disk that fails says nothing of the rows: the memory of a process is such a file."""
+        (self.dir / "x.csv").symlink_to("/proc/self/mem")
+        done = uncross("verify", "x.csv", cwd=self.dir)
+        self.assertEqual(done.returncode, 2, done.stdout)
+        self.assertIn("x.csv: cannot be read to its end", done.stdout)
+        (self.dir / "s.yaml").write_text(SCENE.format(steps=40))
+        uncross("run", "s.yaml", "--out", "r", cwd=self.dir, check=True)
+        for name in "conserved.csv", "statics-fiber.csv":
+            os.rename(self.dir / "r" / name, self.dir / "aside")
+            (self.dir / "r" / name).symlink_to("/proc/self/mem")
+            done = uncross("verify", "r", cwd=self.dir)
+            self.assertEqual(done.returncode, 2, done.stdout)
+            self.assertNotIn("damaged", done.stdout)
+            os.rename(self.dir / "aside", self.dir / "r" / name)
+
     def test_a_record_of_another_state(self):
         """run.json and checkpoint of one step have one state."""
         (self.dir / "s.yaml").write_text(SCENE.format(steps=40))
