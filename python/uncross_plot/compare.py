@@ -112,4 +112,3 @@ def page_of(a, b, movie=False):
         section.title = f"Fibers of {name}"
     return page.render(f"{names[0]} and {names[1]}", front, pictures + sections + [flow_table(a, b, names)] + [
         page.Section(f"Provenance of {name}", page.provenance(run)) for name, run in zip(names, (a, b))])
-

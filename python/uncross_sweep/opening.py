@@ -52,7 +52,7 @@ def read_text(path, most=None):
         return file.read()
 
 
-MOST_LINE = 65535  # characters of a line of a table; TEXT_LINE of src/base/text.h
+MOST_LINE = 65535  # characters of a line of a table; TEXT_LONGEST_LINE of src/base/text.h
 
 
 def read_table(path):

@@ -70,7 +70,7 @@ static void check_ends(struct complete *c, const struct scene *scene, struct obs
   state_free(&state);
 }
 
-enum condition complete_check(const char *folder, const char *checkpoint, bool averages, bool finished, FILE *out)
+enum condition complete_check(const char *folder, const char *checkpoint, const struct complete_wish *wish, FILE *out)
 {
   struct complete c = {folder, out, CONDITION_WHOLE};
   struct message ignored;
@@ -79,11 +79,12 @@ enum condition complete_check(const char *folder, const char *checkpoint, bool a
   uint64_t scratch;
   struct frames *f = frames_open(checkpoint, &trouble, &ignored);
   if (f && f->scene && scene_read_text(checkpoint, f->scene, strlen(f->scene), &scene, &ignored)) {
-    const bool small = averages && observers_bytes(&scene.observe, &scene.model, &scratch) + scratch <= MOST_MEMORY;
+    const bool small =
+        wish->averages && observers_bytes(&scene.observe, &scene.model, &scratch) + scratch <= MOST_MEMORY;
     struct observers *observers = small ? observers_create(&scene.observe, &scene.model) : NULL;
     output_files(&scene, observers, expect_file, &c);
-    if (observers && c.condition == CONDITION_WHOLE)
-      check_ends(&c, &scene, observers, checkpoint, finished);
+    if (observers && wish->whole && c.condition == CONDITION_WHOLE)
+      check_ends(&c, &scene, observers, checkpoint, wish->finished);
     observers_free(observers);
     scene_free(&scene);
   }

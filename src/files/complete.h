@@ -10,9 +10,15 @@
 /* Says on `out` that the file is missing, and why it is looked for. */
 enum condition complete_has(const char *folder, const char *file, const char *why, FILE *out);
 
-/* All files that the scene in the checkpoint asks for; averages, or only those that grow. Time series and frames must
+struct complete_wish {
+  bool averages; /* not only what grows */
+  bool finished; /* the run is: its averages are those of the checkpoint */
+  bool whole;    /* all files that are there can be read, and are whole by themselves */
+};
+
+/* All files that the scene in the checkpoint asks for. If those that are there are whole, time series and frames must
  * go as far as the checkpoint; of a run that is finished, averages must have the columns and rows that the checkpoint's
  * memory of observables makes. Numbers in them are not compared. Says what is wrong on `out`. */
-enum condition complete_check(const char *folder, const char *checkpoint, bool averages, bool finished, FILE *out);
+enum condition complete_check(const char *folder, const char *checkpoint, const struct complete_wish *wish, FILE *out);
 
 #endif

@@ -204,6 +204,17 @@ static int64_t *read_steps(hid_t element, uint64_t rows)
   return ok ? steps : NULL;
 }
 
+/* The same; false, with a message, if steps are told that are not those of so many rows. *steps: NULL if none are told.
+ * What this program wrote may end in the middle of a frame. */
+static bool take_steps(const struct trajectory *t, hid_t element, const char *name, uint64_t rows, int64_t **steps,
+                       struct message *message)
+{
+  *steps = read_steps(element, rows);
+  return *steps || t->ours || !h5_has(element, "step") ||
+         message_set(message, "%s: its %s has no step that can be read for each of its %" PRIu64 " rows", t->path, name,
+                     rows);
+}
+
 static uint64_t count_rows(hid_t element)
 {
   hsize_t dims[3] = {0, 0, 0};
@@ -213,8 +224,8 @@ static uint64_t count_rows(hid_t element)
   return rank > 0 ? dims[0] : 0;
 }
 
-/* An element that changes with time: as many rows as positions, of the same steps. What this program wrote may end in
- * the middle of a frame. steps: [rows] of the positions, NULL: not told. */
+/* An element that changes with time: as many rows as positions, of the same steps. steps: [rows] of the positions,
+ * NULL: not told. */
 static bool steps_with(const struct trajectory *t, hid_t element, const char *name, const int64_t *steps, uint64_t rows,
                        struct message *message)
 {
@@ -223,7 +234,9 @@ static bool steps_with(const struct trajectory *t, hid_t element, const char *na
   bool ok = own == rows || t->ours ||
             message_set(message, "%s: its %s has %" PRIu64 " rows, its position %" PRIu64 "; allowed: as many", t->path,
                         name, own, rows);
-  int64_t *its = ok && timed && steps ? read_steps(element, both) : NULL;
+  int64_t *its = NULL;
+  if (ok && timed && steps)
+    ok = take_steps(t, element, name, both, &its, message);
   for (uint64_t k = 0; ok && its && k < both; k++)
     if (its[k] != steps[k])
       ok = message_set(message,
@@ -242,8 +255,8 @@ bool foreign_is_one(const struct trajectory *t, struct message *message)
       {"velocity", NULL, "velocity"}, {"image", NULL, "image"}, {"id", NULL, "id"}, {"box", "edges", "box/edges"}};
   hid_t position = h5_open_group(t->group, "position");
   const uint64_t rows = count_rows(position);
-  int64_t *steps = read_steps(position, rows);
-  bool ok = one_group(t, message);
+  int64_t *steps = NULL;
+  bool ok = one_group(t, message) && take_steps(t, position, "position", rows, &steps, message);
   for (size_t k = 0; ok && k < sizeof elements / sizeof *elements; k++) {
     hid_t element = find(t->group, elements[k].outer, elements[k].inner);
     ok = steps_with(t, element, elements[k].name, steps, rows, message);

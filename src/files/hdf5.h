@@ -17,8 +17,7 @@
 #include "base/message.h"
 
 /* For a program, before anything else; a library must not decide this for its host. HDF5 does nothing at exit: it would
- * try once more to close a file that it could not write, and crash (1.10.8); our files are closed by then.
- */
+ * try once more to close a file that it could not write, and crash (1.10.8); our files are closed by then. */
 void h5_own_process(void);
 
 /* From now on, until the next file is opened, counts the calls of HDF5 that fail. Readers never make a call that fails

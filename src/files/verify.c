@@ -179,8 +179,8 @@ static bool odd_table(FILE *in, const char *path, struct rows *rows, struct mess
   free(line);
   if (length == TEXT_TOO_LONG)
     return !message_set(message, "%s: damaged: a line has more than %d bytes", path, TEXT_LONGEST_LINE);
-  if (!odd && (ferror(in) || rows->columns == 0))
-    return !message_set(message, "%s: damaged: cannot be read, or empty", path);
+  if (!odd && feof(in) && rows->columns == 0)
+    return !message_set(message, "%s: damaged: empty", path);
   return odd;
 }
 
@@ -192,10 +192,12 @@ static enum condition verify_table(const char *path, bool running, FILE *out)
   FILE *in = open_input(path, &bytes, &message);
   if (!in)
     return say(out, CONDITION_UNKNOWN, &message);
-  const bool odd = odd_table(in, path, &rows, &message);
+  const bool odd = odd_table(in, path, &rows, &message), read = feof(in);
   fclose(in);
   if (odd)
     return say(out, CONDITION_DAMAGED, &message);
+  if (!read && !message_set(&message, "%s: cannot be read to its end", path))
+    return say(out, CONDITION_UNKNOWN, &message);
   if (rows.cut)
     fprintf(out,
             running ? "%s: readable: %" PRIu64 " rows, the last without an end; --resume makes it again\n"
@@ -348,8 +350,8 @@ static enum condition verify_listed(const char *folder, bool at_work, struct dir
 }
 
 /* How the files of a run that has ended fit. It begins with a checkpoint, opens what grows, and writes run.json; later
- * averages come between each checkpoint and its run.json. */
-static enum condition verify_together(const char *folder, FILE *out)
+ * averages come between each checkpoint and its run.json. whole: each by itself. */
+static enum condition verify_together(const char *folder, bool whole, FILE *out)
 {
   static const char why[] = "every run writes it";
   enum condition condition = CONDITION_WHOLE;
@@ -365,8 +367,10 @@ static enum condition verify_together(const char *folder, FILE *out)
   const bool later = summary.numbers.step > 0;
   if (later)
     condition = worse(condition, complete_has(folder, "run.json", why, out));
+  const struct complete_wish wish = {
+      .averages = told.finished || told.step > 0, .finished = told.finished, .whole = whole};
   if (later || told.there)
-    condition = worse(condition, complete_check(folder, path, told.finished || told.step > 0, told.finished, out));
+    condition = worse(condition, complete_check(folder, path, &wish, out));
   return worse(condition, worse(same_state(folder, &told, &summary, out), same_frames(folder, &summary, out)));
 }
 
@@ -385,7 +389,7 @@ enum condition verify_folder(const char *folder, FILE *out)
     free(list[k]);
   free(list);
   if (!at_work)
-    return worse(condition, verify_together(folder, out));
+    return worse(condition, verify_together(folder, condition == CONDITION_WHOLE, out));
   fprintf(out,
           "%s: being written by another process: tables, trajectory and run.json are looked at when it has ended\n",
           text_shown(folder));

@@ -23,7 +23,7 @@ struct solved {
                     * there are no virtual members (else cell_freedoms) */
 };
 
-/* Private to src/kernel/collide.c: what it puts a collision together of. */
+/* The parts of which src/kernel/collide.c makes a collision. Nobody else reads them. */
 struct kernel_ways {
   /* n particles, from place `first` of memory on, fly for the time by which the solvent is late, which is not 0. They
    * get their cells (mpc->solvent_cell, on the grid of mpc->shift) and are added to the sums there. The bitwise or of

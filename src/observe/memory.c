@@ -104,7 +104,7 @@ static void take(const struct view *view, double *sample)
     take_stress(view, f, &sample[3 * (size_t)m->vertices + STRESSES * (size_t)f]);
 }
 
-/* Those that leave the plane are 0 in it. */
+/* In a plane all components that leave it are 0. */
 static double product(const double *a, const double *b)
 {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

@@ -21,6 +21,11 @@ void tolerance_forget(struct tolerance_known *known);
 /* of(pair), computed once where the pair has a place to keep it. */
 double tolerance_once(const struct oracle_pair *pair, double (*of)(const struct oracle_pair *));
 
+/* of(pair)[vertex], kept in the same way; 0 from `most` on, and where `of` finds none (NULL). A rule has one such `of`.
+ */
+double tolerance_of_vertex(const struct oracle_pair *pair, double *(*of)(const struct oracle_pair *), uint32_t vertex,
+                           uint32_t most);
+
 /* The largest size in columns from .. to - 1; 0 for no table. */
 double tolerance_largest(const struct pack_table *table, uint32_t from, uint32_t to);
 

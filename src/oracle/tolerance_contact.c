@@ -75,17 +75,17 @@ static double inherited_by_event(const struct oracle_pair *p, uint32_t row)
   return most;
 }
 
+static double *find_inherited(const struct oracle_pair *p)
+{
+  double *error = calloc(MOST_INHERITING, sizeof *error);
+  if (error && !inherit(p, UINT32_MAX, error))
+    memset(error, 0, MOST_INHERITING * sizeof *error);
+  return error;
+}
+
 static double inherited_by_vertex(const struct oracle_pair *p, uint32_t vertex)
 {
-  double *error = p->known ? p->known->of_vertex : NULL;
-  if (!error && (error = calloc(MOST_INHERITING, sizeof *error)) && !inherit(p, UINT32_MAX, error))
-    memset(error, 0, MOST_INHERITING * sizeof *error);
-  const double found = error && vertex < MOST_INHERITING ? error[vertex] : 0.0;
-  if (p->known)
-    p->known->of_vertex = error;
-  else
-    free(error);
-  return found;
+  return tolerance_of_vertex(p, find_inherited, vertex, MOST_INHERITING);
 }
 
 double tolerance_sweep_hit(const struct oracle_pair *p, uint32_t row, uint32_t column)

@@ -138,9 +138,9 @@ static uint32_t reached_by(const struct pack_table *chain, const struct pack_tab
 
 /* worst[v]: the largest condition number among the contacts that the flight of vertex v depends on: its own, and those
  * before them of all who took part. 0: it had no contact. NULL if memory is short, or without a chain. */
-static double *find_worst(const struct oracle_pair *p, const struct pack_table *chain)
+static double *find_worst(const struct oracle_pair *p)
 {
-  const struct pack_table *event = oracle_sibling(p, "out.event");
+  const struct pack_table *event = oracle_sibling(p, "out.event"), *chain = tolerance_of_model(p, "in.chain");
   double *worst = chain ? calloc((size_t)chain->rows + 1, sizeof *worst) : NULL;
   uint32_t at[20];
   for (uint32_t row = 0; worst && event && row < event->rows; row++) {
@@ -157,13 +157,7 @@ static double *find_worst(const struct oracle_pair *p, const struct pack_table *
 static double worst_of(const struct oracle_pair *p, uint32_t vertex)
 {
   const struct pack_table *chain = tolerance_of_model(p, "in.chain");
-  double *worst = p->known && p->known->of_vertex ? p->known->of_vertex : find_worst(p, chain);
-  const double found = worst && vertex < chain->rows ? worst[vertex] : 0.0;
-  if (p->known)
-    p->known->of_vertex = worst;
-  else
-    free(worst);
-  return found;
+  return tolerance_of_vertex(p, find_worst, vertex, chain ? chain->rows : 0);
 }
 
 double tolerance_event_hit(const struct oracle_pair *p, uint32_t row, uint32_t column)

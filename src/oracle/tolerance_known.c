@@ -14,6 +14,19 @@ double tolerance_once(const struct oracle_pair *p, double (*of)(const struct ora
   return is;
 }
 
+double tolerance_of_vertex(const struct oracle_pair *p, double *(*of)(const struct oracle_pair *), uint32_t vertex,
+                           uint32_t most)
+{
+  struct tolerance_known *known = p->known;
+  double *all = known && known->of_vertex ? known->of_vertex : of(p);
+  const double found = all && vertex < most ? all[vertex] : 0.0;
+  if (known)
+    known->of_vertex = all;
+  else
+    free(all);
+  return found;
+}
+
 void tolerance_forget(struct tolerance_known *known)
 {
   free(known->of_vertex);

@@ -47,8 +47,8 @@ double theory_medium_diffusion(const struct model *m, double mass)
 
 double theory_medium_spring_step(const struct model *m, const struct fiber_kind *k)
 {
-  const double free = 4.0 * k->spring * theory_medium_diffusion(m, k->mass) * m->time_step;
-  return k->vertices < 2 || m->medium.inextensible ? 0.0 : free;
+  const double step = 4.0 * k->spring * theory_medium_diffusion(m, k->mass) * m->time_step;
+  return k->vertices < 2 || m->medium.inextensible ? 0.0 : step;
 }
 
 double theory_medium_bend_step(const struct model *m, const struct fiber_kind *k)
