@@ -61,6 +61,17 @@ class Inputs(unittest.TestCase):
             self.refused(name, COMMANDS)
             (self.folder / name).unlink()
 
+    def test_an_empty_value(self):
+        """Of an option: said to be that, by one sentence for every command, before anything is made."""
+        before = sorted(os.listdir(self.folder))
+        for words in (["run", "s.yaml", "--out", ""], ["sweep", "s.yaml", "--seeds", "1..2", "--out", ""], ["plot", "o.csv", "--out", ""],
+                      ["analyze", "p.h5", "-o", ""], ["export", "p.h5", "--out="], ["oracle", "emit", "s.yaml", "-o", ""],
+                      ["oracle", "edges", "-o", ""], ["oracle", "check", "port", "--packs", ""], ["check", "s.yaml", "--units", ""]):
+            code, said = self.run_words(*words)
+            self.assertEqual(code, 2, (words, said))
+            self.assertRegex(said, r"--(out|packs|units): an empty value; allowed: [A-Za-z]", words)
+        self.assertEqual(sorted(os.listdir(self.folder)), before)
+
     def test_a_folder(self):
         (self.folder / IN).mkdir()
         self.refused(IN, [command for command in COMMANDS if command[0] != "plot"])

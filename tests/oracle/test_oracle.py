@@ -547,6 +547,16 @@ class OracleTest(unittest.TestCase):
             self.assertEqual(run(action, scene, "-o", self.dir / "nowhere" / "out")[0], 4)
         self.assertEqual(run("dump", DATA / "dense.pack.h5", "-o", there)[0], 2)
 
+    def test_what_is_killed_leaves_no_empty_file(self):
+        """The file is there when the pack is made: what is called again is not refused."""
+        scene, out = self.dir / "long.yaml", self.dir / "out"
+        scene.write_text("box: [8, 8, 8]\ntime_step: 0.01\nsteps: 1000000000\nsolvent: {per_cell: 5, collision_interval: 0.01}\n")
+        with subprocess.Popen([UNCROSS, "oracle", "emit", scene, "-o", out], stderr=subprocess.PIPE) as emits:
+            with self.assertRaises(subprocess.TimeoutExpired):
+                emits.wait(timeout=1)
+            emits.kill()
+        self.assertFalse(out.exists())
+
     def test_scenes_that_use_little(self):
         """Packs hold every operator of particles and vertices, also where the scene uses few: free crossings, lone vertices."""
         kinds = {"free": "fibers: [{name: a, count: 2, vertices: 3, mass: 5, bond_length: 0.5, spring: 100}]\n"
