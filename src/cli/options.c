@@ -136,6 +136,15 @@ static bool take_real(const struct option_row *row, const char *text, double *va
   return false;
 }
 
+static bool take_text(const struct option_row *row, const char *text, const char **value)
+{
+  *value = text;
+  if (*text)
+    return true;
+  fprintf(stderr, "uncross: --%s: an empty value; allowed: %s\n", row->name, row->argument);
+  return false;
+}
+
 static bool take(const struct option_row *row, const char *text, struct arguments *a)
 {
   char *place = (char *)a + row->at;
@@ -145,7 +154,7 @@ static bool take(const struct option_row *row, const char *text, struct argument
     *(bool *)place = true;
     break;
   case OPTION_TEXT:
-    *(const char **)(void *)place = text;
+    ok = take_text(row, text, (const char **)(void *)place);
     break;
   case OPTION_WHOLE:
     ok = take_whole(row, text, (uint64_t *)(void *)place);

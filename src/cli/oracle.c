@@ -41,6 +41,18 @@ static enum exit_code close_output(FILE *out, enum exit_code code, const char *p
   return code == EXIT_DONE ? code : complain(message, code);
 }
 
+/* Refuses what cannot be made there, and leaves no file: a pack may take long, and who ends it would find an empty one. */
+static enum exit_code try_output(const char *path)
+{
+  FILE *out;
+  const enum exit_code code = open_output(path, &out);
+  if (code == EXIT_DONE && path) {
+    fclose(out);
+    remove(path);
+  }
+  return code;
+}
+
 /* Writes the pack that `make` fills: of a scene, or of none (NULL). */
 static enum exit_code write_pack(const struct arguments *a, struct scene *scene,
                                  bool (*make)(struct scene *, struct pack *, struct message *))
@@ -48,14 +60,14 @@ static enum exit_code write_pack(const struct arguments *a, struct scene *scene,
   struct message message;
   struct pack pack = {0};
   FILE *out;
-  enum exit_code code = open_output(a->out, &out);
-  if (code == EXIT_DONE) {
-    code = !make(scene, &pack, &message)               ? EXIT_BAD_INPUT
-           : !pack_write(&pack, out, a->out, &message) ? EXIT_NOT_WRITTEN
-                                                       : EXIT_DONE;
-    code = close_output(out, code, a->out, &message);
-    pack_free(&pack);
-  }
+  enum exit_code code = try_output(a->out);
+  if (code == EXIT_DONE && !make(scene, &pack, &message))
+    code = complain(&message, EXIT_BAD_INPUT);
+  if (code == EXIT_DONE)
+    code = open_output(a->out, &out);
+  if (code == EXIT_DONE)
+    code = close_output(out, pack_write(&pack, out, a->out, &message) ? EXIT_DONE : EXIT_NOT_WRITTEN, a->out, &message);
+  pack_free(&pack);
   return code;
 }
 
