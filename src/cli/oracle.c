@@ -41,7 +41,8 @@ static enum exit_code close_output(FILE *out, enum exit_code code, const char *p
   return code == EXIT_DONE ? code : complain(message, code);
 }
 
-/* Refuses what cannot be made there, and leaves no file: a pack may take long, and who ends it would find an empty one. */
+/* Refuses what cannot be made there, and leaves no file: a pack may take long, and who ends it would find an empty one.
+ */
 static enum exit_code try_output(const char *path)
 {
   FILE *out;

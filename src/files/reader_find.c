@@ -48,10 +48,11 @@ bool reader_find(char *path, size_t size, struct message *message)
   const uid_t owner = own_file(own) && stat(own, &status) == 0 ? status.st_uid : 0;
   if (named && *named)
     return ((size_t)snprintf(path, size, "%s", named) < size && may_be_run(path, owner)) ||
-           message_set(message,
-                       "UNCROSS_READER names %s, which cannot be had; allowed: the absolute path of the program uncross "
-                       "that belongs to root, to this user or to the owner of %s",
-                       named, own);
+           message_set(
+               message,
+               "UNCROSS_READER names %s, which cannot be had; allowed: the absolute path of the program uncross "
+               "that belongs to root, to this user or to the owner of %s",
+               named, own);
   char *slash = strrchr(own, '/');
   if (slash)
     *slash = '\0';
