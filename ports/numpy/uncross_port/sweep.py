@@ -9,6 +9,8 @@ import numpy as np
 
 from .lattice import CELL, UNIT, cross, dot, to_lattice
 
+FAR = 64  # boxes
+
 
 @dataclass
 class Hit:
@@ -55,17 +57,23 @@ def crosses(start, end, pivot, a, b, flip):
     return (volume(move, leg, difference(a, start)) >= 0) != (volume(move, leg, difference(b, start)) >= 0)
 
 
-def rounded_volume(p, q, r):
-    """(p x q) . r in doubles of a0^3; where they cannot tell its sign, the exact integer, rounded."""
-    in_doubles = dot(cross(p * UNIT, q * UNIT), r * UNIT)
-    size = np.abs([p, q, r]) * UNIT
+def in_doubles(p, q, r):
+    """(p x q) . r in doubles of a0^3, and whether they can tell its sign."""
+    p, q, r = (np.array(v) * UNIT for v in (p, q, r))
+    value, size = dot(cross(p, q), r), np.abs([p, q, r])
     (px, py, pz), (qx, qy, qz), (rx, ry, rz) = size
     bound = rx * (py * qz + pz * qy) + ry * (pz * qx + px * qz) + rz * (px * qy + py * qx)
-    if abs(in_doubles) > 16 * 2.0**-53 * bound:
-        return in_doubles
+    return value, abs(value) > 16 * 2.0**-53 * bound
+
+
+def rounded_volume(p, q, r):
+    """The same; where doubles cannot tell, the exact integer, rounded."""
+    value, certain = in_doubles(p, q, r)
+    if certain:
+        return value
     exact = volume(p.tolist(), q.tolist(), r.tolist())
     high, low = divmod(abs(exact), 2**64)
-    rounded = (float(high) * 2.0**64 + float(low)) * UNIT**3
+    rounded = np.float64((float(high) * 2.0**64 + float(low)) * UNIT**3)
     return rounded if exact >= 0 else -rounded
 
 
@@ -85,6 +93,8 @@ def partners(model, position, start, end, pivot, skip):
     edge = model.box * CELL
     lowest = -((np.maximum(a, b) - corners.min(axis=0)) // edge)  # smallest image that reaches the triangle from below
     highest = (corners.max(axis=0) - np.minimum(a, b)) // edge
+    if (highest - lowest > FAR).any():
+        raise OverflowError("a bond or a move is as long as many boxes")
     for row in np.flatnonzero((lowest <= highest).all(axis=1) & ~skip):
         ranges = [range(low, high + 1) for low, high in zip(lowest[row].tolist(), highest[row].tolist())]
         for image in ((i, j, k) for i in ranges[0] for j in ranges[1] for k in ranges[2]):
