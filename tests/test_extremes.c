@@ -188,7 +188,7 @@ static bool run_scene(const struct extreme *e, struct test_run *r, char text[512
 static void judge_scene(const struct extreme *e)
 {
   struct scene scene;
-  struct message message = {""};
+  struct message message = {.text = ""};
   enum outcome outcome = REFUSED;
   char why[sizeof message.text] = "";
   char text[2000];

@@ -315,7 +315,7 @@ static const struct node *node_exactly(const struct node *node, const char *path
 static char *get(const struct uncross_scene *scene, const char *path, uncross_error *error)
 {
   struct tree tree = {.root = NULL};
-  struct message message = {"no memory for a value"};
+  struct message message = {.text = "no memory for a value"};
   char *text = effective_text(scene, error), *found = NULL;
   size_t size;
   if (!text)

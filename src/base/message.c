@@ -6,14 +6,30 @@
 #include "base/text.h"
 
 /* Names and files of others are among the arguments, so all of the text is escaped. */
-int message_set(struct message *message, const char *format, ...)
+static int set(struct message *message, bool unread, const char *format, va_list arguments)
 {
   char text[sizeof message->text];
+  vsnprintf(text, sizeof text, format, arguments);
+  text_escape(text, message->text, sizeof message->text);
+  message->unread = unread;
+  return 0;
+}
+
+int message_set(struct message *message, const char *format, ...)
+{
   va_list arguments;
   va_start(arguments, format);
-  vsnprintf(text, sizeof text, format, arguments);
+  set(message, false, format, arguments);
   va_end(arguments);
-  text_escape(text, message->text, sizeof message->text);
+  return 0;
+}
+
+int message_unread(struct message *message, const char *format, ...)
+{
+  va_list arguments;
+  va_start(arguments, format);
+  set(message, true, format, arguments);
+  va_end(arguments);
   return 0;
 }
 
@@ -28,5 +44,6 @@ int message_at(struct message *message, const char *file, size_t line, size_t co
   vsnprintf(text + used, sizeof text - (size_t)used, format, arguments);
   va_end(arguments);
   text_escape(text, message->text, sizeof message->text);
+  message->unread = false;
   return 0;
 }

@@ -2,15 +2,20 @@
 #ifndef UNCROSS_BASE_MESSAGE_H
 #define UNCROSS_BASE_MESSAGE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 struct message {
   char text[1024];
+  bool unread; /* what it speaks of could not be read, for want of memory or by the system: nothing is known of it */
 };
 
 /* Writes printf-style text into the message, escaped as text_escape does (base/text.h): it may be shown anywhere. The
  * message itself may be among the arguments. Always returns 0, for `return message_set(...)`. */
 int message_set(struct message *message, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* The same, of what could not be read. */
+int message_unread(struct message *message, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* "file:line:col: " and then the text; line and column count from 1. Always returns 0. */
 int message_at(struct message *message, const char *file, size_t line, size_t column, const char *format, ...)

@@ -259,6 +259,7 @@ int apart_get_verdict(struct apart *parent, struct message *message)
   if (apart_get(parent, &number, sizeof number) &&
       (number == 0 || apart_get(parent, message->text, sizeof message->text))) {
     message->text[sizeof message->text - 1] = '\0';
+    message->unread = false;
     return number;
   }
   apart_lost(parent, message);

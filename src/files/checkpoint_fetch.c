@@ -43,11 +43,11 @@ static enum answer read_array(hid_t file, const struct request *r, void *data)
 static void answer(struct apart *link, hid_t file, const struct request *r)
 {
   const size_t bytes = bytes_of[r->type] * (size_t)r->dims[0] * (size_t)(r->rank > 1 ? r->dims[1] : 1);
-  struct message message = {""};
+  struct message message = {.text = ""};
   void *data = malloc(bytes + 1);
   const enum answer how = data ? read_array(file, r, data) : BROKEN;
   if (!data)
-    message_set(&message, "%s: out of memory", link->path);
+    message_unread(&message, "%s: out of memory", link->path);
   else if (how != FINE)
     h5_fail(&message, link->path, "damaged checkpoint: its positions or velocities cannot be read or fail their check");
   apart_put_verdict(link, (int)how, &message);
@@ -59,7 +59,7 @@ static void answer(struct apart *link, hid_t file, const struct request *r)
 void checkpoint_serve(struct apart *link)
 {
   struct checkpoint_summary summary;
-  struct message message = {""};
+  struct message message = {.text = ""};
   struct request request;
   enum h5_trouble trouble;
   bool sealed;
@@ -100,10 +100,10 @@ static int ask(struct apart *apart, const char *group, const char *name, enum ty
 
 static bool fits_vertices(struct apart *apart, const struct model *m, struct message *message)
 {
-  struct message why = {"its masses cannot be read"};
+  struct message why = {.text = "its masses cannot be read"};
   void *stored = malloc(((size_t)m->bonds + m->vertices + 1) * 8); /* pairs of numbers, then masses */
   if (!stored)
-    return message_set(message, "%s: out of memory", apart->path);
+    return message_unread(message, "%s: out of memory", apart->path);
   int how = ask(apart, "structure", "bonds", SHORT_INTEGERS, m->bonds, 2, stored, message);
   const bool same = how == FINE && structure_same_bonds(stored, m);
   if (!same && how >= 0)

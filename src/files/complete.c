@@ -32,10 +32,11 @@ static void expect_file(void *context, const char *file)
     c->condition = CONDITION_DAMAGED;
 }
 
-static void damaged(struct complete *c, const struct message *message)
+static void complain(struct complete *c, const struct message *message)
 {
+  const enum condition found = message->unread ? CONDITION_UNKNOWN : CONDITION_DAMAGED;
   fprintf(c->out, "%s\n", message->text);
-  c->condition = CONDITION_DAMAGED;
+  c->condition = found > c->condition ? found : c->condition;
 }
 
 static bool hold_table(void *context, const struct observe_table *table)
@@ -44,7 +45,7 @@ static bool hold_table(void *context, const struct observe_table *table)
   struct message message;
   const struct folder folder = {c->folder, FOLDER_BY_NAME};
   if (!table_fits(&folder, table, &message))
-    damaged(c, &message);
+    complain(c, &message);
   return true;
 }
 
@@ -63,7 +64,7 @@ static void check_ends(struct complete *c, const struct scene *scene, struct obs
   if (checkpoint_read(checkpoint, &scene->model, &head, &state, blocks, count, &message) &&
       strcmp(head.version, UNCROSS_VERSION) == 0) { /* tables of other versions may have other columns */
     if (!output_whole(scene, observers, &folder, head.frames_end, &message))
-      damaged(c, &message);
+      complain(c, &message);
     if (finished)
       observers_summaries(observers, &scene->model, hold_table, c);
   }

@@ -1,6 +1,7 @@
 /* The process that lets HDF5 look at a file with frames. */
 #include "files/frames_apart.h"
 
+#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -113,11 +114,17 @@ static void read_boundary(const struct trajectory *t, struct frames_about *about
 static bool open_structure(struct source *s, hid_t particles, hid_t connectivity, const int64_t *id, uint32_t rows,
                            struct message *message)
 {
-  struct message why = {""};
+  struct message why = {.text = ""};
   bool ok = particles >= 0 && structure_read(particles, connectivity, id, rows, &s->structure, &why);
   if (!ok && why.text[0])
-    return message_set(message, "%s: %s", s->path, why.text);
+    return (why.unread ? message_unread : message_set)(message, "%s: %s", s->path, why.text);
   return ok || h5_fail(message, s->path, "damaged, its species or bonds cannot be read");
+}
+
+/* After h5_text_read has failed. */
+static bool no_text(const struct source *s, const char *damaged, struct message *message)
+{
+  return errno == ENOMEM ? message_unread(message, "%s: out of memory", s->path) : h5_fail(message, s->path, damaged);
 }
 
 static bool open_trajectory(struct source *s, struct message *message)
@@ -143,7 +150,7 @@ static bool open_trajectory(struct source *s, struct message *message)
   }
   h5_close(connectivity);
   const int told = ok ? trajectory_read_scene(t, &s->scene) : 0;
-  ok = ok && (told >= 0 || h5_fail(message, s->path, "damaged, its scene cannot be read"));
+  ok = ok && (told >= 0 || no_text(s, "damaged, its scene cannot be read", message));
   if (ok)
     read_creator(t->file, &s->about);
   if (ok)
@@ -168,7 +175,7 @@ static bool open_checkpoint(struct source *s, struct message *message)
   s->about.steps = s->about.velocities = true;
   s->about.slide = summary->head.slide;
   s->scene = ok ? h5_text_read(s->file, "scene") : NULL;
-  return ok && (s->scene || h5_fail(message, s->path, "damaged checkpoint: its scene cannot be read"));
+  return ok && (s->scene || no_text(s, "damaged checkpoint: its scene cannot be read", message));
 }
 
 static bool open_source(struct source *s, enum h5_trouble *trouble, struct message *message)
@@ -177,17 +184,19 @@ static bool open_source(struct source *s, enum h5_trouble *trouble, struct messa
   apart_shut();
   if (s->file < 0)
     return false;
-  *trouble = H5_DAMAGED;
+  *trouble = H5_UNREADABLE;
   h5_watch(&s->failures);
   s->about.checkpoint = checkpoint_is(s->file);
   if (!s->about.checkpoint) {
     s->trajectory = trajectory_allocate(s->path);
     if (!s->trajectory)
-      return message_set(message, "%s: out of memory", s->path);
+      return message_unread(message, "%s: out of memory", s->path);
     s->trajectory->file = s->file;
   }
-  return (s->about.checkpoint ? open_checkpoint : open_trajectory)(s, message) &&
-         (s->failures == 0 || message_set(message, "%s: damaged: HDF5 cannot read some part of it", s->path));
+  const bool ok = (s->about.checkpoint ? open_checkpoint : open_trajectory)(s, message) &&
+                  (s->failures == 0 || message_set(message, "%s: damaged: HDF5 cannot read some part of it", s->path));
+  *trouble = ok ? H5_FINE : message->unread ? H5_UNREADABLE : H5_DAMAGED;
+  return ok;
 }
 
 /* --- frames ------------------------------------------------------------------------------------------------------ */
@@ -199,7 +208,8 @@ static bool make_room(struct source *s, struct message *message)
     s->position = malloc(numbers * sizeof *s->position);
   if (!s->velocity && s->about.velocities)
     s->velocity = malloc(numbers * sizeof *s->velocity);
-  return (s->position && (s->velocity || !s->about.velocities)) || message_set(message, "%s: out of memory", s->path);
+  return (s->position && (s->velocity || !s->about.velocities)) ||
+         message_unread(message, "%s: out of memory", s->path);
 }
 
 /* The model of the scene that a checkpoint holds: walls, shear and springs say where particles are between collisions.
@@ -229,7 +239,7 @@ static enum frame_verdict load_checkpoint(struct source *s, struct frame_moment 
   if (!state_alloc(&state, &model)) {
     if (known)
       scene_free(&scene);
-    message_set(message, "%s: out of memory", s->path);
+    message_unread(message, "%s: out of memory", s->path);
     return FRAME_LOST;
   }
   bool ok = checkpoint_read_state(s->file, s->path, summary, &state, message);
@@ -243,7 +253,7 @@ static enum frame_verdict load_checkpoint(struct source *s, struct frame_moment 
   *moment = (struct frame_moment){summary->numbers.step, (double)summary->numbers.step * summary->time_step, true, {0}};
   for (int k = 0; k < 3; k++)
     moment->edge[k] = summary->cells[k];
-  return ok ? FRAME_FINE : FRAME_DAMAGED;
+  return ok ? FRAME_FINE : message->unread ? FRAME_LOST : FRAME_DAMAGED;
 }
 
 static enum frame_verdict load(struct source *s, uint64_t frame, struct frame_moment *moment, struct message *message)
@@ -276,7 +286,7 @@ static bool put_structure(struct apart *link, const struct structure *s)
 
 static void answer(struct apart *link, struct source *s, const struct frame_request *request)
 {
-  struct message message = {""};
+  struct message message = {.text = ""};
   struct frame_moment moment = {0};
   const enum frame_verdict verdict = load(s, request->frame, &moment, &message);
   const size_t bytes = 3 * sizeof(double) * (size_t)s->about.rows;
@@ -300,7 +310,7 @@ static void let_go(struct source *s)
 void frames_serve(struct apart *link)
 {
   struct source s = {.path = link->path};
-  struct message message = {""};
+  struct message message = {.text = ""};
   struct frame_request request;
   enum h5_trouble trouble;
   bool ok = open_source(&s, &trouble, &message);
@@ -334,7 +344,7 @@ static bool find_sort(hid_t file, enum h5_sort *sort)
 
 void sort_serve(struct apart *link)
 {
-  struct message message = {""};
+  struct message message = {.text = ""};
   enum h5_trouble trouble;
   bool sealed;
   unsigned failures = 0;

@@ -1,5 +1,6 @@
 #include "files/hdf5.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -389,6 +390,7 @@ char *h5_text_read(hid_t parent, const char *name)
   hid_t dataset = h5_open_dataset(parent, name);
   hid_t stored = h5_shape(dataset, 0, none) != 0 ? -1 : H5Dget_type(dataset);
   char *text = NULL;
+  errno = 0;
   if (stored >= 0 && H5Tget_class(stored) == H5T_STRING && H5Tis_variable_str(stored) == 0) {
     size_t size = H5Tget_size(stored);
     text = calloc(size + 1, 1);

@@ -100,7 +100,8 @@ bool h5_array_read(hid_t parent, const char *name, hid_t type, int rank, const h
 /* True if there is a dataset of this shape, and its numbers are stored. */
 bool h5_array_is(hid_t parent, const char *name, int rank, const hsize_t *dims);
 
-/* A text of any length as a scalar dataset; reading returns memory to be freed, or NULL. */
+/* A text of any length as a scalar dataset; reading returns memory to be freed, or NULL; errno is ENOMEM then if memory
+ * is short. */
 bool h5_text_write(hid_t parent, const char *name, const char *text);
 char *h5_text_read(hid_t parent, const char *name);
 

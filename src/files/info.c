@@ -108,25 +108,17 @@ static bool tell_hdf5(const struct look *look, struct message *message)
     tell_trajectory(f);
   const enum condition condition = verify_frames(f, stdout);
   frames_close(f);
-  return condition == CONDITION_WHOLE || message_set(message, "%s: damaged, as said above", look->path);
+  return condition == CONDITION_WHOLE || message_set(message, "%s: %s, as said above", look->path,
+                                                     condition == CONDITION_DAMAGED ? "damaged" : "cannot be read");
 }
 
 /* --- JSON -------------------------------------------------------------------------------------------------------- */
 
-static json_t *load(const char *path, json_error_t *error)
-{
-  struct message message;
-  const int fd = open_regular(path, &message);
-  if (fd < 0)
-    *error = (json_error_t){.line = 1, .column = 1, .text = "cannot be opened"};
-  return fd < 0 ? NULL : record_load(fd, error);
-}
-
 /* By its name, or since it can be read as JSON: a scene in braces cannot, or is both. */
 static bool is_json(const struct look *look)
 {
-  json_error_t ignored;
-  json_t *root = ends_with(look->path, ".json") ? NULL : load(look->path, &ignored);
+  struct message ignored;
+  json_t *root = ends_with(look->path, ".json") ? NULL : record_read(look->path, &ignored);
   json_decref(root);
   return root || ends_with(look->path, ".json");
 }
@@ -148,10 +140,9 @@ static void tell_value(const char *key, const json_t *value)
 
 static bool tell_json(const struct look *look, struct message *message)
 {
-  json_error_t error;
-  json_t *root = load(look->path, &error);
+  json_t *root = record_read(look->path, message);
   if (!root)
-    return message_set(message, "%s:%d:%d: not JSON: %s", look->path, error.line, error.column, error.text);
+    return false;
   printf("%s: %s\n", text_shown(look->path), json_object_get(root, "state_hash") ? "record of a run" : "JSON");
   for (void *i = json_object_iter(root); i; i = json_object_iter_next(root, i))
     tell_value(json_object_iter_key(i), json_object_iter_value(i));

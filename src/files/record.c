@@ -1,5 +1,7 @@
 #include "files/record.h"
+#include "base/opening.h"
 
+#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -155,16 +157,42 @@ bool record_write(const struct folder *folder, const struct scene *scene, const 
   return ok;
 }
 
-json_t *record_load(int fd, json_error_t *error)
+/* All bytes of a file that is no larger than a record; -1, with errno, if it cannot be read. */
+static ssize_t read_all(int fd, char *text, size_t most)
 {
+  size_t bytes = 0;
+  ssize_t more = 1;
+  while (bytes < most && (more = read(fd, text + bytes, most - bytes)) != 0) {
+    if (more < 0 && errno != EINTR)
+      return -1;
+    bytes += more > 0 ? (size_t)more : 0;
+  }
+  return (ssize_t)bytes;
+}
+
+static json_t *load(int fd, const char *path, struct message *message)
+{
+  json_error_t error;
   struct stat status;
   json_t *root = NULL;
-  if (fstat(fd, &status) == 0 && status.st_size <= RECORD_MOST_BYTES) {
-    root = json_loadfd(fd, JSON_REJECT_DUPLICATES, error);
-  } else {
-    error->line = error->column = 1;
-    snprintf(error->text, sizeof error->text, "larger than %d bytes, or cannot be read", RECORD_MOST_BYTES);
-  }
-  close(fd);
+  const bool seen = fstat(fd, &status) == 0, large = seen && status.st_size > RECORD_MOST_BYTES;
+  char *text = seen && !large ? malloc((size_t)status.st_size + 1) : NULL;
+  const ssize_t bytes = text ? read_all(fd, text, (size_t)status.st_size) : -1;
+  if (large)
+    message_set(message, "%s:1:1: larger than %d bytes", path, RECORD_MOST_BYTES);
+  else if (bytes < 0)
+    message_unread(message, "%s: cannot be read: %s", path, strerror(errno));
+  else if (!(root = json_loadb(text, (size_t)bytes, JSON_REJECT_DUPLICATES, &error)))
+    message_set(message, "%s:%d:%d: not JSON: %s", path, error.line, error.column, error.text);
+  free(text);
+  return root;
+}
+
+json_t *record_read(const char *path, struct message *message)
+{
+  const int fd = open_regular(path, message);
+  json_t *root = fd < 0 ? NULL : load(fd, path, message);
+  if (fd >= 0)
+    close(fd);
   return root;
 }

@@ -31,7 +31,7 @@ bool record_write(const struct folder *folder, const struct scene *scene, const 
 
 #define RECORD_MOST_BYTES (16 << 20)
 
-/* Any JSON of an open file, which is closed; NULL, with the error, if it is none, or larger than a record can be. */
-json_t *record_load(int fd, json_error_t *error);
+/* Any JSON of a file; NULL, with a message, if it is none, cannot be read, or is larger than a record can be. */
+json_t *record_read(const char *path, struct message *message);
 
 #endif

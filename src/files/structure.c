@@ -93,13 +93,22 @@ bool structure_same_bonds(const int32_t *stored, const struct model *model)
 
 /* --- reading ----------------------------------------------------------------------------------------------------- */
 
-static bool read_names(hid_t dataset, struct structure *s)
+/* Cleared memory for so many of this size, and one more; or NULL, with a message: the file is not to blame. */
+static void *room(size_t count, size_t size, struct message *why)
+{
+  void *found = calloc(count + 1, size);
+  if (!found)
+    message_unread(why, "out of memory");
+  return found;
+}
+
+static bool read_names(hid_t dataset, struct structure *s, struct message *why)
 {
   hid_t type = H5Dget_type(dataset);
   int members = type >= 0 && H5Tget_class(type) == H5T_ENUM ? H5Tget_nmembers(type) : 0;
   hid_t base = members > 0 ? H5Tget_super(type) : -1;
   bool ok = type >= 0 && (members == 0 || (base >= 0 && H5Tget_size(base) == sizeof(int32_t))); /* as we write them */
-  s->name = calloc((size_t)members + 1, sizeof *s->name);
+  s->name = room((size_t)members, sizeof *s->name, why);
   for (int k = 0; s->name && ok && k < members; k++) {
     int32_t value = -1;
     char *name = H5Tget_member_name(type, (unsigned)k);
@@ -115,19 +124,19 @@ static bool read_names(hid_t dataset, struct structure *s)
 }
 
 /* Memory is asked for only when the dataset has been found to hold so many rows. */
-static bool read_species(hid_t particles, struct structure *s)
+static bool read_species(hid_t particles, struct structure *s, struct message *why)
 {
   hsize_t n = 0;
   const int found = h5_look(particles, "species");
   hid_t object = h5_open_object(particles, "species");
   const bool fixed = object >= 0 && H5Iget_type(object) == H5I_DATASET;
   bool ok = (found == 0 || object >= 0) && (!fixed || (h5_shape(object, 1, &n) == 1 && n == s->particles));
-  s->species = ok ? calloc((size_t)s->particles + 1, sizeof *s->species) : NULL;
+  s->species = ok ? room(s->particles, sizeof *s->species, why) : NULL;
   ok = ok && s->species;
   if (ok && fixed) {
     hid_t type = H5Dget_type(object);
     bool is_enum = H5Tget_class(type) == H5T_ENUM;
-    ok = type >= 0 && read_names(object, s) &&
+    ok = type >= 0 && read_names(object, s, why) &&
          h5_array_read(particles, "species", is_enum ? type : H5T_NATIVE_INT32, 1, &n, s->species);
     h5_close(type);
   }
@@ -136,9 +145,9 @@ static bool read_species(hid_t particles, struct structure *s)
 }
 
 /* As real numbers. */
-static bool read_whole_masses(hid_t particles, hsize_t n, double *mass)
+static bool read_whole_masses(hid_t particles, hsize_t n, double *mass, struct message *why)
 {
-  int64_t *whole = malloc(((size_t)n + 1) * sizeof *whole);
+  int64_t *whole = room((size_t)n, sizeof *whole, why);
   const bool ok = whole && h5_array_read(particles, "mass", H5T_NATIVE_INT64, 1, &n, whole);
   for (hsize_t i = 0; ok && i < n; i++)
     mass[i] = (double)whole[i];
@@ -147,7 +156,7 @@ static bool read_whole_masses(hid_t particles, hsize_t n, double *mass)
 }
 
 /* In files of other programs masses may be missing, or be of another form: they are not stored then. */
-static bool read_mass(hid_t particles, struct structure *s)
+static bool read_mass(hid_t particles, struct structure *s, struct message *why)
 {
   const hsize_t n = s->particles;
   hsize_t found = 0;
@@ -158,9 +167,9 @@ static bool read_mass(hid_t particles, struct structure *s)
   const bool fits = (class == H5T_FLOAT || class == H5T_INTEGER) && h5_shape(object, 1, &found) == 1 && found == n;
   bool ok = there == 0 || object >= 0;
   if (ok && fits) {
-    s->mass = malloc(((size_t)n + 1) * sizeof *s->mass);
+    s->mass = room((size_t)n, sizeof *s->mass, why);
     ok = s->mass && (class == H5T_FLOAT ? h5_array_read(particles, "mass", H5T_NATIVE_DOUBLE, 1, &n, s->mass)
-                                        : read_whole_masses(particles, n, s->mass));
+                                        : read_whole_masses(particles, n, s->mass, why));
   }
   h5_close(type);
   h5_close(object);
@@ -189,10 +198,10 @@ static int compare_ids(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
-/* The rows by their ids, to be freed; NULL if memory is short. */
-static struct named *sort_rows(const int64_t *id, uint32_t rows)
+/* The rows by their ids, to be freed; NULL, with a message, if memory is short. */
+static struct named *sort_rows(const int64_t *id, uint32_t rows, struct message *why)
 {
-  struct named *by_id = malloc(((size_t)rows + 1) * sizeof *by_id);
+  struct named *by_id = room(rows, sizeof *by_id, why);
   for (uint32_t i = 0; by_id && i < rows; i++)
     by_id[i] = (struct named){id ? id[i] : i, (int32_t)i};
   if (by_id && id)
@@ -219,7 +228,7 @@ static bool take_bonds(struct structure *s, const int32_t *pair, hsize_t bonds, 
 static bool read_bonds(hid_t connectivity, const int64_t *id, struct structure *s, struct message *why)
 {
   hsize_t dims[2] = {0, 2};
-  s->next = malloc(((size_t)s->particles + 1) * sizeof *s->next);
+  s->next = room(s->particles, sizeof *s->next, why);
   if (!s->next)
     return false;
   for (uint32_t i = 0; i < s->particles; i++)
@@ -231,8 +240,8 @@ static bool read_bonds(hid_t connectivity, const int64_t *id, struct structure *
   hid_t dataset = h5_open_dataset(connectivity, "bonds");
   bool ok = h5_shape(dataset, 2, dims) == 2 && dims[1] == 2 && dims[0] <= INT32_MAX;
   h5_close(dataset);
-  int32_t *pair = ok ? malloc((dims[0] + 1) * 2 * sizeof *pair) : NULL;
-  struct named *by_id = ok ? sort_rows(id, s->particles) : NULL;
+  int32_t *pair = ok ? room((size_t)dims[0] * 2, sizeof *pair, why) : NULL;
+  struct named *by_id = ok ? sort_rows(id, s->particles, why) : NULL;
   ok = pair && by_id && h5_array_read(connectivity, "bonds", H5T_NATIVE_INT32, 2, dims, pair) &&
        take_bonds(s, pair, dims[0], by_id, why);
   s->bonds = (uint32_t)dims[0];
@@ -245,9 +254,9 @@ bool structure_read(hid_t particles, hid_t connectivity, const int64_t *id, uint
                     struct message *why)
 {
   memset(s, 0, sizeof *s);
-  why->text[0] = '\0';
+  *why = (struct message){.text = ""};
   s->particles = rows;
-  bool ok = read_species(particles, s) && read_mass(particles, s) && read_bonds(connectivity, id, s, why);
+  bool ok = read_species(particles, s, why) && read_mass(particles, s, why) && read_bonds(connectivity, id, s, why);
   if (!ok)
     structure_free(s);
   return ok;

@@ -11,7 +11,7 @@
 
 static bool failed(struct message *message, const char *path, const char *what)
 {
-  return message_set(message, "%s: cannot %s: %s", path, what, strerror(errno));
+  return message_unread(message, "%s: cannot %s: %s", path, what, strerror(errno));
 }
 
 static void write_header(FILE *file, const char *first, size_t columns, const char *const *names)
@@ -178,15 +178,17 @@ bool table_write(const struct folder *folder, const struct observe_table *table,
   return ok;
 }
 
-/* Lines of a file, and whether the first one is this header. */
-static size_t count_lines(FILE *file, const char *header, bool *same)
+/* Lines of a file, and whether the first one is this header. False if it cannot be read to its end. */
+static bool count_lines(FILE *file, const char *header, bool *same, size_t *lines)
 {
   char *line = NULL;
-  size_t room = 0, lines = 0;
-  for (*same = false; text_line(&line, &room, file) > 0; lines++)
-    *same = lines == 0 ? strcmp(line, header) == 0 : *same;
+  size_t room = 0;
+  ssize_t length;
+  for (*same = false, *lines = 0; (length = text_line(&line, &room, file)) > 0; ++*lines)
+    *same = *lines == 0 ? strcmp(line, header) == 0 : *same;
   free(line);
-  return lines;
+  *lines += length == TEXT_TOO_LONG;
+  return length == TEXT_TOO_LONG || feof(file);
 }
 
 bool table_fits(const struct folder *folder, const struct observe_table *table, struct message *message)
@@ -198,10 +200,7 @@ bool table_fits(const struct folder *folder, const struct observe_table *table, 
   FILE *made = open_memstream(&header, &bytes), *file = open_stream(folder, name, O_RDONLY, "r");
   if (made)
     write_header(made, NULL, table->columns, table->column);
-  bool known = made && fclose(made) == 0 && file;
-  if (known)
-    lines = count_lines(file, header, &same);
-  known = known && !ferror(file);
+  const bool known = made && fclose(made) == 0 && file && count_lines(file, header, &same, &lines);
   if (file)
     fclose(file);
   free(header);

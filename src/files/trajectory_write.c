@@ -156,7 +156,7 @@ static struct trajectory *create(const char *path, const struct model *model, co
 {
   struct trajectory *t = trajectory_allocate(path);
   if (!t) {
-    message_set(message, "%s: out of memory", path);
+    message_unread(message, "%s: out of memory", path);
     return NULL;
   }
   t->solvent = options->solvent && model_has_solvent(model);
@@ -344,7 +344,7 @@ static struct trajectory *resume_existing(const char *path, const struct model *
     return NULL;
   struct trajectory *t = trajectory_allocate(path);
   if (!t) {
-    message_set(message, "%s: out of memory", path);
+    message_unread(message, "%s: out of memory", path);
     return NULL;
   }
   t->file = h5_open(path, true, &sealed, &trouble, message);
@@ -352,7 +352,7 @@ static struct trajectory *resume_existing(const char *path, const struct model *
     return trajectory_give_up(t);
   t->solvent = options->solvent && model_has_solvent(model);
   if (!make_room(t, model)) {
-    message_set(message, "%s: out of memory", path);
+    message_unread(message, "%s: out of memory", path);
     return trajectory_give_up(t);
   }
   if (!drop_after(t, &kept)) {
@@ -378,7 +378,7 @@ struct trajectory *trajectory_open(const char *path, const struct model *model,
     return NULL;
   }
   if (resume && folder_has(&place.folder, place.file)) {
-    struct message why = {""};
+    struct message why = {.text = ""};
     bool damaged;
     struct trajectory *t = resume_existing(path, model, options, keep_to_step, &damaged, &why);
     if (t || !damaged)

@@ -211,22 +211,16 @@ static enum condition verify_table(const char *path, bool running, FILE *out)
 
 /* --- run.json ---------------------------------------------------------------------------------------------------- */
 
-static json_t *read_json(const char *path, struct message *message)
-{
-  json_error_t error;
-  const int fd = open_regular(path, message);
-  json_t *root = fd < 0 ? NULL : record_load(fd, &error);
-  if (fd >= 0 && !root)
-    message_set(message, "%s:%d:%d: damaged: not JSON: %s", path, error.line, error.column, error.text);
-  return root;
-}
-
 static enum condition verify_record(const char *path, FILE *out)
 {
   struct message message;
-  json_t *root = read_json(path, &message);
-  if (!root)
-    return say(out, access(path, R_OK) == 0 ? CONDITION_DAMAGED : CONDITION_UNKNOWN, &message);
+  json_t *root = record_read(path, &message);
+  if (!root && message.unread)
+    return say(out, CONDITION_UNKNOWN, &message);
+  if (!root) {
+    fprintf(out, "%s: damaged\n", message.text);
+    return CONDITION_DAMAGED;
+  }
   const bool run = json_is_string(json_object_get(root, "state_hash"));
   json_decref(root);
   fprintf(out, run ? "%s: readable: a record of a run; it carries no checksum\n" : "%s: readable: JSON\n",
@@ -283,7 +277,7 @@ static struct told told_of(const char *folder)
   struct message ignored;
   snprintf(path, sizeof path, "%.4000s/run.json", folder);
   struct told told = {.there = access(path, F_OK) == 0};
-  json_t *root = told.there ? read_json(path, &ignored) : NULL;
+  json_t *root = told.there ? record_read(path, &ignored) : NULL;
   const char *status = json_string_value(json_object_get(root, "status"));
   const json_int_t step = json_integer_value(json_object_get(root, "steps"));
   const char *hash = json_string_value(json_object_get(root, "state_hash"));

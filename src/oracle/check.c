@@ -139,7 +139,7 @@ static bool compare_files(const struct check *k, const char *path, const char *o
 static bool call_again(const struct checks *c, struct check *k, uint64_t call, const char *in, const char *first)
 {
   char out[PATH_MAX];
-  struct message wrong = {""};
+  struct message wrong = {.text = ""};
   struct oracle_summary summary = {.verdict = ORACLE_SAME};
   snprintf(out, sizeof out, "%s/out.%" PRIu64, c->scratch, call);
   FILE *nobody = fopen("/dev/null", "w");
@@ -186,7 +186,7 @@ static bool write_start(const struct check_options *o, struct check *k, const ch
 static void call_port(const struct checks *c, struct check *k, const char *in, FILE *details)
 {
   char out[PATH_MAX];
-  struct message wrong = {""};
+  struct message wrong = {.text = ""};
   snprintf(out, sizeof out, "%s/out.1", c->scratch);
   bool ok = called_port(c->options, k->trace, c->scratch, in, out, &wrong) &&
             compare_files(k, k->path, out, &c->options->compare, details, &k->summary, &wrong);

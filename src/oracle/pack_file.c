@@ -201,7 +201,7 @@ static size_t bytes_of(const struct pack_table *t)
 void pack_serve(struct apart *link)
 {
   struct pack pack = {0};
-  struct message message = {""};
+  struct message message = {.text = ""};
   const bool ok = read_file(link->path, &pack, &message);
   const uint64_t count = pack.count;
   apart_put_verdict(link, ok ? 0 : 1, &message);

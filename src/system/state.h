@@ -102,7 +102,8 @@ uint32_t state_lost_vertex(const struct state *state);
 /* slot[id] = index of solvent particle id in memory. slot: [solvent.n]. */
 void state_solvent_slots(const struct state *state, uint32_t *slot);
 
-/* 64-bit hash (XXH64, seed 0) of everything above but counts, in id order: docs/conventions.md lists the bytes. */
+/* 64-bit hash (XXH64, seed 0) of everything above but counts, in id order: docs/conventions.md lists the bytes; 0 if
+ * memory is short. */
 uint64_t state_hash(const struct state *state);
 
 /* The same for codes without an order: the sum, modulo 2^64, of a hash (XXH64, seed 0) of the numbers of the state and

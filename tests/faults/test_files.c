@@ -30,7 +30,7 @@ static bool try_trajectory(struct bench *b, uint64_t n)
 /* The old file or the new one, and no part beside it. */
 static bool try_replace(struct bench *b, uint64_t n)
 {
-  struct message m = {""};
+  struct message m = {.text = ""};
   spill(b->path, "old", 3);
   inject_arm(INJECT_FILE, n, false);
   const bool ok = file_replace(by_name(""), b->path, "new!", 4, &m);

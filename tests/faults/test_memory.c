@@ -122,7 +122,7 @@ static bool try_scene(struct bench *b)
 {
   (void)b;
   struct scene s;
-  struct message m = {""};
+  struct message m = {.text = ""};
   if (!scene_read_text("t.yaml", text, strlen(text), &s, &m)) {
     assert_non_null(strstr(m.text, "t.yaml: out of memory"));
     return false;
@@ -136,7 +136,7 @@ static bool try_checkpoint_write(struct bench *b)
 {
   struct checkpoint_head head = {.seed = 2, .version = "new"};
   const char *path = in_folder(b->folder, "c.h5");
-  struct message m = {""};
+  struct message m = {.text = ""};
   size_t before, after;
   char *old = slurp(path, &before);
   bool ok = checkpoint_write(path, &head, &b->run.model, &b->run.state, NULL, 0, text, &m);
@@ -155,7 +155,7 @@ static bool try_checkpoint_write(struct bench *b)
 static bool try_checkpoint_read(struct bench *b)
 {
   struct checkpoint_head head;
-  struct message m = {""};
+  struct message m = {.text = ""};
   const char *path = in_folder(b->folder, "r.h5");
   bool ok = checkpoint_read(path, &b->run.model, &head, &b->run.state, NULL, 0, &m);
   assert_true(ok || m.text[0] != '\0');
@@ -166,7 +166,7 @@ static bool try_trajectory(struct bench *b)
 {
   const struct trajectory_options options = {.solvent = true, .velocities = true, .seed = 1};
   const char *path = in_folder(b->folder, "t.h5");
-  struct message m = {""};
+  struct message m = {.text = ""};
   remove(path);
   struct trajectory *t = trajectory_open(path, &b->run.model, &options, false, 0, text, &m);
   if (!t) {

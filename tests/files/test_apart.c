@@ -9,7 +9,7 @@
 #include "base/clock.h"
 #include "files/reader.h"
 
-static struct message fine = {""};
+static struct message fine = {.text = ""};
 
 static void send_numbers(struct apart *link)
 {
@@ -131,7 +131,7 @@ static void numbers_are_handed_over(void **unused)
 
 static void expect_end(const char *path, const char *work, int signal, bool died, const char *word)
 {
-  struct message message = {""};
+  struct message message = {.text = ""};
   struct apart parent = start(path, work);
   apart_put(&parent, &signal, sizeof signal);
   assert_int_equal(apart_get_verdict(&parent, &message), -1);
@@ -180,7 +180,7 @@ static void patience_has_an_end(void **unused)
   const char *path = in_folder(folder, "f");
   spill(path, "data", 4);
   const double begun = clock_seconds();
-  struct message message = {""};
+  struct message message = {.text = ""};
   struct apart parent = start(path, "wait");
   assert_true(parent.patience >= 600.0);
   parent.patience = 0.2;
@@ -250,7 +250,7 @@ static void a_reader_is_found_or_missed(void **unused)
   make_folder(folder);
   const char *path = in_folder(folder, "f"), *other = in_folder(folder, "uncross");
   struct apart parent;
-  struct message message = {""};
+  struct message message = {.text = ""};
   spill(path, "data", 4);
   snprintf(ours, sizeof ours, "%s", getenv("UNCROSS_READER"));
   /* it says of which build it is as long as ours does, and then reads what it is asked for */
@@ -298,7 +298,7 @@ static void it_begins_with_nothing_of_its_host(void **unused)
   make_folder(folder);
   const char *path = in_folder(folder, "f"), *lister = in_folder(folder, "uncross"), *list = in_folder(folder, "list");
   struct apart parent;
-  struct message message = {""};
+  struct message message = {.text = ""};
   spill(path, "data", 4);
   snprintf(ours, sizeof ours, "%s", getenv("UNCROSS_READER"));
   const int length =

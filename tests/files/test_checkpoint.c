@@ -178,7 +178,7 @@ static void a_plane_comes_back(void **unused)
   char folder[64];
   make_folder(folder);
   const char *path = in_folder(folder, "checkpoint.h5");
-  struct message message = {""};
+  struct message message = {.text = ""};
   struct model m = test_model(8, 8, 1, 5.0, 0.05, 2);
   m.dimensions = 2;
   m.crossing.forbidden = false;
@@ -367,7 +367,7 @@ static void the_old_one_survives(void **unused)
   char folder[64];
   make_folder(folder);
   const char *path = in_folder(folder, "checkpoint.h5"), *part = in_folder(folder, "checkpoint.h5.part");
-  struct message message = {""};
+  struct message message = {.text = ""};
   struct test_run r = small_run(3);
   assert_true(write_some(path, &r, &message));
   size_t bytes, bytes2;

@@ -11,7 +11,7 @@ static const struct trajectory_options everything = {.solvent = true, .velocitie
 /* A trajectory of `frames` frames, two steps apart, and a checkpoint of the last. */
 static void write_both(const char *frames_path, const char *checkpoint_path, struct test_run *r, int frames)
 {
-  struct message message = {""};
+  struct message message = {.text = ""};
   struct trajectory *t = trajectory_open(frames_path, &r->model, &everything, false, 0, "a: 1\n", &message);
   bool ok = t != NULL;
   for (int k = 0; ok && k < frames; k++) {
@@ -158,7 +158,7 @@ static void frames_are_chosen(void **unused)
 /* What file_info prints, in `text`; false with its message there. */
 static bool told(const char *folder, const char *path, char text[4096])
 {
-  struct message message = {""};
+  struct message message = {.text = ""};
   const char *capture = in_folder(folder, "stdout");
   fflush(stdout);
   int keep = dup(1), fd = open(capture, O_WRONLY | O_CREAT | O_TRUNC, 0600);

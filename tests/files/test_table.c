@@ -147,7 +147,7 @@ static void test_a_full_disk_is_noticed(void **unused)
   char folder[64];
   make_folder(folder);
   struct series s;
-  struct message m = {""};
+  struct message m = {.text = ""};
   const double row[2] = {1.0 / 3.0, 2.0 / 3.0};
   assert_true(series_open(&s, by_name(folder), "t", 2, names, 0, &m));
   limit_files(64);

@@ -479,7 +479,7 @@ static void both_files_start_alike(void **unused)
 
 static void assert_no_start(const char *frames, const struct test_run *r, struct state *state, const char *words)
 {
-  struct message message = {""};
+  struct message message = {.text = ""};
   assert_false(read_start(frames, &r->model, state, &message));
   if (!strstr(message.text, words))
     fail_msg("'%s' is not in '%s'", words, message.text);
@@ -569,7 +569,7 @@ static void write_expected(const char *path, const struct test_run *r)
 
 static int write_sample(const char *folder)
 {
-  struct message message = {""};
+  struct message message = {.text = ""};
   struct test_run r = small_run(0);
   const struct trajectory_options half = {.solvent = false, .velocities = true, .seed = 42};
   struct trajectory *all =

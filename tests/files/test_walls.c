@@ -22,7 +22,7 @@ static void checkpoints_hold_the_account(void **unused)
   char folder[64];
   make_folder(folder);
   const char *path = in_folder(folder, "checkpoint.h5");
-  struct message message = {""};
+  struct message message = {.text = ""};
   struct test_run r = test_start(between_walls());
   test_steps(&r, 13);
   r.state.wall_turns[2] = (uint64_t)-3;
@@ -73,7 +73,7 @@ static void periodic_files_have_no_account(void **unused)
   char folder[64];
   make_folder(folder);
   const char *path = in_folder(folder, "checkpoint.h5");
-  struct message message = {""};
+  struct message message = {.text = ""};
   struct model open = between_walls();
   open.walls = (struct wall_model){.kind = WALL_ABSENT};
   struct test_run r = test_start(open), walls = test_start(between_walls());
@@ -126,7 +126,7 @@ static void frames_have_no_solvent_beyond_the_walls(void **unused)
               {5 * LATTICE_CELL + 1, "solvent particle 7 is at y = 5.0000000000009095, beyond the walls at 0 and 5"}};
   struct test_run r = test_start(between_walls());
   struct state back;
-  struct message message = {""};
+  struct message message = {.text = ""};
   assert_true(state_alloc(&back, &r.model));
   for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
     remove(path);

@@ -110,7 +110,7 @@ static void damage_numbers(const uint8_t *data, size_t size)
 
 static void start_from_foreign(void)
 {
-  struct message message = {""};
+  struct message message = {.text = ""};
   struct fault *fault = &all.work.fault;
   if (start(&message)) {
     require(state_sound(&all.state, &all.starter.model, fault), "a run starts from a state that is not sound");
@@ -124,7 +124,7 @@ static void start_from_foreign(void)
 
 static void compare_trace(const uint8_t *data, size_t size)
 {
-  struct message message = {""};
+  struct message message = {.text = ""};
   struct oracle_summary summary = {0};
   struct sink sink;
   const bool same = size == all.ours.size && memcmp(data, all.ours.data, size) == 0;

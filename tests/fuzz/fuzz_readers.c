@@ -169,7 +169,7 @@ static bool read_numbers(const char *path, const char *text, size_t size, struct
 static void read_scene(const uint8_t *data, size_t size)
 {
   struct scene scene, again;
-  struct message message = {""};
+  struct message message = {.text = ""};
   if (!read_numbers("fuzz.yaml", (const char *)data, size, &scene, &message)) {
     require(message.text[0] != '\0', "a scene was refused without a word");
     return;
@@ -186,7 +186,7 @@ static void read_scene(const uint8_t *data, size_t size)
 static void read_checkpoint(void)
 {
   struct checkpoint_head head;
-  struct message message = {""};
+  struct message message = {.text = ""};
   if (checkpoint_read(all.checkpoint.path, &all.scene.model, &head, &all.state, NULL, 0, &message))
     require(state_hash(&all.state) == all.hash, "a changed checkpoint was taken for good");
   else
@@ -195,7 +195,7 @@ static void read_checkpoint(void)
 
 static void read_trajectory(void)
 {
-  struct message message = {""};
+  struct message message = {.text = ""};
   struct trajectory *t = trajectory_open_read(all.trajectory.path, &message);
   if (!t) {
     require_reason(&message, "a trajectory was refused without a word");
@@ -209,7 +209,7 @@ static void read_trajectory(void)
 
 static void export_and_verify(const char *path, const char *right)
 {
-  struct message message = {""};
+  struct message message = {.text = ""};
   bool other;
   char *text = exported(path, &message);
   if (!text)
@@ -231,7 +231,7 @@ enum pack_use { WHOLE, TO_COMPARE, TO_DUMP };
 
 static void read_pack(const char *path, enum pack_use use)
 {
-  struct message message = {""};
+  struct message message = {.text = ""};
   struct pack pack;
   if (!pack_read(path, &pack, &message)) {
     require_reason(&message, "a pack was refused without a word");

@@ -313,7 +313,7 @@ static void put_numbers(void)
 static void go_on_from_numbers(void)
 {
   struct checkpoint_head head;
-  struct message message = {""};
+  struct message message = {.text = ""};
   struct work work;
   const uint64_t written = state_hash(&observed.changed);
   if (!checkpoint_read(observed.file.path, &observed.scene.model, &head, &observed.changed, observed.blocks,

@@ -35,7 +35,7 @@ static void refused_with_their_place(void **unused)
   (void)unused;
   for (size_t k = 0; k < sizeof refusals / sizeof *refusals; k++) {
     struct scene scene;
-    struct message message = {""};
+    struct message message = {.text = ""};
     char place[32];
     if (read_scene(refusals[k].line, &scene, &message))
       fail_msg("accepted: %s", refusals[k].line);
@@ -61,7 +61,7 @@ static void hear(void *context, const char *text)
 static struct told warnings_of(const char *line)
 {
   struct scene scene;
-  struct message message = {""};
+  struct message message = {.text = ""};
   struct told told = {0};
   if (!read_scene(line, &scene, &message))
     fail_msg("%s", message.text);

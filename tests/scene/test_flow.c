@@ -66,7 +66,7 @@ static void refused(void **unused)
   for (size_t k = 0; k < sizeof refusals / sizeof *refusals; k++) {
     const struct refusal *r = &refusals[k];
     struct scene scene;
-    struct message message = {""};
+    struct message message = {.text = ""};
     if (read_flow(r->solvent, r->more, &scene, &message)) {
       scene_free(&scene);
       print_error("read, not refused: %s %s\n", r->solvent, r->more);
@@ -89,7 +89,7 @@ static void accepted(void **unused)
                                      "walls: {kind: no-slip, shear_rate: 0.1, period: 0.4}",
                                      "walls: {kind: no-slip, strain: 0.25, period: 10}"};
   struct scene scene;
-  struct message message = {""};
+  struct message message = {.text = ""};
   for (size_t k = 0; k < sizeof good / sizeof *good; k++) {
     if (!read_flow("  acceleration: [0.1, 0, -0.1]", good[k], &scene, &message))
       fail_msg("%s", message.text);
@@ -116,7 +116,7 @@ static void written_and_read_again(void **unused)
                                       "walls: {kind: no-slip, fill: paper, shear_rate: 0.1, period: 20}"};
   for (size_t k = 0; k < sizeof flows / sizeof *flows; k++) {
     struct scene scene, again;
-    struct message message = {""};
+    struct message message = {.text = ""};
     char *text = NULL;
     size_t size = 0;
     if (!read_flow("", flows[k], &scene, &message))
@@ -164,7 +164,7 @@ static void hear(void *context, const char *text)
 static struct told warnings_of(const char *solvent, const char *more)
 {
   struct scene scene;
-  struct message message = {""};
+  struct message message = {.text = ""};
   struct told told = {0};
   if (!read_flow(solvent, more, &scene, &message))
     fail_msg("%s", message.text);
@@ -205,7 +205,7 @@ static int early(const char *flow, int steps, int from)
 {
   char text[1024];
   struct scene scene;
-  struct message message = {""};
+  struct message message = {.text = ""};
   struct told told = {0};
   snprintf(text, sizeof text,
            "box: [6, 8, 6]\ntime_step: 0.1\nsteps: %d\nsolvent: {per_cell: 5, collision_interval: 0.1, rule: at-a%s\n"
@@ -225,7 +225,7 @@ static void narrow_gap_warned(void **unused)
   for (int height = 1; height < 5; height++) {
     char text[512];
     struct scene scene;
-    struct message message = {""};
+    struct message message = {.text = ""};
     struct told told = {0};
     snprintf(text, sizeof text,
              "box: [4, %d, 4]\ntime_step: 0.1\nsteps: 10\nsolvent: {per_cell: 5, collision_interval: 0.1}\n"

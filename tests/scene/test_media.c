@@ -89,7 +89,7 @@ static bool read_scene(const char *first, const char *last, struct scene *scene,
 static void expect(const char *first, const char *last, const char *place, const char *says)
 {
   struct scene scene;
-  struct message message = {""};
+  struct message message = {.text = ""};
   if (read_scene(first, last, &scene, &message))
     fail_msg("accepted: %s", last);
   if (!strstr(message.text, says) || strncmp(message.text, place, strlen(place)) != 0)
@@ -123,7 +123,7 @@ static void bounds(void **unused)
   };
   for (size_t k = 0; k < sizeof lines / sizeof *lines; k++) {
     struct scene scene;
-    struct message message = {""};
+    struct message message = {.text = ""};
     if (!read_scene("box: [3, 3, 3]", lines[k], &scene, &message))
       fail_msg("%s\nsays: %s", lines[k], message.text);
     scene_free(&scene);

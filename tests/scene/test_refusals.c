@@ -274,7 +274,7 @@ static void every_row_refuses(void **unused)
   assert_non_null(reached);
   for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
     const size_t row = find_row(rows[k].key, rows[k].says);
-    struct message message = {""};
+    struct message message = {.text = ""};
     char end[1024];
     snprintf(end, sizeof end, ": %s%s%s", rows[k].key, *rows[k].key ? ": " : "", refusals[row].why);
     if (make_scene(rows[k].both, rows[k].wrong, &message) || !ends_with(message.text, end)) {

@@ -769,7 +769,7 @@ static unsigned sections_are_refused(const struct key_table *table, const char *
     const struct key *key = &table->key[k];
     char text[300], says[100];
     struct scene scene;
-    struct message message = {""};
+    struct message message = {.text = ""};
     if (key->type == KEY_INCLUDE)
       count += sections_are_refused(key->keys, before, after);
     if (key->type != KEY_SECTION)
