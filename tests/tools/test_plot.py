@@ -584,6 +584,26 @@ class Folder(unittest.TestCase):
         self.assertEqual(code, 2)
         self.assertIn("--out FILE is missing", error)
 
+    def test_fibers_without_solvent_have_pages(self):
+        """`uncross check` has no friction of a vertex in a medium that is overdamped, or where there is none."""
+        scene = ("box: [8, 8, 8]\ntime_step: 0.001\nsteps: 20\nfibers: [{name: a, count: 2, vertices: 8, mass: 2, bond_length: 0.5, spring: 100, "
+                 "bending: 50}]\ncrossing: {forbidden: false}\nobserve: {dynamics: {every: 5}}\n")
+        for number, line in enumerate(("", "medium: {kind: overdamped, rate: 10}\n", "medium: {kind: overdamped, rate: 10, inextensible: true}\n",
+                                       "walls: {kind: slip}\n", "medium: {kind: private, rate: 10}\n")):
+            path = self.dir / f"alone{number}"
+            path.with_suffix(".yaml").write_text(scene + line)
+            self.assertEqual(uncross("run", path.with_suffix(".yaml"), "--out", path, "--quiet")[0], 0)
+            run = runs.read(str(path))
+            self.assertEqual(len(page.guides(run, "a")), line.startswith("medium: {kind: private"))
+            self.assertEqual(bool(run.derived[0][0].startswith("Medium")), line.startswith("medium"))
+
+    def test_tables_that_no_sweep_wrote(self):
+        folder = self.dir / "foreign"
+        folder.mkdir()
+        (folder / "summary.csv").write_text("folder,seeds\na,1\n")
+        (folder / "runs.csv").write_text("name\na\n")
+        self.refused("runs.csv: not a table of a sweep: no column folder", folder)
+
     def test_a_missing_package_is_named(self):
         hidden = self.dir / "hidden"
         hidden.mkdir()

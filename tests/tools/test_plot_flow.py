@@ -11,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import warnings
 
 sys.dont_write_bytecode = True  # nothing is left in the source tree
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
@@ -18,7 +19,7 @@ from support import TOP, UNCROSS  # noqa: E402
 
 os.environ["UNCROSS"] = str(UNCROSS)
 sys.path.insert(0, str(TOP / "python"))
-from uncross_plot import compare, distrust, flow, page, runs  # noqa: E402
+from uncross_plot import compare, distrust, flow, page, runs, tables  # noqa: E402
 
 ETA, SLIP, EDGE, RHO = 30.0, 0.4, 20, 10.0
 SOLVENT = """box: [8, 20, 1]
@@ -254,6 +255,64 @@ fibers: [{name: dimer, count: 4000, vertices: 2, mass: 5, bond_length: 0.5, spri
                 self.assertIn(words, page._what(run))
                 self.assertEqual("periodic" in figure.caption, not line, figure.caption)
                 self.assertEqual("the walls" in figure.caption, "walls" in line)
+
+    # A flow of each sort, with a table of everything that a page reads of it.
+    SORTS = ((", acceleration: [0.02, 0, 0]", "walls: {kind: no-slip}", False), ("", "walls: {kind: no-slip, shear_rate: 0.05}", False),
+             ("", "walls: {kind: no-slip, shear_rate: 0.05, period: 4}", True), ("", "shear: {rate: 0.1}", False),
+             ("", "shear: {rate: 0.1, period: 4}", True), (", acceleration: [0.02, 0, 0], profile: sine", "", False),
+             ("", "shear: {rate: 0.1}\ndumbbells: {spring: 1}", False))
+
+    def sort(self, solvent, line, oscillates, rate=0.1):
+        """A Run of such a flow."""
+        wave = {f"vx_{part}{error}": lambda y: rate * (y - EDGE / 2) for part in ("in_phase", "out_of_phase") for error in ("", "_error")}
+        lone = {"extension": [1.1], "extension_error": [0.1], "chi": [40.0], "chi_error": [1.0]}
+        with tempfile.TemporaryDirectory() as folder:
+            tell(pathlib.Path(folder), SOLVENT % (solvent, line), profile(lambda y: rate * (y - EDGE / 2), **(wave if oscillates else {})),
+                 {**stress(3.0, 3.0, 3.0), "sigma_xy_spring": [1.0] * 64})
+            (pathlib.Path(folder) / "dumbbells.csv").write_text(
+                ",".join(lone) + "\n" + ",".join(str(v[0]) for v in lone.values()) + "\n", encoding="utf-8")
+            run = runs.read(folder)
+        self.assertEqual(run.trouble, [])
+        return run
+
+    def told(self, run):
+        """Words of all that is read of a flow; an error here is a page that is not made."""
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            return str([page.measured_flow(run), page.front(run), [f(3.0) for _, f, _ in page.flow_guides(run)], distrust.of_run(run)])
+
+    def test_a_number_or_column_that_is_missing_stops_no_page(self):
+        """`uncross check` leaves out what means nothing in a scene, a table what its scene has not. Each in turn."""
+        for sort in self.SORTS:
+            run = self.sort(*sort)
+            self.assertIn("modulus" if sort[2] and "shear:" in sort[1] else "phase lag" if sort[2] else "viscosity", self.told(run))
+            for _, rows in run.derived:
+                for k, row in enumerate(list(rows)):
+                    del rows[k]
+                    with self.subTest(sort=sort, without=row.name):
+                        self.told(run)
+                    rows.insert(k, row)
+            for table in run.tables:
+                whole = dict(table.data)
+                for column in whole:
+                    run.tables[run.tables.index(table)] = table = tables.Table(table.name, {c: v for c, v in whole.items() if c != column})
+                    with self.subTest(sort=sort, without=f"{table.name}: {column}"):
+                        self.told(run)
+                run.tables[run.tables.index(table)] = tables.Table(table.name, whole)
+
+    def test_a_flow_of_zeros_is_no_quotient(self):
+        for sort in self.SORTS:
+            with self.subTest(sort=sort):
+                self.told(self.sort(*sort, rate=0.0))
+        self.told(self.sort("", "shear: {rate: 0}", False))
+
+    def test_springs_have_the_viscosity_that_theory_gives(self):
+        """Their stress 1 over the rate 0.1; theory is the row of `uncross check`, n_d kT/omega_H."""
+        run = self.sort(*self.SORTS[-1])
+        springs = self.one(flow.Flow(run).measured(), "viscosity of the springs")
+        self.near(springs, 10.0)
+        self.assertGreater(springs.theory, 0.0)
+        self.assertIn("Dumbbells", " ".join(heading for heading, _ in run.derived))
 
     def test_no_flow(self):
         self.assertEqual(self.found(SOLVENT % ("", ""), profile(lambda y: 0.0), stress(0.0)), [])
