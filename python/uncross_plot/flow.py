@@ -31,19 +31,26 @@ class Measured:
 EXACT = ("slope of the profile",)  # of the box itself: it holds for a suspension, too
 
 
+class Numbers(dict):
+    """{name: value} of `uncross check`, which leaves out what means nothing in a scene: nan."""
+
+    def __missing__(self, _):
+        return numpy.float64(math.nan)
+
+
 class Flow:
     """The flow of a run; `kind` is empty if there is none, or no profile."""
 
     def __init__(self, run):
-        self.numbers, self.sources, self.kind = {}, {}, ""
+        self.numbers, self.sources, self.kind = Numbers(), {}, ""
         for heading, rows in run.derived:
             if heading.startswith(("Solvent", "Dumbbells", "Walls", "Shear", "Flow by", "Suspension")):
-                self.numbers.update({row.name: float(row.value) for row in rows})
+                self.numbers.update({row.name: numpy.float64(row.value) for row in rows})
                 self.sources.update({row.name: row.source for row in rows})
             if heading.startswith(("Walls", "Shear", "Flow by")):
                 self.kind = heading.split()[0].lower()
         self.profile, self.stress, self.shape_of_dumbbells = run.table("profile"), run.table("stress"), run.table("dumbbells")
-        if self.profile is None or self.profile.rows < 4 or "viscosity" not in self.numbers:
+        if self.profile is None or self.profile.rows < 4 or "y" not in self.profile.data or "viscosity" not in self.numbers:
             self.kind = ""
             return
         places = self.profile.data["y"]
@@ -85,7 +92,10 @@ class Flow:
         """v_x at these places, of a steady flow; None without theory."""
         if self.oscillates or not self.kind:
             return None
-        about = y - 0.5 * self.edge
+        with numpy.errstate(all="ignore"):
+            return self._steady(y, y - 0.5 * self.edge)
+
+    def _steady(self, y, about):
         if self.kind == "shear":
             return self.numbers["shear rate"] * about
         if self.kind == "flow":
@@ -101,22 +111,27 @@ class Flow:
         """[(coefficient, bound of its error)] of least squares in these columns. Slabs move together, so that their errors
         may add up: the bound is their sum, as if they always did."""
         inside = slice(None) if inside is None else inside
-        values, errors = self.profile.data[name][inside], self.profile.errors(name)[inside]
+        values, errors = self.profile.column(name)[inside], self.profile.bars(name)[inside]
         weights = numpy.linalg.pinv(numpy.array([c[inside] for c in columns]).T)
-        return [(float(w @ values), float(abs(w) @ errors)) for w in weights]
+        return [(w @ values, abs(w) @ errors) for w in weights]
 
     def mean_stress(self, *names):
         """Mean over the rows from `observe: from` on, and its error."""
-        rows = numpy.mean([self.stress.data[n] for n in names], axis=0)[self.stress.data["step"] > self.begins]
+        rows = numpy.mean([self.stress.column(n) for n in names], axis=0)[self.stress.column("step") > self.begins]
         rows = rows[numpy.isfinite(rows)]
         return (rows.mean(), tables.blocked_error(rows)) if len(rows) else (math.nan, math.nan)
 
     def measured(self):
+        """Without what is no number: a quotient by 0, or of a column or a number that is not there."""
         if not self.kind:
             return []
+        with numpy.errstate(all="ignore"):
+            return [one for one in self._of_suspension(self._found()) if math.isfinite(one.value)]
+
+    def _found(self):
         if self.oscillates:
-            return self._of_suspension(self._response() + (self._moduli() if self.kind == "shear" else []))
-        return self._of_suspension({"walls": self._walls, "shear": self._shear, "flow": self._driven}[self.kind]())
+            return self._response() + (self._moduli() if self.kind == "shear" else [])
+        return {"walls": self._walls, "shear": self._shear, "flow": self._driven}[self.kind]()
 
     @property
     def is_suspension(self):
@@ -127,7 +142,7 @@ class Flow:
         What all of them add to the solvent is eta_r."""
         if not self.is_suspension:
             return found
-        told, loaded = [], self.numbers.get("... over that of the solvent", math.nan)
+        told, loaded = [], self.numbers["... over that of the solvent"]
         for one in found:
             known = math.isfinite(one.theory) and one.name not in EXACT
             fluid = self.fluid if one.name != "slip length" else "solvent alone"
@@ -164,19 +179,19 @@ class Flow:
             relative = abs(bend_error / bend)
             reach = math.sqrt(max(0.0, -top / bend))
             found += [Measured("largest velocity by the force", top, top_error, "a0/t0",
-                               self.numbers.get("largest velocity by the force", math.nan), "parabola"),
+                               self.numbers["largest velocity by the force"], "parabola"),
                       Measured("viscosity", -0.5 * self.force / bend, abs(0.5 * self.force / bend) * relative, "m/a0 t0", self.eta,
                                "curvature of the parabola")]
             if not applied:
                 found.append(Measured("slip length", reach - half, 0.5 * reach * (relative + abs(top_error / top)), "a0",
-                                      self.numbers.get("slip length", math.nan), "where the parabola is 0"))
+                                      self.numbers["slip length"], "where the parabola is 0"))
         if applied:
             inside = abs(about) < BULK * half
             slope = self.fit([one, about], inside=inside)[1]
-            found.append(Measured("shear rate in the bulk", *slope, "1/t0", self.numbers.get("effective shear rate", math.nan),
+            found.append(Measured("shear rate in the bulk", *slope, "1/t0", self.numbers["effective shear rate"],
                                   f"slope in the middle {100 * BULK:.0f} % of the gap"))
             found.append(Measured("slip length", half * (applied / slope[0] - 1.0), half * applied / slope[0]**2 * slope[1], "a0",
-                                  self.numbers.get("slip length", math.nan), "L/2 (rate of the walls/rate in the bulk - 1)"))
+                                  self.numbers["slip length"], "L/2 (rate of the walls/rate in the bulk - 1)"))
             if self.stress is not None and not self.force:
                 found.append(self._over(self.mean_stress("sigma_lower", "sigma_upper"), slope, "viscosity",
                                         "stress on the walls over the rate in the bulk"))
@@ -206,7 +221,7 @@ class Flow:
         if self.stress is None or "N1" not in self.stress.data:
             return []
         return [Measured("first normal stress difference", *self.mean_stress("N1"), "kT/a0³",
-                         self.numbers.get("first normal stress difference", math.nan), "mean in time")]
+                         self.numbers["first normal stress difference"], "mean in time")]
 
     def _dumbbells(self, rate):
         """Springs of a sheared box: their part of the viscosity, and their shape."""
@@ -214,11 +229,11 @@ class Flow:
         if self.stress is not None and "sigma_xy_spring" in self.stress.data and self.numbers.get("dumbbells", 0.0) > 0.0:
             value, error = self.mean_stress("sigma_xy_spring")
             found.append(Measured("viscosity of the springs", value / rate, error / abs(rate), "m/a0 t0",
-                                  self.numbers.get("viscosity of the springs", math.nan), "their stress over the rate"))
-        if self.shape_of_dumbbells is not None:
+                                  self.numbers["viscosity of the springs"], "their stress over the rate"))
+        if self.shape_of_dumbbells is not None and self.shape_of_dumbbells.rows:
             for column, name, unit in (("extension", "extension", ""), ("chi", "angle with the flow", "degrees")):
-                found.append(Measured(name, float(self.shape_of_dumbbells.data[column][0]), float(self.shape_of_dumbbells.errors(column)[0]),
-                                      unit, self.numbers.get(name, math.nan), "mean over dumbbells and time"))
+                found.append(Measured(name, self.shape_of_dumbbells.column(column)[0], self.shape_of_dumbbells.bars(column)[0],
+                                      unit, self.numbers[name], "mean over dumbbells and time"))
         return found
 
     # --- oscillation ---
@@ -227,10 +242,10 @@ class Flow:
         about = self.profile.data["y"] - 0.5 * self.edge
         inside = abs(about) < (BULK if self.kind == "walls" else 1.0) * 0.5 * self.edge
         columns = [numpy.ones_like(about), about]
-        applied = self.numbers.get("shear rate of the walls", self.numbers.get("shear rate", math.nan))
+        applied = self.numbers.get("shear rate of the walls", self.numbers["shear rate"])
         cosine, sine = (self.fit(columns, name, inside)[1] for name in ("vx_in_phase", "vx_out_of_phase"))
-        size = math.hypot(cosine[0], sine[0])
-        error = math.hypot(cosine[0] * cosine[1], sine[0] * sine[1]) / size
+        size = numpy.hypot(cosine[0], sine[0])
+        error = numpy.hypot(cosine[0] * cosine[1], sine[0] * sine[1]) / size
         theory = 1.0 + 0.0j
         if self.kind == "walls":
             weights = numpy.linalg.pinv(numpy.array([c[inside] for c in columns]).T)
@@ -238,7 +253,7 @@ class Flow:
         return [Measured("rate in the middle over that applied", size / applied, error / applied, "", abs(theory),
                          "first harmonic of the profile"),
                 Measured("its phase lag", math.degrees(math.atan2(sine[0], cosine[0])),
-                         math.degrees(math.hypot(cosine[0] * sine[1], sine[0] * cosine[1]) / size**2), "degrees",
+                         math.degrees(numpy.hypot(cosine[0] * sine[1], sine[0] * cosine[1]) / size**2), "degrees",
                          -math.degrees(math.atan2(theory.imag, theory.real)), "")]
 
     def wave_between_walls(self, about):
@@ -252,12 +267,12 @@ class Flow:
 
     def _moduli(self):
         """G' and G'' of stress = rate/omega (G'' cos + G' sin): period by period, from whose scatter the error comes."""
-        if self.stress is None or "sigma_xy" not in self.stress.data or "period" not in self.numbers:
+        if self.stress is None or not {"sigma_xy", "time"} <= set(self.stress.data) or "period" not in self.numbers:
             return []
         period, time = self.numbers["period"], self.stress.data["time"]
         every = time[1] - time[0] if len(time) > 1 else period
         rows, omega = round(period / every), 2.0 * math.pi / period
-        good = numpy.isfinite(self.stress.data["sigma_xy"]) & (self.stress.data["step"] > self.begins)
+        good = numpy.isfinite(self.stress.data["sigma_xy"]) & (self.stress.column("step") > self.begins)
         time, sigma = time[good] - 0.5 * every, self.stress.data["sigma_xy"][good]  # a row is the mean since the one before
         count = len(time) // rows if rows >= 8 and abs(rows * every - period) < 1e-6 * period else 0
         if count < 2:

@@ -130,9 +130,9 @@ def guides(run, kind):
     if "tube plateau of d^2(t)" in known:
         plateau = known["tube plateau of d^2(t)"]
         found.append((r"tube, $2L_\perp^2$ (Eq. 35)", lambda t: plateau, "-."))
-    bond, persistence = known.get("mean bond length"), known.get("effective persistence length")
-    if bond and persistence and persistence >= 0.8 * known.get("contour length", math.inf):
-        friction = known["vertex friction, without HI"] / bond
+    bond, persistence, friction = (known.get(name) for name in ("mean bond length", "effective persistence length", "vertex friction, without HI"))
+    if bond and persistence and friction and persistence >= 0.8 * known.get("contour length", math.inf):
+        friction /= bond
         # One interior point of a stiff filament, two components, no hydrodynamics, kT = 1.
         size = 1.538757 / persistence * (persistence / friction)**0.75
         found.append((r"$t^{3/4}$ of a stiff fiber, without hydrodynamics", lambda t: size * t**0.75 if t > 0.3 else 0.0, "--"))

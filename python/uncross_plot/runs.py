@@ -221,6 +221,8 @@ def _read_record(run, path):
         run.trouble.append(f"{path}: cannot be read: {_one_line(error)}")
 
 
+# Headings of `uncross check` whose rows follow from the scene's.
+DERIVED = ("Solvent", "Medium", "Dumbbells", "Walls", "Shear", "Flow by", "Bead", "Fibers", "Suspension", "SI units")
 # Name, symbol, value, unit, source; with SI units, name, symbol, value, unit, SI value, source.
 ROW = re.compile(r"  (.{38}) (.{9}) +(\S+)(?: (.{9}) (\S.*)| (\S.*))?")
 ROW_SI = re.compile(r"  (.{38}) (.{9}) +(\S+)(?: (.{9})(?: (.{17}) (\S.*)| (\S.*))?| (\S.*))?")
@@ -248,7 +250,7 @@ def _derive(run):
         if heading.startswith("The solvent beside") and line.startswith(("  right:", "  wrong:")):
             run.units_words.append(" ".join(line.split()))
         number = _number(line, bool(run.units))
-        if number and heading.startswith(("Solvent", "Walls", "Shear", "Flow by", "Fibers", "Suspension", "SI units")):
+        if number and heading.startswith(DERIVED):
             if not rows:
                 run.derived.append((heading, rows))
             rows.append(number)

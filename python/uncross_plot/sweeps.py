@@ -24,14 +24,17 @@ def is_sweep(path):
     return named and all(os.path.exists(os.path.join(folder, name)) for name in ("runs.csv", "summary.csv"))
 
 
-def _read(path):
-    """[{column: text}] of a table; ValueError if it has no line of names."""
+def _read(path, *needed):
+    """(names, [{column: text}]) of a table; ValueError if it has no line of names, or not the columns that are needed."""
     try:
         rows = list(csv.reader(read_table(path).splitlines()))
     except (csv.Error, ValueError) as error:
         raise ValueError(f"{path}: not a table of a sweep: {error}") from error
     if not rows or any(len(row) != len(rows[0]) for row in rows):
         raise ValueError(f"{path}: not a table of a sweep: rows of different lengths")
+    missing = [name for name in needed if name not in rows[0]]
+    if missing:
+        raise ValueError(f"{path}: not a table of a sweep: no column {missing[0]}")
     return rows[0], [dict(zip(rows[0], row)) for row in rows[1:]]
 
 
@@ -119,10 +122,8 @@ def _points(folder, rows):
 def page_of(path):
     """HTML of a sweep's page; ValueError if its tables are none."""
     folder = path if os.path.isdir(path) else os.path.dirname(path) or "."
-    names, rows = _read(os.path.join(folder, "summary.csv"))
-    _, made = _read(os.path.join(folder, "runs.csv"))
-    if RESULTS not in names or names.index(RESULTS) < 1:
-        raise ValueError(f"{folder}/summary.csv: not the summary of a sweep: no column {RESULTS}")
+    names, rows = _read(os.path.join(folder, "summary.csv"), "folder", RESULTS)
+    _, made = _read(os.path.join(folder, "runs.csv"), "folder", "seed", "exit_code", "status", "message")
     keys = names[1:names.index(RESULTS)] or [names[0]]
     results = [name for name in names[names.index(RESULTS) + 1:]
                if not name.endswith("_error") and any(math.isfinite(_number(row[name])) for row in rows)]

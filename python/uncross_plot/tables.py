@@ -29,6 +29,15 @@ class Table:
         scatter, blocks = self.data.get(name + "_error"), self.data.get(name + "_block_error")
         return scatter if blocks is None else numpy.where(numpy.isfinite(blocks), blocks, scatter)
 
+    def column(self, name):
+        """nan in each row if there is none."""
+        return self.data.get(name, numpy.full(self.rows, math.nan))
+
+    def bars(self, name):
+        """Errors of a column; nan in each row if it has none."""
+        errors = self.errors(name)
+        return numpy.full(self.rows, math.nan) if errors is None else errors
+
     @property
     def places(self):
         """The x of each row; 0 for the one row of a table without x."""
