@@ -358,7 +358,10 @@ static void test_bad_scenes(void **unused)
   refused(first_text, "=1", "=1");
   refused(first_text, "steps=", "steps=");
   refused(first_text, "box=[4, 4", "box=[4, 4");
+  const char *const twice[] = {"fibers.0.mass=2", "fibers.chain.mass=3"};
   uncross_error error;
+  assert_null(uncross_scene_parse("bad.yaml", first_text, twice, 2, &error));
+  assert_non_null(strstr(error.message, "'mass' is set already, by '--set fibers.0.mass=2'; allowed: one of them"));
   assert_null(uncross_scene_read("/nowhere.yaml", NULL, 0, &error));
   assert_int_equal(error.code, UNCROSS_BAD_INPUT);
   assert_non_null(strstr(error.message, "/nowhere.yaml"));
@@ -394,6 +397,11 @@ static void test_settings(void **unused)
   char *name = uncross_scene_get(scene, "fibers.1.name", NULL);
   assert_non_null(strstr(name, "loop"));
   uncross_free(name);
+
+  /* what was set is replaced by what is set later */
+  assert_int_equal(uncross_scene_set(scene, "solvent.per_cell", "6", &error), UNCROSS_OK);
+  assert_int_equal(uncross_scene_number(scene, "solvent.per_cell", &value, NULL), UNCROSS_OK);
+  assert_true(value == 6.0);
 
   /* a refused value leaves the scene as it was */
   assert_int_equal(uncross_scene_set(scene, "fibers.9.count", "1", &error), UNCROSS_BAD_INPUT);

@@ -81,6 +81,10 @@ ok $? "and so it is in a resumed run"
 gives 2 'solvent.per_cell is 3 there, 5 in the run so far' run "$dir/scene.yaml" -o "$dir/set" --resume --steps 8
 gives 0 'per_cell: 7' check "$dir/scene.yaml" --set solvent.per_cell=7
 gives 2 'per_cel' check "$dir/scene.yaml" --set solvent.per_cel=7
+gives 2 "--set fibers.a.mass=3: 'mass' is set already, by '--set fibers.0.mass=2'; allowed: one of them" check "$dir/scene.yaml" --set fibers.0.mass=2 --set fibers.a.mass=3
+gives 2 "'seed' is set already, by '--set seed=2'" run "$dir/scene.yaml" --out "$dir/never" --set seed=2 --set seed=2
+gives 2 "run: --steps 5 and --set steps=6 are one key; allowed: one of them" run "$dir/scene.yaml" --out "$dir/never" --steps 5 --set steps=6
+gives 2 "run: --seed 5 and --set seed=6 are one key; allowed: one of them" run "$dir/scene.yaml" --out "$dir/never" --set seed=6 --seed 5
 gives 2 'requires an argument' check "$dir/scene.yaml" --set
 for words in "export $dir/set/trajectory.h5" "oracle emit $dir/scene.yaml" "oracle trace $dir/scene.yaml"; do
   for option in -o --out; do

@@ -231,6 +231,26 @@ class SweepTest(FolderTest):
         (self.dir / "mine/notes.txt").write_text("mine\n")
         self.sweep(out=self.dir / "mine", code=2, says="holds notes.txt already")
 
+    def test_a_key_has_one_value(self):
+        """Of two values of one key one would be dropped without a word, by whatever names and options they are given."""
+        for words, says in ((("--grid", "fibers.0.mass=1,2", "--grid", "fibers.rods.mass=3,4"), "'mass' is set already, by '--set fibers.0.mass=1'"),
+                            (("--grid", "time_step=0.01,0.02", "--set", "time_step=0.01"), "'time_step' is set already"),
+                            (("--set", "fibers.0.mass=1", "--set", "fibers.rods.mass=2"), "'mass' is set already"),
+                            (("--grid", "steps=10,20", "--steps", "5"), "--steps 5: steps is a key of --grid"),
+                            (("--set", "steps=10", "--steps", "5"), "--steps 5: steps is a key of --set"),
+                            (("--set", "seed=9", "--seeds", "1"), "--seeds 1: seed is a key of --set"),
+                            (("--grid", "time_step=0.01,0.010"), "time_step=0.01 and time_step=0.010 are the same scene")):
+            with self.subTest(words=words):
+                self.sweep(*words, "--list", code=2, says=says)
+                self.assertFalse(self.out.exists())
+
+    def test_a_grid_of_steps_has_a_column_of_its_own(self):
+        self.sweep("--grid", "steps=300,400", "--set", "observe={}", "--quiet")
+        with open(self.out / "runs.csv", encoding="ascii") as file:
+            names = next(csv.reader(file))
+        self.assertEqual(len(set(names)), len(names))
+        self.assertEqual([read(self.out / "runs.csv")[name] for name in ("steps", "steps_done")], [["300", "400"]] * 2)
+
     def test_a_missing_package_is_named(self):
         (self.dir / "numpy.py").write_text("raise ModuleNotFoundError('gone', name='numpy')\n")
         done = subprocess.run(list(map(str, self.words())), capture_output=True, text=True, check=False,
