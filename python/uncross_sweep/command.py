@@ -39,7 +39,16 @@ def read_arguments(words):
     return parser.parse_args(_joined(words))
 
 
+def look_for_twice(options):
+    """An option and a key that it stands for: one of the two would be dropped. Two settings of one key `uncross check` refuses."""
+    for option, key, value in (("--steps", "steps", options.steps), ("--seeds", "seed", options.seeds)):
+        for other, texts in (("--grid", options.grid), ("--set", options.set)):
+            if value is not None and any(text.partition("=")[0] == key for text in texts):
+                raise grid.Refused(f"{option} {value}: {key} is a key of {other}, too; allowed: one of them")
+
+
 def make_sweep(options):
+    look_for_twice(options)
     points = grid.points_of([grid.read_axis(text) for text in options.grid])
     seeds = None if options.seeds is None else grid.read_seeds(options.seeds)
     sweep = grid.Sweep(grid.find_program(), options.scene, options.out, points, seeds, tuple(options.set), options.steps)
@@ -82,9 +91,9 @@ def write_results(sweep, runs):
         code = 0 if id(run) in done else "" if run.code is None else run.code
         stream, start = jobs.stream_of(run)
         listed.append({"folder": run.name, **run.point.values, "seed": run.seed, "stream": stream, "start_state": start, "exit_code": code, "status": status,
-                       "steps": steps, "state_hash": state, "message": "" if id(run) in done else run.message})
+                       "steps_done": steps, "state_hash": state, "message": "" if id(run) in done else run.message})
     averages.write_rows(sweep.out / "runs.csv",
-                        ["folder", *keys, "seed", "stream", "start_state", "exit_code", "status", "steps", "state_hash", "message"], listed)
+                        ["folder", *keys, "seed", "stream", "start_state", "exit_code", "status", "steps_done", "state_hash", "message"], listed)
     rows = []
     for point in sweep.points:
         finished = [run for run in runs if run.point is point and id(run) in done]

@@ -64,6 +64,7 @@ class Point:
     values: dict  # key: value, as text
     name: str  # of its folder
     fingerprint: str = ""
+    scene: str = ""  # all keys with their values
     seed: int = 0  # of the scene
     steps: int = 0
     start: int = 0  # observe.from
@@ -116,6 +117,11 @@ class Sweep:
             if done.returncode != 0:
                 raise Refused(done.stderr.strip().removeprefix("uncross: ") or f"check ends with {done.returncode}")
             read_report(point, done.stdout)
+        known = {}
+        for point in self.points:
+            same = known.setdefault(point.scene, point)
+            if same is not point:
+                raise Refused(f"--grid: {same.name} and {point.name} are the same scene; allowed: values that differ")
 
     def settings(self, point, more=()):
         given = [*self.sets, *(f"{key}={value}" for key, value in point.values.items()), *more]
@@ -142,6 +148,7 @@ def read_report(point, report):
         return found[1] if found else absent
 
     point.fingerprint = find(r"\(fingerprint ([0-9a-f]{16})\)$")
+    point.scene = report.partition("\n\n")[2].partition("\n\n")[0]
     point.seed = int(find(r"^seed: (\d+)$"))
     point.steps = int(find(r"^steps: (\d+)$"))
     point.start = int(find(r"^observe:\n  from: (\d+)$", "0"))

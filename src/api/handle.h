@@ -12,7 +12,7 @@
 struct uncross_scene {
   char *name, *text; /* text: NULL if it is made of settings alone */
   char **setting;    /* [settings] "path=value" */
-  size_t settings;
+  size_t settings, given; /* given: so many of them when the scene was read, which name each key once */
   bool has_steps, has_seed;
   uint64_t steps, seed; /* instead of the text's */
   uncross_start_watch *watch;

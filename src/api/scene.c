@@ -10,7 +10,7 @@
 
 static struct scene_settings settings_of(const struct uncross_scene *scene)
 {
-  return (struct scene_settings){scene->settings, (const char *const *)scene->setting};
+  return (struct scene_settings){scene->settings, (const char *const *)scene->setting, scene->given};
 }
 
 /* How a scene is read: see struct scene_source. */
@@ -106,6 +106,8 @@ static uncross_scene *make_with(const char *name, const char *text, size_t size,
   int code = scene ? UNCROSS_OK : fail(error, UNCROSS_NO_MEMORY, "no memory for this scene", NULL);
   for (size_t k = 0; code == UNCROSS_OK && k < count; k++)
     code = append(scene, strdup(settings[k]), error);
+  if (scene)
+    scene->given = scene->settings;
   if (code == UNCROSS_OK)
     code = check(scene, false, true, error); /* uncross_scene_set_steps may follow, or a resume without the snapshot */
   if (code == UNCROSS_OK)
@@ -179,8 +181,8 @@ static bool can_be_set(const struct uncross_scene *scene, const char *setting, s
   struct tree tree = {.root = NULL};
   bool ok = !scene->text || yaml_read(&tree, scene->name, scene->text, strlen(scene->text), message);
   for (size_t k = 0; ok && k < scene->settings; k++)
-    ok = tree_set_option(&tree, &scene_keys, scene->setting[k], message);
-  ok = ok && tree_set_option(&tree, &scene_keys, setting, message);
+    ok = tree_set_option(&tree, &scene_keys, scene->setting[k], k < scene->given, message);
+  ok = ok && tree_set_option(&tree, &scene_keys, setting, false, message);
   tree_free(&tree);
   return ok;
 }

@@ -34,7 +34,7 @@ static enum exit_code told(enum exit_code code)
 
 static enum exit_code check(const struct arguments *a)
 {
-  const struct scene_settings settings = {a->sets, a->set};
+  const struct scene_settings settings = {a->sets, a->set, a->sets};
   struct scene scene;
   struct units units;
   struct si_scale si;

@@ -210,6 +210,18 @@ static bool takes_many(const struct command *c)
   return strstr(c->files, "...") != NULL;
 }
 
+/* --steps and --seed beside --set of the same key: one of the two values would be dropped. */
+static bool is_set_twice(const struct arguments *a, const char *key, bool has, uint64_t value, char *text, size_t size)
+{
+  const size_t length = strlen(key);
+  for (size_t k = 0; has && k < a->sets; k++)
+    if (strncmp(a->set[k], key, length) == 0 && a->set[k][length] == '=') {
+      snprintf(text, size, "--%s %" PRIu64 " and --set %s are one key; allowed: one of them", key, value, a->set[k]);
+      return true;
+    }
+  return false;
+}
+
 static enum exit_code check_words(enum command_code command, int files, const struct arguments *a)
 {
   const struct command *c = &commands[command];
@@ -223,6 +235,10 @@ static enum exit_code check_words(enum command_code command, int files, const st
     if (option_rows[k].needed >> command & 1u &&
         !*(const char *const *)(const void *)((const char *)a + option_rows[k].at))
       return usage_error(c->name, "%s: --%s %s is missing", c->name, option_rows[k].name, option_rows[k].argument);
+  char twice[256];
+  if (command == COMMAND_RUN && (is_set_twice(a, "steps", a->has_steps, a->steps, twice, sizeof twice) ||
+                                 is_set_twice(a, "seed", a->has_seed, a->seed, twice, sizeof twice)))
+    return usage_error(c->name, "%s: %s", c->name, twice);
   return EXIT_DONE;
 }
 

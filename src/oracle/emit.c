@@ -91,8 +91,8 @@ bool oracle_edges(bool contacts, struct pack *pack, struct message *message)
 {
   static const char *const in_turns[] = EDGES_SETTINGS, *const at_once[] = EDGES_EVENT_SETTINGS;
   const struct scene_settings settings = contacts
-                                             ? (struct scene_settings){sizeof at_once / sizeof *at_once, at_once}
-                                             : (struct scene_settings){sizeof in_turns / sizeof *in_turns, in_turns};
+                                             ? (struct scene_settings){sizeof at_once / sizeof *at_once, at_once, 0}
+                                             : (struct scene_settings){sizeof in_turns / sizeof *in_turns, in_turns, 0};
   struct scene scene;
   memset(pack, 0, sizeof *pack);
   if (!scene_make(&settings, &scene, message))

@@ -163,7 +163,7 @@ static bool read_tree(const struct scene_source *r, struct tree *tree)
   if (r->text && !yaml_read(tree, r->path, r->text, r->size, r->message))
     return false;
   for (size_t i = 0; r->settings && i < r->settings->count; i++)
-    if (!tree_set_option(tree, r->keys, r->settings->option[i], r->message))
+    if (!tree_set_option(tree, r->keys, r->settings->option[i], i < r->settings->once, r->message))
       return false;
   if (!tree->root)
     return message_at(r->message, r->path, 1, 1, "the scene is empty; a scene is a YAML mapping, see docs/scene.md");

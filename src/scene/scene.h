@@ -42,6 +42,7 @@ struct scene {
 struct scene_settings {
   size_t count;
   const char *const *option; /* [count] */
+  size_t once; /* the first so many were given together: a key that two of them name is refused. Later ones replace */
 };
 
 /* Reads, checks and finishes a scene. Missing keys take their defaults. settings may be NULL. On failure returns false

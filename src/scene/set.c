@@ -16,6 +16,7 @@ struct way {
   const char *source;
   const char *rest; /* of the path, still to go */
   const char *value;
+  bool once;
   char part[PART_SIZE]; /* that was taken last */
   struct message *message;
 };
@@ -51,6 +52,9 @@ static bool put(const struct way *w, struct node *mapping, struct node *node)
   for (size_t i = 0; i < mapping->count; i++) {
     const char *name = node_text(mapping->key[i]);
     if (name && strcmp(name, w->part) == 0) {
+      if (w->once && mapping->item[i]->line == 0) /* of no file */
+        return message_set(w->message, "%s: '%s' is set already, by '%s'; allowed: one of them", w->source, w->part,
+                           mapping->item[i]->source);
       mapping->item[i] = node;
       return true;
     }
@@ -143,9 +147,9 @@ static bool set_in_mapping(struct way *w, struct node *mapping, const struct key
 }
 
 bool tree_set(struct tree *tree, const struct key_table *table, const char *source, const char *path, const char *value,
-              struct message *message)
+              bool once, struct message *message)
 {
-  struct way way = {tree, tree_text(tree, source, strlen(source)), path, value, "", message};
+  struct way way = {tree, tree_text(tree, source, strlen(source)), path, value, once, "", message};
   if (way.source && !tree->root)
     tree->root = new_node(&way, NODE_MAPPING);
   if (!way.source || !tree->root)
@@ -155,7 +159,8 @@ bool tree_set(struct tree *tree, const struct key_table *table, const char *sour
   return set_in_mapping(&way, tree->root, table);
 }
 
-bool tree_set_option(struct tree *tree, const struct key_table *table, const char *option, struct message *message)
+bool tree_set_option(struct tree *tree, const struct key_table *table, const char *option, bool once,
+                     struct message *message)
 {
   const char *equals = strchr(option, '=');
   const size_t length = strlen(option) + sizeof "--set ";
@@ -165,7 +170,7 @@ bool tree_set_option(struct tree *tree, const struct key_table *table, const cha
   char *source = text, *path = text + length;
   snprintf(source, length, "--set %s", option);
   snprintf(path, length, "%.*s", equals ? (int)(equals - option) : 0, option);
-  const bool ok = equals ? tree_set(tree, table, source, path, equals + 1, message)
+  const bool ok = equals ? tree_set(tree, table, source, path, equals + 1, once, message)
                          : message_set(message, "%s: no '='; allowed: --set path=value", source);
   free(text);
   return ok;

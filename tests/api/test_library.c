@@ -358,7 +358,7 @@ static void test_bad_scenes(void **unused)
   refused(first_text, "=1", "=1");
   refused(first_text, "steps=", "steps=");
   refused(first_text, "box=[4, 4", "box=[4, 4");
-  const char *const twice[] = {"fibers.0.mass=2", "fibers.chain.mass=3"};
+  const char *const twice[] = {"fibers.0.mass=2", "fibers.rod.mass=3"};
   uncross_error error;
   assert_null(uncross_scene_parse("bad.yaml", first_text, twice, 2, &error));
   assert_non_null(strstr(error.message, "'mass' is set already, by '--set fibers.0.mass=2'; allowed: one of them"));

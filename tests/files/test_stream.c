@@ -42,7 +42,7 @@ static void prepare(struct begun *b, const char *snapshot)
   memcpy(option, settings, sizeof option);
   snprintf(start, sizeof start, "start.snapshot=%s", snapshot ? snapshot : "");
   option[SETTINGS - 1] = start;
-  if (!scene_make(&(struct scene_settings){SETTINGS - !snapshot, option}, &b->scene, &message))
+  if (!scene_make(&(struct scene_settings){SETTINGS - !snapshot, option, 0}, &b->scene, &message))
     fail_msg("%s", message.text);
   b->observers = observers_create(&b->scene.observe, &b->scene.model);
   assert_true(state_alloc(&b->state, &b->scene.model) && work_alloc(&b->work, &b->scene.model) && b->observers);

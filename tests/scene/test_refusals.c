@@ -224,7 +224,7 @@ static bool make_scene(const char *both, const char *more, struct message *messa
 {
   char text[2048];
   const char *option[MOST_SETTINGS];
-  struct scene_settings settings = {0, option};
+  struct scene_settings settings = {0, option, 0};
   struct scene scene;
   snprintf(text, sizeof text, "%s%s", both, more);
   for (char *word = strtok(text, " "); word && settings.count < MOST_SETTINGS; word = strtok(NULL, " "))

@@ -584,15 +584,15 @@ static void fingerprints_stay(void **unused)
     uint64_t fingerprint;
     struct scene_settings back;
   } rows[] = {
-      {"scenes/chains.yaml", 0xe900124ac639260b, {0, NULL}},
-      {"scenes/dense-crossable.yaml", 0x93d2febcb2ceecb8, {2, paper}},
-      {"scenes/dense.yaml", 0xd42870592b905d33, {2, paper}},
-      {"scenes/rings.yaml", 0x60247d7e46679b27, {1, paper}},
-      {"scenes/semidilute.yaml", 0x4fa44d7e597c2d40, {0, NULL}},
-      {"scenes/solvent.yaml", 0xfb58264a361f4f30, {1, paper}},
-      {"reference-data/coarse.yaml", 0x42df1dd8c37a4632, {1, pack}},
-      {"reference-data/dense.yaml", 0x5efa7dc91f00a88c, {1, pack}},
-      {"reference-data/mixed.yaml", 0xd4aa0ded08982ac7, {1, pack}},
+      {"scenes/chains.yaml", 0xe900124ac639260b, {0, NULL, 0}},
+      {"scenes/dense-crossable.yaml", 0x93d2febcb2ceecb8, {2, paper, 0}},
+      {"scenes/dense.yaml", 0xd42870592b905d33, {2, paper, 0}},
+      {"scenes/rings.yaml", 0x60247d7e46679b27, {1, paper, 0}},
+      {"scenes/semidilute.yaml", 0x4fa44d7e597c2d40, {0, NULL, 0}},
+      {"scenes/solvent.yaml", 0xfb58264a361f4f30, {1, paper, 0}},
+      {"reference-data/coarse.yaml", 0x42df1dd8c37a4632, {1, pack, 0}},
+      {"reference-data/dense.yaml", 0x5efa7dc91f00a88c, {1, pack, 0}},
+      {"reference-data/mixed.yaml", 0xd4aa0ded08982ac7, {1, pack, 0}},
   };
   for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
     struct scene s;
@@ -609,7 +609,7 @@ static void fingerprints_stay(void **unused)
 
 static bool read_set(const char *const *options, size_t count, struct scene *scene, struct message *message)
 {
-  const struct scene_settings settings = {count, options};
+  const struct scene_settings settings = {count, options, 0};
   return scene_read_set("scenes/rings.yaml", &settings, scene, message);
 }
 
@@ -665,7 +665,7 @@ static void settings_are_as_the_file(void **unused)
   free(twice);
   scene_free(&again);
   scene_free(&s);
-  assert_true(scene_read_set("scenes/semidilute.yaml", &(struct scene_settings){0, NULL}, &s, &message));
+  assert_true(scene_read_set("scenes/semidilute.yaml", &(struct scene_settings){0, NULL, 0}, &s, &message));
   assert_non_null(strstr(s.text, "# ")); /* the file's own text, comments and all */
   assert_null(strstr(s.text, "effective scene"));
   scene_free(&s);
@@ -739,7 +739,7 @@ static void settings_make_a_scene(void **unused)
       "observe.dynamics.every=10",
       "crossing.rule=sequential",
   };
-  const struct scene_settings settings = {sizeof options / sizeof *options, options};
+  const struct scene_settings settings = {sizeof options / sizeof *options, options, 0};
   struct scene s, file = read_with(0, ""), again;
   struct message message;
   if (!scene_make(&settings, &s, &message))
@@ -754,10 +754,10 @@ static void settings_make_a_scene(void **unused)
   scene_free(&s);
   scene_free(&file);
   scene_free(&again);
-  const struct scene_settings few = {2, options};
+  const struct scene_settings few = {2, options, 0};
   assert_false(scene_make(&few, &s, &message));
   assert_non_null(strstr(message.text, "key 'steps' is missing"));
-  const struct scene_settings none = {0, NULL};
+  const struct scene_settings none = {0, NULL, 0};
   assert_false(scene_make(&none, &s, &message));
 }
 
@@ -821,7 +821,7 @@ static void many_kinds(void **unused)
   FILE *file = fopen(path, "w");
   fwrite(text, 1, used, file);
   fclose(file);
-  const struct scene_settings settings = {KINDS, options};
+  const struct scene_settings settings = {KINDS, options, 0};
   if (!scene_read_set(path, &settings, &s, &message))
     fail_msg("%s", message.text);
   for (uint32_t k = 0; k < s.model.kinds; k++)
