@@ -11,7 +11,7 @@ import unittest
 
 sys.dont_write_bytecode = True  # nothing is left in the source tree
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from support import FolderTest, uncross  # noqa: E402
+from support import TOP, FolderTest, uncross  # noqa: E402
 
 SCENE = """box: [8, 8, 8]
 time_step: 0.01
@@ -37,7 +37,20 @@ fibers: [{{name: tube, count: {count}, vertices: 2, mass: 1, bond_length: 0.5, s
 """
 
 
+COUNTS = TOP / "tests/counts"
+
+
 class Head(FolderTest):
+    def test_time_goes_with_counted_instructions(self):
+        """What a particle takes in a step, over its instructions (tests/counts/baseline.txt, counted by callgrind): one number
+        in all fluids, within a factor of 2 of 0.2 ns, for scenes with next to no vertices."""
+        counted = dict(re.findall(r"^(\S+) +step_advance +particle +(\S+)$", (COUNTS / "baseline.txt").read_text(), re.M))
+        for name in ("solvent", "at-a", "at-plus-a", "couette", "shear", "dumbbells", "pairs", "dpd"):
+            told = uncross("check", COUNTS / f"{name}.yaml").stdout
+            with self.subTest(name=name):
+                said = float(re.search(r"from (\S+) ns per solvent particle", told)[1])
+                self.assertTrue(0.1 < said / float(counted[name]) < 0.4, (said, counted[name]))
+
     def head(self, text):
         (self.dir / "scene.yaml").write_text(text)
         done = uncross("check", self.dir / "scene.yaml")
