@@ -141,10 +141,11 @@ double check_medium_vertex_cost(const struct model *m)
   return m->vertices > 0 ? sum / m->vertices : 0.0;
 }
 
+/* Per pair: the search, the bath's action on those that are chosen, and forces (with many bodies two searches). */
 double check_medium_cost(const struct model *m)
 {
   const double pairs = pairs_per_particle(m);
   const double chosen = bath_draw_of(m->medium.draw)->chooses ? m->medium.rate * m->time_step : 1.0;
-  const double forces = model_repels(m) ? 100.0 + 25.0 * pairs : 0.0;
-  return m->medium.kind == MEDIUM_PAIRS ? 150.0 + pairs * (20.0 + 15.0 * chosen) + forces : 0.0;
+  const double forces = !model_repels(m) ? 0.0 : m->medium.many.repulsion != 0.0 ? 65.0 : 40.0;
+  return m->medium.kind == MEDIUM_PAIRS ? 100.0 + pairs * (25.0 + 100.0 * chosen + forces) : 0.0;
 }

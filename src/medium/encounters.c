@@ -88,6 +88,15 @@ static bool list_pairs(const struct near_search *s, struct near_pairs *p)
   return true;
 }
 
+double encounters_expected(const struct model *m)
+{
+  const double members = (double)m->solvent.particles + m->vertices, chosen = m->medium.rate * m->time_step;
+  if (m->medium.kind != MEDIUM_PAIRS)
+    return 0.0;
+  const double pairs = members * (members / box_volume(&m->box)) * (2.0 / 3.0 * 3.14159265358979323846);
+  return bath_draw_of(m->medium.draw)->chooses && chosen < 1.0 ? chosen * pairs : pairs;
+}
+
 bool encounters_find(const struct model *model, struct medium *medium, uint64_t step)
 {
   struct choosing how = {bath_draw_of(model->medium.draw), bath_weight_of(model->medium.weight),

@@ -55,7 +55,7 @@ struct medium {
 bool medium_alloc(struct medium *medium, const struct model *model, const struct fluid *fluid);
 void medium_free(struct medium *medium);
 
-/* Bytes that medium_alloc allocates, before lists grow. */
+/* Bytes that medium_alloc allocates, that the list of pairs grows to, and that repulsion_measure takes for a while. */
 uint64_t medium_bytes(const struct model *model);
 
 /* The bath's action of step number `step`. Particles are streamed before. False, with the fault recorded, if a flight
@@ -72,6 +72,10 @@ void members_gather(const struct state *state, const struct model *model, struct
 
 /* Writes velocities back; particles are then in memory as the members are. */
 void members_scatter(struct state *state, const struct medium *medium);
+
+/* How many pairs that list has in the mean, of an ideal gas of members, where the draw chooses at most so many: each
+ * has 4 pi/3 others within 1 a0 for each member in a cell. 0 without a bath of pairs. */
+double encounters_expected(const struct model *model);
 
 /* Lists all pairs on which the bath acts in this step, in no particular order. False if memory is short. */
 bool encounters_find(const struct model *model, struct medium *medium, uint64_t step);

@@ -138,7 +138,8 @@ class Memory(unittest.TestCase):
             self.assertEqual(code, 0, said)
             print(f"# {scene.stem}: memory {memory:.1f} MiB, said {wanted:.1f}")
             factor = 1.1 if "profile" in scene.stem else FACTOR  # all of it is memory of observables, and of the program
-            self.assertTrue(1 / factor < memory / wanted <= 1.0, (scene, memory, wanted))  # "at most"
+            with self.subTest(scene=scene.stem):
+                self.assertTrue(1 / factor < memory / wanted <= 1.0, (memory, wanted))  # "at most"
 
 
 if __name__ == "__main__":
