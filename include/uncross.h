@@ -102,8 +102,9 @@ typedef struct uncross_scene uncross_scene;
 
 /* Reads a scene file. settings: [count] texts "path=value" that replace or add keys, e.g. "solvent.per_cell=5",
  * "fibers.0.count=12" (or by name: "fibers.rods.count=12"), "box=[8, 8, 8]". A value is a word, a number, or a list of
- * them; a section is set key by key; a key that two settings name is refused. NULL, with an error, if the file cannot be read or the scene is refused. A
- * snapshot that the scene starts from is looked for when a run begins, not before: a resume does not need it. */
+ * them; a section is set key by key; a key that two settings name is refused. NULL, with an error, if the file cannot
+ * be read or the scene is refused. A snapshot that the scene starts from is looked for when a run begins, not before: a
+ * resume does not need it. */
 UNCROSS_API uncross_scene *uncross_scene_read(const char *path, const char *const *settings, size_t count,
                                               uncross_error *error);
 

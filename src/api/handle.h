@@ -10,8 +10,8 @@
 
 /* A scene is what was said; it is read anew by each user, so that no two simulations share memory. */
 struct uncross_scene {
-  char *name, *text; /* text: NULL if it is made of settings alone */
-  char **setting;    /* [settings] "path=value" */
+  char *name, *text;      /* text: NULL if it is made of settings alone */
+  char **setting;         /* [settings] "path=value" */
   size_t settings, given; /* given: so many of them when the scene was read, which name each key once */
   bool has_steps, has_seed;
   uint64_t steps, seed; /* instead of the text's */
