@@ -5,6 +5,7 @@
 
 #include "base/text.h"
 #include "files/output.h"
+#include "system/shear.h"
 #include "version.h"
 
 #define MOST_MEMORY ((uint64_t)1 << 28) /* bytes, of observers that are asked for their tables */
@@ -49,6 +50,18 @@ static bool hold_table(void *context, const struct observe_table *table)
   return true;
 }
 
+/* The scene becomes that of the run, with its seed, stream and images. */
+static void check_run(struct complete *c, struct scene *scene, const struct checkpoint_head *head)
+{
+  const struct folder folder = {c->folder, FOLDER_BY_NAME};
+  struct message message;
+  scene->seed = head->seed;
+  scene->model.seed = head->stream.key;
+  shear_begin(&scene->model, head->slide);
+  if (!output_is_of_run(scene, &folder, &message))
+    complain(c, &message);
+}
+
 /* With the observers as they were when the checkpoint was written. */
 static void check_ends(struct complete *c, const struct scene *scene, struct observers *observers,
                        const char *checkpoint, bool finished)
@@ -84,6 +97,7 @@ enum condition complete_check(const char *folder, const char *checkpoint, const 
         wish->averages && observers_bytes(&scene.observe, &scene.model, &scratch) + scratch <= MOST_MEMORY;
     struct observers *observers = small ? observers_create(&scene.observe, &scene.model) : NULL;
     output_files(&scene, observers, expect_file, &c);
+    check_run(&c, &scene, &f->about.summary.head);
     if (observers && wish->whole && c.condition == CONDITION_WHOLE)
       check_ends(&c, &scene, observers, checkpoint, wish->finished);
     observers_free(observers);

@@ -21,7 +21,8 @@ struct frames_about {
   bool steps;      /* steps are stored */
   bool velocities;
   char unfit[256]; /* why no run starts from a trajectory; empty: it may */
-  bool has_stream; /* a trajectory of this program */
+  bool has_stream; /* a trajectory of this program: it tells its seed and stream */
+  uint64_t seed;   /* of its scene */
   uint64_t stream; /* of its random numbers */
   uint64_t slide;  /* of a sheared box's images at step 0: model.shear.slid */
   uint64_t frames;

@@ -52,8 +52,9 @@ static void read_creator(hid_t file, struct frames_about *about)
 static void read_stream(hid_t file, struct frames_about *about)
 {
   hid_t parameters = h5_open_group(file, "parameters"), own = h5_open_group(parameters, "uncross");
-  about->has_stream = own >= 0 && (h5_get(own, "stream", H5T_NATIVE_UINT64, 0, &about->stream) ||
-                                   h5_get(own, "seed", H5T_NATIVE_UINT64, 0, &about->stream));
+  about->has_stream = own >= 0 && h5_get(own, "seed", H5T_NATIVE_UINT64, 0, &about->seed);
+  if (!about->has_stream || !h5_get(own, "stream", H5T_NATIVE_UINT64, 0, &about->stream))
+    about->stream = about->seed;
   if (own < 0 || !h5_get(own, "slide", H5T_NATIVE_UINT64, 0, &about->slide))
     about->slide = 0;
   h5_close(own);

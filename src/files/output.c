@@ -3,6 +3,8 @@
 #include <inttypes.h>
 #include <stdio.h>
 
+#include "files/same_run.h"
+
 /* Columns of the time series that the scene asks for, 0 if it does not or this is none. */
 static size_t wanted_columns(const struct scene *scene, int which, const char *names[OBSERVE_MOST_COLUMNS])
 {
@@ -98,7 +100,16 @@ static struct trajectory_options options_of(const struct scene *scene, const str
                                      .velocities = scene->trajectory_velocities,
                                      .seed = scene->seed,
                                      .stream = scene->model.seed,
+                                     .fingerprint = scene->fingerprint,
                                      .folder = folder};
+}
+
+bool output_is_of_run(const struct scene *scene, const struct folder *folder, struct message *message)
+{
+  char path[4096];
+  folder_path(folder, "trajectory.h5", path, sizeof path);
+  const struct trajectory_options options = options_of(scene, folder);
+  return !folder_has(folder, "trajectory.h5") || same_run_trajectory(path, &scene->model, &options, message);
 }
 
 bool output_whole(const struct scene *scene, const struct observers *observers, const struct folder *folder,
@@ -119,9 +130,10 @@ bool output_whole(const struct scene *scene, const struct observers *observers, 
   char path[4096];
   folder_path(folder, "trajectory.h5", path, sizeof path);
   const struct trajectory_options options = options_of(scene, folder);
-  return scene->trajectory_every == 0 || frames_end == 0 || !trajectory_find_end(path, frames_end - 1, &found) ||
-         (same_end(folder, "trajectory.h5", found, frames_end, "move it away to begin another", message) &&
-          trajectory_fits(path, &scene->model, &options, message));
+  return scene->trajectory_every == 0 ||
+         (trajectory_fits(path, &scene->model, &options, message) &&
+          (frames_end == 0 || !trajectory_find_end(path, frames_end - 1, &found) ||
+           same_end(folder, "trajectory.h5", found, frames_end, "move it away to begin another", message)));
 }
 
 /* --- what a run writes ------------------------------------------------------------------------------------------- */

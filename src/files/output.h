@@ -28,8 +28,13 @@ void output_files(const struct scene *scene, const struct observers *observers,
 /* Removes them. */
 void output_remove(const struct scene *scene, const struct observers *observers, const struct folder *folder);
 
-/* True if tables and trajectory reach as far as the checkpoint from which the observers were filled; frames_end: from
- * its head. Otherwise rows or frames would be missing for good. Changes nothing. */
+/* True if there is no trajectory, or it is of the run of this scene, whose seed and stream are those of the run: as far
+ * as it can be read. Else with a message. */
+bool output_is_of_run(const struct scene *scene, const struct folder *folder, struct message *message);
+
+/* True if the trajectory is of this run, and tables and trajectory reach as far as the checkpoint from which the
+ * observers were filled; frames_end: from its head. Otherwise rows or frames would be missing for good. Changes
+ * nothing. */
 bool output_whole(const struct scene *scene, const struct observers *observers, const struct folder *folder,
                   uint64_t frames_end, struct message *message);
 

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "files/frames.h"
+#include "files/structure.h"
 #include "scene/differ.h"
 
 /* Why the scenes of a run and of its resume are not the same: the key, if it can be found. */
@@ -57,5 +57,62 @@ enum same_run same_run_as_begun(const struct scene *scene, const char *path, con
   if (known)
     scene_free(&then);
   frames_close(f);
+  return same;
+}
+
+/* --- frames ------------------------------------------------------------------------------------------------------ */
+
+#define OTHERWISE "put the run's own file back, or move this one away"
+
+/* A scene that cannot be read tells nothing. */
+static bool same_scene(const struct frames *frames, uint64_t fingerprint, struct message *message)
+{
+  struct scene then;
+  struct message ignored;
+  if (fingerprint == 0 || !frames->scene)
+    return true;
+  errno = 0;
+  if (!scene_read_text_numbers(frames->path, frames->scene, strlen(frames->scene), &then, &ignored))
+    return errno != ENOMEM || message_unread(message, "%s: no memory to compare its scene", frames->path);
+  const uint64_t its = then.fingerprint;
+  scene_free(&then);
+  return its == fingerprint ||
+         message_set(message,
+                     "%s: is of another run: its scene is another one, of the fingerprint %016" PRIx64
+                     ", the run's %016" PRIx64 "; " OTHERWISE,
+                     frames->path, its, fingerprint);
+}
+
+bool same_run_frames(const struct frames *frames, const struct model *model, const struct trajectory_options *options,
+                     struct message *message)
+{
+  const struct frames_about *about = &frames->about;
+  const struct {
+    const char *name;
+    uint64_t its, ours;
+  } number[] = {{"seed", about->seed, options->seed},
+                {"stream", about->stream, options->stream},
+                {"slide", about->slide, model->shear.slid}};
+  struct message why;
+  if (!about->has_stream)
+    return message_set(message, "%s: is of another run: not one of this program; " OTHERWISE, frames->path);
+  for (size_t k = 0; k < sizeof number / sizeof *number; k++)
+    if (number[k].its != number[k].ours)
+      return message_set(message, "%s: is of another run: its %s is %" PRIu64 ", the run's is %" PRIu64 "; " OTHERWISE,
+                         frames->path, number[k].name, number[k].its, number[k].ours);
+  if (!same_scene(frames, options->fingerprint, message))
+    return false;
+  return !structure_differs(&frames->structure, model, &why) ||
+         message_set(message, "%s: is of another run: %s; " OTHERWISE, frames->path, why.text);
+}
+
+bool same_run_trajectory(const char *path, const struct model *model, const struct trajectory_options *options,
+                         struct message *message)
+{
+  enum h5_trouble trouble;
+  struct message ignored;
+  struct frames *frames = frames_open(path, &trouble, &ignored);
+  const bool same = !frames || same_run_frames(frames, model, options, message);
+  frames_close(frames);
   return same;
 }

@@ -1,7 +1,8 @@
-/* Whether a checkpoint is of the run that is to be resumed: what a resumed run keeps, whoever says otherwise. */
+/* Whether files are of one run: what a resumed run keeps, whoever says otherwise. */
 #ifndef UNCROSS_FILES_SAME_RUN_H
 #define UNCROSS_FILES_SAME_RUN_H
 
+#include "files/frames.h"
 #include "files/snapshot.h"
 #include "scene/scene.h"
 
@@ -17,5 +18,14 @@ enum same_run { SAME_RUN, OTHER_RUN, SAME_RUN_UNKNOWN };
  * than one about numbers. With a message that names the key, or says why the file cannot be compared. */
 enum same_run same_run_as_begun(const struct scene *scene, const char *path, const uint64_t *seed,
                                 struct message *message);
+
+/* Whether frames are of this run, as far as their file tells: seed, stream, slide, scene, and particles. scene in the
+ * options: by its fingerprint. False, with a message that names what differs. */
+bool same_run_frames(const struct frames *frames, const struct model *model, const struct trajectory_options *options,
+                     struct message *message);
+
+/* The same of a trajectory's file; true if it cannot be read. */
+bool same_run_trajectory(const char *path, const struct model *model, const struct trajectory_options *options,
+                         struct message *message);
 
 #endif

@@ -79,6 +79,7 @@ struct trajectory_options {
   bool solvent; /* frames hold the solvent, else only the vertices */
   bool velocities;
   uint64_t seed, stream;
+  uint64_t fingerprint;        /* of the scene; 0: frames are not held against it */
   const struct folder *folder; /* a run's: the path's last part must be a file of this folder, and no link; or NULL */
 };
 
@@ -106,7 +107,7 @@ int trajectory_descriptor(const struct trajectory *trajectory);
 uint64_t trajectory_end(const struct trajectory *trajectory);
 /* The same of a file, counting frames up to a step only; false if it is not there, is damaged, or is in use. */
 bool trajectory_find_end(const char *path, uint64_t keep_to_step, uint64_t *end);
-/* False if a readable file has frames of other particles than asked for, with a message. */
+/* False if a readable file has frames of another run, or of other particles than asked for, with a message. */
 bool trajectory_fits(const char *path, const struct model *model, const struct trajectory_options *options,
                      struct message *message);
 /* Closes it, NULL too; the handle is freed in any case. False, with a message, if data could not be written. */

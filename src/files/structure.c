@@ -262,14 +262,6 @@ bool structure_read(hid_t particles, hid_t connectivity, const int64_t *id, uint
   return ok;
 }
 
-bool structure_is_of(const struct structure *s, const struct model *model)
-{
-  bool same = s->bonds == model->bonds && s->particles >= model->vertices;
-  for (uint32_t i = 0; same && i < s->particles; i++)
-    same = s->next[i] == (i < model->vertices ? model->next[i] : -1);
-  return same;
-}
-
 /* --- whether it is that of a model ------------------------------------------------------------------------------- */
 
 static void tell_end(int32_t vertex, char *text, size_t size)

@@ -45,9 +45,6 @@ bool structure_read(hid_t particles, hid_t connectivity, const int64_t *id, uint
                     struct message *why);
 void structure_free(struct structure *structure);
 
-/* True if its bonds are this model's, between its first rows. */
-bool structure_is_of(const struct structure *structure, const struct model *model);
-
 /* Mass of a row, m: as stored, else 1. */
 double structure_mass(const struct structure *structure, uint32_t row);
 

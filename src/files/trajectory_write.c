@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "files/frames.h"
+#include "files/same_run.h"
 #include "files/structure.h"
 #include "files/trajectory.h"
 #include "version.h"
@@ -247,20 +248,20 @@ bool trajectory_find_end(const char *path, uint64_t keep_to_step, uint64_t *end)
   return ok;
 }
 
-/* The file must be of the same particles, or the frames to come would not fit. */
+/* The file must be of the same run and the same particles, or the frames to come would not fit. */
 static bool same_contents(const struct frames *frames, const struct model *model,
                           const struct trajectory_options *options, struct message *message)
 {
   const struct frames_about *about = &frames->about;
+  if (!same_run_frames(frames, model, options, message))
+    return false;
   if (about->rows != rows_wanted(model, options) || about->velocities != options->velocities)
-    return message_set(message,
-                       "%s: its frames hold %u particles %s velocities, the scene asks for %u %s (trajectory.solvent, "
-                       "trajectory.velocities); move the file away, or "
-                       "resume with the interrupted run's settings",
-                       frames->path, about->rows, about->velocities ? "with" : "without", rows_wanted(model, options),
-                       options->velocities ? "with" : "without");
-  return structure_is_of(&frames->structure, model) ||
-         message_set(message, "%s: its bonds are not the scene's; move the file away", frames->path);
+    message_set(message,
+                "%s: its frames hold %u particles %s velocities, the scene asks for %u %s (trajectory.solvent, "
+                "trajectory.velocities); move the file away, or resume with the interrupted run's settings",
+                frames->path, about->rows, about->velocities ? "with" : "without", rows_wanted(model, options),
+                options->velocities ? "with" : "without");
+  return about->rows == rows_wanted(model, options) && about->velocities == options->velocities;
 }
 
 bool trajectory_fits(const char *path, const struct model *model, const struct trajectory_options *options,

@@ -14,6 +14,7 @@
 #include "files/complete.h"
 #include "files/record.h"
 #include "files/table.h"
+#include "files/told.h"
 
 static enum condition worse(enum condition a, enum condition b)
 {
@@ -264,43 +265,6 @@ enum condition verify_file(const char *path, bool *other, FILE *out)
 
 /* --- folders ----------------------------------------------------------------------------------------------------- */
 
-/* What run.json tells. */
-struct told {
-  bool there, finished;
-  uint64_t step;
-  char hash[17]; /* empty: none */
-};
-
-static struct told told_of(const char *folder)
-{
-  char path[4096];
-  struct message ignored;
-  snprintf(path, sizeof path, "%.4000s/run.json", folder);
-  struct told told = {.there = access(path, F_OK) == 0};
-  json_t *root = told.there ? record_read(path, &ignored) : NULL;
-  const char *status = json_string_value(json_object_get(root, "status"));
-  const json_int_t step = json_integer_value(json_object_get(root, "steps"));
-  const char *hash = json_string_value(json_object_get(root, "state_hash"));
-  told.finished = status && strcmp(status, "finished") == 0;
-  told.step = step > 0 ? (uint64_t)step : 0;
-  snprintf(told.hash, sizeof told.hash, "%s", hash ? hash : "");
-  json_decref(root);
-  return told;
-}
-
-/* run.json is written after its checkpoint: it may be older, but of the same step it has the same state. */
-static enum condition same_state(const char *folder, const struct told *told, const struct checkpoint_summary *summary,
-                                 FILE *out)
-{
-  char hash[17], shown[4 * sizeof told->hash];
-  snprintf(hash, sizeof hash, "%016" PRIx64, summary->head.state_hash);
-  if (!told->hash[0] || told->step != summary->numbers.step || strcmp(told->hash, hash) == 0)
-    return CONDITION_WHOLE;
-  fprintf(out, "%s/run.json: damaged: at step %" PRIu64 " the state hash is %s, in the checkpoint of this step %s\n",
-          text_shown(folder), told->step, text_escape(told->hash, shown, sizeof shown), hash);
-  return CONDITION_DAMAGED;
-}
-
 /* The frames that were there when the checkpoint was written are synced before it. */
 static enum condition same_frames(const char *folder, const struct checkpoint_summary *summary, FILE *out)
 {
@@ -365,7 +329,7 @@ static enum condition verify_together(const char *folder, bool whole, FILE *out)
       .averages = told.finished || told.step > 0, .finished = told.finished, .whole = whole};
   if (later || told.there)
     condition = worse(condition, complete_check(folder, path, &wish, out));
-  return worse(condition, worse(same_state(folder, &told, &summary, out), same_frames(folder, &summary, out)));
+  return worse(condition, worse(told_check(folder, &summary, out), same_frames(folder, &summary, out)));
 }
 
 enum condition verify_folder(const char *folder, FILE *out)

@@ -118,8 +118,8 @@ class Missing(unittest.TestCase):
         record.write_text(json.dumps({**told, "state_hash": "0123456789abcdef"}))
         done = uncross("verify", "r", cwd=self.dir)
         self.assertEqual(done.returncode, 9, done.stdout)
-        self.assertIn("damaged: at step 40 the state hash is 0123456789abcdef, in the checkpoint of this step " + told["state_hash"], done.stdout)
-        record.write_text(json.dumps({**told, "state_hash": "0123456789abcdef", "steps": 30}))  # as of a run that was killed
+        self.assertIn("damaged: its state_hash is 0123456789abcdef, in the checkpoint " + told["state_hash"], done.stdout)
+        record.write_text(json.dumps({**told, "status": "running", "state_hash": "0123456789abcdef", "steps": 30}))  # as of a run that was killed
         self.assertEqual(uncross("verify", "r", cwd=self.dir).returncode, 0)
 
     def test_what_is_deleted_is_said(self):

@@ -99,7 +99,7 @@ class OneRun(unittest.TestCase):
         self.assertNotEqual(other, told["scene"])
         older = {**told, "status": "running", "steps": 10, "state_hash": "0" * 16, "state_digest": "0" * 16}
         for record, words in (
-                ([], "no record of a run"), ({}, "no record of a run"), ("run", "no record of a run"),
+                ([], "no record of a run"), ({}, "no record of a run"),
                 ({**told, "status": "finnished"}, "its status is 'finnished'"),
                 ({**told, "seed": "5"}, "seed is 5, in the checkpoint 1"),
                 ({**told, "stream": "5"}, "stream is 5, in the checkpoint 1"),
@@ -116,7 +116,6 @@ class OneRun(unittest.TestCase):
                 done = uncross("verify", "run", cwd=self.dir)
                 self.assertEqual(done.returncode, 9 if words else 0, done.stdout)
                 self.assertRegex(done.stdout, f"(?m)^run/run.json: damaged: .*{words}" if words else "run.json: readable")
-                self.assertEqual(done.stdout.count("run.json"), 1, done.stdout)
 
     def test_files_of_the_user(self):
         """Whatever else is in the folder is none of the run's files."""
