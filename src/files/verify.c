@@ -15,6 +15,7 @@
 #include "files/record.h"
 #include "files/table.h"
 #include "files/told.h"
+#include "scene/scene.h"
 
 static enum condition worse(enum condition a, enum condition b)
 {
@@ -284,12 +285,33 @@ static int by_name(const struct dirent **a, const struct dirent **b)
   return strcmp((*a)->d_name, (*b)->d_name);
 }
 
-/* Files of a run; those that it set aside are known to be damaged. */
+/* A table that a run of this model may make; NULL: any run. */
+static bool is_table(const struct model *model, const char *file)
+{
+  char name[256];
+  snprintf(name, sizeof name, "%.*s", (int)strlen(file) - (int)strlen(".csv"), file);
+  return ends_with(file, ".csv") && observe_is_table(model, name);
+}
+
+/* Files of a run; those that it set aside are known to be damaged. All others are the user's own. */
 static int is_of_run(const struct dirent *entry)
 {
   const char *name = entry->d_name;
-  return !strstr(name, ".damaged.") && (strcmp(name, "checkpoint.h5") == 0 || strcmp(name, "trajectory.h5") == 0 ||
-                                        strcmp(name, "run.json") == 0 || ends_with(name, ".csv"));
+  return strcmp(name, "checkpoint.h5") == 0 || strcmp(name, "trajectory.h5") == 0 || strcmp(name, "run.json") == 0 ||
+         is_table(NULL, name);
+}
+
+/* The scene in the checkpoint of a folder, which names the kinds of fiber. */
+static bool find_scene(const char *folder, struct scene *scene)
+{
+  char path[4096];
+  enum h5_trouble trouble;
+  struct message ignored;
+  snprintf(path, sizeof path, "%.4000s/checkpoint.h5", folder);
+  struct frames *f = access(path, F_OK) == 0 ? frames_open(path, &trouble, &ignored) : NULL;
+  const bool found = f && f->scene && scene_read_text_numbers(path, f->scene, strlen(f->scene), scene, &ignored);
+  frames_close(f);
+  return found;
 }
 
 /* Files that grow while a run is at work are looked at when it has ended. */
@@ -297,13 +319,19 @@ static enum condition verify_listed(const char *folder, bool at_work, struct dir
 {
   const bool running = !told_of(folder).finished; /* or killed, and has written so no more */
   enum condition condition = CONDITION_WHOLE;
+  struct scene scene;
+  const bool known = find_scene(folder, &scene);
   for (int k = 0; k < count; k++) {
     char path[4096];
     bool other;
-    snprintf(path, sizeof path, "%.3800s/%.255s", folder, list[k]->d_name);
-    if (!at_work || strcmp(list[k]->d_name, "checkpoint.h5") == 0)
+    const char *name = list[k]->d_name;
+    snprintf(path, sizeof path, "%.3800s/%.255s", folder, name);
+    if ((!at_work || strcmp(name, "checkpoint.h5") == 0) &&
+        (!ends_with(name, ".csv") || is_table(known ? &scene.model : NULL, name)))
       condition = worse(condition, verify_one(path, running, &other, out));
   }
+  if (known)
+    scene_free(&scene);
   return condition;
 }
 

@@ -445,4 +445,5 @@ const struct observer_type dynamics_observer = {
     .size = size_dynamics,
     .add = add_dynamics,
     .summarise = summarise_dynamics,
+    .each_kind = true,
 };

@@ -213,4 +213,5 @@ static bool summarise_memory(const struct observer *o, const struct model *m, co
   return ok;
 }
 
-const struct observer_type memory_observer = {.size = size_memory, .add = add_memory, .summarise = summarise_memory};
+const struct observer_type memory_observer = {
+    .size = size_memory, .add = add_memory, .summarise = summarise_memory, .each_kind = true};

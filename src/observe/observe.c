@@ -301,6 +301,26 @@ bool observers_summaries(const struct observers *observers, const struct model *
   return ok;
 }
 
+/* name: what follows the observable's. */
+static bool is_of_kind(const struct model *model, const char *name)
+{
+  bool any = !model;
+  for (uint32_t k = 0; model && k < model->kinds; k++)
+    any |= strcmp(model->kind[k].name, name) == 0;
+  return any;
+}
+
+bool observe_is_table(const struct model *model, const char *name)
+{
+  bool any = false;
+  for (int k = 0; k < OBSERVABLES; k++) {
+    const size_t n = strlen(observable_names[k]);
+    const char *rest = name + (strncmp(name, observable_names[k], n) == 0 ? n : strlen(name));
+    any |= types[k]->each_kind ? rest[0] == '-' && is_of_kind(model, rest + 1) : strcmp(name, observable_names[k]) == 0;
+  }
+  return any;
+}
+
 size_t observers_blocks(struct observers *observers, const struct observe_block **blocks)
 {
   *blocks = observers->block;

@@ -51,6 +51,9 @@ struct observe_table {
   double *value; /* [rows * columns] */
 };
 
+/* Whether a run of this model may make a table of this name; model NULL: of any. */
+bool observe_is_table(const struct model *model, const char *name);
+
 struct observers; /* all observers of a run */
 
 /* Receives the rows of time series. */

@@ -63,10 +63,10 @@ struct observer_type {
   /* A time series: adds a contact of thick fibers (observe/handed_on.h). NULL if it needs none. */
   void (*contact)(struct observer *observer, const struct contact_event *event);
 
-  /* A summary: the function that adds a sample, and the one that makes a table for each kind of fiber. NULL for time
-   * series. */
+  /* A summary: the function that adds a sample, and the one that makes its tables. NULL for time series. */
   void (*add)(struct observer *observer, struct view *view);
   bool (*summarise)(const struct observer *observer, const struct model *model, const struct observer_take *to);
+  bool each_kind; /* a table for each kind of fiber: NAME-KIND, else one: NAME */
 };
 
 enum { OBSERVER_NAME_SIZE = MODEL_NAME_SIZE + 32 };

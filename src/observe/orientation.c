@@ -203,4 +203,5 @@ const struct observer_type orientation_observer = {
     .size = size_orientation,
     .add = add_orientation,
     .summarise = summarise_orientation,
+    .each_kind = true,
 };

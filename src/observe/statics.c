@@ -188,4 +188,5 @@ const struct observer_type statics_observer = {
     .size = size_statics,
     .add = add_statics,
     .summarise = summarise_statics,
+    .each_kind = true,
 };
