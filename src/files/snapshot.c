@@ -9,6 +9,7 @@
 #include "files/trajectory.h"
 #include "fluid/fluid.h"
 #include "scene/scene.h"
+#include "start/start.h"
 #include "system/bead.h"
 #include "system/shear.h"
 
@@ -98,6 +99,36 @@ static bool make_up_lag_of(const struct past *past, const struct checkpoint_summ
   return make_up_lag(state, &then, message);
 }
 
+/* The bead's drive so far ends: the next one begins with the velocities of now. */
+static bool end_drive_of(const struct past *past, const struct checkpoint_summary *summary, struct state *state,
+                         const struct model *model, const char *path, struct message *message)
+{
+  struct model then = *model;
+  if (!model_has_bead(model))
+    return true;
+  if (!past->known)
+    return message_set(message,
+                       "%s: its scene cannot be read, so nobody knows what drove its bead; allowed: a whole file of "
+                       "this program, or a scene without a bead",
+                       path);
+  then.bead = past->scene.model.bead;
+  then.time_step = summary->time_step;
+  start_end_drive(state, &then);
+  return true;
+}
+
+/* What is counted since the start. */
+static void begin_accounts(struct state *state)
+{
+  state->counts = (struct collision_counts){0};
+  for (uint32_t k = 0; k < state->wall_rows; k++) {
+    state->wall_momentum[k] = (struct point){0, 0, 0};
+    state->wall_turns[k] = 0;
+  }
+  if (state->beads > 0)
+    state->bead->account = (struct point){0, 0, 0};
+}
+
 /* By its scene, or else by its own word; 0: none. */
 static bool same_dimensions(const struct past *past, uint32_t dimensions, const struct model *m, const char *path,
                             struct message *message)
@@ -125,6 +156,7 @@ static bool start_from_checkpoint(const char *path, const struct model *model, s
                   in_order(frames, model, path, message) &&
                   find_slide(&past, model, state->step, origin, path, message) &&
                   make_up_lag_of(&past, &summary, state, model, message) &&
+                  end_drive_of(&past, &summary, state, model, path, message) &&
                   (bead_sound(state, model, &fault) || message_fault(message, &fault));
   forget(&past);
   frames_close(frames);
@@ -214,6 +246,6 @@ bool snapshot_read_start(const char *path, const struct model *model, struct sta
   state->step = 0;
   state->solvent_lag = 0;
   state->solvent_time = 0;
-  state->counts = (struct collision_counts){0};
+  begin_accounts(state);
   return true;
 }

@@ -45,10 +45,9 @@ static void set_total_momentum(struct state *state, const struct model *model)
 }
 
 /* As between steps, the velocity of a driven bead is that of the half step ahead; that of all else is half a step
- * behind with the counterforce, which acts in flight. */
-static void start_drive(struct state *state, const struct model *model)
+ * behind with the counterforce, which acts in flight. half: of a step, t0; below 0: back to the time of the step. */
+static void shift_drive(struct state *state, const struct model *model, double half)
 {
-  const double half = 0.5 * model->time_step;
   const struct vec3 behind = vec3_scale(-half, bead_counter(state, model));
   struct solvent *s = &state->solvent;
   if (!model->bead.driven)
@@ -65,7 +64,12 @@ void start_begin_drive(struct state *state, const struct model *model)
   if (!model->bead.driven)
     return;
   set_total_momentum(state, model);
-  start_drive(state, model);
+  shift_drive(state, model, 0.5 * model->time_step);
+}
+
+void start_end_drive(struct state *state, const struct model *model)
+{
+  shift_drive(state, model, -0.5 * model->time_step);
 }
 
 /* A sheared box starts with its linear profile: velocities are thermal about it. */
@@ -96,7 +100,7 @@ bool start_state(struct state *state, const struct model *model, struct work *wo
     return true;
   }
   set_total_momentum(state, model);
-  start_drive(state, model);
+  shift_drive(state, model, 0.5 * model->time_step);
   add_shear(state, model);
   if (!fiber_forces(state, model, work->fiber.force, 0, &work->fault))
     return false;

@@ -13,9 +13,13 @@ bool start_state(struct state *state, const struct model *model, struct work *wo
  * slip walls only along y. */
 struct vec3 start_conserved_axes(const struct model *model);
 
-/* Gives the velocities of a state that was made without a drive those of a start: total momentum, and half steps ahead
- * of and behind the drive (system/bead.h). Nothing without a driven bead. */
+/* Gives the velocities of a state without a drive those of a start: total momentum, and half steps ahead of and behind
+ * the drive (system/bead.h). Nothing without a driven bead. */
 void start_begin_drive(struct state *state, const struct model *model);
+
+/* Takes the half steps back: all velocities of a state between two steps become those of its time. model: with the
+ * drive and the time step that it had so far. */
+void start_end_drive(struct state *state, const struct model *model);
 
 /* True if no tubes of thick fibers overlap, and none with a bead, and no thin bonds touch by the rule `event-driven`;
  * else the fault says which. For states that come from files. */
