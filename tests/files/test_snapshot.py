@@ -54,6 +54,34 @@ class Flow(Start):
         self.assertIn("'150' is out of range", said)
 
 
+class Speed(Start):
+    """What is too fast to be summed is named, wherever momentum goes; it is not for want of memory."""
+    SCENES = {"bath": "medium: {kind: private, rate: 1}\n", "fluid": "solvent: {per_cell: 1, collision_interval: 0.02}\n",
+              "walls": "solvent: {per_cell: 1, collision_interval: 0.02}\nwalls: {kind: no-slip}\n"}
+
+    def test_too_fast(self):
+        for name, scene in self.SCENES.items():
+            text = "box: [4, 4, 4]\ntime_step: 0.01\nsteps: 2\n" + scene + "crossing: {forbidden: false}\n" \
+                "fibers: [{name: a, count: 2, vertices: 4, mass: 5, bond_length: 0.5, spring: 100}]\n" \
+                f"trajectory: {{every: 2, velocities: true, solvent: {'true' if name != 'bath' else 'false'}}}\n"
+            self.assertEqual(self.start(text, name)[0], 0)
+            with h5py.File(self.dir / name / "trajectory.h5", "a") as file:
+                file.pop("parameters")
+            for row, what in ((3, "vertex 3"), (20, "solvent particle 12"))[:1 if name == "bath" else 2]:
+                for speed in (2.0**17, -1e6, 1e200):
+                    with self.subTest(name=name, row=row, speed=speed):
+                        with h5py.File(self.dir / name / "trajectory.h5", "a") as file:
+                            velocity = file["particles/trajectory/velocity/value"]
+                            kept = velocity[-1, row, 1]
+                            velocity[-1, row, 1] = speed
+                        code, said = self.start(f"{text}start: {{snapshot: {name}/trajectory.h5}}\n", "again")
+                        with h5py.File(self.dir / name / "trajectory.h5", "a") as file:
+                            file["particles/trajectory/velocity/value"][-1, row, 1] = kept
+                        self.assertEqual(code, 2, said)
+                        self.assertIn(f"start.snapshot: {what} of '{name}/trajectory.h5' moves at {speed:.9g} a0/t0 along y", said)
+                        self.assertIn("allowed: below 131072", said)
+
+
 FIBERS = """box: [8, 8, 8]
 time_step: 0.01
 steps: 4
@@ -167,8 +195,47 @@ class Foreign(Start):
                                          for n in names)
         self.make(kinds("a", "b"))
         self.again(kinds("b", "a"), "vertex 0 is of 'a' in it, of 'b' in the scene")
-        self.again(kinds("c", "d"))  # other names, or another grouping, are no contradiction
-        self.again(OPEN)
+        self.again(kinds("c", "d"))  # other names are no contradiction
+        self.again(OPEN.replace("name: a", "name: c"))
+        self.again(OPEN, "vertex 12 is of 'b' in it, of 'a' in the scene")
+        self.again(kinds("a", "c"))  # the file has a name of its own for the second
+        self.again(kinds("c", "a"), "vertex 0 is of 'a' in it, of 'c' in the scene")
+
+    SPECIES = h5py.enum_dtype({"a": 0, "b": 1, "solvent": 2}, "i4")
+
+    def test_kinds_of_other_numbers(self):
+        """A name that file and scene share is of the same rows."""
+        def kinds(first, second):
+            return "fibers:\n" + "".join(f"  - {{name: {n}, count: {c}, vertices: 6, mass: 5, bond_length: 0.5, spring: 100}}\n"
+                                         for n, c in (("a", first), ("b", second)))
+        self.make(kinds(1, 3))
+        self.again(kinds(1, 3))
+        self.again(kinds(3, 1), "vertex 6 is of 'b' in it, of 'a' in the scene")
+        self.change(lambda file: self.put(file, "species", numpy.array([1] * 18 + [0] * 6 + [2] * 512).astype(self.SPECIES), False))
+        self.again(kinds(1, 3), "vertex 0 is of 'b' in it, of 'a' in the scene")
+
+    def test_kinds_with_time(self):
+        """H5MD allows them: they are checked if they stay the same, and else tell no kinds to start from."""
+        def kinds(*names):
+            return "fibers:\n" + "".join(f"  - {{name: {n}, count: 2, vertices: 6, mass: 5, bond_length: 0.5, spring: 100}}\n"
+                                         for n in names)
+        self.make(kinds("a", "b"))
+        row = [0] * 12 + [1] * 12 + [2] * 512
+        changed = [0] * 11 + [1] * 13 + [2] * 512
+        for rows, words in (([row, row], None), ([changed, row], "its species change with time: row 11 of frame 1 is another"),
+                            ([row, changed], "its species change with time"), ([row], "its species has 1 rows, its position 2"),
+                            (row, None)):
+            def put(file, rows=rows):
+                group = file[self.GROUP]
+                group.pop("species", None)
+                numbers = numpy.array(rows).astype(self.SPECIES)
+                group["species" if numbers.ndim == 1 else "species/value"] = numbers
+            self.change(put)
+            self.again(kinds("a", "b"), words)
+            self.again(kinds("b", "a"), words or "vertex 0 is of 'a' in it, of 'b' in the scene")
+        self.change(lambda file: file[self.GROUP].pop("species"))
+        self.change(lambda file: file[self.GROUP].create_dataset("species/value", data=numpy.zeros((2, 7), "i4")))
+        self.again(kinds("a", "b"), "its species are not one whole number for each row")
 
     def test_kinds_of_a_checkpoint(self):
         """Kinds of equal numbers and masses that change their places are other fibers: their springs differ."""
