@@ -141,7 +141,7 @@ static void check_dimension(hid_t box, char *unfit, size_t size)
     snprintf(unfit, size, "its box has %" PRId32 " dimensions; allowed: 3, which a plane has, too", dimension);
 }
 
-void foreign_look(const struct trajectory *t, bool masses, struct frames_about *about)
+void foreign_look(const struct trajectory *t, const struct structure *s, struct frames_about *about)
 {
   char *unfit = about->unfit;
   const size_t size = sizeof about->unfit;
@@ -158,7 +158,9 @@ void foreign_look(const struct trajectory *t, bool masses, struct frames_about *
     check_units(t->group, box, unfit, size);
   h5_close(box);
   h5_close(connectivity);
-  if (!*unfit && !masses && h5_has(t->group, "mass"))
+  if (!*unfit)
+    snprintf(unfit, size, "%s", s->odd_species);
+  if (!*unfit && !s->mass && h5_has(t->group, "mass"))
     snprintf(unfit, size, "its mass is not one number for each row");
   if (!*unfit)
     check_ids(t, unfit, size);
@@ -251,8 +253,11 @@ bool foreign_is_one(const struct trajectory *t, struct message *message)
 {
   static const struct {
     const char *outer, *inner, *name;
-  } elements[] = {
-      {"velocity", NULL, "velocity"}, {"image", NULL, "image"}, {"id", NULL, "id"}, {"box", "edges", "box/edges"}};
+  } elements[] = {{"velocity", NULL, "velocity"},
+                  {"image", NULL, "image"},
+                  {"id", NULL, "id"},
+                  {"species", NULL, "species"},
+                  {"box", "edges", "box/edges"}};
   hid_t position = h5_open_group(t->group, "position");
   const uint64_t rows = count_rows(position);
   int64_t *steps = NULL;

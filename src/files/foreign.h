@@ -13,9 +13,10 @@ bool foreign_is_one(const struct trajectory *trajectory, struct message *message
 int64_t *foreign_ids(const struct trajectory *trajectory);
 
 /* Within a process of its own (apart.h). Looks at the group of particles: whether its rows are in the order of ids, its
- * masses are one number for each row, the words of its box are known, its numbers have no units, and nothing is there
- * of which a run knows nothing. about->unfit says what is wrong, or stays empty. masses: they were read. */
-void foreign_look(const struct trajectory *trajectory, bool masses, struct frames_about *about);
+ * masses are one number for each row, the words of its box are known, its numbers have no units, its species do not
+ * change, and nothing is there of which a run knows nothing. about->unfit says what is wrong, or stays empty.
+ * structure: as it was read. */
+void foreign_look(const struct trajectory *trajectory, const struct structure *structure, struct frames_about *about);
 
 /* Adds the images of a frame (`image`, whole edges) to its positions: [3 particles]. edge: the box, or 0 where it is
  * not known. False if there are images that cannot be read, or no box for them. */

@@ -157,7 +157,7 @@ static bool open_trajectory(struct source *s, struct message *message)
   if (ok)
     read_stream(t->file, &s->about);
   if (ok)
-    foreign_look(t, s->structure.mass, &s->about);
+    foreign_look(t, &s->structure, &s->about);
   if (ok)
     read_boundary(t, &s->about);
   return ok;

@@ -37,9 +37,7 @@ static bool refuse_flow(const struct scene *scene, struct vec3 found, bool cross
   const struct model *m = &scene->model;
   const char *key = scene_says(scene, "flow") ? "flow" : "start.snapshot";
   if (!isfinite(found.x + found.y + found.z))
-    return scene_refuse_at(scene, "start.snapshot", "start.snapshot", message,
-                           "a velocity in '%s' is beyond what can be summed; allowed: up to %g a0/t0", scene->snapshot,
-                           FASTEST);
+    return message_unread(message, "no memory to look at the starting state");
   found.y = may_flow_along_y(m) || crossed ? found.y : 0.0;
   return scene_refuse_at(scene, key, "flow", message,
                          "the center of mass of '%s' moves at [%.9g, %.9g, %.9g] a0/t0%s, and a snapshot is given no "
@@ -118,6 +116,33 @@ static bool flows_as_said(const struct scene *scene, const struct state *state, 
   const bool along_y = axes.y * fabs(off.y) <= c.most.y;
   return (fabs(off.x) <= c.most.x && along_y && fabs(off.z) <= c.most.z) ||
          refuse_flow(scene, c.velocity, !along_y && !may_flow_along_y(m), message);
+}
+
+/* Whether a velocity can be summed (motion_measure): `what` and its number tell whose it is. */
+static bool can_be_summed(const struct scene *scene, const char *what, uint32_t number, struct vec3 v,
+                          struct message *message)
+{
+  const double along[3] = {v.x, v.y, v.z};
+  for (int k = 0; k < 3; k++)
+    if (!(fabs(along[k]) < FASTEST))
+      return scene_refuse_at(scene, "start.snapshot", "start.snapshot", message,
+                             "%s %" PRIu32 " of '%s' moves at %.9g a0/t0 along %c, beyond what can be summed; allowed: "
+                             "below %.0f",
+                             what, number, scene->snapshot, along[k], "xyz"[k], FASTEST);
+  return true;
+}
+
+static bool all_can_be_summed(const struct scene *scene, const struct state *state, struct message *message)
+{
+  const struct solvent *s = &state->solvent;
+  bool ok = true;
+  for (uint32_t v = 0; ok && v < state->vertices; v++)
+    ok = can_be_summed(scene, "vertex", v, state->velocity[v], message);
+  for (uint32_t i = 0; ok && i < s->n; i++)
+    ok = can_be_summed(scene, "solvent particle", s->id[i], solvent_velocity(s, i), message);
+  for (uint32_t b = 0; ok && b < state->beads; b++)
+    ok = can_be_summed(scene, "bead", b, state->bead[b].velocity, message);
+  return ok;
 }
 
 /* A scene in a plane takes no snapshot of something in space. */
@@ -217,7 +242,8 @@ static bool start_from_snapshot(struct scene *scene, struct state *state, struct
   if (ok)
     shear_begin(&scene->model, origin.slide);
   ok = ok && (state_sound(state, m, &work->fault) || message_fault(message, &work->fault)) &&
-       is_flat_as_said(scene, state, message) && flows_as_said(scene, state, work, message) &&
+       all_can_be_summed(scene, state, message) && is_flat_as_said(scene, state, message) &&
+       flows_as_said(scene, state, work, message) &&
        (start_sound(state, m, &work->fault) || refuse_start(scene, &work->fault, message));
   if (ok)
     start_begin_drive(state, m);

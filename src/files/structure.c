@@ -1,14 +1,12 @@
 #include "files/structure.h"
 
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/text.h"
-
-#define MASS_ROUNDING 1e-6 /* files of other programs may hold single precision */
+#include "files/trajectory.h"
 
 /* --- writing ----------------------------------------------------------------------------------------------------- */
 
@@ -123,6 +121,50 @@ static bool read_names(hid_t dataset, struct structure *s, struct message *why)
   return s->name && ok;
 }
 
+/* The frame and row whose species is another than in the frame before; false if there is none. */
+static bool species_change(hid_t value, hid_t type, hsize_t frames, struct structure *s, bool *read,
+                           struct message *why)
+{
+  int32_t *row = room(s->particles, sizeof *row, why);
+  bool change = false;
+  *read = row && trajectory_read_block(value, 0, 2, type, s->species);
+  for (hsize_t k = 1; *read && !change && k < frames; k++) {
+    *read = trajectory_read_block(value, k, 2, type, row);
+    for (uint32_t i = 0; *read && !change && i < s->particles; i++) {
+      change = row[i] != s->species[i];
+      if (change)
+        snprintf(s->odd_species, sizeof s->odd_species,
+                 "its species change with time: row %" PRIu32 " of frame %" PRIu64 " is another; allowed: the same in "
+                 "all frames",
+                 i, (uint64_t)k);
+    }
+  }
+  free(row);
+  return change;
+}
+
+/* Of each frame: H5MD lets species change. Those that do, or are no numbers, tell nothing. */
+static bool read_timed_species(hid_t group, struct structure *s, struct message *why)
+{
+  hsize_t dims[3];
+  hid_t value = h5_has(group, "value") ? h5_open_dataset(group, "value") : -1,
+        type = value < 0 ? -1 : H5Dget_type(value);
+  const H5T_class_t class = type < 0 ? H5T_NO_CLASS : H5Tget_class(type);
+  const bool fits = (class == H5T_ENUM || class == H5T_INTEGER) && h5_shape(value, 3, dims) == 2 &&
+                    dims[1] == s->particles && dims[0] > 0;
+  bool read = true;
+  s->species = room(s->particles, sizeof *s->species, why);
+  if (!fits)
+    snprintf(s->odd_species, sizeof s->odd_species, "its species are not one whole number for each row");
+  else if (!s->species || !read_names(value, s, why))
+    read = false;
+  else if (species_change(value, class == H5T_ENUM ? type : H5T_NATIVE_INT32, dims[0], s, &read, why))
+    memset(s->species, 0, (size_t)s->particles * sizeof *s->species), s->kinds = 0;
+  h5_close(type);
+  h5_close(value);
+  return s->species && read;
+}
+
 /* Memory is asked for only when the dataset has been found to hold so many rows. */
 static bool read_species(hid_t particles, struct structure *s, struct message *why)
 {
@@ -130,6 +172,11 @@ static bool read_species(hid_t particles, struct structure *s, struct message *w
   const int found = h5_look(particles, "species");
   hid_t object = h5_open_object(particles, "species");
   const bool fixed = object >= 0 && H5Iget_type(object) == H5I_DATASET;
+  if (object >= 0 && !fixed) {
+    const bool timed = read_timed_species(object, s, why);
+    h5_close(object);
+    return timed;
+  }
   bool ok = (found == 0 || object >= 0) && (!fixed || (h5_shape(object, 1, &n) == 1 && n == s->particles));
   s->species = ok ? room(s->particles, sizeof *s->species, why) : NULL;
   ok = ok && s->species;
@@ -260,108 +307,6 @@ bool structure_read(hid_t particles, hid_t connectivity, const int64_t *id, uint
   if (!ok)
     structure_free(s);
   return ok;
-}
-
-/* --- whether it is that of a model ------------------------------------------------------------------------------- */
-
-static void tell_end(int32_t vertex, char *text, size_t size)
-{
-  snprintf(text, size, vertex < 0 ? "none" : "%d", (int)vertex);
-}
-
-static bool bonds_differ(const struct structure *s, const struct model *m, struct message *why)
-{
-  char stored[16], wanted[16];
-  for (uint32_t i = 0; i < s->particles; i++) {
-    const int32_t next = i < m->vertices ? m->next[i] : -1;
-    if (s->next[i] == next)
-      continue;
-    tell_end(s->next[i], stored, sizeof stored);
-    tell_end(next, wanted, sizeof wanted);
-    message_set(why, "its bonds are not the scene's: vertex %u is bonded to %s in it, to %s in the scene", i, stored,
-                wanted);
-    return true;
-  }
-  if (s->bonds != m->bonds)
-    message_set(why, "its bonds are not the scene's: they are %u, in the scene %u", s->bonds, m->bonds);
-  return s->bonds != m->bonds;
-}
-
-bool structure_masses_differ(const double *mass, uint32_t rows, const struct model *m, struct message *why)
-{
-  for (uint32_t i = 0; i < rows; i++) {
-    const bool vertex = i < m->vertices;
-    const double wanted = vertex ? m->mass[i] : 1.0;
-    if (fabs(mass[i] - wanted) <= MASS_ROUNDING * wanted)
-      continue;
-    message_set(why, "its masses are not the scene's: %s %u has the mass %.9g in it, %.9g in the scene",
-                vertex ? "vertex" : "solvent particle", vertex ? i : i - m->vertices, mass[i], wanted);
-    return true;
-  }
-  return false;
-}
-
-static bool is_named(const struct structure *s, uint32_t row, const char *name)
-{
-  return strcmp(structure_name(s, s->species[row]), name) == 0;
-}
-
-/* The file has a kind of this name with as many rows: it must be this one. Another grouping says nothing. */
-static bool same_kind(const struct structure *s, const struct model *m, uint32_t kind)
-{
-  uint32_t rows = 0;
-  for (uint32_t i = 0; i < m->vertices; i++)
-    rows += is_named(s, i, m->kind[kind].name);
-  return rows > 0 && rows == m->kind[kind].count * m->kind[kind].vertices;
-}
-
-static bool vertices_differ(const struct structure *s, const struct model *m, struct message *why)
-{
-  for (uint32_t k = 0, first = 0; k < m->kinds; first += m->kind[k].count * m->kind[k].vertices, k++) {
-    const uint32_t rows = same_kind(s, m, k) ? m->kind[k].count * m->kind[k].vertices : 0;
-    for (uint32_t i = first; i < first + rows; i++)
-      if (!is_named(s, i, m->kind[k].name))
-        return !message_set(why,
-                            "its rows are not in the scene's order: vertex %u is of '%s' in it, of '%s' in the scene",
-                            i, text_shown(structure_name(s, s->species[i])), m->kind[k].name);
-  }
-  return false;
-}
-
-static bool is_kind(const struct model *m, const char *name)
-{
-  bool any = false;
-  for (uint32_t k = 0; k < m->kinds; k++)
-    any |= strcmp(m->kind[k].name, name) == 0;
-  return any;
-}
-
-static bool kinds_differ(const struct structure *s, const struct model *m, struct message *why)
-{
-  for (uint32_t i = 0; i < s->particles && s->kinds > 0; i++) {
-    const char *name = structure_name(s, s->species[i]);
-    if (i < m->vertices && structure_is_solvent(s, s->species[i]))
-      return !message_set(why, "its rows are not in the scene's order: row %u is solvent in it, a vertex in the scene",
-                          i);
-    if (i >= m->vertices && is_kind(m, name) && !structure_is_solvent(s, s->species[i]))
-      return !message_set(why, "its rows are not in the scene's order: row %u is of '%s' in it, solvent in the scene",
-                          i, text_shown(name));
-  }
-  return s->kinds > 0 && vertices_differ(s, m, why);
-}
-
-bool structure_differs(const struct structure *s, const struct model *m, struct message *why)
-{
-  return (s->stored_bonds && bonds_differ(s, m, why)) ||
-         (s->mass && structure_masses_differ(s->mass, s->particles, m, why)) || kinds_differ(s, m, why);
-}
-
-bool structure_walls_differ(bool between, const struct model *m, struct message *why)
-{
-  if (between != model_has_walls(m))
-    message_set(why, "it is of a box %s walls, the scene's box has %s", between ? "between" : "without",
-                between ? "none" : "walls");
-  return between != model_has_walls(m);
 }
 
 void structure_free(struct structure *s)

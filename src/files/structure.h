@@ -29,6 +29,7 @@ bool structure_same_bonds(const int32_t *stored, const struct model *model);
 struct structure {
   uint32_t particles;
   int32_t *species;                   /* [particles] index into name */
+  char odd_species[128];              /* why they tell no kinds; empty: they do, or there are none */
   int kinds;                          /* species, the solvent included if it has a name */
   char (*name)[MODEL_NAME_SIZE + 16]; /* [kinds] */
   int32_t *next;                      /* [particles] a bond goes on to this one; -1: none */
