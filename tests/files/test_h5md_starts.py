@@ -145,7 +145,7 @@ class Foreign(unittest.TestCase):
         self.make(self.named(numbers, "a", "b", "solvent"))
         self.again("row 200 is of 'a' in it, solvent in the scene")
         self.make(self.named(self.species, "a", "b", "solvent"))
-        self.again("vertex 8 is of 'b' in it, of 'a' in the scene", SOLVENT + KINDS.replace("name: a", "name: c").replace("name: b", "name: a"))
+        self.again("vertex 0 is of 'a' in it, of 'c' in the scene", SOLVENT + KINDS.replace("name: a", "name: c").replace("name: b", "name: a"))
         self.make(self.named(self.species, "x", "y", "water"))  # names that say nothing
         self.again()
 
