@@ -396,7 +396,14 @@ static void test_settings(void **unused)
   assert_int_equal(uncross_scene_number(scene, "bo", &value, &error), UNCROSS_BAD_INPUT);
   char *name = uncross_scene_get(scene, "fibers.1.name", NULL);
   assert_non_null(strstr(name, "loop"));
+  char by_name[128];
+  snprintf(by_name, sizeof by_name, "fibers.%s.count", name); /* as keys are set */
   uncross_free(name);
+  double by_number;
+  assert_int_equal(uncross_scene_number(scene, "fibers.1.count", &by_number, NULL), UNCROSS_OK);
+  assert_int_equal(uncross_scene_number(scene, by_name, &value, NULL), UNCROSS_OK);
+  assert_true(value == by_number);
+  assert_int_equal(uncross_scene_number(scene, "fibers.nobody.count", &value, NULL), UNCROSS_BAD_INPUT);
 
   /* what was set is replaced by what is set later */
   assert_int_equal(uncross_scene_set(scene, "solvent.per_cell", "6", &error), UNCROSS_OK);
