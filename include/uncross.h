@@ -140,8 +140,9 @@ UNCROSS_API int uncross_scene_check(const uncross_scene *scene, uncross_error *e
  * is refused or memory is short. */
 UNCROSS_API char *uncross_scene_text(const uncross_scene *scene, uncross_error *error);
 
-/* The value of one key of the effective scene, defaults included, e.g. "solvent.per_cell" or "fibers.0.name": a word, a
- * number, or "[a, b, c]", to be given back with uncross_free. The second is for a key that holds one number. */
+/* The value of one key of the effective scene, defaults included, e.g. "solvent.per_cell", "fibers.0.name" or
+ * "fibers.rods.count": a word, a number, or "[a, b, c]", to be given back with uncross_free. The second is for a key
+ * that holds one number. */
 UNCROSS_API char *uncross_scene_get(const uncross_scene *scene, const char *path, uncross_error *error);
 UNCROSS_API int uncross_scene_number(const uncross_scene *scene, const char *path, double *value, uncross_error *error);
 

@@ -300,15 +300,14 @@ static bool print_value(const struct node *node, FILE *stream)
   return ok;
 }
 
-/* The node at a path that numbers the items of lists, and nothing less. */
+/* The node at a path, with items of lists by number or by name, and nothing less. */
 static const struct node *node_exactly(const struct node *node, const char *path)
 {
   while (node && *path) {
     char part[80];
     const size_t length = strcspn(path, ".");
     snprintf(part, sizeof part, "%.*s", (int)length, path);
-    const bool number = length > 0 && strspn(part, "0123456789") == length;
-    node = node->type != NODE_LIST ? node_value(node, part) : number ? node_item(node, strtoull(part, NULL, 10)) : NULL;
+    node = node->type == NODE_LIST ? node_item_of(node, part) : node_value(node, part);
     path += length + (path[length] == '.');
   }
   return node;

@@ -87,24 +87,11 @@ static struct node *inner_node(const struct way *w, struct node *mapping, enum n
 
 static bool set_in_mapping(struct way *w, struct node *mapping, const struct key_table *table);
 
-/* The item of this number, or else of this name. */
-static struct node *find_item(const struct way *w, const struct node *list)
-{
-  const bool digits = w->part[strspn(w->part, "0123456789")] == '\0';
-  struct node *item = digits ? node_item(list, strtoull(w->part, NULL, 10)) : NULL;
-  for (size_t i = 0; !item && i < list->count; i++) {
-    const char *name = node_text(node_value(list->item[i], "name"));
-    if (name && strcmp(name, w->part) == 0)
-      item = list->item[i];
-  }
-  return item;
-}
-
 static bool set_in_list(struct way *w, struct node *list, const struct key_table *table)
 {
   if (!take_part(w))
     return false;
-  struct node *item = find_item(w, list);
+  struct node *item = node_item_of(list, w->part);
   char next[24];
   snprintf(next, sizeof next, "%zu", list->count);
   if (!item && strcmp(w->part, next) == 0) {

@@ -106,6 +106,18 @@ struct node *node_item(const struct node *list, size_t i)
   return list && list->type == NODE_LIST && i < list->count ? list->item[i] : NULL;
 }
 
+struct node *node_item_of(const struct node *list, const char *part)
+{
+  const bool digits = *part && part[strspn(part, "0123456789")] == '\0';
+  struct node *item = digits ? node_item(list, strtoull(part, NULL, 10)) : NULL;
+  for (size_t i = 0; !item && list && list->type == NODE_LIST && i < list->count; i++) {
+    const char *name = node_text(node_value(list->item[i], "name"));
+    if (name && strcmp(name, part) == 0)
+      item = list->item[i];
+  }
+  return item;
+}
+
 const struct node *node_near(const struct node *root, const char *path)
 {
   const struct node *node = root;
@@ -113,8 +125,7 @@ const struct node *node_near(const struct node *root, const char *path)
     char part[80];
     const size_t length = strcspn(path, ".");
     snprintf(part, sizeof part, "%.*s", (int)length, path);
-    const struct node *next =
-        node->type == NODE_LIST ? node_item(node, strtoull(part, NULL, 10)) : node_value(node, part);
+    const struct node *next = node->type == NODE_LIST ? node_item_of(node, part) : node_value(node, part);
     if (!next)
       break;
     node = next;

@@ -54,7 +54,10 @@ struct node *node_value(const struct node *mapping, const char *key);
 /* Item number i of a list; NULL if there is none. */
 struct node *node_item(const struct node *list, size_t i);
 
-/* The node at "fibers.1.mass" (items count from 0), or the last one on the way to it that is there. */
+/* The item that a part of a path means: by its number, from 0, or else by its `name`; NULL if there is none. */
+struct node *node_item_of(const struct node *list, const char *part);
+
+/* The node at "fibers.1.mass" or "fibers.rods.mass", or the last one on the way to it that is there. */
 const struct node *node_near(const struct node *root, const char *path);
 
 /* The text of a scalar; NULL if the node is none. */
