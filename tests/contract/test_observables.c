@@ -618,6 +618,52 @@ static void everything_everywhere(void **unused)
       fail_msg("no table has a column of '%s'", meanings[k].columns);
 }
 
+/* Does a row say that a drift of fibers counts in this column? */
+static bool tells_of_drift(const struct model *m, enum observable of, const char *column)
+{
+  bool found = false;
+  for (size_t k = 0; k < meaning_count; k++)
+    found |= meanings[k].of == of && meanings[k].verdict == MEANS && meanings[k].columns &&
+             (meanings[k].where == BY_A_FORCE_ON_FIBERS || meanings[k].where == ACCELERATED) &&
+             meaning_holds(meanings[k].where, m) && strstr(meanings[k].columns, column);
+  return found;
+}
+
+/* Squares of velocities about another velocity than their own mean hold the square of the difference. */
+static void what_a_drift_counts_in_is_told(void **unused)
+{
+  (void)unused;
+  static const struct {
+    enum observable of;
+    const char *column;
+  } rows[] = {{OBSERVE_TEMPERATURE, "solvent_x"},  {OBSERVE_TEMPERATURE, "vertex"}, {OBSERVE_STRESS, "sigma_xy"},
+              {OBSERVE_STRESS, "sigma_xy_fibers"}, {OBSERVE_STRESS, "N1"},          {OBSERVE_STRESS, "pressure"},
+              {OBSERVE_PRESSURE, "p_xy"}};
+  static const char *const forces[] = {CELLS "fibers: [{name: a, count: 2, vertices: 1, mass: 5, force: [1, 1, 0]}]\n",
+                                       "solvent: {per_cell: 3, collision_interval: 0.02, acceleration: [0.1, 0, 0]}\n"
+                                       "fibers: [{name: a, count: 2, vertices: 1, mass: 5}]\n"};
+  for (size_t f = 0; f < sizeof forces / sizeof *forces; f++) {
+    char text[1024];
+    snprintf(text, sizeof text, "box: [8, 8, 8]\ntime_step: 0.02\nsteps: 8\n%s", forces[f]);
+    struct scene scene = scene_of(text);
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
+      if (!tells_of_drift(&scene.model, rows[k].of, rows[k].column))
+        fail_msg("%s: %s: no word of a drift in\n%s", observable_names[rows[k].of], rows[k].column, text);
+    scene_free(&scene);
+  }
+}
+
+/* A table of zeros and nan means nothing. */
+static void tables_of_nothing_are_refused(void **unused)
+{
+  (void)unused;
+  struct scene alone = scene_of("box: [8, 8, 8]\ntime_step: 0.02\nsteps: 8\nmedium: {kind: private, rate: 1}\n"
+                                "fibers: [{name: a, count: 2, vertices: 1, mass: 5}]\n");
+  assert_non_null(meaning_refusal(&alone.model, OBSERVE_PROFILE));
+  assert_non_null(meaning_refusal(&alone.model, OBSERVE_DUMBBELLS));
+  scene_free(&alone);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -631,6 +677,8 @@ int main(void)
       cmocka_unit_test(parts_make_the_total),
       cmocka_unit_test(drift_is_that_of_the_places),
       cmocka_unit_test(everything_everywhere),
+      cmocka_unit_test(what_a_drift_counts_in_is_told),
+      cmocka_unit_test(tables_of_nothing_are_refused),
       cmocka_unit_test(order_in_a_plane),
       cmocka_unit_test(no_memory_of_what_is_accelerated),
       cmocka_unit_test(means_over_the_components_that_there_are),
