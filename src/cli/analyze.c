@@ -23,15 +23,17 @@ static uint64_t least_common_multiple(uint64_t a, uint64_t b)
 }
 
 /* What the frames can show of what the scene asked for: only steps that were stored, energies and temperatures only if
- * solvent and velocities were, and neither counts of crossings nor stresses nor springs of dumbbells, which are not in
- * frames. */
+ * all that moves was stored, with its velocities, and neither counts of crossings nor stresses nor springs of
+ * dumbbells, which are not in frames. */
 static void fit_plan(struct scene *scene, const struct trajectory *frames)
 {
-  const char *const all = !model_has_solvent(&scene->model)                ? "the scene has no solvent particles"
-                          : !trajectory_has_velocities(frames)             ? "velocities are not in the frames"
-                          : !trajectory_has_solvent(frames, &scene->model) ? "the solvent is not in the frames"
-                          : model_has_bead(&scene->model)                  ? "the bead is not in the frames"
-                                                                           : NULL;
+  const struct model *m = &scene->model;
+  const bool still = !model_is_overdamped(m) && !trajectory_has_velocities(frames);
+  const char *const all = still ? "velocities are not in the frames"
+                          : model_has_solvent(m) && !trajectory_has_solvent(frames, m)
+                              ? "the solvent is not in the frames"
+                          : model_has_bead(m) ? "the bead is not in the frames"
+                                              : NULL;
   const char *const springs = "springs of dumbbells are not in the frames";
   const char *const missing[OBSERVABLES] = {/* NULL: nothing */
                                             [OBSERVE_CONSERVED] = model_has_dumbbells(&scene->model) ? springs : all,

@@ -24,6 +24,11 @@ static bool no_fibers_no_dumbbells(const struct model *m)
   return m->kinds == 0 && !model_has_dumbbells(m);
 }
 
+static bool no_dumbbells(const struct model *m)
+{
+  return !model_has_dumbbells(m);
+}
+
 static bool no_bead(const struct model *m)
 {
   return !model_has_bead(m);
@@ -142,6 +147,7 @@ static const struct {
     [NO_TRAP] = {"a bead without a trap", no_trap},
     [NO_PAIR_FORCES] = {"no forces of pairs", no_pair_forces},
     [NO_TUBES] = {"no thick fibers that cannot cross", no_tubes},
+    [NO_DUMBBELLS] = {"no dumbbells", no_dumbbells},
     [NO_PARTICLES] = {"no solvent particles", no_particles},
     [NO_WALLS] = {"no walls", no_walls},
     [NO_BONDS] = {"no bonds", no_bonds},
@@ -176,6 +182,10 @@ bool meaning_holds(enum circumstance where, const struct model *model)
 #define GIVEN_TO_BEAD "momentum that the solvent gives to the bead is not in "
 #define NO_TENSION "the tension of bonds is not in its stress; allowed without medium.inextensible"
 #define LAG "fibers lag behind the accelerated solvent by some v, which counts, as "
+#define SOLVENT_LAGS                                                                                                   \
+  "with fibers, a drift u of the solvent against the center of mass counts, as m u²/d; about means in slabs it does " \
+  "not"
+#define IN_STRESS "sigma_xy sigma_xy_fibers N1 N1_fibers pressure"
 #define HANDED_ON                                                                                                      \
   "with what contacts hand on, a mean since the row before; contacts that are called rigid hand on nothing"
 
@@ -201,6 +211,8 @@ const struct meaning meanings[] = {
     {OBSERVE_TEMPERATURE, IN_A_BATH_WITH_FLOW, MEANS, NULL, "about `flow`; in a sheared box about its linear flow"},
     {OBSERVE_TEMPERATURE, BY_A_FORCE_ON_FIBERS, MEANS, "vertex vertex_half_step",
      "a drift v against the solvent counts, as M v²/d"},
+    {OBSERVE_TEMPERATURE, BY_A_FORCE_ON_FIBERS, MEANS, "solvent solvent_x solvent_y solvent_z", SOLVENT_LAGS},
+    {OBSERVE_TEMPERATURE, ACCELERATED, MEANS, "solvent solvent_x solvent_y solvent_z", SOLVENT_LAGS},
     {OBSERVE_TEMPERATURE, ACCELERATED, MEANS, "vertex vertex_half_step", LAG "M v²/d"},
     {OBSERVE_TEMPERATURE, DRIFT_SPLIT, MEANS, "solvent solvent_x solvent_y solvent_z",
      "with forces of pairs, of half a step ahead, when collisions act"},
@@ -235,6 +247,7 @@ const struct meaning meanings[] = {
 
     {OBSERVE_PROFILE, WITH_A_BEAD, REFUSED, NULL,
      "a slab is not full of solvent where the bead is; allowed without a bead"},
+    {OBSERVE_PROFILE, NO_PARTICLES, REFUSED, NULL, "there are no solvent particles; allowed with some"},
     {OBSERVE_PROFILE, DRIFT_SPLIT, MEANS, "temperature", "with forces of pairs, of half a step ahead"},
     {OBSERVE_PROFILE, ANYWHERE, MEANS, NULL, "of the solvent; velocities of the laboratory"},
 
@@ -253,11 +266,16 @@ const struct meaning meanings[] = {
     {OBSERVE_STRESS, NO_TUBES, LEFT_OUT, "sigma_xy_contacts N1_contacts", "thin fibers hand on nothing at a contact"},
     {OBSERVE_STRESS, THICK, MEANS, "sigma_xy N1 pressure sigma_xy_contacts N1_contacts", HANDED_ON},
     {OBSERVE_STRESS, IN_A_FLOW, MEANS, "N1 pressure", "a flow u that is not linear counts, as −ρ⟨u²⟩"},
+    {OBSERVE_STRESS, BY_A_FORCE_ON_FIBERS, MEANS, IN_STRESS,
+     "a drift v of fibers against the applied flow counts, as −M v_x v_y per volume in σ_xy"},
+    {OBSERVE_STRESS, ACCELERATED, MEANS, IN_STRESS,
+     "fibers lag behind everything by some v, which counts, as −M v_x v_y per volume in σ_xy"},
     {OBSERVE_STRESS, IN_A_BATH_WITH_FLOW, MEANS, NULL, "of fibers alone"},
     {OBSERVE_STRESS, BETWEEN_WALLS, MEANS, NULL,
      "of the bulk; of fibers, of the whole gap; about the line between both walls"},
     {OBSERVE_STRESS, ANYWHERE, MEANS, NULL, "about `flow`, in a sheared box about its linear flow"},
 
+    {OBSERVE_DUMBBELLS, NO_DUMBBELLS, REFUSED, NULL, "there are none; allowed with dumbbells"},
     {OBSERVE_DUMBBELLS, ANYWHERE, MEANS, NULL, "of vectors alone"},
 
     {OBSERVE_ORIENTATION, IN_A_PLANE, MEANS, "S", "the larger eigenvalue of ⟨2 u u − 1⟩"},

@@ -22,6 +22,7 @@ enum circumstance {
   NO_TRAP,
   NO_PAIR_FORCES,
   NO_TUBES,
+  NO_DUMBBELLS,
   NO_PARTICLES,
   NO_WALLS,
   NO_BONDS,

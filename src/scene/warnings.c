@@ -387,12 +387,8 @@ static void warn_observables(struct teller *t, const struct scene *scene)
     warn(t, "observe.dynamics: there are no fibers to observe");
   if (plan->every[OBSERVE_STATICS] > 0 && scene->model.vertices == 0)
     warn(t, "observe.statics: there are no fibers to observe");
-  if (plan->every[OBSERVE_PROFILE] > 0 && !model_has_solvent(&scene->model))
-    warn(t, "observe.profile: there are no solvent particles to observe");
   if (plan->every[OBSERVE_STRESS] > 0 && !model_has_solvent(&scene->model) && scene->model.vertices == 0)
     warn(t, "observe.stress: there are neither solvent particles nor fibers to observe");
-  if (plan->every[OBSERVE_DUMBBELLS] > 0 && !model_has_dumbbells(&scene->model))
-    warn(t, "observe.dumbbells: there are no dumbbells to observe");
   if (plan->every[OBSERVE_STRESS] > 0 && model_has_walls(&scene->model) && scene->model.box.cells[1] < 3)
     warn(t, "observe.stress: the bulk is what is 1 a0 and more from both walls, and nothing is here; use a distance of "
             "3 or more");

@@ -450,6 +450,7 @@ static const struct {
     [NO_TRAP] = {CELLS "bead: {radius: 1.5, center: [4, 4, 4]}\n", NULL},
     [NO_PAIR_FORCES] = {CELLS, ""},
     [NO_TUBES] = {CELLS, ""},
+    [NO_DUMBBELLS] = {CELLS, ""},
     [NO_PARTICLES] = {"medium: {kind: private, rate: 1}\n", ""},
     [NO_WALLS] = {CELLS, ""},
     [NO_BONDS] = {CELLS, NULL},

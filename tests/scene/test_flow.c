@@ -140,7 +140,7 @@ static void written_and_read_again(void **unused)
 /* --- warnings ---------------------------------------------------------------------------------------------------- */
 
 struct told {
-  int all, rescale, mach, heat, net, strain, shear_heat, drive_mach, unstable, idle, unseen, early, narrow;
+  int all, rescale, mach, heat, net, strain, shear_heat, drive_mach, unstable, idle, early, narrow;
 };
 
 static void hear(void *context, const char *text)
@@ -155,7 +155,6 @@ static void hear(void *context, const char *text)
   t->shear_heat += strstr(text, "the shear heats the solvent by") != NULL;
   t->drive_mach += strstr(text, "the Mach number of the driven flow") != NULL;
   t->idle += strstr(text, "slip walls pull nothing") != NULL;
-  t->unseen += strstr(text, "there are no solvent particles") != NULL;
   t->narrow += strstr(text, "the bulk is what is 1 a0 and more from both walls") != NULL;
   t->early += strstr(text, "the flow starts at rest") != NULL;
   t->unstable += strstr(text, "the driven flow is expected to be unstable") != NULL;
@@ -188,7 +187,6 @@ static void warned(void **unused)
   assert_int_equal(warnings_of(at, "walls: {kind: no-slip, shear_rate: 0.2}").mach, 1);
   assert_int_equal(warnings_of(at, "walls: {kind: slip, lower: [0.1, 0, 0]}").idle, 1);
   assert_int_equal(warnings_of(at, "walls: {kind: slip}").idle, 0);
-  assert_int_equal(warnings_of(at, "observe: {profile: {every: 1, slabs: 8}, stress: {every: 1}}").unseen, 0);
   assert_int_equal(warnings_of("  rule: at-a\n  acceleration: [1, 0, 0]", "walls: {kind: no-slip}").mach, 1);
   assert_int_equal(warnings_of("", "shear: {rate: 0.1}").shear_heat, 1);
   assert_int_equal(
