@@ -18,6 +18,7 @@ import tempfile
 import types
 import unittest
 import unittest.mock
+import warnings
 import xml.etree.ElementTree as xml
 
 import h5py
@@ -60,7 +61,7 @@ program = load(TOP / "tools" / "uncross-plot")
 def plot(*words):
     """(code, standard output, standard error) of `uncross plot`, in this process: its packages take a second to read."""
     told, error = io.StringIO(), io.StringIO()
-    with contextlib.redirect_stdout(told), contextlib.redirect_stderr(error), unittest.mock.patch.object(
+    with warnings.catch_warnings(action="error"), contextlib.redirect_stdout(told), contextlib.redirect_stderr(error), unittest.mock.patch.object(
             sys, "argv", ["uncross plot", *map(str, words)]):
         code = program.main()
     return code, told.getvalue(), error.getvalue()
@@ -596,6 +597,39 @@ class Folder(unittest.TestCase):
             run = runs.read(str(path))
             self.assertEqual(len(page.guides(run, "a")), line.startswith("medium: {kind: private"))
             self.assertEqual(bool(run.derived[0][0].startswith("Medium")), line.startswith("medium"))
+
+    def test_surroundings_do_not_change_a_page(self):
+        """Settings of matplotlib in the current folder, of the user and of the environment; Python's own."""
+        table = self.dir / "surrounded.csv"
+        table.write_text("time,g,g_error\n1,2,0.1\n2,3,0.1\n3,5,0.1\n")
+        hostile = self.dir / "hostile"
+        (hostile / "matplotlib").mkdir(parents=True)
+        for place in (hostile, hostile / "matplotlib"):
+            (place / "matplotlibrc").write_text("text.usetex: True\naxes.facecolor: red\nlines.linewidth: 9\n")
+        settings = {"MPLBACKEND": "nonsense", "PYTHONWARNINGS": "error", "MATPLOTLIBRC": str(hostile / "matplotlibrc"),
+                    "XDG_CONFIG_HOME": str(hostile)}
+        pages = []
+        for number, (folder, more) in enumerate(((self.dir, {}), (hostile, settings))):
+            done = support.uncross("plot", table, "-o", self.dir / f"page{number}.html", cwd=folder, env={**os.environ, **more})
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            pages.append((self.dir / f"page{number}.html").read_bytes())
+        self.assertEqual(*pages)
+
+    def test_nobody_listens(self):
+        """All descriptors closed, as of a daemon; a full disk under standard error."""
+        table = self.dir / "unheard.csv"
+        table.write_text("time,g\n1,2\n2,3\n")
+        for number, closed in enumerate(('<&- >&- 2>&-', '2>/dev/full')):
+            page_path = self.dir / f"unheard{number}.html"
+            done = support.subprocess.run(["sh", "-c", f'exec "$@" {closed}', "sh", UNCROSS, "plot", table, "-o", page_path], check=False,
+                                          stdout=support.subprocess.DEVNULL)
+            self.assertEqual((done.returncode, page_path.exists()), (0, True), closed)
+
+    def test_figures_without_data_say_so(self):
+        """Frozen fibers do not move: each mean square displacement is 0, which has no logarithm."""
+        table = self.dir / "dynamics-a.csv"
+        table.write_text("time,intervals,g,g_error,D,D_error\n" + "".join(f"{t},{100 - t},0,0,0,0\n" for t in (1, 2, 4, 8, 16)))
+        self.assertEqual(plot(table, "-o", self.dir / "frozen.html"), (0, f"{self.dir}/frozen.html\n", ""))
 
     def test_tables_that_no_sweep_wrote(self):
         folder = self.dir / "foreign"

@@ -251,6 +251,14 @@ class SweepTest(FolderTest):
         self.assertEqual(len(set(names)), len(names))
         self.assertEqual([read(self.out / "runs.csv")[name] for name in ("steps", "steps_done")], [["300", "400"]] * 2)
 
+    def test_nobody_listens(self):
+        """All descriptors closed, as of a daemon; a full disk under standard error; warnings of packages that shall be errors."""
+        for number, closed in enumerate(('<&- >&- 2>&-', '2>/dev/full')):
+            out = self.dir / f"unheard{number}"
+            done = subprocess.run(["sh", "-c", f'exec "$@" {closed}', "sh", *map(str, self.words("--steps", "200", "--set", "observe.from=0", out=out))],
+                                  check=False, stdout=subprocess.DEVNULL, env=dict(os.environ, PYTHONWARNINGS="error"))
+            self.assertEqual((done.returncode, (out / "summary.csv").exists()), (0, True), closed)
+
     def test_a_missing_package_is_named(self):
         (self.dir / "numpy.py").write_text("raise ModuleNotFoundError('gone', name='numpy')\n")
         done = subprocess.run(list(map(str, self.words())), capture_output=True, text=True, check=False,
