@@ -11,14 +11,36 @@ Series are told apart three times over: by colour (of different lightness, and d
 and by the stroke of the line. So they can be told apart in grey, too.
 """
 import base64
+import contextlib
 import functools
 import io
+import os
 import re
 
-import matplotlib
 import numpy
-matplotlib.use("svg")
-from matplotlib import pyplot, textpath, ticker  # noqa: E402
+
+
+@contextlib.contextmanager
+def _away():
+    """In a folder of ours, without settings of the user and of the environment: matplotlib reads them when it is imported, and those
+    of the current folder, which may be somebody else's, before all others."""
+    kept = {name: os.environ.pop(name, None) for name in ("MPLBACKEND", "MATPLOTLIBRC")}
+    os.environ["MATPLOTLIBRC"] = os.devnull
+    with contextlib.ExitStack() as stack:
+        with contextlib.suppress(OSError):  # there may be no current folder any more
+            folder = os.open(".", os.O_RDONLY | os.O_CLOEXEC)
+            stack.callback(os.close, folder)
+            stack.callback(os.fchdir, folder)
+        os.chdir(os.path.dirname(os.path.abspath(__file__)))
+        yield
+    os.environ.pop("MATPLOTLIBRC")
+    os.environ.update({name: value for name, value in kept.items() if value is not None})
+
+
+with _away():
+    import matplotlib
+    matplotlib.use("svg")
+    from matplotlib import pyplot, textpath, ticker
 
 # Matplotlib makes a parser of formulas for each figure, which reads the same labels again. All figures share one, and its cache.
 if hasattr(textpath, "MathTextParser"):

@@ -107,10 +107,11 @@ def _scales(axes, panel, x, ys):
 
 def _draw(axes, table, panel, guides=()):
     x, drawn = table.data[table.x], []
+    positive = panel.log_y and any((table.data[c] > 0).any() for c in panel.columns)  # else all is 0, and is drawn as that
     for number, names in enumerate(_alike(table, panel.columns)):
         y, errors = table.data[names[0]], table.errors(names[0])
         y = y - y[0] if panel.change else y
-        if panel.log_y:
+        if positive:
             y = numpy.where(y > 0, y, numpy.nan)
         label = " = ".join(columns.column(c).short if len(names) < 4 else columns.column(c).symbol or c for c in names)
         if errors is not None or table.rows < 4:

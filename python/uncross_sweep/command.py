@@ -1,6 +1,7 @@
 """The command line. The options are declared in src/cli/options.c too, which has looked at them before."""
 import argparse
 import collections
+import errno
 import os
 import pathlib
 import sys
@@ -119,18 +120,19 @@ def run_all(sweep, options):
         done = write_results(sweep, runs)
     failed = [run for run in runs if run.code not in (None, 0, jobs.INTERRUPTED) and not (pool.stopped_by and run.code < 0)]
     if not options.quiet:
-        say(f"{done} of {len(runs)} runs finished\nresults in {escape.shown(sweep.out)}/summary.csv")
-        if done < len(runs):
-            say("go on with the same command and --resume")
+        say(f"{done} of {len(runs)} runs finished\nresults in {escape.shown(sweep.out)}/summary.csv"
+            + ("\ngo on with the same command and --resume" if done < len(runs) else ""), closing=True)
     return abs(failed[0].code) if failed else DONE if done == len(runs) else jobs.INTERRUPTED
 
 
-def say(text):
-    """On standard output."""
+def say(text, closing=False):
+    """On standard output. Closing words, which nobody may want to hear: not where it is closed."""
     try:
         print(text, flush=True)
     except OSError as error:
         sys.stdout = open(os.devnull, "w", encoding="ascii")  # what could not be written is not tried again at the end
+        if closing and error.errno == errno.EBADF:
+            return
         raise Full(f"standard output: cannot write: {error.strerror}") from error
 
 
