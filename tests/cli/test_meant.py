@@ -48,7 +48,32 @@ class Meant(FolderTest):
 
     def test_a_mapping_is_no_list(self):
         self.assertIn("fibers: a mapping is not a list; allowed: a list of mappings", self.said(SCENE + "fibers: {name: a}\n")[1])
-        self.assertIn("steps: a list is not a whole number", self.said(SCENE.replace("steps: 2", "steps: [2]"))[1])
+        self.assertIn("steps: a list of 1 is not a whole number", self.said(SCENE.replace("steps: 2", "steps: [2]"))[1])
+
+    def test_a_key_of_a_section(self):
+        """At the top of a file: where it belongs, if there are not many such places. Symbols of the paper, in fibers."""
+        for word, says in (("thermostat", "did you mean 'solvent.thermostat'?"), ("rate", "did you mean 'medium.rate' or 'shear.rate'?"),
+                           ("persistence_length", "did you mean 'fibers.persistence_length'?"), ("longest_lag", "did you mean 'observe.dynamics.longest_lag'?"),
+                           ("every", "allowed: box")):
+            self.assertIn(f"unknown key '{word}'; {says}", self.said(f"{SCENE}{word}: 1\n")[1])
+        for word, key in (("k", "spring"), ("N", "vertices"), ("lp", "persistence_length"), ("kappa", "bending")):
+            said = self.said(f"{SCENE}fibers: [{{name: a, {word}: 3}}]\n")[1]
+            self.assertIn(f"unknown key '{word}' in fibers; did you mean 'fibers.{key}'?", said)
+        self.assertIn("did you mean 'dumbbells.spring'?", self.said(f"{SCENE}dumbbells: {{k: 3}}\n")[1])
+
+    def test_examples_are_allowed(self):
+        """What an empty section is told to hold may be taken at its word."""
+        scene = SCENE.replace("solvent: {per_cell: 3, collision_interval: 0.02}\n", "")
+        names = [key for key, what in json.loads(uncross("schema").stdout)["properties"].items() if what.get("type") == "object"]
+        self.assertGreater(len(names), 8)
+        for name in names:
+            said = self.said(f"{scene}{name}: {{}}\n")[1]
+            example = said.partition("at least one key, as ")[2].partition(", or no such section")[0]
+            self.assertRegex(example, r"^\{.+\}$", said)
+            if "..." in example:
+                continue
+            again = self.said(f"{scene}{name}: {example}\n")[1]
+            self.assertNotRegex(again.partition("\n")[0], r"out of range|is not a|is no choice|is empty", (name, example))
 
     def test_rows_have_values(self):
         code, said = self.said(NO_VALUE)
