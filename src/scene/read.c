@@ -31,7 +31,9 @@ static bool refuse_value(const struct reading *r, const struct node *node, const
   char allowed[512];
   key_describe(r->key, allowed, sizeof allowed);
   const char *text = node_text(node);
-  const char *what = text ? text : node->type == NODE_LIST ? "a list" : "a mapping";
+  char list[40];
+  snprintf(list, sizeof list, "a list of %zu", node->count);
+  const char *what = text ? text : node->type == NODE_LIST ? list : "a mapping";
   return node_refuse(node, r->message, "%s%s%s: %s%.60s%s%s; allowed: %s", r->table->path, *r->table->path ? "." : "",
                      r->key->name, text ? "'" : "", what, text ? "' " : " ", problem, allowed);
 }
@@ -158,14 +160,22 @@ static bool read_text(const struct reading *r)
 
 static bool read_mapping(const struct reading *r, const struct node *mapping, const struct key_table *table, void *to);
 
-/* "is not a mapping, as {every: 100}": the keys that the section must have, or its first. */
-static void describe_missing_mapping(const struct key_table *table, const char *what, char *text, size_t size)
+/* A value that the key allows, for an example. */
+static const char *example_of(const struct key *key)
 {
   static const char *const example[] = {
       [KEY_WHOLE64] = "100",     [KEY_WHOLE32] = "100", [KEY_NUMBER] = "0.5", [KEY_VECTOR] = "[0, 0, 1]",
       [KEY_CELLS] = "[8, 8, 8]", [KEY_SWITCH] = "true", [KEY_NAME] = "a",     [KEY_TEXT] = "file",
       [KEY_SECTION] = "{...}",   [KEY_LIST] = "[...]",  [KEY_INCLUDE] = "",
   };
+  if (key->type == KEY_CHOICE)
+    return key->choice[0];
+  return key->type == KEY_NUMBER && !key_allows_number(key, 0.5) ? "2" : example[key->type];
+}
+
+/* "is not a mapping, as {every: 100}": the keys that the section must have, or its first. */
+static void describe_missing_mapping(const struct key_table *table, const char *what, char *text, size_t size)
+{
   size_t used = (size_t)snprintf(text, size, "%s, as {", what), required = 0;
   for (size_t k = 0; k < table->count; k++)
     required += key_is_required(&table->key[k]);
@@ -174,8 +184,7 @@ static void describe_missing_mapping(const struct key_table *table, const char *
     const struct key *key = &table->key[k];
     if (required ? !key_is_required(key) : k > 0)
       continue;
-    used += (size_t)snprintf(text + used, size - used, "%s%s: %s", between, key->name,
-                             key->type == KEY_CHOICE ? key->choice[0] : example[key->type]);
+    used += (size_t)snprintf(text + used, size - used, "%s%s: %s", between, key->name, example_of(key));
     between = ", ";
   }
   if (used < size)
@@ -259,7 +268,9 @@ bool keys_refuse(const struct node *node, const char *name, const struct key_tab
   words[collect_words(table, words, 0)] = NULL;
   char hint[512];
   suggest_word(name, words, hint, sizeof hint);
-  const char *meant = synonym_hint(name);
+  if (!*table->path)
+    synonym_places(table, name, hint, sizeof hint);
+  const char *meant = synonym_hint(name, table->path);
   return node_refuse(node, message, "unknown key '%.60s'%s%s; %s", name, *table->path ? " in " : "", table->path,
                      meant ? meant : hint);
 }
