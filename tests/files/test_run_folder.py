@@ -106,6 +106,13 @@ class RunFolder(FolderTest):
         steps = [int(row.split(",")[0]) for row in (self.run_folder / "conserved.csv").read_text().splitlines()[1:]]
         self.assertEqual(steps, list(range(0, self.record()["steps"] + 1, 2)))
 
+    def test_zero_has_no_sign(self):
+        """A particle alone: its stress about its own velocity is 0, and not -0."""
+        self.run_scene("box: [8, 8, 8]\ntime_step: 0.01\nsteps: 10\nsolvent: {per_cell: 0.002, collision_interval: 0.02}\n"
+                       "observe: {stress: {every: 2}}\n")
+        rows = [row.split(",") for row in (self.run_folder / "stress.csv").read_text().splitlines()[1:]]
+        self.assertEqual({cell for row in rows for cell in row[2:]}, {"0"})
+
     def test_dumbbells_in_two_parts(self):
         """Sums over springs do not know where dumbbells stand in memory: a checkpoint sorts them. Nor is a table without a row
         yet in the way of a resume."""

@@ -626,9 +626,11 @@ class Folder(unittest.TestCase):
             self.assertEqual((done.returncode, page_path.exists()), (0, True), closed)
 
     def test_figures_without_data_say_so(self):
-        """Frozen fibers do not move: each mean square displacement is 0, which has no logarithm."""
+        """Frozen fibers do not move: each mean square displacement is 0, which has no logarithm, and curves are one, with all names."""
         table = self.dir / "dynamics-a.csv"
-        table.write_text("time,intervals,g,g_error,D,D_error\n" + "".join(f"{t},{100 - t},0,0,0,0\n" for t in (1, 2, 4, 8, 16)))
+        names = ("end_to_end", "end_to_end_unit", "axis_unit")
+        table.write_text("time,intervals,g,g_error,D,D_error," + ",".join(f"{name},{name}_error" for name in names) + "\n" +
+                         "".join(f"{t},{100 - t},0,0,0,0,1,0,1,0,1,0\n" for t in (1, 2, 4, 8, 16)))
         self.assertEqual(plot(table, "-o", self.dir / "frozen.html"), (0, f"{self.dir}/frozen.html\n", ""))
 
     def test_tables_that_no_sweep_wrote(self):
