@@ -113,7 +113,7 @@ def _draw(axes, table, panel, guides=()):
         y = y - y[0] if panel.change else y
         if positive:
             y = numpy.where(y > 0, y, numpy.nan)
-        label = " = ".join(columns.column(c).short if len(names) < 4 else columns.column(c).symbol or c for c in names)
+        label = ("\n= " if len(names) < 4 else " = ").join(columns.column(c).short if len(names) < 4 else columns.column(c).symbol or c for c in names)
         if errors is not None or table.rows < 4:
             style.points(axes, x, y, errors, number, label=label)
         else:

@@ -30,7 +30,7 @@ static void write_values(FILE *file, const char *between, size_t columns, const 
 {
   char text[TEXT_REAL_SIZE];
   for (size_t k = 0; k < columns; k++, between = ",") {
-    text_shortest(values[k], text);
+    text_shortest(values[k] + 0.0, text); /* of two zeros the one without a sign */
     fprintf(file, "%s%s", between, text);
   }
   fputc('\n', file);
