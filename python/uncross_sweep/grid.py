@@ -123,8 +123,9 @@ class Sweep:
             if same is not point:
                 raise Refused(f"--grid: {same.name} and {point.name} are the same scene; allowed: values that differ")
 
-    def settings(self, point, more=()):
-        given = [*self.sets, *(f"{key}={value}" for key, value in point.values.items()), *more]
+    def settings(self, point, more=(), seed=True):
+        """seed: whether that of --set is among them; a run gets it as --seed."""
+        given = [*(text for text in self.sets if seed or text.partition("=")[0] != "seed"), *(f"{key}={value}" for key, value in point.values.items()), *more]
         return [word for setting in given for word in ("--set", setting)]
 
     def runs(self):
@@ -178,7 +179,7 @@ class Run:
         s = self.sweep
         steps = [] if s.steps is None else ["--steps", str(s.steps)]
         return [s.uncross, "run", escape.path(s.scene), "--out", escape.path(self.folder), "--seed", str(self.seed), *steps,
-                *s.settings(self.point), "--quiet"]
+                *s.settings(self.point, seed=False), "--quiet"]
 
     def words(self):
         return escape.words(self.command())
