@@ -72,6 +72,19 @@ class ShortMemory(unittest.TestCase):
 
         self.try_all(act)
 
+    def test_readers(self):
+        """What HDF5 is not asked for is no bad input."""
+        few, enough = 4000, 400000  # to be loaded
+        while enough - few > STEP:
+            middle = (few + enough) // 2
+            few, enough = (few, middle) if self.loads(middle) else (middle, enough)
+        for words in (["info", "begun/checkpoint.h5"], ["info", "begun"], ["export", "begun/trajectory.h5"],
+                      ["analyze", "begun/trajectory.h5", "--out", "tables"],
+                      ["run", "s.yaml", "--out", "begun", "--resume", "--quiet"]):
+            done = self.limited(enough + 4000, *words)
+            self.assertEqual(done.returncode, 1, f"{words}: {done.stderr}")
+            self.assertRegex(done.stderr, "memory")
+
     def test_new_run(self):
         folder = self.dir / "run"
 
