@@ -13,6 +13,12 @@ static struct scene_settings settings_of(const struct uncross_scene *scene)
   return (struct scene_settings){scene->settings, (const char *const *)scene->setting, scene->given};
 }
 
+/* The code of what went wrong with a scene. */
+static int code_of(const struct message *message)
+{
+  return message->memory ? UNCROSS_NO_MEMORY : UNCROSS_BAD_INPUT;
+}
+
 /* How a scene is read: see struct scene_source. */
 struct reading {
   bool numbers_only, look_for_files, open_end;
@@ -38,7 +44,7 @@ static int read_source(const struct uncross_scene *from, struct reading how, con
                                           checkpoint && run_fingerprint(checkpoint, &fingerprint) ? &fingerprint : NULL,
                                       .message = &message};
   if (!scene_read_source(&source, scene))
-    return fail(error, UNCROSS_BAD_INPUT, message.text, NULL);
+    return fail(error, code_of(&message), message.text, NULL);
   if (from->has_seed)
     scene->seed = scene->model.seed = from->seed;
   return UNCROSS_OK;
@@ -147,7 +153,7 @@ uncross_scene *uncross_scene_read(const char *path, const char *const *settings,
   char *text = yaml_read_file(path, &size, &message);
   uncross_scene *scene = text ? make_with(path, text, size, settings, count, error) : NULL;
   if (!text)
-    fail(error, UNCROSS_BAD_INPUT, message.text, NULL);
+    fail(error, code_of(&message), message.text, NULL);
   free(text);
   call_end(&call);
   return scene;
@@ -198,7 +204,7 @@ static int set(struct uncross_scene *scene, const char *path, const char *value,
   if (can_be_set(scene, setting, &message))
     return append(scene, setting, error);
   free(setting);
-  return fail(error, UNCROSS_BAD_INPUT, message.text, NULL);
+  return fail(error, code_of(&message), message.text, NULL);
 }
 
 int uncross_scene_set(uncross_scene *scene, const char *path, const char *value, uncross_error *error)
@@ -335,7 +341,7 @@ static char *get(const struct uncross_scene *scene, const char *path, uncross_er
   tree_free(&tree);
   free(text);
   if (!found)
-    fail(error, UNCROSS_BAD_INPUT, message.text, NULL);
+    fail(error, code_of(&message), message.text, NULL);
   return found;
 }
 

@@ -12,6 +12,7 @@ static int set(struct message *message, bool unread, const char *format, va_list
   vsnprintf(text, sizeof text, format, arguments);
   text_escape(text, message->text, sizeof message->text);
   message->unread = unread;
+  message->memory = false;
   return 0;
 }
 
@@ -33,6 +34,16 @@ int message_unread(struct message *message, const char *format, ...)
   return 0;
 }
 
+int message_no_memory(struct message *message, const char *format, ...)
+{
+  va_list arguments;
+  va_start(arguments, format);
+  set(message, true, format, arguments);
+  va_end(arguments);
+  message->memory = true;
+  return 0;
+}
+
 int message_at(struct message *message, const char *file, size_t line, size_t column, const char *format, ...)
 {
   char text[sizeof message->text];
@@ -44,6 +55,6 @@ int message_at(struct message *message, const char *file, size_t line, size_t co
   vsnprintf(text + used, sizeof text - (size_t)used, format, arguments);
   va_end(arguments);
   text_escape(text, message->text, sizeof message->text);
-  message->unread = false;
+  message->unread = message->memory = false;
   return 0;
 }

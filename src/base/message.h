@@ -8,6 +8,7 @@
 struct message {
   char text[1024];
   bool unread; /* what it speaks of could not be read, for want of memory or by the system: nothing is known of it */
+  bool memory; /* memory is short: nothing is known of anything */
 };
 
 /* Writes printf-style text into the message, escaped as text_escape does (base/text.h): it may be shown anywhere. The
@@ -16,6 +17,9 @@ int message_set(struct message *message, const char *format, ...) __attribute__(
 
 /* The same, of what could not be read. */
 int message_unread(struct message *message, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* The same, for want of memory. */
+int message_no_memory(struct message *message, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* "file:line:col: " and then the text; line and column count from 1. Always returns 0. */
 int message_at(struct message *message, const char *file, size_t line, size_t column, const char *format, ...)

@@ -250,16 +250,14 @@ void apart_put_verdict(struct apart *link, int verdict, const struct message *me
 {
   const int32_t number = verdict;
   if (apart_put(link, &number, sizeof number) && verdict != 0)
-    apart_put(link, message->text, sizeof message->text);
+    apart_put(link, message, sizeof *message);
 }
 
 int apart_get_verdict(struct apart *parent, struct message *message)
 {
   int32_t number = -1;
-  if (apart_get(parent, &number, sizeof number) &&
-      (number == 0 || apart_get(parent, message->text, sizeof message->text))) {
+  if (apart_get(parent, &number, sizeof number) && (number == 0 || apart_get(parent, message, sizeof *message))) {
     message->text[sizeof message->text - 1] = '\0';
-    message->unread = false;
     return number;
   }
   apart_lost(parent, message);

@@ -277,7 +277,7 @@ bool checkpoint_each_array(struct state *state, checkpoint_rows *read, void *fro
     for (size_t f = 0; ok && f < group[g].fields && checkpoint_has_group(&group[g]); f++) {
       void *rows = malloc(((size_t)group[g].rows + 1) * 24);
       ok = rows ? read(from, &group[g], &group[g].field[f], rows, message)
-                : message_unread(message, "%s: out of memory", path);
+                : message_no_memory(message, "%s: out of memory", path);
       if (ok)
         state_field_set(&group[g], &group[g].field[f], rows);
       free(rows);
@@ -305,7 +305,7 @@ bool checkpoint_check(const struct state *state, const struct checkpoint_summary
   char why[512];
   const uint64_t hash = state_hash(state);
   if (hash == 0 && summary->head.state_hash != 0)
-    return message_unread(message, "%s: out of memory", path);
+    return message_no_memory(message, "%s: out of memory", path);
   if (hash != summary->head.state_hash)
     return message_set(message, "%s: damaged checkpoint: its state has hash %016llx, it should be %016llx", path,
                        (unsigned long long)hash, (unsigned long long)summary->head.state_hash);

@@ -47,7 +47,7 @@ static void answer(struct apart *link, hid_t file, const struct request *r)
   void *data = malloc(bytes + 1);
   const enum answer how = data ? read_array(file, r, data) : BROKEN;
   if (!data)
-    message_unread(&message, "%s: out of memory", link->path);
+    message_no_memory(&message, "%s: out of memory", link->path);
   else if (how != FINE)
     h5_fail(&message, link->path, "damaged checkpoint: its positions or velocities cannot be read or fail their check");
   apart_put_verdict(link, (int)how, &message);
@@ -103,7 +103,7 @@ static bool fits_vertices(struct apart *apart, const struct model *m, struct mes
   struct message why = {.text = "its masses cannot be read"};
   void *stored = malloc(((size_t)m->bonds + m->vertices + 1) * 8); /* pairs of numbers, then masses */
   if (!stored)
-    return message_unread(message, "%s: out of memory", apart->path);
+    return message_no_memory(message, "%s: out of memory", apart->path);
   int how = ask(apart, "structure", "bonds", SHORT_INTEGERS, m->bonds, 2, stored, message);
   const bool same = how == FINE && structure_same_bonds(stored, m);
   if (!same && how >= 0)

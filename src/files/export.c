@@ -250,8 +250,9 @@ bool trajectory_export(const char *path, const struct export_options *options, F
   v.number = number;
   v.model = has_scene ? &scene.model : NULL;
   v.wrapped = options->wrapped || format->folds;
-  const bool ok = place && prev && number ? print_frames(frames, format, &v, out, message)
-                                          : message_set(message, "%s: no memory for the places of its particles", path);
+  const bool ok = place && prev && number
+                      ? print_frames(frames, format, &v, out, message)
+                      : message_no_memory(message, "%s: no memory for the places of its particles", path);
   free(number);
   free(prev);
   free(place);

@@ -91,7 +91,7 @@ struct frames *frames_open(const char *path, enum h5_trouble *trouble, struct me
     f->path = strdup(path);
   if (!f || !f->path) {
     free(f);
-    message_unread(message, "%s: out of memory", path);
+    message_no_memory(message, "%s: out of memory", path);
     return NULL;
   }
   if (!apart_start(&f->apart, f->path, "frames", message))
@@ -99,7 +99,7 @@ struct frames *frames_open(const char *path, enum h5_trouble *trouble, struct me
   const int verdict = apart_get_verdict(&f->apart, message);
   bool ok = verdict == H5_FINE;
   if (ok && !get_about(f))
-    ok = f->apart.broken ? apart_lost(&f->apart, message) : message_unread(message, "%s: out of memory", path);
+    ok = f->apart.broken ? apart_lost(&f->apart, message) : message_no_memory(message, "%s: out of memory", path);
   *trouble = ok ? H5_FINE : trouble_of(verdict, &f->apart);
   return ok ? f : give_up(f);
 }
@@ -128,7 +128,7 @@ static bool make_room(struct frames *f, struct message *message)
   if (f->about.velocities)
     p->velocity = p->velocity ? p->velocity : malloc(numbers * sizeof *p->velocity);
   return (p->position && (p->velocity || !f->about.velocities)) ||
-         message_unread(message, "%s: out of memory", f->path);
+         message_no_memory(message, "%s: out of memory", f->path);
 }
 
 /* The first number that is not finite; 3 rows if there is none. */

@@ -118,14 +118,17 @@ static bool open_structure(struct source *s, hid_t particles, hid_t connectivity
   struct message why = {.text = ""};
   bool ok = particles >= 0 && structure_read(particles, connectivity, id, rows, &s->structure, &why);
   if (!ok && why.text[0])
-    return (why.unread ? message_unread : message_set)(message, "%s: %s", s->path, why.text);
+    return (why.memory   ? message_no_memory
+            : why.unread ? message_unread
+                         : message_set)(message, "%s: %s", s->path, why.text);
   return ok || h5_fail(message, s->path, "damaged, its species or bonds cannot be read");
 }
 
 /* After h5_text_read has failed. */
 static bool no_text(const struct source *s, const char *damaged, struct message *message)
 {
-  return errno == ENOMEM ? message_unread(message, "%s: out of memory", s->path) : h5_fail(message, s->path, damaged);
+  return errno == ENOMEM ? message_no_memory(message, "%s: out of memory", s->path)
+                         : h5_fail(message, s->path, damaged);
 }
 
 static bool open_trajectory(struct source *s, struct message *message)
@@ -191,7 +194,7 @@ static bool open_source(struct source *s, enum h5_trouble *trouble, struct messa
   if (!s->about.checkpoint) {
     s->trajectory = trajectory_allocate(s->path);
     if (!s->trajectory)
-      return message_unread(message, "%s: out of memory", s->path);
+      return message_no_memory(message, "%s: out of memory", s->path);
     s->trajectory->file = s->file;
   }
   const bool ok = (s->about.checkpoint ? open_checkpoint : open_trajectory)(s, message) &&
@@ -210,7 +213,7 @@ static bool make_room(struct source *s, struct message *message)
   if (!s->velocity && s->about.velocities)
     s->velocity = malloc(numbers * sizeof *s->velocity);
   return (s->position && (s->velocity || !s->about.velocities)) ||
-         message_unread(message, "%s: out of memory", s->path);
+         message_no_memory(message, "%s: out of memory", s->path);
 }
 
 /* The model of the scene that a checkpoint holds: walls, shear and springs say where particles are between collisions.
@@ -240,7 +243,7 @@ static enum frame_verdict load_checkpoint(struct source *s, struct frame_moment 
   if (!state_alloc(&state, &model)) {
     if (known)
       scene_free(&scene);
-    message_unread(message, "%s: out of memory", s->path);
+    message_no_memory(message, "%s: out of memory", s->path);
     return FRAME_LOST;
   }
   bool ok = checkpoint_read_state(s->file, s->path, summary, &state, message);

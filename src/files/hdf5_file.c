@@ -28,8 +28,8 @@ static void silence(void)
 bool h5_has_memory(const char *path, size_t bytes, struct message *message)
 {
   return memory_to_spare(bytes + H5_MEMORY) ||
-         message_set(message, "%s: no memory (HDF5 is not called with less than %zu MiB to spare)", path,
-                     (bytes + H5_MEMORY) >> 20);
+         message_no_memory(message, "%s: no memory (HDF5 is not called with less than %zu MiB to spare)", path,
+                           (bytes + H5_MEMORY) >> 20);
 }
 
 /* --- files ------------------------------------------------------------------------------------------------------- */

@@ -205,7 +205,7 @@ static bool tell_table(const struct look *look, struct message *message)
   const bool ok = length == TEXT_TOO_LONG ? message_set(message, "%s: not a table: a line has more than %d bytes",
                                                         look->path, TEXT_LONGEST_LINE)
                   : !read                 ? message_set(message, "%s: cannot be read to its end", look->path)
-                                          : header || message_set(message, "%s: no memory", look->path);
+                                          : header || message_no_memory(message, "%s: no memory", look->path);
   if (ok) {
     printf("%s: table of %zu columns and %" PRIu64 " rows\n  columns: ", text_shown(look->path), table_columns(header),
            lines - 1);

@@ -210,7 +210,7 @@ bool output_sample(struct output *o, struct observers *observers, const struct m
   struct row_context context = {o, state->step, message};
   const struct observe_sink sink = {take_row, &context};
   if (observers_due(observers, state->step)) {
-    message_set(message, "no memory for the observables of step %llu", (unsigned long long)state->step);
+    message_no_memory(message, "no memory for the observables of step %llu", (unsigned long long)state->step);
     if (!observers_sample(observers, model, state, &sink))
       return false;
   }
@@ -254,7 +254,7 @@ bool output_summaries(struct output *o, const struct observers *observers, const
                       struct message *message)
 {
   struct table_context context = {o->folder, message};
-  message_set(message, "%s: no memory for the tables", o->folder->name); /* unless a table says what failed */
+  message_no_memory(message, "%s: no memory for the tables", o->folder->name); /* unless a table says what failed */
   return observers_summaries(observers, model, take_table, &context);
 }
 

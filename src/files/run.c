@@ -80,11 +80,17 @@ bool run_fingerprint(const char *path, uint64_t *fingerprint)
   return true;
 }
 
+/* What could not begin. */
+static enum run_code refused(const struct message *message)
+{
+  return message->memory ? RUN_NO_MEMORY : RUN_BAD_INPUT;
+}
+
 enum run_code run_begin(const struct run_parts *p, struct checkpoint_head *head, struct message *message)
 {
   struct stream stream;
   if (!scene_start(p->scene, p->state, p->work, &stream, message))
-    return RUN_BAD_INPUT;
+    return refused(message);
   const struct conserved start = observe_conserved(&p->scene->model, p->state);
   *head = (struct checkpoint_head){.fingerprint = p->scene->fingerprint,
                                    .seed = p->scene->seed,
@@ -96,7 +102,7 @@ enum run_code run_begin(const struct run_parts *p, struct checkpoint_head *head,
                                    .version = UNCROSS_VERSION};
   if (head->state_hash != 0 && isfinite(start.total))
     return RUN_FINE;
-  message_set(message, "no memory to look at the starting state");
+  message_no_memory(message, "no memory to look at the starting state");
   return RUN_NO_MEMORY;
 }
 
@@ -113,7 +119,7 @@ enum run_code run_continue(const struct run_parts *p, const char *path, const ui
     *message = why;
   if (!read || same != SAME_RUN ||
       !same_run(p->scene, head, NULL, seed, path, message)) /* the file may have been another one meanwhile */
-    return RUN_BAD_INPUT;
+    return refused(message);
   p->scene->seed = head->seed;
   p->scene->model.seed = head->stream.key;
   shear_begin(&p->scene->model, head->slide);
@@ -131,7 +137,7 @@ static enum run_code continue_in_folder(struct run *run, const uint64_t *seed, s
   if (!folder_in_place(&run->folder, message)) /* so what was read may be another run's */
     return RUN_NOT_WRITTEN;
   if (!output_whole(p->scene, p->observers, &run->folder, run->head.frames_end, message))
-    return RUN_BAD_INPUT;
+    return refused(message);
   run->earlier_seconds = run->head.wall_seconds;
   return RUN_FINE;
 }
@@ -306,7 +312,7 @@ enum run_code run_open(struct run *run, const struct run_parts *parts, const cha
   *run = (struct run){.parts = *parts, .owner = getpid(), .resume = resume, .made = SIZE_MAX};
   run->name = strdup(folder);
   run->folder = (struct folder){run->name, FOLDER_BY_NAME};
-  message_set(message, "no memory for the name of the folder");
+  message_no_memory(message, "no memory for the name of the folder");
   if (!run->name)
     return RUN_NO_MEMORY;
   run->session_started = run->last_checkpoint = run->loop_started = clock_seconds();

@@ -49,7 +49,7 @@ enum same_run same_run_as_begun(const struct scene *scene, const char *path, con
       f->about.checkpoint && f->scene && scene_read_text_numbers(path, f->scene, strlen(f->scene), &then, &ignored);
   enum same_run same = SAME_RUN_UNKNOWN;
   if (!known && errno == ENOMEM)
-    message_set(message, "%s: no memory to compare its scene", path);
+    message_no_memory(message, "%s: no memory to compare its scene", path);
   else if (!f->about.checkpoint)
     message_set(message, "%s: not a checkpoint", path);
   else
@@ -73,7 +73,7 @@ static bool same_scene(const struct frames *frames, uint64_t fingerprint, struct
     return true;
   errno = 0;
   if (!scene_read_text_numbers(frames->path, frames->scene, strlen(frames->scene), &then, &ignored))
-    return errno != ENOMEM || message_unread(message, "%s: no memory to compare its scene", frames->path);
+    return errno != ENOMEM || message_no_memory(message, "%s: no memory to compare its scene", frames->path);
   const uint64_t its = then.fingerprint;
   scene_free(&then);
   return its == fingerprint ||

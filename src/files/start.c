@@ -37,7 +37,7 @@ static bool refuse_flow(const struct scene *scene, struct vec3 found, bool cross
   const struct model *m = &scene->model;
   const char *key = scene_says(scene, "flow") ? "flow" : "start.snapshot";
   if (!isfinite(found.x + found.y + found.z))
-    return message_unread(message, "no memory to look at the starting state");
+    return message_no_memory(message, "no memory to look at the starting state");
   found.y = may_flow_along_y(m) || crossed ? found.y : 0.0;
   return scene_refuse_at(scene, key, "flow", message,
                          "the center of mass of '%s' moves at [%.9g, %.9g, %.9g] a0/t0%s, and a snapshot is given no "
@@ -225,7 +225,7 @@ static bool find_stream(const struct scene *scene, const struct snapshot_origin 
   *stream = asked ? stream_asked(scene->seed, origin->has_stream, origin->stream, origin->step)
                   : stream_of_snapshot(scene->seed, origin->has_stream, origin->stream, origin->step, hash);
   stream->untold = origin->untold;
-  return hash != 0 || message_set(message, "no memory to look at the starting state");
+  return hash != 0 || message_no_memory(message, "no memory to look at the starting state");
 }
 
 static bool start_from_snapshot(struct scene *scene, struct state *state, struct work *work, struct stream *stream,
@@ -236,7 +236,7 @@ static bool start_from_snapshot(struct scene *scene, struct state *state, struct
   if (!scene_finds_snapshot(scene, message))
     return false;
   char *path = scene_snapshot_path(scene);
-  message_set(message, "no memory for the path of the snapshot");
+  message_no_memory(message, "no memory for the path of the snapshot");
   bool ok = path && snapshot_read_start(path, m, state, &origin, message);
   free(path);
   if (ok)
@@ -303,7 +303,7 @@ bool scene_has_room(const struct scene *scene, struct message *message)
     return true;
   alone.solvent.particles = alone.dumbbells.pairs = 0;
   if (!state_alloc(&state, &alone))
-    return message_set(message, "%s: no memory to lay its fibers", scene->path);
+    return message_no_memory(message, "%s: no memory to lay its fibers", scene->path);
   if (state.beads > 0)
     bead_start(&state, &alone);
   const bool ok = start_fibers(&state, &alone, NULL, &fault) || refuse_start(scene, &fault, message);

@@ -96,7 +96,7 @@ static void *room(size_t count, size_t size, struct message *why)
 {
   void *found = calloc(count + 1, size);
   if (!found)
-    message_unread(why, "out of memory");
+    message_no_memory(why, "out of memory");
   return found;
 }
 

@@ -12,7 +12,7 @@ struct trajectory *trajectory_open_read(const char *path, struct message *messag
 {
   struct trajectory *t = trajectory_allocate(path);
   if (!t) {
-    message_unread(message, "%s: out of memory", path);
+    message_no_memory(message, "%s: out of memory", path);
     return NULL;
   }
   enum h5_trouble trouble;

@@ -157,7 +157,7 @@ static struct trajectory *create(const char *path, const struct model *model, co
 {
   struct trajectory *t = trajectory_allocate(path);
   if (!t) {
-    message_unread(message, "%s: out of memory", path);
+    message_no_memory(message, "%s: out of memory", path);
     return NULL;
   }
   t->solvent = options->solvent && model_has_solvent(model);
@@ -345,7 +345,7 @@ static struct trajectory *resume_existing(const char *path, const struct model *
     return NULL;
   struct trajectory *t = trajectory_allocate(path);
   if (!t) {
-    message_unread(message, "%s: out of memory", path);
+    message_no_memory(message, "%s: out of memory", path);
     return NULL;
   }
   t->file = h5_open(path, true, &sealed, &trouble, message);
@@ -353,7 +353,7 @@ static struct trajectory *resume_existing(const char *path, const struct model *
     return trajectory_give_up(t);
   t->solvent = options->solvent && model_has_solvent(model);
   if (!make_room(t, model)) {
-    message_unread(message, "%s: out of memory", path);
+    message_no_memory(message, "%s: out of memory", path);
     return trajectory_give_up(t);
   }
   if (!drop_after(t, &kept)) {

@@ -145,7 +145,7 @@ static bool read_name(const struct reading *r)
 /* Always returns false. */
 static bool no_memory(const struct reading *r)
 {
-  return message_set(r->message, "%s: out of memory", r->node->source);
+  return message_no_memory(r->message, "%s: out of memory", r->node->source);
 }
 
 static bool read_text(const struct reading *r)
@@ -333,7 +333,7 @@ static bool read_missing(const struct reading *r, const struct node *mapping)
 {
   const struct key *key = r->key;
   if (mapping && is_idle(r))
-    return key_read_text(key, key->idle, r->to) || message_set(r->message, "%s: out of memory", r->source);
+    return key_read_text(key, key->idle, r->to) || message_no_memory(r->message, "%s: out of memory", r->source);
   if (mapping && key_is_required(key)) {
     char allowed[512];
     key_describe(key, allowed, sizeof allowed);
@@ -345,7 +345,7 @@ static bool read_missing(const struct reading *r, const struct node *mapping)
   if (key->fallback)
     r->gaps->defaults = true;
   const char *text = r->gaps->missing == MISSING_DEFAULT && key->fallback ? key->fallback : key->absent;
-  return !text || key_read_text(key, text, r->to) || message_set(r->message, "%s: out of memory", r->source);
+  return !text || key_read_text(key, text, r->to) || message_no_memory(r->message, "%s: out of memory", r->source);
 }
 
 /* From a mapping; NULL: nothing but what missing keys mean. */

@@ -238,7 +238,7 @@ static bool read_whole(struct scene *scene, const struct scene_source *r)
     scene->observe.from = step_of_time(scene->observe_from_time, scene->model.time_step);
   scene->seed = scene->model.seed;
   if (!set_text(scene, r, gaps.defaults) || !set_fingerprint(scene, r))
-    return message_set(r->message, "%s: out of memory", r->path);
+    return message_no_memory(r->message, "%s: out of memory", r->path);
   scene->steps = r->steps ? *r->steps : scene->steps;
   return (r->kept || check_observed(scene, r->message)) &&
          (!model_has_bead(&scene->model) || check_force(scene, r->message)) && check_lags(scene, r->message) &&

@@ -29,7 +29,7 @@ static bool refuse(const struct way *w, const char *what, const char *allowed)
 
 static bool no_memory(const struct way *w)
 {
-  return message_set(w->message, "%s: out of memory", w->source);
+  return message_no_memory(w->message, "%s: out of memory", w->source);
 }
 
 static struct node *new_node(const struct way *w, enum node_type type)
@@ -140,7 +140,7 @@ bool tree_set(struct tree *tree, const struct key_table *table, const char *sour
   if (way.source && !tree->root)
     tree->root = new_node(&way, NODE_MAPPING);
   if (!way.source || !tree->root)
-    return message_set(message, "%s: out of memory", source);
+    return message_no_memory(message, "%s: out of memory", source);
   if (tree->root->type != NODE_MAPPING)
     return node_refuse(tree->root, message, "not a mapping; a scene is a YAML mapping, see docs/scene.md");
   return set_in_mapping(&way, tree->root, table);
@@ -153,7 +153,7 @@ bool tree_set_option(struct tree *tree, const struct key_table *table, const cha
   const size_t length = strlen(option) + sizeof "--set ";
   char *text = malloc(2 * length);
   if (!text)
-    return message_set(message, "--set %.200s: out of memory", option);
+    return message_no_memory(message, "--set %.200s: out of memory", option);
   char *source = text, *path = text + length;
   snprintf(source, length, "--set %s", option);
   snprintf(path, length, "%.*s", equals ? (int)(equals - option) : 0, option);

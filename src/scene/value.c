@@ -30,7 +30,7 @@ static struct node *refuse(const struct reading *r, const char *what)
 
 static struct node *no_memory(const struct reading *r)
 {
-  message_set(r->message, "%s: out of memory", r->source);
+  message_no_memory(r->message, "%s: out of memory", r->source);
   return NULL;
 }
 

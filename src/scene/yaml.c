@@ -180,7 +180,7 @@ static bool read_events(struct builder *b, yaml_parser_t *parser, const char *te
     if (!what && opens_nest(&event) && b->depth == MOST_NESTED)
       what = "nested too deeply; allowed: 32 lists and mappings in each other";
     bool ok = what ? refuse_at(b->path, event.start_mark, message, what)
-                   : add_event(b, &event) || message_set(message, "%s: out of memory", b->path);
+                   : add_event(b, &event) || message_no_memory(message, "%s: out of memory", b->path);
     yaml_event_delete(&event);
     if (!ok)
       return false;
@@ -199,7 +199,7 @@ bool yaml_read(struct tree *tree, const char *path, const char *text, size_t siz
   yaml_parser_t parser;
   if (!builder.path || !yaml_parser_initialize(&parser)) {
     tree_free(tree);
-    return message_set(message, "%s: out of memory", path);
+    return message_no_memory(message, "%s: out of memory", path);
   }
   yaml_parser_set_input_string(&parser, (const unsigned char *)text, size);
   const bool ok = read_events(&builder, &parser, text, size, message);

@@ -74,6 +74,7 @@ void fault_describe(const struct fault *fault, char *text, size_t size)
 int message_fault(struct message *message, const struct fault *fault)
 {
   fault_describe(fault, message->text, sizeof message->text);
+  message->unread = message->memory = false;
   return 0;
 }
 
