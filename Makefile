@@ -87,7 +87,7 @@ help:
 TOP := $(BUILD)/src/cli/main.o
 
 # Commands that other programs do: src/cli/outer.c looks for them beside the program.
-OUTER   := uncross-plot uncross-sweep
+OUTER   := uncross-plot uncross-sweep uncross-name
 HELPERS := $(OUTER:%=$(BUILD)/libexec/%)
 $(HELPERS): $(BUILD)/libexec/%:
 	@mkdir -p $(@D)
@@ -216,9 +216,9 @@ $(foreach h,$(CORE_HEADERS),644 $(h) include/uncross-core/$(h:src/%=%)
 644 $(BUILD)/install/uncross.1 share/man/man1/uncross.1
 644 $(BUILD)/install/completion share/bash-completion/completions/uncross
 644 include/uncross.h lib/python3/dist-packages/uncross/uncross.h
-$(foreach f,$(wildcard python/uncross/*.py python/uncross_plot/*.py python/uncross_plot/*.jinja python/uncross_sweep/*.*),644 $(f) lib/python3/dist-packages/$(f:python/%=%)
+$(foreach f,$(wildcard python/uncross/*.py python/uncross_plot/*.py python/uncross_plot/*.jinja python/uncross_sweep/*.* python/uncross_name/*.py),644 $(f) lib/python3/dist-packages/$(f:python/%=%)
 )
-$(foreach f,$(DOCUMENTS) $(REFERENCE),644 $(f) share/uncross/$(f)
+$(foreach f,$(DOCUMENTS) $(REFERENCE) ports/numpy/mistakes.yaml $(wildcard ports/numpy/uncross_port/*.py),644 $(f) share/uncross/$(f)
 )
 endef
 INSTALL_FILES = $(addprefix $(BUILD)/install/,uncross.pc uncross-core.pc uncross.1 completion)
@@ -448,7 +448,7 @@ judge-power:
 	$(MAKE) -j2 $(BUILD)/uncross
 	tools/judge-power --uncross $(BUILD)/uncross --build $(BUILD)/judge-power
 
-# PORT_SHARE=8: one planted bug in 8, others at each commit, and texts of few packs.
+# PORT_SHARE=40: one mistake in 40, others at each commit, and texts of few packs.
 .PHONY: port
 port:
 	tools/install-dependencies run port

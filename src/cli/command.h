@@ -3,6 +3,7 @@
 #ifndef UNCROSS_CLI_COMMAND_H
 #define UNCROSS_CLI_COMMAND_H
 
+#include <limits.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -37,7 +38,8 @@ struct arguments {
   const char *out;
   const char **set; /* [sets] "key=value" */
   size_t sets;
-  bool has_steps, has_seed, resume, quiet, document, decimal, contacts, skip_damaged, movie, compare, list, slurm, help;
+  bool has_steps, has_seed, resume, quiet, document, decimal, contacts, skip_damaged, movie, compare, list, slurm,
+      no_name, help;
   uint64_t steps, seed; /* instead of the scene's */
   struct export_options export;
   struct oracle_options oracle;
@@ -138,6 +140,10 @@ void help_completion(FILE *out);
  * made of `units` (both NULL without). */
 void scene_report(const struct scene *scene, const struct stream *stream, const struct units *units,
                   const struct si_scale *si);
+
+/* The path of the program uncross-NAME that stands beside this one, or where it would stand. False if it is not there.
+ */
+bool outer_find(const char *name, char path[PATH_MAX]);
 
 /* Becomes the program of a command; words[0] is replaced. Returns if that cannot be, and has said why. */
 enum exit_code outer_run(const struct command *command, char **words);

@@ -148,8 +148,21 @@ enum exit_code oracle_dump_file(const struct arguments *a)
 static const enum exit_code codes_of_verdicts[] = {
     [ORACLE_SAME] = EXIT_DONE, [ORACLE_CLOSE] = EXIT_CLOSE, [ORACLE_DIFFERS] = EXIT_DIFFERS};
 
+/* With the program that names what differs, unless none is wanted; that it is not there is said in the name's place. */
+static struct oracle_options options_of(const struct arguments *a, char namer[PATH_MAX])
+{
+  struct oracle_options options = a->oracle;
+  if (!a->no_name) {
+    outer_find("name", namer);
+    options.namer = namer;
+  }
+  return options;
+}
+
 static bool compare_packs(const struct arguments *a, struct oracle_summary *summary, struct message *message)
 {
+  char namer[PATH_MAX];
+  const struct oracle_options options = options_of(a, namer);
   struct pack ours, theirs;
   if (!pack_read(a->file[0], &ours, message))
     return false;
@@ -159,7 +172,7 @@ static bool compare_packs(const struct arguments *a, struct oracle_summary *summ
   }
   oracle_sort(&ours);
   const bool ok =
-      oracle_align(&ours, &theirs, message) && oracle_compare(&ours, &theirs, &a->oracle, stdout, summary, message);
+      oracle_align(&ours, &theirs, message) && oracle_compare(&ours, &theirs, &options, stdout, summary, message);
   pack_free(&ours);
   pack_free(&theirs);
   return ok;
@@ -177,8 +190,9 @@ enum exit_code oracle_compare_files(const struct arguments *a)
 
 enum exit_code oracle_check_port(const struct arguments *a)
 {
+  char namer[PATH_MAX];
   const struct check_options options = {a->file[0],   a->packs,   a->out,    a->text,
-                                        a->no_traces, a->seconds, a->repeat, a->oracle};
+                                        a->no_traces, a->seconds, a->repeat, options_of(a, namer)};
   struct message message;
   enum oracle_verdict verdict = ORACLE_DIFFERS;
   return oracle_check(&options, stdout, &verdict, &message) ? codes_of_verdicts[verdict]

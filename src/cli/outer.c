@@ -1,4 +1,4 @@
-/* Commands that another program does: `uncross plot` is uncross-plot. The table of commands names it. */
+/* Programs that stand beside this one: `uncross plot` is uncross-plot, and names of mistakes are uncross-name's. */
 #include <errno.h>
 #include <limits.h>
 #include <stdlib.h>
@@ -15,8 +15,8 @@ static const struct {
   const char *place;
 } places[] = {{NULL, "/libexec/"}, {"bin", "/../libexec/uncross/"}};
 
-/* True, and its path, if there is such a program; the path of this one too. */
-static bool find(const struct command *c, char ours[PATH_MAX - 128], char path[PATH_MAX])
+/* Into `ours`: this program. */
+static bool find(const char *name, char ours[PATH_MAX - 128], char path[PATH_MAX])
 {
   const ssize_t length = readlink("/proc/self/exe", ours, PATH_MAX - 129);
   ours[length > 0 ? length : 0] = '\0';
@@ -27,17 +27,24 @@ static bool find(const struct command *c, char ours[PATH_MAX - 128], char path[P
     const char *last = strrchr(path, '/'), *wanted = places[k].folder;
     if (wanted && !(last && strcmp(last + 1, wanted) == 0))
       continue;
-    snprintf(path, PATH_MAX, "%.*s%suncross-%s", folder, ours, places[k].place, c->name);
+    snprintf(path, PATH_MAX, "%.*s%suncross-%s", folder, ours, places[k].place, name);
     if (access(path, X_OK) == 0)
       return true;
   }
+  snprintf(path, PATH_MAX, "%.*s%suncross-%s", folder, ours, places[0].place, name);
   return false;
+}
+
+bool outer_find(const char *name, char path[PATH_MAX])
+{
+  char ours[PATH_MAX - 128];
+  return find(name, ours, path);
 }
 
 enum exit_code outer_run(const struct command *c, char **words)
 {
   char ours[PATH_MAX - 128], path[PATH_MAX];
-  if (!find(c, ours, path)) {
+  if (!find(c->name, ours, path)) {
     fprintf(
         stderr,
         "uncross: %s: there is no program uncross-%s: make puts it into libexec/ beside the program, make install into "

@@ -75,19 +75,17 @@ static void limit_files(void)
   }
 }
 
-static void become_port(const struct check_options *o, bool trace, const char *in, const char *out,
-                        const sigset_t *before)
+static void become(const struct call *call, const sigset_t *before)
 {
-  char *const pack[] = {(char *)o->port, (char *)in, (char *)out, NULL};
-  char *const start[] = {(char *)o->port, "--trace", (char *)in, (char *)out, NULL};
   const int nothing = open("/dev/null", O_RDONLY);
+  const int output = call->output ? open(call->output, O_WRONLY | O_CREAT | O_EXCL, 0666) : STDERR_FILENO;
   setpgid(0, 0);
   limit_files();
   sigprocmask(SIG_SETMASK, before, NULL);
   dup2(nothing, STDIN_FILENO);
-  dup2(STDERR_FILENO, STDOUT_FILENO);
-  execvp(o->port, trace ? start : pack);
-  _exit(127);
+  dup2(output, STDOUT_FILENO);
+  execvp(call->words[0], (char *const *)call->words);
+  _exit(CALLED_NO_PROGRAM);
 }
 
 /* Until the child ends (0), its time is over (SIGALRM), or this program is to end (the signal). */
@@ -113,14 +111,13 @@ static int wait_for(pid_t child, uint64_t seconds, const sigset_t *watched, int 
 
 static bool tell(int status, const char *out, struct message *message)
 {
-  if ((WIFSIGNALED(status) && WTERMSIG(status) == SIGXFSZ) ||
-      (WIFEXITED(status) && WEXITSTATUS(status) == SHELL_ADDS + SIGXFSZ))
+  if (status == SHELL_ADDS + SIGXFSZ)
     return message_set(message, "the port writes a file of more than %" PRIu64 " bytes", MOST_BYTES);
-  if (WIFSIGNALED(status))
-    return message_set(message, "the port was ended by signal %d", WTERMSIG(status));
-  if (WEXITSTATUS(status) != 0)
-    return message_set(message, "the port's exit code is %d%s", WEXITSTATUS(status),
-                       WEXITSTATUS(status) == 127 ? ": is it a program?" : "");
+  if (status > SHELL_ADDS)
+    return message_set(message, "the port was ended by signal %d", status - SHELL_ADDS);
+  if (status != 0)
+    return message_set(message, "the port's exit code is %d%s", status,
+                       status == CALLED_NO_PROGRAM ? ": is it a program?" : "");
   return access(out, R_OK) == 0 || message_set(message, "the port has not written its output");
 }
 
@@ -136,8 +133,7 @@ void called_clean(const char *folder)
   rmdir(folder);
 }
 
-bool called_port(const struct check_options *o, bool trace, const char *folder, const char *in, const char *out,
-                 struct message *message)
+bool called_run(const struct call *call, int *code, struct message *message)
 {
   int status = 0;
   sigset_t watched, before;
@@ -146,24 +142,34 @@ bool called_port(const struct check_options *o, bool trace, const char *folder, 
   sigprocmask(SIG_BLOCK, &watched, &before);
   const pid_t child = fork();
   if (child == 0)
-    become_port(o, trace, in, out, &before);
+    become(call, &before);
   int ended = 0;
   const int why = errno;
   if (child > 0) {
     setpgid(child, child); /* whoever of both comes first */
-    ended = wait_for(child, o->seconds, &watched, &status);
+    ended = wait_for(child, call->seconds, &watched, &status);
     kill(-child, SIGKILL);
     if (ended)
       waitpid(child, &status, 0);
   }
   sigprocmask(SIG_SETMASK, &before, NULL);
   if (ended && ended != SIGALRM) {
-    called_clean(folder);
+    called_clean(call->folder);
     raise(ended);
   }
   if (child < 0)
-    return message_set(message, "the port cannot be run: %s", strerror(why));
+    return message_set(message, "%s cannot be run: %s", call->who, strerror(why));
   if (ended)
-    return message_set(message, "the port took more than %" PRIu64 " s", o->seconds);
-  return tell(status, out, message);
+    return message_set(message, "%s took more than %" PRIu64 " s", call->who, call->seconds);
+  *code = WIFSIGNALED(status) ? SHELL_ADDS + WTERMSIG(status) : WEXITSTATUS(status);
+  return true;
+}
+
+bool called_port(const struct check_options *o, bool trace, const char *folder, const char *in, const char *out,
+                 struct message *message)
+{
+  int status = 0;
+  const char *const pack[] = {o->port, in, out, NULL}, *const start[] = {o->port, "--trace", in, out, NULL};
+  const struct call call = {"the port", trace ? start : pack, NULL, folder, o->seconds};
+  return called_run(&call, &status, message) && tell(status, out, message);
 }

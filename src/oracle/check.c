@@ -23,6 +23,7 @@ struct check {
 
 struct checks {
   const struct check_options *options;
+  struct oracle_options compare; /* of the first call of the port; names are asked for in our scratch */
   char scratch[PATH_MAX - 64], folder[PATH_MAX - 64];
   struct check *check;
   size_t count;
@@ -141,10 +142,12 @@ static bool call_again(const struct checks *c, struct check *k, uint64_t call, c
   char out[PATH_MAX];
   struct message wrong = {.text = ""};
   struct oracle_summary summary = {.verdict = ORACLE_SAME};
+  struct oracle_options unnamed = c->compare;
+  unnamed.namer = NULL;
   snprintf(out, sizeof out, "%s/out.%" PRIu64, c->scratch, call);
   FILE *nobody = fopen("/dev/null", "w");
   bool ok = nobody && called_port(c->options, k->trace, c->scratch, in, out, &wrong) &&
-            compare_files(k, first, out, &c->options->compare, nobody, &summary, &wrong) &&
+            compare_files(k, first, out, &unnamed, nobody, &summary, &wrong) &&
             (summary.verdict == ORACLE_SAME ||
              message_set(&wrong, "call %" PRIu64 " gives other bits than call 1: %s", call, summary.first));
   if (!ok)
@@ -189,7 +192,7 @@ static void call_port(const struct checks *c, struct check *k, const char *in, F
   struct message wrong = {.text = ""};
   snprintf(out, sizeof out, "%s/out.1", c->scratch);
   bool ok = called_port(c->options, k->trace, c->scratch, in, out, &wrong) &&
-            compare_files(k, k->path, out, &c->options->compare, details, &k->summary, &wrong);
+            compare_files(k, k->path, out, &c->compare, details, &k->summary, &wrong);
   if (!ok)
     take_trouble(k, &wrong);
   for (uint64_t call = 2; ok && call <= c->options->repeat; call++)
@@ -339,7 +342,7 @@ static bool run_all(struct checks *c, FILE *out, enum oracle_verdict *verdict, s
 
 bool oracle_check(const struct check_options *o, FILE *out, enum oracle_verdict *verdict, struct message *message)
 {
-  struct checks c = {.options = o};
+  struct checks c = {.options = o, .compare = o->compare};
   const char *temporary = getenv("TMPDIR");
   if (strchr(o->port, '/') && access(o->port, X_OK) != 0)
     return message_set(message, "%s: cannot be run: %s", o->port, strerror(errno));
@@ -350,6 +353,7 @@ bool oracle_check(const struct check_options *o, FILE *out, enum oracle_verdict 
   snprintf(c.scratch, sizeof c.scratch, "%s/uncross-check.XXXXXX", temporary && temporary[0] ? temporary : "/tmp");
   if (!mkdtemp(c.scratch))
     return message_set(message, "%s: cannot create: %s", c.scratch, strerror(errno));
+  c.compare.scratch = c.scratch;
   const bool traces = !o->no_traces && !o->compare.single && !o->compare.only;
   bool ok = list(&c, ".pack.h5", false) && (!traces || list(&c, ".trace.csv", true));
   ok = ok ? run_all(&c, out, verdict, message) : message_set(message, "%s: cannot be listed", c.folder);

@@ -1,12 +1,10 @@
-#include "oracle/pair.h"
-
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
 #include "base/text.h"
+#include "oracle/name.h"
 #include "oracle/operators.h"
-#include "oracle/oracle.h"
 #include "oracle/tolerance.h"
 
 /* Doubles in the order of their values, as integers: neighbors differ by one, -0 and +0 by none. */
@@ -145,14 +143,6 @@ static void print_place(FILE *out, const struct pack_table *t)
   fprintf(out, "%-18s %6" PRIu64 "  %-14s", text_shown(t->place.operator_name), t->place.step, text_shown(t->name));
 }
 
-/* What the first difference usually means; names of the pack are in it. */
-static void diagnose(struct tally *t, bool beyond)
-{
-  char meaning[ORACLE_TEXT];
-  oracle_diagnose(&t->first, beyond, meaning);
-  text_escape(meaning, t->meaning, sizeof t->meaning);
-}
-
 static void print_first(struct tally *t, FILE *out)
 {
   const struct oracle_pair *p = &t->first;
@@ -169,8 +159,6 @@ static void print_first(struct tally *t, FILE *out)
     fputs(" there: not a number\n", out);
   else
     fprintf(out, " there: %" PRIu64 " %s, tolerance %.3g\n", ulps, p->ours->real ? "ulps" : "units", t->tolerance);
-  diagnose(t, !(size <= t->tolerance));
-  fprintf(out, "this pattern: %s\n", t->meaning);
 }
 
 /* Names of our columns that they have not. */
@@ -311,18 +299,23 @@ static void prefer_earlier_hit(struct tally *t)
     }
 }
 
-static void print_shape(struct tally *t, FILE *out)
+static bool print_difference(struct tally *t, const struct oracle_options *options, FILE *out, struct message *message)
 {
   const struct oracle_pair *p = &t->first;
-  if (t->found && t->row < p->theirs->rows && t->row < p->ours->rows) {
+  if (!t->found)
+    return true;
+  if (t->row < p->theirs->rows && t->row < p->ours->rows) {
     print_first(t, out);
-  } else if (t->found) {
-    diagnose(t, true);
+  } else {
     snprintf(t->first_words, sizeof t->first_words, "%s, step %" PRIu64 ", %s %" PRIu32 ": %s",
              text_shown(p->ours->place.operator_name), p->ours->place.step, entity_of(p->ours), t->row,
              t->row < p->ours->rows ? "missing" : "not here");
-    fprintf(out, "first difference: %s\nthis pattern: %s\n", t->first_words, t->meaning);
+    fprintf(out, "first difference: %s\n", t->first_words);
   }
+  const bool ok = oracle_name(p, t->row, options, t->meaning, message);
+  if (t->meaning[0])
+    fprintf(out, "this pattern: %s\n", t->meaning);
+  return ok;
 }
 
 bool oracle_compare(const struct pack *ours, const struct pack *theirs, const struct oracle_options *options, FILE *out,
@@ -348,7 +341,8 @@ bool oracle_compare(const struct pack *ours, const struct pack *theirs, const st
     fprintf(out, "%" PRIu64 " values not judged: their tolerance is not below the largest size in their table\n",
             t.unjudged);
   prefer_earlier_hit(&t);
-  print_shape(&t, out);
+  if (!print_difference(&t, options, out, message))
+    return false;
   fprintf(out, "%s\n",
           verdict == ORACLE_SAME    ? "same: every bit"
           : verdict == ORACLE_CLOSE ? "close: all differences within tolerance"

@@ -7,7 +7,8 @@
 #include "contact/impulse.h"
 #include "oracle/columns.h"
 
-double oracle_condition(const struct crossing_query *k, double time)
+/* How much the data of a hit at this time amplify rounding (docs/porting.md, Tolerances). */
+static double condition_of(const struct crossing_query *k, double time)
 {
   const struct vec3 move = point_difference(k->to, k->from), ab = point_difference(k->b, k->a);
   const struct vec3 bond = point_difference(k->pivot, k->from);
@@ -45,7 +46,7 @@ void oracle_put_crossings(struct oracle_stage *g, const struct crossing_query *q
   double *condition = oracle_put_reals(g, "bound.hit", "condition", n);
   for (uint32_t k = 0; condition && k < n; k++) {
     struct crossing_hit h;
-    condition[k] = crossing_find(&q[k], &h) ? oracle_condition(&q[k], h.time) : 0.0;
+    condition[k] = crossing_find(&q[k], &h) ? condition_of(&q[k], h.time) : 0.0;
   }
 }
 

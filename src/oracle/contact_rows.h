@@ -14,9 +14,6 @@ struct oracle_exchange {
   struct vec3 normal;
 };
 
-/* How much the data of a hit at this time amplify rounding (docs/porting.md, Tolerances). */
-double oracle_condition(const struct crossing_query *k, double time);
-
 /* Puts n tests with their results; n exchanges with the velocities after them. */
 void oracle_put_crossings(struct oracle_stage *g, const struct crossing_query *q, uint32_t n);
 void oracle_put_exchanges(struct oracle_stage *g, const struct oracle_exchange *before, uint32_t n);

@@ -51,16 +51,6 @@ bool oracle_search_is_legal(const struct flight_pair *f, double from)
   return from >= 0.0 && from < FLIGHT_TICKS;
 }
 
-static bool is_zero(struct point p)
-{
-  return p.x == 0 && p.y == 0 && p.z == 0;
-}
-
-bool oracle_is_at_rest(const struct flight_pair *f)
-{
-  return is_zero(f->p_rate) && is_zero(f->q_rate) && is_zero(f->w_rate);
-}
-
 void oracle_put_flight_pairs(struct oracle_stage *g, const struct oracle_search *s, uint32_t n)
 {
   oracle_put_points_of(g, "in.p", s, sizeof *s, offsetof(struct oracle_search, pair.p), n);

@@ -44,9 +44,6 @@ extern const char *const oracle_ends[4];
 /* True if a search is made for it: packs may come from anywhere. */
 bool oracle_search_is_legal(const struct flight_pair *pair, double from);
 
-/* True if its bonds do not move against each other, nor turn. */
-bool oracle_is_at_rest(const struct flight_pair *pair);
-
 /* Puts the inputs of n searches that those of lines and of tubes have in common. */
 void oracle_put_flight_pairs(struct oracle_stage *g, const struct oracle_search *search, uint32_t n);
 

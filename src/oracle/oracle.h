@@ -43,9 +43,14 @@ enum oracle_verdict {
 };
 
 struct oracle_options {
-  bool single;      /* tolerances of single-precision arithmetic, else double */
-  const char *only; /* these operators, with commas between; NULL: all */
+  bool single;       /* tolerances of single-precision arithmetic, else double */
+  const char *only;  /* these operators, with commas between; NULL: all */
+  const char *namer; /* the program uncross-name, which says what the first difference means; NULL: nobody says it */
+  const char *case_file; /* is made, with what uncross-name reads (name.h), and nobody is asked; NULL: none */
+  const char *scratch;   /* folder of ours for files that go again; NULL: one is made */
 };
+
+enum { ORACLE_TEXT = 640 };
 
 /* What a comparison found. */
 struct oracle_summary {
@@ -53,7 +58,8 @@ struct oracle_summary {
   uint64_t values, different, beyond; /* beyond: tolerance, or something is missing */
   uint64_t unjudged;                  /* whose tolerance is not below the largest size in their table */
   double largest;                     /* of difference over tolerance, where there is a tolerance */
-  char first[256], meaning[640];      /* the first difference, and what its pattern usually means; or empty */
+  char first[256];                    /* the first difference; or empty */
+  char meaning[ORACLE_TEXT];          /* what it means, as uncross-name says; or empty */
 };
 
 /* Puts the columns of `theirs` into the order of ours, by their names. Columns without names (HDF5 without
@@ -62,7 +68,9 @@ struct oracle_summary {
 bool oracle_align(const struct pack *ours, struct pack *theirs, struct message *message);
 
 /* Prints how the outputs of `theirs`, aligned, differ from those of `ours`, operator by operator, the first difference,
- * and what its pattern usually means. False, with a message, if memory is short or `only` names no operator. */
+ * and what it means. False, with a message, if memory is short, `only` names no operator, or the case cannot be
+ * written.
+ */
 bool oracle_compare(const struct pack *ours, const struct pack *theirs, const struct oracle_options *options, FILE *out,
                     struct oracle_summary *summary, struct message *message);
 

@@ -1,5 +1,4 @@
-/* Inside the oracle: what two packs have at one place, how much it may differ, and what a pattern of differences means.
- */
+/* Inside the oracle: what two packs have at one place, and how much it may differ. */
 #ifndef UNCROSS_ORACLE_PAIR_H
 #define UNCROSS_ORACLE_PAIR_H
 
@@ -16,14 +15,6 @@ struct oracle_pair {
 
 /* Bound on |ours - theirs| in this column, if both made the operator's roundings and no mistake: docs/porting.md. */
 double oracle_tolerance(const struct oracle_pair *pair, uint32_t row, uint32_t column);
-
-/* What the pattern of differences in this pair's table, at all steps, usually means, or which rows are wrong. beyond: a
- * difference is beyond its tolerance. */
-#define ORACLE_TEXT 640
-void oracle_diagnose(const struct oracle_pair *pair, bool beyond, char text[ORACLE_TEXT]);
-
-/* Puts a name into the text; one more, with "or", if it is named already. */
-void oracle_name(char text[ORACLE_TEXT], bool *named, const char *name);
 
 /* A table of the same operator and step, of our pack; NULL if there is none. */
 static inline const struct pack_table *oracle_sibling(const struct oracle_pair *pair, const char *name)

@@ -3,7 +3,6 @@
 
 #include "base/lattice.h"
 #include "mpc/cell.h"
-#include "oracle/patterns.h"
 #include "oracle/tolerance.h"
 
 static double fastest(const struct oracle_pair *p)
@@ -98,7 +97,7 @@ static double longest_vector(const struct oracle_pair *p)
 
 static double of_spring(const struct oracle_pair *p, uint32_t column)
 {
-  return tolerance_largest(oracle_model(p, "in.spring"), column, column + 1);
+  return tolerance_largest(tolerance_of_model(p, "in.spring"), column, column + 1);
 }
 
 /* Speeds that occur in a flight: w times the vector is one, and what the potential of the walls adds. */

@@ -2,7 +2,6 @@
 #include <math.h>
 
 #include "base/lattice.h"
-#include "oracle/patterns.h"
 #include "oracle/tolerance.h"
 
 enum { NORMAL = 9 };                                                    /* no normal number is larger */
@@ -10,7 +9,7 @@ enum { RATE, RADIUS, REPULSION, BETWEEN, MANY_BODY, MANY_RANGE, FLOW }; /* colum
 
 static double of_bath(const struct oracle_pair *p, uint32_t from, uint32_t to)
 {
-  return tolerance_largest(oracle_model(p, "in.bath"), from, to);
+  return tolerance_largest(tolerance_of_model(p, "in.bath"), from, to);
 }
 
 /* 1 over the root of the smallest mass of a member, or of a pair. */
@@ -93,7 +92,7 @@ double tolerance_mobility(const struct oracle_pair *p, uint32_t row, uint32_t co
 
 static double order(const struct oracle_pair *p)
 {
-  const struct pack_table *chain = oracle_model(p, "in.chain");
+  const struct pack_table *chain = tolerance_of_model(p, "in.chain");
   return 3.0 * (chain ? chain->rows : 0.0);
 }
 
@@ -109,7 +108,7 @@ double tolerance_root(const struct oracle_pair *p, uint32_t row, uint32_t column
 
 double tolerance_move(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
-  const double dt = tolerance_largest(oracle_model(p, "in.reals"), 0, 1), n = order(p);
+  const double dt = tolerance_largest(tolerance_of_model(p, "in.reals"), 0, 1), n = order(p);
   const double drift = dt / (fmax(of_bath(p, RATE, RATE + 1), 0x1p-20) * tolerance_lightest(p));
   const double path =
       drift * n * tolerance_size_of(p, "in.force") + sqrt(2.0 * drift) * n * NORMAL + dt * of_bath(p, FLOW, FLOW + 3);

@@ -6,7 +6,6 @@
 #include "contact/capsule.h"
 #include "contact/shape.h"
 #include "oracle/columns.h"
-#include "oracle/patterns.h"
 
 /* --- tables ------------------------------------------------------------------------------------------------------- */
 
@@ -99,9 +98,10 @@ void oracle_put_bead_contacts(struct oracle_stage *g, const struct oracle_tubes 
 static bool point_of(const struct oracle_pair *p, const char *name, uint32_t row, struct point *to)
 {
   const struct pack_table *t = oracle_sibling(p, name);
-  const bool ok = oracle_is_vectors(t, false, row);
+  const bool ok = t && !t->real && t->columns == 3 && row < t->rows;
   if (ok)
-    *to = oracle_point(t, row);
+    *to = (struct point){t->value.integer[3 * (size_t)row], t->value.integer[3 * (size_t)row + 1],
+                         t->value.integer[3 * (size_t)row + 2]};
   return ok;
 }
 

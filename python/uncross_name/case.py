@@ -1,0 +1,71 @@
+"""What uncross writes of a difference (src/oracle/name.h), as evidence."""
+import dataclasses
+
+import h5py
+import numpy as np
+from uncross_port import operators, pack
+
+from . import evidence
+
+
+@dataclasses.dataclass
+class Case:
+    """first: evidence of the table that differs first; others: of the operator's other outputs; inputs: {step: in-tables};
+    model: tables, too. All are as the port's operators want them."""
+
+    operator: str
+    first: evidence.Evidence
+    others: list
+    inputs: dict
+    model: dict
+    single: bool
+
+    @property
+    def tables(self):
+        return [self.first, *self.others]
+
+
+def _table(operator, group, name, of=None):
+    """Names of columns, and a table; in the order in which the port has those of the table `of`. A pack may come from anywhere:
+    columns that the port does not know stay as they are."""
+    data = group[name]
+    names = data.attrs["components"]
+    names = (names.decode() if isinstance(names, bytes) else names).split(" ")
+    known = pack.columns(operator, of or name).split()
+    if sorted(known) != sorted(names):
+        return names, data[:]
+    return known, data[:][:, [names.index(word) for word in known]]
+
+
+def _evidence(operator, table, columns, steps, model):
+    kind, parts, values, first = table.partition(".")[2], [], [], 0
+    for step, tables in steps.items():
+        if f"theirs.{kind}" not in tables or table not in tables:
+            continue
+        arrays = [tables[name] for name in (table, f"theirs.{kind}", f"tolerance.{kind}")]
+        rows = min(len(arrays[0]), len(arrays[1]))
+        seen = {name: values for name, values in tables.items() if name.split(".")[0] in ("in", "out", "bound")}
+        parts.append(evidence.Part(step, first, rows, len(arrays[0]), len(arrays[1]), seen, model, arrays[1], columns))
+        values.append(arrays)
+        first += rows
+    return evidence.Evidence(operator, table, columns[table], parts, values) if parts else None
+
+
+def read(path):
+    steps, columns, model, first, single = {}, {}, {}, None, False
+    with h5py.File(path) as file:
+        for place in file:
+            operator, step = place.rsplit(".", 1)
+            group = file[place]
+            tables = model if operator == "model" else steps.setdefault(int(step), {})
+            for name in group:
+                kind, _, word = name.partition(".")
+                if kind == "first":
+                    first, single, named = f"out.{word}", bool(group[name][0, 1]), operator
+                else:
+                    columns[name], tables[name] = _table(operator, group, name, f"out.{word}" if kind in ("theirs", "tolerance") else name)
+    steps = dict(sorted(steps.items()))
+    outputs = sorted({name for tables in steps.values() for name in tables if name.startswith("out.")} - {first})
+    others = [found for found in (_evidence(named, table, columns, steps, model) for table in outputs) if found]
+    inputs = {step: operators.inputs(tables) for step, tables in steps.items()}
+    return Case(named, _evidence(named, first, columns, steps, model), others, inputs, operators.inputs(model), single)

@@ -1,0 +1,21 @@
+/* Inside the oracle: what a difference means is said by another program, uncross-name (python/uncross_name). It is
+ * given a case: a pack with the model, all that the operator of the first difference is given and gives at all steps,
+ * and beside each `out.X`
+ *
+ *   theirs.X      what the port gives, where it has as many columns
+ *   tolerance.X   how much each value may differ (docs/porting.md), of the rows that both have
+ *   first.X       [1][2] the first difference: its row, and whether single precision was asked for; of its table alone
+ */
+#ifndef UNCROSS_ORACLE_NAME_H
+#define UNCROSS_ORACLE_NAME_H
+
+#include "oracle/oracle.h"
+#include "oracle/pair.h"
+
+/* The meaning of what differs first, in one line for a terminal; why there is none, if uncross-name cannot say it;
+ * empty if nobody is to say it. With options->case_file, the case is written to that file instead. False, with a
+ * message, if it cannot be written. */
+bool oracle_name(const struct oracle_pair *first, uint32_t row, const struct oracle_options *options,
+                 char text[ORACLE_TEXT], struct message *message);
+
+#endif
