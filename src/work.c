@@ -48,5 +48,5 @@ void work_free(struct work *w)
 
 uint64_t work_bytes(const struct model *m)
 {
-  return state_bytes(m) + mpc_bytes(m) + contact_bytes(m) + fiber_bytes(m) + medium_bytes(m);
+  return state_bytes(m) + mpc_bytes(m) + contact_bytes(m) + fiber_bytes(m) + medium_bytes(m) + medium_bytes_later(m);
 }

@@ -37,7 +37,8 @@ bool work_alloc(struct work *work, const struct model *model);
 bool work_add_everything(struct work *work, const struct model *model);
 void work_free(struct work *work);
 
-/* Bytes of state and work of this model, before lists grow. */
+/* Bytes of state and work of this model. Lists of pairs of a medium are as long as is expected, others as they begin.
+ */
 uint64_t work_bytes(const struct model *model);
 
 #endif

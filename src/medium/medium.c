@@ -49,21 +49,22 @@ void medium_free(struct medium *medium)
   memset(medium, 0, sizeof *medium);
 }
 
-/* Observables sum forces of pairs anew: with scratch of their own, and slopes of the densities. */
-static uint64_t measuring_bytes(const struct model *m, uint64_t scratch)
-{
-  const uint64_t members = m->medium.many.repulsion != 0.0 ? (uint64_t)m->solvent.particles + m->vertices : 0;
-  return model_repels(m) ? scratch + members * (sizeof(struct vec3) + sizeof(double)) : 0;
-}
-
 uint64_t medium_bytes(const struct model *m)
 {
   struct medium medium = {0};
   struct memory_need need[NEEDS];
   list_needs(&medium, m, need);
-  const uint64_t scratch = memory_bytes(need, NEEDS);
+  return memory_bytes(need, NEEDS);
+}
+
+/* Observables sum forces of pairs anew: with scratch of their own, and slopes of the densities. */
+uint64_t medium_bytes_later(const struct model *m)
+{
+  struct medium medium;
   const size_t encounter = sizeof *medium.encounter + sizeof *medium.key + sizeof *medium.spare;
-  return scratch + measuring_bytes(m, scratch) + (uint64_t)(encounters_expected(m) * (double)encounter);
+  const uint64_t members = m->medium.many.repulsion != 0.0 ? (uint64_t)m->solvent.particles + m->vertices : 0;
+  const uint64_t measuring = members * (sizeof(struct vec3) + sizeof(double));
+  return (model_repels(m) ? medium_bytes(m) + measuring : 0) + (uint64_t)(encounters_expected(m) * (double)encounter);
 }
 
 static bool act_private(void *room, const struct moment *now, const struct stage *stage)

@@ -55,8 +55,11 @@ struct medium {
 bool medium_alloc(struct medium *medium, const struct model *model, const struct fluid *fluid);
 void medium_free(struct medium *medium);
 
-/* Bytes that medium_alloc allocates, that the list of pairs grows to, and that repulsion_measure takes for a while. */
+/* Bytes that medium_alloc allocates. */
 uint64_t medium_bytes(const struct model *model);
+
+/* Bytes that the list of pairs grows to, and that repulsion_measure takes for a while. */
+uint64_t medium_bytes_later(const struct model *model);
 
 /* The bath's action of step number `step`. Particles are streamed before. False, with the fault recorded, if a flight
  * is too far or memory is short. */

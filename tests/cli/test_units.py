@@ -165,7 +165,7 @@ class Units(unittest.TestCase):
                            ("T=300K", "a0 is missing"), ("a0=50nm,a0=60nm", "a0 is given twice"),
                            ("a0=50nm,T=300K,eta=1mPas,t0=1us", "one of them fixes the unit of time; 2 are given"),
                            ("b0=50nm", "none of KEY=VALUE with the keys a0, T, eta, rho, mass, t0"),
-                           ("a0", "none of KEY=VALUE"), ("", "none of KEY=VALUE"), ("a0=50nm,", "none of KEY=VALUE")):
+                           ("a0", "none of KEY=VALUE"), ("", "an empty value; allowed: a0="), ("a0=50nm,", "none of KEY=VALUE")):
             self.assertIn(why, run("check", scene, "--units", words, code=2), words)
         for words, why in (("length=1um", "persistence is missing"), ("persistence=1um", "length is missing"),
                            ("length=1um,persistence=1um,vertices=2", "2 vertices: a fiber takes 3"),
