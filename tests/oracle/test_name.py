@@ -116,7 +116,9 @@ class HookTest(Folder):
         program = self.stand_in(f"#!/bin/sh\necho $$ >{self.dir}/pid\nexec sleep 1000\n")
         words = [program, "oracle", "compare", DATA / "mixed.pack.h5", self.broken("kick without the mass", "kick"), "--only", "kick"]
         (self.dir / "tmp").mkdir()
-        with subprocess.Popen(words, stdout=subprocess.DEVNULL, env=os.environ | {"TMPDIR": str(self.dir / "tmp")}) as done:
+        def hear():  # also where this test runs in the background
+            signal.signal(signal.SIGINT, signal.SIG_DFL)
+        with subprocess.Popen(words, stdout=subprocess.DEVNULL, env=os.environ | {"TMPDIR": str(self.dir / "tmp")}, preexec_fn=hear) as done:
             while not (self.dir / "pid").exists() or not (self.dir / "pid").read_text().strip():
                 time.sleep(0.02)
             self.assertEqual(len(list((self.dir / "tmp").iterdir())), 1)
