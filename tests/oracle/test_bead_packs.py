@@ -16,7 +16,7 @@ from test_tube_packs import at_time, dot, plus, to_segment
 
 DATA = TOP / "reference-data/beads"
 TICKS = 65536
-STEPS = (1, 900)
+STEPS = (1, 1200)
 VECTORS = ("p", "q", "w", "p_rate", "q_rate", "w_rate")
 
 
@@ -60,7 +60,7 @@ class BeadPacks(unittest.TestCase):
                 of_the_run += reach in (2 * 2**40, round(2.175 * 2**40), round(2.05 * 2**40), round(2.1 * 2**40))
         self.assertGreater(apart, 5000)
         self.assertGreater(answers, 300)
-        self.assertGreaterEqual(of_the_run, 150)
+        self.assertGreater(of_the_run, 150)
 
     def test_contacts(self):
         """s is that of the nearest point, t is 0, and n points from there to the center."""
@@ -83,7 +83,7 @@ class BeadPacks(unittest.TestCase):
         names = [(name,) for end in ("p0", "p1", "q0", "q1") for name in (f"in.{end}", f"out.{end}", f"in.force_{end}")]
         names += [("in.mass", "p0 p1 q0 q1"), ("in.contact", "s t"), ("in.normal",), ("in.tau", "tau"), ("out.answer", "answer")]
         rows = list(zip(*(self.pack.rows("impulse", STEPS[1], *name) for name in names)))
-        self.assertGreaterEqual(len(rows), 50)
+        self.assertGreater(len(rows), 50)
         plain = 0
         for *ends, mass, (s, t), n, (tau,), (answer,) in rows:
             before, after, force = ends[0::3], ends[1::3], ends[2::3]
