@@ -372,7 +372,7 @@ class PortTest(Folder):
         self.assertEqual(["same", "close"], [c["verdict"] for c in checks])
 
     def test_ports_that_fail(self):
-        for does, word in (("exit 3", "the port's exit code is 3"), ("kill -SEGV $$", "ended by signal 11"),
+        for does, word in (("exit 3", "the port's exit code is 3"), ("exit 255", "the port's exit code is 255"), ("kill -SEGV $$", "ended by signal 11"),
                            ("exec sleep 60", "took more than 1 s"), ("true", "has not written its output"),
                            ("echo nonsense >$2", "not understood"), ("head -c 5000 $1 >$2", "out")):
             code, said, checks, _ = self.check(self.port(does), "--no-traces", "--seconds", 1)

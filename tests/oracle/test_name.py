@@ -26,7 +26,7 @@ MISTAKES = {mistake.name: mistake for mistake in catalogue.read()}
 
 
 def compare(theirs, *options, ours="mixed", **how):
-    words = [UNCROSS, "oracle", "compare", DATA / f"{ours}.pack.h5", theirs, *options]
+    words = [UNCROSS, "oracle", "compare", ours if isinstance(ours, pathlib.Path) else DATA / f"{ours}.pack.h5", theirs, *options]
     return subprocess.run(words, capture_output=True, text=True, check=False, **how)
 
 
@@ -110,6 +110,28 @@ class HookTest(Folder):
             self.assertEqual(done.returncode, 7, done.stderr)
             self.assertIn(said, meaning(done.stdout))
             subprocess.run(["rm", "-r", program.parent], check=True)
+
+    def test_surroundings(self):
+        """Settings of Python do not change a name; a folder for scratch that is not there is said."""
+        path = self.broken("kick without the mass", "kick")
+        done = compare(path, "--only", "kick", env=os.environ | {"PYTHONWARNINGS": "error", "PYTHONPATH": str(self.dir)})
+        self.assertIn(MISTAKES["kick without the mass"].text, meaning(done.stdout))
+        done = compare(path, "--only", "kick", env=os.environ | {"TMPDIR": str(self.dir / "nowhere")})
+        self.assertEqual(done.returncode, 7)
+        self.assertRegex(meaning(done.stdout), "^no name: .*/nowhere/.*: cannot create: ")
+
+    def test_tables_that_no_operator_has(self):
+        """A pack may come from anywhere, and may have tables of the case's own names."""
+        ours = self.dir / "ours.h5"
+        ours.write_bytes((DATA / "mixed.pack.h5").read_bytes())
+        path = self.broken("kick without the mass", "kick")
+        with h5py.File(ours, "r+") as file:
+            for place in [place for place in file if place.startswith("kick.")]:
+                for name in "tolerance.velocity", "theirs.velocity", "first.velocity":
+                    file.copy(file[place]["out.velocity"], file[place], name)
+        done = compare(path, "--only", "kick", ours=ours)
+        self.assertEqual(done.returncode, 7, done.stderr)
+        self.assertIn(MISTAKES["kick without the mass"].text, meaning(done.stdout))
 
     def test_interrupt(self):
         """Ctrl-C ends uncross-name, too, and leaves no folder."""
