@@ -13,13 +13,12 @@ ONE_SIDED = 8  # values: fewer may have errors of one sign by chance
 
 
 def guesses(evidence):
-    """(text, guess [rows, columns], free, together) from the most to the least telling."""
+    """(text, guess [rows, columns], free) from the most to the least telling."""
     given = before(evidence)
     places = itertools.chain(of_columns(evidence), of_rows(evidence))
     for text, guess in itertools.chain(of_value(evidence, given), places, of_masses(evidence, given), of_bits(evidence)):
-        yield text, guess, 0, False
-    for text, guess, free in of_free_numbers(evidence, given):
-        yield text, guess, free, False
+        yield text, guess, 0
+    yield from of_free_numbers(evidence, given)
 
 
 def before(evidence):

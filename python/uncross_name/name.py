@@ -25,7 +25,7 @@ def _any_operator(found):
     right = ~found.wrong.any(axis=0)
     said = f" (in {', '.join(name for name, good in zip(found.columns, right) if not good)} only)" if right.any() else ""
     fits, partial, tried = [], None, 0
-    for text, guess, free, _ in anything.guesses(found):
+    for text, guess, free in anything.guesses(found):
         tried += 1
         guess = np.where(right, found.theirs, guess)
         how = found.judge(guess)

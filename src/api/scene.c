@@ -16,7 +16,7 @@ static struct scene_settings settings_of(const struct uncross_scene *scene)
 /* The code of what went wrong with a scene. */
 static int code_of(const struct message *message)
 {
-  return message->memory ? UNCROSS_NO_MEMORY : UNCROSS_BAD_INPUT;
+  return message->kind == MESSAGE_NO_MEMORY ? UNCROSS_NO_MEMORY : UNCROSS_BAD_INPUT;
 }
 
 /* How a scene is read: see struct scene_source. */

@@ -6,13 +6,12 @@
 #include "base/text.h"
 
 /* Names and files of others are among the arguments, so all of the text is escaped. */
-static int set(struct message *message, bool unread, const char *format, va_list arguments)
+static int set(struct message *message, enum message_kind kind, const char *format, va_list arguments)
 {
   char text[sizeof message->text];
   vsnprintf(text, sizeof text, format, arguments);
   text_escape(text, message->text, sizeof message->text);
-  message->unread = unread;
-  message->memory = false;
+  message->kind = kind;
   return 0;
 }
 
@@ -20,7 +19,7 @@ int message_set(struct message *message, const char *format, ...)
 {
   va_list arguments;
   va_start(arguments, format);
-  set(message, false, format, arguments);
+  set(message, MESSAGE_WRONG, format, arguments);
   va_end(arguments);
   return 0;
 }
@@ -29,7 +28,7 @@ int message_unread(struct message *message, const char *format, ...)
 {
   va_list arguments;
   va_start(arguments, format);
-  set(message, true, format, arguments);
+  set(message, MESSAGE_UNREAD, format, arguments);
   va_end(arguments);
   return 0;
 }
@@ -38,9 +37,8 @@ int message_no_memory(struct message *message, const char *format, ...)
 {
   va_list arguments;
   va_start(arguments, format);
-  set(message, true, format, arguments);
+  set(message, MESSAGE_NO_MEMORY, format, arguments);
   va_end(arguments);
-  message->memory = true;
   return 0;
 }
 
@@ -55,6 +53,6 @@ int message_at(struct message *message, const char *file, size_t line, size_t co
   vsnprintf(text + used, sizeof text - (size_t)used, format, arguments);
   va_end(arguments);
   text_escape(text, message->text, sizeof message->text);
-  message->unread = message->memory = false;
+  message->kind = MESSAGE_WRONG;
   return 0;
 }

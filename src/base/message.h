@@ -2,13 +2,15 @@
 #ifndef UNCROSS_BASE_MESSAGE_H
 #define UNCROSS_BASE_MESSAGE_H
 
-#include <stdbool.h>
 #include <stddef.h>
+
+/* What it speaks of is wrong; could not be read, so that nothing is known of it; or could not be had for want of
+ * memory, which is the same. */
+enum message_kind { MESSAGE_WRONG, MESSAGE_UNREAD, MESSAGE_NO_MEMORY };
 
 struct message {
   char text[1024];
-  bool unread; /* what it speaks of could not be read, for want of memory or by the system: nothing is known of it */
-  bool memory; /* memory is short: nothing is known of anything */
+  enum message_kind kind;
 };
 
 /* Writes printf-style text into the message, escaped as text_escape does (base/text.h): it may be shown anywhere. The

@@ -190,5 +190,5 @@ enum exit_code command_analyze(const struct arguments *a)
   }
   if (code != EXIT_DONE)
     fprintf(stderr, "uncross: %s\n", message.text);
-  return code == EXIT_BAD_INPUT && message.memory ? EXIT_TROUBLE : code;
+  return code == EXIT_BAD_INPUT && message.kind == MESSAGE_NO_MEMORY ? EXIT_TROUBLE : code;
 }

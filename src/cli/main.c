@@ -65,7 +65,7 @@ static enum exit_code info(const struct arguments *a)
   if (file_info(a->file[0], &message))
     return EXIT_DONE;
   fprintf(stderr, "uncross: %s\n", message.text);
-  return message.memory ? EXIT_TROUBLE : EXIT_BAD_INPUT;
+  return message.kind == MESSAGE_NO_MEMORY ? EXIT_TROUBLE : EXIT_BAD_INPUT;
 }
 
 static enum exit_code export_frames(const struct arguments *a)
@@ -78,10 +78,10 @@ static enum exit_code export_frames(const struct arguments *a)
     return why == EEXIST ? EXIT_BAD_INPUT : EXIT_NOT_WRITTEN;
   }
   bool ok = trajectory_export(a->file[0], &a->export, out, &message);
-  enum exit_code code = ok               ? EXIT_DONE
-                        : ferror(out)    ? EXIT_NOT_WRITTEN
-                        : message.memory ? EXIT_TROUBLE
-                                         : EXIT_BAD_INPUT;
+  enum exit_code code = ok                                  ? EXIT_DONE
+                        : ferror(out)                       ? EXIT_NOT_WRITTEN
+                        : message.kind == MESSAGE_NO_MEMORY ? EXIT_TROUBLE
+                                                            : EXIT_BAD_INPUT;
   if (!ok)
     fprintf(stderr, "uncross: %s\n", message.text);
   if ((out == stdout ? fflush(out) : fclose(out)) != 0 && ok) {

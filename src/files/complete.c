@@ -35,7 +35,7 @@ static void expect_file(void *context, const char *file)
 
 static void complain(struct complete *c, const struct message *message)
 {
-  const enum condition found = message->unread ? CONDITION_UNKNOWN : CONDITION_DAMAGED;
+  const enum condition found = message->kind != MESSAGE_WRONG ? CONDITION_UNKNOWN : CONDITION_DAMAGED;
   fprintf(c->out, "%s\n", message->text);
   c->condition = found > c->condition ? found : c->condition;
 }

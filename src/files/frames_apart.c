@@ -117,10 +117,11 @@ static bool open_structure(struct source *s, hid_t particles, hid_t connectivity
 {
   struct message why = {.text = ""};
   bool ok = particles >= 0 && structure_read(particles, connectivity, id, rows, &s->structure, &why);
-  if (!ok && why.text[0])
-    return (why.memory   ? message_no_memory
-            : why.unread ? message_unread
-                         : message_set)(message, "%s: %s", s->path, why.text);
+  if (!ok && why.text[0]) {
+    message_set(message, "%s: %s", s->path, why.text);
+    message->kind = why.kind;
+    return false;
+  }
   return ok || h5_fail(message, s->path, "damaged, its species or bonds cannot be read");
 }
 
@@ -199,7 +200,7 @@ static bool open_source(struct source *s, enum h5_trouble *trouble, struct messa
   }
   const bool ok = (s->about.checkpoint ? open_checkpoint : open_trajectory)(s, message) &&
                   (s->failures == 0 || message_set(message, "%s: damaged: HDF5 cannot read some part of it", s->path));
-  *trouble = ok ? H5_FINE : message->unread ? H5_UNREADABLE : H5_DAMAGED;
+  *trouble = ok ? H5_FINE : message->kind != MESSAGE_WRONG ? H5_UNREADABLE : H5_DAMAGED;
   return ok;
 }
 
@@ -257,7 +258,7 @@ static enum frame_verdict load_checkpoint(struct source *s, struct frame_moment 
   *moment = (struct frame_moment){summary->numbers.step, (double)summary->numbers.step * summary->time_step, true, {0}};
   for (int k = 0; k < 3; k++)
     moment->edge[k] = summary->cells[k];
-  return ok ? FRAME_FINE : message->unread ? FRAME_LOST : FRAME_DAMAGED;
+  return ok ? FRAME_FINE : message->kind != MESSAGE_WRONG ? FRAME_LOST : FRAME_DAMAGED;
 }
 
 static enum frame_verdict load(struct source *s, uint64_t frame, struct frame_moment *moment, struct message *message)

@@ -1,11 +1,11 @@
 /*
  * The reader: the process that does work apart (apart.h).
  *
- * Where the parent finds it, in this order:
- *   $UNCROSS_READER, an absolute path, and nowhere else. A program that is a reader itself sets it (reader_is_here);
- *   the program `uncross` beside the file that holds this code, or in ../bin or, for build/lib/libuncross.so, in ..;
- *   PREFIX/bin/uncross, PREFIX being that of `make install`.
- * One that belongs to neither root, nor this user, nor the owner of the file that holds this code is not taken.
+ * Where the parent finds it: $UNCROSS_READER names it by an absolute path, and then no other is taken. A program that
+ * is a reader itself sets it (reader_is_here). Else, in this order: the program `uncross` beside the file that holds
+ * this code, or in ../bin or, for build/lib/libuncross.so, in ..; PREFIX/bin/uncross, PREFIX being that of `make
+ * install`. One that belongs to neither root, nor this user, nor the owner of the file that holds this code is not
+ * taken.
  */
 #ifndef UNCROSS_FILES_READER_H
 #define UNCROSS_FILES_READER_H

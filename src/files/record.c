@@ -1,5 +1,4 @@
 #include "files/record.h"
-#include "base/opening.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -11,6 +10,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "base/opening.h"
 #include "files/build_info.h"
 #include "files/start.h"
 #include "observe/units.h"

@@ -83,7 +83,7 @@ bool run_fingerprint(const char *path, uint64_t *fingerprint)
 /* What could not begin. */
 static enum run_code refused(const struct message *message)
 {
-  return message->memory ? RUN_NO_MEMORY : RUN_BAD_INPUT;
+  return message->kind == MESSAGE_NO_MEMORY ? RUN_NO_MEMORY : RUN_BAD_INPUT;
 }
 
 enum run_code run_begin(const struct run_parts *p, struct checkpoint_head *head, struct message *message)

@@ -217,7 +217,7 @@ static enum condition verify_record(const char *path, FILE *out)
 {
   struct message message;
   json_t *root = record_read(path, &message);
-  if (!root && message.unread)
+  if (!root && message.kind != MESSAGE_WRONG)
     return say(out, CONDITION_UNKNOWN, &message);
   if (!root) {
     fprintf(out, "%s: damaged\n", message.text);

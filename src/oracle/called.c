@@ -64,6 +64,7 @@ static void watched_signals(sigset_t *set)
 
 #define MOST_BYTES ((uint64_t)1 << 28) /* of a file that a port writes; ours have some megabytes, as text */
 #define SHELL_ADDS 128                 /* to the signal that ended what a shell has run */
+#define MOST_SIGNALS 64
 
 /* So no port fills the disk. */
 static void limit_files(void)
@@ -83,7 +84,8 @@ static void become(const struct call *call, const sigset_t *before)
   limit_files();
   sigprocmask(SIG_SETMASK, before, NULL);
   dup2(nothing, STDIN_FILENO);
-  dup2(output, STDOUT_FILENO);
+  if (dup2(output, STDOUT_FILENO) < 0)
+    _exit(EXIT_FAILURE);
   execvp(call->words[0], (char *const *)call->words);
   _exit(CALLED_NO_PROGRAM);
 }
@@ -113,7 +115,7 @@ static bool tell(int status, const char *out, struct message *message)
 {
   if (status == SHELL_ADDS + SIGXFSZ)
     return message_set(message, "the port writes a file of more than %" PRIu64 " bytes", MOST_BYTES);
-  if (status > SHELL_ADDS)
+  if (status > SHELL_ADDS && status <= SHELL_ADDS + MOST_SIGNALS)
     return message_set(message, "the port was ended by signal %d", status - SHELL_ADDS);
   if (status != 0)
     return message_set(message, "the port's exit code is %d%s", status,

@@ -14,6 +14,16 @@
 
 /* --- the case ----------------------------------------------------------------------------------------------------- */
 
+/* What a case has of a pack, which may come from anywhere and may have tables of other names. */
+static bool is_of_operators(const struct pack_table *t)
+{
+  static const char *const kinds[] = {"in.", "out.", "bound."};
+  bool any = false;
+  for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
+    any |= strncmp(t->name, kinds[k], strlen(kinds[k])) == 0;
+  return any;
+}
+
 /* PREFIX.X of a table out.X; its numbers are not copied. */
 static void put(struct pack *made, const struct pack_table *t, const char *prefix)
 {
@@ -65,7 +75,7 @@ static bool write_case(const struct oracle_pair *first, uint32_t row, const char
     struct oracle_pair pair = *first;
     const struct pack_table *t = pair.ours = &first->pack->table[k];
     const bool concerned = strcmp(t->place.operator_name, first->ours->place.operator_name) == 0;
-    if (concerned || strcmp(t->place.operator_name, "model") == 0)
+    if (is_of_operators(t) && (concerned || strcmp(t->place.operator_name, "model") == 0))
       put(&made, t, NULL);
     pair.theirs = concerned && strncmp(t->name, "out.", 4) == 0 ? oracle_sibling_of_theirs(&pair, t->name) : NULL;
     if (!pair.theirs || pair.theirs->columns != t->columns)
@@ -77,7 +87,7 @@ static bool write_case(const struct oracle_pair *first, uint32_t row, const char
   }
   FILE *out = ok ? fopen(path, "wbx") : NULL;
   ok = ok ? (out || message_set(message, "%s: cannot create: %s", path, strerror(errno)))
-          : message_set(message, "memory is short");
+          : message_no_memory(message, "memory is short");
   ok = ok && pack_write(&made, out, path, message);
   if (out && fclose(out) != 0)
     ok = message_set(message, "%s: cannot write", path);
@@ -137,15 +147,14 @@ bool oracle_name(const struct oracle_pair *first, uint32_t row, const struct ora
   snprintf(folder, sizeof folder, "%s/uncross-name.XXXXXX", temporary && temporary[0] ? temporary : "/tmp");
   if (o->scratch)
     snprintf(folder, sizeof folder, "%s", o->scratch);
+  const bool there =
+      o->scratch || mkdtemp(folder) || message_set(&why, "%s: cannot create: %s", folder, strerror(errno));
   snprintf(path, sizeof path, "%s/case.h5", folder);
-  bool ok = o->scratch || mkdtemp(folder) || message_set(&why, "%s: cannot create: %s", folder, strerror(errno));
-  if (ok && !o->scratch)
-    snprintf(path, sizeof path, "%s/case.h5", folder);
-  ok = ok && write_case(first, row, path, &why) && ask(o->namer, folder, path, text, &why);
-  remove(path);
-  if (!o->scratch)
-    called_clean(folder);
-  if (!ok)
+  if (!there || !write_case(first, row, path, &why) || !ask(o->namer, folder, path, text, &why))
     snprintf(text, ORACLE_TEXT, "no name: %.500s", why.text);
+  if (there)
+    remove(path);
+  if (there && !o->scratch)
+    called_clean(folder);
   return true;
 }

@@ -73,9 +73,9 @@ void fault_describe(const struct fault *fault, char *text, size_t size)
 
 int message_fault(struct message *message, const struct fault *fault)
 {
-  fault_describe(fault, message->text, sizeof message->text);
-  message->unread = message->memory = false;
-  return 0;
+  char text[sizeof message->text];
+  fault_describe(fault, text, sizeof text);
+  return message_set(message, "%s", text);
 }
 
 bool fault_record(struct fault *fault, enum fault_code code, uint64_t step, int64_t entity, double value, double limit)

@@ -246,7 +246,7 @@ class AnythingTest(unittest.TestCase):
     """Theirs is made by the formula that the text says; one guess alone is right everywhere."""
 
     def whole(self, found):
-        return [text for text, guess, free, _ in anything.guesses(found) if found.judge(guess) == WHOLE]
+        return [text for text, guess, free in anything.guesses(found) if found.judge(guess) == WHOLE]
 
     def check(self, cases, ours, columns="x y z", operator="kick", table="out.velocity", **given):
         for text, theirs in cases:
