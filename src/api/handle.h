@@ -84,4 +84,10 @@ struct run_parts sim_parts(struct uncross_sim *sim);
 /* Brings the view up to date. */
 void sim_look(struct uncross_sim *sim);
 
+/* Its tables (tables.c): series without rows; what this step adds to them; all freed, the last list of summaries too.
+ * False if memory is short. */
+bool tables_begin(struct uncross_sim *sim);
+bool tables_sample(struct uncross_sim *sim);
+void tables_clear(struct uncross_sim *sim);
+
 #endif

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "api/handle.h"
+#include "files/checkpoint.h"
 #include "scene/scene_keys.h"
 #include "scene/set.h"
 #include "scene/yaml.h"
@@ -31,18 +32,18 @@ static int read_source(const struct uncross_scene *from, struct reading how, con
   struct message message;
   uint64_t fingerprint;
   const struct scene_settings settings = settings_of(from);
-  const struct scene_source source = {.keys = &scene_keys,
-                                      .path = from->name,
-                                      .text = from->text,
-                                      .size = from->text ? strlen(from->text) : 0,
-                                      .settings = &settings,
-                                      .look_for_files = how.look_for_files,
-                                      .numbers_only = how.numbers_only,
-                                      .open_end = how.open_end,
-                                      .steps = from->has_steps ? &from->steps : NULL,
-                                      .fingerprint =
-                                          checkpoint && run_fingerprint(checkpoint, &fingerprint) ? &fingerprint : NULL,
-                                      .message = &message};
+  const struct scene_source source = {
+      .keys = &scene_keys,
+      .path = from->name,
+      .text = from->text,
+      .size = from->text ? strlen(from->text) : 0,
+      .settings = &settings,
+      .look_for_files = how.look_for_files,
+      .numbers_only = how.numbers_only,
+      .open_end = how.open_end,
+      .steps = from->has_steps ? &from->steps : NULL,
+      .fingerprint = checkpoint && checkpoint_fingerprint(checkpoint, &fingerprint) ? &fingerprint : NULL,
+      .message = &message};
   if (!scene_read_source(&source, scene))
     return fail(error, code_of(&message), message.text, NULL);
   if (from->has_seed)

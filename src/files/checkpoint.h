@@ -55,6 +55,9 @@ void checkpoint_serve(struct apart *link);
 /* Reads the summary only. */
 bool checkpoint_look(const char *path, struct checkpoint_summary *summary, struct message *message);
 
+/* The fingerprint of its scene; false if the checkpoint cannot be read. */
+bool checkpoint_fingerprint(const char *path, uint64_t *fingerprint);
+
 /* Reads a checkpoint's state into one allocated for this model, after comparing numbers, box and bonds, and the memory
  * of observers into their blocks. The state hash must be right, and each number one that a state can have. */
 bool checkpoint_fetch(const char *path, const struct model *model, struct checkpoint_summary *summary,

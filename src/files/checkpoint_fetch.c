@@ -228,6 +228,16 @@ bool checkpoint_look(const char *path, struct checkpoint_summary *summary, struc
   return ok;
 }
 
+bool checkpoint_fingerprint(const char *path, uint64_t *fingerprint)
+{
+  struct checkpoint_summary summary;
+  struct message ignored;
+  const bool ok = checkpoint_look(path, &summary, &ignored);
+  if (ok)
+    *fingerprint = summary.head.fingerprint;
+  return ok;
+}
+
 bool checkpoint_fetch(const char *path, const struct model *model, struct checkpoint_summary *summary,
                       struct state *state, const struct observe_block *blocks, size_t block_count,
                       struct message *message)

@@ -1,14 +1,11 @@
 #include "files/hdf5.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <xxhash.h>
 
-#define HASH_NAME "xxh64"
 #define MOST_COMPRESSION 1100.0 /* bytes that one stored byte can stand for: 1032 at most with HDF5's deflate */
 
 /* --- errors ------------------------------------------------------------------------------------------------------ */
@@ -113,8 +110,7 @@ hid_t h5_group(hid_t parent, const char *name)
   return group;
 }
 
-/* Puts a reason of our own where h5_reason looks for it. Returns -1. */
-static int refuse(const char *why)
+int h5_refuse(const char *why)
 {
   H5Eclear2(H5E_DEFAULT);
   H5Epush2(H5E_DEFAULT, __FILE__, __func__, __LINE__, H5E_ERR_CLS, H5E_FILE, H5E_BADVALUE, "%s", why);
@@ -129,8 +125,8 @@ static bool data_are_here(hid_t dataset)
   const int others = layout == H5D_CONTIGUOUS ? H5Pget_external_count(creation) : 0;
   h5_close(creation);
   if (layout == H5D_VIRTUAL || others > 0)
-    refuse(layout == H5D_VIRTUAL ? "a virtual dataset, whose numbers are in other files"
-                                 : "external storage: the numbers are in another file");
+    h5_refuse(layout == H5D_VIRTUAL ? "a virtual dataset, whose numbers are in other files"
+                                    : "external storage: the numbers are in another file");
   return layout >= 0 && layout != H5D_VIRTUAL && others == 0;
 }
 
@@ -205,7 +201,7 @@ static bool is_stored(hid_t dataset, int rank, const hsize_t *dims)
   for (int k = 0; k < rank; k++)
     bytes *= (double)dims[k];
   h5_close(type);
-  return bytes <= most || (refuse("a shape of more numbers than the file holds"), false);
+  return bytes <= most || (h5_refuse("a shape of more numbers than the file holds"), false);
 }
 
 int h5_shape(hid_t dataset, int most, hsize_t *dims)
@@ -231,7 +227,7 @@ int h5_look(hid_t parent, const char *name)
   if (H5Lget_info(parent, name, &link, H5P_DEFAULT) < 0)
     return -1;
   if (link.type != H5L_TYPE_HARD && link.type != H5L_TYPE_SOFT)
-    return refuse("a link to another file, which is not followed");
+    return h5_refuse("a link to another file, which is not followed");
   return H5Oexists_by_name(parent, name, H5P_DEFAULT);
 }
 
@@ -268,7 +264,7 @@ bool h5_get(hid_t object, const char *name, hid_t type, size_t count, void *data
   return ok;
 }
 
-static hid_t text_type(size_t length)
+hid_t h5_text_type(size_t length)
 {
   hid_t type = H5Tcopy(H5T_C_S1);
   H5Tset_size(type, length + 1);
@@ -278,7 +274,7 @@ static hid_t text_type(size_t length)
 
 bool h5_put_text(hid_t object, const char *name, const char *text)
 {
-  hid_t type = text_type(strlen(text));
+  hid_t type = h5_text_type(strlen(text));
   bool ok = h5_put(object, name, type, 0, text);
   h5_close(type);
   return ok;
@@ -314,92 +310,4 @@ bool h5_get_text(hid_t object, const char *name, char *text, size_t size)
   h5_close(stored);
   h5_close(attribute);
   return ok;
-}
-
-/* --- whole datasets ---------------------------------------------------------------------------------------------- */
-
-static uint64_t hash_of(hid_t type, int rank, const hsize_t *dims, const void *data)
-{
-  size_t bytes = H5Tget_size(type);
-  for (int k = 0; k < rank; k++)
-    bytes *= (size_t)dims[k];
-  return XXH64(data, bytes, 0);
-}
-
-bool h5_array_write(hid_t parent, const char *name, hid_t type, int rank, const hsize_t *dims, const void *data)
-{
-  hid_t dataset = h5_dataset(parent, name, type, rank, dims, false, 0);
-  uint64_t hash = hash_of(type, rank, dims, data);
-  bool ok = dataset >= 0 && H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0 &&
-            h5_put(dataset, HASH_NAME, H5T_NATIVE_UINT64, 0, &hash);
-  h5_close(dataset);
-  return ok;
-}
-
-static bool same_class(hid_t dataset, hid_t type)
-{
-  hid_t stored = H5Dget_type(dataset);
-  H5T_class_t is = stored < 0 ? H5T_NO_CLASS : H5Tget_class(stored), wanted = H5Tget_class(type);
-  h5_close(stored);
-  return is == wanted || (wanted == H5T_INTEGER && is == H5T_ENUM);
-}
-
-static bool has_shape(hid_t dataset, int rank, const hsize_t *dims)
-{
-  hsize_t found[4];
-  bool same = dataset >= 0 && h5_shape(dataset, 4, found) == rank;
-  for (int k = 0; same && k < rank; k++)
-    same = found[k] == dims[k];
-  return same;
-}
-
-bool h5_array_is(hid_t parent, const char *name, int rank, const hsize_t *dims)
-{
-  hid_t dataset = h5_open_dataset(parent, name);
-  const bool is = has_shape(dataset, rank, dims);
-  h5_close(dataset);
-  return is;
-}
-
-bool h5_array_read(hid_t parent, const char *name, hid_t type, int rank, const hsize_t *dims, void *data)
-{
-  hid_t dataset = h5_open_dataset(parent, name);
-  bool ok = has_shape(dataset, rank, dims) && same_class(dataset, type);
-  ok = ok && H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0;
-  const htri_t hashed = ok ? H5Aexists(dataset, HASH_NAME) : 0;
-  if (hashed != 0) {
-    uint64_t hash;
-    ok = hashed > 0 && h5_get(dataset, HASH_NAME, H5T_NATIVE_UINT64, 0, &hash) &&
-         (hash == hash_of(type, rank, dims, data) || (refuse("its numbers do not fit their checksum"), false));
-  }
-  h5_close(dataset);
-  return ok;
-}
-
-bool h5_text_write(hid_t parent, const char *name, const char *text)
-{
-  hid_t type = text_type(strlen(text));
-  bool ok = h5_array_write(parent, name, type, 0, NULL, text);
-  h5_close(type);
-  return ok;
-}
-
-char *h5_text_read(hid_t parent, const char *name)
-{
-  hsize_t none[1];
-  hid_t dataset = h5_open_dataset(parent, name);
-  hid_t stored = h5_shape(dataset, 0, none) != 0 ? -1 : H5Dget_type(dataset);
-  char *text = NULL;
-  errno = 0;
-  if (stored >= 0 && H5Tget_class(stored) == H5T_STRING && H5Tis_variable_str(stored) == 0) {
-    size_t size = H5Tget_size(stored);
-    text = calloc(size + 1, 1);
-    if (text && !h5_array_read(parent, name, stored, 0, NULL, text)) {
-      free(text);
-      text = NULL;
-    }
-  }
-  h5_close(stored);
-  h5_close(dataset);
-  return text;
 }

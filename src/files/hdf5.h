@@ -92,6 +92,12 @@ bool h5_get(hid_t object, const char *name, hid_t type, size_t count, void *data
 bool h5_put_text(hid_t object, const char *name, const char *text);
 bool h5_get_text(hid_t object, const char *name, char *text, size_t size); /* false if it does not fit */
 
+/* Puts a reason of our own where h5_reason looks for it. Returns -1. */
+int h5_refuse(const char *why);
+
+/* The type of a text of so many bytes in UTF-8; to be closed. */
+hid_t h5_text_type(size_t length);
+
 /* Whole datasets, with the hash of their data. h5_array_read checks class of type, shape and, where there is one, the
  * hash. Rank at most 4. */
 bool h5_array_write(hid_t parent, const char *name, hid_t type, int rank, const hsize_t *dims, const void *data);

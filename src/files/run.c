@@ -70,16 +70,6 @@ bool run_is_ours(const struct run *run)
   return run->owner == getpid();
 }
 
-bool run_fingerprint(const char *path, uint64_t *fingerprint)
-{
-  struct checkpoint_summary summary;
-  struct message ignored;
-  if (!checkpoint_look(path, &summary, &ignored))
-    return false;
-  *fingerprint = summary.head.fingerprint;
-  return true;
-}
-
 /* What could not begin. */
 static enum run_code refused(const struct message *message)
 {

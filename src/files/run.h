@@ -61,9 +61,6 @@ struct run {
  * there, as all files are the owner's, which goes on with them. */
 bool run_is_ours(const struct run *run);
 
-/* The fingerprint of the scene that a checkpoint is of; false if it cannot be read. */
-bool run_fingerprint(const char *path, uint64_t *fingerprint);
-
 /* Makes the starting state of the scene, and the head of the checkpoints of a run that begins with it. */
 enum run_code run_begin(const struct run_parts *parts, struct checkpoint_head *head, struct message *message);
 

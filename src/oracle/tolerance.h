@@ -26,6 +26,9 @@ double tolerance_once(const struct oracle_pair *pair, double (*of)(const struct 
 double tolerance_of_vertex(const struct oracle_pair *pair, double *(*of)(const struct oracle_pair *), uint32_t vertex,
                            uint32_t most);
 
+/* Columns of the model's in.vertex. */
+enum vertex_column { MASS, BOND_LENGTH, SPRING, BENDING, FORCE };
+
 /* The largest size in columns from .. to - 1; 0 for no table. */
 double tolerance_largest(const struct pack_table *table, uint32_t from, uint32_t to);
 
@@ -58,6 +61,9 @@ tolerance_rule tolerance_impulse_answer, tolerance_impulse_momentum, tolerance_i
 /* The same for those of vertices that move one by one (tolerance_contact.c). */
 tolerance_rule tolerance_crossing_hit, tolerance_exchange_momentum, tolerance_exchange_velocity, tolerance_sweep_hit,
     tolerance_sweep_velocity, tolerance_sweep_position;
+
+/* The same for forces of fibers and kicks (tolerance_fiber.c). */
+tolerance_rule tolerance_bond_force, tolerance_bend_force, tolerance_force, tolerance_kick;
 
 /* The same for those of thick fibers (tolerance_tube.c). */
 tolerance_rule tolerance_tube_tick, tolerance_tube_points, tolerance_tube_normal;
