@@ -448,7 +448,7 @@ judge-power:
 	$(MAKE) -j2 $(BUILD)/uncross
 	tools/judge-power --uncross $(BUILD)/uncross --build $(BUILD)/judge-power
 
-# PORT_SHARE=40: one mistake in 40, others whenever the catalogue changes, and texts of few packs.
+# PORT_SHARE=20: mistakes of one pack and operator in 20, of others whenever the catalogue changes, and texts of few packs.
 .PHONY: port
 port:
 	tools/install-dependencies run port
