@@ -122,7 +122,7 @@ static void list(FILE *out, const char *group)
 
 void help_group(FILE *out, const char *group)
 {
-  fprintf(out, "uncross %s: what other implementations are held against (docs/porting.md)\n\nusage:\n", group);
+  fprintf(out, "uncross %s: what other implementations are held against (docs/port/README.md)\n\nusage:\n", group);
   list(out, group);
   fprintf(out, "`uncross %s ACTION --help` lists the options and exit codes of one.\n", group);
 }

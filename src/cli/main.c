@@ -154,7 +154,7 @@ const struct command commands[COMMANDS] = {
                             "runs a port over all packs and traces: one table, one exit code",
                             "PORT is a program: `PORT PACK OUT` reads a pack and writes its outputs, `PORT --trace "
                             "START OUT` writes a trace\n"
-                            "(docs/porting.md). --single and --only leave the traces out.\n",
+                            "(docs/port/README.md). --single and --only leave the traces out.\n",
                             oracle_check_port},
     [COMMAND_JUDGE] =
         {"oracle judge", "OURS THEIRS", 2, WRITES | MAY(EXIT_DIFFERS) | MAY(EXIT_CANNOT_TELL),

@@ -1,4 +1,5 @@
-/* Whole ports: a program that reads packs and starts, and writes outputs and traces (docs/porting.md, One command). */
+/* Whole ports: a program that reads packs and starts, and writes outputs and traces (docs/port/README.md, One command).
+ */
 #ifndef UNCROSS_ORACLE_CHECK_H
 #define UNCROSS_ORACLE_CHECK_H
 

@@ -7,7 +7,7 @@
 #include "contact/impulse.h"
 #include "oracle/columns.h"
 
-/* How much the data of a hit at this time amplify rounding (docs/porting.md, Tolerances). */
+/* How much the data of a hit at this time amplify rounding (docs/port/tolerances.md, Tolerances). */
 static double condition_of(const struct crossing_query *k, double time)
 {
   const struct vec3 move = point_difference(k->to, k->from), ab = point_difference(k->b, k->a);

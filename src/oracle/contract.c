@@ -29,7 +29,7 @@ bool contract_covers(const struct scene *scene, bool packs, struct message *mess
   };
   for (size_t k = 0; k < sizeof outside / sizeof *outside; k++)
     if (outside[k].is)
-      return message_set(message, "%s: %s; such a scene is outside of the contract (docs/porting.md)", scene->path,
+      return message_set(message, "%s: %s; such a scene is outside of the contract (docs/port/formats.md)", scene->path,
                          outside[k].what);
   return true;
 }

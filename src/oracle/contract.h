@@ -1,4 +1,4 @@
-/* Which scenes the contract of ports covers (docs/porting.md), and the switches that a port must know for one. */
+/* Which scenes the contract of ports covers (docs/port/formats.md), and the switches that a port must know for one. */
 #ifndef UNCROSS_ORACLE_CONTRACT_H
 #define UNCROSS_ORACLE_CONTRACT_H
 

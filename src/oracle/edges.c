@@ -1,6 +1,6 @@
 /*
  * Constructed inputs, for what the state of a scene hardly ever shows: hits at the same time, positions one lattice
- * unit beside faces of cells, permutations that 24 bits get wrong. docs/porting.md says what is in each.
+ * unit beside faces of cells, permutations that 24 bits get wrong. docs/port/packs.md says what is in each.
  */
 #include <math.h>
 #include <stdlib.h>

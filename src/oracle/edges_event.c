@@ -1,7 +1,7 @@
 /*
  * Constructed inputs for contacts at their own time: bonds that touch when they are parallel, on one line, end on end,
  * in one plane, in the first tick or the last; near misses by some lattice units; impulses about the bounds of the
- * rebound; drifts with many contacts in one tick. docs/porting.md says what is in each.
+ * rebound; drifts with many contacts in one tick. docs/port/packs.md says what is in each.
  */
 #include <math.h>
 #include <stdlib.h>

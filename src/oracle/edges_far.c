@@ -1,4 +1,4 @@
-/* Needles of the pack `contacts` that bugs of images and of clusters need: docs/porting.md, *Constructed inputs*. */
+/* Needles of the pack `contacts` that bugs of images and of clusters need: docs/port/packs.md, *Constructed inputs*. */
 #include "oracle/edges.h"
 #include "system/state.h"
 

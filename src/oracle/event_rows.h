@@ -28,7 +28,7 @@ struct oracle_events {
   struct oracle_event {
     struct contact_event event;
     int32_t tick;
-    double condition; /* how much its data amplify rounding (docs/porting.md, Tolerances) */
+    double condition; /* how much its data amplify rounding (docs/port/tolerances.md, Tolerances) */
   } * at;
   uint32_t count;
   bool failed; /* memory was short */

@@ -3,7 +3,7 @@
  * and beside each `out.X`
  *
  *   theirs.X      what the port gives, where it has as many columns
- *   tolerance.X   how much each value may differ (docs/porting.md), of the rows that both have
+ *   tolerance.X   how much each value may differ (docs/port/tolerances.md), of the rows that both have
  *   first.X       [1][2] the first difference: its row, and whether single precision was asked for; of its table alone
  */
 #ifndef UNCROSS_ORACLE_NAME_H

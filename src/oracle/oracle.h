@@ -1,7 +1,7 @@
 /*
  * The oracle: what other implementations are held against. A pack holds input and output of every operator alone, so
  * that nothing chaotic lies between; a trace holds hashes of the state after every stage of a short run, for ports that
- * promise the same bits. docs/porting.md is the contract.
+ * promise the same bits. docs/port/contract.md is the contract.
  */
 #ifndef UNCROSS_ORACLE_ORACLE_H
 #define UNCROSS_ORACLE_ORACLE_H
@@ -19,7 +19,7 @@
  * and at the last one of the scene. The pack needs freeing in any case. */
 bool oracle_emit(struct scene *scene, struct pack *pack, struct message *message);
 
-/* Fills a pack with operators' inputs that are constructed, not from a scene, and their outputs (docs/porting.md).
+/* Fills a pack with operators' inputs that are constructed, not from a scene, and their outputs (docs/port/packs.md).
  * contacts: those of contacts at their own time (rule `event-driven`). */
 bool oracle_edges(bool contacts, struct pack *pack, struct message *message);
 

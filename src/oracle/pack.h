@@ -1,5 +1,6 @@
 /*
- * A pack: inputs and outputs of single operators, as named tables of numbers. docs/porting.md describes both its forms:
+ * A pack: inputs and outputs of single operators, as named tables of numbers. docs/port/formats.md describes both its
+ * forms:
  *
  *   HDF5   group `operator.step`, dataset `in.name` or `out.name` [rows][columns], attribute `components`
  *   text   lines `operator step row in.name.component value`

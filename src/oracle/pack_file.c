@@ -158,9 +158,9 @@ static bool known_format(hid_t file, const char *path, bool sealed, struct messa
   int version = 0;
   if (!h5_get_text(file, "format", format, sizeof format) || strcmp(format, PACK_FORMAT) != 0 ||
       !h5_get(file, "version", H5T_NATIVE_INT, 0, &version) || version < 1 || version > PACK_VERSION)
-    return message_set(message,
-                       "%s: not a pack of version 1 to %d; `uncross oracle emit` writes one, docs/porting.md says how",
-                       path, PACK_VERSION);
+    return message_set(
+        message, "%s: not a pack of version 1 to %d; `uncross oracle emit` writes one, docs/port/formats.md says how",
+        path, PACK_VERSION);
   return sealed || H5Aexists(file, SEAL_NAME) == 0 ||
          message_set(message, "%s: damaged: its end with the seal is missing or changed", path);
 }

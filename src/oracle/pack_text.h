@@ -1,4 +1,4 @@
-/* The text form of packs, for ports without HDF5: docs/porting.md. */
+/* The text form of packs, for ports without HDF5: docs/port/formats.md. */
 #ifndef UNCROSS_ORACLE_PACK_TEXT_H
 #define UNCROSS_ORACLE_PACK_TEXT_H
 

@@ -13,7 +13,8 @@ struct oracle_pair {
   struct tolerance_known *known; /* of this table; NULL: computed for each value anew */
 };
 
-/* Bound on |ours - theirs| in this column, if both made the operator's roundings and no mistake: docs/porting.md. */
+/* Bound on |ours - theirs| in this column, if both made the operator's roundings and no mistake:
+ * docs/port/tolerances.md. */
 double oracle_tolerance(const struct oracle_pair *pair, uint32_t row, uint32_t column);
 
 /* A table of the same operator and step, of our pack; NULL if there is none. */

@@ -1,6 +1,6 @@
 /* Each operator of a time step: what goes into it and what comes out is put into the stage's pack, and the stage's
- * state is advanced by it. False, with work->fault or pack->failed saying why. docs/porting.md says what is in each
- * table. */
+ * state is advanced by it. False, with work->fault or pack->failed saying why. docs/port/contract.md says what is in
+ * each table. */
 #ifndef UNCROSS_ORACLE_STAGES_H
 #define UNCROSS_ORACLE_STAGES_H
 
@@ -95,8 +95,8 @@ void oracle_put_springs(struct oracle_stage *g, const char *name, const struct s
 /* The sweep of this number, for fraction * dt, of the state as it is. */
 bool oracle_sweep_for(struct oracle_stage *stage, double fraction, uint32_t sweep);
 
-/* Constructed inputs, where the state of no scene comes near (edges.c, edges_crossing.c): docs/porting.md. They change
- * the state. */
+/* Constructed inputs, where the state of no scene comes near (edges.c, edges_crossing.c): docs/port/packs.md. They
+ * change the state. */
 bool oracle_edges_permutation(struct oracle_stage *stage);
 bool oracle_edges_crossing(struct oracle_stage *stage);
 bool oracle_edges_exchange(struct oracle_stage *stage);

@@ -1,5 +1,5 @@
-/* The operators of a collision by the rules at-a and at+a, each alone: docs/porting.md, *The rule at-a* and *The rule
- * at+a*. `sum` is in stages_solvent.c: here its velocities are those less the drawn ones. */
+/* The operators of a collision by the rules at-a and at+a, each alone: docs/port/contract.md, *The rule at-a* and *The
+ * rule at+a*. `sum` is in stages_solvent.c: here its velocities are those less the drawn ones. */
 #include "mpc/collide.h"
 #include "mpc/rules/spin.h"
 #include "oracle/columns.h"

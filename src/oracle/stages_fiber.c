@@ -28,7 +28,8 @@ struct events {
   bool failed;
 };
 
-/* How much the data of a hit amplify rounding, from the state that its move found (docs/porting.md, Tolerances). */
+/* How much the data of a hit amplify rounding, from the state that its move found (docs/port/tolerances.md,
+ * Tolerances). */
 static double condition_of(const struct events *e, const struct contact_event *v)
 {
   const struct model *m = e->model;

@@ -1,4 +1,4 @@
-/* The operators of a solvent between walls and in a sheared box, each alone, and those of dumbbells: docs/porting.md,
+/* The operators of a solvent between walls and in a sheared box, each alone, and those of dumbbells: docs/port/flow.md,
  * *Walls and shear* and *Dumbbells*. Scenes of walls and shear have no fibers. */
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* The operators of baths other than that of collision cells, of forces of pairs and of overdamped motion, each alone:
- * docs/porting.md, *Media*. */
+ * docs/port/media.md, *Media*. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -151,7 +151,7 @@ static uint32_t entries(const struct model *m)
   return n;
 }
 
-/* |D^-1| of Frobenius, from L: of which the rounding of L is a multiple (docs/porting.md, *Tolerances*). */
+/* |D^-1| of Frobenius, from L: of which the rounding of L is a multiple (docs/port/tolerances.md, *Tolerances*). */
 static double inverse_norm(uint32_t n, const double *l, double *x, double *y)
 {
   double sum = 0.0;

@@ -1,7 +1,7 @@
 /*
- * Tolerances, derived in docs/porting.md: two implementations that differ in the order of operations only, or in fused
- * multiply-adds, differ by at most  n u S.  n counts the roundings of both, u is half an ulp of 1, and S bounds the
- * sizes of the terms; all of it from the pack.
+ * Tolerances, derived in docs/port/tolerances.md: two implementations that differ in the order of operations only, or
+ * in fused multiply-adds, differ by at most  n u S.  n counts the roundings of both, u is half an ulp of 1, and S
+ * bounds the sizes of the terms; all of it from the pack.
  */
 #include <math.h>
 #include <string.h>

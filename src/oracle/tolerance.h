@@ -1,4 +1,4 @@
-/* Inside the oracle: sizes of what a pack's tables hold, from which tolerances are made (docs/porting.md). */
+/* Inside the oracle: sizes of what a pack's tables hold, from which tolerances are made (docs/port/tolerances.md). */
 #ifndef UNCROSS_ORACLE_TOLERANCE_H
 #define UNCROSS_ORACLE_TOLERANCE_H
 

@@ -1,4 +1,5 @@
-/* Tolerances of crossings, of their exchanges, and of sweeps, in which vertices move one by one (docs/porting.md). */
+/* Tolerances of crossings, of their exchanges, and of sweeps, in which vertices move one by one
+ * (docs/port/tolerances.md). */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* Tolerances of contacts at their own time: docs/porting.md derives them. */
+/* Tolerances of contacts at their own time: docs/port/tolerances.md derives them. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

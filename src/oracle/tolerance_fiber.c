@@ -1,4 +1,4 @@
-/* Tolerances of forces and kicks (docs/porting.md). */
+/* Tolerances of forces and kicks (docs/port/tolerances.md). */
 #include <math.h>
 
 #include "base/lattice.h"

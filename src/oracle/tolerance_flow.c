@@ -1,4 +1,4 @@
-/* Tolerances of the operators of walls, of shear and of dumbbells: docs/porting.md. */
+/* Tolerances of the operators of walls, of shear and of dumbbells: docs/port/tolerances.md. */
 #include <math.h>
 
 #include "base/lattice.h"

@@ -1,4 +1,4 @@
-/* Tolerances of the operators of media: docs/porting.md. */
+/* Tolerances of the operators of media: docs/port/tolerances.md. */
 #include <math.h>
 
 #include "base/lattice.h"

@@ -1,5 +1,5 @@
-/* Tolerances of the operators of the rule at+a: docs/porting.md. A port may make the sums of a cell in doubles, about
- * the middle of the cell, where places are at most 1/2 a0 off along each axis. */
+/* Tolerances of the operators of the rule at+a: docs/port/tolerances.md. A port may make the sums of a cell in doubles,
+ * about the middle of the cell, where places are at most 1/2 a0 off along each axis. */
 #include <math.h>
 #include <string.h>
 

@@ -1,4 +1,4 @@
-/* Tolerances of contacts of thick fibers: docs/porting.md derives them. */
+/* Tolerances of contacts of thick fibers: docs/port/tolerances.md derives them. */
 #include <math.h>
 
 #include "contact/tube.h"

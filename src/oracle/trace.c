@@ -19,7 +19,7 @@ struct tracer {
   XXH64_state_t *together;       /* of their numbers; NULL where there are none */
 };
 
-/* The order of these words is that of docs/porting.md. */
+/* The order of these words is that of docs/port/formats.md. */
 static void trace_contact(void *context, const struct contact_event *v)
 {
   struct tracer *t = context;

@@ -12,7 +12,7 @@ struct oracle_tubes {
 };
 
 /* Puts n searches of tubes with their ticks; n contacts with their points and normals. After them stand constructed
- * ones, which scenes do not have (docs/porting.md). */
+ * ones, which scenes do not have (docs/port/tubes.md). */
 void oracle_put_tube_searches(struct oracle_stage *g, const struct oracle_search *search, uint32_t n);
 void oracle_put_tube_contacts(struct oracle_stage *g, const struct oracle_tubes *tubes, uint32_t n);
 void oracle_put_bead_searches(struct oracle_stage *g, const struct oracle_search *search, uint32_t n);

@@ -49,7 +49,7 @@ hashes() { # hashes PROGRAM FOLDER: of all scenes there
     rm -rf "$dir/run"
   done
 }
-# Packs differ in no bit; what docs/porting.md leaves to the C library may differ within tolerance: normal and Gamma
+# Packs differ in no bit; what docs/port/tolerances.md leaves to the C library may differ within tolerance: normal and Gamma
 # deviates, and cosine and sine of the 130 degrees of `mixed`.
 exact=order,long_sweep,sweep,bond_force,bend_force,force,kick,stream,shift,bin,sum,solve,rescale,swap,contact_search,impulse,long_event_drift,event_drift
 packs() { # packs PROGRAM: compared with those of $uncross

@@ -167,7 +167,7 @@ class Streams(unittest.TestCase):
                     self.assertEqual(words in text, warned, out)
 
     def test_ports_and_check_are_told_the_stream(self):
-        """Who calls random numbers by a key gets the one that is used; docs/porting.md calls it the seed."""
+        """Who calls random numbers by a key gets the one that is used; docs/port/contract.md calls it the seed."""
         scene = HEAD + BATHS["andersen"][0] + FIBERS
         self.run_scene("first", scene, "--steps", "10")
         stream = self.run_scene("second", scene + "start: {snapshot: first/checkpoint.h5}\n", "--steps", "10")["stream"]

@@ -44,7 +44,7 @@ class Folder(unittest.TestCase):
 
 class ColumnsTest(Folder):
     def test_every_value_is_judged(self):
-        """In doubles tolerances are below the largest size of their table, but for the shares that docs/porting.md states."""
+        """In doubles tolerances are below the largest size of their table, but for the shares that docs/port/tolerances.md states."""
         for path in sorted(DATA.glob("**/*.pack.h5")):
             code, said, _ = run("compare", path, path)
             self.assertEqual(code, 0, said)

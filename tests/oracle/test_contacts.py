@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """The pack of contacts at their own time (reference-data/contacts.pack.h5) against exact arithmetic: Python's integers and
-fractions, by docs/porting.md alone. And whether it shows what it is made for."""
+fractions, by docs/port/contacts.md alone. And whether it shows what it is made for."""
 import gzip
 import os
 import pathlib

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """The pack of constructed inputs (reference-data/edges.pack.h5) against exact arithmetic: Python's integers and fractions,
-by docs/conventions.md and docs/porting.md alone. And whether it shows what it is made for: a port in doubles, in floats,
+by docs/conventions.md and docs/port/packs.md alone. And whether it shows what it is made for: a port in doubles, in floats,
 with ties the other way round must fail on it.
 """
 import gzip

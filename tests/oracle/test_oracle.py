@@ -41,7 +41,7 @@ def number(text):
 
 
 def philox(counter, key):
-    """Philox 4x32-10, as docs/porting.md writes it."""
+    """Philox 4x32-10, as docs/port/contract.md writes it."""
     c, k = list(counter), list(key)
     for _ in range(10):
         a, b = 0xD2511F53 * c[0], 0xCD9E8D57 * c[2]
@@ -264,7 +264,7 @@ class OracleTest(unittest.TestCase):
             self.assertEqual(words, [values[row, f"out.word.{k}"] for k in range(4)])
             self.assertEqual(((words[0] + (words[1] << 32) >> 12) + 0.5) * 2.0**-52, values[row, "out.uniform.0"])
             if f"{purpose}, {draw}, {step}, {entity}" in ("1, 0, 2, 0", "2, 0, 2, 0", "3, 1, 1, 0"):
-                page = (TOP / "docs/porting.md").read_text()
+                page = (TOP / "docs/port/contract.md").read_text()
                 self.assertIn(" ".join(map(str, words)) + f" | {values[row, 'out.uniform.0']!r}", page)
 
     # --- other codes ---

@@ -122,7 +122,7 @@ class SwitchesTest(Folder):
                 code, _, said = run("oracle", action, scene, "-o", out)
                 self.assertEqual((code, out.exists()), (2, False), (action, text, said))
                 self.assertIn(f"{scene}: {why}", said)
-                self.assertIn("outside of the contract (docs/porting.md)", said)
+                self.assertIn("outside of the contract (docs/port/formats.md)", said)
 
 
 def digest_of(*words):
@@ -169,9 +169,9 @@ class DigestTest(Folder):
             self.assertEqual(self.trace(scene)[0]["digest"], self.state_of(self.start(scene)), name)
 
     def test_a_worked_value(self):
-        """The state of the worked hash in porting.md: step 0, lag 0, one vertex."""
+        """The state of the worked hash in port/contract.md: step 0, lag 0, one vertex."""
         one = state_digest(0, 0, ([], [[2**40, -1, 5, *bits([1, -0.5, 0.25])]]))
-        self.assertIn(f"its digest is {one}", (TOP / "docs/porting.md").read_text())
+        self.assertIn(f"its digest is {one}", (TOP / "docs/port/contract.md").read_text())
 
     @contextlib.contextmanager
     def resealed(self, path):

@@ -1,1 +1,1 @@
-"""A second implementation of uncross, in NumPy, written from docs/porting.md and docs/conventions.md alone."""
+"""A second implementation of uncross, in NumPy, written from docs/port/contract.md and docs/conventions.md alone."""

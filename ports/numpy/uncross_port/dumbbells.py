@@ -1,4 +1,4 @@
-"""Dumbbells (docs/porting.md, "Dumbbells"): pairs of particles with a spring, between collisions."""
+"""Dumbbells (docs/port/dumbbells.md, "Dumbbells"): pairs of particles with a spring, between collisions."""
 
 import math
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""The solvent between walls and in a sheared box (docs/porting.md, "Walls" and "Shear"). Such scenes have no fibers."""
+"""The solvent between walls and in a sheared box (docs/port/flow.md, "Walls" and "Shear"). Such scenes have no fibers."""
 
 from dataclasses import dataclass
 

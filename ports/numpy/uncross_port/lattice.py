@@ -1,6 +1,6 @@
 """Positions are whole numbers of 2^-40 a0 in int64; vectors are rows [..., 3] of doubles.
 
-dot and cross write their sums out, since the order of operations is part of the contract (docs/porting.md, Arithmetic).
+dot and cross write their sums out, since the order of operations is part of the contract (docs/port/contract.md, Arithmetic).
 """
 
 import numpy as np

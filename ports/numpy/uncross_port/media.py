@@ -1,4 +1,4 @@
-"""Baths other than that of collision cells, forces of pairs, and overdamped motion (docs/porting.md, *Media*).
+"""Baths other than that of collision cells, forces of pairs, and overdamped motion (docs/port/media.md, *Media*).
 
 Members of pairs are solvent particles, then vertices, by their numbers."""
 

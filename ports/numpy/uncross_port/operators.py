@@ -1,4 +1,4 @@
-"""The operators of docs/porting.md: each takes the model, the step and the `in.` tables, and gives its `out.` ones."""
+"""The operators of docs/port/operators.md: each takes the model, the step and the `in.` tables, and gives its `out.` ones."""
 
 import numpy as np
 

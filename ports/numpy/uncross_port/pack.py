@@ -1,4 +1,4 @@
-"""Packs in and out, as HDF5 or text (docs/porting.md, "Formats").
+"""Packs in and out, as HDF5 or text (docs/port/formats.md, "Formats").
 
 A pack is {(operator, step): {table: array of [rows, columns]}}; names of tables begin with `in.` or `out.`.
 """

@@ -1,4 +1,4 @@
-"""Streaming and the SRD collision, each step of it a function (docs/porting.md, "The operators")."""
+"""Streaming and the SRD collision, each step of it a function (docs/port/contract.md, "The operators")."""
 
 import numpy as np
 
@@ -108,7 +108,7 @@ def places(position, shift):
 
 
 def double(whole):
-    """A whole number of up to 118 bits as a double, in the order of docs/porting.md, *The rule at+a*."""
+    """A whole number of up to 118 bits as a double, in the order of docs/port/flow.md, *The rule at+a*."""
     size = abs(whole)
     value = float(size >> 64) * 2.0**64 + float(size >> 32 & 0xFFFFFFFF) * 2.0**32 + float(size & 0xFFFFFFFF)
     return -value if whole < 0 else value

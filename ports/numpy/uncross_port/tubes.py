@@ -1,6 +1,6 @@
 """Thick fibers: when two tubes in flight touch, and where.
 
-Doubles decide, in the order of docs/porting.md. A plane that turns with the tubes shows that they are apart.
+Doubles decide, in the order of docs/port/tubes.md. A plane that turns with the tubes shows that they are apart.
 """
 
 import numpy as np

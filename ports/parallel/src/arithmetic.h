@@ -1,4 +1,4 @@
-// Vectors, roundings, random numbers and elementary functions: docs/porting.md, "Arithmetic", docs/conventions.md,
+// Vectors, roundings, random numbers and elementary functions: docs/port/contract.md, "Arithmetic", docs/conventions.md,
 // "Random numbers have addresses", docs/elementary.md. All of it runs on the host and on a GPU, with the same bits.
 #pragma once
 

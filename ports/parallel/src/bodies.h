@@ -1,4 +1,4 @@
-// Bodies of the loops over particles, vertices and cells: docs/porting.md, "The operators".
+// Bodies of the loops over particles, vertices and cells: docs/port/contract.md, "The operators".
 #pragma once
 
 #include "solvent.h"

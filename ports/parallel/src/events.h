@@ -1,4 +1,4 @@
-// A drift of all vertices at once: docs/porting.md, "Contacts at their own time", *Events*, *Components* and
+// A drift of all vertices at once: docs/port/contacts.md, "Contacts at their own time", *Events*, *Components* and
 // *Clusters*.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Forces on vertices, and kicks: docs/porting.md, "Forces".
+// Forces on vertices, and kicks: docs/port/contract.md, "Forces".
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// Operators of packs: docs/porting.md, "The operators".
+// Operators of packs: docs/port/operators.md, "The operators".
 #pragma once
 
 #include "pack.h"

@@ -1,4 +1,4 @@
-// Packs and starts as text: docs/porting.md, "Formats".
+// Packs and starts as text: docs/port/formats.md, "Formats".
 #pragma once
 
 #include <map>

@@ -1,4 +1,4 @@
-// Whole steps: docs/porting.md, "A step"; docs/conventions.md, "Order of operations".
+// Whole steps: docs/port/contract.md, "A step"; docs/conventions.md, "Order of operations".
 #pragma once
 
 #include <functional>

@@ -1,4 +1,4 @@
-// The rule `sequential`: vertices move one at a time. docs/porting.md, *Sweep*; docs/conventions.md, "The crossing
+// The rule `sequential`: vertices move one at a time. docs/port/contract.md, *Sweep*; docs/conventions.md, "The crossing
 // test". It is serial by its words; only the list of pairs is made by all cores.
 #pragma once
 

@@ -1,4 +1,4 @@
-//! The solvent and the collision, operator by operator: docs/porting.md, "The operators", "Rotation", "Thermostats".
+//! The solvent and the collision, operator by operator: docs/port/contract.md, "The operators", "Rotation", "Thermostats".
 
 use crate::elementary::log;
 use crate::random::{

@@ -1,5 +1,5 @@
 //! One crossing test and one exchange of momentum:
-//! docs/conventions.md, "The crossing test"; docs/porting.md, "Sweep".
+//! docs/conventions.md, "The crossing test"; docs/port/contract.md, "Sweep".
 
 use crate::vector::*;
 use crate::wide;

@@ -1,4 +1,4 @@
-//! A port of uncross to Rust, written from docs/porting.md alone.
+//! A port of uncross to Rust, written from docs/port/contract.md alone.
 //! `port PACK OUT` reads a pack in text and writes its outputs; `port --trace START OUT` writes a trace.
 
 mod collision;

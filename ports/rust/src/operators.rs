@@ -1,4 +1,4 @@
-//! Every operator of a pack, each from the pack's own input: docs/porting.md, "The operators".
+//! Every operator of a pack, each from the pack's own input: docs/port/operators.md, "The operators".
 
 use crate::collision::{self as mpc, Cells, Members, Sums};
 use crate::contact::{impulse, Ends};

@@ -1,4 +1,4 @@
-//! Packs as text: docs/porting.md, "Formats".
+//! Packs as text: docs/port/formats.md, "Formats".
 
 use crate::vector::{Point, Vector};
 use std::collections::{BTreeMap, HashMap};

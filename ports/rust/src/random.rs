@@ -1,4 +1,4 @@
-//! Philox and what is made of its words: docs/porting.md, "Arithmetic";
+//! Philox and what is made of its words: docs/port/contract.md, "Arithmetic";
 //! docs/conventions.md, "Random numbers have addresses".
 
 use crate::elementary::{log, turns};

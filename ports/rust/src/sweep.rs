@@ -1,4 +1,4 @@
-//! Moves of all vertices, one at a time: docs/porting.md, "Sweep".
+//! Moves of all vertices, one at a time: docs/port/contract.md, "Sweep".
 
 use crate::crossing::{cross_bonds, exchange, Four, Hit, Test};
 use crate::scene::Scene;

@@ -1,4 +1,4 @@
-//! Whole steps: docs/porting.md, "A step" and "Formats" (starts, traces);
+//! whole steps: docs/port/contract.md, "A step"; docs/port/formats.md (starts, traces);
 //! docs/conventions.md, "Order of operations" and "The same bits".
 
 use crate::collision::{self as mpc, Members};

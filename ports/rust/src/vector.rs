@@ -1,4 +1,4 @@
-//! Vectors and roundings: docs/porting.md, "Arithmetic".
+//! Vectors and roundings: docs/port/contract.md, "Arithmetic".
 
 pub type Vector = [f64; 3];
 pub type Point = [i64; 3];
