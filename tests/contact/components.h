@@ -1,4 +1,4 @@
-/* A drift of the rule `event-driven` by components: docs/port/contacts.md, "Contacts at their own time", *Components*.
+/* A drift of the rule `event-driven` by components: docs/port/parallel.md, *Components*.
  * They are worked on in any order between them, with random changes from one to another; each is serial. Then swept
  * boxes and touched vertices tell whether they were independent. If not, those that were not are joined, and all begins
  * anew. */

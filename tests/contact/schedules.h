@@ -1,6 +1,6 @@
 /* Schedules of a drift of the rule `event-driven`: in which order may its events be answered? By components
  * (contact/components.h), in any order between them, all bits must be those of the drift itself. A second scheduler
- * looks ahead over events that share no vertex, as docs/port/contacts.md allowed once: it must fail. */
+ * looks ahead over events that share no vertex, as the contract allowed once: it must fail. */
 #ifndef UNCROSS_TESTS_SCHEDULES_H
 #define UNCROSS_TESTS_SCHEDULES_H
 

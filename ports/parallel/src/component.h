@@ -1,4 +1,4 @@
-// Components of a drift by the rule event-driven: docs/port/contacts.md, "Contacts at their own time", *Components*. Each is
+// Components of a drift by the rule event-driven: docs/port/parallel.md, *Components*. Each is
 // worked on serially, as if all other vertices flew straight on. So components need nothing of each other, and threads
 // work on them at once.
 #pragma once

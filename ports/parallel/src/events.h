@@ -1,5 +1,4 @@
-// A drift of all vertices at once: docs/port/contacts.md, "Contacts at their own time", *Events*, *Components* and
-// *Clusters*.
+// A drift of all vertices at once: docs/port/contacts.md, *Events* and *Clusters*; docs/port/parallel.md, *Components*.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// When two bonds in flight may touch: docs/port/contacts.md, "Contacts at their own time", *The search*.
+// When two bonds in flight may touch: docs/port/contacts.md, *The search*.
 #pragma once
 
 #include "model.h"

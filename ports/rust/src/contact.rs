@@ -1,4 +1,4 @@
-//! Where two bonds touch, and the impulse: docs/port/contacts.md, "Contacts at their own time", *The contact*, *The impulse*.
+//! Where two bonds touch, and the impulse: docs/port/contacts.md, *The contact*, *The impulse*.
 
 use crate::vector::*;
 use crate::wide;

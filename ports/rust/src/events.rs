@@ -1,4 +1,4 @@
-//! A drift of all vertices at once: docs/port/contacts.md, "Contacts at their own time", *Events* and *Clusters*.
+//! A drift of all vertices at once: docs/port/contacts.md, *Events* and *Clusters*.
 
 use crate::contact::{contact, impulse, Answer, Contact, Ends};
 use crate::flight::{at, Flight, TICKS};

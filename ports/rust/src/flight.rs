@@ -1,4 +1,4 @@
-//! When two bonds in flight may touch, in integers: docs/port/contacts.md, "Contacts at their own time", *The search*.
+//! When two bonds in flight may touch, in integers: docs/port/contacts.md, *The search*.
 
 use crate::vector::*;
 use crate::wide::{self, along, determinant, Wide, ZERO};

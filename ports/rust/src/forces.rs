@@ -71,7 +71,7 @@ fn bend(kappa: f64, r0: Vector, r1: Vector) -> (Vector, Vector) {
     (a, b)
 }
 
-/// The force on one vertex alone, in the order of docs/port/contacts.md, "Contacts at their own time", *Forces*.
+/// The force on one vertex alone, in the order of docs/port/contacts.md, *Forces*.
 pub fn on_vertex(scene: &Scene, position: &[Point], j: usize) -> Vector {
     let pull = |first: usize, last: usize| bond(scene, first, between(position[last], position[first]));
     let before = scene.prev[j].map_or([0.0; 3], |prev| pull(prev, j));
