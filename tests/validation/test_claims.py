@@ -47,11 +47,12 @@ class Made(unittest.TestCase):
                          "0.155(2) (`a.one`: not reproduced), (`a.two`: pass), (`no.such`: pass)")
 
     def test_tables(self):
-        text = self.renewed("<!-- verdicts: a.two b.none -->\nold\n<!-- end of verdicts -->\nrest")
-        self.assertIn("| `a.two` | −0.4931 ± 0.0034 | 1.000 | pass |\n", text)
-        self.assertIn("| `b.none` | – | 1.000 | undecided |\n", text)
+        claims = {one["id"]: one for one in (row("paper.two", -0.4931, 0.0034), row("paper.none", None, 0.0, "undecided"))}
+        text = tables.renewed("<!-- verdicts -->\nold\n<!-- end of verdicts -->\nrest", "paper", claims)
+        self.assertIn("- *Pass* (1): `two` −0.4931 ± 0.0034 (1).\n", text)
+        self.assertIn("- *Undecided* (1): `none` – (1).\n", text)
         self.assertNotIn("old", text)
-        self.assertEqual(self.renewed(text), text)
+        self.assertEqual(tables.renewed(text, "paper", claims), text)
 
     def test_words(self):
         fits = "- **Same.** so (`a.two`).\n- **Different.** (`a.one`).\n- **Not settled.** (`b.late`).\n- **Why.** (`a.one`)."

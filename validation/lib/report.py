@@ -181,9 +181,8 @@ STANDING = """# Where the campaign stands
 **[The paper's figures, beside this program's](paper.md)**: what each figure and table of the paper shows, what this program shows, and why they differ where they do.
 
 The campaign runs the paper's own systems. It has used {hours:.1f} of the {planned:.0f} core-hours that are planned. This page counts its
-verdicts, and lists those that are not a pass; [validation/README.md](../../validation/README.md#verdicts) says what each verdict means.
-`validation/run report --tier campaign` makes the whole report, `reference-data/campaign/report.html`, from the results that are kept
-beside it.
+[verdicts](../../validation/README.md#verdicts), and lists all that are not a pass.
+`validation/run report --tier campaign` makes the whole report, `reference-data/campaign/report.html`.
 
 | claim | | pass | within allowance | fail | not reproduced | undecided | runs: finished, begun, all | core-hours |
 | --- | --- | --- | --- | --- | --- | --- | --- | --- |
@@ -191,8 +190,8 @@ beside it.
 {failed}
 ## Within the theory's stated allowance
 
-The difference is larger than the error bars explain. It is smaller than what the theory is stated, beforehand, to be off by. Measured (expected, allowed; difference in
-standard errors); the report has each statement and the source of each expected number.
+The difference is larger than the error bars explain, and smaller than the error that was stated for the theory beforehand. Measured (expected); the report has the
+rest.
 
 {covered}
 
@@ -240,8 +239,8 @@ def standing(summed):
                       f"{have - len(part['unfinished'])}, {have}, {have + len(part['absent'])} | {part['cpu_seconds'] / 3600.0:.1f} |")
         failed += [f"| `{row['id']}`: {cell(row['statement'])} | {plusminus(row['measured'], row['error'])} | "
                    f"{plusminus(row['expected'], row['expected_error'])} ({cell(row['source'])}) | {signed(row['z'])} |" for row in rows(name, "fail")]
-        near = [f"`{row['id'].removeprefix(name + '.')}` {plusminus(row['measured'], row['error'])} ({plusminus(row['expected'], row['expected_error'])}, "
-                f"{number(row['allowed'])}; {signed(row['z'])})" for row in rows(name, "within allowance")]
+        near = [f"`{row['id'].removeprefix(name + '.')}` {plusminus(row['measured'], row['error'])} ({number(row['expected'])})"
+                for row in rows(name, "within allowance")]
         covered += [f"- [{name}]({name}.md): {', '.join(near)}"] if near else []
         reasons = [cell(row["reason"]) for row in rows(name, "not reproduced")]
         findings += [f"| `{row['id']}`{'' if reason == last else ': ' + cell(row['statement'])} | {plusminus(row['measured'], row['error'])} | "
