@@ -2,9 +2,10 @@
 """Puts the vertices of a checkpoint on a grid of a0/4, up to three boxes away, and every second particle on faces of cells.
 
 Moves of 32 steps of 2^-7 t0 at 1 a0/t0 are one spacing of that grid: full of determinants that are zero, and of hits at
-the same time. The solvent is at rest, so that it stays on the faces of the first collision's cells.
+the same time. The solvent is at rest, so that it stays on the faces of the first collision's cells. In a box of two cells fibers along x
+of long bonds meet their own images: the image of the bond after the next.
 
-usage: coarse.py CHECKPOINT PACK SEED        PACK: of the scene that starts from this checkpoint, as it was before
+usage: coarse.py CHECKPOINT PACK SEED [along]  PACK: of the scene that starts from this checkpoint, as it was before; along: along x
 """
 
 import struct
@@ -56,7 +57,7 @@ def on_faces(fresh, draw):
     return given
 
 
-def rewrite(start, packed, seed):
+def rewrite(start, packed, seed, along=False):
     """Writes the state of a checkpoint anew."""
     draw, fresh = np.random.default_rng(seed), pack.read(packed)
     with h5py.File(start) as file:
@@ -65,7 +66,7 @@ def rewrite(start, packed, seed):
     edge = 4 * model_of(fresh).box
     position = draw.integers(-4, 4, (vertices, 3)) + edge * draw.integers(-3, 4, (vertices, 3))
     for first, second in bonds:
-        position[second] = position[first] + draw.integers(-2, 3, 3)
+        position[second] = position[first] + ([3, *draw.integers(-1, 2, 2)] if along else draw.integers(-2, 3, 3))
     set_state(
         start,
         vertex_position=position * GRID,
@@ -76,4 +77,4 @@ def rewrite(start, packed, seed):
 
 
 if __name__ == "__main__":
-    rewrite(sys.argv[1], sys.argv[2], int(sys.argv[3]))
+    rewrite(sys.argv[1], sys.argv[2], int(sys.argv[3]), sys.argv[4:] == ["along"])
