@@ -10,6 +10,7 @@ import numpy as np
 from .lattice import CELL, UNIT, cross, dot, to_lattice
 
 FAR = 64  # boxes
+HOME = (0, 0, 0)  # the image that is the bond itself
 
 
 @dataclass
@@ -77,13 +78,19 @@ def rounded_volume(p, q, r):
     return rounded if exact >= 0 else -rounded
 
 
-def excluded(model, vertex, moving):
-    """Bonds (by their number) that the moving bond is not tested against."""
-    bonds = [moving]
+def excluded(model, vertex, moving):  # pylint: disable=unused-argument
+    """Bonds (by their number) that the moving bond of a vertex is not tested against, and neither against their images."""
+    ends = (moving, model.next[moving])
+    return np.isin(model.bonds, ends) | np.isin(model.next[model.bonds], ends)
+
+
+def linked(model, vertex):
+    """Bonds that share a vertex with either bond of the moving vertex: the paper tests only their images."""
     if model.exclusion_paper:
         bonds = [bond for bond in (model.prev[vertex], vertex) if bond >= 0 and model.next[bond] >= 0]
-    ends = np.array([[bond, model.next[bond]] for bond in bonds]).ravel()
-    return np.isin(model.bonds, ends) | np.isin(model.next[model.bonds], ends)
+        ends = [end for bond in bonds for end in (bond, model.next[bond])]
+        return {int(bond) for end in ends for bond in (model.prev[end], end) if bond >= 0 and model.next[bond] >= 0}
+    return set()
 
 
 def partners(model, position, start, end, pivot, skip):
@@ -126,12 +133,14 @@ def describe(start, end, pivot, a, b):
 
 def hits_of_move(model, position, vertex, end):
     """All crossings of one trial move, the first one first."""
-    hits = []
+    hits, left_out = [], {(bond, HOME) for bond in linked(model, vertex)}
     for moving, pivot in ((model.prev[vertex], model.prev[vertex]), (vertex, model.next[vertex])):
         if pivot < 0:
             continue
         skip = excluded(model, vertex, moving)
         for standing, image in partners(model, position, position[vertex], end, position[pivot], skip):
+            if (standing, image) in left_out:
+                continue
             shift = np.array(image) * model.box * CELL
             a, b = position[standing] + shift, position[model.next[standing]] + shift
             flip = moving == vertex

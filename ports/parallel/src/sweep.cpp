@@ -97,7 +97,8 @@ void Sweep::hits_of_bond(int32_t vertex, int32_t moving, Point to, const std::ve
   for (int32_t k = list.first[(size_t)moving]; k < list.first[(size_t)moving + 1]; k++) {
     const Near &near = list.near[(size_t)k];
     const int32_t a = near.other, b = model.next[(size_t)a];
-    if (model.exclusion_paper && (a == other_pivot || b == other_pivot))
+    const bool home = near.image[0] == 0 && near.image[1] == 0 && near.image[2] == 0;
+    if (model.exclusion_paper && home && (a == other_pivot || b == other_pivot))
       continue;
     const Point shift = {near.image[0] * edge.x, near.image[1] * edge.y, near.image[2] * edge.z};
     const CrossingTest test = {position[(size_t)vertex],    to,  position[(size_t)pivot], position[(size_t)a] + shift,

@@ -71,32 +71,30 @@ fn execute(scene: &Scene, event: &mut Event, v: &mut [Vector]) {
     }
 }
 
-/// All hits of one move, over both bonds of the vertex, in no order.
+/// All hits of one move, over both bonds of the vertex, in no order. Bonds that share a vertex with the moving bond are not tested; with the
+/// paper's exclusion neither are those that share one with the other moving bond, but their images are.
 fn hits_of(scene: &Scene, vertex: usize, to: Point, r: &[Point]) -> Vec<Event> {
     let bonds = bonds_of(scene, vertex);
     let mut hits = Vec::new();
     for bond in &bonds {
         for standing in 0..r.len() {
             if let Some(end) = scene.next[standing] {
-                if !excluded(scene, vertex, bond, &bonds, standing, end) {
+                let touches = |j: usize| standing == j || end == j;
+                if !(touches(vertex) || touches(bond.pivot)) {
+                    let linked = scene.exclusion_paper && bonds.iter().any(|other| touches(other.pivot));
                     let test =
                         Test { from: r[vertex], to, pivot: r[bond.pivot], a: r[standing], b: r[end], flip: bond.flip };
                     images(scene, &test, |image, hit| {
                         let (moving, executed) = (bond.number, false);
-                        hits.push(Event { vertex, moving, standing, image, executed, hit, momentum: 0.0 });
+                        if !(linked && image == [0; 3]) {
+                            hits.push(Event { vertex, moving, standing, image, executed, hit, momentum: 0.0 });
+                        }
                     });
                 }
             }
         }
     }
     hits
-}
-
-/// Bonds that share a vertex with the moving bond, or (`paper`) with either of the two moving bonds.
-fn excluded(scene: &Scene, vertex: usize, bond: &Bond, bonds: &[Bond], a: usize, b: usize) -> bool {
-    let touches = |j: usize| a == j || b == j;
-    let either = scene.exclusion_paper && bonds.iter().any(|other| touches(other.pivot));
-    touches(vertex) || touches(bond.pivot) || either
 }
 
 /// The test of every image whose box touches the box of the swept triangle.
