@@ -392,7 +392,7 @@ def shown_of(results):
     wake, name = weight(results, WAKE), f"force-{WAKE:g}"
     if wake and "wake" in results[name].tables():
         found.append(Figure("wake", f"The network around a bead of 2 a0 that is pulled with {WAKE:g} kT/a0. Left: mean displacement of vertices along the force, "
-                            "over that of the bead relative to all else; lines: flow around a sphere in a fluid without end. Right: number density of vertices; "
+                            "over the bead's relative to all else; lines: flow around a sphere in a fluid without end. Right: number density of vertices; "
                             "line: its mean outside of the bead. θ is the angle with the force.",
                             lambda: draw_wake(results[name], WAKE / wake[0])))
     return found

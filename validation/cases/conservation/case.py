@@ -314,7 +314,7 @@ def evaluate(results, tier):
              Figure("refused", "Left: share of possible collisions that are not executed (of several in one move only the first is). Arrows: "
                                "upper limits, where none was found. "
                                "Right, without the runs in 32³ cells: executed "
-                               "collisions (filled), and executed less twice those of negative ΔP (open), divided by kinetic theory at kT = 1. "
+                               "collisions (filled), and executed less twice the collisions of negative ΔP (open), divided by kinetic theory at kT = 1. "
                                "No thermostat: heat raises the rates, most at the largest time step.",
                     lambda: draw_refused(results, tier))]
     return Outcome(verdicts + heat_verdicts(results, tier), found, PROSE)

@@ -284,7 +284,7 @@ def evaluate(results, tier):
         verdicts += event_verdicts(results, system["lags"])
     found = [Figure("fig3", "Mean square displacements of vertices (filled) and of centres of mass (open), background "
                             "flow subtracted. Time is in units of τ_r, " + f"{system['tau']:.0f} t0. "
-                    "Below: divided by those of the resting system. Lines: contribution of the lag of the fastest system to g (dashed) and to g_cm (dotted).",
+                    "Below: divided by the curves of the resting system. Lines: contribution of the lag of the fastest system to g (dashed) and to g_cm (dotted).",
                     lambda: draw_displacements(results, system)),
              Figure("lag", "Lag of the vertices behind a flow of 0.54 a0/t0 against the time step, for each rule for rejected moves. Line: the share of moves that the rule of the paper rejects. Below: the lag over this share.",
                     lambda: draw_lag(results)),

@@ -126,7 +126,7 @@ def draw(results):
     return figure
 
 
-CAPTIONS = ("Temperatures of a fluid of DPD (ρ = 3, a = 25, γ = 4.5) by eight integrators (explicit Euler is off the scale: 4.7 and 12 at a step of 0.04). Left: that of velocities. Right: that of places, which a bath does not hold.",
+CAPTIONS = ("Temperatures of a fluid of DPD (ρ = 3, a = 25, γ = 4.5) by eight integrators (explicit Euler is off the scale: 4.7 and 12 at a step of 0.04). Left: kinetic, of velocities. Right: configurational, of places, which a bath does not hold.",
             "Left: density across a slab of the many-body liquid; its vapour is empty. Right: pressure of droplets of one liquid in another, against Laplace's line with the tension of a flat surface.",
             "A filament. Left: how far its ends trail behind its middle, and how far apart they are, against the force. Right: how fast it aligns with the axis of a force that turns, against how fast that turns.")
 

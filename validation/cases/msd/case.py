@@ -344,7 +344,7 @@ def evaluate(results, tier):
         theory = against_theory(results, curves)
         verdicts.append(mesh_verdict(bent))
         verdicts += event_verdicts(results, curves)
-        found.append(Figure("theory", "d² divided by that of a straight fiber in the periodic box, nothing fitted. All curves but the last are with "
+        found.append(Figure("theory", "d² divided by d² of a straight fiber in the periodic box, nothing fitted. All curves but the last are with "
                             "hydrodynamics.", lambda: draw_theory(theory)))
         words += "\n\n" + theory_words(theory)
         if len(bent) >= 2:

@@ -470,7 +470,7 @@ def drawn(results):
              ("swelling", "swelling", "Single flexible chains of tubes. Left: the size of chains with D = 0.2, over N to the power 2ν. Right: swelling at the same z "
               "against N to the power −1/2, lines through chains of 32 bonds and more, and the theory of long chains (black, at 0). Dotted: that theory with B2 of the sides of "
               "bonds alone.", draw_swelling),
-             ("tube-", "tube", "Left: d² of the middle third at cL³ = 1000, tubes of four diameters on the same start. Right: over that of thin lines. Broken "
+             ("tube-", "tube", "Left: d² of the middle third at cL³ = 1000, tubes of four diameters on the same start. Right: over d² of thin lines. Broken "
               "lines: the estimate of the verdict, which is wrong. Dotted: neighbors denser at contact by the contact value, and none nearer.", draw_tube))
     return [Figure(name, caption, lambda draw=draw: draw(results)) for first, name, caption, draw in known
             if any(run.startswith(first) for run in results)]

@@ -490,11 +490,11 @@ def pictures(system, times, errors, words):
     caged = " Relative to its cage: less the motion that a fiber shares with its neighbors."
     moves = " Free motion becomes hindered near the first line. The curve passes both: the tube shifts as its neighbors move."
     shared = f" Time is in units of one τ_r for all curves, {one / 1e4:.2g}·10⁴ t0, as in Figs. 3 and 5."
-    apart = (f" Each pair of curves has its own τ_r, that of a lone fiber: {words['hi']} with hydrodynamics, {words['off']} without. "
+    apart = (f" Each pair of curves has its own τ_r, of a lone fiber: {words['hi']} with hydrodynamics, {words['off']} without. "
              "Horizontal bars: the error of τ_r, by which a pair may be shifted sideways.")
     return (("fig4-d2", "d2", axis, none, "The paper's d²(t), to the nearest vertex. ", same + moves + shared),
-            ("fig4-d2_contour", "d2_contour", axis, none, "The same to the nearest point of the contour. ", same + caged + shared),
-            ("fig4-own", "d2_contour", times, errors, "d² to the contour once more, with another time axis. ", same + caged + apart))
+            ("fig4-d2_contour", "d2_contour", axis, none, "The same to the nearest point of the contour.", caged),
+            ("fig4-own", "d2_contour", times, errors, "The same with another time axis.", apart))
 
 
 def half_words(curves, system):
