@@ -1,4 +1,4 @@
-"""The catalogue of mistakes: each is lines of the NumPy port and what stands there instead; and the port with one in it."""
+"""The mistakes that the port to NumPy can have: each is lines of it and what stands there instead; and the port with one in it."""
 import dataclasses
 import functools
 import inspect
@@ -7,23 +7,20 @@ import pathlib
 import sys
 import types
 
-import yaml
-
 import uncross_port
 from uncross_port import operators
 
+from . import entries
+from .entries import Trouble
+
 PORT = pathlib.Path(uncross_port.__file__).resolve().parent
-FILE = PORT.parent / "mistakes.yaml"
+FOLDER = PORT.parents[2] / "mistakes"
 # Modules in the order in which they import each other.
 MODULES = ("elementary", "random", "lattice", "pack", "solvent", "flow", "dumbbells", "media", "model", "fiber", "sweep", "tubes",
            "events", "operators", "step")
 
 
 MODEL = "from_tables"  # functions that every operator uses
-
-
-class Trouble(Exception):
-    """The catalogue and the port do not fit together."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -54,7 +51,7 @@ def members(entry):
     """The entry; of a family, one for each of its numbers."""
     family = entry.get("with", {})
     for numbers in itertools.product(*family.values()):
-        yield _filled({key: value for key, value in entry.items() if key != "with"}, dict(zip(family, numbers)))
+        yield _filled({key: value for key, value in entry.items() if key not in ("with", "c", "numpy")}, dict(zip(family, numbers)))
 
 
 def _mistake(entry):
@@ -63,11 +60,10 @@ def _mistake(entry):
     return Mistake(entry["name"], entry.get("text", entry["name"]), changes, entry["at"], entry)
 
 
-def read(path=FILE):
-    """All mistakes; families are members one by one."""
-    with open(path, encoding="utf-8") as file:
-        entries = yaml.load(file, yaml.CSafeLoader)
-    return [_mistake(member) for entry in entries for member in members(entry)]
+def read(folder=FOLDER):
+    """All mistakes that the port to NumPy can have; families are members one by one."""
+    ours = [{**entry, **entry["numpy"]} for entry in entries.read(folder) if "numpy" in entry]
+    return [_mistake(member) for entry in ours for member in members(entry)]
 
 
 # --- the port with a mistake in it ---
