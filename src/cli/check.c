@@ -208,6 +208,7 @@ static void report_kind(const struct si_scale *si, const struct model *m, const 
     report_dilute(si, m, k);
   report_table_2(si, m, k, mesh);
   report_flow(si, m, k);
+  check_kind_in_shear(si, m, k);
 }
 
 /* What the flow meets: vertices that go with it, and the diameter that fibers have in it. */

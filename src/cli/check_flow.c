@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include "cli/quantity.h"
+#include "cli/units.h"
 #include "theory/flow.h"
 #include "theory/load.h"
 #include "theory/theory.h"
@@ -47,4 +48,30 @@ void check_drive(const struct si_scale *si, const struct model *m)
             "v_max/(nu k); stable below sqrt(2)");
   sheet_row(si, "time to become steady", "", theory_flow_transient(m, theory_loaded_kinematic(m)), "t0",
             "1/(nu k^2): the start falls to 1/e; observe from 5 of these on");
+}
+
+/* The paper's Table II with R = L and R = l_p. */
+void check_kind_in_shear(const struct si_scale *si, const struct model *m, const struct fiber_kind *k)
+{
+  const double rate = theory_largest_shear_rate(m), length = theory_length(k),
+               p = theory_aspect_ratio(length, THEORY_RADIUS);
+  const double sound = theory_sound_speed(model_is_isothermal(m), m->dimensions);
+  const struct {
+    const char *mach, *reynolds, *note;
+    double size;
+  } row[] = {{"Ma(L)", "Re(L)", "keep below 0.1: Eqs. (36), (37), R = L", length},
+             {"Ma(l_p)", "Re(l_p)", "as in Table II, R = l_p", theory_persistence(k)}};
+  if (!(rate > 0.0))
+    return;
+  sheet_row(si, "  largest shear rate", "", rate, "1/t0", "");
+  for (size_t i = 0; i < sizeof row / sizeof *row; i++)
+    if (row[i].size > 0.0) {
+      const double speed = theory_shear_speed(m, row[i].size);
+      sheet_row(si, "  Mach number of the shear", row[i].mach, theory_mach(speed, sound), "", row[i].note);
+      sheet_row(si, "  Reynolds number of the shear", row[i].reynolds,
+                theory_reynolds(speed, row[i].size, theory_loaded_kinematic(m)), "", row[i].note);
+    }
+  if (k->bending > 0.0 && p > 2.0)
+    sheet_row(si, "  Peclet number of the shear, stiff", "Pe",
+              rate * theory_rod_relaxation(units_viscosity(m), length, p), "", "rate tau_r");
 }

@@ -262,6 +262,22 @@ static void warn_overdamped(struct teller *t, const struct model *m, const struc
          k->name, step, 100.0 * excess, time_step_below(m, m->time_step * wanted / step));
 }
 
+#define MOST_INERTIA 0.1 /* Padding 2009, Table II */
+
+/* Sheared fibers that have inertia, or compress the solvent. */
+static void warn_inertia(struct teller *t, const struct model *m, const struct fiber_kind *k)
+{
+  const double length = theory_length(k), speed = theory_shear_speed(m, length);
+  const double sound = theory_sound_speed(model_is_isothermal(m), m->dimensions), nu = theory_loaded_kinematic(m);
+  const double mach = theory_mach(speed, sound), reynolds = theory_reynolds(speed, length, nu);
+  if (mach > MOST_INERTIA || reynolds > MOST_INERTIA)
+    warn(t,
+         "fibers '%s': over their length the shear has a Mach number of %.3g and a Reynolds number of %.3g; above %g "
+         "what "
+         "they do is partly inertia (paper, Table II); use a flow that is at least %.3g times slower",
+         k->name, mach, reynolds, MOST_INERTIA, fmax(mach, reynolds) / MOST_INERTIA);
+}
+
 static void warn_kind(struct teller *t, const struct scene *scene, const struct fiber_kind *k)
 {
   const struct model *m = &scene->model;
@@ -290,6 +306,8 @@ static void warn_kind(struct teller *t, const struct scene *scene, const struct 
   if (!m->medium.inextensible)
     warn_long_bonds(t, scene, k);
   warn_images(t, m, k);
+  if (model_has_solvent(m))
+    warn_inertia(t, m, k);
 }
 
 #define MOST_RISE 0.01

@@ -1,6 +1,8 @@
 #include "theory/flow.h"
 
+#include "theory/bead.h"
 #include "theory/dumbbell.h"
+#include "theory/load.h"
 #include "theory/theory.h"
 
 static const double pi = 3.14159265358979323846;
@@ -78,4 +80,47 @@ double theory_profile_reynolds(double speed, double height, double kinematic_vis
 double theory_mean_shear_rate(const struct model *model)
 {
   return fabs(model->shear.rate) * (model->shear.period > 0.0 ? sqrt(0.5) : 1.0);
+}
+
+/* By the force on the solvent: what the force of half a channel needs, L/2 high, L/4 where it changes sign; rho g/(eta
+ * k) of a sine. */
+static double rate_of_force(const struct model *model)
+{
+  static const double height[PROFILES] = {
+      [PROFILE_UNIFORM] = 0.5, [PROFILE_SINE] = 0.15915494309189535 /* 1/(2 pi) */, [PROFILE_REVERSE] = 0.25};
+  const struct solvent_model *s = &model->solvent;
+  if (s->profile == PROFILE_UNIFORM && model->walls.kind != WALL_NO_SLIP)
+    return 0.0;
+  return height[s->profile] * model->box.cells[1] * s->per_cell * vec3_norm(s->acceleration) /
+         theory_loaded_viscosity(model);
+}
+
+/* Of all but the bead. */
+static double rate_of_flow(const struct model *model)
+{
+  const bool drags = model->walls.kind == WALL_NO_SLIP;
+  const double slide = drags ? vec3_norm(vec3_sub(model->walls.upper, model->walls.lower)) / model->box.cells[1] : 0.0;
+  return fabs(model->shear.rate) + slide + rate_of_force(model);
+}
+
+/* V of a bead that is pulled, by its force or by its trap. */
+static double bead_speed(const struct model *model)
+{
+  const struct bead_drive *d = &model->bead.drive;
+  const double swing = d->period > 0.0 ? vec3_norm(d->amplitude) * 2.0 * pi / d->period : 0.0;
+  return vec3_norm(d->force) / theory_model_bead_friction(model) + vec3_norm(d->velocity) + swing;
+}
+
+double theory_shear_speed(const struct model *model, double distance)
+{
+  const double radius = model->bead.radius;
+  if (!model_has_solvent(model))
+    return 0.0;
+  return rate_of_flow(model) * distance + (radius > 0.0 ? bead_speed(model) * fmin(distance / radius, 1.0) : 0.0);
+}
+
+double theory_largest_shear_rate(const struct model *model)
+{
+  const double within = model->bead.radius > 0.0 ? model->bead.radius : 1.0;
+  return theory_shear_speed(model, within) / within;
 }

@@ -10,6 +10,7 @@
 #define UNCROSS_THEORY_FLOW_H
 
 #include "mpc/rule.h"
+#include "system/model.h"
 
 /* b of the Milne problem, a0, planar fill, at a mean free path of 0:
  * b = -1/pi int_0^inf dk k^-2 ln{12 [1 - (sin(k/2)/(k/2))^2]/k^2}. It is the same for all gamma, angles, and
@@ -58,6 +59,15 @@ double theory_inertia_number(double frequency, double mass_density, double heigh
 
 /* Root mean square of the shear rate of a sheared box over a period, 1/t0. */
 double theory_mean_shear_rate(const struct model *model);
+
+/* Largest rate at which the steady flow of the solvent is sheared, 1/t0; no slip. Of a sheared box and of sliding walls
+ * the amplitude; with a force between walls rho g L/(2 eta) in addition, at the walls; rho g/(eta k) for a sine,
+ * rho g L/(4 eta) for a force that changes sign; V/R beside a driven bead. 0 where nothing flows. */
+double theory_largest_shear_rate(const struct model *model);
+
+/* By how much the solvent's velocity may differ over a distance, a0/t0: the rate times the distance, but beside a bead
+ * no more than its own V. */
+double theory_shear_speed(const struct model *model, double distance);
 
 /* dT/dt of an insulated flow, kT/t0: 2 eta rate^2/(d rho), d the number of dimensions. */
 double theory_flow_heating(double viscosity, double rate, double mass_density, uint32_t dimensions);
