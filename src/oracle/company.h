@@ -3,24 +3,20 @@
 #ifndef UNCROSS_ORACLE_COMPANY_H
 #define UNCROSS_ORACLE_COMPANY_H
 
-#include "contact/contact.h"
-#include "oracle/event_rows.h"
-#include "oracle/tube_rows.h"
+#include "oracle/rows.h"
 
 enum { ORACLE_COMPANY_MOST = 150 }; /* contacts: the first ones of the run */
 
 struct oracle_company {
   const struct oracle_stage *stage;
-  struct oracle_search *search;   /* [3 contacts] the one that found it, one that begins midway, the one after it */
-  struct oracle_tubes *tubes;     /* [contacts] */
-  struct oracle_impulse *impulse; /* [contacts] ends of the bond; the bead; nobody, of mass 1, with t = 0 */
-  uint32_t contacts, room;
-  bool failed; /* memory was short */
+  uint32_t contacts;
+  struct oracle_search
+      search[3 * ORACLE_COMPANY_MOST]; /* of each: that which found it, one from midway, that after it */
+  struct oracle_tubes tubes[ORACLE_COMPANY_MOST];
+  struct oracle_impulse impulse[ORACLE_COMPANY_MOST]; /* ends of the bond; the bead; nobody, of mass 1, with t = 0 */
 };
 
 /* A contact_log's record: takes contacts with the bead, and leaves the others. context: struct oracle_company. */
 void oracle_company_take(void *context, const struct contact_event *event);
-
-void oracle_company_free(struct oracle_company *company);
 
 #endif

@@ -4,8 +4,7 @@
 
 #include "base/text.h"
 #include "oracle/name.h"
-#include "oracle/operators.h"
-#include "oracle/tolerance.h"
+#include "oracle/schema.h"
 
 /* Doubles in the order of their values, as integers: neighbors differ by one, -0 and +0 by none. */
 static int64_t rank_of(double x)
@@ -89,52 +88,8 @@ static void print_number(FILE *out, const struct pack_table *t, uint32_t row, ui
 
 static const char *entity_of(const struct pack_table *t)
 {
-  static const char *const words[][3] = {{"stream", "", "particle"},
-                                         {"wall_motion", "", "interval"},
-                                         {"shear_motion", "", "row"},
-                                         {"wall_stream", "out.given", "wall"},
-                                         {"wall_stream", "", "particle"},
-                                         {"shear_stream", "", "particle"},
-                                         {"wall_bin", "", "particle"},
-                                         {"enter", "", "particle"},
-                                         {"leave", "", "particle"},
-                                         {"affine_kick", "", "particle"},
-                                         {"fill", "", "cell"},
-                                         {"account", "", "wall"},
-                                         {"rescale_layers", "", "cell"},
-                                         {"swap", "", "particle"},
-                                         {"bin", "out.solvent", "particle"},
-                                         {"rotate", "out.solvent", "particle"},
-                                         {"sum", "", "cell"},
-                                         {"solve", "", "cell"},
-                                         {"mean", "", "cell"},
-                                         {"draw", "out.solvent", "particle"},
-                                         {"give", "out.solvent", "particle"},
-                                         {"rescale", "", "cell"},
-                                         {"maxwell_boltzmann", "", "cell"},
-                                         {"crossing", "", "test"},
-                                         {"exchange", "", "exchange"},
-                                         {"permutation", "", "entry"},
-                                         {"long_sweep", "out.event", "event"},
-                                         {"long_sweep", "out.hit", "event"},
-                                         {"sweep", "out.event", "event"},
-                                         {"sweep", "out.hit", "event"},
-                                         {"contact_search", "", "search"},
-                                         {"tube_search", "", "search"},
-                                         {"tube_contact", "", "contact"},
-                                         {"bead_search", "", "search"},
-                                         {"bead_contact", "", "contact"},
-                                         {"impulse", "", "impulse"},
-                                         {"long_event_drift", "out.event", "event"},
-                                         {"long_event_drift", "out.hit", "event"},
-                                         {"event_drift", "out.event", "event"},
-                                         {"event_drift", "out.hit", "event"},
-                                         {"random", "", "address"},
-                                         {"shift", "", "row"}};
-  for (size_t k = 0; k < sizeof words / sizeof *words; k++)
-    if (strcmp(words[k][0], t->place.operator_name) == 0 && (!words[k][1][0] || strcmp(words[k][1], t->name) == 0))
-      return words[k][2];
-  return "vertex";
+  const struct oracle_table *row = oracle_table_of(t->place.operator_name, t->name, NULL);
+  return row ? row->source->of->word : "row";
 }
 
 /* Operator, step and table, at the beginning of a line. A pack may come from anywhere, and its names with it. */

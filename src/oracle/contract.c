@@ -4,9 +4,6 @@
 
 #include "contact/rule.h"
 #include "files/start.h"
-#include "oracle/columns.h"
-
-enum { START_VERSION = 2 }; /* 1 had no switches */
 
 bool contract_covers(const struct scene *scene, bool packs, struct message *message)
 {
@@ -44,31 +41,4 @@ bool contract_start(struct scene *scene, struct state *state, struct work *work,
                       "%s: start.snapshot: the images of its sheared box have slid; packs and traces begin without a "
                       "slide; allowed: a snapshot of a box at rest, or none",
                       scene->path));
-}
-
-void contract_put_switches(struct oracle_stage *g)
-{
-  const struct model *m = g->model;
-  const struct crossing_rule *rule = crossing_rule_of(m);
-  const int64_t row[] = {START_VERSION,
-                         !rule->forbids   ? 0
-                         : rule->in_turns ? 1
-                                          : 2,
-                         rule->forbids && m->crossing.exclusion == EXCLUSION_PAPER,
-                         m->solvent.rule,
-                         m->solvent.thermostat,
-                         m->scheme,
-                         !m->solvent.hydrodynamics,
-                         model_has_walls(m)    ? 1
-                         : model_is_sheared(m) ? 2
-                                               : 0,
-                         model_has_dumbbells(m),
-                         m->medium.kind,
-                         model_repels(m),
-                         m->thickness > 0};
-  int64_t *to = oracle_put_integers(
-      g, "in.switches",
-      "version crossing exclusion collision thermostat order swap boundary dumbbells medium repulsion thick", 1);
-  if (to)
-    memcpy(to, row, sizeof row);
 }

@@ -1,4 +1,4 @@
-/* Which scenes the contract of ports covers (docs/port/formats.md), and the switches that a port must know for one. */
+/* Which scenes the contract of ports covers (docs/port/contract.md). */
 #ifndef UNCROSS_ORACLE_CONTRACT_H
 #define UNCROSS_ORACLE_CONTRACT_H
 
@@ -11,8 +11,5 @@ bool contract_covers(const struct scene *scene, bool packs, struct message *mess
 
 /* scene_start for a scene that ports run: without what no start says. */
 bool contract_start(struct scene *scene, struct state *state, struct work *work, struct message *message);
-
-/* Puts `in.switches` of a start: 0 for what is as in a scene that says nothing. */
-void contract_put_switches(struct oracle_stage *g);
 
 #endif

@@ -8,15 +8,15 @@
 
 #include "base/random.h"
 #include "mpc/grid.h"
-#include "oracle/columns.h"
-#include "oracle/contact_rows.h"
 #include "oracle/dice.h"
+#include "oracle/drift.h"
 #include "oracle/edges.h"
+#include "oracle/rows.h"
 #include "oracle/stages.h"
 
 /* --- a permutation ----------------------------------------------------------------------------------------------- */
 
-enum { PERMUTED = 4096, TRIES = 4096 };
+enum { PERMUTED = ORACLE_PERMUTED, TRIES = 4096 };
 
 uint32_t edges_single_index(uint64_t r, uint32_t n, int way)
 {
@@ -49,14 +49,9 @@ bool oracle_edges_permutation(struct oracle_stage *g)
   uint64_t step = 1;
   while (step < TRIES && !single_is_wrong(g->model->seed, step))
     step++;
-  int64_t *address = oracle_put_integers(g, "in.address", "purpose draw step size", 1);
-  const int64_t row[4] = {RANDOM_VERTEX_ORDER, 0, (int64_t)step, PERMUTED};
-  if (address)
-    memcpy(address, row, sizeof row);
-  uint32_t order[PERMUTED];
-  random_permutation(g->model->seed, RANDOM_VERTEX_ORDER, 0, step, PERMUTED, order);
-  oracle_put_counts(g, "out.order", "entry", order, PERMUTED);
-  return true;
+  struct oracle_permutation p = {.address = {RANDOM_VERTEX_ORDER, 0, PERMUTED, step}};
+  random_permutation(g->model->seed, RANDOM_VERTEX_ORDER, 0, step, PERMUTED, p.order);
+  return oracle_add_rows(g, &p, 1, sizeof p);
 }
 
 /* --- exchanges --------------------------------------------------------------------------------------------------- */
@@ -84,7 +79,7 @@ bool oracle_edges_exchange(struct oracle_stage *g)
 {
   static const double masses[6] = {1.0, 2.0, 5.0, 7.5, 100.25, 0x1p-4};
   struct dice d = {28};
-  struct oracle_exchange e[EXCHANGES];
+  struct oracle_exchange e[EXCHANGES] = {{.s = 0.0}};
   for (int k = 0; k < EXCHANGES; k++) {
     for (int end = 0; end < 4; end++) {
       e[k].velocity[end] = vec3_scale(dice_u64(&d) % 8 && k % 16 ? 1.0 : 0.0, dice_vector(&d, 2.0));
@@ -93,8 +88,7 @@ bool oracle_edges_exchange(struct oracle_stage *g)
     e[k].s = edges_place(&d), e[k].s_standing = edges_place(&d);
     e[k].normal = edges_normal(&d);
   }
-  oracle_put_exchanges(g, e, EXCHANGES);
-  return true;
+  return oracle_add_rows(g, e, EXCHANGES, sizeof *e);
 }
 
 /* --- cells ------------------------------------------------------------------------------------------------------- */
@@ -135,8 +129,7 @@ bool oracle_edges_bin(struct oracle_stage *g)
   }
   for (uint32_t v = 0; v < g->state->vertices; v++)
     g->state->position[v] = point_plus(beside_face(box, shift, &d, v), far_away(box, &d, v));
-  state_solvent_slots(g->state, g->slot);
-  return oracle_run_bin(g);
+  return true;
 }
 
 /* --- hits at the same time --------------------------------------------------------------------------------------- */
@@ -243,5 +236,5 @@ void edges_at_the_same_time(struct oracle_stage *g)
 bool oracle_edges_sweep(struct oracle_stage *g)
 {
   edges_at_the_same_time(g);
-  return oracle_sweep_for(g, 32.0, 0);
+  return oracle_begin_drift_of(g, 32.0 * g->model->time_step, 0);
 }

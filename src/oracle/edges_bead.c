@@ -1,6 +1,6 @@
 /* Bonds that touch a bead, as scenes seldom have them: with an end, slow, grazing, at rest. */
 #include "oracle/edges_touch.h"
-#include "oracle/tube_rows.h"
+#include "oracle/rows.h"
 
 /* Bonds of 2^bond units along each axis at most, their ends moving by 2^rate units in a tick at most. end: touched with
  * an end. graze: they pass by in a depth of 2^graze units; 0: as they come. */
@@ -43,27 +43,30 @@ static struct oracle_search draw_search(struct dice *d, const void *kind)
   struct flight_pair f = {.p_rate = dice_point(d, rate), .w_rate = dice_point(d, rate)};
   f.p = flight_place(c.p, f.p_rate, -tick);
   f.w = flight_place(c.w, f.w_rate, -tick);
-  return (struct oracle_search){f, reach, 0};
+  return (struct oracle_search){.pair = f, .reach = reach};
 }
 
-uint32_t oracle_edges_bead_searches(struct oracle_search search[ORACLE_TUBE_SEARCHES])
+bool oracle_edges_bead_searches(struct oracle_stage *g)
 {
+  struct oracle_search search[ORACLE_TUBE_SEARCHES];
   struct dice d = {89};
   uint32_t n = 0;
   for (int k = 0; k < KINDS; k++) {
     const struct edges_touch wanted = {draw_search, &kinds[k], (int64_t)1 << 40, kinds[k].graze, kinds[k].rows};
     n = edges_add_touches(&d, &wanted, search, n);
   }
-  return edges_add_at_rest(search, n);
+  n = edges_add_at_rest(search, n);
+  return oracle_add_rows(g, search, n, sizeof *search);
 }
 
-uint32_t oracle_edges_bead_contacts(struct oracle_tubes tubes[ORACLE_TUBE_CONTACTS])
+bool oracle_edges_bead_contacts(struct oracle_stage *g)
 {
+  struct oracle_tubes tubes[ORACLE_TUBE_CONTACTS];
   struct dice d = {97};
   enum { EACH = 20 };
   uint32_t n = 0;
   for (int k = 0; k < 4; k++)
     for (int row = 0; row < EACH; row++)
       tubes[n++] = draw_contact(&d, &kinds[k], draw_reach(&d));
-  return n;
+  return oracle_add_rows(g, tubes, n, sizeof *tubes);
 }

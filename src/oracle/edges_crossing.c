@@ -6,8 +6,8 @@
  */
 #include <stdlib.h>
 
-#include "oracle/contact_rows.h"
 #include "oracle/dice.h"
+#include "oracle/rows.h"
 #include "oracle/stages.h"
 
 /* The determinants in the order of docs/conventions.md: first volume at `from` and `to`, path, sides of a and b. */
@@ -245,7 +245,11 @@ bool oracle_edges_crossing(struct oracle_stage *g)
     add_of(&r, (enum determinant)(which / 2), which % 2);
   add_on_grid(&r, GRID);
   add_plain(&r, PLAIN);
-  oracle_put_crossings(g, r.query, r.count);
+  bool ok = true;
+  for (uint32_t k = 0; k < r.count; k++) {
+    const struct oracle_test t = {.query = r.query[k]};
+    ok = ok && oracle_add_rows(g, &t, 1, sizeof t);
+  }
   free(r.query);
-  return true;
+  return ok;
 }

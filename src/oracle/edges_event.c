@@ -8,10 +8,10 @@
 #include <string.h>
 
 #include "contact/determinant.h"
-#include "oracle/columns.h"
 #include "oracle/dice.h"
+#include "oracle/drift.h"
 #include "oracle/edges.h"
-#include "oracle/event_rows.h"
+#include "oracle/rows.h"
 #include "oracle/stages.h"
 
 /* --- searches ---------------------------------------------------------------------------------------------------- */
@@ -169,7 +169,7 @@ static uint32_t add_searches(struct dice *d, const struct search_kind *k, struct
 {
   uint32_t n = 0;
   for (int tries = 0; n < k->rows && tries < TRIES; tries++) {
-    s[n] = (struct oracle_search){make_pair(d, k), 0, 0};
+    s[n] = (struct oracle_search){.pair = make_pair(d, k)};
     s[n].from = n % 4 == 3 && k->when == ANY_TIME ? (int32_t)(dice_u64(d) % (FLIGHT_TICKS / 4)) : 0;
     n += fits(&s[n].pair) && is_wanted(k, &s[n]);
   }
@@ -185,7 +185,7 @@ static uint32_t add_at_rest(struct dice *d, struct oracle_search *s)
     pair.p_rate = pair.q_rate = pair.w_rate = (struct point){0, 0, 0};
     if (k % 2)
       pair.w = (struct point){pair.p.x / 8 * 3, pair.p.y / 8 * 3, pair.p.z / 8 * 3};
-    s[k] = (struct oracle_search){pair, 0, 0};
+    s[k] = (struct oracle_search){.pair = pair};
   }
   return AT_REST;
 }
@@ -203,9 +203,9 @@ bool oracle_edges_contact_search(struct oracle_stage *g)
   for (int k = 0; k < SEARCH_KINDS; k++)
     n += add_searches(&d, &search_kinds[k], &s[n]);
   n += add_at_rest(&d, &s[n]);
-  oracle_put_searches(g, s, n);
+  const bool ok = oracle_add_rows(g, s, n, sizeof *s);
   free(s);
-  return true;
+  return ok;
 }
 
 /* --- impulses ---------------------------------------------------------------------------------------------------- */
@@ -264,8 +264,7 @@ bool oracle_edges_impulse(struct oracle_stage *g)
     if (k >= BOUNDS && approach < 0.0 && k % 8) /* most of them approach */
       e[k].normal = vec3_scale(-1.0, e[k].normal);
   }
-  oracle_put_impulses(g, e, IMPULSES);
-  return true;
+  return oracle_add_rows(g, e, IMPULSES, sizeof *e);
 }
 
 /* --- a drift ----------------------------------------------------------------------------------------------------- */
@@ -363,5 +362,5 @@ bool oracle_edges_event_drift(struct oracle_stage *g)
   const uint32_t far = g->state->vertices - 2 * EDGES_FAR;
   edges_long_needles(g, far, DRIFT);
   edges_joining_clusters(g, far + 4, corner_of(29), DRIFT);
-  return oracle_event_drift_for(g, DRIFT, -0.5 * DRIFT);
+  return oracle_begin_drift_of(g, DRIFT, 0);
 }

@@ -3,7 +3,7 @@
 #define UNCROSS_ORACLE_EDGES_TOUCH_H
 
 #include "oracle/dice.h"
-#include "oracle/event_rows.h"
+#include "oracle/rows.h"
 
 /* What a drawn search has to be. */
 struct edges_touch {

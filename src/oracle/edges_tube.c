@@ -3,7 +3,7 @@
 
 #include "contact/capsule.h"
 #include "oracle/edges_touch.h"
-#include "oracle/tube_rows.h"
+#include "oracle/rows.h"
 
 /* --- places ------------------------------------------------------------------------------------------------------- */
 
@@ -63,7 +63,8 @@ static struct vec3 draw_gap(struct dice *d, struct vec3 p, struct vec3 q, double
 static struct oracle_tubes draw_tubes(struct dice *d, const struct tube_kind *k, int64_t reach)
 {
   const int64_t bond = (int64_t)1 << k->bond;
-  struct oracle_tubes c = {dice_point(d, bond), dice_point(d, bond), {0, 0, 0}};
+  struct oracle_tubes c = {.p = dice_point(d, bond)};
+  c.q = dice_point(d, bond);
   const double s = draw_place(d, k->place, true), t = draw_place(d, k->place, false);
   if (k->direction != ANY_DIRECTION)
     c.q = plus_times((struct point){0, 0, 0}, dice_u64(d) % 2 ? 2 : -1, c.p);
@@ -90,24 +91,27 @@ static struct oracle_search draw_search(struct dice *d, const void *kind)
     f.p_rate = f.q_rate = (struct point){0, 0, 0};
   f.p = plus_times(c.p, -tick, f.p_rate), f.q = plus_times(c.q, -tick, f.q_rate);
   f.w = plus_times(c.w, -tick, f.w_rate);
-  return (struct oracle_search){f, reach, 0};
+  return (struct oracle_search){.pair = f, .reach = reach};
 }
 
-uint32_t oracle_edges_tube_searches(struct oracle_search search[ORACLE_TUBE_SEARCHES])
+bool oracle_edges_tube_searches(struct oracle_stage *g)
 {
+  struct oracle_search search[ORACLE_TUBE_SEARCHES];
   struct dice d = {79};
   uint32_t n = 0;
   for (int k = 0; k < KINDS; k++) {
     const struct edges_touch wanted = {draw_search, &kinds[k], (int64_t)1 << 20, kinds[k].graze, kinds[k].rows};
     n = edges_add_touches(&d, &wanted, search, n);
   }
-  return edges_add_at_rest(search, n);
+  n = edges_add_at_rest(search, n);
+  return oracle_add_rows(g, search, n, sizeof *search);
 }
 
 /* --- contacts ----------------------------------------------------------------------------------------------------- */
 
-uint32_t oracle_edges_tube_contacts(struct oracle_tubes tubes[ORACLE_TUBE_CONTACTS])
+bool oracle_edges_tube_contacts(struct oracle_stage *g)
 {
+  struct oracle_tubes tubes[ORACLE_TUBE_CONTACTS];
   static const struct tube_kind of[] = {
       {39, 0, ANY_DIRECTION, ANY_PLACE, 0, 20},  {39, 0, ANY_DIRECTION, END_ON_SIDE, 0, 20},
       {39, 0, ANY_DIRECTION, END_ON_END, 0, 20}, {39, 0, PARALLEL, ANY_PLACE, 0, 20},
@@ -121,5 +125,5 @@ uint32_t oracle_edges_tube_contacts(struct oracle_tubes tubes[ORACLE_TUBE_CONTAC
       const struct oracle_tubes *c = &tubes[n];
       n += capsule_distance(point_in_a0(c->p), point_in_a0(c->q), point_in_a0(c->w)) > 0x1p-6; /* not in each other */
     }
-  return n;
+  return oracle_add_rows(g, tubes, n, sizeof *tubes);
 }

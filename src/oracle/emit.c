@@ -3,14 +3,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "files/start.h"
-#include "oracle/columns.h"
 #include "oracle/company.h"
 #include "oracle/contract.h"
 #include "oracle/edges.h"
 #include "oracle/operators.h"
 #include "oracle/oracle.h"
-#include "oracle/stages.h"
 #include "step.h"
 
 /* --- packs ------------------------------------------------------------------------------------------------------- */
@@ -32,19 +29,17 @@ static bool with_run(struct scene *scene, in_run *put, uint64_t step, struct pac
   const struct model *model = &scene->model;
   struct state state = {0};
   struct work work = {0};
-  uint32_t *slot = malloc(((size_t)model->solvent.particles + 1) * sizeof *slot);
-  bool ok = slot && state_alloc(&state, model) && work_alloc(&work, model) && work_add_everything(&work, model);
+  bool ok = state_alloc(&state, model) && work_alloc(&work, model) && work_add_everything(&work, model);
   message_set(message, "no memory for this scene");
   if (ok) {
-    struct oracle_stage g = {model, &state, &work, pack, {"", 0}, slot, NULL};
+    struct oracle_stage g = {.model = model, .state = &state, .work = &work, .pack = pack, .steps = scene->steps};
     ok = contract_start(scene, &state, &work, message);
     if (ok && pack->count == 0)
-      oracle_put_model(pack, model);
+      oracle_put_model(&g);
     ok = ok && put(&g, scene, step, message);
   }
   work_free(&work);
   state_free(&state);
-  free(slot);
   return ok && !pack->failed;
 }
 
@@ -58,8 +53,6 @@ static bool put_step(struct oracle_stage *g, const struct scene *scene, uint64_t
   g->company = &company;
   const bool ok = advance_to(g, step - 1, beside ? &log : NULL, message) &&
                   (oracle_run_operators(g, false) || g->pack->failed || message_fault(message, &g->work->fault));
-  g->pack->failed |= company.failed;
-  oracle_company_free(&company);
   g->company = NULL;
   return ok;
 }
@@ -104,30 +97,8 @@ bool oracle_edges(bool contacts, struct pack *pack, struct message *message)
 
 static bool put_start(struct oracle_stage *g, const struct scene *scene, uint64_t step, struct message *message)
 {
-  const struct model *m = &scene->model;
-  (void)message;
-  g->place = (struct pack_place){"start", step};
-  state_solvent_slots(g->state, g->slot);
-  const int64_t run[4] = {(int64_t)scene->steps, m->scheme, m->solvent.thermostat, m->solvent.hydrodynamics};
-  int64_t *to = oracle_put_integers(g, "in.run", "steps scheme thermostat hydrodynamics", 1);
-  if (to)
-    memcpy(to, run, sizeof run);
-  to = oracle_put_integers(g, "in.counters", "step lag", 1);
-  if (to)
-    to[0] = (int64_t)g->state->step, to[1] = g->state->solvent_lag;
-  to = oracle_has_events(m) ? oracle_put_integers(g, "in.rule", "event_driven", 1) : NULL;
-  if (to)
-    to[0] = 1;
-  to = m->solvent.rule != RULE_SRD ? oracle_put_integers(g, "in.collision", "rule", 1) : NULL;
-  if (to)
-    to[0] = m->solvent.rule;
-  contract_put_switches(g);
-  oracle_put_solvent_positions(g, "in.solvent");
-  oracle_put_solvent_velocities(g, "in.solvent_velocity");
-  if (model_has_dumbbells(m))
-    oracle_put_springs(g, "in.vector", g->state);
-  oracle_put_points(g, "in.vertex", g->state->position, g->state->vertices);
-  oracle_put_vectors(g, "in.vertex_velocity", g->state->velocity, g->state->vertices);
+  (void)scene, (void)step, (void)message;
+  oracle_put_start(g);
   return true;
 }
 

@@ -4,6 +4,7 @@
 
 #include "oracle/pack.h"
 #include "system/model.h"
+#include "system/shear.h"
 #include "system/state.h"
 #include "work.h"
 
@@ -14,17 +15,36 @@ struct oracle_stage {
   struct state *state; /* advanced by each operator in turn */
   struct work *work;   /* with everything (work_add_everything) */
   struct pack *pack;
-  struct pack_place place;
-  uint32_t *slot;                       /* [particles] of ids in memory */
+  uint64_t steps;                       /* of the scene */
   const struct oracle_company *company; /* contacts of bonds with the bead until now; NULL where nobody asks */
+
+  /* Of the operator at hand. */
+  struct pack_place place;
+  void *row; /* [rows] what stands for itself (rows.h), allocated */
+  uint32_t rows;
+  struct oracle_drift {
+    double time, start; /* t0; from the middle between two kicks to its beginning */
+    uint32_t number;    /* of the sweep within its step */
+  } drift;
+  struct point account[2 * WALLS]; /* of the walls, before it */
+  struct state fresh;              /* a start of its own */
+  struct point *position;          /* [vertices] before it, if it puts them back, else NULL */
+  struct vec3 *velocity;
 };
 
-/* Puts the model's numbers, which all operators share: place `model`, step 0. */
-void oracle_put_model(struct pack *pack, const struct model *model);
+/* Puts the tables of the model, which all operators share, or those of a start: step 0. */
+void oracle_put_model(struct oracle_stage *g);
+void oracle_put_start(struct oracle_stage *g);
 
 /* Runs all operators, one after the other, for the step that follows the state's; edges: those with constructed inputs,
  * on these. False, with work->fault or pack->failed saying why. */
-bool oracle_run_operators(struct oracle_stage *stage, bool edges);
+bool oracle_run_operators(struct oracle_stage *g, bool edges);
+
+/* For operators. Appends n rows of this size. False, with pack->failed set, if memory is short. */
+bool oracle_add_rows(struct oracle_stage *g, const void *rows, uint32_t n, size_t size);
+
+/* Puts vertices back to where they were before the operator. */
+void oracle_put_back(struct oracle_stage *g);
 
 /* True if bonds of this model exchange momentum at the time of contact (rule `event-driven`): its drifts have events,
  * and no order. */

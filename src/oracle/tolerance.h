@@ -7,8 +7,8 @@
 /* What is known of one table of a pair (oracle_pair.known): nothing at first. */
 enum { TOLERANCE_SIZES = 8 };
 struct tolerance_known {
-  const struct tolerance_row *rule; /* of the table; NULL: not yet looked for */
-  double bound;                     /* of all its values, if the rule gives one for all */
+  const struct oracle_table *table; /* its row of schema.c; NULL: not yet looked for */
+  double bound;                     /* of all its values, if they have one */
   size_t sizes;
   struct tolerance_size {
     double (*of)(const struct oracle_pair *);
@@ -53,34 +53,22 @@ static inline bool tolerance_single(const struct oracle_pair *p)
   return p->rounding > 0x1p-30;
 }
 
-/* Bounds for the operators of contacts at their own time; each is that of one table (tolerance_event.c). */
-typedef double tolerance_rule(const struct oracle_pair *pair, uint32_t row, uint32_t column);
-tolerance_rule tolerance_impulse_answer, tolerance_impulse_momentum, tolerance_impulse_velocity, tolerance_event_hit,
-    tolerance_event_velocity, tolerance_event_position;
-
-/* The same for those of vertices that move one by one (tolerance_contact.c). */
-tolerance_rule tolerance_crossing_hit, tolerance_exchange_momentum, tolerance_exchange_velocity, tolerance_sweep_hit,
-    tolerance_sweep_velocity, tolerance_sweep_position;
-
-/* The same for forces of fibers and kicks (tolerance_fiber.c). */
-tolerance_rule tolerance_bond_force, tolerance_bend_force, tolerance_force, tolerance_kick;
-
-/* The same for those of thick fibers (tolerance_tube.c). */
-tolerance_rule tolerance_tube_tick, tolerance_tube_points, tolerance_tube_normal;
-
-/* The same for those of walls and of shear (tolerance_flow.c). */
-tolerance_rule tolerance_motion, tolerance_wall_velocity, tolerance_wall_position, tolerance_wall_given, tolerance_slid,
-    tolerance_affine, tolerance_filled, tolerance_filled_momentum, tolerance_account_given;
-
-/* The same for those of the rule at+a (tolerance_spin.c). */
-tolerance_rule tolerance_spin_middle, tolerance_spin_beyond, tolerance_spin_second, tolerance_spin_angular,
-    tolerance_spin_rate, tolerance_spin_center, tolerance_give_spin;
-
-/* The same for those of dumbbells (tolerance_flow.c). */
-tolerance_rule tolerance_drawn_place, tolerance_swing_position, tolerance_swing_velocity, tolerance_swing_given;
-
-/* The same for those of media (tolerance_medium.c). */
-tolerance_rule tolerance_private_bath, tolerance_pair_along, tolerance_pair_draw, tolerance_pair_bath, tolerance_crowd,
-    tolerance_repulsion, tolerance_repulsion_kick, tolerance_mobility, tolerance_root, tolerance_move;
+/* Bounds of tables (schema.c): one for all values, or one for each. */
+typedef double tolerance_of_all(const struct oracle_pair *pair);
+typedef double tolerance_of_each(const struct oracle_pair *pair, uint32_t row, uint32_t column);
+tolerance_of_all tolerance_account_given, tolerance_affine, tolerance_bend_force, tolerance_bond_force,
+    tolerance_center, tolerance_copied_velocity, tolerance_crowd, tolerance_drawn_place, tolerance_force,
+    tolerance_give, tolerance_kick, tolerance_mobility, tolerance_momentum, tolerance_motion, tolerance_move,
+    tolerance_pair_along, tolerance_pair_bath, tolerance_private_bath, tolerance_relative, tolerance_repulsion,
+    tolerance_repulsion_kick, tolerance_rotate, tolerance_slid, tolerance_spin_center, tolerance_stream_position,
+    tolerance_stream_velocity, tolerance_swing_given, tolerance_swing_position, tolerance_swing_velocity,
+    tolerance_uniform, tolerance_wall_given, tolerance_wall_position, tolerance_wall_velocity;
+tolerance_of_each tolerance_axis, tolerance_boltzmann, tolerance_crossing_hit, tolerance_drawn, tolerance_event_hit,
+    tolerance_event_position, tolerance_event_velocity, tolerance_exchange_momentum, tolerance_exchange_velocity,
+    tolerance_filled, tolerance_filled_momentum, tolerance_give_spin, tolerance_impulse_answer,
+    tolerance_impulse_momentum, tolerance_impulse_velocity, tolerance_normal_pair, tolerance_pair_draw,
+    tolerance_rescale, tolerance_root, tolerance_spin_angular, tolerance_spin_beyond, tolerance_spin_middle,
+    tolerance_spin_rate, tolerance_spin_second, tolerance_sweep_hit, tolerance_sweep_position, tolerance_sweep_velocity,
+    tolerance_tube_normal, tolerance_tube_points, tolerance_tube_tick;
 
 #endif

@@ -5,7 +5,6 @@
 
 #include "base/lattice.h"
 #include "contact/impulse.h"
-#include "oracle/event_rows.h"
 #include "oracle/tolerance.h"
 
 /* --- one impulse ------------------------------------------------------------------------------------------------- */
@@ -17,10 +16,12 @@ struct sizes {
   double momentum;             /* |dP| */
 };
 
+static const char *const ends_of[4] = {"p0", "p1", "q0", "q1"};
+
 static double value(const struct oracle_pair *p, const char *kind, int end, uint32_t row, uint32_t column)
 {
   char name[PACK_WORD];
-  snprintf(name, sizeof name, "in.%s%s", kind, oracle_ends[end]);
+  snprintf(name, sizeof name, "in.%s%s", kind, ends_of[end]);
   const struct pack_table *t = oracle_sibling(p, name);
   return t ? pack_value(t, row, column) : NAN;
 }
@@ -76,7 +77,7 @@ double tolerance_impulse_velocity(const struct oracle_pair *p, uint32_t row, uin
   struct sizes z;
   const struct pack_table *mass = oracle_sibling(p, "in.mass");
   for (int k = 0; mass && take_sizes(p, row, &z) && k < 4; k++)
-    if (strcmp(oracle_ends[k], p->ours->name + strlen("out.")) == 0) {
+    if (strcmp(ends_of[k], p->ours->name + strlen("out.")) == 0) {
       const double m = pack_value(mass, row, (uint32_t)k), v = fabs(value(p, "", k, row, column));
       return tolerance_impulse_momentum(p, row, column) / m + (18.0 * z.momentum / m + 4.0 * v) * p->rounding;
     }

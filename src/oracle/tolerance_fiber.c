@@ -46,22 +46,19 @@ static double strongest_bend(const struct oracle_pair *p)
   return most;
 }
 
-double tolerance_bond_force(const struct oracle_pair *p, uint32_t row, uint32_t column)
+double tolerance_bond_force(const struct oracle_pair *p)
 {
-  (void)row, (void)column;
   return 26.0 * 2.0 * most_of(p, SPRING) * (longest_bond(p) + most_of(p, BOND_LENGTH)) * p->rounding;
 }
 
-double tolerance_bend_force(const struct oracle_pair *p, uint32_t row, uint32_t column)
+double tolerance_bend_force(const struct oracle_pair *p)
 {
-  (void)row, (void)column;
   return 50.0 * 8.0 * strongest_bend(p) * p->rounding;
 }
 
-double tolerance_force(const struct oracle_pair *p, uint32_t row, uint32_t column)
+double tolerance_force(const struct oracle_pair *p)
 {
-  return tolerance_bond_force(p, row, column) + tolerance_bend_force(p, row, column) +
-         14.0 * most_of(p, FORCE) * p->rounding;
+  return tolerance_bond_force(p) + tolerance_bend_force(p) + 14.0 * most_of(p, FORCE) * p->rounding;
 }
 
 static double strongest(const struct oracle_pair *p)
@@ -75,9 +72,8 @@ double tolerance_strongest(const struct oracle_pair *p)
   return tolerance_once(p, strongest);
 }
 
-double tolerance_kick(const struct oracle_pair *p, uint32_t row, uint32_t column)
+double tolerance_kick(const struct oracle_pair *p)
 {
-  (void)row, (void)column;
   return 8.0 *
          (tolerance_velocities(p) +
           tolerance_size_of(p, "in.time") * tolerance_size_of(p, "in.force") / tolerance_lightest(p)) *

@@ -11,43 +11,37 @@ static double fastest(const struct oracle_pair *p)
          tolerance_acceleration(p) * tolerance_size_of(p, "in.time");
 }
 
-double tolerance_motion(const struct oracle_pair *p, uint32_t row, uint32_t column)
+double tolerance_motion(const struct oracle_pair *p)
 {
-  (void)row, (void)column;
   return 4.0 * tolerance_largest(p->ours, 0, PACK_COLUMNS) * p->rounding;
 }
 
 /* A flight has at most LATTICE_MAX_MOVE/1 hits; packs have one or two, and each adds 2 w. */
-double tolerance_wall_velocity(const struct oracle_pair *p, uint32_t row, uint32_t column)
+double tolerance_wall_velocity(const struct oracle_pair *p)
 {
-  (void)row, (void)column;
   return 32.0 * fastest(p) * p->rounding;
 }
 
-double tolerance_wall_position(const struct oracle_pair *p, uint32_t row, uint32_t column)
+double tolerance_wall_position(const struct oracle_pair *p)
 {
-  (void)row, (void)column;
   return 1.0 + LATTICE_PER_A0 * 40.0 * fastest(p) * tolerance_size_of(p, "in.time") * p->rounding;
 }
 
 /* Each hit is rounded once to the unit of the sum. */
-double tolerance_wall_given(const struct oracle_pair *p, uint32_t row, uint32_t column)
+double tolerance_wall_given(const struct oracle_pair *p)
 {
   const struct pack_table *particles = oracle_sibling(p, "in.position");
   const double n = particles ? particles->rows : 0.0;
-  (void)row, (void)column;
   return n + CELL_MOMENTUM_SCALE * n * 64.0 * fastest(p) * p->rounding;
 }
 
-double tolerance_slid(const struct oracle_pair *p, uint32_t row, uint32_t column)
+double tolerance_slid(const struct oracle_pair *p)
 {
-  (void)row, (void)column;
   return 4.0 * fastest(p) * p->rounding;
 }
 
-double tolerance_affine(const struct oracle_pair *p, uint32_t row, uint32_t column)
+double tolerance_affine(const struct oracle_pair *p)
 {
-  (void)row, (void)column;
   return 4.0 *
          (tolerance_velocities(p) +
           tolerance_size_of(p, "in.position") * LATTICE_UNIT * tolerance_size_of(p, "in.change")) *
@@ -79,11 +73,10 @@ double tolerance_filled_momentum(const struct oracle_pair *p, uint32_t row, uint
                    (tolerance_filled(p, row, column + 1) + 4.0 * virtual_speed(p) * p->rounding);
 }
 
-double tolerance_account_given(const struct oracle_pair *p, uint32_t row, uint32_t column)
+double tolerance_account_given(const struct oracle_pair *p)
 {
   const struct pack_table *cells = oracle_sibling(p, "in.filled");
   const double n = cells ? cells->rows : 0.0;
-  (void)row, (void)column;
   return n + CELL_MOMENTUM_SCALE * n * most_virtual(p) * 100.0 * tolerance_size_of(p, "in.factor") *
                  (virtual_speed(p) + tolerance_size_of(p, "in.center")) * p->rounding;
 }
@@ -115,29 +108,26 @@ static double hit_units(const struct oracle_pair *p)
 }
 
 /* Each component is a normal deviate of at most 9 over sqrt(K), halved, and two roundings. */
-double tolerance_drawn_place(const struct oracle_pair *p, uint32_t row, uint32_t column)
+double tolerance_drawn_place(const struct oracle_pair *p)
 {
   const double spring = of_spring(p, 0);
-  (void)row, (void)column;
   return 2.0 + LATTICE_PER_A0 * 48.0 * 9.0 / sqrt(fmax(spring, 0x1p-40)) * p->rounding;
 }
 
-double tolerance_swing_position(const struct oracle_pair *p, uint32_t row, uint32_t column)
+double tolerance_swing_position(const struct oracle_pair *p)
 {
   const double path = longest_vector(p) + fastest_swing(p) * tolerance_size_of(p, "in.time");
-  (void)row, (void)column;
   return 2.0 + hit_units(p) + LATTICE_PER_A0 * 64.0 * path * p->rounding;
 }
 
-double tolerance_swing_velocity(const struct oracle_pair *p, uint32_t row, uint32_t column)
+double tolerance_swing_velocity(const struct oracle_pair *p)
 {
-  (void)row, (void)column;
   return 64.0 * fastest_swing(p) * p->rounding + of_spring(p, 1) * hit_units(p) * LATTICE_UNIT;
 }
 
-double tolerance_swing_given(const struct oracle_pair *p, uint32_t row, uint32_t column)
+double tolerance_swing_given(const struct oracle_pair *p)
 {
   const struct pack_table *particles = oracle_sibling(p, "in.position");
   const double n = particles ? particles->rows : 0.0;
-  return 4.0 * n * (1.0 + CELL_MOMENTUM_SCALE * tolerance_swing_velocity(p, row, column));
+  return 4.0 * n * (1.0 + CELL_MOMENTUM_SCALE * tolerance_swing_velocity(p));
 }

@@ -24,17 +24,15 @@ static double amplitude(double loss, double u)
   return 8.0 * u + fmin(4.0 * u / sqrt(fmax(loss, 0x1p-1000)), sqrt(8.0 * u));
 }
 
-double tolerance_private_bath(const struct oracle_pair *p, uint32_t row, uint32_t column)
+double tolerance_private_bath(const struct oracle_pair *p)
 {
   const double flow = of_bath(p, FLOW, FLOW + 3);
-  (void)row, (void)column;
   return 16.0 * (tolerance_size_of(p, "in.velocity") + flow) * p->rounding +
          NORMAL * lightness(p) * (24.0 * p->rounding + sqrt(8.0 * p->rounding) * (p->rounding > 0x1p-30));
 }
 
-double tolerance_pair_along(const struct oracle_pair *p, uint32_t row, uint32_t column)
+double tolerance_pair_along(const struct oracle_pair *p)
 {
-  (void)row, (void)column;
   return 8.0 * p->rounding;
 }
 
@@ -45,12 +43,11 @@ double tolerance_pair_draw(const struct oracle_pair *p, uint32_t row, uint32_t c
 }
 
 /* Each pair adds its own roundings, and no pair makes those before it larger but by the masses. */
-double tolerance_pair_bath(const struct oracle_pair *p, uint32_t row, uint32_t column)
+double tolerance_pair_bath(const struct oracle_pair *p)
 {
   const struct pack_table *pair = oracle_sibling(p, "in.pair");
   const double fastest = tolerance_velocities(p) + tolerance_largest(oracle_sibling(p, "in.bath"), 1, 2);
   const double masses = tolerance_heaviest(p) / fmin(1.0, tolerance_lightest(p));
-  (void)row, (void)column;
   return (8.0 + 16.0 * (pair ? pair->rows : 0.0)) * fastest * sqrt(masses) * p->rounding;
 }
 
@@ -61,32 +58,28 @@ static double members(const struct oracle_pair *p)
 }
 
 /* 2^-32 units: the largest term, its roundings and its own rounding to a unit, of each of the others. */
-double tolerance_crowd(const struct oracle_pair *p, uint32_t row, uint32_t column)
+double tolerance_crowd(const struct oracle_pair *p)
 {
   const double d = fmax(of_bath(p, MANY_RANGE, MANY_RANGE + 1), 0x1p-20);
-  (void)row, (void)column;
   return members(p) * (1.0 + 0x1p32 * 2.4 / (d * d * d) * 16.0 * p->rounding);
 }
 
-double tolerance_repulsion(const struct oracle_pair *p, uint32_t row, uint32_t column)
+double tolerance_repulsion(const struct oracle_pair *p)
 {
   const double crowd = tolerance_size_of(p, "in.crowd") * 0x1p-32;
   const double strongest = of_bath(p, REPULSION, BETWEEN + 1) + 2.0 * of_bath(p, MANY_BODY, MANY_BODY + 1) * crowd;
-  (void)row, (void)column;
   return members(p) * (1.0 + 0x1p32 * strongest * 24.0 * p->rounding);
 }
 
-double tolerance_repulsion_kick(const struct oracle_pair *p, uint32_t row, uint32_t column)
+double tolerance_repulsion_kick(const struct oracle_pair *p)
 {
   const double kick =
       tolerance_size_of(p, "in.time") * tolerance_size_of(p, "in.force") * 0x1p-32 / fmin(1.0, tolerance_lightest(p));
-  (void)row, (void)column;
   return 8.0 * (tolerance_velocities(p) + kick) * p->rounding;
 }
 
-double tolerance_mobility(const struct oracle_pair *p, uint32_t row, uint32_t column)
+double tolerance_mobility(const struct oracle_pair *p)
 {
-  (void)p, (void)row, (void)column;
   return 32.0 * p->rounding;
 }
 
@@ -106,12 +99,11 @@ double tolerance_root(const struct oracle_pair *p, uint32_t row, uint32_t column
   return 2.0 * n * (n + 1.0) * sqrt(n) * condition * p->rounding;
 }
 
-double tolerance_move(const struct oracle_pair *p, uint32_t row, uint32_t column)
+double tolerance_move(const struct oracle_pair *p)
 {
   const double dt = tolerance_largest(tolerance_of_model(p, "in.reals"), 0, 1), n = order(p);
   const double drift = dt / (fmax(of_bath(p, RATE, RATE + 1), 0x1p-20) * tolerance_lightest(p));
   const double path =
       drift * n * tolerance_size_of(p, "in.force") + sqrt(2.0 * drift) * n * NORMAL + dt * of_bath(p, FLOW, FLOW + 3);
-  (void)row, (void)column;
   return 1.0 + LATTICE_PER_A0 * (n + 24.0) * path * p->rounding;
 }

@@ -59,9 +59,8 @@ double tolerance_spin_rate(const struct oracle_pair *p, uint32_t row, uint32_t c
   return 64.0 * (least > 1e-12 * 2.0 * trace ? 2.0 * trace / least : 1.0) * largest * p->rounding;
 }
 
-double tolerance_spin_center(const struct oracle_pair *p, uint32_t row, uint32_t column)
+double tolerance_spin_center(const struct oracle_pair *p)
 {
-  (void)row, (void)column;
   return 8.0 * (tolerance_largest(p->ours, 0, 3) + tolerance_size_of(p, "in.beyond")) * p->rounding;
 }
 

@@ -2,8 +2,44 @@
 #include <math.h>
 
 #include "contact/tube.h"
+#include "oracle/rows.h"
 #include "oracle/tolerance.h"
-#include "oracle/tube_rows.h"
+
+/* A search, a contact of a pack, in a0. False if there is none in this row, or none that is legal. */
+static bool point_of(const struct oracle_pair *p, const char *name, uint32_t row, struct point *to)
+{
+  const struct pack_table *t = oracle_sibling(p, name);
+  const bool ok = t && !t->real && t->columns == 3 && row < t->rows;
+  if (ok)
+    *to = (struct point){t->value.integer[3 * (size_t)row], t->value.integer[3 * (size_t)row + 1],
+                         t->value.integer[3 * (size_t)row + 2]};
+  return ok;
+}
+
+static bool search_of(const struct oracle_pair *pair, uint32_t row, struct oracle_search *s)
+{
+  const struct pack_table *from = oracle_sibling(pair, "in.from"), *reach = oracle_sibling(pair, "in.reach");
+  struct flight_pair *f = &s->pair;
+  if (!from || !reach || reach->real || reach->columns != 1 || row >= reach->rows ||
+      !point_of(pair, "in.p", row, &f->p) || !point_of(pair, "in.q", row, &f->q) ||
+      !point_of(pair, "in.w", row, &f->w) || !point_of(pair, "in.p_rate", row, &f->p_rate) ||
+      !point_of(pair, "in.q_rate", row, &f->q_rate) || !point_of(pair, "in.w_rate", row, &f->w_rate))
+    return false;
+  s->reach = reach->value.integer[row];
+  const double first = pack_value(from, row, 0);
+  const bool legal = oracle_search_is_legal(f, first) && s->reach > 0 && s->reach < (int64_t)1 << 50;
+  s->from = legal ? (int32_t)first : 0;
+  return legal;
+}
+
+static bool tubes_of(const struct oracle_pair *pair, uint32_t row, struct vec3 *p, struct vec3 *q, struct vec3 *w)
+{
+  struct point a, b, c;
+  const bool ok = point_of(pair, "in.p", row, &a) && point_of(pair, "in.q", row, &b) && point_of(pair, "in.w", row, &c);
+  if (ok)
+    *p = point_in_a0(a), *q = point_in_a0(b), *w = point_in_a0(c);
+  return ok;
+}
 
 static double length(struct point p)
 {
@@ -22,7 +58,7 @@ static int64_t doubt(const struct oracle_pair *p, const struct oracle_search *s)
 double tolerance_tube_tick(const struct oracle_pair *p, uint32_t row, uint32_t column)
 {
   struct oracle_search s;
-  if (!oracle_tube_search_of(p, row, &s))
+  if (!search_of(p, row, &s))
     return 0.0;
   const int64_t off = doubt(p, &s);
   const double ours = pack_value(p->ours, row, column), least = tube_contact(&s.pair, s.reach + off, s.from),
@@ -49,7 +85,7 @@ double tolerance_tube_points(const struct oracle_pair *p, uint32_t row, uint32_t
 {
   struct vec3 a, b, w;
   (void)column;
-  if (!oracle_tubes_of(p, row, &a, &b, &w))
+  if (!tubes_of(p, row, &a, &b, &w))
     return 0.0;
   return 64.0 * condition(a, b) * (1.0 + vec3_norm(w) / shorter(a, b)) * p->rounding;
 }
@@ -58,7 +94,7 @@ double tolerance_tube_normal(const struct oracle_pair *p, uint32_t row, uint32_t
 {
   const struct pack_table *contact = oracle_sibling(p, "out.contact");
   struct vec3 a, b, w;
-  if (!contact || !oracle_tubes_of(p, row, &a, &b, &w))
+  if (!contact || !tubes_of(p, row, &a, &b, &w))
     return 0.0;
   const double s = pack_value(contact, row, 0), t = pack_value(contact, row, 1),
                size = vec3_norm(a) + vec3_norm(b) + vec3_norm(w);

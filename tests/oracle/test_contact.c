@@ -1,11 +1,9 @@
 /* Rows of `crossing` and `exchange`, columns by name, and tolerances, against GMP (exact.h) and formulas written out
  * here. tests/oracle/test_edges.py does the same from the text of a pack. */
+#include "contact/line.h"
 #include "exact.h"
-#include "oracle/contact_rows.h"
-#include "oracle/edges.h"
 #include "oracle/oracle.h"
 #include "oracle/pair.h"
-#include "oracle/stages.h"
 
 static const struct pack_table *table(const struct pack *pack, const char *operator_name, const char *name)
 {
@@ -29,13 +27,18 @@ static struct vec3 vector_of(const struct pack *pack, const char *name, uint32_t
   return (struct vec3){v[0], v[1], v[2]};
 }
 
-static void fill(struct pack *pack, const char *operator_name, bool (*put)(struct oracle_stage *))
+static int make_edges(void **state)
 {
-  memset(pack, 0, sizeof *pack);
-  struct oracle_stage g = {.pack = pack, .place = {.step = 1}};
-  snprintf(g.place.operator_name, sizeof g.place.operator_name, "%s", operator_name);
-  assert_true(put(&g));
-  assert_false(pack->failed);
+  static struct pack pack;
+  struct message message;
+  *state = &pack;
+  return oracle_edges(false, &pack, &message) ? 0 : -1;
+}
+
+static int free_edges(void **state)
+{
+  pack_free(*state);
+  return 0;
 }
 
 /* --- crossing ---------------------------------------------------------------------------------------------------- */
@@ -74,17 +77,15 @@ static int sign_in_doubles(struct point o, struct point u, struct point v, struc
 
 static void verdicts_of_edges(void **state)
 {
-  (void)state;
-  struct pack pack;
+  const struct pack *pack = *state;
   struct exact_test x;
   uint32_t hits = 0, flips = 0, wrong_signs = 0, zeros = 0;
   exact_open(&x);
-  fill(&pack, "crossing", oracle_edges_crossing);
-  const struct pack_table *found = table(&pack, "crossing", "out.crosses"), *how = table(&pack, "crossing", "out.hit"),
-                          *condition = table(&pack, "crossing", "bound.hit");
+  const struct pack_table *found = table(pack, "crossing", "out.crosses"), *how = table(pack, "crossing", "out.hit"),
+                          *condition = table(pack, "crossing", "bound.hit");
   assert_int_equal(found->rows, 540);
   for (uint32_t row = 0; row < found->rows; row++) {
-    const struct crossing_query q = query_of(&pack, row);
+    const struct crossing_query q = query_of(pack, row);
     assert_int_equal(found->value.integer[row], crosses(&x, &q));
     hits += found->value.integer[row] != 0;
     flips += q.flip;
@@ -105,7 +106,6 @@ static void verdicts_of_edges(void **state)
   assert_true(wrong_signs >= 40);
   assert_true(zeros >= 40);
   exact_close(&x);
-  pack_free(&pack);
 }
 
 /* --- exchange ---------------------------------------------------------------------------------------------------- */
@@ -113,14 +113,12 @@ static void verdicts_of_edges(void **state)
 static void exchanges_conserve(void **state)
 {
   static const char *const ends[4] = {"moving", "pivot", "a", "b"};
-  (void)state;
-  struct pack pack;
-  fill(&pack, "exchange", oracle_edges_exchange);
-  const struct pack_table *mass = table(&pack, "exchange", "in.mass"), *dp = table(&pack, "exchange", "out.momentum"),
-                          *contact = table(&pack, "exchange", "in.contact");
+  const struct pack *pack = *state;
+  const struct pack_table *mass = table(pack, "exchange", "in.mass"), *dp = table(pack, "exchange", "out.momentum"),
+                          *contact = table(pack, "exchange", "in.contact");
   uint32_t unequal = 0;
   for (uint32_t row = 0; row < mass->rows; row++) {
-    const struct vec3 n = vector_of(&pack, "in.normal", row);
+    const struct vec3 n = vector_of(pack, "in.normal", row);
     const double s = contact->value.number[2 * row], t = contact->value.number[2 * row + 1];
     const double lever[4] = {1.0 - s, s, t - 1.0, -t}, *m = &mass->value.number[4 * row];
     double energy = 0.0, approach = 0.0, separate = 0.0, size = 1.0;
@@ -129,9 +127,9 @@ static void exchanges_conserve(void **state)
     for (int k = 0; k < 4; k++) {
       char name[PACK_WORD];
       snprintf(name, sizeof name, "in.%s", ends[k]);
-      const struct vec3 before = vector_of(&pack, name, row);
+      const struct vec3 before = vector_of(pack, name, row);
       snprintf(name, sizeof name, "out.%s", ends[k]);
-      const struct vec3 after = vector_of(&pack, name, row), change = vec3_sub(after, before);
+      const struct vec3 after = vector_of(pack, name, row), change = vec3_sub(after, before);
       energy += 0.5 * m[k] * (vec3_dot(after, after) - vec3_dot(before, before));
       size += m[k] * (vec3_dot(after, after) + vec3_dot(before, before));
       momentum = vec3_add_scaled(momentum, m[k], change);
@@ -143,7 +141,6 @@ static void exchanges_conserve(void **state)
     assert_close(separate, -approach, 1e-13 * size);
   }
   assert_in_range(unequal, 50, 90);
-  pack_free(&pack);
 }
 
 /* --- columns by name --------------------------------------------------------------------------------------------- */
@@ -184,18 +181,29 @@ static void columns_are_aligned(void **state)
 
 /* --- tolerances -------------------------------------------------------------------------------------------------- */
 
+static void put_row_of_exchange(struct pack *pack, const char *name, const char *components, const double *row)
+{
+  double *to = pack_put_reals(pack, &(struct pack_place){"exchange", 1}, name, components, 1);
+  memcpy(to, row, pack->table[pack->count - 1].columns * sizeof *row);
+}
+
 /* Of one exchange with V = (2, 0, 0) and rest, n along x, masses 1, s = s' = 1/2: A = 4, D = 1, E = 2, dP = 2. */
 static void tolerances_of_an_exchange(void **state)
 {
+  static const double fast[3] = {2, 0, 0}, rest[3] = {0, 0, 0}, ones[4] = {1, 1, 1, 1}, half[2] = {0.5, 0.5};
   (void)state;
   struct pack pack = {0};
-  struct oracle_stage g = {.pack = &pack, .place = {"exchange", 1}};
-  const struct oracle_exchange e = {
-      .velocity = {{2, 0, 0}}, .mass = {1, 1, 1, 1}, .s = 0.5, .s_standing = 0.5, .normal = {1, 0, 0}};
-  oracle_put_exchanges(&g, &e, 1);
+  put_row_of_exchange(&pack, "in.moving", "x y z", fast);
+  put_row_of_exchange(&pack, "in.pivot", "x y z", rest);
+  put_row_of_exchange(&pack, "in.a", "x y z", rest);
+  put_row_of_exchange(&pack, "in.b", "x y z", rest);
+  put_row_of_exchange(&pack, "in.mass", "moving pivot a b", ones);
+  put_row_of_exchange(&pack, "in.contact", "s s_standing", half);
+  put_row_of_exchange(&pack, "in.normal", "x y z", (const double[3]){1, 0, 0});
+  put_row_of_exchange(&pack, "out.momentum", "momentum", (const double[1]){2});
+  put_row_of_exchange(&pack, "out.moving", "x y z", (const double[3]){1, 0, 0});
   struct oracle_pair p = {&pack, &pack, NULL, NULL, 0x1p-53, NULL};
   p.ours = p.theirs = table(&pack, "exchange", "out.momentum");
-  assert_close(p.ours->value.number[0], 2.0, 0.0);
   const double momentum = 26.0 * 4.0 + 2.0 * (8.0 * 2.0 + 20.0);
   assert_close(oracle_tolerance(&p, 0, 0), momentum * 0x1p-53, 1e-20);
   p.ours = p.theirs = table(&pack, "exchange", "out.moving");
@@ -213,5 +221,5 @@ int main(void)
       cmocka_unit_test(columns_are_aligned),
       cmocka_unit_test(tolerances_of_an_exchange),
   };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cmocka_run_group_tests(tests, make_edges, free_edges);
 }

@@ -1,8 +1,8 @@
 /* Contacts of bonds with a bead, one by one, as the steps of a run have them. */
-#include <stdlib.h>
+#include "oracle/company.h"
 
 #include "contact/event_bead.h"
-#include "oracle/company.h"
+#include "oracle/drift.h"
 #include "oracle/stages.h"
 #include "system/bead.h"
 
@@ -46,19 +46,6 @@ static struct flight_pair pair_of(const struct bodies *b)
                               .w_rate = point_minus(b->rate[2], b->rate[0])};
 }
 
-static bool room_for_one(struct oracle_company *c)
-{
-  const uint32_t n = c->contacts + 1;
-  struct oracle_search *search = realloc(c->search, 3 * (size_t)n * sizeof *search);
-  c->search = search ? search : c->search;
-  struct oracle_tubes *tubes = realloc(c->tubes, n * sizeof *tubes);
-  c->tubes = tubes ? tubes : c->tubes;
-  struct oracle_impulse *impulse = realloc(c->impulse, n * sizeof *impulse);
-  c->impulse = impulse ? impulse : c->impulse;
-  c->failed |= !search || !tubes || !impulse;
-  return !c->failed;
-}
-
 /* The impulse, and the velocities before it: the log is told when the vertices have theirs of after it. */
 static struct oracle_impulse impulse_of(const struct oracle_stage *g, const struct contact_event *v,
                                         const uint32_t vertex[2], int32_t tick)
@@ -84,7 +71,7 @@ void oracle_company_take(void *context, const struct contact_event *event)
 {
   struct oracle_company *c = context;
   const struct oracle_stage *g = c->stage;
-  if (event->standing_bond != EVENT_BEAD || c->contacts >= ORACLE_COMPANY_MOST || c->failed || !room_for_one(c))
+  if (event->standing_bond != EVENT_BEAD || c->contacts >= ORACLE_COMPANY_MOST)
     return;
   const uint32_t vertex[2] = {event->moving_bond, (uint32_t)g->model->next[event->moving_bond]};
   const int32_t tick = (int32_t)(event->hit.time * FLIGHT_TICKS);
@@ -96,37 +83,30 @@ void oracle_company_take(void *context, const struct contact_event *event)
   const struct bodies old = before_contact(g, vertex), new = after_contact(g, &old, after, tick);
   const struct flight_pair before = pair_of(&old);
   struct oracle_search *s = &c->search[3 * (size_t)c->contacts];
-  s[0] = (struct oracle_search){before, reach, 0};
-  s[1] = (struct oracle_search){before, reach, tick / 2};
-  s[2] = (struct oracle_search){pair_of(&new), reach, tick};
+  s[0] = (struct oracle_search){.pair = before, .reach = reach, .from = 0};
+  s[1] = (struct oracle_search){.pair = before, .reach = reach, .from = tick / 2};
+  s[2] = (struct oracle_search){.pair = pair_of(&new), .reach = reach, .from = tick};
   c->tubes[c->contacts] = (struct oracle_tubes){.p = flight_place(before.p, before.p_rate, tick),
                                                 .w = flight_place(before.w, before.w_rate, tick)};
   c->impulse[c->contacts++] = e;
 }
 
-void oracle_company_free(struct oracle_company *c)
-{
-  free(c->search);
-  free(c->tubes);
-  free(c->impulse);
-}
-
 /* --- operators ---------------------------------------------------------------------------------------------------- */
 
-bool oracle_run_bead_search(struct oracle_stage *g)
+bool oracle_begin_bead_searches(struct oracle_stage *g)
 {
-  oracle_put_bead_searches(g, g->company->search, 3 * g->company->contacts);
-  return true;
+  const struct oracle_company *c = g->company;
+  return oracle_add_rows(g, c->search, 3 * c->contacts, sizeof *c->search) && oracle_edges_bead_searches(g);
 }
 
-bool oracle_run_bead_contact(struct oracle_stage *g)
+bool oracle_begin_bead_contacts(struct oracle_stage *g)
 {
-  oracle_put_bead_contacts(g, g->company->tubes, g->company->contacts);
-  return true;
+  const struct oracle_company *c = g->company;
+  return oracle_add_rows(g, c->tubes, c->contacts, sizeof *c->tubes) && oracle_edges_bead_contacts(g);
 }
 
-bool oracle_run_bead_impulse(struct oracle_stage *g)
+bool oracle_begin_bead_impulses(struct oracle_stage *g)
 {
-  oracle_put_impulses(g, g->company->impulse, g->company->contacts);
-  return true;
+  const struct oracle_company *c = g->company;
+  return oracle_add_rows(g, c->impulse, c->contacts, sizeof *c->impulse);
 }

@@ -1,0 +1,45 @@
+/* Inside the oracle: how a source is written, in a line (sources.c, sources_rows.c). A stage is g, its model M; k is a
+ * place in memory. */
+#ifndef UNCROSS_ORACLE_SOURCE_H
+#define UNCROSS_ORACLE_SOURCE_H
+
+#include <string.h>
+
+#include "oracle/sources.h"
+
+#define M g->model
+
+/* How many rows there are; the number of the row at place k. */
+#define COUNT(name, ...)                                                                                               \
+  static uint32_t count_##name(const struct oracle_stage *g)                                                           \
+  {                                                                                                                    \
+    (void)g;                                                                                                           \
+    return (uint32_t)(__VA_ARGS__);                                                                                    \
+  }
+#define NUMBER(name, ...)                                                                                              \
+  static uint32_t number_##name(const struct oracle_stage *g, uint32_t k)                                              \
+  {                                                                                                                    \
+    return __VA_ARGS__;                                                                                                \
+  }
+
+/* What is at place k of a stage g: numbers, a point of the lattice, a vector. */
+#define FILL(name, type, ...)                                                                                          \
+  static void fill_##name(const struct oracle_stage *g, uint32_t k, type *row)                                         \
+  {                                                                                                                    \
+    (void)g, (void)k;                                                                                                  \
+    __VA_ARGS__                                                                                                        \
+  }
+#define INTEGERS(name, entity, words, ...)                                                                             \
+  FILL(name, int64_t, const int64_t numbers[] = {__VA_ARGS__}; memcpy(row, numbers, sizeof numbers);)                  \
+  const struct oracle_source from_##name = {words, &(entity), fill_##name, NULL};
+#define REALS(name, entity, words, ...)                                                                                \
+  FILL(name, double, const double numbers[] = {__VA_ARGS__}; memcpy(row, numbers, sizeof numbers);)                    \
+  const struct oracle_source from_##name = {words, &(entity), NULL, fill_##name};
+#define POINT(name, entity, ...)                                                                                       \
+  FILL(name, int64_t, const struct point at = __VA_ARGS__; row[0] = at.x, row[1] = at.y, row[2] = at.z;)               \
+  const struct oracle_source from_##name = {"x y z", &(entity), fill_##name, NULL};
+#define VECTOR(name, entity, ...)                                                                                      \
+  FILL(name, double, const struct vec3 v = __VA_ARGS__; row[0] = v.x, row[1] = v.y, row[2] = v.z;)                     \
+  const struct oracle_source from_##name = {"x y z", &(entity), NULL, fill_##name};
+
+#endif
