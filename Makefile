@@ -218,7 +218,7 @@ $(foreach h,$(CORE_HEADERS),644 $(h) include/uncross-core/$(h:src/%=%)
 644 include/uncross.h lib/python3/dist-packages/uncross/uncross.h
 $(foreach f,$(wildcard python/uncross/*.py python/uncross_plot/*.py python/uncross_plot/*.jinja python/uncross_sweep/*.* python/uncross_name/*.py),644 $(f) lib/python3/dist-packages/$(f:python/%=%)
 )
-$(foreach f,$(DOCUMENTS) $(REFERENCE) $(wildcard mistakes/*.yaml) $(wildcard ports/numpy/uncross_port/*.py),644 $(f) share/uncross/$(f)
+$(foreach f,$(DOCUMENTS) $(REFERENCE) $(wildcard mistakes/*.yaml) $(wildcard ports/numpy/uncross_port/*.py ports/numpy/uncross_port/*.json),644 $(f) share/uncross/$(f)
 )
 endef
 INSTALL_FILES = $(addprefix $(BUILD)/install/,uncross.pc uncross-core.pc uncross.1 completion)

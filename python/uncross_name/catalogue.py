@@ -106,7 +106,7 @@ def plant(mistake):
         file = f"{name}.py"
         changes = [(line, replacement) for where, line, replacement in mistake.changes if where == file]
         module = types.ModuleType(f"broken_port.{name}")
-        module.__package__ = "broken_port"
+        module.__package__, module.__file__ = "broken_port", str(PORT / file)
         sys.modules[module.__name__] = modules[name] = module
         setattr(package, name, module)
         exec(_broken_code(file, changes) if changes else _code(file), module.__dict__)  # pylint: disable=exec-used

@@ -12,8 +12,8 @@ TRIES = 64  # points tried for an axis
 
 MEMBERS = ("in.solvent_cell", "in.vertex_cell")  # tables of cells
 
-# The rows of these have as many as there are vertices, and are none.
-NO_VERTICES = ("random", "stream", "swap", "shift", "sum", "solve", "mean", "rescale", "maxwell_boltzmann")
+# (operator, table): what a row of it is.
+ROWS = {(operator["name"], table["name"]): table["row"] for operator in pack.SCHEMA["operators"] for table in operator["tables"]}
 
 
 @dataclass
@@ -55,8 +55,8 @@ class Step:
     def chain(self, column):
         """Of the vertex of each row: the next one, the one before, or the number of its fiber. NaN: rows are no vertices."""
         table = self.model.get("in.chain", np.zeros((0, 3)))
-        outputs = self.evidence.operator in NO_VERTICES or self.evidence.table in ("out.solvent", "out.order")
-        return np.full(len(self.row), np.nan) if outputs or len(table) != self.last + 1 else self.at(table, column)
+        vertices = ROWS.get((self.evidence.operator, self.evidence.table)) == "vertex" and self.evidence.table != "out.order"
+        return self.at(table, column) if vertices and len(table) == self.last + 1 else np.full(len(self.row), np.nan)
 
     def cell(self):
         """The cell of each row: its number, or that of its member, or what comes out. NaN: it has none."""
@@ -288,9 +288,9 @@ def of_walls(f):
 
 def of_events(f):
     first, names = f.steps[0], f.evidence.names("out.event")
-    if len(first.tables.get("out.event", ())) != first.last + 1:
-        return
     images = [name for name in names if name.startswith("image")]
+    if not images or len(first.tables.get("out.event", ())) != first.last + 1:
+        return
     yes, no = "the partner is an image", "the partner is no image"
     f.flag(yes, no, lambda at: np.any([at.event(name) != 0 for name in images], axis=0))
     if "moving" in names:

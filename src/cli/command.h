@@ -64,6 +64,7 @@ enum command_code {
   COMMAND_ANALYZE,
   COMMAND_PLOT,
   COMMAND_SWEEP,
+  COMMAND_ORACLE_SCHEMA,
   COMMAND_EMIT,
   COMMAND_EDGES,
   COMMAND_START,
@@ -152,6 +153,7 @@ enum exit_code command_map(const struct arguments *a);
 enum exit_code command_run(const struct arguments *a);
 enum exit_code command_analyze(const struct arguments *a);
 enum exit_code command_verify(const struct arguments *a);
+enum exit_code oracle_schema(const struct arguments *a);
 enum exit_code oracle_emit_file(const struct arguments *a);
 enum exit_code oracle_edges_file(const struct arguments *a);
 enum exit_code oracle_start_file(const struct arguments *a);

@@ -137,6 +137,9 @@ const struct command commands[COMMANDS] = {
          "(docs/running.md).\n"
          "Nothing is written over. The exit code is the code of the first run that failed.\n",
          NULL},
+    [COMMAND_ORACLE_SCHEMA] = {"oracle schema", "", 0, WRITES,
+                               "the table of operators as JSON: their tables, columns, and which scenes have them",
+                               NULL, oracle_schema},
     [COMMAND_EMIT] = {"oracle emit", "SCENE", 1, WRITES,
                       "inputs and outputs of every operator, at two steps, as a pack", NULL, oracle_emit_file},
     [COMMAND_EDGES] = {"oracle edges", "", 0, WRITES,

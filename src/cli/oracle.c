@@ -8,6 +8,7 @@
 #include "oracle/check.h"
 #include "oracle/judge.h"
 #include "oracle/oracle.h"
+#include "oracle/schema.h"
 
 static enum exit_code complain(const struct message *message, enum exit_code code)
 {
@@ -82,6 +83,13 @@ static enum exit_code write_pack_of_scene(const struct arguments *a,
   const enum exit_code code = write_pack(a, &scene, make);
   scene_free(&scene);
   return code;
+}
+
+enum exit_code oracle_schema(const struct arguments *a)
+{
+  (void)a;
+  oracle_write_schema(stdout);
+  return EXIT_DONE;
 }
 
 enum exit_code oracle_emit_file(const struct arguments *a)

@@ -255,3 +255,43 @@ const struct oracle_table *oracle_table_of(const char *operator_name, const char
   }
   return NULL;
 }
+
+/* --- as JSON ----------------------------------------------------------------------------------------------------- */
+
+/* Names with blanks between, as a list. */
+static void write_words(FILE *out, const char *words)
+{
+  fputs("[\"", out);
+  for (; *words; words++)
+    fputs(*words == ' ' ? "\", \"" : (const char[2]){*words, '\0'}, out);
+  fputs("\"]", out);
+}
+
+static void write_table(FILE *out, const struct oracle_table *t)
+{
+  const bool comes_out = strncmp(t->name, "out.", strlen("out.")) == 0;
+  fprintf(out, "\n    {\"name\": \"%s\", \"type\": \"%s\", \"row\": \"%s\", \"columns\": ", t->name,
+          t->source->integers ? "integer" : "real", t->source->of->word);
+  write_words(out, t->source->columns);
+  if (comes_out)
+    fprintf(out, ", \"exact\": %s", t->all || t->each ? "false" : "true");
+  if (t->of != OF_ALL)
+    fprintf(out, ", \"scenes\": \"%s\"", oracle_scenes_words(t->of));
+  fputc('}', out);
+}
+
+void oracle_write_schema(FILE *out)
+{
+  fputs("{\"operators\": [", out);
+  for (size_t k = 0; k < oracle_operator_count; k++) {
+    const struct oracle_operator *o = &oracle_operators[k];
+    fprintf(out, "%s\n  {\"name\": \"%s\", \"scenes\": \"%s\", \"tables\": [", k ? "," : "", o->name,
+            oracle_scenes_words(o->of));
+    for (size_t j = 0; j < ORACLE_TABLES && o->table[j].name; j++) {
+      fputs(j ? "," : "", out);
+      write_table(out, &o->table[j]);
+    }
+    fputs("]}", out);
+  }
+  fputs("]}\n", out);
+}

@@ -26,48 +26,11 @@ struct oracle_source {
   void (*reals)(const struct oracle_stage *, uint32_t k, double *row);
 };
 
-/* Which scenes have an operator, or a table of it (scenes.c). */
+/* Which scenes have an operator, or a table of it. */
 enum oracle_scenes {
-  OF_ALL,
-  OF_NO_STEP, /* no operator of a step */
-  OF_FIBERS,
-  OF_TURNS,
-  OF_EVENTS,
-  OF_TUBES,
-  OF_THICK,
-  OF_COMPANY,
-  OF_SOLVENT,
-  OF_SRD,
-  OF_ANDERSENS,
-  OF_ANDERSEN,
-  OF_SPIN,
-  OF_OTHER_RULE,
-  OF_PERIODIC_POINTS,
-  OF_CELLS,
-  OF_FLOW,
-  OF_BETWEEN_WALLS,
-  OF_OSCILLATION,
-  OF_WALLS,
-  OF_SHEAR,
-  OF_WAVE,
-  OF_LAYERS,
-  OF_HOMOGENEOUS,
-  OF_WALL_POINTS,
-  OF_SHEAR_POINTS,
-  OF_DUMBBELLS,
-  OF_PERIODIC_DUMBBELLS,
-  OF_WALL_DUMBBELLS,
-  OF_SHEAR_DUMBBELLS,
-  OF_MOVING,
-  OF_STREAM,
-  OF_MEDIUM,
-  OF_PRIVATE,
-  OF_PAIRS,
-  OF_REPULSION,
-  OF_CROWD,
-  OF_OVERDAMPED,
-  OF_TENSOR,
-  ORACLE_SCENES
+#define SCENES(name, words, condition) name,
+#include "oracle/scenes_list.h"
+#undef SCENES
 };
 bool oracle_scene_is(enum oracle_scenes scenes, const struct model *model);
 const char *oracle_scenes_words(enum oracle_scenes scenes);

@@ -3,102 +3,16 @@
 A pack is {(operator, step): {table: array of [rows, columns]}}; names of tables begin with `in.` or `out.`.
 """
 
+import json
+from pathlib import Path
+
 import h5py
 import numpy as np
 
-# Columns of tables, by name and by operator and name; x y z where nothing is said.
-COLUMNS = {
-    "word": "0 1 2 3",
-    "uniform": "0 1",
-    "normal": "first second",
-    "load": "members mass",
-    "relative": "energy",
-    "factor": "factor",
-    "active": "active",
-    "event": "vertex moving standing image_x image_y image_z executed",
-    "hit": "time s s_standing normal_x normal_y normal_z momentum",
-}
-COLUMNS |= {
-    "step": "step",  # of an operator without other inputs
-    "time": "dt",
-    "solvent_cell": "cell",
-    "vertex_cell": "cell",
-    "order": "vertex",
-    "crosses": "crosses",
-    "flip": "flip",
-    "mass": "moving pivot a b",
-    "contact": "s s_standing",
-    "box": "x y z",
-    "numbers": "seed_low seed_high particles interval forbidden exclusion_paper",
-    "reals": "time_step cosine sine acceleration_x acceleration_y acceleration_z",
-    "chain": "next prev fiber",
-    "run": "steps scheme thermostat hydrodynamics",
-    "counters": "step lag",
-    "switches": "version crossing exclusion collision thermostat order swap boundary dumbbells medium repulsion thick",
-    "tick": "tick",
-    "tau": "tau",
-    "answer": "answer",
-    "rule": "event_driven",
-    "collision": "rule",
-    "boundary": "kind slip fill intervals early",
-    "flow": "per_cell rate",
-    "wave": "cosine",
-    "interval": "interval",
-    "half_steps": "half_steps",
-    "flight": "lower_x lower_y lower_z upper_x upper_y upper_z",
-    "end": "lower_x lower_y lower_z upper_x upper_y upper_z",
-    "filled": "number x y z",
-    "rate": "rate",
-    "offset": "offset",
-    "speed": "speed",
-    "change": "rate",
-    "dumbbells": "number",
-    "spring": "spring frequency depth range",
-    "begin": "offset",
-    "second": "xx yy zz yz zx xy",
-    "medium": "kind draw weight tensor second",
-    "pair": "first second",
-    "crowd": "crowd",
-    "tensor": "entry",
-    "root": "entry",
-}
-COLUMNS_AT = {
-    ("swap", "out.order"): "particle",
-    ("permutation", "out.order"): "entry",
-    ("bin", "out.solvent"): "cell",
-    ("bin", "out.vertex"): "cell",
-    ("wall_bin", "out.solvent"): "cell",
-    ("crossing", "out.hit"): "time s s_standing normal_x normal_y normal_z",
-    ("exchange", "out.momentum"): "momentum",
-    ("exchange", "in.normal"): "x y z",
-    ("random", "in.address"): "purpose draw step entity",
-    ("permutation", "in.address"): "purpose draw step size",
-    ("contact_search", "in.from"): "tick",
-    ("tube_search", "in.from"): "tick",
-    ("tube_search", "in.reach"): "reach",
-    ("tube_contact", "out.contact"): "s t",
-    ("tube_contact", "out.normal"): "x y z",
-    ("bead_search", "in.from"): "tick",
-    ("bead_search", "in.reach"): "reach",
-    ("bead_contact", "out.contact"): "s t",
-    ("bead_contact", "out.normal"): "x y z",
-    ("model", "in.tubes"): "radius blind",
-    ("impulse", "in.normal"): "x y z",
-    ("impulse", "in.mass"): "p0 p1 q0 q1",
-    ("impulse", "in.contact"): "s t",
-    ("impulse", "out.momentum"): "momentum",
-    ("pairs", "out.bath"): "loss noise",
-    ("pair_bath", "in.bath"): "loss noise",
-    ("model", "in.bath"): "rate radius repulsion between many_body many_body_range flow_x flow_y flow_z",
-    ("model", "in.vertex"): "mass bond_length spring bending force_x force_y force_z",
-}
-for drift in ("event_drift", "long_event_drift"):
-    COLUMNS_AT[drift, "in.time"] = "dt start"
-    COLUMNS_AT[drift, "out.event"] = "bond other image_x image_y image_z tick"
-    COLUMNS_AT[drift, "out.hit"] = "s t normal_x normal_y normal_z momentum"
-
-
-LARGEST = dict(zip(COLUMNS["switches"].split(), (2, 2, 1, 2, 3, 2, 1, 2, 1, 3, 1, 1)))  # values of switches that this port knows
+# Columns of tables by operator and name. tools/document-oracle writes the file, from the table of operators of uncross.
+SCHEMA = json.loads(Path(__file__).with_name("schema.json").read_text(encoding="ascii"))
+COLUMNS = {(operator["name"], table["name"]): " ".join(table["columns"]) for operator in SCHEMA["operators"] for table in operator["tables"]}
+LARGEST = dict(zip(COLUMNS["start", "in.switches"].split(), (2, 2, 1, 2, 3, 2, 1, 2, 1, 3, 1, 1)))  # values of switches that this port knows
 
 
 class Tables(dict):
@@ -109,10 +23,8 @@ class Tables(dict):
 
 
 def columns(operator, name):
-    """Names of the columns of a table, `in.` or `out.`, in the order in which this port has them."""
-    if name.startswith("bound."):
-        return "condition"
-    return COLUMNS_AT.get((operator, name)) or COLUMNS.get(name.partition(".")[2], "x y z")
+    """Names of the columns of a table, in the order in which this port has them. An operator without other inputs has a table `in.step`."""
+    return COLUMNS.get((operator, name)) or ("step" if name == "in.step" else "x y z")
 
 
 def refuse_unknown(switches):
