@@ -10,14 +10,14 @@
 #include "system/fault.h"
 #include "system/fluid.h"
 #include "system/model.h"
-#include "system/shear.h"
 #include "system/state.h"
+#include "wall/wall.h"
 
 /* What a drift's moves refer to: see contact/drift.h. */
 struct drift_frame {
-  double time, start;      /* t0: of the drift; from the middle of the step to its beginning */
-  struct vec3 velocity;    /* of the frame of the moves, a0/t0 */
-  struct vec3 wall[WALLS]; /* velocities of the walls, a0/t0 */
+  double time, start;    /* t0: of the drift; from the middle of the step to its beginning */
+  struct vec3 velocity;  /* of the frame of the moves, a0/t0 */
+  struct slit slit;      /* the walls */
   double image_speed;    /* along x, of the image beyond y = L relative to the box, a0/t0; 0: the box is not sheared */
   bool sheared;          /* moves are made in sheared coordinates; else the rest is not used */
   double strain, growth; /* at the end of the drift; by which it has grown in the drift */

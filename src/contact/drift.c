@@ -4,7 +4,6 @@
 
 #include "contact/rule.h"
 #include "contact/wall.h"
-#include "system/shear.h"
 
 enum { BLOCK = 64 }; /* vertices worked on at a time */
 
@@ -33,8 +32,7 @@ struct drift_frame drift_frame_now(const struct state *state, const struct model
   f.start = drift * f.time - 0.5 * model->time_step;
   const uint64_t now = state->solvent_time + state->solvent_lag;
   f.sheared = forbids && model_is_sheared(model);
-  f.wall[WALL_LOWER] = shear_wall_velocity(model, WALL_LOWER, shear_interval(model, now));
-  f.wall[WALL_UPPER] = shear_wall_velocity(model, WALL_UPPER, shear_interval(model, now));
+  f.slit = slit_during(model, shear_interval(model, now));
   if (!model_is_sheared(model))
     return f;
   const int64_t edge = model->box.edge[0], before = shear_offset(model, now),

@@ -3,12 +3,11 @@
 #include "base/memory.h"
 #include "contact/drift.h"
 #include "contact/impulse.h"
-#include "system/account.h"
 
 struct wall_meeting wall_meet(const struct box *box, struct point from, struct point to)
 {
   const enum wall wall = to.y < 0 ? WALL_LOWER : WALL_UPPER;
-  const int64_t height = wall == WALL_LOWER ? 0 : box->edge[1];
+  const int64_t height = wall_height(box, wall);
   const double part = (double)(height - from.y) / (double)(to.y - from.y);
   const struct vec3 d = vec3_scale(part, point_difference(to, from));
   struct point at = point_move(from, d);
@@ -23,33 +22,29 @@ struct point wall_inside(const struct box *box, struct point p)
 }
 
 /* The velocity after a hit. acceleration: F/M, a0/t0^2. Along y it rebounds as a contact does. */
-static struct vec3 after_hit(const struct model *model, enum wall wall, struct vec3 w, struct vec3 v,
-                             struct vec3 acceleration, double tau)
+static struct vec3 after_hit(const struct slit *slit, enum wall wall, struct vec3 v, struct vec3 acceleration,
+                             double tau)
 {
   const double into = wall == WALL_LOWER ? -1.0 : 1.0;
-  struct vec3 after = v;
+  struct slit ahead = *slit; /* as the leap-frog's velocity sees it */
+  ahead.wall[wall] = vec3_sub(slit->wall[wall], vec3_scale(tau, acceleration));
+  struct vec3 after = wall_reflect(&ahead, wall, v);
   after.y = -into * contact_rebound(into * v.y, into * tau * acceleration.y);
-  if (model->walls.kind == WALL_SLIP)
-    return after;
-  after.x = 2.0 * (w.x - tau * acceleration.x) - v.x;
-  after.z = 2.0 * (w.z - tau * acceleration.z) - v.z;
   return after;
 }
 
-/* Enters what a wall has given to a vertex. */
-static void enter(struct state *state, const struct model *model, enum wall wall, uint32_t i, struct vec3 before,
-                  struct vec3 after)
+/* Vertex i has this velocity after a hit. */
+static void rebound(struct state *state, const struct model *model, enum wall wall, uint32_t i, struct vec3 after)
 {
-  account_enter(account_of(state, ACCOUNT_HITS), wall, vec3_scale(model->mass[i], vec3_sub(after, before)));
+  wall_gives(account_of(state, ACCOUNT_HITS), wall, model->mass[i], state->velocity[i], after);
+  state->velocity[i] = after;
 }
 
 void wall_hit(struct state *state, const struct model *model, const struct drift_frame *frame, enum wall wall,
               uint32_t i, struct vec3 force, double tau)
 {
-  const struct vec3 before = state->velocity[i];
-  state->velocity[i] =
-      after_hit(model, wall, frame->wall[wall], before, vec3_scale(model->inverse_mass[i], force), tau);
-  enter(state, model, wall, i, before, state->velocity[i]);
+  const struct vec3 acceleration = vec3_scale(model->inverse_mass[i], force);
+  rebound(state, model, wall, i, after_hit(&frame->slit, wall, state->velocity[i], acceleration, tau));
 }
 
 /* --- free moves -------------------------------------------------------------------------------------------------- */
@@ -74,8 +69,8 @@ static struct wall_bounce bounce_of(const struct state *state, const struct mode
   const struct wall_meeting m = wall_meet(&model->box, state->position[i], to);
   const struct straight way = {state, f, m.part};
   const struct vec3 force = contact->force(model, i, place_on_way, &way);
-  const struct vec3 v = after_hit(model, m.wall, f->wall[m.wall], state->velocity[i],
-                                  vec3_scale(model->inverse_mass[i], force), f->start + m.part * f->time);
+  const struct vec3 v = after_hit(&f->slit, m.wall, state->velocity[i], vec3_scale(model->inverse_mass[i], force),
+                                  f->start + m.part * f->time);
   const struct vec3 rest = vec3_scale((1.0 - m.part) * f->time, vec3_sub(v, f->velocity));
   return (struct wall_bounce){i, m.wall, wall_inside(&model->box, point_move(m.at, rest)), v};
 }
@@ -101,8 +96,7 @@ void wall_answer_hits(struct state *state, const struct model *model, struct con
 {
   for (uint32_t k = 0; k < contact->bounces.count; k++) {
     const struct wall_bounce *h = &contact->bounces.at[k];
-    enter(state, model, h->wall, h->vertex, state->velocity[h->vertex], h->velocity);
-    state->velocity[h->vertex] = h->velocity;
+    rebound(state, model, h->wall, h->vertex, h->velocity);
     state->position[h->vertex] = h->end;
   }
 }

@@ -1,7 +1,7 @@
 /*
  * Vertices at walls (Padding 2009, Sec. III, "wall conditions"; walls: mpc/border_walls.c). A vertex that reaches a
  * wall leaves it with the velocity 2 w - v, w being that of the wall; at a slip wall only v_y is reversed. The momentum
- * that the wall gives is entered in its account (system/account.h), so that the balance of the whole box is exact.
+ * that the wall gives is entered in its account (wall/account.h), so that the balance of the whole box is exact.
  *
  * As at contacts of bonds (contact/impulse.h), what is reversed at a time tau from the middle of the step is not the
  * leap-frog's v but u = v + tau F/M, the velocity of that time. So a hit conserves the energy of the leap-frog to first
@@ -13,12 +13,6 @@
 #define UNCROSS_CONTACT_WALL_H
 
 #include "contact/contact.h"
-
-/* True if a height is beyond a wall. A place on a wall is not. */
-static inline bool wall_is_beyond(const struct box *box, int64_t y)
-{
-  return box->boundary[1] == BOUNDARY_WALL && (y < 0) | (y > box->edge[1]);
-}
 
 /* Where a straight move from a place between the walls, to one beyond, meets a wall. */
 struct wall_meeting {

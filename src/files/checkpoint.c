@@ -8,8 +8,8 @@
 #include <string.h>
 
 #include "files/structure.h"
-#include "system/account.h"
 #include "system/sound.h"
+#include "wall/account.h"
 
 /* --- the numbers, listed once for writing and reading ------------------------------------------------------------ */
 

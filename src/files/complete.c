@@ -5,8 +5,8 @@
 
 #include "base/text.h"
 #include "files/output.h"
-#include "system/shear.h"
 #include "version.h"
+#include "wall/motion.h"
 
 #define MOST_MEMORY ((uint64_t)1 << 28) /* bytes, of observers that are asked for their tables */
 

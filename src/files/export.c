@@ -10,7 +10,7 @@
 #include "files/export_format.h"
 #include "files/snapshot.h"
 #include "scene/scene.h"
-#include "system/shear.h"
+#include "wall/motion.h"
 
 static const struct export_format *const export_formats[] = {&export_xyz, &export_lammps, &export_lammps_dump,
                                                              &export_vtf};

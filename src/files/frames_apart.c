@@ -13,7 +13,7 @@
 #include "files/reader.h"
 #include "files/trajectory.h"
 #include "scene/scene.h"
-#include "system/shear.h"
+#include "wall/motion.h"
 
 #define LOST_NUMBER 2 /* verdicts that are sent are not negative */
 

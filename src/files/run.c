@@ -13,8 +13,8 @@
 #include "files/checkpoint.h"
 #include "files/folder.h"
 #include "files/same_run.h"
-#include "system/shear.h"
 #include "version.h"
+#include "wall/motion.h"
 
 /* --- how it starts ----------------------------------------------------------------------------------------------- */
 

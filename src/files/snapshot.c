@@ -11,7 +11,7 @@
 #include "scene/scene.h"
 #include "start/start.h"
 #include "system/bead.h"
-#include "system/shear.h"
+#include "wall/motion.h"
 
 /* Rows must be in the scene's order: vertices fiber by fiber, then solvent. */
 static bool in_order(const struct frames *frames, const struct model *model, const char *path, struct message *message)

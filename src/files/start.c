@@ -10,8 +10,8 @@
 #include "scene/scene.h"
 #include "start/fibers.h"
 #include "start/start.h"
-#include "system/shear.h"
 #include "system/sound.h"
+#include "wall/motion.h"
 
 /* --- what flows -------------------------------------------------------------------------------------------------- */
 

@@ -1,7 +1,7 @@
 #include "fluid/boundary.h"
 
 #include "system/bead.h"
-#include "system/shear.h"
+#include "wall/motion.h"
 
 static bool boundaries_move(const struct model *model)
 {

@@ -17,7 +17,7 @@ struct span {
   double time;              /* t0 */
   uint64_t begin;           /* half time steps since the start */
   uint64_t end;             /* half time steps since the start */
-  uint64_t interval;        /* number of the collision interval (system/shear.h) */
+  uint64_t interval;        /* number of the collision interval (wall/motion.h) */
   struct vec3 acceleration; /* constant, a0/t0^2 */
 };
 

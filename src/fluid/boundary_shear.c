@@ -3,10 +3,10 @@
  *
  * Particles fly freely in the laboratory frame. One that ends in image j along y is replaced by its image in the box:
  * y - j L, x - j Delta, v_x - j rate L. Delta says how far the image beyond y = L has slid at the end of the flight. It
- * is a whole number of lattice units (system/shear.h), so positions are exact at all times.
+ * is a whole number of lattice units (wall/motion.h), so positions are exact at all times.
  */
 #include "fluid/boundary.h"
-#include "system/shear.h"
+#include "wall/motion.h"
 
 struct slide boundary_slide(const struct model *model, uint64_t half_steps, uint64_t interval)
 {

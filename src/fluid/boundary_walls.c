@@ -12,24 +12,19 @@
 #include <stdlib.h>
 
 #include "fluid/boundary.h"
-#include "system/account.h"
-#include "system/shear.h"
+#include "wall/wall.h"
 
 /* What flights between walls have in common. */
-struct slit {
-  const struct model *model;
+struct flight {
+  const struct box *box;
   const struct span *span;
-  struct vec3 wall[WALLS]; /* velocities, a0/t0 */
-  struct account account;  /* of hits */
+  struct slit slit;
+  struct account account; /* of hits */
 };
 
-static struct slit slit_of(const struct model *model, const struct span *span, struct account account)
+static struct flight flight_of(const struct model *model, const struct span *span, struct account account)
 {
-  return (struct slit){
-      model,
-      span,
-      {shear_wall_velocity(model, WALL_LOWER, span->interval), shear_wall_velocity(model, WALL_UPPER, span->interval)},
-      account};
+  return (struct flight){&model->box, span, slit_during(model, span->interval), account};
 }
 
 /* A particle on its way: between two hits its velocity is sign v + change, v that at the start of the flight. */
@@ -40,44 +35,39 @@ struct way {
 };
 
 /* A time without hits. */
-static void go_on(struct way *way, const struct slit *slit, double time)
+static void go_on(struct way *way, const struct flight *f, double time)
 {
-  const struct vec3 a = slit->span->acceleration;
+  const struct vec3 a = f->span->acceleration;
   way->moved = vec3_add_scaled(vec3_add_scaled(way->moved, time, way->change), 0.5 * time * time, a);
   way->change = vec3_add_scaled(way->change, time, a);
 }
 
-static void hit_no_slip(struct way *way, const struct slit *slit, enum wall wall, struct vec3 v)
+static void hit(struct way *way, const struct flight *f, enum wall wall, struct vec3 v)
 {
-  const struct vec3 w = slit->wall[wall], before = vec3_add_scaled(way->change, way->sign, v);
-  account_enter(slit->account, wall, vec3_scale(2.0, vec3_sub(w, before)));
-  way->change = vec3_sub(vec3_scale(2.0, w), way->change);
-  way->sign = -way->sign;
-}
-
-static void hit_slip(struct way *way, const struct slit *slit, enum wall wall, struct vec3 v)
-{
-  account_enter(slit->account, wall, (struct vec3){0.0, -2.0 * way->sign * v.y, 0.0});
+  const struct vec3 before = vec3_add_scaled(way->change, way->sign, v);
+  const struct vec3 half =
+      f->slit.kind == WALL_SLIP ? (struct vec3){0.0, -before.y, 0.0} : vec3_sub(f->slit.wall[wall], before);
+  account_enter(f->account, wall, vec3_scale(2.0, half));
+  way->change = wall_reflect(&f->slit, wall, way->change);
   way->sign = -way->sign;
 }
 
 /* Flies from wall to wall for a displacement of d lattice units along y, not 0. Returns y at the end. */
-static int64_t follow(struct way *way, const struct slit *slit, int64_t y, int64_t d, struct vec3 v)
+static int64_t follow(struct way *way, const struct flight *f, int64_t y, int64_t d, struct vec3 v)
 {
-  const int64_t edge = slit->model->box.edge[1];
-  const bool slip = slit->model->walls.kind == WALL_SLIP;
-  const double per_unit = slit->span->time / (double)llabs(d);
+  const int64_t edge = f->box->edge[1];
+  const double per_unit = f->span->time / (double)llabs(d);
   bool down = d < 0;
   int64_t left = llabs(d);
   for (int64_t reach = down ? y : edge - y; left > reach; reach = edge) {
     const enum wall wall = down ? WALL_LOWER : WALL_UPPER;
-    go_on(way, slit, per_unit * (double)reach);
-    (slip ? hit_slip : hit_no_slip)(way, slit, wall, v);
+    go_on(way, f, per_unit * (double)reach);
+    hit(way, f, wall, v);
     left -= reach;
-    y = down ? 0 : edge;
+    y = wall_height(f->box, wall);
     down = !down;
   }
-  go_on(way, slit, per_unit * (double)left);
+  go_on(way, f, per_unit * (double)left);
   return down ? y - left : y + left;
 }
 
@@ -92,37 +82,37 @@ static double beyond_range(struct vec3 move)
 }
 
 /* A flight along an axis without walls. */
-static void fly_along(const struct slit *slit, int axis, double a, int64_t *x, double *v)
+static void fly_along(const struct flight *f, int axis, double a, int64_t *x, double *v)
 {
-  *x = lattice_fold(*x + boundary_flight(*v, a, slit->span->time), slit->model->box.edge[axis]);
-  *v += a * slit->span->time;
+  *x = lattice_fold(*x + boundary_flight(*v, a, f->span->time), f->box->edge[axis]);
+  *v += a * f->span->time;
 }
 
-static void fly_freely(const struct slit *slit, struct point *x, struct vec3 *v)
+static void fly_freely(const struct flight *f, struct point *x, struct vec3 *v)
 {
-  fly_along(slit, 0, slit->span->acceleration.x, &x->x, &v->x);
-  fly_along(slit, 2, slit->span->acceleration.z, &x->z, &v->z);
+  fly_along(f, 0, f->span->acceleration.x, &x->x, &v->x);
+  fly_along(f, 2, f->span->acceleration.z, &x->z, &v->z);
 }
 
 /* The flight of a particle that hits a wall; d: as for follow. Returns beyond_range of its displacement, and leaves it
  * where it is if that is not 0. */
-static double rebound(const struct slit *slit, int64_t d, struct point *x, struct vec3 *v)
+static double rebound(const struct flight *f, int64_t d, struct point *x, struct vec3 *v)
 {
-  const double t = slit->span->time;
-  const int64_t *edge = slit->model->box.edge;
+  const double t = f->span->time;
+  const int64_t *edge = f->box->edge;
   struct way way = {.sign = 1.0};
   double beyond = beyond_range(vec3_scale(t, *v));
   if (beyond != 0.0)
     return beyond;
-  const int64_t y = follow(&way, slit, x->y, d, *v);
+  const int64_t y = follow(&way, f, x->y, d, *v);
   const double ahead = t * ((double)(y - x->y) / (double)d); /* the time in which it goes ahead, less that back */
   const struct vec3 move = {v->x * ahead + way.moved.x, 0.0, v->z * ahead + way.moved.z};
   beyond = beyond_range(move);
   if (beyond != 0.0)
     return beyond;
   x->y = y;
-  if (slit->model->walls.kind == WALL_SLIP) {
-    fly_freely(slit, x, v);
+  if (f->slit.kind == WALL_SLIP) {
+    fly_freely(f, x, v);
     v->y *= way.sign;
     return 0.0;
   }
@@ -171,12 +161,13 @@ struct end {
 };
 
 /* Those that have hit a wall fly on their own, from where they were before the block flies along x and z. */
-static bool fly_block(struct state *state, const struct slit *slit, uint32_t first, uint32_t n, struct fault *fault)
+static bool fly_block(struct state *state, const struct model *model, const struct flight *f, uint32_t first,
+                      uint32_t n, struct fault *fault)
 {
   struct solvent *s = &state->solvent;
-  const double t = slit->span->time;
-  const struct vec3 a = slit->span->acceleration;
-  const int64_t *edge = slit->model->box.edge;
+  const double t = f->span->time;
+  const struct vec3 a = f->span->acceleration;
+  const int64_t *edge = f->box->edge;
   uint32_t outside[BOUNDARY_BLOCK];
   struct end end[BOUNDARY_BLOCK];
   const uint32_t hits = fly_across(n, &s->y[first], &s->vy[first], t, edge[1], outside);
@@ -184,14 +175,14 @@ static bool fly_block(struct state *state, const struct slit *slit, uint32_t fir
     const uint32_t i = first + outside[k];
     const int64_t back = (int64_t)((uint64_t)s->y[i] - (uint64_t)boundary_flight(s->vy[i], 0.0, t));
     end[k] = (struct end){{s->x[i], back, s->z[i]}, solvent_velocity(s, i)};
-    const double beyond = rebound(slit, s->y[i] - back, &end[k].x, &end[k].v);
+    const double beyond = rebound(f, s->y[i] - back, &end[k].x, &end[k].v);
     if (beyond != 0.0)
       return fault_record(fault, FAULT_SOLVENT_MOVE, state->step + 1, s->id[i], beyond, LATTICE_MAX_MOVE);
   }
   int64_t far = boundary_fly_periodic(n, &s->x[first], &s->vx[first], t, a.x, edge[0]);
   far |= boundary_fly_periodic(n, &s->z[first], &s->vz[first], t, a.z, edge[2]);
-  if (far < 0 && !(boundary_fold(state, slit->model, 0, t, first, n, fault) &&
-                   boundary_fold(state, slit->model, 2, t, first, n, fault)))
+  if (far < 0 &&
+      !(boundary_fold(state, model, 0, t, first, n, fault) && boundary_fold(state, model, 2, t, first, n, fault)))
     return false;
   for (uint32_t k = 0; k < hits; k++) {
     const uint32_t i = first + outside[k];
@@ -205,23 +196,23 @@ static bool fly_block(struct state *state, const struct slit *slit, uint32_t fir
 static bool fly_walls(struct state *state, const struct model *model, const struct span *span, uint32_t first,
                       uint32_t n, struct fault *fault)
 {
-  const struct slit slit = slit_of(model, span, account_of(state, ACCOUNT_HITS));
+  const struct flight f = flight_of(model, span, account_of(state, ACCOUNT_HITS));
   bool ok = true;
   for (uint32_t i = 0; ok && i < n; i += BOUNDARY_BLOCK)
-    ok = fly_block(state, &slit, first + i, boundary_block(n, i), fault);
+    ok = fly_block(state, model, &f, first + i, boundary_block(n, i), fault);
   return ok;
 }
 
 static void now_walls(const struct model *model, const struct span *span, struct point *x, struct vec3 *v)
 {
-  const struct slit slit = slit_of(model, span, (struct account){NULL, NULL});
+  const struct flight f = flight_of(model, span, (struct account){NULL, NULL});
   const int64_t d = boundary_flight(v->y, 0.0, span->time), y = (int64_t)((uint64_t)x->y + (uint64_t)d);
-  if (y < 0 || y > model->box.edge[1]) {
-    rebound(&slit, d, x, v);
+  if (wall_is_beyond(&model->box, y)) {
+    rebound(&f, d, x, v);
     return;
   }
   x->y = y;
-  fly_freely(&slit, x, v);
+  fly_freely(&f, x, v);
 }
 
 const struct boundary boundary_walls = {"walls", fly_walls, now_walls};

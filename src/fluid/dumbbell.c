@@ -1,7 +1,7 @@
 /* Flights of dumbbells in boxes that are periodic or sheared. */
 #include "fluid/dumbbell.h"
 
-#include "system/shear.h"
+#include "wall/motion.h"
 
 struct pairs pairs_of(const struct state *state, uint32_t first, uint32_t n)
 {

@@ -12,8 +12,8 @@
 
 #include "base/elementary.h"
 #include "fluid/boundary.h"
-#include "system/account.h"
 #include "system/fluid.h"
+#include "wall/account.h"
 
 /* What the flights of all dumbbells for a time have in common. */
 struct swing {

@@ -12,8 +12,7 @@
  * so that the center's acceleration is constant there; passing its border is an event as a hit is.
  */
 #include "fluid/dumbbell.h"
-#include "system/account.h"
-#include "system/shear.h"
+#include "wall/wall.h"
 
 double dumbbell_wall_energy(const struct model *model, double y)
 {
@@ -23,30 +22,29 @@ double dumbbell_wall_energy(const struct model *model, double y)
 }
 
 /* What flights between walls have in common. */
-struct slit {
+struct flight {
   const struct model *model;
   const struct span *span;
   const struct swing *swing; /* of the whole span */
   double edge;               /* a0 */
   double reach, pull;        /* of the potential: a0; acceleration towards the wall, a0/t0^2 */
-  struct vec3 wall[WALLS];   /* velocities, a0/t0 */
-  struct account account;    /* of hits */
+  struct slit slit;
+  struct account account; /* of hits */
 };
 
-static struct slit slit_of(const struct model *model, const struct span *span, const struct swing *swing,
-                           struct account account)
+static struct flight flight_of(const struct model *model, const struct span *span, const struct swing *swing,
+                               struct account account)
 {
   const struct dumbbell_model *d = &model->dumbbells;
   const double reach = d->depth != 0.0 ? d->range / sqrt(d->spring) : 0.0;
-  return (struct slit){
-      model,
-      span,
-      swing,
-      model->box.cells[1],
-      reach,
-      reach > 0.0 ? 0.5 * d->depth / reach : 0.0, /* a dumbbell has the mass 2 */
-      {shear_wall_velocity(model, WALL_LOWER, span->interval), shear_wall_velocity(model, WALL_UPPER, span->interval)},
-      account};
+  return (struct flight){model,
+                         span,
+                         swing,
+                         model->box.cells[1],
+                         reach,
+                         reach > 0.0 ? 0.5 * d->depth / reach : 0.0, /* a dumbbell has the mass 2 */
+                         slit_during(model, span->interval),
+                         account};
 }
 
 /* One dumbbell. */
@@ -83,9 +81,9 @@ struct course {
   double most; /* M: the largest acceleration of a particle */
 };
 
-static struct course course_of(const struct slit *slit, const struct couple *c, double acceleration)
+static struct course course_of(const struct flight *f, const struct couple *c, double acceleration)
 {
-  const double w = slit->model->dumbbells.frequency, r = (double)c->apart[1] * LATTICE_UNIT;
+  const double w = f->model->dumbbells.frequency, r = (double)c->apart[1] * LATTICE_UNIT;
   const double u = c->v[1][0] - c->v[1][1];
   return (struct course){0.5 * ((double)c->at[1][0] + (double)c->at[1][1]) * LATTICE_UNIT,
                          0.5 * (c->v[1][0] + c->v[1][1]),
@@ -97,7 +95,7 @@ static struct course course_of(const struct slit *slit, const struct couple *c, 
 }
 
 /* Height of particle i above a wall, and its rate, at a time. */
-static void height(const struct course *c, const struct slit *slit, int i, enum wall wall, double t, double *f,
+static void height(const struct course *c, const struct flight *f, int i, enum wall wall, double t, double *height,
                    double *rate)
 {
   const struct swing s = swing_for(c->frequency, t);
@@ -105,23 +103,23 @@ static void height(const struct course *c, const struct slit *slit, int i, enum 
   const double half = (0.5 + s.return_r) * c->r + s.advance_u * c->u, half_rate = s.pull_r * c->r + s.keep_u * c->u;
   const double y = c->middle + c->velocity * t + 0.5 * a * t * t + sign * half;
   const double v = c->velocity + a * t + sign * half_rate;
-  *f = wall == WALL_LOWER ? y : slit->edge - y;
+  *height = wall == WALL_LOWER ? y : f->edge - y;
   *rate = wall == WALL_LOWER ? v : -v;
 }
 
 /* The first time up to `left` at which particle i reaches the wall; `left` if it does not. */
-static double time_of_hit(const struct course *c, const struct slit *slit, int i, enum wall wall, double left)
+static double time_of_hit(const struct course *c, const struct flight *f, int i, enum wall wall, double left)
 {
   const double least = 0x1p-44 * left; /* where height and rate are 0 */
   double t = 0.0;
   while (t < left) {
-    double f, rate;
-    height(c, slit, i, wall, t, &f, &rate);
-    if (f <= LATTICE_UNIT && rate < 0.0)
+    double above, rate;
+    height(c, f, i, wall, t, &above, &rate);
+    if (above <= LATTICE_UNIT && rate < 0.0)
       return t;
-    f = fmax(f, 0.0);
-    const double root = sqrt(rate * rate + 2.0 * c->most * f);
-    const double free = rate < 0.0 ? 2.0 * f / (root - rate) : c->most > 0.0 ? (rate + root) / c->most : left;
+    above = fmax(above, 0.0);
+    const double root = sqrt(rate * rate + 2.0 * c->most * above);
+    const double free = rate < 0.0 ? 2.0 * above / (root - rate) : c->most > 0.0 ? (rate + root) / c->most : left;
     t += fmax(free, least);
   }
   return left;
@@ -132,32 +130,32 @@ static double time_of_hit(const struct course *c, const struct slit *slit, int i
 /* Where the center is, as the potential of the walls sees it. */
 enum region { NEAR_LOWER, BETWEEN, NEAR_UPPER };
 
-static enum region region_of(const struct slit *slit, double middle)
+static enum region region_of(const struct flight *f, double middle)
 {
-  return middle < slit->reach ? NEAR_LOWER : middle > slit->edge - slit->reach ? NEAR_UPPER : BETWEEN;
+  return middle < f->reach ? NEAR_LOWER : middle > f->edge - f->reach ? NEAR_UPPER : BETWEEN;
 }
 
-static double acceleration_in(const struct slit *slit, enum region region)
+static double acceleration_in(const struct flight *f, enum region region)
 {
-  return region == NEAR_LOWER ? -slit->pull : region == NEAR_UPPER ? slit->pull : 0.0;
+  return region == NEAR_LOWER ? -f->pull : region == NEAR_UPPER ? f->pull : 0.0;
 }
 
 /* Time in which the center leaves the region, at least 0, and the region after it; `left` if it does not. */
-static double time_of_exit(const struct slit *slit, const struct course *c, enum region *region, double left)
+static double time_of_exit(const struct flight *f, const struct course *c, enum region *region, double left)
 {
-  if (slit->reach == 0.0)
+  if (f->reach == 0.0)
     return left;
   double t = left;
   enum region next = BETWEEN;
   if (*region == BETWEEN) {
     next = c->velocity < 0.0 ? NEAR_LOWER : NEAR_UPPER;
-    const double border = c->velocity < 0.0 ? slit->reach : slit->edge - slit->reach;
+    const double border = c->velocity < 0.0 ? f->reach : f->edge - f->reach;
     t = c->velocity != 0.0 ? (border - c->middle) / c->velocity : left;
   } else {
     const bool lower = *region == NEAR_LOWER;
     const double away = lower ? c->velocity : -c->velocity;
-    const double to_go = slit->reach - (lower ? c->middle : slit->edge - c->middle);
-    const double square = away * away - 2.0 * slit->pull * to_go;
+    const double to_go = f->reach - (lower ? c->middle : f->edge - c->middle);
+    const double square = away * away - 2.0 * f->pull * to_go;
     t = away > 0.0 && square >= 0.0 ? 2.0 * to_go / (away + sqrt(square)) : left;
   }
   if (!(t < left))
@@ -166,23 +164,20 @@ static double time_of_exit(const struct slit *slit, const struct course *c, enum
   return fmax(t, 0.0);
 }
 
-static void hit(const struct slit *slit, struct couple *c, int i, enum wall wall)
+static void hit(const struct flight *f, struct couple *c, int i, enum wall wall)
 {
-  const struct vec3 w = slit->wall[wall], v = {c->v[0][i], c->v[1][i], c->v[2][i]};
-  const bool slip = slit->model->walls.kind == WALL_SLIP;
-  const struct vec3 after =
-      slip ? (struct vec3){v.x, -v.y, v.z} : (struct vec3){2.0 * w.x - v.x, -v.y, 2.0 * w.z - v.z};
-  account_enter(slit->account, wall, vec3_sub(after, v));
+  const struct vec3 v = {c->v[0][i], c->v[1][i], c->v[2][i]}, after = wall_reflect(&f->slit, wall, v);
+  wall_gives(f->account, wall, 1.0, v, after);
   c->v[0][i] = after.x, c->v[1][i] = after.y, c->v[2][i] = after.z;
-  c->at[1][i] = wall == WALL_LOWER ? 0 : slit->model->box.edge[1];
+  c->at[1][i] = wall_height(&f->model->box, wall);
   c->apart[1] = c->at[1][0] - c->at[1][1];
 }
 
 /* Both fly for a time without an event. Not 0 if that is out of range. */
-static int64_t go_on(const struct slit *slit, struct couple *c, double time, double acceleration)
+static int64_t go_on(const struct flight *f, struct couple *c, double time, double acceleration)
 {
-  const struct swing swing = time == slit->swing->time ? *slit->swing : swing_for(slit->swing->frequency, time);
-  const struct vec3 a = slit->span->acceleration;
+  const struct swing swing = time == f->swing->time ? *f->swing : swing_for(f->swing->frequency, time);
+  const struct vec3 a = f->span->acceleration;
   const struct pairs pairs = pairs_of_couple(c);
   return pairs_fly(&pairs, 0, &swing, a.x, 0) | pairs_fly(&pairs, 1, &swing, acceleration, 0) |
          pairs_fly(&pairs, 2, &swing, a.z, 0);
@@ -191,13 +186,13 @@ static int64_t go_on(const struct slit *slit, struct couple *c, double time, dou
 enum { MOST_EVENTS = 100000 }; /* of one dumbbell in one flight: more are no physics */
 
 /* Not 0 if the flight is out of range. */
-static int64_t follow(const struct slit *slit, struct couple *c)
+static int64_t follow(const struct flight *f, struct couple *c)
 {
-  double left = slit->span->time;
-  enum region region = region_of(slit, 0.5 * (double)(c->at[1][0] + c->at[1][1]) * LATTICE_UNIT);
+  double left = f->span->time;
+  enum region region = region_of(f, 0.5 * (double)(c->at[1][0] + c->at[1][1]) * LATTICE_UNIT);
   for (int events = 0; left > 0.0; events++) {
-    const double acceleration = acceleration_in(slit, region);
-    const struct course course = course_of(slit, c, acceleration);
+    const double acceleration = acceleration_in(f, region);
+    const struct course course = course_of(f, c, acceleration);
     if (events == MOST_EVENTS || !(fabs(course.velocity) * left + course.most * left * left < LATTICE_MAX_MOVE))
       return 1;
     double t = left;
@@ -205,25 +200,25 @@ static int64_t follow(const struct slit *slit, struct couple *c)
     enum wall wall = WALL_LOWER;
     for (int i = 0; i < 2; i++)
       for (int k = 0; k < WALLS; k++) {
-        const double at = time_of_hit(&course, slit, i, (enum wall)k, t);
+        const double at = time_of_hit(&course, f, i, (enum wall)k, t);
         if (at < t)
           t = at, who = i, wall = (enum wall)k;
       }
     enum region next = region;
-    const double exit = time_of_exit(slit, &course, &next, t);
+    const double exit = time_of_exit(f, &course, &next, t);
     if (exit < t)
       t = exit, who = -1, region = next;
-    if (go_on(slit, c, t, acceleration))
+    if (go_on(f, c, t, acceleration))
       return 1;
     if (acceleration != 0.0)
-      account_enter(slit->account, acceleration < 0.0 ? WALL_LOWER : WALL_UPPER,
+      account_enter(f->account, acceleration < 0.0 ? WALL_LOWER : WALL_UPPER,
                     (struct vec3){0.0, 2.0 * acceleration * t, 0.0});
     if (who >= 0)
-      hit(slit, c, who, wall);
+      hit(f, c, who, wall);
     left -= t;
   }
   for (int i = 0; i < 2; i++)
-    c->at[1][i] = box_inside(&slit->model->box, 1, c->at[1][i]); /* rounding leaves it outside by a lattice unit */
+    c->at[1][i] = box_inside(&f->model->box, 1, c->at[1][i]); /* rounding leaves it outside by a lattice unit */
   c->apart[1] = c->at[1][0] - c->at[1][1];
   return 0;
 }
@@ -233,18 +228,18 @@ static int64_t follow(const struct slit *slit, struct couple *c)
 enum { BLOCK = 128 };
 
 /* May an event happen to a dumbbell? Numbers of those of n where one may; more of them than do. */
-static uint32_t find_near(const struct pairs *pairs, const struct slit *slit, uint32_t near[BLOCK])
+static uint32_t find_near(const struct pairs *pairs, const struct flight *f, uint32_t near[BLOCK])
 {
-  const double margin = 1e-6, t = slit->span->time, per = 1.0 / slit->swing->frequency;
+  const double margin = 1e-6, t = f->span->time, per = 1.0 / f->swing->frequency;
   const int64_t *y = pairs->at[1], *apart = pairs->apart[1];
   const double *v = pairs->v[1];
   int64_t far[BLOCK]; /* 1: nothing can happen */
   for (size_t p = 0; p < pairs->n; p++) {
     const double r = pairs_real(apart[p]) * LATTICE_UNIT, u = (v[2 * p] - v[2 * p + 1]) * per;
     const double middle = 0.5 * (pairs_real(y[2 * p]) + pairs_real(y[2 * p + 1])) * LATTICE_UNIT;
-    const double other = slit->edge - middle, near_wall = middle < other ? middle : other;
+    const double other = f->edge - middle, near_wall = middle < other ? middle : other;
     const double low = near_wall - fabs(0.5 * (v[2 * p] + v[2 * p + 1])) * t - margin;
-    far[p] = (low > slit->reach ? 1 : 0) & (low > 0.0 ? 1 : 0) & (4.0 * low * low > r * r + u * u ? 1 : 0);
+    far[p] = (low > f->reach ? 1 : 0) & (low > 0.0 ? 1 : 0) & (4.0 * low * low > r * r + u * u ? 1 : 0);
   }
   uint32_t count = 0;
   for (uint32_t p = 0; p < pairs->n; p++) {
@@ -255,21 +250,21 @@ static uint32_t find_near(const struct pairs *pairs, const struct slit *slit, ui
 }
 
 /* Those to which events happen fly on their own, from where they were before. */
-static int64_t fly_block(const struct pairs *pairs, const struct slit *slit)
+static int64_t fly_block(const struct pairs *pairs, const struct flight *f)
 {
-  const struct box *box = &slit->model->box;
-  const struct vec3 a = slit->span->acceleration;
+  const struct box *box = &f->model->box;
+  const struct vec3 a = f->span->acceleration;
   uint32_t near[BLOCK];
   struct couple couple[BLOCK];
-  const uint32_t count = find_near(pairs, slit, near);
+  const uint32_t count = find_near(pairs, f, near);
   int64_t far = 0;
   for (uint32_t k = 0; k < count; k++) {
     couple[k] = couple_at(pairs, near[k]);
-    far |= follow(slit, &couple[k]);
+    far |= follow(f, &couple[k]);
   }
-  far |= pairs_fly(pairs, 0, slit->swing, a.x, box->edge[0]);
-  far |= pairs_fly(pairs, 1, slit->swing, 0.0, 0);
-  far |= pairs_fly(pairs, 2, slit->swing, a.z, box->edge[2]);
+  far |= pairs_fly(pairs, 0, f->swing, a.x, box->edge[0]);
+  far |= pairs_fly(pairs, 1, f->swing, 0.0, 0);
+  far |= pairs_fly(pairs, 2, f->swing, a.z, box->edge[2]);
   for (uint32_t k = 0; k < count; k++)
     for (int axis = 0; axis < 3; axis++) {
       pairs->apart[axis][near[k]] = couple[k].apart[axis];
@@ -285,14 +280,14 @@ static int64_t fly_block(const struct pairs *pairs, const struct slit *slit)
 static int64_t fly_walls(const struct pairs *pairs, const struct model *model, const struct span *span,
                          const struct swing *swing, struct account account)
 {
-  const struct slit slit = slit_of(model, span, swing, account);
+  const struct flight flight = flight_of(model, span, swing, account);
   int64_t far = 0;
   for (uint32_t p = 0; p < pairs->n && !far; p += BLOCK)
     far = fly_block(&(struct pairs){pairs->n - p < BLOCK ? pairs->n - p : BLOCK,
                                     {pairs->at[0] + 2 * p, pairs->at[1] + 2 * p, pairs->at[2] + 2 * p},
                                     {pairs->v[0] + 2 * p, pairs->v[1] + 2 * p, pairs->v[2] + 2 * p},
                                     {pairs->apart[0] + p, pairs->apart[1] + p, pairs->apart[2] + p}},
-                    &slit);
+                    &flight);
   return far;
 }
 

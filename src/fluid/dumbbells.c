@@ -5,7 +5,7 @@
 #include "base/normal.h"
 #include "fluid/dumbbell.h"
 #include "fluid/fluid.h"
-#include "system/account.h"
+#include "wall/account.h"
 
 /* --- start ------------------------------------------------------------------------------------------------------- */
 

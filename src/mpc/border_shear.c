@@ -6,7 +6,7 @@
  */
 #include "mpc/border.h"
 #include "mpc/grid.h"
-#include "system/shear.h"
+#include "wall/motion.h"
 
 /* How the next image along y differs, at the time of this collision: where it is, and how fast it was during the
  * interval that ends now. */

@@ -14,6 +14,7 @@
 #include "mpc/grid.h"
 #include "mpc/rule.h"
 #include "mpc/virtual.h"
+#include "wall/motion.h"
 
 enum { BLOCK = 64 }; /* cells worked on at a time */
 

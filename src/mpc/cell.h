@@ -14,7 +14,7 @@
 
 #include "base/random.h"
 #include "mpc/mpc.h"
-#include "system/account.h"
+#include "wall/account.h"
 
 #define CELL_MOMENTUM_SCALE ACCOUNT_SCALE /* momentum units per m a0/t0 */
 #define CELL_MOMENTUM_UNIT ACCOUNT_UNIT

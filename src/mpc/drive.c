@@ -2,7 +2,7 @@
 
 #include "base/elementary.h"
 #include "mpc/cell.h"
-#include "system/shear.h"
+#include "wall/motion.h"
 
 enum { BLOCK = 1024 }; /* particles worked on at a time */
 

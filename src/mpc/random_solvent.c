@@ -7,7 +7,7 @@
 #include "mpc/grid.h"
 #include "mpc/rule.h"
 #include "mpc/virtual.h"
-#include "system/shear.h"
+#include "wall/motion.h"
 
 /* The flow about which the phantoms of a cell are drawn; in a sheared box, that of the height of its middle. */
 static struct vec3 flow_of(const struct model *model, uint64_t step, uint32_t cell)

@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "mpc/border.h"
-#include "system/shear.h"
+#include "wall/motion.h"
 
 /* The flights that end: relative to the linear flow that the boundary asks for. */
 static struct flux_frame frame_of(const struct state *state, const struct model *model, const struct mpc *c)

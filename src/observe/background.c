@@ -1,7 +1,7 @@
 #include "observe/background.h"
 
-#include "system/shear.h"
 #include "theory/theory.h"
+#include "wall/motion.h"
 
 static bool sticks(const struct model *m)
 {

@@ -12,7 +12,7 @@
 #include "observe/background.h"
 #include "observe/observer.h"
 #include "system/bead.h"
-#include "system/shear.h"
+#include "wall/motion.h"
 
 #define LARGEST_VELOCITY 0x1p17
 

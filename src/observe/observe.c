@@ -148,7 +148,7 @@ static bool create(struct observers *observers, enum observable which, const str
     observers->contacts = (struct contact_log){show_contact, observers};
   add_block(observers, observable_names[which], "reals", false, o->size.reals, o->real);
   add_block(observers, observable_names[which], "integers", true, o->size.integers, o->integer)->wraps =
-      which == OBSERVE_STRESS; /* sums that wrap: system/account.h */
+      which == OBSERVE_STRESS; /* sums that wrap: wall/account.h */
   struct observe_block *later = add_block(observers, observable_names[which], "later", false, o->size.later, o->later);
   if (later)
     later->later = true;

@@ -1,7 +1,7 @@
 /*
  * The stress of the solvent, averaged over the collisions since the row before (mpc/stress.h); that of fibers at the
  * step of the row; that of contacts of thick fibers since the row before (observe/handed_on.h); and the stress on
- * walls, from the momentum that they have given since the row before (system/account.h).
+ * walls, from the momentum that they have given since the row before (wall/account.h).
  *
  * Fibers: -(1/volume) sum of M w_a w_b + F_a r_b, w being the velocity of a vertex relative to the applied flow, F the
  * force of its bonds and bends, and r its place. These forces have no sum within a fiber, so the origin does not
@@ -15,7 +15,7 @@
 #include "observe/background.h"
 #include "observe/handed_on.h"
 #include "observe/observer.h"
-#include "system/account.h"
+#include "wall/account.h"
 
 enum { ROWS = WALLS * ACCOUNT_SHARES };
 enum { MARK, LAST_STEP, LAST_ACCOUNT, LAST_TURNS = LAST_ACCOUNT + ROWS, INTEGERS = LAST_TURNS + ROWS };

@@ -4,8 +4,8 @@
 
 #include "oracle/pack.h"
 #include "system/model.h"
-#include "system/shear.h"
 #include "system/state.h"
+#include "wall/motion.h"
 #include "work.h"
 
 struct oracle_company;

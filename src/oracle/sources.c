@@ -7,7 +7,7 @@
 #include "mpc/rules/spin.h"
 #include "mpc/rules/srd.h"
 #include "oracle/rows.h"
-#include "system/account.h"
+#include "wall/account.h"
 
 /* --- what rows are ----------------------------------------------------------------------------------------------- */
 

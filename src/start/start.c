@@ -6,7 +6,7 @@
 #include "medium/repulsion.h"
 #include "start/fibers.h"
 #include "system/bead.h"
-#include "system/shear.h"
+#include "wall/motion.h"
 
 struct vec3 start_conserved_axes(const struct model *model)
 {

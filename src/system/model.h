@@ -67,6 +67,8 @@ enum force_profile {
   PROFILES
 };
 
+enum wall { WALL_LOWER, WALL_UPPER, WALLS };
+
 /* What a wall does to a particle that hits it: its velocity relative to the wall is reversed, or only its component
  * normal to the wall. */
 enum wall_kind { WALL_ABSENT, WALL_NO_SLIP, WALL_SLIP, WALL_KINDS };

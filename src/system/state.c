@@ -6,7 +6,6 @@
 #include <xxhash.h>
 
 #include "base/memory.h"
-#include "system/account.h"
 
 bool state_alloc(struct state *s, const struct model *model)
 {

@@ -76,7 +76,7 @@ struct state {
   struct vec3 *velocity;  /* [vertices] a0/t0, of the half step ahead */
   struct collision_counts counts;
   uint32_t wall_rows;          /* 4 between walls, else 0 */
-  struct point *wall_momentum; /* [wall_rows] the account of the walls: system/account.h */
+  struct point *wall_momentum; /* [wall_rows] the account of the walls: wall/account.h */
   uint64_t wall_turns[4];      /* how often the x of each has wrapped */
   uint32_t beads;              /* 0 or 1 */
   struct bead *bead;

@@ -6,7 +6,7 @@
 #include "contact/takeoff.h"
 #include "fiber/force.h"
 #include "statistics.h"
-#include "system/account.h"
+#include "wall/account.h"
 
 /* --- links ------------------------------------------------------------------------------------------------------- */
 

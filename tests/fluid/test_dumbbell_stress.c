@@ -9,7 +9,7 @@
 #include "fluid/fluid.h"
 #include "mpc/stress.h"
 #include "statistics.h"
-#include "system/account.h"
+#include "wall/account.h"
 
 /* Columns of stress with dumbbells. */
 #define XY "sigma_xy"

@@ -9,9 +9,9 @@
 #include "fluid/dumbbell.h"
 #include "fluid/fluid.h"
 #include "statistics.h"
-#include "system/account.h"
-#include "system/shear.h"
 #include "system/sound.h"
+#include "wall/account.h"
+#include "wall/motion.h"
 
 static struct model fluid_model(double spring, double dt)
 {

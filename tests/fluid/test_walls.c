@@ -7,7 +7,7 @@
 #include "exact.h"
 #include "fluid/boundary.h"
 #include "fluid/fluid.h"
-#include "system/account.h"
+#include "wall/account.h"
 
 static struct model slit_model(struct dice *d, enum wall_kind kind, bool moving, bool driven)
 {

@@ -10,7 +10,7 @@
 #include "mpc/rule.h"
 #include "statistics.h"
 #include "support.h"
-#include "system/shear.h"
+#include "wall/motion.h"
 
 /* A sheared solvent: the paper's gamma, one step between collisions. */
 static struct model sheared(int lx, int ly, int lz, double dt, double rate)

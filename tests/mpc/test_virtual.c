@@ -11,7 +11,7 @@
 #include "mpc/collide.h"
 #include "mpc/rule.h"
 #include "mpc/virtual.h"
-#include "system/account.h"
+#include "wall/account.h"
 
 static struct model walls_model(int lx, int ly, int lz, double per_cell, enum rule rule, enum wall_fill fill)
 {

@@ -8,8 +8,8 @@
 #include "../../validation/measure/green_kubo.h"
 #include "fluid/fluid.h"
 #include "mpc/stress.h"
-#include "system/account.h"
 #include "theory/theory.h"
+#include "wall/account.h"
 
 /* Columns of stress. */
 #define XY "sigma_xy"

@@ -1,10 +1,10 @@
 /*
- * Times of collisions, rates and velocities of boundaries, and how far a sheared image has slid (system/shear.h),
+ * Times of collisions, rates and velocities of boundaries, and how far a sheared image has slid (wall/motion.h),
  * against plain sums over half time steps and products in 128 bits.
  */
 #include "exact.h"
 #include "support.h"
-#include "system/shear.h"
+#include "wall/motion.h"
 
 __extension__ typedef __int128 wide;
 

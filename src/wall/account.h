@@ -4,12 +4,11 @@
  * cell's momentum (mpc/cell.h), so that it does not depend on the order of particles. Sums wrap, at 2^19 m a0/t0. Along
  * x, the direction of the shear stress, it is counted how often, so that differences between any two times are right.
  */
-#ifndef UNCROSS_SYSTEM_ACCOUNT_H
-#define UNCROSS_SYSTEM_ACCOUNT_H
+#ifndef UNCROSS_WALL_ACCOUNT_H
+#define UNCROSS_WALL_ACCOUNT_H
 
 #include <math.h>
 
-#include "system/shear.h"
 #include "system/state.h"
 
 #define ACCOUNT_SCALE 0x1p44 /* momentum units per m a0/t0 */
