@@ -5,6 +5,7 @@ import io
 import json
 import math
 import pathlib
+import random
 import sys
 import tempfile
 import types
@@ -12,6 +13,7 @@ import unittest
 import unittest.mock
 import xml.etree.ElementTree as xml
 
+import numpy
 from matplotlib import pyplot
 
 sys.dont_write_bytecode = True
@@ -95,6 +97,23 @@ class Verdicts(unittest.TestCase):
             self.assertEqual((verdict.verdict, verdict.allowed, verdict.covered), ("within allowance" if covered else "pass", 0.2, covered))
         few = cases.Verdict("a.b", "", 1.0, "", stats.tolerance(0.01, values=5), measured=1.05, error=0.01)
         self.assertEqual((few.verdict, few.covered), ("pass", False))  # so few values explain it
+
+    def test_what_chance_hardly_explains_wants_a_second_run(self):
+        for measured, systematic, second, word in (
+                (1.029, 0.0, None, "pass"), (1.035, 0.0, None, "undecided"), (1.045, 0.0, None, "fail"), (1.045, 0.0, (1.0, 0.01), "fail"),
+                (1.035, 0.0, (1.01, 0.01), "pass"), (1.035, 0.0, (1.035, 0.01), "fail"), (1.045, 0.02, None, "within allowance"),
+                (1.055, 0.02, None, "undecided"), (1.055, 0.02, (1.045, 0.01), "pass"), (1.055, 0.02, (1.055, 0.01), "fail")):
+            verdict = cases.Verdict("a.b", "", 1.0, "", stats.tolerance(0.01, systematic=systematic), measured=measured, error=0.01, second=second)
+            self.assertEqual(verdict.verdict, word, (measured, systematic, second))
+            row = report.verdict_row("a", verdict)
+            self.assertEqual([bad for bad in report.failures([row], "quick") if word != "fail"], [])
+
+    def test_power(self):
+        """By drawing: a value that is off by the power turns the verdict red 95 times in 100."""
+        draw, error = random.Random(5), 0.01
+        power = cases.Verdict("a.b", "", 1.0, "", stats.tolerance(error, systematic=0.02), measured=1.0, error=error).red_at
+        red = sum(abs(draw.gauss(power, error)) > stats.tolerance(error, systematic=0.02) for _ in range(10000))
+        self.assertAlmostEqual(red / 10000, 0.95, delta=0.01)
 
     def test_digits(self):
         self.assertEqual(report.plusminus(2.13917, 0.01172), "2.139 ± 0.012")
@@ -200,9 +219,9 @@ def curves(axes):
 
 
 def defects(figure):
-    """What no picture may have: a name that no legend has; two numbers of an axis that read the same."""
+    """What no picture may have: points outside of the axes; a name that no legend has; two numbers of an axis that read the same."""
     figure.canvas.draw()
-    found, shown = [], {text.get_text() for axes in figure.axes if axes.get_legend() for text in axes.get_legend().get_texts()}
+    found, shown = [f"outside: {point}" for point in figures.outside(figure)], {text.get_text() for axes in figure.axes if axes.get_legend() for text in axes.get_legend().get_texts()}
     for axes in figure.axes:
         found += [f"not in a legend: {one.get_label()}" for one in curves(axes) if one.get_label() not in shown]
         for axis in (axes.xaxis, axes.yaxis):
@@ -224,6 +243,15 @@ class Pictures(unittest.TestCase):
             axes.set_yticks([3.0, 3.4, 4.0], ["3", "3", "4"])
             self.assertEqual(len(defects(figure)), 1)
             figures.svg(figure)
+
+    def test_no_point_is_cut_off(self):
+        with figures.styled():
+            figure, axes = figures.plain()
+            figures.points(axes, [1, 2, numpy.nan], [3, 4, 9], [1, 1, 1], label="g")
+            self.assertEqual(figures.outside(figure), [])
+            axes.set_ylim(2.5, 3.5)
+            self.assertEqual(figures.outside(figure), [("g", 2.0, 4.0)])
+            self.assertRaisesRegex(ValueError, "outside of the axes: .*'g', 2.0, 4.0", figures.svg, figure)
 
     def test_series_differ_in_grey_or_by_marker(self):
         looks = list(zip(figures.COLORS, figures.MARKERS))

@@ -28,6 +28,8 @@ class Verdict:
     `power`, where given, is the wrong effect that the verdict is there to see. While `detects` is larger, nothing that agrees
     is a pass: it stays "undecided".
 
+    `second` is (value, error) of an independent run that was made because the first one left a doubt.
+
     `timed`: measured by a clock, which other programs on the machine make uncertain. Such a number may stay "undecided" in the
     quick tier, too."""
     id: str
@@ -44,14 +46,18 @@ class Verdict:
     rival: float = None
     power: float = None
     timed: bool = False
+    second: tuple = None
 
     @property
     def verdict(self):
         if self.measured is None or not math.isfinite(self.measured):
             return "undecided"
-        if abs(self.measured - self.expected) <= self.tolerance:
-            return "undecided" if self.blind else "within allowance" if self.covered else "pass"
-        return "fail" if self.kind == "gate" else "not reproduced"
+        agrees = abs(self.measured - self.expected) <= self.tolerance
+        if agrees and (self.blind or (self.doubtful and self.second is None)):
+            return "undecided"
+        if not agrees or (self.doubtful and self.excess(*self.second) > self.doubt):
+            return "fail" if self.kind == "gate" else "not reproduced"
+        return "within allowance" if self.covered else "pass"
 
     @property
     def seen(self):
@@ -86,10 +92,32 @@ class Verdict:
         return getattr(self.tolerance, "systematic", self.tolerance)
 
     @property
+    def doubt(self):
+        """Standard errors (3, more by Student's t) from which on chance hardly explains a difference."""
+        return getattr(self.tolerance, "doubt", 3.0)
+
+    def excess(self, value, error):
+        """Standard errors by which a value differs by more than the allowance; 0 where there are no errors."""
+        both = math.hypot(error or 0.0, self.expected_error or 0.0)
+        beyond = abs(value - self.expected) - self.allowed
+        return beyond / both if math.isfinite(both) and both > 0.0 else 0.0
+
+    @property
+    def doubtful(self):
+        """Is the difference, less the allowance, larger than chance makes it in one verdict, and not in all of a report?"""
+        return self.off is not None and self.excess(self.measured, self.error) > self.doubt
+
+    @property
     def covered(self):
-        """Does it agree only because of that part? The difference is then larger than errors explain, and it is no pass."""
-        return self.off is not None and abs(self.off) > stats.SIGMAS and (
-            self.tolerance - self.allowed < abs(self.measured - self.expected) <= self.tolerance)
+        """Does it agree only because of the allowance? The difference is then larger than errors explain, and it is no pass."""
+        return self.off is not None and self.allowed > 0.0 and abs(self.off) > self.doubt and not self.doubtful
+
+    @property
+    def red_at(self):
+        """The power: the smallest change of the value that would turn the verdict red in 95 of 100 repetitions."""
+        if self.measured is None and not self.tolerance:
+            return None
+        return self.tolerance + 1.645 * math.hypot(self.error or 0.0, self.expected_error or 0.0)
 
 
 @dataclasses.dataclass

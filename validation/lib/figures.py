@@ -3,9 +3,33 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "python"))
+import numpy  # noqa: E402
 from matplotlib.colors import to_rgb as rgb  # noqa: E402, F401
+from matplotlib.container import ErrorbarContainer  # noqa: E402
+from uncross_plot import style  # noqa: E402
 from uncross_plot.style import (  # noqa: E402, F401
-    COLORS, INK, MARKERS, PALE, STROKES, legend, line, plain, points, styled, svg, theory, with_residuals)
+    COLORS, INK, MARKERS, PALE, STROKES, legend, line, plain, points, styled, theory, with_residuals)
+
+
+def outside(figure):
+    """Points (figures.points) that lie outside of their axes, where nobody would see them: [(label, x, y)]."""
+    found = []
+    for axes in figure.axes:
+        (left, right), (low, high) = sorted(axes.get_xlim()), sorted(axes.get_ylim())
+        for bars in axes.containers:
+            if isinstance(bars, ErrorbarContainer) and bars.lines[0] is not None:
+                x, y = (numpy.asarray(values, float) for values in bars.lines[0].get_data())
+                hidden = numpy.isfinite(x) & numpy.isfinite(y) & ~((left <= x) & (x <= right) & (low <= y) & (y <= high))
+                found += [(bars.get_label(), float(one), float(other)) for one, other in zip(x[hidden], y[hidden])]
+    return found
+
+
+def svg(figure):
+    """The figure as SVG text; an error if it does not show all points that are drawn."""
+    hidden = outside(figure)
+    if hidden:
+        raise ValueError(f"points outside of the axes: {hidden}")
+    return style.svg(figure)
 
 
 def legend_above(*panels, columns=2):

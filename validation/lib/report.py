@@ -31,14 +31,15 @@ def verdict_row(case, verdict):
             "kind": verdict.kind, "verdict": verdict.verdict, "reason": verdict.reason,
             **{key: rounded(getattr(verdict, key)) for key in
                ("expected", "expected_error", "measured", "error", "tolerance", "allowed", "z")},
-            "detects": rounded(verdict.seen), **({"timed": True} if verdict.timed else {})}
+            "detects": rounded(verdict.seen), "power": rounded(verdict.red_at), **({"timed": True} if verdict.timed else {}),
+            **({"doubtful": True} if verdict.verdict == "undecided" and verdict.measured is not None and verdict.doubtful and not verdict.blind else {})}
 
 
 def failures(rows, tier):
     """Those rows of verdicts that make the report fail. In the quick tier all runs are made, so each number must be there, and be
-    decided, but for one that a busy machine makes uncertain."""
+    decided, but for one that a busy machine makes uncertain, and one of 3 to 4.4 standard errors, which chance makes in every third report."""
     return [row for row in rows if row["verdict"] == "fail" or (
-        tier == "quick" and row["verdict"] == "undecided" and not (row.get("timed") and row["measured"] is not None))]
+        tier == "quick" and row["verdict"] == "undecided" and not row.get("doubtful") and not (row.get("timed") and row["measured"] is not None))]
 
 
 def provenance_row(result):
@@ -188,6 +189,20 @@ The campaign runs the paper's own systems. It has used {hours:.1f} of the {plann
 | --- | --- | --- | --- | --- | --- | --- | --- | --- |
 {cases}
 {failed}
+## How large the differences are
+
+Standard errors z between measured and expected number, of all verdicts that have both. Normal errors and right theories would make the last row.
+
+| | up to 1 | 1 to 2 | 2 to 3 | 3 to 4.4 | above | root mean square |
+| --- | --- | --- | --- | --- | --- | --- |
+{differences}
+
+## What a verdict can see
+
+The *power* of a verdict is the smallest change of the value that would turn it red in 95 of 100 repetitions: the tolerance, and 1.64 standard errors. It is below {power[0]} of the expected number for a
+quarter of the verdicts, below {power[1]} for half of them, and below {power[2]} for three quarters. The report has each of them. These see no change of less than 30 %:
+{blunt}.
+
 ## Within the theory's stated allowance
 
 The difference is larger than the error bars explain, and smaller than the error that was stated for the theory beforehand. Measured (expected); the report has the
@@ -224,6 +239,31 @@ The numbers should agree, and do not.
 """
 
 
+def differences(claims):
+    """Rows of the table of z: of the verdicts of each word, and of normal errors."""
+    edges, lines = (0.0, 1.0, 2.0, 3.0, 4.4, math.inf), []
+    for word in ("pass", "within allowance", "fail", "not reproduced"):
+        z = [abs(row["z"]) for row in claims if row["verdict"] == word and row["z"] is not None]
+        if z:
+            counts = [sum(low < x <= high for x in z) + (low == 0.0) * z.count(0.0) for low, high in zip(edges, edges[1:])]
+            lines.append(f"| {word} | {' | '.join(map(str, counts))} | {math.sqrt(math.fsum(x * x for x in z) / len(z)):.1f} |")
+    chance = [math.erfc(low / math.sqrt(2.0)) - math.erfc(high / math.sqrt(2.0)) for low, high in zip(edges, edges[1:])]
+    all_of_them = sum(row["verdict"] == "pass" for row in claims)
+    return "\n".join([*lines, f"| {all_of_them} normal values | {' | '.join(number(all_of_them * p) for p in chance)} | 1.0 |"])
+
+
+BLUNT = 0.3  # of the expected number
+
+
+def powers(claims):
+    """Three quartiles of power over expected number, of what agrees; and the names of those that are above BLUNT."""
+    share = {row["id"]: row["power"] / abs(row["expected"]) for row in claims
+             if row["verdict"] in ("pass", "within allowance") and row["expected"] and row.get("power") is not None}
+    ordered = sorted(share.values()) or [math.nan]
+    quartiles = [f"{100 * ordered[len(ordered) * k // 4]:.2g} %" for k in (1, 2, 3)]
+    return quartiles, ", ".join(f"`{name}` ({100 * x:.0f} %)" for name, x in share.items() if x > BLUNT) or "none"
+
+
 def standing(summed):
     """docs/claims/README.md, from what report.json holds."""
     def rows(case, word):
@@ -248,7 +288,8 @@ def standing(summed):
                      for row, reason, last in zip(rows(name, "not reproduced"), reasons, [None, *reasons])]
         undecided += [f"| `{row['id']}`: {cell(row['statement'])} | {plusminus(row['measured'], row['error'])} | "
                       f"{plusminus(row['expected'], row['expected_error'])} |" for row in rows(name, "undecided")]
-    return STANDING.format(hours=math.fsum(part["cpu_seconds"] for part in summed["sections"]) / 3600.0,
+    quartiles, blunt = powers(summed["claims"])
+    return STANDING.format(differences=differences(summed["claims"]), power=quartiles, blunt=blunt, hours=math.fsum(part["cpu_seconds"] for part in summed["sections"]) / 3600.0,
                            planned=math.fsum(part["hours_estimated"] for part in summed["sections"]),
                            cases="\n".join(table), failed=FAILED.format(failed="\n".join(failed)) if failed else "", covered="\n".join(covered) or "- nothing", findings="\n".join(findings), undecided="\n".join(undecided) or "| nothing | | |")
 

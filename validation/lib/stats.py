@@ -93,23 +93,27 @@ def normal(p):
 # A verdict of the quick tier: at most 100 of them, and one false alarm in a thousand new sets of seeds.
 RATE, VERDICTS = 1e-3, 100
 SIGMAS = sigmas(RATE, VERDICTS)  # 4.4
+DOUBT = 2.0 * float(stats.norm.sf(3.0))  # of one verdict: from here on, it wants a second run
 
 
 class Tolerance(float):
-    """A tolerance that knows which part of it is a stated bound on systematic errors."""
+    """A tolerance that knows which part of it is a stated bound on systematic errors, and from how many standard errors on a
+    difference is in doubt."""
 
-    def __new__(cls, statistical, systematic):
+    def __new__(cls, statistical, systematic, freedom=math.inf):
         made = super().__new__(cls, statistical + systematic)
         made.systematic = systematic
+        made.doubt = sigmas(DOUBT, 1, freedom)
         return made
 
 
 def tolerance(error, expected_error=0.0, systematic=0.0, z=SIGMAS, values=None):
     """z standard errors of both numbers, plus a stated bound on systematic errors. values: the number of independent values
     that the error comes from, if they are so few that z must be larger."""
+    freedom = math.inf if values is None else values - 1
     if values is not None:
-        z = sigmas(RATE, VERDICTS, values - 1)
-    return Tolerance(z * math.hypot(error, expected_error), systematic)
+        z = sigmas(RATE, VERDICTS, freedom)
+    return Tolerance(z * math.hypot(error, expected_error), systematic, freedom)
 
 
 def jackknife(blocks, estimate):

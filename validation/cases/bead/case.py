@@ -343,7 +343,7 @@ def draw_network(results):
             x, y, error = (numpy.array(column) for column in zip(*shown))
             figures.points(panel, x, y, error, number=number, markersize=4, label=f"R = {radius:g} $a_0$")
     panel.axhline(1.0, color=figures.INK, linewidth=0.6)
-    panel.set(xscale="log", yscale="log", xlabel="R over the mesh size", ylabel="friction over that without fibers", ylim=(0.9, 5.4))
+    panel.set(xscale="log", yscale="log", xlabel="R over the mesh size", ylabel="friction over that without fibers")
     figures.legend(panel)
     return figure
 

@@ -510,7 +510,7 @@ def draw_rouse(results):
     axes.set(xscale="log", yscale="log", ylabel="$\\langle|R(t)-R(0)|^2\\rangle/2\\langle R^2\\rangle$")
     figures.named(axes, "Rouse", linestyle="-", linewidth=0.8)
     figures.legend_above(axes, columns=3)
-    below.set(xlabel="$t/\\tau_1$", ylabel="over Rouse, $-1$", ylim=(-0.2, 0.2))
+    below.set(xlabel="$t/\\tau_1$", ylabel="over Rouse, $-1$", ylim=(-0.25, 0.2))
     return figure
 
 

@@ -260,7 +260,8 @@ def draw_heat(results):
         figures.points(above, [row["dt"] for row in drift], [row["heat"] for row in drift],
                        [row["heat_error"] for row in drift],
                        number, label="c L³ = 1000, stay, drift-split")
-    above.set(xscale="log", yscale="log", ylabel="heat per rejected move ($kT$)")
+    above.set(xscale="log", ylabel="heat per rejected move ($kT$)")
+    above.set_yscale("symlog", linthresh=1e-4)  # linear about 0, where there is noise of either sign
     below.set(xscale="log", xlabel="$dt$ ($t_0$)", ylabel="over dt²", ylim=(0, 2.5))
     below.axhline(1.0, color=figures.INK, linewidth=0.8)
     figures.legend_above(above)

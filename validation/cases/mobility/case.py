@@ -184,7 +184,7 @@ def draw_boxes(measured, off, swap):
             figures.points(axes, 1.0 / box, *pair, number=number, label=f"without, {name}")
     axes.set(ylabel="$D$ of a vertex ($a_0^2/t_0$)", ylim=(0.009, 0.0195))
     figures.legend_above(axes)
-    below.set(xlabel="$1/L_b$ ($1/a_0$)", ylabel="over line, $-1$", ylim=(-0.03, 0.03), xlim=(-0.002, 0.132))
+    below.set(xlabel="$1/L_b$ ($1/a_0$)", ylabel="over line, $-1$", ylim=(-0.07, 0.03), xlim=(-0.002, 0.132))
     return figure
 
 
@@ -207,7 +207,7 @@ def draw_lags(found, measured):
     figures.named(axes, "$D$ less its memory", linestyle="-", linewidth=1.1)
     figures.named(below, "lags left out of the fit", marker="o", markerfacecolor="none")
     figures.legend_above(axes, below, columns=3)
-    below.set(xlabel="lag $t$ ($t_0$)", ylabel="over model, $-1$", ylim=(-0.05, 0.05))
+    below.set(xlabel="lag $t$ ($t_0$)", ylabel="over model, $-1$", ylim=(-0.21, 0.05))
     return figure
 
 

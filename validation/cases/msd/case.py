@@ -243,7 +243,7 @@ def draw_curves(curves, tier, column):
         figures.theory(above, t / tau(length), hi[2] * (t / hi[4])**0.75 / length**2, linestyle="--",
                        label="$t^{3/4}$ through the most dilute")
     above.set(xscale="log", yscale="log", ylabel="$\\langle d^2\\rangle/L^2$" + (", contour" if "contour" in column else ""))
-    below.set(xscale="log", xlabel="$t/\\tau_r$", ylabel="local exponent", ylim=(0, 1.1))
+    below.set(xscale="log", xlabel="$t/\\tau_r$", ylabel="local exponent", ylim=(0, 2))
     below.axhline(0.75, color=figures.INK, linestyle="--", linewidth=1)
     if latest is not None:
         figures.named(above, "$2L_\\perp^2$, Eq. (35), each in its colour", linestyle="-.", linewidth=1)

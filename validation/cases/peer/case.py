@@ -121,7 +121,8 @@ def draw(vacf, diffusion):
                 (a, da), (b, db) = mean(tables[name][:, shown]), mean(tables["lammps"][:, shown])
                 by = scale if scale else 100.0 / b
                 figures.points(axes, time[shown], (a - b) * by, numpy.hypot(da, db) * by, number)
-    left.set(xscale="log", yscale="log", ylim=(1e-4, 1.0), ylabel=r"$\langle v(0)\cdot v(t)\rangle/\langle v^2\rangle$")
+    left.set(xscale="log", ylim=(-1e-3, 1.0), ylabel=r"$\langle v(0)\cdot v(t)\rangle/\langle v^2\rangle$")
+    left.set_yscale("symlog", linthresh=1e-4)  # linear about 0, where there is noise of either sign
     right.set(xscale="log", ylabel=r"$\langle r^2(t)\rangle / 6\,t\,kT$   [$a_0^2/t_0$]")
     left_rest.set(xlabel=r"$t$ [$t_0$]", ylabel="less LAMMPS\n" + r"[$10^{-3}$]")
     right_rest.set(xlabel=r"$t$ [$t_0$]", ylabel="less LAMMPS\n[%]")

@@ -476,7 +476,8 @@ def draw_tail(results, points):
         figures.points(below, t[late], mean[late] / over, error[late] / over, number=number)
         if point == PAPERS and late_tail(results):
             draw_late(below, results, number)
-    top.set(xscale="log", yscale="log", ylim=(5e-5, 1.0), ylabel="$C(t)/C(0)$")
+    top.set(xscale="log", ylim=(-1e-3, 1.0), ylabel="$C(t)/C(0)$")
+    top.set_yscale("symlog", linthresh=1e-4)  # linear about 0, where there is noise of either sign
     below.set(ylabel="over the part\nof shear waves", ylim=(-3.0, 3.0), xlabel="time ($t_0$)")
     figures.named(top, "molecular chaos", linestyle="-", linewidth=0.8)
     figures.named(top, "shear waves of the box", linestyle="--", linewidth=1.1)
