@@ -210,7 +210,7 @@ class Links(Tree):
         return done.returncode, done.stdout
 
     def test_accepts_what_is_there(self):
-        self.put("docs/page.md", "[table](equations.tsv) [part](page.md#part) [far](https://example.org/x)\n")
+        self.put("docs/page.md", "[table](equations.tsv) [part](page.md#a-part-of-it) [here](#two) [far](https://example.org/x#y)\n# A *part*, of [it](page.md)\n## Two\n")
         self.add("src/step.c", "/* see docs/equations.tsv */\n")
         self.assertEqual(self.call_links()[0], 0)
 
@@ -219,6 +219,12 @@ class Links(Tree):
         status, output = self.call_links()
         self.assertEqual(status, 1)
         self.assertIn("docs/page.md:2: there is no docs/table.md", output)
+
+    def test_dangling_place(self):
+        self.put("docs/page.md", "[a](page.md#part) [b](#other)\n# Part\n```\n# other\n```\n")
+        status, output = self.call_links()
+        self.assertEqual(status, 1)
+        self.assertEqual(output.splitlines()[:-1], ["docs/page.md:1: there is no place #other in docs/page.md"])
 
     def test_dangling_mention(self):
         self.put("docs/page.md", "")

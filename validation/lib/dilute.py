@@ -380,7 +380,7 @@ def held(name, statement, expected, source, pair, systematic, known=0.0, **optio
 
 def scatter(name, statement, p):
     """A verdict on a fit: the probability of its scatter, expressed in standard errors of a normal value."""
-    return Verdict(name, statement, 0.0, "chi², the errors as they are", stats.SIGMAS,
+    return Verdict(name, statement, 0.0, "chi², the errors as they are", stats.tolerance(1.0),
                    None if p is None else stats.normal(p), 1.0)
 
 

@@ -4,7 +4,7 @@ import math
 import numpy
 from scipy import stats as distributions
 
-from lib import figures, theory
+from lib import figures, stats, theory
 from lib.case import Figure, Outcome, Verdict
 from lib.runs import Run
 
@@ -56,10 +56,11 @@ def compare(name, statement, ours, theirs, source, exact=None):
         return Verdict(f"peer.{name}", statement, exact, source, None)
     measured, error = map(float, mean(ours))
     expected, expected_error = (exact, 0.0) if theirs is None else map(float, mean(theirs))
-    z = distributions.t.isf(FALSE_ALARMS / VERDICTS / 2.0, freedom(ours, theirs))
+    few = freedom(ours, theirs)
+    z = distributions.t.isf(FALSE_ALARMS / VERDICTS / 2.0, few)
     both = math.hypot(error, expected_error)
     # A difference of the tolerance and 1.3 standard errors more is seen nine times out of ten.
-    return Verdict(f"peer.{name}", statement, expected, source, z * both, measured, error, expected_error,
+    return Verdict(f"peer.{name}", statement, expected, source, stats.Tolerance(z * both, 0.0, few), measured, error, expected_error,
                    detects=(z + 1.3) * both)
 
 
