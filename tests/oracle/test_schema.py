@@ -3,8 +3,10 @@
 what is made of it: tables of docs/port/operators.md, names of columns of the port to NumPy.
 """
 import json
+import pathlib
 import subprocess
 import sys
+import tempfile
 import unittest
 
 import h5py
@@ -35,6 +37,14 @@ class Schema(unittest.TestCase):
                             self.assertEqual(" ".join(table["columns"]), data.attrs["components"].decode())
                             seen.add((operator, name))
         self.assertEqual({of for of in known if of[0] != "start"}, seen, "each table is in some pack")
+
+    def test_packs_have_no_other_tables(self):
+        for name in ("mixed", "flow/wave"):
+            with self.subTest(pack=name), tempfile.TemporaryDirectory() as folder:
+                made = pathlib.Path(folder) / "made.h5"
+                self.assertEqual(run("emit", TOP / f"reference-data/{name}.yaml", "-o", made), (0, ""))
+                with h5py.File(TOP / f"reference-data/{name}.pack.h5") as old, h5py.File(made) as new:
+                    self.assertEqual({place: set(old[place]) for place in old}, {place: set(new[place]) for place in new})
 
     def test_tables_stand_in_the_order_of_packs(self):
         for operator in schema():
