@@ -11,7 +11,7 @@
 #endif
 
 SCENES(OF_ALL, "all", true)
-SCENES(OF_NO_STEP, "none: it is no operator of a step", true)
+SCENES(OF_NO_STEP, "none: it is no operator of a step", false)
 SCENES(OF_FIBERS, "a periodic box", periodic)
 SCENES(OF_MOVING, "a periodic box, vertices with velocities", periodic &&moving)
 SCENES(OF_TURNS, "a periodic box, vertices that move one by one", periodic &&moving && !oracle_has_events(m))
