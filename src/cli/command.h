@@ -69,6 +69,7 @@ enum command_code {
   COMMAND_EDGES,
   COMMAND_START,
   COMMAND_TRACE,
+  COMMAND_ANSWER,
   COMMAND_DUMP,
   COMMAND_COMPARE,
   COMMAND_CHECK_PORT,
@@ -158,6 +159,7 @@ enum exit_code oracle_emit_file(const struct arguments *a);
 enum exit_code oracle_edges_file(const struct arguments *a);
 enum exit_code oracle_start_file(const struct arguments *a);
 enum exit_code oracle_trace_file(const struct arguments *a);
+enum exit_code oracle_answer_file(const struct arguments *a);
 enum exit_code oracle_dump_file(const struct arguments *a);
 enum exit_code oracle_compare_files(const struct arguments *a);
 enum exit_code oracle_check_port(const struct arguments *a);

@@ -149,6 +149,13 @@ const struct command commands[COMMANDS] = {
                        "what a run of the scene starts from, as a pack: for ports' traces", NULL, oracle_start_file},
     [COMMAND_TRACE] = {"oracle trace", "SCENE", 1, WRITES | MAY(EXIT_STOPPED),
                        "state hashes and sums after every stage of the scene's steps, as CSV", NULL, oracle_trace_file},
+    [COMMAND_ANSWER] =
+        {"oracle answer", "PACK OUT", 2, WRITES,
+         "outputs from the inputs of a pack, as a port writes them: of operators without a state",
+         "OUT is a pack as HDF5. Answered are the operators each of whose rows stands for itself: random,\n"
+         "permutation, crossing, exchange, contact_search, tube_search, tube_contact, bead_search,\n"
+         "bead_contact and impulse.\n",
+         oracle_answer_file},
     [COMMAND_DUMP] = {"oracle dump", "PACK", 1, WRITES, "a pack as text", NULL, oracle_dump_file},
     [COMMAND_COMPARE] = {"oracle compare", "OURS THEIRS", 2, WRITES | MAY(EXIT_CLOSE) | MAY(EXIT_DIFFERS),
                          "two packs, each HDF5 or text, or two traces: the first difference and what it means", NULL,

@@ -119,6 +119,23 @@ enum exit_code oracle_edges_file(const struct arguments *a)
   return write_pack(a, NULL, a->contacts ? contacts : edges);
 }
 
+enum exit_code oracle_answer_file(const struct arguments *a)
+{
+  struct message message;
+  struct pack pack, answers = {0};
+  FILE *out;
+  if (!pack_read(a->file[0], &pack, &message))
+    return complain(&message, EXIT_BAD_INPUT);
+  enum exit_code code =
+      oracle_answer(&pack, &answers, &message) ? open_output(a->file[1], &out) : complain(&message, EXIT_BAD_INPUT);
+  if (code == EXIT_DONE)
+    code = close_output(out, pack_write(&answers, out, a->file[1], &message) ? EXIT_DONE : EXIT_NOT_WRITTEN, a->file[1],
+                        &message);
+  pack_free(&pack);
+  pack_free(&answers);
+  return code;
+}
+
 enum exit_code oracle_trace_file(const struct arguments *a)
 {
   struct message message;

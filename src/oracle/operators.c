@@ -38,8 +38,7 @@ static void put_table(struct oracle_stage *g, const struct oracle_table *t)
   }
 }
 
-/* Those that go in, or the others. */
-static void put_tables(struct oracle_stage *g, const struct oracle_operator *o, bool in)
+void oracle_put_tables(struct oracle_stage *g, const struct oracle_operator *o, bool in)
 {
   for (const struct oracle_table *t = o->table; t < &o->table[ORACLE_TABLES] && t->name; t++)
     if ((strncmp(t->name, "in.", strlen("in.")) == 0) == in && oracle_scene_is(t->of, g->model))
@@ -88,10 +87,10 @@ static bool run_operator(struct oracle_stage *g, const struct oracle_operator *o
   snprintf(g->place.operator_name, sizeof g->place.operator_name, "%s", o->name);
   bool ok = keep(g, puts_back) && (!begin || begin(g));
   if (ok)
-    put_tables(g, o, true);
+    oracle_put_tables(g, o, true);
   ok = ok && (!o->run || o->run(g));
   if (ok)
-    put_tables(g, o, false);
+    oracle_put_tables(g, o, false);
   if (ok && puts_back)
     oracle_put_back(g);
   forget(g);
@@ -116,7 +115,7 @@ static void put_alone(struct oracle_stage *g, const struct oracle_operator *o)
 {
   g->place = (struct pack_place){.step = 0};
   snprintf(g->place.operator_name, sizeof g->place.operator_name, "%s", o->name);
-  put_tables(g, o, true);
+  oracle_put_tables(g, o, true);
 }
 
 void oracle_put_model(struct oracle_stage *g)

@@ -23,6 +23,11 @@ bool oracle_emit(struct scene *scene, struct pack *pack, struct message *message
  * contacts: those of contacts at their own time (rule `event-driven`). */
 bool oracle_edges(bool contacts, struct pack *pack, struct message *message);
 
+/* Fills `answers` with the outputs of those operators of a pack whose rows stand for themselves, computed from the
+ * inputs that the pack has. False, with a message, if an input is missing, or is none that an operator can be asked.
+ * The answers need freeing in any case. */
+bool oracle_answer(const struct pack *pack, struct pack *answers, struct message *message);
+
 /* Fills a pack with what a run of the scene starts from: the model, the state, the stages of its steps. */
 bool oracle_start(struct scene *scene, struct pack *pack, struct message *message);
 

@@ -18,6 +18,16 @@ double oracle_condition(struct vec3 way, struct vec3 bond, struct vec3 standing,
          (1.0 + reach / fmin(vec3_norm(p), vec3_norm(standing)));
 }
 
+bool oracle_run_permutations(struct oracle_stage *g)
+{
+  struct oracle_permutation *p = g->row;
+  for (uint32_t k = 0; k < g->rows; k++) {
+    const struct oracle_address *a = &p[k].address;
+    random_permutation(g->model->seed, a->purpose, a->draw, a->step, a->entity, p[k].order);
+  }
+  return true;
+}
+
 bool oracle_run_tests(struct oracle_stage *g)
 {
   struct oracle_test *t = g->row;

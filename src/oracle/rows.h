@@ -80,6 +80,7 @@ struct oracle_entry {
 };
 
 /* Operators on the rows of a stage. */
+bool oracle_run_permutations(struct oracle_stage *g);
 bool oracle_run_tests(struct oracle_stage *g);
 bool oracle_run_exchanges(struct oracle_stage *g);
 bool oracle_run_searches(struct oracle_stage *g);

@@ -92,7 +92,7 @@ const struct oracle_operator oracle_operators[] = {
     {"random", OF_ALL, .begin = oracle_begin_addresses,
      .table = {IN(address, addresses), EXACT(word, words), OUT(uniform, uniforms, .all = tolerance_uniform),
                OUT(normal, normals, .each = tolerance_normal_pair), OUT(axis, random_axes, .each = tolerance_axis)}},
-    {"permutation", OF_TURNS, .constructed = true, .edges = oracle_edges_permutation,
+    {"permutation", OF_TURNS, .constructed = true, .run = oracle_run_permutations, .edges = oracle_edges_permutation,
      .table = {IN(address, permutation), EXACT(order, permuted)}},
     {"order", OF_TURNS, .run = oracle_run_order, .table = {EXACT(order, order)}},
     {"crossing", OF_TURNS, .puts_back = true, .begin = oracle_begin_tests, .run = oracle_run_tests,

@@ -17,6 +17,8 @@ struct oracle_entity {
   const char *word;
   uint32_t (*count)(const struct oracle_stage *);              /* NULL: one */
   uint32_t (*number)(const struct oracle_stage *, uint32_t k); /* the row of what has place k in memory; NULL: k */
+  size_t size;                                                 /* of a row that stands for itself (rows.h); else 0 */
+  bool (*legal)(const void *row); /* whether operators may be asked: packs may come from anywhere; NULL: always */
 };
 
 struct oracle_source {
@@ -24,6 +26,7 @@ struct oracle_source {
   const struct oracle_entity *of;
   void (*integers)(const struct oracle_stage *, uint32_t k, int64_t *row); /* of place k; NULL: they are reals */
   void (*reals)(const struct oracle_stage *, uint32_t k, double *row);
+  void (*take)(const struct oracle_stage *, uint32_t k, const void *row); /* into row k of the stage; NULL: it cannot */
 };
 
 /* Which scenes have an operator, or a table of it. */
@@ -61,6 +64,9 @@ extern const size_t oracle_operator_count;
 
 /* A table of an operator; NULL if there is no such. rank: each is made of those with lower ranks; or NULL. */
 const struct oracle_table *oracle_table_of(const char *operator_name, const char *name, int *rank);
+
+/* Puts the tables of the operator at hand: those that go in, or the others (operators.c). */
+void oracle_put_tables(struct oracle_stage *g, const struct oracle_operator *o, bool in);
 
 /* Writes all of it as JSON. */
 void oracle_write_schema(FILE *out);

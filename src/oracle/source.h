@@ -31,15 +31,35 @@
   }
 #define INTEGERS(name, entity, words, ...)                                                                             \
   FILL(name, int64_t, const int64_t numbers[] = {__VA_ARGS__}; memcpy(row, numbers, sizeof numbers);)                  \
-  const struct oracle_source from_##name = {words, &(entity), fill_##name, NULL};
+  const struct oracle_source from_##name = {.columns = words, .of = &(entity), .integers = fill_##name};
 #define REALS(name, entity, words, ...)                                                                                \
   FILL(name, double, const double numbers[] = {__VA_ARGS__}; memcpy(row, numbers, sizeof numbers);)                    \
-  const struct oracle_source from_##name = {words, &(entity), NULL, fill_##name};
+  const struct oracle_source from_##name = {.columns = words, .of = &(entity), .reals = fill_##name};
 #define POINT(name, entity, ...)                                                                                       \
   FILL(name, int64_t, const struct point at = __VA_ARGS__; row[0] = at.x, row[1] = at.y, row[2] = at.z;)               \
-  const struct oracle_source from_##name = {"x y z", &(entity), fill_##name, NULL};
+  const struct oracle_source from_##name = {.columns = "x y z", .of = &(entity), .integers = fill_##name};
 #define VECTOR(name, entity, ...)                                                                                      \
   FILL(name, double, const struct vec3 v = __VA_ARGS__; row[0] = v.x, row[1] = v.y, row[2] = v.z;)                     \
-  const struct oracle_source from_##name = {"x y z", &(entity), NULL, fill_##name};
+  const struct oracle_source from_##name = {.columns = "x y z", .of = &(entity), .reals = fill_##name};
+
+/* The same of a row that stands for itself, which can be taken from a pack: what is done with its numbers n. */
+#define TAKE(name, type, ...)                                                                                          \
+  static void take_##name(const struct oracle_stage *g, uint32_t k, const void *row)                                   \
+  {                                                                                                                    \
+    const type *n = row;                                                                                               \
+    __VA_ARGS__;                                                                                                       \
+  }
+#define TAKEN_INTEGERS(name, entity, words, take, ...)                                                                 \
+  FILL(name, int64_t, const int64_t numbers[] = {__VA_ARGS__}; memcpy(row, numbers, sizeof numbers);)                  \
+  TAKE(name, int64_t, take)                                                                                            \
+  const struct oracle_source from_##name = {words, &(entity), fill_##name, NULL, take_##name};
+#define TAKEN_REALS(name, entity, words, take, ...)                                                                    \
+  FILL(name, double, const double numbers[] = {__VA_ARGS__}; memcpy(row, numbers, sizeof numbers);)                    \
+  TAKE(name, double, take)                                                                                             \
+  const struct oracle_source from_##name = {words, &(entity), NULL, fill_##name, take_##name};
+#define TAKEN_POINT(name, entity, at)                                                                                  \
+  TAKEN_INTEGERS(name, entity, "x y z", (at) = ((struct point){n[0], n[1], n[2]}), (at).x, (at).y, (at).z)
+#define TAKEN_VECTOR(name, entity, v)                                                                                  \
+  TAKEN_REALS(name, entity, "x y z", (v) = ((struct vec3){n[0], n[1], n[2]}), (v).x, (v).y, (v).z)
 
 #endif

@@ -33,17 +33,19 @@ NUMBER(vectors, g->state->dumbbells.id[k])
 NUMBER(started_vectors, g->fresh.dumbbells.id[k])
 NUMBER(members, g->work->medium.number[k])
 
-static const struct oracle_entity once = {"row", NULL, NULL}, vertices = {"vertex", count_vertices, NULL},
-                                  particles = {"particle", count_particles, number_particles},
-                                  swaps = {"particle", count_particles, NULL},
-                                  vectors = {"dumbbell", count_vectors, number_vectors},
-                                  started_particles = {"particle", count_started_particles, NULL},
-                                  started_vectors = {"dumbbell", count_started_vectors, number_started_vectors},
-                                  cells = {"cell", count_cells, NULL}, cut_cells = {"cell", count_cut_cells, NULL},
-                                  walls = {"wall", count_walls, NULL}, intervals = {"interval", count_intervals, NULL},
-                                  half_intervals = {"half interval", count_half_intervals, NULL},
-                                  members = {"member", count_members, number_members},
-                                  encounters = {"pair", count_encounters, NULL}, entries = {"entry", count_rows, NULL};
+static const struct oracle_entity
+    once = {.word = "row"},
+    vertices = {.word = "vertex", .count = count_vertices},
+    particles = {.word = "particle", .count = count_particles, .number = number_particles},
+    swaps = {.word = "particle", .count = count_particles},
+    vectors = {.word = "dumbbell", .count = count_vectors, .number = number_vectors},
+    started_particles = {.word = "particle", .count = count_started_particles},
+    started_vectors = {.word = "dumbbell", .count = count_started_vectors, .number = number_started_vectors},
+    cells = {.word = "cell", .count = count_cells}, cut_cells = {.word = "cell", .count = count_cut_cells},
+    walls = {.word = "wall", .count = count_walls}, intervals = {.word = "interval", .count = count_intervals},
+    half_intervals = {.word = "half interval", .count = count_half_intervals},
+    members = {.word = "member", .count = count_members, .number = number_members},
+    encounters = {.word = "pair", .count = count_encounters}, entries = {.word = "entry", .count = count_rows};
 
 /* --- the model, a start ------------------------------------------------------------------------------------------ */
 
@@ -154,7 +156,7 @@ static struct spin_moments moments(const struct oracle_stage *g, uint32_t k)
 
 POINT(shift, once, grid_shift(M, g->place.step))
 INTEGERS(momenta, cells, "x y z", MPC.sum[k].px, MPC.sum[k].py, MPC.sum[k].pz)
-INTEGERS(loads, cells, "members mass", cell_members(&MPC.sum[k]), (int64_t)(MPC.sum[k].load &(CELL_MEMBER - 1)))
+INTEGERS(loads, cells, "members mass", cell_members(&MPC.sum[k]), (int64_t)(MPC.sum[k].load % CELL_MEMBER))
 INTEGERS(active, cells, "active", is_active(g, k))
 VECTOR(centers, cells, is_active(g, k) ? MPC.turn[k].center : zero)
 VECTOR(axes, cells, is_active(g, k) ? MPC.turn[k].axis : zero)
@@ -166,7 +168,7 @@ VECTOR(angular, cells, moments(g, k).angular)
 POINT(middles, cells, moments(g, k).middle)
 POINT(turned_middles, cells, is_active(g, k) ? MPC.middle[k] : (struct point){0, 0, 0})
 FILL(second, double, const struct spin_moments m = moments(g, k); memcpy(row, m.second, sizeof m.second);)
-const struct oracle_source from_second = {"xx yy zz yz zx xy", &cells, NULL, fill_second};
+const struct oracle_source from_second = {.columns = "xx yy zz yz zx xy", .of = &cells, .reals = fill_second};
 
 /* Velocities of virtual particles where there are none: zeros. */
 static struct vec3 filled_velocity(const struct oracle_stage *g, uint32_t k)

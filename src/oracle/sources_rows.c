@@ -1,17 +1,65 @@
 /* What tables of rows that stand for themselves are read from, a line each. */
 #include "oracle/source.h"
 
+#include <stdlib.h>
+
 #include "base/normal.h"
 #include "oracle/rows.h"
 
 COUNT(rows, g->rows)
 COUNT(permuted, g->rows > 0 ? ((const struct oracle_permutation *)g->row)->address.entity : 0)
 
-static const struct oracle_entity addresses = {"address", count_rows, NULL}, permuted = {"entry", count_permuted, NULL},
-                                  entries = {"entry", count_rows, NULL}, tests = {"test", count_rows, NULL},
-                                  exchanges = {"exchange", count_rows, NULL}, searches = {"search", count_rows, NULL},
-                                  contacts = {"contact", count_rows, NULL}, impulses = {"impulse", count_rows, NULL},
-                                  events = {"event", count_rows, NULL};
+/* Points within 2048 a0 of one that is in reach. */
+static bool are_near(struct point o, const struct point *p, int n)
+{
+  const int64_t most = (int64_t)1 << 51;
+  bool near = point_within_reach(o);
+  for (int k = 0; near && k < n; k++)
+    near = point_within_reach(p[k]) && llabs(p[k].x - o.x) < most && llabs(p[k].y - o.y) < most &&
+           llabs(p[k].z - o.z) < most;
+  return near;
+}
+
+static bool test_is_legal(const void *row)
+{
+  const struct crossing_query *q = &((const struct oracle_test *)row)->query;
+  return are_near(q->from, &q->from, 5);
+}
+
+static bool search_is_legal(const void *row)
+{
+  const struct oracle_search *s = row;
+  return oracle_search_is_legal(&s->pair, s->from) && s->reach >= 0 && s->reach < (int64_t)1 << 50;
+}
+
+static bool tubes_are_legal(const void *row)
+{
+  return are_near((struct point){0, 0, 0}, &((const struct oracle_tubes *)row)->p, 3);
+}
+
+static bool permutation_is_legal(const void *row)
+{
+  return ((const struct oracle_permutation *)row)->address.entity <= ORACLE_PERMUTED;
+}
+
+static const struct oracle_entity
+    addresses = {.word = "address", .count = count_rows, .size = sizeof(struct oracle_address)},
+    permuted = {.word = "entry", .count = count_permuted},
+    permutations = {.word = "permutation",
+                    .count = count_rows,
+                    .size = sizeof(struct oracle_permutation),
+                    .legal = permutation_is_legal},
+    tests = {.word = "test", .count = count_rows, .size = sizeof(struct oracle_test), .legal = test_is_legal},
+    exchanges = {.word = "exchange", .count = count_rows, .size = sizeof(struct oracle_exchange)},
+    searches = {.word = "search", .count = count_rows, .size = sizeof(struct oracle_search), .legal = search_is_legal},
+    contacts = {.word = "contact", .count = count_rows, .size = sizeof(struct oracle_tubes), .legal = tubes_are_legal},
+    impulses = {.word = "impulse", .count = count_rows, .size = sizeof(struct oracle_impulse)},
+    events = {.word = "event", .count = count_rows};
+
+static void take_address(struct oracle_address *a, const int64_t n[4])
+{
+  *a = (struct oracle_address){(enum random_purpose)n[0], (uint32_t)n[1], (uint32_t)n[3], (uint64_t)n[2]};
+}
 
 /* --- random numbers ---------------------------------------------------------------------------------------------- */
 
@@ -26,77 +74,81 @@ static struct random_words words(const struct oracle_stage *g, uint32_t k)
   return random_at(M->seed, a->purpose, a->draw, a->step, a->entity);
 }
 
-INTEGERS(addresses, addresses, "purpose draw step entity", address(g, k)->purpose, address(g, k)->draw,
-         (int64_t)address(g, k)->step, address(g, k)->entity)
+TAKEN_INTEGERS(addresses, addresses, "purpose draw step entity", take_address(&((struct oracle_address *)g->row)[k], n),
+               address(g, k)->purpose, address(g, k)->draw, (int64_t)address(g, k)->step, address(g, k)->entity)
 INTEGERS(words, addresses, "0 1 2 3", words(g, k).w[0], words(g, k).w[1], words(g, k).w[2], words(g, k).w[3])
 REALS(uniforms, addresses, "0 1", random_uniform(words(g, k), 0), random_uniform(words(g, k), 1))
 FILL(normals, double, random_normal_pair(words(g, k), row);)
-const struct oracle_source from_normals = {"first second", &addresses, NULL, fill_normals};
+const struct oracle_source from_normals = {.columns = "first second", .of = &addresses, .reals = fill_normals};
 VECTOR(random_axes, addresses, random_axis(M->seed, address(g, k)->purpose, address(g, k)->step, address(g, k)->entity))
 
-#define PERMUTATION ((const struct oracle_permutation *)g->row)
-INTEGERS(permutation, entries, "purpose draw step size", PERMUTATION[k].address.purpose, PERMUTATION[k].address.draw,
-         (int64_t)PERMUTATION[k].address.step, PERMUTATION[k].address.entity)
+#define PERMUTATION ((struct oracle_permutation *)g->row)
+TAKEN_INTEGERS(permutation, permutations, "purpose draw step size", take_address(&PERMUTATION[k].address, n),
+               PERMUTATION[k].address.purpose, PERMUTATION[k].address.draw, (int64_t)PERMUTATION[k].address.step,
+               PERMUTATION[k].address.entity)
 INTEGERS(permuted, permuted, "entry", PERMUTATION->order[k])
 
-#define TEST ((const struct oracle_test *)g->row)[k]
-POINT(test_from, tests, TEST.query.from)
-POINT(test_to, tests, TEST.query.to)
-POINT(test_pivot, tests, TEST.query.pivot)
-POINT(test_a, tests, TEST.query.a)
-POINT(test_b, tests, TEST.query.b)
-INTEGERS(flip, tests, "flip", TEST.query.flip)
+#define TEST ((struct oracle_test *)g->row)[k]
+TAKEN_POINT(test_from, tests, TEST.query.from)
+TAKEN_POINT(test_to, tests, TEST.query.to)
+TAKEN_POINT(test_pivot, tests, TEST.query.pivot)
+TAKEN_POINT(test_a, tests, TEST.query.a)
+TAKEN_POINT(test_b, tests, TEST.query.b)
+TAKEN_INTEGERS(flip, tests, "flip", TEST.query.flip = n[0] != 0, TEST.query.flip)
 INTEGERS(crosses, tests, "crosses", TEST.crosses)
 #define HIT(h) (h).time, (h).s, (h).s_standing, (h).normal.x, (h).normal.y, (h).normal.z
 REALS(hit, tests, "time s s_standing normal_x normal_y normal_z", HIT(TEST.hit))
 REALS(test_condition, tests, "condition", TEST.condition)
 
-#define EXCHANGE ((const struct oracle_exchange *)g->row)[k]
+#define EXCHANGE ((struct oracle_exchange *)g->row)[k]
 #define FOUR(x) (x)[0], (x)[1], (x)[2], (x)[3]
-VECTOR(exchange_moving, exchanges, EXCHANGE.velocity[0])
-VECTOR(exchange_pivot, exchanges, EXCHANGE.velocity[1])
-VECTOR(exchange_a, exchanges, EXCHANGE.velocity[2])
-VECTOR(exchange_b, exchanges, EXCHANGE.velocity[3])
-REALS(exchange_masses, exchanges, "moving pivot a b", FOUR(EXCHANGE.mass))
-REALS(exchange_contact, exchanges, "s s_standing", EXCHANGE.s, EXCHANGE.s_standing)
-VECTOR(exchange_normal, exchanges, EXCHANGE.normal)
+TAKEN_VECTOR(exchange_moving, exchanges, EXCHANGE.velocity[0])
+TAKEN_VECTOR(exchange_pivot, exchanges, EXCHANGE.velocity[1])
+TAKEN_VECTOR(exchange_a, exchanges, EXCHANGE.velocity[2])
+TAKEN_VECTOR(exchange_b, exchanges, EXCHANGE.velocity[3])
+TAKEN_REALS(exchange_masses, exchanges, "moving pivot a b", memcpy(EXCHANGE.mass, n, sizeof EXCHANGE.mass),
+            FOUR(EXCHANGE.mass))
+TAKEN_REALS(exchange_contact, exchanges, "s s_standing", (EXCHANGE.s = n[0], EXCHANGE.s_standing = n[1]), EXCHANGE.s,
+            EXCHANGE.s_standing)
+TAKEN_VECTOR(exchange_normal, exchanges, EXCHANGE.normal)
 REALS(exchange_momentum, exchanges, "momentum", EXCHANGE.momentum)
 VECTOR(after_moving, exchanges, EXCHANGE.after[0])
 VECTOR(after_pivot, exchanges, EXCHANGE.after[1])
 VECTOR(after_a, exchanges, EXCHANGE.after[2])
 VECTOR(after_b, exchanges, EXCHANGE.after[3])
 
-#define SEARCH ((const struct oracle_search *)g->row)[k]
-POINT(search_p, searches, SEARCH.pair.p)
-POINT(search_q, searches, SEARCH.pair.q)
-POINT(search_w, searches, SEARCH.pair.w)
-POINT(search_p_rate, searches, SEARCH.pair.p_rate)
-POINT(search_q_rate, searches, SEARCH.pair.q_rate)
-POINT(search_w_rate, searches, SEARCH.pair.w_rate)
-INTEGERS(search_from, searches, "tick", SEARCH.from)
-INTEGERS(search_reach, searches, "reach", SEARCH.reach)
+#define SEARCH ((struct oracle_search *)g->row)[k]
+TAKEN_POINT(search_p, searches, SEARCH.pair.p)
+TAKEN_POINT(search_q, searches, SEARCH.pair.q)
+TAKEN_POINT(search_w, searches, SEARCH.pair.w)
+TAKEN_POINT(search_p_rate, searches, SEARCH.pair.p_rate)
+TAKEN_POINT(search_q_rate, searches, SEARCH.pair.q_rate)
+TAKEN_POINT(search_w_rate, searches, SEARCH.pair.w_rate)
+TAKEN_INTEGERS(search_from, searches, "tick", SEARCH.from = n[0] < FLIGHT_TICKS ? (int32_t)n[0] : FLIGHT_TICKS,
+               SEARCH.from)
+TAKEN_INTEGERS(search_reach, searches, "reach", SEARCH.reach = n[0], SEARCH.reach)
 INTEGERS(search_tick, searches, "tick", SEARCH.tick)
 
-#define TUBES_ROW ((const struct oracle_tubes *)g->row)[k]
-POINT(tubes_p, contacts, TUBES_ROW.p)
-POINT(tubes_q, contacts, TUBES_ROW.q)
-POINT(tubes_w, contacts, TUBES_ROW.w)
+#define TUBES_ROW ((struct oracle_tubes *)g->row)[k]
+TAKEN_POINT(tubes_p, contacts, TUBES_ROW.p)
+TAKEN_POINT(tubes_q, contacts, TUBES_ROW.q)
+TAKEN_POINT(tubes_w, contacts, TUBES_ROW.w)
 REALS(tubes_contact, contacts, "s t", TUBES_ROW.s, TUBES_ROW.t)
 VECTOR(tubes_normal, contacts, TUBES_ROW.normal)
 
-#define IMPULSE ((const struct oracle_impulse *)g->row)[k]
-VECTOR(impulse_p0, impulses, IMPULSE.velocity[0])
-VECTOR(impulse_p1, impulses, IMPULSE.velocity[1])
-VECTOR(impulse_q0, impulses, IMPULSE.velocity[2])
-VECTOR(impulse_q1, impulses, IMPULSE.velocity[3])
-VECTOR(impulse_force_p0, impulses, IMPULSE.force[0])
-VECTOR(impulse_force_p1, impulses, IMPULSE.force[1])
-VECTOR(impulse_force_q0, impulses, IMPULSE.force[2])
-VECTOR(impulse_force_q1, impulses, IMPULSE.force[3])
-REALS(impulse_masses, impulses, "p0 p1 q0 q1", FOUR(IMPULSE.mass))
-REALS(impulse_contact, impulses, "s t", IMPULSE.s, IMPULSE.t)
-VECTOR(impulse_normal, impulses, IMPULSE.normal)
-REALS(impulse_tau, impulses, "tau", IMPULSE.tau)
+#define IMPULSE ((struct oracle_impulse *)g->row)[k]
+TAKEN_VECTOR(impulse_p0, impulses, IMPULSE.velocity[0])
+TAKEN_VECTOR(impulse_p1, impulses, IMPULSE.velocity[1])
+TAKEN_VECTOR(impulse_q0, impulses, IMPULSE.velocity[2])
+TAKEN_VECTOR(impulse_q1, impulses, IMPULSE.velocity[3])
+TAKEN_VECTOR(impulse_force_p0, impulses, IMPULSE.force[0])
+TAKEN_VECTOR(impulse_force_p1, impulses, IMPULSE.force[1])
+TAKEN_VECTOR(impulse_force_q0, impulses, IMPULSE.force[2])
+TAKEN_VECTOR(impulse_force_q1, impulses, IMPULSE.force[3])
+TAKEN_REALS(impulse_masses, impulses, "p0 p1 q0 q1", memcpy(IMPULSE.mass, n, sizeof IMPULSE.mass), FOUR(IMPULSE.mass))
+TAKEN_REALS(impulse_contact, impulses, "s t", (IMPULSE.s = n[0], IMPULSE.t = n[1]), IMPULSE.s, IMPULSE.t)
+TAKEN_VECTOR(impulse_normal, impulses, IMPULSE.normal)
+TAKEN_REALS(impulse_tau, impulses, "tau", IMPULSE.tau = n[0], IMPULSE.tau)
 INTEGERS(impulse_answer, impulses, "answer", IMPULSE.answer)
 REALS(impulse_momentum, impulses, "momentum", IMPULSE.momentum)
 VECTOR(after_p0, impulses, IMPULSE.after[0])
