@@ -74,6 +74,12 @@ double edges_place(struct dice *d)
   return k < 3 ? ends[k] : dice_between(d, 0.0, 1.0);
 }
 
+struct vec3 edges_velocity(struct dice *d, bool moves)
+{
+  const struct vec3 v = dice_vector(d, 2.0);
+  return vec3_scale(dice_u64(d) % 8 && moves ? 1.0 : 0.0, v);
+}
+
 bool oracle_edges_exchange(struct oracle_stage *g)
 {
   static const double masses[6] = {1.0, 2.0, 5.0, 7.5, 100.25, 0x1p-4};
@@ -81,7 +87,7 @@ bool oracle_edges_exchange(struct oracle_stage *g)
   struct oracle_exchange e[EXCHANGES] = {{.s = 0.0}};
   for (int k = 0; k < EXCHANGES; k++) {
     for (int end = 0; end < 4; end++) {
-      e[k].velocity[end] = vec3_scale(dice_u64(&d) % 8 && k % 16 ? 1.0 : 0.0, dice_vector(&d, 2.0));
+      e[k].velocity[end] = edges_velocity(&d, k % 16);
       e[k].mass[end] = k % 4 == 0 ? 5.0 : masses[dice_u64(&d) % 6];
     }
     e[k].s = edges_place(&d), e[k].s_standing = edges_place(&d);
@@ -126,8 +132,10 @@ bool oracle_edges_bin(struct oracle_stage *g)
     const struct point r = beside_face(box, shift, &d, i);
     s->x[i] = r.x, s->y[i] = r.y, s->z[i] = r.z;
   }
-  for (uint32_t v = 0; v < g->state->vertices; v++)
-    g->state->position[v] = point_plus(beside_face(box, shift, &d, v), far_away(box, &d, v));
+  for (uint32_t v = 0; v < g->state->vertices; v++) {
+    const struct point by = far_away(box, &d, v), at = beside_face(box, shift, &d, v);
+    g->state->position[v] = point_plus(at, by);
+  }
   return true;
 }
 

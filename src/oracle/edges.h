@@ -40,9 +40,11 @@ enum { EDGES_NEEDLES = 20, EDGES_STIFF = 10, EDGES_RINGS = 4, EDGES_FAR = 8 };
 
 #define EDGES_PART (LATTICE_CELL / 16)
 
-/* A unit vector, along an axis now and then; a place along a bond, an end now and then. */
+/* A unit vector, along an axis now and then; a place along a bond, an end now and then; a velocity, 0 now and then or
+ * if nothing moves. */
 struct dice; /* oracle/dice.h */
 struct vec3 edges_normal(struct dice *d);
+struct vec3 edges_velocity(struct dice *d, bool moves);
 double edges_place(struct dice *d);
 
 /* Sets the needles behind all others for a drift of so many t0: two that are long for their box, and two clusters that

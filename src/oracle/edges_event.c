@@ -67,6 +67,13 @@ static struct point times(int64_t factor, struct point p)
   return plus_times((struct point){0, 0, 0}, factor, p);
 }
 
+/* Numbers are drawn one after the other: C does not say in which order arguments are evaluated. */
+static struct point draw_in_plane(struct dice *d, int64_t most, struct point one, struct point other)
+{
+  const int64_t b = dice_integer(d, most), a = dice_integer(d, most);
+  return plus_times(times(a, one), b, other);
+}
+
 static int64_t draw_tick(struct dice *d, enum when when)
 {
   const int64_t half[] = {dice_u64(d) % (2 * FLIGHT_TICKS - 4) + 2, 1, 2 * FLIGHT_TICKS - 1, 2 * FLIGHT_TICKS};
@@ -105,11 +112,11 @@ static struct flight_pair make_pair(struct dice *d, const struct search_kind *k)
   if (k->direction == IN_A_PLANE) {
     const struct point one = dice_point(d, 1 << 9), other = dice_point(d, 1 << 9);
     const int64_t size = 1 << 26, slow = 1 << 4;
-    p = plus_times(times(dice_integer(d, size), one), dice_integer(d, size), other);
-    q = plus_times(times(dice_integer(d, size), one), dice_integer(d, size), other);
-    p_rate = plus_times(times(dice_integer(d, slow), one), dice_integer(d, slow), other);
-    q_rate = plus_times(times(dice_integer(d, slow), one), dice_integer(d, slow), other);
-    v = plus_times(times(dice_integer(d, slow), one), dice_integer(d, slow), other);
+    p = draw_in_plane(d, size, one, other);
+    q = draw_in_plane(d, size, one, other);
+    p_rate = draw_in_plane(d, slow, one, other);
+    q_rate = draw_in_plane(d, slow, one, other);
+    v = draw_in_plane(d, slow, one, other);
   }
   if (k->motion == GRAZING) { /* V in the plane of p and q: f = 0 twice */
     const int shift = k->bond - k->rate;
@@ -228,7 +235,7 @@ static struct oracle_impulse draw_impulse(struct dice *d, uint32_t k)
   static const double forces[4] = {0.0, 10.0, 200.0, 3000.0};
   struct oracle_impulse e = {.tau = taus[k % 5], .s = edges_place(d), .t = edges_place(d), .normal = edges_normal(d)};
   for (int end = 0; end < 4; end++) {
-    e.velocity[end] = vec3_scale(dice_u64(d) % 8 && k % 16 ? 1.0 : 0.0, dice_vector(d, 2.0));
+    e.velocity[end] = edges_velocity(d, k % 16);
     e.force[end] = vec3_scale(1.0, dice_vector(d, forces[k % 4]));
     e.mass[end] = k % 3 == 0 ? 5.0 : masses[dice_u64(d) % 6];
   }
