@@ -37,7 +37,7 @@
       fail_msg("%s = %.9g +- %.2g, expected %.9g: %.2f sigma", #actual, a_, s_, e_, (a_ - e_) / s_);                   \
   } while (0)
 
-/* Begins a case of long statistics. With NO_STATISTICS set (tools/sanitize, tools/coverage: slow programs, of which
+/* Begins a case of long statistics. With NO_STATISTICS set (tools/sanitize: slow programs, of which
  * only faults, or the lines that are reached, are asked) it is skipped: others reach the same code. */
 static inline void test_begin_statistics(void)
 {

@@ -51,7 +51,7 @@ static void turn(struct apart *link)
 
 static void spin(struct apart *link)
 {
-  link->seconds = -1.0; /* as if the time for this file were over */
+  link->seconds = 0.0; /* so that little more than a second is left */
   apart_go_on(link);
   turn(link);
 }

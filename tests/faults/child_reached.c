@@ -1,11 +1,11 @@
-/* Linked into the programs of `make coverage` only. A child that reads a file (src/files/apart.c) ends by _exit, and
+/* Linked into the programs of `make sanitize` only. A child that reads a file (src/files/apart.c) ends by _exit, and
  * may open no more files. Here it writes down what it reached before it ends. Its limits are soft ones, which it may
  * raise. */
 #include <stdbool.h>
 #include <stddef.h>
 #include <sys/resource.h>
 
-void __gcov_dump(void); /* of gcc's libgcov, whose header clang does not find */
+int __llvm_profile_write_file(void); /* of clang's runtime */
 void __real__exit(int code) __attribute__((noreturn));
 void inject_hold(bool held) __attribute__((weak)); /* inject.h, where it is linked */
 void __wrap__exit(int code) __attribute__((noreturn));
@@ -21,7 +21,7 @@ void __wrap__exit(int code)
     }
   if (inject_hold)
     inject_hold(true);
-  __gcov_dump();
+  __llvm_profile_write_file();
   if (inject_hold)
     inject_hold(false);
   __real__exit(code);
