@@ -62,21 +62,9 @@ static bool act_lag(void *room, const struct moment *now, const struct stage *st
   return true;
 }
 
-/* The bead flies with the fibers. */
-static bool act_beside(void *room, const struct moment *now, const struct stage *stage)
-{
-  struct work *w = room;
-  (void)now, (void)stage;
-  w->contact.bead.steps = w->mpc.fluid->steps;
-  w->contact.bead.visits = &w->mpc.bead.meetings;
-  return true;
-}
-
 static void plan_drift(struct plan *plan, const struct model *m, double fraction, uint32_t drift)
 {
-  if (model_has_bead(m) && m->vertices > 0)
-    plan_append(plan, (struct stage){.act = act_beside});
-  mpc_plan_drift(plan, m, offsetof(struct work, mpc));
+  bead_plan_drift(plan, m, offsetof(struct work, bead));
   bead_plan_counter(plan, m);
   contact_plan_drift(plan, m, offsetof(struct work, contact), fraction, drift);
   bead_plan_counter(plan, m);

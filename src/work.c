@@ -10,10 +10,11 @@ bool work_alloc(struct work *w, const struct model *m)
 {
   memset(w, 0, sizeof *w);
   if (!mpc_alloc(&w->mpc, m, fluid_of(m), false) || !contact_alloc(&w->contact, m, fiber_force_at, false) ||
-      !fiber_alloc(&w->fiber, m) || !medium_alloc(&w->medium, m, fluid_of(m))) {
+      !fiber_alloc(&w->fiber, m) || !medium_alloc(&w->medium, m, fluid_of(m)) || !bead_alloc(&w->bead, m)) {
     work_free(w);
     return false;
   }
+  bead_join(w->bead, &w->mpc, &w->contact);
   w->mpc.kernel = kernel_choose(m);
   step_plan(w, m);
   return true;
@@ -34,6 +35,7 @@ bool work_add_everything(struct work *w, const struct model *m)
   contact_free(&w->contact);
   w->mpc = mpc;
   w->contact = contact;
+  bead_join(w->bead, &w->mpc, &w->contact);
   return true;
 }
 
@@ -43,10 +45,12 @@ void work_free(struct work *w)
   contact_free(&w->contact);
   fiber_free(&w->fiber);
   medium_free(&w->medium);
+  bead_free(w->bead);
   memset(w, 0, sizeof *w);
 }
 
 uint64_t work_bytes(const struct model *m)
 {
-  return state_bytes(m) + mpc_bytes(m) + contact_bytes(m) + fiber_bytes(m) + medium_bytes(m) + medium_bytes_later(m);
+  return state_bytes(m) + mpc_bytes(m) + contact_bytes(m) + fiber_bytes(m) + medium_bytes(m) + medium_bytes_later(m) +
+         bead_bytes(m);
 }

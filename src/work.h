@@ -6,6 +6,7 @@
 #ifndef UNCROSS_WORK_H
 #define UNCROSS_WORK_H
 
+#include "bead/bead.h"
 #include "contact/contact.h"
 #include "fiber/force.h"
 #include "medium/medium.h"
@@ -23,7 +24,8 @@ struct work {
   struct contact contact;
   struct fiber fiber;
   struct medium medium;
-  struct plan plan[2]; /* [0]: of a step without a collision, [1]: with one */
+  struct bead_work *bead; /* NULL: there is none */
+  struct plan plan[2];    /* [0]: of a step without a collision, [1]: with one */
   struct start_watch watch;
   struct fault fault; /* code FAULT_NONE while all is well */
 };

@@ -12,7 +12,7 @@
 
 /* --- scratch ----------------------------------------------------------------------------------------------------- */
 
-enum { NEEDS = 12 };
+enum { NEEDS = 10 };
 
 /* The single list of the scratch that the drifts of a model use. Lists that grow are allocated where they grow. */
 static void list_needs(struct contact *c, const struct model *m, bool everything, struct memory_need need[NEEDS])
@@ -20,7 +20,6 @@ static void list_needs(struct contact *c, const struct model *m, bool everything
   const struct crossing_rule *rule = crossing_rule_of(m);
   const size_t noncrossing = everything || rule->forbids ? m->vertices : 0;
   const size_t in_turns = everything || rule->in_turns ? m->vertices : 0;
-  const size_t beside = model_has_bead(m) ? m->vertices : 0;
   const size_t at_once = everything || (rule->forbids && !rule->in_turns) ? m->vertices : 0;
   const struct memory_need all[NEEDS] = {
       {(void **)&c->order, in_turns, sizeof *c->order},
@@ -32,8 +31,6 @@ static void list_needs(struct contact *c, const struct model *m, bool everything
       {(void **)&c->candidates.first, noncrossing, sizeof *c->candidates.first},
       {(void **)&c->flights.version, at_once, sizeof *c->flights.version},
       {(void **)&c->flights.bend_of, at_once, sizeof *c->flights.bend_of},
-      {(void **)&c->bead.limit, beside, sizeof *c->bead.limit},
-      {(void **)&c->bead.listed, beside, sizeof *c->bead.listed},
       {(void **)&c->aside, m->frozen ? m->vertices : 0, sizeof *c->aside},
   };
   memcpy(need, all, sizeof all);
@@ -75,7 +72,6 @@ void contact_free(struct contact *c)
   free(c->flights.bends.at);
   free(c->bounces.at);
   free(c->flights.queue.at);
-  free(c->bead.at);
   free_neighbors(&c->neighbors);
   memset(c, 0, sizeof *c);
 }

@@ -8,7 +8,6 @@
 #include "contact/event_queue.h"
 #include "contact/line.h"
 #include "system/fault.h"
-#include "system/fluid.h"
 #include "system/model.h"
 #include "system/state.h"
 #include "wall/wall.h"
@@ -139,26 +138,21 @@ struct flights {
   struct event_queue queue;
 };
 
-/* A bond that may touch the bead in this drift. */
-struct bead_neighbor {
-  uint32_t bond;
-  int32_t due;        /* the tick of its next contact; FLIGHT_TICKS: none */
-  struct point image; /* of the bead that it may touch, from the bead itself */
-};
+struct event_drift;
 
-/* The bead among bonds: contact/event_bead.h. */
-struct bead_company {
-  const struct bead_steps *steps; /* its flight among the solvent; given before each drift, as is `visits` */
-  struct bead_visits *visits;
-  uint32_t *limit;          /* [vertices] bond j cannot touch it before path[j] and its own way together exceed this */
-  uint32_t *listed;         /* [vertices] 1 + place of bond j in the list, or 0 */
-  uint32_t way, way_before; /* bound on the way that the bead has gone; without this drift; units of paths */
-  uint32_t count, room;
-  struct bead_neighbor *at;
-  double slack;     /* a0: of the bead's free flight, as the way is reckoned */
-  bool stale;       /* the next hit has to be looked for */
-  int32_t hit;      /* its tick */
-  uint32_t cluster; /* of the vertices that move rigidly with the bead; 0: none */
+/* Another body that flies among the bonds in a drift of the rule `event-driven`, and meets them. A higher room gives it
+ * to struct contact. What comes next to it is answered between the contacts of bonds. Functions that return bool return
+ * false, with the fault recorded, as event_steer (contact/event_drift.h). */
+struct timeline {
+  void *body;
+  bool (*begin)(const struct event_drift *d);   /* it sets out; its first contacts are searched */
+  int32_t (*next)(const struct event_drift *d); /* the tick of what comes next; FLIGHT_TICKS: nothing does */
+  bool (*answer)(const struct event_drift *d);  /* to that */
+  bool (*search_again)(const struct event_drift *d, uint32_t n, const uint32_t *bond, int32_t tick); /* bonds bend */
+  void (*end)(const struct event_drift *d);
+  struct point (*rate)(const struct event_drift *d);       /* its displacement in a tick, now */
+  bool (*hold)(const struct event_drift *d, int32_t tick); /* it stands until the drift ends; its velocity stays */
+  uint32_t cluster;                                        /* of the vertices that move rigidly with it; 0: none */
 };
 
 /* The force on a vertex of a fiber whose vertices stand at place(context, vertex), kT/a0. */
@@ -194,8 +188,8 @@ struct contact {
   struct candidate_list candidates;
   struct neighbor_list near; /* scratch */
   struct neighbors neighbors;
-  struct bead_company bead; /* empty without a bead */
-  struct vec3 *aside;       /* [vertices] models with frozen fibers, else NULL: contact/frozen.h */
+  struct timeline *beside; /* NULL: bonds are alone */
+  struct vec3 *aside;      /* [vertices] models with frozen fibers, else NULL: contact/frozen.h */
   uint64_t waited,
       called_back; /* number of moves so far that waited for their turn; of these, called back. For benchmarks */
 };

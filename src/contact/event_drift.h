@@ -22,7 +22,6 @@ struct event_drift {
   const struct drift_frame *frame; /* contact->frame */
   const struct contact_log *log;
   struct fault *fault;
-  struct bead_company *bead; /* contact->bead; NULL: there is none */
 };
 
 /* Records that memory is short. False. */

@@ -9,8 +9,8 @@
  *      is left
  *   5  every vertex lands where its flight ends
  *
- * A bead has its own list of what comes next to it, hits of solvent particles and contacts with bonds; what is earlier
- * is answered first, from this list or from the queue (contact/event_bead.h).
+ * Another body among the bonds has its own list of what comes next to it; what is earlier is answered first, from this
+ * list or from the queue (struct timeline, contact/contact.h).
  *
  * At every tick up to the one at hand, all bonds are apart: each piece of path that is flown was searched. So no bond
  * passes through another.
@@ -22,7 +22,6 @@
  */
 #include "contact/candidates.h"
 #include "contact/capsule.h"
-#include "contact/event_bead.h"
 #include "contact/event_drift.h"
 #include "contact/event_rigid.h"
 #include "contact/impulse.h"
@@ -154,44 +153,37 @@ bool event_answer(const struct event_drift *d, const struct event *e)
   return e->version != event_version(d, e->bond, e->other) || answer(d, e);
 }
 
-/* All that happens in a drift with a bead. */
-static bool answer_beside_bead(const struct event_drift *d)
+/* All that happens in a drift. */
+static bool answer_all(const struct event_drift *d)
 {
-  const struct event_queue *queue = &d->contact->flights.queue;
+  const struct timeline *beside = d->contact->beside;
+  struct event_queue *queue = &d->contact->flights.queue;
   struct event e;
-  if (!event_bead_begin(d))
+  if (beside && !beside->begin(d))
     return false;
   for (;;) {
-    const int32_t bead = event_bead_next(d);
-    if (queue->count > 0 && queue->at[0].tick < bead) {
-      if (event_queue_pop(&d->contact->flights.queue, &e) && !event_answer(d, &e))
-        return false;
-    } else if (bead == FLIGHT_TICKS) {
-      event_bead_end(d);
-      return true;
-    } else if (!event_bead_answer(d)) {
+    const int32_t its = beside ? beside->next(d) : FLIGHT_TICKS;
+    const bool bonds = queue->count > 0 && queue->at[0].tick < its;
+    if (!bonds && its == FLIGHT_TICKS)
+      break;
+    if (!(bonds ? event_queue_pop(queue, &e) && event_answer(d, &e) : beside->answer(d)))
       return false;
-    }
   }
+  if (beside)
+    beside->end(d);
+  return true;
 }
 
 static bool drift_event_driven(struct state *state, const struct model *model, struct contact *contact, uint64_t step,
                                uint32_t drift, const struct contact_log *log, struct fault *fault)
 {
   (void)step, (void)drift;
-  struct bead_company *bead = model_has_bead(model) ? &contact->bead : NULL;
-  const struct event_drift d = {state, model, contact, &contact->frame, log, fault, bead};
+  const struct event_drift d = {state, model, contact, &contact->frame, log, fault};
   contact->flights.bends.count = 0;
   if ((!contact->neighbors.built && !neighbors_build(state, model, contact, fault)) ||
       !take_off(state, model, contact, fault) || !candidates_find(state, model, contact, fault) ||
-      !event_search_all(&d) || (model_has_walls(model) && !event_search_walls(&d)))
+      !event_search_all(&d) || (model_has_walls(model) && !event_search_walls(&d)) || !answer_all(&d))
     return false;
-  struct event e;
-  if (bead && !answer_beside_bead(&d))
-    return false;
-  while (event_queue_pop(&contact->flights.queue, &e))
-    if (!event_answer(&d, &e))
-      return false;
   event_land(&d);
   state->counts.moves += state->vertices;
   return true;

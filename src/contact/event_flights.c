@@ -3,7 +3,6 @@
 #include "base/memory.h"
 #include "contact/candidates.h"
 #include "contact/capsule.h"
-#include "contact/event_bead.h"
 #include "contact/neighbors.h"
 #include "contact/renewals.h"
 #include "contact/shape.h"
@@ -217,5 +216,6 @@ bool event_search_again(const struct event_drift *d, uint32_t n, const uint32_t 
       if (!done && !event_search_pair(d, bond[b], &with, tick))
         return false;
     }
-  return !d->bead || event_bead_search_again(d, bonds, bond, tick);
+  const struct timeline *beside = d->contact->beside;
+  return !beside || beside->search_again(d, bonds, bond, tick);
 }

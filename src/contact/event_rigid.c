@@ -1,7 +1,5 @@
 #include "contact/event_rigid.h"
 
-#include "contact/event_bead.h"
-
 static struct bend_in_path *bend_of(const struct event_drift *d, uint32_t i)
 {
   const struct flights *f = &d->contact->flights;
@@ -16,15 +14,15 @@ bool event_is_rigid(const struct event_drift *d, uint32_t n, const uint32_t *ver
   return false;
 }
 
-/* The cluster that these vertices are of from now on: that of the bead, that of the first that has one, or a new one.
- */
-static uint32_t choose_cluster(const struct event_drift *d, uint32_t n, const uint32_t *vertex, bool with_bead)
+/* The cluster that these vertices are of from now on: that of the body beside them, that of the first that has one, or
+ * a new one. */
+static uint32_t choose_cluster(const struct event_drift *d, uint32_t n, const uint32_t *vertex, bool with_body)
 {
-  const uint32_t of_bead = d->bead ? d->bead->cluster : 0;
-  uint32_t cluster = with_bead ? of_bead : 0;
+  const uint32_t of_body = d->contact->beside ? d->contact->beside->cluster : 0;
+  uint32_t cluster = with_body ? of_body : 0;
   for (uint32_t k = 0; k < n; k++) {
     const uint32_t its = bend_of(d, vertex[k])->cluster;
-    if (its && (!cluster || its == of_bead))
+    if (its && (!cluster || its == of_body))
       cluster = its;
   }
   return cluster ? cluster : d->contact->flights.bend_of[vertex[0]];
@@ -34,8 +32,9 @@ static uint32_t choose_cluster(const struct event_drift *d, uint32_t n, const ui
 static struct point free_rate(const struct event_drift *d, uint32_t n, const uint32_t *vertex, uint32_t cluster)
 {
   struct point sum = {0, 0, 0};
-  if (d->bead && d->bead->cluster == cluster)
-    return d->bead->visits->way.rate;
+  const struct timeline *beside = d->contact->beside;
+  if (beside && beside->cluster == cluster)
+    return beside->rate(d);
   uint32_t k = 0;
   do {
     const struct bend_in_path *bend = bend_of(d, vertex[k]);
@@ -84,16 +83,17 @@ bool event_steer_cluster(const struct event_drift *d, uint32_t cluster, struct p
   return true;
 }
 
-bool event_make_rigid(const struct event_drift *d, uint32_t n, const uint32_t *vertex, bool with_bead, int32_t tick)
+bool event_make_rigid(const struct event_drift *d, uint32_t n, const uint32_t *vertex, bool with_body, int32_t tick)
 {
-  const uint32_t cluster = choose_cluster(d, n, vertex, with_bead);
-  if (with_bead)
-    d->bead->cluster = cluster;
+  struct timeline *beside = d->contact->beside;
+  const uint32_t cluster = choose_cluster(d, n, vertex, with_body);
+  if (with_body)
+    beside->cluster = cluster;
   struct point rate = free_rate(d, n, vertex, cluster);
   join(d, n, vertex, cluster);
   if (holds_one(d, cluster)) {
     rate = (struct point){0, 0, 0};
-    if (d->bead && d->bead->cluster == cluster && !event_bead_hold(d, tick))
+    if (beside && beside->cluster == cluster && !beside->hold(d, tick))
       return false;
   }
   d->state->counts.rigid++;

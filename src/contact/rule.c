@@ -10,6 +10,5 @@ const struct crossing_rule *crossing_rule_row(enum crossing_kind kind)
 
 const struct crossing_rule *crossing_rule_of(const struct model *model)
 {
-  const bool meets = model->bonds > 1 || (model->bonds > 0 && model_has_bead(model));
-  return crossing_rule_row(model->crossing.forbidden && meets ? model->crossing.rule : CROSSING_FREE);
+  return crossing_rule_row(model->crossing.forbidden && model_bonds_meet(model) ? model->crossing.rule : CROSSING_FREE);
 }

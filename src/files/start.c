@@ -3,9 +3,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "bead/bead.h"
 #include "files/snapshot.h"
 #include "files/start.h"
-#include "fluid/bead.h"
 #include "observe/conserved.h"
 #include "scene/scene.h"
 #include "start/fibers.h"

@@ -1,20 +1,11 @@
 #include "fluid/boundary.h"
 
-#include "system/bead.h"
+#include "system/fluid.h"
 #include "wall/motion.h"
 
 static bool boundaries_move(const struct model *model)
 {
   return (model_has_walls(model) || model_is_sheared(model)) && model->solvent.interval_steps > 0;
-}
-
-/* Of a force without profile, or of the counterforce of a driven bead; no scene has both. */
-static struct vec3 acceleration_of(const struct state *state, const struct model *model)
-{
-  const bool uniform = model->solvent.profile == PROFILE_UNIFORM;
-  return model->bead.driven ? bead_counter(state, model)
-         : uniform          ? model->solvent.acceleration
-                            : (struct vec3){0, 0, 0};
 }
 
 struct span boundary_lag(const struct state *state, const struct model *model)
@@ -23,7 +14,7 @@ struct span boundary_lag(const struct state *state, const struct model *model)
                        .begin = state->solvent_time,
                        .end = state->solvent_time + state->solvent_lag,
                        .interval = boundaries_move(model) ? shear_interval(model, state->solvent_time) : 0,
-                       .acceleration = acceleration_of(state, model)};
+                       .acceleration = fluid_acceleration(state, model)};
 }
 
 int64_t boundary_fly_periodic(uint32_t n, int64_t *restrict x, double *restrict v, double t, double a, int64_t edge)

@@ -66,8 +66,7 @@ int64_t boundary_fly_periodic(uint32_t n, int64_t *restrict x, double *restrict 
 bool boundary_fold(struct state *state, const struct model *model, int axis, double t, uint32_t first, uint32_t n,
                    struct fault *fault);
 
-/* The span by which the solvent is late. A force with a profile acts at collisions (mpc/), not in flight. The
- * counterforce of a driven bead acts in flight. */
+/* The span by which the solvent is late. A force with a profile acts at collisions (mpc/), not in flight. */
 struct span boundary_lag(const struct state *state, const struct model *model);
 
 /* How the next image along y of a sheared box differs from the box. */

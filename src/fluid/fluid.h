@@ -18,6 +18,9 @@ const struct fluid *fluid_row(enum fluid_kind kind);
 /* The fluid of a model. */
 const struct fluid *fluid_of(const struct model *model);
 
+/* Where a particle begins: uniform in the box, in each attempt another place. */
+struct point fluid_start_place(const struct model *model, uint32_t id, uint32_t attempt);
+
 /* Streams all particles, and sets the lag to 0. False as `stream` of struct fluid. */
 bool fluid_stream(struct state *state, const struct model *model, struct fault *fault);
 

@@ -1,6 +1,5 @@
 /* A fluid of independent particles, in free flight between collisions. */
 #include "base/normal.h"
-#include "fluid/bead.h"
 #include "fluid/boundary.h"
 #include "fluid/fluid.h"
 
@@ -17,8 +16,7 @@ static int64_t start_height(const struct model *model, uint32_t id, int64_t y)
   return id >= m->second.first ? (int64_t)(part * (double)border) : border + (int64_t)(part * (double)(edge - border));
 }
 
-/* Uniform in the box. */
-static struct point start_place(const struct model *model, uint32_t id, uint32_t attempt)
+struct point fluid_start_place(const struct model *model, uint32_t id, uint32_t attempt)
 {
   const struct random_words xy = random_at(model->seed, RANDOM_SOLVENT_POSITION, 2 * attempt, 0, id);
   const struct random_words z = random_at(model->seed, RANDOM_SOLVENT_POSITION, 2 * attempt + 1, 0, id);
@@ -27,19 +25,14 @@ static struct point start_place(const struct model *model, uint32_t id, uint32_t
                         model_is_flat(model) ? 0 : lattice_uniform(random_u64(z, 0), model->box.cells[2])};
 }
 
-/* Uniform positions outside a bead, Maxwell velocities. In a plane, at z = 0. */
+/* Uniform positions, Maxwell velocities. In a plane, at z = 0. */
 static void start_points(struct state *state, const struct model *model)
 {
   const bool flat = model_is_flat(model);
   struct solvent *s = &state->solvent;
-  if (state->beads > 0)
-    bead_start(state, model);
   for (uint32_t i = 0; i < s->n; i++) {
-    uint32_t id = s->id[i];
-    uint32_t attempt = 0;
-    struct point x = start_place(model, id, attempt);
-    while (state->beads > 0 && !bead_is_outside(model, state->bead->position, x))
-      x = start_place(model, id, ++attempt);
+    const uint32_t id = s->id[i];
+    const struct point x = fluid_start_place(model, id, 0);
     s->x[i] = x.x, s->y[i] = x.y, s->z[i] = x.z;
     double a[2], b[2];
     random_normal_pair(random_at(model->seed, RANDOM_SOLVENT_VELOCITY, 0, 0, id), a);
@@ -76,5 +69,4 @@ static void points_now(const struct state *state, const struct model *model, uin
   }
 }
 
-const struct fluid fluid_points = {
-    .name = "points", .start = start_points, .stream = stream_points, .now = points_now, .steps = &bead_flight_steps};
+const struct fluid fluid_points = {.name = "points", .start = start_points, .stream = stream_points, .now = points_now};

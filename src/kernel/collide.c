@@ -124,7 +124,7 @@ static bool set_factors(const struct state *state, const struct model *model, st
 /* Whether something but a thermostat reads the sums of cells after, or before, they are solved. */
 static bool sums_are_read(const struct mpc *mpc)
 {
-  return mpc->keeps_sums || mpc->border->fill || mpc->border->account || mpc->stress;
+  return mpc->keeps_sums || mpc->border->fill || mpc->border->account || mpc->obstacle || mpc->stress;
 }
 
 /* Turns of cells of which nobody reads the sums. So the sums are read once, and in the same pass they may be cleared

@@ -9,5 +9,5 @@ const struct border *border_of(const struct model *model)
 {
   static const struct border *const borders[BOUNDARIES] = {
       [BOUNDARY_PERIODIC] = &border_periodic, [BOUNDARY_WALL] = &border_walls, [BOUNDARY_SHEAR] = &border_sheared};
-  return model_has_bead(model) ? &border_bead : borders[model->box.boundary[1]];
+  return borders[model->box.boundary[1]];
 }

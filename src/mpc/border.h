@@ -37,11 +37,6 @@ struct border {
   void (*enter_vertices)(struct state *state, const struct model *model, struct mpc *mpc);
   void (*leave)(struct state *state, const struct model *model, struct mpc *mpc);
 
-  /* After all members have been added: gives those their true flights that meet something in the box. span: as
-   * add_particles returns it, of all; may grow. False, with the fault recorded, if a flight is out of range. */
-  bool (*rebound)(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step, uint64_t *span,
-                  struct fault *fault);
-
   /* Adds virtual particles to the sums of cells. False, with the fault recorded, if a cell exceeds its range. */
   bool (*fill)(const struct state *state, const struct model *model, struct mpc *mpc, uint64_t step,
                struct fault *fault);
@@ -50,7 +45,23 @@ struct border {
   void (*account)(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step);
 };
 
-extern const struct border border_periodic, border_walls, border_sheared, border_bead;
+extern const struct border border_periodic, border_walls, border_sheared;
+
+/* What stands in the box, in the way of the solvent. A higher room gives it to struct mpc. Its `fill` and `account`
+ * come after those of the border. */
+struct obstacle {
+  void *room; /* its scratch */
+
+  /* After all particles have been added: gives those their true flights that meet it. span: as add_particles returns
+   * it, of all; may grow. False, with the fault recorded, if a flight is out of range. */
+  bool (*rebound)(void *room, struct state *state, const struct model *model, struct mpc *mpc, uint64_t step,
+                  uint64_t *span, struct fault *fault);
+
+  /* As of struct border. */
+  bool (*fill)(void *room, const struct state *state, const struct model *model, struct mpc *mpc, uint64_t step,
+               struct fault *fault);
+  void (*account)(void *room, struct state *state, const struct model *model, struct mpc *mpc, uint64_t step);
+};
 
 /* The virtual particles of the cell at this place in sum; n is 0 in cells that no wall cuts. */
 struct virtual_members border_virtual(const struct mpc *mpc, const struct model *model, uint32_t place);

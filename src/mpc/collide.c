@@ -63,7 +63,8 @@ bool collide_add_vertices(struct state *state, const struct model *model, struct
                           uint64_t *span, struct fault *fault)
 {
   const struct border *border = mpc->border;
-  if (border->rebound && !border->rebound(state, model, mpc, step, span, fault))
+  const struct obstacle *o = mpc->obstacle;
+  if (o && !o->rebound(o->room, state, model, mpc, step, span, fault))
     return false;
   state_streamed(state);
   if (border->enter_vertices)
@@ -89,8 +90,10 @@ bool collide_fill(const struct state *state, const struct model *model, struct m
                   struct fault *fault)
 {
   const struct border *border = mpc->border;
+  const struct obstacle *o = mpc->obstacle;
   if (!overflow_of_momenta(state, model, mpc, span, step, fault) ||
-      (border->fill && !border->fill(state, model, mpc, step, fault)))
+      (border->fill && !border->fill(state, model, mpc, step, fault)) ||
+      (o && !o->fill(o->room, state, model, mpc, step, fault)))
     return false;
   if (mpc->stress)
     stress_before(state, model, mpc);
@@ -151,6 +154,8 @@ void collide_leave(struct state *state, const struct model *model, struct mpc *m
     stress_after(state, model, mpc);
   if (border->account)
     border->account(state, model, mpc, step);
+  if (mpc->obstacle)
+    mpc->obstacle->account(mpc->obstacle->room, state, model, mpc, step);
   if (border->leave)
     border->leave(state, model, mpc);
   if (!model->solvent.hydrodynamics)

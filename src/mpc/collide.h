@@ -29,7 +29,8 @@ uint64_t collide_bin_and_add(struct state *state, const struct model *model, str
                              uint32_t first, uint32_t n);
 
 /* The same of all vertices, when all particles have flown and are in the sums. *span: the bitwise or of all that was
- * returned so far; theirs is added. False, with the fault recorded, if a particle in a bead's way moves too far. */
+ * returned so far; theirs is added. False, with the fault recorded, if a particle in an obstacle's way moves too far.
+ */
 bool collide_add_vertices(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step,
                           uint64_t *span, struct fault *fault);
 

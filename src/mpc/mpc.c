@@ -1,6 +1,5 @@
 #include "mpc/mpc.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -88,10 +87,6 @@ void mpc_free(struct mpc *c)
   const struct model nothing = {0};
   list_needs(c, &nothing, false, need);
   memory_release(need, NEEDS);
-  free(c->bead.meetings.at);
-  free(c->bead.cut);
-  free(c->bead.number);
-  free(c->bead.normal);
   memset(c, 0, sizeof *c);
 }
 

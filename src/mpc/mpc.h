@@ -30,25 +30,17 @@ struct virtual_members;
 
 struct mpc_stress;
 
-/* Of collisions around a bead: mpc/bead.c. */
-struct mpc_bead {
-  struct bead_visits meetings; /* of the flight */
-  struct bead_cut *cut;        /* [cuts] cells that its surface cuts and that have members */
-  uint32_t *number;            /* [cuts] their numbers */
-  struct vec3 *normal;         /* [cuts] the normal deviates of their virtual particles */
-  uint32_t cuts, cut_room;
-};
-
 struct mpc {
   const struct collision_rule *rule;
   const struct thermostat *thermostat; /* NULL: none */
   const struct fluid *fluid;
   const struct border *border;
-  struct kernel kernel;   /* the plain one, unless work_alloc has a faster one for this scene */
-  struct point shift;     /* of the grid (grid_shift), lattice units */
-  uint32_t cells;         /* all cells of the box; with a random solvent, those that hold a vertex */
-  struct cell_sum *sum;   /* [cells] */
-  struct cell_turn *turn; /* [cells] */
+  const struct obstacle *obstacle; /* NULL: none */
+  struct kernel kernel;            /* the plain one, unless work_alloc has a faster one for this scene */
+  struct point shift;              /* of the grid (grid_shift), lattice units */
+  uint32_t cells;                  /* all cells of the box; with a random solvent, those that hold a vertex */
+  struct cell_sum *sum;            /* [cells] */
+  struct cell_turn *turn;          /* [cells] */
   int64_t *relative;      /* [cells] twice the kinetic energy relative to v_cm, 2^-32 kT; thermostat only, else NULL.
                            * Not filled where one sum of all cells will do (kernel/collide.c) */
   uint32_t *solvent_cell; /* [particles] the same for particles, in memory order */
@@ -69,7 +61,6 @@ struct mpc {
   struct cell_spin *spin;    /* [cells] sums of a rule with angular momentum (rules/spin.h), else NULL */
   bool spin_is_clear;        /* all of `spin` is 0: the rule clears each cell when it has solved it */
   struct point *middle;      /* [cells] of the same rule: place in the cell next to its centre of mass, lattice units */
-  struct mpc_bead bead;      /* empty without one */
   bool prefetch;             /* sums and turns of cells are far in memory: they are asked for ahead of their use */
   uint32_t since_sort;       /* collisions since particles were last sorted by cell */
   bool sum_is_clear;         /* of src/kernel/: all of `sum` is 0, cleared when nobody needed it any more */

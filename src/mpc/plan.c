@@ -42,19 +42,6 @@ static bool kick_affine(void *room, const struct moment *now, const struct stage
   return true;
 }
 
-static bool fly_bead(void *room, const struct moment *now, const struct stage *stage)
-{
-  struct mpc *mpc = room;
-  (void)stage;
-  return mpc->fluid->steps->alone(now->state, now->model, &mpc->bead.meetings, now->fault);
-}
-
-void mpc_plan_drift(struct plan *plan, const struct model *m, size_t room)
-{
-  if (model_has_bead(m) && m->vertices == 0)
-    plan_append(plan, (struct stage){.act = fly_bead, .room = room});
-}
-
 typedef bool act(void *, const struct moment *, const struct stage *);
 
 static act *const collisions[BATHS] = {[BATH_PARTICLES] = collide_particles, [BATH_PHANTOMS] = collide_random_solvent};

@@ -4,9 +4,6 @@
 
 #include "system/plan.h"
 
-/* Appends the flight of a bead that is alone in the solvent. room: offset of struct mpc in struct work. */
-void mpc_plan_drift(struct plan *plan, const struct model *model, size_t room);
-
 /* Appends the collision of this model to a plan, if the model has collisions. room: offset of struct mpc in struct
  * work. name: as in struct stage. */
 void mpc_plan_collision(struct plan *plan, const struct model *model, size_t room, const char *name);

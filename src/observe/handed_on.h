@@ -14,6 +14,7 @@
 
 #include "contact/contact.h"
 #include "observe/observer.h"
+#include "system/fluid.h"
 
 /* These are members of struct observer_type, or parts of them. */
 

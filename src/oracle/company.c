@@ -1,7 +1,7 @@
 /* Contacts of bonds with a bead, one by one, as the steps of a run have them. */
 #include "oracle/company.h"
 
-#include "contact/event_bead.h"
+#include "bead/company.h"
 #include "oracle/drift.h"
 #include "oracle/stages.h"
 #include "system/bead.h"
@@ -16,8 +16,8 @@ struct bodies {
 
 static struct bodies before_contact(const struct oracle_stage *g, const uint32_t vertex[2])
 {
-  const struct bead_company *c = &g->work->contact.bead;
-  const struct bead_way *w = &c->visits->way;
+  const struct bead_company *c = &g->work->bead->company;
+  const struct bead_way *w = &g->work->bead->flight.way;
   const struct point image = c->at[c->listed[vertex[0]] - 1].image,
                      now = point_plus(point_plus(g->state->bead->position, image), w->at);
   struct bodies b = {.at[2] = flight_place(now, w->rate, -w->clock), .rate[2] = w->rate};
@@ -51,7 +51,7 @@ static struct oracle_impulse impulse_of(const struct oracle_stage *g, const stru
                                         const uint32_t vertex[2], int32_t tick)
 {
   const struct drift_frame *frame = &g->work->contact.frame;
-  const struct bead_way *w = &g->work->contact.bead.visits->way;
+  const struct bead_way *w = &g->work->bead->flight.way;
   const double lever[2] = {1.0 - v->hit.s, v->hit.s};
   struct oracle_impulse e = {.s = v->hit.s, .t = 0.0, .normal = v->hit.normal, .mass[3] = 1.0};
   e.tau = frame->start + frame->time * ((double)tick / FLIGHT_TICKS);

@@ -3,8 +3,8 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "bead/company.h"
 #include "contact/drift.h"
-#include "contact/event_bead.h"
 #include "contact/laying.h"
 #include "fiber/start.h"
 #include "start/start.h"
@@ -29,7 +29,8 @@ static enum fiber_verdict judge_fiber(void *context, const struct point *positio
   const struct state *s = g->state;
   if (g->watch && g->watch->keep_on && !g->watch->keep_on(g->watch->context))
     return FIBER_GIVEN_UP;
-  g->in_bead = s->beads > 0 && !event_bead_clear(g->model, s->bead->position, position, fiber, &g->bond, &g->distance);
+  g->in_bead =
+      s->beads > 0 && !bead_company_clear(g->model, s->bead->position, position, fiber, &g->bond, &g->distance);
   if (g->in_bead)
     return FIBER_OVERLAPS;
   return g->laying.model ? verdicts[laying_add(&g->laying, position, fiber)] : FIBER_STAYS;

@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "bead/bead.h"
 #include "fluid/fluid.h"
 #include "medium/repulsion.h"
 #include "start/fibers.h"
@@ -93,6 +94,8 @@ bool start_state(struct state *state, const struct model *model, struct work *wo
   state->solvent_time = 0;
   contact_forget_places(&work->contact);
   fluid_of(model)->start(state, model);
+  if (state->beads > 0)
+    bead_start(state, model);
   if (!start_fibers(state, model, &work->watch, &work->fault))
     return false;
   if (model_is_overdamped(model)) {

@@ -3,8 +3,8 @@
  * kept.
  *
  * A particle that hits the surface leaves with its velocity relative to the bead reversed, as two bodies of masses m
- * and M that bounce: momentum and energy are conserved (fluid/bead.c). The part of a collision cell that is in the
- * bead holds virtual particles. They are matter of the bead: mpc/bead.c.
+ * and M that bounce: momentum and energy are conserved (bead/flight.c). The part of a collision cell that is in the
+ * bead holds virtual particles. They are matter of the bead: bead/matter.c.
  *
  * The bead is streamed with the solvent, so a step is a collision interval, and nothing is late between steps.
  */

@@ -1,6 +1,7 @@
 /* What pulls the bead, and what takes up the momentum. */
 #include "base/elementary.h"
 #include "system/bead.h"
+#include "system/fluid.h"
 
 /* Where the bead is at the start, on the lattice. */
 static struct point start_of(const struct model *model)
@@ -46,6 +47,15 @@ struct vec3 bead_counter(const struct state *state, const struct model *model)
     return (struct vec3){0, 0, 0};
   const struct vec3 force = bead_force(model, state->bead->position, state->solvent_time);
   return vec3_scale(-1.0 / model->total_mass, force);
+}
+
+/* No scene has both. */
+struct vec3 fluid_acceleration(const struct state *state, const struct model *model)
+{
+  const bool uniform = model->solvent.profile == PROFILE_UNIFORM;
+  return model->bead.driven ? bead_counter(state, model)
+         : uniform          ? model->solvent.acceleration
+                            : (struct vec3){0, 0, 0};
 }
 
 /* Vertices take up their share of what a drive gives to the bead: half of it, twice in a step. */

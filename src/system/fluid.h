@@ -36,61 +36,9 @@ static inline int64_t flux_fixed(double x)
   return lattice_round(FLUX_SCALE * x);
 }
 
-/* A particle that may have met the bead in its flight: fluid/bead.c. */
-struct bead_visit {
-  uint32_t place;        /* in memory */
-  bool rigid;            /* it goes with the bead for the rest of the flight, at this place relative to it */
-  uint32_t again;        /* hits at the tick of its last one, less 1 */
-  int64_t clock, due;    /* ticks: where it was last turned; its next hit */
-  struct point at, rate; /* from the bead's center at the start, lattice units, at that tick; the same per tick */
-  struct vec3 velocity;  /* a0/t0 */
-};
-
-#define BEAD_TICKS 65536 /* of a flight, as of a drift of bonds (contact/flight.h) */
-
-/* The bead on its way; `at` and clock as in struct bead_visit. */
-struct bead_way {
-  double time, mass; /* of the flight, t0; of the bead, m */
-  int64_t radius, clock;
-  struct point at, rate;
-  struct vec3 velocity;
-  bool held; /* it stands until the flight ends, whatever its velocity: contact/event_rigid.h */
-};
-
-/* Those of one flight. */
-struct bead_visits {
-  struct bead_visit *at;
-  uint32_t n, room;
-  struct bead bead; /* after the flight */
-  struct bead_way way;
-  struct vec3 free;         /* the bead's velocity at the start, a0/t0 */
-  double slack;             /* a0: how far it may be off its free flight before others may be met */
-  struct bead_visit *first; /* of all, the next that hits the bead */
-};
-
-/* The flight of the bead in a drift, hit by hit: it may meet bonds as well (contact/event_bead.c). It begins while the
- * solvent still stands where the drift begins. */
-struct bead_steps {
-  /* Who may meet the bead. False, with the fault recorded, if memory is short; so do answer and turn. */
-  bool (*begin)(const struct state *state, const struct model *model, struct bead_visits *all, struct fault *fault);
-
-  /* The tick of the next hit; BEAD_TICKS if there is none. */
-  int64_t (*next)(const struct state *state, struct bead_visits *all);
-
-  /* Answers this hit. */
-  bool (*answer)(const struct state *state, const struct model *model, struct bead_visits *all, struct fault *fault);
-
-  /* From this tick on the bead has another velocity. */
-  bool (*turn)(const struct state *state, const struct model *model, struct bead_visits *all, int64_t tick,
-               struct vec3 velocity, struct fault *fault);
-
-  /* Where all are at the end: `at` is then the position of a particle in the box, `velocity` its velocity there. The
-   * state is left as it is. */
-  void (*end)(const struct state *state, const struct model *model, struct bead_visits *all);
-
-  /* All of this, where there are no bonds. */
-  bool (*alone)(const struct state *state, const struct model *model, struct bead_visits *all, struct fault *fault);
-};
+/* Acceleration of all particles in flight, a0/t0^2: of a body force without a profile, and what takes up the momentum
+ * of a drive (system/bead_drive.c). It is constant until the solvent is streamed again. */
+struct vec3 fluid_acceleration(const struct state *state, const struct model *model);
 
 struct fluid {
   const char *name;
@@ -117,8 +65,6 @@ struct fluid {
    * 1 < y < L - 1. NULL: none stand together. */
   void (*flux)(const struct state *state, const struct model *model, const struct flux_frame *frame,
                struct flux_sum *sum);
-
-  const struct bead_steps *steps; /* NULL: no bead */
 };
 
 #endif

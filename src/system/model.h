@@ -441,6 +441,12 @@ static inline bool model_has_bead(const struct model *model)
   return model->bead.radius > 0.0;
 }
 
+/* True if a bond may meet something: another one, or a bead. */
+static inline bool model_bonds_meet(const struct model *model)
+{
+  return model->bonds > 1 || (model->bonds > 0 && model_has_bead(model));
+}
+
 static inline bool model_has_phantoms(const struct model *model)
 {
   return model->solvent.bath == BATH_PHANTOMS;

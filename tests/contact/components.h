@@ -5,9 +5,9 @@
 #ifndef UNCROSS_TESTS_COMPONENTS_H
 #define UNCROSS_TESTS_COMPONENTS_H
 
+#include "bead/company.h"
 #include "contact/candidates.h"
 #include "contact/capsule.h"
-#include "contact/event_bead.h"
 #include "contact/neighbors.h"
 #include "contact/reference.h"
 #include "contact/rule.h"
@@ -37,17 +37,10 @@ static inline void copy_open(struct flown_copy *c, const struct test_run *r, con
   memcpy(c->state.velocity, velocity, n * sizeof *c->state.velocity);
   assert_true(work_alloc(&c->work, &r->model));
   struct contact *contact = &c->work.contact;
-  contact->bead.steps = c->work.mpc.fluid->steps, contact->bead.visits = &c->work.mpc.bead.meetings;
   contact->frame = drift_frame_now(&c->state, &r->model, 1.0, drift, true);
   for (uint32_t i = 0; i < n && contact->frame.sheared; i++)
     c->state.position[i] = drift_enter(&contact->frame, c->state.position[i]);
-  c->d = (struct event_drift){&c->state,
-                              &r->model,
-                              contact,
-                              &contact->frame,
-                              NULL,
-                              &c->work.fault,
-                              model_has_bead(&r->model) ? &contact->bead : NULL};
+  c->d = (struct event_drift){&c->state, &r->model, contact, &contact->frame, NULL, &c->work.fault};
 }
 
 static inline void copy_close(struct flown_copy *c)
@@ -62,8 +55,8 @@ static inline bool copies_agree(const struct flown_copy *a, const struct flown_c
   const size_t n = a->state.vertices;
   return memcmp(a->state.position, b->state.position, n * sizeof *a->state.position) == 0 &&
          memcmp(a->state.velocity, b->state.velocity, n * sizeof *a->state.velocity) == 0 &&
-         (!a->d.bead ||
-          memcmp(&a->d.bead->visits->bead, &b->d.bead->visits->bead, sizeof a->d.bead->visits->bead) == 0);
+         (!a->work.bead ||
+          memcmp(&a->work.bead->flight.bead, &b->work.bead->flight.bead, sizeof a->work.bead->flight.bead) == 0);
 }
 
 /* --- components --------------------------------------------------------------------------------------------------- */
@@ -135,7 +128,7 @@ static inline struct seen_flight flight_now(const struct schedule *s, uint32_t v
   if (v < s->n) {
     f.at = s->c->state.position[v], f.rate = event_rate(&s->c->d, v);
   } else {
-    const struct bead_way *w = &s->c->d.bead->visits->way;
+    const struct bead_way *w = &s->c->work.bead->flight.way;
     f.rate = w->rate;
     f.at = flight_place(point_plus(s->c->state.bead->position, w->at), w->rate, -w->clock);
   }
@@ -170,7 +163,7 @@ static inline void touch_four(struct schedule *s, uint32_t c, const struct event
 static inline void see_bends(struct schedule *s, uint32_t c, int32_t tick)
 {
   const struct bend_list *bends = &s->c->work.contact.flights.bends;
-  const uint32_t bead = s->c->d.bead ? 1 : 0;
+  const uint32_t bead = s->c->work.bead ? 1 : 0;
   for (uint32_t k = 0; k < bends->count + bead; k++) {
     const uint32_t v = k < bends->count ? bends->at[k].vertex : s->n;
     const struct seen_flight now = flight_now(s, v);
@@ -205,13 +198,13 @@ static inline void set_out(struct flown_copy *c)
   assert_true(neighbors_build(&c->state, c->d.model, contact, c->d.fault));
   assert_true(take_off(&c->state, c->d.model, contact, c->d.fault));
   assert_true(candidates_find(&c->state, c->d.model, contact, c->d.fault));
-  assert_true(event_search_all(&c->d) && (!c->d.bead || event_bead_begin(&c->d)));
+  assert_true(event_search_all(&c->d) && (!c->work.bead || c->work.contact.beside->begin(&c->d)));
 }
 
 static inline void come_down(struct flown_copy *c)
 {
-  if (c->d.bead)
-    event_bead_end(&c->d);
+  if (c->work.bead)
+    c->work.contact.beside->end(&c->d);
   event_land(&c->d);
 }
 
@@ -227,7 +220,7 @@ static inline void find_components(struct schedule *s)
       for (int i = pulling(s->model, vertex[end], near); i-- > 0;)
         unite(s, near[i], vertex[0]);
   }
-  if (s->c->d.bead)
+  if (s->c->work.bead)
     component_of(s, s->n);
   struct event e;
   while (event_queue_pop(all, &e)) { /* vertices of first events are its own: others may make an event out of date */
@@ -246,11 +239,11 @@ static inline bool is_valid(const struct flown_copy *c, const struct event *e)
 static inline bool answer_next(struct schedule *s, uint32_t c)
 {
   struct event_queue *mine = &s->queue[c], *all = &s->c->work.contact.flights.queue;
-  const bool with_bead = s->c->d.bead && c == component_of(s, s->n);
+  const bool with_bead = s->c->work.bead && c == component_of(s, s->n);
   struct event e;
   while (mine->count > 0 && !is_valid(s->c, &mine->at[0]))
     event_queue_pop(mine, &e);
-  const int32_t bead = with_bead ? event_bead_next(&s->c->d) : FLIGHT_TICKS;
+  const int32_t bead = with_bead ? s->c->work.contact.beside->next(&s->c->d) : FLIGHT_TICKS;
   int32_t tick = bead;
   if (mine->count > 0 && mine->at[0].tick < bead) {
     event_queue_pop(mine, &e);
@@ -258,7 +251,7 @@ static inline bool answer_next(struct schedule *s, uint32_t c)
     touch_four(s, c, &e);
     assert_true(event_answer(&s->c->d, &e));
   } else if (bead < FLIGHT_TICKS) {
-    assert_true(event_bead_answer(&s->c->d));
+    assert_true(s->c->work.contact.beside->answer(&s->c->d));
     s->bead_answers++;
   } else {
     return false;
@@ -335,9 +328,9 @@ static inline void judge(struct schedule *s)
 {
   uint32_t *bond = malloc((s->n + 1) * sizeof *bond), bonds = 0, near[5];
   for (uint32_t v = 0; v <= s->n; v++) {
-    if (v < s->n || s->c->d.bead)
+    if (v < s->n || s->c->work.bead)
       widen(&s->seen[v].box, flight_place(s->seen[v].at, s->seen[v].rate, FLIGHT_TICKS));
-    if (s->c->d.bead && v == s->n)
+    if (s->c->work.bead && v == s->n)
       touch(s, component_of(s, v), v);
     if (v < s->n && s->seen[v].owner != NO_OWNER)
       for (int i = pulling(s->model, v, near); i-- > 0;)
@@ -345,7 +338,7 @@ static inline void judge(struct schedule *s)
           unite(s, s->root[s->seen[near[i]].owner], s->root[s->seen[v].owner]), s->joined++;
   }
   for (uint32_t v = 0; v <= s->n; v++)
-    if ((v == s->n ? s->c->d.bead != NULL : s->model->next[v] >= 0) && owner_of_bond(s, v) != NO_OWNER)
+    if ((v == s->n ? s->c->work.bead != NULL : s->model->next[v] >= 0) && owner_of_bond(s, v) != NO_OWNER)
       bond[bonds++] = v;
   for (uint32_t a = 0; a < bonds; a++)
     for (uint32_t b = a + 1; b < bonds; b++) {
@@ -374,7 +367,7 @@ static inline uint64_t drift_by_components(struct test_run *r, const struct vec3
     set_out(c);
     memset(s.number, 0, (n + 1) * sizeof *s.number);
     s.components = s.joined = 0, s.events = s.bead_answers = 0;
-    for (uint32_t v = 0; v < n + (c->d.bead ? 1 : 0); v++)
+    for (uint32_t v = 0; v < n + (c->work.bead ? 1 : 0); v++)
       see_first(&s, v);
     find_components(&s);
     work_in_random_order(&s, dice);

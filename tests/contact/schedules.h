@@ -65,7 +65,7 @@ static inline void compare_schedules(struct test_run *r, const struct vec3 *velo
   if (!copies_agree(&serial, &parts))
     fail_msg("seed %lu, drift %lu: components in a random order end elsewhere", (unsigned long)seed,
              (unsigned long)t->drifts);
-  if (!parts.d.bead && t->drifts % 2 == 0) {
+  if (!parts.work.bead && t->drifts % 2 == 0) {
     drift_looking_ahead(r, velocity, drift, dice, &ahead);
     t->ahead_drifts++;
     t->ahead_wrong += !copies_agree(&serial, &ahead);

@@ -2,6 +2,7 @@
  * What pulls a bead: forces against a plain formula, momentum, work, places in a trap, the drag of a small force. One
  * test in 3000 fails by chance, of the two that are statistical.
  */
+#include "bead/flight.h"
 #include "exact.h"
 #include "fluid/fluid.h"
 #include "kernel/choose.h"
@@ -159,8 +160,8 @@ static void who_misses_the_bead_flies_as_others(void **unused)
   struct fault fault = {.code = FAULT_NONE};
   const struct fluid *fluid = fluid_of(&r.model);
   uint32_t missed = 0;
-  struct bead_visits all = {0};
-  assert_true(fluid->steps->alone(&r.state, &r.model, &all, &fault));
+  struct bead_flight all = {0};
+  assert_true(bead_flight_alone(&r.state, &r.model, &all, &fault));
   r.state.solvent_lag = 2;
   assert_true(fluid->stream(&r.state, &r.model, 0, r.state.solvent.n, &fault));
   assert_true(all.n > 50 && all.bead.account.z > 0);

@@ -1,7 +1,7 @@
-/* When does a particle touch the bead? In exact integers; ticks are those of bead.c. */
+/* When does a particle touch the bead? In exact integers; ticks are those of flight.c. */
 #include <math.h>
 
-#include "fluid/bead.h"
+#include "bead/flight.h"
 
 __extension__ typedef __int128 wide;
 

@@ -1,16 +1,16 @@
 /*
  * Collisions around a bead.
  *
- * Flights. The drift has found who meets the bead, and where all of these and the bead go (fluid/bead.c; among fibers
- * contact/event_bead.c). Then all particles fly as if there were no bead, and are in the sums of their cells. The few
+ * Flights. The drift has found who meets the bead, and where all of these and the bead go (flight.c; among fibers
+ * company.c). Then all particles fly as if there were no bead, and are in the sums of their cells. The few
  * that met it are taken out of the sums, which are integers, get their true places and velocities, and are added again.
  * The largest momentum that the sums have met bounds how far a particle may have come from the bead, and no one may
  * meet two images of it.
  *
- * Virtual particles: bead_virtual.c. A drive kicks the bead where it has landed: half of the kick before the collision,
+ * Virtual particles: matter.c. A drive kicks the bead where it has landed: half of the kick before the collision,
  * half of it after, or all of it after with `order: paper`. What its momentum is taken from: system/bead_drive.c.
  */
-#include "mpc/bead.h"
+#include "bead/collide.h"
 
 #include <string.h>
 
@@ -107,10 +107,9 @@ static bool one_image(const struct state *state, const struct model *model, doub
   return reach < most || fault_record(fault, FAULT_BEAD_MOVE, step, 0, reach, most);
 }
 
-static bool rebound(struct state *state, const struct model *model, struct mpc *c, uint64_t step, uint64_t *span,
-                    struct fault *fault)
+static bool rebound(const struct bead_flight *all, struct state *state, const struct model *model, struct mpc *c,
+                    uint64_t step, uint64_t *span, struct fault *fault)
 {
-  const struct bead_visits *all = &c->bead.meetings;
   if (!one_image(state, model, all->slack, fastest(c, *span), step, fault))
     return false;
   for (uint32_t k = 0; k < all->n; k++)
@@ -134,12 +133,13 @@ static double part_before(const struct model *model)
   return model->scheme == SCHEME_PAPER ? 0.0 : 0.5;
 }
 
-static bool stream_and_drive(struct state *state, const struct model *model, struct mpc *c, uint64_t step,
-                             uint64_t *span, struct fault *fault)
+bool bead_rebound(void *room, struct state *state, const struct model *model, struct mpc *c, uint64_t step,
+                  uint64_t *span, struct fault *fault)
 {
+  const struct bead_work *w = room;
   const struct point from = state->bead->position;
   const uint64_t begin = state->solvent_time, end = begin + state->solvent_lag;
-  if (!rebound(state, model, c, step, span, fault))
+  if (!rebound(&w->flight, state, model, c, step, span, fault))
     return false;
   if (model->bead.driven)
     bead_work(state->bead, model, from, begin, end);
@@ -147,15 +147,9 @@ static bool stream_and_drive(struct state *state, const struct model *model, str
   return true;
 }
 
-static void account(struct state *state, const struct model *model, struct mpc *c, uint64_t step)
+void bead_settle(void *room, struct state *state, const struct model *model, struct mpc *c, uint64_t step)
 {
-  bead_take_gain(state, model, c, step);
+  const struct bead_work *w = room;
+  bead_take_gain(&w->cuts, state, model, c, step);
   drive(state, model, state->solvent_time, 1.0 - part_before(model));
 }
-
-const struct border border_bead = {.name = "bead",
-                                   .bin_particles = grid_bin_particles,
-                                   .bin_vertices = grid_bin_vertices,
-                                   .rebound = stream_and_drive,
-                                   .fill = bead_fill,
-                                   .account = account};

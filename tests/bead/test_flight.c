@@ -4,8 +4,8 @@
  * Times of hits: exact rationals (GMP). Flights: a plain simulation in long doubles of all particles and the bead,
  * which looks for the next hit of all and flies there. It shares no cells, no ticks and no lists with the program.
  */
+#include "bead/flight.h"
 #include "exact.h"
-#include "fluid/bead.h"
 #include "fluid/fluid.h"
 
 __extension__ typedef __int128 wide;
@@ -92,7 +92,7 @@ static void hits_are_at_the_right_tick(void **unused)
   for (long k = 0; k < queries; k++) {
     const int64_t radius = llrint(dice_between(&d, 1.5, 20.0) * LATTICE_PER_A0);
     const struct approach a = draw_approach(&d, (int)(k % 6), radius);
-    const int64_t most = dice_integer(&d, 0, BEAD_TICKS - 1);
+    const int64_t most = dice_integer(&d, 0, FLIGHT_TICKS - 1);
     check_touch(&a, radius, most, bead_touch(&a, radius, most), &touches);
   }
   print_message("  %ld queries, %ld hits\n", queries, touches);
@@ -163,9 +163,9 @@ static struct model bead_model(struct dice *d, double mass_over_displaced)
 /* The flight alone, of all particles: what a collision does before it adds virtual particles. */
 static void fly_all(struct test_run *r)
 {
-  struct bead_visits all = {0};
+  struct bead_flight all = {0};
   struct solvent *s = &r->state.solvent;
-  assert_true(fluid_points.steps->alone(&r->state, &r->model, &all, &r->work.fault));
+  assert_true(bead_flight_alone(&r->state, &r->model, &all, &r->work.fault));
   r->state.solvent_lag = 2;
   assert_true(fluid_points.stream(&r->state, &r->model, 0, s->n, &r->work.fault));
   for (uint32_t k = 0; k < all.n; k++) {

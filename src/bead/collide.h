@@ -1,11 +1,10 @@
-/* Collisions around a bead: what flights (bead.c) and virtual particles (bead_virtual.c) share. */
-#ifndef UNCROSS_MPC_BEAD_H
-#define UNCROSS_MPC_BEAD_H
+/* Collisions around the bead: what flights (collide.c) and virtual particles (matter.c) share. */
+#ifndef UNCROSS_BEAD_COLLIDE_H
+#define UNCROSS_BEAD_COLLIDE_H
 
 #include <math.h>
 
-#include "mpc/border.h"
-#include "system/bead.h"
+#include "bead/bead.h"
 
 /* Cells of the shifted grid around a point: numbers along each axis, not folded; and the point in these numbers. */
 struct surround {
@@ -44,8 +43,15 @@ static inline double surround_largest(const struct surround *s, int k, int64_t i
   return d * d;
 }
 
-/* `fill` and the gain of `account` of the bead's border: momentum of its virtual particles. */
-bool bead_fill(const struct state *state, const struct model *model, struct mpc *c, uint64_t step, struct fault *fault);
-void bead_take_gain(struct state *state, const struct model *model, struct mpc *c, uint64_t step);
+/* Functions of struct obstacle; room: struct bead_work. */
+bool bead_rebound(void *room, struct state *state, const struct model *model, struct mpc *c, uint64_t step,
+                  uint64_t *span, struct fault *fault);
+bool bead_fill(void *room, const struct state *state, const struct model *model, struct mpc *c, uint64_t step,
+               struct fault *fault);
+void bead_settle(void *room, struct state *state, const struct model *model, struct mpc *c, uint64_t step);
+
+/* The bead takes what its virtual particles have gained. */
+void bead_take_gain(const struct bead_cuts *cuts, struct state *state, const struct model *model, struct mpc *c,
+                    uint64_t step);
 
 #endif

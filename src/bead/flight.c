@@ -17,13 +17,12 @@
  * Only those particles follow ticks that come within the slack of the bead's free flight. All others are further from
  * it than the bead can be off that flight; if it is off further, there is more slack, and more follow ticks.
  */
-#include "fluid/bead.h"
+#include "bead/flight.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
-#include "base/normal.h"
 #include "base/registers.h"
 #include "fluid/boundary.h"
 
@@ -31,7 +30,7 @@
 
 static struct point rate_of(struct vec3 velocity, double time)
 {
-  const double scale = time * LATTICE_PER_A0 / BEAD_TICKS;
+  const double scale = time * LATTICE_PER_A0 / FLIGHT_TICKS;
   return (struct point){llrint(velocity.x * scale), llrint(velocity.y * scale), llrint(velocity.z * scale)};
 }
 
@@ -45,8 +44,8 @@ static int64_t next_hit(const struct bead_way *bead, const struct bead_visit *m)
 {
   const struct approach a = {point_minus(later(m->at, m->rate, bead->clock - m->clock), bead->at),
                              point_minus(m->rate, bead->rate)};
-  const int64_t left = BEAD_TICKS - 1 - bead->clock, touch = m->rigid ? -1 : bead_touch(&a, bead->radius, left);
-  return touch < 0 ? BEAD_TICKS : bead->clock + touch;
+  const int64_t left = FLIGHT_TICKS - 1 - bead->clock, touch = m->rigid ? -1 : bead_touch(&a, bead->radius, left);
+  return touch < 0 ? FLIGHT_TICKS : bead->clock + touch;
 }
 
 static void set_velocity(struct bead_way *bead, struct vec3 velocity)
@@ -75,7 +74,7 @@ static void go_to(struct bead_way *bead, int64_t tick)
   bead->clock = tick;
 }
 
-static void answer(struct bead_visits *all)
+static void answer(struct bead_flight *all)
 {
   struct bead_way *const bead = &all->way;
   struct bead_visit *const m = all->first;
@@ -93,7 +92,7 @@ static void answer(struct bead_visits *all)
 }
 
 /* The first that is due, of the smallest id among those of the same tick. */
-static struct bead_visit *first_due(const struct bead_visits *all, const uint32_t *id)
+static struct bead_visit *first_due(const struct bead_flight *all, const uint32_t *id)
 {
   struct bead_visit *first = all->at;
   for (uint32_t k = 0; k < all->n; k++) {
@@ -104,17 +103,16 @@ static struct bead_visit *first_due(const struct bead_visits *all, const uint32_
   return first;
 }
 
-/* Looks for the next hit of all. Its tick, or BEAD_TICKS. */
-static int64_t next_of_all(const struct state *state, struct bead_visits *all)
+int64_t bead_flight_next(const struct state *state, struct bead_flight *all)
 {
   for (uint32_t k = 0; k < all->n; k++)
     all->at[k].due = next_hit(&all->way, &all->at[k]);
   all->first = first_due(all, state->solvent.id);
-  return all->n > 0 ? all->first->due : BEAD_TICKS;
+  return all->n > 0 ? all->first->due : FLIGHT_TICKS;
 }
 
 /* The bead is off its free flight by this at most, a0. */
-static double off_free_flight(const struct bead_visits *all)
+static double off_free_flight(const struct bead_flight *all)
 {
   const struct vec3 flown = all->way.held ? (struct vec3){0, 0, 0} : all->way.velocity;
   return all->way.time * vec3_norm(vec3_sub(flown, all->free));
@@ -132,7 +130,7 @@ static bool comes_within(struct vec3 apart, struct vec3 go, double distance)
   return !(vec3_dot(nearest, nearest) > distance * distance);
 }
 
-static bool take(struct bead_visits *all, struct bead_visit m, uint64_t step, struct fault *fault)
+static bool take(struct bead_flight *all, struct bead_visit m, uint64_t step, struct fault *fault)
 {
   if (all->n == all->room && !memory_double((void **)&all->at, &all->room, 64, sizeof *all->at))
     return fault_no_memory(fault, step);
@@ -145,7 +143,7 @@ static bool take(struct bead_visits *all, struct bead_visit m, uint64_t step, st
 /* --- the flight -------------------------------------------------------------------------------------------------- */
 
 /* The bead at its start; no one meets it yet. */
-static void set_out(const struct state *state, const struct model *model, double time, struct bead_visits *all)
+static void set_out(const struct state *state, const struct model *model, double time, struct bead_flight *all)
 {
   all->n = 0;
   all->bead = *state->bead;
@@ -155,13 +153,13 @@ static void set_out(const struct state *state, const struct model *model, double
 }
 
 /* Where particles and bead are at the end. */
-static void land(const struct model *model, const struct state *state, const struct span *span, struct bead_visits *all)
+static void land(const struct model *model, const struct state *state, const struct span *span, struct bead_flight *all)
 {
   const struct bead_way *bead = &all->way;
-  const struct point end = later(bead->at, bead->rate, BEAD_TICKS - bead->clock), origin = state->bead->position;
+  const struct point end = later(bead->at, bead->rate, FLIGHT_TICKS - bead->clock), origin = state->bead->position;
   for (uint32_t k = 0; k < all->n; k++) {
     struct bead_visit *m = &all->at[k];
-    const struct point at = m->rigid ? point_plus(end, m->at) : later(m->at, m->rate, BEAD_TICKS - m->clock);
+    const struct point at = m->rigid ? point_plus(end, m->at) : later(m->at, m->rate, FLIGHT_TICKS - m->clock);
     m->at = (struct point){lattice_fold(origin.x + at.x, model->box.edge[0]),
                            lattice_fold(origin.y + at.y, model->box.edge[1]),
                            lattice_fold(origin.z + at.z, model->box.edge[2])};
@@ -256,7 +254,7 @@ static bool squares_of(const struct sweep *w, const struct solvent *s, uint32_t 
 /* Takes those who may meet the bead while it is off its free flight by at most `slack`, but not those who may while it
  * is off by `known`: they have been taken. */
 static bool sweep_all(const struct state *state, const struct model *model, double known, double slack,
-                      struct bead_visits *all, struct fault *fault)
+                      struct bead_flight *all, struct fault *fault)
 {
   const struct solvent *s = &state->solvent;
   const struct span span = whole_step(state, model);
@@ -286,8 +284,8 @@ static bool sweep_all(const struct state *state, const struct model *model, doub
 
 #define SLACK 0.5 /* a0/t0: of the bead's velocity in a drift, at first */
 
-static bool steps_begin(const struct state *state, const struct model *model, struct bead_visits *all,
-                        struct fault *fault)
+bool bead_flight_begin(const struct state *state, const struct model *model, struct bead_flight *all,
+                       struct fault *fault)
 {
   set_out(state, model, model->time_step, all);
   all->slack = SLACK * model->time_step;
@@ -295,7 +293,7 @@ static bool steps_begin(const struct state *state, const struct model *model, st
 }
 
 /* More slack, if the bead has become so fast. Those who are taken now have met no one yet. */
-static bool keep_slack(const struct state *state, const struct model *model, struct bead_visits *all,
+static bool keep_slack(const struct state *state, const struct model *model, struct bead_flight *all,
                        struct fault *fault)
 {
   const double known = all->slack, off = off_free_flight(all), most = 0.5 * box_shortest_edge(&model->box);
@@ -307,53 +305,35 @@ static bool keep_slack(const struct state *state, const struct model *model, str
   return sweep_all(state, model, known, all->slack, all, fault);
 }
 
-static bool steps_answer(const struct state *state, const struct model *model, struct bead_visits *all,
-                         struct fault *fault)
+bool bead_flight_answer(const struct state *state, const struct model *model, struct bead_flight *all,
+                        struct fault *fault)
 {
   answer(all);
   return keep_slack(state, model, all, fault);
 }
 
-static bool steps_turn(const struct state *state, const struct model *model, struct bead_visits *all, int64_t tick,
-                       struct vec3 velocity, struct fault *fault)
+bool bead_flight_turn(const struct state *state, const struct model *model, struct bead_flight *all, int64_t tick,
+                      struct vec3 velocity, struct fault *fault)
 {
   go_to(&all->way, tick);
   set_velocity(&all->way, velocity);
   return keep_slack(state, model, all, fault);
 }
 
-static void steps_end(const struct state *state, const struct model *model, struct bead_visits *all)
+void bead_flight_end(const struct state *state, const struct model *model, struct bead_flight *all)
 {
   const struct span span = whole_step(state, model);
   land(model, state, &span, all);
 }
 
-static bool steps_alone(const struct state *state, const struct model *model, struct bead_visits *all,
-                        struct fault *fault)
+bool bead_flight_alone(const struct state *state, const struct model *model, struct bead_flight *all,
+                       struct fault *fault)
 {
-  if (!steps_begin(state, model, all, fault))
+  if (!bead_flight_begin(state, model, all, fault))
     return false;
-  while (next_of_all(state, all) < BEAD_TICKS)
-    if (!steps_answer(state, model, all, fault))
+  while (bead_flight_next(state, all) < FLIGHT_TICKS)
+    if (!bead_flight_answer(state, model, all, fault))
       return false;
-  steps_end(state, model, all);
+  bead_flight_end(state, model, all);
   return true;
-}
-
-const struct bead_steps bead_flight_steps = {.begin = steps_begin,
-                                             .next = next_of_all,
-                                             .answer = steps_answer,
-                                             .turn = steps_turn,
-                                             .end = steps_end,
-                                             .alone = steps_alone};
-
-/* --- start ------------------------------------------------------------------------------------------------------- */
-
-void bead_start(struct state *state, const struct model *model)
-{
-  const struct vec3 c = model->bead.center;
-  double v[3];
-  random_normal_three(random_at(model->seed, RANDOM_BEAD_REST, 0, 0, 0), v);
-  *state->bead = (struct bead){.position = {lattice_from_a0(c.x), lattice_from_a0(c.y), lattice_from_a0(c.z)},
-                               .velocity = vec3_scale(1.0 / sqrt(model->bead.mass), (struct vec3){v[0], v[1], v[2]})};
 }

@@ -11,15 +11,10 @@
  */
 #include "base/memory.h"
 #include "base/normal.h"
-#include "mpc/bead.h"
+#include "bead/collide.h"
 #include "mpc/cell.h"
 #include "mpc/rule.h"
 #include "mpc/virtual.h"
-
-struct bead_cut {
-  uint32_t cell, n; /* place in sum and turn; particles inside */
-  struct virtual_members members;
-};
 
 /* Of the virtual particles of a cell, those inside the bead. corner: of the cell, from the bead's center, a0. */
 static uint32_t count_inside(const struct virtual_law *law, const struct model *model, uint64_t step, uint32_t cell,
@@ -43,27 +38,28 @@ static uint32_t count_inside(const struct virtual_law *law, const struct model *
 enum { MOST_CUTS_AT_FIRST = 256 };
 
 /* Room for twice as many cells as there are. */
-static bool widen(struct mpc_bead *b)
+static bool widen(struct bead_cuts *b)
 {
-  uint32_t rooms[3] = {b->cut_room, b->cut_room, b->cut_room};
+  uint32_t rooms[3] = {b->room, b->room, b->room};
   const bool ok = memory_double((void **)&b->cut, &rooms[0], MOST_CUTS_AT_FIRST, sizeof *b->cut) &&
                   memory_double((void **)&b->number, &rooms[1], MOST_CUTS_AT_FIRST, sizeof *b->number) &&
                   memory_double((void **)&b->normal, &rooms[2], MOST_CUTS_AT_FIRST, sizeof *b->normal);
-  b->cut_room = ok ? rooms[0] : b->cut_room;
+  b->room = ok ? rooms[0] : b->room;
   return ok;
 }
 
-static bool add_cut(struct mpc_bead *b, uint32_t cell, uint32_t n, uint64_t step, struct fault *fault)
+static bool add_cut(struct bead_cuts *b, uint32_t cell, uint32_t n, uint64_t step, struct fault *fault)
 {
-  if (b->cuts == b->cut_room && !widen(b))
+  if (b->count == b->room && !widen(b))
     return fault_no_memory(fault, step);
-  b->cut[b->cuts++] = (struct bead_cut){.cell = cell, .n = n};
+  b->cut[b->count++] = (struct bead_cut){.cell = cell, .n = n};
   return true;
 }
 
 /* All of one line of cells along x. */
-static bool cut_line(const struct surround *s, const struct virtual_law *law, const struct model *model, struct mpc *c,
-                     int64_t y, int64_t z, uint64_t step, struct fault *fault)
+static bool cut_line(struct bead_cuts *cuts, const struct surround *s, const struct virtual_law *law,
+                     const struct model *model, const struct mpc *c, int64_t y, int64_t z, uint64_t step,
+                     struct fault *fault)
 {
   const double square = model->bead.radius * model->bead.radius;
   const double least = surround_least(s, 2, z) + surround_least(s, 1, y);
@@ -76,54 +72,56 @@ static bool cut_line(const struct surround *s, const struct virtual_law *law, co
       continue;
     const double corner[3] = {(double)x - s->center[0], (double)y - s->center[1], (double)z - s->center[2]};
     const uint32_t n = count_inside(law, model, step, cell, corner);
-    if (n > 0 && !add_cut(&c->bead, cell, n, step, fault))
+    if (n > 0 && !add_cut(cuts, cell, n, step, fault))
       return false;
   }
   return true;
 }
 
 /* Cells whose particles have more than the mass of the bead together are dropped. Returns what is left of the mass. */
-static double rest_mass(const struct model *model, struct mpc_bead *b)
+static double rest_mass(const struct model *model, struct bead_cuts *b)
 {
   double rest = model->bead.mass;
   uint32_t kept = 0;
-  while (kept < b->cuts && b->cut[kept].n <= rest)
+  while (kept < b->count && b->cut[kept].n <= rest)
     rest -= b->cut[kept++].n;
-  b->cuts = kept;
+  b->count = kept;
   return rest;
 }
 
 /* Velocities of the virtual particles, at the total momentum of the bead. */
-static void draw_velocities(const struct bead *bead, const struct model *model, struct mpc_bead *b, uint64_t step)
+static void draw_velocities(const struct bead *bead, const struct model *model, struct bead_cuts *b, uint64_t step)
 {
   const double rest = rest_mass(model, b);
   double own[3];
   random_normal_three(random_at(model->seed, RANDOM_BEAD_REST, 0, step, 0), own);
   struct vec3 sum = vec3_scale(sqrt(rest), (struct vec3){own[0], own[1], own[2]});
-  for (uint32_t k = 0; k < b->cuts; k++)
+  for (uint32_t k = 0; k < b->count; k++)
     b->number[k] = b->cut[k].cell;
-  virtual_normals(model, step, b->number, b->cuts, b->normal);
-  for (uint32_t k = 0; k < b->cuts; k++)
+  virtual_normals(model, step, b->number, b->count, b->normal);
+  for (uint32_t k = 0; k < b->count; k++)
     sum = vec3_add_scaled(sum, sqrt(b->cut[k].n), b->normal[k]);
   const struct vec3 flow = vec3_add_scaled(bead->velocity, -1.0 / model->bead.mass, sum);
-  for (uint32_t k = 0; k < b->cuts; k++)
+  for (uint32_t k = 0; k < b->count; k++)
     b->cut[k].members = (struct virtual_members){
         .n = b->cut[k].n, .velocity = virtual_velocity(b->normal[k], b->cut[k].n, flow), .flow = flow};
 }
 
-bool bead_fill(const struct state *state, const struct model *model, struct mpc *c, uint64_t step, struct fault *fault)
+bool bead_fill(void *room, const struct state *state, const struct model *model, struct mpc *c, uint64_t step,
+               struct fault *fault)
 {
+  struct bead_cuts *cuts = &((struct bead_work *)room)->cuts;
   const struct surround s = bead_surround(state->bead, model, c, model->bead.radius);
   struct virtual_law law;
   virtual_law_of(model->solvent.per_cell, &law);
-  c->bead.cuts = 0;
+  cuts->count = 0;
   for (int64_t z = s.low[2]; z <= s.high[2]; z++)
     for (int64_t y = s.low[1]; y <= s.high[1]; y++)
-      if (!cut_line(&s, &law, model, c, y, z, step, fault))
+      if (!cut_line(cuts, &s, &law, model, c, y, z, step, fault))
         return false;
-  draw_velocities(state->bead, model, &c->bead, step);
-  for (uint32_t k = 0; k < c->bead.cuts; k++) {
-    const struct bead_cut *cut = &c->bead.cut[k];
+  draw_velocities(state->bead, model, cuts, step);
+  for (uint32_t k = 0; k < cuts->count; k++) {
+    const struct bead_cut *cut = &cuts->cut[k];
     if (!virtual_room(&c->sum[cut->cell], cut->n, step, cut->cell, FAULT_SOLVENT_SPEED, fault))
       return false;
     c->rule->add_virtual(model, c, step, cut->cell, &cut->members);
@@ -133,14 +131,15 @@ bool bead_fill(const struct state *state, const struct model *model, struct mpc 
 
 /* The bead takes the momentum that its virtual particles gain. They keep the energy that they have gained: what the
  * bead gains beyond that is heat from its matter. */
-void bead_take_gain(struct state *state, const struct model *model, struct mpc *c, uint64_t step)
+void bead_take_gain(const struct bead_cuts *cuts, struct state *state, const struct model *model, struct mpc *c,
+                    uint64_t step)
 {
   struct point sum = {0, 0, 0};
   uint64_t turns = 0;
   struct bead *bead = state->bead;
   int64_t taken = 0;
-  for (uint32_t k = 0; k < c->bead.cuts; k++) {
-    const struct bead_cut *cut = &c->bead.cut[k];
+  for (uint32_t k = 0; k < cuts->count; k++) {
+    const struct bead_cut *cut = &cuts->cut[k];
     const struct vec3 gain = c->rule->virtual_gain(model, c, step, cut->cell, &cut->members, false);
     account_add(&sum, &turns, gain);
     bead_account(&taken, vec3_dot(gain, vec3_add_scaled(cut->members.velocity, 0.5 / cut->n, gain)));

@@ -1,6 +1,7 @@
-#include "contact/event_bead.h"
+#include "bead/company.h"
 
 #include "base/memory.h"
+#include "bead/bead.h"
 #include "contact/candidates.h"
 #include "contact/capsule.h"
 #include "contact/event_rigid.h"
@@ -8,7 +9,20 @@
 #include "contact/tube.h"
 #include "system/bead.h"
 
-_Static_assert(BEAD_TICKS == FLIGHT_TICKS, "the bead and the bonds have one timeline");
+static struct bead_work *work_of(const struct event_drift *d)
+{
+  return d->contact->beside->body;
+}
+
+static struct bead_company *company_of(const struct event_drift *d)
+{
+  return &work_of(d)->company;
+}
+
+static const struct bead_way *way_of(const struct event_drift *d)
+{
+  return &work_of(d)->flight.way;
+}
 
 /* Distance of the axis of a bond from the center of the bead at a contact, lattice units. */
 static int64_t reach_of(const struct model *model, uint32_t bond)
@@ -47,14 +61,15 @@ static struct stand stand_of(const struct model *model, struct point bead, struc
 static bool carried(const struct event_drift *d, uint32_t i)
 {
   const struct flights *f = &d->contact->flights;
-  return d->bead->cluster && f->bend_of[i] && f->bends.at[f->bend_of[i] - 1].cluster == d->bead->cluster;
+  return d->contact->beside->cluster && f->bend_of[i] &&
+         f->bends.at[f->bend_of[i] - 1].cluster == d->contact->beside->cluster;
 }
 
 /* The next contact, from a tick on. */
 static void search(const struct event_drift *d, struct bead_neighbor *n, int32_t from)
 {
   const uint32_t i = n->bond, j = (uint32_t)d->model->next[i];
-  const struct bead_way *w = &d->bead->visits->way;
+  const struct bead_way *w = way_of(d);
   const struct point at = d->state->position[i], rate = event_rate(d, i), none = {0, 0, 0};
   const struct point center =
       flight_place(point_plus(point_plus(d->state->bead->position, n->image), w->at), w->rate, -w->clock);
@@ -70,7 +85,7 @@ static void search(const struct event_drift *d, struct bead_neighbor *n, int32_t
 
 static bool add(const struct event_drift *d, uint32_t bond, struct point image)
 {
-  struct bead_company *c = d->bead;
+  struct bead_company *c = company_of(d);
   if (c->count == c->room && !memory_double((void **)&c->at, &c->room, 64, sizeof *c->at))
     return event_no_memory(d);
   c->at[c->count] = (struct bead_neighbor){.bond = bond, .image = image};
@@ -80,13 +95,13 @@ static bool add(const struct event_drift *d, uint32_t bond, struct point image)
 
 static bool is_due(const struct event_drift *d, uint32_t bond)
 {
-  return (d->bead->limit[bond] - d->contact->neighbors.path[bond] - d->bead->way) >> 31;
+  return (company_of(d)->limit[bond] - d->contact->neighbors.path[bond] - company_of(d)->way) >> 31;
 }
 
 /* Measures a bond that is due. If it may touch the bead in this drift, it is listed. */
 static bool measure(const struct event_drift *d, uint32_t bond)
 {
-  struct bead_company *c = d->bead;
+  struct bead_company *c = company_of(d);
   const struct contact *all = d->contact;
   const uint32_t go = candidates_way(d->model, all, bond), before = all->neighbors.path[bond] - go + c->way_before;
   const struct stand s = stand_of(d->model, d->state->bead->position, event_start(d, bond),
@@ -105,7 +120,8 @@ enum { GROUP = 64 };                       /* vertices looked at together: of mo
 
 static bool any_due(const struct event_drift *d, uint32_t first, uint32_t n)
 {
-  const uint32_t *limit = &d->bead->limit[first], *path = &d->contact->neighbors.path[first], way = d->bead->way;
+  const uint32_t *limit = &company_of(d)->limit[first], *path = &d->contact->neighbors.path[first],
+                 way = company_of(d)->way;
   uint32_t sign = 0;
   for (uint32_t k = 0; k < n; k++)
     sign |= limit[k] - path[k] - way;
@@ -115,7 +131,7 @@ static bool any_due(const struct event_drift *d, uint32_t first, uint32_t n)
 /* A vertex that is due: its bond is measured, unless it has none, or is listed. */
 static bool look_at(const struct event_drift *d, uint32_t i)
 {
-  struct bead_company *c = d->bead;
+  struct bead_company *c = company_of(d);
   if (d->model->next[i] >= 0)
     return c->listed[i] || measure(d, i);
   c->limit[i] = d->contact->neighbors.path[i] + c->way + FURTHEST;
@@ -125,7 +141,7 @@ static bool look_at(const struct event_drift *d, uint32_t i)
 /* Lists all bonds that may touch the bead and are not listed yet, and searches their contacts from a tick on. */
 static bool look_around(const struct event_drift *d, int32_t tick)
 {
-  struct bead_company *c = d->bead;
+  struct bead_company *c = company_of(d);
   const uint32_t first = c->count, all = d->model->vertices;
   for (uint32_t group = 0; group < all; group += GROUP) {
     const uint32_t n = all - group < GROUP ? all - group : GROUP;
@@ -143,27 +159,27 @@ static bool look_around(const struct event_drift *d, int32_t tick)
 /* What the bead may go in this drift. */
 static void lengthen(const struct event_drift *d)
 {
-  struct bead_company *c = d->bead;
-  const struct bead_visits *v = c->visits;
+  struct bead_company *c = company_of(d);
+  const struct bead_flight *v = &work_of(d)->flight;
   c->slack = v->slack;
   c->way = c->way_before + candidates_units(capsule_least(v->way.time * vec3_norm(v->free) + v->slack, 64.0));
 }
 
-bool event_bead_begin(const struct event_drift *d)
+static bool company_begin(const struct event_drift *d)
 {
-  struct bead_company *c = d->bead;
-  if (!c->steps->begin(d->state, d->model, c->visits, d->fault))
+  struct bead_company *c = company_of(d);
+  if (!bead_flight_begin(d->state, d->model, &work_of(d)->flight, d->fault))
     return false;
-  c->count = c->cluster = 0;
+  c->count = d->contact->beside->cluster = 0;
   c->stale = true;
   c->way_before = c->way;
   lengthen(d);
   return look_around(d, 0);
 }
 
-bool event_bead_search_again(const struct event_drift *d, uint32_t n, const uint32_t *bond, int32_t tick)
+static bool company_search_again(const struct event_drift *d, uint32_t n, const uint32_t *bond, int32_t tick)
 {
-  struct bead_company *c = d->bead;
+  struct bead_company *c = company_of(d);
   for (uint32_t k = 0; k < n; k++) {
     if (!c->listed[bond[k]] && is_due(d, bond[k]) && !measure(d, bond[k]))
       return false;
@@ -173,12 +189,12 @@ bool event_bead_search_again(const struct event_drift *d, uint32_t n, const uint
   return true;
 }
 
-void event_bead_end(const struct event_drift *d)
+static void company_end(const struct event_drift *d)
 {
-  struct bead_company *c = d->bead;
+  struct bead_company *c = company_of(d);
   for (uint32_t k = 0; k < c->count; k++)
     c->listed[c->at[k].bond] = 0;
-  c->steps->end(d->state, d->model, c->visits);
+  bead_flight_end(d->state, d->model, &work_of(d)->flight);
 }
 
 /* --- the path of the bead bends ----------------------------------------------------------------------------------- */
@@ -186,25 +202,26 @@ void event_bead_end(const struct event_drift *d)
 /* The bead has another velocity from this tick on. */
 static bool bent(const struct event_drift *d, int32_t tick)
 {
-  struct bead_company *c = d->bead;
+  struct bead_company *c = company_of(d);
+  const uint32_t cluster = d->contact->beside->cluster;
   c->stale = true;
-  if (c->visits->slack > c->slack) {
+  if (work_of(d)->flight.slack > c->slack) {
     lengthen(d);
     if (!look_around(d, tick))
       return false;
   }
   for (uint32_t k = 0; k < c->count; k++)
     search(d, &c->at[k], tick);
-  return !c->cluster || event_steer_cluster(d, c->cluster, c->visits->way.rate, tick);
+  return !cluster || event_steer_cluster(d, cluster, way_of(d)->rate, tick);
 }
 
-bool event_bead_hold(const struct event_drift *d, int32_t tick)
+static bool company_hold(const struct event_drift *d, int32_t tick)
 {
-  struct bead_visits *v = d->bead->visits;
+  struct bead_flight *v = &work_of(d)->flight;
   if (v->way.held)
     return true;
   v->way.held = true;
-  return d->bead->steps->turn(d->state, d->model, v, tick, v->way.velocity, d->fault) && bent(d, tick);
+  return bead_flight_turn(d->state, d->model, v, tick, v->way.velocity, d->fault) && bent(d, tick);
 }
 
 /* --- a contact ---------------------------------------------------------------------------------------------------- */
@@ -212,7 +229,7 @@ bool event_bead_hold(const struct event_drift *d, int32_t tick)
 /* Where they touch: s along the bond, and the normal from there to the center. */
 static struct contact_geometry geometry_of(const struct event_drift *d, const struct bead_neighbor *n)
 {
-  const struct bead_way *w = &d->bead->visits->way;
+  const struct bead_way *w = way_of(d);
   const struct point a = event_place(d, n->bond, n->due), b = event_place(d, (uint32_t)d->model->next[n->bond], n->due),
                      center = flight_place(point_plus(point_plus(d->state->bead->position, n->image), w->at), w->rate,
                                            n->due - w->clock);
@@ -226,7 +243,7 @@ static struct contact_geometry geometry_of(const struct event_drift *d, const st
 /* The drive's force on the bead, kT/a0. */
 static struct vec3 pull(const struct event_drift *d, int32_t tick)
 {
-  const struct bead_way *w = &d->bead->visits->way;
+  const struct bead_way *w = way_of(d);
   const struct point place = flight_place(point_plus(d->state->bead->position, w->at), w->rate, tick - w->clock);
   return bead_force(d->model, place, d->state->solvent_time + 1);
 }
@@ -262,7 +279,7 @@ static void note(const struct event_drift *d, uint32_t bond, int32_t tick, const
 
 static bool touch(const struct event_drift *d, struct bead_neighbor n)
 {
-  struct bead_visits *v = d->bead->visits;
+  struct bead_flight *v = &work_of(d)->flight;
   const uint32_t vertex[2] = {n.bond, (uint32_t)d->model->next[n.bond]};
   for (int e = 0; e < 2; e++) /* before velocities change */
     if (!is_short(event_bend(d, vertex[e]), d))
@@ -272,7 +289,7 @@ static bool touch(const struct event_drift *d, struct bead_neighbor n)
   if (event_is_rigid(d, 2, vertex) || !exchange(d, vertex, n.due, &at, &bead))
     return event_make_rigid(d, 2, vertex, true, n.due);
   note(d, n.bond, n.due, &at);
-  if (!d->bead->steps->turn(d->state, d->model, v, n.due, bead, d->fault))
+  if (!bead_flight_turn(d->state, d->model, v, n.due, bead, d->fault))
     return false;
   for (int e = 0; e < 2; e++) {
     event_bend(d, vertex[e])->contacts++;
@@ -298,32 +315,46 @@ static const struct bead_neighbor *first_of(const struct bead_company *c)
 /* The tick of the next hit of a solvent particle. */
 static int32_t next_hit(const struct event_drift *d)
 {
-  struct bead_company *c = d->bead;
+  struct bead_company *c = company_of(d);
   if (c->stale)
-    c->hit = (int32_t)c->steps->next(d->state, c->visits);
+    c->hit = (int32_t)bead_flight_next(d->state, &work_of(d)->flight);
   c->stale = false;
   return c->hit;
 }
 
-int32_t event_bead_next(const struct event_drift *d)
+static int32_t company_next(const struct event_drift *d)
 {
-  const int32_t hit = next_hit(d), due = d->bead->count > 0 ? first_of(d->bead)->due : FLIGHT_TICKS;
+  const struct bead_company *c = company_of(d);
+  const int32_t hit = next_hit(d), due = c->count > 0 ? first_of(c)->due : FLIGHT_TICKS;
   return hit < due ? hit : due;
 }
 
-bool event_bead_answer(const struct event_drift *d)
+static bool company_answer(const struct event_drift *d)
 {
-  struct bead_company *c = d->bead;
+  struct bead_company *c = company_of(d);
   const int32_t hit = next_hit(d);
   if (c->count > 0 && first_of(c)->due < hit)
     return touch(d, *first_of(c));
-  return c->steps->answer(d->state, d->model, c->visits, d->fault) && bent(d, hit);
+  return bead_flight_answer(d->state, d->model, &work_of(d)->flight, d->fault) && bent(d, hit);
 }
+
+static struct point company_rate(const struct event_drift *d)
+{
+  return way_of(d)->rate;
+}
+
+const struct timeline bead_timeline = {.begin = company_begin,
+                                       .next = company_next,
+                                       .answer = company_answer,
+                                       .search_again = company_search_again,
+                                       .end = company_end,
+                                       .rate = company_rate,
+                                       .hold = company_hold};
 
 /* --- starts ------------------------------------------------------------------------------------------------------- */
 
-bool event_bead_clear(const struct model *model, struct point bead, const struct point *position, uint32_t fiber,
-                      uint32_t *bond, double *distance)
+bool bead_company_clear(const struct model *model, struct point bead, const struct point *position, uint32_t fiber,
+                        uint32_t *bond, double *distance)
 {
   for (uint32_t j = model->fiber_first[fiber]; j < model->fiber_first[fiber + 1]; j++) {
     if (model->next[j] < 0)

@@ -6,7 +6,7 @@
  */
 #include "contact/tubes.h"
 
-#include "contact/event_bead.h"
+#include "bead/company.h"
 #include "fluid/fluid.h"
 #include "observe/observe.h"
 #include "statistics.h"
@@ -207,11 +207,9 @@ static struct vec3 no_force(const struct model *model, uint32_t vertex,
 static void fly(struct test_run *r, struct seen *seen)
 {
   const struct contact_log log = {see, seen};
-  struct bead_visits *all = &r->work.mpc.bead.meetings;
+  struct bead_flight *all = &r->work.bead->flight;
   struct solvent *s = &r->state.solvent;
   r->work.contact.force = no_force;
-  r->work.contact.bead.steps = fluid_of(&r->model)->steps;
-  r->work.contact.bead.visits = all;
   if (!contact_drift(&r->state, &r->model, &r->work.contact, 1.0, 1, 0, &log, &r->work.fault)) {
     char text[512];
     fault_describe(&r->work.fault, text, sizeof text);
