@@ -24,7 +24,8 @@ struct surround bead_surround(const struct bead *bead, const struct model *model
   const int64_t shift[3] = {c->shift.x, c->shift.y, c->shift.z};
   struct surround s;
   for (int k = 0; k < 3; k++) {
-    s.center[k] = (double)(lattice_fold(at[k], model->box.edge[k]) + shift[k]) * LATTICE_UNIT;
+    const int64_t in_box = k == 1 && model_has_walls(model) ? at[k] : lattice_fold(at[k], model->box.edge[k]);
+    s.center[k] = (double)(in_box + shift[k]) * LATTICE_UNIT;
     s.low[k] = (int64_t)floor(s.center[k] - distance);
     s.high[k] = (int64_t)floor(s.center[k] + distance);
   }
@@ -100,7 +101,7 @@ static double reach_of(const struct state *state, const struct model *model, dou
 static bool one_image(const struct state *state, const struct model *model, double slack, double speed, uint64_t step,
                       struct fault *fault)
 {
-  const double most = 0.5 * box_shortest_edge(&model->box) - 1.0;
+  const double most = bead_half_edge(model) - 1.0;
   double reach = reach_of(state, model, slack, speed);
   if (!(reach < most))
     reach = reach_of(state, model, slack, fastest_of_all(&state->solvent));
@@ -115,6 +116,10 @@ static bool rebound(const struct bead_flight *all, struct state *state, const st
   for (uint32_t k = 0; k < all->n; k++)
     write_flight(state, model, c, step, &all->at[k], span);
   *state->bead = all->bead;
+  for (enum wall wall = 0; model_has_walls(model) && wall < WALLS; wall++) {
+    const struct account account = account_of(state, ACCOUNT_HITS);
+    account_add_units(&account.sums[wall], &account.turns[wall], all->given[wall]);
+  }
   return true;
 }
 

@@ -24,9 +24,9 @@ static inline uint32_t surround_folded(int64_t i, int cells)
 /* Number of a cell. */
 static inline uint32_t surround_cell(const struct box *box, int64_t x, int64_t y, int64_t z)
 {
-  return (surround_folded(z, box->cells[2]) * (uint32_t)box->cells[1] + surround_folded(y, box->cells[1])) *
-             (uint32_t)box->cells[0] +
-         surround_folded(x, box->cells[0]);
+  return (surround_folded(z, box->rows[2]) * (uint32_t)box->rows[1] + surround_folded(y, box->rows[1])) *
+             (uint32_t)box->rows[0] +
+         surround_folded(x, box->rows[0]);
 }
 
 /* Of the interval of a cell along an axis, from the center: square of the least and of the largest distance. */

@@ -74,15 +74,83 @@ static void go_to(struct bead_way *bead, int64_t tick)
   bead->clock = tick;
 }
 
+/* --- walls ------------------------------------------------------------------------------------------------------- */
+
+/* The last tick at which a body is not beyond a wall. y: its height at a tick; within: of its center from the walls. */
+static int64_t last_between(const struct bead_flight *all, int64_t y, int64_t rate, int64_t tick, int64_t within)
+{
+  if (rate == 0)
+    return FLIGHT_TICKS;
+  const int64_t ticks =
+      rate < 0 ? (y - all->height[WALL_LOWER] - within) / -rate : (all->height[WALL_UPPER] - within - y) / rate;
+  return ticks < FLIGHT_TICKS - tick ? tick + ticks : FLIGHT_TICKS;
+}
+
+static int64_t visit_at_wall(const struct bead_flight *all, const struct bead_visit *m)
+{
+  return m->rigid ? FLIGHT_TICKS : last_between(all, m->at.y, m->rate.y, m->clock, 0);
+}
+
+static int64_t bead_at_wall(const struct bead_flight *all)
+{
+  const struct bead_way *w = &all->way;
+  return all->walled ? last_between(all, w->at.y, w->rate.y, w->clock, w->radius) : FLIGHT_TICKS;
+}
+
+static enum wall wall_ahead(int64_t rate)
+{
+  return rate < 0 ? WALL_LOWER : WALL_UPPER;
+}
+
+static void give(struct bead_flight *all, enum wall wall, double mass, struct vec3 before, struct vec3 after)
+{
+  uint64_t turns[WALLS] = {0}; /* they stay 0: a flight is short */
+  wall_gives((struct account){all->given, turns}, wall, mass, before, after);
+}
+
+/* The bead is smooth: its velocity across is reversed. */
+static void bead_hits_wall(struct bead_flight *all)
+{
+  const enum wall wall = wall_ahead(all->way.rate.y);
+  const struct vec3 before = all->way.velocity, after = {before.x, -before.y, before.z};
+  go_to(&all->way, bead_at_wall(all));
+  give(all, wall, all->way.mass, before, after);
+  set_velocity(&all->way, after);
+}
+
+/* A particle goes on to the tick of its hit. */
+static void arrive(struct bead_visit *m)
+{
+  m->again = m->clock == m->due ? m->again + 1 : 0;
+  m->at = later(m->at, m->rate, m->due - m->clock);
+  m->clock = m->due;
+}
+
+static void visit_hits_wall(struct bead_flight *all, struct bead_visit *m)
+{
+  const enum wall wall = wall_ahead(m->rate.y);
+  const struct vec3 after = wall_reflect(&all->slit, wall, m->velocity);
+  give(all, wall, 1.0, m->velocity, after);
+  m->velocity = after;
+  m->rate = rate_of(after, all->way.time);
+}
+
+/* --- hits -------------------------------------------------------------------------------------------------------- */
+
 static void answer(struct bead_flight *all)
 {
   struct bead_way *const bead = &all->way;
   struct bead_visit *const m = all->first;
-  const int64_t now = m->due;
-  m->again = m->clock == now ? m->again + 1 : 0;
-  m->at = later(m->at, m->rate, now - m->clock);
-  m->clock = now;
-  go_to(bead, now);
+  if (!m) {
+    bead_hits_wall(all);
+    return;
+  }
+  arrive(m);
+  if (m->at_wall) {
+    visit_hits_wall(all, m);
+    return;
+  }
+  go_to(bead, m->clock);
   bounce(bead, m);
   if (m->again > MOST_AT_A_TICK) {
     m->rigid = true;
@@ -105,10 +173,19 @@ static struct bead_visit *first_due(const struct bead_flight *all, const uint32_
 
 int64_t bead_flight_next(const struct state *state, struct bead_flight *all)
 {
-  for (uint32_t k = 0; k < all->n; k++)
-    all->at[k].due = next_hit(&all->way, &all->at[k]);
-  all->first = first_due(all, state->solvent.id);
-  return all->n > 0 ? all->first->due : FLIGHT_TICKS;
+  for (uint32_t k = 0; k < all->n; k++) {
+    struct bead_visit *m = &all->at[k];
+    const int64_t wall = all->walled ? visit_at_wall(all, m) : FLIGHT_TICKS;
+    m->due = next_hit(&all->way, m);
+    m->at_wall = wall < m->due;
+    m->due = m->at_wall ? wall : m->due;
+  }
+  const int64_t own = bead_at_wall(all);
+  all->first = all->n > 0 ? first_due(all, state->solvent.id) : NULL;
+  if (all->first && all->first->due <= own)
+    return all->first->due;
+  all->first = NULL;
+  return own;
 }
 
 /* The bead is off its free flight by this at most, a0. */
@@ -128,6 +205,27 @@ static bool comes_within(struct vec3 apart, struct vec3 go, double distance)
   const double when = !(along > 0.0) ? 0.0 : along < square ? along / square : 1.0;
   const struct vec3 nearest = vec3_add_scaled(apart, when, go);
   return !(vec3_dot(nearest, nearest) > distance * distance);
+}
+
+/* The same of a particle that hits a wall: does its way, wherever it leads, get so far? way: its length along each
+ * axis, a0. */
+static bool gets_within(struct vec3 apart, struct vec3 way, double distance)
+{
+  return vec3_norm(apart) <= distance + vec3_norm(way) && fabs(apart.x) <= distance + fabs(way.x) &&
+         fabs(apart.y) <= distance + fabs(way.y) && fabs(apart.z) <= distance + fabs(way.z);
+}
+
+/* Walls have given to this particle, in its flight without a bead, what is entered in the state. */
+static void take_back(const struct state *state, const struct model *model, const struct span *span, uint32_t i,
+                      struct bead_flight *all)
+{
+  const struct solvent *s = &state->solvent;
+  struct point sums[WALLS] = {{0, 0, 0}};
+  uint64_t turns[WALLS] = {0};
+  boundary_enter_hits(model, span, (struct point){s->x[i], s->y[i], s->z[i]}, solvent_velocity(s, i),
+                      (struct account){sums, turns});
+  for (enum wall wall = 0; wall < WALLS; wall++)
+    all->given[wall] = point_minus(all->given[wall], sums[wall]);
 }
 
 static bool take(struct bead_flight *all, struct bead_visit m, uint64_t step, struct fault *fault)
@@ -150,6 +248,20 @@ static void set_out(const struct state *state, const struct model *model, double
   all->free = state->bead->velocity;
   all->way = (struct bead_way){.time = time, .mass = model->bead.mass, .radius = bead_radius(model)};
   set_velocity(&all->way, all->free);
+  all->walled = model_has_walls(model);
+  if (!all->walled)
+    return;
+  all->slit = slit_during(model, shear_interval(model, state->solvent_time));
+  for (enum wall wall = 0; wall < WALLS; wall++) {
+    all->height[wall] = wall_height(&model->box, wall) - state->bead->position.y;
+    all->given[wall] = (struct point){0, 0, 0};
+  }
+}
+
+/* The speed of the faster wall, a0/t0. */
+static double wall_speed(const struct bead_flight *all)
+{
+  return all->walled ? fmax(vec3_norm(all->slit.wall[WALL_LOWER]), vec3_norm(all->slit.wall[WALL_UPPER])) : 0.0;
 }
 
 /* Where particles and bead are at the end. */
@@ -160,9 +272,9 @@ static void land(const struct model *model, const struct state *state, const str
   for (uint32_t k = 0; k < all->n; k++) {
     struct bead_visit *m = &all->at[k];
     const struct point at = m->rigid ? point_plus(end, m->at) : later(m->at, m->rate, FLIGHT_TICKS - m->clock);
-    m->at = (struct point){lattice_fold(origin.x + at.x, model->box.edge[0]),
-                           lattice_fold(origin.y + at.y, model->box.edge[1]),
-                           lattice_fold(origin.z + at.z, model->box.edge[2])};
+    m->at =
+        (struct point){lattice_fold(origin.x + at.x, model->box.edge[0]), box_inside(&model->box, 1, origin.y + at.y),
+                       lattice_fold(origin.z + at.z, model->box.edge[2])};
     m->velocity = vec3_add_scaled(m->velocity, 0.5 * span->time, span->acceleration);
   }
   all->bead.position = point_plus(origin, end);
@@ -177,6 +289,17 @@ static struct span whole_step(const struct state *state, const struct model *mod
   return span;
 }
 
+/* at, v: of a particle at the start, its velocity that of the middle of the flight. */
+static bool may_meet(const struct bead_flight *all, struct point at, struct vec3 v, double distance)
+{
+  const double t = all->way.time;
+  const struct vec3 apart = point_in_a0(at), way = vec3_scale(t, v);
+  const int64_t end = at.y + lattice_from_a0(way.y);
+  if (all->walled && (end < all->height[WALL_LOWER] || end > all->height[WALL_UPPER]))
+    return gets_within(apart, way, distance + t * (vec3_norm(all->free) + 2.0 * wall_speed(all)));
+  return comes_within(apart, vec3_scale(t, vec3_sub(v, all->free)), distance);
+}
+
 enum { BLOCK = 64 }; /* particles looked at together, registers of them at once */
 
 /* What a sweep over all particles knows of the bead; lattice units. */
@@ -189,17 +312,19 @@ struct sweep {
 
 /* (c + t v)^2 is at most 1.1 c^2 + 11 (t v)^2. */
 static struct sweep sweep_of(const struct state *state, const struct model *model, const struct span *span,
-                             double slack)
+                             double slack, const struct bead_flight *all)
 {
   const int64_t *const edge = model->box.edge;
   const struct point c = state->bead->position;
   const double t = span->time, time = t * LATTICE_PER_A0,
                most = model->bead.radius + slack + ROUNDING + t * vec3_norm(state->bead->velocity) +
-                      t * t * vec3_norm(span->acceleration),
+                      t * t * vec3_norm(span->acceleration) + 2.0 * t * wall_speed(all),
                units = most * LATTICE_PER_A0;
-  return (struct sweep){.at = {(double)lattice_fold(c.x, edge[0]), (double)lattice_fold(c.y, edge[1]),
+  const double beyond = all->walled ? 4.0 : 1.0; /* no image is near across walls */
+  return (struct sweep){.at = {(double)lattice_fold(c.x, edge[0]),
+                               (double)(all->walled ? c.y : lattice_fold(c.y, edge[1])),
                                (double)lattice_fold(c.z, edge[2])},
-                        .edge = {(double)edge[0], (double)edge[1], (double)edge[2]},
+                        .edge = {(double)edge[0], beyond * (double)edge[1], (double)edge[2]},
                         .most = units,
                         .time = time,
                         .reach = 1.1 * units * units,
@@ -258,7 +383,7 @@ static bool sweep_all(const struct state *state, const struct model *model, doub
 {
   const struct solvent *s = &state->solvent;
   const struct span span = whole_step(state, model);
-  const struct sweep w = sweep_of(state, model, &span, slack);
+  const struct sweep w = sweep_of(state, model, &span, slack, all);
   const double t = span.time, radius = model->bead.radius + ROUNDING;
   for (uint32_t first = 0; first < s->n; first += BLOCK) {
     const uint32_t n = s->n - first < BLOCK ? s->n - first : BLOCK;
@@ -271,9 +396,10 @@ static bool sweep_all(const struct state *state, const struct model *model, doub
       const struct vec3 v = vec3_add_scaled(solvent_velocity(s, i), 0.5 * t, span.acceleration);
       const struct point at =
           bead_to_image(&model->box, state->bead->position, (struct point){s->x[i], s->y[i], s->z[i]});
-      const struct vec3 apart = point_in_a0(at), go = vec3_scale(t, vec3_sub(v, all->free));
-      if (!comes_within(apart, go, radius + slack) || (known >= 0.0 && comes_within(apart, go, radius + known)))
+      if (!may_meet(all, at, v, radius + slack) || (known >= 0.0 && may_meet(all, at, v, radius + known)))
         continue;
+      if (all->walled)
+        take_back(state, model, &span, i, all);
       if (!take(all, (struct bead_visit){.place = i, .at = at, .rate = rate_of(v, t), .velocity = v}, state->step + 1,
                 fault))
         return false;
@@ -296,7 +422,7 @@ bool bead_flight_begin(const struct state *state, const struct model *model, str
 static bool keep_slack(const struct state *state, const struct model *model, struct bead_flight *all,
                        struct fault *fault)
 {
-  const double known = all->slack, off = off_free_flight(all), most = 0.5 * box_shortest_edge(&model->box);
+  const double known = all->slack, off = off_free_flight(all), most = bead_half_edge(model);
   if (off <= known)
     return true;
   if (!(2.0 * off + model->bead.radius < most))

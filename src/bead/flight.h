@@ -4,6 +4,7 @@
 
 #include "contact/flight.h"
 #include "system/bead.h"
+#include "wall/wall.h"
 
 /* Two points that move: from one to the other, and by how much that grows in a tick; lattice units. */
 struct approach {
@@ -18,6 +19,7 @@ int64_t bead_touch(const struct approach *approach, int64_t radius, int64_t most
 /* A particle that may meet the bead. */
 struct bead_visit {
   uint32_t place;        /* in memory */
+  bool at_wall;          /* its next hit is one of a wall */
   bool rigid;            /* it goes with the bead for the rest of the flight, at this place relative to it */
   uint32_t again;        /* hits at the tick of its last one, less 1 */
   int64_t clock, due;    /* ticks: where it was last turned; its next hit */
@@ -42,7 +44,11 @@ struct bead_flight {
   struct bead_way way;
   struct vec3 free;         /* the bead's velocity at the start, a0/t0 */
   double slack;             /* a0: how far it may be off its free flight before others may be met */
-  struct bead_visit *first; /* of all, the next that hits the bead */
+  struct bead_visit *first; /* of all, the next with a hit; NULL: the bead hits a wall before */
+  bool walled;
+  struct slit slit;
+  int64_t height[WALLS];     /* of the walls above the bead's center at the start, lattice units */
+  struct point given[WALLS]; /* by walls, beyond what they give in flights without a bead: units of the account */
 };
 
 /* Who may meet the bead. False, with the fault recorded, if memory is short; so do answer, turn and alone. */

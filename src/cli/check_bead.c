@@ -31,17 +31,24 @@ void check_bead(const struct si_scale *si, const struct model *m)
   const struct bead_model *b = &m->bead;
   const double edge = box_shortest_edge(&m->box), slip = theory_model_bead_slip(m),
                size = theory_bead_radius(b->radius, slip), free = theory_model_bead_friction(m);
-  const double box = size / edge < 0.25 ? theory_bead_box(size, edge) : 1.0;
+  const bool walled = model_has_walls(m), small = size / edge < 0.25;
+  const double around = walled  ? theory_bead_slit(size, b->center.y, m->box.cells[1])
+                        : small ? theory_bead_box(size, edge)
+                                : 1.0;
   sheet_heading("Bead (in the solvent alone)");
   sheet_row(si, "mass", "M", b->mass, "m", "");
   sheet_row(si, "slip length", "b", slip, "a0", "of a flat wall");
   sheet_row(si, "hydrodynamic radius", "R_h", size, "a0", "R (1 + 2b/R)/(1 + 3b/R)");
   sheet_row(si, "friction", "xi", free, "m/t0", "6 pi eta R_h");
-  sheet_row(si, "in a cubic box of the shortest edge", "", free * box, "m/t0",
-            size / edge < 0.25 ? "Hasimoto" : "without the box's factor: R/L is above 0.25");
-  sheet_row(si, "diffusion coefficient", "D", 1.0 / (free * box), "a0^2/t0", "kT/xi in the box");
+  sheet_row(si, walled ? "along the walls, at its center" : "in a cubic box of the shortest edge", "", free * around,
+            "m/t0",
+            walled  ? "Faxen's series for one wall, both added"
+            : small ? "Hasimoto"
+                    : "without the box's factor: R/L is above 0.25");
+  sheet_row(si, "diffusion coefficient", "D", 1.0 / (free * around), "a0^2/t0",
+            walled ? "kT/xi along the walls" : "kT/xi in the box");
   sheet_row(si, "friction of single hits alone", "xi_E", theory_bead_enskog(m->solvent.per_cell, b->radius, b->mass),
             "m/t0", "(16/3) gamma R^2 sqrt(2 pi kT)");
   sheet_row(si, "momentum is kept for", "", b->mass / free, "t0", "M/xi");
-  report_drive(si, m, free * box);
+  report_drive(si, m, free * around);
 }

@@ -11,6 +11,7 @@
 #include "system/fault.h"
 #include "system/model.h"
 #include "system/state.h"
+#include "wall/account.h"
 
 /* A span of time for which particles fly. It is within one collision interval. */
 struct span {
@@ -89,6 +90,10 @@ static inline void boundary_bring_in(const struct box *box, struct slide slide, 
   *x = lattice_fold(*x - image * slide.offset, box->edge[0]);
   *vx -= (double)image * slide.speed;
 }
+
+/* Enters what walls give to one particle in its flight. */
+void boundary_enter_hits(const struct model *model, const struct span *span, struct point position,
+                         struct vec3 velocity, struct account account);
 
 extern const struct boundary boundary_periodic, boundary_walls, boundary_sheared;
 

@@ -203,9 +203,10 @@ static bool fly_walls(struct state *state, const struct model *model, const stru
   return ok;
 }
 
-static void now_walls(const struct model *model, const struct span *span, struct point *x, struct vec3 *v)
+static void fly_one(const struct model *model, const struct span *span, struct account account, struct point *x,
+                    struct vec3 *v)
 {
-  const struct flight f = flight_of(model, span, (struct account){NULL, NULL});
+  const struct flight f = flight_of(model, span, account);
   const int64_t d = boundary_flight(v->y, 0.0, span->time), y = (int64_t)((uint64_t)x->y + (uint64_t)d);
   if (wall_is_beyond(&model->box, y)) {
     rebound(&f, d, x, v);
@@ -213,6 +214,17 @@ static void now_walls(const struct model *model, const struct span *span, struct
   }
   x->y = y;
   fly_freely(&f, x, v);
+}
+
+static void now_walls(const struct model *model, const struct span *span, struct point *x, struct vec3 *v)
+{
+  fly_one(model, span, (struct account){NULL, NULL}, x, v);
+}
+
+void boundary_enter_hits(const struct model *model, const struct span *span, struct point position,
+                         struct vec3 velocity, struct account account)
+{
+  fly_one(model, span, account, &position, &velocity);
 }
 
 const struct boundary boundary_walls = {"walls", fly_walls, now_walls};

@@ -14,7 +14,9 @@ static int64_t nearest(int64_t x, int64_t edge)
 
 struct point bead_to_image(const struct box *box, struct point from, struct point to)
 {
-  return (struct point){nearest(to.x - from.x, box->edge[0]), nearest(to.y - from.y, box->edge[1]),
+  const int64_t y = to.y - from.y;
+  return (struct point){nearest(to.x - from.x, box->edge[0]),
+                        box->boundary[1] == BOUNDARY_WALL ? y : nearest(y, box->edge[1]),
                         nearest(to.z - from.z, box->edge[2])};
 }
 
@@ -25,18 +27,30 @@ bool bead_is_outside(const struct model *model, struct point center, struct poin
   return (wide)d.x * d.x + (wide)d.y * d.y + (wide)d.z * d.z >= r * r;
 }
 
+double bead_half_edge(const struct model *m)
+{
+  const int *cells = m->box.cells;
+  const int across = cells[0] < cells[2] ? cells[0] : cells[2];
+  return m->walls.kind == WALL_ABSENT ? 0.5 * box_shortest_edge(&m->box) : 0.5 * across;
+}
+
 /* Particles of a few thermal velocities must not reach an image of the bead. */
 bool bead_fits(const struct model *m, struct model_error *error)
 {
-  const double half = 0.5 * box_shortest_edge(&m->box), beside = 2.0 + 20.0 * m->solvent.collision_interval;
+  const double half = bead_half_edge(m), beside = 2.0 + 20.0 * m->solvent.collision_interval;
+  const double y = m->bead.center.y, r = m->bead.radius;
   if (!model_has_bead(m))
     return true;
+  if (m->walls.kind != WALL_ABSENT && !(y >= r && y <= m->box.cells[1] - r))
+    return model_reject(error, "bead.center",
+                        "its y is %.6g a0; allowed between walls: from %.6g to %.6g a0, radius and edge less radius", y,
+                        r, m->box.cells[1] - r);
   return m->bead.radius + beside <= half ||
          model_reject(
              error, "bead.radius",
-             "%.6g a0 in a box whose shortest edge is %d a0; allowed: at most %.6g a0, half the edge less 2 a0 "
+             "%.6g a0 in a box whose shortest edge is %g a0; allowed: at most %.6g a0, half the edge less 2 a0 "
              "and 20 collision intervals",
-             m->bead.radius, box_shortest_edge(&m->box), fmax(0.0, half - beside));
+             m->bead.radius, 2.0 * half, fmax(0.0, half - beside));
 }
 
 enum { LEAST_STEPS_OF_PERIOD = 8 };
@@ -80,7 +94,8 @@ bool bead_finish(struct model *m, struct model_error *error)
   if (m->bead.mass < displaced)
     return model_reject(error, "bead.mass", "%.15g m, and the solvent it displaces has %.15g m; allowed: at least that",
                         m->bead.mass, displaced);
-  m->bead.driven = m->bead.drive.spring > 0.0 || vec3_norm(m->bead.drive.force) > 0.0;
+  m->bead.carried = vec3_scale(displaced, m->solvent.acceleration);
+  m->bead.driven = m->bead.drive.spring > 0.0 || vec3_norm(vec3_add(m->bead.drive.force, m->bead.carried)) > 0.0;
   return refusals_check(AT_TRAP, m, NULL, error) && check_pace(m, error);
 }
 

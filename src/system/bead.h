@@ -41,17 +41,21 @@ bool bead_is_outside(const struct model *model, struct point center, struct poin
 /* From a place to the nearest image of another one, lattice units. */
 struct point bead_to_image(const struct box *box, struct point from, struct point to);
 
+/* Half of the shortest edge along which the bead has images, a0. */
+double bead_half_edge(const struct model *model);
+
 /* Has the box room for the bead? Before anything is derived. */
 bool bead_fits(const struct model *model, struct model_error *error);
 
 /* Force of the drive on the bead at a time, kT/a0, where its center is at this place; and the middle of the trap, a0.
- * Both are 0 without it. half_steps: half time steps since the start. */
+ * Both are 0 without it. An acceleration of the solvent pushes the bead as the solvent that it displaces, as a gradient
+ * of pressure does: this force is added. half_steps: half time steps since the start. */
 struct vec3 bead_force(const struct model *model, struct point place, uint64_t half_steps);
 struct vec3 bead_trap(const struct model *model, uint64_t half_steps);
 
 /* The counterforce: acceleration of solvent and vertices, a0/t0^2, from the time to which the solvent was streamed
  * until it is streamed again. It takes up the momentum that the drive gives to the bead at that time. 0 without a
- * drive. */
+ * drive, and between walls, which take it up. */
 struct vec3 bead_counter(const struct state *state, const struct model *model);
 
 /* Appends what the vertices get of it in half a step: before and after their drift. The fluid's particles get it in

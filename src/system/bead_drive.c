@@ -38,24 +38,22 @@ struct vec3 bead_force(const struct model *model, struct point place, uint64_t h
 {
   const struct bead_drive *d = &model->bead.drive;
   const struct vec3 way = point_in_a0(point_minus(place, start_of(model)));
-  return vec3_add_scaled(d->force, -d->spring, vec3_sub(way, trap_way(d, time_of(model, half_steps))));
+  return vec3_add_scaled(vec3_add(d->force, model->bead.carried), -d->spring,
+                         vec3_sub(way, trap_way(d, time_of(model, half_steps))));
 }
 
 struct vec3 bead_counter(const struct state *state, const struct model *model)
 {
-  if (!model->bead.driven)
+  if (!model->bead.driven || model_has_walls(model))
     return (struct vec3){0, 0, 0};
   const struct vec3 force = bead_force(model, state->bead->position, state->solvent_time);
   return vec3_scale(-1.0 / model->total_mass, force);
 }
 
-/* No scene has both. */
 struct vec3 fluid_acceleration(const struct state *state, const struct model *model)
 {
   const bool uniform = model->solvent.profile == PROFILE_UNIFORM;
-  return model->bead.driven ? bead_counter(state, model)
-         : uniform          ? model->solvent.acceleration
-                            : (struct vec3){0, 0, 0};
+  return vec3_add(bead_counter(state, model), uniform ? model->solvent.acceleration : (struct vec3){0, 0, 0});
 }
 
 /* Vertices take up their share of what a drive gives to the bead: half of it, twice in a step. */

@@ -245,7 +245,8 @@ struct bead_model {
   double mass;        /* M, m; effective: that of the solvent it displaces, if 0 was given */
   struct vec3 center; /* at the start, a0 */
   struct bead_drive drive;
-  bool driven; /* derived: there is a force or a spring */
+  struct vec3 carried; /* derived: what pushes it with the solvent, kT/a0 (system/bead.h) */
+  bool driven;         /* derived: there is a force or a spring */
 };
 
 /* Walls at y = 0 and y = L. */

@@ -205,7 +205,12 @@ REFUSE(AT_TUBE, "fibers.diameter", k->diameter != 0.0 && model_is_sheared(m),
 
 REFUSE(AT_BEAD, "bead", !model_has_solvent(m), "it needs solvent particles, and there are none; allowed with a solvent")
 REFUSE(AT_BEAD, "medium", !model_in_cells(m), "its pairs do not know the bead; allowed with a bead: no medium")
-REFUSE(AT_BEAD, "walls", has_walls(m), "a bead does not touch walls; allowed with a bead: no walls")
+REFUSE(AT_BEAD, "walls.kind", m->walls.kind == WALL_SLIP,
+       "they do not take up the momentum of a bead along them; allowed with a bead: no-slip")
+REFUSE(AT_BEAD, "walls.fill", has_walls(m) && m->walls.fill != FILL_PLANAR,
+       "a cell that the bead cuts has few members, and would be filled by the wall; allowed with a bead: planar")
+REFUSE(AT_BEAD, "fibers", has_walls(m) && m->kinds > 0,
+       "a cluster of fibers and bead does not touch walls; allowed between walls: a bead alone, or fibers alone")
 REFUSE(AT_BEAD, "shear", is_sheared(m), "a bead has no image that moves; allowed with a bead: no shear")
 REFUSE(AT_BEAD, "dumbbells", model_has_dumbbells(m), "springs do not touch a bead; allowed with a bead: no dumbbells")
 REFUSE(AT_BEAD, "solvent.rule", m->solvent.rule == RULE_AT_PLUS_A,
@@ -214,8 +219,8 @@ REFUSE(AT_BEAD, "solvent.thermostat", m->solvent.thermostat != THERMOSTAT_NONE,
        "its factors do not know the bead's virtual particles; allowed with a bead: none (rule: at-a holds kT = 1)")
 REFUSE(AT_BEAD, "solvent.hydrodynamics", !m->solvent.hydrodynamics,
        "velocities that are permuted drag no bead; allowed with a bead: true")
-REFUSE(AT_BEAD, "solvent.acceleration", vec3_norm(m->solvent.acceleration) != 0.0,
-       "the solvent around a bead is not accelerated; allowed with a bead: [0, 0, 0]")
+REFUSE(AT_BEAD, "solvent.acceleration", vec3_norm(m->solvent.acceleration) != 0.0 && !has_walls(m),
+       "nothing takes up the momentum; allowed with a bead: [0, 0, 0], or walls")
 REFUSE(AT_BEAD, "time_step", m->solvent.interval_steps != 1,
        "a bead is moved with the solvent; allowed with a bead: the collision interval")
 REFUSE(AT_BEAD, "order", m->scheme == SCHEME_DRIFT_SPLIT,

@@ -23,6 +23,19 @@ double theory_bead_enskog(double gamma, double radius, double mass);
  * (Hasimoto, J. Fluid Mech. 5, 317 (1959)). The velocity is relative to the mean of everything. For x below 0.25. */
 double theory_bead_box(double radius, double edge);
 
+/* Friction along a wall at this distance of the center, over that without a wall, to the fifth order in x = R/h:
+ * 1/(1 - (9/16) x + (1/8) x^3 - (45/256) x^4 - (1/16) x^5) (Faxen; Happel and Brenner, Low Reynolds number
+ * hydrodynamics, 7-4). For x below 0.7: nearer, lubrication makes it larger. */
+double theory_bead_wall(double radius, double height);
+
+/* The same between two walls at this distance, in their middle and at a quarter of it from one of them (Faxen; Happel
+ * and Brenner, 7-4): in x = R/h, h the distance from the nearer wall. */
+double theory_bead_middle(double radius, double distance);
+double theory_bead_quarter(double radius, double distance);
+
+/* Between two walls at any height, as if what the walls add did not depend on each other. */
+double theory_bead_slit(double radius, double height, double distance);
+
 /* Of a model: slip length, a0; friction 6 pi eta R_h, without the box. */
 double theory_model_bead_slip(const struct model *model);
 double theory_model_bead_friction(const struct model *model);

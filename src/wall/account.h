@@ -23,15 +23,23 @@ static inline uint32_t account_row(enum account_share share, enum wall wall)
 __extension__ typedef __int128 account_wide;
 __extension__ typedef unsigned __int128 account_unsigned;
 
-/* Adds a momentum, m a0/t0, below 2^19 in size, to a sum in momentum units. turns: how often x has passed the upper end
- * of its range, less how often the lower one; a signed number in two's complement. */
+/* Adds momentum units to a sum of them. turns: how often x has passed the upper end of its range, less how often the
+ * lower one; a signed number in two's complement. */
+static inline void account_add_units(struct point *sum, uint64_t *turns, struct point gain)
+{
+  const int64_t x = sum->x;
+  sum->x = (int64_t)((uint64_t)x + (uint64_t)gain.x);
+  *turns += (uint64_t)((gain.x > 0 && sum->x < x) - (gain.x < 0 && sum->x > x));
+  sum->y = (int64_t)((uint64_t)sum->y + (uint64_t)gain.y);
+  sum->z = (int64_t)((uint64_t)sum->z + (uint64_t)gain.z);
+}
+
+/* Adds a momentum, m a0/t0, below 2^19 in size. */
 static inline void account_add(struct point *sum, uint64_t *turns, struct vec3 momentum)
 {
-  const int64_t x = sum->x, gain = llrint(ACCOUNT_SCALE * momentum.x);
-  sum->x = (int64_t)((uint64_t)x + (uint64_t)gain);
-  *turns += (uint64_t)((gain > 0 && sum->x < x) - (gain < 0 && sum->x > x));
-  sum->y = (int64_t)((uint64_t)sum->y + (uint64_t)llrint(ACCOUNT_SCALE * momentum.y));
-  sum->z = (int64_t)((uint64_t)sum->z + (uint64_t)llrint(ACCOUNT_SCALE * momentum.z));
+  account_add_units(sum, turns,
+                    (struct point){llrint(ACCOUNT_SCALE * momentum.x), llrint(ACCOUNT_SCALE * momentum.y),
+                                   llrint(ACCOUNT_SCALE * momentum.z)});
 }
 
 /* The rows of one share, by wall; without sums: nobody keeps it. */

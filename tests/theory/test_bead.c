@@ -15,6 +15,18 @@ static void frictions_by_hand(void **unused)
   assert_close(theory_bead_box(1e-9, 1.0), 1.0, 1e-8);
 }
 
+/* x = 1/2, in fractions: 1 - 9/32 + 1/64 - 45/4096 - 1/512 = 2955/4096. In the middle 1 - 0.502 + 0.05225 + 0.013125 -
+ * 0.00528125 = 0.55809375, at a quarter 1 - 0.3263 + 0.0184375 - 0.0081875 - 0.0020125 = 0.6819375. */
+static void walls_by_hand(void **unused)
+{
+  (void)unused;
+  assert_close(theory_bead_wall(1.5, 3.0), 4096.0 / 2955.0, 1e-14);
+  assert_close(theory_bead_middle(1.5, 6.0), 1.0 / 0.55809375, 1e-13);
+  assert_close(theory_bead_quarter(1.5, 12.0), 1.0 / 0.6819375, 1e-13);
+  assert_close(theory_bead_slit(1.5, 3.0, 6.0), 2.0 * 4096.0 / 2955.0 - 1.0, 1e-14);
+  assert_close(theory_bead_slit(1.5, 3.0, 1e12), 4096.0 / 2955.0, 1e-9);
+}
+
 /* No slip: R. Perfect slip: Stokes's 4 pi eta R, 2/3 of R. A small slip takes b off. */
 static void slip_makes_a_bead_smaller(void **unused)
 {
@@ -46,6 +58,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(frictions_by_hand),
+      cmocka_unit_test(walls_by_hand),
       cmocka_unit_test(slip_makes_a_bead_smaller),
       cmocka_unit_test(a_model_has_the_slip_of_its_solvent),
   };

@@ -37,7 +37,7 @@ static uint64_t add_vertices(const struct state *state, const struct model *mode
 /* The mean of the velocities that n virtual particles draw has the variance of one member of mass n. */
 static struct vec3 draw_virtual(const struct model *model, const struct mpc *c, uint64_t step, uint32_t place, double n)
 {
-  return andersen_draw(model, RANDOM_ANDERSEN_PHANTOM, step, mpc_cell(c, place), n);
+  return andersen_draw(model, RANDOM_ANDERSEN_PHANTOM, step, mpc_cell(c, place) + c->beside, n);
 }
 
 static void add_virtual(const struct model *model, struct mpc *c, uint64_t step, uint32_t place,
