@@ -41,6 +41,15 @@ class BeginsAnew(FolderTest):
         with open(self.dir / out / f"{table}.csv", encoding="utf-8") as file:
             return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
 
+    def test_bead_between_walls(self):
+        """The flow of a scene is given to what is drawn, and not once more to a snapshot, where walls keep no momentum."""
+        scene = BEAD.replace("fibers:", "walls: {{kind: no-slip}}\nflow: [0.05, 0, 0]\n#").format(steps=20, order="kick-split", drive=DRIVES["force"])
+        self.run_of(scene, "first")
+        self.run_of(scene.replace("steps: 20", "steps: 1"), "second", "first/checkpoint.h5")
+        end, begin = self.rows("first", "bead")[-1], self.rows("second", "bead")[0]
+        for key in "velocity_x", "velocity_y", "velocity_z":
+            self.assertAlmostEqual(end[key], begin[key], delta=1e-9, msg=key)
+
     def test_bead(self):
         """A state has one velocity of the bead, one momentum and one kinetic energy, whatever drives the bead next. The
         half step of force is 10 x 0.1 / 2 M, some 0.004 a0/t0: M = 134."""
