@@ -83,7 +83,7 @@ static int64_t last_between(const struct bead_flight *all, int64_t y, int64_t ra
     return FLIGHT_TICKS;
   const int64_t ticks =
       rate < 0 ? (y - all->height[WALL_LOWER] - within) / -rate : (all->height[WALL_UPPER] - within - y) / rate;
-  return ticks < FLIGHT_TICKS - tick ? tick + ticks : FLIGHT_TICKS;
+  return ticks < 0 ? tick : ticks < FLIGHT_TICKS - tick ? tick + ticks : FLIGHT_TICKS;
 }
 
 static int64_t visit_at_wall(const struct bead_flight *all, const struct bead_visit *m)
@@ -108,13 +108,16 @@ static void give(struct bead_flight *all, enum wall wall, double mass, struct ve
   wall_gives((struct account){all->given, turns}, wall, mass, before, after);
 }
 
+#define ACCOUNT_RANGE 0x1p20 /* m a0/t0: sums across wrap there, and a heavy bead gives more than that */
+
 /* The bead is smooth: its velocity across is reversed. */
 static void bead_hits_wall(struct bead_flight *all)
 {
   const enum wall wall = wall_ahead(all->way.rate.y);
   const struct vec3 before = all->way.velocity, after = {before.x, -before.y, before.z};
+  const double gain = all->way.mass * (before.y - after.y);
   go_to(&all->way, bead_at_wall(all));
-  give(all, wall, all->way.mass, before, after);
+  give(all, wall, 1.0, (struct vec3){0, remainder(gain, ACCOUNT_RANGE), 0}, (struct vec3){0, 0, 0});
   set_velocity(&all->way, after);
 }
 

@@ -14,7 +14,9 @@ static void report_drive(const struct si_scale *si, const struct model *m, doubl
   const struct bead_drive *d = &m->bead.drive;
   const double force = vec3_norm(d->force), speed = force / friction, nu = theory_loaded_kinematic(m);
   if (force > 0.0) {
-    sheet_row(si, "speed under the force", "", speed, "a0/t0", "F/xi, relative to the mean of everything");
+    sheet_row(si, "speed under the force", "", speed, "a0/t0",
+              model_has_walls(m) ? "F/xi along the walls, relative to the flow there"
+                                 : "F/xi, relative to the mean of everything");
     sheet_row(si, "Reynolds number", "Re", speed * m->bead.radius / nu, "",
               "V R/nu; keep below 0.1 to compare with Stokes");
   }

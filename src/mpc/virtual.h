@@ -1,6 +1,7 @@
 /*
  * Virtual particles of mass 1 that stand in a cell for solvent that is not simulated: the phantoms of a random solvent,
- * and the solvent beyond a wall. Both kinds use the same addresses of random numbers; no scene has both.
+ * the solvent beyond a wall, and the matter of a bead (bead/matter.h). Phantoms and walls use the same addresses of
+ * random numbers; no scene has both.
  */
 #ifndef UNCROSS_MPC_VIRTUAL_H
 #define UNCROSS_MPC_VIRTUAL_H

@@ -63,7 +63,7 @@ bool oracle_answer(const struct pack *pack, struct pack *answers, struct message
   memset(answers, 0, sizeof *answers);
   if (!numbers || numbers->real || numbers->columns < 2 || numbers->rows != 1)
     return message_set(message, "the pack has no seed: in.numbers of model");
-  model.seed = (uint64_t)numbers->value.integer[0] | (uint64_t)numbers->value.integer[1] << 32;
+  model.seed = (uint32_t)numbers->value.integer[0] | (uint64_t)numbers->value.integer[1] << 32;
   bool ok = true;
   for (size_t k = 0; ok && k < pack->count; k++) {
     const struct pack_table *t = &pack->table[k];

@@ -124,8 +124,8 @@ TAKEN_POINT(search_w, searches, SEARCH.pair.w)
 TAKEN_POINT(search_p_rate, searches, SEARCH.pair.p_rate)
 TAKEN_POINT(search_q_rate, searches, SEARCH.pair.q_rate)
 TAKEN_POINT(search_w_rate, searches, SEARCH.pair.w_rate)
-TAKEN_INTEGERS(search_from, searches, "tick", SEARCH.from = n[0] < FLIGHT_TICKS ? (int32_t)n[0] : FLIGHT_TICKS,
-               SEARCH.from)
+TAKEN_INTEGERS(search_from, searches, "tick",
+               SEARCH.from = n[0] >= 0 && n[0] < FLIGHT_TICKS ? (int32_t)n[0] : FLIGHT_TICKS, SEARCH.from)
 TAKEN_INTEGERS(search_reach, searches, "reach", SEARCH.reach = n[0], SEARCH.reach)
 INTEGERS(search_tick, searches, "tick", SEARCH.tick)
 

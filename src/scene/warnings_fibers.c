@@ -106,13 +106,15 @@ static void warn_overdamped(struct teller *t, const struct model *m, const struc
 static void warn_inertia(struct teller *t, const struct model *m, const struct fiber_kind *k)
 {
   const double length = theory_length(k), speed = theory_shear_speed(m, length);
-  const double sound = theory_sound_speed(model_is_isothermal(m), m->dimensions), nu = theory_loaded_kinematic(m);
-  const double mach = theory_mach(speed, sound), reynolds = theory_reynolds(speed, length, nu);
+  if (!(speed > 0.0))
+    return;
+  const double nu = theory_loaded_kinematic(m);
+  const double mach = theory_mach(speed, theory_sound_speed(model_is_isothermal(m), m->dimensions)),
+               reynolds = theory_reynolds(speed, length, nu);
   if (mach > MOST_INERTIA || reynolds > MOST_INERTIA)
     warn(t,
          "fibers '%s': over their length the shear has a Mach number of %.3g and a Reynolds number of %.3g; above %g "
-         "what "
-         "they do is partly inertia (paper, Table II); use a flow that is at least %.3g times slower",
+         "what they do is partly inertia (paper, Table II); use a flow that is at least %.3g times slower",
          k->name, mach, reynolds, MOST_INERTIA, fmax(mach, reynolds) / MOST_INERTIA);
 }
 

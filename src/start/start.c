@@ -64,7 +64,8 @@ void start_begin_drive(struct state *state, const struct model *model)
 {
   if (!model->bead.driven)
     return;
-  set_total_momentum(state, model);
+  if (vec3_norm(start_conserved_axes(model)) > 0.0) /* elsewhere a snapshot's velocities stay what they are */
+    set_total_momentum(state, model);
   shift_drive(state, model, 0.5 * model->time_step);
 }
 

@@ -89,7 +89,7 @@ static double rate_of_force(const struct model *model)
   static const double height[PROFILES] = {
       [PROFILE_UNIFORM] = 0.5, [PROFILE_SINE] = 0.15915494309189535 /* 1/(2 pi) */, [PROFILE_REVERSE] = 0.25};
   const struct solvent_model *s = &model->solvent;
-  if (s->profile == PROFILE_UNIFORM && model->walls.kind != WALL_NO_SLIP)
+  if (vec3_norm(s->acceleration) == 0.0 || (s->profile == PROFILE_UNIFORM && model->walls.kind != WALL_NO_SLIP))
     return 0.0;
   return height[s->profile] * model->box.cells[1] * s->per_cell * vec3_norm(s->acceleration) /
          theory_loaded_viscosity(model);
