@@ -76,7 +76,7 @@ struct vec3 bead_velocity_now(const struct state *state, const struct model *mod
 /* Derives the mass, and checks what the scene may not combine with a bead. */
 bool bead_finish(struct model *model, struct model_error *error);
 
-/* Is the solvent outside the bead? Records FAULT_IN_BEAD if not. */
+/* Is the bead between the walls, and the solvent outside of it? Records FAULT_BEAD_WALL or FAULT_IN_BEAD if not. */
 bool bead_sound(const struct state *state, const struct model *model, struct fault *fault);
 
 /* Adds to a sum in units of BEAD_ENERGY_UNIT; it may wrap. */

@@ -34,6 +34,7 @@ static const struct {
     [FAULT_DUMBBELL] = {"dumbbell", "has a spring that is too long, or does not fit its two particles:", "a0", false,
                         MOST},
     [FAULT_BEAD_MOVE] = {"bead", "and the solvent near it reach too far in one collision interval:", "a0", true, MOST},
+    [FAULT_BEAD_WALL] = {"bead", "is in a wall: its center is from it by", "a0", false, LEAST},
     [FAULT_IN_BEAD] = {"solvent particle", "is inside the bead, at a distance from its center of", "a0", false, LEAST},
     [FAULT_BOND_TOO_LONG] = {"bond", "is longer than half the shortest box edge:", "a0", true, MOST},
     [FAULT_OVERLAP] = {"bond", "overlaps with another one: their axes are apart by", "a0", false, LEAST},

@@ -22,6 +22,7 @@ enum fault_code {
   FAULT_VERTEX_WALL,    /* a vertex is beyond a wall (in a file: a run keeps them between) */
   FAULT_DUMBBELL,       /* the vector of a dumbbell is not that between its particles (in a file) */
   FAULT_BEAD_MOVE,      /* a bead, or solvent near it, is so fast that its image may be hit too, or not a number */
+  FAULT_BEAD_WALL,      /* the bead is nearer to a wall than its radius (in a file: a run keeps it between) */
   FAULT_IN_BEAD,        /* a solvent particle is in the bead (in a file: a run keeps them outside) */
   FAULT_BOND_TOO_LONG,  /* a bond is longer than half the shortest edge */
   FAULT_OVERLAP,        /* two bonds overlap or touch at the start: one of them, and the distance of their axes */
