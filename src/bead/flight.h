@@ -49,6 +49,7 @@ struct bead_flight {
   struct slit slit;
   int64_t height[WALLS];     /* of the walls above the bead's center at the start, lattice units */
   struct point given[WALLS]; /* by walls, beyond what they give in flights without a bead: units of the account */
+  uint64_t turns[WALLS];     /* of `given`: 0, as a flight is short */
 };
 
 /* Who may meet the bead. False, with the fault recorded, if memory is short; so do answer, turn and alone. */

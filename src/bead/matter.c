@@ -16,11 +16,18 @@
 #include "mpc/rule.h"
 #include "mpc/virtual.h"
 
-/* Of the virtual particles of a cell, those inside the bead. corner: of the cell, from the bead's center, a0. */
-static uint32_t count_inside(const struct virtual_law *law, const struct model *model, uint64_t step, uint32_t cell,
-                             uint32_t beside, const double corner[3])
+/* Walls that fill cells, too, have the random numbers of the cells' own numbers: the bead has others. */
+static uint32_t aside_of(const struct mpc *c)
 {
-  const uint32_t n = virtual_number(law, model, step, cell + beside);
+  return c->filled ? c->cells : 0;
+}
+
+/* Of the virtual particles of a cell, those inside the bead. aside: as in struct virtual_members; corner: of the cell,
+ * from the bead's center, a0. */
+static uint32_t count_inside(const struct virtual_law *law, const struct model *model, uint64_t step, uint32_t cell,
+                             uint32_t aside, const double corner[3])
+{
+  const uint32_t n = virtual_number(law, model, step, cell + aside);
   const double square = model->bead.radius * model->bead.radius;
   uint32_t inside = 0;
   for (uint32_t k = 0; k < n; k++) {
@@ -71,7 +78,7 @@ static bool cut_line(struct bead_cuts *cuts, const struct surround *s, const str
     if (cell_members(&c->sum[cell]) == 0)
       continue;
     const double corner[3] = {(double)x - s->center[0], (double)y - s->center[1], (double)z - s->center[2]};
-    const uint32_t n = count_inside(law, model, step, cell, c->beside, corner);
+    const uint32_t n = count_inside(law, model, step, cell, aside_of(c), corner);
     if (n > 0 && !add_cut(cuts, cell, n, step, fault))
       return false;
   }
@@ -90,7 +97,7 @@ static double rest_mass(const struct model *model, struct bead_cuts *b)
 }
 
 /* Velocities of the virtual particles, at the total momentum of the bead. */
-static void draw_velocities(const struct bead *bead, const struct model *model, struct bead_cuts *b, uint32_t beside,
+static void draw_velocities(const struct bead *bead, const struct model *model, struct bead_cuts *b, uint32_t aside,
                             uint64_t step)
 {
   const double rest = rest_mass(model, b);
@@ -98,14 +105,14 @@ static void draw_velocities(const struct bead *bead, const struct model *model, 
   random_normal_three(random_at(model->seed, RANDOM_BEAD_REST, 0, step, 0), own);
   struct vec3 sum = vec3_scale(sqrt(rest), (struct vec3){own[0], own[1], own[2]});
   for (uint32_t k = 0; k < b->count; k++)
-    b->number[k] = b->cut[k].cell + beside;
+    b->number[k] = b->cut[k].cell + aside;
   virtual_normals(model, step, b->number, b->count, b->normal);
   for (uint32_t k = 0; k < b->count; k++)
     sum = vec3_add_scaled(sum, sqrt(b->cut[k].n), b->normal[k]);
   const struct vec3 flow = vec3_add_scaled(bead->velocity, -1.0 / model->bead.mass, sum);
   for (uint32_t k = 0; k < b->count; k++)
     b->cut[k].members = (struct virtual_members){
-        .n = b->cut[k].n, .velocity = virtual_velocity(b->normal[k], b->cut[k].n, flow), .flow = flow};
+        .n = b->cut[k].n, .velocity = virtual_velocity(b->normal[k], b->cut[k].n, flow), .flow = flow, .aside = aside};
 }
 
 bool bead_fill(void *room, const struct state *state, const struct model *model, struct mpc *c, uint64_t step,
@@ -120,7 +127,7 @@ bool bead_fill(void *room, const struct state *state, const struct model *model,
     for (int64_t y = s.low[1]; y <= s.high[1]; y++)
       if (!cut_line(cuts, &s, &law, model, c, y, z, step, fault))
         return false;
-  draw_velocities(state->bead, model, cuts, c->beside, step);
+  draw_velocities(state->bead, model, cuts, aside_of(c), step);
   for (uint32_t k = 0; k < cuts->count; k++) {
     const struct bead_cut *cut = &cuts->cut[k];
     if (!virtual_room(&c->sum[cut->cell], cut->n, step, cut->cell, FAULT_SOLVENT_SPEED, fault))

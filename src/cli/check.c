@@ -190,7 +190,8 @@ static void report_flow(const struct si_scale *si, const struct model *m, const 
             theory_peclet(speed, size, theory_rod_diffusion(units_viscosity(m), length, 0.6)), "", "Eq. (38), R = l_p");
 }
 
-static void report_kind(const struct si_scale *si, const struct model *m, const struct fiber_kind *k, double mesh)
+static void report_kind(const struct si_scale *si, const struct model *m, const struct theory_shear *shear,
+                        const struct fiber_kind *k, double mesh)
 {
   printf("\nFibers '%s'\n", text_shown(k->name));
   if (model_has_cells(m))
@@ -208,7 +209,7 @@ static void report_kind(const struct si_scale *si, const struct model *m, const 
     report_dilute(si, m, k);
   report_table_2(si, m, k, mesh);
   report_flow(si, m, k);
-  check_kind_in_shear(si, m, k);
+  check_kind_in_shear(si, m, shear, k);
 }
 
 /* What the flow meets: vertices that go with it, and the diameter that fibers have in it. */
@@ -383,8 +384,9 @@ void scene_report(const struct scene *scene, const struct stream *stream, const 
   if (m->solvent.profile != PROFILE_UNIFORM)
     check_drive(si, m);
   const double mesh = theory_mesh_size(theory_line_density(m));
+  const struct theory_shear shear = theory_shear_of(m);
   for (uint32_t k = 0; k < m->kinds; k++)
-    report_kind(si, m, &m->kind[k], mesh);
+    report_kind(si, m, &shear, &m->kind[k], mesh);
   if (m->vertices > 0)
     report_suspension(si, m);
   sheet_row(si, "simulated time", "", m->time_step * (double)scene->steps, "t0", "");

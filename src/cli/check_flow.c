@@ -51,11 +51,11 @@ void check_drive(const struct si_scale *si, const struct model *m)
 }
 
 /* The paper's Table II with R = L and R = l_p. */
-void check_kind_in_shear(const struct si_scale *si, const struct model *m, const struct fiber_kind *k)
+void check_kind_in_shear(const struct si_scale *si, const struct model *m, const struct theory_shear *shear,
+                         const struct fiber_kind *k)
 {
-  const double rate = theory_largest_shear_rate(m), length = theory_length(k),
-               p = theory_aspect_ratio(length, THEORY_RADIUS);
-  const double sound = theory_sound_speed(model_is_isothermal(m), m->dimensions);
+  const double length = theory_length(k), p = theory_aspect_ratio(length, THEORY_RADIUS);
+  const double within = shear->bead > 0.0 ? shear->radius : length, rate = theory_shear_speed(shear, within) / within;
   const struct {
     const char *mach, *reynolds, *note;
     double size;
@@ -66,10 +66,10 @@ void check_kind_in_shear(const struct si_scale *si, const struct model *m, const
   sheet_row(si, "  largest shear rate", "", rate, "1/t0", "");
   for (size_t i = 0; i < sizeof row / sizeof *row; i++)
     if (row[i].size > 0.0) {
-      const double speed = theory_shear_speed(m, row[i].size);
-      sheet_row(si, "  Mach number of the shear", row[i].mach, theory_mach(speed, sound), "", row[i].note);
+      const double speed = theory_shear_speed(shear, row[i].size);
+      sheet_row(si, "  Mach number of the shear", row[i].mach, theory_mach(speed, shear->sound), "", row[i].note);
       sheet_row(si, "  Reynolds number of the shear", row[i].reynolds,
-                theory_reynolds(speed, row[i].size, theory_loaded_kinematic(m)), "", row[i].note);
+                theory_reynolds(speed, row[i].size, shear->kinematic), "", row[i].note);
     }
   if (k->bending > 0.0 && p > 2.0)
     sheet_row(si, "  Peclet number of the shear, stiff", "Pe",

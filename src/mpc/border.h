@@ -20,6 +20,7 @@ struct virtual_members {
   struct vec3 velocity; /* their mean velocity, a0/t0 */
   struct vec3 flow;     /* velocity about which each is drawn, a0/t0 */
   double low, high;     /* they lie where the y coordinate within the cell is between these, a0 */
+  uint32_t aside;       /* added to the cell's number where their random numbers are addressed: a wall's have 0 */
 };
 
 struct border {

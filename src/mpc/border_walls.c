@@ -138,8 +138,11 @@ static bool fill_cuts(const struct state *state, const struct model *model, stru
   if (numbers != none)
     virtual_normals(model, step, cuts->place, cuts->count, normal);
   for (uint32_t k = 0; k < cuts->count; k++) {
-    filled[k] =
-        (struct virtual_members){n[k], n[k] > 0.0 ? virtual_velocity(normal[k], n[k], flow) : flow, flow, bottom, top};
+    filled[k] = (struct virtual_members){.n = n[k],
+                                         .velocity = n[k] > 0.0 ? virtual_velocity(normal[k], n[k], flow) : flow,
+                                         .flow = flow,
+                                         .low = bottom,
+                                         .high = top};
     if (n[k] > 0.0 && !add(state, model, c, step, cuts->place[k], &filled[k], fault))
       return false;
   }

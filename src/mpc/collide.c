@@ -86,32 +86,14 @@ bool collide_sum(const struct state *state, const struct model *model, struct mp
   return overflow_of_momenta(state, model, mpc, span, step, fault);
 }
 
-/* The obstacle has its turn: between walls, which fill cells too, its random numbers are others. */
-static bool fill_obstacle(const struct state *state, const struct model *model, struct mpc *mpc, uint64_t step,
-                          struct fault *fault)
-{
-  const struct obstacle *o = mpc->obstacle;
-  mpc->beside = mpc->filled ? mpc->cells : 0;
-  const bool ok = !o || o->fill(o->room, state, model, mpc, step, fault);
-  mpc->beside = 0;
-  return ok;
-}
-
-static void settle_obstacle(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step)
-{
-  const struct obstacle *o = mpc->obstacle;
-  mpc->beside = mpc->filled ? mpc->cells : 0;
-  if (o)
-    o->account(o->room, state, model, mpc, step);
-  mpc->beside = 0;
-}
-
 bool collide_fill(const struct state *state, const struct model *model, struct mpc *mpc, uint64_t step, uint64_t span,
                   struct fault *fault)
 {
   const struct border *border = mpc->border;
+  const struct obstacle *o = mpc->obstacle;
   if (!overflow_of_momenta(state, model, mpc, span, step, fault) ||
-      (border->fill && !border->fill(state, model, mpc, step, fault)) || !fill_obstacle(state, model, mpc, step, fault))
+      (border->fill && !border->fill(state, model, mpc, step, fault)) ||
+      (o && !o->fill(o->room, state, model, mpc, step, fault)))
     return false;
   if (mpc->stress)
     stress_before(state, model, mpc);
@@ -172,7 +154,8 @@ void collide_leave(struct state *state, const struct model *model, struct mpc *m
     stress_after(state, model, mpc);
   if (border->account)
     border->account(state, model, mpc, step);
-  settle_obstacle(state, model, mpc, step);
+  if (mpc->obstacle)
+    mpc->obstacle->account(mpc->obstacle->room, state, model, mpc, step);
   if (border->leave)
     border->leave(state, model, mpc);
   if (!model->solvent.hydrodynamics)

@@ -36,13 +36,11 @@ struct mpc {
   const struct fluid *fluid;
   const struct border *border;
   const struct obstacle *obstacle; /* NULL: none */
-  uint32_t beside; /* added to a cell's number where random numbers of its virtual particles are addressed: not 0 while
-                    * an obstacle has its turn in a cell that a wall may cut, too */
-  struct kernel kernel;   /* the plain one, unless work_alloc has a faster one for this scene */
-  struct point shift;     /* of the grid (grid_shift), lattice units */
-  uint32_t cells;         /* all cells of the box; with a random solvent, those that hold a vertex */
-  struct cell_sum *sum;   /* [cells] */
-  struct cell_turn *turn; /* [cells] */
+  struct kernel kernel;            /* the plain one, unless work_alloc has a faster one for this scene */
+  struct point shift;              /* of the grid (grid_shift), lattice units */
+  uint32_t cells;                  /* all cells of the box; with a random solvent, those that hold a vertex */
+  struct cell_sum *sum;            /* [cells] */
+  struct cell_turn *turn;          /* [cells] */
   int64_t *relative;      /* [cells] twice the kinetic energy relative to v_cm, 2^-32 kT; thermostat only, else NULL.
                            * Not filled where one sum of all cells will do (kernel/collide.c) */
   uint32_t *solvent_cell; /* [particles] the same for particles, in memory order */

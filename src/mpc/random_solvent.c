@@ -33,8 +33,8 @@ static void draw(const struct virtual_law *law, const struct model *model, uint6
   virtual_normals(model, step, cell, cells, normal);
   for (uint32_t k = 0; k < cells; k++) {
     const struct vec3 flow = flow_of(model, step, cell[k]);
-    members[k] =
-        (struct virtual_members){n[k], n[k] > 0 ? virtual_velocity(normal[k], n[k], flow) : flow, flow, 0.0, 1.0};
+    members[k] = (struct virtual_members){
+        .n = n[k], .velocity = n[k] > 0 ? virtual_velocity(normal[k], n[k], flow) : flow, .flow = flow, .high = 1.0};
   }
 }
 

@@ -1,6 +1,6 @@
 /*
  * Virtual particles of mass 1 that stand in a cell for solvent that is not simulated: the phantoms of a random solvent,
- * the solvent beyond a wall, and the matter of a bead (bead/matter.h). Phantoms and walls use the same addresses of
+ * the solvent beyond a wall, and the matter of a bead (bead/matter.c). Phantoms and walls use the same addresses of
  * random numbers; no scene has both.
  */
 #ifndef UNCROSS_MPC_VIRTUAL_H

@@ -5,165 +5,9 @@
 #include <string.h>
 
 #include "observe/background.h"
-#include "observe/observer.h"
-#include "observe/tally.h"
+#include "observe/dynamics_lags.h"
 
-/* --- all lags ---------------------------------------------------------------------------------------------------- */
-
-/* Quantities of the tally, each a pair (x, y). */
-enum {
-  VERTICES_CENTER,
-  TUBE_CONTOUR,
-  TURNED_SQUARE, /* their ratio makes the end-to-end correlation */
-  MIDDLE_COSINE,
-  THIRD_AXIS,
-  QUANTITIES
-};
-
-/* Quantities of the tally of drifts, one sample per interval; and of the tally of rises, one per interval whose middle
- * was sampled too. `about`: about the mean displacement of the kind. */
-enum { DRIFT_XY, DRIFT_Z_ABOUT, DRIFT_QUANTITIES };
-enum { RISE_AND_ABOUT, RISE_QUANTITIES };
-
-enum {
-  LEVELS = 24,               /* of blocks at lag 1; longer lags need fewer to reach as far in time */
-  DEFAULT_SAMPLES = 1 << 20, /* longest lag where the plan knows none */
-  MAX_LAGS = 80
-};
-
-/* Memory of a lag: for each kind a tally, and two that are of drift and of rises; and 1 + the origin's step (0: none),
- * then the origin's positions. */
-struct lag {
-  uint64_t samples;
-  double *real, *later;
-  int64_t *mark;
-  struct point *origin;
-};
-
-static uint32_t count_lags(const struct observer *observer)
-{
-  const uint64_t longest = observer->longest_lag ? observer->longest_lag / observer->every : DEFAULT_SAMPLES;
-  uint32_t n = 0;
-  while (n < MAX_LAGS && dynamics_lag(n) <= longest)
-    n++;
-  return n;
-}
-
-static struct tally_shape shape_of(const struct fiber_kind *kind, uint32_t lag, uint32_t quantities)
-{
-  const uint32_t doublings = (lag + 1) / 2;
-  return (struct tally_shape){kind->count, quantities, doublings < LEVELS ? LEVELS - doublings : 1};
-}
-
-static struct tally_shape tally_of(const struct fiber_kind *kind, uint32_t lag)
-{
-  return shape_of(kind, lag, QUANTITIES);
-}
-
-/* The three tallies of a kind, in the memory of a lag. */
-struct tallies {
-  struct tally_shape shape, drift_shape, rise_shape;
-  double *memory, *drift, *rise;
-};
-
-static struct tallies first_tallies(const struct lag *lag, const struct fiber_kind *kind, uint32_t number)
-{
-  struct tallies t = {.shape = tally_of(kind, number),
-                      .drift_shape = shape_of(kind, number, DRIFT_QUANTITIES),
-                      .rise_shape = shape_of(kind, number, RISE_QUANTITIES),
-                      .memory = lag->real,
-                      .drift = lag->later};
-  t.rise = t.drift + tally_size(&t.drift_shape);
-  return t;
-}
-
-/* Those of the next kind. */
-static void next_tallies(struct tallies *t, const struct fiber_kind *kind, uint32_t number)
-{
-  const struct lag next = {.real = t->memory + tally_size(&t->shape), .later = t->rise + tally_size(&t->rise_shape)};
-  *t = first_tallies(&next, kind, number);
-}
-
-static size_t lag_reals(const struct model *model, uint32_t lag)
-{
-  size_t reals = 0;
-  for (uint32_t k = 0; k < model->kinds; k++) {
-    const struct tally_shape shape = tally_of(&model->kind[k], lag);
-    reals += tally_size(&shape);
-  }
-  return reals;
-}
-
-static size_t lag_later(const struct model *model, uint32_t lag)
-{
-  size_t reals = 0;
-  for (uint32_t k = 0; k < model->kinds; k++) {
-    const struct tally_shape drift = shape_of(&model->kind[k], lag, DRIFT_QUANTITIES);
-    const struct tally_shape rise = shape_of(&model->kind[k], lag, RISE_QUANTITIES);
-    reals += tally_size(&drift) + tally_size(&rise);
-  }
-  return reals;
-}
-
-static size_t lag_integers(const struct model *model)
-{
-  return 1 + (size_t)model->vertices * sizeof(struct point) / sizeof(int64_t);
-}
-
-static struct lag first_lag(const struct observer *observer)
-{
-  int64_t *mark = observer->integer + 1;
-  return (struct lag){dynamics_lag(0), observer->real, observer->later, mark, (struct point *)(mark + 1)};
-}
-
-static void next_lag(struct lag *lag, const struct model *model, uint32_t number)
-{
-  lag->samples = dynamics_lag(number + 1);
-  lag->real += lag_reals(model, number);
-  lag->later += lag_later(model, number);
-  lag->mark += lag_integers(model);
-  lag->origin = (struct point *)(lag->mark + 1);
-}
-
-/* Scratch: the sums of a sample, then the contour of a fiber, then displacements of fibers. */
-static size_t scratch_sums(const struct model *model)
-{
-  size_t most = 0;
-  for (uint32_t k = 0; k < model->kinds; k++) {
-    const struct tally_shape shape = tally_of(&model->kind[k], 0);
-    const size_t sums = tally_sums(&shape);
-    most = sums > most ? sums : most;
-  }
-  return most;
-}
-
-static uint32_t longest_fiber(const struct model *model)
-{
-  uint32_t longest = 0;
-  for (uint32_t k = 0; k < model->kinds; k++)
-    longest = model->kind[k].vertices > longest ? model->kind[k].vertices : longest;
-  return longest;
-}
-
-static uint32_t most_fibers(const struct model *model)
-{
-  uint32_t most = 0;
-  for (uint32_t k = 0; k < model->kinds; k++)
-    most = model->kind[k].count > most ? model->kind[k].count : most;
-  return most;
-}
-
-static void size_dynamics(const struct observer *observer, const struct model *model, struct observer_size *size)
-{
-  const uint32_t lags = count_lags(observer);
-  for (uint32_t n = 0; n < lags; n++) {
-    size->reals += lag_reals(model, n);
-    size->later += lag_later(model, n);
-  }
-  size->integers += lags * lag_integers(model);
-  size->scratch = scratch_sums(model) +
-                  (longest_fiber(model) + 2 * (size_t)most_fibers(model)) * (sizeof(struct vec3) / sizeof(double));
-}
+/* --- intervals --------------------------------------------------------------------------------------------------- */
 
 /* What is compared when a lag has passed. middle: positions at half the lag, NULL: not sampled. The displacements of
  * the frame since the origin, and up to the middle. */
@@ -238,14 +82,15 @@ static void compare(const struct observer *observer, const struct model *model, 
                     const struct interval *interval)
 {
   double *sums = observer->scratch;
-  struct vec3 *contour = (struct vec3 *)(sums + scratch_sums(model)), *whole = contour + longest_fiber(model);
-  const struct displacements d = {whole, whole + most_fibers(model)};
-  struct tallies t = first_tallies(lag, &model->kind[0], number);
+  struct vec3 *contour = (struct vec3 *)(sums + dynamics_scratch_sums(model)),
+              *whole = contour + dynamics_longest_fiber(model);
+  const struct displacements d = {whole, whole + dynamics_most_fibers(model)};
+  struct tallies t = dynamics_first_tallies(lag, &model->kind[0], number);
   size_t at = 0;
   for (uint32_t k = 0; k < model->kinds; k++) {
     const struct fiber_kind *kind = &model->kind[k];
     if (k > 0)
-      next_tallies(&t, kind, number);
+      dynamics_next_tallies(&t, kind, number);
     memset(sums, 0, tally_sums(&t.shape) * sizeof *sums);
     for (uint32_t fiber = 0; fiber < kind->count; fiber++, at += kind->vertices) {
       const struct point *origin = interval->origin + at;
@@ -296,9 +141,9 @@ static void add_dynamics(struct observer *observer, struct view *view)
 {
   const struct model *model = view->model;
   const uint64_t step = view->state->step;
-  const uint32_t lags = count_lags(observer);
-  struct lag all[MAX_LAGS], lag = first_lag(observer);
-  for (uint32_t n = 0; n < lags; next_lag(&lag, model, n++))
+  const uint32_t lags = dynamics_count_lags(observer);
+  struct lag all[MAX_LAGS], lag = dynamics_first_lag(observer);
+  for (uint32_t n = 0; n < lags; dynamics_next_lag(&lag, model, n++))
     all[n] = lag;
   for (uint32_t n = lags; n-- > 0;) {
     lag = all[n];
@@ -417,12 +262,12 @@ static bool summarise_kind(const struct observer *observer, const struct model *
   char name[OBSERVER_NAME_SIZE];
   snprintf(name, sizeof name, "dynamics-%s", model->kind[kind].name);
   struct observe_table table = {name, columns, COLUMNS, 0, value};
-  const uint32_t lags = count_lags(observer);
-  struct lag lag = first_lag(observer);
-  for (uint32_t n = 0; n < lags; next_lag(&lag, model, n++)) {
-    struct tallies t = first_tallies(&lag, &model->kind[0], n);
+  const uint32_t lags = dynamics_count_lags(observer);
+  struct lag lag = dynamics_first_lag(observer);
+  for (uint32_t n = 0; n < lags; dynamics_next_lag(&lag, model, n++)) {
+    struct tallies t = dynamics_first_tallies(&lag, &model->kind[0], n);
     for (uint32_t k = 1; k <= kind; k++)
-      next_tallies(&t, &model->kind[k], n);
+      dynamics_next_tallies(&t, &model->kind[k], n);
     if (tally_count(&t.shape, t.memory) == 0.0)
       continue;
     fill_row(&model->kind[kind], &t, &value[table.rows * COLUMNS],
@@ -442,7 +287,7 @@ static bool summarise_dynamics(const struct observer *observer, const struct mod
 }
 
 const struct observer_type dynamics_observer = {
-    .size = size_dynamics,
+    .size = dynamics_size,
     .add = add_dynamics,
     .summarise = summarise_dynamics,
     .each_kind = true,

@@ -37,13 +37,23 @@ static bool tubes_are_legal(const void *row)
   return are_near((struct point){0, 0, 0}, &((const struct oracle_tubes *)row)->p, 3);
 }
 
+static bool address_is_legal(const void *row)
+{
+  const struct oracle_address *a = row;
+  return a->draw < UINT32_MAX && a->entity < UINT32_MAX;
+}
+
 static bool permutation_is_legal(const void *row)
 {
-  return ((const struct oracle_permutation *)row)->address.entity <= ORACLE_PERMUTED;
+  const struct oracle_permutation *p = row;
+  return address_is_legal(&p->address) && p->address.entity <= ORACLE_PERMUTED;
 }
 
 static const struct oracle_entity
-    addresses = {.word = "address", .count = count_rows, .size = sizeof(struct oracle_address)},
+    addresses = {.word = "address",
+                 .count = count_rows,
+                 .size = sizeof(struct oracle_address),
+                 .legal = address_is_legal},
     permuted = {.word = "entry", .count = count_permuted},
     permutations = {.word = "permutation",
                     .count = count_rows,
@@ -56,9 +66,15 @@ static const struct oracle_entity
     impulses = {.word = "impulse", .count = count_rows, .size = sizeof(struct oracle_impulse)},
     events = {.word = "event", .count = count_rows};
 
+/* What does not fit becomes the largest number, which is no address (address_is_legal). */
+static uint32_t word_of(int64_t n)
+{
+  return n >= 0 && n < UINT32_MAX ? (uint32_t)n : UINT32_MAX;
+}
+
 static void take_address(struct oracle_address *a, const int64_t n[4])
 {
-  *a = (struct oracle_address){(enum random_purpose)n[0], (uint32_t)n[1], (uint32_t)n[3], (uint64_t)n[2]};
+  *a = (struct oracle_address){(enum random_purpose)n[0], word_of(n[1]), word_of(n[3]), (uint64_t)n[2]};
 }
 
 /* --- random numbers ---------------------------------------------------------------------------------------------- */

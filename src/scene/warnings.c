@@ -301,8 +301,9 @@ int scene_warnings(const struct scene *scene, void (*tell)(void *context, const 
   warn_reach(&t, scene);
   if (m->solvent.profile != PROFILE_UNIFORM && model_collides(m))
     warn_profile(&t, m);
+  const struct theory_shear shear = theory_shear_of(m);
   for (uint32_t k = 0; k < m->kinds; k++)
-    warn_fibers(&t, scene, &m->kind[k]);
+    warn_fibers(&t, scene, &shear, &m->kind[k]);
   char heavy[448];
   if (load_words(m, "mass", model_in_cells(m) ? "solvent.per_cell" : "medium.density", heavy, sizeof heavy))
     warn(&t, "%s", heavy);

@@ -2,8 +2,6 @@
 #include "scene/scene.h"
 #include "scene/warnings.h"
 #include "system/fiber_kind.h"
-#include "theory/flow.h"
-#include "theory/load.h"
 #include "theory/medium.h"
 #include "theory/theory.h"
 
@@ -103,14 +101,12 @@ static void warn_overdamped(struct teller *t, const struct model *m, const struc
 #define MOST_INERTIA 0.1 /* Padding 2009, Table II */
 
 /* Sheared fibers that have inertia, or compress the solvent. */
-static void warn_inertia(struct teller *t, const struct model *m, const struct fiber_kind *k)
+static void warn_inertia(struct teller *t, const struct theory_shear *shear, const struct fiber_kind *k)
 {
-  const double length = theory_length(k), speed = theory_shear_speed(m, length);
+  const double length = theory_length(k), speed = theory_shear_speed(shear, length);
   if (!(speed > 0.0))
     return;
-  const double nu = theory_loaded_kinematic(m);
-  const double mach = theory_mach(speed, theory_sound_speed(model_is_isothermal(m), m->dimensions)),
-               reynolds = theory_reynolds(speed, length, nu);
+  const double mach = theory_mach(speed, shear->sound), reynolds = theory_reynolds(speed, length, shear->kinematic);
   if (mach > MOST_INERTIA || reynolds > MOST_INERTIA)
     warn(t,
          "fibers '%s': over their length the shear has a Mach number of %.3g and a Reynolds number of %.3g; above %g "
@@ -118,7 +114,8 @@ static void warn_inertia(struct teller *t, const struct model *m, const struct f
          k->name, mach, reynolds, MOST_INERTIA, fmax(mach, reynolds) / MOST_INERTIA);
 }
 
-void warn_fibers(struct teller *t, const struct scene *scene, const struct fiber_kind *k)
+void warn_fibers(struct teller *t, const struct scene *scene, const struct theory_shear *shear,
+                 const struct fiber_kind *k)
 {
   const struct model *m = &scene->model;
   const double gamma = m->solvent.per_cell;
@@ -146,6 +143,5 @@ void warn_fibers(struct teller *t, const struct scene *scene, const struct fiber
   if (!m->medium.inextensible)
     warn_long_bonds(t, scene, k);
   warn_images(t, m, k);
-  if (model_has_solvent(m))
-    warn_inertia(t, m, k);
+  warn_inertia(t, shear, k);
 }

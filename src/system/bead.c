@@ -99,9 +99,19 @@ bool bead_finish(struct model *m, struct model_error *error)
   return refusals_check(AT_TRAP, m, NULL, error) && check_pace(m, error);
 }
 
+/* Of the center from the nearer wall, lattice units. */
+static int64_t from_wall(const struct model *model, const struct bead *bead)
+{
+  const int64_t below = bead->position.y, above = model->box.edge[1] - below;
+  return below < above ? below : above;
+}
+
 bool bead_sound(const struct state *state, const struct model *model, struct fault *fault)
 {
   const struct solvent *s = &state->solvent;
+  if (state->beads > 0 && model_has_walls(model) && from_wall(model, state->bead) + 1 < bead_radius(model))
+    return fault_record(fault, FAULT_BEAD_WALL, state->step, 0, (double)from_wall(model, state->bead) * LATTICE_UNIT,
+                        model->bead.radius);
   for (uint32_t i = 0; state->beads > 0 && i < s->n; i++) {
     const struct point x = {s->x[i], s->y[i], s->z[i]}, center = state->bead->position;
     if (!bead_is_outside(model, center, x))

@@ -111,16 +111,20 @@ static double bead_speed(const struct model *model)
   return vec3_norm(d->force) / theory_model_bead_friction(model) + vec3_norm(d->velocity) + swing;
 }
 
-double theory_shear_speed(const struct model *model, double distance)
+struct theory_shear theory_shear_of(const struct model *model)
 {
   const double radius = model->bead.radius;
   if (!model_has_solvent(model))
-    return 0.0;
-  return rate_of_flow(model) * distance + (radius > 0.0 ? bead_speed(model) * fmin(distance / radius, 1.0) : 0.0);
+    return (struct theory_shear){.radius = radius};
+  struct theory_shear s = {rate_of_flow(model), radius > 0.0 ? bead_speed(model) : 0.0, radius, 0.0, 0.0};
+  if (s.rate + s.bead > 0.0) {
+    s.sound = theory_sound_speed(model_is_isothermal(model), model->dimensions);
+    s.kinematic = theory_loaded_kinematic(model);
+  }
+  return s;
 }
 
-double theory_largest_shear_rate(const struct model *model)
+double theory_shear_speed(const struct theory_shear *s, double distance)
 {
-  const double within = model->bead.radius > 0.0 ? model->bead.radius : 1.0;
-  return theory_shear_speed(model, within) / within;
+  return s->rate * distance + (s->bead > 0.0 ? s->bead * fmin(distance / s->radius, 1.0) : 0.0);
 }

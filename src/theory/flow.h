@@ -60,14 +60,19 @@ double theory_inertia_number(double frequency, double mass_density, double heigh
 /* Root mean square of the shear rate of a sheared box over a period, 1/t0. */
 double theory_mean_shear_rate(const struct model *model);
 
-/* Largest rate at which the steady flow of the solvent is sheared, 1/t0; no slip. Of a sheared box and of sliding walls
- * the amplitude; with a force between walls rho g L/(2 eta) in addition, at the walls; rho g/(eta k) for a sine,
- * rho g L/(4 eta) for a force that changes sign; V/R beside a driven bead. 0 where nothing flows. */
-double theory_largest_shear_rate(const struct model *model);
+/* How the steady flow of the solvent shears what stands in it; no slip. */
+struct theory_shear {
+  double rate;         /* 1/t0, the largest: of a sheared box and of sliding walls the amplitude; with a force between
+                        * walls rho g L/(2 eta) in addition, at the walls; rho g/(eta k) for a sine, rho g L/(4 eta)
+                        * for a force that changes sign */
+  double bead, radius; /* V of a driven bead, a0/t0, and its R, a0 */
+  double sound, kinematic; /* c_s, a0/t0, and nu, a0^2/t0, of the loaded fluid; 0 where nothing shears */
+};
+struct theory_shear theory_shear_of(const struct model *model);
 
-/* By how much the solvent's velocity may differ over a distance, a0/t0: the rate times the distance, but beside a bead
- * no more than its own V. */
-double theory_shear_speed(const struct model *model, double distance);
+/* By how much the solvent's velocity may differ over a distance, a0/t0: the rate times the distance, and beside a bead
+ * at most its V in addition. */
+double theory_shear_speed(const struct theory_shear *shear, double distance);
 
 /* dT/dt of an insulated flow, kT/t0: 2 eta rate^2/(d rho), d the number of dimensions. */
 double theory_flow_heating(double viscosity, double rate, double mass_density, uint32_t dimensions);

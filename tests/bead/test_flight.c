@@ -4,6 +4,7 @@
  * Times of hits: exact rationals (GMP). Flights: a plain simulation in long doubles of all particles and the bead,
  * which looks for the next hit of all and flies there. It shares no cells, no ticks and no lists with the program.
  */
+#include "ball.h"
 #include "bead/flight.h"
 #include "exact.h"
 #include "fluid/fluid.h"
@@ -101,22 +102,6 @@ static void hits_are_at_the_right_tick(void **unused)
 
 /* --- the plain simulation ---------------------------------------------------------------------------------------- */
 
-struct ball {
-  long double x[3], v[3];
-};
-
-static long double next_time(const struct ball *p, const struct ball *b, long double radius)
-{
-  long double a = 0, along = 0, c = -radius * radius;
-  for (int k = 0; k < 3; k++) {
-    const long double x = p->x[k] - b->x[k], w = p->v[k] - b->v[k];
-    a += w * w, along += x * w, c += x * x;
-  }
-  if (along >= 0 || along * along < a * c)
-    return INFINITY;
-  return c <= 0 ? 0 : c / (-along + sqrtl(along * along - a * c));
-}
-
 static void move(struct ball *b, long double t)
 {
   for (int k = 0; k < 3; k++)
@@ -132,7 +117,7 @@ static int plain_flight(struct ball *p, uint32_t n, struct ball *bead, long doub
     uint32_t who = n;
     long double first = left;
     for (uint32_t i = 0; i < n; i++) {
-      const long double t = next_time(&p[i], bead, radius);
+      const long double t = time_to_bead(&p[i], bead, radius);
       if (t < first)
         first = t, who = i;
     }

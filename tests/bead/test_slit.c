@@ -2,6 +2,7 @@
  * A bead between walls: flights against a plain simulation in long doubles, which has no ticks and no lists; the
  * balance of momentum in whole steps; bits.
  */
+#include "ball.h"
 #include "bead/bead.h"
 #include "exact.h"
 #include "fluid/fluid.h"
@@ -21,22 +22,6 @@ static struct model slit_model(struct dice *d, enum rule rule, double height)
 }
 
 /* --- flights ----------------------------------------------------------------------------------------------------- */
-
-struct ball {
-  long double x[3], v[3];
-};
-
-static long double time_to_bead(const struct ball *p, const struct ball *b, long double radius)
-{
-  long double a = 0, along = 0, c = -radius * radius;
-  for (int k = 0; k < 3; k++) {
-    const long double x = p->x[k] - b->x[k], w = p->v[k] - b->v[k];
-    a += w * w, along += x * w, c += x * x;
-  }
-  if (along >= 0 || along * along < a * c)
-    return INFINITY;
-  return c <= 0 ? 0 : c / (-along + sqrtl(along * along - a * c));
-}
 
 /* within: of the center from walls at `low` and `high`. */
 static long double time_to_wall(const struct ball *p, long double low, long double high, long double within)

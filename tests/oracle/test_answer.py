@@ -58,15 +58,19 @@ class Answers(unittest.TestCase):
         inputs.unlink()
 
     def test_what_cannot_be_asked_is_refused(self):
-        def far(pack):
-            data = pack["contact_search.1/in.p"]
-            values = data[:]
-            values[7, 1] = 2**60
-            attributes = dict(data.attrs)
-            del pack["contact_search.1/in.p"]
-            pack["contact_search.1"].create_dataset("in.p", data=values).attrs["components"] = attributes["components"]
+        def with_value(table, row, column, value):
+            def change(pack):
+                values, attributes = pack[table][:], dict(pack[table].attrs)
+                values[row, column] = value
+                del pack[table]
+                pack.create_dataset(table, data=values).attrs["components"] = attributes["components"]
+            return change
 
-        self.refused("contacts", "search 7", far)
+        self.refused("contacts", "search 7", with_value("contact_search.1/in.p", 7, 1, 2**60))
+        for value in 2**32 + 5, -1:  # neither is taken for what its low 32 bits are
+            self.refused("dense", "address 3", with_value("random.2/in.address", 3, 3, value))
+            self.refused("edges", "permutation 0", with_value("permutation.1/in.address", 0, 3, value))
+            self.refused("contacts", "search 2", with_value("contact_search.1/in.from", 2, 0, value))
         self.refused("edges", "in.flip", lambda pack: pack["crossing.1"].pop("in.flip"))
         self.refused("edges", "seed", lambda pack: pack.pop("model.0"))
 

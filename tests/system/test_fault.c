@@ -21,6 +21,7 @@ static const struct {
     {{FAULT_BOND_TOO_LONG, UINT64_MAX, 41, 4.5, 4.0}, {"step 18446744073709551615:", "bond 41 ", "4.5 a0", "4 is"}},
     {{FAULT_VERTEX_WALL, 2, 8, -0.001, 8.0}, {"step 2:", "vertex 8 ", "y = -0.001 a0;", "0 to 8 is allowed"}},
     {{FAULT_SOLVENT_PLACE, 2, 9, -0.5, 8.0}, {"solvent particle 9 ", "-0.5 a0;", "0 to 8 is allowed"}},
+    {{FAULT_BEAD_WALL, 2, 0, 1.25, 1.5}, {"step 2:", "bead 0 ", "1.25 a0;", "at least 1.5 is allowed"}},
     {{FAULT_IN_BEAD, 2, 10, 1.25, 1.5}, {"solvent particle 10 ", "1.25 a0;", "at least 1.5 is allowed"}},
     {{FAULT_NO_MEMORY, 3, 0, 0.0, 0.0}, {"step 3:", "memory is short"}},
 };

@@ -85,7 +85,7 @@ class Verdicts(unittest.TestCase):
 
     def test_what_lacks_its_power_does_not_pass(self):
         for tolerance, measured, word in ((0.2, 1.1, "pass"), (0.3, 1.1, "undecided"), (0.3, 1.4, "fail")):
-            self.assertEqual(cases.Verdict("a.b", "", 1.0, "", tolerance, measured=measured, power=0.5).verdict, word)
+            self.assertEqual(cases.Verdict("a.b", "", 1.0, "", tolerance, measured=measured, must_see=0.5).verdict, word)
 
     def test_z(self):
         self.assertAlmostEqual(self.verdict(2.0).z, 2.0, 14)
@@ -111,7 +111,7 @@ class Verdicts(unittest.TestCase):
     def test_power(self):
         """By drawing: a value that is off by the power turns the verdict red 95 times in 100."""
         draw, error = random.Random(5), 0.01
-        power = cases.Verdict("a.b", "", 1.0, "", stats.tolerance(error, systematic=0.02), measured=1.0, error=error).red_at
+        power = cases.Verdict("a.b", "", 1.0, "", stats.tolerance(error, systematic=0.02), measured=1.0, error=error).power
         red = sum(abs(draw.gauss(power, error)) > stats.tolerance(error, systematic=0.02) for _ in range(10000))
         self.assertAlmostEqual(red / 10000, 0.95, delta=0.01)
 
@@ -171,7 +171,7 @@ class MadeUp(unittest.TestCase):
             self.assertEqual(len(suite.findall("testcase/skipped")), int(skipped))
 
     def test_a_time_may_be_undecided_but_not_absent(self):
-        timed = CASE.replace("measured=x, error=0.25", "measured=x, error=0.25, power=0.1, timed=True")
+        timed = CASE.replace("measured=x, error=0.25", "measured=x, error=0.25, must_see=0.1, timed=True")
         (self.folder / "cases/made/case.py").write_text(timed)
         for x, code, failures, skipped in ((1.0, 0, "0", "1"), ("nan", 1, "1", "0")):
             self.assertEqual((self.report(x)[0], self.report(x)[1]["claims"][0]["verdict"]), (code, "undecided"))

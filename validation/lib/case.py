@@ -25,7 +25,7 @@ class Verdict:
     `rival`, where given, is another value that the measured number must be told from. The verdict stays "undecided" while
     the measurement is too rough: while `detects` is larger than the expected number, or the rival agrees, too.
 
-    `power`, where given, is the wrong effect that the verdict is there to see. While `detects` is larger, nothing that agrees
+    `must_see`, where given, is the wrong effect that the verdict is there to see. While `detects` is larger, nothing that agrees
     is a pass: it stays "undecided".
 
     `second` is (value, error) of an independent run that was made because the first one left a doubt.
@@ -44,7 +44,7 @@ class Verdict:
     kind: str = "gate"
     reason: str = ""
     rival: float = None
-    power: float = None
+    must_see: float = None
     timed: bool = False
     second: tuple = None
 
@@ -69,7 +69,7 @@ class Verdict:
     @property
     def blind(self):
         """Is the measurement too rough: would an effect as large as the expected number be missed, or does the rival agree, too?"""
-        if self.power is not None and max(self.seen, self.tolerance) > self.power:
+        if self.must_see is not None and max(self.seen, self.tolerance) > self.must_see:
             return True
         if self.rival is not None and abs(self.measured - self.rival) <= self.tolerance:
             return True
@@ -81,9 +81,14 @@ class Verdict:
         return None if self.verdict == "undecided" else self.off
 
     @property
+    def both(self):
+        """The standard error of the difference."""
+        return math.hypot(self.error or 0.0, self.expected_error or 0.0)
+
+    @property
     def off(self):
         """The same, whatever the verdict."""
-        error = math.hypot(self.error or 0.0, self.expected_error or 0.0)
+        error = self.both
         return (self.measured - self.expected) / error if math.isfinite(error) and error > 0.0 else None
 
     @property
@@ -105,7 +110,7 @@ class Verdict:
     @property
     def doubtful(self):
         """Is the difference, less the allowance, larger than chance makes it in one verdict, and not in all of a report?"""
-        return self.off is not None and self.excess(self.measured, self.error) > self.doubt
+        return self.measured is not None and self.off is not None and self.excess(self.measured, self.error) > self.doubt
 
     @property
     def covered(self):
@@ -113,11 +118,11 @@ class Verdict:
         return self.off is not None and self.allowed > 0.0 and abs(self.off) > self.doubt and not self.doubtful
 
     @property
-    def red_at(self):
-        """The power: the smallest change of the value that would turn the verdict red in 95 of 100 repetitions."""
+    def power(self):
+        """The smallest change of the value that would turn the verdict red in 95 of 100 repetitions."""
         if self.measured is None and not self.tolerance:
             return None
-        return self.tolerance + 1.645 * math.hypot(self.error or 0.0, self.expected_error or 0.0)
+        return self.tolerance + 1.645 * self.both
 
 
 @dataclasses.dataclass

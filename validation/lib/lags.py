@@ -188,4 +188,4 @@ def scatter_verdict(case, found):
 def images_verdict(case, pair):
     """Held only when it can tell half of the images' share: a sum over images that is off by a half is what a bug would make."""
     return dilute.held(f"{case}.images", "Slope of D against the images' share kT/(6πηL) (2.837297 - ...), all lengths in several "
-                       "boxes", 1.0, "images of a periodic box (Hasimoto 1959), η from shear waves", pair, 0.0, power=0.5)
+                       "boxes", 1.0, "images of a periodic box (Hasimoto 1959), η from shear waves", pair, 0.0, must_see=0.5)

@@ -31,13 +31,13 @@ def verdict_row(case, verdict):
             "kind": verdict.kind, "verdict": verdict.verdict, "reason": verdict.reason,
             **{key: rounded(getattr(verdict, key)) for key in
                ("expected", "expected_error", "measured", "error", "tolerance", "allowed", "z")},
-            "detects": rounded(verdict.seen), "power": rounded(verdict.red_at), **({"timed": True} if verdict.timed else {}),
-            **({"doubtful": True} if verdict.verdict == "undecided" and verdict.measured is not None and verdict.doubtful and not verdict.blind else {})}
+            "detects": rounded(verdict.seen), "power": rounded(verdict.power), **({"timed": True} if verdict.timed else {}),
+            **({"doubtful": True} if verdict.verdict == "undecided" and verdict.doubtful and not verdict.blind else {})}
 
 
 def failures(rows, tier):
     """Those rows of verdicts that make the report fail. In the quick tier all runs are made, so each number must be there, and be
-    decided, but for one that a busy machine makes uncertain, and one of 3 to 4.4 standard errors, which chance makes in every third report."""
+    decided, but for one that a busy machine makes uncertain, and one of 3 to 4.4 standard errors, which chance makes in one verdict of 370."""
     return [row for row in rows if row["verdict"] == "fail" or (
         tier == "quick" and row["verdict"] == "undecided" and not row.get("doubtful") and not (row.get("timed") and row["measured"] is not None))]
 

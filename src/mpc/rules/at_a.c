@@ -35,15 +35,16 @@ static uint64_t add_vertices(const struct state *state, const struct model *mode
 }
 
 /* The mean of the velocities that n virtual particles draw has the variance of one member of mass n. */
-static struct vec3 draw_virtual(const struct model *model, const struct mpc *c, uint64_t step, uint32_t place, double n)
+static struct vec3 draw_virtual(const struct model *model, const struct mpc *c, uint64_t step, uint32_t place,
+                                const struct virtual_members *members)
 {
-  return andersen_draw(model, RANDOM_ANDERSEN_PHANTOM, step, mpc_cell(c, place) + c->beside, n);
+  return andersen_draw(model, RANDOM_ANDERSEN_PHANTOM, step, mpc_cell(c, place) + members->aside, members->n);
 }
 
 static void add_virtual(const struct model *model, struct mpc *c, uint64_t step, uint32_t place,
                         const struct virtual_members *members)
 {
-  const struct vec3 xi = draw_virtual(model, c, step, place, members->n);
+  const struct vec3 xi = draw_virtual(model, c, step, place, members);
   cell_add(&c->sum[place], members->n, cell_load(members->n), vec3_sub(rule_virtual_velocity(model, members), xi));
 }
 
@@ -54,7 +55,7 @@ static struct vec3 virtual_gain(const struct model *model, const struct mpc *c, 
   const struct cell_turn *t = &c->turn[place];
   if (t->active == 0.0)
     return (struct vec3){0, 0, 0};
-  const struct vec3 v = vec3_add(t->center, draw_virtual(model, c, step, place, members->n));
+  const struct vec3 v = vec3_add(t->center, draw_virtual(model, c, step, place, members));
   return vec3_scale(members->n, vec3_sub(v, rule_virtual_velocity(model, members)));
 }
 

@@ -254,7 +254,7 @@ def moduli_verdicts(results):
         for k, name in enumerate(("G′", "G″")):
             verdict = Verdict(f"bead.moduli.n{count}.{'storage' if k == 0 else 'loss'}",
                               f"{name} of a free bead less that of a swinging one, over |G|, mean of three frequencies, {words}", 0.0,
-                              "generalized Stokes–Einstein relation", 0.1, power=0.6)
+                              "generalized Stokes–Einstein relation", 0.1, must_see=0.6)
             found = differences(active, passive, k)
             if len(found) == len(SWINGS):
                 filled(verdict, weighted(found), values=LONG)

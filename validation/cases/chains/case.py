@@ -373,7 +373,7 @@ def pulled_verdicts(results, points):
             found.append(dilute.held(
                 f"chains.pulled.F{force}", f"D of {n} vertices from the answer to a force of {force} kT/a0 over D from Brownian motion, "
                 f"{box}³ cells", 1.0, "fluctuation and dissipation, while the answer is linear", dilute.over(
-                    (answer.value, answer.error), (free_one.value, free_one.error)), HEAT, power=0.25))
+                    (answer.value, answer.error), (free_one.value, free_one.error)), HEAT, must_see=0.25))
     return found
 
 

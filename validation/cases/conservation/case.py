@@ -166,7 +166,7 @@ def heat_verdicts(results, tier):
         dt, heat, error = (column[heats(results, 1000, rule)[0] <= longest] for column in heats(results, 1000, rule))
         verdict = Verdict(f"conservation.heat.{rule}", f"exponent of heat per refused move against dt up to {longest:g}, `{rule}`",
                           2.0, f"an exchange between a drift and its kick: second order; {higher:g} for higher orders", higher,
-                          power=1.0 if tier == "campaign" else None)
+                          must_see=1.0 if tier == "campaign" else None)
         if len(dt) >= 3:
             fit = stats.power(dt, heat, error)
             sd.measured(verdict, (fit.value[1], fit.error[1]), higher, sd.PARTS)
@@ -202,7 +202,7 @@ def rate_verdicts(results, tier):
     table = [row for row in rows(results, "heat-c1000") if row["rule"] == "stay"]
     rate = Verdict("conservation.rate", "executed less twice negative collisions, over kinetic theory, densest, "
                                         "smallest dt", 1.0,
-                   "(π/8) c_b² ⟨l⟩² √(2kT/πM) 1.151 per volume; 8 % for bonds of one fiber being placed together", 0.2, power=POWER[tier])
+                   "(π/8) c_b² ⟨l⟩² √(2kT/πM) 1.151 per volume; 8 % for bonds of one fiber being placed together", 0.2, must_see=POWER[tier])
     ratio = Verdict("conservation.possible", "share of possible collisions that are not executed, densest, dt 0.01, "
                                              "the paper's rule",
                     0.0, "paper: “the ratio should be close to one”: within 1 %", 0.01, detects=0.01)
@@ -226,7 +226,7 @@ def density_verdicts(results, tier):
                                                            f"theory, c L³ = {density}",
                           SEQUENTIAL[0], "the paper's rule over the event-driven one at dt 0.01, same placements: bonds that part and "
                           "meet again within a step are missed; as dt → 0 they agree", 0.02, expected_error=SEQUENTIAL[1],
-                          power=POWER[tier])
+                          must_see=POWER[tier])
         seen = counts(results[name]) if name in results else None
         if seen:
             row = {"cells": 32, "fibers": density, "vertices": 64, "rate": seen[2], "rate_error": 0.0, "executed": 1.0,

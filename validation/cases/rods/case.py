@@ -302,7 +302,7 @@ def pulled_verdict(results, measured):
     pairs = [[(p.value, p.error) for p in points if (p.vertices, p.box) == TEST] for points in (forced(results), measured.points)]
     return dilute.held("rods.pulled", f"D of {TEST[0]} vertices from the answer to a force over D from Brownian motion, {TEST[1]}³ cells", 1.0,
                        "fluctuation and dissipation, while the answer is linear", dilute.over(pairs[0][0], pairs[1][0]) if all(pairs) else None,
-                       0.005, power=0.25)
+                       0.005, must_see=0.25)
 
 
 def campaign_verdicts(measured):

@@ -249,9 +249,9 @@ def order_verdicts(results, tier):
             continue
         row = rows[name]
         z = Verdict(f"thick.nematic.z.{phi:g}", f"Z of parallel rods that were let go, over that of McGrother et al., volume fraction {phi:g}", 1.0,
-                    f"Monte Carlo at constant pressure (1996), taken to be known to {100 * LITERATURE_Z:.0f} %", LITERATURE_Z, power=0.2)
+                    f"Monte Carlo at constant pressure (1996), taken to be known to {100 * LITERATURE_Z:.0f} %", LITERATURE_Z, must_see=0.2)
         s = Verdict(f"thick.nematic.s.{phi:g}", f"S of parallel rods that were let go, volume fraction {phi:g}", order,
-                    "McGrother et al. (1996); 0.06 for their volume fraction, their error and another number of rods", 0.06, power=0.4)
+                    "McGrother et al. (1996); 0.06 for their volume fraction, their error and another number of rods", 0.06, must_see=0.4)
         if row:
             fill(z, (row["Z"][0] * phi / pressure, row["Z"][1] * phi / pressure), LITERATURE_Z)
             fill(s, row["S"], 0.06)
@@ -263,7 +263,7 @@ def transition_verdicts(rows):
     """Where order is lost, from above; and whether rods that start without order find it."""
     known, _ = crossing([row[0] for row in LITERATURE], [row[2] for row in LITERATURE])
     place = Verdict("thick.nematic.transition", f"volume fraction at which S of parallel rods that were let go falls through {HALF_ORDER:g}", known,
-                    "McGrother et al. (1996), S between their states at 0.400 and 0.419, to half of that interval", 0.0095, power=0.05)
+                    "McGrother et al. (1996), S between their states at 0.400 and 0.419, to half of that interval", 0.0095, must_see=0.05)
     falling = sorted((row for name, row in rows.items() if row and name.startswith("aligned")), key=lambda row: row["phi"])
     phi, order = [row["phi"] for row in falling], [row["S"][0] for row in falling]
     where, k = crossing(phi, order)
@@ -273,7 +273,7 @@ def transition_verdicts(rows):
     starts = []
     for fraction, power in ((0.397, 0.4), (0.436, 0.4)):
         verdict = Verdict(f"thick.nematic.starts.{fraction:g}", f"S from rods without order less S from parallel rods, volume fraction {fraction:g}", 0.0,
-                          f"one equilibrium; {STARTS_KNOWN:g} for what is left of the start", STARTS_KNOWN, power=power)
+                          f"one equilibrium; {STARTS_KNOWN:g} for what is left of the start", STARTS_KNOWN, must_see=power)
         grown, aligned = rows[f"grown-{fraction:g}"], rows[f"aligned-{fraction:g}"]
         if grown and aligned and grown["settled"]:
             fill(verdict, (grown["S"][0] - aligned["S"][0], math.hypot(grown["S"][1], aligned["S"][1])), STARTS_KNOWN)
@@ -302,7 +302,7 @@ def long_chains(table):
 
 def swelling_verdicts(results, tier):
     table, least = sizes(results, "swelling"), LENGTHS[tier][len(LENGTHS[tier]) // 3]
-    ideal = Verdict("thick.swelling.ideal", "<R²> over that of an ideal chain, 32 bonds, the thinnest tubes", 1.0, "N<l²>, exact; 0.1 % more for the tubes", 0.001, power=0.2)
+    ideal = Verdict("thick.swelling.ideal", "<R²> over that of an ideal chain, 32 bonds, the thinnest tubes", 1.0, "N<l²>, exact; 0.1 % more for the tubes", 0.001, must_see=0.2)
     nu = Verdict("thick.swelling.nu", f"exponent of R_e, chains of {least} to {LENGTHS[tier][-1]} bonds, D = {SWOLLEN:g}", NU,
                  f"renormalization group; {NU_KNOWN[tier]:g} for short chains", NU_KNOWN[tier], rival=0.5)
     if table is not None:
@@ -320,7 +320,7 @@ def swelling_verdicts(results, tier):
             fill(verdict, long_chains(sizes(results, f"strength-{z:g}")), Z_KNOWN * swelling(z))
         found.append(verdict)
     flight = Verdict("thick.swelling.flight", f"<R²> of chains of {FLIGHT_BONDS} bonds with contacts in a bath, over that of pivots, D = {SWOLLEN:g}", 1.0,
-                     "contacts keep the equilibrium; chains that meet shrink by 0.5 % at most", 0.005, power=0.3)
+                     "contacts keep the equilibrium; chains that meet shrink by 0.5 % at most", 0.005, must_see=0.3)
     series = mean_square(results, "chains")
     if series is not None and table is not None:
         row = int(numpy.flatnonzero((table["diameter"] == SWOLLEN) & (table["bonds"] == FLIGHT_BONDS))[0])

@@ -273,7 +273,7 @@ def hindered_verdict(curves):
     """Of the quick tier: the paper's rule against the event-driven one, which shares no search and no exchange with it."""
     expected, error = HINDERED
     verdict = Verdict("tube.hindered", "d² uncrossable / crossing free at 102.4 t0, hydrodynamics on", expected,
-                      "the event-driven rule, other seeds; without a tube 1", 0.0, expected_error=error, power=0.5)
+                      "the event-driven rule, other seeds; without a tube 1", 0.0, expected_error=error, must_see=0.5)
     return sd.measured(verdict, ratio(curves["hi-entangled"], curves["hi-free"], "d2_contour", 102.4))
 
 
