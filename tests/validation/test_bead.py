@@ -51,6 +51,12 @@ class Bead(unittest.TestCase):
         force[0] = 6.0
         self.near(bead.active_friction(time, place, force, rest=50.0), 50.0 * 1.02)
 
+    def test_friction_of_a_trap_that_moves(self):
+        time = numpy.linspace(0.0, 400.0, 8001)
+        trap = numpy.outer([0.03, 0.0, -0.04], time)
+        noise = numpy.random.default_rng(3).normal(0.0, 0.5, (3, len(time)))
+        self.near(bead.drawn_friction(time, trap, 50.0 * numpy.array([[0.03], [0.0], [-0.04]]) + noise), 50.0)
+
     def test_friction_of_a_walk(self):
         self.near(bead.passive_friction(*walk(2)), FRICTION)
 

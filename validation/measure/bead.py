@@ -6,6 +6,7 @@ usage: bead.py BEAD.CSV REST RADIUS MASS [--from TIME] [--parts N] [--spring K] 
 REST: mass of all that is not the bead, over that of the bead. RADIUS: a0. MASS: m. Units kT = a0 = m = 1. Printed is a CSV table `what,value,error`.
 
   friction, active   mean force along its direction over the mean velocity, times 1 + 1/REST: of Hasimoto's formula
+  friction, drawn    mean force along the way of a trap that moves at a constant velocity, over its speed
   friction, passive  kT/D across the force, D from the slope of the mean square displacement between lags of 20 and 40 t0
   trap               k <x^2> (1 + 1/REST), 1 in equilibrium
   G' and G''         active: (F* + M omega^2 x*)/(6 pi R x*), F and x at the trap's frequency. Passive: kT/(pi R i omega m*) with
@@ -55,6 +56,13 @@ def active_friction(time, place, force, rest, parts=SHORT_PARTS):
     speed, error = parted(lambda t, x: direction @ (x[:, -1] - x[:, 0]) / (t[-1] - t[0]), time, place, parts=parts)
     friction = numpy.linalg.norm(force.mean(axis=1)) / speed * (1.0 + 1.0 / rest)
     return friction, friction * error / speed
+
+
+def drawn_friction(time, trap, force):
+    way = trap[:, -1] - trap[:, 0]
+    direction, speed = way / numpy.linalg.norm(way), numpy.linalg.norm(way) / (time[-1] - time[0])
+    value, error = parted(lambda f: direction @ f.mean(axis=1), force, parts=SHORT_PARTS)
+    return value / speed, error / speed
 
 
 def passive_friction(time, place, lag=40.0):
@@ -127,6 +135,8 @@ def main():
     still = [k for k in range(3) if not constant or not force[k].any()]  # components without a drift
     if args.spring == 0.0:
         rows.append(("passive friction", *passive_friction(time, place[still])))
+    elif not args.swings and numpy.ptp(vectors(columns, "trap"), axis=1).any():
+        rows.append(("drawn friction", *drawn_friction(time, vectors(columns, "trap"), force)))
     elif not args.swings:
         middle = vectors(columns, "trap")
         width, error = parted(lambda x: args.spring * (1.0 + 1.0 / args.rest) * numpy.mean(x ** 2), place - middle, parts=SHORT_PARTS)

@@ -2,6 +2,7 @@
 import math
 
 import numpy
+from scipy import optimize
 
 from lib import figures, stats
 from lib.case import Figure, Outcome, Verdict
@@ -32,6 +33,9 @@ PULLED, FORCES = 100, ((3.0, 80000), (6.0, 80000), (12.0, 60000), (24.0, 40000),
 DENSE = 200
 SWINGS, SWING_STEPS, FREE_STEPS = ((60, 45, 0.5), (20, 60, 0.5), (6, 100, 0.4)), 73200, {0: 400000, DENSE: 240000}
 OMEGAS = tuple(2 * math.pi / period for period in (120, 60, 35, 20, 11, 6, 3.5))
+# Between walls: (their distance, height of the trap), which moves along them; Faxen's series for that place. Boxes of SLIT_LENGTH along them.
+SLITS = {"middle": (12, 6.0), "quarter": (16, 4.0), "near-one": (24, 3.5)}
+SLIT_LENGTH, SLIT_SPRING, SLIT_SPEED, SLIT_STEPS = 28, 20.0, 0.06, 160000
 NANOSECONDS = {"srd": 8, "at-a": 26, "vertex": 100}  # CPU time of a particle or a vertex in a step
 
 
@@ -57,6 +61,19 @@ def alone(name, rule, box, drive, steps, seed, **more):
     bead, rest = masses(box)
     run = evaluated(name, scene, steps, seed, (RADIUS, bead), rest, **more)
     run.hours = NANOSECONDS[rule] * box**3 * GAMMA * steps / 3.6e12
+    return run
+
+
+def slit(place, seed):
+    """A bead that a trap draws along walls at rest. Walls take up the momentum: all else does not move back, REST is without end."""
+    distance, height = SLITS[place]
+    scene = (f"box: [{SLIT_LENGTH}, {distance}, {SLIT_LENGTH}]\ntime_step: {STEP}\nwalls: {{kind: no-slip}}\n"
+             f"solvent: {{per_cell: {GAMMA:g}, collision_interval: {STEP}}}\n"
+             f"bead: {{radius: {RADIUS:g}, center: [{SLIT_LENGTH / 2:g}, {height:g}, {SLIT_LENGTH / 2:g}], "
+             f"drive: {{spring: {SLIT_SPRING:g}, velocity: [{SLIT_SPEED:g}, 0, 0]}}}}\n"
+             "observe: {bead: {every: 5}}\n")
+    run = evaluated(f"slit-{place}", scene, SLIT_STEPS, seed, (RADIUS, masses(SLIT_LENGTH)[0]), 1e12, spring=SLIT_SPRING)
+    run.hours = NANOSECONDS["srd"] * SLIT_LENGTH**2 * distance * GAMMA * SLIT_STEPS / 3.6e12
     return run
 
 
@@ -115,6 +132,7 @@ def runs(tier):
                 alone("trap", "srd", 12, f"spring: {SPRING:g}", 30000, 902, begin=20.0, spring=SPRING), crowd(8000, 0.0007, 903)]
     found = [alone(f"pull-{rule}-L{box}", rule, box, "force: [6, 0, 0]", steps, 910 + k) for k, (rule, box, steps) in enumerate(BOXES)]
     found += [alone("trap", "srd", 12, f"spring: {SPRING:g}", 160000, 920, begin=20.0, spring=SPRING), crowd(60000, 0.03, 921)]
+    found += [slit(place, 930 + k) for k, place in enumerate(SLITS)]
     return found + moduli_runs() + network_runs()
 
 
@@ -144,6 +162,18 @@ def drag(rule, box, radius=RADIUS):
     return 6.0 * math.pi * viscosity(rule) * effective * hasimoto(effective / box)
 
 
+def faxen(place, radius):
+    """Drag along walls over that without them: Faxen's series (Happel and Brenner, Low Reynolds number hydrodynamics, Chapter 7). Near one wall what the far one adds is added."""
+    distance, height = SLITS[place]
+    x = radius / height
+    if place == "middle":
+        return 1.0 / (1.0 - 1.004 * x + 0.418 * x**3 + 0.21 * x**4 - 0.169 * x**5)
+    if place == "quarter":
+        return 1.0 / (1.0 - 0.6526 * x + 0.1475 * x**3 - 0.131 * x**4 - 0.0644 * x**5)
+    near, far = (1.0 / (1.0 - 9.0 / 16.0 * x + x**3 / 8.0 - 45.0 / 256.0 * x**4 - x**5 / 16.0) for x in (x, radius / (distance - height)))
+    return near + far - 1.0
+
+
 def masses(box, radius=RADIUS, vertices=0.0):
     """(of the bead, of all else)"""
     bead = GAMMA * 4.0 / 3.0 * math.pi * radius**3
@@ -167,7 +197,7 @@ def over(a, b):
 
 def filled(verdict, pair, systematic=0.0, values=SHORT):
     verdict.measured, verdict.error = float(pair[0]), float(pair[1])
-    verdict.tolerance = stats.tolerance(verdict.error, systematic=systematic, values=values)
+    verdict.tolerance = stats.tolerance(verdict.error, verdict.expected_error, systematic=systematic, values=values)
     return verdict
 
 
@@ -180,6 +210,35 @@ def drag_verdicts(results, rule, box, tier):
         filled(active, over(found["active friction"], (drag(rule, box), 0.0)), SLIP_KNOWN)
         filled(passive, over(found["passive friction"], found["active friction"]), values=LONG)
     return [active] if tier == "quick" else [active, passive]
+
+
+def radius_of(results):
+    """(R_h, its error) of the bead in periodic boxes, srd: that of which 6 pi eta R_h in the box is the drag; None without runs."""
+    found = []
+    for rule, box, _ in BOXES:
+        friction_ = numbers(results, f"pull-{rule}-L{box}").get("active friction")
+        if rule == "srd" and friction_:
+            unit = 6.0 * math.pi * viscosity(rule)
+            radius = optimize.brentq(lambda r, box=box, known=friction_[0], unit=unit: unit * r * hasimoto(r / box) - known, 0.5, 4.0)
+            slope = unit * (1.01 * radius * hasimoto(1.01 * radius / box) - radius * hasimoto(radius / box)) / (0.01 * radius)
+            found.append((radius, friction_[1] / slope))
+    return weighted(found) if found else None
+
+
+def slit_verdicts(results):
+    """Against Faxen's series, with the radius of periodic boxes."""
+    verdicts, known = [], radius_of(results)
+    for place, words in (("middle", "in the middle between two walls"), ("quarter", "at a quarter of their distance"), ("near-one", "near one wall")):
+        verdict = Verdict(f"bead.slit.{place}", f"drag along walls over 6πηR_h times Faxén's series, {words}, R {RADIUS:g}, srd", 1.0,
+                          "Faxén (Happel and Brenner 1965), R_h of the drag in periodic boxes", 0.0)
+        found = numbers(results, f"slit-{place}").get("drawn friction")
+        if found and known:
+            unit = 6.0 * math.pi * viscosity("srd")
+            low, middle, high = (unit * r * faxen(place, r) for r in (known[0] - known[1], known[0], known[0] + known[1]))
+            verdict.expected_error = (high - low) / (2.0 * middle)
+            filled(verdict, (found[0] / middle, found[1] / middle))
+        verdicts.append(verdict)
+    return verdicts
 
 
 def parted(values, parts=SHORT):
@@ -403,4 +462,4 @@ def evaluate(results, tier):
     verdicts = [v for rule, box in boxes for v in drag_verdicts(results, rule, box, tier)] + trap_verdicts(results) + crowd_verdicts(results)
     if tier == "quick":
         return Outcome(verdicts)
-    return Outcome(verdicts + moduli_verdicts(results) + linear_verdicts(results), shown_of(results))
+    return Outcome(verdicts + slit_verdicts(results) + moduli_verdicts(results) + linear_verdicts(results), shown_of(results))
