@@ -38,8 +38,8 @@ struct arguments {
   const char *out;
   const char **set; /* [sets] "key=value" */
   size_t sets;
-  bool has_steps, has_seed, resume, quiet, document, decimal, contacts, skip_damaged, movie, compare, list, slurm,
-      no_name, help;
+  bool has_steps, has_seed, resume, quiet, document, decimal, whole, skip_damaged, movie, compare, list, slurm, no_name,
+      help;
   uint64_t steps, seed; /* instead of the scene's */
   struct export_options export;
   struct oracle_options oracle;
@@ -66,7 +66,6 @@ enum command_code {
   COMMAND_SWEEP,
   COMMAND_ORACLE_SCHEMA,
   COMMAND_EMIT,
-  COMMAND_EDGES,
   COMMAND_START,
   COMMAND_TRACE,
   COMMAND_ANSWER,
@@ -156,7 +155,6 @@ enum exit_code command_analyze(const struct arguments *a);
 enum exit_code command_verify(const struct arguments *a);
 enum exit_code oracle_schema(const struct arguments *a);
 enum exit_code oracle_emit_file(const struct arguments *a);
-enum exit_code oracle_edges_file(const struct arguments *a);
 enum exit_code oracle_start_file(const struct arguments *a);
 enum exit_code oracle_trace_file(const struct arguments *a);
 enum exit_code oracle_answer_file(const struct arguments *a);

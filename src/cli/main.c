@@ -142,19 +142,16 @@ const struct command commands[COMMANDS] = {
                                NULL, oracle_schema},
     [COMMAND_EMIT] = {"oracle emit", "SCENE", 1, WRITES,
                       "inputs and outputs of every operator, at two steps, as a pack", NULL, oracle_emit_file},
-    [COMMAND_EDGES] = {"oracle edges", "", 0, WRITES,
-                       "constructed inputs of operators, and their outputs, as a pack: ties, zeros, faces of cells",
-                       NULL, oracle_edges_file},
     [COMMAND_START] = {"oracle start", "SCENE", 1, WRITES,
                        "what a run of the scene starts from, as a pack: for ports' traces", NULL, oracle_start_file},
     [COMMAND_TRACE] = {"oracle trace", "SCENE", 1, WRITES | MAY(EXIT_STOPPED),
                        "state hashes and sums after every stage of the scene's steps, as CSV", NULL, oracle_trace_file},
     [COMMAND_ANSWER] =
-        {"oracle answer", "PACK OUT", 2, WRITES,
-         "outputs from the inputs of a pack, as a port writes them: of operators without a state",
+        {"oracle answer", "PACK OUT", 2, WRITES, "outputs from the inputs of a pack, as a port writes them",
          "OUT is a pack as HDF5. Answered are the operators each of whose rows stands for itself: random,\n"
          "permutation, crossing, exchange, contact_search, tube_search, tube_contact, bead_search,\n"
-         "bead_contact and impulse.\n",
+         "bead_contact and impulse; of thin fibers and points in a periodic box those of places too:\n"
+         "sweep, event_drift, bin, bond_force, bend_force and force.\n",
          oracle_answer_file},
     [COMMAND_DUMP] = {"oracle dump", "PACK", 1, WRITES, "a pack as text", NULL, oracle_dump_file},
     [COMMAND_COMPARE] = {"oracle compare", "OURS THEIRS", 2, WRITES | MAY(EXIT_CLOSE) | MAY(EXIT_DIFFERS),

@@ -55,7 +55,7 @@ static enum exit_code try_output(const char *path)
   return code;
 }
 
-/* Writes the pack that `make` fills: of a scene, or of none (NULL). */
+/* Writes the pack that `make` fills of a scene. */
 static enum exit_code write_pack(const struct arguments *a, struct scene *scene,
                                  bool (*make)(struct scene *, struct pack *, struct message *))
 {
@@ -102,23 +102,6 @@ enum exit_code oracle_start_file(const struct arguments *a)
   return write_pack_of_scene(a, oracle_start);
 }
 
-static bool edges(struct scene *none, struct pack *pack, struct message *message)
-{
-  (void)none;
-  return oracle_edges(false, pack, message);
-}
-
-static bool contacts(struct scene *none, struct pack *pack, struct message *message)
-{
-  (void)none;
-  return oracle_edges(true, pack, message);
-}
-
-enum exit_code oracle_edges_file(const struct arguments *a)
-{
-  return write_pack(a, NULL, a->contacts ? contacts : edges);
-}
-
 enum exit_code oracle_answer_file(const struct arguments *a)
 {
   struct message message;
@@ -126,8 +109,9 @@ enum exit_code oracle_answer_file(const struct arguments *a)
   FILE *out;
   if (!pack_read(a->file[0], &pack, &message))
     return complain(&message, EXIT_BAD_INPUT);
-  enum exit_code code =
-      oracle_answer(&pack, &answers, &message) ? open_output(a->file[1], &out) : complain(&message, EXIT_BAD_INPUT);
+  oracle_sort(&pack);
+  enum exit_code code = oracle_answer(&pack, a->whole, &answers, &message) ? open_output(a->file[1], &out)
+                                                                           : complain(&message, EXIT_BAD_INPUT);
   if (code == EXIT_DONE)
     code = close_output(out, pack_write(&answers, out, a->file[1], &message) ? EXIT_DONE : EXIT_NOT_WRITTEN, a->file[1],
                         &message);

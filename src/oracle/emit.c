@@ -1,11 +1,10 @@
-/* Packs of scenes, of constructed inputs, and of starts. */
+/* Packs of scenes, and of starts. */
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "oracle/company.h"
 #include "oracle/contract.h"
-#include "oracle/edges.h"
 #include "oracle/operators.h"
 #include "oracle/oracle.h"
 #include "step.h"
@@ -52,7 +51,7 @@ static bool put_step(struct oracle_stage *g, const struct scene *scene, uint64_t
   const bool beside = model_has_bead(g->model) && g->model->kinds > 0;
   g->company = &company;
   const bool ok = advance_to(g, step - 1, beside ? &log : NULL, message) &&
-                  (oracle_run_operators(g, false) || g->pack->failed || message_fault(message, &g->work->fault));
+                  (oracle_run_operators(g) || g->pack->failed || message_fault(message, &g->work->fault));
   g->company = NULL;
   return ok;
 }
@@ -72,28 +71,8 @@ bool oracle_emit(struct scene *scene, struct pack *pack, struct message *message
          (last == interval || with_run(scene, put_step, last, pack, message));
 }
 
-/* --- constructed inputs, and what a run starts from -------------------------------------------------------------- */
-
-static bool put_edges(struct oracle_stage *g, const struct scene *scene, uint64_t step, struct message *message)
-{
-  (void)scene, (void)step;
-  return oracle_run_operators(g, true) || g->pack->failed || message_fault(message, &g->work->fault);
-}
-
-bool oracle_edges(bool contacts, struct pack *pack, struct message *message)
-{
-  static const char *const in_turns[] = EDGES_SETTINGS, *const at_once[] = EDGES_EVENT_SETTINGS;
-  const struct scene_settings settings = contacts
-                                             ? (struct scene_settings){sizeof at_once / sizeof *at_once, at_once, 0}
-                                             : (struct scene_settings){sizeof in_turns / sizeof *in_turns, in_turns, 0};
-  struct scene scene;
-  memset(pack, 0, sizeof *pack);
-  if (!scene_make(&settings, &scene, message))
-    return false;
-  const bool ok = with_run(&scene, put_edges, 1, pack, message);
-  scene_free(&scene);
-  return ok;
-}
+/* --- what a run starts from ----------------------------------------------------------------------------------------
+ */
 
 static bool put_start(struct oracle_stage *g, const struct scene *scene, uint64_t step, struct message *message)
 {

@@ -80,18 +80,16 @@ static void forget(struct oracle_stage *g)
   g->position = NULL, g->velocity = NULL, g->row = NULL, g->rows = 0, g->fresh = (struct state){0};
 }
 
-static bool run_operator(struct oracle_stage *g, const struct oracle_operator *o, bool edges)
+static bool run_operator(struct oracle_stage *g, const struct oracle_operator *o)
 {
-  bool (*const begin)(struct oracle_stage *) = edges ? o->edges : o->begin;
-  const bool puts_back = o->puts_back && !edges;
   snprintf(g->place.operator_name, sizeof g->place.operator_name, "%s", o->name);
-  bool ok = keep(g, puts_back) && (!begin || begin(g));
+  bool ok = keep(g, o->puts_back) && (!o->begin || o->begin(g));
   if (ok)
     oracle_put_tables(g, o, true);
   ok = ok && (!o->run || o->run(g));
   if (ok)
     oracle_put_tables(g, o, false);
-  if (ok && puts_back)
+  if (ok && o->puts_back)
     oracle_put_back(g);
   forget(g);
   return ok;
@@ -99,14 +97,14 @@ static bool run_operator(struct oracle_stage *g, const struct oracle_operator *o
 
 /* --- all of them ------------------------------------------------------------------------------------------------- */
 
-bool oracle_run_operators(struct oracle_stage *g, bool edges)
+bool oracle_run_operators(struct oracle_stage *g)
 {
   bool ok = true;
   g->place.step = g->state->step + 1;
   for (size_t k = 0; ok && k < oracle_operator_count; k++) {
     const struct oracle_operator *o = &oracle_operators[k];
-    if ((edges ? o->edges != NULL : !o->constructed) && oracle_scene_is(o->of, g->model))
-      ok = run_operator(g, o, edges);
+    if (!o->constructed && oracle_scene_is(o->of, g->model))
+      ok = run_operator(g, o);
   }
   return ok && !g->pack->failed;
 }

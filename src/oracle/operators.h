@@ -36,9 +36,9 @@ struct oracle_stage {
 void oracle_put_model(struct oracle_stage *g);
 void oracle_put_start(struct oracle_stage *g);
 
-/* Runs all operators, one after the other, for the step that follows the state's; edges: those with constructed inputs,
- * on these. False, with work->fault or pack->failed saying why. */
-bool oracle_run_operators(struct oracle_stage *g, bool edges);
+/* Runs all operators, one after the other, for the step that follows the state's. False, with work->fault or
+ * pack->failed saying why. */
+bool oracle_run_operators(struct oracle_stage *g);
 
 /* For operators. Appends n rows of this size. False, with pack->failed set, if memory is short. */
 bool oracle_add_rows(struct oracle_stage *g, const void *rows, uint32_t n, size_t size);

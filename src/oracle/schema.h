@@ -26,7 +26,8 @@ struct oracle_source {
   const struct oracle_entity *of;
   void (*integers)(const struct oracle_stage *, uint32_t k, int64_t *row); /* of place k; NULL: they are reals */
   void (*reals)(const struct oracle_stage *, uint32_t k, double *row);
-  void (*take)(const struct oracle_stage *, uint32_t k, const void *row); /* into row k of the stage; NULL: it cannot */
+  bool (*take)(struct oracle_stage *, uint32_t k, const void *row); /* to place k of the stage, false if it may not be
+                                                                       asked; NULL: it cannot */
 };
 
 /* Which scenes have an operator, or a table of it. */
@@ -55,7 +56,6 @@ struct oracle_operator {
   bool puts_back;                           /* vertices are where they were after it */
   bool (*begin)(struct oracle_stage *);     /* before tables go in, such as rows that stand for themselves; or NULL */
   bool (*run)(struct oracle_stage *);       /* or NULL */
-  bool (*edges)(struct oracle_stage *);     /* instead of `begin`, for constructed inputs; NULL: there are none */
   struct oracle_table table[ORACLE_TABLES]; /* in the order of packs, those that go in first; names end them */
 };
 

@@ -42,12 +42,13 @@
   FILL(name, double, const struct vec3 v = __VA_ARGS__; row[0] = v.x, row[1] = v.y, row[2] = v.z;)                     \
   const struct oracle_source from_##name = {.columns = "x y z", .of = &(entity), .reals = fill_##name};
 
-/* The same of a row that stands for itself, which can be taken from a pack: what is done with its numbers n. */
+/* The same of what can be taken from a pack: how a row of numbers n is taken, true if that may be asked. */
 #define TAKE(name, type, ...)                                                                                          \
-  static void take_##name(const struct oracle_stage *g, uint32_t k, const void *row)                                   \
+  static bool take_##name(struct oracle_stage *g, uint32_t k, const void *row)                                         \
   {                                                                                                                    \
+    (void)k;                                                                                                           \
     const type *n = row;                                                                                               \
-    __VA_ARGS__;                                                                                                       \
+    return __VA_ARGS__;                                                                                                \
   }
 #define TAKEN_INTEGERS(name, entity, words, take, ...)                                                                 \
   FILL(name, int64_t, const int64_t numbers[] = {__VA_ARGS__}; memcpy(row, numbers, sizeof numbers);)                  \
@@ -58,8 +59,8 @@
   TAKE(name, double, take)                                                                                             \
   const struct oracle_source from_##name = {words, &(entity), NULL, fill_##name, take_##name};
 #define TAKEN_POINT(name, entity, at)                                                                                  \
-  TAKEN_INTEGERS(name, entity, "x y z", (at) = ((struct point){n[0], n[1], n[2]}), (at).x, (at).y, (at).z)
+  TAKEN_INTEGERS(name, entity, "x y z", ((at) = (struct point){n[0], n[1], n[2]}, true), (at).x, (at).y, (at).z)
 #define TAKEN_VECTOR(name, entity, v)                                                                                  \
-  TAKEN_REALS(name, entity, "x y z", (v) = ((struct vec3){n[0], n[1], n[2]}), (v).x, (v).y, (v).z)
+  TAKEN_REALS(name, entity, "x y z", ((v) = (struct vec3){n[0], n[1], n[2]}, true), (v).x, (v).y, (v).z)
 
 #endif

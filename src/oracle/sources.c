@@ -6,6 +6,7 @@
 #include "mpc/grid.h"
 #include "mpc/rules/spin.h"
 #include "mpc/rules/srd.h"
+#include "oracle/drift.h"
 #include "oracle/rows.h"
 #include "wall/account.h"
 
@@ -114,16 +115,31 @@ static struct point place(const struct oracle_stage *g, uint32_t k)
 }
 
 #define MPC g->work->mpc
-POINT(positions, vertices, g->state->position[k])
-VECTOR(velocities, vertices, g->state->velocity[k])
+static bool take_position(struct point *at, const int64_t n[3])
+{
+  *at = (struct point){n[0], n[1], n[2]};
+  return point_within_reach(*at);
+}
+
+TAKEN_INTEGERS(positions, vertices, "x y z", take_position(&g->state->position[k], n), g->state->position[k].x,
+               g->state->position[k].y, g->state->position[k].z)
+TAKEN_VECTOR(velocities, vertices, g->state->velocity[k])
 VECTOR(forces, vertices, g->work->fiber.force[k])
-INTEGERS(order, vertices, "vertex", g->work->contact.order[k])
+TAKEN_INTEGERS(order, vertices, "vertex", n[0] == g->work->contact.order[k], g->work->contact.order[k])
 INTEGERS(vertex_cells, vertices, "cell", MPC.vertex_cell[k])
 VECTOR(drawn_vertices, vertices, MPC.drawn_vertex[k])
 VECTOR(less_vertices, vertices, vec3_sub(g->state->velocity[k], MPC.drawn_vertex[k]))
 POINT(vertex_places, vertices, spin_place(g->state->position[k], MPC.shift))
 
-POINT(particles, particles, place(g, k))
+static bool take_place(struct oracle_stage *g, uint32_t k, const int64_t n[3])
+{
+  const int64_t *edge = g->model->box.edge;
+  struct solvent *s = &g->state->solvent;
+  s->x[k] = n[0], s->y[k] = n[1], s->z[k] = n[2];
+  return n[0] >= 0 && n[0] < edge[0] && n[1] >= 0 && n[1] < edge[1] && n[2] >= 0 && n[2] < edge[2];
+}
+
+TAKEN_INTEGERS(particles, particles, "x y z", take_place(g, k, n), place(g, k).x, place(g, k).y, place(g, k).z)
 VECTOR(particle_velocities, particles, solvent_velocity(&g->state->solvent, k))
 INTEGERS(particle_cells, particles, "cell", MPC.solvent_cell[k])
 VECTOR(drawn_particles, particles, drawn(g, k))
@@ -154,7 +170,14 @@ static struct spin_moments moments(const struct oracle_stage *g, uint32_t k)
   return m;
 }
 
-POINT(shift, once, grid_shift(M, g->place.step))
+static bool is_shift(const struct oracle_stage *g, const int64_t n[3])
+{
+  const struct point s = grid_shift(M, g->place.step);
+  return n[0] == s.x && n[1] == s.y && n[2] == s.z;
+}
+
+TAKEN_INTEGERS(shift, once, "x y z", is_shift(g, n), grid_shift(M, g->place.step).x, grid_shift(M, g->place.step).y,
+               grid_shift(M, g->place.step).z)
 INTEGERS(momenta, cells, "x y z", MPC.sum[k].px, MPC.sum[k].py, MPC.sum[k].pz)
 INTEGERS(loads, cells, "members mass", cell_members(&MPC.sum[k]), (int64_t)(MPC.sum[k].load % CELL_MEMBER))
 INTEGERS(active, cells, "active", is_active(g, k))
@@ -207,8 +230,15 @@ static struct point given(const struct oracle_stage *g, enum account_share share
 
 REALS(flight_time, once, "dt", 0.5 * g->state->solvent_lag * M->time_step)
 REALS(kick_time, once, "dt", 0.5 * M->time_step)
-REALS(sweep_time, once, "dt", g->drift.time)
-REALS(drift_time, once, "dt start", g->drift.time, g->drift.start)
+/* The long sweep is the second one of its step, with an order of its own. */
+static uint32_t number_of_sweep(const struct oracle_stage *g)
+{
+  return strcmp(g->place.operator_name, "long_sweep") == 0;
+}
+
+TAKEN_REALS(sweep_time, once, "dt", oracle_begin_drift_of(g, n[0], number_of_sweep(g)) && n[0] > 0.0, g->drift.time)
+TAKEN_REALS(drift_time, once, "dt start", oracle_begin_drift_of(g, n[0], 0) && n[0] > 0.0 && n[1] == g->drift.start,
+            g->drift.time, g->drift.start)
 VECTOR(walls, walls, shear_wall_velocity(M, (enum wall)k, interval(g)))
 VECTOR(walls_at_end, walls, shear_wall_velocity_at_end(M, (enum wall)k, g->place.step / M->solvent.interval_steps - 1))
 POINT(hits, walls, given(g, ACCOUNT_HITS, k))

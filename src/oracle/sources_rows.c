@@ -37,28 +37,10 @@ static bool tubes_are_legal(const void *row)
   return are_near((struct point){0, 0, 0}, &((const struct oracle_tubes *)row)->p, 3);
 }
 
-static bool address_is_legal(const void *row)
-{
-  const struct oracle_address *a = row;
-  return a->draw < UINT32_MAX && a->entity < UINT32_MAX;
-}
-
-static bool permutation_is_legal(const void *row)
-{
-  const struct oracle_permutation *p = row;
-  return address_is_legal(&p->address) && p->address.entity <= ORACLE_PERMUTED;
-}
-
 static const struct oracle_entity
-    addresses = {.word = "address",
-                 .count = count_rows,
-                 .size = sizeof(struct oracle_address),
-                 .legal = address_is_legal},
+    addresses = {.word = "address", .count = count_rows, .size = sizeof(struct oracle_address)},
     permuted = {.word = "entry", .count = count_permuted},
-    permutations = {.word = "permutation",
-                    .count = count_rows,
-                    .size = sizeof(struct oracle_permutation),
-                    .legal = permutation_is_legal},
+    permutations = {.word = "permutation", .count = count_rows, .size = sizeof(struct oracle_permutation)},
     tests = {.word = "test", .count = count_rows, .size = sizeof(struct oracle_test), .legal = test_is_legal},
     exchanges = {.word = "exchange", .count = count_rows, .size = sizeof(struct oracle_exchange)},
     searches = {.word = "search", .count = count_rows, .size = sizeof(struct oracle_search), .legal = search_is_legal},
@@ -66,15 +48,15 @@ static const struct oracle_entity
     impulses = {.word = "impulse", .count = count_rows, .size = sizeof(struct oracle_impulse)},
     events = {.word = "event", .count = count_rows};
 
-/* What does not fit becomes the largest number, which is no address (address_is_legal). */
-static uint32_t word_of(int64_t n)
+static bool is_word(int64_t n)
 {
-  return n >= 0 && n < UINT32_MAX ? (uint32_t)n : UINT32_MAX;
+  return n >= 0 && n < UINT32_MAX;
 }
 
-static void take_address(struct oracle_address *a, const int64_t n[4])
+static bool take_address(struct oracle_address *a, const int64_t n[4])
 {
-  *a = (struct oracle_address){(enum random_purpose)n[0], word_of(n[1]), word_of(n[3]), (uint64_t)n[2]};
+  *a = (struct oracle_address){(enum random_purpose)n[0], (uint32_t)n[1], (uint32_t)n[3], (uint64_t)n[2]};
+  return is_word(n[1]) && is_word(n[3]);
 }
 
 /* --- random numbers ---------------------------------------------------------------------------------------------- */
@@ -99,9 +81,9 @@ const struct oracle_source from_normals = {.columns = "first second", .of = &add
 VECTOR(random_axes, addresses, random_axis(M->seed, address(g, k)->purpose, address(g, k)->step, address(g, k)->entity))
 
 #define PERMUTATION ((struct oracle_permutation *)g->row)
-TAKEN_INTEGERS(permutation, permutations, "purpose draw step size", take_address(&PERMUTATION[k].address, n),
-               PERMUTATION[k].address.purpose, PERMUTATION[k].address.draw, (int64_t)PERMUTATION[k].address.step,
-               PERMUTATION[k].address.entity)
+TAKEN_INTEGERS(permutation, permutations, "purpose draw step size",
+               take_address(&PERMUTATION[k].address, n) && n[3] <= ORACLE_PERMUTED, PERMUTATION[k].address.purpose,
+               PERMUTATION[k].address.draw, (int64_t)PERMUTATION[k].address.step, PERMUTATION[k].address.entity)
 INTEGERS(permuted, permuted, "entry", PERMUTATION->order[k])
 
 #define TEST ((struct oracle_test *)g->row)[k]
@@ -110,7 +92,7 @@ TAKEN_POINT(test_to, tests, TEST.query.to)
 TAKEN_POINT(test_pivot, tests, TEST.query.pivot)
 TAKEN_POINT(test_a, tests, TEST.query.a)
 TAKEN_POINT(test_b, tests, TEST.query.b)
-TAKEN_INTEGERS(flip, tests, "flip", TEST.query.flip = n[0] != 0, TEST.query.flip)
+TAKEN_INTEGERS(flip, tests, "flip", (TEST.query.flip = n[0] != 0, true), TEST.query.flip)
 INTEGERS(crosses, tests, "crosses", TEST.crosses)
 #define HIT(h) (h).time, (h).s, (h).s_standing, (h).normal.x, (h).normal.y, (h).normal.z
 REALS(hit, tests, "time s s_standing normal_x normal_y normal_z", HIT(TEST.hit))
@@ -122,10 +104,10 @@ TAKEN_VECTOR(exchange_moving, exchanges, EXCHANGE.velocity[0])
 TAKEN_VECTOR(exchange_pivot, exchanges, EXCHANGE.velocity[1])
 TAKEN_VECTOR(exchange_a, exchanges, EXCHANGE.velocity[2])
 TAKEN_VECTOR(exchange_b, exchanges, EXCHANGE.velocity[3])
-TAKEN_REALS(exchange_masses, exchanges, "moving pivot a b", memcpy(EXCHANGE.mass, n, sizeof EXCHANGE.mass),
+TAKEN_REALS(exchange_masses, exchanges, "moving pivot a b", memcpy(EXCHANGE.mass, n, sizeof EXCHANGE.mass) != NULL,
             FOUR(EXCHANGE.mass))
-TAKEN_REALS(exchange_contact, exchanges, "s s_standing", (EXCHANGE.s = n[0], EXCHANGE.s_standing = n[1]), EXCHANGE.s,
-            EXCHANGE.s_standing)
+TAKEN_REALS(exchange_contact, exchanges, "s s_standing", (EXCHANGE.s = n[0], EXCHANGE.s_standing = n[1], true),
+            EXCHANGE.s, EXCHANGE.s_standing)
 TAKEN_VECTOR(exchange_normal, exchanges, EXCHANGE.normal)
 REALS(exchange_momentum, exchanges, "momentum", EXCHANGE.momentum)
 VECTOR(after_moving, exchanges, EXCHANGE.after[0])
@@ -140,9 +122,9 @@ TAKEN_POINT(search_w, searches, SEARCH.pair.w)
 TAKEN_POINT(search_p_rate, searches, SEARCH.pair.p_rate)
 TAKEN_POINT(search_q_rate, searches, SEARCH.pair.q_rate)
 TAKEN_POINT(search_w_rate, searches, SEARCH.pair.w_rate)
-TAKEN_INTEGERS(search_from, searches, "tick",
-               SEARCH.from = n[0] >= 0 && n[0] < FLIGHT_TICKS ? (int32_t)n[0] : FLIGHT_TICKS, SEARCH.from)
-TAKEN_INTEGERS(search_reach, searches, "reach", SEARCH.reach = n[0], SEARCH.reach)
+TAKEN_INTEGERS(search_from, searches, "tick", (SEARCH.from = (int32_t)n[0], n[0] >= 0 && n[0] < FLIGHT_TICKS),
+               SEARCH.from)
+TAKEN_INTEGERS(search_reach, searches, "reach", (SEARCH.reach = n[0], true), SEARCH.reach)
 INTEGERS(search_tick, searches, "tick", SEARCH.tick)
 
 #define TUBES_ROW ((struct oracle_tubes *)g->row)[k]
@@ -161,10 +143,11 @@ TAKEN_VECTOR(impulse_force_p0, impulses, IMPULSE.force[0])
 TAKEN_VECTOR(impulse_force_p1, impulses, IMPULSE.force[1])
 TAKEN_VECTOR(impulse_force_q0, impulses, IMPULSE.force[2])
 TAKEN_VECTOR(impulse_force_q1, impulses, IMPULSE.force[3])
-TAKEN_REALS(impulse_masses, impulses, "p0 p1 q0 q1", memcpy(IMPULSE.mass, n, sizeof IMPULSE.mass), FOUR(IMPULSE.mass))
-TAKEN_REALS(impulse_contact, impulses, "s t", (IMPULSE.s = n[0], IMPULSE.t = n[1]), IMPULSE.s, IMPULSE.t)
+TAKEN_REALS(impulse_masses, impulses, "p0 p1 q0 q1", memcpy(IMPULSE.mass, n, sizeof IMPULSE.mass) != NULL,
+            FOUR(IMPULSE.mass))
+TAKEN_REALS(impulse_contact, impulses, "s t", (IMPULSE.s = n[0], IMPULSE.t = n[1], true), IMPULSE.s, IMPULSE.t)
 TAKEN_VECTOR(impulse_normal, impulses, IMPULSE.normal)
-TAKEN_REALS(impulse_tau, impulses, "tau", IMPULSE.tau = n[0], IMPULSE.tau)
+TAKEN_REALS(impulse_tau, impulses, "tau", (IMPULSE.tau = n[0], true), IMPULSE.tau)
 INTEGERS(impulse_answer, impulses, "answer", IMPULSE.answer)
 REALS(impulse_momentum, impulses, "momentum", IMPULSE.momentum)
 VECTOR(after_p0, impulses, IMPULSE.after[0])

@@ -27,8 +27,4 @@ oracle_function oracle_run_private_bath, oracle_run_pairs, oracle_run_pair_bath,
 /* Contacts with the bead until now (bead.c). */
 oracle_function oracle_begin_bead_searches, oracle_begin_bead_contacts, oracle_begin_bead_impulses;
 
-/* Constructed inputs, where the state of no scene comes near (edges*.c): docs/port/packs.md. They change the state. */
-oracle_function oracle_edges_permutation, oracle_edges_crossing, oracle_edges_exchange, oracle_edges_sweep,
-    oracle_edges_bin, oracle_edges_contact_search, oracle_edges_impulse, oracle_edges_event_drift;
-
 #endif

@@ -66,7 +66,7 @@ class Inputs(unittest.TestCase):
         before = sorted(os.listdir(self.folder))
         for words in (["run", "s.yaml", "--out", ""], ["sweep", "s.yaml", "--seeds", "1..2", "--out", ""], ["plot", "o.csv", "--out", ""],
                       ["analyze", "p.h5", "-o", ""], ["export", "p.h5", "--out="], ["oracle", "emit", "s.yaml", "-o", ""],
-                      ["oracle", "edges", "-o", ""], ["oracle", "check", "port", "--packs", ""], ["check", "s.yaml", "--units", ""]):
+                      ["oracle", "start", "s.yaml", "-o", ""], ["oracle", "check", "port", "--packs", ""], ["check", "s.yaml", "--units", ""]):
             code, said = self.run_words(*words)
             self.assertEqual(code, 2, (words, said))
             self.assertRegex(said, r"--(out|packs|units): an empty value; allowed: [A-Za-z]", words)

@@ -1,4 +1,5 @@
 """What tests of committed packs share: the program's `oracle` commands, and that packs and traces are those of this code."""
+import gzip
 import os
 import pathlib
 import subprocess
@@ -25,3 +26,18 @@ def check_made_anew(test, folder, names):
             status, said = run("trace", folder / f"{name}.yaml")
             test.assertEqual(status, 0, said)
             test.assertEqual(said.splitlines(), (folder / f"{name}.trace.csv").read_text().splitlines())
+
+
+def check_constructed(test, name, *operators):
+    """A constructed pack is what the program makes of its inputs, and those of these operators are what reference-data/construct
+    makes today."""
+    data = TOP / "reference-data"
+    kept = gzip.open(data / f"{name}.pack.txt.gz", "rt").read()
+    with tempfile.TemporaryDirectory() as folder:
+        text, made, pack = (pathlib.Path(folder) / word for word in ("made.txt", "made.h5", "pack.h5"))
+        text.write_text(subprocess.run([data / "construct", name, *operators], check=True, capture_output=True, text=True).stdout)
+        test.assertEqual(run("answer", "--whole", text, made), (0, ""))
+        test.assertEqual(run("answer", "--whole", data / f"{name}.pack.h5", pack), (0, ""))
+        test.assertEqual(run("dump", "--decimal", pack), (0, kept))
+        wanted = [line for line in kept.splitlines() if line.split()[0] in ("#", "model", *operators)]
+        test.assertEqual(run("dump", "--decimal", made)[1].splitlines(), wanted)

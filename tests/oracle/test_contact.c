@@ -27,12 +27,19 @@ static struct vec3 vector_of(const struct pack *pack, const char *name, uint32_t
   return (struct vec3){v[0], v[1], v[2]};
 }
 
+/* The pack of constructed inputs, with the outputs of this code. */
 static int make_edges(void **state)
 {
   static struct pack pack;
+  struct pack kept;
   struct message message;
   *state = &pack;
-  return oracle_edges(false, &pack, &message) ? 0 : -1;
+  const bool ok =
+      pack_read("reference-data/edges.pack.h5", &kept, &message) && oracle_answer(&kept, true, &pack, &message);
+  if (!ok)
+    print_error("%s\n", message.text);
+  pack_free(&kept);
+  return ok ? 0 : -1;
 }
 
 static int free_edges(void **state)

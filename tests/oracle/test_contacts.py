@@ -2,70 +2,19 @@
 """The pack of contacts at their own time (reference-data/contacts.pack.h5) against exact arithmetic: Python's integers and
 fractions, by docs/port/contacts.md alone. And whether it shows what it is made for."""
 import gzip
-import os
-import pathlib
-import subprocess
-import tempfile
+import sys
 import unittest
 from fractions import Fraction
 
+from packs import TOP, check_constructed
 from test_edges import Text
 
-TOP = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(TOP / "python"))
+from uncross_construct.exact import TICKS, at_tick, coefficients, dot, is_excluded, one_sign, plus  # noqa: E402
+
 DATA = TOP / "reference-data"
-UNCROSS = os.environ.get("UNCROSS", str(TOP / "build/uncross"))
-TICKS = 65536
 U = Fraction(1, 2**53)
 ENDS = ("p0", "p1", "q0", "q1")
-
-
-def plus(a, b, factor=1):
-    return tuple(x + factor * y for x, y in zip(a, b))
-
-
-def dot(a, b):
-    return sum(x * y for x, y in zip(a, b))
-
-
-def cross(a, b):
-    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
-
-
-def box(a, b, c):
-    return dot(cross(a, b), c)
-
-
-def coefficients(a, b):
-    """(i), of an interval with p, q, w at its ends."""
-    triples = [((a, a, a),), ((b, a, a), (a, b, a), (a, a, b)), ((b, b, a), (b, a, b), (a, b, b)), ((b, b, b),)]
-    return [sum(box(k[0][0], k[1][1], k[2][2]) for k in triple) for triple in triples]
-
-
-def one_sign(values):
-    return all(x > 0 for x in values) or all(x < 0 for x in values)
-
-
-def has_plane(points):
-    """Is there d with d.x > 0 for all points? By the elimination of Fourier and Motzkin: one component of d at a time."""
-    rows = [list(point) for point in points]
-    for axis in range(3):
-        above, below = [r for r in rows if r[axis] > 0], [r for r in rows if r[axis] < 0]
-        rows = [r for r in rows if r[axis] == 0]
-        rows += [[-n[axis] * x + p[axis] * y for x, y in zip(p, n)] for p in above for n in below]
-        if any(not any(r) for r in rows):  # 0 > 0
-            return False
-        rows = [list(r) for r in {tuple(r) for r in rows}]
-    return True
-
-
-def at_tick(row, tick):
-    return [plus(row[k], row[3 + k], tick) for k in range(3)]
-
-
-def is_excluded(row, first, last):
-    a, b = at_tick(row, first), at_tick(row, last)
-    points = [x for p, q, w in (a, b) for x in (w, plus(w, q), plus(w, p, -1), plus(plus(w, q), p, -1))]
-    return one_sign(coefficients(a, b)) or has_plane(points)
 
 
 def all_excluded(row, first, last):
@@ -85,13 +34,8 @@ class Contacts(unittest.TestCase):
         cls.ticks = [tick for tick, in cls.pack.rows("contact_search", 1, "out.tick", "tick")]
 
     def test_pack_is_that_of_this_code(self):
-        with tempfile.TemporaryDirectory() as folder:
-            path = pathlib.Path(folder) / "contacts.h5"
-            subprocess.run([UNCROSS, "oracle", "edges", "--contacts", "-o", path], check=True)
-            done = subprocess.run([UNCROSS, "oracle", "compare", DATA / "contacts.pack.h5", path], capture_output=True, text=True)
-            self.assertEqual(done.returncode, 0, done.stdout)
-            text = subprocess.run([UNCROSS, "oracle", "dump", "--decimal", path], capture_output=True, text=True, check=True).stdout
-            self.assertEqual(text, gzip.open(DATA / "contacts.pack.txt.gz", "rt").read())
+        """`contact_search` is constructed by tests/stress/stress_construct.py."""
+        check_constructed(self, "contacts", "impulse", "event_drift")
 
     # --- searches ---
 

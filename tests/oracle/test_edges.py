@@ -4,19 +4,21 @@ by docs/conventions.md and docs/port/packs.md alone. And whether it shows what i
 with ties the other way round must fail on it.
 """
 import gzip
-import os
 import pathlib
 import struct
 import subprocess
+import sys
 import tempfile
 import unittest
 from fractions import Fraction
 
-TOP = pathlib.Path(__file__).resolve().parents[2]
+from packs import TOP, UNCROSS, check_constructed
+
+sys.path.insert(0, str(TOP / "python"))
+from uncross_construct.exact import CELL, cross, determinant, determinants, deviates, dot, minus, permuted, verdict  # noqa: E402
+
 DATA = TOP / "reference-data"
-UNCROSS = os.environ.get("UNCROSS", str(TOP / "build/uncross"))
 NAMES = ("dense", "mixed", "coarse", "edges")
-CELL = 1 << 40
 U = Fraction(1, 2**53)
 
 
@@ -40,38 +42,8 @@ class Text:
         return [tuple(at[row, f"{table}.{word}"] for word in words) for row in range(count)]
 
 
-def minus(p, q):
-    return tuple(x - y for x, y in zip(p, q))
-
-
-def determinant(p, q, r):
-    """As docs/conventions.md writes it: of integers exact, of floats rounded at each operation."""
-    return (r[0] * (p[1] * q[2] - p[2] * q[1]) + r[1] * (p[2] * q[0] - p[0] * q[2])) + r[2] * (p[0] * q[1] - p[1] * q[0])
-
-
-def determinants(start, end, pivot, a, b):
-    """The five of the test: first volume at start and end, path, sides of a and of b, as triples of differences."""
-    ab, arm, move, leg = minus(b, a), minus(pivot, a), minus(end, start), minus(pivot, start)
-    return ((ab, arm, minus(start, a)), (ab, arm, minus(end, a)), (ab, minus(start, a), minus(end, a)),
-            (move, leg, minus(a, start)), (move, leg, minus(b, start)))
-
-
-def verdict(signs, flip):
-    before, after, path, of_a, of_b = signs
-    side = before > 0 if flip else before >= 0
-    return side != (after > 0 if flip else after >= 0) and (path >= 0) == side and (of_a >= 0) != (of_b >= 0)
-
-
 def in_doubles(triple):
     return determinant(*(tuple(map(float, v)) for v in triple))
-
-
-def dot(p, q):
-    return sum(x * y for x, y in zip(p, q))
-
-
-def cross(p, q):
-    return p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]
 
 
 def single(x):
@@ -81,25 +53,23 @@ def single(x):
 class EdgesTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        with tempfile.TemporaryDirectory() as folder:
-            made = pathlib.Path(folder) / "edges.h5"
-            subprocess.run([UNCROSS, "oracle", "edges", "-o", made], check=True)
-            cls.made = subprocess.run([UNCROSS, "oracle", "dump", "--decimal", made], check=True, capture_output=True,
-                                      text=True).stdout
-        cls.pack = Text(cls.made)
+        cls.pack = Text(gzip.open(DATA / "edges.pack.txt.gz", "rt").read())
         points = [cls.pack.rows("crossing", 1, f"in.{name}") for name in ("from", "to", "pivot", "a", "b")]
         cls.flips = [flip for flip, in cls.pack.rows("crossing", 1, "in.flip", "flip")]
         cls.tests = list(zip(*points))
         cls.crosses = [found for found, in cls.pack.rows("crossing", 1, "out.crosses", "crosses")]
 
     def test_texts_are_those_of_this_code(self):
-        """Every text of reference-data/ is the dump of the pack beside it; edges is what this code makes."""
+        """Every text of reference-data/ is the dump of the pack beside it."""
         for name in NAMES:
             text = gzip.open(DATA / f"{name}.pack.txt.gz", "rt").read()
             dump = subprocess.run([UNCROSS, "oracle", "dump", "--decimal", DATA / f"{name}.pack.h5"], check=True,
                                   capture_output=True, text=True).stdout
             self.assertEqual(text, dump, name)
-        self.assertEqual(self.made, gzip.open(DATA / "edges.pack.txt.gz", "rt").read())
+
+    def test_pack_is_that_of_this_code(self):
+        """`crossing` is constructed by tests/stress/stress_construct.py: half a minute."""
+        check_constructed(self, "edges", "permutation", "exchange", "sweep", "bin")
 
     def test_starts_are_those_of_this_code(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -271,29 +241,12 @@ class EdgesTest(unittest.TestCase):
         (purpose, draw, step, size), = self.pack.rows("permutation", 1, "in.address", "purpose draw step size")
         (low, high), = self.pack.rows("model", 0, "in.numbers", "seed_low seed_high")
 
-        def deviate(k):
-            c = [k // 2, purpose + 256 * draw, step & 0xFFFFFFFF, step >> 32]
-            key = [low, high]
-            for _ in range(10):
-                a, b = 0xD2511F53 * c[0], 0xCD9E8D57 * c[2]
-                c = [b >> 32 ^ c[1] ^ key[0], b & 0xFFFFFFFF, a >> 32 ^ c[3] ^ key[1], a & 0xFFFFFFFF]
-                key = [(key[0] + 0x9E3779B9) & 0xFFFFFFFF, (key[1] + 0xBB67AE85) & 0xFFFFFFFF]
-            return c[2 * (k % 2)] | c[2 * (k % 2) + 1] << 32
-
-        deviates = [deviate(k) for k in range(size)]
-
-        def permuted(index):
-            order = list(range(size))
-            for k in range(size - 1, 0, -1):
-                other = min(index(deviates[k], k + 1), k)
-                order[k], order[other] = order[other], order[k]
-            return order
-
+        numbers = deviates(low | high << 32, purpose, draw, step, size)
         found = [k for k, in self.pack.rows("permutation", 1, "out.order", "entry")]
-        self.assertEqual(permuted(lambda r, n: r * n >> 64), found)
+        self.assertEqual(permuted(numbers), found)
         for way in (lambda r: single(r * 2.0**-64), lambda r: single((r >> 32) * 2.0**-32), lambda r: (r >> 40) * 2.0**-24,
                     lambda r: single(((r >> 12) + 0.5) * 2.0**-52)):
-            self.assertNotEqual(permuted(lambda r, n, way=way: int(single(way(r) * n))), found)
+            self.assertNotEqual(permuted(numbers, lambda r, n, way=way: min(int(single(way(r) * n)), n - 1)), found)
 
 
 if __name__ == "__main__":
