@@ -244,7 +244,7 @@ static void virtual_members_take_part(void **unused)
   struct test_run r = test_start(model);
   struct mpc *c = &r.work.mpc;
   const struct virtual_members virtual = {
-    .n = 3.0, .velocity = {0.3, 0, 0}, .flow = {0.3, -0.1, 0.2}, .low = 0.25, .high = 0.75};
+      .n = 3.0, .velocity = {0.3, 0, 0}, .flow = {0.3, -0.1, 0.2}, .low = 0.25, .high = 0.75};
   uint32_t lone = 0, changed = 0;
   for (uint64_t step = 0; step < 40; step++) {
     struct solvent *s = &r.state.solvent;
