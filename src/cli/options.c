@@ -67,7 +67,7 @@ const struct option_row option_rows[] = {
     {"decimal", NULL, OF(DUMP), 0, OPTION_SWITCH, 0, AT(decimal), ONLY_VALUE,
      .text = "reals in 17 decimal digits, exact too, instead of hexadecimal ones"},
     {"whole", NULL, OF(ANSWER), 0, OPTION_SWITCH, 0, AT(whole), ONLY_VALUE,
-     .text = "the model and the inputs too, as packs have them: for constructed inputs"},
+     .text = "all else that the pack has too, as it is: so a pack is made of constructed inputs"},
     {"every", "N", OF(TRACE), 0, OPTION_WHOLE, 0, AT(every), ONLY_VALUE, .least = 1, .most = UINT64_MAX,
      .text = "the end of each N-th step, and of the last one, instead of every stage"},
     {"packs", "DIR", OF(CHECK_PORT), 0, OPTION_TEXT, 0, AT(packs), ONLY_VALUE,

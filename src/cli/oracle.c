@@ -109,7 +109,6 @@ enum exit_code oracle_answer_file(const struct arguments *a)
   FILE *out;
   if (!pack_read(a->file[0], &pack, &message))
     return complain(&message, EXIT_BAD_INPUT);
-  oracle_sort(&pack);
   enum exit_code code = oracle_answer(&pack, a->whole, &answers, &message) ? open_output(a->file[1], &out)
                                                                            : complain(&message, EXIT_BAD_INPUT);
   if (code == EXIT_DONE)

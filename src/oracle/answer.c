@@ -94,21 +94,27 @@ static bool answer(const struct oracle_operator *o, const struct pack_table *fir
   return ok;
 }
 
-bool oracle_answer(const struct pack *pack, bool whole, struct pack *answers, struct message *message)
+/* The order in which the pack of a scene is made. */
+static int by_step(const void *left, const void *right)
+{
+  const struct pack_table *a = left, *b = right;
+  return a->place.step != b->place.step ? (a->place.step < b->place.step ? -1 : 1) : oracle_flow(a, b);
+}
+
+bool oracle_answer(struct pack *pack, bool whole, struct pack *answers, struct message *message)
 {
   struct model model = {.seed = 0};
   const bool plain = head_is_plain(pack);
   memset(answers, 0, sizeof *answers);
-  bool ok = plain || !whole ||
-            message_set(message, "the model of the pack is more than fibers and points in a periodic box; allowed: "
-                                 "answers alone, without --whole");
-  ok = ok && (plain ? head_model(pack, &model, message) : head_seed(pack, &model.seed, message));
-  if (ok && whole)
-    oracle_put_model(&(struct oracle_stage){.model = &model, .pack = answers});
+  if (pack->count > 0)
+    qsort(pack->table, pack->count, sizeof *pack->table, by_step);
+  bool ok = plain ? head_model(pack, &model, message) : head_seed(pack, &model.seed, message);
   for (size_t k = 0; ok && k < pack->count; k++) {
     const struct pack_table *t = &pack->table[k];
     const struct oracle_operator *o = operator_of(t->place.operator_name, plain);
-    if (o && strcmp(t->name, o->table[0].name) == 0)
+    if (!o && whole)
+      pack_put_copy(answers, t);
+    else if (o && strcmp(t->name, o->table[0].name) == 0)
       ok = answer(o, t, pack, whole, &model, answers, message);
   }
   model_free(&model);

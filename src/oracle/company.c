@@ -96,13 +96,13 @@ void oracle_company_take(void *context, const struct contact_event *event)
 bool oracle_begin_bead_searches(struct oracle_stage *g)
 {
   const struct oracle_company *c = g->company;
-  return oracle_add_rows(g, c->search, 3 * c->contacts, sizeof *c->search) && oracle_edges_bead_searches(g);
+  return oracle_add_rows(g, c->search, 3 * c->contacts, sizeof *c->search);
 }
 
 bool oracle_begin_bead_contacts(struct oracle_stage *g)
 {
   const struct oracle_company *c = g->company;
-  return oracle_add_rows(g, c->tubes, c->contacts, sizeof *c->tubes) && oracle_edges_bead_contacts(g);
+  return oracle_add_rows(g, c->tubes, c->contacts, sizeof *c->tubes);
 }
 
 bool oracle_begin_bead_impulses(struct oracle_stage *g)

@@ -326,7 +326,7 @@ bool oracle_begin_line_searches(struct oracle_stage *g)
 
 bool oracle_begin_tube_searches(struct oracle_stage *g)
 {
-  return watch(g, take_tubes) && oracle_edges_tube_searches(g);
+  return watch(g, take_tubes);
 }
 
 static void take_tube_contact(const struct witness *w, const struct contact_event *v, const uint32_t four[4])
@@ -345,7 +345,7 @@ static void take_tube_contact(const struct witness *w, const struct contact_even
 
 bool oracle_begin_tube_contacts(struct oracle_stage *g)
 {
-  return watch(g, take_tube_contact) && oracle_edges_tube_contacts(g);
+  return watch(g, take_tube_contact);
 }
 
 static void take_impulse(const struct witness *w, const struct contact_event *v, const uint32_t four[4])

@@ -62,6 +62,20 @@ double *pack_put_reals(struct pack *pack, const struct pack_place *place, const 
   return put(pack, place, name, true, components, rows);
 }
 
+void pack_put_copy(struct pack *pack, const struct pack_table *table)
+{
+  const size_t values = (size_t)table->rows * table->columns;
+  struct pack_table *t = append(pack, &table->place, table->name);
+  void *data = malloc((values + 1) * sizeof(int64_t));
+  pack->failed |= !data;
+  if (t)
+    *t = *table, t->value.data = data;
+  else
+    free(data);
+  if (t && data)
+    memcpy(data, table->value.data, values * sizeof(int64_t));
+}
+
 const struct pack_table *pack_find(const struct pack *pack, const struct pack_place *place, const char *name)
 {
   for (size_t k = 0; k < pack->count; k++)

@@ -55,6 +55,9 @@ int64_t *pack_put_integers(struct pack *pack, const struct pack_place *place, co
 double *pack_put_reals(struct pack *pack, const struct pack_place *place, const char *name, const char *components,
                        uint32_t rows);
 
+/* Appends a copy of a table. */
+void pack_put_copy(struct pack *pack, const struct pack_table *table);
+
 /* The table of this name at this place; NULL if there is none. */
 const struct pack_table *pack_find(const struct pack *pack, const struct pack_place *place, const char *name);
 

@@ -94,12 +94,4 @@ double oracle_condition(struct vec3 way, struct vec3 bond, struct vec3 standing,
 /* True if a search is made for it: packs may come from anywhere. */
 bool oracle_search_is_legal(const struct flight_pair *pair, double from);
 
-/* Constructed searches and contacts of tubes and of a bead, which scenes do not have (docs/port/tubes.md): appended.
- * False, with pack->failed set, if memory is short (edges_tube.c, edges_bead.c). */
-enum { ORACLE_TUBE_SEARCHES = 200, ORACLE_TUBE_CONTACTS = 100 };
-bool oracle_edges_tube_searches(struct oracle_stage *g);
-bool oracle_edges_tube_contacts(struct oracle_stage *g);
-bool oracle_edges_bead_searches(struct oracle_stage *g);
-bool oracle_edges_bead_contacts(struct oracle_stage *g);
-
 #endif

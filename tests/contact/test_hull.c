@@ -1,7 +1,7 @@
 /* Is the origin in the hull of eight points: points made to be on one side of a plane, or to have the origin among
  * their means, small and large, and in every degenerate position. */
 #include "contact/hull.h"
-#include "oracle/dice.h"
+#include "dice.h"
 #include "support.h"
 
 enum { TRIES = 4000 };

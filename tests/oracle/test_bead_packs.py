@@ -5,12 +5,10 @@ keep momentum, and turn the velocity of the contact round.
 """
 import gzip
 import math
-import pathlib
-import tempfile
 import unittest
 from fractions import Fraction
 
-from packs import TOP, run
+from packs import TOP, check_made_but_for
 from test_edges import Text
 from test_tube_packs import at_time, dot, plus, to_segment
 
@@ -33,11 +31,7 @@ class BeadPacks(unittest.TestCase):
         return [(row, *(value for value, in number)) for row, number in zip(rows, numbers)]
 
     def test_it_is_that_of_this_code(self):
-        with tempfile.TemporaryDirectory() as folder:
-            pack = pathlib.Path(folder) / "company.h5"
-            self.assertEqual(run("emit", DATA / "company.yaml", "-o", pack), (0, ""))
-            status, said = run("compare", DATA / "company.pack.h5", pack)
-            self.assertEqual(status, 0, said)
+        check_made_but_for(self, DATA, "company", "bead_search", "bead_contact")
 
     def test_never_late_and_not_invented(self):
         apart, answers, of_the_run = 0, 0, 0
