@@ -2,7 +2,6 @@
 import dataclasses
 
 import h5py
-import numpy as np
 from uncross_port import operators, pack
 
 from . import evidence

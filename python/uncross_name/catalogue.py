@@ -35,6 +35,9 @@ class Mistake:
     entry: dict = dataclasses.field(hash=False, compare=False)
 
 
+RIGHT = Mistake("", "", (), "", {})  # none
+
+
 def _filled(value, numbers):
     """Texts with {n} replaced by the number of n."""
     if isinstance(value, str):

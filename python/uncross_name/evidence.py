@@ -36,6 +36,11 @@ def ways(n, chosen):
     return (math.lgamma(n + 1) - math.lgamma(chosen + 1) - math.lgamma(n - chosen + 1)) / math.log(2)
 
 
+def odd_bits(n):
+    """log2 of the odd part of a whole number, 2 MOST_BITS at most: a difference of so many units is no number of cells or boxes."""
+    return min(2 * MOST_BITS, math.log2(n // (n & -n))) if n else 0.0
+
+
 def as_guess(values):
     """A result of an operator as a guess: what is not a number is a guess, too."""
     values = np.array(values, float)
@@ -54,6 +59,7 @@ class Evidence:
         whole = [np.concatenate(arrays).reshape(-1, len(self.columns)) for arrays in zip(*cut)]
         self.exact = whole[:2]
         self.real = whole[0].dtype.kind == "f"
+        self.whole = all(values.dtype.kind == "i" for values in whole[:2])
         self.ours, self.theirs, self.tolerance = (array.astype(float) for array in whole)
         self.same_shape = all(part.ours_rows == part.theirs_rows for part in parts)
         with np.errstate(invalid="ignore"):
@@ -118,7 +124,8 @@ class Evidence:
         _, first = np.unique(pairs, axis=0, return_index=True)
         chosen = np.sort(first)[free : PAIRS + free]
         if not self.real:
-            return float(sum(self.choice[k % len(self.columns)] for k in where[chosen]))
+            off = [abs(int(mine) - int(its)) for mine, its in zip(*(exact.ravel()[where[chosen]] for exact in self.exact))] if self.whole else [0] * len(chosen)
+            return float(sum(max(self.choice[k % len(self.columns)], odd_bits(n)) for k, n in zip(where[chosen], off)))
         ours, theirs = ours[chosen], theirs[chosen]
         guess, tolerance = np.asarray(guess).ravel()[where[chosen]], self.tolerance.ravel()[where[chosen]]
         with np.errstate(all="ignore"):

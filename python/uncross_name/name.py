@@ -6,6 +6,7 @@ import numpy as np
 from . import anything, catalogue, evidence, rows, search
 from . import case as cases
 
+SHORT = 3  # seconds for other changes that make the same numbers
 SECONDS = 50  # for guesses; what is said then takes a few more
 UNKNOWN = "none of those known"
 AS_ROUNDING = ("no larger than rounding: another order of operations, fused multiply-add, library functions, or a bug whose effect is "
@@ -92,6 +93,12 @@ def _description(case, partial):
     return ("" if exact else f"{UNKNOWN}; ") + (f"{side}; " if side else "") + text + ("" if exact else _size(first))
 
 
+def _alternatives(found, case, outputs):
+    """A mistake that is known, and other changes of the port to NumPy that make the same numbers here."""
+    more = search.changed(case, outputs, SHORT) if outputs.changes else []
+    return found + (f"; the same numbers here: {'; or: '.join(more[:2])}" if more else "")
+
+
 def name(case, mistakes, outputs):
     """outputs: of search.Outputs(case)."""
     first = case.first
@@ -102,22 +109,25 @@ def name(case, mistakes, outputs):
             return anything.one_sided(first) or AS_ROUNDING
     found, part = search.planted(case, mistakes, outputs)
     if found:
-        return found
+        return _alternatives(found, case, outputs)
     said = part and f"{part.mistake.text}, but only in some rows"
     if first.wrong.any() and (first.table not in search.FOLLOW or (first.same_shape and _moves_are_right(case))):
         found, other = _any_operator(first)
         if found:
-            return found + _which_table(case)
+            return _alternatives(found + _which_table(case), case, outputs)
         said = said or other
     known = anything.pattern(first)
     if known or (anything.is_single(first) and not case.single):
         return known or AS_SINGLE
     if not beyond:
         return anything.one_sided(first) or AS_ROUNDING
+    changed = search.changed(case, outputs, outputs.clock.left()) if outputs.changes else []
+    if changed:
+        return "; or: ".join(changed) + (" (the same numbers here)" if len(changed) > 1 else "")
     return _first_hit(case) or _description(case, said)
 
 
 def read_and_name(path, seconds=SECONDS):
     clock = search.Clock(seconds)
     case = cases.read(path)
-    return name(case, catalogue.read(), search.Outputs(case, clock))
+    return name(case, catalogue.read(), search.Outputs(case, clock, True))

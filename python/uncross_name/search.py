@@ -1,5 +1,8 @@
 """Which mistakes of the catalogue make what a port has made: the operator is run with each of them planted."""
+import contextlib
 import dataclasses
+import functools
+import itertools
 import math
 import signal
 import time
@@ -7,8 +10,10 @@ import time
 import numpy as np
 from uncross_port import operators
 
-from . import catalogue, evidence
+from . import catalogue, changes, evidence
 
+FOR_CHANGES = 25  # seconds that the catalogue leaves for them
+MOST_FOUND = 8  # changes of the port that make the same
 MOST_NAMES = 3  # that are told of one difference
 FOLLOW = ("out.event", "out.hit")  # tables whose rows, and whose number of rows, follow from earlier ones
 LOOSE = 2.0**-26  # relative; of what follows from earlier events, rounding grows
@@ -50,18 +55,39 @@ class Clock:
 class Outputs:
     """What the operator of a case gives with each mistake, step by step, as far as it was asked for."""
 
-    def __init__(self, case, clock):
-        self.case, self.clock = case, clock
+    def __init__(self, case, clock, made_changes=False):
+        """made_changes: mistakes that are not in the catalogue are looked for, too."""
+        self.case, self.clock, self.changes = case, clock, made_changes
         self.known, self.planted, self.seconds = {}, {}, {}
+        self.model = self.inputs = None
 
     def _run(self, modules, step):
-        broken = modules["operators"]
-        model = broken.models.from_tables(self.case.model)
-        given = broken.OPERATORS[self.case.operator](model, step, self.case.inputs[step])
+        broken, inputs = modules["operators"], self.inputs or self.case.inputs
+        model = self.model or broken.models.from_tables(self.case.model)
+        given = broken.OPERATORS[self.case.operator](model, step, inputs[step])
         return {f"out.{name}": np.asarray(values) for name, values in given.items()}
+
+    def changed(self, change, step):
+        """The same with a change of the port that is made in place; None if it fails or takes much longer than the right one."""
+        try:
+            with change.apply():
+                return self.clock.call(0.2 + 4 * self.right_seconds[step], self._run, self.right, step)
+        except Exception:  # pylint: disable=broad-exception-caught
+            return None
+
+    def run_right(self):
+        """The right port at all steps, in a copy whose changes are made in place."""
+        self.right, self.right_seconds = catalogue.plant(catalogue.RIGHT), {}
+        self.model, self.inputs = self.right["operators"].models.from_tables(self.case.model), dict(self.case.inputs)
+        for step in self.inputs:
+            begun = time.process_time()
+            self._run(self.right, step)
+            self.right_seconds[step] = time.process_time() - begun
 
     def __call__(self, mistake, step):
         """{table: values}, or None."""
+        if isinstance(mistake, changes.Change):
+            return self.changed(mistake, step)
         if (mistake, step) not in self.known:
             if mistake not in self.planted:
                 self.planted[mistake] = self.clock.call(5, catalogue.plant, mistake)
@@ -131,7 +157,7 @@ def _judge(found, outputs, mistake):
         rows = slice(part.first, part.first + part.rows)
         made = outputs(mistake, part.step)
         values = None if made is None else made.get(found.table)
-        values = None if values is None or len(values) != part.theirs_rows else _as_guess(found, part, values)
+        values = None if values is None or values.ndim != 2 or len(values) != part.theirs_rows else _as_guess(found, part, values)
         if values is None or not found.fits(values, rows)[found.wrong[rows]].all():
             if values is not None:
                 guess[rows] = values
@@ -193,7 +219,7 @@ def planted(case, mistakes, outputs):
     fits, tried = [], 0
     for tier in candidates(case, mistakes):
         for mistake in tier:
-            if outputs.clock.left() <= 0:
+            if outputs.clock.left() <= (FOR_CHANGES if outputs.changes else 0):
                 break
             tried += 1
             fit = _fit(case, outputs, mistake)
@@ -207,3 +233,81 @@ def planted(case, mistakes, outputs):
         return few, None
     part = [fit for fit in fits if fit.how == evidence.WRONG and fit.bits >= evidence.SURE + math.log2(max(tried, 1))]
     return None, max(part, key=lambda fit: fit.bits, default=None)
+
+
+# --- what nobody has written down ---
+
+
+@contextlib.contextmanager
+def _read_as(outputs, kind, values):
+    """The model, or what the operator is given, is another for a while."""
+    before = getattr(outputs, kind)
+    if kind == "model":
+        outputs.model = dataclasses.replace(before, **values)
+    else:
+        outputs.inputs = {step: type(tables)({**tables, **values[step]}) for step, tables in before.items()}
+    try:
+        yield
+    finally:
+        setattr(outputs, kind, before)
+
+
+def _of_inputs(inputs):
+    """The same change of what the operator is given at each step."""
+    every = [list(changes.of_values(tables, "the input")) for tables in inputs.values()]
+    for same in zip(*every):
+        if len({text for text, _ in same}) == 1:
+            yield same[0][0], {step: values for step, (_, values) in zip(inputs, same)}
+
+
+def changed_ones(outputs):
+    """Changes that may be at an operator, likelier ones first."""
+    outputs.run_right()
+    operator, inputs, model = outputs.right["operators"].OPERATORS[outputs.case.operator], outputs.inputs, outputs.model
+    for text, values in itertools.chain(changes.of_readers(model, outputs.case.model), changes.of_values(vars(model), "the model")):
+        yield changes.Change(text, 0, functools.partial(_read_as, outputs, "model", values))
+    for text, values in _of_inputs(inputs):
+        yield changes.Change(text, 0, functools.partial(_read_as, outputs, "inputs", values))
+    sorts = changes.sorts_of(model)
+    sorts.update(changes.likes_of(next(iter(inputs.values()))))
+    yield from changes.of_call(outputs.right, sorts, lambda: [operator(model, step, given) for step, given in inputs.items()])
+
+
+ALONE = ("crossing", "exchange", "impulse", "contact_search", "tube_search", "bead_search", "tube_contact", "bead_contact")  # rows stand for themselves
+FEW = 6  # rows that are tried first
+
+
+def _few_rows(case, outputs):
+    """A function that says whether a change makes a few of the wrong rows, and some right ones; None where rows depend on others."""
+    first = case.first
+    if case.operator not in ALONE or not first.same_shape:
+        return None
+    part = max(first.parts, key=lambda part: first.wrong_rows[part.first : part.first + part.rows].sum())
+    wrong = first.wrong_rows[part.first : part.first + part.rows]
+    rows = np.concatenate([np.flatnonzero(wrong)[:FEW], np.flatnonzero(~wrong)[:FEW]])
+
+    def makes(change):
+        with change.apply():
+            given = outputs.inputs[part.step]
+            some = type(given)({name: table[rows] if len(table) == part.rows else table for name, table in given.items()})
+            run = outputs.right["operators"].OPERATORS[case.operator]
+            made = outputs.clock.call(0.3 + outputs.right_seconds[part.step], run, outputs.model, part.step, some)
+        values = made and np.asarray(made[first.table.removeprefix("out.")])
+        return values is not None and values.shape == (len(rows), len(first.columns)) and bool(first.fits(evidence.as_guess(values), part.first + rows).all())
+    return makes
+
+
+def changed(case, outputs, seconds):
+    """Sentences of changes that make all tables of theirs, in so many seconds."""
+    found, end, tried, few = [], time.process_time() + seconds, 0, None
+    for change in changed_ones(outputs):
+        few = few or _few_rows(case, outputs) or (lambda change: True)
+        if time.process_time() > end or outputs.clock.left() <= 0 or len(found) >= MOST_FOUND:
+            break
+        tried += 1
+        with contextlib.suppress(Exception):  # a change may make anything
+            fit = few(change) and _fit(case, outputs, change)
+            if fit and fit.all_tables:
+                found.append(fit)
+    sure = told(found, case, max(tried, 1))
+    return list(dict.fromkeys(fit.mistake.text for fit in sorted(sure, key=lambda fit: fit.mistake.rank)))[:MOST_NAMES]

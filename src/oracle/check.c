@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "oracle/called.h"
+#include "oracle/name.h"
 #include "version.h"
 
 /* One pack or one trace, and how the port did. */
@@ -114,14 +115,27 @@ static bool has_outputs(const struct pack *pack)
   return false;
 }
 
-/* A pack or a trace, and what the port has written. */
-static bool compare_files(const struct check *k, const char *path, const char *out,
+/* Two traces, and what their first difference means. in: what the run starts from. */
+static bool compare_traces(const char *path, const char *in, const char *out, const struct oracle_options *options,
+                           FILE *details, struct oracle_summary *summary, struct message *wrong)
+{
+  if (!oracle_compare_traces(path, out, details, summary, wrong))
+    return false;
+  if (summary->verdict != ORACLE_SAME)
+    oracle_name_trace(in, out, options, summary->meaning);
+  if (summary->meaning[0])
+    fprintf(details, "this pattern: %s\n", summary->meaning);
+  return true;
+}
+
+/* A pack or a trace, and what the port has written. in: what it was given. */
+static bool compare_files(const struct check *k, const char *path, const char *in, const char *out,
                           const struct oracle_options *options, FILE *details, struct oracle_summary *summary,
                           struct message *wrong)
 {
   struct pack ours, theirs;
   if (k->trace)
-    return oracle_compare_traces(path, out, details, summary, wrong);
+    return compare_traces(path, in, out, options, details, summary, wrong);
   if (!pack_read(path, &ours, wrong))
     return false;
   oracle_sort(&ours);
@@ -147,7 +161,7 @@ static bool call_again(const struct checks *c, struct check *k, uint64_t call, c
   snprintf(out, sizeof out, "%s/out.%" PRIu64, c->scratch, call);
   FILE *nobody = fopen("/dev/null", "w");
   bool ok = nobody && called_port(c->options, k->trace, c->scratch, in, out, &wrong) &&
-            compare_files(k, first, out, &unnamed, nobody, &summary, &wrong) &&
+            compare_files(k, first, in, out, &unnamed, nobody, &summary, &wrong) &&
             (summary.verdict == ORACLE_SAME ||
              message_set(&wrong, "call %" PRIu64 " gives other bits than call 1: %s", call, summary.first));
   if (!ok)
@@ -192,7 +206,7 @@ static void call_port(const struct checks *c, struct check *k, const char *in, F
   struct message wrong = {.text = ""};
   snprintf(out, sizeof out, "%s/out.1", c->scratch);
   bool ok = called_port(c->options, k->trace, c->scratch, in, out, &wrong) &&
-            compare_files(k, k->path, out, &c->compare, details, &k->summary, &wrong);
+            compare_files(k, k->path, in, out, &c->compare, details, &k->summary, &wrong);
   if (!ok)
     take_trouble(k, &wrong);
   for (uint64_t call = 2; ok && call <= c->options->repeat; call++)

@@ -113,13 +113,13 @@ static bool take_line(const char *path, char text[ORACLE_TEXT], struct message *
   return ok || message_set(message, "uncross-name says nothing");
 }
 
-static bool ask(const char *namer, const char *folder, const char *path, char text[ORACLE_TEXT],
-                struct message *message)
+/* words: of the command; they end with NULL. */
+static bool ask(const char *const *words, const char *folder, char text[ORACLE_TEXT], struct message *message)
 {
   char said[PATH_MAX];
   int status = 0;
+  const char *namer = words[0];
   snprintf(said, sizeof said, "%s/said", folder);
-  const char *const words[] = {namer, path, NULL};
   const struct call call = {"uncross-name", words, said, folder, SECONDS};
   bool ok = (access(namer, X_OK) == 0 ||
              message_set(message, "there is no program %s; make puts it there", text_shown(namer))) &&
@@ -150,11 +150,21 @@ bool oracle_name(const struct oracle_pair *first, uint32_t row, const struct ora
   const bool there =
       o->scratch || mkdtemp(folder) || message_set(&why, "%s: cannot create: %s", folder, strerror(errno));
   snprintf(path, sizeof path, "%s/case.h5", folder);
-  if (!there || !write_case(first, row, path, &why) || !ask(o->namer, folder, path, text, &why))
+  const char *const words[] = {o->namer, path, NULL};
+  if (!there || !write_case(first, row, path, &why) || !ask(words, folder, text, &why))
     snprintf(text, ORACLE_TEXT, "no name: %.500s", why.text);
   if (there)
     remove(path);
   if (there && !o->scratch)
     called_clean(folder);
   return true;
+}
+
+void oracle_name_trace(const char *start, const char *theirs, const struct oracle_options *o, char text[ORACLE_TEXT])
+{
+  const char *const words[] = {o->namer, start, theirs, NULL};
+  struct message why = {.text = ""};
+  text[0] = '\0';
+  if (o->namer && !ask(words, o->scratch, text, &why))
+    snprintf(text, ORACLE_TEXT, "no name: %.500s", why.text);
 }

@@ -18,4 +18,9 @@
 bool oracle_name(const struct oracle_pair *first, uint32_t row, const struct oracle_options *options,
                  char text[ORACLE_TEXT], struct message *message);
 
+/* The meaning of the first difference of two traces, in one line for a terminal, from what the run starts from
+ * (oracle_start) and their trace; empty if nobody is to say it. options->scratch is a folder. */
+void oracle_name_trace(const char *start, const char *theirs, const struct oracle_options *options,
+                       char text[ORACLE_TEXT]);
+
 #endif
