@@ -17,7 +17,11 @@ CFLAGS   ?= -g
 # What is written over by mistake ends the program: canaries on the stack, checked copies, tables that are read-only.
 HARDEN   ?= -fstack-protector-strong $(if $(filter -O1 -O2 -O3 -Os,$(OPTIMIZE)),-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2)
 HARDEN_LINKED := -Wl,-z,relro,-z,now
-ALL_CFLAGS = $(STRICT) $(OPTIMIZE) $(WARNINGS) $(HARDEN) $(INCLUDES) -fstack-usage $(CFLAGS) $(if $(ONCE),$(LIBRARY_FLAGS))
+# The objects of the program are the library's, too: they fit in at any address, and show what UNCROSS_API marks only.
+LINKABLE := -fPIC -fvisibility=hidden
+ALL_CFLAGS = $(STRICT) $(OPTIMIZE) $(WARNINGS) $(HARDEN) $(INCLUDES) -fstack-usage $(CFLAGS) $(LINKABLE)
+# What a test itself computes is little: its compilation takes a quarter of the time.
+TEST_CFLAGS = $(ALL_CFLAGS) -O1 -Itests
 # The headers of a target, whether BUILD is given as a relative path or as an absolute one; no list can hold a path with a space.
 DEPENDENCIES = -MMD -MP $(addprefix -MT ,$(sort $@ $(if $(word 2,$(CURDIR)),,$(abspath $@) $(patsubst $(CURDIR)/%,%,$(abspath $@)))))
 LIBS     := $(shell pkg-config --libs hdf5 yaml-0.1 jansson libxxhash 2>/dev/null) -lm
@@ -132,30 +136,11 @@ CORE_ROOMS   := base system wall mpc fluid medium fiber contact bead kernel theo
 CORE_SOURCES := $(filter src/step.c src/work.c $(CORE_ROOMS:%=src/%/%),$(SOURCES))
 CORE_HEADERS := $(filter src/step.h src/work.h $(CORE_ROOMS:%=src/%/%),$(sort $(shell find src -name '*.h')))
 
-# Objects that fit into programs at any address, and show what UNCROSS_API marks only. What prints stays outside.
-LINKED_OBJECTS := $(patsubst %.c,$(BUILD)/lib/%.o,$(filter-out src/cli/% src/oracle/% src/files/info.c,$(SOURCES))) \
-   $(FAST:%=$(BUILD)/lib/src/kernel/%.o)
+# What prints stays outside.
+LINKED_OBJECTS := $(filter-out $(BUILD)/src/cli/% $(BUILD)/src/oracle/% $(BUILD)/src/files/info.o,$(OBJECTS))
 
 .PHONY: libraries
 libraries: $(LIBRARIES)
-
-LIBRARY_FLAGS := -fPIC -fvisibility=hidden
-ifndef ONCE
-$(BUILD)/lib/src/%.o: src/%.c Makefile | $(BUILD)/found-run
-	@mkdir -p $(@D)
-	@echo '  CC $< (library)'
-	@$(CC) $(ALL_CFLAGS) $(LIBRARY_FLAGS) $(DEPENDENCIES) -c $< -o $@
-
-$(KERNELS:%=$(BUILD)/lib/src/kernel/%.o): $(BUILD)/lib/src/kernel/%.o: src/kernel/solvent.c Makefile | $(BUILD)/found-run
-	@mkdir -p $(@D)
-	@echo '  CC $< ($*, library)'
-	@$(CC) $(KERNEL_CFLAGS) $(LIBRARY_FLAGS) $(DEPENDENCIES) -c $< -o $@
-else
-# ONCE=1, for builds that are only tested: libraries are made of the objects of the program, which fit into them.
-$(LINKED_OBJECTS): $(BUILD)/lib/%.o: $(BUILD)/%.o
-	@mkdir -p $(@D)
-	@cp $< $@
-endif
 
 # The library reads HDF5 files by the program, of the same build.
 $(BUILD)/lib/$(SONAME): $(LINKED_OBJECTS) | $(BUILD)/uncross
@@ -188,9 +173,8 @@ $(BUILD)/build-info.inc: force | $(BUILD)/found-run
 	   echo '#define BUILD_FLAGS "$(STRICT) $(OPTIMIZE)"'; \
 	   printf '#define BUILD_PREFIX "%s"\n' "$$(printf %s "$$PREFIX" | sed 's/[\"]/\\&/g')"; } > $@.new
 	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
-BUILD_INFO := $(BUILD)/src/files/build_info.o $(BUILD)/lib/src/files/build_info.o
-$(BUILD_INFO): $(BUILD)/build-info.inc
-$(BUILD_INFO): INCLUDES += -I$(BUILD)
+$(BUILD)/src/files/build_info.o: $(BUILD)/build-info.inc
+$(BUILD)/src/files/build_info.o: INCLUDES += -I$(BUILD)
 
 .PHONY: force
 force:
@@ -258,19 +242,19 @@ READER := $(BUILD)/tests/reader.o
 $(BUILD)/tests/%: tests/%.c $(READER) $(LIBRARY) Makefile | $(BUILD)/found-test
 	@mkdir -p $(@D)
 	@echo '  CC $<'
-	@$(CC) $(ALL_CFLAGS) -Itests $(DEPENDENCIES) $< $(READER) $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
+	@$(CC) $(TEST_CFLAGS) $(DEPENDENCIES) $< $(READER) $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
 
 # Tests of the public interface see nothing else: they are linked with the shared library.
 $(BUILD)/tests/api/test_%: tests/api/test_%.c $(BUILD)/lib/libuncross.so Makefile | $(BUILD)/found-test
 	@mkdir -p $(@D)
 	@echo '  CC $<'
-	@$(CC) $(filter-out -Isrc,$(ALL_CFLAGS)) -Itests $(DEPENDENCIES) $< -L$(BUILD)/lib -Wl,-rpath,'$$ORIGIN/../../lib' -luncross -lcmocka -lm -o $@
+	@$(CC) $(filter-out -Isrc,$(TEST_CFLAGS)) $(DEPENDENCIES) $< -L$(BUILD)/lib -Wl,-rpath,'$$ORIGIN/../../lib' -luncross -lcmocka -lm -o $@
 
 # No file of the core needs HDF5, YAML or jansson: all of them are linked, whether used or not.
 $(BUILD)/tests/api/test_core: tests/api/test_core.c $(BUILD)/lib/libuncross-core.a Makefile | $(BUILD)/found-test
 	@mkdir -p $(@D)
 	@echo '  CC $<'
-	@$(CC) $(ALL_CFLAGS) $(DEPENDENCIES) $< -Wl,--whole-archive $(BUILD)/lib/libuncross-core.a -Wl,--no-whole-archive \
+	@$(CC) $(TEST_CFLAGS) $(DEPENDENCIES) $< -Wl,--whole-archive $(BUILD)/lib/libuncross-core.a -Wl,--no-whole-archive \
 	   -lcmocka -lxxhash -lm -o $@
 
 # Holds all kernels against the plain one, whether the program has them or not.
@@ -278,7 +262,7 @@ ROWS := $(if $(KERNELS),$(BUILD)/src/kernel/rows.o) $(patsubst %,$(BUILD)/src/ke
 $(filter $(BUILD)/tests/kernel/% $(BUILD)/tests/contract/test_kernels,$(TEST_PROGRAMS)): $(BUILD)/%: %.c $(ROWS) $(READER) $(LIBRARY) Makefile | $(BUILD)/found-test
 	@mkdir -p $(@D)
 	@echo '  CC $<'
-	@$(CC) $(ALL_CFLAGS) -Itests $(DEPENDENCIES) $(filter %.c %.o %.a,$^) $(TEST_LIBS) $(LIBS) -o $@
+	@$(CC) $(TEST_CFLAGS) $(DEPENDENCIES) $(filter %.c %.o %.a,$^) $(TEST_LIBS) $(LIBS) -o $@
 
 # Memory, files and HDF5 that fail on demand (tests/faults/inject.h): the program, and the tests of tests/faults.
 INJECTOR := $(BUILD)/tests/faults/inject.o
@@ -292,7 +276,7 @@ $(BUILD)/uncross-faults: $(TOP) $(LIBRARY) $(INJECTOR)
 $(BUILD)/tests/faults/test_%: tests/faults/test_%.c $(READER) $(LIBRARY) $(INJECTOR) Makefile | $(BUILD)/found-test
 	@mkdir -p $(@D)
 	@echo '  CC $<'
-	@$(CC) $(ALL_CFLAGS) -Itests $(DEPENDENCIES) $< $(READER) $(INJECT) $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
+	@$(CC) $(TEST_CFLAGS) $(DEPENDENCIES) $< $(READER) $(INJECT) $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
 
 $(BUILD)/validation/%: validation/%.c $(READER) $(LIBRARY) Makefile | $(BUILD)/found-test
 	@mkdir -p $(@D)
@@ -481,7 +465,7 @@ sanitize:
 	tools/install-dependencies run hard
 	mkdir -p build/sanitize
 	clang -O1 -c tests/faults/child_reached.c -o build/sanitize/child.o
-	LLVM_PROFILE_FILE=/dev/null $(MAKE) -j2 CC=clang BUILD=build/sanitize ONCE=1 OPTIMIZE=-O1 HARDEN= \
+	LLVM_PROFILE_FILE=/dev/null $(MAKE) -j2 CC=clang BUILD=build/sanitize OPTIMIZE=-O1 HARDEN= \
 	   CFLAGS='$(SANITIZE_CFLAGS)' LIBS='$(LIBS) $(CURDIR)/build/sanitize/child.o -Wl,--wrap=_exit' exact
 	tools/sanitize build/sanitize $(filter-out $(STATISTICS),$(EXACT_TESTS))
 
@@ -510,4 +494,4 @@ $(BUILD)/readers: $(BUILD)/tests/fuzz/fuzz_readers.o $(BUILD)/tests/fuzz/standin
 clean:
 	rm -rf $(BUILD)
 
--include $(OBJECTS:.o=.d) $(wildcard $(BUILD)/tests/fuzz/*.d) $(ROWS:.o=.d) $(LINKED_OBJECTS:.o=.d) $(TEST_PROGRAMS:=.d) $(STRESS_PROGRAMS:=.d) $(MEASURE_PROGRAMS:=.d) $(BENCH_PROGRAMS:=.d)
+-include $(OBJECTS:.o=.d) $(wildcard $(BUILD)/tests/fuzz/*.d) $(ROWS:.o=.d) $(TEST_PROGRAMS:=.d) $(STRESS_PROGRAMS:=.d) $(MEASURE_PROGRAMS:=.d) $(BENCH_PROGRAMS:=.d)
