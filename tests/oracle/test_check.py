@@ -165,7 +165,7 @@ class SingleTest(Folder):
         path = self.rounded(8)
         for name in ("random", "crossing", "exchange", "sweep", "bond_force", "bend_force", "force", "kick", "stream", "solve",
                      "rotate", "swap"):
-            code, said, _ = run("compare", DATA / "mixed.pack.h5", path, "--single", "--only", name)
+            code, said, _ = run("compare", "--no-name", DATA / "mixed.pack.h5", path, "--single", "--only", name)
             self.assertEqual(code, 7, (name, said))
 
     def test_factors_have_the_tolerance_of_energies(self):

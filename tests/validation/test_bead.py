@@ -2,11 +2,16 @@
 """The analysis of a bead's motion (validation/measure/bead.py), of motions that are made here."""
 import importlib.util
 import pathlib
+import sys
 import unittest
 
 import numpy
+from scipy import integrate
 
 TREE = pathlib.Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(TREE / "validation"))
+from lib import slit  # noqa: E402
+
 spec = importlib.util.spec_from_file_location("bead", TREE / "validation/measure/bead.py")
 bead = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(bead)
@@ -88,6 +93,27 @@ class Bead(unittest.TestCase):
         time, place, force = trapped(3, 20.0, amplitude=0.6, omega=0.3)
         light, heavy = (bead.active_modulus(time, place, force, 2.0, mass, 0.3)[0][0] for mass in (0.0, 100.0))
         self.assertAlmostEqual(heavy - light, 100.0 * 0.09 / (12.0 * numpy.pi), places=9)
+
+
+class Slit(unittest.TestCase):
+    def test_walls_slow_a_point_force_as_faxen_says(self):
+        """First coefficients of his series (Happel and Brenner 1965, Chapter 7): of radius over height, for 1/(6 pi eta radius)."""
+        for height, distance, expected in ((1.0, 2.0, 1.004), (1.0, 4.0, 0.6526), (1.0, 4000.0, 9.0 / 16.0)):
+            def lost(k, y=height, d=distance):
+                return 0.375 - k * 0.5 * (slit.transverse(k, y, d) + slit.longitudinal(k, y, d))
+            found = sum(integrate.quad(lost, *part, epsabs=1e-5)[0] for part in ((1e-4, 1e-3), (1e-3, 0.01), (0.01, 0.1), (0.1, 30.0)))
+            self.assertAlmostEqual(3.0 * found, expected, delta=0.0006)
+
+    def test_images_near_one_wall(self):
+        """Far from a point force at height h over a wall the flow is 3 h^2 x^2/(2 pi eta r^5) at that height (Blake 1971, the first term);
+        the sum of 1/r^3 over a square lattice is 9.0336/L^3."""
+        for length, known in ((40.0, 0.04), (120.0, 0.02)):
+            expected = 1.5 * 2.0**2 / numpy.pi * 0.5 * 9.0336 / length**3
+            self.assertAlmostEqual(slit.images(2.0, 4000.0, length) / expected, 1.0, delta=known)
+
+    def test_narrow_slit_has_the_mean_flow_alone(self):
+        """Images across H exp(-pi L/H) see one another by the flow through the slit only: of parabolic weight w, by half."""
+        self.assertAlmostEqual(slit.images(1.0, 2.0, 20.0) / (2.0 * 1.5**2 / (24.0 * 400.0)), 1.0, delta=1e-4)
 
 
 if __name__ == "__main__":
