@@ -1,7 +1,7 @@
 """The program when memory, files or HDF5 fail: for n = 1, 2, 3, ... the n-th call fails, alone or with all that follow.
 
 It must never crash; must say why it stopped; must never lose a checkpoint; and whatever it calls done must be right.
-Needs BUILD, with uncross and uncross-faults. For each command FAULTS calls of HDF5 are tried at most (5), and five times as
+Needs BUILD, with uncross and uncross-faults. For each command FAULTS calls of HDF5 are tried at most (2), and five times as
 many of the others. `make stress` tries 250.
 """
 import concurrent.futures
@@ -14,7 +14,7 @@ import tempfile
 import unittest
 
 BUILD = pathlib.Path(os.environ.get("BUILD", "build")).resolve()
-MOST = int(os.environ.get("FAULTS", "5"))
+MOST = int(os.environ.get("FAULTS", "2"))
 SCENE = """
 box: [5, 4, 4]
 time_step: 0.01

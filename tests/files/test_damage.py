@@ -24,7 +24,7 @@ class Damage(unittest.TestCase):
     def test_no_damage_is_taken_for_good(self):
         with tempfile.TemporaryDirectory() as folder:
             bench = damage.Bench(folder)
-            wrong = bench.attack(48, 12, 14)
+            wrong = bench.attack(24, 8, 8)
             print(f"# {dict(bench.counts)}")
             self.assertFalse(wrong, "\n".join(wrong))
 

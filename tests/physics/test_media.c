@@ -2,10 +2,10 @@
  * weight that it takes. (That its bits do not depend on the order in memory is in tests/contract/test_media.c.) */
 #include "contract/contract.h"
 
-/* Overdamped motion has no velocities. A weight and a draw are independent factors, so each is varied alone. */
+/* Overdamped motion has no velocities. A weight and a draw are independent factors, so both are varied at once. */
 static void equipartition(struct choice c)
 {
-  if (c.medium != MEDIUM_OVERDAMPED && (c.draw == 0 || c.weight == 0))
+  if (c.medium != MEDIUM_OVERDAMPED && c.weight == (c.medium == MEDIUM_PAIRS ? c.draw % MEDIUM_WEIGHTS : 0))
     contract_equipartition(c);
 }
 

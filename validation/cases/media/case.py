@@ -29,11 +29,16 @@ def chain(name, medium, vertices, count, steps, hours, step=STEP, every=EVERY, f
     return Run(name, scene=scene, steps=steps, hours=hours, goals=((steps // 10, 0),) if steps > QUICK_STEPS else ())
 
 
+def chains_of(tier):
+    """Vertices and number of the chains with hydrodynamic interactions."""
+    return CHAINS if tier == "campaign" else {10: CHAINS[10]}
+
+
 def runs(tier):
     n = LENGTH[tier]
     rpy = f"{{kind: overdamped, rate: 1, tensor: rpy, radius: {RADIUS}}}"
     found = [chain(f"rpy-N{vertices}", rpy, vertices, count, 40000 * n, 0.01 * n, every=5)
-             for vertices, count in CHAINS.items()]
+             for vertices, count in chains_of(tier).items()]
     found.append(chain("none-N10", "{kind: overdamped, rate: 1}", 10, 100, 40000 * n, 0.002 * n))
     found.append(chain("langevin-N10", "{kind: private, rate: 10, draw: relax}", 10, 50, 200000 * n, 0.005 * n, step=0.02,
                        every=200, first=10000, memory=", memory: {every: 5}"))
@@ -132,7 +137,7 @@ CAPTIONS = ("Temperatures of a fluid of DPD (ρ = 3, a = 25, γ = 4.5) by eight 
 
 
 def evaluate(results, tier):
-    verdicts = [verdict for vertices in CHAINS for verdict in chain_verdicts(results, vertices)]
+    verdicts = [verdict for vertices in chains_of(tier) for verdict in chain_verdicts(results, vertices)]
     verdicts += ideal_verdicts(results) + fluid_verdicts(results)
     drawn = [Figure("chains", "N D/D0 of chains against the lag, with and without hydrodynamic interactions. Without, it is 1 at "
                     "any lag; with them it falls from Kirkwood's value by some per cent.", lambda: draw(results))] if results else []

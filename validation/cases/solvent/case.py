@@ -22,8 +22,8 @@ GRID = [Point(5, dt_c, 90) for dt_c in (0.02, 0.05, 0.1, 0.2, 0.5, 1.0)] + \
        [Point(5, 0.02, alpha) for alpha in (30, 60, 120, 150)] + [STRONG]
 POINTS = {"quick": [PAPERS, TAILS, STRONG, DILUTE], "campaign": GRID}
 PLENTY = {"quick": 1, "campaign": 8}  # times as many pairs of runs, or windows
-TAIL_POINTS = {"quick": [TAILS], "campaign": [TAILS, PAPERS]}
-TAIL_SEEDS = {"quick": {TAILS: 32}, "campaign": {TAILS: 40, PAPERS: 16}}  # Student's t of few is wide
+SOUND_POINTS = {"quick": [TAILS], "campaign": [TAILS, PAPERS]}
+TAIL_SEEDS = {TAILS: 40, PAPERS: 16}  # of the campaign; Student's t of few is wide
 
 # Boxes of the shear waves: 8 x EDGE x 8. The finest are 8 cells long: shorter waves die before correlations build up.
 EDGES, FINE_EDGES = (32, 16), (32, 24, 16, 12, 8)
@@ -74,23 +74,22 @@ def diffusion_run(point, tier):
         "solvent_vacf", DIFFUSION_BOX, point.gamma, point.dt_c, point.alpha, 250, windows, 21])
 
 
-def tail_runs(point, tier, length, windows):
+def tail_runs(point, length, windows):
     return [Run(f"tail-{label(point)}-{seed}", hours=(windows * length + 200) * 1.5e-6, program=[
         "solvent_vacf", TAIL_BOX, point.gamma, point.dt_c, point.alpha, length, windows, 30 + seed])
-        for seed in range(1, TAIL_SEEDS[tier][point] + 1)]
+        for seed in range(1, TAIL_SEEDS[point] + 1)]
 
 
 def runs(tier):
     found = [make(point, tier) for point in POINTS[tier] for make in (shear_run, diffusion_run)]
     for run in found:  # coarse: the points that verdicts are about; then the lines through them
         run.priority = 0 if any(run.name.endswith("-" + label(point)) for point in POINTS["quick"]) else 1
-    found += tail_runs(TAILS, tier, 125, 6 if tier == "quick" else 30)
-    if PAPERS in TAIL_POINTS[tier]:
-        found += tail_runs(PAPERS, tier, 250, 15)
+    if tier == "campaign":
+        found += tail_runs(TAILS, 125, 30) + tail_runs(PAPERS, 250, 15)
         # When sound has died, C turns positive: 7 to 12 t0, from 20,000 origins each.
         found += [Run(name, hours=0.25, priority=1, program=[
             "solvent_tail", TAIL_BOX, PAPERS.dt_c, LATE_EVERY, *LATE_LAGS, 20000, 61 + number]) for number, name in enumerate(LATE)]
-    return found + [heavy_run(tier)] + [sound_run(point, tier) for point in TAIL_POINTS[tier]] + [heat_run(tier)]
+    return found + [heavy_run(tier)] + [sound_run(point, tier) for point in SOUND_POINTS[tier]] + [heat_run(tier)]
 
 
 def sound_run(point, tier):
@@ -320,15 +319,14 @@ def sound_verdict(results):
 TAIL_TIMES = {TAILS: (2.0, 12.4), PAPERS: (2.5, 4.9)}
 
 
-def tail_verdict(results, point, tier):
-    """The campaign has to tell the tail of shear, sound and heat from that of shear alone, the quick tier from none. Not at the paper's
-    point: there they cancel, what the width of a particle makes is as large as the rest, and no
+def tail_verdict(results, point):
+    """It has to be told from the tail of shear alone. Not at the paper's point: there they cancel, what the width of a particle makes is as large as the rest, and no
     run however long would decide anything. (A theory without the sine of `sound_decays` is far off there; at dt_c 0.1 it is not.)"""
     first, last = TAIL_TIMES[point]
     verdict = Verdict(f"solvent.tail.{NAMES[point]}",
                       f"long-time tail of C(t), {first:g} to {last:g} t0, over that of shear waves alone, {words(point)}", 0.0,
                       "shear waves, sound and heat of the box with the measured ν, D, Γ: between particles of no "
-                      "width and as wide as a cell; 0.05 for ν(k)", 0.0, rival=1.0 if tier == "campaign" else 0.0)
+                      "width and as wide as a cell; 0.05 for ν(k)", 0.0, rival=1.0)
     if has_tail(results, point):
         (verdict.measured, verdict.error), verdict.expected, open_ = tail(results, point, first, last)
         verdict.tolerance = stats.tolerance(verdict.error, systematic=open_ + 0.05, values=len(tail_tables(results, point)))
@@ -491,7 +489,9 @@ def evaluate(results, tier):
     verdicts += [viscosity_verdict(results, point) for point in POINTS["quick"]]
     verdicts += [slope_verdict(results)] if tier == "campaign" else []  # the quick runs cannot tell it from nothing
     verdicts += [heavy_verdict(results), diffusion_verdict(results), sound_verdict(results), heat_verdict(results)]
-    verdicts += [tail_verdict(results, TAILS, tier)] + paper_verdicts(results) + ([late_verdict(results)] if tier == "campaign" else [])
+    if tier == "campaign":
+        verdicts.append(tail_verdict(results, TAILS))
+    verdicts += paper_verdicts(results) + ([late_verdict(results)] if tier == "campaign" else [])
     return Outcome(verdicts, figures_of(results, tier), prose(results))
 
 
@@ -502,7 +502,7 @@ def still_to_come(tier, known):
 
 def figures_of(results, tier):
     known = [point for point in POINTS[tier] if has_point(results, point)]
-    tails = [point for point in TAIL_POINTS[tier] if has_tail(results, point)]
+    tails = [point for point in TAIL_TIMES if has_tail(results, point)]
     found = []
     if PAPERS in known:
         found.append(Figure(
