@@ -45,7 +45,29 @@ struct tally {
   struct oracle_pair first;
   uint32_t row, column;
   double tolerance;
+  bool found_plain; /* the first beyond tolerance that is not of a drift, which has all other operators in it */
+  struct oracle_pair plain;
+  uint32_t plain_row;
 };
+
+static bool is_drift(const struct pack_table *t)
+{
+  static const char *const drifts[] = {"sweep", "long_sweep", "event_drift", "long_event_drift"};
+  bool any = false;
+  for (size_t k = 0; k < sizeof drifts / sizeof *drifts; k++)
+    any |= strcmp(t->place.operator_name, drifts[k]) == 0;
+  return any;
+}
+
+static void tally_plain(struct tally *t, const struct oracle_pair *p, uint32_t row)
+{
+  if (is_drift(p->ours) || (t->found_plain && oracle_flow(p->ours, t->plain.ours) >= 0))
+    return;
+  t->found_plain = true;
+  t->plain = *p;
+  t->plain.known = NULL;
+  t->plain_row = row;
+}
 
 /* largest: size in our table. */
 static void tally_value(struct tally *t, const struct oracle_pair *p, double largest, uint32_t row, uint32_t column)
@@ -73,6 +95,8 @@ static void tally_value(struct tally *t, const struct oracle_pair *p, double lar
     t->found_beyond = beyond;
   }
   t->beyond += beyond;
+  if (beyond)
+    tally_plain(t, p, row);
 }
 
 static void print_number(FILE *out, const struct pack_table *t, uint32_t row, uint32_t column)
@@ -267,9 +291,11 @@ static bool print_difference(struct tally *t, const struct oracle_options *optio
              t->row < p->ours->rows ? "missing" : "not here");
     fprintf(out, "first difference: %s\n", t->first_words);
   }
-  const bool ok = oracle_name(p, t->row, options, t->meaning, message);
+  const bool plain = t->found_plain && is_drift(p->ours);
+  const bool ok = oracle_name(plain ? &t->plain : p, plain ? t->plain_row : t->row, options, t->meaning, message);
   if (t->meaning[0])
-    fprintf(out, "this pattern: %s\n", t->meaning);
+    fprintf(out, "this pattern: %s%s%s%s\n", plain ? "in " : "",
+            plain ? text_shown(t->plain.ours->place.operator_name) : "", plain ? ": " : "", t->meaning);
   return ok;
 }
 

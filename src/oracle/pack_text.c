@@ -253,6 +253,19 @@ static bool finish(struct pack_table *t, const struct draft *d, const char *path
   return true;
 }
 
+/* word: what is wrong. */
+static bool complain(const char *word, const char *path, size_t number, size_t column, struct message *message)
+{
+  uint64_t value;
+  if (parse_whole(word, UINT64_MAX, &value) && value > INT64_MAX)
+    return message_at(message, path, number, column,
+                      "%" PRIu64 " is too large; whole numbers have 64 bits and a sign, and %" PRId64
+                      " without its sign is printed so",
+                      value, (int64_t)value);
+  return message_at(message, path, number, column,
+                    "'%.40s' is not understood; a line is `operator step row table.component value`", text_shown(word));
+}
+
 /* Takes line number `number` in, comments and empty lines aside. */
 static bool read_line(char *text, struct budget *budget, const char *path, size_t number, struct pack *pack,
                       struct draft drafts[MOST_TABLES], struct message *message)
@@ -263,8 +276,7 @@ static bool read_line(char *text, struct budget *budget, const char *path, size_
     return true;
   const size_t column = parse_line(text, &line);
   if (column > 0)
-    return message_at(message, path, number, column,
-                      "not understood; a line is `operator step row table.component value`");
+    return complain(text + column - 1, path, number, column, message);
   const char *wrong = take(pack, drafts, budget, &line);
   return !wrong || message_at(message, path, number, line.column, "%s", wrong);
 }

@@ -374,7 +374,7 @@ class PortTest(Folder):
     def test_ports_that_fail(self):
         for does, word in (("exit 3", "the port's exit code is 3"), ("exit 255", "the port's exit code is 255"), ("kill -SEGV $$", "ended by signal 11"),
                            ("exec sleep 60", "took more than 1 s"), ("true", "has not written its output"),
-                           ("echo nonsense >$2", "not understood"), ("head -c 5000 $1 >$2", "out")):
+                           ("echo nonsense >$2", "'' is not understood"), ("echo bin 1 0 out.solvent.cell 18446744073709551609 >$2", "and -7 without its sign is printed so"), ("head -c 5000 $1 >$2", "out")):
             code, said, checks, _ = self.check(self.port(does), "--no-traces", "--seconds", 1)
             self.assertEqual((code, {c["verdict"] for c in checks}), (7, {"failed"}), said)
             self.assertIn(word, checks[0]["trouble"])

@@ -56,6 +56,16 @@ class HookTest(Folder):
             self.assertEqual(done.returncode, 7, done.stderr)
             self.assertIn(MISTAKES[name].text, meaning(done.stdout))
 
+    def test_the_simplest_operator_is_asked(self):
+        """A constant force that is read wrongly shows in drifts, too, which come first in a pack."""
+        mistake = catalogue.Mistake("", "", (("model.py", "constant_force=vertex[:, 4:7],", "constant_force=vertex[:, 3:6],"),), "", {})
+        given = pack.read(DATA / "events.pack.h5")
+        some = {place: tables for place, tables in given.items() if place[0] in ("model", "long_event_drift", "force")}
+        pack.write(self.dir / "theirs.h5", catalogue.plant(mistake)["operators"].run(some))
+        done = compare(self.dir / "theirs.h5", "--only", "long_event_drift,force", ours="events")
+        self.assertIn("first difference: long_event_drift", done.stdout)
+        self.assertIn("in force: constant force of the model is read from columns 4 to 6 of vertex", meaning(done.stdout))
+
     def test_other_rounding_is_still_named(self):
         """A port in another language is off by last bits, too."""
         path = self.broken("kick without the mass", "kick")
