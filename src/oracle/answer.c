@@ -32,10 +32,11 @@ static const struct oracle_operator *operator_of(const char *name, bool plain)
   return NULL;
 }
 
-static bool refuse(const struct oracle_stage *g, const struct oracle_entity *of, uint32_t row, struct message *message)
+static bool refuse(const struct oracle_stage *g, const char *table, const struct oracle_entity *of, uint32_t row,
+                   struct message *message)
 {
-  return message_set(message, "%s, step %" PRIu64 ": %s %" PRIu32 " is beyond what may be asked",
-                     g->place.operator_name, g->place.step, of->word, row);
+  return message_set(message, "%s, step %" PRIu64 ": %s: %s %" PRIu32 " is beyond what may be asked",
+                     g->place.operator_name, g->place.step, table, of->word, row);
 }
 
 /* Takes the tables that go in, into the rows of the stage or into its state. */
@@ -49,13 +50,13 @@ static bool take(struct oracle_stage *g, const struct oracle_operator *o, const 
     const struct pack_table *given = head_table(pack, &g->place, t, rows, message);
     for (uint32_t k = 0; given && k < rows; k++)
       if (!t->source->take(g, k, (const char *)given->value.data + 8 * (size_t)given->columns * k))
-        return refuse(g, of, k, message);
+        return refuse(g, t->name, of, k, message);
     if (!given)
       return false;
   }
   for (uint32_t k = 0; first->legal && k < g->rows; k++)
     if (!first->legal((const char *)g->row + first->size * k))
-      return refuse(g, first, k, message);
+      return refuse(g, "all inputs", first, k, message);
   return true;
 }
 

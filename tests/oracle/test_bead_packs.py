@@ -10,10 +10,10 @@ from fractions import Fraction
 
 from packs import TOP, check_made_but_for
 from test_edges import Text
-from test_tube_packs import at_time, dot, plus, to_segment
+from test_tube_packs import to_segment
+from uncross_construct.exact import TICKS, at_tick, dot, plus
 
 DATA = TOP / "reference-data/beads"
-TICKS = 65536
 STEPS = (1, 1200)
 VECTORS = ("p", "q", "w", "p_rate", "q_rate", "w_rate")
 
@@ -42,12 +42,12 @@ class BeadPacks(unittest.TestCase):
                     self.assertEqual(tick, TICKS)
                     continue
                 for time in {first + (tick - first) * k // 19 for k in range(20)} | {max(first, tick - k) for k in range(3)}:
-                    p, _, w = at_time(row, time)
+                    p, _, w = at_tick(row, time)
                     self.assertGreater(to_segment(w, p), reach * reach)
                     apart += 1
                 if tick < TICKS:
                     way = sum(math.sqrt(dot(rate, rate)) for rate in row[3:])
-                    times = (at_time(row, tick + Fraction(k, 16)) for k in range(17))
+                    times = (at_tick(row, tick + Fraction(k, 16)) for k in range(17))
                     near = min(to_segment(w, p) for p, _, w in times)
                     self.assertLessEqual(near, Fraction(reach + 3 + 2 * way * way / reach + way / 32) ** 2)
                     answers += 1

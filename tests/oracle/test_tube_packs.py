@@ -8,20 +8,12 @@ import unittest
 from fractions import Fraction
 
 from packs import TOP, check_made_but_for, run
-from test_edges import Text
+from test_edges import Text  # and so the next module is found
+from uncross_construct.exact import TICKS, at_tick, cross, dot, plus, times
 
 DATA = TOP / "reference-data/tubes"
-TICKS = 65536
 STEPS = (2, 40)
 VECTORS = ("p", "q", "w", "p_rate", "q_rate", "w_rate")
-
-
-def dot(a, b):
-    return sum(x * y for x, y in zip(a, b))
-
-
-def plus(a, b, factor=1):
-    return [x + factor * y for x, y in zip(a, b)]
 
 
 def to_segment(point, bond):
@@ -34,7 +26,7 @@ def to_segment(point, bond):
 
 def squared_distance(p, q, w):
     """Of two bonds, exactly: the least of four ends against the other bond, and of the insides of both."""
-    back = [-x for x in w]
+    back = times(-1, w)
     found = [to_segment(w, p), to_segment(plus(w, q), p), to_segment(back, q), to_segment(plus(back, p), q)]
     pp, qq, pq, pw, qw = dot(p, p), dot(q, q), dot(p, q), dot(p, w), dot(q, w)
     under = pp * qq - pq * pq
@@ -44,10 +36,6 @@ def squared_distance(p, q, w):
             gap = plus(plus(w, q, t), p, -s)
             found.append(dot(gap, gap))
     return min(found)
-
-
-def at_time(row, time):
-    return [plus(row[k], row[3 + k], time) for k in range(3)]
 
 
 class TubePacks(unittest.TestCase):
@@ -78,7 +66,7 @@ class TubePacks(unittest.TestCase):
                     continue
                 times = {first + (tick - first) * k // 19 for k in range(20)} | {max(first, tick - k) for k in range(3)}
                 for time in times:
-                    self.assertGreater(squared_distance(*at_time(row, time)), reach * reach)
+                    self.assertGreater(squared_distance(*at_tick(row, time)), reach * reach)
                     seen += 1
         self.assertGreater(seen, 5000)
 
@@ -90,7 +78,7 @@ class TubePacks(unittest.TestCase):
                 if tick < TICKS:
                     way = sum(math.sqrt(dot(rate, rate)) for rate in row[3:])
                     doubt = 3 + 2 * way * way / reach
-                    near = min(squared_distance(*at_time(row, tick + Fraction(k, 16))) for k in range(17))
+                    near = min(squared_distance(*at_tick(row, tick + Fraction(k, 16))) for k in range(17))
                     self.assertLessEqual(near, Fraction(reach + doubt + way / 32) ** 2)
                     answers += 1
         self.assertGreater(answers, 300)
@@ -108,8 +96,7 @@ class TubePacks(unittest.TestCase):
                 self.assertLess(size, least * (1 + 1e-9))
                 for x, y in zip(gap, n):
                     self.assertAlmostEqual(float(x) / size, y, delta=1e-8)
-                cross = [p[k - 2] * q[k - 1] - p[k - 1] * q[k - 2] for k in range(3)]
-                if not any(cross) and 0 < s < 1:
+                if not any(cross(p, q)) and 0 < s < 1:
                     along = sorted((0, 1, Fraction(dot(w, p), dot(p, p)), Fraction(dot(plus(w, q), p), dot(p, p))))
                     self.assertAlmostEqual(s, float(along[1] + along[2]) / 2, delta=1e-12)
                     parallel += 1
