@@ -438,6 +438,18 @@ def of_values(values, owner):
             yield from ((f"{what}: {text}", {name: made}) for text, made in _of_table(value))
 
 
+class Spy:
+    """A model that knows which of its values are read."""
+
+    def __init__(self, model):
+        self.__dict__.update(model=model, read=set())
+
+    def __getattr__(self, name):
+        self.read.add(name)
+        made = vars(type(self.model)).get(name)
+        return made.fget(self) if isinstance(made, property) else getattr(self.model, name)
+
+
 def of_readers(model, tables):
     """(text, {name: another value}) for values of the model that stand in a table: other columns of it are read."""
     for name, value in vars(model).items():

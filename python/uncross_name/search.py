@@ -12,6 +12,7 @@ from uncross_port import operators
 
 from . import catalogue, changes, evidence
 
+FIRST = 60  # changes of lines before those of what is read
 FOR_CHANGES = 25  # seconds that the catalogue leaves for them
 MOST_FOUND = 8  # changes of the port that make the same
 MOST_NAMES = 3  # that are told of one difference
@@ -264,13 +265,21 @@ def changed_ones(outputs):
     """Changes that may be at an operator, likelier ones first."""
     outputs.run_right()
     operator, inputs, model = outputs.right["operators"].OPERATORS[outputs.case.operator], outputs.inputs, outputs.model
-    for text, values in itertools.chain(changes.of_readers(model, outputs.case.model), changes.of_values(vars(model), "the model")):
-        yield changes.Change(text, 0, functools.partial(_read_as, outputs, "model", values))
-    for text, values in _of_inputs(inputs):
-        yield changes.Change(text, 0, functools.partial(_read_as, outputs, "inputs", values))
     sorts = changes.sorts_of(model)
     sorts.update(changes.likes_of(next(iter(inputs.values()))))
-    yield from changes.of_call(outputs.right, sorts, lambda: [operator(model, step, given) for step, given in inputs.items()])
+    lines = iter(changes.of_call(outputs.right, sorts, lambda: [operator(model, step, given) for step, given in inputs.items()]))
+    if outputs.case.first.table in FOLLOW:  # takes long: likelier ones first
+        yield from itertools.islice(lines, FIRST)
+    spy = changes.Spy(model)
+    with contextlib.suppress(Exception):
+        for step, given in inputs.items():
+            operator(spy, step, given)
+    for text, values in itertools.chain(changes.of_readers(model, outputs.case.model), changes.of_values(vars(model), "the model")):
+        if spy.read & values.keys():
+            yield changes.Change(text, 0, functools.partial(_read_as, outputs, "model", values))
+    for text, values in _of_inputs(inputs):
+        yield changes.Change(text, 0, functools.partial(_read_as, outputs, "inputs", values))
+    yield from lines
 
 
 ALONE = ("crossing", "exchange", "impulse", "contact_search", "tube_search", "bead_search", "tube_contact", "bead_contact")  # rows stand for themselves
@@ -300,14 +309,15 @@ def _few_rows(case, outputs):
 def changed(case, outputs, seconds):
     """Sentences of changes that make all tables of theirs, in so many seconds."""
     found, end, tried, few = [], time.process_time() + seconds, 0, None
-    for change in changed_ones(outputs):
-        few = few or _few_rows(case, outputs) or (lambda change: True)
-        if time.process_time() > end or outputs.clock.left() <= 0 or len(found) >= MOST_FOUND:
-            break
-        tried += 1
-        with contextlib.suppress(Exception):  # a change may make anything
-            fit = few(change) and _fit(case, outputs, change)
-            if fit and fit.all_tables:
-                found.append(fit)
+    with contextlib.suppress(Exception):  # what the port to NumPy cannot run
+        for change in changed_ones(outputs):
+            few = few or _few_rows(case, outputs) or (lambda change: True)
+            if time.process_time() > end or outputs.clock.left() <= 0 or len(found) >= MOST_FOUND:
+                break
+            tried += 1
+            with contextlib.suppress(Exception):  # a change may make anything
+                fit = few(change) and _fit(case, outputs, change)
+                if fit and fit.all_tables:
+                    found.append(fit)
     sure = told(found, case, max(tried, 1))
     return list(dict.fromkeys(fit.mistake.text for fit in sorted(sure, key=lambda fit: fit.mistake.rank)))[:MOST_NAMES]

