@@ -236,11 +236,11 @@ OF = {ast.Constant: _of_constant, ast.Call: _of_call, ast.BinOp: _of_binary, ast
       ast.Tuple: _of_sequence, ast.List: _of_sequence, ast.IfExp: _of_branch, ast.If: _of_branch}
 
 
-def _of_like(node, likes):
+def _of_like(node, likes, calls):
     """Another name where one of the same sort stands. likes: {attribute or name: others that may stand there}."""
     word = node.attr if isinstance(node, ast.Attribute) else node.id
     for other in likes.get(word, ()):
-        yield f"{word} is {other}", 2, _with(node, **{"attr" if isinstance(node, ast.Attribute) else "id": other})
+        yield f"{word} is {other}", 1 if calls else 2, _with(node, **{"attr" if isinstance(node, ast.Attribute) else "id": other})
 
 
 def _variants(place, likes):
@@ -254,7 +254,7 @@ def _variants(place, likes):
         for other in likes.get(node.value, ()):
             yield f"{node.value} is {other}", 2, ast.Constant(other)
     if isinstance(node, (ast.Name, ast.Attribute)) and isinstance(node.ctx, ast.Load):
-        yield from _of_like(node, likes)
+        yield from _of_like(node, likes, isinstance(place.parent, ast.Call) and place.field == "func")
         if not (isinstance(place.parent, ast.Call) and place.field == "func") and not (isinstance(place.parent, ast.Attribute)):
             yield from _of_name(node)
     if isinstance(node, ast.UnaryOp):
@@ -385,11 +385,11 @@ def of_function(used, module, sorts):
             continue
         for kind, rank, other in _variants(place, likes):
             yield _Edit(where, function, tree, [(place, other)], kind, rank)
-            alike[kind, _shape(node)].append((place, other))
-    for (kind, _), edits in alike.items():
+            alike[kind, rank, _shape(node)].append((place, other))
+    for (kind, rank, _), edits in alike.items():
         nested = any(place.node in other.above for place, _ in edits for other, _ in edits)
         if len(edits) > 1 and not nested:
-            yield _Edit(where, function, tree, edits, kind, 3)
+            yield _Edit(where, function, tree, edits, kind, rank + 1)
 
 
 def of_call(modules, sorts, function, *arguments):

@@ -286,6 +286,11 @@ ALONE = ("crossing", "exchange", "impulse", "contact_search", "tube_search", "be
 FEW = 6  # rows that are tried first
 
 
+def _unlike(values, rows):
+    """A few of the rows, with other values each."""
+    return rows[np.sort(np.unique(values[rows], axis=0, return_index=True)[1])][:FEW]
+
+
 def _few_rows(case, outputs):
     """A function that says whether a change makes a few of the wrong rows, and some right ones; None where rows depend on others."""
     first = case.first
@@ -293,7 +298,7 @@ def _few_rows(case, outputs):
         return None
     part = max(first.parts, key=lambda part: first.wrong_rows[part.first : part.first + part.rows].sum())
     wrong = first.wrong_rows[part.first : part.first + part.rows]
-    rows = np.concatenate([np.flatnonzero(wrong)[:FEW], np.flatnonzero(~wrong)[:FEW]])
+    rows = np.concatenate([_unlike(part.theirs, np.flatnonzero(wrong)), _unlike(part.theirs, np.flatnonzero(~wrong))])
 
     def makes(change):
         with change.apply():
