@@ -144,6 +144,7 @@ libraries: $(LIBRARIES)
 
 # The library reads HDF5 files by the program, of the same build.
 $(BUILD)/lib/$(SONAME): $(LINKED_OBJECTS) | $(BUILD)/uncross
+	@mkdir -p $(@D)
 	@echo '  LD $@'
 	@$(CC) $(ALL_CFLAGS) $(HARDEN_LINKED) -shared -Wl,-soname,$(SONAME) $^ $(LIBS) -o $@
 
@@ -152,6 +153,7 @@ $(BUILD)/lib/libuncross.so: $(BUILD)/lib/$(SONAME)
 
 # One object whose other names are local, so that they cannot meet those of a program.
 $(BUILD)/lib/libuncross.a: $(LINKED_OBJECTS) | $(BUILD)/uncross
+	@mkdir -p $(@D)
 	@echo '  LD $@'
 	@$(CC) -r -nostdlib $^ -o $(BUILD)/lib/uncross.o
 	@objcopy --localize-hidden $(BUILD)/lib/uncross.o
