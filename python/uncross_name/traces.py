@@ -23,7 +23,6 @@ HASHES = ("state_hash", "digest", "contacts_hash", "contacts_digest")
 MOST_FOUND = 8
 MORE = 4  # seconds for others after the first
 LAST = 6  # seconds that are kept for looking at all rows
-SUMS = 1e-9  # as src/oracle/compare_traces.c
 
 
 def read_rows(path):
@@ -38,7 +37,6 @@ class Trace:
         self.modules, self.theirs = modules, theirs
         self.tables, self.model_tables = modules["operators"].inputs(start["start", 0]), modules["operators"].inputs(start["model", 0])
         self.hashes = [name for name in HASHES if name in theirs[0]]
-        self.names = modules["step"].COLUMNS[:-1]
         self.agreed = 0
         self.right, self.begun, self.alter = [], {}, lambda model: model
 
@@ -469,10 +467,15 @@ def told(found, trace):
 
 def read_and_name(start, theirs, seconds=50):
     clock = search.Clock(seconds)
-    trace = Trace(pack.read(start), read_rows(theirs), catalogue.plant(catalogue.RIGHT))
+    rows = read_rows(theirs)
+    if not rows:
+        return "theirs has no rows"
+    trace = Trace(pack.read(start), rows, catalogue.plant(catalogue.RIGHT))
     first = trace.find_first()
+    if first is None and len(rows) > len(trace.right):
+        return f"theirs has rows after the last step, {trace.right[-1]['step']}"
     if first is None:
-        return "the port to NumPy agrees with theirs"
+        return "all states and contacts are right; what differs is computed from them"
     if first >= len(trace.theirs) or trace.theirs[first]["stage"] != trace.right[first]["stage"] or trace.theirs[first]["step"] != trace.right[first]["step"]:
         return _stages(trace.theirs, trace)
     trace.find_stages()

@@ -53,6 +53,14 @@ class TraceTest(unittest.TestCase):
                                     '"drift-split": [("drift", 0.5), ("drift", 0.5), ("collide", None), ("force", None), ("kick", 1.0)],'))
         self.assertEqual(said, "step 3 has the stages drift, collide, drift, force, kick, end; theirs has drift, drift, collide, force, kick, end")
 
+    def test_states_that_are_right(self):
+        """Traces whose hashes are all right, or that have no rows, or too many."""
+        start, lines = self.start("mixed"), (TOP / "reference-data/mixed.trace.csv").read_text().splitlines()
+        for text, words in ((lines, "all states and contacts are right"), (lines[:1], "theirs has no rows"),
+                            ([*lines, lines[-1]], "theirs has rows after the last step")):
+            (self.dir / "theirs.csv").write_text("\n".join(text) + "\n")
+            self.assertIn(words, traces.read_and_name(start, self.dir / "theirs.csv", SECONDS))
+
     def test_no_change_makes_it(self):
         """A hash of nothing has no name."""
         start = self.start("mixed")
