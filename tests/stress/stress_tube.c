@@ -1,5 +1,5 @@
 /* The search for contacts of tubes at length: 10^7 queries that are made to be hard (contact/tubes.h), each answer
- * against polynomials over the integers (contact/exact_tubes.h). A quarter of an hour; the table is in docs/thick.md.
+ * against polynomials over the integers (contact/exact_tubes.h). A quarter of an hour; the table is in tests/README.md.
  */
 #include "stress.h"
 
