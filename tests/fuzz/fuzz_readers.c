@@ -196,15 +196,14 @@ static void read_checkpoint(void)
 static void read_trajectory(void)
 {
   struct message message = {.text = ""};
-  struct trajectory *t = trajectory_open_read(all.trajectory.path, &message);
-  if (!t) {
+  struct frames *f = trajectory_open_read(all.trajectory.path, &message);
+  if (!f) {
     require_reason(&message, "a trajectory was refused without a word");
     return;
   }
-  free(trajectory_scene_text(t));
-  if (trajectory_frames(t) > 0 && !trajectory_read(t, &all.scene.model, 0, &all.state, &message))
+  if (f->about.frames > 0 && trajectory_read(f, &all.scene.model, 0, &all.state, &message) != FRAME_FINE)
     require_reason(&message, "a frame was refused without a word");
-  trajectory_close(t, &message);
+  frames_close(f);
 }
 
 static void export_and_verify(const char *path, const char *right)
