@@ -162,17 +162,17 @@ static void leave_sheared(struct state *state, const struct contact *contact)
     state->position[i] = drift_leave(&contact->frame, state->position[i]);
 }
 
-bool contact_drift(struct state *state, const struct model *model, struct contact *contact, double fraction,
-                   uint64_t step, uint32_t drift, const struct contact_log *log, struct fault *fault)
+bool contact_drift_in(const struct drift_frame *frame, struct state *state, const struct model *model,
+                      struct contact *contact, uint64_t step, uint32_t drift, const struct contact_log *log,
+                      struct fault *fault)
 {
-  const struct crossing_rule *rule = crossing_rule_of(model);
   const int64_t slid_before = contact->frame.slides;
   if (step % STEPS_PER_LOOK == 0 && !look_how_far(state, contact, step, fault))
     return false;
-  contact->frame = drift_frame_now(state, model, fraction, drift, rule->forbids);
+  contact->frame = *frame;
   if (contact->frame.sheared)
     enter_sheared(state, contact, slid_before);
-  const bool ok = rule->drift(state, model, contact, step, drift, log, fault);
+  const bool ok = crossing_rule_of(model)->drift(state, model, contact, step, drift, log, fault);
   if (ok)
     follow_frame(state, model, &contact->neighbors, contact->frame.time);
   if (contact->frame.sheared)
@@ -180,6 +180,13 @@ bool contact_drift(struct state *state, const struct model *model, struct contac
   if (model_is_sheared(model))
     take_back_fibers(state, model, contact);
   return ok;
+}
+
+bool contact_drift(struct state *state, const struct model *model, struct contact *contact, double fraction,
+                   uint64_t step, uint32_t drift, const struct contact_log *log, struct fault *fault)
+{
+  const struct drift_frame frame = drift_frame_now(state, model, fraction, drift, crossing_rule_of(model)->forbids);
+  return contact_drift_in(&frame, state, model, contact, step, drift, log, fault);
 }
 
 static bool act_drift(void *room, const struct moment *now, const struct stage *stage)

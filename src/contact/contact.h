@@ -233,6 +233,11 @@ struct contact_log {
 bool contact_drift(struct state *state, const struct model *model, struct contact *contact, double fraction,
                    uint64_t step, uint32_t drift, const struct contact_log *log, struct fault *fault);
 
+/* The same in this frame, of any time. */
+bool contact_drift_in(const struct drift_frame *frame, struct state *state, const struct model *model,
+                      struct contact *contact, uint64_t step, uint32_t drift, const struct contact_log *log,
+                      struct fault *fault);
+
 /* Appends a drift to a plan, if the model has vertices. room: offset of struct contact in struct work. */
 struct plan;
 void contact_plan_drift(struct plan *plan, const struct model *model, size_t room, double fraction, uint32_t drift);

@@ -18,11 +18,14 @@ static bool drift(struct oracle_stage *g, const struct contact_log *log)
 {
   const struct model *m = g->model;
   struct contact *c = &g->work->contact;
-  if (!oracle_has_events(m))
-    return contact_drift(g->state, m, c, g->drift.time / m->time_step, g->place.step, g->drift.number, log,
-                         &g->work->fault);
-  c->frame = (struct drift_frame){.time = g->drift.time, .start = g->drift.start};
-  return event_driven_rule.drift(g->state, m, c, g->place.step, 0, log, &g->work->fault);
+  struct drift_frame frame = {.time = g->drift.time, .start = g->drift.start};
+  if (oracle_has_events(m)) {
+    c->frame = frame;
+    return event_driven_rule.drift(g->state, m, c, g->place.step, 0, log, &g->work->fault);
+  }
+  frame = drift_frame_now(g->state, m, 1.0, g->drift.number, crossing_rule_of(m)->forbids);
+  frame.time = g->drift.time; /* by way of a part of dt it would be rounded */
+  return contact_drift_in(&frame, g->state, m, c, g->place.step, g->drift.number, log, &g->work->fault);
 }
 
 bool oracle_begin_drift_of(struct oracle_stage *g, double time, uint32_t number)
