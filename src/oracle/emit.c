@@ -94,7 +94,10 @@ static int by_place(const void *left, const void *right)
             rank_b = oracle_operator_rank(b->place.operator_name);
   if (a->place.step != b->place.step)
     return a->place.step < b->place.step ? -1 : 1;
-  return rank_a != rank_b ? rank_a - rank_b : strcmp(a->name, b->name);
+  const int tables = strcmp(a->name, b->name);
+  return rank_a != rank_b ? rank_a - rank_b
+         : tables != 0    ? tables
+                          : strcmp(a->place.operator_name, b->place.operator_name);
 }
 
 void oracle_sort(struct pack *pack)

@@ -24,12 +24,15 @@ static bool has_columns(const struct pack_table *given, const char *words)
 const struct pack_table *head_table(const struct pack *pack, const struct pack_place *place,
                                     const struct oracle_table *wanted, uint32_t rows, struct message *message)
 {
+  static const struct pack_table empty = {.rows = 0};
   const struct oracle_source *s = wanted->source;
   const struct pack_table *given = pack_find(pack, place, wanted->name);
+  if (!given && rows == 0)
+    return &empty;
   if (given && given->rows == rows && given->real == !s->integers && has_columns(given, s->columns))
     return given;
-  message_set(message, "%s, step %" PRIu64 ": %s: allowed: %s in %" PRIu32 " rows of columns %s", place->operator_name,
-              place->step, wanted->name, s->integers ? "integers" : "reals", rows, s->columns);
+  message_set(message, "%s, step %" PRIu64 ": %s%s: allowed: %s in %" PRIu32 " rows of columns %s", place->operator_name,
+              place->step, wanted->name, given ? "" : " is missing", s->integers ? "integers" : "reals", rows, s->columns);
   return NULL;
 }
 
@@ -105,17 +108,18 @@ static bool take_fibers(struct model *m, uint32_t vertices, const struct link *c
 bool head_model(const struct pack *pack, struct model *m, struct message *message)
 {
   const struct pack_table *chain = pack_find(pack, &head, "in.chain"), *t[TABLES];
+  const uint32_t vertices = chain ? chain->rows : 0;
   struct model_error error;
   bool ok = true;
   for (int k = 0; ok && k < TABLES; k++) {
-    t[k] = head_table(pack, &head, &oracle_operators[0].table[k], k >= CHAIN && chain ? chain->rows : 1, message);
+    t[k] = head_table(pack, &head, &oracle_operators[0].table[k], k < CHAIN ? 1 : vertices, message);
     ok = t[k] != NULL;
   }
   if (!ok || !head_seed(pack, &m->seed, message))
     return false;
   const struct link *link = t[CHAIN]->value.data;
   take_numbers(m, t[BOX]->value.integer, t[NUMBERS]->value.integer, t[REALS]->value.number);
-  if (!take_fibers(m, chain->rows, link, t[VERTEX]->value.data))
+  if (!take_fibers(m, vertices, link, t[VERTEX]->value.data))
     return message_no_memory(message, "no memory");
   if (!model_finish(m, &error))
     return message_set(message, "model of the pack: %s: %s", error.path, error.text);

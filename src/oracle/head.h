@@ -5,7 +5,7 @@
 #include "oracle/schema.h"
 
 /* The table that a place of a pack should have, with so many rows; NULL, with a message, if it has none, or one of
- * another shape. */
+ * another shape. Where no rows are due, none is an empty one: text has no line for it. */
 const struct pack_table *head_table(const struct pack *pack, const struct pack_place *place,
                                     const struct oracle_table *wanted, uint32_t rows, struct message *message);
 

@@ -145,9 +145,10 @@ static int table_rank(const struct pack_table *t)
 int oracle_flow(const struct pack_table *a, const struct pack_table *b)
 {
   const int operators = oracle_operator_rank(a->place.operator_name) - oracle_operator_rank(b->place.operator_name);
-  const int tables = table_rank(a) - table_rank(b);
-  return operators != 0                  ? operators
-         : tables != 0                   ? tables
-         : a->place.step < b->place.step ? -1
-                                         : a->place.step > b->place.step;
+  const int tables = table_rank(a) - table_rank(b), names = strcmp(a->place.operator_name, b->place.operator_name);
+  if (operators != 0 || tables != 0)
+    return operators != 0 ? operators : tables;
+  if (a->place.step != b->place.step)
+    return a->place.step < b->place.step ? -1 : 1;
+  return names != 0 ? names : strcmp(a->name, b->name);
 }

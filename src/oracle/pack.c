@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool same_place(const struct pack_place *a, const struct pack_place *b)
+bool pack_same_place(const struct pack_place *a, const struct pack_place *b)
 {
   return a->step == b->step && strcmp(a->operator_name, b->operator_name) == 0;
 }
@@ -79,7 +79,7 @@ void pack_put_copy(struct pack *pack, const struct pack_table *table)
 const struct pack_table *pack_find(const struct pack *pack, const struct pack_place *place, const char *name)
 {
   for (size_t k = 0; k < pack->count; k++)
-    if (same_place(&pack->table[k].place, place) && strcmp(pack->table[k].name, name) == 0)
+    if (pack_same_place(&pack->table[k].place, place) && strcmp(pack->table[k].name, name) == 0)
       return &pack->table[k];
   return NULL;
 }

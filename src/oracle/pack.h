@@ -57,6 +57,8 @@ double *pack_put_reals(struct pack *pack, const struct pack_place *place, const 
 /* Appends a copy of a table. */
 void pack_put_copy(struct pack *pack, const struct pack_table *table);
 
+bool pack_same_place(const struct pack_place *a, const struct pack_place *b);
+
 /* The table of this name at this place; NULL if there is none. */
 const struct pack_table *pack_find(const struct pack *pack, const struct pack_place *place, const char *name);
 
