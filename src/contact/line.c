@@ -2,12 +2,6 @@
 
 #include "contact/determinant.h"
 
-int crossing_orientation(struct point origin, struct point u, struct point v, struct point w)
-{
-  double d = determinant(difference(u, origin), difference(v, origin), difference(w, origin));
-  return (d > 0.0) - (d < 0.0);
-}
-
 /* --- the test ---------------------------------------------------------------------------------------------------- */
 
 /* True for a positive determinant. Zero counts as positive; with flip it counts as negative, because the points then

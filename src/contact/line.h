@@ -51,7 +51,4 @@ static inline bool crossing_far(struct vec3 standing, struct vec3 to_pivot, stru
   return (x > doubt && y > doubt) || (x < -doubt && y < -doubt);
 }
 
-/* Exact sign (-1, 0, 1) of the determinant of p, q, r = u - origin, v - origin, w - origin: (p x q).r. */
-int crossing_orientation(struct point origin, struct point u, struct point v, struct point w);
-
 #endif

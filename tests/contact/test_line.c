@@ -1,5 +1,6 @@
 /* The crossing test against exact integers (GMP, exact.h), which share no code with it: decisions in every
  * nondegenerate case, times and places, degenerate cases by what topology demands of them, symmetries. */
+#include "contact/determinant.h"
 #include "contact/line.h"
 #include "exact.h"
 
@@ -193,9 +194,9 @@ static void orientation_is_exact(void **unused)
           sum(p[1], (struct point){(p[2].x - p[0].x), (p[2].y - p[0].y), (p[2].z - p[0].z) + dice_integer(&d, -1, 1)});
     }
     int expected = exact_orientation(&x, p[0], p[1], p[2], p[3]);
-    if (crossing_orientation(p[0], p[1], p[2], p[3]) != expected)
-      fail_msg("seed %lu case %d: orientation %d, exactly %d", (unsigned long)seed, k,
-               crossing_orientation(p[0], p[1], p[2], p[3]), expected);
+    const double d = determinant(difference(p[1], p[0]), difference(p[2], p[0]), difference(p[3], p[0]));
+    if ((d > 0.0) - (d < 0.0) != expected)
+      fail_msg("seed %lu case %d: determinant %g, its sign is %d", (unsigned long)seed, k, d, expected);
     zeros += expected == 0;
   }
   exact_close(&x);
