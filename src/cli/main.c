@@ -151,7 +151,7 @@ const struct command commands[COMMANDS] = {
          "OUT is a pack as HDF5. Answered are the operators each of whose rows stands for itself: random,\n"
          "permutation, crossing, exchange, contact_search, tube_search, tube_contact, bead_search,\n"
          "bead_contact and impulse; of thin fibers and points in a periodic box those of places too:\n"
-         "sweep, event_drift, bin, bond_force, bend_force and force.\n",
+         "sweep, long_sweep, event_drift, long_event_drift, bin, bond_force, bend_force and force.\n",
          oracle_answer_file},
     [COMMAND_DUMP] = {"oracle dump", "PACK", 1, WRITES, "a pack as text", NULL, oracle_dump_file},
     [COMMAND_COMPARE] = {"oracle compare", "OURS THEIRS", 2, WRITES | MAY(EXIT_CLOSE) | MAY(EXIT_DIFFERS),
