@@ -31,8 +31,9 @@ const struct pack_table *head_table(const struct pack *pack, const struct pack_p
     return &empty;
   if (given && given->rows == rows && given->real == !s->integers && has_columns(given, s->columns))
     return given;
-  message_set(message, "%s, step %" PRIu64 ": %s%s: allowed: %s in %" PRIu32 " rows of columns %s", place->operator_name,
-              place->step, wanted->name, given ? "" : " is missing", s->integers ? "integers" : "reals", rows, s->columns);
+  message_set(message, "%s, step %" PRIu64 ": %s%s: allowed: %s in %" PRIu32 " rows of columns %s",
+              place->operator_name, place->step, wanted->name, given ? "" : " is missing",
+              s->integers ? "integers" : "reals", rows, s->columns);
   return NULL;
 }
 

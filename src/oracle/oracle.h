@@ -22,8 +22,8 @@ bool oracle_emit(struct scene *scene, struct pack *pack, struct message *message
 /* Fills `answers` with the outputs of operators of a pack, computed from the inputs that the pack has: of those whose
  * rows stand for themselves; and of those of places, velocities and cells, if its model is fibers and points in a
  * periodic box (head.h). whole: with the inputs, and with all tables of other operators as they are. False, with a
- * message, if an input is missing, or is none that an operator can be asked. The answers need freeing in any case. The
- * pack's tables are sorted. */
+ * message, if an input is missing, or is none that an operator can be asked, or if the model has no such operator. The
+ * answers need freeing in any case. The pack's tables are sorted. */
 bool oracle_answer(struct pack *pack, bool whole, struct pack *answers, struct message *message);
 
 /* Fills a pack with what a run of the scene starts from: the model, the state, the stages of its steps. */
