@@ -1,18 +1,20 @@
 /*
  * libFuzzer over what reads files: `make fuzz SECONDS=60`. The first byte of an input chooses the reader:
  *   s      the rest is a scene, as text
- *   o      the rest is a pack, as text: it is compared with a whole one, and dumped
+ *   o      the rest is a pack, as text: it is compared with a whole one, dumped, and answered
  *   k, j   the rest is a table, or run.json: it is verified and described
  *   c, t   the rest are changes of a valid checkpoint or trajectory, which is then read as a resume and `analyze` do
  *   e, f   the same of a checkpoint or trajectory, which is exported and verified
- *   p      the same of a pack, which is compared with the whole one, and dumped
+ *   p      the same of a pack, which is compared with the whole one, dumped, and answered
  *   C, E   as c, e, with all checksums of the file's structure made anew, and P as p with its seal, so that what is
  *          behind them is reached
  *   K      the rest are changes of a run's numbers, of which a checkpoint is written: it is resumed
- *   h      the rest are changes of a trajectory without checksums, as other programs write them, from which a run
- * starts H      the same, but each change gives a number of the frame another value (number_of) q      as h, of a pack:
- * it is compared with ours, and dumped r      the rest is a port's trace, as text: it is compared with ours R      the
- * rest are changes of our trace, which is then compared with ours Another first byte stands for one of these.
+ *   h      the rest are changes of a trajectory without checksums, as other programs write them: a run starts from it
+ *   H      the same, but each change gives a number of the frame another value (number_of)
+ *   q      as h, of a pack: it is compared with ours, dumped, and answered
+ *   r      the rest is a port's trace, as text: it is compared with ours
+ *   R      the rest are changes of our trace, which is then compared with ours
+ * Another first byte stands for one of these.
  * FUZZ_READERS=soj in the environment: these readers only. A change is four bytes: position (three, modulo the length)
  * and what is xor-ed there; at most 16 of them, and if their number is odd the file also ends at the last position.
  * HDF5 itself is not the target: it runs in a process of its own, which may die, but not of our own code.
@@ -32,7 +34,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 /* Some operators only: of a whole pack the search for what explains a difference takes ten times as long. */
 static void keep_some(struct pack *pack)
 {
-  static const char kept[] = " bin bond_force contact_search impulse kick shift solve stream sum ";
+  static const char kept[] =
+      " model bin bond_force contact_search impulse kick shift solve stream sum sweep event_drift ";
   char word[PACK_WORD + 2];
   size_t count = 0;
   for (size_t k = 0; k < pack->count; k++) {
@@ -226,6 +229,18 @@ static void export_and_verify(const char *path, const char *right)
   free(text);
 }
 
+/* Takes the pack: its tables are sorted. */
+static void answer_pack(struct pack *pack)
+{
+  for (int whole = 0; whole < 2; whole++) {
+    struct message message = {.text = ""};
+    struct pack answers;
+    if (!oracle_answer(pack, whole, &answers, &message))
+      require_reason(&message, "a pack was not answered, without a word");
+    pack_free(&answers);
+  }
+}
+
 enum pack_use { WHOLE, TO_COMPARE, TO_DUMP };
 
 static void read_pack(const char *path, enum pack_use use)
@@ -248,6 +263,7 @@ static void read_pack(const char *path, enum pack_use use)
   char *text = dumped(&pack);
   require(use != WHOLE || strcmp(text, all.dump) == 0, "a changed pack was taken for good");
   free(text);
+  answer_pack(&pack);
   pack_free(&pack);
 }
 
