@@ -301,7 +301,7 @@ static inline void exact_difference(mpz_t out[3], struct point a, struct point b
 }
 
 /* det of the columns a, b, c, by the rule of Sarrus */
-static inline void exact_determinant(struct exact_test *x, mpz_t out, mpz_t a[3], mpz_t b[3], mpz_t c[3])
+static inline void exact_volume(struct exact_test *x, mpz_t out, mpz_t a[3], mpz_t b[3], mpz_t c[3])
 {
   mpz_set_ui(out, 0);
   for (int k = 0; k < 3; k++) {
@@ -319,7 +319,7 @@ static inline int exact_orientation(struct exact_test *x, struct point o, struct
   exact_difference(x->u, a, o);
   exact_difference(x->v, b, o);
   exact_difference(x->w, c, o);
-  exact_determinant(x, x->term, x->u, x->v, x->w);
+  exact_volume(x, x->term, x->u, x->v, x->w);
   return mpz_sgn(x->term);
 }
 
@@ -330,13 +330,13 @@ static inline enum exact_verdict exact_crossing(struct exact_test *x, struct poi
   exact_difference(x->v, to, pivot);
   exact_difference(x->q, a, b);
   exact_difference(x->w, a, pivot);
-  exact_determinant(x, x->whole, x->u, x->v, x->q);
+  exact_volume(x, x->whole, x->u, x->v, x->q);
   int sign = mpz_sgn(x->whole);
   if (sign == 0)
     return EXACT_MISS;
-  exact_determinant(x, x->alpha, x->w, x->v, x->q);
-  exact_determinant(x, x->beta, x->u, x->w, x->q);
-  exact_determinant(x, x->standing, x->u, x->v, x->w);
+  exact_volume(x, x->alpha, x->w, x->v, x->q);
+  exact_volume(x, x->beta, x->u, x->w, x->q);
+  exact_volume(x, x->standing, x->u, x->v, x->w);
   if (sign < 0) {
     mpz_neg(x->whole, x->whole);
     mpz_neg(x->alpha, x->alpha);

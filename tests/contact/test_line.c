@@ -194,9 +194,9 @@ static void orientation_is_exact(void **unused)
           sum(p[1], (struct point){(p[2].x - p[0].x), (p[2].y - p[0].y), (p[2].z - p[0].z) + dice_integer(&d, -1, 1)});
     }
     int expected = exact_orientation(&x, p[0], p[1], p[2], p[3]);
-    const double d = determinant(difference(p[1], p[0]), difference(p[2], p[0]), difference(p[3], p[0]));
-    if ((d > 0.0) - (d < 0.0) != expected)
-      fail_msg("seed %lu case %d: determinant %g, its sign is %d", (unsigned long)seed, k, d, expected);
+    const double det = determinant(difference(p[1], p[0]), difference(p[2], p[0]), difference(p[3], p[0]));
+    if ((det > 0.0) - (det < 0.0) != expected)
+      fail_msg("seed %lu case %d: determinant %g, its sign is %d", (unsigned long)seed, k, det, expected);
     zeros += expected == 0;
   }
   exact_close(&x);
