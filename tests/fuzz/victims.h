@@ -97,10 +97,13 @@ static void put(const char *path, const uint8_t *data, size_t size)
   fclose(file);
 }
 
-/* A word of the reader about a failure that is the file's, not one of our own code in the process that reads it. */
+/* A word of the reader about a failure that is the file's, not one of our own code in the process that reads it. What a
+ * message quotes of the file does not end it. */
 static void require_reason(const struct message *message, const char *name)
 {
-  require(message->text[0] != '\0' && !strstr(message->text, "ended early"), name);
+  static const char ours[] = "the process that read it ended early";
+  const size_t length = strlen(message->text), end = sizeof ours - 1;
+  require(length > 0 && (length < end || strcmp(message->text + length - end, ours) != 0), name);
 }
 
 /* What goes to a stream, to be freed. */
