@@ -45,6 +45,7 @@ static const struct oracle_operator *operator_of(const char *name, bool plain)
 
 /* The tables of a pack that go into an operator. */
 struct inputs {
+  int count;
   const struct pack_table *of[ORACLE_TABLES];
 };
 
@@ -62,11 +63,12 @@ static bool find(const struct oracle_stage *g, const struct oracle_operator *o, 
   if (!is_alone(o) && !oracle_scene_is(o->of, g->model))
     return message_set(message, "%s, step %" PRIu64 ": the model of the pack has no such operator; allowed: %s",
                        o->name, g->place.step, oracle_scenes_words(o->of));
-  for (int k = 0; goes_in(&o->table[k]); k++) {
-    const struct oracle_table *t = &o->table[k];
-    in->of[k] = head_table(pack, &g->place, t, t->source->of->count ? t->source->of->count(g) : 1, message);
-    if (!in->of[k])
+  for (const struct oracle_table *t = o->table; goes_in(t); t++) {
+    const uint32_t rows = t->source->of->count ? t->source->of->count(g) : 1;
+    const struct pack_table *given = head_table(pack, &g->place, t, rows, message);
+    if (!given)
       return false;
+    in->of[in->count++] = given;
   }
   return true;
 }
@@ -96,11 +98,12 @@ static bool take(struct oracle_stage *g, const struct oracle_operator *o, const 
                  struct message *message)
 {
   const struct oracle_entity *first = o->table[0].source->of;
-  for (int j = 0; goes_in(&o->table[j]); j++) {
-    const struct oracle_table *t = &o->table[j];
-    for (uint32_t k = 0; k < in->of[j]->rows; k++)
-      if (!t->source->take(g, k, (const char *)in->of[j]->value.data + 8 * (size_t)in->of[j]->columns * k))
-        return refuse(g, t->name, t->source->of, k, message);
+  for (int j = 0; j < in->count; j++) {
+    const struct pack_table *given = in->of[j];
+    const struct oracle_source *s = o->table[j].source;
+    for (uint32_t k = 0; k < given->rows; k++)
+      if (!s->take(g, k, (const char *)given->value.data + 8 * (size_t)given->columns * k))
+        return refuse(g, o->table[j].name, s->of, k, message);
   }
   for (uint32_t k = 0; first->legal && k < g->rows; k++)
     if (!first->legal((const char *)g->row + first->size * k))
@@ -118,7 +121,7 @@ static bool answer(const struct oracle_operator *o, const struct pack_place *pla
   struct state state = {.solvent.n = own.solvent.particles};
   struct work work = {0};
   struct oracle_stage g = {.model = &own, .state = &state, .work = &work, .pack = answers, .place = *place};
-  struct inputs in;
+  struct inputs in = {.count = 0};
   if (is_alone(o))
     g.rows = first ? first->rows : 1;
   bool ok = find(&g, o, pack, &in, message) && (set_up(&g, o) || message_no_memory(message, "no memory"));
