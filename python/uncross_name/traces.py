@@ -20,7 +20,7 @@ from . import catalogue, changes, search
 UNKNOWN = "none of those known makes their hash"
 MOST_NAMES = 4
 HASHES = ("state_hash", "digest", "contacts_hash", "contacts_digest")
-MOST_FOUND = 8
+MOST_FOUND = 24
 MORE = 4  # seconds for others after the first
 LAST = 6  # seconds that are kept for looking at all rows
 
@@ -425,13 +425,16 @@ def find(trace, clock):
     """Changes that make theirs up to the first difference, each with how many rows of theirs it makes."""
     found, until = [], LAST
     for change, whole in candidates(trace):
-        if clock.left() < (LAST if not found else until) or len(found) >= MOST_FOUND:
+        if clock.left() < until or len(found) >= MOST_FOUND:
             break
+        reached = False
         with contextlib.suppress(Exception), change.apply():
-            if clock.call(0.5 + 4 * trace.seconds, trace.reaches_first if whole else trace.stages_again):
-                until = until if found else max(LAST, clock.left() - MORE)
-                found.append(change)
-    return [(change, *all_rows(change, trace, clock)) for change in found]
+            reached = clock.call(0.5 + 4 * trace.seconds, trace.reaches_first if whole else trace.stages_again)
+        if reached:
+            found.append((change, *all_rows(change, trace, clock)))
+            if found[-1][1] == len(trace.theirs) and until == LAST:  # one that makes all rows; few others are looked for
+                until = max(LAST, clock.left() - MORE)
+    return found
 
 
 def all_rows(change, trace, clock):
