@@ -30,22 +30,20 @@ static int read_source(const struct uncross_scene *from, struct reading how, con
                        struct scene *scene, uncross_error *error)
 {
   struct message message;
-  struct checkpoint_summary summary;
+  uint64_t fingerprint;
   const struct scene_settings settings = settings_of(from);
-  const bool known = checkpoint && checkpoint_look(checkpoint, &summary, &message);
-  if (checkpoint && !known && message.kind == MESSAGE_NO_MEMORY)
-    return fail(error, code_of(&message), message.text, NULL);
-  const struct scene_source source = {.keys = &scene_keys,
-                                      .path = from->name,
-                                      .text = from->text,
-                                      .size = from->text ? strlen(from->text) : 0,
-                                      .settings = &settings,
-                                      .look_for_files = how.look_for_files,
-                                      .numbers_only = how.numbers_only,
-                                      .open_end = how.open_end,
-                                      .steps = from->has_steps ? &from->steps : NULL,
-                                      .fingerprint = known ? &summary.head.fingerprint : NULL,
-                                      .message = &message};
+  const struct scene_source source = {
+      .keys = &scene_keys,
+      .path = from->name,
+      .text = from->text,
+      .size = from->text ? strlen(from->text) : 0,
+      .settings = &settings,
+      .look_for_files = how.look_for_files,
+      .numbers_only = how.numbers_only,
+      .open_end = how.open_end,
+      .steps = from->has_steps ? &from->steps : NULL,
+      .fingerprint = checkpoint && checkpoint_fingerprint(checkpoint, &fingerprint) ? &fingerprint : NULL,
+      .message = &message};
   if (!scene_read_source(&source, scene))
     return fail(error, code_of(&message), message.text, NULL);
   if (from->has_seed)

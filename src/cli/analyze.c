@@ -6,8 +6,8 @@
 
 #include "cli/command.h"
 #include "files/folder.h"
-#include "files/frames.h"
 #include "files/output.h"
+#include "files/snapshot.h"
 #include "observe/meaning.h"
 #include "scene/scene.h"
 
@@ -25,10 +25,10 @@ static uint64_t least_common_multiple(uint64_t a, uint64_t b)
 /* What the frames can show of what the scene asked for: only steps that were stored, energies and temperatures only if
  * all that moves was stored, with its velocities, and neither counts of crossings nor stresses nor springs of
  * dumbbells, which are not in frames. */
-static void fit_plan(struct scene *scene, const struct frames *frames)
+static void fit_plan(struct scene *scene, const struct trajectory *frames)
 {
   const struct model *m = &scene->model;
-  const bool still = !model_is_overdamped(m) && !frames->about.velocities;
+  const bool still = !model_is_overdamped(m) && !trajectory_has_velocities(frames);
   const char *const all = still ? "velocities are not in the frames"
                           : model_has_solvent(m) && !trajectory_has_solvent(frames, m)
                               ? "the solvent is not in the frames"
@@ -57,23 +57,23 @@ static void fit_plan(struct scene *scene, const struct frames *frames)
 }
 
 /* A frame into the state; false, with a message, if it cannot be. `skip`: it is damaged, and may be left out. */
-static bool read_frame(struct frames *frames, const struct model *model, uint64_t frame, bool may_skip,
+static bool read_frame(struct trajectory *frames, const struct model *model, uint64_t frame, bool may_skip,
                        struct state *state, bool *skip, struct message *message)
 {
-  const enum frame_verdict verdict = trajectory_read(frames, model, frame, state, message);
-  *skip = verdict == FRAME_DAMAGED && may_skip;
-  return verdict == FRAME_FINE || *skip;
+  const bool ok = trajectory_read(frames, model, frame, state, message);
+  *skip = !ok && may_skip && trajectory_damaged(frames);
+  return ok || *skip;
 }
 
 /* Reads each frame once and discards it, so that an unusable frame is found before anything is written. Names those
  * that are left out. */
-static bool check_frames(const struct scene *scene, struct frames *frames, bool may_skip, struct state *state,
+static bool check_frames(const struct scene *scene, struct trajectory *frames, bool may_skip, struct state *state,
                          uint64_t *skipped, struct message *message)
 {
   bool ok = true, skip;
   uint64_t next = 0; /* 1 + the step of the last frame */
   *skipped = 0;
-  for (uint64_t k = 0; ok && k < frames->about.frames; k++) {
+  for (uint64_t k = 0; ok && k < trajectory_frames(frames); k++) {
     ok = read_frame(frames, &scene->model, k, may_skip, state, &skip, message);
     if (ok && !skip && state->step < next)
       ok = message_set(message,
@@ -88,12 +88,13 @@ static bool check_frames(const struct scene *scene, struct frames *frames, bool 
   return ok;
 }
 
-static bool sample_frames(const struct scene *scene, struct frames *frames, bool may_skip, const struct folder *folder,
-                          struct state *state, struct observers *observers, struct message *message)
+static bool sample_frames(const struct scene *scene, struct trajectory *frames, bool may_skip,
+                          const struct folder *folder, struct state *state, struct observers *observers,
+                          struct message *message)
 {
   struct output output;
   bool ok = output_open(&output, scene, observers, folder, false, 0, 0, message), skip;
-  for (uint64_t k = 0; ok && k < frames->about.frames; k++)
+  for (uint64_t k = 0; ok && k < trajectory_frames(frames); k++)
     ok = read_frame(frames, &scene->model, k, may_skip, state, &skip, message) &&
          (skip || output_sample(&output, observers, &scene->model, state, message));
   ok = ok && output_summaries(&output, observers, &scene->model, message);
@@ -101,8 +102,9 @@ static bool sample_frames(const struct scene *scene, struct frames *frames, bool
 }
 
 /* Prepares the folder: makes and locks it, and checks that it holds none of the tables. */
-static enum exit_code write_tables(const struct scene *scene, struct frames *frames, bool may_skip, const char *path,
-                                   struct state *state, struct observers *observers, struct message *message)
+static enum exit_code write_tables(const struct scene *scene, struct trajectory *frames, bool may_skip,
+                                   const char *path, struct state *state, struct observers *observers,
+                                   struct message *message)
 {
   struct folder folder = {path, FOLDER_BY_NAME};
   struct message name;
@@ -133,7 +135,7 @@ static void drop_dynamics(struct scene *scene, uint64_t skipped)
   }
 }
 
-static enum exit_code observe(struct scene *scene, struct frames *frames, bool may_skip, const char *folder,
+static enum exit_code observe(struct scene *scene, struct trajectory *frames, bool may_skip, const char *folder,
                               struct state *state, struct message *message)
 {
   struct observers *observers = observers_create(&scene->observe, &scene->model);
@@ -146,7 +148,7 @@ static enum exit_code observe(struct scene *scene, struct frames *frames, bool m
   return code;
 }
 
-static enum exit_code analyze(struct scene *scene, struct frames *frames, bool may_skip, const char *folder,
+static enum exit_code analyze(struct scene *scene, struct trajectory *frames, bool may_skip, const char *folder,
                               struct message *message)
 {
   struct state state;
@@ -172,16 +174,20 @@ enum exit_code command_analyze(const struct arguments *a)
   struct message message;
   struct scene scene;
   enum exit_code code = EXIT_BAD_INPUT;
-  struct frames *frames = trajectory_open_read(path, &message);
-  const char *text = frames ? frames->scene : NULL;
-  bool ours = text && frames->about.steps;
+  struct trajectory *frames = trajectory_open_read(path, &message);
+  char *text = frames ? trajectory_scene_text(frames) : NULL;
+  bool ours = text && trajectory_has_steps(frames);
   if (frames && !ours)
     message_set(&message, "%s: holds no scene or no steps; only trajectories that uncross wrote can be analyzed", path);
   if (ours && scene_read_text(path, text, strlen(text), &scene, &message)) {
     code = analyze(&scene, frames, a->skip_damaged, folder, &message);
     scene_free(&scene);
   }
-  frames_close(frames);
+  free(text);
+  if (frames) {
+    struct message ignored;
+    trajectory_close(frames, &ignored);
+  }
   if (code != EXIT_DONE)
     fprintf(stderr, "uncross: %s\n", message.text);
   return code == EXIT_BAD_INPUT && message.kind == MESSAGE_NO_MEMORY ? EXIT_TROUBLE : code;

@@ -11,7 +11,7 @@
 #include "cli/command.h"
 #include "files/build_info.h"
 #include "files/checkpoint.h"
-#include "files/far.h"
+#include "files/frames_apart.h"
 #include "files/hdf5.h"
 #include "files/reader.h"
 #include "oracle/pack.h"
@@ -274,7 +274,11 @@ static void keep_streams(void)
 }
 
 /* What this program does as a process that reads a file (files/reader.h). */
-static const struct apart_work works[] = {{"hdf5", far_serve}, {NULL, NULL}};
+static const struct apart_work works[] = {{"checkpoint", checkpoint_serve},
+                                          {"frames", frames_serve},
+                                          {"sort", sort_serve},
+                                          {"pack", pack_serve},
+                                          {NULL, NULL}};
 
 int main(int count, char **words)
 {

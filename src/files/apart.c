@@ -112,10 +112,10 @@ static bool never_began(struct apart *parent, const char *program, struct messag
 }
 
 /* What the other side is must be known before anything is sent, or understood. */
-static bool greet(struct apart *parent, const char *program, const char *work, struct message *message)
+static bool greet(struct apart *parent, const char *program, const char *work, uint64_t bytes, struct message *message)
 {
   char ours[APART_BUILD], theirs[APART_BUILD] = "";
-  struct apart_hello hello = {.seconds = parent->seconds, .bytes = parent->bytes};
+  struct apart_hello hello = {.seconds = parent->seconds, .bytes = bytes};
   snprintf(hello.work, sizeof hello.work, "%s", work);
   snprintf(hello.path, sizeof hello.path, "%s", parent->path);
   apart_build(ours);
@@ -148,13 +148,9 @@ bool apart_start(struct apart *parent, const char *path, const char *work, struc
     close(pair[0]);
     return message_set(message, "%s: no process to read it (%s): %s", path, program, strerror(code));
   }
-  *parent = (struct apart){.path = path,
-                           .socket = pair[0],
-                           .child = child,
-                           .bytes = bytes,
-                           .seconds = seconds,
-                           .patience = PATIENCE * seconds};
-  if (greet(parent, program, work, message))
+  *parent = (struct apart){
+      .path = path, .socket = pair[0], .child = child, .seconds = seconds, .patience = PATIENCE * seconds};
+  if (greet(parent, program, work, bytes, message))
     return true;
   apart_end(parent);
   return false;

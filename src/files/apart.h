@@ -29,7 +29,6 @@ struct apart {
   const char *path; /* the file, for messages; must outlive this */
   int socket;
   pid_t child;     /* 0: this is the child */
-  uint64_t bytes;  /* of the file, when it was opened */
   double seconds;  /* of processor time that one piece of work may take */
   double patience; /* s; so long the parent waits for the next bytes */
   bool broken;     /* the other side is gone: nothing more is sent or received */

@@ -1,4 +1,4 @@
-/* Checkpoints are read: their numbers, ranged, and their arrays. Their numbers are listed here for writing, too. */
+/* Checkpoints are read: their numbers, ranged, and their arrays. */
 #include "files/checkpoint_parts.h"
 
 #include <inttypes.h>
@@ -49,38 +49,25 @@ static const struct field fields[] = {
     {"structure", "dumbbells", U32, 0, AT(dumbbells), 0.0, INT32_MAX, true},
 };
 
-#define FIELDS (sizeof fields / sizeof *fields)
-
-bool checkpoint_put_fields(hid_t file, const struct checkpoint_summary *summary)
+static hid_t type_of(const struct field *field)
 {
   const hid_t type[] = {
       [U32] = H5T_NATIVE_UINT32, [U64] = H5T_NATIVE_UINT64, [I32] = H5T_NATIVE_INT32, [REAL] = H5T_NATIVE_DOUBLE};
+  return type[field->type];
+}
+
+bool checkpoint_fields(hid_t file, struct checkpoint_summary *summary, bool write)
+{
   bool ok = true;
-  for (size_t k = 0; ok && k < FIELDS; k++) {
+  for (size_t k = 0; ok && k < sizeof fields / sizeof *fields; k++) {
     const struct field *f = &fields[k];
+    char *at = (char *)summary + f->offset;
     hid_t group = h5_open_group(file, f->group);
-    ok = group >= 0 && h5_put(group, f->name, type[f->type], f->count, (const char *)summary + f->offset);
+    const bool absent = !write && f->late && group >= 0 && H5Aexists(group, f->name) == 0;
+    ok = group >= 0 && (absent  ? true
+                        : write ? h5_put(group, f->name, type_of(f), f->count, at)
+                                : h5_get(group, f->name, type_of(f), f->count, at));
     h5_close(group);
-  }
-  return ok;
-}
-
-/* An attribute of a group; `late`: 0 where there is none. */
-static bool get(struct far *far, const char *group, const char *name, bool late, enum far_type type, size_t count,
-                void *at)
-{
-  const int found = far_get(far, "", group, name, type, count, at);
-  return found > 0 || (found == 0 && late);
-}
-
-static bool get_fields(struct far *far, struct checkpoint_summary *summary)
-{
-  static const enum far_type type[] = {
-      [U32] = FAR_SHORT_COUNT, [U64] = FAR_COUNT, [I32] = FAR_SHORT, [REAL] = FAR_REAL};
-  bool ok = true;
-  for (size_t k = 0; ok && k < FIELDS; k++) {
-    const struct field *f = &fields[k];
-    ok = get(far, f->group, f->name, f->late, type[f->type], f->count, (char *)summary + f->offset);
   }
   return ok;
 }
@@ -105,7 +92,7 @@ static double value_of(const struct field *f, const struct checkpoint_summary *s
 
 static bool in_range(const struct checkpoint_summary *summary, const char *path, struct message *message)
 {
-  for (size_t n = 0; n < FIELDS; n++)
+  for (size_t n = 0; n < sizeof fields / sizeof *fields; n++)
     for (size_t k = 0; k < (fields[n].count ? fields[n].count : 1); k++) {
       const struct field *f = &fields[n];
       const double value = value_of(f, summary, k);
@@ -132,34 +119,30 @@ void checkpoint_take_numbers(struct state *state, const struct state *numbers)
            state_numbers[k].bytes);
 }
 
-bool checkpoint_put_numbers(hid_t group, const struct state *numbers)
+/* The state's numbers, as state_numbers lists them, in the summary's copy of the state. */
+bool checkpoint_numbers(hid_t group, struct state *numbers, bool write)
 {
   bool ok = group >= 0;
   for (size_t k = 0; ok && k < state_number_count; k++) {
     const struct state_number *n = &state_numbers[k];
-    ok = h5_put(group, n->name, n->bytes == 8 ? H5T_NATIVE_UINT64 : H5T_NATIVE_UINT32, 0,
-                (const char *)numbers + n->offset);
+    const hid_t type = n->bytes == 8 ? H5T_NATIVE_UINT64 : H5T_NATIVE_UINT32;
+    char *at = (char *)numbers + n->offset;
+    if (!write && n->late && H5Aexists(group, n->name) == 0)
+      memset(at, 0, n->bytes);
+    else
+      ok = write ? h5_put(group, n->name, type, 0, at) : h5_get(group, n->name, type, 0, at);
   }
-  return ok;
-}
-
-/* The state's numbers, as state_numbers lists them, into the summary's copy of the state. */
-static bool get_numbers(struct far *far, struct checkpoint_summary *summary)
-{
-  bool ok = true;
-  for (size_t k = 0; ok && k < state_number_count; k++) {
-    const struct state_number *n = &state_numbers[k];
-    ok = get(far, "state", n->name, n->late, n->bytes == 8 ? FAR_COUNT : FAR_SHORT_COUNT, 0,
-             (char *)&summary->numbers + n->offset);
-  }
-  summary->wall_rows = ok && far_has(far, "state", "wall_momentum") ? WALLS * ACCOUNT_SHARES : 0;
-  summary->beads = ok && far_has(far, "state", "bead_position");
   return ok;
 }
 
 bool checkpoint_has_group(const struct state_group *group)
 {
   return group->rows > 0 || !group->optional;
+}
+
+hid_t checkpoint_field_type(const struct state_field *field)
+{
+  return field->integer ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE;
 }
 
 /* A block's name as that of a dataset, which may hold no slash. */
@@ -171,43 +154,61 @@ void checkpoint_block_name(const struct observe_block *block, char *name, size_t
       *c = ':';
 }
 
+hid_t checkpoint_block_type(const struct observe_block *block)
+{
+  return block->integer ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE;
+}
+
 /* --- reading ----------------------------------------------------------------------------------------------------- */
 
-bool checkpoint_is(struct far *far)
+bool checkpoint_is(hid_t file)
 {
   char format[64];
-  return far_get_text(far, "", "", "format", 0, format, sizeof format) > 0 && strcmp(format, CHECKPOINT_FORMAT) == 0;
+  bool is = h5_get_text(file, "format", format, sizeof format) && strcmp(format, CHECKPOINT_FORMAT) == 0;
+  H5Eclear2(H5E_DEFAULT);
+  return is;
+}
+
+static bool read_numbers(hid_t file, struct checkpoint_summary *summary)
+{
+  hid_t group = h5_open_group(file, "state");
+  const bool ok = checkpoint_numbers(group, &summary->numbers, false);
+  summary->wall_rows = ok && h5_has(group, "wall_momentum") ? WALLS * ACCOUNT_SHARES : 0;
+  summary->beads = ok && h5_has(group, "bead_position");
+  h5_close(group);
+  return ok;
 }
 
 /* Version 2 has a seal: without it something is cut off. */
-static bool known_version(struct far *far, int32_t *version, struct message *message)
+static bool known_version(hid_t file, const char *path, bool sealed, int32_t *version, struct message *message)
 {
-  const char *path = far->apart.path;
-  if (far_get(far, "", "", "format_version", FAR_SHORT, 0, version) <= 0)
-    return far_fail(far, message, "damaged or incomplete checkpoint");
+  if (!h5_get(file, "format_version", H5T_NATIVE_INT32, 0, version))
+    return h5_fail(message, path, "damaged or incomplete checkpoint");
   if (*version < 1 || *version > CHECKPOINT_VERSION)
     return message_set(message, "%s: checkpoint format %d; this program reads formats 1 to %d", path, *version,
                        CHECKPOINT_VERSION);
-  return far->sealed || *version == 1 ||
+  return sealed || *version == 1 ||
          message_set(message, "%s: damaged checkpoint: its end with the seal is missing or changed", path);
 }
 
-static bool read_summary(struct far *far, struct checkpoint_summary *summary, struct message *message)
+static bool read_summary(hid_t file, const char *path, bool sealed, struct checkpoint_summary *summary,
+                         struct message *message)
 {
-  struct checkpoint_head *head = &summary->head;
   memset(summary, 0, sizeof *summary);
-  if (!checkpoint_is(far))
-    return message_set(message, "%s: an HDF5 file, but not a checkpoint%s", far->apart.path,
-                       far_has(far, "", "particles") ? ": it holds a trajectory" : "");
-  if (!known_version(far, &summary->version, message))
+  if (!checkpoint_is(file))
+    return message_set(message, "%s: an HDF5 file, but not a checkpoint%s", path,
+                       h5_has(file, "particles") ? ": it holds a trajectory" : "");
+  if (!known_version(file, path, sealed, &summary->version, message))
     return false;
-  if (far_get_text(far, "", "head", "version", 0, head->version, sizeof head->version) <= 0 ||
-      !get_fields(far, summary) || !get_numbers(far, summary))
-    return far_fail(far, message, "damaged or incomplete checkpoint");
-  get(far, "head", "frames_end", true, FAR_COUNT, 0, &head->frames_end); /* earlier checkpoints do not know it */
-  if (head->stream.from == STREAM_UNTOLD)
-    head->stream = stream_of_seed(head->seed);
-  return in_range(summary, far->apart.path, message);
+  hid_t head = h5_open_group(file, "head");
+  bool ok = head >= 0 && h5_get_text(head, "version", summary->head.version, sizeof summary->head.version) &&
+            checkpoint_fields(file, summary, false) && read_numbers(file, summary);
+  if (ok) /* else 0: earlier checkpoints do not know it */
+    h5_get(head, "frames_end", H5T_NATIVE_UINT64, 0, &summary->head.frames_end);
+  if (summary->head.stream.from == STREAM_UNTOLD)
+    summary->head.stream = stream_of_seed(summary->head.seed);
+  h5_close(head);
+  return ok ? in_range(summary, path, message) : h5_fail(message, path, "damaged or incomplete checkpoint");
 }
 
 struct model checkpoint_model(const struct checkpoint_summary *s)
@@ -226,7 +227,7 @@ struct model checkpoint_model(const struct checkpoint_summary *s)
 }
 
 /* Looks at the shapes of the arrays; nothing is allocated by a claimed number. */
-static bool has_arrays(struct far *far, const struct checkpoint_summary *summary)
+static bool has_arrays(hid_t file, const struct checkpoint_summary *summary)
 {
   const uint32_t claimed[STATE_GROUPS] = {summary->particles, summary->vertices, summary->dumbbells, summary->wall_rows,
                                           summary->beads};
@@ -239,50 +240,62 @@ static bool has_arrays(struct far *far, const struct checkpoint_summary *summary
                              .bead = &bead}; /* only names are looked at */
   struct state_group rows[STATE_GROUPS];
   state_groups(&none, rows);
-  bool ok = true;
+  hid_t group = h5_open_group(file, "state");
+  bool ok = group >= 0;
   for (int g = 0; ok && g < STATE_GROUPS; g++)
     for (size_t f = 0; ok && f < rows[g].fields && !(rows[g].optional && claimed[g] == 0); f++) {
-      const struct far_thing thing = far_look(far, "state", rows[g].field[f].name);
-      ok = far_is(&thing, 2) && thing.dims[0] == claimed[g] && thing.dims[1] == 3;
+      const hsize_t dims[2] = {claimed[g], 3};
+      ok = h5_array_is(group, rows[g].field[f].name, 2, dims);
     }
+  h5_close(group);
   return ok;
 }
 
-bool checkpoint_find(struct far *far, struct checkpoint_summary *summary, struct message *message)
+bool checkpoint_find(hid_t file, const char *path, bool sealed, struct checkpoint_summary *summary,
+                     struct message *message)
 {
-  if (!read_summary(far, summary, message))
+  if (!read_summary(file, path, sealed, summary, message))
     return false;
-  return has_arrays(far, summary) ||
-         far_fail(far, message, "damaged checkpoint: its positions or velocities are not as many as it says");
+  return has_arrays(file, summary) ||
+         h5_fail(message, path, "damaged checkpoint: its positions or velocities are not as many as it says");
 }
 
 /* --- the state --------------------------------------------------------------------------------------------------- */
 
-static bool read_arrays(struct far *far, struct state *state, struct message *message)
+static bool no_array(const char *path, struct message *message)
+{
+  return h5_fail(message, path, "damaged checkpoint: its positions or velocities cannot be read or fail their check");
+}
+
+bool checkpoint_each_array(struct state *state, checkpoint_rows *read, void *from, const char *path,
+                           struct message *message)
 {
   struct state_group group[STATE_GROUPS];
   state_groups(state, group);
   bool ok = true;
   for (int g = 0; ok && g < STATE_GROUPS; g++)
     for (size_t f = 0; ok && f < group[g].fields && checkpoint_has_group(&group[g]); f++) {
-      const struct state_field *field = &group[g].field[f];
-      const uint64_t dims[2] = {group[g].rows, 3};
       void *rows = malloc(((size_t)group[g].rows + 1) * 24);
-      ok = rows
-               ? far_read(far, "state", field->name, FAR_ALL, field->integer ? FAR_INTEGER : FAR_REAL, 2, dims, rows) ||
-                     far_fail(far, message,
-                              "damaged checkpoint: its positions or velocities cannot be read or fail their check")
-               : message_no_memory(message, "%s: out of memory", far->apart.path);
+      ok = rows ? read(from, &group[g], &group[g].field[f], rows, message)
+                : message_no_memory(message, "%s: out of memory", path);
       if (ok)
-        state_field_set(&group[g], field, rows);
+        state_field_set(&group[g], &group[g].field[f], rows);
       free(rows);
     }
   return ok;
 }
 
-/* Whether it is the state that was written, and a state at all: a file that somebody made up fits its checksums too. */
-static bool is_state(const struct state *state, const struct checkpoint_summary *summary, int32_t *next,
-                     const char *path, struct message *message)
+bool checkpoint_rows_of_file(void *from, const struct state_group *group, const struct state_field *field, void *rows,
+                             struct message *message)
+{
+  const struct checkpoint_arrays *file = from;
+  const hsize_t dims[2] = {group->rows, 3};
+  return h5_array_read(file->group, field->name, checkpoint_field_type(field), 2, dims, rows) ||
+         no_array(file->path, message);
+}
+
+bool checkpoint_check(const struct state *state, const struct checkpoint_summary *summary, int32_t *next,
+                      const char *path, struct message *message)
 {
   struct model then = checkpoint_model(summary);
   then.next = next;
@@ -306,11 +319,15 @@ static bool is_state(const struct state *state, const struct checkpoint_summary 
   return message_set(message, "%s: no run goes on from this state: %s", path, why);
 }
 
-bool checkpoint_read_state(struct far *far, const struct checkpoint_summary *summary, struct state *state,
-                           int32_t *next, struct message *message)
+bool checkpoint_read_state(hid_t file, const char *path, const struct checkpoint_summary *summary, struct state *state,
+                           struct message *message)
 {
-  if (!read_arrays(far, state, message))
+  struct checkpoint_arrays from = {h5_open_group(file, "state"), path};
+  const bool ok = from.group >= 0 ? checkpoint_each_array(state, checkpoint_rows_of_file, &from, path, message)
+                                  : no_array(path, message);
+  h5_close(from.group);
+  if (!ok)
     return false;
   checkpoint_take_numbers(state, &summary->numbers);
-  return is_state(state, summary, next, far->apart.path, message);
+  return checkpoint_check(state, summary, NULL, path, message);
 }

@@ -7,7 +7,8 @@
 #include <stdint.h>
 
 #include "base/message.h"
-#include "files/far.h"
+#include "files/apart.h"
+#include "files/hdf5.h"
 #include "files/snapshot.h"
 
 #define CHECKPOINT_FORMAT "uncross checkpoint"
@@ -31,24 +32,31 @@ struct checkpoint_summary {
  * summary: enough for a state. */
 struct model checkpoint_model(const struct checkpoint_summary *summary);
 
-/* --- of an open file --------------------------------------------------------------------------------------------- */
+/* --- within a process of its own (apart.h) ----------------------------------------------------------------------- */
 
 /* True if the file says that it is a checkpoint, of whatever version. */
-bool checkpoint_is(struct far *far);
+bool checkpoint_is(hid_t file);
 
 /* Reads the summary, and checks that all its numbers are within their ranges and that the arrays have the rows that it
  * claims. False, with a message, if the file is no checkpoint of a known version, or is damaged. */
-bool checkpoint_find(struct far *far, struct checkpoint_summary *summary, struct message *message);
+bool checkpoint_find(hid_t file, const char *path, bool sealed, struct checkpoint_summary *summary,
+                     struct message *message);
 
 /* Reads the arrays into a state that has room for them, its solvent in id order, and checks it as checkpoint_fetch
- * does. next: of the model's bonds; NULL if none is known. */
-bool checkpoint_read_state(struct far *far, const struct checkpoint_summary *summary, struct state *state,
-                           int32_t *next, struct message *message);
+ * does. */
+bool checkpoint_read_state(hid_t file, const char *path, const struct checkpoint_summary *summary, struct state *state,
+                           struct message *message);
 
-/* --- by its path ------------------------------------------------------------------------------------------------- */
+/* The work "checkpoint" (reader.h). */
+void checkpoint_serve(struct apart *link);
+
+/* --- everywhere -------------------------------------------------------------------------------------------------- */
 
 /* Reads the summary only. */
 bool checkpoint_look(const char *path, struct checkpoint_summary *summary, struct message *message);
+
+/* The fingerprint of its scene; false if the checkpoint cannot be read. */
+bool checkpoint_fingerprint(const char *path, uint64_t *fingerprint);
 
 /* Reads a checkpoint's state into one allocated for this model, after comparing numbers, box and bonds, and the memory
  * of observers into their blocks. The state hash must be right, and each number one that a state can have. */

@@ -23,8 +23,7 @@ static bool write_field(hid_t group, const struct state_group *rows, const struc
   void *data = malloc(((size_t)rows->rows + 1) * 24);
   if (data)
     state_field_get(rows, field, slot, data);
-  const bool ok =
-      data && h5_array_write(group, field->name, field->integer ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE, 2, dims, data);
+  const bool ok = data && h5_array_write(group, field->name, checkpoint_field_type(field), 2, dims, data);
   free(data);
   return ok;
 }
@@ -54,7 +53,7 @@ static bool write_blocks(hid_t group, const struct observe_block *blocks, size_t
     const hsize_t dims[1] = {blocks[b].count};
     const int64_t nothing = 0;
     checkpoint_block_name(&blocks[b], name, sizeof name);
-    ok = h5_array_write(group, name, blocks[b].integer ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE, 1, dims,
+    ok = h5_array_write(group, name, checkpoint_block_type(&blocks[b]), 1, dims,
                         blocks[b].data ? blocks[b].data : &nothing);
   }
   return ok;
@@ -76,10 +75,10 @@ static bool write_contents(hid_t file, struct contents *c)
   hid_t state = h5_group(file, "state"), observers = h5_group(file, "observers");
   bool ok = h5_put_text(file, "format", CHECKPOINT_FORMAT) &&
             h5_put(file, "format_version", H5T_NATIVE_INT32, 0, &version) &&
-            h5_put_text(head, "version", c->summary.head.version) && checkpoint_put_fields(file, &c->summary) &&
+            h5_put_text(head, "version", c->summary.head.version) && checkpoint_fields(file, &c->summary, true) &&
             h5_put(head, "frames_end", H5T_NATIVE_UINT64, 0, &c->summary.head.frames_end) &&
             structure_write_particles(structure, c->model, false) && structure_write_bonds(structure, c->model) &&
-            checkpoint_put_numbers(state, &c->summary.numbers) && write_state(state, c->state) &&
+            checkpoint_numbers(state, &c->summary.numbers, true) && write_state(state, c->state) &&
             write_blocks(observers, c->blocks, c->block_count) &&
             h5_text_write(file, "scene", c->scene_text ? c->scene_text : "");
   h5_close(head);

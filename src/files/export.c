@@ -201,6 +201,13 @@ static bool print_frames(struct frames *s, const struct export_format *format, s
 
 /* --- view --------------------------------------------------------------------------------------------------------- */
 
+/* The scene that the file holds, without a message if it cannot be read. */
+static bool read_model(const struct frames *s, struct scene *scene)
+{
+  struct message ignored;
+  return s->scene && scene_read_text(s->path, s->scene, strlen(s->scene), scene, &ignored);
+}
+
 /* Numbers of the rows that are printed, to be freed; NULL if memory is short. */
 static int32_t *number_rows(struct export_view *v)
 {
@@ -233,7 +240,9 @@ bool trajectory_export(const char *path, const struct export_options *options, F
   if (!frames)
     return false;
   struct scene scene;
-  const bool has_scene = frames_scene(frames, &scene);
+  const bool has_scene = read_model(frames, &scene);
+  if (has_scene)
+    shear_begin(&scene.model, frames->about.slide);
   struct place *place = places_of(&frames->structure);
   int32_t *prev = bonds_back(&frames->structure);
   struct export_view v = {.frames = frames, .options = options, .place = place, .prev = prev};

@@ -160,18 +160,6 @@ hid_t h5_open_dataset(hid_t parent, const char *name)
   return open_sort(parent, name, H5I_DATASET);
 }
 
-hid_t h5_open_path(hid_t parent, const char *path)
-{
-  char name[32];
-  const size_t length = strcspn(path, "/");
-  snprintf(name, sizeof name, "%.*s", (int)length, path);
-  if (!path[length])
-    return h5_open_dataset(parent, name);
-  hid_t group = h5_open_group(parent, name), found = h5_open_path(group, path + length + 1);
-  h5_close(group);
-  return found;
-}
-
 static hid_t little_endian(hid_t type)
 {
   hid_t copy = H5Tcopy(type);
@@ -289,5 +277,37 @@ bool h5_put_text(hid_t object, const char *name, const char *text)
   hid_t type = h5_text_type(strlen(text));
   bool ok = h5_put(object, name, type, 0, text);
   h5_close(type);
+  return ok;
+}
+
+/* Texts written by others may be of variable length, which HDF5 does not convert to ours. */
+static bool get_variable_text(hid_t attribute, hid_t stored, char *text, size_t size)
+{
+  char *value = NULL;
+  hid_t type = H5Tcopy(stored);
+  bool ok = H5Aread(attribute, type, &value) >= 0 && value && strlen(value) < size;
+  if (ok)
+    snprintf(text, size, "%s", value);
+  H5free_memory(value);
+  h5_close(type);
+  return ok;
+}
+
+bool h5_get_text(hid_t object, const char *name, char *text, size_t size)
+{
+  hid_t attribute = H5Aexists(object, name) > 0 ? H5Aopen(object, name, H5P_DEFAULT) : -1;
+  hid_t stored = attribute < 0 ? -1 : H5Aget_type(attribute);
+  hid_t space = attribute < 0 ? -1 : H5Aget_space(attribute);
+  bool ok = stored >= 0 && H5Tget_class(stored) == H5T_STRING && H5Sget_simple_extent_npoints(space) == 1;
+  if (ok && H5Tis_variable_str(stored) > 0) {
+    ok = get_variable_text(attribute, stored, text, size);
+  } else if (ok) {
+    ok = H5Tget_size(stored) <= size && H5Aread(attribute, stored, text) >= 0;
+    if (ok)
+      text[H5Tget_size(stored) < size ? H5Tget_size(stored) : size - 1] = '\0';
+  }
+  h5_close(space);
+  h5_close(stored);
+  h5_close(attribute);
   return ok;
 }

@@ -78,9 +78,6 @@ hid_t h5_open_object(hid_t parent, const char *name);
 hid_t h5_open_group(hid_t parent, const char *name);
 hid_t h5_open_dataset(hid_t parent, const char *name);
 
-/* The same of a dataset by its path. */
-hid_t h5_open_path(hid_t parent, const char *path);
-
 /* Creates a dataset of this rank; grows: the first dimension is unlimited, in chunks of `chunk` rows (dims[0] is 0
  * then). */
 hid_t h5_dataset(hid_t parent, const char *name, hid_t type, int rank, const hsize_t *dims, bool grows, hsize_t chunk);
@@ -93,6 +90,7 @@ bool h5_close(hid_t handle);
 bool h5_put(hid_t object, const char *name, hid_t type, size_t count, const void *data);
 bool h5_get(hid_t object, const char *name, hid_t type, size_t count, void *data);
 bool h5_put_text(hid_t object, const char *name, const char *text);
+bool h5_get_text(hid_t object, const char *name, char *text, size_t size); /* false if it does not fit */
 
 /* Puts a reason of our own where h5_reason looks for it. Returns -1. */
 int h5_refuse(const char *why);
@@ -100,13 +98,18 @@ int h5_refuse(const char *why);
 /* The type of a text of so many bytes in UTF-8; to be closed. */
 hid_t h5_text_type(size_t length);
 
-/* Whole datasets, with the hash of their data. h5_array_read checks the shape and, if asked and where there is one, the
+/* Whole datasets, with the hash of their data. h5_array_read checks class of type, shape and, where there is one, the
  * hash. Rank at most 4. */
 bool h5_array_write(hid_t parent, const char *name, hid_t type, int rank, const hsize_t *dims, const void *data);
-bool h5_array_read(hid_t dataset, hid_t type, int rank, const hsize_t *dims, bool hashed, void *data);
+bool h5_array_read(hid_t parent, const char *name, hid_t type, int rank, const hsize_t *dims, void *data);
 
-/* A text of any length as a scalar dataset. */
+/* True if there is a dataset of this shape, and its numbers are stored. */
+bool h5_array_is(hid_t parent, const char *name, int rank, const hsize_t *dims);
+
+/* A text of any length as a scalar dataset; reading returns memory to be freed, or NULL; errno is ENOMEM then if memory
+ * is short. */
 bool h5_text_write(hid_t parent, const char *name, const char *text);
+char *h5_text_read(hid_t parent, const char *name);
 
 /* Shape of a dataset: returns its rank; -1 if that is more than `most` dimensions, or there is no dataset; -2 if it
  * cannot be read, or claims more numbers than the file can hold, so that a shape may be believed. */

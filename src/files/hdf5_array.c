@@ -1,5 +1,7 @@
 /* Whole datasets, with the hash of their data. */
+#include <errno.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 #include <xxhash.h>
 
@@ -25,25 +27,43 @@ bool h5_array_write(hid_t parent, const char *name, hid_t type, int rank, const 
   return ok;
 }
 
+static bool same_class(hid_t dataset, hid_t type)
+{
+  hid_t stored = H5Dget_type(dataset);
+  H5T_class_t is = stored < 0 ? H5T_NO_CLASS : H5Tget_class(stored), wanted = H5Tget_class(type);
+  h5_close(stored);
+  return is == wanted || (wanted == H5T_INTEGER && is == H5T_ENUM);
+}
+
 static bool has_shape(hid_t dataset, int rank, const hsize_t *dims)
 {
   hsize_t found[4];
-  bool same = h5_shape(dataset, 4, found) == rank;
+  bool same = dataset >= 0 && h5_shape(dataset, 4, found) == rank;
   for (int k = 0; same && k < rank; k++)
     same = found[k] == dims[k];
   return same;
 }
 
-bool h5_array_read(hid_t dataset, hid_t type, int rank, const hsize_t *dims, bool hashed, void *data)
+bool h5_array_is(hid_t parent, const char *name, int rank, const hsize_t *dims)
 {
-  bool ok = has_shape(dataset, rank, dims);
+  hid_t dataset = h5_open_dataset(parent, name);
+  const bool is = has_shape(dataset, rank, dims);
+  h5_close(dataset);
+  return is;
+}
+
+bool h5_array_read(hid_t parent, const char *name, hid_t type, int rank, const hsize_t *dims, void *data)
+{
+  hid_t dataset = h5_open_dataset(parent, name);
+  bool ok = has_shape(dataset, rank, dims) && same_class(dataset, type);
   ok = ok && H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0;
-  const htri_t has = ok && hashed ? H5Aexists(dataset, HASH_NAME) : 0;
-  if (has != 0) {
+  const htri_t hashed = ok ? H5Aexists(dataset, HASH_NAME) : 0;
+  if (hashed != 0) {
     uint64_t hash;
-    ok = has > 0 && h5_get(dataset, HASH_NAME, H5T_NATIVE_UINT64, 0, &hash) &&
+    ok = hashed > 0 && h5_get(dataset, HASH_NAME, H5T_NATIVE_UINT64, 0, &hash) &&
          (hash == hash_of(type, rank, dims, data) || (h5_refuse("its numbers do not fit their checksum"), false));
   }
+  h5_close(dataset);
   return ok;
 }
 
@@ -53,4 +73,24 @@ bool h5_text_write(hid_t parent, const char *name, const char *text)
   bool ok = h5_array_write(parent, name, type, 0, NULL, text);
   h5_close(type);
   return ok;
+}
+
+char *h5_text_read(hid_t parent, const char *name)
+{
+  hsize_t none[1];
+  hid_t dataset = h5_open_dataset(parent, name);
+  hid_t stored = h5_shape(dataset, 0, none) != 0 ? -1 : H5Dget_type(dataset);
+  char *text = NULL;
+  errno = 0;
+  if (stored >= 0 && H5Tget_class(stored) == H5T_STRING && H5Tis_variable_str(stored) == 0) {
+    size_t size = H5Tget_size(stored);
+    text = calloc(size + 1, 1);
+    if (text && !h5_array_read(parent, name, stored, 0, NULL, text)) {
+      free(text);
+      text = NULL;
+    }
+  }
+  h5_close(stored);
+  h5_close(dataset);
+  return text;
 }

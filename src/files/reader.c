@@ -38,17 +38,11 @@ static void lower(int resource, uint64_t value)
   }
 }
 
-uint64_t reader_memory(uint64_t file_bytes)
-{
-  const uint64_t most = UINT64_MAX / MEMORY_PER_BYTE / 4;
-  return LEAST_MEMORY + MEMORY_PER_BYTE * (file_bytes < most ? file_bytes : most);
-}
-
 static void limit_memory(uint64_t file_bytes)
 {
   const uint64_t used = address_space();
-  if (used > 0)
-    lower(RLIMIT_AS, used + reader_memory(file_bytes));
+  if (used > 0 && file_bytes < UINT64_MAX / MEMORY_PER_BYTE / 2)
+    lower(RLIMIT_AS, used + LEAST_MEMORY + MEMORY_PER_BYTE * file_bytes);
 }
 
 void apart_shut(void)

@@ -31,9 +31,6 @@ struct apart_work {
  * its children will be readers of this very program. */
 void reader_is_here(int count, char **words, const struct apart_work *works);
 
-/* How much a reader may allocate for a file of so many bytes, in bytes. */
-uint64_t reader_memory(uint64_t file_bytes);
-
 /* In the reader. apart_shut: from now on no file can be opened. apart_go_on: processor time is counted anew. */
 void apart_shut(void);
 void apart_go_on(const struct apart *link);

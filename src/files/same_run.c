@@ -39,12 +39,14 @@ enum same_run same_run_as_begun(const struct scene *scene, const char *path, con
                                 struct message *message)
 {
   enum h5_trouble trouble;
+  struct message ignored;
   struct scene then;
   struct frames *f = frames_open(path, &trouble, message);
   if (!f)
     return SAME_RUN_UNKNOWN;
   errno = 0;
-  const bool known = f->about.checkpoint && frames_scene(f, &then);
+  const bool known =
+      f->about.checkpoint && f->scene && scene_read_text_numbers(path, f->scene, strlen(f->scene), &then, &ignored);
   enum same_run same = SAME_RUN_UNKNOWN;
   if (!known && errno == ENOMEM)
     message_no_memory(message, "%s: no memory to compare its scene", path);
@@ -66,9 +68,11 @@ enum same_run same_run_as_begun(const struct scene *scene, const char *path, con
 static bool same_scene(const struct frames *frames, uint64_t fingerprint, struct message *message)
 {
   struct scene then;
+  struct message ignored;
   if (fingerprint == 0 || !frames->scene)
     return true;
-  if (!frames_scene(frames, &then))
+  errno = 0;
+  if (!scene_read_text_numbers(frames->path, frames->scene, strlen(frames->scene), &then, &ignored))
     return errno != ENOMEM || message_no_memory(message, "%s: no memory to compare its scene", frames->path);
   const uint64_t its = then.fingerprint;
   scene_free(&then);

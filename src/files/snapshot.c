@@ -48,9 +48,16 @@ struct past {
 /* The scene, if it can be read and is of a box as this one. */
 static void look_back(struct past *past, const struct frames *frames, const struct model *model)
 {
-  const bool read = frames_scene(frames, &past->scene);
-  past->known = read && memcmp(past->scene.model.box.cells, model->box.cells, sizeof model->box.cells) == 0;
-  if (read && !past->known)
+  struct message ignored;
+  past->known = frames->scene &&
+                scene_read_text_numbers(frames->path, frames->scene, strlen(frames->scene), &past->scene, &ignored);
+  if (!past->known)
+    return;
+  struct model *m = &past->scene.model;
+  past->known = memcmp(m->box.cells, model->box.cells, sizeof model->box.cells) == 0 && shear_finish(m);
+  if (past->known)
+    shear_begin(m, frames->about.slide);
+  else
     scene_free(&past->scene);
 }
 
@@ -174,22 +181,22 @@ static bool same_boundary(const struct past *past, const struct frames_about *ab
   return true;
 }
 
-static bool last_frame(struct frames *f, const char *path, const struct model *model, struct state *state,
+static bool last_frame(struct trajectory *t, const char *path, const struct model *model, struct state *state,
                        struct message *message)
 {
-  if (f->about.frames == 0)
+  if (trajectory_frames(t) == 0)
     return message_set(message, "%s: a trajectory without frames", path);
-  if (!f->about.velocities)
+  if (!trajectory_has_velocities(t))
     return message_set(message, "%s: its frames hold no velocities; a start needs them", path);
   if (model_has_dumbbells(model))
     return message_set(message, "%s: its frames hold no springs of dumbbells; a start needs a checkpoint", path);
   if (model_has_bead(model))
     return message_set(message, "%s: its frames hold no bead; a start needs a checkpoint", path);
-  if (model_has_solvent(model) && !trajectory_has_solvent(f, model))
+  if (model_has_solvent(model) && !trajectory_has_solvent(t, model))
     return message_set(message, "%s: its frames hold %u particles; a start needs %u vertices and %u solvent particles",
-                       path, f->about.rows, model->vertices, model->solvent.particles);
-  return in_order(f, model, path, message) &&
-         trajectory_read(f, model, f->about.frames - 1, state, message) == FRAME_FINE;
+                       path, t->particles, model->vertices, model->solvent.particles);
+  return in_order(t->frames_apart, model, path, message) &&
+         trajectory_read(t, model, trajectory_frames(t) - 1, state, message);
 }
 
 /* Frames hold neither beads nor springs, and are none of a scene with them. */
@@ -205,21 +212,23 @@ static bool same_bodies(const struct past *past, const struct model *m, const ch
 static bool start_from_trajectory(const char *path, const struct model *model, struct state *state,
                                   struct snapshot_origin *origin, struct message *message)
 {
-  struct frames *f = trajectory_open_read(path, message);
-  if (!f)
+  struct trajectory *t = trajectory_open_read(path, message);
+  if (!t)
     return false;
+  struct message ignored;
   struct past past;
-  const struct frames_about *about = &f->about;
-  look_back(&past, f, model);
+  const struct frames_about *about = &t->frames_apart->about;
+  const struct structure *s = &t->frames_apart->structure;
+  look_back(&past, t->frames_apart, model);
   bool ok = same_dimensions(&past, 0, model, path, message) && same_bodies(&past, model, path, message) &&
-            same_boundary(&past, about, model, path, message) && last_frame(f, path, model, state, message);
+            same_boundary(&past, about, model, path, message) && last_frame(t, path, model, state, message);
   *origin = (struct snapshot_origin){.has_stream = about->has_stream,
                                      .stream = about->stream,
                                      .step = state->step,
-                                     .untold = model->bonds > 0 && !f->structure.stored_bonds ? UNTOLD_BONDS : 0};
+                                     .untold = model->bonds > 0 && !s->stored_bonds ? UNTOLD_BONDS : 0};
   ok = ok && find_slide(&past, model, state->step, origin, path, message);
   forget(&past);
-  frames_close(f);
+  trajectory_close(t, &ignored);
   return ok;
 }
 

@@ -73,7 +73,7 @@ bool snapshot_read_start(const char *path, const struct model *model, struct sta
 
 /* --- trajectory -------------------------------------------------------------------------------------------------- */
 
-struct trajectory; /* an H5MD file that is being written */
+struct trajectory; /* an open H5MD file */
 
 struct trajectory_options {
   bool solvent; /* frames hold the solvent, else only the vertices */
@@ -112,6 +112,20 @@ bool trajectory_fits(const char *path, const struct model *model, const struct t
                      struct message *message);
 /* Closes it, NULL too; the handle is freed in any case. False, with a message, if data could not be written. */
 bool trajectory_close(struct trajectory *trajectory, struct message *message);
+
+/* Reading: number of frames, scene text, and one frame into a state (vertices always; velocities and solvent if stored,
+ * else as they were; positions come back to the very lattice points they were; lag 0). */
+struct trajectory *trajectory_open_read(const char *path, struct message *message);
+uint64_t trajectory_frames(const struct trajectory *trajectory);
+char *trajectory_scene_text(const struct trajectory *trajectory); /* to be freed; NULL if not one of ours */
+bool trajectory_has_steps(const struct trajectory *trajectory);   /* else every frame reads as step 0 */
+bool trajectory_has_velocities(const struct trajectory *trajectory);
+bool trajectory_has_solvent(const struct trajectory *trajectory, const struct model *model);
+bool trajectory_has_checksums(const struct trajectory *trajectory); /* else damage may go unseen */
+bool trajectory_read(struct trajectory *trajectory, const struct model *model, uint64_t frame, struct state *state,
+                     struct message *message);
+/* After trajectory_read failed: true if only this frame is to blame, and others may be read. */
+bool trajectory_damaged(const struct trajectory *trajectory);
 
 /* --- other forms ------------------------------------------------------------------------------------------------- */
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/text.h"
+#include "files/trajectory.h"
 
 /* --- writing ----------------------------------------------------------------------------------------------------- */
 
@@ -90,30 +91,52 @@ bool structure_same_bonds(const int32_t *stored, const struct model *model)
 
 /* --- reading ----------------------------------------------------------------------------------------------------- */
 
-static bool read_names(struct far *far, const char *in, const char *name, struct structure *s)
+/* Cleared memory for so many of this size, and one more; or NULL, with a message: the file is not to blame. */
+static void *room(size_t count, size_t size, struct message *why)
 {
-  uint64_t count;
-  s->name = far_names(far, in, name, sizeof *s->name, &count);
-  s->kinds = (int)count;
-  return s->name;
+  void *found = calloc(count + 1, size);
+  if (!found)
+    message_no_memory(why, "out of memory");
+  return found;
+}
+
+static bool read_names(hid_t dataset, struct structure *s, struct message *why)
+{
+  hid_t type = H5Dget_type(dataset);
+  int members = type >= 0 && H5Tget_class(type) == H5T_ENUM ? H5Tget_nmembers(type) : 0;
+  hid_t base = members > 0 ? H5Tget_super(type) : -1;
+  bool ok = type >= 0 && (members == 0 || (base >= 0 && H5Tget_size(base) == sizeof(int32_t))); /* as we write them */
+  s->name = room((size_t)members, sizeof *s->name, why);
+  for (int k = 0; s->name && ok && k < members; k++) {
+    int32_t value = -1;
+    char *name = H5Tget_member_name(type, (unsigned)k);
+    ok = name && H5Tget_member_value(type, (unsigned)k, &value) >= 0 && value >= 0 && value < members;
+    if (ok) /* others write them in the order of names */
+      snprintf(s->name[value], sizeof s->name[value], "%s", name);
+    H5free_memory(name);
+  }
+  s->kinds = members;
+  h5_close(base);
+  h5_close(type);
+  return s->name && ok;
 }
 
 /* The frame and row whose species is another than in the frame before; false if there is none. */
-static bool species_change(struct far *far, const char *in, const struct far_thing *value, struct structure *s,
-                           bool *read, struct message *why)
+static bool species_change(hid_t value, hid_t type, hsize_t frames, struct structure *s, bool *read,
+                           struct message *why)
 {
-  int32_t *row = far_room(far, s->particles, sizeof *row, why);
+  int32_t *row = room(s->particles, sizeof *row, why);
   bool change = false;
-  *read = row && far_read(far, in, "species/value", 0, FAR_SHORT, 2, value->dims, s->species);
-  for (uint64_t k = 1; *read && !change && k < value->dims[0]; k++) {
-    *read = far_read(far, in, "species/value", k, FAR_SHORT, 2, value->dims, row);
+  *read = row && trajectory_read_block(value, 0, 2, type, s->species);
+  for (hsize_t k = 1; *read && !change && k < frames; k++) {
+    *read = trajectory_read_block(value, k, 2, type, row);
     for (uint32_t i = 0; *read && !change && i < s->particles; i++) {
       change = row[i] != s->species[i];
       if (change)
         snprintf(s->odd_species, sizeof s->odd_species,
                  "its species change with time: row %" PRIu32 " of frame %" PRIu64 " is another; allowed: the same in "
                  "all frames",
-                 i, k);
+                 i, (uint64_t)k);
     }
   }
   free(row);
@@ -121,46 +144,83 @@ static bool species_change(struct far *far, const char *in, const struct far_thi
 }
 
 /* Of each frame: H5MD lets species change. Those that do, or are no numbers, tell nothing. */
-static bool read_timed_species(struct far *far, const char *in, struct structure *s, struct message *why)
+static bool read_timed_species(hid_t group, struct structure *s, struct message *why)
 {
-  const struct far_thing value = far_look(far, in, "species/value");
+  hsize_t dims[3];
+  hid_t value = h5_has(group, "value") ? h5_open_dataset(group, "value") : -1,
+        type = value < 0 ? -1 : H5Dget_type(value);
+  const H5T_class_t class = type < 0 ? H5T_NO_CLASS : H5Tget_class(type);
+  const bool fits = (class == H5T_ENUM || class == H5T_INTEGER) && h5_shape(value, 3, dims) == 2 &&
+                    dims[1] == s->particles && dims[0] > 0;
   bool read = true;
-  if (!far_is(&value, 2) || (value.class != FAR_ENUMERATION && value.class != FAR_INTEGERS) ||
-      value.dims[1] != s->particles || value.dims[0] == 0) {
+  s->species = room(s->particles, sizeof *s->species, why);
+  if (!fits)
     snprintf(s->odd_species, sizeof s->odd_species, "its species are not one whole number for each row");
-    return true;
-  }
-  if (!read_names(far, in, "species/value", s))
-    return false;
-  if (species_change(far, in, &value, s, &read, why))
+  else if (!s->species || !read_names(value, s, why))
+    read = false;
+  else if (species_change(value, class == H5T_ENUM ? type : H5T_NATIVE_INT32, dims[0], s, &read, why))
     memset(s->species, 0, (size_t)s->particles * sizeof *s->species), s->kinds = 0;
-  return read;
+  h5_close(type);
+  h5_close(value);
+  return s->species && read;
 }
 
 /* Memory is asked for only when the dataset has been found to hold so many rows. */
-static bool read_species(struct far *far, const char *in, struct structure *s, struct message *why)
+static bool read_species(hid_t particles, struct structure *s, struct message *why)
 {
-  const struct far_thing species = far_look(far, in, "species");
-  const bool fixed = species.kind == FAR_DATASET;
-  if (species.kind == FAR_BROKEN || (fixed && (species.rank != 1 || species.dims[0] != s->particles)))
-    return false;
-  s->species = far_room(far, s->particles, sizeof *s->species, why);
-  if (!s->species || species.kind == FAR_NOTHING)
-    return s->species;
-  if (!fixed)
-    return read_timed_species(far, in, s, why);
-  return read_names(far, in, "species", s) &&
-         far_read(far, in, "species", FAR_ALL, FAR_SHORT, 1, species.dims, s->species);
+  hsize_t n = 0;
+  const int found = h5_look(particles, "species");
+  hid_t object = h5_open_object(particles, "species");
+  const bool fixed = object >= 0 && H5Iget_type(object) == H5I_DATASET;
+  if (object >= 0 && !fixed) {
+    const bool timed = read_timed_species(object, s, why);
+    h5_close(object);
+    return timed;
+  }
+  bool ok = (found == 0 || object >= 0) && (!fixed || (h5_shape(object, 1, &n) == 1 && n == s->particles));
+  s->species = ok ? room(s->particles, sizeof *s->species, why) : NULL;
+  ok = ok && s->species;
+  if (ok && fixed) {
+    hid_t type = H5Dget_type(object);
+    bool is_enum = H5Tget_class(type) == H5T_ENUM;
+    ok = type >= 0 && read_names(object, s, why) &&
+         h5_array_read(particles, "species", is_enum ? type : H5T_NATIVE_INT32, 1, &n, s->species);
+    h5_close(type);
+  }
+  h5_close(object);
+  return ok;
+}
+
+/* As real numbers. */
+static bool read_whole_masses(hid_t particles, hsize_t n, double *mass, struct message *why)
+{
+  int64_t *whole = room((size_t)n, sizeof *whole, why);
+  const bool ok = whole && h5_array_read(particles, "mass", H5T_NATIVE_INT64, 1, &n, whole);
+  for (hsize_t i = 0; ok && i < n; i++)
+    mass[i] = (double)whole[i];
+  free(whole);
+  return ok;
 }
 
 /* In files of other programs masses may be missing, or be of another form: they are not stored then. */
-static bool read_mass(struct far *far, const char *in, struct structure *s, struct message *why)
+static bool read_mass(hid_t particles, struct structure *s, struct message *why)
 {
-  const struct far_thing mass = far_look(far, in, "mass");
-  if (!far_is(&mass, 1) || (mass.class != FAR_REALS && mass.class != FAR_INTEGERS) || mass.dims[0] != s->particles)
-    return mass.kind != FAR_BROKEN;
-  s->mass = far_room(far, s->particles, sizeof *s->mass, why);
-  return s->mass && far_read(far, in, "mass", FAR_ALL, FAR_REAL, 1, mass.dims, s->mass);
+  const hsize_t n = s->particles;
+  hsize_t found = 0;
+  const int there = h5_look(particles, "mass");
+  hid_t object = h5_open_object(particles, "mass");
+  hid_t type = object >= 0 && H5Iget_type(object) == H5I_DATASET ? H5Dget_type(object) : -1;
+  const H5T_class_t class = type < 0 ? H5T_NO_CLASS : H5Tget_class(type);
+  const bool fits = (class == H5T_FLOAT || class == H5T_INTEGER) && h5_shape(object, 1, &found) == 1 && found == n;
+  bool ok = there == 0 || object >= 0;
+  if (ok && fits) {
+    s->mass = room((size_t)n, sizeof *s->mass, why);
+    ok = s->mass && (class == H5T_FLOAT ? h5_array_read(particles, "mass", H5T_NATIVE_DOUBLE, 1, &n, s->mass)
+                                        : read_whole_masses(particles, n, s->mass, why));
+  }
+  h5_close(type);
+  h5_close(object);
+  return ok;
 }
 
 /* A pair has no direction: it is that of a fiber, whose rows follow each other, or that from a ring's end to its
@@ -186,9 +246,9 @@ static int compare_ids(const void *a, const void *b)
 }
 
 /* The rows by their ids, to be freed; NULL, with a message, if memory is short. */
-static struct named *sort_rows(struct far *far, const int64_t *id, uint32_t rows, struct message *why)
+static struct named *sort_rows(const int64_t *id, uint32_t rows, struct message *why)
 {
-  struct named *by_id = far_room(far, rows, sizeof *by_id, why);
+  struct named *by_id = room(rows, sizeof *by_id, why);
   for (uint32_t i = 0; by_id && i < rows; i++)
     by_id[i] = (struct named){id ? id[i] : i, (int32_t)i};
   if (by_id && id)
@@ -196,13 +256,13 @@ static struct named *sort_rows(struct far *far, const int64_t *id, uint32_t rows
   return by_id;
 }
 
-static bool take_bonds(struct structure *s, const int32_t *pair, uint64_t bonds, const struct named *by_id,
+static bool take_bonds(struct structure *s, const int32_t *pair, hsize_t bonds, const struct named *by_id,
                        struct message *why)
 {
-  for (uint64_t b = 0; b < bonds; b++) {
+  for (hsize_t b = 0; b < bonds; b++) {
     const struct named *end[2];
     for (int k = 0; k < 2; k++) {
-      const struct named wanted = {.id = pair[2 * b + (uint64_t)k]};
+      const struct named wanted = {.id = pair[2 * b + (hsize_t)k]};
       end[k] = bsearch(&wanted, by_id, s->particles, sizeof *by_id, compare_ids);
       if (!end[k])
         return message_set(why, "its bonds name particle %" PRId64 ", and no row is that", wanted.id);
@@ -212,35 +272,38 @@ static bool take_bonds(struct structure *s, const int32_t *pair, uint64_t bonds,
   return true;
 }
 
-static bool read_bonds(struct far *far, const char *in, const int64_t *id, struct structure *s, struct message *why)
+static bool read_bonds(hid_t connectivity, const int64_t *id, struct structure *s, struct message *why)
 {
-  s->next = far_room(far, s->particles, sizeof *s->next, why);
-  for (uint32_t i = 0; s->next && i < s->particles; i++)
-    s->next[i] = -1;
-  const struct far_thing bonds = in ? far_look(far, in, "bonds") : (struct far_thing){.kind = FAR_NOTHING};
-  if (!s->next || bonds.kind <= FAR_NOTHING)
-    return s->next && bonds.kind == FAR_NOTHING;
-  s->stored_bonds = true;
-  if (!far_is(&bonds, 2) || bonds.dims[1] != 2 || bonds.dims[0] > INT32_MAX)
+  hsize_t dims[2] = {0, 2};
+  s->next = room(s->particles, sizeof *s->next, why);
+  if (!s->next)
     return false;
-  int32_t *pair = far_room(far, (size_t)bonds.dims[0] * 2, sizeof *pair, why);
-  struct named *by_id = sort_rows(far, id, s->particles, why);
-  const bool ok = pair && by_id && far_read(far, in, "bonds", FAR_ALL, FAR_SHORT, 2, bonds.dims, pair) &&
-                  take_bonds(s, pair, bonds.dims[0], by_id, why);
-  s->bonds = (uint32_t)bonds.dims[0];
+  for (uint32_t i = 0; i < s->particles; i++)
+    s->next[i] = -1;
+  int found = connectivity < 0 ? 0 : h5_look(connectivity, "bonds");
+  if (found <= 0)
+    return found == 0;
+  s->stored_bonds = true;
+  hid_t dataset = h5_open_dataset(connectivity, "bonds");
+  bool ok = h5_shape(dataset, 2, dims) == 2 && dims[1] == 2 && dims[0] <= INT32_MAX;
+  h5_close(dataset);
+  int32_t *pair = ok ? room((size_t)dims[0] * 2, sizeof *pair, why) : NULL;
+  struct named *by_id = ok ? sort_rows(id, s->particles, why) : NULL;
+  ok = pair && by_id && h5_array_read(connectivity, "bonds", H5T_NATIVE_INT32, 2, dims, pair) &&
+       take_bonds(s, pair, dims[0], by_id, why);
+  s->bonds = (uint32_t)dims[0];
   free(by_id);
   free(pair);
   return ok;
 }
 
-bool structure_read(struct far *far, const char *particles, const char *connectivity, const int64_t *id, uint32_t rows,
-                    struct structure *s, struct message *why)
+bool structure_read(hid_t particles, hid_t connectivity, const int64_t *id, uint32_t rows, struct structure *s,
+                    struct message *why)
 {
   memset(s, 0, sizeof *s);
   *why = (struct message){.text = ""};
   s->particles = rows;
-  bool ok = read_species(far, particles, s, why) && read_mass(far, particles, s, why) &&
-            read_bonds(far, connectivity, id, s, why);
+  bool ok = read_species(particles, s, why) && read_mass(particles, s, why) && read_bonds(connectivity, id, s, why);
   if (!ok)
     structure_free(s);
   return ok;

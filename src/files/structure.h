@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 #include "base/message.h"
-#include "files/far.h"
+#include "files/hdf5.h"
 #include "system/model.h"
 
 #define STRUCTURE_SOLVENT "solvent" /* name of the last species */
@@ -38,12 +38,12 @@ struct structure {
   bool stored_bonds; /* the file says which bonds there are, or that there are none */
 };
 
-/* Reads `species` and `mass` of group `particles`, and `bonds` of `connectivity` (NULL: there are none), for this
- * number of rows. Bonds are pairs of ids: [rows]; NULL: of numbers of rows. A file of another program without fixed
- * species has one species without a name. False if they do not fit together or memory is short, with a message if it is
- * known why, else an empty one; nothing needs freeing then. */
-bool structure_read(struct far *far, const char *particles, const char *connectivity, const int64_t *id, uint32_t rows,
-                    struct structure *structure, struct message *why);
+/* Reads `species` and `mass` of `particles`, and `bonds` of `connectivity` (below 0: there are none), for this number
+ * of rows. Bonds are pairs of ids: [rows]; NULL: of numbers of rows. A file of another program without fixed species
+ * has one species without a name. False if they do not fit together or memory is short, with a message if it is known
+ * why, else an empty one; nothing needs freeing then. */
+bool structure_read(hid_t particles, hid_t connectivity, const int64_t *id, uint32_t rows, struct structure *structure,
+                    struct message *why);
 void structure_free(struct structure *structure);
 
 /* Mass of a row, m: as stored, else 1. */

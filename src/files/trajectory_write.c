@@ -85,7 +85,7 @@ static hid_t add_element(struct trajectory *t, hid_t parent, const char *name, i
   return -1;
 }
 
-static bool add_box(struct trajectory *t, hid_t group, const struct model *model)
+static bool add_box(struct trajectory *t, const struct model *model)
 {
   const int32_t dimension = 3;
   char boundary[3][9] = {"periodic", "periodic", "periodic"};
@@ -95,7 +95,7 @@ static bool add_box(struct trajectory *t, hid_t group, const struct model *model
     if (model->box.boundary[k] != BOUNDARY_PERIODIC) /* H5MD has no word for images that slide */
       memcpy(boundary[k], "none\0\0\0\0", sizeof boundary[k]);
   H5Tset_size(type, sizeof boundary[0]);
-  hid_t box = h5_group(group, "box");
+  hid_t box = h5_group(t->group, "box");
   bool ok = h5_put(box, "dimension", H5T_NATIVE_INT32, 0, &dimension) && h5_put(box, "boundary", type, 3, boundary);
   t->edges = add_element(t, box, "edges", 3, dims);
   h5_close(type);
@@ -114,17 +114,16 @@ static bool create_contents(struct trajectory *t, const struct model *model, con
                             const char *scene_text)
 {
   const hsize_t dims[3] = {0, t->particles, 3};
-  hid_t particles = h5_group(t->file, "particles"), group = h5_group(particles, "trajectory");
+  hid_t particles = h5_group(t->file, "particles");
+  t->group = h5_group(particles, "trajectory");
   h5_close(particles);
-  t->position = group < 0 ? -1 : add_element(t, group, "position", 3, dims);
+  t->position = t->group < 0 ? -1 : add_element(t, t->group, "position", 3, dims);
   if (options->velocities && t->position >= 0)
-    t->velocity = add_element(t, group, "velocity", 3, dims);
-  const bool ok = t->position >= 0 && (t->velocity >= 0 || !options->velocities) && add_box(t, group, model) &&
-                  structure_write_particles(group, model, t->solvent) && write_h5md(t->file) &&
-                  write_parameters(t, model, options, scene_text) && write_connectivity(t->file, model) &&
-                  H5Fflush(t->file, H5F_SCOPE_GLOBAL) >= 0;
-  h5_close(group);
-  return ok;
+    t->velocity = add_element(t, t->group, "velocity", 3, dims);
+  return t->position >= 0 && (t->velocity >= 0 || !options->velocities) && add_box(t, model) &&
+         structure_write_particles(t->group, model, t->solvent) && write_h5md(t->file) &&
+         write_parameters(t, model, options, scene_text) && write_connectivity(t->file, model) &&
+         H5Fflush(t->file, H5F_SCOPE_GLOBAL) >= 0;
 }
 
 static uint32_t rows_wanted(const struct model *model, const struct trajectory_options *options)
@@ -199,11 +198,53 @@ static bool set_frames(struct trajectory *t, uint64_t frames)
     hsize_t dims[3];
     if (datasets[k] < 0)
       continue;
-    ok = ok && h5_shape(datasets[k], 3, dims) >= 1 && dims[0] >= frames;
+    ok = ok && h5_shape(datasets[k], 3, dims) >= 1;
     dims[0] = frames;
     ok = ok && H5Dset_extent(datasets[k], dims) >= 0;
   }
   t->frames = frames;
+  return ok;
+}
+
+/* How many frames are of steps up to this one, and the last step among them. Each of them is held against its
+ * checksums. FRAME_DAMAGED, with a message, if one is damaged, or if steps do not increase; FRAME_LOST if that cannot
+ * be found out. A frame that comes later may be damaged: it is not kept. */
+static enum frame_verdict find_kept(struct frames *frames, uint64_t keep_to_step, uint64_t *keep, uint64_t *last_step,
+                                    struct message *message)
+{
+  const struct frames_about *about = &frames->about;
+  if (about->checkpoint || !about->steps) {
+    message_set(message, "%s: not a trajectory of this program", frames->path);
+    return FRAME_DAMAGED;
+  }
+  *last_step = 0;
+  for (*keep = 0; *keep < about->frames; ++*keep) {
+    const enum frame_verdict verdict = frames_check(frames, *keep, message);
+    const uint64_t step = frames->picture.step;
+    if (verdict != FRAME_LOST && step > keep_to_step)
+      return FRAME_FINE;
+    if (verdict != FRAME_FINE)
+      return verdict;
+    if (*keep > 0 && step <= *last_step) {
+      message_set(message, "%s: frame %" PRIu64 " is of step %" PRIu64 ", the frame before it of step %" PRIu64,
+                  frames->path, *keep, step, *last_step);
+      return FRAME_DAMAGED;
+    }
+    *last_step = step;
+  }
+  return FRAME_FINE;
+}
+
+bool trajectory_find_end(const char *path, uint64_t keep_to_step, uint64_t *end)
+{
+  enum h5_trouble trouble;
+  struct message ignored;
+  uint64_t keep, last_step;
+  struct frames *frames = frames_open(path, &trouble, &ignored);
+  const bool ok = frames && find_kept(frames, keep_to_step, &keep, &last_step, &ignored) == FRAME_FINE;
+  if (ok)
+    *end = keep > 0 ? last_step + 1 : 0;
+  frames_close(frames);
   return ok;
 }
 
@@ -276,7 +317,7 @@ static bool look_at(const char *path, const struct model *model, const struct tr
   enum frame_verdict verdict = FRAME_FINE;
   const bool same = same_contents(frames, model, options, message);
   if (same)
-    verdict = trajectory_find_kept(frames, keep_to_step, &kept->frames, &kept->last_step, message);
+    verdict = find_kept(frames, keep_to_step, &kept->frames, &kept->last_step, message);
   *damaged = verdict == FRAME_DAMAGED;
   kept->checked = frames->about.checked;
   frames_close(frames);
@@ -285,33 +326,12 @@ static bool look_at(const char *path, const struct model *model, const struct tr
   return same && !*damaged;
 }
 
-/* That they are as they were written has been looked at. */
-static bool open_datasets(struct trajectory *t, const struct trajectory_options *options, const struct kept *kept)
-{
-  const struct {
-    hid_t *handle;
-    const char *path;
-    bool wanted;
-  } rows[] = {{&t->position, "particles/trajectory/position/value", true},
-              {&t->velocity, "particles/trajectory/velocity/value", options->velocities},
-              {&t->edges, "particles/trajectory/box/edges/value", true},
-              {&t->step, "particles/trajectory/position/step", true},
-              {&t->time, "particles/trajectory/position/time", true},
-              {&t->checksum, "parameters/uncross/checksum", kept->checked}};
-  bool ok = true;
-  for (size_t k = 0; ok && k < sizeof rows / sizeof *rows; k++)
-    if (rows[k].wanted) {
-      *rows[k].handle = h5_open_path(t->file, rows[k].path);
-      ok = *rows[k].handle >= 0;
-    }
-  return ok;
-}
-
 /* What is removed has not been read before. */
 static bool drop_after(struct trajectory *t, const struct kept *kept)
 {
   t->last_step = kept->last_step;
-  return set_frames(t, kept->frames) && H5Fflush(t->file, H5F_SCOPE_GLOBAL) >= 0;
+  return t->edges >= 0 && t->time >= 0 && kept->frames <= t->frames && set_frames(t, kept->frames) &&
+         H5Fflush(t->file, H5F_SCOPE_GLOBAL) >= 0;
 }
 
 static struct trajectory *resume_existing(const char *path, const struct model *model,
@@ -329,13 +349,8 @@ static struct trajectory *resume_existing(const char *path, const struct model *
     return NULL;
   }
   t->file = h5_open(path, true, &sealed, &trouble, message);
-  if (t->file < 0 || !in_place(t, options, message))
+  if (t->file < 0 || !in_place(t, options, message) || !trajectory_find(t, message))
     return trajectory_give_up(t);
-  t->particles = rows_wanted(model, options);
-  if (!open_datasets(t, options, &kept)) {
-    h5_fail(message, path, "damaged, or its contents cannot be used");
-    return trajectory_give_up(t);
-  }
   t->solvent = options->solvent && model_has_solvent(model);
   if (!make_room(t, model)) {
     message_no_memory(message, "%s: out of memory", path);

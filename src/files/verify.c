@@ -62,7 +62,7 @@ static enum condition verify_trajectory(struct frames *f, FILE *out)
     if (verdict == FRAME_FINE && !in_order(f, k, before, &message))
       verdict = FRAME_DAMAGED;
     if (verdict == FRAME_LOST)
-      return say(out, f->file.apart.died ? CONDITION_DAMAGED : CONDITION_UNKNOWN, &message);
+      return say(out, f->apart.died ? CONDITION_DAMAGED : CONDITION_UNKNOWN, &message);
     if (verdict == FRAME_FINE)
       before = f->picture.step;
     else
@@ -309,7 +309,7 @@ static bool find_scene(const char *folder, struct scene *scene)
   struct message ignored;
   snprintf(path, sizeof path, "%.4000s/checkpoint.h5", folder);
   struct frames *f = access(path, F_OK) == 0 ? frames_open(path, &trouble, &ignored) : NULL;
-  const bool found = f && frames_scene(f, scene);
+  const bool found = f && f->scene && scene_read_text_numbers(path, f->scene, strlen(f->scene), scene, &ignored);
   frames_close(f);
   return found;
 }

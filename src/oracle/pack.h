@@ -14,6 +14,7 @@
 #include <stdio.h>
 
 #include "base/message.h"
+#include "files/apart.h"
 
 #define PACK_FORMAT "uncross pack"
 #define PACK_VERSION 2 /* 1 had neither crossing, exchange nor permutation; it is read */
@@ -72,6 +73,9 @@ bool pack_write(const struct pack *pack, FILE *out, const char *path, struct mes
 
 /* Reads a pack of either form. False, with a message (for text `file:line:col: ...`), if it is neither, or damaged. */
 bool pack_read(const char *path, struct pack *pack, struct message *message);
+
+/* The work of the process that reads HDF5, "pack" (files/apart.h). */
+void pack_serve(struct apart *link);
 
 /* Whether a file begins as a pack does, though the rest may be damaged: HDF5, or text with the words that pack_write
  * begins with, or with a first line of values that can be understood. */

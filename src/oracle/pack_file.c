@@ -4,8 +4,9 @@
 #include <string.h>
 
 #include "base/opening.h"
-#include "files/far.h"
+#include "files/apart.h"
 #include "files/hdf5.h"
+#include "files/reader.h"
 #include "oracle/pack.h"
 #include "oracle/pack_text.h"
 
@@ -69,37 +70,70 @@ bool pack_write(const struct pack *pack, FILE *out, const char *path, struct mes
 
 /* --- reading ----------------------------------------------------------------------------------------------------- */
 
+/* Names of the k-th link of a group. */
+static bool link_name(hid_t group, hsize_t k, char *name, size_t size)
+{
+  ssize_t length = H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, k, name, size, H5P_DEFAULT);
+  return length > 0 && (size_t)length < size;
+}
+
+/* How many links a group has. */
+static bool count_links(hid_t group, hsize_t *count)
+{
+  H5G_info_t info = {.nlinks = 0};
+  bool ok = group >= 0 && H5Gget_info(group, &info) >= 0;
+  *count = info.nlinks;
+  return ok;
+}
+
+static bool is_real(hid_t dataset)
+{
+  hid_t type = H5Dget_type(dataset);
+  bool real = type >= 0 && H5Tget_class(type) == H5T_FLOAT;
+  h5_close(type);
+  return real;
+}
+
 /* Names of columns where the file has none. */
-static const char *default_components(uint64_t columns)
+static const char *default_components(hsize_t columns)
 {
   return columns == 1 ? "value" : columns == 3 ? "x y z" : "0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15";
 }
 
-static bool read_table(struct far *far, const char *group, const struct pack_place *place, const char *name,
-                       struct pack *pack)
+/* Only an attribute that is not there is made up for, never one that cannot be read. */
+static bool read_components(hid_t dataset, hsize_t columns, char *words, size_t size)
 {
-  const struct far_thing thing = far_look(far, group, name);
-  const uint64_t rows = thing.dims[0], columns = thing.rank == 2 ? thing.dims[1] : 1;
-  const bool real = thing.class == FAR_REALS;
-  char words[PACK_COLUMNS * PACK_WORD];
-  if ((!far_is(&thing, 1) && !far_is(&thing, 2)) || rows >= UINT32_MAX || pack->count >= MOST_TABLES || columns < 1 ||
-      columns > PACK_COLUMNS)
-    return false;
-  const int named = far_get_text(far, group, name, "components", 0, words, sizeof words);
-  if (named == 0)
-    snprintf(words, sizeof words, "%s", default_components(columns));
-  void *data = named < 0 || !far_affords(far, rows * columns * sizeof(int64_t)) ? NULL
-               : real ? (void *)pack_put_reals(pack, place, name, words, (uint32_t)rows)
-                      : (void *)pack_put_integers(pack, place, name, words, (uint32_t)rows);
-  struct pack_table *t = data ? &pack->table[pack->count - 1] : NULL;
-  if (!t || t->columns < columns)
-    return false;
-  t->columns = (uint32_t)columns;
-  t->unnamed = named == 0;
-  return far_read(far, group, name, FAR_ALL, real ? FAR_REAL : FAR_INTEGER, (int)thing.rank, thing.dims, data);
+  htri_t there = H5Aexists(dataset, "components");
+  if (there == 0)
+    snprintf(words, size, "%s", default_components(columns));
+  return there == 0 || (there > 0 && h5_get_text(dataset, "components", words, size));
 }
 
-static bool read_group(struct far *far, const char *name, struct pack *pack)
+static bool read_table(hid_t group, const struct pack_place *place, const char *name, struct pack *pack)
+{
+  hid_t dataset = h5_open_dataset(group, name);
+  hsize_t dims[2] = {0, 1};
+  char words[PACK_COLUMNS * PACK_WORD];
+  int rank = h5_shape(dataset, 2, dims);
+  bool ok = (rank == 1 || rank == 2) && dims[0] < UINT32_MAX && pack->count < MOST_TABLES && dims[1] >= 1 &&
+            dims[1] <= PACK_COLUMNS;
+  const bool real = ok && is_real(dataset);
+  const bool unnamed = ok && H5Aexists(dataset, "components") == 0;
+  ok = ok && read_components(dataset, dims[1], words, sizeof words);
+  h5_close(dataset);
+  if (!ok)
+    return false;
+  void *data = real ? (void *)pack_put_reals(pack, place, name, words, (uint32_t)dims[0])
+                    : (void *)pack_put_integers(pack, place, name, words, (uint32_t)dims[0]);
+  struct pack_table *t = data ? &pack->table[pack->count - 1] : NULL;
+  if (!t || t->columns < dims[1])
+    return false;
+  t->columns = (uint32_t)dims[1];
+  t->unnamed = unnamed;
+  return h5_array_read(group, name, real ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64, rank, dims, data);
+}
+
+static bool read_group(hid_t file, const char *name, struct pack *pack)
 {
   struct pack_place place;
   const char *dot = strchr(name, '.');
@@ -107,54 +141,114 @@ static bool read_group(struct far *far, const char *name, struct pack *pack)
     return false;
   snprintf(place.operator_name, sizeof place.operator_name, "%.*s", (int)(dot - name), name);
   place.step = strtoull(dot + 1, NULL, 10);
-  const struct far_thing group = far_look(far, "", name);
-  bool ok = group.kind == FAR_GROUP;
-  for (uint64_t k = 0; ok && k < group.links; k++) {
+  hid_t group = h5_open_group(file, name);
+  hsize_t count;
+  bool ok = count_links(group, &count);
+  for (hsize_t k = 0; ok && k < count; k++) {
     char table[PACK_WORD];
-    ok = far_link(far, name, k, table, sizeof table) && read_table(far, name, &place, table, pack);
+    ok = link_name(group, k, table, sizeof table) && read_table(group, &place, table, pack);
   }
+  h5_close(group);
   return ok;
 }
 
-static bool known_format(struct far *far, struct message *message)
+static bool known_format(hid_t file, const char *path, bool sealed, struct message *message)
 {
   char format[PACK_WORD] = "";
-  int32_t version = 0;
-  char seal[16];
-  const char *path = far->apart.path;
-  if (far_get_text(far, "", "", "format", 0, format, sizeof format) <= 0 || strcmp(format, PACK_FORMAT) != 0 ||
-      far_get(far, "", "", "version", FAR_SHORT, 0, &version) <= 0 || version < 1 || version > PACK_VERSION)
+  int version = 0;
+  if (!h5_get_text(file, "format", format, sizeof format) || strcmp(format, PACK_FORMAT) != 0 ||
+      !h5_get(file, "version", H5T_NATIVE_INT, 0, &version) || version < 1 || version > PACK_VERSION)
     return message_set(
         message, "%s: not a pack of version 1 to %d; `uncross oracle emit` writes one, docs/port/formats.md says how",
         path, PACK_VERSION);
-  return far->sealed || far_get_text(far, "", "", SEAL_NAME, 0, seal, sizeof seal) == 0 ||
+  return sealed || H5Aexists(file, SEAL_NAME) == 0 ||
          message_set(message, "%s: damaged: its end with the seal is missing or changed", path);
 }
 
-static bool read_groups(struct far *far, struct pack *pack, struct message *message)
+static bool read_file(const char *path, struct pack *pack, struct message *message)
 {
+  enum h5_trouble trouble;
   char name[2 * PACK_WORD];
-  const struct far_thing root = far_look(far, "", "");
-  bool ok = known_format(far, message) && (root.kind == FAR_GROUP || far_fail(far, message, "cannot be read"));
-  for (uint64_t k = 0; ok && k < root.links; k++)
-    ok = (far_link(far, "", k, name, sizeof name) || far_fail(far, message, "cannot be read")) &&
-         (read_group(far, name, pack) ||
+  bool sealed;
+  unsigned failures;
+  hid_t file = h5_open(path, false, &sealed, &trouble, message);
+  apart_shut();
+  h5_watch(&failures);
+  if (file < 0)
+    return false;
+  bool ok = known_format(file, path, sealed, message);
+  hsize_t count = 0;
+  if (ok && !count_links(file, &count))
+    ok = h5_fail(message, path, "cannot be read");
+  for (hsize_t k = 0; ok && k < count; k++)
+    ok = (link_name(file, k, name, sizeof name) || h5_fail(message, path, "cannot be read")) &&
+         (read_group(file, name, pack) ||
           message_set(message,
                       "%s: group %s: cannot be read; a group is `operator.step`, its datasets are [rows] or "
                       "[rows][at most %d columns] of integers or reals, undamaged",
-                      far->apart.path, name, PACK_COLUMNS));
-  return ok && far_whole(far, 0, "damaged: HDF5 cannot read some part of it", message);
+                      path, name, PACK_COLUMNS));
+  h5_close(file);
+  return ok && (failures == 0 || message_set(message, "%s: damaged: HDF5 cannot read some part of it", path));
+}
+
+/* --- the process that reads, and the one that wants the pack ----------------------------------------------------- */
+
+static size_t bytes_of(const struct pack_table *t)
+{
+  return (size_t)t->rows * t->columns * sizeof(int64_t);
+}
+
+void pack_serve(struct apart *link)
+{
+  struct pack pack = {0};
+  struct message message = {.text = ""};
+  const bool ok = read_file(link->path, &pack, &message);
+  const uint64_t count = pack.count;
+  apart_put_verdict(link, ok ? 0 : 1, &message);
+  if (!ok || !apart_put(link, &count, sizeof count))
+    return;
+  for (size_t k = 0; k < pack.count; k++)
+    if (!apart_put(link, &pack.table[k], sizeof pack.table[k]) ||
+        !apart_put(link, pack.table[k].value.data, bytes_of(&pack.table[k])))
+      return;
+}
+
+static bool get_table(struct apart *apart, struct pack_table *t)
+{
+  t->value.data = NULL;
+  if (!apart_get(apart, t, sizeof *t))
+    return false;
+  t->value.data = NULL; /* what was sent is an address over there */
+  if (t->columns < 1 || t->columns > PACK_COLUMNS)
+    return false;
+  t->place.operator_name[PACK_WORD - 1] = t->name[PACK_WORD - 1] = '\0';
+  for (int c = 0; c < PACK_COLUMNS; c++)
+    t->component[c][PACK_WORD - 1] = '\0';
+  t->value.data = malloc(bytes_of(t) + 1);
+  return t->value.data && apart_get(apart, t->value.data, bytes_of(t));
+}
+
+static bool get_tables(struct apart *apart, struct pack *pack)
+{
+  uint64_t count;
+  if (!apart_get(apart, &count, sizeof count) || count > MOST_TABLES)
+    return false;
+  pack->table = calloc((size_t)count + 1, sizeof *pack->table);
+  bool ok = pack->table;
+  while (ok && pack->count < count)
+    ok = get_table(apart, &pack->table[pack->count++]);
+  return ok;
 }
 
 static bool read_hdf5(const char *path, struct pack *pack, struct message *message)
 {
-  struct far far;
-  enum h5_trouble trouble;
-  if (!far_open(&far, path, &trouble, message))
+  struct apart apart;
+  if (!apart_start(&apart, path, "pack", message))
     return false;
-  const bool read = read_groups(&far, pack, message),
-             ok = far_whole(&far, far.failures, "", message) && read; /* that the reader is no more says most */
-  far_close(&far);
+  bool ok = apart_get_verdict(&apart, message) == 0;
+  if (ok && !get_tables(&apart, pack))
+    ok = apart.broken ? apart_lost(&apart, message) : message_set(message, "%s: out of memory", path);
+  apart_end(&apart);
   return ok;
 }
 

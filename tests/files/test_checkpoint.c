@@ -4,7 +4,7 @@
 #include <errno.h>
 
 #include "base/random.h"
-#include "files/frames.h"
+#include "files/hdf5.h"
 
 struct memory {
   double sums[3];
@@ -49,11 +49,9 @@ static bool read_state(const char *path, const struct model *model, struct state
 /* To be freed; NULL if it cannot be read. */
 static char *scene_text(const char *path)
 {
-  struct message ignored;
-  enum h5_trouble trouble;
-  struct frames *file = frames_open(path, &trouble, &ignored);
-  char *text = file ? strdup(file->scene) : NULL;
-  frames_close(file);
+  hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  char *text = file < 0 ? NULL : h5_text_read(file, "scene");
+  h5_close(file);
   return text;
 }
 

@@ -7,7 +7,6 @@
 
 #include "base/random.h"
 #include "files/hdf5.h"
-#include "files/trajectory.h"
 #include "fluid/fluid.h"
 
 static const struct trajectory_options everything = {.solvent = true, .velocities = true, .seed = 42};
@@ -127,21 +126,23 @@ static void frames_come_back(void **unused)
 
     struct state back;
     assert_true(state_alloc(&back, &r.model));
-    struct frames *f = trajectory_open_read(path, &message);
-    assert_non_null(f);
-    assert_true(f->about.frames == 8);
-    assert_true(f->about.velocities == solvent && trajectory_has_solvent(f, &r.model) == solvent);
-    assert_string_equal(f->scene, "box: [6, 5, 7]\n");
-    assert_true(trajectory_read(f, &r.model, 7, &back, &message) == FRAME_FINE);
+    t = trajectory_open_read(path, &message);
+    assert_non_null(t);
+    assert_true(trajectory_frames(t) == 8);
+    assert_true(trajectory_has_velocities(t) == solvent && trajectory_has_solvent(t, &r.model) == solvent);
+    char *scene = trajectory_scene_text(t);
+    assert_string_equal(scene, "box: [6, 5, 7]\n");
+    free(scene);
+    assert_true(trajectory_read(t, &r.model, 7, &back, &message));
     assert_shows(&back, &r, solvent);
-    assert_true(trajectory_read(f, &r.model, 2, &back, &message) == FRAME_FINE);
+    assert_true(trajectory_read(t, &r.model, 2, &back, &message));
     assert_true(back.step == 3);
-    assert_int_equal(trajectory_read(f, &r.model, 8, &back, &message), FRAME_LOST);
+    assert_false(trajectory_read(t, &r.model, 8, &back, &message));
     r.model.box.cells[2]++;
-    assert_int_equal(trajectory_read(f, &r.model, 0, &back, &message), FRAME_LOST);
+    assert_false(trajectory_read(t, &r.model, 0, &back, &message));
     assert_non_null(strstr(message.text, "box"));
     r.model.box.cells[2]--;
-    frames_close(f);
+    close_or_fail(t);
     state_free(&back);
     test_end(&r);
     remove(path);
@@ -167,13 +168,13 @@ static void far_vertices_are_rounded(void **unused)
   close_or_fail(t);
   struct state back;
   assert_true(state_alloc(&back, &r.model));
-  struct frames *f = trajectory_open_read(path, &message);
-  assert_non_null(f);
-  if (trajectory_read(f, &r.model, 0, &back, &message) != FRAME_FINE)
+  t = trajectory_open_read(path, &message);
+  assert_non_null(t);
+  if (!trajectory_read(t, &r.model, 0, &back, &message))
     fail_msg("%s", message.text);
   const struct point off = point_minus(back.position[3], far);
   assert_true(off.x >= -1 && off.x <= 1 && off.y >= -128 && off.y <= 128 && off.z == 0);
-  frames_close(f);
+  close_or_fail(t);
   state_free(&back);
   test_end(&r);
   remove_folder(folder);
@@ -189,7 +190,7 @@ static void steps_must_increase(void **unused)
   struct trajectory *t = open_or_fail(in_folder(folder, "trajectory.h5"), &r.model, &fibers_only, false, 0);
   append_or_fail(t, &r);
   append_or_fail(t, &r); /* the same step: it is there already */
-  assert_true(t->frames == 1);
+  assert_true(trajectory_frames(t) == 1);
   r.state.step = 2;
   assert_false(trajectory_append(t, &r.model, &r.state, &message));
   close_or_fail(t);
@@ -218,25 +219,24 @@ static void resume_drops_later_frames(void **unused)
   close_or_fail(t);
   close_or_fail(open_or_fail(resumed, &b.model, &fibers_only, true, 170));
   t = open_or_fail(resumed, &b.model, &fibers_only, true, UINT64_MAX);
-  assert_true(t->frames == 170);
+  assert_true(trajectory_frames(t) == 170);
   step_and_append(t, &b, 30);
   close_or_fail(t);
 
   struct state x, y;
   assert_true(state_alloc(&x, &a.model) && state_alloc(&y, &a.model));
-  struct frames *g = trajectory_open_read(whole, &message);
-  struct frames *f = trajectory_open_read(resumed, &message);
-  assert_true(g->about.frames == 200 && f->about.frames == 200);
+  struct trajectory *u = trajectory_open_read(whole, &message);
+  t = trajectory_open_read(resumed, &message);
+  assert_true(trajectory_frames(u) == 200 && trajectory_frames(t) == 200);
   for (uint64_t k = 0; k < 200; k++) {
-    assert_true(trajectory_read(g, &a.model, k, &x, &message) == FRAME_FINE &&
-                trajectory_read(f, &a.model, k, &y, &message) == FRAME_FINE);
+    assert_true(trajectory_read(u, &a.model, k, &x, &message) && trajectory_read(t, &a.model, k, &y, &message));
     assert_true(x.step == k + 1 && y.step == k + 1);
     assert_memory_equal(x.position, y.position, x.vertices * sizeof *x.position);
   }
-  frames_close(f);
-  frames_close(g);
+  close_or_fail(t);
+  close_or_fail(u);
   t = open_or_fail(resumed, &b.model, &fibers_only, true, UINT64_MAX);
-  assert_true(t->frames == 200);
+  assert_true(trajectory_frames(t) == 200);
   close_or_fail(t);
   state_free(&x);
   state_free(&y);
@@ -268,16 +268,16 @@ static void killed_runs_leave_their_frames(void **unused)
   int status;
   assert_int_equal(waitpid(child, &status, 0), child);
   assert_true(WIFSIGNALED(status));
-  struct frames *f = trajectory_open_read(path, &message);
-  if (!f)
+  struct trajectory *t = trajectory_open_read(path, &message);
+  if (!t)
     fail_msg("%s", message.text);
-  assert_true(f->about.frames == 9);
+  assert_true(trajectory_frames(t) == 9);
   test_steps(&r, 9);
   struct state back;
   assert_true(state_alloc(&back, &r.model));
-  assert_true(trajectory_read(f, &r.model, 8, &back, &message) == FRAME_FINE);
+  assert_true(trajectory_read(t, &r.model, 8, &back, &message));
   assert_shows(&back, &r, true);
-  frames_close(f);
+  close_or_fail(t);
   state_free(&back);
   test_end(&r);
   remove_folder(folder);
@@ -304,7 +304,7 @@ static void damage_is_set_aside(void **unused)
     if (!t)
       fail_msg("%s", message.text);
     assert_non_null(strstr(message.text, aside[k]));
-    assert_true(t->frames == 0);
+    assert_true(trajectory_frames(t) == 0);
     append_or_fail(t, &r);
     close_or_fail(t);
     char *kept = slurp(aside[k], &bytes2);
@@ -344,11 +344,11 @@ static void sound_files_are_not_set_aside(void **unused)
   r.model.next[0] = 2;
   expect_no_resume(path, &r.model, &fibers_only, "bonds");
   r.model.next[0] = next;
-  struct frames *f = trajectory_open_read(path, &message);
+  t = trajectory_open_read(path, &message);
   expect_no_resume(path, &r.model, &fibers_only, "in use");
-  frames_close(f);
+  close_or_fail(t);
   t = open_or_fail(path, &r.model, &fibers_only, true, 5);
-  assert_true(t->frames == 1);
+  assert_true(trajectory_frames(t) == 1);
   close_or_fail(t);
   r.model.vertices = 0;
   expect_no_resume(path, &r.model, &fibers_only, "no particles");
@@ -380,12 +380,12 @@ static void damage_never_crashes(void **unused)
     data[at] ^= (char)(k < 50 ? 0 : 1 << w.w[1] % 8);
     spill(path, data, length);
     data[at] ^= (char)(k < 50 ? 0 : 1 << w.w[1] % 8);
-    struct frames *f = trajectory_open_read(path, &message);
+    t = trajectory_open_read(path, &message);
     if (k < 50)
-      assert_null(f);
-    for (uint64_t n = 0; f && n < f->about.frames; n++)
-      trajectory_read(f, &r.model, n, &back, &message);
-    frames_close(f);
+      assert_null(t);
+    for (uint64_t f = 0; t && f < trajectory_frames(t); f++)
+      trajectory_read(t, &r.model, f, &back, &message);
+    trajectory_close(t, &message);
     t = trajectory_open(path, &r.model, &everything, true, 2, "", &message);
     trajectory_close(t, &message);
     remove(in_folder(folder, "trajectory.damaged.1.h5"));
@@ -424,7 +424,7 @@ static void full_disks_are_reported(void **unused)
   assert_all_closed();
 
   t = open_or_fail(path, &r.model, &everything, true, UINT64_MAX);
-  assert_true(t->frames == frames);
+  assert_true(trajectory_frames(t) == frames);
   append_or_fail(t, &r);
   close_or_fail(t);
   test_end(&r);

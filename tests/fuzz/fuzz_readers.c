@@ -199,14 +199,15 @@ static void read_checkpoint(void)
 static void read_trajectory(void)
 {
   struct message message = {.text = ""};
-  struct frames *f = trajectory_open_read(all.trajectory.path, &message);
-  if (!f) {
+  struct trajectory *t = trajectory_open_read(all.trajectory.path, &message);
+  if (!t) {
     require_reason(&message, "a trajectory was refused without a word");
     return;
   }
-  if (f->about.frames > 0 && trajectory_read(f, &all.scene.model, 0, &all.state, &message) != FRAME_FINE)
+  free(trajectory_scene_text(t));
+  if (trajectory_frames(t) > 0 && !trajectory_read(t, &all.scene.model, 0, &all.state, &message))
     require_reason(&message, "a frame was refused without a word");
-  frames_close(f);
+  trajectory_close(t, &message);
 }
 
 static void export_and_verify(const char *path, const char *right)

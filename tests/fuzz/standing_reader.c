@@ -21,7 +21,7 @@
 
 #include "base/opening.h"
 #include "files/checkpoint.h"
-#include "files/far.h"
+#include "files/frames_apart.h"
 #include "files/hdf5.h"
 #include "files/reader.h"
 #include "oracle/pack.h"
@@ -105,7 +105,11 @@ static bool receive(int control, struct apart_hello *hello, int *connection)
 
 static void serve_for_ever(int control)
 {
-  static const struct apart_work works[] = {{"hdf5", far_serve}, {NULL, NULL}};
+  static const struct apart_work works[] = {{"checkpoint", checkpoint_serve},
+                                            {"frames", frames_serve},
+                                            {"sort", sort_serve},
+                                            {"pack", pack_serve},
+                                            {NULL, NULL}};
   static const int plain[] = {SIGXCPU, SIGSEGV, SIGBUS, SIGFPE, SIGABRT, SIGILL, SIGPIPE, SIGALRM};
   static struct apart_hello hello;
   struct apart link = {.path = hello.path, .seconds = SECONDS};
