@@ -357,7 +357,7 @@ class PortTest(Folder):
 
     def test_close_packs_beside_other_traces(self):
         """What is close may be why a trace differs: it is told on the terminal, too."""
-        change = f"sed '5s/,[0-9a-f]*,/,0123456789abcdef,/' {DATA}/coarse.trace.csv >$2"
+        change = f"sed 5d {DATA}/coarse.trace.csv >$2"  # a row that is missing has a name at once
         code, said, _, _ = self.check(self.port(self.text(self.LAST_DIGIT), change), name=True)
         self.assertEqual(code, 7, said)
         self.assertRegex(said, "\nmixed.pack\n(.*\n)+first difference: kick, step 3, vertex 0, out.velocity.x(.*\n)+this pattern: ")
