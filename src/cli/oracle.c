@@ -56,31 +56,23 @@ static enum exit_code try_output(const char *path)
 }
 
 /* Writes the pack that `make` fills of a scene. */
-static enum exit_code write_pack(const struct arguments *a, struct scene *scene,
+static enum exit_code write_pack(const struct arguments *a,
                                  bool (*make)(struct scene *, struct pack *, struct message *))
 {
   struct message message;
+  struct scene scene;
   struct pack pack = {0};
   FILE *out;
+  if (!scene_read(a->file[0], &scene, &message))
+    return complain(&message, EXIT_BAD_INPUT);
   enum exit_code code = try_output(a->out);
-  if (code == EXIT_DONE && !make(scene, &pack, &message))
+  if (code == EXIT_DONE && !make(&scene, &pack, &message))
     code = complain(&message, EXIT_BAD_INPUT);
   if (code == EXIT_DONE)
     code = open_output(a->out, &out);
   if (code == EXIT_DONE)
     code = close_output(out, pack_write(&pack, out, a->out, &message) ? EXIT_DONE : EXIT_NOT_WRITTEN, a->out, &message);
   pack_free(&pack);
-  return code;
-}
-
-static enum exit_code write_pack_of_scene(const struct arguments *a,
-                                          bool (*make)(struct scene *, struct pack *, struct message *))
-{
-  struct message message;
-  struct scene scene;
-  if (!scene_read(a->file[0], &scene, &message))
-    return complain(&message, EXIT_BAD_INPUT);
-  const enum exit_code code = write_pack(a, &scene, make);
   scene_free(&scene);
   return code;
 }
@@ -94,12 +86,12 @@ enum exit_code oracle_schema(const struct arguments *a)
 
 enum exit_code oracle_emit_file(const struct arguments *a)
 {
-  return write_pack_of_scene(a, oracle_emit);
+  return write_pack(a, oracle_emit);
 }
 
 enum exit_code oracle_start_file(const struct arguments *a)
 {
-  return write_pack_of_scene(a, oracle_start);
+  return write_pack(a, oracle_start);
 }
 
 enum exit_code oracle_answer_file(const struct arguments *a)

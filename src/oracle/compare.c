@@ -50,18 +50,11 @@ struct tally {
   uint32_t plain_row;
 };
 
-static bool is_drift(const struct pack_table *t)
-{
-  static const char *const drifts[] = {"sweep", "long_sweep", "event_drift", "long_event_drift"};
-  bool any = false;
-  for (size_t k = 0; k < sizeof drifts / sizeof *drifts; k++)
-    any |= strcmp(t->place.operator_name, drifts[k]) == 0;
-  return any;
-}
-
 static void tally_plain(struct tally *t, const struct oracle_pair *p, uint32_t row)
 {
-  if (is_drift(p->ours) || (t->found_plain && oracle_flow(p->ours, t->plain.ours) >= 0))
+  if (t->found_plain && (p->ours == t->plain.ours || oracle_flow(p->ours, t->plain.ours) >= 0))
+    return;
+  if (oracle_is_drift(p->ours->place.operator_name))
     return;
   t->found_plain = true;
   t->plain = *p;
@@ -291,7 +284,7 @@ static bool print_difference(struct tally *t, const struct oracle_options *optio
              t->row < p->ours->rows ? "missing" : "not here");
     fprintf(out, "first difference: %s\n", t->first_words);
   }
-  const bool plain = t->found_plain && is_drift(p->ours);
+  const bool plain = t->found_plain && oracle_is_drift(p->ours->place.operator_name);
   const bool ok = oracle_name(plain ? &t->plain : p, plain ? t->plain_row : t->row, options, t->meaning, message);
   if (t->meaning[0])
     fprintf(out, "this pattern: %s%s%s%s\n", plain ? "in " : "",

@@ -71,8 +71,7 @@ bool oracle_emit(struct scene *scene, struct pack *pack, struct message *message
          (last == interval || with_run(scene, put_step, last, pack, message));
 }
 
-/* --- what a run starts from ----------------------------------------------------------------------------------------
- */
+/* --- what a run starts from -------------------------------------------------------------------------------------- */
 
 static bool put_start(struct oracle_stage *g, const struct scene *scene, uint64_t step, struct message *message)
 {

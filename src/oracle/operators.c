@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "oracle/drift.h"
 #include "oracle/schema.h"
 
 bool oracle_add_rows(struct oracle_stage *g, const void *rows, uint32_t n, size_t size)
@@ -132,6 +133,14 @@ int oracle_operator_rank(const char *name)
     if (strcmp(oracle_operators[k].name, name) == 0)
       return oracle_operators[k].of == OF_NO_STEP ? 0 : (int)k;
   return 0;
+}
+
+bool oracle_is_drift(const char *name)
+{
+  bool found = false;
+  for (size_t k = 0; !found && k < oracle_operator_count; k++)
+    found = oracle_operators[k].run == oracle_run_drift && strcmp(oracle_operators[k].name, name) == 0;
+  return found;
 }
 
 /* What is unknown comes last. */

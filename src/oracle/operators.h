@@ -53,6 +53,9 @@ bool oracle_has_events(const struct model *model);
 /* Where an operator stands among all of them; 0 for what is none, as `model`. */
 int oracle_operator_rank(const char *name);
 
+/* Whether an operator is a whole drift, in which other operators take part. */
+bool oracle_is_drift(const char *name);
+
 /* Negative if the data flow through table a before b: by operator, then by table within it, then by step; names
  * decide about what is unknown. */
 int oracle_flow(const struct pack_table *a, const struct pack_table *b);

@@ -311,14 +311,6 @@ bool scene_read_text_numbers(const char *path, const char *text, size_t size, st
   return scene_read_source(&source, scene);
 }
 
-bool scene_make(const struct scene_settings *settings, struct scene *scene, struct message *message)
-{
-  return scene_read_source(
-      &(struct scene_source){
-          .keys = &scene_keys, .path = "settings", .settings = settings, .look_for_files = true, .message = message},
-      scene);
-}
-
 static bool read_file(struct scene_source *source, struct scene *scene)
 {
   char *text = yaml_read_file(source->path, &source->size, source->message);

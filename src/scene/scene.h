@@ -72,10 +72,6 @@ bool scene_read_text(const char *path, const char *text, size_t size, struct sce
 bool scene_read_text_numbers(const char *path, const char *text, size_t size, struct scene *scene,
                              struct message *message);
 
-/* A scene made of settings alone, without YAML: each of them "path=value", in order. Missing keys take their defaults.
- */
-bool scene_make(const struct scene_settings *settings, struct scene *scene, struct message *message);
-
 /* Leaves the message "place: key: ..." about a key. path: such as "flow", "fibers.0.mass". The place is that of the key
  * in the scene, or that of the section around it. Always returns false. */
 bool scene_refuse_at(const struct scene *scene, const char *path, const char *key, struct message *message,

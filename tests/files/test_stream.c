@@ -4,6 +4,7 @@
 #include <xxhash.h>
 
 #include "files/run.h"
+#include "scene/made.h"
 
 static const char *const settings[] = {"box=[8, 8, 8]",
                                        "time_step=0.01",

@@ -2,7 +2,7 @@
  * the row is about. A row that no scene reaches fails. */
 #include <string.h>
 
-#include "scene/scene.h"
+#include "scene/made.h"
 #include "support.h"
 #include "system/refusals.h"
 

@@ -3,8 +3,7 @@
 
 #include <time.h>
 
-#include "scene/scene.h"
-#include "scene/scene_keys.h"
+#include "scene/made.h"
 #include "scene/words.h"
 
 /* A scene that is all right, one line an entry, so that tests can replace a line and know where the value stands. */

@@ -35,10 +35,12 @@ def longitudinal(k, height, distance):
 def images(height, distance, length):
     """What the images in a box of `length` along both directions add to the mobility along the walls.
 
-    The mean flow (k = 0) is that of a force without a gradient of pressure, while without images half of the waves of smallest k
-    are longitudinal: these carry no flow through the slit. The difference is H w^2/(24 L^2), w = 6 (y/H) (1 - y/H)."""
+    The mean flow (k = 0) is that of a force without a gradient of pressure, so transverse. Without images half of the waves of smallest
+    k are longitudinal: these carry no flow through the slit. The difference is H w^2/(24 L^2), w = 6 (y/H) (1 - y/H)."""
+    least = 1e-4 / distance
+
     def mean(k):
-        k = max(k, 1e-3 / distance)
+        k = max(k, least)
         return 0.5 * (transverse(k, height, distance) + longitudinal(k, height, distance)) * math.exp(-(k * WIDTH)**2)
 
     most = math.ceil(6.0 / WIDTH * length / (2.0 * math.pi))
@@ -46,5 +48,5 @@ def images(height, distance, length):
     squares, times = numpy.unique(numpy.add.outer(steps**2, steps**2), return_counts=True)
     box = sum(n * mean(2.0 * math.pi * math.sqrt(q) / length) for q, n in zip(squares, times)) / length**2
     alone = integrate.quad(lambda k: k * mean(k), 0.0, 8.0 / WIDTH, limit=400, epsrel=1e-11)[0] / (2.0 * math.pi)
-    weight = 6.0 * height / distance * (1.0 - height / distance)
-    return box - alone + distance * weight**2 / (24.0 * length**2)
+    flow = 0.5 * (transverse(least, height, distance) - longitudinal(least, height, distance))
+    return box - alone + flow / length**2
