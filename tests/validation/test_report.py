@@ -87,6 +87,13 @@ class Verdicts(unittest.TestCase):
         for tolerance, measured, word in ((0.2, 1.1, "pass"), (0.3, 1.1, "undecided"), (0.3, 1.4, "fail")):
             self.assertEqual(cases.Verdict("a.b", "", 1.0, "", tolerance, measured=measured, must_see=0.5).verdict, word)
 
+    def test_an_average_that_still_moved_decides_nothing(self):
+        """Neither a pass nor a failure: the halves of its run disagree."""
+        for measured in (1.0, 9.0):
+            verdict = cases.Verdict("a", "", 1.0, "", 0.1, measured=stats.Moving(measured, "it still moves", 0.2), error=0.01)
+            self.assertEqual(verdict.verdict, "undecided")
+            self.assertEqual(report.verdict_row("case", verdict)["reason"], "it still moves")
+
     def test_z(self):
         self.assertAlmostEqual(self.verdict(2.0).z, 2.0, 14)
         self.assertIsNone(self.verdict(None).z)

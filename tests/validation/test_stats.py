@@ -59,6 +59,38 @@ class Means(unittest.TestCase):
         self.assertEqual(value, 0.5)
         self.assertAlmostEqual(error, math.sqrt(4 / 15 / 16), 14)
 
+    def test_steady_series_seldom_seem_to_move(self):
+        """400 correlated series (each value 0.8 of the last, a correlation time of 4.5) of 512: of 800 normal values 2.2 exceed 3, and
+        blocks of so few correlation times make errors some 10 % small, so that it is 2.7 and 6; 14 and more have a chance below 1 in 300."""
+        random = numpy.random.default_rng(4)
+        found = []
+        for _ in range(400):
+            series = [random.normal()]
+            for kick in random.normal(size=511):
+                series.append(0.8 * series[-1] + 0.6 * kick)
+            found.append(stats.unsteady(series))
+        self.assertLess(sum(z > 3.0 for z in found), 14)
+        self.assertEqual(sum(z > stats.SIGMAS for z in found), 0)
+
+    def test_what_moves_is_seen(self):
+        """White noise of 1024 values: a half has an error of 1/sqrt(512) = 0.0442, their difference one of 0.0625. A step of 0.5 in the
+        middle is 8 errors. A ramp of 1.2 parts the halves by 0.6; blocks see it, too: 0.6/sqrt(12)/sqrt(16) = 0.0433 makes a half's error 0.062,
+        so these are 6.9 errors. A wave with a period of a tenth of the run moves nothing."""
+        random = numpy.random.default_rng(5)
+        noise, time = random.normal(size=1024), numpy.arange(1024) / 1024
+        for drift, moves in ((0.0 * time, False), (0.5 * (time >= 0.5), True), (1.2 * time, True), (numpy.sin(20.0 * math.pi * time), False)):
+            value, error = stats.average(3.0 + noise + drift)
+            self.assertEqual(isinstance(value, stats.Moving), moves)
+            self.assertEqual((value, error), stats.blocked_mean(3.0 + noise + drift))
+
+    def test_a_number_made_of_what_moves_moves(self):
+        value = stats.Moving(4.0, "it still moves", 0.25)
+        for made, plain in ((2.0 * value, 8.0), (value / 2, 2.0), (1.0 / value, 0.25), (value - 1, 3.0), (-value, -4.0), (numpy.float64(1.0) * 1.0 + 0.0, None)):
+            self.assertEqual(made, plain if plain is not None else made)
+            self.assertEqual(getattr(made, "moves", ""), "it still moves" if plain is not None else "")
+        self.assertEqual(stats.error_that_covers(2.0 * value, 0.1), 2.0)
+        self.assertEqual(stats.error_that_covers(8.0, 0.1), 0.1)
+
     def test_jackknife_of_a_mean_is_its_standard_error(self):
         value, error = stats.jackknife([[1, 10], [2, 10], [3, 10], [4, 10]], lambda mean: mean)
         self.assertEqual(list(value), [2.5, 10.0])

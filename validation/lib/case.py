@@ -28,6 +28,8 @@ class Verdict:
     `must_see`, where given, is the wrong effect that the verdict is there to see. While `detects` is larger, nothing that agrees
     is a pass: it stays "undecided".
 
+    A number made of an average over a run that still moved is no result: the verdict is "undecided".
+
     `second` is (value, error) of an independent run that was made because the first one left a doubt.
 
     `timed`: measured by a clock, which other programs on the machine make uncertain. Such a number may stay "undecided" in the
@@ -52,12 +54,19 @@ class Verdict:
     def verdict(self):
         if self.measured is None or not math.isfinite(self.measured):
             return "undecided"
+        if self.moves:
+            return "undecided"
         agrees = abs(self.measured - self.expected) <= self.tolerance
         if agrees and (self.blind or (self.doubtful and self.second is None)):
             return "undecided"
         if not agrees or (self.doubtful and self.excess(*self.second) > self.doubt):
             return "fail" if self.kind == "gate" else "not reproduced"
         return "within allowance" if self.covered else "pass"
+
+    @property
+    def moves(self):
+        """How an average that the number is made of still moved through its run (stats.Moving); "" if it was steady."""
+        return getattr(self.measured, "moves", "")
 
     @property
     def seen(self):

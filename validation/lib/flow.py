@@ -138,4 +138,4 @@ def stress(result, *names):
     table, observed = result.table("stress"), scene_of(result)["observe"]
     keep = table["step"] >= observed["from"] + observed["stress"]["every"]
     series = sum((-1.0 if name[0] == "-" else 1.0) * table[name.lstrip("-")][keep] for name in names)
-    return stats.blocked_mean(series)
+    return stats.average(series)

@@ -289,7 +289,7 @@ def mean_of(values, first=0.1):
     """(mean, standard error) over blocks, the first part left out."""
     values = values[int(len(values) * first):]
     blocks = values[:len(values) // BLOCKS * BLOCKS].reshape(BLOCKS, -1).mean(axis=1)
-    return float(blocks.mean()), float(blocks.std(ddof=1) / math.sqrt(BLOCKS))
+    return stats.judged(float(blocks.mean()), values), float(blocks.std(ddof=1) / math.sqrt(BLOCKS))
 
 
 def warren(density):

@@ -28,7 +28,7 @@ def rounded(x, digits=10):
 
 def verdict_row(case, verdict):
     return {"id": verdict.id, "claim": case, "statement": verdict.statement, "source": verdict.source,
-            "kind": verdict.kind, "verdict": verdict.verdict, "reason": verdict.reason,
+            "kind": verdict.kind, "verdict": verdict.verdict, "reason": "; ".join(filter(None, (verdict.moves, verdict.reason))),
             **{key: rounded(getattr(verdict, key)) for key in
                ("expected", "expected_error", "measured", "error", "tolerance", "allowed", "z")},
             "detects": rounded(verdict.seen), "power": rounded(verdict.power), **({"timed": True} if verdict.timed else {}),

@@ -9,7 +9,7 @@ import numpy
 from scipy import stats
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "python"))
-from uncross_sweep.averages import blocked_mean, mean  # noqa: E402, F401
+from uncross_sweep.averages import LEAST_BLOCKS, blocked_mean, mean  # noqa: E402, F401
 
 
 def weighted_mean(values, errors):
@@ -94,6 +94,67 @@ def normal(p):
 RATE, VERDICTS = 1e-3, 100
 SIGMAS = sigmas(RATE, VERDICTS)  # 4.4
 DOUBT = 2.0 * float(stats.norm.sf(3.0))  # of one verdict: from here on, it wants a second run
+
+
+class Moving(float):
+    """An average over a run that was not steady, or a number made of one. `moves` says in words what it did, `share` is half of what
+    the average changed from half to half, over itself. A verdict on it is undecided (lib/case.py). Sums, differences, products
+    and quotients stay Moving."""
+
+    def __new__(cls, value, moves, share):
+        made = super().__new__(cls, value)
+        made.moves, made.share = moves, share
+        return made
+
+
+def _keep_moving(name):
+    plain = getattr(float, name)
+
+    def of(self, *others):
+        made = plain(self, *others)
+        return made if made is NotImplemented else Moving(made, self.moves, self.share)
+    setattr(Moving, name, of)
+
+
+for _name in ("add", "sub", "mul", "truediv"):
+    _keep_moving(f"__{_name}__")
+    _keep_moving(f"__r{_name}__")
+for _name in ("neg", "abs"):
+    _keep_moving(f"__{_name}__")
+
+
+def unsteady(series):
+    """The larger of two differences, in standard errors: of the halves of a series, with the errors of blocked_mean; and of the
+    means of its ten parts from one another, by their slope (Student's t of a line through ten points, as normal errors). 0 if
+    the series has fewer values than two blocked means need."""
+    series = numpy.asarray(series, float)
+    if len(series) < 2 * LEAST_BLOCKS or not series.std() > 0.0:
+        return 0.0
+    (first, first_error), (second, second_error) = map(blocked_mean, numpy.array_split(series, 2))
+    halves = abs(second - first) / math.hypot(first_error, second_error)
+    parts = stats.linregress(numpy.arange(10.0), [part.mean() for part in numpy.array_split(series, 10)])
+    return float(max(halves, normal(0.5 * parts.pvalue)))
+
+
+def average(series):
+    """(mean, standard error) of a correlated series that should be steady. The mean is Moving if the series is not, at the rate of
+    false alarms of all verdicts together."""
+    value, error = blocked_mean(series)
+    return judged(float(value), series), error
+
+
+def judged(value, series):
+    """A mean of this series, Moving if the series is not steady."""
+    if unsteady(series) <= SIGMAS:
+        return value
+    (first, first_error), (second, second_error) = map(blocked_mean, numpy.array_split(numpy.asarray(series, float), 2))
+    moves = f"it still moves: {first:.4g} ± {first_error:.2g} in the first half of the run, {second:.4g} ± {second_error:.2g} in the second"
+    return Moving(value, moves, abs(second - first) / abs(second + first))
+
+
+def error_that_covers(value, error):
+    """The error, or half of what an average changed from one half of its run to the other, where that is more."""
+    return max(error, abs(value) * getattr(value, "share", 0.0))
 
 
 class Tolerance(float):

@@ -202,7 +202,7 @@ def over(a, b):
 
 
 def filled(verdict, pair, systematic=0.0, values=SHORT):
-    verdict.measured, verdict.error = float(pair[0]), float(pair[1])
+    verdict.measured, verdict.error = pair[0], float(pair[1])
     verdict.tolerance = stats.tolerance(verdict.error, verdict.expected_error, systematic=systematic, values=values)
     return verdict
 
@@ -249,7 +249,7 @@ def slit_verdicts(results):
 def parted(values, parts=SHORT):
     """(mean, standard error) of parts of a series."""
     blocks = values[:len(values) // parts * parts].reshape(parts, -1).mean(axis=1)
-    return float(blocks.mean()), float(blocks.std(ddof=1) / math.sqrt(parts))
+    return stats.judged(float(blocks.mean()), values), float(blocks.std(ddof=1) / math.sqrt(parts))
 
 
 def trap_verdicts(results):

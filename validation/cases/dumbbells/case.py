@@ -26,7 +26,7 @@ def filled(verdict, pair, agreed=None, systematic=0.0, error=0.0, values=None):
     """The verdict with (value, error). agreed: a tolerance agreed on beforehand, where four errors fit in."""
     if pair is None or not math.isfinite(pair[0] + pair[1] + error):
         return verdict
-    verdict.measured, verdict.error = float(pair[0]), float(pair[1])
+    verdict.measured, verdict.error = pair[0], float(pair[1])
     total = math.hypot(verdict.error, error)
     if agreed and total < 0.25 * agreed:
         verdict.tolerance = agreed

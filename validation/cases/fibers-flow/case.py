@@ -115,7 +115,7 @@ def pair(row, name, scale=1.0):
 def filled(verdict, value, systematic=0.0, error=0.0):
     if value is None or not math.isfinite(value[0] + value[1] + error):
         return verdict
-    verdict.measured, verdict.error = float(value[0]), float(value[1])
+    verdict.measured, verdict.error = value[0], float(value[1])
     verdict.tolerance = stats.tolerance(math.hypot(verdict.error, error), systematic=systematic)
     return verdict
 
@@ -237,7 +237,7 @@ def contacts_over_theory(result, _):
     table = result.table("collisions")
     rows = table["rate_over_theory"][1 + len(table["time"]) // 4:]
     parts = [part.mean() for part in numpy.array_split(rows, 10) if len(part)]
-    return float(numpy.mean(parts)), float(numpy.std(parts, ddof=1) / math.sqrt(len(parts)))
+    return stats.judged(float(numpy.mean(parts)), rows), float(numpy.std(parts, ddof=1) / math.sqrt(len(parts)))
 
 
 # What is drawn of suspensions: (what is read, its table), label, logarithmic, only where fibers cannot cross
@@ -250,15 +250,15 @@ SUSPENSION_PANELS = (
 
 
 def suspension_points(results, density, forbidden, quantity):
-    """[3][n] rates, means and errors of what is there."""
+    """[3][n] rates, means and errors of what is there; the error covers what an average changed between the halves of its run."""
     read, table = quantity
     found = []
     for rate in SUSPENSION_RATES:
         name = f"c{density}-{rate:g}-{'tight' if forbidden else 'free'}"
         if name in results and table in results[name].tables():
-            point = (rate, *read(results[name], rate))
-            if all(math.isfinite(x) for x in point):
-                found.append(point)
+            value, error = read(results[name], rate)
+            if math.isfinite(value) and math.isfinite(error):
+                found.append((rate, value, stats.error_that_covers(value, error)))
     return numpy.array(found).reshape(-1, 3).T
 
 
@@ -308,7 +308,7 @@ def figures_of(results):
     if any(f"rod-{pe}{suffix}" in results for pe in ROD_RATES for suffix in ("", "-plus")):
         found.append(Figure("rods", "Orientation of a stiff rod in shear, and how fast it turns. Lines: the Fokker-Planck equation of a thin rod; dotted: with the spin w and the shape B that fit each rule.", lambda: draw_rods(results)))
     if any(suspension_points(results, density, forbidden, SUSPENSION_PANELS[0][0]).size for density in SUSPENSIONS for forbidden in (True, False)):
-        found.append(Figure("suspension", "Suspensions of fibers of 32 vertices in steady shear, noncrossing and free: viscosity and first normal stress coefficient of the fibers, their orientation, and contacts of bonds.",
+        found.append(Figure("suspension", "Suspensions of fibers of 32 vertices in steady shear, noncrossing and free: viscosity and first normal stress coefficient of the fibers, their orientation, and contacts of bonds. Bars of stresses and contacts: half of what an average changes between the halves of its run, where that is more than its error and no chance.",
                             lambda: draw_suspension(results)))
     return found
 
