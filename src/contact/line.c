@@ -52,7 +52,7 @@ bool crossing_find(const struct crossing_query *k, struct crossing_hit *hit)
   if (positive(determinant(ab, from, to), false) != side)
     return false;
 
-  /* a and b lie on opposite sides of the triangle's plane. */
+  /* a and b lie on opposite sides of the triangle's plane. (docs/conventions.md has the same volumes about `from`.) */
   const struct difference u = difference(k->from, k->pivot), v = difference(k->to, k->pivot);
   if (positive(determinant(u, v, difference(k->a, k->pivot)), false) ==
       positive(determinant(u, v, difference(k->b, k->pivot)), false))

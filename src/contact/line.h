@@ -17,8 +17,8 @@
 
 #include "base/lattice.h"
 
-/* The points of a test. flip: the moving vertex is the first one of its bond. The volume of two bonds (j, j+1) and (k,
- * k+1) does not depend on which bond is named first, but changes its sign if the ends of one bond are exchanged. */
+/* The points of a test. flip: the moving vertex is the first one of its bond. The volume of two bonds changes its sign
+ * if the ends of one bond are exchanged, but not if the bonds are. */
 struct crossing_query {
   struct point from, to, pivot; /* the moving vertex, before and after; the other end of its bond */
   struct point a, b;            /* the standing bond, as (j, j+1) */

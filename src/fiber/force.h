@@ -1,8 +1,8 @@
 /*
  * Forces and energies of bonds and bends (Padding 2009, Sec. II).
  *
- *   bond   phi_b = (k/2) (R - l0)^2              force on j: +k (R - l0) u, on its neighbor the opposite
- *   bend   phi_theta = kappa (1 - u_{i-1}.u_i)   with
+ *   bond   phi_b = (k/2) (R - l0)^2              force on j: +k (R - l0) u_j, on the next vertex the opposite
+ *   bend   phi_theta = kappa (1 - u_{i-1}.u_i)   u_j: unit vector from j to the next vertex
  *            dcos/dR_{i-1} = -(u_i - cos u_{i-1}) / R_{i-1,i}
  *            dcos/dR_{i+1} =  (u_{i-1} - cos u_i) / R_{i,i+1}      dcos/dR_i = -(sum of both)
  */

@@ -42,7 +42,7 @@ uint64_t collide_bin_and_add(struct state *state, const struct model *model, str
   return mpc->rule->add_particles(state, model, mpc, step, first, n);
 }
 
-/* Flight, cells and sums of the solvent, block by block. */
+/* Flight, cells and sums of the solvent, block by block. *span: at least the largest momentum component (cell_add). */
 static bool gather(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step, uint64_t *span,
                    struct fault *fault)
 {

@@ -18,7 +18,7 @@ struct cell_sum {
 };
 
 /* The change of velocity that a cell gives to each of its members. For SRD: v' = v_cm + factor R (v - v_cm). One cache
- * line, of which AT-a reads the first half: so `active` is there. */
+ * line; AT-a reads its first half alone. */
 struct cell_turn {
   struct vec3 center; /* v_cm */
   double active;      /* 0: fewer than two members, velocities stay as they are */
@@ -43,8 +43,8 @@ struct mpc {
   struct cell_turn *turn;          /* [cells] */
   int64_t *relative;      /* [cells] twice the kinetic energy relative to v_cm, 2^-32 kT; thermostat only, else NULL.
                            * Not filled where one sum of all cells will do (kernel/collide.c) */
-  uint32_t *solvent_cell; /* [particles] the same for particles, in memory order */
-  uint32_t *vertex_cell;  /* [vertices] place of the vertex's cell in sum and turn */
+  uint32_t *solvent_cell; /* [particles] place of the particle's cell in sum and turn, in memory order */
+  uint32_t *vertex_cell;  /* [vertices] the same for vertices */
   uint32_t *occupied;     /* [vertices] numbers of the cells that hold a vertex; random solvent only, else NULL */
   uint32_t *table;        /* [2^table_bits] hash table: 1 + place in occupied, or 0; random solvent only, else NULL */
   uint32_t table_bits;

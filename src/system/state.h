@@ -26,8 +26,8 @@ struct solvent {
 
 /*
  * Dumbbells: pairs of solvent particles with a spring between them (Tao, Goetze and Gompper 2008). Particles 2k and
- * 2k + 1 are dumbbell k. The dumbbells stand before all other particles in memory: that at place p of this list has
- * the places 2p and 2p + 1 of the solvent.
+ * 2k + 1 are dumbbell k. The dumbbells stand before all other particles in memory: place p of this list has the
+ * places 2p and 2p + 1 of the solvent.
  *
  * A spring may be longer than the box, so its vector is part of the state: position of the first particle less that of
  * the second, before both were brought into the box.
