@@ -41,7 +41,9 @@ struct arguments {
   bool has_steps, has_seed, resume, quiet, document, decimal, whole, skip_damaged, movie, compare, list, slurm, no_name,
       help;
   uint64_t steps, seed; /* instead of the scene's */
-  struct export_options export;
+  const char *format;
+  bool solvent, wrapped;
+  uint64_t first, last, stride; /* of frames */
   struct oracle_options oracle;
   double false_alarm;
   const char *packs; /* folder */
@@ -61,6 +63,7 @@ enum command_code {
   COMMAND_VERIFY,
   COMMAND_SCHEMA,
   COMMAND_EXPORT,
+  COMMAND_FRAMES,
   COMMAND_ANALYZE,
   COMMAND_PLOT,
   COMMAND_SWEEP,
@@ -150,6 +153,7 @@ bool outer_find(const char *name, char path[PATH_MAX]);
 enum exit_code outer_run(const struct command *command, char **words);
 
 enum exit_code command_map(const struct arguments *a);
+enum exit_code command_frames(const struct arguments *a);
 enum exit_code command_run(const struct arguments *a);
 enum exit_code command_analyze(const struct arguments *a);
 enum exit_code command_verify(const struct arguments *a);

@@ -68,32 +68,6 @@ static enum exit_code info(const struct arguments *a)
   return message.kind == MESSAGE_NO_MEMORY ? EXIT_TROUBLE : EXIT_BAD_INPUT;
 }
 
-static enum exit_code export_frames(const struct arguments *a)
-{
-  struct message message;
-  FILE *out = a->out ? fopen(a->out, "wx") : stdout;
-  if (!out) {
-    int why = errno;
-    fprintf(stderr, "uncross: %s: cannot create: %s\n", text_shown(a->out), strerror(why));
-    return why == EEXIST ? EXIT_BAD_INPUT : EXIT_NOT_WRITTEN;
-  }
-  bool ok = trajectory_export(a->file[0], &a->export, out, &message);
-  enum exit_code code = ok                                  ? EXIT_DONE
-                        : ferror(out)                       ? EXIT_NOT_WRITTEN
-                        : message.kind == MESSAGE_NO_MEMORY ? EXIT_TROUBLE
-                                                            : EXIT_BAD_INPUT;
-  if (!ok)
-    fprintf(stderr, "uncross: %s\n", message.text);
-  if ((out == stdout ? fflush(out) : fclose(out)) != 0 && ok) {
-    fprintf(stderr, "uncross: %s: cannot write: %s\n", a->out ? text_shown(a->out) : "standard output",
-            strerror(errno));
-    code = EXIT_NOT_WRITTEN;
-  }
-  if (code != EXIT_DONE && a->out)
-    remove(a->out);
-  return code;
-}
-
 #define MAY(code) (1u << (code))
 #define WRITES MAY(EXIT_NOT_WRITTEN)
 
@@ -120,8 +94,10 @@ const struct command commands[COMMANDS] = {
                         command_verify},
     [COMMAND_SCHEMA] = {"schema", "", 0, WRITES, "the JSON schema of scenes, for editors", NULL, schema},
     [COMMAND_EXPORT] = {"export", "FILE", 1, WRITES,
-                        "a trajectory or checkpoint as text: extended XYZ, LAMMPS data and dump, VTF", NULL,
-                        export_frames},
+                        "a trajectory or checkpoint as text: extended XYZ, LAMMPS data and dump, VTF", NULL, NULL},
+    [COMMAND_FRAMES] = {"frames", "FILE", 1, WRITES,
+                        "frames of a trajectory or checkpoint as plain numbers, for programs (docs/files.md)",
+                        "Standard input says which: the number of a frame, from 0, on each line.\n", command_frames},
     [COMMAND_ANALYZE] = {"analyze", "TRAJECTORY", 1, WRITES,
                          "the observables of a trajectory's scene from its frames, as new tables", NULL,
                          command_analyze},

@@ -50,17 +50,16 @@ const struct option_row option_rows[] = {
      .text = "go on with runs that are not finished, begin those that are not begun"},
     {"quiet", NULL, OF(RUN) | OF(SWEEP), 0, OPTION_SWITCH, 0, AT(quiet), ONLY_VALUE,
      .text = "no progress, no closing words"},
-    {"format", "xyz|lammps|lammps-dump|vtf", OF(EXPORT), 0, OPTION_TEXT, 0, AT(export.format), ONLY_VALUE,
+    {"format", "xyz|lammps|lammps-dump|vtf", OF(EXPORT), 0, OPTION_TEXT, 0, AT(format), ONLY_VALUE,
      .text = "extended XYZ (without it), LAMMPS data (one frame, the last), LAMMPS dump, VTF"},
-    {"solvent", NULL, OF(EXPORT), 0, OPTION_SWITCH, 0, AT(export.solvent), ONLY_VALUE,
+    {"solvent", NULL, OF(EXPORT), 0, OPTION_SWITCH, 0, AT(solvent), ONLY_VALUE,
      .text = "with the solvent particles, if the file has them"},
-    {"wrapped", NULL, OF(EXPORT), 0, OPTION_SWITCH, 0, AT(export.wrapped), ONLY_VALUE,
+    {"wrapped", NULL, OF(EXPORT), 0, OPTION_SWITCH, 0, AT(wrapped), ONLY_VALUE,
      .text = "vertices folded into the box, the images of a sheared one where they are then"},
-    {"first", "N", OF(EXPORT), 0, OPTION_WHOLE, 0, AT(export.first), ONLY_VALUE, .most = UINT64_MAX,
+    {"first", "N", OF(EXPORT), 0, OPTION_WHOLE, 0, AT(first), ONLY_VALUE, .most = UINT64_MAX,
      .text = "the first frame; frames are numbered from 0"},
-    {"last", "N", OF(EXPORT), 0, OPTION_WHOLE, 0, AT(export.last), ONLY_VALUE, .most = UINT64_MAX,
-     .text = "the last frame"},
-    {"stride", "N", OF(EXPORT), 0, OPTION_WHOLE, 0, AT(export.stride), ONLY_VALUE, .least = 1, .most = UINT64_MAX,
+    {"last", "N", OF(EXPORT), 0, OPTION_WHOLE, 0, AT(last), ONLY_VALUE, .most = UINT64_MAX, .text = "the last frame"},
+    {"stride", "N", OF(EXPORT), 0, OPTION_WHOLE, 0, AT(stride), ONLY_VALUE, .least = 1, .most = UINT64_MAX,
      .text = "every N-th frame only"},
     {"skip-damaged", NULL, OF(EXPORT) | OF(ANALYZE), 0, OPTION_SWITCH, 0, AT(skip_damaged), ONLY_VALUE,
      .text = "leave out frames that are damaged, and name them on standard error"},
@@ -263,7 +262,7 @@ enum exit_code arguments_read(enum command_code command, int count, char **words
 {
   struct getopt_table table;
   int code;
-  *a = (struct arguments){.export = {.last = UINT64_MAX, .stride = 1}, .false_alarm = 1e-3, .seconds = 600};
+  *a = (struct arguments){.false_alarm = 1e-3, .seconds = 600};
   a->set = calloc((size_t)count + 1, sizeof *a->set);
   if (!a->set) {
     fprintf(stderr, "uncross: no memory to begin with\n");
@@ -284,7 +283,6 @@ enum exit_code arguments_read(enum command_code command, int count, char **words
     a->file[k] = words[optind + k];
   a->all_files = words + optind;
   a->files = (size_t)(count - optind);
-  a->export.notes = a->skip_damaged ? stderr : NULL;
   return check_words(command, count - optind, a);
 }
 

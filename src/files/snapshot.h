@@ -127,22 +127,7 @@ bool trajectory_read(struct trajectory *trajectory, const struct model *model, u
 /* After trajectory_read failed: true if only this frame is to blame, and others may be read. */
 bool trajectory_damaged(const struct trajectory *trajectory);
 
-/* --- other forms ------------------------------------------------------------------------------------------------- */
-
-/* Which parts of a file are exported, and how. */
-struct export_options {
-  const char *format; /* a name of export_formats (files/export.c); NULL: the first */
-  bool solvent;       /* the solvent too, if the file holds it */
-  bool wrapped;       /* vertices folded into the box, else unwrapped as stored */
-  FILE *notes;        /* names damaged frames, which are left out; NULL: such a frame is a failure */
-  uint64_t first, last,
-      stride; /* frames first, first + stride, ... up to last (UINT64_MAX: to the end); stride 0 is 1 */
-};
-
-/* A trajectory or checkpoint as text to a stdio stream: `uncross export`. docs/files.md says what each format holds.
- * False, with a message, if there is no such format, the file cannot be read or have this form, or the stream not be
- * written. */
-bool trajectory_export(const char *path, const struct export_options *options, FILE *out, struct message *message);
+/* --- what a file is --------------------------------------------------------------------------------------------- */
 
 /* Describes a file in a few lines: `uncross info`. Knows scenes, checkpoints, trajectories, run.json, CSV tables, and
  * folders of runs. False, with a message, if it is none of them or cannot be read. */

@@ -186,6 +186,10 @@ class Installed(unittest.TestCase):
         self.assertTrue((self.prefix / "libexec/uncross/uncross-plot").is_file())
         self.assertTrue((self.prefix / "lib/python3/dist-packages/uncross_plot/page.html.jinja").is_file())
 
+    def test_an_export(self):
+        told = call(self.prefix / "bin/uncross", "export", TOP / "tests/files/old/checkpoint.h5", folder=self.folder)
+        self.assertRegex(told, r"^\d+\nLattice=")
+
     def test_uninstall_leaves_nothing(self):
         destination = self.folder / "stage"
         destination.mkdir()

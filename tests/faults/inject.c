@@ -82,7 +82,7 @@ static bool share_plan(void)
     close(fd);
     return true;
   }
-  fcntl(fd, F_SETFD, FD_CLOEXEC); /* it stays open: readers open it by its name in /proc */
+  /* It stays open, in an outer program too (src/cli/outer.c): readers open it by its name in /proc. */
   snprintf(path, sizeof path, "/proc/%d/fd/%d", (int)getpid(), fd);
   setenv(PLAN, path, 1);
   return false;

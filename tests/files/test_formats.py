@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""`uncross export --format lammps|vtf`, and the recipes of docs/files.md.
+"""`uncross export` in every format, and the recipes of docs/files.md.
 
 What is printed is read here by parsers of its own, written from the formats' documents, and held against the datasets of
 the file. LAMMPS reads the data and tells its energies, if `lmp` is installed; ASE runs its recipe, if it is.
@@ -242,6 +242,62 @@ run 0
         _, _, steps = vtf(self.export("--format", "vtf", "--wrapped"))
         x = numpy.array([x for _, x in steps])
         self.assertTrue(((x >= 0) & (x < EDGES)).all())
+
+    def check_xyz(self, text, frames, rows):
+        lines = text.splitlines()
+        self.assertEqual(len(lines), len(frames) * (rows + 2))
+        symbols = [symbol for symbol, (count, vertices, *_) in zip("CNOF", KINDS) for _ in range(count * vertices)]
+        following = {a: b for _, a, b in bonds_and_angles()[0]}
+        where = [(n, place) for n, (_, v) in enumerate(fibers()) for place in range(len(v))]
+        for k, frame in enumerate(frames):
+            first, comment, *shown = lines[k * (rows + 2):(k + 1) * (rows + 2)]
+            self.assertEqual(int(first), rows)
+            self.assertEqual(comment, 'Lattice="6 0 0 0 5 0 0 0 7" Properties=species:S:1:pos:R:3:velo:R:3:id:I:1:next:I:1:fiber:I:1:place:I:1 '
+                             f'pbc="T T T" Step={10 * frame} Time={frame / 10:g} kinds="C:rod N:ring O:bead F:chain{" H:solvent" * (rows > self.vertices)}"')
+            for row, words in enumerate(line.split() for line in shown):
+                self.assertEqual([float(word) for word in words[1:7]], [*self.x[frame, row], *self.v[frame, row]])
+                wanted = [symbols[row], row, following.get(row, -1), *where[row]] if row < self.vertices else ["H", row, -1, -1, -1]
+                self.assertEqual([words[0], *map(int, words[7:])], wanted)
+
+    def test_xyz(self):
+        rows = self.x.shape[1]
+        self.check_xyz(self.export(), [0, 1, 2, 3, 4], self.vertices)
+        self.check_xyz(self.export("--solvent"), [0, 1, 2, 3, 4], rows)
+        self.check_xyz(self.export("--first", "1", "--last", "4", "--stride", "2"), [1, 3], self.vertices)
+        self.check_xyz(self.export("--solvent", path=self.folder / "run1/checkpoint.h5"), [4], rows)
+        self.assertIn("it has frames 0 to 4 (5 in all)", self.export("--first", "5", code=2))
+
+    def test_plain_numbers(self):
+        """docs/files.md, Plain numbers."""
+        done = uncross("frames", self.path, input=b"3\n0\n", stdin=None, text=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        lines, rows = done.stdout.split(b"\n", 10), self.x.shape[1]
+        self.assertEqual([*map(int, lines[0].split())], [5, rows, rows, 1, 5, 4])
+        self.assertEqual(lines[1:6], [b"rod", b"ring", b"bead", b"chain", b"solvent"])
+        self.assertEqual([[*map(float, line.split())] for line in lines[6:10]], [[*kind[4:7]] for kind in KINDS])
+        rest = lines[10][rows * 16:]
+        for frame in 3, 0:
+            line, _, rest = rest.partition(b"\n")
+            self.assertEqual(line.decode(), f"fine {10 * frame} {frame / 10:.17g} 6 1 5 1 7 1 0 0 0")
+            for numbers in self.x, self.v:
+                self.assertEqual(numpy.frombuffer(rest[:rows * 24]).reshape(rows, 3).tolist(), numbers[frame].tolist())
+                rest = rest[rows * 24:]
+        self.assertEqual(rest, b"")
+        for word in b"5\n", b"x\n", b"-1\n", b"1" * 40:
+            self.assertEqual(uncross("frames", self.path, input=word, stdin=None, text=False).returncode, 2, word)
+
+    def test_a_program_that_ends(self):
+        """Who says what the frames are may be killed in between: no half of an export is called done, and its file is gone."""
+        (self.folder / "said").write_bytes(uncross("frames", self.path, input=b"0\n1\n2\n3\n4\n", stdin=None, text=False).stdout[:30000])
+        program = self.folder / "stub"
+        for end, code in ("exit 0", 1), ("exit 4", 4), ("kill -9 $$", 1):
+            program.write_text(f"#!/bin/sh\ncat '{self.folder}/said'\n{end}\n")
+            program.chmod(0o755)
+            done = subprocess.run([TOP / "tools/uncross-export", self.path, "-o", self.folder / "half"], capture_output=True, check=False,
+                                  env={**os.environ, "UNCROSS": str(program)}, timeout=60)
+            self.assertEqual((done.returncode, done.stdout), (code, b""), done.stderr)
+            self.assertEqual(b"ended early" in done.stderr, code == 1, done.stderr)
+            self.assertFalse((self.folder / "half").exists())
 
     def test_formats(self):
         self.assertEqual(self.export(), self.export("--format", "xyz"))

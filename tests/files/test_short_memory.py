@@ -78,7 +78,7 @@ class ShortMemory(unittest.TestCase):
         while enough - few > STEP:
             middle = (few + enough) // 2
             few, enough = (few, middle) if self.loads(middle) else (middle, enough)
-        for words in (["info", "begun/checkpoint.h5"], ["info", "begun"], ["export", "begun/trajectory.h5"],
+        for words in (["info", "begun/checkpoint.h5"], ["info", "begun"], ["frames", "begun/trajectory.h5"],
                       ["analyze", "begun/trajectory.h5", "--out", "tables"],
                       ["run", "s.yaml", "--out", "begun", "--resume", "--quiet"]):
             done = self.limited(enough + 4000, *words)

@@ -24,6 +24,7 @@
  * starts from is sound, and can be stepped on; a trace is the same as ours only if its hashes are; nothing is refused
  * without a word.
  */
+#include "files/frames.h"
 #include "files/verify.h"
 #include "numbers.h"
 #include "scene/scene_keys.h"
@@ -98,13 +99,21 @@ static void end(void)
   end_observed();
 }
 
-/* Text of a file's frames, to be freed; NULL with a message if it cannot be exported. */
+/* Text of a file's frames, a line each, to be freed; NULL with a message if one cannot be read. */
 static char *exported(const char *path, struct message *message)
 {
-  const struct export_options options = {.solvent = true, .last = UINT64_MAX};
+  enum h5_trouble trouble;
+  struct frames *f = frames_open(path, &trouble, message);
   struct sink sink;
   sink_open(&sink);
-  const bool ok = trajectory_export(path, &options, sink.stream, message);
+  bool ok = f;
+  for (uint64_t frame = 0; ok && frame < f->about.frames; frame++) {
+    ok = frames_read(f, frame, message) == FRAME_FINE;
+    for (size_t k = 0; ok && k < 3 * (size_t)f->about.rows; k++)
+      fprintf(sink.stream, "%a %a ", f->picture.position[k], f->picture.velocity ? f->picture.velocity[k] : 0.0);
+    fputc('\n', sink.stream);
+  }
+  frames_close(f);
   char *text = sink_close(&sink);
   if (ok)
     return text;

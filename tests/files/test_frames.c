@@ -1,8 +1,9 @@
-/* Extended XYZ brings every number through text; info knows each sort of file. */
+/* Frames hold the very numbers of the state; info knows each sort of file. */
 #include "files/files.h"
 
 #include <fcntl.h>
 
+#include "files/frames.h"
 #include "fluid/fluid.h"
 #include "scene/yaml.h"
 
@@ -25,55 +26,14 @@ static void write_both(const char *frames_path, const char *checkpoint_path, str
     fail_msg("%s", message.text);
 }
 
-/* The text that an export gives, to be freed. */
-static char *exported(const char *path, const struct export_options *options)
+static void assert_row_is_vertex(const struct frames *f, const struct test_run *r, uint32_t v)
 {
-  struct message message;
-  FILE *out = tmpfile();
-  assert_non_null(out);
-  if (!trajectory_export(path, options, out, &message))
-    fail_msg("%s", message.text);
-  size_t bytes = (size_t)ftell(out);
-  char *text = calloc(bytes + 1, 1);
-  rewind(out);
-  assert_int_equal(fread(text, 1, bytes, out), bytes);
-  fclose(out);
-  return text;
-}
-
-/* Start of the line after this one. */
-static const char *next_line(const char *line)
-{
-  const char *end = strchr(line, '\n');
-  assert_non_null(end);
-  return end + 1;
-}
-
-struct row {
-  char symbol[8];
-  double x[3], v[3];
-  int id, next, fiber, place;
-};
-
-static struct row parse_row(const char *line)
-{
-  struct row r;
-  assert_int_equal(sscanf(line, "%7s %lf %lf %lf %lf %lf %lf %d %d %d %d\n", r.symbol, &r.x[0], &r.x[1], &r.x[2],
-                          &r.v[0], &r.v[1], &r.v[2], &r.id, &r.next, &r.fiber, &r.place),
-                   11);
-  return r;
-}
-
-static void assert_row_is_vertex(const struct row *row, const struct test_run *r, uint32_t v)
-{
-  struct vec3 x = point_in_a0(r->state.position[v]), u = r->state.velocity[v];
-  assert_true(row->x[0] == x.x && row->x[1] == x.y && row->x[2] == x.z);
-  assert_true(row->v[0] == u.x && row->v[1] == u.y && row->v[2] == u.z);
-  assert_int_equal(row->id, v);
-  assert_int_equal(row->next, r->model.next[v]);
-  assert_string_equal(row->symbol, v < 40 ? "C" : "N"); /* 5 fibers of 8, then 3 rings of 6 */
-  assert_int_equal(row->fiber, v < 40 ? v / 8 : 5 + (v - 40) / 6);
-  assert_int_equal(row->place, v < 40 ? v % 8 : (v - 40) % 6);
+  const double *row = f->picture.position + 3 * (size_t)v, *moves = f->picture.velocity + 3 * (size_t)v;
+  const struct vec3 x = point_in_a0(r->state.position[v]), u = r->state.velocity[v];
+  assert_true(row[0] == x.x && row[1] == x.y && row[2] == x.z);
+  assert_true(moves[0] == u.x && moves[1] == u.y && moves[2] == u.z);
+  assert_int_equal(f->structure.next[v], r->model.next[v]);
+  assert_string_equal(structure_name(&f->structure, f->structure.species[v]), v < 40 ? "kind1" : "kind2");
 }
 
 static void numbers_survive(void **unused)
@@ -85,71 +45,30 @@ static void numbers_survive(void **unused)
   struct test_run r = small_run(0);
   write_both(path[0], path[1], &r, 4);
   assert_true(r.state.solvent_lag > 0);
+  uint32_t *slot = malloc(r.state.solvent.n * sizeof *slot);
+  state_solvent_slots(&r.state, slot);
   for (int k = 0; k < 2; k++) {
-    const struct export_options last = {.first = k == 0 ? 3 : 0, .last = UINT64_MAX, .solvent = true};
-    char *text = exported(path[k], &last);
-    const char *line = text;
-    assert_int_equal(atoi(line), r.state.vertices + r.state.solvent.n);
-    line = next_line(line);
-    const char comment[] =
-        "Lattice=\"6 0 0 0 5 0 0 0 7\" Properties=species:S:1:pos:R:3:velo:R:3:id:I:1:next:I:1:fiber:I:1:place:I:1 "
-        "pbc=\"T T T\" Step=7 Time=0.07 kinds=\"C:kind1 N:kind2 H:solvent\"\n";
-    assert_memory_equal(line, comment, strlen(comment));
-    for (uint32_t v = 0; v < r.state.vertices; v++) {
-      struct row row = parse_row(line = next_line(line));
-      assert_row_is_vertex(&row, &r, v);
-    }
-    uint32_t *slot = malloc(r.state.solvent.n * sizeof *slot);
-    state_solvent_slots(&r.state, slot);
+    enum h5_trouble trouble;
+    struct message message;
+    struct frames *f = frames_open(path[k], &trouble, &message);
+    assert_non_null(f);
+    assert_int_equal(f->about.frames, k == 0 ? 4 : 1);
+    assert_int_equal(f->about.rows, r.state.vertices + r.state.solvent.n);
+    assert_int_equal(frames_read(f, f->about.frames - 1, &message), FRAME_FINE);
+    const struct picture *p = &f->picture;
+    assert_true(p->step == 7 && p->time == 0.07 && p->edge[0] == 6.0 && p->edge[1] == 5.0 && p->edge[2] == 7.0);
+    for (uint32_t v = 0; v < r.state.vertices; v++)
+      assert_row_is_vertex(f, &r, v);
     for (uint32_t id = 0; id < r.state.solvent.n; id++) {
-      struct row row = parse_row(line = next_line(line));
-      struct vec3 x = point_in_a0(fluid_position_now(&r.state, &r.model, slot[id]));
-      assert_true(row.x[0] == x.x && row.x[1] == x.y && row.x[2] == x.z && row.next == -1 && row.symbol[0] == 'H');
-      assert_true(row.fiber == -1 && row.place == -1);
+      const double *row = p->position + 3 * (size_t)(r.state.vertices + id);
+      const struct vec3 x = point_in_a0(fluid_position_now(&r.state, &r.model, slot[id]));
+      assert_true(row[0] == x.x && row[1] == x.y && row[2] == x.z);
     }
-    assert_string_equal(next_line(line), "");
-    free(slot);
-    free(text);
+    assert_int_equal(frames_read(f, f->about.frames, &message), FRAME_LOST);
+    assert_non_null(strstr(message.text, k == 0 ? "frame 4 asked for; it has 4" : "frame 1 asked for; it has 1"));
+    frames_close(f);
   }
-  test_end(&r);
-  assert_all_closed();
-  remove_folder(folder);
-}
-
-static void frames_are_chosen(void **unused)
-{
-  (void)unused;
-  char folder[64];
-  make_folder(folder);
-  const char *path = in_folder(folder, "trajectory.h5");
-  struct message message;
-  struct test_run r = small_run(0);
-  write_both(path, in_folder(folder, "checkpoint.h5"), &r, 8);
-  const struct export_options some = {.first = 1, .last = 6, .stride = 3, .wrapped = true};
-  char *text = exported(path, &some);
-  const char *line = text;
-  static const char *const steps[] = {" Step=3 ", " Step=9 "}; /* frames 1 and 4 */
-  for (int k = 0; k < 2; k++) {
-    assert_int_equal(atoi(line), r.state.vertices);
-    line = next_line(line);
-    const char *step = strstr(line, steps[k]);
-    assert_true(step && step < next_line(line));
-    for (uint32_t v = 0; v < r.state.vertices; v++) {
-      struct row row = parse_row(line = next_line(line));
-      for (int c = 0; c < 3; c++)
-        assert_true(row.x[c] >= 0.0 && row.x[c] < r.model.box.cells[c]);
-    }
-    line = next_line(line);
-  }
-  assert_string_equal(line, "");
-  free(text);
-  FILE *full = fopen("/dev/full", "w");
-  assert_false(trajectory_export(path, &some, full, &message));
-  fclose(full);
-  const struct export_options late = {.first = 8, .last = UINT64_MAX};
-  assert_false(trajectory_export(path, &late, stderr, &message));
-  assert_non_null(strstr(message.text, "frames 0 to 7"));
-  assert_false(trajectory_export(in_folder(folder, "none"), &late, stderr, &message));
+  free(slot);
   test_end(&r);
   assert_all_closed();
   remove_folder(folder);
@@ -259,8 +178,7 @@ static void info_of_text_that_is_no_yaml(void **unused)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(numbers_survive), cmocka_unit_test(frames_are_chosen),
-                                     cmocka_unit_test(info_knows_files),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(numbers_survive), cmocka_unit_test(info_knows_files),
                                      cmocka_unit_test(info_of_text_that_is_no_yaml)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

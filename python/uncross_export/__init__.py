@@ -1,0 +1,1 @@
+"""`uncross export`: docs/files.md."""
