@@ -81,6 +81,12 @@ def of_columns(evidence):
         guess = x.copy()
         guess[:, [a, b]] = x[:, [b, a]]
         yield f"columns exchanged: {names[a]} is what {names[b]} should be, and {names[b]} what {names[a]} should", guess
+    if len(wrong) == 1:
+        for k in range(len(names)):
+            guess = x.copy()
+            guess[:, wrong[0]] = x[:, k]
+            if k != wrong[0]:
+                yield f"{names[wrong[0]]} is what {names[k]} should be", guess
     for k in range(3 if len(names) == 3 else 0):
         yield f"the same along axes: that of {names[k]}", np.repeat(x[:, k : k + 1], 3, axis=1)
 
@@ -150,6 +156,24 @@ def of_masses(evidence, given):
         factor = np.concatenate(each)
         yield f"changed by what is wanted {text}", given + factor * (evidence.ours - given)
         yield f"what is wanted {text}", factor * evidence.ours
+
+
+# --- what is written with few digits
+
+
+def printed(case):
+    """Of all reals of a pack, whether theirs are ours with fewer digits: the words, or None."""
+    every = [found for each in (case, *case.elsewhere) for found in each.tables if found.real and found.same_shape]
+    ours, theirs = (np.concatenate([getattr(found, whose).ravel() for found in every] or [np.zeros(0)]) for whose in ("ours", "theirs"))
+    off = np.flatnonzero(ours != theirs)
+    few = off[:: max(1, len(off) // 200)]
+    if len(few) < ONE_SIDED:
+        return None
+    for said, form in [*((f"{n} significant digits", f".{n}g") for n in range(3, 17)), *((f"{n} digits after the point", f".{n}f") for n in range(2, 20))]:
+        same = [float(format(ours[k], form)) == theirs[k] for k in few]
+        if np.mean(same) > 0.9:
+            return f"reals are written with {said} only: 17 significant digits, or the shortest that are read back as the same number"
+    return None
 
 
 # --- what is no guess

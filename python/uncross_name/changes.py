@@ -5,8 +5,10 @@ change at all like places of a function. Modules are changed in place, function 
 import ast
 import collections
 import contextlib
+import copy
 import functools
 import itertools
+import re
 import sys
 import types
 
@@ -21,14 +23,18 @@ OPERATORS = {ast.Add: (ast.Sub,), ast.Sub: (ast.Add,), ast.Mult: (ast.Div,), ast
 ORDERS = {ast.Lt: (ast.LtE, ast.Gt), ast.LtE: (ast.Lt, ast.GtE), ast.Gt: (ast.GtE, ast.Lt), ast.GtE: (ast.Gt, ast.LtE),
           ast.Eq: (ast.NotEq,), ast.NotEq: (ast.Eq,), ast.Is: (ast.IsNot,), ast.IsNot: (ast.Is,), ast.In: (ast.NotIn,),
           ast.NotIn: (ast.In,)}
-LIKE = [{"min", "max"}, {"any", "all"}, {"rint", "floor", "ceil", "trunc"}, {"cos", "sin"}, {"minimum", "maximum"}]
+LIKE = [{"min", "max"}, {"any", "all"}, {"rint", "floor", "ceil", "trunc"}, {"cos", "sin"}, {"minimum", "maximum"}, {"int64", "int32"}]
+AWAY = "np.trunc({0} + np.copysign(0.5, {0}))"  # the nearest whole number, ties away from zero
 
 
 class Change:
-    """One change of the port. text: how it is told; rank: likelier ones have a lower one."""
+    """One change of the port. text: how it is told; rank: likelier ones have a lower one; line: (where, the statement)
+    that is changed; of_input: what an operator is given is another, and no other operator is concerned."""
 
-    def __init__(self, text, rank, apply):
-        self.text, self.name, self.rank, self.apply = text, text, rank, apply
+    line, of_input = None, False
+
+    def __init__(self, text, rank, apply, of_input=False):
+        self.text, self.name, self.rank, self.apply, self.of_input = text, text, rank, apply, of_input
 
 
 # --- functions of a copy of the port ---
@@ -40,7 +46,7 @@ def _tree(file):
 
 
 @functools.cache
-def _definitions(name):
+def definitions(name):
     """Functions and methods of a module: {first line of the code: (names that lead to it, tree)}."""
     found = {}
     for top in _tree(f"{name}.py").body:
@@ -49,6 +55,19 @@ def _definitions(name):
             tree.decorator_list = []
             found[tree.lineno] = path, tree
     return found
+
+
+def words_of(tree):
+    """All names in a piece of code."""
+    return {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)} | {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
+
+
+def functions_of(change):
+    """Names of the functions that a change, or a mistake of the catalogue, is in."""
+    if isinstance(change, Change):
+        return {getattr(change, "where", "").rpartition(".")[2]}
+    lines = [(file.removesuffix(".py"), catalogue.line_number(file, line) + 1) for file, line, _ in change.changes]
+    return {path[-1] for module, number in lines for path, tree in definitions(module).values() if tree.lineno <= number <= tree.end_lineno}
 
 
 def _function(module, path):
@@ -96,7 +115,7 @@ class Used:
     def functions(self):
         """(module's name, path, function, tree, used lines) of each function that was used."""
         for name, lines in self.lines.items():
-            for path, tree in _definitions(name).values():
+            for path, tree in definitions(name).values():
                 inside = {line for line in lines if tree.body[0].lineno <= line <= tree.end_lineno}
                 function = inside and _function(self.modules[name], path)
                 if function and not function.__closure__:
@@ -160,7 +179,16 @@ def _exchanged(items):
             yield f"{i} {j}", other
 
 
+def _called(node):
+    """The name of what is called."""
+    return node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
+
+
 def _of_call(node):
+    if _called(node) in ("min", "max") and len(node.args) == 2 and isinstance(node.args[0], ast.Call) and _called(node.args[0]) in ("min", "max"):
+        yield "not clamped", 0, node.args[0].args[0]
+    if _called(node) == "rint":
+        yield "ties away from zero", 1, ast.parse(AWAY.format(ast.unparse(node.args[0])), mode="eval").body
     for which, arguments in _exchanged(node.args):
         yield f"exchanged {which}", 1, _with(node, args=arguments)
     if len(node.args) == 1 and not node.keywords and not isinstance(node.args[0], (ast.Starred, ast.GeneratorExp)):
@@ -179,6 +207,8 @@ def _of_binary(node):
     if isinstance(node.op, (ast.Mult, ast.Div)):
         for k, side in enumerate((node.left, node.right)):
             yield f"twice {k}", 2, ast.BinOp(node, node.op, side)
+    for factor in (2.0, 0.5) if isinstance(node.op, (ast.Mult, ast.Div, ast.Add, ast.Sub)) else ():
+        yield f"factor {factor}", 2, ast.BinOp(ast.Constant(factor), ast.Mult(), node)
 
 
 def _of_compare(node):
@@ -215,6 +245,17 @@ def _of_sequence(node):
         yield f"all but {k}", 3, _with(node, elts=[each for j, each in enumerate(node.elts) if j != k])
 
 
+def _of_slice(node):
+    """A part of a table that begins one later or earlier, of the same length."""
+    bounds = [node.lower, node.upper]
+    if node.step is None and all(bound is None or isinstance(bound, ast.Constant) for bound in bounds) and (node.lower or node.upper):
+        for off in (1, -1, 2):
+            moved = [bound and ast.Constant(bound.value + off) for bound in bounds]
+            if off > 0 and node.lower is None:
+                moved[0] = ast.Constant(off)
+            yield f"moved by {off}", 2, ast.Slice(*moved)
+
+
 def _of_branch(node):
     yield "always", 0, _with(node, test=ast.Constant(True))
     yield "never", 0, _with(node, test=ast.Constant(False))
@@ -233,7 +274,7 @@ def _of_statement(node):
 
 
 OF = {ast.Constant: _of_constant, ast.Call: _of_call, ast.BinOp: _of_binary, ast.Compare: _of_compare, ast.BoolOp: _of_bool,
-      ast.Tuple: _of_sequence, ast.List: _of_sequence, ast.IfExp: _of_branch, ast.If: _of_branch}
+      ast.Slice: _of_slice, ast.Tuple: _of_sequence, ast.List: _of_sequence, ast.IfExp: _of_branch, ast.If: _of_branch}
 
 
 def _of_like(node, likes, calls):
@@ -257,10 +298,45 @@ def _variants(place, likes):
         yield from _of_like(node, likes, isinstance(place.parent, ast.Call) and place.field == "func")
         if not (isinstance(place.parent, ast.Call) and place.field == "func") and not (isinstance(place.parent, ast.Attribute)):
             yield from _of_name(node)
+    if isinstance(node, (ast.Subscript, ast.BinOp, ast.Call)) and isinstance(getattr(node, "ctx", ast.Load()), ast.Load):
+        yield from _of_stems(node, likes)
+        for word in likes.get("", ()):
+            yield f"is {word}", 4, ast.Name(word, ast.Load())
     if isinstance(node, ast.UnaryOp):
         yield "without", 1, node.operand
     if isinstance(node, ast.expr) and not isinstance(node, (ast.Constant, ast.UnaryOp, ast.Name, ast.Attribute)) and isinstance(place.parent, (ast.Call, ast.Return, ast.BinOp)):
         yield "negative", 3, ast.UnaryOp(ast.USub(), node)
+
+
+class _Renamed(ast.NodeTransformer):
+    def __init__(self, names):
+        self.names = names
+
+    def visit_Name(self, node):  # pylint: disable=invalid-name
+        return ast.Name(self.names.get(node.id, node.id), node.ctx)
+
+
+def _stem(word):
+    return word.rstrip("0123456789")
+
+
+def _of_stems(node, likes):
+    """Names that differ in a number are replaced together: vector0 and vector1 for unit0 and unit1."""
+    numbered = sorted({word for word in words_of(node) if word in likes.get("", ()) and word != _stem(word)})
+    for stem in sorted({_stem(word) for word in numbered}):
+        mine = [word for word in numbered if _stem(word) == stem]
+        for other in sorted({_stem(word) for word in likes[""] if word != _stem(word)} - {stem}):
+            names = {word: other + word[len(stem):] for word in mine}
+            if len(mine) > 1 and set(names.values()) <= set(likes[""]):
+                yield f"{stem} is {other}", 2, _Renamed(names).visit(copy.deepcopy(node))
+
+
+def _of_arguments(tree):
+    """Two arguments of a function exchanged, in the whole of it."""
+    words = [each.arg for each in tree.args.args if each.arg not in ("self", "model")]
+    for first, second in itertools.combinations(words, 2):
+        begin = ast.parse(f"{first}, {second} = {second}, {first}").body[0]
+        yield f"{first} and {second} exchanged", [*tree.body[:1], begin, *tree.body[1:]] if ast.get_docstring(tree) else [begin, *tree.body]
 
 
 def _locals_of(tree):
@@ -272,14 +348,15 @@ def _locals_of(tree):
 
 def _likes(tree, module, sorts):
     """Which names may stand for which: a function's own values, a module's numbers, functions of one sort, and `sorts`."""
-    likes = {**_locals_of(tree), **{name: others for name, others in sorts.items()}}
+    own = _locals_of(tree)
+    likes = {**own, **{name: others for name, others in sorts.items()}, "": sorted(own)}
     numbers = sorted(name for name, value in vars(module).items() if name.isupper() and isinstance(value, int))
     likes.update({name: [other for other in numbers if other != name] for name in numbers})
-    own = collections.defaultdict(set)
+    same = collections.defaultdict(set)
     for name, value in vars(module).items():
         if isinstance(value, types.FunctionType) and value.__module__ == module.__name__:
-            own[value.__code__.co_varnames[: value.__code__.co_argcount]].add(name)
-    for group in (*own.values(), *LIKE):
+            same[value.__code__.co_varnames[: value.__code__.co_argcount]].add(name)
+    for group in (*same.values(), *LIKE):
         likes.update({name: sorted(group - {name}) for name in group})
     return likes
 
@@ -331,7 +408,11 @@ def _shown(place, node):
             after = ast.unparse(ast.fix_missing_locations(around)).split("\n")[0]
         finally:
             top.put(place.node)
-    return tuple(text if len(text) <= LONGEST else text[:LONGEST] + " ..." for text in (before, after))
+    return _cut(before), _cut(after)
+
+
+def _cut(text):
+    return text if len(text) <= LONGEST else text[:LONGEST] + " ..."
 
 
 def _text(where, edits, kind):
@@ -354,6 +435,12 @@ class _Edit(Change):
 
     name = text
 
+    @property
+    def line(self):
+        place = self.edits[0][0]
+        around = [node for node in (*place.above, place.node) if isinstance(node, ast.stmt) and not isinstance(node, ast.FunctionDef)]
+        return self.where, _cut(ast.unparse(around[-1]).split("\n")[0]) if around else ""
+
     @contextlib.contextmanager
     def apply(self):
         for place, node in self.edits:
@@ -373,8 +460,52 @@ def _shape(node):
     return " ".join(type(each).__name__ for each in ast.walk(node) if not isinstance(each, ast.expr_context))
 
 
+def _keys(place):
+    """What places are alike by: what stands there, whatever its names are; or the same but for numbers and sides in names; or
+    the same piece of code."""
+    text = ast.unparse(place.node)
+    yield _shape(place.node)
+    yield re.sub(r"\d+\b|before|after|first|second|next|prev", "", text)
+
+
+class _Body(Change):
+    """A function with other statements."""
+
+    def __init__(self, where, function, tree, body, text, rank):  # pylint: disable=too-many-arguments
+        super().__init__(f"{text} ({where})", rank, self.with_body)
+        self.where, self.function, self.tree, self.body = where, function, tree, body
+
+    @contextlib.contextmanager
+    def with_body(self):
+        other = ast.fix_missing_locations(ast.copy_location(_with(self.tree, body=self.body), self.tree))
+        with _code_of(self.function, other):
+            yield
+
+
+def _moved(statements, far=3):
+    """(text, statements) of one that comes so many places later or earlier at most."""
+    for k, statement in enumerate(statements):
+        for to in range(max(0, k - far), min(len(statements), k + far + 1)):
+            if to not in (k, k - 1) and not isinstance(statement, ast.Return):
+                rest = statements[:k] + statements[k + 1 :]
+                before = statements[to] if to < k else statements[to]
+                said = "before" if to < k else "after"
+                yield f"`{_line(statement)}` {said} `{_line(before)}`", rest[:to] + [statement] + rest[to:]
+
+
+def _line(node):
+    return _cut(ast.unparse(node).split("\n")[0])
+
+
 def of_function(used, module, sorts):
     """All changes of one function."""
+    name, path, function, tree, lines = used
+    yield from _of_places(used, module, sorts)
+    for text, body in itertools.chain(_of_arguments(tree), _moved(tree.body, 12 if name == "step" else 3)):
+        yield _Body(".".join((name, *path)), function, tree, body, text, 1 if name == "step" else 2)
+
+
+def _of_places(used, module, sorts):
     name, path, function, tree, lines = used
     where, likes, alike = f"{'.'.join((name, *path))}", _likes(tree, module, sorts), collections.defaultdict(list)
     for place in _places(tree):
@@ -385,10 +516,14 @@ def of_function(used, module, sorts):
             continue
         for kind, rank, other in _variants(place, likes):
             yield _Edit(where, function, tree, [(place, other)], kind, rank)
-            alike[kind, rank, _shape(node)].append((place, other))
-    for (kind, rank, _), edits in alike.items():
+            for k, key in enumerate(_keys(place) if rank < 4 else ()):
+                alike[kind, rank, k, key].append((place, other))
+    seen = set()
+    for (kind, rank, _, _), edits in alike.items():
         nested = any(place.node in other.above for place, _ in edits for other, _ in edits)
-        if len(edits) > 1 and not nested:
+        same = kind, tuple(id(place.node) for place, _ in edits)
+        if len(edits) > 1 and not nested and same not in seen:
+            seen.add(same)
             yield _Edit(where, function, tree, edits, kind, rank + 1)
 
 
@@ -397,6 +532,36 @@ def of_call(modules, sorts, function, *arguments):
     used = Used(modules, function, *arguments)
     every = [change for each in used.functions() for change in of_function(each, modules[each[0]], sorts)]
     return sorted(every, key=lambda change: change.rank)
+
+
+# --- statements of a step elsewhere ---
+
+ANYWHERE = {"self", "model", "step", "solvent", "fiber", "flow", "events", "sweep", "media", "dumbbells", "np"}
+
+
+def of_elsewhere(used):
+    """A statement of one method, which needs no value of its own, stands in another method."""
+    methods = [(path, function, tree) for name, path, function, tree, _ in used if name == "step" and len(path) == 2 and path[1][0] != "_"]
+    begin = ast.parse("model, step = self.model, self.finished + 1").body
+    for path, function, tree in methods:
+        for k, statement in enumerate(tree.body):
+            if isinstance(statement, (ast.Return, ast.Assign)) and not ast.unparse(statement).startswith("self.") or not {
+                    node.id for node in ast.walk(statement) if isinstance(node, ast.Name)} <= ANYWHERE or "return" in ast.unparse(statement):
+                continue
+            without = tree.body[:k] + tree.body[k + 1 :] or [ast.Pass()]
+            for other, its, where in methods:
+                for to in range(len(where.body) + 1) if other != path else ():
+                    if to and isinstance(where.body[to - 1], ast.Return) or any(isinstance(node, (ast.Yield, ast.YieldFrom)) for node in ast.walk(where)):
+                        continue
+                    edits = [(function, without, tree), (its, where.body[:to] + begin + [statement] + where.body[to:], where)]
+                    at = f"before `{_line(where.body[to])}`" if to < len(where.body) else "at the end"
+                    yield Change(f"`{_line(statement)}` not in {'.'.join(path)}, but in {'.'.join(other)}, {at}", 2, functools.partial(_bodies, edits))
+
+
+@contextlib.contextmanager
+def _bodies(edits):
+    with _all([(function, ast.fix_missing_locations(ast.copy_location(_with(tree, body=body), tree))) for function, body, tree in edits]):
+        yield
 
 
 # --- values that are read as others ---

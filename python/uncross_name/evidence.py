@@ -29,6 +29,7 @@ class Part:
     model: dict  # tables of the model, {"in.box": array, ...}
     theirs: np.ndarray = None  # their whole table
     columns: dict = dataclasses.field(default_factory=dict)  # names of tables' columns, where they are not the contract's
+    every: dict = dataclasses.field(default_factory=dict)  # tables of theirs, too: {"theirs.velocity": ...}
 
 
 def ways(n, chosen):

@@ -6,7 +6,6 @@ import numpy as np
 from . import anything, catalogue, evidence, rows, search
 from . import case as cases
 
-SHORT = 3  # seconds for other changes that make the same numbers
 SECONDS = 50  # for guesses; what is said then takes a few more
 UNKNOWN = "none of those known"
 AS_ROUNDING = ("no larger than rounding: another order of operations, fused multiply-add, library functions, or a bug whose effect is "
@@ -93,38 +92,44 @@ def _description(case, partial):
     return ("" if exact else f"{UNKNOWN}; ") + (f"{side}; " if side else "") + text + ("" if exact else _size(first))
 
 
-def _alternatives(found, case, outputs):
-    """A mistake that is known, and other changes of the port to NumPy that make the same numbers here."""
-    more = search.changed(case, outputs, SHORT) if outputs.changes else []
-    return found + (f"; the same numbers here: {'; or: '.join(more[:2])}" if more else "")
+def _alternatives(said, case, outputs, generic=()):
+    """A mistake that is known, and what else makes the same numbers here."""
+    fits = search.changed(case, outputs, search.SHORT) if outputs.changes else []
+    fits = [fit for fit in fits if not fit.only]
+    more = [*generic, *([search.sentence(fits, 2)] if fits else [])]
+    return said + (f"; the same numbers here: {'; or: '.join(more)}" if more else "")
 
 
 def name(case, mistakes, outputs):
     """outputs: of search.Outputs(case)."""
     first = case.first
     beyond = bool(first.beyond.any()) or not first.same_shape
+    digits = anything.printed(case)
+    if digits:
+        return digits
     if not beyond:
         first.take_all()
         if is_rounding(first):
             return anything.one_sided(first) or AS_ROUNDING
-    found, part = search.planted(case, mistakes, outputs)
+    moves_follow = first.table in search.FOLLOW and not (first.same_shape and _moves_are_right(case))
+    found, other = _any_operator(first) if first.wrong.any() and not moves_follow else (None, None)
+    fits, few = search.planted(case, mistakes, outputs)
+    sure = [fit for fit in fits if not fit.only]
+    if sure:
+        return _alternatives(search.sentence(sure), case, outputs, [found] if found else [])
     if found:
-        return _alternatives(found, case, outputs)
-    said = part and f"{part.mistake.text}, but only in some rows"
-    if first.wrong.any() and (first.table not in search.FOLLOW or (first.same_shape and _moves_are_right(case))):
-        found, other = _any_operator(first)
-        if found:
-            return _alternatives(found + _which_table(case), case, outputs)
-        said = said or other
+        return _alternatives(found + _which_table(case), case, outputs)
     known = anything.pattern(first)
     if known or (anything.is_single(first) and not case.single):
         return known or AS_SINGLE
     if not beyond:
         return anything.one_sided(first) or AS_ROUNDING
     changed = search.changed(case, outputs, outputs.clock.left()) if outputs.changes else []
+    if fits and not [fit for fit in changed if not fit.only]:
+        return few or search.sentence(fits)
     if changed:
-        return "; or: ".join(changed) + (" (the same numbers here)" if len(changed) > 1 else "")
-    return _first_hit(case) or _description(case, said)
+        return search.sentence(changed)
+    return few or _first_hit(case) or _description(case, other)
 
 
 def read_and_name(path, seconds=SECONDS):

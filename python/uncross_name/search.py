@@ -1,4 +1,4 @@
-"""Which mistakes of the catalogue make what a port has made: the operator is run with each of them planted."""
+"""Which mistakes make what a port has made: the operator is run with each of them planted, those of the catalogue first."""
 import contextlib
 import dataclasses
 import functools
@@ -10,11 +10,11 @@ import time
 import numpy as np
 from uncross_port import operators
 
-from . import catalogue, changes, evidence
+from . import catalogue, changes, evidence, replay
 
-FIRST = 60  # changes of lines before those of what is read
+SHORT = 6  # seconds for other changes that make the same numbers
 FOR_CHANGES = 25  # seconds that the catalogue leaves for them
-MOST_FOUND = 8  # changes of the port that make the same
+MOST_FOUND = 24  # changes of the port that make the same
 MOST_NAMES = 3  # that are told of one difference
 FOLLOW = ("out.event", "out.hit")  # tables whose rows, and whose number of rows, follow from earlier ones
 LOOSE = 2.0**-26  # relative; of what follows from earlier events, rounding grows
@@ -60,24 +60,45 @@ class Outputs:
         """made_changes: mistakes that are not in the catalogue are looked for, too."""
         self.case, self.clock, self.changes = case, clock, made_changes
         self.known, self.planted, self.seconds = {}, {}, {}
-        self.model = self.inputs = None
+        self.model = self.inputs = self.right = None
+        self.root = self
+        self.beside, self.searched = {}, {}
+
+    def of(self, other):
+        """The same of another operator of the pack."""
+        if other.operator not in self.beside:
+            made = self.beside[other.operator] = Outputs(other, self.clock)
+            made.root, made.planted, made.right_seconds, made.inputs = self, self.planted, {}, dict(other.inputs)
+        self.beside[other.operator].right = self.right
+        return self.beside[other.operator]
 
     def _run(self, modules, step):
-        broken, inputs = modules["operators"], self.inputs or self.case.inputs
-        model = self.model or broken.models.from_tables(self.case.model)
+        broken, own = modules["operators"], modules is self.right
+        inputs = self.inputs if own else self.case.inputs
+        model = self.root.model if own else broken.models.from_tables(self.case.model)
         given = broken.OPERATORS[self.case.operator](model, step, inputs[step])
         return {f"out.{name}": np.asarray(values) for name, values in given.items()}
+
+    def _hurried(self, modules, step, change):
+        """Of drifts, the same while its events are theirs."""
+        theirs = next((part.every["theirs.event"] for part in self.case.first.parts if part.step == step and "theirs.event" in part.every), None)
+        if self.case.operator not in replay.DRIFTS or theirs is None:
+            return self._run(modules, step)
+        with replay.hurried(modules, change, theirs.tolist(), self.searched):
+            return self._run(modules, step)
 
     def changed(self, change, step):
         """The same with a change of the port that is made in place; None if it fails or takes much longer than the right one."""
         try:
             with change.apply():
-                return self.clock.call(0.2 + 4 * self.right_seconds[step], self._run, self.right, step)
+                return self.clock.call(0.2 + 4 * self.right_seconds.get(step, 1), self._hurried, self.right, step, change)
         except Exception:  # pylint: disable=broad-exception-caught
             return None
 
     def run_right(self):
         """The right port at all steps, in a copy whose changes are made in place."""
+        if self.right:
+            return
         self.right, self.right_seconds = catalogue.plant(catalogue.RIGHT), {}
         self.model, self.inputs = self.right["operators"].models.from_tables(self.case.model), dict(self.case.inputs)
         for step in self.inputs:
@@ -94,7 +115,7 @@ class Outputs:
                 self.planted[mistake] = self.clock.call(5, catalogue.plant, mistake)
             modules, begun = self.planted[mistake], time.process_time()
             longest = 1 + 4 * self.seconds.get(step, 60)
-            self.known[mistake, step] = modules and self.clock.call(longest, self._run, modules, step)
+            self.known[mistake, step] = modules and self.clock.call(longest, self._hurried, modules, step, mistake)
             self.seconds[step] = min(self.seconds.get(step, 60), time.process_time() - begun)
         return self.known[mistake, step]
 
@@ -132,6 +153,7 @@ class Fit:
     how: int
     bits: float
     all_tables: bool
+    only: str = ""  # where theirs is this, if it is not so everywhere
 
 
 def _judge_follow(found, outputs, mistake):
@@ -180,7 +202,38 @@ def _fit(case, outputs, mistake):
     return Fit(mistake, how, bits, everything)
 
 
-# --- which are told ---
+# --- other operators of the pack ---
+
+SLOW = ("sweep", "long_sweep", *replay.DRIFTS)
+
+
+def _says_no(case, outputs, mistake):
+    """Whether an operator would not give theirs with this mistake in the port."""
+    for found in case.tables:
+        guess = np.full(found.ours.shape, np.nan)
+        for part in found.parts:
+            made = outputs(mistake, part.step)
+            values = None if made is None else made.get(found.table)
+            if values is None or values.ndim != 2 or len(values) != part.theirs_rows or values.shape[1] != len(found.columns):
+                return True
+            guess[part.first : part.first + part.rows] = evidence.as_guess(values[: part.rows])
+        if found.judge(guess) != evidence.WHOLE:
+            return True
+    return False
+
+
+def contradiction(mistake, case, outputs):
+    """The first other operator that says no to a mistake that makes the first one: its case; or None."""
+    for other in case.elsewhere:
+        if other.operator in SLOW and (other.operator in replay.DRIFTS or outputs.clock.left() < FOR_CHANGES):
+            continue
+        if isinstance(mistake, changes.Change) and mistake.of_input:
+            continue
+        if not isinstance(mistake, changes.Change) and not catalogue.reaches(mistake, other.operator):
+            continue
+        if outputs.clock.left() > 1 and _says_no(other, outputs.of(other), mistake):
+            return other
+    return None
 
 
 def candidates(case, mistakes):
@@ -202,21 +255,41 @@ def told(fits, case, tried):
     return [fit for fit in sure if fit.bits >= best - evidence.SURE]
 
 
-def _sentence(fits):
-    texts = list(dict.fromkeys(fit.mistake.text for fit in fits))
-    more = " (the same numbers here)" if len(texts) > 1 else ""
-    return "; or: ".join(texts[:MOST_NAMES]) + more
+def held(fits, case, outputs):
+    """Those of which no other table and no other operator says no; where there is none, those that would change what is
+    right, each with where it is right."""
+    good, bad = [], []
+    for fit in fits:
+        other = contradiction(fit.mistake, case, outputs) if fit.all_tables else None
+        if fit.all_tables and other is None:
+            good.append(fit)
+        elif other is None:
+            bad.append(dataclasses.replace(fit, only=f"in {case.first.table} only"))
+        elif not any(found.beyond.any() or not found.same_shape for found in other.tables):
+            bad.append(dataclasses.replace(fit, only=f"in {case.operator} only; {other.operator} is right"))
+    return good or bad
+
+
+def sentence(fits, most=MOST_NAMES):
+    """Their texts, with "or" between; if they are many, what they have in common."""
+    texts = list(dict.fromkeys(fit.mistake.text + (f" ({fit.only})" if fit.only else "") for fit in fits))
+    lines = {getattr(fit.mistake, "line", None) for fit in fits}
+    if len(texts) <= most:
+        return "; or: ".join(texts) + (" (the same numbers here)" if len(texts) > 1 else "")
+    where, line = (lines.pop() if len(lines) == 1 else None) or (None, None)
+    said = f"a change of `{line}` ({where}): {len(texts)} changes of it make the same numbers here, as do " if line else ""
+    return said + "; or: ".join(texts[:most]) + ("" if line else f"; or {len(texts) - most} more changes that make the same numbers here")
 
 
 def _too_few(case, fits):
     """What makes all that is there, where so few events differ that chance would do it, too; or None."""
     fits = [fit for fit in fits if fit.all_tables]
     few = fits and case.first.table in FOLLOW
-    return f"too few events to tell; among what would make them: {_sentence(fits)}" if few else None
+    return f"too few events to tell; among what would make them: {sentence(fits)}" if few else None
 
 
 def planted(case, mistakes, outputs):
-    """(name or None, the best Fit that is right wherever theirs is wrong but not everywhere, or None)."""
+    """(fits of mistakes of the catalogue, or none; what is to be said in their place, if there are too few events to tell)."""
     fits, tried = [], 0
     for tier in candidates(case, mistakes):
         for mistake in tier:
@@ -226,14 +299,10 @@ def planted(case, mistakes, outputs):
             fit = _fit(case, outputs, mistake)
             if fit:
                 fits.append(fit)
-        sure = told(fits, case, max(tried, 1))
-        if sure:
-            return _sentence(sure), None
-    few = _too_few(case, fits)
-    if few:
-        return few, None
-    part = [fit for fit in fits if fit.how == evidence.WRONG and fit.bits >= evidence.SURE + math.log2(max(tried, 1))]
-    return None, max(part, key=lambda fit: fit.bits, default=None)
+        sure = held(told(fits, case, max(tried, 1)), case, outputs)
+        if any(not fit.only for fit in sure):
+            return sure, None
+    return sure, _too_few(case, fits)
 
 
 # --- what nobody has written down ---
@@ -267,19 +336,18 @@ def changed_ones(outputs):
     operator, inputs, model = outputs.right["operators"].OPERATORS[outputs.case.operator], outputs.inputs, outputs.model
     sorts = changes.sorts_of(model)
     sorts.update(changes.likes_of(next(iter(inputs.values()))))
-    lines = iter(changes.of_call(outputs.right, sorts, lambda: [operator(model, step, given) for step, given in inputs.items()]))
-    if outputs.case.first.table in FOLLOW:  # takes long: likelier ones first
-        yield from itertools.islice(lines, FIRST)
+    lines = changes.of_call(outputs.right, sorts, lambda: [operator(model, step, given) for step, given in inputs.items()])
+    yield from (change for change in lines if change.rank == 0)
     spy = changes.Spy(model)
     with contextlib.suppress(Exception):
         for step, given in inputs.items():
             operator(spy, step, given)
     for text, values in itertools.chain(changes.of_readers(model, outputs.case.model), changes.of_values(vars(model), "the model")):
         if spy.read & values.keys():
-            yield changes.Change(text, 0, functools.partial(_read_as, outputs, "model", values))
+            yield changes.Change(text, 1, functools.partial(_read_as, outputs, "model", values))
     for text, values in _of_inputs(inputs):
-        yield changes.Change(text, 0, functools.partial(_read_as, outputs, "inputs", values))
-    yield from lines
+        yield changes.Change(text, 2, functools.partial(_read_as, outputs, "inputs", values), True)
+    yield from (change for change in lines if change.rank > 0)
 
 
 ALONE = ("crossing", "exchange", "impulse", "contact_search", "tube_search", "bead_search", "tube_contact", "bead_contact")  # rows stand for themselves
@@ -311,18 +379,34 @@ def _few_rows(case, outputs):
     return makes
 
 
-def changed(case, outputs, seconds):
-    """Sentences of changes that make all tables of theirs, in so many seconds."""
-    found, end, tried, few = [], time.process_time() + seconds, 0, None
+def _tries(case, outputs):
+    """Changes, and whether each may make theirs. Of moves that follow each other, those that few moves rule out come again
+    at the end: they may have had an effect before."""
+    outputs.run_right()
+    few, later = None, []
+    with contextlib.suppress(Exception):
+        few = replay.OF[case.operator](case, outputs) if case.operator in replay.OF else _few_rows(case, outputs)
+    for change in changed_ones(outputs):
+        good = few is None
+        with contextlib.suppress(Exception):  # a change may make anything
+            good = good or few(change)
+        if not good and case.operator in replay.OF:
+            later.append(change)
+        yield change, good
+    yield from ((change, True) for change in sorted(later, key=lambda change: change.line is not None and 1 + change.rank))
+
+
+def changed(case, outputs, seconds, known=()):
+    """Fits of changes that make all tables of theirs, found in so many seconds; likelier ones first. known: texts that are told already."""
+    found, end, tried = [], time.process_time() + seconds, 0
     with contextlib.suppress(Exception):  # what the port to NumPy cannot run
-        for change in changed_ones(outputs):
-            few = few or _few_rows(case, outputs) or (lambda change: True)
+        for change, good in _tries(case, outputs):
             if time.process_time() > end or outputs.clock.left() <= 0 or len(found) >= MOST_FOUND:
                 break
             tried += 1
-            with contextlib.suppress(Exception):  # a change may make anything
-                fit = few(change) and _fit(case, outputs, change)
+            with contextlib.suppress(Exception):
+                fit = good and _fit(case, outputs, change)
                 if fit and fit.all_tables:
                     found.append(fit)
-    sure = told(found, case, max(tried, 1))
-    return list(dict.fromkeys(fit.mistake.text for fit in sorted(sure, key=lambda fit: fit.mistake.rank)))[:MOST_NAMES]
+                    end = min(end, time.process_time() + SHORT)
+    return sorted(held(told(found, case, max(tried, 1)), case, outputs), key=lambda fit: fit.mistake.rank)

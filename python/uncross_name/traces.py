@@ -13,6 +13,7 @@ import time
 import types
 
 import numpy as np
+import xxhash
 from uncross_port import pack
 
 from . import catalogue, changes, search
@@ -303,6 +304,105 @@ def of_steps(modules):
                              lambda stage=stage, name=name, when=when: _stale(step.System, stage, name, when))
 
 
+# --- what a stage leaves ---
+
+
+def _leaving(right, change):
+    def broken(self, *given):
+        before = {name: getattr(self, name) for name in KEPT}
+        right(self, *given)
+        change(self, before)
+    return broken
+
+
+def _kept(name):
+    def change(system, before):
+        setattr(system, name, before[name])
+    return change
+
+
+def _made(name, how):
+    def change(system, _):
+        if getattr(system, name) is not None:
+            setattr(system, name, how(system, getattr(system, name)))
+    return change
+
+
+def of_states(modules):
+    """A stage leaves a part of the state as it was, or makes something else of it."""
+    system, lattice = modules["step"].System, modules["lattice"]
+    leaves = [(f"leaves {name.replace('_', ' ')} as it was", _kept(name)) for name in ("solvent", "solvent_velocity", "vertex", "vertex_velocity", "lag")]
+    for name in ("solvent", "vertex"):
+        leaves += [(f"wraps the positions of {name} into the box: they are not wrapped", _made(name, lambda at, x: lattice.wrap(x, at.model.box))),
+                   (f"rounds velocities of {name} to single precision", _made(f"{name}_velocity", lambda _, v: v.astype(np.float32).astype(float))),
+                   (f"turns velocities of {name} round", _made(f"{name}_velocity", lambda _, v: -v)),
+                   (f"sets velocities of {name} to zero", _made(f"{name}_velocity", lambda _, v: 0 * v))]
+    leaves += [("sets the lag to 0", _made("lag", lambda *_: 0)), ("adds 1 to the lag", _made("lag", lambda _, lag: lag + 1)), ("takes 1 off the lag", _made("lag", lambda _, lag: lag - 1))]
+    for stage, (text, change) in itertools.product(("drift", "collide", "kick", "stream", "find_forces"), leaves):
+        yield changes.Change(f"{stage} {text}", 0, functools.partial(_patched, system, stage, _leaving(getattr(system, stage), change)))
+
+
+# --- what is hashed ---
+
+HEAD = ("the number of finished steps", "the lag", "the number of particles", "the number of vertices")
+
+
+def _heads():
+    for k, name in enumerate(HEAD):
+        yield f"without {name}", lambda head, k=k: [x for j, x in enumerate(head) if j != k]
+    for i, j in itertools.combinations(range(4), 2):
+        yield f"with {HEAD[i]} and {HEAD[j]} exchanged", lambda head, i=i, j=j: [head[{i: j, j: i}.get(k, k)] for k in range(len(head))]
+    yield "without the four numbers at its head", lambda head: head[4:]
+    for text, k, how in (("one step too few", 0, lambda x: max(x - 1, 0)), ("one step too many", 0, lambda x: x + 1), ("the lag in steps", 1, lambda x: x // 2),
+                         ("a lag of 0", 1, lambda x: 0), ("twice the lag", 1, lambda x: 2 * x), ("no vertices counted", 3, lambda x: 0), ("no particles counted", 2, lambda x: 0)):
+        yield f"of {text}", lambda head, k=k, how=how: [how(x) if j == k else x for j, x in enumerate(head)]
+
+
+def _rows_of(p, v):
+    return np.hstack([p, v])
+
+
+LAYOUTS = {
+    "with velocities before positions": lambda box, s, sv, r, rv: [_rows_of(sv, s), _rows_of(rv, r)],
+    "with all positions of a kind before its velocities": lambda box, s, sv, r, rv: [s, sv, r, rv],
+    "with all positions before all velocities": lambda box, s, sv, r, rv: [s, r, sv, rv],
+    "with vertices before the solvent": lambda box, s, sv, r, rv: [_rows_of(r, rv), _rows_of(s, sv)],
+    "without vertices": lambda box, s, sv, r, rv: [_rows_of(s, sv)],
+    "without the solvent": lambda box, s, sv, r, rv: [_rows_of(r, rv)],
+    "without velocities": lambda box, s, sv, r, rv: [s, r],
+    "without positions": lambda box, s, sv, r, rv: [sv, rv],
+    "without velocities of vertices": lambda box, s, sv, r, rv: [_rows_of(s, sv), r],
+    "with vertices wrapped into the box": lambda box, s, sv, r, rv: [_rows_of(s, sv), _rows_of(r % box, rv)],
+    "column by column": lambda box, s, sv, r, rv: [_rows_of(s, sv).T, _rows_of(r, rv).T],
+    "of positions as doubles": lambda box, s, sv, r, rv: [_rows_of(s.astype(float).view(np.int64), sv), _rows_of(r.astype(float).view(np.int64), rv)],
+    "of positions in a0, as doubles": lambda box, s, sv, r, rv: [_rows_of((s * 2.0**-40).view(np.int64), sv), _rows_of((r * 2.0**-40).view(np.int64), rv)],
+}
+
+
+def _hash(system, heads, layout, end, order="<"):
+    """Of a state without walls and dumbbells."""
+    head = heads([system.finished, system.lag, len(system.solvent), len(system.vertex)])
+    parts = layout(system.model.box * (1 << 40), system.solvent, system.solvent_velocity.view(np.int64), system.vertex, system.vertex_velocity.view(np.int64))
+    pieces = [np.array(head, f"{order}i8").tobytes(), *(np.ascontiguousarray(part.astype(f"{order}i8")).tobytes() for part in parts)]
+    return end(b"".join(pieces))
+
+
+def of_hashes(modules):
+    """The hash is another one of the same state."""
+    system = modules["step"].System
+    right = LAYOUTS["with velocities before positions"]
+    same = lambda head: head  # noqa: E731
+    plain = lambda box, s, sv, r, rv: right(box, sv, s, rv, r)  # noqa: E731
+    end = lambda data: f"{xxhash.xxh64(data).intdigest():016x}"  # noqa: E731
+    every = [(text, heads, plain, end, "<") for text, heads in _heads()] + [(text, same, layout, end, "<") for text, layout in LAYOUTS.items()]
+    every += [("of bytes in the other order", same, plain, end, ">"), ("with the seed 1", same, plain, lambda data: xxhash.xxh64(data, 1).hexdigest(), "<"),
+              ("of 32 bits", same, plain, lambda data: xxhash.xxh32(data).hexdigest(), "<"), ("of XXH3", same, plain, lambda data: xxhash.xxh3_64(data).hexdigest(), "<"),
+              ("with its bytes in the other order", same, plain, lambda data: xxhash.xxh64(data).digest()[::-1].hex(), "<"),
+              ("without its leading zeros", same, plain, lambda data: f"{xxhash.xxh64(data).intdigest():x}", "<")]
+    for text, *how in every:
+        yield changes.Change(f"the state hash is made {text}", 0, functools.partial(_patched, system, "state_hash", lambda self, how=how: _hash(self, *how)))
+
+
 # --- calls that are given something else ---
 
 CALLED = ("solvent", "fiber", "flow", "events", "sweep", "media", "dumbbells")
@@ -411,11 +511,14 @@ def candidates(trace):
     every = [change for each in used.functions() for change in changes.of_function(each, trace.modules[each[0]], sorts) if change.where not in STEPS]
     near = _sorted(change for change in every if change.where.startswith("step."))
     far = _sorted(change for change in every if not change.where.startswith("step."))
-    groups = [(near, False)] + ([] if start else [(of_calls(trace), False), (of_models(trace), False)])
-    groups += [(of_steps(trace.modules), True), ((change for change in _sorted(steps) if change.rank < 2), True),
-               (changes.of_catalogue(catalogue.read(), used), False), ((change for change in far if change.rank < 2), False),
-               ((change for change in _sorted(steps) if change.rank >= 2), True),
-               ((change for change in far if change.rank >= 2), False)]
+    def some(every, *ranks):
+        return [change for change in every if min(change.rank, 4) in ranks]
+
+    steps, likely = _sorted(steps), [] if start else [(of_states(trace.modules), False), (of_steps(trace.modules), True)]
+    groups = [(of_hashes(trace.modules), False), (some(near, 0, 1), False), *likely]
+    groups += [] if start else [(changes.of_elsewhere(list(used.functions())), False), (of_calls(trace), False), (of_models(trace), False)]
+    groups += [(some(near, 2), False), (some(steps, 0, 1), True), (changes.of_catalogue(catalogue.read(), used), False), (some(far, 0, 1), False),
+               (some(near, 3), False), (some(far, 2), False), (some(steps, 2, 3), True), (some(far, 3), False), (some(near, 4), False)]
     for group, is_whole in groups:
         with contextlib.suppress(Exception):  # what the port to NumPy cannot run
             yield from ((change, is_whole) for change in group)

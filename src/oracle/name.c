@@ -74,10 +74,9 @@ static bool write_case(const struct oracle_pair *first, uint32_t row, const char
   for (size_t k = 0; ok && k < first->pack->count; k++) {
     struct oracle_pair pair = *first;
     const struct pack_table *t = pair.ours = &first->pack->table[k];
-    const bool concerned = strcmp(t->place.operator_name, first->ours->place.operator_name) == 0;
-    if (is_of_operators(t) && (concerned || strcmp(t->place.operator_name, "model") == 0))
+    if (is_of_operators(t))
       put(&made, t, NULL);
-    pair.theirs = concerned && strncmp(t->name, "out.", 4) == 0 ? oracle_sibling_of_theirs(&pair, t->name) : NULL;
+    pair.theirs = strncmp(t->name, "out.", 4) == 0 ? oracle_sibling_of_theirs(&pair, t->name) : NULL;
     if (!pair.theirs || pair.theirs->columns != t->columns)
       continue;
     put(&made, pair.theirs, "theirs");

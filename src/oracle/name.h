@@ -1,6 +1,5 @@
 /* Inside the oracle: what a difference means is said by another program, uncross-name (python/uncross_name). It is
- * given a case: a pack with the model, all that the operator of the first difference is given and gives at all steps,
- * and beside each `out.X`
+ * given a case: a pack with the model, all that the operators are given and give at all steps, and beside each `out.X`
  *
  *   theirs.X      what the port gives, where it has as many columns
  *   tolerance.X   how much each value may differ (docs/port/tolerances.md), of the rows that both have

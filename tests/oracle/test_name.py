@@ -66,6 +66,41 @@ class HookTest(Folder):
         self.assertIn("first difference: long_event_drift", done.stdout)
         self.assertIn("in force: constant force of the model is read from columns 4 to 6 of vertex", meaning(done.stdout))
 
+    def changed(self, ours, names, *changes):
+        """A port's outputs of these operators with changes of lines, (file, line, what stands there), that no list has."""
+        given = pack.read(DATA / f"{ours}.pack.h5")
+        some = {place: tables for place, tables in given.items() if place[0] in ("model", *names)}
+        pack.write(self.dir / "theirs.h5", catalogue.plant(catalogue.Mistake("", "", changes, "", {}))["operators"].run(some))
+        return meaning(compare(self.dir / "theirs.h5", "--only", ",".join(names), ours=ours).stdout)
+
+    def test_other_operators_say_no(self):
+        """A wrong product of vectors would show in exchanges, too, which are right."""
+        said = self.changed("mixed", ("bend_force", "exchange"), ("fiber.py", "cosine, stiffness = dot(unit0, unit1)[:, None], model.bending[middle, None]",
+                                                                   "cosine, stiffness = dot(unit1, unit1)[:, None], model.bending[middle, None]"))
+        self.assertIn("`dot(unit1, unit1)` for `dot(unit0, unit1)` (fiber.add_bends)", said)
+        self.assertNotIn("lattice.dot", said)
+
+    def test_what_else_makes_the_same_numbers(self):
+        """Rest lengths are 1/2 in this pack: a stretch relative to them is twice the stretch."""
+        said = self.changed("andersen", ("bond_force",), ("fiber.py", "pull = spring * (length - rest) * ((1 / length) * vector)",
+                                                          "pull = 2 * spring * (length - rest) * ((1 / length) * vector)"))
+        self.assertIn("the stretch relative to l0", said)
+        self.assertIn("the same numbers here: ", said)
+        self.assertIn("2.0 * (spring * (length - rest)", said)
+
+    def test_contacts_that_differ(self):
+        """Of a drift, what follows the first contact that differs is not run with each change."""
+        said = self.changed("contacts", ("event_drift",), ("events.py", "if volume < 0 or (volume == 0 and approach < 0):",
+                                                           "if volume > 0 or (volume == 0 and approach < 0):"))
+        self.assertIn("`volume > 0 or (volume == 0 and approach < 0)` for `volume < 0", said)
+
+    def test_digits_that_are_lost(self):
+        ours = pack.read(DATA / "mixed.pack.h5")
+        out = {place: {name: np.vectorize(lambda x: float(f"{x:.12g}"))(values) if values.dtype.kind == "f" and values.size else values
+                       for name, values in tables.items() if name.startswith("out.")} for place, tables in ours.items() if place[0] in ("random", "kick")}
+        pack.write(self.dir / "theirs.h5", out)
+        self.assertIn("reals are written with 12 significant digits only", meaning(compare(self.dir / "theirs.h5").stdout))
+
     def test_other_rounding_is_still_named(self):
         """A port in another language is off by last bits, too."""
         path = self.broken("kick without the mass", "kick")
@@ -95,6 +130,8 @@ class HookTest(Folder):
             self.assertTrue((found.first.theirs[rows] == theirs["kick", part.step]["out.velocity"]).all())
             self.assertTrue((part.tables["in.force"] == ours["kick", part.step]["in.force"]).all())
         self.assertTrue(((found.first.tolerance > 0) & (found.first.tolerance < 1e-12)).all())
+        with self.assertRaises(ValueError):  # a mistake may write where it should read
+            found.inputs[part.step]["force"][0, 0] = 1.0
         self.assertEqual(compare(path, "--only", "kick", "--case", self.dir / "case.h5").returncode, 2, "it is there already")
 
     def stand_in(self, text):

@@ -42,6 +42,25 @@ class TraceTest(unittest.TestCase):
         self.assertIn("`solvent.grid_shift(model, step - 1)` for `solvent.grid_shift(model, step)` (step.System.collide)", said)
         self.assertNotIn("looks like", said)
 
+    def test_a_hash_of_something_else(self):
+        counts = "counts = self.finished, self.lag, len(self.solvent), len(self.vertex)"
+        head = 'digest = xxhash.xxh64(struct.pack(f"<{4 + len(optional)}Q", *counts, *optional))'
+        said = self.named("mixed", (head, head.replace("4 +", "3 +")), (counts, counts.replace(" self.lag,", "")))
+        self.assertIn("the state hash is made without the lag", said)
+
+    def test_a_statement_elsewhere(self):
+        """Velocities are swapped before the collision, not after it."""
+        swapped = "self.solvent_velocity[solvent.swap_order(model, step, model.particles)]"
+        said = self.named("mixed", (f"self.solvent_velocity = {swapped}", "pass"),
+                          ("shift = solvent.grid_shift(model, step)", "shift = solvent.grid_shift(model, step); "
+                           f"self.solvent_velocity = self.solvent_velocity if self.scene.hydrodynamics else {swapped}"))
+        self.assertIn("`if not self.scene.hydrodynamics:`", said)
+        self.assertNotIn("looks like", said)
+
+    def test_what_a_stage_leaves(self):
+        said = self.named("mixed", ("self.vertex, self.vertex_velocity = moved[:2]", "self.vertex, self.vertex_velocity = moved[0] % (self.model.box * 2**40), moved[1]"))
+        self.assertIn("drift wraps the positions of vertex into the box", said)
+
     def test_one_of_two_calls(self):
         """No change of a line makes it."""
         said = self.named("mixed", ("self.vertex_velocity = solvent.rotate(model, cells[1], self.vertex_velocity, *turn)",
