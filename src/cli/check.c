@@ -18,77 +18,78 @@
 #include "mpc/rule.h"
 #include "scene/scene.h"
 #include "system/fiber_kind.h"
+#include "theory/dumbbell.h"
 #include "theory/load.h"
 #include "theory/theory.h"
 #include "work.h"
 
 /* --- Table I ----------------------------------------------------------------------------------------------------- */
 
-static void report_kind_parameters(const struct si_scale *si, const struct fiber_kind *k)
+static void report_kind_parameters(bool exact, const struct fiber_kind *k)
 {
   printf("  fibers '%s'%s\n", text_shown(k->name), k->ring ? ", rings" : "");
-  sheet_row(si, "  number of fibers", "N_c", k->count, "", "");
-  sheet_row(si, "  vertices of each", "N_v", k->vertices, "", "");
-  sheet_row(si, "  mass of a vertex", "M", k->mass, "m", "");
+  sheet_row(exact, "  number of fibers", "N_c", k->count, "", "");
+  sheet_row(exact, "  vertices of each", "N_v", k->vertices, "", "");
+  sheet_row(exact, "  mass of a vertex", "M", k->mass, "m", "");
   if (vec3_norm(k->force) > 0.0)
-    sheet_row(si, "  force on a vertex", "", vec3_norm(k->force), "kT/a0", "");
+    sheet_row(exact, "  force on a vertex", "", vec3_norm(k->force), "kT/a0", "");
   if (k->vertices < 2)
     return;
-  sheet_row(si, "  rest length of a bond", "l0", k->bond_length, "a0", "");
-  sheet_row(si, "  spring constant", "K/l0", k->spring, "kT/a0^2", "Eq. (1)");
-  sheet_row(si, "  elastic modulus", "K", k->spring * k->bond_length, "kT/a0", "");
-  sheet_row(si, "  bending constant", "l_p/l0", k->bending, "kT", "Eq. (2)");
-  sheet_row(si, "  length", "L", theory_length(k), "a0", k->bond_length > 0.0 ? "N_v l0" : "contour");
-  sheet_row(si, "  persistence length", "l_p", theory_persistence(k), "a0", "");
+  sheet_row(exact, "  rest length of a bond", "l0", k->bond_length, "a0", "");
+  sheet_row(exact, "  spring constant", "K/l0", k->spring, "kT/a0^2", "Eq. (1)");
+  sheet_row(exact, "  elastic modulus", "K", k->spring * k->bond_length, "kT/a0", "");
+  sheet_row(exact, "  bending constant", "l_p/l0", k->bending, "kT", "Eq. (2)");
+  sheet_row(exact, "  length", "L", theory_length(k), "a0", k->bond_length > 0.0 ? "N_v l0" : "contour");
+  sheet_row(exact, "  persistence length", "l_p", theory_persistence(k), "a0", "");
 }
 
-static void report_table_1(const struct si_scale *si, const struct model *m)
+static void report_table_1(bool exact, const struct model *m)
 {
   sheet_heading("Parameters (paper, Table I)");
   if (model_has_cells(m)) {
-    sheet_row(si, "particles per cell", "gamma", m->solvent.per_cell, "1/a0^3", "");
+    sheet_row(exact, "particles per cell", "gamma", m->solvent.per_cell, "1/a0^3", "");
     if (model_has_solvent(m))
-      sheet_row(si, "particles", "N_s", m->solvent.particles, "", "");
-    sheet_row(si, "collision interval", "dt_c", model_collision_interval(m), "t0", "");
+      sheet_row(exact, "particles", "N_s", m->solvent.particles, "", "");
+    sheet_row(exact, "collision interval", "dt_c", model_collision_interval(m), "t0", "");
     if (m->solvent.rule == RULE_SRD)
-      sheet_row(si, "rotation angle", "alpha", m->solvent.rotation_angle, "degrees", "");
+      sheet_row(exact, "rotation angle", "alpha", m->solvent.rotation_angle, "degrees", "");
   }
   printf("  %-38s %-9s %d x %d x %d a0\n", "box", "L_b", m->box.cells[0], m->box.cells[1], m->box.cells[2]);
-  for (int k = 0; si && k < 3; k++)
-    sheet_row(si, (const char *const[]){"  edge along x", "  edge along y", "  edge along z"}[k], "", m->box.cells[k],
-              "a0", "");
-  sheet_row(si, "time step", "dt", m->time_step, "t0", "");
+  for (int k = 0; exact && k < 3; k++)
+    sheet_row(exact, (const char *const[]){"  edge along x", "  edge along y", "  edge along z"}[k], "",
+              m->box.cells[k], "a0", "");
+  sheet_row(exact, "time step", "dt", m->time_step, "t0", "");
   if (vec3_norm(m->flow) > 0.0)
-    sheet_row(si, "flow", "v", vec3_norm(m->flow), "a0/t0", "");
+    sheet_row(exact, "flow", "v", vec3_norm(m->flow), "a0/t0", "");
   if (vec3_norm(m->solvent.acceleration) > 0.0)
-    sheet_row(si, "acceleration of the solvent", "", vec3_norm(m->solvent.acceleration), "a0/t0^2", "");
+    sheet_row(exact, "acceleration of the solvent", "", vec3_norm(m->solvent.acceleration), "a0/t0^2", "");
   for (uint32_t k = 0; k < m->kinds; k++)
-    report_kind_parameters(si, &m->kind[k]);
+    report_kind_parameters(exact, &m->kind[k]);
 }
 
 /* --- what follows from them -------------------------------------------------------------------------------------- */
 
-static void report_solvent(const struct si_scale *si, const struct model *m)
+static void report_solvent(bool exact, const struct model *m)
 {
   const double gamma = m->solvent.per_cell, cosine = m->solvent.cosine, interval = model_collision_interval(m);
   const bool srd = m->solvent.rule == RULE_SRD;
   sheet_heading("Solvent (molecular chaos: some per cent off at a short mean free path)");
-  sheet_row(si, "kinetic viscosity", "eta_kin",
+  sheet_row(exact, "kinetic viscosity", "eta_kin",
             theory_viscosity_kinetic(collision_rule_of(m), m->dimensions, gamma, cosine, interval), "m/a0 t0",
             srd ? "Eq. (30)" : "");
-  sheet_row(si, "collisional viscosity", "eta_col",
+  sheet_row(exact, "collisional viscosity", "eta_col",
             theory_viscosity_collisional(collision_rule_of(m), m->dimensions, gamma, cosine, interval), "m/a0 t0",
             srd ? "Eq. (31)" : "");
-  sheet_row(si, "viscosity", "eta", units_viscosity(m), "m/a0 t0",
+  sheet_row(exact, "viscosity", "eta", theory_model_viscosity(m), "m/a0 t0",
             model_has_dumbbells(m) ? "with that of springs" : "");
-  sheet_row(si, "kinematic viscosity", "nu", units_viscosity(m) / gamma, "a0^2/t0", "");
-  sheet_row(si, "self-diffusion coefficient", "D_s",
+  sheet_row(exact, "kinematic viscosity", "nu", theory_model_viscosity(m) / gamma, "a0^2/t0", "");
+  sheet_row(exact, "self-diffusion coefficient", "D_s",
             theory_solvent_diffusion(collision_rule_of(m), m->dimensions, gamma, cosine, interval), "a0^2/t0", "");
-  sheet_row(si, "Schmidt number", "Sc", theory_schmidt(collision_rule_of(m), m->dimensions, gamma, cosine, interval),
+  sheet_row(exact, "Schmidt number", "Sc", theory_schmidt(collision_rule_of(m), m->dimensions, gamma, cosine, interval),
             "", "nu/D_s");
-  sheet_row(si, "speed of sound", "c_s", theory_sound_speed(model_is_isothermal(m), m->dimensions), "a0/t0",
+  sheet_row(exact, "speed of sound", "c_s", theory_sound_speed(model_is_isothermal(m), m->dimensions), "a0/t0",
             model_is_isothermal(m) ? "isothermal" : "");
-  sheet_row(si, "mean free path", "", theory_mean_free_path(interval), "a0", "");
+  sheet_row(exact, "mean free path", "", theory_mean_free_path(interval), "a0", "");
 }
 
 /* --- parts, cost ------------------------------------------------------------------------------------------------- */
@@ -189,8 +190,8 @@ static void report_cost(const struct scene *scene)
   const double step = 1e-9 * (solvent * m->solvent.particles * collisions + (vertex + phantoms) * m->vertices);
   sheet_heading("Cost (an estimate; of time without observables and files)");
   check_memory(scene);
-  sheet_row(NULL, "steps per second", "", 1.0 / step, "1/s", "");
-  sheet_row(NULL, "time", "", step * (double)scene->steps, "s", "");
+  sheet_row(false, "steps per second", "", 1.0 / step, "1/s", "");
+  sheet_row(false, "time", "", step * (double)scene->steps, "s", "");
   printf("  from %.0f ns per solvent particle and collision, %.0f ns per vertex and step\n", solvent, vertex);
 }
 
@@ -200,33 +201,43 @@ static void tell_warning(void *context, const char *text)
   printf("  warning: %s\n", text_shown(text));
 }
 
-void scene_report(const struct scene *scene, const struct stream *stream, const struct units *units,
-                  const struct si_scale *si)
+/* What SI units take besides: numbers of the solvent, if there is one. */
+static void report_units(const struct model *m)
+{
+  printf("\x1funits");
+  if (model_has_solvent(m))
+    printf("\x1f%.17g\x1f%.17g\x1f%.17g\x1f%.17g\x1f%.17g\x1f%.17g", theory_model_viscosity(m),
+           model_solvent_density(m), theory_sound_speed(model_is_isothermal(m), m->dimensions), theory_model_schmidt(m),
+           theory_loaded_viscosity(m), theory_loaded_density(m));
+  putchar('\n');
+}
+
+void scene_report(const struct scene *scene, const struct stream *stream, bool exact)
 {
   const struct model *m = &scene->model;
   printf("# The effective scene of %s, every default filled in (fingerprint %016" PRIx64 ")\n", text_shown(scene->path),
          scene->fingerprint);
   check_head(scene);
   scene_write(scene, stdout, false);
-  report_table_1(si, m);
+  report_table_1(exact, m);
   if (model_has_solvent(m) && model_in_cells(m))
-    report_solvent(si, m);
+    report_solvent(exact, m);
   if (!model_in_cells(m))
-    check_medium(si, m);
+    check_medium(exact, m);
   if (model_has_dumbbells(m))
-    check_dumbbells(si, m);
+    check_dumbbells(exact, m);
   if (model_has_bead(m))
-    check_bead(si, m);
+    check_bead(exact, m);
   if (model_has_walls(m))
-    check_walls(si, m);
+    check_walls(exact, m);
   if (model_is_sheared(m))
-    check_shear(si, m);
+    check_shear(exact, m);
   if (m->solvent.profile != PROFILE_UNIFORM)
-    check_drive(si, m);
-  check_fibers(si, m);
-  sheet_row(si, "simulated time", "", m->time_step * (double)scene->steps, "t0", "");
-  if (si)
-    units_report(units, m, si);
+    check_drive(exact, m);
+  check_fibers(exact, m);
+  sheet_row(exact, "simulated time", "", m->time_step * (double)scene->steps, "t0", "");
+  if (exact)
+    report_units(m);
   check_stream(scene->seed, stream);
   check_observed(scene);
   report_parts(scene);

@@ -6,6 +6,6 @@
 #include "system/model.h"
 
 /* Prints the numbers of a bead. The model must have one. */
-void check_bead(const struct si_scale *si, const struct model *model);
+void check_bead(bool exact, const struct model *model);
 
 #endif

@@ -6,6 +6,6 @@
 #include "system/model.h"
 
 /* Prints the numbers of dumbbells. The model must have some. */
-void check_dumbbells(const struct si_scale *si, const struct model *model);
+void check_dumbbells(bool exact, const struct model *model);
 
 #endif

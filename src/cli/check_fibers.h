@@ -6,6 +6,6 @@
 #include "system/model.h"
 
 /* Prints the numbers of each kind, and those of the suspension if there is a vertex. */
-void check_fibers(const struct si_scale *si, const struct model *model);
+void check_fibers(bool exact, const struct model *model);
 
 #endif

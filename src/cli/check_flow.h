@@ -7,14 +7,14 @@
 #include "theory/flow.h"
 
 /* Prints the numbers of the shear. The model must be sheared. */
-void check_shear(const struct si_scale *si, const struct model *model);
+void check_shear(bool exact, const struct model *model);
 
 /* Prints the numbers of the flow. The model's force must have a profile. */
-void check_drive(const struct si_scale *si, const struct model *model);
+void check_drive(bool exact, const struct model *model);
 
 /* Prints what the shear of the solvent does to fibers of a kind, by their length and by their persistence length;
  * nothing without shear. */
-void check_kind_in_shear(const struct si_scale *si, const struct model *model, const struct theory_shear *shear,
+void check_kind_in_shear(bool exact, const struct model *model, const struct theory_shear *shear,
                          const struct fiber_kind *kind);
 
 #endif

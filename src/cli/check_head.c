@@ -6,10 +6,10 @@
 
 #include "base/text.h"
 #include "cli/sheet.h"
-#include "cli/units.h"
 #include "files/snapshot.h"
 #include "mpc/rule.h"
 #include "system/fiber_kind.h"
+#include "theory/dumbbell.h"
 #include "theory/flow.h"
 #include "theory/theory.h"
 #include "work.h"
@@ -32,7 +32,7 @@ static void look_at_kind(struct slowest *s, const struct model *m, const struct 
   if (k->ring || k->frozen || k->vertices < 2 || model_is_flat(m) || !model_has_solvent(m) || !model_in_cells(m))
     return;
   if (k->bending > 0.0 && p > 2.0)
-    take(s, "in which a fiber turns", k->name, theory_rod_relaxation(units_viscosity(m), theory_length(k), p));
+    take(s, "in which a fiber turns", k->name, theory_rod_relaxation(theory_model_viscosity(m), theory_length(k), p));
   if (k->bending == 0.0 && k->bond_length == 0.0) {
     const double d0 = theory_vertex_diffusion(collision_rule_of(m), m->dimensions, k->mass, m->solvent.per_cell,
                                               m->solvent.cosine, model_collision_interval(m));
@@ -47,7 +47,7 @@ static struct slowest slowest_of(const struct model *m)
     look_at_kind(&s, m, &m->kind[k]);
   if (model_has_solvent(m) && model_in_cells(m))
     take(&s, "in which the flow becomes steady", NULL,
-         theory_flow_transient(m, units_viscosity(m) / m->solvent.per_cell));
+         theory_flow_transient(m, theory_model_viscosity(m) / m->solvent.per_cell));
   return s;
 }
 
@@ -111,8 +111,8 @@ void check_memory(const struct scene *scene)
   uint64_t scratch;
   const double kept = (double)observers_bytes(&scene->observe, m, &scratch);
   const double memory = (double)work_bytes(m) + kept + (double)scratch;
-  sheet_row(NULL, "memory", "", memory / MEBI, "MiB", "with observables");
-  sheet_row(NULL, "... while a checkpoint is written", "",
+  sheet_row(false, "memory", "", memory / MEBI, "MiB", "with observables");
+  sheet_row(false, "... while a checkpoint is written", "",
             PROGRAM + MARGIN * (memory + COPIES * ((double)state_bytes(m) + kept)) / MEBI, "MiB",
             "at most, with the program's 16");
 }

@@ -3,7 +3,6 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "cli/units.h"
 #include "medium/bath.h"
 #include "theory/dumbbell.h"
 #include "theory/medium.h"
@@ -16,28 +15,28 @@ static double pairs_per_particle(const struct model *m)
   return 2.0 / 3.0 * pi * m->medium.density;
 }
 
-static void report_pairs(const struct si_scale *si, const struct model *m)
+static void report_pairs(bool exact, const struct model *m)
 {
-  const double rho = m->medium.density, eta = units_viscosity(m);
-  sheet_row(si, "particles", "N_s", m->solvent.particles, "", "");
-  sheet_row(si, "density", "rho", rho, "1/a0^3", "");
-  sheet_row(si, "pairs per particle", "", pairs_per_particle(m), "", "2 pi rho/3");
-  sheet_row(si, "mean free path", "Lambda", 1.0 / m->medium.rate, "a0", "sqrt(kT/m)/Gamma; below 1 a liquid");
-  sheet_row(si, "kinetic viscosity", "eta_kin", theory_medium_viscosity_kinetic(m), "m/a0 t0", "molecular chaos");
-  sheet_row(si, "collisional viscosity", "eta_col", theory_medium_viscosity_collisional(m), "m/a0 t0",
+  const double rho = m->medium.density, eta = theory_model_viscosity(m);
+  sheet_row(exact, "particles", "N_s", m->solvent.particles, "", "");
+  sheet_row(exact, "density", "rho", rho, "1/a0^3", "");
+  sheet_row(exact, "pairs per particle", "", pairs_per_particle(m), "", "2 pi rho/3");
+  sheet_row(exact, "mean free path", "Lambda", 1.0 / m->medium.rate, "a0", "sqrt(kT/m)/Gamma; below 1 a liquid");
+  sheet_row(exact, "kinetic viscosity", "eta_kin", theory_medium_viscosity_kinetic(m), "m/a0 t0", "molecular chaos");
+  sheet_row(exact, "collisional viscosity", "eta_col", theory_medium_viscosity_collisional(m), "m/a0 t0",
             "molecular chaos");
-  sheet_row(si, "viscosity", "eta", eta, "m/a0 t0", "too high where Lambda < 1");
-  sheet_row(si, "kinematic viscosity", "nu", eta / rho, "a0^2/t0", "");
-  sheet_row(si, "self-diffusion coefficient", "D_s", theory_medium_diffusion(m, 1.0), "a0^2/t0",
+  sheet_row(exact, "viscosity", "eta", eta, "m/a0 t0", "too high where Lambda < 1");
+  sheet_row(exact, "kinematic viscosity", "nu", eta / rho, "a0^2/t0", "");
+  sheet_row(exact, "self-diffusion coefficient", "D_s", theory_medium_diffusion(m, 1.0), "a0^2/t0",
             "molecular chaos; too low where Lambda < 1");
-  sheet_row(si, "Schmidt number", "Sc", theory_model_schmidt(m), "", "nu/D_s");
-  sheet_row(si, "speed of sound", "c_s", theory_sound_speed(true, 3), "a0/t0", "ideal gas, isothermal");
+  sheet_row(exact, "Schmidt number", "Sc", theory_model_schmidt(m), "", "nu/D_s");
+  sheet_row(exact, "speed of sound", "c_s", theory_sound_speed(true, 3), "a0/t0", "ideal gas, isothermal");
   if (m->medium.repulsion > 0.0 && m->medium.many.repulsion == 0.0)
-    sheet_row(si, "pressure, mean field", "p", rho + pi / 30.0 * m->medium.repulsion * rho * rho, "kT/a0^3",
+    sheet_row(exact, "pressure, mean field", "p", rho + pi / 30.0 * m->medium.repulsion * rho * rho, "kT/a0^3",
               "rho kT + pi/30 a rho^2; 10 % too high at rho = 3");
 }
 
-void check_medium(const struct si_scale *si, const struct model *m)
+void check_medium(bool exact, const struct model *m)
 {
   const bool pairs = m->medium.kind == MEDIUM_PAIRS;
   static const char *const headings[MEDIA] = {
@@ -45,76 +44,77 @@ void check_medium(const struct si_scale *si, const struct model *m)
       [MEDIUM_PAIRS] = "Medium: a bath of pairs",
       [MEDIUM_OVERDAMPED] = "Medium: overdamped motion, each fiber alone in an unbounded fluid"};
   sheet_heading(headings[m->medium.kind]);
-  sheet_row(si, "rate", "Gamma", m->medium.rate, "1/t0", "");
-  sheet_row(si, "... in a time step", "Gamma dt", m->medium.rate * m->time_step, "", "");
+  sheet_row(exact, "rate", "Gamma", m->medium.rate, "1/t0", "");
+  sheet_row(exact, "... in a time step", "Gamma dt", m->medium.rate * m->time_step, "", "");
   if (pairs)
-    report_pairs(si, m);
+    report_pairs(exact, m);
 }
 
-void check_times(const struct si_scale *si, const struct model *m, double l, double diffusion)
+void check_times(bool exact, const struct model *m, double l, double diffusion)
 {
-  const double nu = units_viscosity(m) / model_solvent_density(m);
+  const double nu = theory_model_viscosity(m) / model_solvent_density(m);
   const double sound = theory_sound_speed(model_is_isothermal(m), (int)m->dimensions);
-  sheet_row(si, "  time of sound, over a bond", "t_s", l / sound, "t0", "l/c_s");
-  sheet_row(si, "  time of momentum", "t_H", l * l / nu, "t0", "l^2/nu");
-  sheet_row(si, "  time of diffusion", "t_D", l * l / diffusion, "t0", "l^2/D_0; wanted: t_s < t_H << t_D");
+  sheet_row(exact, "  time of sound, over a bond", "t_s", l / sound, "t0", "l/c_s");
+  sheet_row(exact, "  time of momentum", "t_H", l * l / nu, "t0", "l^2/nu");
+  sheet_row(exact, "  time of diffusion", "t_D", l * l / diffusion, "t0", "l^2/D_0; wanted: t_s < t_H << t_D");
 }
 
-static void report_overdamped(const struct si_scale *si, const struct model *m, const struct fiber_kind *k)
+static void report_overdamped(bool exact, const struct model *m, const struct fiber_kind *k)
 {
   const struct medium_model *b = &m->medium;
   const double d0 = theory_medium_diffusion(m, k->mass), bond = k->vertices > 1 ? sqrt(theory_bond_square(k)) : 1.0;
-  sheet_row(si, "  vertex diffusion", "D_0", d0, "a0^2/t0", "kT/(M rate)");
+  sheet_row(exact, "  vertex diffusion", "D_0", d0, "a0^2/t0", "kT/(M rate)");
   if (b->tensor != TENSOR_NONE)
-    sheet_row(si, "  viscosity", "eta", k->mass * b->rate / (6.0 * pi * b->radius), "m/a0 t0", "M rate/(6 pi a_h)");
+    sheet_row(exact, "  viscosity", "eta", k->mass * b->rate / (6.0 * pi * b->radius), "m/a0 t0", "M rate/(6 pi a_h)");
   if (k->vertices < 2)
     return;
   if (b->inextensible) {
     const double length = k->bond_length * (k->vertices - 1.0), force = k->vertices * vec3_norm(k->force);
-    sheet_row(si, "  no noise; bonds keep their length", "b", k->bond_length, "a0", "medium.inextensible");
-    sheet_row(si, "  force over bending", "B", force * length * length / (k->bending * k->bond_length), "",
+    sheet_row(exact, "  no noise; bonds keep their length", "b", k->bond_length, "a0", "medium.inextensible");
+    sheet_row(exact, "  force over bending", "B", force * length * length / (k->bending * k->bond_length), "",
               "F L^2/(kappa b)");
-    sheet_row(si, "  time of bending", "", pow(length, 4) / (d0 * k->bending * k->bond_length), "t0",
+    sheet_row(exact, "  time of bending", "", pow(length, 4) / (d0 * k->bending * k->bond_length), "t0",
               "L^4/(D_0 kappa b)");
-    sheet_row(si, "  fastest bending in a time step", "", theory_medium_bend_step(m, k), "",
+    sheet_row(exact, "  fastest bending in a time step", "", theory_medium_bend_step(m, k), "",
               "16 kappa D_0 dt/b^2, without HI; unstable from 2 on");
     return;
   }
-  sheet_row(si, "  hydrodynamic radius over the rms bond", "a/b", b->radius / bond, "",
+  sheet_row(exact, "  hydrodynamic radius over the rms bond", "a/b", b->radius / bond, "",
             "1/4: D of a chain scales from few vertices on");
-  sheet_row(si, "  fastest relaxation in a time step", "", theory_medium_spring_step(m, k), "",
+  sheet_row(exact, "  fastest relaxation in a time step", "", theory_medium_spring_step(m, k), "",
             "4 k D_0 dt, without HI; unstable from 2 on");
   if (k->bending > 0.0)
-    sheet_row(si, "  fastest bending in a time step", "", theory_medium_bend_step(m, k), "",
+    sheet_row(exact, "  fastest bending in a time step", "", theory_medium_bend_step(m, k), "",
               "16 kappa D_0 dt/<l>^2, without HI; unstable from 2 on");
   if (k->bending == 0.0 && k->bond_length == 0.0 && !k->ring)
-    sheet_row(si, "  diffusion of the chain, Kirkwood", "D_K",
+    sheet_row(exact, "  diffusion of the chain, Kirkwood", "D_K",
               d0 * theory_kirkwood(b->tensor, k->vertices, b->radius / bond), "a0^2/t0",
               "1 to 3 % above the limit of long times");
 }
 
-void check_medium_vertex(const struct si_scale *si, const struct model *m, const struct fiber_kind *k)
+void check_medium_vertex(bool exact, const struct model *m, const struct fiber_kind *k)
 {
   if (model_is_overdamped(m)) {
-    report_overdamped(si, m, k);
+    report_overdamped(exact, m, k);
     return;
   }
   const double loss = theory_medium_loss(m, k->mass), d0 = theory_medium_diffusion(m, k->mass);
   const double bond = sqrt(theory_bond_square(k));
-  sheet_row(si, "  velocity kept per step", "c", 1.0 - loss, "", "");
-  sheet_row(si, "  memory of the velocity", "", m->time_step / loss, "t0", "");
-  sheet_row(si, "  vertex diffusion, without HI", "D_0", d0, "a0^2/t0", "");
-  sheet_row(si, "  vertex friction, without HI", "kT/D_0", 1.0 / d0, "m/t0", "");
+  sheet_row(exact, "  velocity kept per step", "c", 1.0 - loss, "", "");
+  sheet_row(exact, "  memory of the velocity", "", m->time_step / loss, "t0", "");
+  sheet_row(exact, "  vertex diffusion, without HI", "D_0", d0, "a0^2/t0", "");
+  sheet_row(exact, "  vertex friction, without HI", "kT/D_0", 1.0 / d0, "m/t0", "");
   if (k->bending == 0.0 && k->bond_length == 0.0 && !k->ring && k->vertices > 1)
-    sheet_row(si, "  slowest Rouse mode, without HI", "tau_1", theory_rouse_time(k, 1.0 / d0), "t0", "");
+    sheet_row(exact, "  slowest Rouse mode, without HI", "tau_1", theory_rouse_time(k, 1.0 / d0), "t0", "");
   if (m->medium.kind != MEDIUM_PAIRS)
     return;
-  const double radius = theory_hydrodynamic_radius(units_viscosity(m), d0);
-  sheet_row(si, "  hydrodynamic radius, from D_0 alone", "a_h", radius, "a0", "");
+  const double radius = theory_hydrodynamic_radius(theory_model_viscosity(m), d0);
+  sheet_row(exact, "  hydrodynamic radius, from D_0 alone", "a_h", radius, "a0", "");
   if (k->vertices < 2)
     return;
-  sheet_row(si, "  ... over the rms bond", "a/b", radius / bond, "", "1/4: D of a chain scales from few vertices on");
-  check_times(si, m, bond, d0);
+  sheet_row(exact, "  ... over the rms bond", "a/b", radius / bond, "",
+            "1/4: D of a chain scales from few vertices on");
+  check_times(exact, m, bond, d0);
 }
 
 /* Rates in ns, for rows of matrices: of a tensor three for each vertex, of tensions one for each bond. Measured with 2

@@ -6,6 +6,6 @@
 #include "system/model.h"
 
 /* Prints the numbers of the flow. The model must have walls. */
-void check_walls(const struct si_scale *si, const struct model *model);
+void check_walls(bool exact, const struct model *model);
 
 #endif

@@ -9,7 +9,6 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#include "cli/units.h"
 #include "files/snapshot.h"
 #include "oracle/oracle.h"
 
@@ -39,7 +38,7 @@ struct arguments {
   const char **set; /* [sets] "key=value" */
   size_t sets;
   bool has_steps, has_seed, resume, quiet, document, decimal, whole, skip_damaged, movie, compare, list, slurm, no_name,
-      help;
+      numbers, help;
   uint64_t steps, seed; /* instead of the scene's */
   const char *format;
   bool solvent, wrapped;
@@ -140,10 +139,9 @@ void help_man(FILE *out);
 void help_completion(FILE *out);
 
 /* Prints to stdout: the effective scene, every derived number of the paper's Tables I and II, what this scene uses and
- * skips, memory, estimated time, warnings. `uncross check`. stream: that of its runs. si: the same numbers in SI units,
- * made of `units` (both NULL without). */
-void scene_report(const struct scene *scene, const struct stream *stream, const struct units *units,
-                  const struct si_scale *si);
+ * skips, memory, estimated time, warnings. `uncross check`. stream: that of its runs. exact: numbers with all digits,
+ * for programs (cli/sheet.h). */
+void scene_report(const struct scene *scene, const struct stream *stream, bool exact);
 
 /* The path of the program uncross-NAME that stands beside this one, or where it would stand. False if it is not there.
  */
@@ -152,7 +150,6 @@ bool outer_find(const char *name, char path[PATH_MAX]);
 /* Becomes the program of a command; words[0] is replaced. Returns if that cannot be, and has said why. */
 enum exit_code outer_run(const struct command *command, char **words);
 
-enum exit_code command_map(const struct arguments *a);
 enum exit_code command_frames(const struct arguments *a);
 enum exit_code command_run(const struct arguments *a);
 enum exit_code command_analyze(const struct arguments *a);

@@ -36,16 +36,12 @@ static enum exit_code check(const struct arguments *a)
 {
   const struct scene_settings settings = {a->sets, a->set, a->sets};
   struct scene scene;
-  struct units units;
-  struct si_scale si;
   struct stream stream;
   struct message message;
-  bool ok = !a->units || units_read(a->units, &units, &message);
-  const bool read = ok && scene_read_numbers(a->file[0], &settings, &scene, &message);
-  ok = read && (!a->units || units_scale(&units, &scene.model, &si, &message)) &&
-       check_start(a->file[0], &settings, &scene, &stream, &message);
+  const bool read = scene_read_numbers(a->file[0], &settings, &scene, &message);
+  const bool ok = read && check_start(a->file[0], &settings, &scene, &stream, &message);
   if (ok)
-    scene_report(&scene, &stream, a->units ? &units : NULL, a->units ? &si : NULL);
+    scene_report(&scene, &stream, a->numbers);
   else
     fprintf(stderr, "uncross: %s\n", message.text);
   if (read)
@@ -78,7 +74,7 @@ const struct command commands[COMMANDS] = {
                      "FIBER is length=10um,persistence=17um, and if known diameter=7nm, mesh=1um (of the network that "
                      "fills the\n"
                      "box), vertices=64 (in how many pieces; or a0 in --units).\n",
-                     command_map},
+                     NULL},
     [COMMAND_RUN] =
         {"run", "SCENE", 1, MAY(EXIT_STOPPED) | WRITES | MAY(EXIT_INTERRUPTED), "runs a scene in a folder",
          "DIR gets checkpoint.h5, run.json, a table for each observable, and trajectory.h5 (docs/files.md).\n"
@@ -157,7 +153,8 @@ static enum exit_code dispatch(const char *program, enum command_code command, i
   if (code == EXIT_DONE && a.help)
     help_command(stdout, command);
   else if (code == EXIT_DONE)
-    code = commands[command].act ? commands[command].act(&a) : outer_run(&commands[command], words);
+    code = commands[command].act && !(command == COMMAND_CHECK && a.units) ? commands[command].act(&a)
+                                                                           : outer_run(&commands[command], words);
   const bool words_matter = a.help || command != COMMAND_RUN; /* what a run is for is in its folder */
   arguments_free(&a);
   return words_matter ? told(code) : code;

@@ -39,6 +39,8 @@ const struct option_row option_rows[] = {
      .text = "this value instead of the scene's, e.g. solvent.per_cell=10; may be given again and again"},
     {"units", "a0=50nm,T=300K", OF(CHECK) | OF(PLOT), 0, OPTION_TEXT, 0, AT(units), ONLY_VALUE,
      .text = "SI units beside; time by one of eta=1mPas, rho=1000kg/m3, mass=, t0= (docs/units.md)"},
+    {"numbers", NULL, OF(CHECK), 0, OPTION_SWITCH, 0, AT(numbers), ONLY_VALUE,
+     .text = "for programs: numbers with all digits, a byte 0x1f before each part of their rows"},
     {"units", "T=300K,eta=1mPas", OF(MAP), OF(MAP), OPTION_TEXT, 0, AT(units), ONLY_VALUE,
      .text = "temperature, and what fixes the time: one of eta=, rho=, mass=, t0= (docs/units.md)"},
     {"steps", "N", OF(RUN) | OF(SWEEP), 0, OPTION_WHOLE, 0, AT(steps), AT(has_steps), .most = INT64_MAX,

@@ -1,14 +1,13 @@
-/* Lines of `uncross check`: a number in units a0, kT, m, and beside it in SI units if they are asked for. */
+/* Lines of `uncross check`: a number in units a0, kT, m. */
 #ifndef UNCROSS_CLI_SHEET_H
 #define UNCROSS_CLI_SHEET_H
 
-#include "theory/si.h"
+#include <stdbool.h>
 
 void sheet_heading(const char *text);
 
-/* Name, symbol, value, unit ("a0^2/t0"; "": a pure number), and where the number comes from. si: NULL without SI units;
- * a unit must stand in the table of sheet.c, or no SI value is shown. */
-void sheet_row(const struct si_scale *si, const char *name, const char *symbol, double value, const char *unit,
-               const char *source);
+/* Name, symbol, value, unit ("a0^2/t0"; "": a pure number), and where the number comes from. exact: all digits, for
+ * programs, with a byte 0x1f before each part, which no other line of a report holds. */
+void sheet_row(bool exact, const char *name, const char *symbol, double value, const char *unit, const char *source);
 
 #endif
