@@ -155,6 +155,19 @@ class Units(unittest.TestCase):
         first = run("check", scene, "--units", "a0=50nm,T=300K,rho=1000kg/m3")
         self.assertEqual(first, run("check", scene, "--units", "a0=50nm,T=300K,rho=1g/cm^3"))
 
+    def test_numbers(self):
+        """For programs: the rows of the report, with all digits."""
+        scene = TOP / "scenes/semidilute.yaml"
+        exact = [line.split("\x1f")[1:] for line in run("check", scene, "--numbers").splitlines() if "\x1f" in line]
+        report, many = run("check", scene), 0
+        for name, symbol, value, unit, source in (row for row in exact if row[0] != "units"):
+            shown = f"  {name:38} {symbol:9} {float(value):12.6g} {unit:9} {source}".rstrip()
+            if not name.startswith("  edge along"):
+                self.assertIn(shown if source else shown[:64].rstrip(), report)
+                many += len(value) > 12
+        self.assertGreater(many, 20)
+        self.near(float(next(row for row in exact if row[0] == "units")[1]), ETA, 1e-12)
+
     def test_refused(self):
         scene = TOP / "scenes/solvent.yaml"
         for words, why in (("a0=50nn,T=300K", "a0=50nn: not a length, such as 50nm; units: m, with a prefix"),
