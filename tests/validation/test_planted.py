@@ -1,7 +1,9 @@
 """Bugs that claims should see (validation/planted): their cases and runs exist."""
 import pathlib
 import re
+import subprocess
 import sys
+import tempfile
 import unittest
 
 sys.dont_write_bytecode = True
@@ -25,6 +27,12 @@ class Planted(unittest.TestCase):
             with self.subTest(case=case, pattern=pattern):
                 names = [run.name for run in cases.load(case).runs("quick")]
                 self.assertTrue(any(re.fullmatch(pattern, name) for name in names))
+
+    def test_the_program_reads_them(self):
+        """With `none` it plants nothing, and prints the table of nothing."""
+        with tempfile.TemporaryDirectory() as folder:
+            done = subprocess.run([TREE / "validation/planted", "--build", folder, "none"], capture_output=True, text=True, check=False)
+        self.assertEqual((done.returncode, done.stderr, done.stdout.splitlines()[-1]), (0, "", "0 passed, 0 failed"))
 
     def test_every_case_has_one(self):
         gated = {name for name in cases.names() if cases.load(name).runs("quick")}
