@@ -91,9 +91,12 @@ def poiseuille(steps):
     return make("poiseuille-K1", 1, "walls: {kind: no-slip}", steps, 250.0, box=(SIDE, 20), potential=True, force=FORCE, slabs=40)
 
 
+QUICK_PLACES = (1, 2, 3, 4, 5, 7, 8, 9, 10, 11)
+
+
 def quick():
-    return [sheared(0.3, 40000), sheared(1, 30000), sheared(5, 15000), sheared(1, 20000, rule="srd"), sheared(1, 15000, rule="at+a"),
-            sheared(1, 15000, dt=0.04), oscillating("slow", 8), oscillating("fast", 16), walls(20, 25000), walls(20, 25000, potential=True),
+    return [sheared(1, 30000), sheared(5, 15000), sheared(1, 20000, rule="srd"), sheared(1, 15000, rule="at+a"),
+            sheared(1, 15000, dt=0.04), oscillating("fast", 16), walls(20, 25000), walls(20, 25000, potential=True),
             still(20000), still(20000, potential=True)]
 
 
@@ -114,8 +117,8 @@ def campaign():
 
 
 def runs(tier):
-    """Seeds are those of the run's place in this list, chosen before the first run."""
+    """Seeds were chosen before the first run: those of the run's place in this list, as it was then."""
     found = {"quick": quick, "campaign": campaign}[tier]()
-    for number, run in enumerate(found):
+    for number, run in zip(QUICK_PLACES if tier == "quick" else range(len(found)), found, strict=True):
         run.seed = {"quick": 300, "campaign": 400}[tier] + number
     return found

@@ -76,11 +76,15 @@ def heated(name, steps):
     return make(f"heat-{name}", HEAT_POINT, "srd", (20, 10, 1), steps, 400.0, boundary, force, thermostat="thermostat: none")
 
 
+# Of sheared boxes in two dimensions; MPC-AT+a is sheared in three, in a third of the time.
+QUICK_RULES = ("srd", "at-a")
+QUICK_PLACES = (0, 1, 3, 4, 5, 6, 7, 9, 10, 11, 12)
+
+
 def quick():
-    return [sheared("2d-n10", rule, 40000) for rule in RULES] + [sheared("3d-n5", rule, 10000) for rule in RULES] + [
+    return [sheared("2d-n10", rule, 40000) for rule in QUICK_RULES] + [sheared("3d-n5", rule, 10000) for rule in RULES] + [
         sheared("2d-n3", "at-a", 40000),
-        couette("planar-L10", "srd", 10, "planar", 150000, 15.0), couette("paper-L10", "srd", 10, "paper", 150000, 15.0),
-        couette("none-L20", "srd", 20, "none", 30000, 200.0),
+        couette("planar-L10", "srd", 10, "planar", 150000, 15.0), couette("none-L20", "srd", 20, "none", 30000, 200.0),
         poiseuille("2d-n10", 0.03, (20, 20, 1), 60000, 60.0),
         profiled("2d-n10", "at-a", "kolmogorov", 0.15, 20, 40000, 15.0),
         oscillating("fast", 30)]
@@ -106,9 +110,9 @@ def campaign():
 
 
 def runs(tier):
-    """Seeds are those of the run's place in this list, chosen before the first run."""
+    """Seeds were chosen before the first run: those of the run's place in this list, as it was then."""
     found = {"quick": quick, "campaign": campaign}[tier]()
-    for number, run in enumerate(found):
+    for number, run in zip(QUICK_PLACES if tier == "quick" else range(len(found)), found, strict=True):
         if run.scene:
             run.seed = {"quick": 100, "campaign": 200}[tier] + number
     return found

@@ -78,11 +78,9 @@ def campaign():
 
 def quick():
     return [chains("N5-L12-s1", 5, 12, 4, 4000, seed=5001), chains("N10-L16-s1", 10, 16, 4, 4000, seed=10001),
-            chains("N20-L20-s1", 20, 20, 4, 1500, seed=20001), chains("N40-L25-s1", 40, 25, 4, 900, seed=40001),
             chains("rouse-N5", 5, 64, 32, 500, bath="phantoms", lag=204.8),
             chains("rouse-N10", 10, 64, 32, 500, bath="phantoms", lag=204.8),
-            chains("rouse-N20", 20, 64, 16, 500, bath="phantoms", lag=204.8),
-            chains("loose-N5", 5, 128, 64, 5000, bath="phantoms", spring=LOOSE, every=6.4, lag=3276.8)]
+            chains("rouse-N20", 20, 64, 16, 500, bath="phantoms", lag=204.8)]
 
 
 def runs(tier):

@@ -16,6 +16,7 @@ STEP = 0.01    # b^2/D0
 EVERY = 20     # steps between samples
 CHAINS = {5: 200, 10: 100, 20: 50}
 LENGTH = {"quick": 1, "campaign": 10}
+OF_CHAINS = {"quick": 0.4, "campaign": 10}  # the same for chains, whose verdicts allow more than their errors
 QUICK_STEPS = 200000
 FIRST = 0.05    # b^2/D0: 5 steps; at the first lag a chain has hardly changed its shape
 DPD_PRESSURE, DPD_KNOWN = 23.65, 0.02  # rho 3, a 25: a program of its own, small steps
@@ -35,12 +36,12 @@ def chains_of(tier):
 
 
 def runs(tier):
-    n = LENGTH[tier]
+    n, m = LENGTH[tier], OF_CHAINS[tier]
     rpy = f"{{kind: overdamped, rate: 1, tensor: rpy, radius: {RADIUS}}}"
-    found = [chain(f"rpy-N{vertices}", rpy, vertices, count, 40000 * n, 0.01 * n, every=5)
+    found = [chain(f"rpy-N{vertices}", rpy, vertices, count, round(40000 * m), 0.01 * m, every=5)
              for vertices, count in chains_of(tier).items()]
     found.append(chain("none-N10", "{kind: overdamped, rate: 1}", 10, 100, 40000 * n, 0.002 * n))
-    found.append(chain("langevin-N10", "{kind: private, rate: 10, draw: relax}", 10, 50, 200000 * n, 0.005 * n, step=0.02,
+    found.append(chain("langevin-N10", "{kind: private, rate: 10, draw: relax}", 10, 50, round(200000 * m), 0.005 * m, step=0.02,
                        every=200, first=10000, memory=", memory: {every: 5}"))
     fluid = ("box: [5, 5, 5]\ntime_step: 0.01\norder: kick-split\n"
              "medium: {kind: pairs, density: 3, rate: 9, draw: relax, weight: quadratic, repulsion: 25}\n"

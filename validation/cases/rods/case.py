@@ -56,8 +56,7 @@ def campaign():
 
 
 def quick():
-    return [rods("N10-L12-s1", 10, 12, 2, 5000, seed=10001), rods("N10-L18-s1", 10, 18, 6, 1100, seed=10002),
-            rods("N20-L20-s1", 20, 20, 3, 1200, seed=20001), rods("phantoms-N10", 10, 64, 32, 1500, bath="phantoms")]
+    return [rods("N10-L12-s1", 10, 12, 2, 5000, seed=10001), rods("phantoms-N10", 10, 64, 32, 1500, bath="phantoms")]
 
 
 def runs(tier):
