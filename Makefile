@@ -20,8 +20,11 @@ HARDEN_LINKED := -Wl,-z,relro,-z,now
 # The objects of the program are the library's, too: they fit in at any address, and show what UNCROSS_API marks only.
 LINKABLE := -fPIC -fvisibility=hidden
 ALL_CFLAGS = $(STRICT) $(OPTIMIZE) $(WARNINGS) $(HARDEN) $(INCLUDES) -fstack-usage $(CFLAGS) $(LINKABLE)
+# What sanitizers leave out in kernels and tests, and what the fuzzer needs (see `sanitize`).
+UNCHECKED :=
+GUIDE     :=
 # What a test itself computes is little: its compilation takes a quarter of the time.
-TEST_CFLAGS = $(ALL_CFLAGS) -O1 -Itests
+TEST_CFLAGS = $(ALL_CFLAGS) $(UNCHECKED) -O1 -Itests
 # The headers of a target, whether BUILD is given as a relative path or as an absolute one; no list can hold a path with a space.
 DEPENDENCIES = -MMD -MP $(addprefix -MT ,$(sort $@ $(if $(word 2,$(CURDIR)),,$(abspath $@) $(patsubst $(CURDIR)/%,%,$(abspath $@)))))
 LIBS     := $(shell pkg-config --libs hdf5 yaml-0.1 jansson libxxhash 2>/dev/null) -lm
@@ -74,7 +77,7 @@ help:
 	@echo 'make bench-docs      the same, and its tables and figures into docs/'
 	@echo 'make bench-peers     against Debian'\''s LAMMPS, in turn: build/bench/peers.json'
 	@echo 'make peer            the solvent'\''s memory and diffusion beside LAMMPS (a quarter of an hour): reference-data/campaign/peer'
-	@echo 'make validate        the paper'\''s claims on reduced systems (ten minutes): build/validate/report.html'
+	@echo 'make validate        the paper'\''s claims on reduced systems (seven minutes): build/validate/report.html'
 	@echo 'make -j2 campaign    the same on the paper'\''s own systems, for hours or days; resumes; reference-data/campaign/'
 	@echo 'make validate-planted   bugs of the physics planted in a copy: each turns a claim red'
 	@echo 'make slurm-test      the campaign as a job array, on a Slurm that the test starts and stops (three minutes)'
@@ -111,15 +114,22 @@ $(LIBRARY): $(filter-out $(TOP),$(OBJECTS))
 	@rm -f $@
 	@ar rcs $@ $^
 
-$(BUILD)/%.o: %.c Makefile | $(BUILD)/found-run
+# Objects of another compiler, or for another processor, are made anew.
+ifneq ($(file <$(BUILD)/made-by),$(CC) $(OPTIMIZE))
+$(BUILD)/made-by: force
+endif
+$(BUILD)/made-by: | $(BUILD)/found-run
+	@echo '$(CC) $(OPTIMIZE)' >$@
+
+$(BUILD)/%.o: %.c Makefile $(BUILD)/made-by | $(BUILD)/found-run
 	@mkdir -p $(@D)
 	@echo '  CC $<'
 	@$(CC) $(ALL_CFLAGS) $(DEPENDENCIES) -c $< -o $@
 
 # Whatever OPTIMIZE asks for, of the processor a kernel may only use what its name says.
-KERNEL_CFLAGS = $(filter-out -march=% -mtune=%,$(ALL_CFLAGS)) -march=x86-64 $($*_FLAGS) -DKERNEL=kernel_$* -DKERNEL_NAME='"$*"'
+KERNEL_CFLAGS = $(filter-out -march=% -mtune=%,$(ALL_CFLAGS)) $(UNCHECKED) -march=x86-64 $($*_FLAGS) -DKERNEL=kernel_$* -DKERNEL_NAME='"$*"'
 
-$(patsubst %,$(BUILD)/src/kernel/%.o,$(KERNELS) $(WIDE)): $(BUILD)/src/kernel/%.o: src/kernel/solvent.c Makefile | $(BUILD)/found-run
+$(patsubst %,$(BUILD)/src/kernel/%.o,$(KERNELS) $(WIDE)): $(BUILD)/src/kernel/%.o: src/kernel/solvent.c Makefile $(BUILD)/made-by | $(BUILD)/found-run
 	@mkdir -p $(@D)
 	@echo '  CC $< ($*)'
 	@$(CC) $(KERNEL_CFLAGS) $(DEPENDENCIES) -c $< -o $@
@@ -412,20 +422,21 @@ mutants:
 	tools/install-dependencies run test
 	tools/mutants --docs docs/mutants.md
 
-# Instructions, counted by callgrind: of a build that every x86-64 machine of the last ten years makes alike.
-COUNTED := CC=gcc BUILD=build/counts OPTIMIZE='-O3 -march=x86-64-v3' CFLAGS=-g build/counts/uncross
+# Instructions, counted by callgrind: of a build that every x86-64 machine of the last ten years makes alike. Where all is built so (.ci/run), it is that.
+COUNTED := $(if $(filter x86-64-v3,$(MARCH)),$(BUILD),build/counts)
+COUNTS  := CC=gcc BUILD=$(COUNTED) OPTIMIZE='-O3 -march=x86-64-v3' CFLAGS=-g $(COUNTED)/uncross
 .PHONY: counts
 counts:
 	tools/install-dependencies run counts
-	$(MAKE) -j2 $(COUNTED)
-	tools/counts build/counts/uncross; counts=$$?; tools/skips build/counts/uncross && exit $$counts
+	$(MAKE) -j2 $(COUNTS)
+	tools/counts $(COUNTED)/uncross; counts=$$?; tools/skips $(COUNTED)/uncross && exit $$counts
 
 .PHONY: counts-baseline
 counts-baseline:
 	tools/install-dependencies run counts
-	$(MAKE) -j2 $(COUNTED)
-	tools/counts build/counts/uncross --baseline
-	tools/skips build/counts/uncross --docs docs/speed.md
+	$(MAKE) -j2 $(COUNTS)
+	tools/counts $(COUNTED)/uncross --baseline
+	tools/skips $(COUNTED)/uncross --docs docs/speed.md
 
 .PHONY: judge-power
 judge-power:
@@ -451,7 +462,7 @@ demo:
 # The exact tests under other flags, in folders of their own. Physics tests are long and add nothing here; those of
 # validation/ and of names run little but Python.
 EXACT_TESTS := $(filter-out tests/physics/% tests/validation/% tests/stress/% tests/mutants/% tests/tools/% \
-   tests/oracle/test_name% tests/api/%.py tests/cli/test_memory.py, \
+   tests/oracle/test_name% tests/oracle/test_oracle.py tests/api/%.py tests/cli/test_memory.py, \
    $(sort $(shell find tests -name 'test_*.c' -o -name 'test_*.py' -o -name 'test_*.sh')))
 .PHONY: exact
 exact: $(BUILD)/uncross $(BUILD)/uncross-faults $(LIBRARIES) $(patsubst %.c,$(BUILD)/%,$(filter %.c,$(EXACT_TESTS)))
@@ -460,31 +471,39 @@ exact: $(BUILD)/uncross $(BUILD)/uncross-faults $(LIBRARIES) $(patsubst %.c,$(BU
 STATISTICS := tests/fluid/test_dumbbell_stress.c tests/contract/test_thermostats.c
 # By clang, as `make check` builds by gcc: so the hashes and packs of the tests are those of two compilers. Its counters of what
 # is reached are those of the source, whatever sanitizers add. -O1 takes a third of the time of -O0.
-SANITIZE_CFLAGS := -g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all \
+SANITIZE_CFLAGS := -gline-tables-only -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=all \
    -fprofile-instr-generate -fcoverage-mapping
+# Of pointers in the kernels and in tests, the address sanitizer sees what is wrong. These checks would compile 35 s for each kernel, and a quarter of the time of each test.
+SANITIZE_UNCHECKED := -fno-sanitize=null,alignment,object-size,pointer-overflow
+# Rooms that read files tell the fuzzer, which is linked with the same objects, which way they took.
+GUIDED := -fsanitize=fuzzer-no-link
+$(addprefix $(BUILD)/,src/files/%.o src/scene/%.o src/oracle/%.o tests/fuzz/%.o): ALL_CFLAGS += $(GUIDE)
+SANITIZED := CC=clang BUILD=build/sanitize OPTIMIZE=-O1 HARDEN= CFLAGS='$(SANITIZE_CFLAGS)' UNCHECKED='$(SANITIZE_UNCHECKED)' GUIDE='$(GUIDED)' \
+   LIBS='$(LIBS) $(CURDIR)/build/sanitize/child.o -Wl,--wrap=_exit'
+build/sanitize/child.o: tests/faults/child_reached.c
+	@mkdir -p $(@D)
+	@clang -O1 -c $< -o $@
 .PHONY: sanitize
 sanitize:
 	tools/install-dependencies run hard
-	mkdir -p build/sanitize
-	clang -O1 -c tests/faults/child_reached.c -o build/sanitize/child.o
-	LLVM_PROFILE_FILE=/dev/null $(MAKE) -j2 CC=clang BUILD=build/sanitize OPTIMIZE=-O1 HARDEN= \
-	   CFLAGS='$(SANITIZE_CFLAGS)' LIBS='$(LIBS) $(CURDIR)/build/sanitize/child.o -Wl,--wrap=_exit' exact
+	$(MAKE) build/sanitize/child.o
+	LLVM_PROFILE_FILE=/dev/null $(MAKE) -j2 $(SANITIZED) exact
 	tools/sanitize build/sanitize $(filter-out $(STATISTICS),$(EXACT_TESTS))
 
 # Inputs that find something new go to build/fuzz/corpus; what was found is a file crash-* there, which FUZZ=file runs again.
 SECONDS ?= 60
 # A scene may ask for any amount of memory: what it gets here is none above 64 MB, and it must bear that.
 FUZZ_LIMITS := ASAN_OPTIONS=max_allocation_size_mb=64:allocator_may_return_null=1:quarantine_size_mb=8:suppressions=tests/fuzz/suppressed \
-   LSAN_OPTIONS=suppressions=tests/fuzz/leaks:print_suppressions=0
+   LSAN_OPTIONS=suppressions=tests/fuzz/leaks:print_suppressions=0 LLVM_PROFILE_FILE=/dev/null
 FUZZ    ?= -max_total_time=$(SECONDS) build/fuzz/corpus tests/fuzz/corpus
-FUZZ_CFLAGS := -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all
 .PHONY: fuzz
 fuzz:
 	tools/install-dependencies run hard
-	$(MAKE) -j2 CC=clang BUILD=build/fuzz PLAIN=1 OPTIMIZE=-O1 HARDEN= CFLAGS='$(FUZZ_CFLAGS)' build/fuzz/readers
+	$(MAKE) build/sanitize/child.o
+	LLVM_PROFILE_FILE=/dev/null $(MAKE) -j2 $(SANITIZED) build/sanitize/readers
 	mkdir -p build/fuzz/corpus
 	@folder=$$(mktemp -d -p /dev/shm fuzz-XXXX 2>/dev/null || mktemp -d -p build/fuzz) && trap "rm -r $$folder" EXIT && \
-	 TMPDIR=$$folder $(FUZZ_LIMITS) build/fuzz/readers -artifact_prefix=build/fuzz/ -max_len=4096 -timeout=60 \
+	 TMPDIR=$$folder $(FUZZ_LIMITS) build/sanitize/readers -artifact_prefix=build/fuzz/ -max_len=4096 -timeout=60 \
 	   -rss_limit_mb=3000 -print_final_stats=1 $(FUZZ)
 
 STANDING := -Wl,--wrap=apart_start,--wrap=apart_end,--wrap=apart_lost,--wrap=apart_shut,--wrap=apart_go_on
