@@ -1,7 +1,7 @@
 """Instructions that a run of uncross executes, counted by valgrind's callgrind: what tools/counts and tools/skips share.
 
-Counts are exact and the same on each run and on a loaded machine. What happens once (start, end, files) drops out of the
-difference of two runs of different length.
+Counts are exact and the same on each run and on a loaded machine. What happens once (start, end, files) is left out: callgrind writes down what
+it has counted whenever a step begins.
 """
 import collections
 import functools
@@ -24,13 +24,16 @@ class Counts:
     def __init__(self, total, inclusive, address):
         self.total, self.inclusive, self.address = total, inclusive, address
 
-    def per_step(self, shorter, steps):
-        """This longer run less the shorter one, per step."""
-        def less(a, b):
-            return {key: (value - b.get(key, 0)) / steps for key, value in a.items()}
 
-        return Counts((self.total - shorter.total) / steps, less(self.inclusive, shorter.inclusive),
-                      less(self.address, shorter.address))
+def mean(every):
+    """Counts of a step, from those of several."""
+    def of(name):
+        total = collections.Counter()
+        for counts in every:
+            total.update(getattr(counts, name))
+        return {key: value / len(every) for key, value in total.items()}
+
+    return Counts(sum(counts.total for counts in every) / len(every), of("inclusive"), of("address"))
 
 
 def parse(text, program):
@@ -86,20 +89,32 @@ class Counter:
 
     @functools.lru_cache(maxsize=None)
     def _run(self, scene, steps):
+        return self._parts(scene, steps)[0]
+
+    def _parts(self, scene, steps, *options):
+        """Counts of a run, or of its parts if `options` make callgrind write some on the way; the last part comes first."""
         with tempfile.TemporaryDirectory() as folder:
             path, out = pathlib.Path(folder, "scene.yaml"), pathlib.Path(folder, "counts")
             path.write_text(scene)
-            done = subprocess.run(["valgrind", "--tool=callgrind", "--dump-instr=yes", f"--callgrind-out-file={out}",
+            done = subprocess.run(["valgrind", "--tool=callgrind", "--dump-instr=yes", f"--callgrind-out-file={out}", *options,
                                    self.program, "run", path, "--out", folder + "/run", "--steps", str(steps), "--quiet",
                                    "--set", "checkpoint.seconds=0"],  # else a slow machine writes one on the way
                                   capture_output=True, text=True, check=False)
             if done.returncode != 0:
                 raise RuntimeError(f"{' '.join(map(str, done.args))}:\n{done.stderr}")
-            return parse(out.read_text(), self.program)
+            parts = [out, *sorted(out.parent.glob("counts.*"), key=lambda path: int(path.suffix[1:]))]
+            return [parse(part.read_text(), self.program) for part in parts]
 
     def per_step(self, scene, first=4, last=10):
-        """Counts of the steps first + 1 .. last, per step."""
-        return self.run(scene, last).per_step(self.run(scene, first), last - first)
+        """Counts of the steps first + 1 .. last, per step: from the beginning of one to that of the next."""
+        return self._per_step(scene if isinstance(scene, str) else json.dumps(scene), first, last)
+
+    @functools.lru_cache(maxsize=None)
+    def _per_step(self, scene, first, last):
+        parts = self._parts(scene, last + 1, "--dump-before=step_advance")  # the end, the start, step 1, 2, ...
+        if len(parts) != last + 2:
+            raise RuntimeError(f"{len(parts) - 1} steps counted, not {last + 1}")
+        return mean(parts[first + 2:])
 
     def inclusive(self, counts, name):
         """Of one function. That it is gone must not look as if it were not called."""
