@@ -62,7 +62,7 @@ class Ci(unittest.TestCase):
     def test_unknown_stage(self):
         status, line = self.ends("checks")
         self.assertEqual(status, 2)
-        self.assertIn("there are install check validate lint sanitize mutants counts port fuzz", line)
+        self.assertIn("there are install build sanitize check validate lint mutants port counts fuzz", line)
 
 
 if __name__ == "__main__":
