@@ -84,6 +84,7 @@ help:
 	@echo 'make sanitize        the exact tests and short runs with sanitizers, and what of src/ they reach: build/sanitize/reached/index.html'
 	@echo 'make fuzz            the fuzzer of scenes, checkpoints, trajectories, packs and tables, for SECONDS=60'
 	@echo 'make libraries       libuncross.so, libuncross.a, libuncross-core.a in $(BUILD)/lib (docs/library.md)'
+	@echo 'make live            the page: the same C code as WebAssembly, files for any server, in $(BUILD)/live (docs/live.md)'
 	@echo 'make install         PREFIX=$(PREFIX) DESTDIR=$(DESTDIR); make uninstall removes it'
 	@echo 'make clean           removes $(BUILD)'
 	@echo 'variables            CC=gcc|clang  MARCH=native|x86-64|...  BUILD=folder  PLAIN=1 (no fast kernels, same results)'
@@ -174,6 +175,12 @@ $(BUILD)/lib/libuncross-core.a: $(CORE_SOURCES:%.c=$(BUILD)/%.o) $(FAST:%=$(BUIL
 	@mkdir -p $(@D)
 	@rm -f $@
 	@ar rcs $@ $^
+
+# --- the page (docs/live.md) ------------------------------------------------------------------------------------------
+
+.PHONY: live
+live: $(BUILD)/uncross
+	@$(MAKE) --no-print-directory -f live/Makefile BUILD='$(BUILD)' STRICT='$(STRICT)' CORE_SOURCES='$(CORE_SOURCES)' ALL_SOURCES='$(SOURCES)'
 
 # Written anew only when it says something new, so that nothing is rebuilt for nothing.
 $(BUILD)/build-info.inc: export PREFIX := $(PREFIX)

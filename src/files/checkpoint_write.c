@@ -11,8 +11,6 @@
 #include "files/frames.h"
 #include "files/structure.h"
 
-#define HEADERS 8600.0 /* bytes of all that a checkpoint has once: groups, attributes, the seal */
-
 /* --- writing ----------------------------------------------------------------------------------------------------- */
 
 /* One field, its rows in the order of their numbers: the same bytes whatever the order in memory. */
@@ -86,12 +84,6 @@ static bool write_contents(hid_t file, struct contents *c)
   h5_close(state);
   h5_close(observers);
   return ok;
-}
-
-double checkpoint_bytes(const struct model *model, uint64_t observed)
-{
-  return (double)(state_bytes(model) + observed) + STRUCTURE_PARTICLE * model->vertices +
-         STRUCTURE_BOND * model->bonds + HEADERS;
 }
 
 static struct checkpoint_summary summary_of(const struct checkpoint_head *head, const struct model *model,
