@@ -451,7 +451,7 @@ judge-power:
 	$(MAKE) -j2 $(BUILD)/uncross
 	tools/judge-power --uncross $(BUILD)/uncross --build $(BUILD)/judge-power
 
-# PORT_SHARE=20: mistakes of one pack and operator in 20, of others whenever the catalogue changes, and texts of few packs.
+# PORT_SHARE=30: mistakes of one pack and operator in 30, of others whenever the catalogue changes, and texts of few packs.
 .PHONY: port
 port:
 	tools/install-dependencies run port
