@@ -1,0 +1,62 @@
+// What the page knows of a scene: values of the effective one, and numbers that `uncross check` prints.
+import {load} from './packages/js-yaml/js-yaml.mjs';
+
+/** Where the page begins, and other states worth a look. The rest of the list are the shipped scenes. */
+export const beginnings = [
+  {label: 'A crowd of fibers that may not cross', scene: 'dense', settings: [['fibers.0.count', '80']],
+   about: 'Eighty stiff fibers in a box as long as they are. They bounce off each other and never pass through. One is marked: its trace grows.'},
+  {label: 'The same crowd by the paper\'s rule', scene: 'dense', settings: [['fibers.0.count', '80'], ['crossing.rule', 'sequential']],
+   about: 'One vertex moves at a time, and a move that would cross a bond is rejected. Look at the energy: this rule heats.'},
+  {label: 'The same crowd as ghosts', scene: 'dense', settings: [['fibers.0.count', '80'], ['crossing.forbidden', 'false']],
+   about: 'Fibers pass through each other. No contacts, and the marked fiber finds no tube.'},
+  {label: 'Fibers in a shear flow', scene: 'fibers-shear', settings: [],
+   about: 'The images above and below slide past the box. Fibers turn into the flow.'},
+];
+
+/** The effective scene as an object. The seed stays a text, since it may have 64 bits. */
+export function values_of(text) {
+  const values = load(text) ?? {};
+  values.seed = /^seed: *([0-9]+)/m.exec(text)?.[1] ?? '1';
+  return values;
+}
+
+/** The value at a path such as `fibers.0.count`; undefined if there is none. */
+export const value_at = (values, path) => path.split('.').reduce((value, key) => value?.[key], values);
+
+/** A value as the library reads it. */
+export const as_text = value => Array.isArray(value) ? `[${value.join(', ')}]` : String(value);
+
+/**
+ * The number that `uncross check` prints in the row of this name; of a kind of fibers if `kind` is given, NaN if there
+ * is no such row. Rows are `name  symbol  number unit  note`; kinds begin with `Fibers 'name'`.
+ */
+export function number_of(check, name, kind) {
+  let within = kind === undefined;
+  for (const line of check.split('\n')) {
+    if (/^\S/.test(line)) within = kind === undefined || line.startsWith(`Fibers '${kind}'`);
+    const row = line.trim();
+    if (!within || !row.startsWith(name)) continue;
+    const found = /^\s{2,}(?:\S+(?: [+\-] \S+)?\s{2,})?(-?[0-9.]+(?:e[-+]?[0-9]+)?)/.exec(row.slice(name.length));
+    if (found) return Number(found[1]);
+  }
+  return NaN;
+}
+
+/** Cadences that the plots ask for where the scene has none of its own. They do not touch the state's bits. */
+export function wanted_tables(values) {
+  const observe = values.observe ?? {}, every = Math.max(1, Math.round(0.2 / values.time_step));
+  const fibers = (values.fibers ?? []).some(kind => kind.vertices > 1);
+  const flows = values.walls || values.shear || values.solvent?.profile !== 'uniform';
+  const wanted = [['conserved', every], ['temperature', every]];
+  if (fibers) wanted.push(['orientation', every], ['statics', every], ['dynamics', every]);
+  if (fibers && values.crossing?.forbidden) wanted.push(['collisions', every]);
+  if (values.solvent && flows) wanted.push(['profile', every], ['stress', every]);
+  if (values.bead) wanted.push(['bead', every]);
+  return wanted.filter(([name]) => !observe[name]).map(([name, cadence]) =>
+    [[`observe.${name}.every`, String(cadence)], ...(name === 'profile' ? [['observe.profile.slabs', String(values.box[1])]] : [])]);
+}
+
+/** What a scene file says by itself, without defaults; {} if it cannot be read. */
+export function written(text) {
+  try { return load(text) ?? {}; } catch { return {}; }
+}
