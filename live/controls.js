@@ -126,13 +126,14 @@ export class Controls {
 
 /** The switches of the picture: a select and check boxes. changed(looks) is called at each change, and once now. */
 export function begin_looks(fieldset, changed) {
-  const solvent = make('select', {id: 'look-solvent'}, ...[['none', 'hidden'], ['slab', 'in a slab'], ['all', 'all']]
-    .map(([value, label]) => make('option', {value, textContent: label})));
+  const select = (id, options) => make('select', {id}, ...options.map(([value, label]) => make('option', {value, textContent: label})));
+  const solvent = select('look-solvent', [['none', 'hidden'], ['slab', 'in a slab'], ['all', 'all']]);
+  const speed = select('look-speed', [['0', 'as fast as it can'], ['100', '100 steps a picture'], ['10', '10 steps a picture'], ['1', '1 step a picture']]);
   const boxes = [['trace', 'Trace of the marked fiber', true], ['contacts', 'Contacts flash', true], ['flow', 'Flow in a slab', false], ['turn', 'Turn slowly', false]]
     .map(([id, label, checked]) => [id, make('input', {type: 'checkbox', id: `look-${id}`, checked}), label]);
   const next = make('button', {type: 'button', id: 'look-next', textContent: 'Mark the next fiber'});
-  fieldset.append(make('label', {}, 'Solvent', solvent), ...boxes.map(([, box, label]) => make('label', {}, box, label)), next);
-  const tell = () => changed({solvent: solvent.value, ...Object.fromEntries(boxes.map(([id, box]) => [id, box.checked]))});
+  fieldset.append(make('label', {}, 'Speed', speed), make('label', {}, 'Solvent', solvent), ...boxes.map(([, box, label]) => make('label', {}, box, label)), next);
+  const tell = () => changed({solvent: solvent.value, speed: speed.value, ...Object.fromEntries(boxes.map(([id, box]) => [id, box.checked]))});
   fieldset.addEventListener('change', tell);
   tell();
   return {next, solvent, tell};

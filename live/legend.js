@@ -13,13 +13,13 @@ export function begin_legend(list, scale) {
     if (!info) return;
     const colors = kinds[theme()], several = values.fibers?.length > 1;
     list.replaceChildren(...(values.fibers ?? []).map((kind, at) => entry(colors[at % colors.length],
-      `${kind.count} ${kind.ring ? 'rings' : kind.vertices > 1 ? 'fibers' : 'points'}${several ? ` “${kind.name}”` : ''} of ${kind.vertices} vertices${kind.diameter ? `, ${kind.diameter} a0 thick` : ''}`)));
+      `${kind.count} ${kind.ring ? 'rings' : kind.vertices > 1 ? 'fibers' : 'points'}${several ? ` “${kind.name}”` : ''} of ${kind.vertices} vertices${kind.diameter ? `, ${kind.diameter} a₀ thick` : ''}`)));
     if (info.fibers) list.append(entry(marked[theme()], looks.trace ? 'the marked one, and where it has been' : 'the marked one'));
     if (info.particles) list.append(entry('transparent', `${info.particles.toLocaleString('en')} solvent particles${looks.solvent === 'none' ? ', not drawn' : ''}`));
   };
   legend.scale = fastest => {
     scale.hidden = !(fastest > 0);
-    if (fastest > 0) scale.textContent = `longest arrow: ${fastest.toPrecision(2)} a0/t0`;
+    if (fastest > 0) scale.textContent = `longest arrow: ${fastest.toPrecision(2)} a₀/t₀`;
   };
   return legend;
 }

@@ -36,7 +36,7 @@ function profile_theory({values, check}) {
 }
 
 export const measures = [
-  {id: 'energy', title: 'Total energy', x: 'time, t0', y: 'change per particle or vertex, kT',
+  {id: 'energy', title: 'Total energy', x: 'time, t₀', y: 'kT per particle',
    see: 'Nothing takes energy away here unless a thermostat does. The event-driven rule keeps it; the paper’s rule heats.',
    draw(source) {
      const rows = source.table('conserved');
@@ -46,14 +46,14 @@ export const measures = [
      const heat = hits > 0 ? ` ${short((rows.total.at(-1) - rows.total[0]) / hits, 2)} kT for each contact.` : '';
      return {series: [{label: 'change of the total energy', x: rows.time, y, role: 'main'}], now: `Now ${short(y.at(-1))} kT each.${heat}`};
    }},
-  {id: 'temperature', title: 'Temperature', x: 'time, t0', y: 'kT', see: 'Both wobble about 1. Few vertices wobble more than many particles.',
+  {id: 'temperature', title: 'Temperature', x: 'time, t₀', y: 'kT', see: 'Both wobble about 1. Few vertices wobble more than many particles.',
    draw(source) {
      const rows = source.table('temperature');
      if (!rows?.time.length) return null;
      const series = [['solvent', 'main'], ['vertex', 'second']].filter(([name]) => rows[name]).map(([name, role]) => ({label: name === 'vertex' ? 'vertices' : name, x: rows.time, y: rows[name], role}));
      return {series: [...series, ...level('1', 1, rows.time)], now: series.map(one => `${one.label} ${with_error(...mean_and_error(one.y))}`).join(', ')};
    }},
-  {id: 'contacts', title: 'Contacts per t0', x: 'time, t0', y: '1/t0', see: 'How often bonds touch. The dashed line is kinetic theory: an ideal gas of bonds, with nothing fitted.',
+  {id: 'contacts', title: 'Contacts per t₀', x: 'time, t₀', y: '1/t₀', see: 'How often bonds touch. The dashed line is kinetic theory: an ideal gas of bonds, with nothing fitted.',
    draw(source) {
      const rows = source.table('collisions');
      if (!rows?.executed || rows.time.length < 2) return null;
@@ -64,7 +64,7 @@ export const measures = [
      return {series: [{label: 'since the row before', x: rows.time, y: rate, role: 'faint'}, {label: 'mean since the start', ...mean, role: 'main', points: true}, ...lines],
        now: mean.y.length ? `Mean ${with_error(mean.y.at(-1), mean.error.at(-1))}${lines.length ? `; theory ${short(theory)}` : ''}` : ''};
    }},
-  {id: 'tube', title: 'd²(t): does a tube hold the fiber?', x: 'lag t, t0', y: 'a0²', log: true,
+  {id: 'tube', title: 'd²(t): does a tube hold the fiber?', x: 'lag t, t₀', y: 'a₀²', log: true,
    see: 'How far the middle of a fiber moves off its old contour. Fibers that may cross go on. In a crowd d² bends near the line 2L⊥².',
    draw(source) {
      const rows = source.table(`dynamics-${source.kind}`);
@@ -73,9 +73,9 @@ export const measures = [
      return {series: [{label: 'd² to the nearest vertex', x: rows.time, y: rows.d2, error: rows.d2_error, role: 'main', points: true},
        {label: 'd² to the contour', x: rows.time, y: rows.d2_third, error: rows.d2_third_error, role: 'second', points: true},
        ...level('2L⊥² of Eq. (35)', line, rows.time)],
-       now: `At the lag ${short(rows.time.at(-1))} t0: ${with_error(rows.d2.at(-1), rows.d2_error.at(-1))} a0²${Number.isFinite(line) ? `; 2L⊥² is ${short(line)}` : ''}`};
+       now: `At the lag ${short(rows.time.at(-1))} t0: ${with_error(rows.d2.at(-1), rows.d2_error.at(-1))} a₀²${Number.isFinite(line) ? `; 2L⊥² is ${short(line)}` : ''}`};
    }},
-  {id: 'motion', title: 'g(t): how far fibers move', x: 'lag t, t0', y: 'a0²', log: true,
+  {id: 'motion', title: 'g(t): how far fibers move', x: 'lag t, t₀', y: 'a₀²', log: true,
    see: 'Mean square displacement of vertices and of centers of mass. Free flight at first (slope 2), diffusion at the end (slope 1).',
    draw(source) {
      const rows = source.table(`dynamics-${source.kind}`);
@@ -83,16 +83,16 @@ export const measures = [
      return {series: [{label: 'vertices', x: rows.time, y: rows.g, error: rows.g_error, role: 'main', points: true},
        {label: 'centers of mass', x: rows.time, y: rows.g_cm, error: rows.g_cm_error, role: 'second', points: true}]};
    }},
-  {id: 'profile', title: 'Profile of the flow', x: 'y, a0', y: 'velocity along x, a0/t0', see: 'Mean velocity of the solvent in slabs. Error bars shrink as samples come in.',
+  {id: 'profile', title: 'Profile of the flow', x: 'y, a₀', y: 'velocity along x, a₀/t₀', see: 'Mean velocity of the solvent in slabs. Error bars shrink as samples come in.',
    draw(source) {
      const rows = source.table('profile');
      if (!rows?.vx?.some(Number.isFinite)) return null;
      const theory = profile_theory(source), height = source.values.box[1], at = Array.from({length: 41}, (_, step) => step * height / 40);
      return {series: [{label: 'measured', x: rows.y, y: rows.vx, error: rows.vx_error, role: 'main', points: true},
        ...(theory ? [{label: 'theory', x: at, y: at.map(theory), role: 'theory'}] : [])],
-       now: begins(source) > 0 ? `Samples from ${short(begins(source))} t0 on, when the flow is steady.` : ''};
+       now: begins(source) > 0 ? `Samples from ${short(begins(source))} t₀ on, when the flow is steady.` : ''};
    }},
-  {id: 'stress', title: 'Shear stress', x: 'time, t0', y: 'kT/a0³', see: 'Stress over shear rate is the viscosity. The mean comes to rest, and its error shrinks.',
+  {id: 'stress', title: 'Shear stress', x: 'time, t₀', y: 'kT/a₀³', see: 'Stress over shear rate is the viscosity. The mean comes to rest, and its error shrinks.',
    draw(source) {
      const rows = source.table('stress');
      if (!rows?.sigma_xy) return null;
@@ -102,28 +102,28 @@ export const measures = [
      return {series: [{label: 'mean', ...mean, role: 'main', points: true}, ...level('theory, solvent alone', theory, mean.x)],
        now: `Mean ${with_error(mean.y.at(-1), mean.error.at(-1))}${Number.isFinite(theory) ? `; theory ${short(theory)}` : ''}`};
    }},
-  {id: 'order', title: 'Order of the bonds', x: 'time, t0', y: 'S', see: 'S is 1 where all bonds are parallel, and near 0 where they point anywhere.',
+  {id: 'order', title: 'Order of the bonds', x: 'time, t₀', y: 'S', see: 'S is 1 where all bonds are parallel, and near 0 where they point anywhere.',
    draw(source) {
      const rows = source.table(`orientation-${source.kind}`);
      if (!Number.isFinite(rows?.S?.[0])) return null;
      const [x, y, error] = source.past('order', source.kind, [source.time, rows.S[0], rows.S_error?.[0] ?? NaN]);
      return {series: [{label: 'mean since the start', x, y, error, role: 'main', points: true}], now: `S = ${with_error(y.at(-1), error.at(-1))}`};
    }},
-  {id: 'angle', title: 'Angle with the flow', x: 'time, t0', y: 'degrees', see: 'The longer axis of the fibers’ directions. At 0 they lie along the flow; at rest it is noise.',
+  {id: 'angle', title: 'Angle with the flow', x: 'time, t₀', y: 'degrees', see: 'The longer axis of the fibers’ directions. At 0 they lie along the flow; at rest it is noise.',
    draw(source) {
      const rows = source.table(`orientation-${source.kind}`);
      if (!Number.isFinite(rows?.chi?.[0]) || !(source.values.shear || source.values.walls)) return null;
      const [x, y, error] = source.past('angle', source.kind, [source.time, rows.chi[0], rows.chi_error?.[0] ?? NaN]);
      return {series: [{label: 'mean since the start', x, y, error, role: 'main', points: true}], now: `${with_error(y.at(-1), error.at(-1))} degrees`};
    }},
-  {id: 'springs', title: 'Extension of dumbbells', x: 'time, t0', y: 'R/R0', see: 'The flow stretches springs. Theory has the square root of 1 + (2/d) Wi².',
+  {id: 'springs', title: 'Extension of dumbbells', x: 'time, t₀', y: 'R/R₀', see: 'The flow stretches springs. Theory has the square root of 1 + (2/d) Wi².',
    draw(source) {
      const rows = source.table('dumbbells');
      if (!Number.isFinite(rows?.extension?.[0])) return null;
      const [x, y, error] = source.past('springs', '', [source.time, rows.extension[0], rows.extension_error?.[0] ?? NaN]);
-     return {series: [{label: 'mean', x, y, error, role: 'main', points: true}, ...level('theory', number_of(source.check, 'extension'), x)], now: `R/R0 = ${with_error(y.at(-1), error.at(-1))}`};
+     return {series: [{label: 'mean', x, y, error, role: 'main', points: true}, ...level('theory', number_of(source.check, 'extension'), x)], now: `R/R₀ = ${with_error(y.at(-1), error.at(-1))}`};
    }},
-  {id: 'bead', title: 'Place of the bead', x: 'time, t0', y: 'x, a0', see: 'The bead follows its trap, late by its friction.',
+  {id: 'bead', title: 'Place of the bead', x: 'time, t₀', y: 'x, a₀', see: 'The bead follows its trap, late by its friction.',
    draw(source) {
      const rows = source.table('bead');
      if (!rows?.place_x?.length) return null;

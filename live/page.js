@@ -9,6 +9,7 @@ import {begin_tabs} from './tabs.js';
 import {begin_theme} from './palette.js';
 import {begin_legend} from './legend.js';
 import {Hashes} from './hashes.js';
+import {keep_files} from './offline.js';
 import {read_link, write_link, settings_of} from './state.js';
 import {beginnings, values_of, value_at, as_text, wanted_tables, written} from './scene.js';
 import {begin as begin_apart} from './apart.js';
@@ -64,7 +65,14 @@ function show_scene() {
 }
 
 /** Opens a state: checks it, and starts it if the library takes it. @returns {Promise<object|null>} the refusal */
-async function open(state, {run = now.running, keep = false} = {}) {
+async function open(state, options) {
+  document.body.dataset.opening = 'yes'; // until the worker has started it, or it is refused
+  const refusal = await begin(state, options);
+  if (refusal) document.body.dataset.opening = 'no';
+  return refusal;
+}
+
+async function begin(state, {run = now.running, keep = false} = {}) {
   const round = ++now.opening, text = text_of(state), settings = settings_of(state);
   if (text === undefined) return refuse({message: `There is no scene “${state.scene}”. The list has all of them.`});
   const checked = await engine.check(text, settings, state.seed ?? undefined);
@@ -124,8 +132,7 @@ function other_rule() {
 
 function run(on) {
   now.running = on;
-  engine.send({kind: on ? 'run' : 'pause'});
-  if (!on) engine.send({kind: 'hash'});
+  engine.send(on ? {kind: 'run', stepsPerFrame: Number(looks.speed)} : {kind: 'pause'});
   show_running();
 }
 
@@ -145,6 +152,7 @@ engine.on('ready', async ({version, scenes: list}) => {
   at('version').textContent = version;
   list_scenes();
   const first = beginnings[0], refusal = await open(await linked(), {run: false});
+  keep_files(['worker.js', 'library.js', 'scenes.json', 'uncross.wasm', 'uncross-simd.wasm']);
   if (refusal) await open({...first, text: null, settings: new Map(first.settings), seed: null}, {run: false}).then(() => say(refusal.message));
 });
 
@@ -155,9 +163,11 @@ async function linked() {
 
 engine.on('started', message => {
   if (message.id !== now.id) return;
+  document.body.dataset.opening = 'no';
   now.info = message.info;
   now.check = message.check ?? now.check;
   now.step = now.time = 0;
+  now.hashed = -1;
   for (const id of ['run', 'step', 'restart']) at(id).disabled = false;
   const solvent = now.values.dumbbells ? 'all' : now.info.fibers || now.values.bead ? null : 'slab';
   if (solvent && looks.solvent === 'none') { at('look-solvent').value = solvent; switches.tell(); }
@@ -178,6 +188,7 @@ engine.on('frame', frame => {
   at('time').textContent = frame.time.toFixed(2);
   at('rate').textContent = now.running ? String(Math.round(frame.rate ?? 0)) : '0';
   hashes.step(frame.step);
+  if (!frame.running && frame.step !== now.hashed) engine.send({kind: 'hash'});
   view?.take(frame);
   if (!view) engine.send({kind: 'drawn', id: frame.id});
   pending = Boolean(view);
@@ -188,18 +199,26 @@ engine.on('tables', message => {
   plots.take(message.tables, {values: now.values, check: now.check, info: now.info, time: now.time, kind: now.values.fibers?.[now.info.kindOf[view?.marked ?? 0]]?.name ?? ''});
 });
 
-engine.on('hash', message => { if (message.id === undefined || message.id === now.id) hashes.take(message); });
+engine.on('hash', message => { if (message.id === undefined || message.id === now.id) { now.hashed = message.step; hashes.take(message); } });
 
 engine.on('error', message => {
   if (message.id !== undefined && message.id !== now.id) return;
+  document.body.dataset.opening = 'no';
   now.running = false;
   show_running();
   say(message.message);
 });
 
+const pictures = {since: performance.now(), count: 0};
 function loop() {
   requestAnimationFrame(loop);
-  view?.draw();
+  const drawn = view?.draw(), past = performance.now() - pictures.since;
+  if (drawn) pictures.count++;
+  if (past > 1000) {
+    at('pictures').textContent = (pictures.count * 1000 / past).toFixed(0);
+    [pictures.since, pictures.count] = [performance.now(), 0];
+  }
+  if (!drawn && pending && view?.stale) return; // the frame waits for its picture
   if (!pending) return;
   pending = false;
   engine.send({kind: 'drawn', id: now.id});
@@ -212,7 +231,6 @@ at('run').addEventListener('click', () => run(!now.running));
 at('step').addEventListener('click', () => {
   if (now.running) run(false);
   engine.send({kind: 'step', steps: 1});
-  engine.send({kind: 'hash'});
 });
 at('restart').addEventListener('click', () => open(now.state));
 at('seed').addEventListener('change', event => {
@@ -248,15 +266,17 @@ const switches = begin_looks(at('looks'), chosen => {
     if (view.last && view.trace) view.take(view.last);
   }
   show_legend();
-  if (now.info) want();
+  if (!now.info) return;
+  want();
+  if (now.running) run(true); // at another speed
 });
 switches.next.addEventListener('click', () => mark((view?.marked ?? 0) + 1));
 begin_theme(at('theme'), () => { view?.dress(); plots.dress(); show_legend(); });
 
 /** What the panels of a step taken apart and of the exercises may use. */
 const page = {engine, now, open, shipped, run, beginnings};
-for (const [name, begin] of [['apart', begin_apart], ['lessons', begin_lessons]]) {
-  at(`tab-${name}`).hidden = !begin;
-  begin?.(at(`${name}-panel`), page);
+for (const [name, fill] of [['apart', begin_apart], ['lessons', begin_lessons]]) {
+  at(`tab-${name}`).hidden = !fill;
+  fill?.(at(`${name}-panel`), page);
 }
 loop();

@@ -28,6 +28,15 @@ function align(series, log) {
   return {data: [xs, ...columns.map(column => column.y)], errors: columns.map(column => column.error)};
 }
 
+/** Numbers at an axis, with as many digits as tell them apart. */
+function ticks(chart, splits, axis, space, step) {
+  const largest = Math.max(...splits.map(value => Math.abs(value ?? 0)));
+  if (!(step > 0) || !(largest > 0)) return splits.map(value => value === null ? '' : Number(value.toPrecision(3)).toString());
+  if (largest < 1e-3 || largest >= 1e6) return splits.map(value => value ? value.toExponential(Math.max(0, Math.round(Math.log10(largest / step)))).replace('e-', 'e−') : '0');
+  const digits = Math.max(0, Math.ceil(-Math.log10(step) - 1e-9));
+  return splits.map(value => value === null ? '' : value.toFixed(digits).replace('-', '−'));
+}
+
 const look = role => ({
   main: {stroke: kinds[theme()][0], width: 2},
   second: {stroke: kinds[theme()][1], width: 2},
@@ -145,7 +154,7 @@ export class Plots {
     const axis = label => ({label, stroke: paint('--soft'), labelSize: 18, labelFont: '12px system-ui', font: '12px system-ui', grid: {stroke: paint('--line'), width: 1}, ticks: {stroke: paint('--line'), width: 1, size: 4}, labelGap: 0});
     return {width: this.#width(card), height: 210, legend: {show: false}, cursor: {show: false}, plugins: [bars(card.errors)],
       scales: {x: {time: false, distr: measure.log ? 3 : 1}, y: {distr: measure.log ? 3 : 1}},
-      axes: [{...axis(measure.x), size: 30}, {...axis(measure.y), size: 54}],
+      axes: [{...axis(measure.x), size: 30, ...(measure.log ? {} : {values: ticks})}, {...axis(measure.y), size: 58, ...(measure.log ? {} : {values: ticks})}],
       series: [{}, ...series.map(one => ({label: one.label, spanGaps: true, ...look(one.role), points: {show: Boolean(one.points) && one.role !== 'ghost', size: 5, fill: look(one.role).stroke}}))]};
   }
 

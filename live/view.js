@@ -77,7 +77,7 @@ export class View {
   /** Turns the camera to where the whole box is seen. */
   look() {
     const [x, y, z] = this.info.cells, size = Math.max(x, y, z === 1 ? 0 : z), middle = new three.Vector3(x / 2, y / 2, z / 2);
-    const distance = (z === 1 ? 1.95 : 2.35) * size / Math.min(1, this.camera.aspect * 0.95);
+    const distance = (z === 1 ? 1.95 : 2.75) * size / Math.min(1, this.camera.aspect * 0.95);
     const way = z === 1 ? new three.Vector3(0, 0, 1) : new three.Vector3(0.52, 0.34, 0.78);
     this.camera.position.copy(middle).addScaledVector(way.normalize(), distance);
     this.orbit.target.copy(middle);
@@ -114,6 +114,7 @@ export class View {
     this.world?.traverse(part => { part.geometry?.dispose(); part.material?.dispose?.(); });
     this.world = new three.Scene();
     this.world.background = new three.Color(paint('--space'));
+    this.haze = rgb(paint('--space'));
     this.strands = new Strands(Math.max(1, this.bonds.length));
     this.strands.count = this.bonds.length;
     this.around = new Surroundings(this.values, this.info);
@@ -130,7 +131,8 @@ export class View {
     this.strands.material.uniforms.spark.value.set(...spark);
     this.bonds.forEach(([, , fiber], at) => {
       const kind = this.info.kindOf[fiber], is_marked = fiber === this.marked;
-      this.strands.paint(at, is_marked ? own : colors[kind % colors.length], this.radius(kind) * (is_marked ? 1.7 : 1));
+      const shade = 0.82 + 0.36 * (fiber * 0.618034 % 1); // neighbors in the list differ, so that one can follow a fiber
+      this.strands.paint(at, is_marked ? own : colors[kind % colors.length].map(part => Math.min(1, part * shade)), this.radius(kind) * (is_marked ? 1.7 : 1));
     });
   }
 
@@ -182,29 +184,35 @@ export class View {
     if (!this.world) return false;
     if (this.looks.turn) this.#turn(0.004, 0);
     if (!this.stale && !(this.flashing > performance.now())) return false;
+    if (this.slow && performance.now() - (this.drawn ?? 0) < Math.max(70, 2.5 * (this.cost ?? 0))) return false; // leaves the processor to the run
     this.stale = false;
     const distance = this.camera.position.distanceTo(this.orbit.target), size = Math.max(...this.info.cells);
     for (const strands of [this.strands, this.trace.strands, this.around.flow, this.around.springs].filter(Boolean)) {
       const {uniforms} = strands.material;
       uniforms.now.value = this.#clock();
       uniforms.reach.value.set(distance - size * 0.6, distance + size * 0.9);
-      uniforms.haze.value.set(...rgb(paint('--space')));
+      uniforms.haze.value.set(...this.haze);
     }
     this.around.dots.material.uniforms.scale.value = this.renderer.domElement.height / (2 * Math.tan(this.camera.fov * Math.PI / 360));
     const before = performance.now();
     this.renderer.render(this.world, this.camera);
-    this.#adapt(performance.now() - before);
+    if (this.slow) this.renderer.getContext().finish();
+    this.#adapt(performance.now(), performance.now() - before);
     return true;
   }
 
-  /** Fewer points where drawing takes long. */
-  #adapt(milliseconds) {
-    this.cost = (this.cost ?? milliseconds) * 0.9 + milliseconds * 0.1;
-    if (this.cost > 45 && this.sharpness > 0.6) {
-      this.sharpness *= 0.8;
-      this.cost = 20;
-      this.#resize();
-    }
+  /** Counts pictures; fewer points where they take long or follow each other slowly. */
+  #adapt(now, spent) {
+    const since = now - (this.drawn ?? now);
+    this.drawn = now;
+    this.count = (this.count ?? 0) + 1;
+    if (since > 400 && !this.slow) return; // nothing was to be drawn
+    const cost = this.slow ? spent : since;
+    this.cost = (this.cost ?? cost) * 0.85 + cost * 0.15;
+    if (this.cost < 60 || this.sharpness <= (this.slow ? 0.5 : 0.7)) return;
+    this.sharpness *= 0.85;
+    this.cost = 30;
+    this.#resize();
   }
 
   /** The fiber nearest to a click, within 14 points; null if none. */
