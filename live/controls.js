@@ -1,5 +1,6 @@
 // The controls, drawn from the rows of choices.js. What the library refuses is greyed out, with its words.
 import {choices} from './choices.js';
+import {fitting} from './scene.js';
 
 const make = (tag, fields = {}, ...children) => {
   const element = Object.assign(document.createElement(tag), fields);
@@ -92,15 +93,14 @@ export class Controls {
     for (const choice of choices) {
       if (choice.absent(values) !== null) continue;
       const options = choice.options(values, base), now = choice.now(values), refused = [];
-      const asked = choice.look === 'few' ? options : [options.at(-1), options[0]].filter(option => option.label !== now).slice(0, 2);
-      for (const option of asked) {
-        if (option.label === now) continue;
+      const asked = choice.look === 'few' ? options : [options.at(-1), options[0]];
+      const others = asked.filter(option => option.label !== now), answers = await Promise.all(others.map(option => {
         const changed = new Map([...settings, ...option.settings]);
-        const {error} = await this.#engine.check(text, [...changed].map(([path, value]) => `${path}=${value}`));
-        if (round !== this.#round) return;
-        if (error) refused.push([option, error]);
-      }
-      this.#grey(choice, options, refused, asked.filter(option => option.label !== now).length);
+        return this.#engine.check(fitting(text, changed), [...changed].map(([path, value]) => `${path}=${value}`));
+      }));
+      if (round !== this.#round) return;
+      answers.forEach(({error}, place) => { if (error) refused.push([others[place], error]); });
+      this.#grey(choice, options, refused, others.length);
     }
   }
 

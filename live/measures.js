@@ -69,11 +69,11 @@ export const measures = [
    draw(source) {
      const rows = source.table(`dynamics-${source.kind}`);
      if (!rows?.d2_third?.length) return null;
-     const line = number_of(source.check, 'tube plateau', source.kind);
+     const line = number_of(source.check, 'tube plateau of d^2(t)', source.kind);
      return {series: [{label: 'd² to the nearest vertex', x: rows.time, y: rows.d2, error: rows.d2_error, role: 'main', points: true},
        {label: 'd² to the contour', x: rows.time, y: rows.d2_third, error: rows.d2_third_error, role: 'second', points: true},
        ...level('2L⊥² of Eq. (35)', line, rows.time)],
-       now: `At the lag ${short(rows.time.at(-1))} t0: ${with_error(rows.d2.at(-1), rows.d2_error.at(-1))} a₀²${Number.isFinite(line) ? `; 2L⊥² is ${short(line)}` : ''}`};
+       now: `At the lag ${short(rows.time.at(-1))} t₀: ${with_error(rows.d2.at(-1), rows.d2_error.at(-1))} a₀²${Number.isFinite(line) ? `; 2L⊥² is ${short(line)}` : ''}`};
    }},
   {id: 'motion', title: 'g(t): how far fibers move', x: 'lag t, t₀', y: 'a₀²', log: true,
    see: 'Mean square displacement of vertices and of centers of mass. Free flight at first (slope 2), diffusion at the end (slope 1).',

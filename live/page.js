@@ -11,7 +11,8 @@ import {begin_legend} from './legend.js';
 import {Hashes} from './hashes.js';
 import {keep_files} from './offline.js';
 import {read_link, write_link, settings_of} from './state.js';
-import {beginnings, values_of, value_at, as_text, wanted_tables, written} from './scene.js';
+import {values_of, value_at, as_text, wanted_tables, written, fitting} from './scene.js';
+import {beginnings, words_of_scene} from './catalog.js';
 import {begin as begin_apart} from './apart.js';
 import {begin as begin_lessons} from './lessons.js';
 
@@ -27,7 +28,7 @@ try {
   at('view').hidden = true;
 }
 const legend = begin_legend(at('legend'), at('scale'));
-const hashes = new Hashes(at('hash'), at('verdict'), at('native'));
+const hashes = new Hashes(at('hash'), at('verdict'), at('native'), at('progress'));
 const plots = new Plots(at('plots'), {measure: 'energy', press: () => other_rule(), label: values =>
   !values.fibers || !values.crossing?.forbidden || values.fibers.some(kind => kind.diameter > 0) ? null :
     values.crossing.rule === 'sequential' ? 'Run the event-driven rule beside it' : 'Run the paper’s rule beside it'});
@@ -46,7 +47,7 @@ function list_scenes() {
     return element;
   };
   at('scene').replaceChildren(group('Begin here', beginnings.map((one, place) => [`begin:${place}`, one.label])),
-    group('Scenes of the program', scenes.map(scene => [scene.name, scene.name])), new Option('your own scene', 'own'));
+    group('Scenes of the program', scenes.map(scene => [scene.name, [scene.name, words_of_scene(scene)[0]].filter(Boolean).join(': ')])), new Option('your own scene', 'own'));
   at('scene').lastChild.hidden = true;
 }
 
@@ -57,7 +58,7 @@ function show_scene() {
   const {state} = now, begin = beginning_of(state), select = at('scene');
   select.lastChild.hidden = state.text === null;
   select.value = state.text !== null ? 'own' : begin >= 0 ? `begin:${begin}` : state.scene;
-  at('about').textContent = begin >= 0 ? beginnings[begin].about : state.text !== null ? 'A scene of your own.' : shipped(state.scene).about;
+  at('about').textContent = begin >= 0 ? beginnings[begin].about : state.text !== null ? 'A scene of your own.' : words_of_scene(shipped(state.scene))[1];
   at('seed').value = state.seed ?? now.values.seed;
   editor.show(state.settings.size ? now.text : text_of(state));
   at('check').textContent = now.check;
@@ -73,20 +74,20 @@ async function open(state, options) {
 }
 
 async function begin(state, {run = now.running, keep = false} = {}) {
-  const round = ++now.opening, text = text_of(state), settings = settings_of(state);
-  if (text === undefined) return refuse({message: `There is no scene “${state.scene}”. The list has all of them.`});
-  const checked = await engine.check(text, settings, state.seed ?? undefined);
+  const round = ++now.opening, source = text_of(state), settings = settings_of(state);
+  if (source === undefined) return refuse({message: `There is no scene “${state.scene}”. The list has all of them.`});
+  const text = fitting(source, state.settings), checked = await engine.check(text, settings, state.seed ?? undefined);
   if (round !== now.opening) return null;
   if (checked.error) return refuse(checked.error);
-  const values = values_of(checked.text), plain = state.settings.size ? await engine.check(text, []) : checked, tables = [];
+  const values = values_of(checked.text), plain = state.settings.size ? await engine.check(source, []) : checked, tables = [];
   for (const group of wanted_tables(values)) {
     const asked = group.map(([path, value]) => `${path}=${value}`);
     if (!(await engine.check(text, [...settings, ...tables, ...asked])).error) tables.push(...asked);
     if (round !== now.opening) return null;
   }
-  const same = now.state !== null && text === text_of(now.state);
+  const same = now.state !== null && source === text_of(now.state);
   Object.assign(now, {state, values, base: plain.error ? {...values} : values_of(plain.text), id: engine.next(), text: checked.text, check: checked.check ?? '', wanted: run, running: false});
-  now.base.written = written(text);
+  now.base.written = written(source);
   at('ghost').hidden = !plots.begin(same || keep);
   at('ghost').textContent = 'The last run stays in grey, dotted, for comparison.';
   say(null);

@@ -1,18 +1,6 @@
 // What the page knows of a scene: values of the effective one, and numbers that `uncross check` prints.
 import {load} from './packages/js-yaml/js-yaml.mjs';
 
-/** Where the page begins, and other states worth a look. The rest of the list are the shipped scenes. */
-export const beginnings = [
-  {label: 'A crowd of fibers that may not cross', scene: 'dense', settings: [['fibers.0.count', '80']],
-   about: 'Eighty stiff fibers in a box as long as they are. They bounce off each other and never pass through. One is marked: its trace grows.'},
-  {label: 'The same crowd by the paper\'s rule', scene: 'dense', settings: [['fibers.0.count', '80'], ['crossing.rule', 'sequential']],
-   about: 'One vertex moves at a time, and a move that would cross a bond is rejected. Look at the energy: this rule heats.'},
-  {label: 'The same crowd as ghosts', scene: 'dense', settings: [['fibers.0.count', '80'], ['crossing.forbidden', 'false']],
-   about: 'Fibers pass through each other. No contacts, and the marked fiber finds no tube.'},
-  {label: 'Fibers in a shear flow', scene: 'fibers-shear', settings: [],
-   about: 'The images above and below slide past the box. Fibers turn into the flow.'},
-];
-
 /** The effective scene as an object. The seed stays a text, since it may have 64 bits. */
 export function values_of(text) {
   const values = load(text) ?? {};
@@ -60,3 +48,7 @@ export function wanted_tables(values) {
 export function written(text) {
   try { return load(text) ?? {}; } catch { return {}; }
 }
+
+/** The text that is run: in a sheared box fibers have no displacements, so the line that asks for them is left out. */
+export const fitting = (text, settings) => [...settings].some(([path, value]) => path.startsWith('shear.') && value !== '0') ?
+  text.replace(/^ +dynamics: *\{[^}\n]*\}.*\n/m, '') : text;
