@@ -8,8 +8,8 @@ const make = (tag, fields = {}, ...children) => {
   return element;
 };
 
-/** The library's words without the name of the setting that the page made. */
-export const words_of = refusal => refusal.message.replace(/^--set [^:]*: /, '');
+/** The library's words without the setting, or the place in the file, which the page made. */
+export const words_of = refusal => refusal.message.replace(/^(?:--set [^:]*|scene:\d+:\d+): /, '');
 
 export class Controls {
   #form; #wish; #engine; #round = 0; #shown = [];
@@ -133,6 +133,7 @@ export function begin_looks(fieldset, changed) {
     .map(([id, label, checked]) => [id, make('input', {type: 'checkbox', id: `look-${id}`, checked}), label]);
   const next = make('button', {type: 'button', id: 'look-next', textContent: 'Mark the next fiber'});
   fieldset.append(make('label', {}, 'Speed', speed), make('label', {}, 'Solvent', solvent), ...boxes.map(([, box, label]) => make('label', {}, box, label)), next);
+  fieldset.querySelector('#look-contacts').parentElement.hidden = true; // until a frame has contacts
   const tell = () => changed({solvent: solvent.value, speed: speed.value, ...Object.fromEntries(boxes.map(([id, box]) => [id, box.checked]))});
   fieldset.addEventListener('change', tell);
   tell();

@@ -44,10 +44,12 @@ function list_scenes() {
   const group = (label, options) => {
     const element = Object.assign(document.createElement('optgroup'), {label});
     element.append(...options.map(([value, text]) => new Option(text, value)));
-    return element;
+    return options.length ? element : '';
   };
+  const named = list => list.map(scene => [scene.name, [scene.name.replace(/^exercises\//, ''), words_of_scene(scene)[0]].filter(Boolean).join(': ')]);
   at('scene').replaceChildren(group('Begin here', beginnings.map((one, place) => [`begin:${place}`, one.label])),
-    group('Scenes of the program', scenes.map(scene => [scene.name, [scene.name, words_of_scene(scene)[0]].filter(Boolean).join(': ')])), new Option('your own scene', 'own'));
+    group('Scenes of the program', named(scenes.filter(scene => !scene.name.startsWith('exercises/')))),
+    group('Exercises of the course', named(scenes.filter(scene => scene.name.startsWith('exercises/')))), new Option('your own scene', 'own'));
   at('scene').lastChild.hidden = true;
 }
 
@@ -62,7 +64,7 @@ function show_scene() {
   at('seed').value = state.seed ?? now.values.seed;
   editor.show(state.settings.size ? now.text : text_of(state));
   at('check').textContent = now.check;
-  at('command').textContent = `uncross run ${state.scene}.yaml --out run`;
+  at('command').textContent = `uncross run ${state.scene.replace(/.*\//, '')}.yaml --out run`;
 }
 
 /** Opens a state: checks it, and starts it if the library takes it. @returns {Promise<object|null>} the refusal */
@@ -91,7 +93,7 @@ async function begin(state, {run = now.running, keep = false} = {}) {
   at('ghost').hidden = !plots.begin(same || keep);
   at('ghost').textContent = 'The last run stays in grey, dotted, for comparison.';
   say(null);
-  const pristine = state.text === null && !state.settings.size && state.seed === null ? shipped(state.scene) : null;
+  const pristine = state.text === null && !state.settings.size && state.seed === null && shipped(state.scene).hash ? shipped(state.scene) : null;
   hashes.begin(pristine, state);
   engine.send({kind: 'start', id: now.id, text, settings: [...settings, ...tables], seed: state.seed ?? undefined, hashAt: pristine?.steps});
   const link = await write_link(state);
@@ -190,6 +192,7 @@ engine.on('frame', frame => {
   at('rate').textContent = now.running ? String(Math.round(frame.rate ?? 0)) : '0';
   hashes.step(frame.step);
   if (!frame.running && frame.step !== now.hashed) engine.send({kind: 'hash'});
+  if (frame.contacts) at('look-contacts').parentElement.hidden = false;
   view?.take(frame);
   if (!view) engine.send({kind: 'drawn', id: frame.id});
   pending = Boolean(view);
@@ -248,7 +251,7 @@ at('view').addEventListener('keydown', event => {
   run(!now.running);
   event.preventDefault();
 });
-at('download').addEventListener('click', () => download(`${now.state.scene}.yaml`, now.text));
+at('download').addEventListener('click', () => download(`${now.state.scene.replace(/.*\//, '')}.yaml`, now.text));
 at('copy').addEventListener('click', async () => {
   try {
     await navigator.clipboard.writeText(location.href);

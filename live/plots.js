@@ -32,7 +32,7 @@ function align(series, log) {
 function ticks(chart, splits, axis, space, step) {
   const largest = Math.max(...splits.map(value => Math.abs(value ?? 0)));
   if (!(step > 0) || !(largest > 0)) return splits.map(value => value === null ? '' : Number(value.toPrecision(3)).toString());
-  if (largest < 1e-3 || largest >= 1e6) return splits.map(value => value ? value.toExponential(Math.max(0, Math.round(Math.log10(largest / step)))).replace('e-', 'e−') : '0');
+  if (largest < 1e-3 || largest >= 1e6) return splits.map(value => value ? value.toExponential(Math.max(0, Math.ceil(Math.log10(largest / step)))).replace('e-', 'e−') : '0');
   let digits = 0;
   while (digits < 6 && Math.abs(step * 10 ** digits - Math.round(step * 10 ** digits)) > 1e-6 * 10 ** digits * step) digits++;
   return splits.map(value => value === null ? '' : value.toFixed(digits).replace('-', '−'));

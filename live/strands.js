@@ -25,7 +25,7 @@ const fragment = `
   void main() {
     float past = v_place.x - clamp(v_place.x, 0.0, v_place.z), across = past * past + v_place.y * v_place.y;
     if (across > 1.0) discard;
-    float light = 0.42 + 0.58 * sqrt(1.0 - across * 0.92);
+    float light = 0.42 + 0.58 * sqrt(1.0 - v_place.y * v_place.y * 0.92);
     vec3 color = mix(v_tint * light, spark, clamp(v_flash, 0.0, 1.0));
     float far = clamp((v_depth - reach.x) / (reach.y - reach.x), 0.0, 1.0);
     gl_FragColor = vec4(mix(color, haze, far * 0.62), opacity);

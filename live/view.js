@@ -77,7 +77,7 @@ export class View {
   /** Turns the camera to where the whole box is seen. */
   look() {
     const [x, y, z] = this.info.cells, size = Math.max(x, y, z === 1 ? 0 : z), middle = new three.Vector3(x / 2, y / 2, z / 2);
-    const distance = (z === 1 ? 1.95 : 2.75) * size / Math.min(1, this.camera.aspect * 0.95);
+    const distance = (z === 1 ? 1.95 : 3.0) * size / Math.min(1, this.camera.aspect * 0.95);
     const way = z === 1 ? new three.Vector3(0, 0, 1) : new three.Vector3(0.52, 0.34, 0.78);
     this.camera.position.copy(middle).addScaledVector(way.normalize(), distance);
     this.orbit.target.copy(middle);

@@ -66,7 +66,8 @@ export async function use_controls(page, address) {
 
   await idle(page);
   await page.selectOption('#look-solvent', 'all');
-  for (const look of ['trace', 'contacts', 'flow', 'turn']) await page.click(`#look-${look}`);
+  for (const look of ['trace', 'contacts', 'flow', 'turn']) if (await page.isVisible(`#look-${look}`)) await page.click(`#look-${look}`);
+  await page.selectOption('#look-speed', '10');
   await page.click('#look-next');
   await page.focus('#view');
   for (const key of ['ArrowLeft', 'ArrowUp', '+', '-', '0', ' ']) await page.keyboard.press(key);
@@ -101,7 +102,7 @@ export async function use_controls(page, address) {
 
 if (process.argv[1] === new URL(import.meta.url).pathname) {
   const {chromium} = await import('playwright-core');
-  const browser = await chromium.launch({executablePath: '/usr/bin/chromium', args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader']});
+  const browser = await chromium.launch({executablePath: '/usr/bin/chromium', args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-gpu-compositing']});
   const page = await browser.newPage({colorScheme: 'light'}), errors = [];
   page.on('console', message => { if (message.type() === 'error') errors.push(message.text()); });
   page.on('pageerror', error => errors.push(error.stack));
