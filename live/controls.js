@@ -78,14 +78,14 @@ export class Controls {
     const refusal = await this.#wish(option.settings);
     if (!refusal) return;
     this.show(...this.#shown);
-    this.#say(choice, `“${option.label}” is refused: ${words_of(refusal)}`);
+    this.#say(choice, `“${option.label}” is refused: ${words_of(refusal)}`).classList.add('refused');
   }
 
   #say(choice, text) {
     const why = document.getElementById(`why-${choice.id}`);
-    if (!why) return;
     why.textContent = text;
     why.hidden = !text;
+    return why;
   }
 
   /** Asks the library about each option that is not held, and greys out what it refuses. */
@@ -119,7 +119,7 @@ export class Controls {
     } else {
       return;
     }
-    this.#say(choice, [...new Set(refused.map(([option, error]) =>
+    if (!document.getElementById(`why-${choice.id}`).classList.contains('refused')) this.#say(choice, [...new Set(refused.map(([option, error]) =>
       `${choice.look === 'few' ? `“${option.label}”: ` : 'Not in this scene: '}${words_of(error)}`))].join('\n'));
   }
 }

@@ -5,6 +5,8 @@ import {mean_and_error, running_means} from './averages.js';
 /**
  * @typedef {{label: string, x: number[], y: number[], error?: number[], role: 'main'|'second'|'faint'|'theory', points?: boolean}} Series
  * @typedef {{series: Series[], now?: string}} Drawing
+ * A measure's `see` is its sentence, or a function of the values of the scene that makes it.
+ *
  * @typedef {object} Source
  * @property {(name: string) => {[column: string]: number[]}|null} table   columns of a table; null if there is none
  * @property {(name: string, key: string, at: number[]) => number[][]} past  adds a row to a history and returns its columns
@@ -18,6 +20,8 @@ import {mean_and_error, running_means} from './averages.js';
 const short = (value, digits = 3) => Number.isFinite(value) ? String(Number(value.toPrecision(digits))) : '–';
 const with_error = (value, error) => Number.isFinite(error) && error > 0 ? `${value.toFixed(Math.max(0, Math.min(6, 1 - Math.floor(Math.log10(error)))))} ± ${short(error, 2)}` : short(value);
 const level = (label, value, x) => Number.isFinite(value) && x.length ? [{label, x: [x[0], x.at(-1)], y: [value, value], role: 'theory'}] : [];
+const thermostat = values => values.solvent && (values.solvent.rule !== 'srd' || values.solvent.thermostat !== 'none') || values.medium;
+const driven = values => values.shear || values.walls?.upper?.some(Boolean) || values.walls?.lower?.some(Boolean) || values.solvent?.acceleration?.some(Boolean) || values.bead?.drive;
 const begins = source => (source.values.observe?.from ?? 0) * source.values.time_step;
 
 /** Where the scene has a flow along x whose profile is known: its velocity at y, and its name. */
@@ -37,13 +41,16 @@ function profile_theory({values, check}) {
 
 export const measures = [
   {id: 'energy', title: 'Total energy', x: 'time, t₀', y: 'kT per particle',
-   see: 'Nothing takes energy away here unless a thermostat does. The event-driven rule keeps it; the paper’s rule heats.',
+   see: values => driven(values) ? 'Whatever drives the flow puts energy in; a thermostat takes it out.' :
+     thermostat(values) ? 'The thermostat takes energy and gives it, and hides what a rule heats.' :
+     values.fibers && values.crossing?.forbidden ? 'Nothing takes energy away here. The event-driven rule keeps it; the paper’s rule heats.' :
+       'Nothing takes energy away here, and nothing heats.',
    draw(source) {
      const rows = source.table('conserved');
-     if (!rows?.total || rows.total.length < 2) return null;
+     if (!rows?.total?.length) return null;
      const members = source.info.vertices + source.info.particles || 1, y = rows.total.map(total => (total - rows.total[0]) / members);
      const bounces = source.table('collisions'), hits = bounces?.executed?.at(-1);
-     const heat = hits > 0 ? ` ${short((rows.total.at(-1) - rows.total[0]) / hits, 2)} kT for each contact.` : '';
+     const heat = hits > 0 && !driven(source.values) && !thermostat(source.values) ? ` ${short((rows.total.at(-1) - rows.total[0]) / hits, 2)} kT for each contact.` : '';
      return {series: [{label: 'change of the total energy', x: rows.time, y, role: 'main'}], now: `Now ${short(y.at(-1))} kT each.${heat}`};
    }},
   {id: 'temperature', title: 'Temperature', x: 'time, t₀', y: 'kT', see: 'Both wobble about 1. Few vertices wobble more than many particles.',
@@ -90,7 +97,7 @@ export const measures = [
      const theory = profile_theory(source), height = source.values.box[1], at = Array.from({length: 41}, (_, step) => step * height / 40);
      return {series: [{label: 'measured', x: rows.y, y: rows.vx, error: rows.vx_error, role: 'main', points: true},
        ...(theory ? [{label: 'theory', x: at, y: at.map(theory), role: 'theory'}] : [])],
-       now: begins(source) > 0 ? `Samples from ${short(begins(source))} t₀ on, when the flow is steady.` : ''};
+       now: rows.samples ? `${rows.samples[0]} samples` : ''};
    }},
   {id: 'stress', title: 'Shear stress', x: 'time, t₀', y: 'kT/a₀³', see: 'Stress over shear rate is the viscosity. The mean comes to rest, and its error shrinks.',
    draw(source) {
@@ -99,7 +106,7 @@ export const measures = [
      const kept = rows.time.map((time, at) => at).filter(at => rows.time[at] >= begins(source)), x = kept.map(at => rows.time[at]), y = kept.map(at => rows.sigma_xy[at]);
      const mean = running_means(x, y), theory = number_of(source.check, 'shear stress');
      if (!mean.y.length) return null;
-     return {series: [{label: 'mean', ...mean, role: 'main', points: true}, ...level('theory, solvent alone', theory, mean.x)],
+     return {series: [{label: 'mean', ...mean, role: 'main', points: true}, ...level(source.values.fibers ? 'theory of the solvent alone' : 'theory', theory, mean.x)],
        now: `Mean ${with_error(mean.y.at(-1), mean.error.at(-1))}${Number.isFinite(theory) ? `; theory ${short(theory)}` : ''}`};
    }},
   {id: 'order', title: 'Order of the bonds', x: 'time, t₀', y: 'S', see: 'S is 1 where all bonds are parallel, and near 0 where they point anywhere.',

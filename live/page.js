@@ -63,7 +63,7 @@ function show_scene() {
   at('about').textContent = begin >= 0 ? beginnings[begin].about : state.text !== null ? 'A scene of your own.' : words_of_scene(shipped(state.scene))[1];
   at('seed').value = state.seed ?? now.values.seed;
   editor.show(state.settings.size ? now.text : text_of(state));
-  at('check').textContent = now.check;
+  at('check').textContent = now.check.replace(/^[^]*?(?=\nParameters )/, '').trim();
   at('command').textContent = `uncross run ${state.scene.replace(/.*\//, '')}.yaml --out run`;
 }
 
@@ -90,8 +90,10 @@ async function begin(state, {run = now.running, keep = false} = {}) {
   const same = now.state !== null && source === text_of(now.state);
   Object.assign(now, {state, values, base: plain.error ? {...values} : values_of(plain.text), id: engine.next(), text: checked.text, check: checked.check ?? '', wanted: run, running: false});
   now.base.written = written(source);
-  at('ghost').hidden = !plots.begin(same || keep);
-  at('ghost').textContent = 'The last run stays in grey, dotted, for comparison.';
+  const ghost = plots.begin(same || keep), from = values.observe?.from ?? 0;
+  at('ghost').textContent = [ghost ? 'The last run stays in grey, dotted, for comparison.' : '',
+    from > 0 ? `Averages (profile, order, angle, stress) begin at step ${from}, when the flow is steady.` : ''].join(' ');
+  at('ghost').hidden = !ghost && !from;
   say(null);
   const pristine = state.text === null && !state.settings.size && state.seed === null && shipped(state.scene).hash ? shipped(state.scene) : null;
   hashes.begin(pristine, state);
@@ -175,6 +177,7 @@ engine.on('started', message => {
   const solvent = now.values.dumbbells ? 'all' : now.info.fibers || now.values.bead ? null : 'slab';
   if (solvent && looks.solvent === 'none') { at('look-solvent').value = solvent; switches.tell(); }
   view?.begin(now.info, now.values);
+  for (const id of ['look-trace', 'look-next']) (id === 'look-next' ? at(id) : at(id).parentElement).hidden = !now.info.fibers;
   show_scene();
   show_legend();
   at('warnings').textContent = (message.warnings ?? []).map(text => text.startsWith('warning') ? text : `warning: ${text}`).join('\n');

@@ -51,6 +51,7 @@ const bars = errors => ({hooks: {draw: chart => {
   const {ctx} = chart;
   ctx.save();
   ctx.lineWidth = 1.5 * devicePixelRatio;
+  ctx.setLineDash([]);
   errors.now?.forEach((column, at) => {
     ctx.strokeStyle = chart.series[at + 1].stroke(chart, at + 1);
     ctx.beginPath();
@@ -119,7 +120,6 @@ export class Plots {
     box.id = `plot-${measure.id}`;
     box.innerHTML = '<h3></h3><p class="see"></p><ul class="keys"></ul><div class="chart" role="img"></div><p class="now"></p>';
     box.querySelector('h3').textContent = measure.title;
-    box.querySelector('.see').textContent = measure.see;
     box.querySelector('.chart').setAttribute('aria-label', `Plot: ${measure.title}, ${measure.y} over ${measure.x}. The sentence below has its last value.`);
     const after = measures.slice(measures.indexOf(measure) + 1).map(one => this.#cards.get(one.id)?.box).find(Boolean);
     this.#place.insertBefore(box, after ?? null);
@@ -134,9 +134,10 @@ export class Plots {
   #draw(measure, card, drawing, values) {
     const ghosts = (this.#ghosts.get(measure.id) ?? []).map(one => ({...one, label: 'last run', role: 'ghost', error: undefined}));
     const series = [...ghosts, ...drawing.series], {data, errors} = align(series, measure.log), form = series.map(one => one.label + one.role).join('|');
-    card.drawing = drawing;
+    [card.drawing, card.values] = [drawing, values];
     card.errors.now = errors;
     card.box.querySelector('.now').textContent = drawing.now ?? '';
+    card.box.querySelector('.see').textContent = typeof measure.see === 'function' ? measure.see(values) : measure.see;
     if (card.button) {
       card.button.textContent = this.#button.label(values) ?? '';
       card.button.hidden = !card.button.textContent;
@@ -185,7 +186,13 @@ export class Plots {
   }
 }
 
-/** A table of the worker as arrays by the names of its columns. */
+/** A table of the worker as arrays by the names of its columns, each made when it is asked for. */
 function by_column({columns, rows, value}) {
-  return Object.fromEntries(columns.map((name, column) => [name, Array.from({length: rows}, (_, row) => value[row * columns.length + column])]));
+  const table = {};
+  columns.forEach((name, column) => Object.defineProperty(table, name, {configurable: true, get() {
+    const list = Array.from({length: rows}, (_, row) => value[row * columns.length + column]);
+    Object.defineProperty(table, name, {value: list});
+    return list;
+  }}));
+  return table;
 }

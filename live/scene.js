@@ -30,7 +30,7 @@ export function number_of(check, name, kind) {
   return NaN;
 }
 
-/** Cadences that the plots ask for where the scene has none of its own. They do not touch the state's bits. */
+/** Cadences that the plots ask for where the scene has none, or a slower one. They do not touch the state's bits. */
 export function wanted_tables(values) {
   const observe = values.observe ?? {}, every = Math.max(1, Math.round(0.2 / values.time_step));
   const fibers = (values.fibers ?? []).some(kind => kind.vertices > 1);
@@ -40,8 +40,8 @@ export function wanted_tables(values) {
   if (fibers && values.crossing?.forbidden) wanted.push(['collisions', every]);
   if (values.solvent && flows) wanted.push(['profile', every], ['stress', every]);
   if (values.bead) wanted.push(['bead', every]);
-  return wanted.filter(([name]) => !observe[name]).map(([name, cadence]) =>
-    [[`observe.${name}.every`, String(cadence)], ...(name === 'profile' ? [['observe.profile.slabs', String(values.box[1])]] : [])]);
+  return wanted.filter(([name, cadence]) => !(observe[name]?.every <= cadence)).map(([name, cadence]) =>
+    [[`observe.${name}.every`, String(cadence)], ...(name === 'profile' && !observe.profile ? [['observe.profile.slabs', String(values.box[1])]] : [])]);
 }
 
 /** What a scene file says by itself, without defaults; {} if it cannot be read. */

@@ -88,7 +88,7 @@ export class Surroundings {
 
   #springs(particles) {
     this.springs = new Strands(particles >> 1);
-    for (let at = 0; at < particles >> 1; at++) this.springs.paint(at, rgb(paint('--accent')), 0.07);
+    for (let at = 0; at < particles >> 1; at++) this.springs.paint(at, rgb(paint('--accent')), 0.05);
     this.group.add(this.springs.mesh);
   }
 

@@ -184,7 +184,7 @@ export class View {
     if (!this.world) return false;
     if (this.looks.turn) this.#turn(0.004, 0);
     if (!this.stale && !(this.flashing > performance.now())) return false;
-    if (this.slow && performance.now() - (this.drawn ?? 0) < Math.max(70, 2.5 * (this.cost ?? 0))) return false; // leaves the processor to the run
+    if (this.slow && performance.now() - (this.drawn ?? 0) < 70) return false; // drawing in software leaves the processor to the run
     this.stale = false;
     const distance = this.camera.position.distanceTo(this.orbit.target), size = Math.max(...this.info.cells);
     for (const strands of [this.strands, this.trace.strands, this.around.flow, this.around.springs].filter(Boolean)) {
@@ -194,24 +194,20 @@ export class View {
       uniforms.haze.value.set(...this.haze);
     }
     this.around.dots.material.uniforms.scale.value = this.renderer.domElement.height / (2 * Math.tan(this.camera.fov * Math.PI / 360));
-    const before = performance.now();
     this.renderer.render(this.world, this.camera);
-    if (this.slow) this.renderer.getContext().finish();
-    this.#adapt(performance.now(), performance.now() - before);
+    this.#adapt(performance.now());
     return true;
   }
 
-  /** Counts pictures; fewer points where they take long or follow each other slowly. */
-  #adapt(now, spent) {
-    const since = now - (this.drawn ?? now);
+  /** Fewer points where pictures follow each other slowly. */
+  #adapt(now) {
+    const since = now - (this.drawn ?? now), [slow, least] = this.slow ? [180, 0.5] : [60, 0.7];
     this.drawn = now;
-    this.count = (this.count ?? 0) + 1;
-    if (since > 400 && !this.slow) return; // nothing was to be drawn
-    const cost = this.slow ? spent : since;
-    this.cost = (this.cost ?? cost) * 0.85 + cost * 0.15;
-    if (this.cost < 60 || this.sharpness <= (this.slow ? 0.5 : 0.7)) return;
+    if (since > 1500) return; // nothing was to be drawn
+    this.cost = (this.cost ?? since) * 0.9 + since * 0.1;
+    if (this.cost < slow || this.sharpness <= least) return;
     this.sharpness *= 0.85;
-    this.cost = 30;
+    this.cost = slow / 2;
     this.#resize();
   }
 
