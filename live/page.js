@@ -168,7 +168,7 @@ async function linked() {
 
 engine.on('started', message => {
   if (message.id !== now.id) return;
-  document.body.dataset.opening = 'no';
+  Object.assign(document.body.dataset, {opening: 'no', opened: message.id});
   now.info = message.info;
   now.check = message.check ?? now.check;
   now.step = now.time = 0;

@@ -2,14 +2,18 @@
 // `use_controls(page, address)` is given a page of playwright-core; by itself: node controls.mjs ADDRESS.
 
 const value_of = (page, id) => page.$eval(`#${id}`, element => element.textContent);
-const wait = (page, condition, argument, timeout = 60_000) => page.waitForFunction(condition, argument, {timeout, polling: 100});
+const patience = 120_000; // ms; a machine that does other things too draws in software slowly
+const wait = (page, condition, argument, timeout = patience) => page.waitForFunction(condition, argument, {timeout, polling: 100});
 const stepped = (page, beyond) => wait(page, least => Number(document.getElementById('steps').textContent) > least, beyond);
-const idle = page => wait(page, () => document.body.dataset.opening !== 'yes' && !document.getElementById('run').disabled);
+const idle = page => wait(page, () => document.body.dataset.opening === 'no' && !document.getElementById('run').disabled);
+const link_says = (page, text) => wait(page, part => decodeURIComponent(location.hash.replaceAll('+', ' ')).includes(part), text);
 
+/** Opens a link in the page that is there, which follows it without loading anew. */
 async function go(page, address, link) {
-  await page.goto('about:blank');
-  await page.goto(`${address}${link}`);
-  await idle(page);
+  const opened = await page.evaluate(() => document.body?.dataset.opened ?? '').catch(() => '');
+  if (!page.url().startsWith(address)) await page.goto(`${address}${link}`);
+  else await page.evaluate(hash => { if (location.hash === hash) dispatchEvent(new Event('hashchange')); else location.hash = hash; }, link);
+  await wait(page, before => document.body.dataset.opened !== undefined && document.body.dataset.opened !== before && document.body.dataset.opening === 'no', opened);
 }
 
 /** One row for each control: where it is, how it is used, and what the link must say then. */
@@ -32,13 +36,14 @@ async function slide(page, id, by) {
 
 /** @returns {Promise<string[]>} what went wrong, a sentence each */
 export async function use_controls(page, address) {
+  page.setDefaultTimeout(patience);
   const wrong = [], start = '#scene=dense&set=fibers.0.count%3D40';
   const must = (what, holds) => { if (!holds) wrong.push(what); };
 
   for (const {control, use, link} of uses) {
     await go(page, address, start);
     await use(page);
-    await wait(page, text => decodeURIComponent(location.hash.replaceAll('+', ' ')).includes(text), link, 20_000)
+    await link_says(page, link)
       .catch(() => wrong.push(`${control}: the link does not say ${link}, but ${decodeURIComponent(page.url())}`));
     await idle(page);
     await page.click('#step');
@@ -47,7 +52,7 @@ export async function use_controls(page, address) {
 
   await go(page, address, '#scene=shear');
   await slide(page, 'shear', 1);
-  await wait(page, () => location.hash.includes('shear.rate')).catch(() => wrong.push('shear: the link does not say shear.rate'));
+  await link_says(page, 'shear.rate=').catch(() => wrong.push('shear: the link does not say shear.rate'));
 
   await go(page, address, start);
   await page.click('#run');
@@ -62,16 +67,17 @@ export async function use_controls(page, address) {
   await wait(page, () => document.getElementById('steps').textContent === '0').catch(() => wrong.push('restart does not begin at step 0'));
   await page.fill('#seed', '7');
   await page.press('#seed', 'Enter');
-  await wait(page, () => location.hash.includes('seed=7')).catch(() => wrong.push('the link does not say the seed'));
+  await link_says(page, 'seed=7').catch(() => wrong.push('the link does not say the seed'));
 
   await idle(page);
+  await page.selectOption('#look-speed', '10');
   await page.selectOption('#look-solvent', 'all');
   for (const look of ['trace', 'contacts', 'flow', 'turn']) if (await page.isVisible(`#look-${look}`)) await page.click(`#look-${look}`);
-  await page.selectOption('#look-speed', '10');
   await page.click('#look-next');
   await page.focus('#view');
   for (const key of ['ArrowLeft', 'ArrowUp', '+', '-', '0', ' ']) await page.keyboard.press(key);
   await stepped(page, 0).catch(() => wrong.push('the space bar in the picture does not run'));
+  await page.click('#run');
   await page.click('#theme');
   must('the other theme is not shown', await page.evaluate(() => document.documentElement.dataset.theme) === 'dark');
 
@@ -83,12 +89,14 @@ export async function use_controls(page, address) {
 
   await page.fill('#text', 'box: [8, 8, 8]\ntime_step: 0.02\nsteps: 10\nsolvent: {per_cell: 5, collision_interval: 0.02}\nnonsense: 1\n');
   await page.click('#use-text');
-  await page.waitForSelector('#text-error:not([hidden])', {timeout: 20_000}).catch(() => wrong.push('a wrong scene is not refused'));
+  await page.waitForSelector('#text-error:not([hidden])').catch(() => wrong.push('a wrong scene is not refused'));
   must('the line that is wrong is not marked', (await page.$$eval('#lines b', marks => marks.map(mark => mark.textContent.trim()))).join() === '5');
   await page.fill('#text', 'box: [8, 8, 8]\ntime_step: 0.02\nsteps: 10\nsolvent: {per_cell: 5, collision_interval: 0.02}\n');
   await page.click('#use-text');
-  await wait(page, () => location.hash.includes('text=')).catch(() => wrong.push('the link does not hold a scene of one’s own'));
+  await link_says(page, 'text=').catch(() => wrong.push('the link does not hold a scene of one’s own'));
+  await idle(page);
   const own = page.url();
+  await page.goto('about:blank');
   await go(page, address, own.slice(own.indexOf('#')));
   must('a link with a scene of one’s own does not open it', await page.$eval('#scene', list => list.value) === 'own');
 
