@@ -75,7 +75,7 @@ async function open(state, options) {
   return refusal;
 }
 
-async function begin(state, {run = now.running, keep = false} = {}) {
+async function begin(state, {run, keep = false} = {}) {
   const round = ++now.opening, source = text_of(state), settings = settings_of(state);
   if (source === undefined) return refuse({message: `There is no scene “${state.scene}”. The list has all of them.`});
   const text = fitting(source, state.settings), checked = await engine.check(text, settings, state.seed ?? undefined);
@@ -88,7 +88,7 @@ async function begin(state, {run = now.running, keep = false} = {}) {
     if (round !== now.opening) return null;
   }
   const same = now.state !== null && source === text_of(now.state);
-  Object.assign(now, {state, values, base: plain.error ? {...values} : values_of(plain.text), id: engine.next(), text: checked.text, check: checked.check ?? '', wanted: run, running: false});
+  Object.assign(now, {state, values, base: plain.error ? {...values} : values_of(plain.text), id: engine.next(), text: checked.text, check: checked.check ?? '', wanted: run ?? now.running, running: false});
   now.base.written = written(source);
   const ghost = plots.begin(same || keep), from = values.observe?.from ?? 0;
   at('ghost').textContent = [ghost ? 'The last run stays in grey, dotted, for comparison.' : '',
@@ -183,7 +183,7 @@ engine.on('started', message => {
   at('warnings').textContent = (message.warnings ?? []).map(text => text.startsWith('warning') ? text : `warning: ${text}`).join('\n');
   controls.show(now.values, now.base, text_of(now.state), now.state.settings);
   want();
-  if (now.wanted) run(true);
+  if (now.wanted || now.running) run(true);
   else show_running();
 });
 

@@ -10,6 +10,7 @@ const link_says = (page, text) => wait(page, part => decodeURIComponent(location
 
 /** Opens a link in the page that is there, which follows it without loading anew. */
 async function go(page, address, link) {
+  if (page.url().startsWith(address)) await idle(page);
   const opened = await page.evaluate(() => document.body?.dataset.opened ?? '').catch(() => '');
   if (!page.url().startsWith(address)) await page.goto(`${address}${link}`);
   else await page.evaluate(hash => { if (location.hash === hash) dispatchEvent(new Event('hashchange')); else location.hash = hash; }, link);
