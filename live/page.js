@@ -91,14 +91,14 @@ async function begin(state, {run, keep = false} = {}) {
   Object.assign(now, {state, values, base: plain.error ? {...values} : values_of(plain.text), id: engine.next(), text: checked.text, check: checked.check ?? '', wanted: run ?? now.running, running: false});
   now.base.written = written(source);
   const ghost = plots.begin(same || keep), from = values.observe?.from ?? 0;
-  at('ghost').textContent = [ghost ? 'The last run stays in grey, dotted, for comparison.' : '',
-    from > 0 ? `Averages (profile, order, angle, stress) begin at step ${from}, when the flow is steady.` : ''].join(' ');
+  at('ghost').replaceChildren(...(ghost ? ['The last run stays in grey, dotted. ', Object.assign(document.createElement('a'), {href: now.link, textContent: 'Back to it'}), '. '] : []),
+    from > 0 ? `Averages (profile, order, angle, stress) begin at step ${from}, when the flow is steady.` : '');
   at('ghost').hidden = !ghost && !from;
   say(null);
   const pristine = state.text === null && !state.settings.size && state.seed === null && shipped(state.scene).hash ? shipped(state.scene) : null;
   hashes.begin(pristine, state);
   engine.send({kind: 'start', id: now.id, text, settings: [...settings, ...tables], seed: state.seed ?? undefined, hashAt: pristine?.steps});
-  const link = await write_link(state);
+  const link = now.link = await write_link(state);
   if (round === now.opening && link !== location.hash) history.replaceState(null, '', link);
   return null;
 }

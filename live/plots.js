@@ -38,6 +38,9 @@ function ticks(chart, splits, axis, space, step) {
   return splits.map(value => value === null ? '' : value.toFixed(digits).replace('-', '−'));
 }
 
+/** The same of a logarithmic axis: decades only. */
+const decades = (chart, splits) => splits.map(value => value === null ? '' : value >= 1e-3 && value < 1e4 ? String(Number(value.toPrecision(3))) : value.toExponential(0).replace('e-', 'e−').replace('e+', 'e'));
+
 const look = role => ({
   main: {stroke: kinds[theme()][0], width: 2},
   second: {stroke: kinds[theme()][1], width: 2},
@@ -156,7 +159,7 @@ export class Plots {
     const axis = label => ({label, stroke: paint('--soft'), labelSize: 18, labelFont: '12px system-ui', font: '12px system-ui', grid: {stroke: paint('--line'), width: 1}, ticks: {stroke: paint('--line'), width: 1, size: 4}, labelGap: 0});
     return {width: this.#width(card), height: 210, legend: {show: false}, cursor: {show: false}, plugins: [bars(card.errors)],
       scales: {x: {time: false, distr: measure.log ? 3 : 1}, y: {distr: measure.log ? 3 : 1}},
-      axes: [{...axis(measure.x), size: 30, ...(measure.log ? {} : {values: ticks})}, {...axis(measure.y), size: 58, ...(measure.log ? {} : {values: ticks})}],
+      axes: [{...axis(measure.x), size: 30, values: measure.log ? decades : ticks}, {...axis(measure.y), size: 58, values: measure.log ? decades : ticks}],
       series: [{}, ...series.map(one => ({label: one.label, spanGaps: true, ...look(one.role), points: {show: Boolean(one.points) && one.role !== 'ghost', size: 5, fill: look(one.role).stroke}}))]};
   }
 
