@@ -102,7 +102,7 @@ export const measures = [
   {id: 'stress', title: 'Shear stress', x: 'time, t₀', y: 'kT/a₀³', see: 'Stress over shear rate is the viscosity. The mean comes to rest, and its error shrinks.',
    draw(source) {
      const rows = source.table('stress');
-     if (!rows?.sigma_xy) return null;
+     if (!rows?.sigma_xy || !(source.values.shear || Number.isFinite(number_of(source.check, 'effective shear rate')))) return null;
      const kept = rows.time.map((time, at) => at).filter(at => rows.time[at] >= begins(source)), x = kept.map(at => rows.time[at]), y = kept.map(at => rows.sigma_xy[at]);
      const mean = running_means(x, y), theory = number_of(source.check, 'shear stress');
      if (!mean.y.length) return null;

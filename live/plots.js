@@ -52,7 +52,11 @@ const look = role => ({
 /** Draws an upright line from y - error to y + error at each point that has one. */
 const bars = errors => ({hooks: {draw: chart => {
   const {ctx} = chart;
+  const {left, top, width, height} = chart.bbox;
   ctx.save();
+  ctx.beginPath();
+  ctx.rect(left, top, width, height);
+  ctx.clip();
   ctx.lineWidth = 1.5 * devicePixelRatio;
   ctx.setLineDash([]);
   errors.now?.forEach((column, at) => {

@@ -81,7 +81,7 @@ export class Surroundings {
     geometry.setAttribute('position', new three.BufferAttribute(new Float32Array(3 * Math.max(1, particles)), 3).setUsage(three.DynamicDrawUsage));
     geometry.setDrawRange(0, 0);
     this.dots = new three.Points(geometry, new three.ShaderMaterial({vertexShader: dots_vertex, fragmentShader: dots_fragment, transparent: true, depthWrite: false,
-      uniforms: {size: {value: 0.16}, scale: {value: 500}, color: {value: new three.Vector3(...rgb(paint('--soft')))}, opacity: {value: 0.65}}}));
+      uniforms: {size: {value: 0.16}, scale: {value: 500}, color: {value: new three.Vector3(...rgb(paint('--soft')))}, opacity: {value: 0.4}}}));
     this.dots.frustumCulled = false;
     this.group.add(this.dots);
   }
