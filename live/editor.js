@@ -1,7 +1,7 @@
 // The text of the scene, with the numbers of its lines and a mark at the line that is wrong; files that come and go.
 
 export class Editor {
-  /** use(text, name): called with a text that somebody wants to run; it resolves to a refusal or null. */
+  /** use(text): called with a text that somebody wants to run; it resolves to a refusal or null. */
   constructor(use) {
     const at = id => document.getElementById(id);
     [this.text, this.lines, this.error] = [at('text'), at('lines'), at('text-error')];
@@ -48,8 +48,8 @@ export class Editor {
 
   #scroll() { this.lines.scrollTop = this.text.scrollTop; }
 
-  async #try(name) {
-    const refusal = await this.use(this.text.value, name);
+  async #try() {
+    const refusal = await this.use(this.text.value);
     this.mark(refusal);
     if (refusal) this.text.focus();
   }
@@ -57,7 +57,7 @@ export class Editor {
   async #read(file) {
     this.text.value = await file.text();
     document.getElementById('tab-scene').click();
-    this.#try(file.name);
+    this.#try();
   }
 
   #dropping() {

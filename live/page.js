@@ -33,7 +33,7 @@ const plots = new Plots(at('plots'), {measure: 'energy', press: () => other_rule
   !values.fibers || !values.crossing?.forbidden || values.fibers.some(kind => kind.diameter > 0) ? null :
     values.crossing.rule === 'sequential' ? 'Run the event-driven rule beside it' : 'Run the paper’s rule beside it'});
 const controls = new Controls(at('controls'), engine, wish);
-const editor = new Editor((text, name) => open({scene: 'own', text, settings: new Map(), seed: null}, {name}));
+const editor = new Editor(text => open({scene: 'own', text, settings: new Map(), seed: null}));
 
 // --- scenes ---------------------------------------------------------------------------------------------------------
 
@@ -152,9 +152,9 @@ function mark(fiber) {
 
 const show_legend = () => legend(now.values, now.info, view, looks);
 
-engine.on('ready', async ({version, scenes: list}) => {
+engine.on('ready', async ({version, vectors, scenes: list}) => {
   scenes = list;
-  at('version').textContent = version;
+  at('version').textContent = `${version}, ${vectors ? 'with' : 'without'} 128-bit vectors`;
   list_scenes();
   const first = beginnings[0], refusal = await open(await linked(), {run: false});
   keep_files(['worker.js', 'library.js', 'scenes.json', 'uncross.wasm', 'uncross-simd.wasm']);
@@ -173,7 +173,7 @@ engine.on('started', message => {
   now.check = message.check ?? now.check;
   now.step = now.time = 0;
   now.hashed = -1;
-  for (const id of ['run', 'step', 'restart']) at(id).disabled = false;
+  for (const id of ['run', 'step', 'restart', 'bench']) at(id).disabled = false;
   const solvent = now.values.dumbbells ? 'all' : now.info.fibers || now.values.bead ? null : 'slab';
   if (solvent && looks.solvent === 'none') { at('look-solvent').value = solvent; switches.tell(); }
   view?.begin(now.info, now.values);
@@ -253,6 +253,16 @@ at('view').addEventListener('keydown', event => {
   if (event.key !== ' ' || at('run').disabled) return;
   run(!now.running);
   event.preventDefault();
+});
+at('bench').addEventListener('click', () => {
+  if (now.running) run(false);
+  at('bench').disabled = true;
+  at('speed').textContent = 'measuring for 3 seconds …';
+  engine.send({kind: 'bench', seconds: 3, text: now.text, seed: now.state.seed ?? undefined});
+});
+engine.on('bench', ({rate, vertices, particles}) => {
+  at('bench').disabled = false;
+  at('speed').textContent = `${Math.round(rate)} steps a second, ${vertices.toLocaleString('en')} vertices and ${particles.toLocaleString('en')} particles, without pictures.`;
 });
 at('download').addEventListener('click', () => download(`${now.state.scene.replace(/.*\//, '')}.yaml`, now.text));
 at('copy').addEventListener('click', async () => {

@@ -1,4 +1,4 @@
-// Tabs as https://www.w3.org/WAI/ARIA/apg/patterns/tabs/ describes them: arrows move and choose.
+// Tabs as the W3C's ARIA patterns describe them: arrows move and choose.
 export function begin_tabs(list) {
   const tabs = () => [...list.querySelectorAll('[role="tab"]:not([hidden])')];
   const choose = (tab, focus) => {

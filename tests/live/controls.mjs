@@ -101,6 +101,24 @@ export async function use_controls(page, address) {
   await go(page, address, own.slice(own.indexOf('#')));
   must('a link with a scene of one’s own does not open it', await page.$eval('#scene', list => list.value) === 'own');
 
+  await page.click('#tab-scene');
+  await page.click('#copy');
+  await wait(page, () => document.getElementById('copied').textContent !== '').catch(() => wrong.push('copying the link says nothing'));
+  const small = size => `box: [${size}, 8, 8]\ntime_step: 0.02\nsteps: 10\nsolvent: {per_cell: 5, collision_interval: 0.02}\n`, box = size =>
+    wait(page, edge => document.getElementById('text').value.includes(`box: [${edge}, 8, 8]`) && document.body.dataset.opening === 'no', size);
+  await page.setInputFiles('#open', {name: 'mine.yaml', mimeType: 'text/yaml', buffer: Buffer.from(small(10))});
+  await box(10).catch(() => wrong.push('a file that is opened does not run'));
+  await page.evaluate(text => {
+    const given = new DataTransfer();
+    given.items.add(new File([text], 'dropped.yaml', {type: 'text/yaml'}));
+    dispatchEvent(Object.assign(new Event('drop', {cancelable: true}), {dataTransfer: given}));
+  }, small(12));
+  await box(12).catch(() => wrong.push('a file that is dropped does not run'));
+  must('an opened file is refused', !await page.isVisible('#text-error'));
+  await page.click('#tab-numbers');
+  must('what check prints is not shown', /Parameters/.test(await value_of(page, 'check')));
+  await page.click('#bench');
+  await wait(page, () => /steps a second/.test(document.getElementById('speed').textContent)).catch(() => wrong.push('the speed is not measured'));
   await go(page, address, '#scene=thick');
   await wait(page, () => document.getElementById('crossing-1')?.disabled).catch(() => wrong.push('thick fibers: the paper’s rule is not greyed out'));
   must('thick fibers: no words say why', /allowed/.test(await value_of(page, 'why-crossing')));
@@ -109,13 +127,35 @@ export async function use_controls(page, address) {
   return wrong;
 }
 
+/** Loads the page, takes the net away, and loads it once more. @returns {Promise<string[]>} what went wrong */
+export async function do_without_net(page, address) {
+  page.setDefaultTimeout(patience);
+  await page.goto(`${address}#scene=shear`);
+  await idle(page);
+  await wait(page, async () => (await (await caches.open('uncross-live')).keys()).some(kept => kept.url.endsWith('scenes.json')));
+  await page.waitForTimeout(2000);
+  await page.context().setOffline(true);
+  try {
+    await page.goto('about:blank');
+    await page.goto(`${address}#scene=couette`);
+    await idle(page);
+    await page.click('#step');
+    await stepped(page, 0);
+    return [];
+  } catch (error) {
+    return [`without the net: ${error.message}`];
+  } finally {
+    await page.context().setOffline(false);
+  }
+}
+
 if (process.argv[1] === new URL(import.meta.url).pathname) {
   const {chromium} = await import('playwright-core');
   const browser = await chromium.launch({executablePath: '/usr/bin/chromium', args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-gpu-compositing']});
   const page = await browser.newPage({colorScheme: 'light'}), errors = [];
   page.on('console', message => { if (message.type() === 'error') errors.push(message.text()); });
   page.on('pageerror', error => errors.push(error.stack));
-  const wrong = [...await use_controls(page, process.argv[2]), ...errors];
+  const wrong = [...await use_controls(page, process.argv[2]), ...await do_without_net(page, process.argv[2]), ...errors];
   console.log(wrong.length ? wrong.join('\n') : 'every control was used');
   await browser.close();
   process.exit(wrong.length ? 1 : 0);
