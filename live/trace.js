@@ -6,10 +6,12 @@ import {rgb} from './palette.js';
 const shapes_at_most = 48;
 
 export class Trace {
-  constructor(bonds, radius) {
-    this.bonds = bonds;         // [[from, to], ...] numbers of vertices
+  /** first, bonds: the bonds of the fiber follow each other. */
+  constructor(first, bonds, radius) {
+    this.first = first;
+    this.bonds = bonds;
     this.radius = radius;
-    this.strands = new Strands(Math.max(1, bonds.length * shapes_at_most), 0.16);
+    this.strands = new Strands(Math.max(1, bonds * shapes_at_most), 0.16);
     this.shapes = [];
     this.interval = 0;          // steps between shapes; doubled when full
     this.last = -1;
@@ -35,7 +37,7 @@ export class Trace {
     this.shapes.forEach((ends, age) => {
       const fresh = 0.35 + 0.65 * (age + 1) / this.shapes.length, tint = own.map((part, c) => back[c] + (part - back[c]) * fresh);
       strands.ends.array.set(ends, 6 * at);
-      for (let bond = 0; bond < this.bonds.length; bond++) strands.paint(at++, tint, this.radius);
+      for (let bond = 0; bond < this.bonds; bond++) strands.paint(at++, tint, this.radius);
     });
     strands.count = at;
     strands.moved();

@@ -140,7 +140,7 @@ export class View {
     if (this.trace) this.world.remove(this.trace.strands.mesh);
     this.trace?.strands.dispose();
     const bonds = this.bonds.filter(([, , fiber]) => fiber === this.marked);
-    this.trace = new Trace(bonds, bonds.length ? this.radius(this.info.kindOf[this.marked]) * 1.1 : thin);
+    this.trace = new Trace(this.bonds.indexOf(bonds[0]), bonds.length, bonds.length ? this.radius(this.info.kindOf[this.marked]) * 1.1 : thin);
     this.world.add(this.trace.strands.mesh);
   }
 
@@ -167,8 +167,8 @@ export class View {
       }
     });
     this.strands.moved();
-    const first = this.bonds.findIndex(([, , fiber]) => fiber === this.marked);
-    if (first >= 0 && this.trace.keep(frame.step, ends.subarray(6 * first, 6 * (first + this.trace.bonds.length))))
+    const {first, bonds} = this.trace;
+    if (bonds && this.trace.keep(frame.step, ends.subarray(6 * first, 6 * (first + bonds))))
       this.trace.draw(marked_color[theme()], paint('--space'));
     this.trace.strands.mesh.visible = this.looks.trace;
     if (this.looks.contacts && frame.contacts) for (const bond of frame.contacts) if (this.place_of[bond] >= 0) this.strands.flash(this.place_of[bond], this.#clock());
