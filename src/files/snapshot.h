@@ -121,7 +121,6 @@ char *trajectory_scene_text(const struct trajectory *trajectory); /* to be freed
 bool trajectory_has_steps(const struct trajectory *trajectory);   /* else every frame reads as step 0 */
 bool trajectory_has_velocities(const struct trajectory *trajectory);
 bool trajectory_has_solvent(const struct trajectory *trajectory, const struct model *model);
-bool trajectory_has_checksums(const struct trajectory *trajectory); /* else damage may go unseen */
 bool trajectory_read(struct trajectory *trajectory, const struct model *model, uint64_t frame, struct state *state,
                      struct message *message);
 /* After trajectory_read failed: true if only this frame is to blame, and others may be read. */

@@ -44,11 +44,6 @@ bool trajectory_has_velocities(const struct trajectory *t)
   return t->frames_apart->about.velocities;
 }
 
-bool trajectory_has_checksums(const struct trajectory *t)
-{
-  return t->frames_apart->about.checked;
-}
-
 bool trajectory_has_solvent(const struct trajectory *t, const struct model *model)
 {
   return model_has_solvent(model) && t->particles == model->vertices + model->solvent.particles;

@@ -6,7 +6,6 @@
 #include "mpc/rule.h"
 #include "observe/background.h"
 #include "observe/meaning.h"
-#include "scene/load_words.h"
 #include "scene/scene.h"
 #include "scene/warnings.h"
 #include "system/fiber_kind.h"
@@ -286,6 +285,32 @@ static void warn_transient(struct teller *t, const struct scene *scene)
          plan->from, tau, 100.0 * share, steps, longer);
 }
 
+#define LIGHTEST 0.5 /* of gamma: lighter vertices hardly feel the solvent (Padding 2009, Sec. IV A) */
+#define MORE 4.0     /* times as much solvent */
+
+/* Vertices load the fluid: theory/load.h. */
+static void warn_load(struct teller *t, const struct model *m)
+{
+  const double gamma = model_solvent_density(m), factor = theory_load_factor(m, 1.0, gamma);
+  const bool cells = model_in_cells(m);
+  double heaviest = 0.0;
+  if (!(factor > THEORY_HEAVY_LOAD))
+    return;
+  for (uint32_t k = 0; k < m->kinds; k++)
+    heaviest = fmax(heaviest, m->kind[k].frozen ? 0.0 : m->kind[k].mass);
+  const double eta = theory_model_viscosity(m), lighter = fmin(LIGHTEST * gamma / heaviest, 1.0);
+  char light[128] = "";
+  if (lighter < 0.99)
+    snprintf(light, sizeof light, "lighter vertices, mass=%.6g (%.3g times), or ", lighter * heaviest,
+             theory_load_factor(m, lighter, gamma));
+  warn(t,
+       "vertices load the fluid: they add %.3g m per %s to the solvent's %.3g and make it %.3g times as viscous, "
+       "bonds even more, so that diffusion, relaxation and drag are not those of the solvent alone; use %smore "
+       "solvent, %s=%.6g (%.3g times)",
+       theory_load(m), cells ? "cell" : "a0^3", gamma, theory_loaded_viscosity(m) / eta, light,
+       cells ? "solvent.per_cell" : "medium.density", MORE * gamma, theory_load_factor(m, 1.0, MORE * gamma));
+}
+
 int scene_warnings(const struct scene *scene, void (*tell)(void *context, const char *text), void *context)
 {
   struct teller t = {tell, context, 0};
@@ -304,9 +329,7 @@ int scene_warnings(const struct scene *scene, void (*tell)(void *context, const 
   const struct theory_shear shear = theory_shear_of(m);
   for (uint32_t k = 0; k < m->kinds; k++)
     warn_fibers(&t, scene, &shear, &m->kind[k]);
-  char heavy[448];
-  if (load_words(m, "mass", model_in_cells(m) ? "solvent.per_cell" : "medium.density", heavy, sizeof heavy))
-    warn(&t, "%s", heavy);
+  warn_load(&t, m);
   if (model_has_dumbbells(m) && model_collides(m))
     warn_dumbbells(&t, m);
   warn_heating(&t, scene);

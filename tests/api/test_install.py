@@ -190,6 +190,12 @@ class Installed(unittest.TestCase):
         told = call(self.prefix / "bin/uncross", "export", TOP / "tests/files/old/checkpoint.h5", folder=self.folder)
         self.assertRegex(told, r"^\d+\nLattice=")
 
+    def test_si_units(self):
+        told = call(self.prefix / "bin/uncross", "map", "length=10um,persistence=17um", "--units", "T=300K,eta=1mPas", folder=self.folder)
+        (self.folder / "fiber.yaml").write_text(told)
+        told = call(self.prefix / "bin/uncross", "check", "fiber.yaml", "--units", "a0=50nm,T=300K", folder=self.folder)
+        self.assertIn("\n  unit of length                         a0                   1 a0        50 nm ", told)
+
     def test_uninstall_leaves_nothing(self):
         destination = self.folder / "stage"
         destination.mkdir()
