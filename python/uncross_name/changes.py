@@ -527,11 +527,60 @@ def _of_places(used, module, sorts):
             yield _Edit(where, function, tree, edits, kind, rank + 1)
 
 
-def of_call(modules, sorts, function, *arguments):
+def of_call(modules, sorts, function, kinds=of_function):
     """All changes of what a call uses, likelier ones first; the call must not fail."""
-    used = Used(modules, function, *arguments)
-    every = [change for each in used.functions() for change in of_function(each, modules[each[0]], sorts)]
+    used = Used(modules, function)
+    every = [change for each in used.functions() for change in kinds(each, modules[each[0]], sorts)]
     return sorted(every, key=lambda change: change.rank)
+
+
+# --- the same numbers, rounded otherwise ---
+
+LIBRARY = {"log": "np.log({0})", "exp": "np.exp({0})", "erf": "np.vectorize(math.erf)({0})",
+           "circle_turns": "(np.cos(2 * np.pi * ({0})), np.sin(2 * np.pi * ({0})))", "circle_degrees": "(np.cos(np.pi / 180 * ({0})), np.sin(np.pi / 180 * ({0})))"}
+ROUNDED = ("rint", "to_lattice")
+
+
+def _is(node, *kinds):
+    return isinstance(node, ast.BinOp) and isinstance(node.op, kinds)
+
+
+def _other_roundings(node):
+    """(kind, rank, what gives the same but for rounding)."""
+    if isinstance(node, ast.BinOp):
+        for kinds in ((ast.Add, ast.Sub), (ast.Mult,)):
+            if isinstance(node.op, kinds) and _is(node.left, kinds[0]):
+                yield "order of a sum", 0, ast.BinOp(node.left.left, kinds[0](), ast.BinOp(node.left.right, node.op, node.right))
+                yield "order of a sum, the other", 1, ast.BinOp(node.left.right, kinds[0](), ast.BinOp(node.left.left, node.op, node.right))
+            if isinstance(node.op, kinds[0]) and _is(node.right, *kinds):
+                yield "order of a sum", 0, ast.BinOp(ast.BinOp(node.left, node.op, node.right.left), node.right.op, node.right.right)
+        if _is(node, ast.Div):
+            yield "times the inverse", 0, ast.BinOp(ast.BinOp(ast.Constant(1.0), ast.Div(), node.right), ast.Mult(), node.left)
+        for one, other in ((node.left, node.right), (node.right, node.left)) if _is(node, ast.Mult) else ():
+            if _is(one, ast.Div):
+                yield "one division", 0, ast.BinOp(ast.BinOp(one.left, ast.Mult(), other), ast.Div(), one.right)
+            if _is(one, ast.Add, ast.Sub):
+                yield "term by term", 1, ast.BinOp(ast.BinOp(one.left, ast.Mult(), other), one.op, ast.BinOp(one.right, ast.Mult(), other))
+    if isinstance(node, ast.Call) and _called(node) in LIBRARY and len(node.args) == 1:
+        yield "of the library", 0, ast.parse(LIBRARY[_called(node)].format(ast.unparse(node.args[0])), mode="eval").body
+    if isinstance(node, ast.Call) and _called(node) in ROUNDED:
+        inner = node.args[0]
+        if _is(inner, ast.Add, ast.Sub):
+            yield "rounded one by one", 0, ast.BinOp(_with(node, args=[inner.left]), inner.op, _with(node, args=[inner.right]))
+        if _is(inner, ast.Mult):
+            yield "rounded before the product", 0, ast.BinOp(inner.left, ast.Mult(), _with(node, args=[inner.right]))
+
+
+def of_rounding(used, module, sorts):
+    """Changes of one function that change last bits alone, or what is cut or rounded to a whole number."""
+    name, path, function, tree, lines = used
+    for place in _places(tree):
+        node = place.node
+        if getattr(node, "lineno", None) is None or not lines.intersection(range(node.lineno, node.end_lineno + 1)) or not isinstance(node, ast.expr):
+            continue
+        for kind, rank, other in itertools.chain(_other_roundings(node), _of_call(node) if isinstance(node, ast.Call) else (),
+                                                 _of_like(node, _likes(tree, module, {}), True) if isinstance(node, ast.Attribute) and node.attr in ("rint", "floor", "ceil", "trunc") else ()):
+            yield _Edit(".".join((name, *path)), function, tree, [(place, other)], kind, rank)
 
 
 # --- statements of a step elsewhere ---
@@ -595,8 +644,11 @@ def of_values(values, owner):
         what = f"{name.replace('_', ' ')} of {owner}"
         for text, other in others(value, (), None):
             yield f"{what} is {text}", {name: other}
+        longer = [other for other, table in values.items() if getattr(value, "ndim", 0) == 2 == getattr(table, "ndim", 0) and len(table) > len(value)
+                  and (table.shape[1], table.dtype) == (value.shape[1], value.dtype)]
+        for other in (*like, *longer):
+            yield f"{what} is {other.replace('_', ' ')}", {name: values[other][: len(value)]}
         for other in like:
-            yield f"{what} is {other.replace('_', ' ')}", {name: values[other]}
             if other > name:
                 yield f"{what} and {other.replace('_', ' ')} are exchanged", {name: values[other], other: value}
         if getattr(value, "ndim", 0) and value.dtype.kind in "fi" and value.size:

@@ -7,6 +7,7 @@ from . import anything, catalogue, evidence, rows, search
 from . import case as cases
 
 SECONDS = 50  # for guesses; what is said then takes a few more
+AT_ROUNDING = 5  # for orders of operations that make each bit
 UNKNOWN = "none of those known"
 AS_ROUNDING = ("no larger than rounding: another order of operations, fused multiply-add, library functions, or a bug whose effect is "
                "as small")
@@ -109,6 +110,9 @@ def name(case, mistakes, outputs):
         return digits
     if not beyond:
         first.take_all()
+        fits = search.rounded(case, outputs, AT_ROUNDING) if outputs.changes and not case.single and first.wrong.sum() > 1 else []
+        if fits:
+            return f"within tolerance; bit for bit: {search.sentence(fits)}"
         if is_rounding(first):
             return anything.one_sided(first) or AS_ROUNDING
     moves_follow = first.table in search.FOLLOW and not (first.same_shape and _moves_are_right(case))

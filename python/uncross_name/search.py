@@ -379,6 +379,27 @@ def _few_rows(case, outputs):
     return makes
 
 
+def rounded(case, outputs, seconds):
+    """Changes of rounding alone that make every bit of theirs; likelier ones first."""
+    outputs.run_right()
+    run, end, fits, step = outputs.right["operators"].OPERATORS[case.operator], time.process_time() + seconds, [], next(iter(outputs.inputs))
+    for change in changes.of_call(outputs.right, {}, lambda: run(outputs.model, step, outputs.inputs[step]), changes.of_rounding):
+        if time.process_time() > end:
+            break
+        made = {}
+        for found in case.tables:
+            for part in found.parts:
+                made[part.step] = made.get(part.step) or outputs(change, part.step) or {}
+                if not np.array_equal(made[part.step].get(found.table), part.theirs, equal_nan=True):
+                    break
+            else:
+                continue
+            break
+        else:
+            fits.append(Fit(change, evidence.WHOLE, 0.0, True))
+    return fits
+
+
 def _tries(case, outputs):
     """Changes, and whether each may make theirs. Of moves that follow each other, those that few moves rule out come again
     at the end: they may have had an effect before."""

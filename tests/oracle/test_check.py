@@ -363,6 +363,7 @@ class PortTest(Folder):
         self.assertRegex(said, "\nmixed.pack\n(.*\n)+first difference: kick, step 3, vertex 0, out.velocity.x(.*\n)+this pattern: ")
         code, said, _, _ = self.check(self.port(self.text(self.LAST_DIGIT)), "--no-traces", name=True)
         self.assertNotIn("this pattern", said)
+        self.assertIn("\nmixed.pack, close: kick, step 3, vertex 0, out.velocity.x: no larger than rounding", said)
 
     LAST_DIGIT = "sed -E '/^kick 3 0 out.velocity.x/s/[0-8]$/9/'"
 

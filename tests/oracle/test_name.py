@@ -101,6 +101,12 @@ class HookTest(Folder):
         pack.write(self.dir / "theirs.h5", out)
         self.assertIn("reals are written with 12 significant digits only", meaning(compare(self.dir / "theirs.h5").stdout))
 
+    def test_another_order_of_operations(self):
+        """All is within tolerance, but each bit is that of one other order."""
+        said = self.changed("mixed", ("bond_force",), ("lattice.py", "return a[..., 0] * b[..., 0] + a[..., 1] * b[..., 1] + a[..., 2] * b[..., 2]",
+                                                       "return a[..., 0] * b[..., 0] + (a[..., 1] * b[..., 1] + a[..., 2] * b[..., 2])"))
+        self.assertIn("within tolerance; bit for bit: `a[..., 0] * b[..., 0] + (a[..., 1] * b[..., 1] + a[..., 2] * b[..., 2])` for ", said)
+
     def test_other_rounding_is_still_named(self):
         """A port in another language is off by last bits, too."""
         path = self.broken("kick without the mass", "kick")
