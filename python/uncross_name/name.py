@@ -97,7 +97,7 @@ def _alternatives(said, case, outputs, generic=()):
     """A mistake that is known, and what else makes the same numbers here."""
     fits = search.changed(case, outputs, search.SHORT) if outputs.changes else []
     fits = [fit for fit in fits if not fit.only]
-    more = [*generic, *([search.sentence(fits, 2)] if fits else [])]
+    more = [*(text for text in generic if text != said), *([search.sentence(fits, 2)] if fits else [])]
     return said + (f"; the same numbers here: {'; or: '.join(more)}" if more else "")
 
 
@@ -123,17 +123,20 @@ def name(case, mistakes, outputs):
         return _alternatives(search.sentence(sure), case, outputs, [found] if found else [])
     if found:
         return _alternatives(found + _which_table(case), case, outputs)
-    known = anything.pattern(first)
-    if known or (anything.is_single(first) and not case.single):
-        return known or AS_SINGLE
+    if anything.is_single(first) and not case.single:
+        return AS_SINGLE
     if not beyond:
         return anything.one_sided(first) or AS_ROUNDING
     changed = search.changed(case, outputs, outputs.clock.left()) if outputs.changes else []
-    if fits and not [fit for fit in changed if not fit.only]:
-        return few or search.sentence(fits)
-    if changed:
-        return search.sentence(changed)
-    return few or _first_hit(case) or _description(case, other)
+    whole = [fit for fit in changed if not fit.only]
+    if whole:
+        return search.sentence(whole)
+    part = [fit for fit in fits or changed if fit.only != "in some rows only"]
+    if part and not few:
+        return search.sentence(part)
+    if fits or changed:
+        other = other or f"the wrong values are those of {search.sentence(fits or changed)}"
+    return few or anything.pattern(first) or _first_hit(case) or _description(case, other)
 
 
 def read_and_name(path, seconds=SECONDS):

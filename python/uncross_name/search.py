@@ -62,7 +62,7 @@ class Outputs:
         self.known, self.planted, self.seconds = {}, {}, {}
         self.model = self.inputs = self.right = None
         self.root = self
-        self.beside, self.searched = {}, {}
+        self.beside, self.searched, self.clean = {}, {}, None
 
     def of(self, other):
         """The same of another operator of the pack."""
@@ -84,16 +84,21 @@ class Outputs:
         theirs = next((part.every["theirs.event"] for part in self.case.first.parts if part.step == step and "theirs.event" in part.every), None)
         if self.case.operator not in replay.DRIFTS or theirs is None:
             return self._run(modules, step)
-        with replay.hurried(modules, change, theirs.tolist(), self.searched):
+        self.clean = self.clean or catalogue.plant(catalogue.RIGHT)["events"].first_contact
+        with replay.hurried(modules, change, theirs.tolist(), self.searched, self.clean):
             return self._run(modules, step)
 
     def changed(self, change, step):
         """The same with a change of the port that is made in place; None if it fails or takes much longer than the right one."""
         try:
             with change.apply():
-                return self.clock.call(0.2 + 4 * self.right_seconds.get(step, 1), self._hurried, self.right, step, change)
+                return self.clock.call(0.2 + 4 * self.longer(step) * self.right_seconds.get(step, 1), self._hurried, self.right, step, change)
         except Exception:  # pylint: disable=broad-exception-caught
             return None
+
+    def longer(self, step):
+        """How many times as many events as ours theirs has, if more."""
+        return max([1.0, *(part.theirs_rows / part.ours_rows for part in self.case.first.parts if part.step == step and part.ours_rows)])
 
     def run_right(self):
         """The right port at all steps, in a copy whose changes are made in place."""
@@ -192,14 +197,27 @@ def _judge(found, outputs, mistake):
 
 
 def _fit(case, outputs, mistake):
-    how, bits = _judge(case.first, outputs, mistake)
+    first = case.first
+    how, bits = _judge(first, outputs, mistake)
     if how == evidence.NOT:
         return None
     others = [_judge(found, outputs, mistake) for found in case.others]
-    everything = how == evidence.WHOLE and all(other == evidence.WHOLE for other, _ in others)
+    if how == evidence.WRONG:
+        return Fit(mistake, how, bits, False, _where(first, outputs, mistake))
+    everything = all(other == evidence.WHOLE for other, _ in others)
     if everything:  # then what the other tables say counts, too
         bits = max([bits, *(more for _, more in others)])
-    return Fit(mistake, how, bits, everything)
+    return Fit(mistake, how, bits, everything, "" if everything else f"in {first.table} only")
+
+
+def _where(found, outputs, mistake):
+    """In which columns theirs is this guess, where others are right."""
+    wrong = found.wrong.any(axis=0)
+    for part in found.parts if not wrong.all() and found.table not in FOLLOW else ():
+        rows = slice(part.first, part.first + part.rows)
+        if not found.fits(_as_guess(found, part, outputs(mistake, part.step)[found.table]), rows)[:, wrong].all():
+            return "in some rows only"
+    return f"in {', '.join(name for name, bad in zip(found.columns, wrong) if bad)} only" if not wrong.all() else "in some rows only"
 
 
 # --- other operators of the pack ---
@@ -246,9 +264,9 @@ def candidates(case, mistakes):
 
 
 def told(fits, case, tried):
-    """Of the guesses that are theirs in all tables, else in the first one, those that chance would hardly make."""
+    """Of the guesses that are theirs in all tables, else in the first one, else wherever theirs is wrong, those that chance would hardly make."""
     whole = [fit for fit in fits if fit.how == evidence.WHOLE]
-    whole = [fit for fit in whole if fit.all_tables] or whole
+    whole = [fit for fit in whole if fit.all_tables] or whole or [fit for fit in fits if fit.only != "in some rows only"] or fits
     least = evidence.SURE + math.log2(tried) - case.first.choice_of_rows()
     sure = [fit for fit in whole if fit.bits >= least]
     best = max((fit.bits for fit in sure), default=0.0)
@@ -261,10 +279,8 @@ def held(fits, case, outputs):
     good, bad = [], []
     for fit in fits:
         other = contradiction(fit.mistake, case, outputs) if fit.all_tables else None
-        if fit.all_tables and other is None:
-            good.append(fit)
-        elif other is None:
-            bad.append(dataclasses.replace(fit, only=f"in {case.first.table} only"))
+        if other is None:
+            (good if fit.all_tables else bad).append(fit)
         elif not any(found.beyond.any() or not found.same_shape for found in other.tables):
             bad.append(dataclasses.replace(fit, only=f"in {case.operator} only; {other.operator} is right"))
     return good or bad
@@ -281,11 +297,10 @@ def sentence(fits, most=MOST_NAMES):
     return said + "; or: ".join(texts[:most]) + ("" if line else f"; or {len(texts) - most} more changes that make the same numbers here")
 
 
-def _too_few(case, fits):
+def _too_few(case, fits, outputs):
     """What makes all that is there, where so few events differ that chance would do it, too; or None."""
-    fits = [fit for fit in fits if fit.all_tables]
-    few = fits and case.first.table in FOLLOW
-    return f"too few events to tell; among what would make them: {sentence(fits)}" if few else None
+    fits = [fit for fit in held(fits, case, outputs) if not fit.only] if case.first.table in FOLLOW else []
+    return f"too few events to tell; among what would make them: {sentence(fits)}" if fits else None
 
 
 def planted(case, mistakes, outputs):
@@ -302,7 +317,7 @@ def planted(case, mistakes, outputs):
         sure = held(told(fits, case, max(tried, 1)), case, outputs)
         if any(not fit.only for fit in sure):
             return sure, None
-    return sure, _too_few(case, fits)
+    return sure, _too_few(case, fits, outputs)
 
 
 # --- what nobody has written down ---
@@ -422,12 +437,12 @@ def changed(case, outputs, seconds, known=()):
     found, end, tried = [], time.process_time() + seconds, 0
     with contextlib.suppress(Exception):  # what the port to NumPy cannot run
         for change, good in _tries(case, outputs):
-            if time.process_time() > end or outputs.clock.left() <= 0 or len(found) >= MOST_FOUND:
+            if time.process_time() > end or outputs.clock.left() <= 0 or sum(fit.all_tables for fit in found) >= MOST_FOUND:
                 break
             tried += 1
             with contextlib.suppress(Exception):
                 fit = good and _fit(case, outputs, change)
-                if fit and fit.all_tables:
+                if fit:
                     found.append(fit)
-                    end = min(end, time.process_time() + SHORT)
+                    end = min(end, time.process_time() + SHORT) if fit.all_tables else end
     return sorted(held(told(found, case, max(tried, 1)), case, outputs), key=lambda fit: fit.mistake.rank)

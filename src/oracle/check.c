@@ -269,8 +269,7 @@ static void print_details(const struct checks *c, FILE *out)
     if (c->check[k].summary.verdict >= least && !c->check[k].trouble[0])
       fprintf(out, "\n%s\n%s", c->check[k].name, c->check[k].details);
     else if (c->check[k].summary.verdict == ORACLE_CLOSE && c->check[k].summary.meaning[0])
-      fprintf(out, "\n%s, close: %s: %s\n", c->check[k].name, c->check[k].summary.first,
-              c->check[k].summary.meaning);
+      fprintf(out, "\n%s, close: %s: %s\n", c->check[k].name, c->check[k].summary.first, c->check[k].summary.meaning);
 }
 
 static json_t *json_of(const struct check *k)

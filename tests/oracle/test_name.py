@@ -101,6 +101,13 @@ class HookTest(Folder):
         pack.write(self.dir / "theirs.h5", out)
         self.assertIn("reals are written with 12 significant digits only", meaning(compare(self.dir / "theirs.h5").stdout))
 
+    def test_one_table_only(self):
+        """What is rotated the wrong way round are the vertices alone."""
+        said = self.changed("mixed", ("rotate",), ("solvent.py", "turned = center[cell] + factor[cell, None] * turn(model, velocity - center[cell], axis[cell])",
+                                                   "turned = center[cell] + factor[cell, None] * turn(model, velocity - center[cell], axis[cell] * (1 if len(velocity) == model.particles else -1))"))
+        self.assertIn("rotation transposed: turned by -alpha", said)
+        self.assertIn("(in out.vertex only)", said)
+
     def test_another_order_of_operations(self):
         """All is within tolerance, but each bit is that of one other order."""
         said = self.changed("mixed", ("bond_force",), ("lattice.py", "return a[..., 0] * b[..., 0] + a[..., 1] * b[..., 1] + a[..., 2] * b[..., 2]",
