@@ -7,6 +7,7 @@ from . import anything, catalogue, evidence, rows, search
 from . import case as cases
 
 SECONDS = 50  # for guesses; what is said then takes a few more
+MANY = 6  # changes that make the same numbers: a name is one of many causes then
 AT_ROUNDING = 5  # for orders of operations that make each bit
 UNKNOWN = "none of those known"
 AS_ROUNDING = ("no larger than rounding: another order of operations, fused multiply-add, library functions, or a bug whose effect is "
@@ -98,7 +99,8 @@ def _alternatives(said, case, outputs, generic=()):
     fits = search.changed(case, outputs, search.SHORT) if outputs.changes else []
     fits = [fit for fit in fits if not fit.only]
     more = [*(text for text in generic if text != said), *([search.sentence(fits, 2)] if fits else [])]
-    return said + (f"; the same numbers here: {'; or: '.join(more)}" if more else "")
+    doubt = "this pack does not tell which: " if len(fits) > MANY else ""
+    return doubt + said + (f"; the same numbers here: {'; or: '.join(more)}" if more else "")
 
 
 def name(case, mistakes, outputs):

@@ -432,17 +432,35 @@ def _tries(case, outputs):
     yield from ((change, True) for change in sorted(later, key=lambda change: change.line is not None and 1 + change.rank))
 
 
-def changed(case, outputs, seconds, known=()):
-    """Fits of changes that make all tables of theirs, found in so many seconds; likelier ones first. known: texts that are told already."""
+def _fit_of(case, outputs, change):
+    with contextlib.suppress(Exception):  # a change may make anything
+        return _fit(case, outputs, change)
+    return None
+
+
+def _at_lines(case, outputs, known):
+    """Other changes of the lines of those that are known: the likeliest is seldom the first that is tried."""
+    texts, lines, end = {fit.mistake.text for fit in known}, {fit.mistake.line for fit in known} - {None}, time.process_time() + SHORT
+    for change in changed_ones(outputs) if lines else ():
+        if time.process_time() > end or outputs.clock.left() <= 0:
+            break
+        if change.line in lines and change.text not in texts and change.rank < 3:
+            fit = _fit_of(case, outputs, change)
+            if fit and fit.all_tables:
+                yield fit
+
+
+def changed(case, outputs, seconds):
+    """Fits of changes that make theirs, found in so many seconds; likelier ones first."""
     found, end, tried = [], time.process_time() + seconds, 0
     with contextlib.suppress(Exception):  # what the port to NumPy cannot run
         for change, good in _tries(case, outputs):
             if time.process_time() > end or outputs.clock.left() <= 0 or sum(fit.all_tables for fit in found) >= MOST_FOUND:
                 break
             tried += 1
-            with contextlib.suppress(Exception):
-                fit = good and _fit(case, outputs, change)
-                if fit:
-                    found.append(fit)
-                    end = min(end, time.process_time() + SHORT) if fit.all_tables else end
+            fit = _fit_of(case, outputs, change) if good else None
+            if fit:
+                found.append(fit)
+                end = min(end, time.process_time() + SHORT) if fit.all_tables else end
+        found += _at_lines(case, outputs, [fit for fit in found if fit.all_tables])
     return sorted(held(told(found, case, max(tried, 1)), case, outputs), key=lambda fit: fit.mistake.rank)

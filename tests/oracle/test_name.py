@@ -87,6 +87,7 @@ class HookTest(Folder):
         self.assertIn("the stretch relative to l0", said)
         self.assertIn("the same numbers here: ", said)
         self.assertIn("2.0 * (spring * (length - rest)", said)
+        self.assertTrue(said.startswith("this pack does not tell which: "), said)
 
     def test_contacts_that_differ(self):
         """Of a drift, what follows the first contact that differs is not run with each change."""
