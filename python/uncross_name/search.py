@@ -247,7 +247,8 @@ def contradiction(mistake, case, outputs):
             continue
         if isinstance(mistake, changes.Change) and mistake.of_input:
             continue
-        if not isinstance(mistake, changes.Change) and not catalogue.reaches(mistake, other.operator):
+        if not isinstance(mistake, changes.Change) and not (
+                other.operator in mistake.entry.get("operators", (other.operator,)) and catalogue.reaches(mistake, other.operator)):
             continue
         if outputs.clock.left() > 1 and _says_no(other, outputs.of(other), mistake):
             return other
