@@ -1,5 +1,5 @@
 // Break it: a mistake is switched on, and tests say what they find. Numbers come from small runs in this page, in the plane; expected ones from theory.
-import {make, button, table, short, with_error} from './apart-draw.js';
+import {make, equation, button, table, short, with_error} from './apart-draw.js';
 import {add, inner, levers, approach_of, pushed, kinetic, row_of, center_of, collided, dice} from './apart-rules.js';
 import {mean_and_error} from './averages.js';
 
@@ -143,7 +143,7 @@ export function begin(panel) {
     make('p', {}, 'A good test is known by the bugs that it finds. Choose a mistake, guess which tests will find it, and measure: error bars shrink from run to run.'),
     make('div', {class: 'apart-choice'}, select, button('Measure', measure, {class: 'primary'})),
     line, numbers, hint,
-    make('p', {class: 'apart-equation'}, `C = 1 − (1 − cos α)(1 − (1 − e^−γ)/γ) = ${kept_by_theory.toFixed(4)}  for α = 90°, γ = 5, in the plane`),
+    equation('C = 1 − (1 − cos α)(1 − (1 − exp(−γ))/γ)', `= ${kept_by_theory.toFixed(4)} for α = 90°, γ = 5, in the plane`),
     make('p', {class: 'apart-source'}, 'Small runs in this page: 100 contacts and 1280 particles in 16 × 16 cells, twice, for each run. The C program has the same mistakes as a part of its own tests: docs/course.md, “Break it”, and docs/mutants.md.'));
   show();
 }

@@ -1,8 +1,8 @@
 // Stream, bin, rotate one cell by hand: a few particles in a plane of 3 × 3 cells.
-import {make, draw, picture, line, disc, text, arrow, drag, button, slider, table, fixed, short} from './apart-draw.js';
+import {make, equation, draw, picture, line, disc, text, arrow, drag, button, slider, table, fixed, short} from './apart-draw.js';
 import {row_of, center_of, collided, inner, dice} from './apart-rules.js';
 
-const CELLS = 3, EDGE = 116, LEFT = 16, TOP = 16, PARTICLES = 18, FLIGHT = 0.35, LONG = 34; // px for a velocity of 1
+const CELLS = 3, EDGE = 116, LEFT = 16, TOP = 16, PARTICLES = 24, FLIGHT = 0.35, LONG = 34; // px for a velocity of 1
 
 const radians = degrees => degrees * Math.PI / 180;
 const wrapped = x => ((x % CELLS) + CELLS) % CELLS;
@@ -27,11 +27,11 @@ export function begin(panel) {
     chosen();
   }
 
-  /** Keeps the cell if it has two members, else takes the fullest one. */
+  /** Keeps the cell if it has four members, else takes the fullest one. */
   function crowded() {
     const counts = new Array(CELLS * CELLS).fill(0);
     position.forEach(p => counts[cell_of(p)]++);
-    if (counts[cell] < 2) cell = counts.indexOf(Math.max(...counts));
+    if (counts[cell] < 4) cell = counts.indexOf(Math.max(...counts));
   }
 
   /** What the hand has turned is kept; from here on `before` is what was. */
@@ -126,11 +126,11 @@ export function begin(panel) {
   panel.append(
     make('p', {}, 'Particles fly straight (1). Then the plane is cut into cells, at another random place each time (2). In each cell all velocities are turned by one angle, seen from the cell’s mean velocity V (3).'),
     make('p', {}, 'Press 1, 2, and turn a cell with the slider. Its momentum and energy stay equal, whatever the angle.'),
-    make('div', {class: 'apart-choice'}, button('1 Stream', stream), button('2 Shift the grid', move_grid), button('3 Turn all cells by ±90°', turn_all), button('Next cell', () => next()), button('New particles', start)),
+    make('div', {class: 'apart-choice'}, button('1 Stream', stream), button('2 Shift the grid', move_grid), button('3 Turn all by ±90°', turn_all), button('Next cell', () => next()), button('New particles', start)),
     svg,
     make('ul', {class: 'apart-key'}, make('li', {}, make('i', {class: 'one'}), 'velocity v'), make('li', {}, make('i', {class: 'two'}), 'mean velocity V of the marked cell')),
     hand.box, numbers,
-    make('p', {class: 'apart-equation'}, 'r ← r + v Δt  (3)     v ← V + R (v − V)  (5), (6)'),
+    equation('r ← r + v Δt   (3)', 'v ← V + R (v − V)   (5), (6)'),
     make('p', {class: 'apart-source'}, 'In C: src/mpc/grid.c, src/mpc/rules/srd.h. In three dimensions the axis of R is random. A fiber’s vertex is a member of its cell like any particle: this is how fibers feel the fluid.'));
 
   function next() {

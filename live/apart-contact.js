@@ -1,15 +1,16 @@
 // One contact, its time and its impulse: two bonds through one step, by the event-driven rule or by the paper's.
-import {make, draw, picture, line, disc, text, arrow, button, choice, slider, table, short, fixed, with_error} from './apart-draw.js';
+import {make, equation, draw, picture, line, disc, text, arrow, button, choice, slider, table, short, fixed, with_error} from './apart-draw.js';
 import {TICKS, to_a0} from './apart-exact.js';
 import {add, inner, levers, dice} from './apart-rules.js';
 import {MASS, STEP, both, forces} from './apart-flight.js';
 import {mean_and_error} from './averages.js';
 
-const WIDTH = 380, HEIGHT = 250, SCALE = 250, LARGER = 22, PUSH = 34; // px for an a0; motion is drawn so many times larger; px for an impulse of 1
+const WIDTH = 380, HEIGHT = 250, SCALE = 330, LARGER = 15, PUSH = 62; // px for an a0; motion is drawn so many times larger; px of the largest impulse
 
 export function begin(panel) {
-  const random = dice(11);
-  let found, axes, rule = 'event', tally = {event: [], paper: []}, counting = 0;
+  const random = dice(11), counted = dice(12);
+  let found, axes, rule = 'event', counting = 0;
+  const tally = {event: [], paper: []};
   const svg = picture(WIDTH, HEIGHT, 'Two bonds in one step'), words = make('p', {class: 'apart-verdict', role: 'status'}), numbers = make('div'), sums = make('div');
   const contact = () => found.event.contacts[0];
 
@@ -19,7 +20,7 @@ export function begin(panel) {
     axes = [x, y, [x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]]];
   }
 
-  const project = r => { const [x, y, z] = axes.map(axis => inner(axis, r)); return [x + 0.55 * z, y + 0.42 * z]; };
+  const project = r => { const [x, y, z] = axes.map(axis => inner(axis, r)); return [0.95 * x + 0.6 * z, y + 0.4 * z - 0.12 * x]; };
   /** Where a vertex is drawn: its place at the contact, and from there the motion, larger. */
   function spot(k, place) {
     const {at, s} = contact(), middle = add(at[0], add(at[1], at[0], -1), s), still = project(add(at[k], middle, -1)), moved = project(add(place, at[k], -1));
@@ -45,7 +46,8 @@ export function begin(panel) {
     const after = tick >= c.tick, lever = levers(c.s, c.t), point = places.map((place, k) => spot(k, place));
     const on = [0, 1].map(i => [0, 1].map(axis => point[2 * i][axis] + (i ? c.t : c.s) * (point[2 * i + 1][axis] - point[2 * i][axis])));
     if (after) {
-      places.forEach((place, k) => parts.push(arrow(point[k], [point[k][0], point[k][1] + PUSH * lever[k] * c.impulse], 'impulse')));
+      const largest = Math.max(...lever.map(Math.abs));
+      places.forEach((place, k) => parts.push(arrow(point[k], [point[k][0], point[k][1] + PUSH * lever[k] / largest], 'impulse')));
       parts.push(disc(spot_of_contact(), 9, 'hit'));
     } else parts.push(line(on[0], on[1], 'flight'));
     svg.replaceChildren(...parts, text([10, 18], `tick ${tick} of ${TICKS}`, 'soft', 'start'));
@@ -64,13 +66,13 @@ export function begin(panel) {
       const trial = spot(last.vertex, to_a0(last.to)), pivot = [1, 0, 3, 2][last.vertex], lever = [1 - last.s, last.s, last.s_standing - 1, -last.s_standing];
       parts.push(draw('polygon', {class: 'swept', points: [spot(last.vertex, places[last.vertex]), trial, spot(pivot, places[pivot])].map(p => p.join()).join(' ')}),
         line(trial, spot(pivot, places[pivot]), `bond ${last.vertex < 2 ? 'one' : 'two'} ghost`));
-      const up = axes[1], sign = inner(last.normal, up) > 0 ? 1 : -1;
-      last.four.forEach((k, at) => parts.push(arrow(spot(k, places[k]), [spot(k, places[k])[0], spot(k, places[k])[1] + sign * PUSH * lever[at] * last.impulse], 'impulse')));
+      const sign = inner(last.normal, axes[1]) * last.impulse > 0 ? 1 : -1, largest = Math.max(...lever.map(Math.abs));
+      last.four.forEach((k, at) => parts.push(arrow(spot(k, places[k]), [spot(k, places[k])[0], spot(k, places[k])[1] + sign * PUSH * lever[at] / largest], 'impulse')));
     }
     parts.push(bonds_of(places));
     svg.replaceChildren(...parts, text([10, 18], `${turns} of 4 turns`, 'soft', 'start'));
     words.textContent = !last ? 'Vertices move one after the other, in a random order. Move the slider: one turn at a time.' :
-      last.rejected ? 'This vertex would cross. It stays where it is, and the same kind of impulse passes. Its springs do not have the length that its velocity pays for.' : 'This vertex moves to its new place. Nothing is in the way.';
+      last.rejected ? 'This vertex would cross. It stays where it is, and an impulse passes (green). The step counts on the new place: now the energy of the springs is wrong.' : 'This vertex moves to its new place. Nothing is in the way.';
   }
 
   function show() {
@@ -94,22 +96,17 @@ export function begin(panel) {
       ['Impulse ΔP', '', short(hit.impulse, 3)],
     ];
     numbers.replaceChildren(table(['', 'before', 'after'], rows, 'Numbers of this contact'));
-    sums.replaceChildren(table(['change of the energy by a contact, kT', 'this one', 'typical size', `mean of ${tally.event.length}`],
+    sums.replaceChildren(table(['change of the energy by a contact, kT', 'this one', `size in ${tally.event.length} others`, 'their mean'],
       [['event-driven', ...balance('event')], ['the paper’s rule', ...balance('paper')]], 'Heat of contacts'));
   }
 
   function balance(name) {
-    const list = tally[name], heat = short(found.heat[name]), size = short(Math.sqrt(list.reduce((sum, x) => sum + x * x, 0) / list.length));
+    const list = tally[name], heat = short(found.heat[name]), size = list.length ? short(Math.sqrt(list.reduce((sum, x) => sum + x * x, 0) / list.length)) : '–';
     return [make('span', {class: Math.abs(found.heat[name]) < 2e-3 ? 'pass' : 'fail'}, heat), size, list.length < 8 ? '–' : with_error(...mean_and_error(list))];
   }
 
-  function another() {
-    found = both(random);
-    for (const name of ['event', 'paper']) tally[name].push(found.heat[name]);
-  }
-
   function next() {
-    another();
+    found = both(random, true);
     look();
     time.set(0);
     turns.set(0);
@@ -122,8 +119,11 @@ export function begin(panel) {
     many_button.disabled = true;
     const some = () => {
       const began = performance.now();
-      while (counting > 0 && performance.now() - began < 25) { another(); counting--; }
-      look();
+      while (counting > 0 && performance.now() - began < 25) {
+        const {heat} = both(counted);
+        for (const name of ['event', 'paper']) tally[name].push(heat[name]);
+        counting--;
+      }
       show();
       if (counting > 0) setTimeout(some);
       else many_button.disabled = false;
@@ -141,8 +141,8 @@ export function begin(panel) {
     make('ul', {class: 'apart-key'}, make('li', {}, make('i', {class: 'one'}), 'a bond'), make('li', {}, make('i', {class: 'two'}), 'another bond'), make('li', {}, make('i', {class: 'three'}), 'impulse on each vertex'), make('li', {}, `motion drawn ${LARGER} times as large`)),
     time.box, turns.box, words, numbers,
     make('div', {class: 'apart-choice'}, button('Another contact', next), many_button), sums,
-    make('p', {}, 'Both exchanges conserve kinetic energy to the last digit. But a vertex that stays has springs of another length than its velocity has paid for. Single changes have either sign. In a crowd of fibers their mean is 0.012 kT at this time step, and the suspension heats.'),
-    make('p', {class: 'apart-equation'}, 'ΔP = 2 Σ λ V·n / Σ λ²/M     λ = 1 − s, s, s′ − 1, −s′     (22)–(28)'),
+    make('p', {}, 'Both exchanges conserve kinetic energy to the last digit. But in the paper’s rule a vertex stays, and its springs keep the energy of the old place. Single changes have either sign. Their mean in a crowd is 0.012 kT (exercise 8), so a suspension heats.'),
+    equation('ΔP = 2 (Σ λ V·n) / (Σ λ²/M),  V ← V − λ ΔP n/M,', 'λ = 1 − s, s, s′ − 1, −s′   (22)–(28)'),
     make('p', {class: 'apart-source'}, 'In C: src/contact/impulse.h, event_driven.c, sequential.c. u = v + τ F/M is the velocity at the time of the contact, τ after the middle of the step: docs/contacts.md.'));
   next();
 }

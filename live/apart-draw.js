@@ -98,6 +98,9 @@ export function with_error(value, error) {
   return `${minus_sign(value.toFixed(digits))} ± ${error.toFixed(digits)}`;
 }
 
+/** Equations, a line each, with their numbers in the paper. */
+export const equation = (...lines) => make('p', {class: 'apart-equation'}, ...lines.flatMap((line, at) => at ? [make('br'), line] : [line]));
+
 /** Styles of the two panels, put into the page once. */
 export function dress() {
   if (!document.querySelector('link[href="apart.css"]')) document.head.append(make('link', {rel: 'stylesheet', href: 'apart.css'}));

@@ -88,14 +88,17 @@ export function one_by_one(places, velocity, order) {
 /** Change of the energy by a step with a contact: from its flight to the next one, kT. */
 export const heat = (places, velocity, after) => energy_of_flight(after.places, kicked(after.places, after.velocity)) - energy_of_flight(places, velocity);
 
-/** Two bonds that are about to touch in the flight, as they do in equilibrium: places at its beginning, and velocities. */
-export function about_to_touch(dice) {
+/** Two bonds that are about to touch in the flight, as they do in equilibrium: places at its beginning, and velocities.
+ * clear: one that is easy to see, away from ends and from the ends of the step. */
+export function about_to_touch(dice, clear) {
   const direction = () => { const v = [dice.normal(), dice.normal(), dice.normal()], size = Math.hypot(...v); return v.map(x => x / size); };
   const length = () => { for (;;) { const l = LENGTH + dice.normal() / Math.sqrt(SPRING); if (l > 0.05 && dice.uniform() < l ** 3) return l; } };
   for (;;) {
     const [u, w] = [direction(), direction()], n = [u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2], u[0] * w[1] - u[1] * w[0]], sine = Math.hypot(...n);
     if (dice.uniform() > sine) continue; // the area that two bonds show each other
+    if (clear && sine < 0.8) continue;
     const sign = dice.uniform() < 0.5 ? -1 : 1, normal = n.map(x => sign * x / sine), s = dice.uniform(), t = dice.uniform(), tau = STEP * (dice.uniform() - 0.5), lever = levers(s, t);
+    if (clear && (Math.abs(s - 0.5) > 0.25 || Math.abs(t - 0.5) > 0.25 || Math.abs(tau) > 0.2 * STEP)) continue;
     const [long, other] = [length(), length()], first = u.map(x => x * long), q = w.map(x => x * other);
     const at = [first.map(x => -s * x), first.map(x => (1 - s) * x), q.map(x => -t * x), q.map(x => (1 - t) * x)];
     let v = at.map(() => [0, 0, 0].map(() => dice.normal() / Math.sqrt(MASS)));
@@ -105,10 +108,10 @@ export function about_to_touch(dice) {
   }
 }
 
-/** One contact under both rules. order: of the paper's turns. Null where a rule has no contact. */
-export function both(dice) {
+/** One contact under both rules. order: of the paper's turns. */
+export function both(dice, clear = false) {
   for (;;) {
-    const {places, velocity} = about_to_touch(dice), order = [0, 1, 2, 3].map(k => [dice.uniform(), k]).sort((a, b) => a[0] - b[0]).map(pair => pair[1]);
+    const {places, velocity} = about_to_touch(dice, clear), order = [0, 1, 2, 3].map(k => [dice.uniform(), k]).sort((a, b) => a[0] - b[0]).map(pair => pair[1]);
     const event = event_driven(places, velocity), paper = one_by_one(places, velocity, order);
     if (event.contacts.length !== 1 || !paper.turns.some(turn => turn.rejected)) continue;
     return {places, velocity, event, paper, order, heat: {event: heat(places, velocity, event), paper: heat(places, velocity, paper)}};

@@ -1,23 +1,23 @@
 // One swept triangle and its exact sign: five points on a lattice that can be dragged, five determinants, three conditions.
-import {make, draw, picture, line, disc, text, drag, button, choice, slider, table, short} from './apart-draw.js';
+import {make, equation, draw, picture, line, disc, text, drag, button, choice, slider, table, short} from './apart-draw.js';
 import {determinants, conditions, crossing} from './apart-exact.js';
 
-const WIDTH = 380, HEIGHT = 300, UNIT = 21, REACH = 7, TURN = 0.42, TILT = 0.5; // px for a lattice unit; the direction of sight
+const WIDTH = 380, HEIGHT = 300, UNIT = 22, REACH = 7, TURN = 0.42, TILT = 0.38, FLOOR = -6; // px for a lattice unit; the direction of sight; y of the floor
 const names = {from: 'i', to: 'i′', pivot: 'pivot', a: 'j', b: 'j+1'}, points = Object.keys(names);
 const small = rows => Object.fromEntries(points.map((name, k) => [name, rows[k].map(BigInt)]));
 
 /** The last one has coordinates as the program has them, 2⁴⁰ to an a0: `unit` of them are a unit of the picture. */
 const presets = {
-  through: {words: 'Through', unit: 1n, at: small([[-4, 3, 2], [5, 2, 1], [0, -5, 0], [-1, 0, -5], [2, -1, 5]])},
-  beside: {words: 'Beside', unit: 1n, at: small([[-4, 3, 2], [5, 2, 1], [0, -5, 0], [-1, 5, -5], [2, 5, 5]])},
-  tie: {words: 'Exactly onto it', unit: 1n, at: small([[-4, 3, 2], [0, 2, 0], [0, -5, 0], [0, -1, -5], [0, -1, 5]])},
+  through: {words: 'Through', unit: 1n, at: small([[-5, 3, 1], [5, 2, 0], [0, -5, 0], [3, 1, -5], [-3, -1, 5]])},
+  beside: {words: 'Beside', unit: 1n, at: small([[-5, 3, 1], [5, 2, 0], [0, -5, 0], [3, 5, -5], [-3, 4, 5]])},
+  tie: {words: 'Exactly onto it', unit: 1n, at: small([[-5, 3, 1], [0, 4, 0], [0, -5, 0], [3, 0, -5], [-3, 0, 5]])},
   doubles: {words: 'Doubles fail', unit: 109951162778n, at: null},
 };
 
 /** i′ = j + (bond) − (arm) lies in the plane of j, j+1 and the pivot, to the last digit. */
 presets.doubles.at = (() => {
-  const a = [-109934664989n, -109932866245n, -549738375388n], b = [219903396985n, -109931793114n, 549760243627n], pivot = [16443400n, -549737528633n, 4410204n];
-  return {from: [-439785695624n, 329871375104n, 219918654317n], to: b.map((x, k) => x - pivot[k] + a[k]), pivot, a, b};
+  const a = [329867988644n, 109953015084n, -549740393307n], b = [-219901278647n, -109945446103n, 549763777032n], pivot = [19130601n, -549745405358n, 14539834n];
+  return {from: [-549741795520n, 329872702067n, 109963441875n], to: b.map((x, k) => x - pivot[k] + a[k]), pivot, a, b};
 })();
 
 const sight = {right: [Math.cos(TURN), 0, -Math.sin(TURN)], up: [-Math.sin(TILT) * Math.sin(TURN), Math.cos(TILT), -Math.sin(TILT) * Math.cos(TURN)], near: [Math.cos(TILT) * Math.sin(TURN), Math.sin(TILT), Math.cos(TILT) * Math.cos(TURN)]};
@@ -82,8 +82,8 @@ export function begin(panel) {
     const p = Object.fromEntries(points.map(point => [point, shown(at[point])])), on = Object.fromEntries(points.map(point => [point, place(p[point])]));
     const found = determinants(query()), met = conditions(found, false), all = met.every(Boolean);
     const parts = [];
-    for (const point of points) parts.push(line(on[point], place([p[point][0], -REACH, p[point][2]]), 'flight')); // to the floor
-    const floor = [[-REACH, -REACH, -REACH], [REACH, -REACH, -REACH], [REACH, -REACH, REACH], [-REACH, -REACH, REACH]].map(place);
+    for (const point of points) parts.push(line(on[point], place([p[point][0], FLOOR, p[point][2]]), 'flight')); // to the floor
+    const floor = [[-5, FLOOR, -5], [5, FLOOR, -5], [5, FLOOR, 5], [-5, FLOOR, 5]].map(place);
     parts.unshift(draw('polygon', {points: floor.map(q => q.join()).join(' '), class: 'frame'}));
     const triangle = draw('polygon', {points: [on.from, on.to, on.pivot].map(q => q.join()).join(' '), class: 'swept'});
     const bonds = [line(on.from, on.pivot, 'bond one'), line(on.to, on.pivot, 'bond one ghost')];
@@ -100,7 +100,7 @@ export function begin(panel) {
     const middle = [(on.from[0] + on.to[0] + on.pivot[0]) / 3, (on.from[1] + on.to[1] + on.pivot[1]) / 3];
     for (const point of points) {
       const out = point === 'a' || point === 'b' ? [on[point][0] - (on.a[0] + on.b[0]) / 2, on[point][1] - (on.a[1] + on.b[1]) / 2] : [on[point][0] - middle[0], on[point][1] - middle[1]], size = Math.hypot(...out) || 1;
-      parts.push(text([on[point][0] + 17 * out[0] / size, on[point][1] + 17 * out[1] / size + 4], names[point], point === 'a' || point === 'b' ? 'two' : 'one'));
+      parts.push(text([on[point][0] + 21 * out[0] / size, on[point][1] + 21 * out[1] / size + 5], names[point], point === 'a' || point === 'b' ? 'two' : 'one'));
     }
     let when = '';
     if (all) {
@@ -150,7 +150,7 @@ export function begin(panel) {
     make('p', {}, 'In the paper’s rule one vertex moves at a time, from i to i′. Its bond sweeps the shaded triangle, and all other bonds stand. Does the bond j … j+1 pierce the triangle?'),
     make('p', {}, 'Drag the points. Three signs decide, each of an exact integer: one crossing that is missed is a tangle forever.'),
     which.box, svg, depth.box, verdict, numbers, doubt,
-    make('p', {class: 'apart-equation'}, '(R(j+1) − R(j)) × (R(pivot) − R(j)) · (R(i; t) − R(j)) = 0   (10)'),
+    equation('(R(j+1) − R(j)) × (R(pivot) − R(j)) · (R(i; t) − R(j)) = 0   (10)'),
     make('p', {class: 'apart-source'}, 'In C: src/contact/line.c, determinant.h. The same sign is computed here, and both are tested with the same data.'));
   choose(name);
 }
