@@ -44,19 +44,20 @@ function begin_lesson(lesson, page) {
     rows.forEach(row => { row.values = []; row.curves = []; });
     results.replaceChildren();
     stop = new AbortController();
+    const count = Number(seeds.value);
     run.textContent = 'Stop';
     line.textContent = 'Starting …';
     const variants = [lesson.before, lesson.after].map(variant => ({settings: variant.settings, steps: variant.steps ?? lesson.steps})), began = performance.now();
     try {
-      await run_all({text: scene.text, variants, seeds: lesson.seeds}, (which, seed, tables) => {
+      await run_all({text: scene.text, variants, seeds: count}, (which, seed, tables) => {
         rows[which].values.push(lesson.value(tables));
         if (lesson.curve) rows[which].curves.push(lesson.curve(tables));
         show();
       }, part => {
         const past = (performance.now() - began) / 1000;
-        line.textContent = `${(100 * part).toFixed(0)} % of ${2 * lesson.seeds} runs${part > 0.03 ? `, ${Math.max(1, Math.round(past / part - past))} s to go` : ''}`;
+        line.textContent = `${(100 * part).toFixed(0)} % of ${2 * count} runs${part > 0.03 ? `, ${Math.max(1, Math.round(past / part - past))} s to go` : ''}`;
       }, stop.signal);
-      line.textContent = `${lesson.seeds} seeds of each, in ${((performance.now() - began) / 1000).toFixed(0)} s. Now unfold what you should see.`;
+      line.textContent = `${count} seeds of each, in ${((performance.now() - began) / 1000).toFixed(0)} s. Now unfold what you should see.`;
     } catch (error) {
       line.textContent = error.message === 'stopped' ? 'Stopped.' : error.message;
     }
@@ -64,12 +65,14 @@ function begin_lesson(lesson, page) {
     run.textContent = 'Run again';
   }
 
-  const run = button(`Run ${lesson.seeds} seeds of each`, measure, {class: 'primary'});
+  const counts = [...new Set([2, 4, 8, 16, lesson.seeds])].sort((a, b) => a - b);
+  const seeds = make('select', {}, ...counts.map(count => make('option', {value: count, selected: count === lesson.seeds}, String(count))));
+  const run = button('Run', measure, {class: 'primary'});
   const box = make('details', {class: 'lesson', id: `lesson-${lesson.number}`}, make('summary', {}, `${lesson.number}. ${lesson.title}`),
     make('p', {}, lesson.question),
     make('p', {}, 'The line that changes: ', make('code', {}, lesson.before.label), ' → ', make('code', {}, lesson.after.label)),
     make('p', {}, make('label', {class: 'guess'}, lesson.guess, guess)),
-    make('p', {class: 'buttons'}, run), line, results, answer,
+    make('p', {class: 'buttons'}, run, make('label', {}, 'seeds of each ', seeds)), line, results, answer,
     make('p', {class: 'links'}, 'In the picture: ', make('a', {href: link_of(lesson, lesson.before)}, 'before'), make('a', {href: link_of(lesson, lesson.after)}, 'after'),
       make('a', {href: COURSE, rel: 'help'}, `exercise ${lesson.number} of the course`)));
   return box;
