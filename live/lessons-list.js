@@ -17,11 +17,11 @@ function bulk_rate(tables) {
 }
 
 /**
- * number: of docs/course.md. before, after: {label, settings, seen}; seen is what docs/course.md says, shown when it is unfolded.
+ * number: of docs/course.md (name: where an entry has two). before, after: {label, settings, seen}; seen is what docs/course.md says, shown when it is unfolded.
  * value(tables): one number of a run. curve(tables): {x, y} of a run. theory: rows {label, value}. unit: of the value.
  */
 export const lessons = [
-  {number: 1, title: 'What decides the temperature?', scene: 'solvent', steps: 400, seeds: 8,
+  {number: 1, name: '1 and 2', title: 'What decides the temperature?', scene: 'solvent', steps: 400, seeds: 8,
    question: 'A solvent without a thermostat, and the same with thermostat: rescale. Each seed draws other velocities. By how much do the temperatures of eight seeds scatter, without and with it?',
    guess: 'Scatter without the thermostat (kT)', scatter: true,
    before: {label: 'thermostat: none', settings: [], seen: 1}, after: {label: 'thermostat: rescale', settings: ['solvent.thermostat=rescale'], seen: 1.00006},
@@ -47,7 +47,7 @@ export const lessons = [
   {number: 8, title: 'Half the time step', scene: 'crowd', steps: 2000, seeds: 2,
    question: 'The paper’s rule heats: a rejected vertex stays behind. How much of the heat of a rejected move is left at half the time step?',
    guess: 'Heat at half the step (kT)',
-   before: {label: 'time_step: 0.01', settings: [], seen: 0.0121}, after: {label: 'time_step: 0.005', settings: ['time_step=0.005', 'steps=20000', 'solvent.collision_interval=0.02'], steps: 4000, seen: 0.0032},
+   before: {label: 'time_step: 0.01', settings: [], seen: 0.0121}, after: {label: 'time_step: 0.005', settings: ['time_step=0.005'], steps: 4000, seen: 0.0032},
    quantity: 'heat of a rejected move, kT', axis: ['time, t₀', 'energy gained, kT'],
    value: tables => { const total = column(tables, 'conserved', 'total'); return (last(total) - total[0]) / last(column(tables, 'collisions', 'executed')); },
    curve: tables => { const total = column(tables, 'conserved', 'total'); return {x: column(tables, 'conserved', 'time'), y: total.map(one => one - total[0])}; },

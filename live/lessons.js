@@ -31,7 +31,7 @@ function begin_lesson(lesson, page) {
     if (!rows.some(row => row.values.length)) return;
     const lines = [...(lesson.scatter ? [] : [{value: guessed(), cls: 'guess', label: 'your guess'}]), ...(answer.open ? (lesson.theory ?? []).filter(one => !lesson.log).map(one => ({...one, cls: 'expected'})) : [])];
     const number = row => { const {mean, error, scatter} = over_seeds(row.values); return row.values.length ? [row.label, with_error(mean, error), row.values.length > 1 ? short(scatter) : '–', String(row.values.length), answer.open ? short(row.seen, 4) : '?'] : [row.label, '–', '–', '0', '?']; };
-    results.replaceChildren(strip(rows, lines), table([lesson.quantity, 'mean ± error', 'scatter', 'seeds', 'course'], rows.map(number), lesson.quantity),
+    results.replaceChildren(strip(rows, lines), table([lesson.quantity, 'mean ± error', 'scatter', 'seeds', 'the course'], rows.map(number), lesson.quantity),
       ...(lesson.curve ? [curves(rows, lesson.axis, lesson.log, answer.open && lesson.log ? lesson.theory : [])] : []));
     if (lesson.scatter && guess.value) results.append(make('p', {class: 'watch'}, `Your guess of the scatter: ${guess.value}.`));
   }
@@ -68,13 +68,13 @@ function begin_lesson(lesson, page) {
   const counts = [...new Set([2, 4, 8, 16, lesson.seeds])].sort((a, b) => a - b);
   const seeds = make('select', {}, ...counts.map(count => make('option', {value: count, selected: count === lesson.seeds}, String(count))));
   const run = button('Run', measure, {class: 'primary'});
-  const box = make('details', {class: 'lesson', id: `lesson-${lesson.number}`}, make('summary', {}, `${lesson.number}. ${lesson.title}`),
+  const box = make('details', {class: 'lesson', id: `lesson-${lesson.number}`}, make('summary', {}, `${lesson.name ?? lesson.number}. ${lesson.title}`),
     make('p', {}, lesson.question),
     make('p', {}, 'The line that changes: ', make('code', {}, lesson.before.label), ' → ', make('code', {}, lesson.after.label)),
     make('p', {}, make('label', {class: 'guess'}, lesson.guess, guess)),
     make('p', {class: 'buttons'}, run, make('label', {}, 'seeds of each ', seeds)), line, results, answer,
     make('p', {class: 'links'}, 'In the picture: ', make('a', {href: link_of(lesson, lesson.before)}, 'before'), make('a', {href: link_of(lesson, lesson.after)}, 'after'),
-      make('a', {href: COURSE, rel: 'help'}, `exercise ${lesson.number} of the course`)));
+      make('a', {href: COURSE, rel: 'help'}, `exercise ${lesson.name ?? lesson.number} of the course`)));
   return box;
 }
 

@@ -6,6 +6,10 @@ import {readFileSync} from 'node:fs';
 import {gunzipSync} from 'node:zlib';
 import * as exact from '../../live/apart-exact.js';
 import * as rules from '../../live/apart-rules.js';
+import {both, STEP} from '../../live/apart-flight.js';
+import {mistakes, tests, round, verdict} from '../../live/apart-break.js';
+import {lessons} from '../../live/lessons-list.js';
+import {link_of} from '../../live/lessons.js';
 
 const ROOT = new URL('../../', import.meta.url);
 
@@ -131,5 +135,33 @@ for (const [name, what, functions] of planted) {
   const {wrong, n} = checks[name]({...exact, ...rules, ...functions});
   if (!wrong) bad++;
   console.log(`${wrong ? 'ok' : 'FAIL'}    planted in ${name}: ${what}: ${wrong} of ${n} rows differ`);
+}
+/** What a contact changes of the energy that the leap-frog keeps. docs/contacts.md: the event-driven rule to fourth order in the step (here the springs are alone, without bends, so
+ * smaller than its table has), the paper's rule by some 0.05 kT at this step, of either sign. */
+function sizes_of_heat(contacts) {
+  const dice = rules.dice(7), heats = Array.from({length: contacts}, () => both(dice).heat), size = name => Math.sqrt(heats.reduce((sum, heat) => sum + heat[name] ** 2, 0) / contacts);
+  return {event: size('event'), paper: size('paper')};
+}
+const heat = sizes_of_heat(60), kept = STEP === 0.01 && heat.event < 1e-3 && heat.paper > 0.01 && heat.paper < 0.25;
+if (!kept) bad++;
+console.log(`${kept ? 'ok' : 'FAIL'}    contacts: sizes of the heat ${heat.event.toExponential(1)} and ${heat.paper.toExponential(1)} kT`);
+
+/** Break it: the tests that must find each mistake, and no others. By the course: levers and half turn conserve energy and momentum; a twofold impulse p a - p² c/2 does not. */
+const found_by = {none: [], twice: ['contact-energy', 'contact-back'], levers: ['contact-back'], center: ['cell-momentum', 'kept'], half: ['kept'], shift: ['frame']};
+for (const mistake of mistakes) {
+  const samples = {}, dice = rules.dice(2026);
+  for (let k = 0; k < 16; k++) round(mistake, dice, samples);
+  const failed = tests.filter(test => verdict(test, samples).words === 'fail').map(test => test.id), right = failed.join() === found_by[mistake.id].join();
+  if (!right) bad++;
+  console.log(`${right ? 'ok' : 'FAIL'}    break it, ${mistake.id}: found by ${failed.join(', ') || 'none'}`);
+}
+
+/** docs/course.md has the link of each exercise that the page has, and the numbers that the page says it says. */
+const course = readFileSync(new URL('docs/course.md', ROOT), 'utf8');
+for (const lesson of lessons) {
+  const link = `live/${decodeURIComponent(link_of(lesson, lesson.after))}`, digits = lesson.see.match(/[0-9.]+\([0-9]+\)/g) ?? [];
+  const wrong = [course.includes(link) ? '' : `no ${link}`, ...digits.map(number => course.includes(number) ? '' : `no ${number}`)].filter(Boolean);
+  if (wrong.length) bad++;
+  console.log(`${wrong.length ? 'FAIL' : 'ok'}    exercise ${lesson.number} in docs/course.md ${wrong.join(', ')}`);
 }
 process.exit(bad ? 1 : 0);
