@@ -84,7 +84,7 @@ export function begin(panel) {
     const speed = v => v.reduce((sum, one, k) => sum + lever[k] * inner(one, c.normal), 0), kinetic = v => v.reduce((sum, one) => sum + MASS * inner(one, one) / 2, 0);
     const hit = found.paper.turns.find(turn => turn.rejected), fast = v => hit.four.reduce((sum, k, at) => sum + [1 - hit.s, hit.s, hit.s_standing - 1, -hit.s_standing][at] * inner(v[k], hit.normal), 0);
     const rows = rule === 'event' ? [
-      ['When', `tick ${c.tick}`, `${fixed(100 * c.tick / TICKS, 1)} % of Δt`],
+      ['When: tick, part of Δt', String(c.tick), `${fixed(100 * c.tick / TICKS, 1)} %`],
       ['Where: s, s′', fixed(c.s), fixed(c.t)],
       ['Approach of the points, now u', short(speed(present(c.before)), 3), short(speed(present(c.after)), 3)],
       ['Kinetic energy of u, kT', fixed(kinetic(present(c.before)), 6), fixed(kinetic(present(c.after)), 6)],

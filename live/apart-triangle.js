@@ -100,7 +100,8 @@ export function begin(panel) {
     const middle = [(on.from[0] + on.to[0] + on.pivot[0]) / 3, (on.from[1] + on.to[1] + on.pivot[1]) / 3];
     for (const point of points) {
       const out = point === 'a' || point === 'b' ? [on[point][0] - (on.a[0] + on.b[0]) / 2, on[point][1] - (on.a[1] + on.b[1]) / 2] : [on[point][0] - middle[0], on[point][1] - middle[1]], size = Math.hypot(...out) || 1;
-      parts.push(text([on[point][0] + 21 * out[0] / size, on[point][1] + 21 * out[1] / size + 5], names[point], point === 'a' || point === 'b' ? 'two' : 'one'));
+      const far = point === held ? 31 : 20; // outside the ring of the point that is held
+      parts.push(text([on[point][0] + far * out[0] / size, on[point][1] + far * out[1] / size + 5], names[point], point === 'a' || point === 'b' ? 'two' : 'one'));
     }
     let when = '';
     if (all) {
