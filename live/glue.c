@@ -41,7 +41,7 @@ int live_report(const uncross_scene *from, uncross_error *error)
   if (code != UNCROSS_OK)
     return code;
   const struct stream stream = stream_of_seed(scene.seed);
-  scene_report(&scene, &stream, NULL, NULL);
+  scene_report(&scene, &stream, false);
   fflush(stdout);
   scene_free(&scene);
   return UNCROSS_OK;
