@@ -27,7 +27,7 @@ class Made(unittest.TestCase):
                                          row("b.round", 1.0, 0.0996), row("b.none", None, 0.0, "undecided"))}
 
     def renewed(self, text):
-        return tables.renewed(text, "paper", self.CLAIMS)
+        return tables.renewed(text, self.CLAIMS)
 
     def test_numbers(self):
         for before, after in (("is 0.2(1) (`a.one`", "is 0.155(2) (`a.one`"),
@@ -45,14 +45,6 @@ class Made(unittest.TestCase):
     def test_verdicts(self):
         self.assertEqual(self.renewed("3.0(1) (`a.one`: pass), (`a.two`: fail), (`no.such`: pass)"),
                          "0.155(2) (`a.one`: not reproduced), (`a.two`: pass), (`no.such`: pass)")
-
-    def test_tables(self):
-        claims = {one["id"]: one for one in (row("paper.two", -0.4931, 0.0034), row("paper.none", None, 0.0, "undecided"))}
-        text = tables.renewed("<!-- verdicts -->\nold\n<!-- end of verdicts -->\nrest", "paper", claims)
-        self.assertIn("*Pass* (1), measured (expected): `two` −0.4931 ± 0.0034 (1).\n", text)
-        self.assertNotIn("`none`", text)
-        self.assertNotIn("old", text)
-        self.assertEqual(tables.renewed(text, "paper", claims), text)
 
     def test_words(self):
         fits = "- **Same.** so (`a.two`).\n- **Different.** (`a.one`).\n- **Not settled.** (`b.late`).\n- **Why.** (`a.one`)."

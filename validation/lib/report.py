@@ -183,7 +183,7 @@ STANDING = """# Where the campaign stands
 
 The campaign runs the paper's own systems. It has used {hours:.1f} of the {planned:.0f} core-hours that are planned. This page counts its
 [verdicts](../../validation/README.md#verdicts), and lists all that are not a pass.
-`validation/run report --tier campaign` makes the whole report, `reference-data/campaign/report.html`.
+All numbers, those that pass too, stand in `reference-data/campaign/report.json`; `validation/run report --tier campaign` makes the page of it, `report.html` beside it.
 
 | claim | | pass | within allowance | fail | not reproduced | undecided | runs: finished, begun, all | core-hours |
 | --- | --- | --- | --- | --- | --- | --- | --- | --- |
