@@ -83,11 +83,20 @@ class Means(unittest.TestCase):
             self.assertEqual(isinstance(value, stats.Moving), moves)
             self.assertEqual((value, error), stats.blocked_mean(3.0 + noise + drift))
 
+    def test_what_is_constant_does_not_move(self):
+        for value in (0.0, 0.1, 1.0 / 3.0, -1e9):
+            self.assertEqual(stats.unsteady([value] * 63), 0.0)
+        self.assertGreater(stats.unsteady([1.0] * 32 + [-1.0] * 32), stats.SIGMAS)
+        self.assertEqual(stats.average([1.0] * 32 + [-1.0] * 32)[0].share, 1.0)
+
     def test_a_number_made_of_what_moves_moves(self):
         value = stats.Moving(4.0, "it still moves", 0.25)
-        for made, plain in ((2.0 * value, 8.0), (value / 2, 2.0), (1.0 / value, 0.25), (value - 1, 3.0), (-value, -4.0), (numpy.float64(1.0) * 1.0 + 0.0, None)):
-            self.assertEqual(made, plain if plain is not None else made)
-            self.assertEqual(getattr(made, "moves", ""), "it still moves" if plain is not None else "")
+        for made, plain in ((2.0 * value, 8.0), (value / 2, 2.0), (1.0 / value, 0.25), (value - 1, 3.0), (-value, -4.0), (value**2, 16.0),
+                            (numpy.float64(2.0) / value, 0.5), (numpy.float64(2.0) - value, -2.0), (value * numpy.float64(2.0), 8.0)):
+            self.assertEqual(made, plain)
+            self.assertEqual(made.moves, "it still moves")
+        with self.assertRaises(TypeError):
+            numpy.ones(2) / value
         self.assertEqual(stats.error_that_covers(2.0 * value, 0.1), 2.0)
         self.assertEqual(stats.error_that_covers(8.0, 0.1), 0.1)
 

@@ -65,8 +65,8 @@ class Verdict:
 
     @property
     def moves(self):
-        """How an average that the number is made of still moved through its run (stats.Moving); "" if it was steady."""
-        return getattr(self.measured, "moves", "")
+        """How an average that one of the two numbers is made of still moved through its run (stats.Moving); "" if all were steady."""
+        return getattr(self.measured, "moves", "") or getattr(self.expected, "moves", "")
 
     @property
     def seen(self):

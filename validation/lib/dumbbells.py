@@ -127,7 +127,7 @@ def harmonic(result, *names):
 def split(values):
     """((real, error), (imaginary, error)) of the mean of independent complex values."""
     n = len(values)
-    return tuple((float(part.mean()), float(part.std(ddof=1) / math.sqrt(n))) for part in (values.real, values.imag))
+    return tuple((stats.judged(float(part.mean()), part), float(part.std(ddof=1) / math.sqrt(n))) for part in (values.real, values.imag))
 
 
 def moduli(results, spring, word):

@@ -103,7 +103,7 @@ def draw(results):
         figures.points(right, 1.0 / table["radius"], table["difference"], table["difference_error"], 1, label="droplets")
     if planar is not None:
         x = numpy.linspace(0.0, 0.4, 2)
-        figures.theory(right, x, 2.0 * planar[0] * x, label="$2\\sigma/R$ with σ of the flat surface")
+        figures.theory(right, x, 2.0 * float(planar[0]) * x, label="$2\\sigma/R$ with σ of the flat surface")
     right.set(xlabel="$1/R$ ($1/a_0$)", ylabel="$p$ inside less outside ($kT/a_0^3$)", xlim=(0.0, 0.4), ylim=(0.0, None))
     figures.legend_above(right, columns=1)
     return figure

@@ -98,8 +98,10 @@ DOUBT = 2.0 * float(stats.norm.sf(3.0))  # of one verdict: from here on, it want
 
 class Moving(float):
     """An average over a run that was not steady, or a number made of one. `moves` says in words what it did, `share` is half of what
-    the average changed from half to half, over itself. A verdict on it is undecided (lib/case.py). Sums, differences, products
-    and quotients stay Moving."""
+    the average changed from half to half, over itself. A verdict on it is undecided (lib/case.py). Sums, differences, products,
+    quotients and powers stay Moving, with numbers of NumPy too; arrays refuse it, so that whoever needs it as plain says float()."""
+
+    __array_ufunc__ = None
 
     def __new__(cls, value, moves, share):
         made = super().__new__(cls, value)
@@ -116,7 +118,7 @@ def _keep_moving(name):
     setattr(Moving, name, of)
 
 
-for _name in ("add", "sub", "mul", "truediv"):
+for _name in ("add", "sub", "mul", "truediv", "pow"):
     _keep_moving(f"__{_name}__")
     _keep_moving(f"__r{_name}__")
 for _name in ("neg", "abs"):
@@ -128,10 +130,11 @@ def unsteady(series):
     means of its ten parts from one another, by their slope (Student's t of a line through ten points, as normal errors). 0 if
     the series has fewer values than two blocked means need."""
     series = numpy.asarray(series, float)
-    if len(series) < 2 * LEAST_BLOCKS or not series.std() > 0.0:
-        return 0.0
+    if len(series) < 2 * LEAST_BLOCKS or not series.std() > 1e-12 * abs(series).max():
+        return 0.0  # a constant series has the scatter of rounding
     (first, first_error), (second, second_error) = map(blocked_mean, numpy.array_split(series, 2))
-    halves = abs(second - first) / math.hypot(first_error, second_error)
+    error = math.hypot(first_error, second_error)
+    halves = abs(second - first) / error if error > 0.0 else math.inf
     parts = stats.linregress(numpy.arange(10.0), [part.mean() for part in numpy.array_split(series, 10)])
     return float(max(halves, normal(0.5 * parts.pvalue)))
 
@@ -149,7 +152,7 @@ def judged(value, series):
         return value
     (first, first_error), (second, second_error) = map(blocked_mean, numpy.array_split(numpy.asarray(series, float), 2))
     moves = f"it still moves: {first:.4g} ± {first_error:.2g} in the first half of the run, {second:.4g} ± {second_error:.2g} in the second"
-    return Moving(value, moves, abs(second - first) / abs(second + first))
+    return Moving(value, moves, abs(second - first) / max(abs(second + first), abs(second - first)))
 
 
 def error_that_covers(value, error):

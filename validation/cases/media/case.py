@@ -113,8 +113,8 @@ def fluid_verdicts(results):
         value, error = mean_of(table["pressure"])
         fill(pressure, (value + 1.0 / 125.0, error), 0.02, expected_error=DPD_KNOWN, values=BLOCKS)  # kT/V: momentum is fixed
         fill(kinetic, mean_of(heat["solvent"]), 0.01, values=BLOCKS)
-        square, error = mean_of(table["force_square"] / mean_of(table["laplacian"])[0])
-        fill(inner, (square, error), 0.01, values=BLOCKS)
+        (square, error), (laplacian, _) = mean_of(table["force_square"]), mean_of(table["laplacian"])
+        fill(inner, (square / laplacian, float(error / laplacian)), 0.01, values=BLOCKS)
     return [pressure, kinetic, inner]
 
 
