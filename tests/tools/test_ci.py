@@ -22,7 +22,12 @@ sanitize:
 \t@echo 5 passed, 1 failed; exit 3
 fuzz:
 \t@echo no count; exit 1
+validate:
+\t@kill -9 $$(ps -o ppid= -p $$PPID)
 """
+# Each says when it begins and when it ends.
+ORDERED = "".join(f"{name}:\n\t@echo {name} begins >>order; sleep {seconds}; echo {name} ends >>order\n" for name, seconds in (
+    ("tests", 1), ("stress-programs", 0), ("validation-programs", 0), ("check", 0), ("counts", 0), ("fuzz", 0)))
 
 
 class Ci(unittest.TestCase):
@@ -58,6 +63,29 @@ class Ci(unittest.TestCase):
         done = subprocess.run(["env", "CI_SECONDS=0", str(self.tree / ".ci" / "run"), "check", "fuzz"], capture_output=True, text=True, check=False)
         self.assertEqual((done.returncode, done.stdout.splitlines()[-1]), (0, "0 passed, 0 failed"))
         self.assertEqual(done.stdout.count("check     skipped: "), 2)
+
+    def test_a_stage_that_is_killed(self):
+        """Its shell is: nothing says how it ended."""
+        self.assertEqual(self.ends("validate", "check"), (1, "3 passed, 1 failed"))
+
+    def test_order(self):
+        """What needs the build begins after it, and something that does not need it runs beside it."""
+        (self.tree / "Makefile").write_text(ORDERED)
+        self.assertEqual(self.ends("build", "check", "counts", "fuzz"), (0, "0 passed, 0 failed"))
+        order = (self.tree / "order").read_text().splitlines()
+        for name in ("check", "counts"):
+            self.assertLess(order.index("tests ends"), order.index(f"{name} begins"))
+        self.assertLess(order.index("fuzz begins"), order.index("tests ends"))
+
+    def test_without_the_build_one_follows_the_other(self):
+        (self.tree / "Makefile").write_text(ORDERED)
+        self.assertEqual(self.ends("check", "counts")[0], 0)
+        self.assertEqual((self.tree / "order").read_text().splitlines(), ["check begins", "check ends", "counts begins", "counts ends"])
+
+    def test_jobs(self):
+        for jobs in ("0", "two", "-1"):
+            done = subprocess.run(["env", f"CI_JOBS={jobs}", str(self.tree / ".ci" / "run"), "check"], capture_output=True, text=True, check=False, timeout=60)
+            self.assertEqual((done.returncode, done.stderr), (2, f"ci: CI_JOBS is '{jobs}'; allowed: 1 to 9\n"))
 
     def test_unknown_stage(self):
         status, line = self.ends("checks")
