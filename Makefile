@@ -182,16 +182,16 @@ $(BUILD)/lib/libuncross-core.a: $(CORE_SOURCES:%.c=$(BUILD)/%.o) $(FAST:%=$(BUIL
 live: $(BUILD)/uncross
 	@$(MAKE) --no-print-directory -f live/Makefile BUILD='$(BUILD)' STRICT='$(STRICT)' CORE_SOURCES='$(CORE_SOURCES)' ALL_SOURCES='$(SOURCES)'
 
-# Written anew only when it says something new, so that nothing is rebuilt for nothing.
+# Written anew only when it says something new, so that nothing is rebuilt for nothing; two makes at a time may both write it.
 $(BUILD)/build-info.inc: export PREFIX := $(PREFIX)
 $(BUILD)/build-info.inc: force | $(BUILD)/found-run
 	@[ "$$(printf %s "$$PREFIX" | wc -l)" = 0 ] || { echo 'uncross: PREFIX has a line feed in it, which no list of files can hold' >&2; exit 1; }
 	@mkdir -p $(@D)
-	@{ echo '#define BUILD_COMMIT "$(shell git describe --always --dirty --abbrev=12 2>/dev/null || echo unknown)"'; \
+	@new=$@.$$$$; { echo '#define BUILD_COMMIT "$(shell git describe --always --dirty --abbrev=12 2>/dev/null || echo unknown)"'; \
 	   echo '#define BUILD_COMPILER "$(shell $(CC) --version | head -n 1)"'; \
 	   echo '#define BUILD_FLAGS "$(STRICT) $(OPTIMIZE)"'; \
-	   printf '#define BUILD_PREFIX "%s"\n' "$$(printf %s "$$PREFIX" | sed 's/[\"]/\\&/g')"; } > $@.new
-	@cmp -s $@.new $@ && rm $@.new || mv $@.new $@
+	   printf '#define BUILD_PREFIX "%s"\n' "$$(printf %s "$$PREFIX" | sed 's/[\"]/\\&/g')"; } > $$new; \
+	if cmp -s $$new $@; then rm $$new; else mv $$new $@; fi
 $(BUILD)/src/files/build_info.o: $(BUILD)/build-info.inc
 $(BUILD)/src/files/build_info.o: INCLUDES += -I$(BUILD)
 

@@ -33,7 +33,7 @@ def copy_build(to):
     for path in BUILD.iterdir():
         if path.name in ("src", "lib", "libexec"):
             shutil.copytree(path, to / path.name, symlinks=True)
-        elif path.is_file() and (path.name in ("uncross", "everything.a", "build-info.inc") or path.name.startswith("found-")):
+        elif path.is_file() and (path.name in ("uncross", "everything.a", "build-info.inc", "made-by") or path.name.startswith("found-")):
             shutil.copy2(path, to)
     return to
 
