@@ -165,15 +165,17 @@ def printed(case):
     """Of all reals of a pack, whether theirs are ours with fewer digits: the words, or None."""
     every = [found for each in (case, *case.elsewhere) for found in each.tables if found.real and found.same_shape]
     ours, theirs = (np.concatenate([getattr(found, whose).ravel() for found in every] or [np.zeros(0)]) for whose in ("ours", "theirs"))
-    off = np.flatnonzero(ours != theirs)
+    off = np.flatnonzero((ours != theirs) & np.isfinite(ours) & np.isfinite(theirs) & (theirs != 0.0))  # 0 says nothing of digits
     few = off[:: max(1, len(off) // 200)]
     if len(few) < ONE_SIDED:
         return None
-    for said, form in [*((f"{n} significant digits", f".{n}g") for n in range(3, 17)), *((f"{n} digits after the point", f".{n}f") for n in range(2, 20))]:
-        same = [float(format(ours[k], form)) == theirs[k] for k in few]
-        if np.mean(same) > 0.9:
-            return f"reals are written with {said} only: 17 significant digits, or the shortest that are read back as the same number"
-    return None
+    said = []  # by both ways of counting digits: numbers of one size do not tell them apart
+    for words, forms in (("significant digits", [(n, f".{n}g") for n in range(2, 17)]), ("digits after the point", [(n, f".{n}f") for n in range(20)])):
+        fits = (n for n, form in forms if np.mean([float(format(ours[k], form)) == theirs[k] for k in few]) > 0.9)
+        said += [f"{n} {words}" for n in fits][:1]
+    if not said:
+        return None
+    return f"reals are written with {' or '.join(said)} only: 17 significant digits, or the shortest that are read back as the same number"
 
 
 # --- what is no guess

@@ -225,12 +225,17 @@ def _where(found, outputs, mistake):
 SLOW = ("sweep", "long_sweep", *replay.DRIFTS)
 
 
+UNASKED = "other operators were not asked: the time was over"
+
+
 def _says_no(case, outputs, mistake):
-    """Whether an operator would not give theirs with this mistake in the port."""
+    """Whether an operator would not give theirs with this mistake in the port; UNASKED if the time was over before it had answered."""
     for found in case.tables:
         guess = np.full(found.ours.shape, np.nan)
         for part in found.parts:
             made = outputs(mistake, part.step)
+            if made is None and outputs.clock.left() <= 1:
+                return UNASKED
             values = None if made is None else made.get(found.table)
             if values is None or values.ndim != 2 or len(values) != part.theirs_rows or values.shape[1] != len(found.columns):
                 return True
@@ -241,7 +246,7 @@ def _says_no(case, outputs, mistake):
 
 
 def contradiction(mistake, case, outputs):
-    """The first other operator that says no to a mistake that makes the first one: its case; or None."""
+    """The first other operator that says no to a mistake that makes the first one: its case; UNASKED if the time was over before; or None."""
     for other in case.elsewhere:
         if other.operator in SLOW and (other.operator in replay.DRIFTS or outputs.clock.left() < FOR_CHANGES):
             continue
@@ -250,8 +255,9 @@ def contradiction(mistake, case, outputs):
         if not isinstance(mistake, changes.Change) and not (
                 other.operator in mistake.entry.get("operators", (other.operator,)) and catalogue.reaches(mistake, other.operator)):
             continue
-        if outputs.clock.left() > 1 and _says_no(other, outputs.of(other), mistake):
-            return other
+        answer = _says_no(other, outputs.of(other), mistake) if outputs.clock.left() > 1 else UNASKED
+        if answer:
+            return UNASKED if answer is UNASKED else other
     return None
 
 
@@ -282,6 +288,8 @@ def held(fits, case, outputs):
         other = contradiction(fit.mistake, case, outputs) if fit.all_tables else None
         if other is None:
             (good if fit.all_tables else bad).append(fit)
+        elif other is UNASKED:
+            good.append(dataclasses.replace(fit, only=UNASKED))
         elif not any(found.beyond.any() or not found.same_shape for found in other.tables):
             bad.append(dataclasses.replace(fit, only=f"in {case.operator} only; {other.operator} is right"))
     return good or bad

@@ -2,6 +2,7 @@
 """`uncross oracle compare` asks uncross-name which mistake makes a difference: from the verdict in C to the name, with mistakes
 planted in the port to NumPy. `ports/numpy/check` does so for the whole catalogue, in one process.
 """
+import math
 import os
 import pathlib
 import signal
@@ -9,7 +10,9 @@ import subprocess
 import sys
 import tempfile
 import time
+import types
 import unittest
+import unittest.mock
 
 import h5py
 import numpy as np
@@ -17,7 +20,7 @@ import numpy as np
 TOP = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(TOP / "python"), str(TOP / "ports/numpy")]
 
-from uncross_name import case, catalogue, evidence, search  # noqa: E402
+from uncross_name import anything, case, catalogue, evidence, search  # noqa: E402
 from uncross_port import operators, pack  # noqa: E402
 
 UNCROSS = pathlib.Path(os.environ.get("UNCROSS", TOP / "build/uncross")).resolve()
@@ -101,6 +104,31 @@ class HookTest(Folder):
                        for name, values in tables.items() if name.startswith("out.")} for place, tables in ours.items() if place[0] in ("random", "kick")}
         pack.write(self.dir / "theirs.h5", out)
         self.assertIn("reals are written with 12 significant digits only", meaning(compare(self.dir / "theirs.h5").stdout))
+
+    def test_what_says_nothing_of_digits(self):
+        """Zeros in place of residues, whatever they were; and numbers of 100 to 900, of which whole ones have three digits."""
+        def said(ours, theirs):
+            found = types.SimpleNamespace(real=True, same_shape=True, ours=np.array(ours), theirs=np.array(theirs))
+            return anything.printed(types.SimpleNamespace(tables=[found], elsewhere=[]))
+        residues = [k * 1e-13 for k in range(1, 40)]
+        self.assertIsNone(said(residues, [0.0] * 39))
+        self.assertIsNone(said(residues, [math.nan] * 39))
+        sizes = [100.3 + 20.1 * k for k in range(39)]
+        self.assertIn("written with 3 significant digits or 0 digits after the point only", said(sizes, [round(x) for x in sizes]))
+        sizes = [1.03 * 1.4**k for k in range(39)]
+        self.assertIn("written with 2 digits after the point only", said(sizes, [round(x, 2) for x in sizes]))
+
+    def test_time_that_is_over(self):
+        """An operator that could not be asked says neither yes nor no, and that is said."""
+        class Clock:
+            def left(self):
+                return 0.5
+        outputs = types.SimpleNamespace(clock=Clock(), of=lambda other: None)
+        mistake = catalogue.Mistake("", "", (), "", {})
+        fit = search.Fit(mistake, evidence.WHOLE, 100.0, True, "")
+        with unittest.mock.patch.object(catalogue, "reaches", lambda *_: True):
+            held = search.held([fit], types.SimpleNamespace(elsewhere=[types.SimpleNamespace(operator="kick")]), outputs)
+        self.assertEqual([one.only for one in held], [search.UNASKED])
 
     def test_one_table_only(self):
         """What is rotated the wrong way round are the vertices alone."""
