@@ -85,6 +85,7 @@ help:
 	@echo 'make fuzz            the fuzzer of scenes, checkpoints, trajectories, packs and tables, for SECONDS=60'
 	@echo 'make libraries       libuncross.so, libuncross.a, libuncross-core.a in $(BUILD)/lib (docs/library.md)'
 	@echo 'make live            the page: the same C code as WebAssembly, files for any server, in $(BUILD)/live (docs/live.md)'
+	@echo 'make live-test       the page in Node and in headless Chromium: the native hashes, messages, tables; speed'
 	@echo 'make install         PREFIX=$(PREFIX) DESTDIR=$(DESTDIR); make uninstall removes it'
 	@echo 'make clean           removes $(BUILD)'
 	@echo 'variables            CC=gcc|clang  MARCH=native|x86-64|...  BUILD=folder  PLAIN=1 (no fast kernels, same results)'
@@ -181,6 +182,13 @@ $(BUILD)/lib/libuncross-core.a: $(CORE_SOURCES:%.c=$(BUILD)/%.o) $(FAST:%=$(BUIL
 .PHONY: live
 live: $(BUILD)/uncross
 	@$(MAKE) --no-print-directory -f live/Makefile BUILD='$(BUILD)' STRICT='$(STRICT)' CORE_SOURCES='$(CORE_SOURCES)' ALL_SOURCES='$(SOURCES)'
+
+.PHONY: live-test
+live-test:
+	@tools/install-dependencies run live
+	@$(MAKE) --no-print-directory live
+	@node tests/live/bits.mjs $(BUILD)
+	@node tests/live/page.mjs $(BUILD)
 
 # Written anew only when it says something new, so that nothing is rebuilt for nothing; two makes at a time may both write it.
 $(BUILD)/build-info.inc: export PREFIX := $(PREFIX)

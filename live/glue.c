@@ -12,6 +12,8 @@ char *live_warnings(const uncross_sim *sim, uncross_error *error);
 int live_report(const uncross_scene *scene, uncross_error *error);
 int live_bead(const uncross_sim *sim, double position[3]);
 double live_offset(const uncross_sim *sim);
+int live_advance(uncross_sim *sim, uint32_t steps, uint32_t *bond, uint32_t room, uint32_t *count,
+                 uncross_error *error);
 
 static void tell(void *context, const char *text)
 {
@@ -63,4 +65,38 @@ int live_bead(const uncross_sim *sim, double position[3])
 double live_offset(const uncross_sim *sim)
 {
   return (double)shear_offset(&sim->scene.model, 2 * sim->state.step) * LATTICE_UNIT;
+}
+
+/* Bonds of contacts, two for each, as far as there is room; `also` is told, too. */
+struct seen {
+  const struct contact_log *also;
+  uint32_t *bond, room, count;
+};
+
+static void see(void *context, const struct contact_event *event)
+{
+  struct seen *seen = context;
+  if (event->executed && seen->count + 2 <= seen->room) {
+    seen->bond[seen->count++] = event->moving_bond;
+    seen->bond[seen->count++] = event->standing_bond;
+  }
+  if (seen->also)
+    seen->also->record(seen->also->context, event);
+}
+
+/* uncross_sim_advance, and bond[0 .. *count - 1] are those that met, named by their first vertices. */
+int live_advance(uncross_sim *sim, uint32_t steps, uint32_t *bond, uint32_t room, uint32_t *count, uncross_error *error)
+{
+  struct seen seen = {observers_contacts(sim->observers), bond, room, 0};
+  const struct contact_log log = {see, &seen};
+  bool ok = true;
+  for (uint32_t k = 0; ok && !sim->stopped && k < steps; k++) {
+    sim->stopped = !step_advance(&sim->state, &sim->scene.model, &sim->work, &log);
+    ok = sim->stopped || tables_sample(sim);
+  }
+  sim_look(sim);
+  *count = seen.count;
+  return sim->stopped ? uncross_sim_advance(sim, 1, error)
+         : ok         ? UNCROSS_OK
+                      : fail(error, UNCROSS_NO_MEMORY, "no memory for tables", NULL);
 }

@@ -234,6 +234,15 @@ class Simulation {
     this.library.mustBeFine(this.library.c.uncross_sim_advance(this.handle, BigInt(steps), this.library.error));
   }
 
+  /* The same; returns the bonds that met, two for each contact, named by their first vertices. */
+  advanceAndSee(steps) {
+    const l = this.library, room = 4096;
+    return l.scratch(4 * (room + 1), at => {
+      l.mustBeFine(l.c.live_advance(this.handle, steps, at + 4, room, at, l.error));
+      return l.integers(at + 4, l.u32(at));
+    });
+  }
+
   get step() { return Number(this.library.c.uncross_sim_step(this.handle)); }
   get time() { return this.library.c.uncross_sim_time(this.handle); }
 

@@ -10,13 +10,14 @@ const FRAME = 1000 / 60;
 const TABLES = 500;     /* ms between tables */
 const RATE = 500;       /* ms over which the rate is taken */
 
-let library, scenes;
+let library, shipped;
 let sim = null, scene = null, id = null;
 let running = false, wanted = 0;      /* wanted: steps still to make of a `step` */
 let stepsPerFrame = 0, sinceFrame = 0; /* 0: as many as there is time for */
 let hashAt = 0;         /* the step after which the hash is told; 0: none */
 let drawn = true, lastFrame = 0, lastTables = 0;
 let want = {solvent: 'none', tables: false, contacts: false};
+let contacts = [];      /* bonds that met since the last frame */
 let pace = 1;           /* steps in a slice */
 let rate = {steps: 0, ms: 0, value: 0};
 
@@ -62,6 +63,9 @@ function sendFrame() {
     frame.solvent = solventOf(want);
     move.push(frame.solvent.position.buffer, frame.solvent.velocity.buffer);
   }
+  if (want.contacts)
+    frame.contacts = contacts;
+  contacts = [];
   drawn = false;
   lastFrame = performance.now();
   sinceFrame = 0;
@@ -94,7 +98,10 @@ function advance(most) {
   let made = 0, now = began;
   while (made < most && now - began < SLICE) {
     const steps = Math.max(1, Math.min(pace, most - made));
-    sim.advance(steps);
+    if (want.contacts)
+      contacts.push(...sim.advanceAndSee(steps));
+    else
+      sim.advance(steps);
     made += steps;
     const before = now;
     now = performance.now();
@@ -151,8 +158,8 @@ function close() {
   sim = scene = null;
 }
 
-/* A rate of its own, of the scene that is given or the one at hand: in slices of 50 ms. */
-function bench({seconds = 2, text = scene.text, settings = [], seed}) {
+/* Speed, by a simulation of its own: of a suspension that is the same everywhere, if no scene is given. */
+function bench({seconds = 2, text = shipped.bench.text, settings = [], seed}) {
   const own = open({text, settings, seed});
   let steps = 0, ms = 0;
   const part = () => guard(() => {
@@ -274,7 +281,7 @@ async function begin() {
   const vectors = hasVectors() && !new URL(import.meta.url).searchParams.has('plain');
   library = await loadLibrary(await fetched(vectors ? 'uncross-simd.wasm' : 'uncross.wasm'));
   library.vectors = vectors;
-  ({scenes} = await (await fetched('scenes.json')).json());
-  postMessage({kind: 'ready', version: library.version, vectors, scenes});
+  shipped = await (await fetched('scenes.json')).json();
+  postMessage({...shipped, kind: 'ready', version: library.version, vectors});
 }
 begin().catch(sendError);
