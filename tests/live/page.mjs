@@ -1,6 +1,7 @@
 /*
- * The page in headless Chromium: it loads without an error in its console; hashes of all shipped scenes by its worker,
- * with and without vectors, are those of the native program; its speed, and pictures per second.
+ * The page in headless Chromium: hashes of all shipped scenes by its worker, with and without vectors, are those of the
+ * native program; its speed, and pictures per second; all controls and panels are used; no error is in its console, and
+ * axe-core finds nothing serious in either theme.
  *
  * usage: node page.mjs BUILD     ($CHROMIUM: the browser, else chromium)
  */
@@ -9,10 +10,12 @@ import {createRequire} from 'node:module';
 import {existsSync, readFileSync} from 'node:fs';
 import {extname, join, resolve} from 'node:path';
 import {execFileSync} from 'node:child_process';
+import {do_without_net, use_controls} from './controls.mjs';
+import {use_panels} from './panels.mjs';
 import {Tally} from './tally.mjs';
 
 const build = resolve(process.argv[2]), folder = join(build, 'live'), tally = new Tally();
-const {chromium} = createRequire(join(build, 'live-work/npm/package.json'))('playwright-core');
+const packaged = createRequire(join(build, 'live-work/npm/package.json')), {chromium} = packaged('playwright-core');
 const TYPES = {'.html': 'text/html', '.js': 'text/javascript', '.mjs': 'text/javascript', '.css': 'text/css', '.wasm': 'application/wasm', '.json': 'application/json', '.svg': 'image/svg+xml'};
 const LEAST_PICTURES = 5; /* a second, drawn in software */
 
@@ -62,18 +65,38 @@ try {
     console.log(`speed: ${name} ${found.bench.rate.toFixed(0)} steps/s of ${found.bench.vertices} vertices and ${found.bench.particles} particles`);
   }
 
-  if (existsSync(join(folder, 'index.html'))) {
-    const errors = [], whole = await browser.newPage();
-    whole.on('console', message => { if (message.type() === 'error') errors.push(message.text()); });
-    whole.on('pageerror', error => errors.push(String(error)));
-    await whole.goto(address);
-    await whole.waitForFunction(() => !document.getElementById('run').disabled, undefined, {timeout: 60_000});
-    await whole.click('#run');
-    await whole.waitForTimeout(5000);
-    const rate = Number(await whole.textContent('#pictures'));
-    tally.is(`${rate} pictures a second; at least ${LEAST_PICTURES}`, rate >= LEAST_PICTURES);
-    tally.equal('errors in the console', errors.join('\n'), '');
+  const errors = [], context = await browser.newContext({viewport: {width: 1280, height: 900}, permissions: ['clipboard-read', 'clipboard-write']}), whole = await context.newPage();
+  whole.on('console', message => { if (message.type() === 'error') errors.push(message.text()); });
+  whole.on('pageerror', error => errors.push(String(error)));
+  await whole.goto(address);
+  await whole.waitForSelector('#run:not([disabled])', {timeout: 60_000});
+  await whole.click('#run');
+  await whole.waitForTimeout(4000);
+  const rate = Number(await whole.textContent('#pictures'));
+  tally.is(`${rate} pictures a second; at least ${LEAST_PICTURES}`, rate >= LEAST_PICTURES);
+  console.log(`pictures: ${rate} a second, drawn in software`);
+  await whole.click('#run');
+
+  const timed = async (what, use) => {
+    const began = performance.now(), wrong = await use(whole, address);
+    tally.equal(what, wrong.join('\n'), '');
+    console.log(`${what}: ${((performance.now() - began) / 1000).toFixed(0)} s`);
+  };
+  await timed('controls', use_controls);
+  await timed('panels', use_panels);
+
+  await whole.goto(`${address}#scene=dense`);
+  await whole.waitForSelector('#run:not([disabled])');
+  await whole.addScriptTag({path: packaged.resolve('axe-core/axe.min.js')});
+  for (const theme of ['light', 'dark']) {
+    if (await whole.evaluate(() => document.documentElement.dataset.theme ?? 'light') !== theme)
+      await whole.click('#theme');
+    const {violations} = await whole.evaluate(() => window.axe.run());
+    const serious = violations.filter(({impact}) => impact === 'serious' || impact === 'critical');
+    tally.equal(`axe-core, ${theme}`, serious.map(({id, nodes}) => `${id}: ${nodes[0].html}`).join('\n'), '');
   }
+  tally.equal('errors in the console', errors.join('\n'), '');
+  await timed('without the net', do_without_net);
 } finally {
   await browser.close();
   server.close();
