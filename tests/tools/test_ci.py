@@ -27,7 +27,7 @@ validate:
 """
 # Each says when it begins and when it ends.
 ORDERED = "".join(f"{name}:\n\t@echo {name} begins >>order; sleep {seconds}; echo {name} ends >>order\n" for name, seconds in (
-    ("tests", 1), ("stress-programs", 0), ("validation-programs", 0), ("check", 0), ("counts", 0), ("fuzz", 0)))
+    ("tests", 1), ("stress-programs", 0), ("validation-programs", 0), ("check", 0), ("counts", 0), ("fuzz", 0), ("live-test", 0)))
 
 
 class Ci(unittest.TestCase):
@@ -71,11 +71,12 @@ class Ci(unittest.TestCase):
     def test_order(self):
         """What needs the build begins after it, and something that does not need it runs beside it."""
         (self.tree / "Makefile").write_text(ORDERED)
-        self.assertEqual(self.ends("build", "check", "counts", "fuzz"), (0, "0 passed, 0 failed"))
+        self.assertEqual(self.ends("live", "build", "check", "counts", "fuzz"), (0, "0 passed, 0 failed"))
         order = (self.tree / "order").read_text().splitlines()
         for name in ("check", "counts"):
             self.assertLess(order.index("tests ends"), order.index(f"{name} begins"))
         self.assertLess(order.index("fuzz begins"), order.index("tests ends"))
+        self.assertEqual(order[-2:], ["live-test begins", "live-test ends"])
 
     def test_without_the_build_one_follows_the_other(self):
         (self.tree / "Makefile").write_text(ORDERED)
@@ -90,7 +91,7 @@ class Ci(unittest.TestCase):
     def test_unknown_stage(self):
         status, line = self.ends("checks")
         self.assertEqual(status, 2)
-        self.assertIn("there are install build sanitize check validate lint mutants port counts fuzz", line)
+        self.assertIn("there are install build sanitize check validate lint mutants port counts fuzz live", line)
 
 
 if __name__ == "__main__":
