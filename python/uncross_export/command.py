@@ -2,6 +2,7 @@
 import contextlib
 import getopt
 import os
+import signal
 import sys
 
 from uncross_sweep import escape
@@ -13,6 +14,13 @@ DONE, TROUBLE, BAD_INPUT, NOT_WRITTEN = 0, 1, 2, 4
 
 class Refused(Exception):
     """What was asked for cannot be had."""
+
+
+def say(text):
+    """To standard error, if there is one that takes it."""
+    with contextlib.suppress(OSError):
+        if sys.stderr:
+            print(text, file=sys.stderr)
 
 
 def choose(path, file, options):
@@ -38,7 +46,7 @@ def texts(path, file, form, options):
         except frames.Damaged as error:
             if "--skip-damaged" not in options:
                 raise
-            print(f"uncross: left out: {error}", file=sys.stderr)
+            say(f"uncross: left out: {error}")
             continue
         if form.begin and not begun:
             yield from form.begin(v)
@@ -55,7 +63,7 @@ def export(path, out, options):
     try:
         file = frames.File(path)
     except OSError as error:
-        print(f"uncross: export: cannot start the program that reads {escape.shown(path)}: {error.strerror}", file=sys.stderr)
+        say(f"uncross: export: cannot start the program that reads {escape.shown(path)}: {error.strerror}")
         raise frames.Ended(TROUBLE) from None
     with contextlib.closing(file):
         try:
@@ -64,18 +72,25 @@ def export(path, out, options):
             out.flush()
         except ValueError as error:
             raise Refused(f"{path}: {error}") from None
+        except BrokenPipeError:
+            raise
         except OSError as error:
-            print(f"uncross: {escape.shown(path)}: {form.title} could not be written: {error.strerror}", file=sys.stderr)
+            say(f"uncross: {escape.shown(path)}: {form.title} could not be written: {error.strerror}")
             raise frames.Ended(NOT_WRITTEN) from None
 
 
-def run(path, options):
-    """The exit code."""
-    name = options.get("--out", options.get("-o"))
+def end_by_pipe():
+    """As a program in C ends whose reader has read enough."""
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+    os.kill(os.getpid(), signal.SIGPIPE)
+
+
+def run(path, name, options):
+    """The exit code. name: of the file to be written, None for standard output."""
     try:
         out = open(name or 1, "x" if name else "w", encoding="utf-8", closefd=bool(name))
     except OSError as error:
-        print(f"uncross: {escape.shown(name)}: cannot create: {error.strerror}", file=sys.stderr)
+        say(f"uncross: {escape.shown(name)}: cannot create: {error.strerror}")
         return BAD_INPUT if isinstance(error, FileExistsError) else NOT_WRITTEN
     done = False
     try:
@@ -83,15 +98,17 @@ def run(path, options):
         out.close()
         done = True
     except (Refused, frames.Damaged) as error:
-        print(f"uncross: {escape.shown(error)}", file=sys.stderr)
+        say(f"uncross: {escape.shown(error)}")
         return BAD_INPUT
     except frames.Ended as ended:
         if ended.args[0] > 0:
             return ended.args[0]
-        print(f"uncross: {escape.shown(path)}: the program that reads it ended early", file=sys.stderr)
+        say(f"uncross: {escape.shown(path)}: the program that reads it ended early")
         return TROUBLE
     except OSError as error:
-        print(f"uncross: {escape.shown(name or 'standard output')}: cannot write: {error.strerror}", file=sys.stderr)
+        if isinstance(error, BrokenPipeError) and not name:
+            end_by_pipe()
+        say(f"uncross: {escape.shown(name or 'standard output')}: cannot write: {error.strerror}")
         return NOT_WRITTEN
     finally:
         if name and not done:
@@ -101,4 +118,7 @@ def run(path, options):
 
 def main(words):
     found, paths = getopt.gnu_getopt(words, "o:", ["out=", "format=", "solvent", "wrapped", "first=", "last=", "stride=", "skip-damaged"])
-    return run(paths[0], dict(found))
+    names = [value for option, value in found if option in ("-o", "--out")]
+    for number in signal.SIGTERM, signal.SIGHUP:
+        signal.signal(number, lambda number, _: sys.exit(128 + number))  # what was begun is removed
+    return run(paths[0], names[-1] if names else None, dict(found))

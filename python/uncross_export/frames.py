@@ -2,6 +2,7 @@
 program, which checks every number on the way and says what is wrong with a file."""
 import array
 import collections
+import contextlib
 import os
 import subprocess
 
@@ -47,8 +48,11 @@ class File:
     def read(self, number):
         if self.child.poll() is not None:
             raise Ended(self.child.returncode)
-        self.child.stdin.write(b"%d\n" % number)
-        self.child.stdin.flush()
+        try:
+            self.child.stdin.write(b"%d\n" % number)
+            self.child.stdin.flush()
+        except BrokenPipeError:
+            raise Ended(self.child.wait()) from None
         verdict, _, rest = self._line().partition(" ")
         if verdict != "fine":
             raise Damaged(rest)
@@ -58,8 +62,10 @@ class File:
                      self._numbers("d", 3 * self.rows) if self.moving else None)
 
     def close(self):
-        self.child.stdin.close()
+        with contextlib.suppress(BrokenPipeError):  # of a number that it did not read
+            self.child.stdin.close()
         self.child.stdout.close()
+        self.child.terminate()  # it has nothing to lose, and may wait for something
         self.child.wait()
 
     def is_solvent(self, row):

@@ -28,7 +28,7 @@ def _fold(x, edge):
 
 
 def _round(x):
-    return math.copysign(math.floor(abs(x) + 0.5), x) if math.isfinite(x) else x
+    return math.copysign(math.floor(abs(x) + 0.5), x) if abs(x) < 2.0**52 else x  # else it is whole, or no number
 
 
 def fibers(file):

@@ -52,7 +52,7 @@ static bool answer(struct frames *f, const struct model *model, struct message *
   while (fflush(stdout) == 0 && fgets(line, sizeof line, stdin)) {
     char *end;
     const uint64_t frame = strtoull(line, &end, 10);
-    if (line[0] < '0' || line[0] > '9' || *end != '\n')
+    if (line[0] < '0' || line[0] > '9' || (*end != '\n' && !(*end == 0 && feof(stdin))))
       return message_set(message, "standard input: '%s' is not the number of a frame", line);
     const enum frame_verdict verdict = frames_read(f, frame, message);
     if (verdict == FRAME_LOST)

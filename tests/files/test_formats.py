@@ -12,9 +12,11 @@ import os
 import pathlib
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 import h5py
@@ -22,7 +24,7 @@ import numpy
 
 sys.dont_write_bytecode = True  # nothing is left in the source tree
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from support import TOP, uncross  # noqa: E402
+from support import TOP, UNCROSS, uncross  # noqa: E402
 
 EDGES = (6.0, 5.0, 7.0)
 SCENE = """box: [6, 5, 7]
@@ -290,7 +292,7 @@ run 0
         """Who says what the frames are may be killed in between: no half of an export is called done, and its file is gone."""
         (self.folder / "said").write_bytes(uncross("frames", self.path, input=b"0\n1\n2\n3\n4\n", stdin=None, text=False).stdout[:30000])
         program = self.folder / "stub"
-        for end, code in ("exit 0", 1), ("exit 4", 4), ("kill -9 $$", 1):
+        for end, code in ("exit 0", 1), ("exit 4", 4), ("kill -9 $$", 1), ("exec 0<&-\nsleep 1", 1):
             program.write_text(f"#!/bin/sh\ncat '{self.folder}/said'\n{end}\n")
             program.chmod(0o755)
             done = subprocess.run([TOP / "tools/uncross-export", self.path, "-o", self.folder / "half"], capture_output=True, check=False,
@@ -298,6 +300,33 @@ run 0
             self.assertEqual((done.returncode, done.stdout), (code, b""), done.stderr)
             self.assertEqual(b"ended early" in done.stderr, code == 1, done.stderr)
             self.assertFalse((self.folder / "half").exists())
+
+    def test_what_ends_an_export(self):
+        """Its reader has read enough; it is told to end; nobody hears its complaint. The last of two names counts."""
+        program = [UNCROSS, "export", self.path]
+        with subprocess.Popen([*program, "--solvent"], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as done:
+            done.stdout.read(10)
+            done.stdout.close()
+            self.assertEqual((done.wait(60), done.stderr.read()), (-signal.SIGPIPE, b""))
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            self.assertEqual(subprocess.run([*program, "--format", "pdb"], stderr=full, check=False).returncode, 2)
+        done = subprocess.run(["sh", "-c", 'exec "$@" 2>&-', "sh", *program, "--format", "pdb"], capture_output=True, check=False)
+        self.assertEqual((done.returncode, done.stdout), (2, b""))
+        stub = self.folder / "slow"
+        said = uncross("frames", self.path, input=b"0\n", stdin=None, text=False).stdout
+        self.assertEqual(uncross("frames", self.path, input=b"0", stdin=None, text=False).stdout, said)  # a last line may end with the file
+        (self.folder / "begun").write_bytes(said[:-8])
+        stub.write_text(f"#!/bin/sh\ncat '{self.folder}/begun'\nexec sleep 60\n")
+        stub.chmod(0o755)
+        with subprocess.Popen([TOP / "tools/uncross-export", self.path, "-o", self.folder / "cut"], env={**os.environ, "UNCROSS": str(stub)}) as done:
+            while not (self.folder / "cut").exists():
+                time.sleep(0.05)
+            time.sleep(0.5)
+            done.terminate()
+            self.assertEqual(done.wait(60), 128 + signal.SIGTERM)
+        self.assertFalse((self.folder / "cut").exists())
+        subprocess.run([*program, "--out", self.folder / "first", "-o", self.folder / "last"], check=True)
+        self.assertEqual([(self.folder / name).exists() for name in ("first", "last")], [False, True])
 
     def test_formats(self):
         self.assertEqual(self.export(), self.export("--format", "xyz"))
