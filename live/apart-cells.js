@@ -124,13 +124,13 @@ export function begin(panel) {
     return null;
   }, () => {});
   panel.append(
-    make('p', {}, 'Particles fly straight (1). Then the plane is cut into cells, at another random place each time (2). In each cell all velocities are turned by one angle, seen from the cell’s mean velocity V (3).'),
-    make('p', {}, 'Press 1, 2, and turn a cell with the slider. Its momentum and energy stay equal, whatever the angle.'),
+    make('p', {}, 'The solvent repeats three steps, one on each button. 1: particles fly straight. 2: the plane is cut into cells, at another random place each time. 3: in each cell, all velocities relative to the cell’s mean velocity V are turned by one angle.'),
+    make('p', {}, 'Press 1 and 2, then turn the marked cell with the slider below the picture. Its momentum and energy stay equal, whatever the angle.'),
     make('div', {class: 'apart-choice'}, button('1 Stream', stream), button('2 Shift the grid', move_grid), button('3 Turn all by ±90°', turn_all), button('Next cell', () => next()), button('New particles', start)),
     svg,
     make('ul', {class: 'apart-key'}, make('li', {}, make('i', {class: 'one'}), 'velocity v'), make('li', {}, make('i', {class: 'two'}), 'mean velocity V of the marked cell')),
     hand.box, numbers,
-    equation('r ← r + v Δt   (3)', 'v ← V + R (v − V)   (5), (6)'),
+    equation('r ← r + v Δt   Eq. (3) of the paper', 'v ← V + R (v − V)   Eqs. (5), (6)'),
     make('p', {class: 'apart-source'}, 'In C: src/mpc/grid.c, src/mpc/rules/srd.h. In three dimensions the axis of R is random. A fiber’s vertex is a member of its cell like any particle: this is how fibers feel the fluid.'));
 
   function next() {

@@ -107,7 +107,7 @@ export function begin(panel) {
     if (all) {
       const hit = crossing(query()), touch = p.a.map((x, k) => x + hit.s_standing * (p.b[k] - x)), moved = p.from.map((x, k) => x + hit.time * (p.to[k] - x));
       parts.push(line(place(moved), on.pivot, 'one flight'), disc(place(touch), 8, 'hit'));
-      when = ` It does so at ${short(hit.time)} of the move, at s = ${short(hit.s)}, s′ = ${short(hit.s_standing)}.`;
+      when = ` They meet at ${short(100 * hit.time)} % of the move, at the parts s = ${short(hit.s)} of the moving bond and s′ = ${short(hit.s_standing)} of the other one.`;
     }
     figure.replaceChildren(...parts);
     for (const [point, handle] of handles) {
@@ -151,7 +151,7 @@ export function begin(panel) {
     make('p', {}, 'In the paper’s rule one vertex moves at a time, from i to i′. Its bond sweeps the shaded triangle, and all other bonds stand. Does the bond j … j+1 pierce the triangle?'),
     make('p', {}, 'Drag the points. Three signs decide, each of an exact integer: one crossing that is missed is a tangle forever.'),
     which.box, svg, depth.box, verdict, numbers, doubt,
-    equation('(R(j+1) − R(j)) × (R(pivot) − R(j)) · (R(i; t) − R(j)) = 0   (10)'),
+    equation('(R(j+1) − R(j)) × (R(pivot) − R(j)) · (R(i; t) − R(j)) = 0   Eq. (10)'),
     make('p', {class: 'apart-source'}, 'In C: src/contact/line.c, determinant.h. The same sign is computed here, and both are tested with the same data.'));
   choose(name);
 }

@@ -18,8 +18,8 @@ export class Hashes {
       this.#native.textContent = `The native program has ${known.hash} at step ${known.steps}.`;
       this.step(0);
     } else if (state.text === null) {
-      const link = Object.assign(document.createElement('a'), {href: `#scene=${encodeURIComponent(state.scene)}`, textContent: 'the scene without settings'});
-      this.#native.append('The native hash is known of ', link, '. With these settings, run the downloaded file: the native program has the same hash at each step.');
+      const link = Object.assign(document.createElement('a'), {href: `#scene=${encodeURIComponent(state.scene)}`, textContent: 'the shipped scene'});
+      this.#native.append('This state changes ', link, ', and only of that one a native hash is kept here. To compare this state, download its scene file and run it: the native program has the same hash at each step.');
     } else {
       this.#native.textContent = 'The native program reaches the same hashes with the downloaded file.';
     }

@@ -30,10 +30,13 @@ function begin_lesson(lesson, page) {
   function show() {
     if (!rows.some(row => row.values.length)) return;
     const lines = [...(lesson.scatter ? [] : [{value: guessed(), cls: 'guess', label: 'your guess'}]), ...(answer.open ? (lesson.theory ?? []).filter(one => !lesson.log).map(one => ({...one, cls: 'expected'})) : [])];
-    const number = row => { const {mean, error, scatter} = over_seeds(row.values); return row.values.length ? [row.label, with_error(mean, error), row.values.length > 1 ? short(scatter) : '–', String(row.values.length), answer.open ? short(row.seen, 4) : '?'] : [row.label, '–', '–', '0', '?']; };
-    results.replaceChildren(strip(rows, lines), table([lesson.quantity, 'mean ± error', 'scatter', 'seeds', 'the course'], rows.map(number), lesson.quantity),
+    const number = row => { const {mean, error, scatter} = over_seeds(row.values); return row.values.length ? [row.label, with_error(mean, error), row.values.length > 1 ? short(Number(scatter.toPrecision(2))) : '–', answer.open ? row.seen : '?'] : [row.label, '–', '–', '?']; };
+    results.replaceChildren(strip(rows, lines), table([lesson.quantity, 'mean ± error', 'scatter', lesson.scatter ? 'scatter, in the course' : 'in the course'], rows.map(number), lesson.quantity),
       ...(lesson.curve ? [curves(rows, lesson.axis, lesson.log, answer.open && lesson.log ? lesson.theory : [])] : []));
-    if (lesson.scatter && guess.value) results.append(make('p', {class: 'watch'}, `Your guess of the scatter: ${guess.value}.`));
+    if (lesson.scatter && rows.every(row => row.values.length > 1)) {
+      const spread = row => { const {scatter} = over_seeds(row.values); return with_error(scatter, scatter / Math.sqrt(2 * (row.values.length - 1))); }; // its error for normal deviates
+      results.append(make('p', {}, `Scatter with its error: ${rows.map(row => `${spread(row)} (${row.label})`).join(', ')}.${guess.value ? ` Your guess of the first: ${guess.value}.` : ''}`));
+    }
   }
 
   async function measure() {
@@ -73,8 +76,8 @@ function begin_lesson(lesson, page) {
     make('p', {}, 'The line that changes: ', make('code', {}, lesson.before.label), ' → ', make('code', {}, lesson.after.label)),
     make('p', {}, make('label', {class: 'guess'}, lesson.guess, guess)),
     make('p', {class: 'buttons'}, run, make('label', {}, 'seeds of each ', seeds)), line, results, answer,
-    make('p', {class: 'links'}, 'In the picture: ', make('a', {href: link_of(lesson, lesson.before)}, 'before'), make('a', {href: link_of(lesson, lesson.after)}, 'after'),
-      make('a', {href: COURSE, rel: 'help'}, `exercise ${lesson.name ?? lesson.number} of the course`)));
+    make('p', {class: 'links'}, 'Open in the picture: ', make('a', {href: link_of(lesson, lesson.before)}, 'before'), make('a', {href: link_of(lesson, lesson.after)}, 'after'),
+      'Read: ', make('a', {href: COURSE, rel: 'help'}, `exercise ${lesson.name ?? lesson.number} of the course`)));
   return box;
 }
 
@@ -83,6 +86,6 @@ export function begin(panel, page) {
   dress();
   panel.classList.add('lessons');
   const boxes = lessons.map(lesson => begin_lesson(lesson, page));
-  panel.append(make('p', {}, 'Each exercise changes one line of a scene. Guess first, with a number: it stays in this browser. Then several seeds run here, before and after the change; each dot is a run, and the bar is the mean with its error.'), ...boxes);
+  panel.append(make('p', {}, 'Each exercise changes one line of a scene. Guess first, with a number: it stays in this browser. Then several runs start here, before and after the change, each with a seed (random numbers) of its own. A dot is a run, and the bar is the mean with its standard error. Scatter is the standard deviation of the runs. 0.1202(5) means 0.1202 ± 0.0005.'), ...boxes);
   boxes[0].open = true;
 }

@@ -51,14 +51,14 @@ export const measures = [
      const members = source.info.vertices + source.info.particles || 1, y = rows.total.map(total => (total - rows.total[0]) / members);
      const bounces = source.table('collisions'), hits = bounces?.executed?.at(-1);
      const heat = hits > 0 && !driven(source.values) && !thermostat(source.values) ? ` ${short((rows.total.at(-1) - rows.total[0]) / hits, 2)} kT for each contact.` : '';
-     return {series: [{label: 'change of the total energy', x: rows.time, y, role: 'main'}], now: `Now ${short(y.at(-1))} kT each.${heat}`};
+     return {series: [{label: 'change of the total energy', x: rows.time, y, role: 'main'}], now: `Now ${short(y.at(-1))} kT per particle.${heat}`};
    }},
   {id: 'temperature', title: 'Temperature', x: 'time, t₀', y: 'kT', see: 'Both wobble about 1. Few vertices wobble more than many particles.',
    draw(source) {
      const rows = source.table('temperature');
      if (!rows?.time.length) return null;
      const series = [['solvent', 'main'], ['vertex', 'second']].filter(([name]) => rows[name]).map(([name, role]) => ({label: name === 'vertex' ? 'vertices' : name, x: rows.time, y: rows[name], role}));
-     return {series: [...series, ...level('1', 1, rows.time)], now: series.map(one => `${one.label} ${with_error(...mean_and_error(one.y))}`).join(', ')};
+     return {series: [...series, ...level('kT = 1', 1, rows.time)], now: series.map(one => `${one.label} ${with_error(...mean_and_error(one.y))}`).join(', ')};
    }},
   {id: 'contacts', title: 'Contacts per t₀', x: 'time, t₀', y: '1/t₀', see: 'How often bonds touch. The dashed line is kinetic theory: an ideal gas of bonds, with nothing fitted.',
    draw(source) {

@@ -62,8 +62,8 @@ export async function use_panels(page, address) {
     stayed ||= /stays where it is/.test(await text('.apart-verdict'));
   }
   must('no vertex stays in the paper’s rule', stayed);
-  await press('200 contacts');
-  await page.waitForFunction(() => /size in 200 others/.test(document.getElementById('apart-panel').textContent));
+  await press('Measure 200 others');
+  await page.waitForFunction(() => /rms of 200 others/.test(document.getElementById('apart-panel').textContent));
 
   await part('4 Break it');
   await page.locator('#apart-panel section:not([hidden]) select').selectOption('levers');
