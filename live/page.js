@@ -11,8 +11,9 @@ import {begin_legend} from './legend.js';
 import {Hashes} from './hashes.js';
 import {keep_files} from './offline.js';
 import {read_link, write_link, settings_of} from './state.js';
-import {values_of, value_at, as_text, wanted_tables, written, fitting} from './scene.js';
+import {values_of, value_at, as_text, wanted_tables, written, fitting, lines_of_check} from './scene.js';
 import {beginnings, words_of_scene} from './catalog.js';
+import {make} from './apart-draw.js';
 import {begin as begin_apart} from './apart.js';
 import {begin as begin_lessons} from './lessons.js';
 
@@ -63,7 +64,8 @@ function show_scene() {
   at('about').textContent = begin >= 0 ? beginnings[begin].about : state.text !== null ? 'A scene of your own.' : words_of_scene(shipped(state.scene))[1];
   at('seed').value = state.seed ?? now.values.seed;
   editor.show(state.settings.size ? now.text : text_of(state));
-  at('check').textContent = now.check.replace(/^[^]*?(?=\nParameters )/, '').trim();
+  at('check').replaceChildren(...lines_of_check(now.check.replace(/^[^]*?(?=\nParameters )/, '').trim()).map(({name, value, more}) =>
+    make('span', {}, make('span', {}, name, ...(more ? ['  ', make('i', {}, more)] : [])), ...(value ? [' ', make('b', {}, value)] : []), '\n')));
   at('command').textContent = `uncross run ${state.scene.replace(/.*\//, '')}.yaml --out run`;
 }
 

@@ -52,3 +52,11 @@ export function written(text) {
 /** The text that is run: in a sheared box fibers have no displacements, so the line that asks for them is left out. */
 export const fitting = (text, settings) => [...settings].some(([path, value]) => path.startsWith('shear.') && value !== '0') ?
   text.replace(/^ +dynamics: *\{[^}\n]*\}.*\n/m, '') : text;
+
+/** Lines of what `uncross check` prints: {name, value, more: symbol and remark} of a quantity, {name} of others. Columns are two spaces apart or more. */
+export function lines_of_check(check) {
+  return check.split('\n').map(line => {
+    const [name, ...rest] = line.trim().split(/ {2,}/), value = rest.slice(0, 2).findIndex(words => /^-?[0-9.]+(e[-+]?[0-9]+)?( |$)/.test(words));
+    return value < 0 ? {name: line} : {name: line.match(/^ */)[0] + name, value: rest[value], more: rest.filter((_, at) => at !== value).join(', ')};
+  });
+}
