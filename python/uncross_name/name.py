@@ -136,8 +136,8 @@ def name(case, mistakes, outputs):
     part = [fit for fit in fits or changed if fit.only != "in some rows only"]
     if part and not few:
         return search.sentence(part)
-    if fits or changed:
-        other = other or f"the wrong values are those of {search.sentence(fits or changed)}"
+    if fits or (changed and not other):  # a mistake that somebody has written down says more than what any operator may do
+        other = f"the wrong values are those of {search.sentence(fits or changed)}"
     return few or anything.pattern(first) or _first_hit(case) or _description(case, other)
 
 
