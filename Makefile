@@ -477,7 +477,7 @@ demo:
 # The exact tests under other flags, in folders of their own. Physics tests are long and add nothing here; those of
 # validation/, of names and of units run little but Python.
 EXACT_TESTS := $(filter-out tests/physics/% tests/validation/% tests/stress/% tests/mutants/% tests/tools/% \
-   tests/oracle/test_name% tests/oracle/test_oracle.py tests/api/%.py tests/cli/test_memory.py tests/cli/test_units.py, \
+   tests/oracle/test_name% tests/api/%.py tests/cli/test_memory.py tests/cli/test_units.py, \
    $(sort $(shell find tests -name 'test_*.c' -o -name 'test_*.py' -o -name 'test_*.sh')))
 .PHONY: exact
 exact: $(BUILD)/uncross $(BUILD)/uncross-faults $(LIBRARIES) $(patsubst %.c,$(BUILD)/%,$(filter %.c,$(EXACT_TESTS)))
