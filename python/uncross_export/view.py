@@ -57,7 +57,7 @@ class View:
         solid = [row for row in range(file.rows) if not file.is_solvent(row)]
         self.solvent = solvent or not solid  # it is shown: asked for, or there is nothing else
         self.shown = range(file.rows) if self.solvent else solid
-        self.number = {row: k for k, row in enumerate(self.shown)}
+        self.number = self.shown if self.solvent else {row: k for k, row in enumerate(solid)}  # of all rows: each its own
 
     def place(self, row):
         """(x, image): folded into the cell along the edges that are periodic, if that is asked for, and how many of each edge were
