@@ -158,14 +158,19 @@ engine.on('ready', async ({version, vectors, scenes: list}) => {
   scenes = list;
   at('version').textContent = `${version}, ${vectors ? 'with' : 'without'} 128-bit vectors`;
   list_scenes();
-  const first = beginnings[0], refusal = await open(await linked(), {run: false});
+  const first = beginnings[0], refusal = await open_link({run: false});
   keep_files(['worker.js', 'library.js', 'scenes.json', 'uncross.wasm', 'uncross-simd.wasm']);
   if (refusal) await open({...first, text: null, settings: new Map(first.settings), seed: null}, {run: false}).then(() => say(refusal.message));
 });
 
-async function linked() {
+/** Opens what the address says. @returns {Promise<object|null>} the refusal */
+async function open_link(options) {
   const fallback = {...beginnings[0], text: null, settings: new Map(beginnings[0].settings), seed: null};
-  return read_link(location.hash, fallback).catch(() => fallback);
+  let damaged = false;
+  const state = await read_link(location.hash, fallback).catch(() => { damaged = true; return fallback; });
+  const refusal = await open(state, options);
+  if (damaged && !refusal) say('The scene in this link cannot be read, perhaps because the link was cut. Shown is the first scene of the list.');
+  return refusal;
 }
 
 engine.on('started', message => {
@@ -244,7 +249,7 @@ at('step').addEventListener('click', () => {
 at('restart').addEventListener('click', () => open(now.state));
 at('seed').addEventListener('change', event => {
   const seed = event.target.value.trim();
-  if (!/^[0-9]{1,20}$/.test(seed)) { event.target.value = now.state.seed ?? now.values.seed; return; }
+  if (!/^[0-9]{1,20}$/.test(seed)) return say(`“${seed}” is no seed; allowed: a whole number from 0 to 18446744073709551615.`);
   open({...now.state, seed: seed === String(now.base.seed) ? null : seed});
 });
 at('scene').addEventListener('change', event => {
@@ -275,7 +280,7 @@ at('copy').addEventListener('click', async () => {
     at('copied').textContent = location.href;
   }
 });
-addEventListener('hashchange', async () => open(await linked()));
+addEventListener('hashchange', () => open_link());
 
 begin_tabs(document.querySelector('[role="tablist"]'));
 const switches = begin_looks(at('looks'), chosen => {

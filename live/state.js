@@ -2,7 +2,7 @@
 
 /** @typedef {{scene: string, text: string|null, settings: Map<string, string>, seed: string|null}} State */
 
-const to_letters = bytes => btoa(String.fromCharCode(...bytes)).replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '');
+const to_letters = bytes => btoa(Array.from(bytes, byte => String.fromCharCode(byte)).join('')).replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '');
 const from_letters = text => Uint8Array.from(atob(text.replaceAll('-', '+').replaceAll('_', '/')), letter => letter.charCodeAt(0));
 
 async function through(stream, bytes) {

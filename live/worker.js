@@ -9,6 +9,7 @@ const SLICE = 12;       /* ms of steps between looks at messages */
 const FRAME = 1000 / 60;
 const TABLES = 500;     /* ms between tables */
 const RATE = 500;       /* ms over which the rate is taken */
+const CONTACTS = 4096;  /* numbers of bonds in a frame at most: a page that nobody looks at draws none */
 
 let library, shipped;
 let sim = null, scene = null, id = null;
@@ -98,7 +99,7 @@ function advance(most) {
   let made = 0, now = began;
   while (made < most && now - began < SLICE) {
     const steps = Math.max(1, Math.min(pace, most - made));
-    if (want.contacts)
+    if (want.contacts && contacts.length < CONTACTS)
       contacts.push(...sim.advanceAndSee(steps));
     else
       sim.advance(steps);

@@ -51,6 +51,9 @@ export async function use_controls(page, address) {
     await stepped(page, 0).catch(() => wrong.push(`${control}: no step after ${link}`));
   }
 
+  await go(page, address, '#text=cut');
+  must('nothing is said of a link that is cut', (await value_of(page, 'message')).includes('cannot be read'));
+
   await go(page, address, '#scene=shear');
   await slide(page, 'shear', 1);
   await link_says(page, 'shear.rate=').catch(() => wrong.push('shear: the link does not say shear.rate'));
@@ -66,6 +69,9 @@ export async function use_controls(page, address) {
   must('a plot of the energy is missing', await page.$('#plot-energy'));
   await page.click('#restart');
   await wait(page, () => document.getElementById('steps').textContent === '0').catch(() => wrong.push('restart does not begin at step 0'));
+  await page.fill('#seed', 'seven');
+  await page.press('#seed', 'Enter');
+  must('nothing is said of a seed that is none', (await value_of(page, 'message')).includes('“seven” is no seed'));
   await page.fill('#seed', '7');
   await page.press('#seed', 'Enter');
   await link_says(page, 'seed=7').catch(() => wrong.push('the link does not say the seed'));
