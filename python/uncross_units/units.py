@@ -10,7 +10,6 @@ BOLTZMANN = 1.380649e-23  # J/K: exact, Resolution 1 of the 26th CGPM (2018)
 # Liquid water at 25 C and 0.1 MPa: density and speed of sound (IAPWS-95), viscosity (IAPWS 2008), self-diffusion coefficient
 # (Holz, Heil, Sacco, Phys. Chem. Chem. Phys. 2, 4740 (2000)).
 WATER_DENSITY, WATER_VISCOSITY, WATER_SOUND, WATER_DIFFUSION = 997.05, 8.900e-4, 1496.7, 2.299e-9
-HEAVY_LOAD = 1.25  # THEORY_HEAVY_LOAD, src/theory/load.h
 
 KEYS = {"a0": "length", "T": "temperature", "eta": "viscosity", "rho": "density", "mass": "mass", "t0": "time"}
 # What fixes the unit of time: what is right then, what is wrong, and what is right where vertices load the fluid.
@@ -26,8 +25,9 @@ CHOICES = {
     "t0": ("lengths, energies, forces", "the solvent's density and viscosity, as listed; sound; the Schmidt number",
            "lengths, energies, forces")}
 
-# As `uncross check --numbers` tells them, in units of a0, kT and m; loaded: of the fluid with its vertices.
-Solvent = collections.namedtuple("Solvent", "viscosity density sound schmidt loaded_viscosity loaded_density")
+# As `uncross check --numbers` tells them, in units of a0, kT and m. loaded: of the fluid with its vertices; heavy: how many times as
+# viscous it is where their load is told.
+Solvent = collections.namedtuple("Solvent", "viscosity density sound schmidt loaded_viscosity loaded_density heavy")
 
 # Of each unit of a report: the SI unit, whether it takes a prefix, and its powers of length, energy and time.
 UNITS = {"a0": ("m", True, 1, 0, 0), "a0^2": ("m^2", False, 2, 0, 0), "1/a0^2": ("1/m^2", False, -2, 0, 0),
@@ -111,7 +111,7 @@ def report(found, scale, solvent):
         yield f"  {name:<38} {shown(ours, unit, prefix):<18} water {shown(water, unit, prefix):<18} ratio {ours / water:.3g}\n"
     right, wrong, loaded = CHOICES[key]
     factor = solvent.loaded_viscosity / solvent.viscosity
-    if factor > HEAVY_LOAD:
+    if factor > solvent.heavy:
         right = loaded
         wrong = (f"viscosity and density of the fluid with its vertices, {factor:.3g} and {solvent.loaded_density / solvent.density:.3g} times "
                  f"the solvent's, and so the times of diffusion, relaxation and drag; {wrong}")

@@ -206,9 +206,9 @@ static void report_units(const struct model *m)
 {
   printf("\x1funits");
   if (model_has_solvent(m))
-    printf("\x1f%.17g\x1f%.17g\x1f%.17g\x1f%.17g\x1f%.17g\x1f%.17g", theory_model_viscosity(m),
+    printf("\x1f%.17g\x1f%.17g\x1f%.17g\x1f%.17g\x1f%.17g\x1f%.17g\x1f%.17g", theory_model_viscosity(m),
            model_solvent_density(m), theory_sound_speed(model_is_isothermal(m), m->dimensions), theory_model_schmidt(m),
-           theory_loaded_viscosity(m), theory_loaded_density(m));
+           theory_loaded_viscosity(m), theory_loaded_density(m), THEORY_HEAVY_LOAD);
   putchar('\n');
 }
 
