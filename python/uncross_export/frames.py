@@ -65,8 +65,11 @@ class File:
         with contextlib.suppress(BrokenPipeError):  # of a number that it did not read
             self.child.stdin.close()
         self.child.stdout.close()
-        self.child.terminate()  # it has nothing to lose, and may wait for something
-        self.child.wait()
+        try:
+            self.child.wait(10)  # no number follows: it ends by itself
+        except subprocess.TimeoutExpired:
+            self.child.terminate()  # it has nothing to lose
+            self.child.wait()
 
     def is_solvent(self, row):
         return row >= self.particles or (0 <= self.species[row] < len(self.names) and self.names[self.species[row]] == SOLVENT)
