@@ -3,23 +3,27 @@
 ifeq ($(origin CC),default)
 CC := gcc
 endif
+# MARCH= (empty) is for every processor of a kind, as what is installed.
 MARCH   ?= native
 PREFIX  ?= /usr/local
+LIBDIR  ?= $(PREFIX)/lib
 BUILD   ?= build
+# Warnings are errors where the sources are written, not where a newer compiler builds a tarball: `make dist` puts COMMIT there.
+WERROR  ?= $(if $(wildcard COMMIT),,-Werror)
 
 # The same bits everywhere: no fused multiply-add, no optimisation that changes values. Nobody looks at errno of sqrt and
 # llrint, nor at the flags of floating-point exceptions, which loops that vectorise may raise more often.
 STRICT   := -std=c11 -ffp-contract=off -fno-math-errno -fno-trapping-math -D_POSIX_C_SOURCE=200809L
-OPTIMIZE ?= -O3 -march=$(MARCH)
-WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Werror
+OPTIMIZE ?= -O3$(MARCH:%= -march=%)
+WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla $(WERROR)
 INCLUDES := -Isrc -Iinclude $(patsubst -I%,-isystem %,$(shell pkg-config --cflags-only-I hdf5 2>/dev/null))
 CFLAGS   ?= -g
 # What is written over by mistake ends the program: canaries on the stack, checked copies, tables that are read-only.
 HARDEN   ?= -fstack-protector-strong $(if $(filter -O1 -O2 -O3 -Os,$(OPTIMIZE)),-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2)
-HARDEN_LINKED := -Wl,-z,relro,-z,now
+HARDEN_LINKED = -Wl,-z,relro,-z,now $(LDFLAGS)
 # The objects of the program are the library's, too: they fit in at any address, and show what UNCROSS_API marks only.
 LINKABLE := -fPIC -fvisibility=hidden
-ALL_CFLAGS = $(STRICT) $(OPTIMIZE) $(WARNINGS) $(HARDEN) $(INCLUDES) -fstack-usage $(CFLAGS) $(LINKABLE)
+ALL_CFLAGS = $(STRICT) $(OPTIMIZE) $(WARNINGS) $(HARDEN) $(INCLUDES) -fstack-usage $(CPPFLAGS) $(CFLAGS) $(LINKABLE)
 # What sanitizers leave out in kernels and tests, and what the fuzzer needs (see `sanitize`).
 UNCHECKED :=
 GUIDE     :=
@@ -86,7 +90,9 @@ help:
 	@echo 'make libraries       libuncross.so, libuncross.a, libuncross-core.a in $(BUILD)/lib (docs/library.md)'
 	@echo 'make live            the page: the same C code as WebAssembly, files for any server, in $(BUILD)/live (docs/live.md)'
 	@echo 'make live-test       the page in Node and in headless Chromium: the native hashes, messages, tables; speed'
-	@echo 'make install         PREFIX=$(PREFIX) DESTDIR=$(DESTDIR); make uninstall removes it'
+	@echo 'make install         PREFIX=$(PREFIX) LIBDIR=$(LIBDIR) DESTDIR=$(DESTDIR); for every processor, unless MARCH is given; make uninstall removes it'
+	@echo 'make dist            the tarball that packages are made of: $(BUILD)/dist'
+	@echo 'make deb             Debian packages, looked at by lintian: $(BUILD)/deb'
 	@echo 'make clean           removes $(BUILD)'
 	@echo 'variables            CC=gcc|clang  MARCH=native|x86-64|...  BUILD=folder  PLAIN=1 (no fast kernels, same results)'
 
@@ -141,6 +147,7 @@ $(patsubst %,$(BUILD)/src/kernel/%.o,$(KERNELS) $(WIDE)): $(BUILD)/src/kernel/%.
 INTERFACE := $(shell sed -n 's/^.define UNCROSS_INTERFACE \([0-9]*\)$$/\1/p' include/uncross.h 2>/dev/null)
 VERSION   := $(shell sed -n 's/^.define UNCROSS_VERSION "\(.*\)"$$/\1/p' src/version.h)
 SONAME    := libuncross.so.$(INTERFACE)
+SYMBOLS   := src/api/symbols.map
 LIBRARIES := $(addprefix $(BUILD)/lib/,libuncross.so libuncross.a libuncross-core.a)
 
 # Rooms without files: they need the C library and xxHash only.
@@ -155,10 +162,10 @@ LINKED_OBJECTS := $(filter-out $(BUILD)/src/cli/% $(BUILD)/src/oracle/% $(BUILD)
 libraries: $(LIBRARIES)
 
 # The library reads HDF5 files by the program, of the same build.
-$(BUILD)/lib/$(SONAME): $(LINKED_OBJECTS) | $(BUILD)/uncross
+$(BUILD)/lib/$(SONAME): $(LINKED_OBJECTS) $(SYMBOLS) | $(BUILD)/uncross
 	@mkdir -p $(@D)
 	@echo '  LD $@'
-	@$(CC) $(ALL_CFLAGS) $(HARDEN_LINKED) -shared -Wl,-soname,$(SONAME) $^ $(LIBS) -o $@
+	@$(CC) $(ALL_CFLAGS) $(HARDEN_LINKED) -shared -Wl,-soname,$(SONAME),--version-script=$(SYMBOLS) $(filter %.o,$^) $(LIBS) -o $@
 
 $(BUILD)/lib/libuncross.so: $(BUILD)/lib/$(SONAME)
 	@ln -sf $(SONAME) $@
@@ -195,7 +202,7 @@ $(BUILD)/build-info.inc: export PREFIX := $(PREFIX)
 $(BUILD)/build-info.inc: force | $(BUILD)/found-run
 	@[ "$$(printf %s "$$PREFIX" | wc -l)" = 0 ] || { echo 'uncross: PREFIX has a line feed in it, which no list of files can hold' >&2; exit 1; }
 	@mkdir -p $(@D)
-	@new=$@.$$$$; { echo '#define BUILD_COMMIT "$(shell git describe --always --dirty --abbrev=12 2>/dev/null || echo unknown)"'; \
+	@new=$@.$$$$; { echo '#define BUILD_COMMIT "$(shell cat COMMIT 2>/dev/null || git describe --always --dirty --abbrev=12 2>/dev/null || echo unknown)"'; \
 	   echo '#define BUILD_COMPILER "$(shell $(CC) --version | head -n 1)"'; \
 	   echo '#define BUILD_FLAGS "$(STRICT) $(OPTIMIZE)"'; \
 	   printf '#define BUILD_PREFIX "%s"\n' "$$(printf %s "$$PREFIX" | sed 's/[\"]/\\&/g')"; } > $$new; \
@@ -206,8 +213,11 @@ $(BUILD)/src/files/build_info.o: INCLUDES += -I$(BUILD)
 .PHONY: force
 force:
 
-# What is installed, one line each: mode (or link), where it comes from, where it goes below $(PREFIX).
-DOCUMENTS := $(shell find docs scenes examples -type f -not -path '*/.*' -not -name '*.pyc' 2>/dev/null)
+# What is installed, one line each: mode (or link), where it comes from, where it goes below $(PREFIX). @LIB@ is LIBDIR, seen from there.
+FRONT     := $(wildcard *.md LICENSE NOTICE CITATION.cff codemeta.json)
+DOCUMENTS := $(FRONT) $(shell find docs scenes examples -type f -not -path '*/.*' -not -name '*.pyc' 2>/dev/null)
+# What `uncross oracle judge` holds a port against, and the table that a run makes for it (docs/judging.md).
+JUDGED    := $(wildcard reference-data/README.md reference-data/observables.csv reference-data/measure-observables reference-data/judge/*.yaml reference-data/judge/power/*)
 # What `uncross oracle check` holds a port against.
 REFERENCE := $(wildcard $(foreach n,pack.h5 pack.txt.gz start.h5 start.txt.gz trace.csv yaml,reference-data/*.$(n) reference-data/flow/*.$(n) reference-data/dumbbells/*.$(n) reference-data/media/*.$(n) reference-data/tubes/*.$(n) reference-data/beads/*.$(n)))
 define INSTALLED
@@ -215,42 +225,58 @@ define INSTALLED
 $(foreach p,$(OUTER),755 tools/$(p) libexec/uncross/$(p)
 )
 644 include/uncross.h include/uncross.h
-755 $(BUILD)/lib/$(SONAME) lib/$(SONAME)
-link $(SONAME) lib/libuncross.so
-644 $(BUILD)/lib/libuncross.a lib/libuncross.a
-644 $(BUILD)/lib/libuncross-core.a lib/libuncross-core.a
+755 $(BUILD)/lib/$(SONAME) @LIB@/$(SONAME)
+link $(SONAME) @LIB@/libuncross.so
+644 $(BUILD)/lib/libuncross.a @LIB@/libuncross.a
+644 $(BUILD)/lib/libuncross-core.a @LIB@/libuncross-core.a
 $(foreach h,$(CORE_HEADERS),644 $(h) include/uncross-core/$(h:src/%=%)
 )
-644 $(BUILD)/install/uncross.pc lib/pkgconfig/uncross.pc
-644 $(BUILD)/install/uncross-core.pc lib/pkgconfig/uncross-core.pc
-644 $(BUILD)/install/uncross.1 share/man/man1/uncross.1
+644 $(BUILD)/install/uncross.pc @LIB@/pkgconfig/uncross.pc
+644 $(BUILD)/install/uncross-core.pc @LIB@/pkgconfig/uncross-core.pc
 644 $(BUILD)/install/completion share/bash-completion/completions/uncross
 644 include/uncross.h lib/python3/dist-packages/uncross/uncross.h
 $(foreach f,$(wildcard python/uncross/*.py python/uncross_export/*.py python/uncross_units/*.py python/uncross_plot/*.py python/uncross_plot/*.jinja python/uncross_sweep/*.* python/uncross_name/*.py),644 $(f) lib/python3/dist-packages/$(f:python/%=%)
 )
-$(foreach f,$(DOCUMENTS) $(REFERENCE) $(wildcard mistakes/*.yaml) $(wildcard ports/numpy/uncross_port/*.py ports/numpy/uncross_port/*.json),644 $(f) share/uncross/$(f)
+$(foreach f,$(DOCUMENTS) $(REFERENCE) $(JUDGED) $(wildcard mistakes/*.yaml) $(wildcard ports/numpy/uncross_port/*.py ports/numpy/uncross_port/*.json),$(if $(filter $(f),$(RUNNABLE)),755,644) $(f) share/uncross/$(f)
 )
 endef
-INSTALL_FILES = $(addprefix $(BUILD)/install/,uncross.pc uncross-core.pc uncross.1 completion)
+INSTALL_FILES = $(addprefix $(BUILD)/install/,uncross.pc uncross-core.pc man completion)
+RUNNABLE := $(shell find docs examples reference-data/measure-observables -type f -executable 2>/dev/null)
 
 # A prefix may hold any characters that a folder's name may, so only shells see it.
 install uninstall $(BUILD)/install/%.pc: export DESTDIR := $(DESTDIR)
 install uninstall $(BUILD)/install/%.pc: export PREFIX := $(PREFIX)
+install uninstall $(BUILD)/install/%.pc: export LIBDIR := $(LIBDIR)
 install: export INSTALLED := $(INSTALLED)
 
+# LIBDIR seen from PREFIX, in a shell: $$lib.
+LIB_BELOW = lib=$${LIBDIR\#"$$PREFIX"/}; \
+  case $$lib in /* | *[!A-Za-z0-9._+/-]*) echo 'uncross: LIBDIR is a folder below PREFIX, of letters, digits and . _ + - / below it' >&2; exit 1 ;; esac
+
 .PHONY: install
+ifeq ($(origin MARCH),file)
+# A build of its own that is not tied to this processor; the fast kernels are chosen when it runs (src/kernel/choose.c).
+install:
+	@$(MAKE) --no-print-directory install MARCH= WERROR= BUILD='$(BUILD)/portable'
+else
 install: $(BUILD)/uncross $(LIBRARIES) $(INSTALL_FILES)
-	@echo "$$INSTALLED" | tools/install-files install "$$DESTDIR$$PREFIX"
+	@$(LIB_BELOW); { echo "$$INSTALLED" | sed "s|@LIB@|$$lib|"; \
+	   for page in $(BUILD)/install/man/*; do echo "644 $$page share/man/man1/$${page##*/}"; done; } | tools/install-files install "$$DESTDIR$$PREFIX"
 	@echo "installed in $$DESTDIR$$PREFIX"
+endif
 
 # Removes what install put there, and the folders that it made if they are empty then.
 .PHONY: uninstall
 uninstall:
 	@tools/install-files uninstall "$$DESTDIR$$PREFIX"
 
-$(BUILD)/install/uncross.1: $(BUILD)/uncross
-	@mkdir -p $(@D)
-	@$< help --man >$@
+# A page for the program and one for each command.
+$(BUILD)/install/man: $(BUILD)/uncross
+	@rm -rf $@
+	@mkdir -p $@.new
+	@$< help --man >$@.new/uncross.1
+	@$< help --commands | while read -r name action; do $< help --man $$name $$action >"$@.new/uncross-$$name$${action:+-$$action}.1"; done
+	@mv $@.new $@
 
 $(BUILD)/install/completion: $(BUILD)/uncross
 	@mkdir -p $(@D)
@@ -259,7 +285,24 @@ $(BUILD)/install/completion: $(BUILD)/uncross
 # The prefix may be another one at every install.
 $(BUILD)/install/%.pc: tools/%.pc.in force
 	@mkdir -p $(@D)
-	@sed "s|@PREFIX@|$$(printf %s "$$PREFIX" | sed 's/[\"$$#]/\\&/g; s/[\|&]/\\&/g')|; s|@VERSION@|$(VERSION)|" $< >$@
+	@$(LIB_BELOW); sed "s|@LIB@|$$lib|; s|@PREFIX@|$$(printf %s "$$PREFIX" | sed 's/[\"$$#]/\\&/g; s/[\|&]/\\&/g')|; s|@VERSION@|$(VERSION)|" $< >$@
+
+# --- packages (packaging/README.md) -------------------------------------------------------------------------------------
+
+# What all packages are made of: the files of HEAD, and its name in COMMIT. The same bytes whenever it is made.
+DIST := $(BUILD)/dist/uncross-$(VERSION).tar.gz
+.PHONY: dist
+dist:
+	@mkdir -p $(BUILD)/dist
+	@git -c tar.umask=0022 archive --format=tar --prefix=uncross-$(VERSION)/ \
+	   --add-virtual-file="uncross-$(VERSION)/COMMIT:$$(git describe --always --abbrev=12)" HEAD | gzip -9n >$(DIST)
+	@[ -z "$$(git status --porcelain)" ] || echo 'dist: uncommitted changes are not in it'
+	@sha256sum $(DIST)
+
+.PHONY: deb
+deb: dist
+	tools/install-dependencies run packages
+	packaging/make-deb $(DIST) $(BUILD)/deb
 
 # --- tests, checks, demo ----------------------------------------------------------------------------------------------
 

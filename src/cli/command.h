@@ -136,6 +136,8 @@ void help_all(FILE *out);
 void help_command(FILE *out, enum command_code command);
 void help_group(FILE *out, const char *group);
 void help_man(FILE *out);
+void help_man_command(FILE *out, enum command_code command);
+void help_names(FILE *out); /* of all commands, one a line */
 void help_completion(FILE *out);
 
 /* Prints to stdout: the effective scene, every derived number of the paper's Tables I and II, what this scene uses and

@@ -170,6 +170,53 @@ static void man_options(FILE *out, enum command_code command)
   }
 }
 
+static void man_codes(FILE *out, const struct command *c)
+{
+  fputs(".SH EXIT STATUS\n", out);
+  for (int code = 0; code < EXIT_CODES; code++) {
+    if (c && !ends_with(c, code))
+      continue;
+    fprintf(out, ".TP\n.B %d\n", code);
+    roff(out, code_text[code]);
+    fputc('\n', out);
+  }
+}
+
+/* The name of a command's page: "uncross-oracle-emit". */
+static void man_name(FILE *out, const char *name)
+{
+  fputs("uncross\\-", out);
+  for (const char *c = name; *c; c++)
+    fputs(*c == ' ' ? "\\-" : (char[2]){*c}, out);
+}
+
+void help_names(FILE *out)
+{
+  for (int command = 0; command < COMMANDS; command++)
+    fprintf(out, "%s\n", commands[command].name);
+}
+
+void help_man_command(FILE *out, enum command_code command)
+{
+  const struct command *c = &commands[command];
+  char words[MOST_USAGE];
+  usage(command, words, sizeof words);
+  fputs(".TH ", out);
+  man_name(out, c->name);
+  fprintf(out, " 1 \"\" \"uncross %s\"\n.SH NAME\n", UNCROSS_VERSION);
+  man_name(out, c->name);
+  fputs(" \\- ", out);
+  roff(out, c->summary);
+  fputs("\n.SH SYNOPSIS\n.B uncross\n", out);
+  roff(out, words);
+  fputs("\n.SH DESCRIPTION\n", out);
+  roff(out, c->text ? c->text : c->summary);
+  fputs("\n.SH OPTIONS\n", out);
+  man_options(out, command);
+  man_codes(out, c);
+  fputs(".SH SEE ALSO\n.BR uncross (1)\n", out);
+}
+
 void help_man(FILE *out)
 {
   char words[MOST_USAGE];
@@ -194,11 +241,12 @@ void help_man(FILE *out)
     }
     man_options(out, (enum command_code)command);
   }
-  fputs(".SH EXIT STATUS\n", out);
-  for (int code = 0; code < EXIT_CODES; code++) {
-    fprintf(out, ".TP\n.B %d\n", code);
-    roff(out, code_text[code]);
-    fputc('\n', out);
+  man_codes(out, NULL);
+  fputs(".SH SEE ALSO\n", out);
+  for (int command = 0; command < COMMANDS; command++) {
+    fputs(".BR ", out);
+    man_name(out, commands[command].name);
+    fprintf(out, " (1)%s\n", command + 1 < COMMANDS ? "," : "");
   }
 }
 

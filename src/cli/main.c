@@ -209,13 +209,16 @@ static enum exit_code oracle(const char *program, int count, char **words)
                             : usage_error("oracle", "oracle: no such action: %s", action[0] ? action : "(none given)");
 }
 
-/* `uncross help [COMMAND [ACTION]]`; --man and --completion are for `make install`. */
+/* `uncross help [COMMAND [ACTION]]`; --man [COMMAND [ACTION]], --commands and --completion are for `make install`. */
 static enum exit_code help(int count, char **words)
 {
   static const struct {
     const char *word;
     void (*print)(FILE *out);
-  } forms[] = {{"--man", help_man}, {"--completion", help_completion}};
+  } forms[] = {{"--man", help_man}, {"--commands", help_names}, {"--completion", help_completion}};
+  const bool page = count > 2 && strcmp(words[1], "--man") == 0;
+  words += page;
+  count -= page;
   const char *first = count > 1 ? words[1] : NULL, *second = count > 2 ? words[2] : NULL;
   for (size_t k = 0; first && k < sizeof forms / sizeof *forms; k++)
     if (strcmp(first, forms[k].word) == 0) {
@@ -226,8 +229,8 @@ static enum exit_code help(int count, char **words)
   if (!first)
     help_all(stdout);
   else if (command < COMMANDS)
-    help_command(stdout, command);
-  else if (strcmp(first, "oracle") == 0 && !second)
+    (page ? help_man_command : help_command)(stdout, command);
+  else if (strcmp(first, "oracle") == 0 && !second && !page)
     help_group(stdout, first);
   else
     return usage_error("", "unknown command %s%s%s", first, second ? " " : "", second ? second : "");
