@@ -20,20 +20,18 @@ def declarations(header):
     return re.sub(r"^[ \t]*#.*$|\bUNCROSS_API\b", "", text, flags=re.M)
 
 
-def find_header():
-    """Beside this file when installed, else in the tree of the sources."""
-    places = [HERE / "uncross.h", HERE.parents[1] / "include" / "uncross.h"]
-    return next(path for path in places if path.exists()).read_text(encoding="ascii")
-
-
 def open_library(ffi, name):
     """$UNCROSS_LIBRARY, or the library of the prefix that this package is installed in, or the system's."""
     chosen = os.environ.get("UNCROSS_LIBRARY")
     beside = HERE.parents[2] / name
-    return ffi.dlopen(chosen or (str(beside) if beside.exists() else name))
+    try:
+        return ffi.dlopen(chosen or (str(beside) if beside.exists() else name))
+    except OSError as why:
+        raise ImportError(f"uncross needs the library {name}, which `make install` or the package lib{name[3:].replace('.so.', '')} installs; "
+                          f"UNCROSS_LIBRARY may name it ({why})") from None
 
 
-HEADER = find_header()
+HEADER = (HERE / "uncross.h").read_text(encoding="ascii")
 INTERFACE = int(re.search(r"^#define UNCROSS_INTERFACE (\d+)$", HEADER, re.M)[1])
 AGE = int(re.search(r"^#define UNCROSS_INTERFACE_AGE (\d+)$", HEADER, re.M)[1])
 

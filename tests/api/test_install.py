@@ -19,9 +19,10 @@ SCENE = TOP / "reference-data" / "mixed.yaml"
 STEPS = 30
 
 
-def call(*words, environment=None, folder=TOP, code=0, show=False):
+def call(*words, environment=None, folder=TOP, code=0, show=False, unset=()):
+    kept = {name: text for name, text in os.environ.items() if name not in unset}
     done = subprocess.run([str(w) for w in words], cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, text=True,
-                          check=False, env={**os.environ, "MAKEFLAGS": "", **(environment or {})})
+                          check=False, env={**kept, "MAKEFLAGS": "", **(environment or {})})
     if done.returncode != code:
         raise AssertionError(f"{words}: {done.returncode}\n{done.stdout}{done.stderr}")
     return done.stdout + done.stderr * show
@@ -38,9 +39,10 @@ def copy_build(to):
     return to
 
 
-def make(target, prefix, destination="", code=0, **more):
+def make(target, prefix, destination="", *words, code=0, **more):
+    """As it was built: without MARCH, `make install` would build for all processors."""
     return call("make", "-s", target, f"BUILD={os.path.relpath(Installed.build, TOP)}", f"PREFIX={prefix}", f"DESTDIR={destination}",
-                code=code, **more)
+                f"MARCH={os.environ.get('MARCH', 'native')}", *words, code=code, **more)
 
 
 class Installed(unittest.TestCase):
@@ -139,7 +141,7 @@ class Installed(unittest.TestCase):
         declared = set(re.findall(r"UNCROSS_API[^;(]*?(uncross_\w+)\(", header))
         self.assertGreater(len(declared), 30)
         shown = {line.split()[2] for line in call("nm", "-D", "--defined-only", self.prefix / "lib/libuncross.so").splitlines()}
-        self.assertEqual(shown, declared)
+        self.assertEqual(shown, {f"{name}@@UNCROSS_0" for name in declared} | {"UNCROSS_0"})
         static = call("nm", "--defined-only", "--extern-only", self.prefix / "lib/libuncross.a").splitlines()
         self.assertEqual({line.split()[2] for line in static if len(line.split()) == 3}, declared)
 
@@ -162,6 +164,13 @@ class Installed(unittest.TestCase):
         self.assertEqual(page, call(BUILD / "uncross", "help", "--man"))
         for word in (".SH uncross run SCENE", "\\-\\-resume", "\\-\\-false\\-alarm P", ".SH EXIT STATUS"):
             self.assertIn(word, page)
+        commands = call(BUILD / "uncross", "help", "--commands").splitlines()
+        pages = {f"uncross-{name.replace(' ', '-')}.1" for name in commands} | {"uncross.1"}
+        self.assertEqual({path.name for path in (self.prefix / "share/man/man1").iterdir()}, pages)
+        self.assertEqual(call(BUILD / "uncross", "help", "--man", "oracle", "emit"), (self.prefix / "share/man/man1/uncross-oracle-emit.1").read_text())
+        for name in commands:
+            self.assertIn(f".BR uncross\\-{name.replace(' ', chr(92) + '-')} (1)", page)
+        self.assertIn("unknown command", call(BUILD / "uncross", "help", "--man", "oracle", code=2, show=True))
         script = self.prefix / "share/bash-completion/completions/uncross"
 
         def complete(*words):
@@ -195,6 +204,41 @@ class Installed(unittest.TestCase):
         (self.folder / "fiber.yaml").write_text(told)
         told = call(self.prefix / "bin/uncross", "check", "fiber.yaml", "--units", "a0=50nm,T=300K", folder=self.folder)
         self.assertIn("\n  unit of length                         a0                   1 a0        50 nm ", told)
+
+    def test_what_a_reader_needs(self):
+        """License and front pages; the table that judges a port, and the programs that measure, which find the installed program."""
+        share = self.prefix / "share/uncross"
+        for name in ("LICENSE", "NOTICE", "README.md", "CITATION.cff", "CHANGELOG.md", "reference-data/observables.csv", "reference-data/judge/fibers.yaml"):
+            self.assertTrue(filecmp.cmp(TOP / name, share / name), name)
+        told = call(self.prefix / "bin/uncross", "oracle", "judge", share / "reference-data/observables.csv", share / "reference-data/observables.csv")
+        self.assertIn("consistent", told)
+        told = call(share / "docs/exercises/measure", "--seeds", 1, "seed", folder=self.folder)
+        self.assertRegex(told, r"\d")
+        call(share / "reference-data/measure-observables", self.folder / "observables", "--runs", 2, "fibers", folder=self.folder)
+
+    def test_another_folder_for_libraries(self):
+        destination = self.folder / "multiarch"
+        make("install", "/usr", destination, "LIBDIR=/usr/lib/machine-os")
+        libraries = destination / "usr/lib/machine-os"
+        self.assertEqual({path.name for path in libraries.iterdir()}, {"libuncross.so", "libuncross.so.0", "libuncross.a", "libuncross-core.a", "pkgconfig"})
+        told = call("pkg-config", "--variable=libdir", "uncross", environment={"PKG_CONFIG_PATH": str(libraries / "pkgconfig")})
+        self.assertEqual(told, "/usr/lib/machine-os\n")
+        make("uninstall", "/usr", destination)
+        self.assertEqual([path for path in destination.rglob("*") if not path.is_dir()], [])
+        for bad in "/lib/machine-os", "/usr/a b":
+            self.assertIn("LIBDIR is a folder below PREFIX", make("install", "/usr", destination, f"LIBDIR={bad}", code=2, show=True))
+
+    def test_flags(self):
+        """What is installed by itself is tied to no processor, and a newer compiler's warning does not end it; flags are taken as given."""
+        told = call("make", "-n", "install", f"BUILD={self.folder}/other", "CPPFLAGS=-DA_WORD", "CFLAGS=-DANOTHER", "LDFLAGS=-Wl,-z,nodump",
+                    unset=("MARCH", "WERROR"))
+        compiled = re.findall(r"^.*-std=c11.* -c src/.*$", told, re.M)
+        self.assertGreater(len(compiled), 200)
+        for line in compiled:
+            self.assertNotRegex(line, "-march=(?!x86-64 )|-Werror")
+            self.assertRegex(line, "-DA_WORD.* -DANOTHER")
+        linked = re.findall(r"^.* -shared .*$|^.*-o \S*/uncross$", told, re.M)
+        self.assertEqual([("-Wl,-z,nodump" in line) for line in linked], [True, True])
 
     def test_uninstall_leaves_nothing(self):
         destination = self.folder / "stage"
