@@ -63,6 +63,7 @@ enum command_code {
   COMMAND_SCHEMA,
   COMMAND_EXPORT,
   COMMAND_FRAMES,
+  COMMAND_LINKS,
   COMMAND_ANALYZE,
   COMMAND_PLOT,
   COMMAND_SWEEP,
@@ -153,6 +154,7 @@ bool outer_find(const char *name, char path[PATH_MAX]);
 enum exit_code outer_run(const struct command *command, char **words);
 
 enum exit_code command_frames(const struct arguments *a);
+enum exit_code command_links(const struct arguments *a);
 enum exit_code command_run(const struct arguments *a);
 enum exit_code command_analyze(const struct arguments *a);
 enum exit_code command_verify(const struct arguments *a);
