@@ -15,7 +15,7 @@ Knot = collections.namedtuple("Knot", "curve status crossings polynomial name")
 # image: three whole numbers; the second curve stands in this image, as both curves are stored (unwrapped). polynomial: its values at
 # places other than -1 belong to the orientation in which vertices are listed. It is None where the curves were seen to be split:
 # one lies above the other, and lk and det are 0.
-Pair = collections.namedtuple("Pair", "one other image status lk det name")
+Pair = collections.namedtuple("Pair", "one other image status lk polynomial name")
 # curves: (curve, image) of each; wound: the group meets its own image, and has no polynomial.
 Group = collections.namedtuple("Group", "curves wound status crossings polynomial name")
 Links = collections.namedtuple("Links", "knots pairs groups judged")

@@ -12,7 +12,6 @@
 enum { MOST_VALUES = 16, MOST_VERTICES = 1 << 28 };
 
 #define FARTHEST ((int64_t)1 << 61) /* of coordinates and shifts */
-#define SMALLEST_PRIME ((uint64_t)1 << 31)
 
 /* One polygon of a job, as it is asked for. */
 struct asked {
@@ -85,9 +84,11 @@ static bool read_polygons(struct links *l, struct message *message)
     if (!point_is_within(l->at[k]))
       return message_set(message, "standard input: a coordinate is beyond 2^61");
   for (uint64_t k = 0; k < l->head[1]; k++)
-    if (l->place[k].prime < SMALLEST_PRIME || l->place[k].prime >> 62 || l->place[k].t - 1 >= l->place[k].prime - 1)
+    if (ALEXANDER_ABOVE - l->place[k].prime - 1 >= 0xffff || l->place[k].t - 1 >= l->place[k].prime - 1)
       return message_set(message,
-                         "standard input: value %" PRIu64 ": primes are from 2^31 to 2^62, t from 1 to below them", k);
+                         "standard input: value %" PRIu64
+                         ": primes between 2^61 - 2^16 and 2^61 are allowed, t from 1 to below them",
+                         k);
   return true;
 }
 

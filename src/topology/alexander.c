@@ -26,9 +26,14 @@ struct sparse_column {
 /* --- numbers modulo a prime ----------------------------------------------------------------------------------------
  */
 
+/* With 2^61 = c modulo the prime, c < 2^16: first below 2^77 + 2^61, then below 2^61 + 2^32. */
 static uint64_t times(uint64_t a, uint64_t b, uint64_t prime)
 {
-  return (uint64_t)((uint128)a * b % prime);
+  const uint64_t c = ALEXANDER_ABOVE - prime, mask = ALEXANDER_ABOVE - 1;
+  const uint128 product = (uint128)a * b;
+  const uint128 once = (product >> 61) * c + ((uint64_t)product & mask);
+  const uint64_t twice = (uint64_t)(once >> 61) * c + ((uint64_t)once & mask);
+  return twice >= prime ? twice - prime : twice;
 }
 
 static uint64_t minus(uint64_t a, uint64_t b, uint64_t prime)
@@ -146,8 +151,9 @@ static const struct entry *find_entry(const struct sparse_row *r, uint32_t colum
   return low < r->entries && r->entry[low].column == column ? &r->entry[low] : NULL;
 }
 
-/* row -= factor pivot row. */
-static bool subtract(struct alexander *a, uint32_t row, const struct sparse_row *pivot, uint64_t factor, uint64_t prime)
+/* row = scale row - factor pivot row: so no pivot is inverted. */
+static bool subtract(struct alexander *a, uint32_t row, const struct sparse_row *pivot, uint64_t scale, uint64_t factor,
+                     uint64_t prime)
 {
   struct sparse_row *r = &a->row[row];
   uint32_t i = 0, j = 0, n = 0;
@@ -155,11 +161,11 @@ static bool subtract(struct alexander *a, uint32_t row, const struct sparse_row 
     const uint32_t ours = i < r->entries ? r->entry[i].column : UINT32_MAX;
     const uint32_t theirs = j < pivot->entries ? pivot->entry[j].column : UINT32_MAX;
     if (ours < theirs) {
-      a->sum[n++] = r->entry[i++];
+      a->sum[n++] = (struct entry){ours, times(scale, r->entry[i++].value, prime)};
       continue;
     }
     const uint64_t product = times(factor, pivot->entry[j++].value, prime);
-    const uint64_t value = minus(ours == theirs ? r->entry[i].value : 0, product, prime);
+    const uint64_t value = minus(ours == theirs ? times(scale, r->entry[i].value, prime) : 0, product, prime);
     struct sparse_column *c = &a->column[theirs];
     if (value != 0)
       a->sum[n++] = (struct entry){theirs, value};
@@ -199,14 +205,17 @@ static const struct entry *rarest_column(const struct alexander *a, const struct
   return best;
 }
 
-static bool eliminate(struct alexander *a, uint32_t pivot_row, struct entry pivot, uint64_t prime)
+/* The determinant grows by the pivot for each row that is scaled. */
+static bool eliminate(struct alexander *a, uint32_t pivot_row, struct entry pivot, uint64_t *grown, uint64_t prime)
 {
   struct sparse_row *r = &a->row[pivot_row];
   struct sparse_column *c = &a->column[pivot.column];
-  const uint64_t inverted = c->count > 1 ? inverse(pivot.value, prime) : 0;
   for (uint32_t k = 0; k < c->rows && c->count > 1; k++) {
     const struct entry *e = c->row[k] == pivot_row ? NULL : find_entry(&a->row[c->row[k]], pivot.column);
-    if (e && !subtract(a, c->row[k], r, times(e->value, inverted, prime), prime))
+    if (!e)
+      continue;
+    *grown = times(*grown, pivot.value, prime);
+    if (!subtract(a, c->row[k], r, pivot.value, e->value, prime))
       return false;
   }
   for (uint32_t k = 0; k < r->entries; k++)
@@ -237,7 +246,8 @@ bool alexander_value(struct alexander *a, const struct diagram *d, uint64_t t, u
     return true;
   if (!have_room(a, size) || !fill(a, d, size, t, prime))
     return false;
-  for (uint32_t open = size; *value != 0 && open > 0; open--) {
+  uint64_t grown = 1;
+  for (uint32_t open = size; open > 0; open--) {
     const uint32_t place = shortest_row(a, open), row = a->open[place];
     if (a->row[row].entries == 0) {
       *value = 0;
@@ -247,10 +257,11 @@ bool alexander_value(struct alexander *a, const struct diagram *d, uint64_t t, u
     *value = times(*value, pivot.value, prime);
     a->pivot[row] = pivot.column;
     a->open[place] = a->open[open - 1];
-    if (!eliminate(a, row, pivot, prime))
+    if (!eliminate(a, row, pivot, &grown, prime))
       return false;
   }
-  if (*value != 0 && is_odd(a->pivot, size))
+  *value = times(*value, inverse(grown, prime), prime);
+  if (is_odd(a->pivot, size))
     *value = prime - *value;
   return true;
 }

@@ -4,6 +4,8 @@
 
 #include "topology/diagram.h"
 
+#define ALEXANDER_ABOVE ((uint64_t)1 << 61) /* primes are between this less 2^16 and this */
+
 /* Of a sparse matrix: scratch that begins as zeros, to be freed with alexander_free. */
 struct alexander {
   uint32_t room;
@@ -14,7 +16,7 @@ struct alexander {
   struct entry *sum;            /* [room] */
 };
 
-/* The minor of Alexander's matrix without its last row and column, modulo a prime below 2^62, at t in 1 .. prime - 1:
+/* The minor of Alexander's matrix without its last row and column, modulo a prime (above), at t in 1 .. prime - 1:
  * the polynomial Delta(t) up to a factor +-t^m, which is the same for all t. For several curves it is that of one
  * variable, 0 if they are split. From the rows of each crossing (J. W. Alexander, Trans. Am. Math. Soc. 30, 275
  * (1928)): with t for positive crossings (1 - t) over + t in - out, for negative ones (1 - t) over - in + t out. False
