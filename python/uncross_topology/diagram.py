@@ -7,7 +7,7 @@ import numpy
 
 FINE, TOUCHED, SPECIAL, TOO_FAR, TOO_MANY = range(5)  # enum diagram_status, src/topology/diagram.h
 WORDS = {TOUCHED: "touches itself or another", SPECIAL: "touches itself or another, or comes too near to tell",
-         TOO_FAR: "wider than 2^43 lattice units", TOO_MANY: "too many crossings"}
+         TOO_FAR: "wider than 2^46 lattice units", TOO_MANY: "too many crossings"}
 MOST = 20000  # crossings of a diagram whose polynomial is computed
 
 PRIMES = 2**61 - 1, 2**61 - 31

@@ -68,10 +68,10 @@ KNOTS |= {f"T({p},{q})": torus(p, q) for p, q in ((2, 9), (2, 11), (3, 7), (3, 8
 
 
 def link_names():
-    """(components, |lk| of all pairs, polynomial): name. T(2, 2n): with both curves in one direction (t^2n - 1)/(t + 1), with one of them
+    """(components, |lk| of pairs that have one, polynomial): name. T(2, 2n): with both curves in one direction (t^2n - 1)/(t + 1), with one of them
     turned round n (t - 1)."""
-    yield (2, (0,)), [1, -3, 3, -1], "Whitehead's link"
-    yield (3, (0, 0, 0)), [1, -4, 6, -4, 1], "the Borromean rings"
+    yield (2, ()), [1, -3, 3, -1], "Whitehead's link"
+    yield (3, ()), [1, -4, 6, -4, 1], "the Borromean rings"
     for n in range(1, 7):
         name = "Hopf's link = T(2,2)" if n == 1 else f"T(2,{2 * n})"
         yield (2, (n,)), divide(power(2 * n), [1, 1]), name
@@ -88,5 +88,5 @@ def knot_name(found):
 
 
 def link_name(components, numbers, found):
-    """Of several; numbers: their linking numbers, of all pairs."""
-    return BY_LINK.get((components, tuple(sorted(abs(number) for number in numbers)), found), "not in the table")
+    """Of several; numbers: their linking numbers, but for those that are 0."""
+    return BY_LINK.get((components, tuple(sorted(abs(number) for number in numbers if number)), found), "not in the table")

@@ -5,10 +5,9 @@ import itertools
 
 import numpy
 
-from uncross_topology import diagram, frame as frames, knots
-
-CLOSURES = {"sphere": "both ends go straight, away from the center of mass, to a sphere of 10 R_g about it, and are joined there",
-            "random": "both ends go straight in one direction, the same for both, and are joined at a distance of 20 R_g; 100 directions"}
+from . import closure as closures
+from . import diagram, knots
+from . import frame as frames
 
 # status: diagram.FINE, or why there is no number (diagram.WORDS). name: of knots.knot_name, None without a number.
 Knot = collections.namedtuple("Knot", "curve status crossings polynomial name")
@@ -18,7 +17,10 @@ Knot = collections.namedtuple("Knot", "curve status crossings polynomial name")
 Pair = collections.namedtuple("Pair", "one other image status lk polynomial name")
 # curves: (curve, image) of each; wound: the group meets its own image, and has no polynomial.
 Group = collections.namedtuple("Group", "curves wound status crossings polynomial name")
-Links = collections.namedtuple("Links", "knots pairs groups judged")
+# A chain closed in one way, or in several: names is {name: how often}.
+Chain = collections.namedtuple("Chain", "curve names")
+# judged: pairs and images whose boxes overlap; closure: a key of closure.WAYS, or None, and then chains is empty.
+Links = collections.namedtuple("Links", "knots pairs groups judged closure chains")
 
 
 def lattice_cell(frame):
@@ -37,15 +39,17 @@ def image_of(frame, shift):
 
 
 def polygons_of(frame, curves):
-    """The closed curves as polygons. Refused if one closes only through the box."""
-    found = []
-    for number, curve in curves:
+    """The closed ones of the curves as polygons, by number. Refused if one closes only through the box."""
+    found = {}
+    for number, curve in enumerate(curves):
+        if not curve.closed:
+            continue
         at = frame.position[numpy.asarray(curve.vertices)]
         if any(image_of(frame, at[0] - at[-1])):
             raise frames.Refused(f"curve {number} (vertices {curve.vertices[0]} to {curve.vertices[-1]}) closes only through the box: it has "
                                  "no linking number and no knot; allowed: curves that are closed as they are stored, unwrapped")
-        found.append(diagram.clean(at))
-        if len(found[-1]) < 3:
+        found[number] = diagram.clean(at)
+        if len(found[number]) < 3:
             raise frames.Refused(f"curve {number}: fewer than 3 different vertices; allowed: 3 or more")
     return found
 
@@ -112,9 +116,8 @@ def find_pairs(frame, polygons):
     full = diagram.ask(polygons, jobs_of_pairs(i[chosen], j[chosen], shift[chosen]), diagram.FULL)
     pairs = []
     for place, k in enumerate(chosen):
-        found = knots.polynomial(full.value[place]) if full.status[place] == diagram.FINE else None
-        known = seen.status[k] == diagram.FINE
-        pairs.append(Pair(int(i[k]), int(j[k]), tuple(image[k].tolist()), int(full.status[place]), int(lk[k]) if known else None, found,
+        found = known(full.status[place], full.value[place])
+        pairs.append(Pair(int(i[k]), int(j[k]), tuple(image[k].tolist()), int(full.status[place]), int(lk[k]) if seen.status[k] == diagram.FINE else None, found,
                           knots.link_name(2, [lk[k]], found) if found else None))
     return pairs, len(i)
 
@@ -122,17 +125,21 @@ def find_pairs(frame, polygons):
 # --- curves and groups ---------------------------------------------------------------------------------------------------
 
 
+def find_polynomials(polygons, sets):
+    """Of each set of polygons together, given as pairs of number and shift: status, crossings of the diagram, polynomial or None."""
+    jobs = [word for members in sets for word in (len(members), *(x for number, shift in members for x in (number, *shift)))]
+    full = diagram.ask(polygons, jobs, diagram.FULL)
+    return [(int(status), int(crossings), known(status, value)) for status, crossings, value in zip(full.status, full.crossings, full.value)]
+
+
 def known(status, value):
+    """The polynomial, if there is one."""
     return knots.polynomial(value) if status == diagram.FINE else None
 
 
 def find_knots(polygons):
-    jobs = numpy.zeros((len(polygons), 5), dtype=numpy.int64)
-    jobs[:, 0], jobs[:, 1] = 1, numpy.arange(len(polygons))
-    full = diagram.ask(polygons, jobs.ravel(), diagram.FULL)
-    found = [known(status, value) for status, value in zip(full.status, full.value)]
-    return [Knot(k, int(full.status[k]), int(full.crossings[k]), found[k], found[k] and knots.knot_name(found[k]))
-            for k in range(len(polygons))]
+    found = find_polynomials(polygons, [[(number, (0, 0, 0))] for number in range(len(polygons))])
+    return [Knot(number, *one, one[-1] and knots.knot_name(one[-1])) for number, one in enumerate(found)]
 
 
 def gather(pairs):
@@ -162,18 +169,70 @@ def gather(pairs):
 def find_groups(frame, polygons, pairs):
     """Groups of curves that are connected by pairs with lk or Delta other than 0."""
     gathered = gather(pair for pair in pairs if pair.lk or (pair.polynomial and any(map(any, pair.polynomial.values))))
-    groups, jobs = [], []
-    finite = [curves for curves, wound in gathered if not wound]
-    for curves in finite:
-        jobs.append(len(curves))
-        for curve, image in curves.items():
-            jobs += [curve, *frames.image(frame, image)]
-    full = diagram.ask(polygons, jobs, diagram.FULL)
-    answers = iter(zip(full.status.tolist(), full.crossings.tolist(), full.value))
+    finite = [[(curve, frames.image(frame, image)) for curve, image in curves.items()] for curves, wound in gathered if not wound]
+    answers, groups = iter(find_polynomials(polygons, finite)), []
     for curves, wound in gathered:
-        status, crossings, value = (diagram.FINE, 0, None) if wound else next(answers)
-        found = None if wound else known(status, value)
-        numbers = [pair.lk for pair in pairs if pair.one in curves] if len(curves) == 2 else []
-        groups.append(Group(list(curves.items()), wound, status, crossings, found,
-                            found and knots.link_name(len(curves), numbers, found)))
+        status, crossings, found = (diagram.FINE, 0, None) if wound else next(answers)
+        numbers = [pair.lk or 0 for pair in pairs if pair.one in curves]
+        groups.append(Group(list(curves.items()), wound, status, crossings, found, found and knots.link_name(len(curves), numbers, found)))
     return groups
+
+
+def find_chains(frame, curves, way):
+    """Knots of the open chains, each closed in this way."""
+    polygons, owner = [], []
+    for number, curve in enumerate(curves):
+        for polygon in [] if curve.closed else closures.close(frame.position[numpy.asarray(curve.vertices)], way):
+            polygons.append(diagram.clean(polygon))
+            owner.append(number)
+    names = collections.defaultdict(collections.Counter)
+    for number, knot in zip(owner, find_knots(polygons)):
+        names[number][knot.name or diagram.WORDS[knot.status]] += 1
+    return [Chain(number, dict(counts)) for number, counts in sorted(names.items())]
+
+
+def look(frame, curves, way=None):
+    """Links of one frame. way: of closure.WAYS, or None: open chains are left out."""
+    rings = polygons_of(frame, curves)
+    numbers, polygons = list(rings), list(rings.values())
+    pairs, judged = find_pairs(frame, polygons)
+    groups = find_groups(frame, polygons, pairs)
+    return Links([knot._replace(curve=numbers[knot.curve]) for knot in find_knots(polygons)],
+                 [pair._replace(one=numbers[pair.one], other=numbers[pair.other]) for pair in pairs],
+                 [group._replace(curves=[(numbers[curve], image) for curve, image in group.curves]) for group in groups],
+                 judged, way, find_chains(frame, curves, way) if way else [])
+
+
+# --- what is printed -----------------------------------------------------------------------------------------------------
+
+
+def value(polynomial, status):
+    """det in words."""
+    if polynomial is None:
+        return diagram.WORDS[status]
+    return "det above 2^60" if polynomial.det is None else f"det = {polynomial.det}"
+
+
+def lines(links):
+    """Text of all that was found."""
+    counts = collections.Counter(knot.name or diagram.WORDS[knot.status] for knot in links.knots)
+    yield f"rings: {len(links.knots)}" + "".join(f"; {name}: {count}" for name, count in counts.most_common())
+    for knot in links.knots:
+        if knot.name != "0_1":
+            yield f"ring {knot.curve}: {value(knot.polynomial, knot.status)}, {knot.name or 'no polynomial'}"
+    numbers = collections.Counter(abs(pair.lk) for pair in links.pairs if pair.lk)
+    yield (f"pairs and images: {links.judged} within reach; lk or polynomial other than 0: {len(links.pairs)}"
+           + "".join(f"; |lk| = {lk}: {count}" for lk, count in sorted(numbers.items())) + "; all others: lk = 0 and det = 0")
+    for pair in links.pairs:
+        yield (f"rings {pair.one} and {pair.other}, image {' '.join(map(str, pair.image))}: "
+               f"{'no lk' if pair.lk is None else f'lk = {pair.lk}'}, {value(pair.polynomial, pair.status)}, {pair.name or 'no polynomial'}")
+    for group in links.groups:
+        if len(group.curves) > 2 or group.wound:
+            yield (f"group of {len(group.curves)} rings: " + ("it meets its own image: no polynomial" if group.wound else
+                   f"{value(group.polynomial, group.status)}, {group.name or 'no polynomial'}; rings {' '.join(str(curve) for curve, _ in group.curves)}"))
+    if links.closure:
+        yield f"chains, closed so: {closures.WAYS[links.closure]}"
+    for chain in links.chains:
+        yield f"chain {chain.curve}: " + ", ".join(f"{name} ({count} of {sum(chain.names.values())})" for name, count in chain.names.items())
+    if links.knots or links.chains:
+        yield "a name stands for all knots or links with its polynomial: mirror images and some others are not told apart (docs/topology.md)"

@@ -7,14 +7,14 @@
 
 enum { CHUNK = 8 }; /* bonds whose shadows share a rectangle */
 
-/* Odd numbers without a common pattern, drawn once. Below 2^15, so that areas of shadows fit in 128 bits. */
+/* Odd numbers without a common pattern, drawn once. Below 2^15: see struct flat. */
 static const int64_t directions[][3] = {
     {10427, -6389, 23557}, {-7411, 14783, 19213}, {4519, 9871, 30253},  {-15131, -2693, 21319},
     {3301, -17489, 15973}, {18713, 5227, 12659},  {-9337, 8111, 27697}, {613, 1429, 31873},
 };
 enum { DIRECTIONS = sizeof directions / sizeof directions[0] };
 
-/* A vertex in the plane of the projection, below 2^60. */
+/* A vertex in the plane of the projection, below 2^62: areas are below 2^127. */
 struct flat {
   int64_t u, v;
 };

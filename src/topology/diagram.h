@@ -13,7 +13,7 @@
 
 #include "base/lattice.h"
 
-#define DIAGRAM_REACH ((int64_t)1 << 43) /* differences of the coordinates of one diagram are below */
+#define DIAGRAM_REACH ((int64_t)1 << 46) /* differences of the coordinates of one diagram are below */
 
 /* Closed polygons: those of member k are first[k] .. first[k + 1] - 1, and a bond goes on from the last to the first.
  */
