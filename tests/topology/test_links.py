@@ -169,6 +169,14 @@ class Links(unittest.TestCase):
         found = links.look(*frame_of(polygons))
         self.assertEqual([(len(g.curves), g.polynomial.det, g.polynomial) for g in found.groups], [(3, 8, by_burau([1, 1, 2, 2, 2, 2], 3))])
 
+    def test_split(self):
+        """The polynomial of curves of which one lies above all others, or beside them, is 0; and so is it of interlaced ones that are split."""
+        trefoil, circle = shapes.torus(2, 3)[0], shapes.torus(1, 1)[0]
+        for shift in ([0, 0, 9], [0, 0, -9], [9, 0, 0]):
+            self.assertEqual(polynomial(on_lattice([trefoil, circle + shift])).det, 0)
+            self.assertEqual(polynomial(on_lattice([circle + shift, trefoil])).det, 0)
+        self.assertFalse(any(map(any, polynomial(on_lattice(shapes.closed_braid([1, -1, 1, -1, 2, 3, 3], 4)[:2])).values)))
+
     def test_apart(self):
         """Random small rings in cells of their own, and each above the next: no pair is reported."""
         rng = numpy.random.default_rng(6)
