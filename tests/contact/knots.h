@@ -1,185 +1,27 @@
 /* Knotted rings, and an invariant of knots that is computed exactly: the determinant |Delta(-1)|, Delta being the
- * polynomial of Alexander. 1 of the unknot, 3 of the trefoil, 5 of the figure eight, n of the torus knot (2, n).
- *
- * A projection of a knot with c crossings has c arcs, each from one passage below to the next. Every crossing gives a
- * row of a matrix: 2 in the column of the arc above, -1 in those of the two arcs that end there. The determinant
- * without the last row and column is that of the knot, up to its sign (R. H. Crowell and R. H. Fox, Introduction to
- * Knot Theory, Springer 1977). The projection is along (3, 2, 7), in exact rationals. */
+ * polynomial of Alexander. 1 of the unknot, 3 of the trefoil, 5 of the figure eight, n of the torus knot (2, n). */
 #ifndef UNCROSS_TESTS_KNOTS_H
 #define UNCROSS_TESTS_KNOTS_H
 
 #include "contact/rings.h"
+#include "topology/alexander.h"
 
 /* --- the determinant of a knot ------------------------------------------------------------------------------------ */
 
-enum { MOST_CROSSINGS = 512, MOST_KNOT_VERTICES = 128 };
-
-/* One passage: an edge, and the place along it. */
-struct passage {
-  uint32_t edge;
-  mpq_t place;
-};
-
-struct knot_crossing {
-  struct passage over, under;
-};
-
-struct flat {
-  int128 x, y, height;
-};
-
-static inline struct flat flat_of(struct point p, struct point origin)
-{
-  const int128 x = p.x - origin.x, y = p.y - origin.y, z = p.z - origin.z;
-  return (struct flat){7 * x - 3 * z, 7 * y - 2 * z, 3 * x + 2 * y + 7 * z};
-}
-
-static inline int128 flat_area(struct flat o, struct flat a, struct flat b)
-{
-  return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
-}
-
-static inline void set_wide(mpz_t z, int128 value)
-{
-  __extension__ unsigned __int128 size = value < 0 ? -(unsigned __int128)value : (unsigned __int128)value;
-  mpz_set_ui(z, (unsigned long)(size >> 64));
-  mpz_mul_2exp(z, z, 64);
-  mpz_add_ui(z, z, (unsigned long)size);
-  if (value < 0)
-    mpz_neg(z, z);
-}
-
-static inline void set_fraction(mpq_t q, int128 numerator, int128 denominator)
-{
-  set_wide(mpq_numref(q), numerator);
-  set_wide(mpq_denref(q), denominator);
-  mpq_canonicalize(q);
-}
-
-/* height of a + place (b - a) */
-static inline void height_at(mpq_t height, struct flat a, struct flat b, const mpq_t place)
-{
-  mpq_t base;
-  mpq_init(base);
-  set_fraction(base, a.height, 1);
-  set_fraction(height, b.height - a.height, 1);
-  mpq_mul(height, height, place);
-  mpq_add(height, height, base);
-  mpq_clear(base);
-}
-
-/* True if edges p q and a b cross in the projection; their crossing. */
-static inline bool edges_cross(uint32_t edge, uint32_t other, struct flat p, struct flat q, struct flat a,
-                               struct flat b, struct knot_crossing *c)
-{
-  const int128 pa = flat_area(p, q, a), pb = flat_area(p, q, b), ap = flat_area(a, b, p), aq = flat_area(a, b, q);
-  assert_true(pa != 0 && pb != 0 && ap != 0 && aq != 0); /* not by chance */
-  if ((pa > 0) == (pb > 0) || (ap > 0) == (aq > 0))
-    return false;
-  mpq_t h[2];
-  mpq_inits(h[0], h[1], c->over.place, c->under.place, NULL);
-  c->over.edge = edge, c->under.edge = other;
-  set_fraction(c->over.place, ap, ap - aq);
-  set_fraction(c->under.place, pa, pa - pb);
-  height_at(h[0], p, q, c->over.place);
-  height_at(h[1], a, b, c->under.place);
-  const int above = mpq_cmp(h[0], h[1]);
-  assert_true(above != 0); /* else the two edges touch */
-  if (above < 0) {
-    c->over.edge = other, c->under.edge = edge;
-    mpq_swap(c->over.place, c->under.place);
-  }
-  mpq_clears(h[0], h[1], NULL);
-  return true;
-}
-
-static inline int compare_passages(const struct passage *a, const struct passage *b)
-{
-  return a->edge != b->edge ? (a->edge > b->edge) - (a->edge < b->edge) : mpq_cmp(a->place, b->place);
-}
-
-static inline int compare_crossings(const void *a, const void *b)
-{
-  return compare_passages(&((const struct knot_crossing *)a)->under, &((const struct knot_crossing *)b)->under);
-}
-
-/* |det| of an n x n matrix, which is destroyed: without fractions (Bareiss 1968). */
-static inline double integer_determinant(mpz_t *m, uint32_t n)
-{
-  mpz_t last;
-  mpz_init_set_ui(last, 1);
-  bool singular = false;
-  for (uint32_t k = 0; k < n && !singular; k++) {
-    uint32_t pivot = k;
-    while (pivot < n && mpz_sgn(m[pivot * n + k]) == 0)
-      pivot++;
-    singular = pivot == n;
-    if (singular)
-      break;
-    for (uint32_t j = k; j < n && pivot != k; j++)
-      mpz_swap(m[k * n + j], m[pivot * n + j]);
-    for (uint32_t i = k + 1; i < n; i++) {
-      for (uint32_t j = k + 1; j < n; j++) {
-        mpz_mul(m[i * n + j], m[i * n + j], m[k * n + k]);
-        mpz_submul(m[i * n + j], m[i * n + k], m[k * n + j]);
-        mpz_divexact(m[i * n + j], m[i * n + j], last);
-      }
-    }
-    mpz_set(last, m[k * n + k]);
-  }
-  const double value = singular ? 0.0 : fabs(mpz_get_d(last));
-  mpz_clear(last);
-  return value;
-}
-
-static inline double determinant_of_crossings(const struct knot_crossing *c, uint32_t n)
-{
-  if (n < 2)
-    return 1.0;
-  const uint32_t size = n - 1;
-  mpz_t *m = malloc(size * size * sizeof *m);
-  for (uint32_t k = 0; k < size * size; k++)
-    mpz_init(m[k]);
-  for (uint32_t k = 0; k < size; k++) {
-    uint32_t below = 0; /* passages below before the passage above */
-    while (below < n && compare_passages(&c[below].under, &c[k].over) < 0)
-      below++;
-    const uint32_t column[3] = {(below + n - 1) % n, (k + n - 1) % n, k};
-    for (int part = 0; part < 3; part++) {
-      if (column[part] == size)
-        continue;
-      mpz_t *entry = &m[k * size + column[part]];
-      part == 0 ? mpz_add_ui(*entry, *entry, 2) : mpz_sub_ui(*entry, *entry, 1);
-    }
-  }
-  const double determinant_value = integer_determinant(m, size);
-  for (uint32_t k = 0; k < size * size; k++)
-    mpz_clear(m[k]);
-  free(m);
-  return determinant_value;
-}
+#define KNOT_PRIME (ALEXANDER_ABOVE - 1)
 
 /* Of a closed polygon. */
 static inline double knot_determinant(const struct point *vertex, uint32_t vertices)
 {
-  static struct knot_crossing crossing[MOST_CROSSINGS];
-  struct flat flat[MOST_KNOT_VERTICES];
-  uint32_t n = 0;
-  assert_true(vertices <= MOST_KNOT_VERTICES);
-  for (uint32_t v = 0; v < vertices; v++)
-    flat[v] = flat_of(vertex[v], vertex[0]);
-  for (uint32_t i = 0; i < vertices; i++)
-    for (uint32_t j = i + 2; j < vertices; j++) {
-      if (i == 0 && j == vertices - 1)
-        continue;
-      assert_true(n < MOST_CROSSINGS);
-      n += edges_cross(i, j, flat[i], flat[i + 1], flat[j], flat[(j + 1) % vertices], &crossing[n]);
-    }
-  qsort(crossing, n, sizeof *crossing, compare_crossings);
-  const double value = determinant_of_crossings(crossing, n);
-  for (uint32_t k = 0; k < n; k++)
-    mpq_clears(crossing[k].over.place, crossing[k].under.place, NULL);
-  return value;
+  struct diagram d = {0};
+  struct alexander a = {0};
+  uint64_t value = 0;
+  const struct polygons p = {1, (const uint32_t[]){0, vertices}, vertex};
+  assert_int_equal(diagram_make(&d, &p, true, UINT32_MAX), DIAGRAM_FINE);
+  assert_true(alexander_value(&a, &d, KNOT_PRIME - 1, KNOT_PRIME, &value));
+  diagram_free(&d);
+  alexander_free(&a);
+  return (double)(value < KNOT_PRIME / 2 ? value : KNOT_PRIME - value);
 }
 
 /* --- knots -------------------------------------------------------------------------------------------------------- */

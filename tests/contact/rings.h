@@ -3,38 +3,28 @@
 #define UNCROSS_TESTS_RINGS_H
 
 #include "exact.h"
+#include "topology/diagram.h"
 
-__extension__ typedef __int128 int128;
-
-/* Which side of the line through p, q the point r lies on, seen along (3, 2, 7): no image of a ring hides behind it.
- * Exact. */
-static inline int side_in_plane(struct point p, struct point q, struct point r)
+/* Gauss linking number of two rings, the second in an image: signed crossings of their shadows. */
+static inline int linking(const struct test_run *r, uint32_t one, uint32_t other, struct point shift)
 {
-  const int128 qx = 7 * (q.x - p.x) - 3 * (q.z - p.z), qy = 7 * (q.y - p.y) - 2 * (q.z - p.z);
-  const int128 rx = 7 * (r.x - p.x) - 3 * (r.z - p.z), ry = 7 * (r.y - p.y) - 2 * (r.z - p.z);
-  const int128 area = qx * ry - qy * rx;
-  return (area > 0) - (area < 0);
-}
-
-/* Twice the Gauss linking number of two rings, the second in an image: signed crossings of their shadows. */
-static inline int linking_twice(const struct test_run *r, struct exact_test *x, uint32_t one, uint32_t other,
-                                struct point shift)
-{
-  const struct model *m = &r->model;
-  int twice = 0;
-  for (uint32_t i = m->fiber_first[one]; i < m->fiber_first[one + 1]; i++)
-    for (uint32_t j = m->fiber_first[other]; j < m->fiber_first[other + 1]; j++) {
-      const struct point p = r->state.position[i], q = r->state.position[m->next[i]];
-      struct point a = r->state.position[j], b = r->state.position[m->next[j]];
-      a = (struct point){a.x + shift.x, a.y + shift.y, a.z + shift.z};
-      b = (struct point){b.x + shift.x, b.y + shift.y, b.z + shift.z};
-      const int sa = side_in_plane(p, q, a), sb = side_in_plane(p, q, b);
-      const int sp = side_in_plane(a, b, p), sq = side_in_plane(a, b, q);
-      assert_true(sa && sb && sp && sq); /* not by chance, and the start is tilted */
-      if (sa != sb && sp != sq)
-        twice += exact_orientation(x, p, q, a, b);
-    }
-  return twice;
+  const uint32_t *begin = r->model.fiber_first;
+  const uint32_t own = begin[one + 1] - begin[one];
+  const uint32_t first[3] = {0, own, own + begin[other + 1] - begin[other]};
+  struct point *at = malloc(first[2] * sizeof *at);
+  for (uint32_t k = 0; k < first[2]; k++) {
+    const struct point p = r->state.position[k < own ? begin[one] + k : begin[other] + k - own];
+    at[k] = k < own ? p : (struct point){p.x + shift.x, p.y + shift.y, p.z + shift.z};
+  }
+  struct diagram d = {0};
+  int sum[2] = {0, 0};
+  assert_int_equal(diagram_make(&d, &(struct polygons){2, first, at}, false, UINT32_MAX), DIAGRAM_FINE);
+  for (uint32_t k = 0; k < d.crossings; k++)
+    sum[d.crossing[k].member[0]] += d.crossing[k].sign;
+  assert_int_equal(sum[0], sum[1]);
+  diagram_free(&d);
+  free(at);
+  return sum[0];
 }
 
 enum { MOST_LINKS = 400 };
@@ -42,7 +32,7 @@ enum { MOST_LINKS = 400 };
 /* Two rings that are linked, the second in an image. */
 struct link {
   uint32_t ring, other;
-  int64_t image[3], twice;
+  int64_t image[3], lk;
 };
 
 struct links {
@@ -67,8 +57,7 @@ static inline void ring_extent(const struct test_run *r, uint32_t ring, int64_t 
 }
 
 /* Linking of one pair in all images in which the boxes around them overlap. */
-static inline void link_pair(const struct test_run *r, struct exact_test *x, uint32_t one, uint32_t other,
-                             struct links *links)
+static inline void link_pair(const struct test_run *r, uint32_t one, uint32_t other, struct links *links)
 {
   int64_t low[3], high[3], low2[3], high2[3], from[3], to[3];
   const int64_t *edge = r->model.box.edge;
@@ -83,23 +72,22 @@ static inline void link_pair(const struct test_run *r, struct exact_test *x, uin
       for (int64_t k = from[2]; k <= to[2]; k++) {
         if (one == other && i == 0 && j == 0 && k == 0)
           continue;
-        const int twice = linking_twice(r, x, one, other, (struct point){i * edge[0], j * edge[1], k * edge[2]});
-        assert_true(twice % 2 == 0);
+        const int lk = linking(r, one, other, (struct point){i * edge[0], j * edge[1], k * edge[2]});
         links->judged++;
-        if (twice == 0)
+        if (lk == 0)
           continue;
         assert_true(links->n < MOST_LINKS);
-        links->link[links->n++] = (struct link){one, other, {i, j, k}, twice};
+        links->link[links->n++] = (struct link){one, other, {i, j, k}, lk};
       }
 }
 
 /* All links between rings, those of a ring with its own images included. */
-static inline void find_links(const struct test_run *r, struct exact_test *x, struct links *links)
+static inline void find_links(const struct test_run *r, struct links *links)
 {
   memset(links, 0, sizeof *links);
   for (uint32_t a = 0; a < r->model.fibers; a++)
     for (uint32_t b = a; b < r->model.fibers; b++)
-      link_pair(r, x, a, b, links);
+      link_pair(r, a, b, links);
 }
 
 /* A model of rings that start at these places. */
@@ -177,17 +165,14 @@ struct followed {
 static inline struct followed follow_links(struct test_run *r, uint64_t steps)
 {
   struct followed f = {0};
-  struct exact_test x;
-  exact_open(&x);
   struct links start, now;
-  find_links(r, &x, &start);
+  find_links(r, &start);
   assert_true(start.n >= 1);
   f.links = start.n;
   for (; f.steps < steps && steps_until_hot(r, 100); f.steps += 100) {
-    find_links(r, &x, &now);
+    find_links(r, &now);
     f.changed += now.n != start.n || memcmp(now.link, start.link, now.n * sizeof *now.link) != 0;
   }
-  exact_close(&x);
   f.executed = r->state.counts.executed;
   return f;
 }
