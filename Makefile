@@ -92,6 +92,8 @@ help:
 	@echo 'make live-test       the page in Node and in headless Chromium: the native hashes, messages, tables; speed'
 	@echo 'make install         PREFIX=$(PREFIX) LIBDIR=$(LIBDIR) DESTDIR=$(DESTDIR); for every processor, unless MARCH is given; make uninstall removes it'
 	@echo 'make dist            the tarball that packages are made of: $(BUILD)/dist'
+	@echo 'make packages        those packages, optimized little, and the binary interface, are checked: a stage of CI'
+	@echo 'make npm             the library of the page as an npm package: $(BUILD)/npm'
 	@echo 'make deb             Debian packages, looked at by lintian: $(BUILD)/deb'
 	@echo 'make clean           removes $(BUILD)'
 	@echo 'variables            CC=gcc|clang  MARCH=native|x86-64|...  BUILD=folder  PLAIN=1 (no fast kernels, same results)'
@@ -195,6 +197,8 @@ live-test:
 	@tools/install-dependencies run live
 	@$(MAKE) --no-print-directory live
 	@node tests/live/bits.mjs $(BUILD)
+	@$(MAKE) --no-print-directory npm
+	@node tests/live/package.mjs $(BUILD)
 	@node tests/live/page.mjs $(BUILD)
 
 # Written anew only when it says something new, so that nothing is rebuilt for nothing; two makes at a time may both write it.
@@ -301,8 +305,26 @@ dist:
 
 .PHONY: deb
 deb: dist
-	tools/install-dependencies run packages
+	tools/install-dependencies run deb
 	packaging/make-deb $(DIST) $(BUILD)/deb
+
+# In CI: packages as `make deb` makes them, but optimized little, as most of the time is the compiler's; the interface. Installed in a bare root: `make stress`.
+.PHONY: packages
+packages: dist
+	tools/install-dependencies run packages
+	DEB_CFLAGS_APPEND='-O1 -g0' DEB_BUILD_OPTIONS=noautodbgsym packaging/make-deb $(DIST) $(BUILD)/deb-quick
+	packaging/try-debs $(BUILD)/deb-quick
+	$(MAKE) -j2 $(BUILD)/lib/$(SONAME)
+	tools/abi check $(BUILD)/lib/$(SONAME)
+
+# The page's library for other programs in JavaScript.
+.PHONY: npm
+npm: live
+	@rm -rf $(BUILD)/npm
+	@mkdir -p $(BUILD)/npm/package
+	@sed 's|@VERSION@|$(VERSION)|' packaging/npm/package.json.in >$(BUILD)/npm/package/package.json
+	@cp packaging/npm/index.js packaging/npm/README.md LICENSE $(BUILD)/live/library.js $(BUILD)/live/uncross.wasm $(BUILD)/live/uncross-simd.wasm $(BUILD)/npm/package
+	@cd $(BUILD)/npm/package && npm pack --silent --pack-destination ..
 
 # --- tests, checks, demo ----------------------------------------------------------------------------------------------
 
@@ -456,7 +478,7 @@ check:
 
 .PHONY: stress
 stress:
-	tools/install-dependencies run test stress cross
+	tools/install-dependencies run test stress cross packages
 	$(MAKE) -j2 stress-programs
 	tests/run --stress $(BUILD)
 
