@@ -312,7 +312,7 @@ deb: dist
 .PHONY: packages
 packages: dist
 	tools/install-dependencies run packages
-	DEB_CFLAGS_APPEND='-O1 -g0' DEB_BUILD_OPTIONS=noautodbgsym packaging/make-deb $(DIST) $(BUILD)/deb-quick
+	DEB_BUILD_OPTIONS='noopt noautodbgsym' packaging/make-deb $(DIST) $(BUILD)/deb-quick
 	packaging/try-debs $(BUILD)/deb-quick
 	$(MAKE) -j2 $(BUILD)/lib/$(SONAME)
 	tools/abi check $(BUILD)/lib/$(SONAME)
