@@ -45,8 +45,8 @@ ok "${PIPESTATUS[0]}" "packaging/debian/tests/library in the bare root"
 within "uncross map length=10um,persistence=17um --units T=300K,eta=1mPas >/dev/null && man -w uncross-run >/dev/null 2>&1 || test -e /usr/share/man/man1/uncross-run.1.gz"
 ok $? "commands in Python, man pages"
 
-make -s dist BUILD="$dir/here" >"$dir/log" 2>&1
-packaging/make-deb "$dir"/here/dist/*.tar.gz "$dir/another-folder/here" >"$dir/log" 2>&1 || tail -n 40 "$dir/log"
+make -s -C "$dir/context" dist BUILD=here >"$dir/log" 2>&1
+packaging/make-deb "$dir"/context/here/dist/*.tar.gz "$dir/another-folder/here" >"$dir/log" 2>&1 || tail -n 40 "$dir/log"
 (cd "$dir/another-folder/here" && sha256sum ./*.deb ./*.dsc) >"$dir/sums"
 sed 's/^/# /' "$dir/sums"
 [ "$(wc -l <"$dir/sums")" -ge 7 ] && (cd "$dir/roots/build/src/build/deb" && sha256sum -c --quiet) <"$dir/sums"
