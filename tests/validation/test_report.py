@@ -96,6 +96,30 @@ class Verdicts(unittest.TestCase):
             self.assertEqual(verdict.verdict, "undecided")
             self.assertEqual(report.verdict_row("case", verdict)["reason"], "it still moves")
 
+    def test_a_second_run_decides_a_doubt_and_makes_no_number(self):
+        """Three runs: one is taken again, one shall not count against it, one counts in both."""
+        class Case:
+            @staticmethod
+            def evaluate(results, tier):
+                self.assertEqual(tier, "campaign")
+                self.assertFalse([name for name in results if name.endswith(cases.AGAIN)])
+                found = sum(results.values()) / len(results)
+                return cases.Outcome([cases.Verdict("a", "", 1.0, "", stats.tolerance(0.1), measured=found, error=0.1)])
+
+        for runs, second, word in (
+                ({"one": 1.0, "two": 1.0, "one-again": 9.0}, None, "pass"),  # no doubt
+                ({"one": 1.3, "two": 1.4}, None, "undecided"),
+                ({"one": 1.3, "two": 1.4, "one-again": 1.0}, 1.2, "pass"),
+                ({"one": 1.3, "two": 1.4, "one-again": 1.3}, None, "undecided"),  # the same number to the last bit is no second run
+                ({"one": 1.3, "two": 1.4, "one-again": 1.5}, 1.45, "fail"),
+                ({"one": 1.2, "two": 1.4, "old": 1.45, "one-again": 1.2, "two-again": 1.0}, 1.1, "pass")):
+            Case.FIRST_ONLY = staticmethod(lambda name: name == "old")
+            verdict = cases.evaluate(Case, runs, "campaign").verdicts[0]
+            self.assertEqual((verdict.verdict, verdict.second and round(verdict.second[0], 9)), (word, second), runs)
+            first = [value for name, value in runs.items() if not name.endswith(cases.AGAIN)]
+            self.assertAlmostEqual(verdict.measured, sum(first) / len(first), 12)
+            self.assertEqual("second" in report.verdict_row("case", verdict), second is not None)
+
     def test_z(self):
         self.assertAlmostEqual(self.verdict(2.0).z, 2.0, 14)
         self.assertIsNone(self.verdict(None).z)

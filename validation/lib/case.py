@@ -11,6 +11,7 @@ CASES = pathlib.Path(__file__).resolve().parent.parent / "cases"
 # The order of the report: the solvents, then single vertices and fibers in it, then many fibers.
 ORDER = ("solvent", "andersen", "flow", "dumbbells", "bead", "mobility", "chains", "rods", "fibers-flow", "galilean", "tube", "msd", "conservation", "thick", "media", "cost", "peer")
 TIERS = ("quick", "campaign")
+AGAIN = "-again"  # what the name of a second run ends with
 VERDICTS = ("pass", "within allowance", "fail", "not reproduced", "undecided")
 
 
@@ -147,6 +148,29 @@ class Outcome:
     verdicts: list
     figures: list = dataclasses.field(default_factory=list)
     prose: str = ""  # paragraphs, separated by empty lines; `code` and **bold** are kept
+
+
+def again(run, seed):
+    """The second, independent run of one that left a doubt."""
+    return dataclasses.replace(run, name=run.name + AGAIN, seed=seed)
+
+
+def evaluate(module, results, tier):
+    """The Outcome of a case. Its second runs take no part in a number: a verdict that the first runs leave in doubt is given, as
+    `second`, what the case says of the second runs. `FIRST_ONLY(name)` of a case tells which first runs then count no more,
+    besides those that a second run takes the place of."""
+    first = {name: result for name, result in results.items() if not name.endswith(AGAIN)}
+    second = {name.removesuffix(AGAIN): result for name, result in results.items() if name.endswith(AGAIN)}
+    outcome = module.evaluate(first, tier)
+    if second and any(verdict.doubtful for verdict in outcome.verdicts):
+        dropped = getattr(module, "FIRST_ONLY", lambda name: False)
+        others = module.evaluate({**{name: result for name, result in first.items() if not dropped(name)}, **second}, tier).verdicts
+        known = {verdict.id: verdict for verdict in others}
+        for verdict in outcome.verdicts:
+            other = known.get(verdict.id)
+            if verdict.doubtful and other and other.measured not in (None, verdict.measured) and not other.moves:
+                verdict.second = other.measured, other.error
+    return outcome
 
 
 def load(name):

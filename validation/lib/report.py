@@ -31,7 +31,8 @@ def verdict_row(case, verdict):
             "kind": verdict.kind, "verdict": verdict.verdict, "reason": "; ".join(filter(None, (verdict.moves, verdict.reason))),
             **{key: rounded(getattr(verdict, key)) for key in
                ("expected", "expected_error", "measured", "error", "tolerance", "allowed", "z")},
-            "detects": rounded(verdict.seen), "power": rounded(verdict.power), **({"timed": True} if verdict.timed else {}),
+            "detects": rounded(verdict.seen), "power": rounded(verdict.power),
+            **({"second": [rounded(x) for x in verdict.second]} if verdict.second else {}), **({"timed": True} if verdict.timed else {}),
             **({"doubtful": True} if verdict.verdict == "undecided" and verdict.doubtful and not verdict.blind else {})}
 
 
@@ -56,7 +57,7 @@ def provenance_row(result):
 def evaluate(module, name, results, tier):
     """(verdicts, figures, prose) of a case. If its evaluation raises an error, this is a failed verdict, and the other cases go on."""
     try:
-        outcome = module.evaluate(results, tier)
+        outcome = cases.evaluate(module, results, tier)
         with figures.styled():
             drawn = [{"name": figure.name, "caption": figure.caption, "svg": figures.svg(figure.draw())}
                      for figure in outcome.figures]

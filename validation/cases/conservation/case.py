@@ -27,13 +27,17 @@ def campaign():
                      program=refused(1000, 8, 811, order="paper", dts=(0.01, 0.005, 0.0025), rules=("stay",))))
     found.append(Run("heat-drift-split", program=refused(1000, 240, 812, order="drift-split"), hours=0.08))
     found.append(Run("sweeps", program=["sweep_conservation", 16, 208, 38, 0.01, 2000, 820], hours=0.01))
-    return found
+    return found + rates(48, 24, 0.0025, 0.001)
+
+
+def rates(placements, time, dt, hours):
+    """What a rate wants is placements of fibers, not collisions: `real_rate`."""
+    return [Run(f"rate-s{seed}", program=refused(1000, time, 840 + seed, dts=(dt,), rules=("stay",)), hours=hours)
+            for seed in range(1, placements + 1)]
 
 
 def quick():
-    rates = [Run(f"rate-s{seed}", program=refused(1000, 8, 840 + seed, dts=(0.005,), rules=("stay",)), hours=0.0004)
-             for seed in range(1, 9)]
-    return [*rates, Run("heat-c1000", program=refused(1000, 40, 831), hours=0.008),
+    return [*rates(8, 8, 0.005, 0.0004), Run("heat-c1000", program=refused(1000, 40, 831), hours=0.008),
             Run("heat-c300", program=refused(300, 40, 832, dts=(0.01,), rules=("stay",)), hours=0.001),
             Run("sweeps", program=["sweep_conservation", 16, 208, 38, 0.01, 100, 833], hours=0.001)]
 
