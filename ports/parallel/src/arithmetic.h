@@ -112,6 +112,20 @@ ANYWHERE double natural_log(double x)
   return sum + (rest + (lost + e * 0x1.ef35793c7673p-45));
 }
 
+// "exp x", for x from -708 to 709
+ANYWHERE double exponential(double x)
+{
+  const double turned = x * 0x1.71547652b82fep+0 + 0x1.8p52, n = turned - 0x1.8p52;
+  const double near = x - n * 0x1.62e42fefa38p-1, rest = n * 0x1.ef35793c7673p-45;
+  const double r = near - rest, lost = (near - r) - rest, w = r * r;
+  const double even =
+      1.0 / 2 + w * (1.0 / 24 + w * (1.0 / 720 + w * (1.0 / 40320 + w * (1.0 / 3628800 + w * (1.0 / 479001600)))));
+  const double odd = 1.0 / 6 + w * (1.0 / 120 + w * (1.0 / 5040 +
+                                                    w * (1.0 / 362880 + w * (1.0 / 39916800 + w * (1.0 / 6227020800.0)))));
+  const double less_one = r + (lost + w * (even + r * odd));
+  return (1.0 + less_one) * from_bits((bits_of(turned) + 1023) << 52);
+}
+
 struct CirclePoint {
   double cosine, sine;
 };
@@ -163,6 +177,8 @@ enum Purpose : uint32_t {
   VERTEX_ORDER = 3,
   VELOCITY_SWAP = 4,
   THERMOSTAT = 5,
+  PHANTOM_NUMBER = 6,
+  PHANTOM_VELOCITY = 7,
   DRAWN_PARTICLE = 8,
   DRAWN_VERTEX = 9,
   SOLVENT_POSITION = 16,

@@ -1,18 +1,8 @@
 // Bodies of the loops over particles, vertices and cells: docs/port/contract.md, "The operators".
 #pragma once
 
+#include "borders.h"
 #include "solvent.h"
-
-// A flight of given time: v t + ((0.5 a) t) t, and a t.
-struct Flight {
-  double time;
-  Vector fall, gain;
-};
-
-inline Flight flight_of(Vector a, double time)
-{
-  return {time, time * (time * (0.5 * a)), time * a};
-}
 
 struct Sums {
   CellSum *at;
@@ -24,19 +14,6 @@ struct Relative {
   int64_t *at;
   int64_t cell_count;
 };
-
-ANYWHERE int64_t fold(int64_t x, int64_t edge)
-{
-  if (x < 0)
-    x += edge;
-  else if (x >= edge)
-    x -= edge;
-  if (x < 0 || x >= edge) {
-    x %= edge;
-    x += x < 0 ? edge : 0;
-  }
-  return x;
-}
 
 ANYWHERE int64_t cell_of(const Grid &grid, Point p)
 {
@@ -94,68 +71,71 @@ ANYWHERE Vector after_turn(const CellTurn &cell, double cosine, double sine, Vec
   return cell.active ? cell.center + cell.factor * turned(cosine, sine, cell.axis, v - cell.center) : v;
 }
 
-BODY inline void fly(const Columns &c, int64_t i, const Flight &flight, const Grid &grid, Point &p, Vector &v)
+BODY inline void set_place(const Columns &c, int64_t i, Point p)
 {
-  p = p + nearest(lattice_per_a0 * (flight.time * v + flight.fall));
-  p = {fold(p.x, grid.edge.x), fold(p.y, grid.edge.y), fold(p.z, grid.edge.z)};
-  v = v + flight.gain;
   c.x[i] = p.x, c.y[i] = p.y, c.z[i] = p.z;
 }
 
-struct Fly {
+template <class Border> struct Fly {
   Columns c;
   Flight flight;
-  Grid grid;
-  BODY void operator()(int64_t i, int) const
+  Border border;
+  BODY void operator()(int64_t i, int shard) const
   {
     Point p = place_of(c, i);
     Vector v = velocity_of(c, i);
-    fly(c, i, flight, grid, p, v);
-    set_velocity(c, i, v);
+    border.fly(flight, p, v, shard), border.enter(p, v);
+    set_place(c, i, p), set_velocity(c, i, v);
   }
 };
 
-struct FlySum {
+template <class Border> struct FlySum {
   Columns c;
   Flight flight;
+  Border border;
   Grid grid;
   Sums sums;
   BODY void operator()(int64_t i, int shard) const
   {
     Point p = place_of(c, i);
     Vector v = velocity_of(c, i);
-    fly(c, i, flight, grid, p, v);
-    set_velocity(c, i, v);
+    border.fly(flight, p, v, shard), border.enter(p, v);
+    set_place(c, i, p), set_velocity(c, i, v);
     add_member(sums, shard, cell_of(grid, p), 1.0, v);
   }
 };
 
-struct TurnSolvent {
+template <class Border> struct TurnSolvent {
   Columns c;
   Grid grid;
   const CellTurn *turn;
   double cosine, sine;
+  Border border;
   BODY void operator()(int64_t i, int) const
   {
-    set_velocity(c, i, after_turn(turn[cell_of(grid, place_of(c, i))], cosine, sine, velocity_of(c, i)));
+    Point p = place_of(c, i);
+    Vector v = after_turn(turn[cell_of(grid, p)], cosine, sine, velocity_of(c, i));
+    border.leave(p, v);
+    set_place(c, i, p), set_velocity(c, i, v);
   }
 };
 
 // What is left of a collision, and the flight to the next one.
-template <bool right_angle> struct TurnFlySum {
+template <class Border, bool right_angle> struct TurnFlySum {
   Columns c;
   Grid grid;
   const CellTurn *turn;
   double cosine, sine;
   Flight flight;
+  Border border;
   Grid next;
   Sums sums;
   BODY void operator()(int64_t i, int shard) const
   {
     Point p = place_of(c, i);
     Vector v = after_turn(turn[cell_of(grid, p)], right_angle ? 0.0 : cosine, sine, velocity_of(c, i));
-    fly(c, i, flight, next, p, v);
-    set_velocity(c, i, v);
+    border.leave(p, v), border.fly(flight, p, v, shard), border.enter(p, v);
+    set_place(c, i, p), set_velocity(c, i, v);
     add_member(sums, shard, cell_of(next, p), 1.0, v);
   }
 };
@@ -342,16 +322,21 @@ struct DrawSumVertex {
   }
 };
 
-struct GiveSolvent {
+template <class Border> struct GiveSolvent {
   Columns c;
   Grid grid;
   const CellTurn *turn;
   Source source;
+  Border border;
   BODY void operator()(int64_t i, int) const
   {
-    const CellTurn &cell = turn[cell_of(grid, place_of(c, i))];
+    Point p = place_of(c, i);
+    Vector v = velocity_of(c, i);
+    const CellTurn &cell = turn[cell_of(grid, p)];
     if (cell.active)
-      set_velocity(c, i, cell.center + drawn(source, c.id[i]));
+      v = cell.center + drawn(source, c.id[i]);
+    border.leave(p, v);
+    set_place(c, i, p), set_velocity(c, i, v);
   }
 };
 

@@ -128,8 +128,8 @@ template <bool right_angle> void turn_all(const Turns &t, double cosine, double 
   }
 }
 
-// A flight along one axis.
-inline bool fly_all(double time, double fall, double gain, int64_t edge, Wholes &p, Reals &v)
+// A flight along one axis, which is not folded.
+inline bool fly_along(double time, double fall, double gain, Wholes &p, Reals &v)
 {
   Reals way;
   Wholes whole;
@@ -140,7 +140,56 @@ inline bool fly_all(double time, double fall, double gain, int64_t edge, Wholes 
   const bool usual = nearest_of(lattice_per_a0, way, whole);
   for (int k = 0; k < lanes; k++)
     p.at[k] += whole.at[k];
-  return fold_all(p, edge) & usual;
+  return usual;
+}
+
+// Is each number from 0 to `most`?
+inline bool all_within(const Wholes &x, int64_t most)
+{
+  int64_t out = 0;
+  for (int k = 0; k < lanes; k++)
+    out |= x.at[k] | (most - x.at[k]);
+  return out >= 0;
+}
+
+inline bool fly_xz(const Flight &f, Point edge, Places &p, Three &v)
+{
+  return fly_along(f.time, f.fall.x, f.gain.x, p.x, v.x) & fold_all(p.x, edge.x) &
+         fly_along(f.time, f.fall.z, f.gain.z, p.z, v.z) & fold_all(p.z, edge.z);
+}
+
+// A border's `leave`, and its `fly` and `enter`, of 16 particles; false where the border has to look at one of them.
+inline bool leave_all(const Periodic &, const Places &, Three &)
+{
+  return true;
+}
+inline bool fly_all(const Periodic &b, const Flight &f, Places &p, Three &v)
+{
+  return fly_xz(f, b.edge, p, v) & fly_along(f.time, f.fall.y, f.gain.y, p.y, v.y) & fold_all(p.y, b.edge.y);
+}
+
+inline bool leave_all(const Walled &, const Places &, Three &)
+{
+  return true;
+}
+inline bool fly_all(const Walled &b, const Flight &f, Places &p, Three &v)
+{
+  const Reals along_y = v.y;
+  const bool usual = fly_xz(f, b.edge, p, v) & fly_along(f.time, 0.0, 0.0, p.y, v.y) & all_within(p.y, b.edge.y);
+  v.y = along_y;
+  return usual;
+}
+
+inline bool leave_all(const Sheared &b, const Places &p, Three &v)
+{
+  for (int k = 0; k < lanes && b.kicks; k++)
+    v.x.at[k] += b.affine(p.y.at[k]);
+  return all_within(p.y, b.edge.y - b.last.shift - 1);
+}
+inline bool fly_all(const Sheared &b, const Flight &f, Places &p, Three &v)
+{
+  return fly_xz(f, b.edge, p, v) & fly_along(f.time, f.fall.y, f.gain.y, p.y, v.y) &
+         all_within(p.y, b.edge.y - b.next.shift - 1);
 }
 
 inline void add_members(CellSum *to, const Cells &cell, const Places &momentum)
@@ -262,8 +311,9 @@ struct SolveBlock {
 
 // What a pass does with 16 particles: turn (if it turns), flight, sums. `cell` has the cells of the last collision, and
 // gets those of the next one.
-struct Pass {
+template <class Border> struct Pass {
   Columns c;
+  Border border;
   Grid next;
   const CellTurn *turn;
   double cosine, sine;
@@ -282,10 +332,11 @@ constexpr int together = 4; // times 16 particles: their cells' sums are on the 
 constexpr int ahead = 2 * lanes;
 
 // False if something is out of the usual range; then nothing has changed.
-template <bool turns, bool right_angle> bool pass_lanes(const Pass &pass, int64_t first, int shard, Addends &add)
+template <bool turns, bool right_angle, class Border>
+bool pass_lanes(const Pass<Border> &pass, int64_t first, int shard, Addends &add)
 {
   const Columns &c = pass.c;
-  const Flight &f = pass.flight;
+  bool usual = true;
   Places p;
   Three v;
   load(c.x + first, p.x), load(c.y + first, p.y), load(c.z + first, p.z);
@@ -299,13 +350,11 @@ template <bool turns, bool right_angle> bool pass_lanes(const Pass &pass, int64_
     Turns t;
     gather(pass.turn, cell, t);
     turn_all<right_angle>(t, pass.cosine, pass.sine, v);
+    usual = leave_all(pass.border, p, v);
   }
-  const Point edge = pass.next.edge;
-  const bool usual =
-      fly_all(f.time, f.fall.x, f.gain.x, edge.x, p.x, v.x) & fly_all(f.time, f.fall.y, f.gain.y, edge.y, p.y, v.y) &
-      fly_all(f.time, f.fall.z, f.gain.z, edge.z, p.z, v.z) & cells_of(pass.next, p, add.cell) &
-      nearest_of(momentum_per_unit, v.x, add.momentum.x) & nearest_of(momentum_per_unit, v.y, add.momentum.y) &
-      nearest_of(momentum_per_unit, v.z, add.momentum.z);
+  usual = usual & fly_all(pass.border, pass.flight, p, v) & cells_of(pass.next, p, add.cell) &
+          nearest_of(momentum_per_unit, v.x, add.momentum.x) & nearest_of(momentum_per_unit, v.y, add.momentum.y) &
+          nearest_of(momentum_per_unit, v.z, add.momentum.z);
   if (!usual)
     return false;
   for (int k = 0; k < lanes; k++) {
@@ -318,8 +367,8 @@ template <bool turns, bool right_angle> bool pass_lanes(const Pass &pass, int64_
 }
 
 // The body of a loop over blocks of particles. `Body` is that for a single one.
-template <bool turns, bool right_angle, class Body> struct PassBlock {
-  Pass pass;
+template <bool turns, bool right_angle, class Border, class Body> struct PassBlock {
+  Pass<Border> pass;
   Body body;
   int64_t n;
   void operator()(int64_t block, int shard) const
@@ -341,8 +390,9 @@ template <bool turns, bool right_angle, class Body> struct PassBlock {
 };
 
 // FlySum, or TurnFlySum, over all particles.
-template <bool turns, bool right_angle, class Body> void pass_over(int64_t n, const Pass &pass, const Body &body)
+template <bool turns, bool right_angle, class Border, class Body>
+void pass_over(int64_t n, const Pass<Border> &pass, const Body &body)
 {
   constexpr int each = together * lanes;
-  for_each_block((n + each - 1) / each, PassBlock<turns, right_angle, Body>{pass, body, n});
+  for_each_block((n + each - 1) / each, PassBlock<turns, right_angle, Border, Body>{pass, body, n});
 }

@@ -18,10 +18,14 @@ uint64_t state_hash(const State &state)
   WordHash hash;
   for (uint64_t word : {state.step, state.lag, (uint64_t)state.solvent.size(), (uint64_t)state.vertex.size()})
     hash.add(word);
+  if (!state.account.empty())
+    hash.add(state.account.size());
   for (size_t i = 0; i < state.solvent.size(); i++)
     hash.add(state.solvent[i]), hash.add(state.solvent_velocity[i]);
   for (size_t i = 0; i < state.vertex.size(); i++)
     hash.add(state.vertex[i]), hash.add(state.vertex_velocity[i]);
+  for (const Point &row : state.account)
+    hash.add(row);
   return hash.value();
 }
 

@@ -5,9 +5,10 @@
 #include <vector>
 
 #include "arithmetic.h"
+#include "flow.h"
 
 enum Scheme { PAPER = 0, KICK_SPLIT = 1, DRIFT_SPLIT = 2 };
-enum Thermostat { NO_THERMOSTAT = 0, RESCALE = 1, MAXWELL_BOLTZMANN = 2 };
+enum Thermostat { NO_THERMOSTAT = 0, RESCALE = 1, MAXWELL_BOLTZMANN = 2, RESCALE_LAYERS = 3 };
 
 struct Model {
   int64_t cells[3] = {0, 0, 0};
@@ -24,10 +25,16 @@ struct Model {
   int64_t steps = 0;
   int scheme = KICK_SPLIT, thermostat = NO_THERMOSTAT;
   bool hydrodynamics = true, event_driven = false, andersen = false;
+  Flow flow;
 
+  // Of the grid along y: walls cut the first and the last.
+  int64_t rows() const
+  {
+    return cells[1] + (flow.kind == WALLS);
+  }
   int64_t cell_count() const
   {
-    return cells[0] * cells[1] * cells[2];
+    return cells[0] * rows() * cells[2];
   }
   Point edge() const
   {
@@ -48,6 +55,8 @@ struct State {
   uint64_t step = 0, lag = 0;
   std::vector<Point> solvent, vertex;
   std::vector<Vector> solvent_velocity, vertex_velocity;
+  // Of walls, what they have given in units of 2^-44: the lower and the upper one in hits, then both in collisions.
+  std::vector<Point> account;
 };
 
 // XXH64 of whole words, seed 0.

@@ -36,3 +36,4 @@ struct OperatorInput {
 using Operator = void (*)(const OperatorInput &in, Writer &out);
 // Of the solvent; null if there is none of this name.
 Operator solvent_operator(std::string_view name);
+Operator flow_operator(std::string_view name);

@@ -1,48 +1,7 @@
 // Operators of the solvent: the bodies of the loops of a step, each alone.
-#include "bodies.h"
-#include "operators.h"
+#include "operators_parts.h"
 
-// Particles and vertices on the machine that computes.
-struct Members {
-  State state;
-  int64_t n, vertices, cell_count;
-  Array<int64_t> place[3];
-  Array<double> velocity[3];
-  Array<uint32_t> id;
-  Array<Point> vertex;
-  Array<Vector> vertex_velocity;
-  Array<double> mass;
-
-  Members(const Model &model, State given) : state(std::move(given)), cell_count(model.cell_count())
-  {
-    const size_t count = state.solvent.size(), of_fibers = state.vertex.size();
-    n = (int64_t)count, vertices = (int64_t)of_fibers;
-    for (int axis = 0; axis < 3; axis++)
-      place[axis].resize(count), velocity[axis].resize(count);
-    id.resize(count), vertex.resize(of_fibers), vertex_velocity.resize(of_fibers), mass.resize(of_fibers);
-    upload_columns(place, velocity, id, state);
-    vertex.upload(state.vertex.data(), of_fibers);
-    vertex_velocity.upload(state.vertex_velocity.data(), of_fibers);
-    mass.upload(model.mass.data(), of_fibers);
-  }
-
-  Columns columns()
-  {
-    return {place[0].data(),    place[1].data(),    place[2].data(), velocity[0].data(),
-            velocity[1].data(), velocity[2].data(), id.data()};
-  }
-
-  void fetch()
-  {
-    download_columns(place, velocity, id, state);
-    vertex_velocity.download(state.vertex_velocity.data(), state.vertex_velocity.size());
-  }
-};
-
-static Grid grid_of(const Model &model, Point shift)
-{
-  return {{model.cells[0], model.cells[1], model.cells[2]}, model.edge(), shift};
-}
+#include "walls.h"
 
 // A place within each of these cells of the grid without a shift.
 static std::vector<Point> places_in(const Model &model, const std::vector<int64_t> &cells)
@@ -52,7 +11,7 @@ static std::vector<Point> places_in(const Model &model, const std::vector<int64_
     if (cell < 0 || cell >= model.cell_count())
       throw BadInput("there is no cell " + std::to_string(cell));
     const int64_t row = cell / model.cells[0];
-    places.push_back({(cell % model.cells[0]) << 40, (row % model.cells[1]) << 40, (row / model.cells[1]) << 40});
+    places.push_back({(cell % model.cells[0]) << 40, (row % model.rows()) << 40, (row / model.rows()) << 40});
   }
   return places;
 }
@@ -74,7 +33,7 @@ static void stream(const OperatorInput &in, Writer &out)
   state.solvent = in.group.points("position"), state.solvent_velocity = in.group.vectors("velocity");
   Members members(in.model, std::move(state));
   const Flight flight = flight_of(in.model.acceleration, in.group.real("time", "dt"));
-  for_each(members.n, Fly{members.columns(), flight, grid_of(in.model, {0, 0, 0})});
+  for_each(members.n, Fly<Periodic>{members.columns(), flight, {in.model.edge()}});
   members.fetch();
   out.triples("position", members.state.solvent), out.triples("velocity", members.state.solvent_velocity);
 }
@@ -103,17 +62,26 @@ static void sum(const OperatorInput &in, Writer &out)
   Array<CellSum> sums((size_t)(cells * shards));
   sums.clear();
   const Grid grid = grid_of(in.model, {0, 0, 0});
-  for_each(members.n, FlySum{members.columns(), flight_of({0, 0, 0}, 0.0), grid, Sums{sums.data(), cells, 1}});
+  const Periodic all = {grid.edge};
+  for_each(members.n,
+           FlySum<Periodic>{members.columns(), flight_of({0, 0, 0}, 0.0), all, grid, Sums{sums.data(), cells, 1}});
   for_each(members.vertices, SumVertex{members.vertex.data(), members.vertex_velocity.data(), members.mass.data(), grid,
                                        Sums{sums.data(), cells, 0}});
   std::vector<CellSum> found(sums.size());
   sums.download(found.data(), found.size());
-  for (size_t cell = 0; cell < (size_t)cells; cell++) {
-    CellSum s = {0, 0, 0, 0};
-    for (size_t part = cell; part < found.size(); part += (size_t)cells) {
-      const CellSum &each = found[part];
-      s = {s.x + each.x, s.y + each.y, s.z + each.z, s.load + each.load};
-    }
+  for (size_t part = (size_t)cells; part < found.size(); part++) {
+    CellSum &s = found[part % (size_t)cells];
+    const CellSum &each = found[part];
+    s = {s.x + each.x, s.y + each.y, s.z + each.z, s.load + each.load};
+  }
+  found.resize((size_t)cells);
+  write_sums(out, found);
+}
+
+void write_sums(Writer &out, const std::vector<CellSum> &sums)
+{
+  for (size_t cell = 0; cell < sums.size(); cell++) {
+    const CellSum &s = sums[cell];
     out.triple(cell, "momentum", Point{s.x, s.y, s.z});
     out.value(cell, "load", "members", s.load >> load_bits);
     out.value(cell, "load", "mass", s.load & (((int64_t)1 << load_bits) - 1));
@@ -177,6 +145,12 @@ template <int kind> static void thermostat(const OperatorInput &in, Writer &out)
     energy[k % (size_t)cells] += parts[k];
   if (kind == MAXWELL_BOLTZMANN) {
     for_each(cells, DrawFactor{turn.data(), to, shards, in.model.source(THERMOSTAT, in.step)});
+  } else if (kind == RESCALE_LAYERS) {
+    const std::vector<Virtual> numbers = filled_of(in);
+    Array<Virtual> filled(numbers.size());
+    filled.upload(numbers.data(), numbers.size());
+    const CutCells cut = {in.model.cells[0], in.model.rows(), in.model.cells[2]};
+    for_each(in.model.rows(), LayerFactor{cut, filled.data(), turn.data(), to, shards});
   } else {
     for_each(cells, TotalRelative{turn.data(), to, shards, total.data()});
     for_each(cells, SetFactor{turn.data(), rescale_factor(total)});
@@ -187,20 +161,36 @@ template <int kind> static void thermostat(const OperatorInput &in, Writer &out)
     out.value(cell, "factor", "factor", given[cell].active ? given[cell].factor : 1.0);
 }
 
-static void rotate(const OperatorInput &in, Writer &out)
+std::vector<CellTurn> turns_of(const OperatorInput &in)
 {
-  Members members = members_of(in);
   const std::vector<int64_t> active = in.group.integers("active", "active");
   const std::vector<Vector> center = in.group.vectors("center"), axis = in.group.vectors("axis");
   const std::vector<double> factor = in.group.reals("factor", "factor");
-  std::vector<CellTurn> given;
+  std::vector<CellTurn> turns;
   for (size_t cell = 0; cell < active.size(); cell++)
-    given.push_back({center[cell], axis[cell], factor[cell], active[cell]});
+    turns.push_back({center[cell], axis[cell], factor[cell], active[cell]});
+  return turns;
+}
+
+std::vector<Virtual> filled_of(const OperatorInput &in)
+{
+  const std::vector<double> number = in.group.reals("filled", "number");
+  const std::vector<Vector> velocity = in.group.vectors("filled");
+  std::vector<Virtual> filled;
+  for (size_t k = 0; k < number.size(); k++)
+    filled.push_back({number[k], velocity[k]});
+  return filled;
+}
+
+static void rotate(const OperatorInput &in, Writer &out)
+{
+  Members members = members_of(in);
+  const std::vector<CellTurn> given = turns_of(in);
   Array<CellTurn> turn(given.size());
   turn.upload(given.data(), given.size());
   const Grid grid = grid_of(in.model, {0, 0, 0});
   const double cosine = in.model.cosine, sine = in.model.sine;
-  for_each(members.n, TurnSolvent{members.columns(), grid, turn.data(), cosine, sine});
+  for_each(members.n, TurnSolvent<Periodic>{members.columns(), grid, turn.data(), cosine, sine, {in.model.edge()}});
   for_each(members.vertices,
            TurnVertex{members.vertex.data(), members.vertex_velocity.data(), grid, turn.data(), cosine, sine});
   members.fetch();
@@ -246,11 +236,12 @@ Operator solvent_operator(std::string_view name)
                {"draw", draw},
                {"rescale", thermostat<RESCALE>},
                {"maxwell_boltzmann", thermostat<MAXWELL_BOLTZMANN>},
+               {"rescale_layers", thermostat<RESCALE_LAYERS>},
                {"rotate", rotate},
                {"give", give},
                {"swap", swap}};
   for (const auto &each : known)
     if (each.name == name)
       return each.function;
-  return nullptr;
+  return flow_operator(name);
 }

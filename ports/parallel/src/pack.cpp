@@ -166,7 +166,7 @@ static void refuse_unknown(const Pack &pack)
     const char *name;
     std::vector<std::string> tables;
   } known[] = {
-      {"model", {"box", "numbers", "reals", "chain", "vertex"}},
+      {"model", {"box", "numbers", "reals", "chain", "vertex", "boundary", "flow", "wall", "wave"}},
       {"start", {"run", "counters", "rule", "collision", "switches", "solvent", "solvent_velocity", "vertex", "vertex_velocity"}}};
   for (const auto &of : known)
     for (const auto &group : pack.groups) {
@@ -190,7 +190,7 @@ static void refuse_unknown_switches(const Group &start)
 {
   const std::map<std::string_view, int64_t> largest = {{"version", 2},    {"crossing", 2}, {"exclusion", 1},
                                                        {"collision", 1},  {"order", 2},    {"swap", 1},
-                                                       {"thermostat", MAXWELL_BOLTZMANN}};
+                                                       {"thermostat", RESCALE_LAYERS}, {"boundary", SHEAR}};
   const std::string_view table = "in.switches.";
   for (const auto &column : start.columns) {
     if (column.first.substr(0, table.size()) != table)
@@ -214,8 +214,31 @@ static void read_run(const Pack &pack, Model &model)
   model.event_driven = start.has("rule") && start.integer("rule", "event_driven") == 1;
   const int64_t rule = start.has("collision") ? start.integer("collision", "rule") : 0;
   model.andersen = rule == 1;
-  if (rule > 1 || model.thermostat > MAXWELL_BOLTZMANN || model.scheme > DRIFT_SPLIT)
+  if (rule > 1 || model.thermostat > RESCALE_LAYERS || model.scheme > DRIFT_SPLIT)
     throw BadInput("this port has no such rule of collision, thermostat or order");
+  const bool bounded = model.flow.kind != PERIODIC, walls = model.flow.kind == WALLS;
+  if (model.flow.kind > SHEAR || (bounded && (!model.mass.empty() || !model.hydrodynamics)))
+    throw BadInput("this port has no such boundary, and no fibers or swaps with one");
+  if (walls && (model.andersen || model.thermostat == RESCALE || model.thermostat == MAXWELL_BOLTZMANN))
+    throw BadInput("this port has walls with the rule srd, and without a thermostat or with rescale-layers, only");
+}
+
+static void read_flow(const Group &group, Flow &flow)
+{
+  if (!group.has("boundary"))
+    return;
+  flow.kind = (int)group.integer("boundary", "kind");
+  flow.slip = group.integer("boundary", "slip") != 0;
+  flow.fill = (int)group.integer("boundary", "fill");
+  flow.intervals = group.integer("boundary", "intervals");
+  flow.early = group.integer("boundary", "early");
+  flow.per_cell = group.real("flow", "per_cell"), flow.rate = group.real("flow", "rate");
+  const std::vector<Vector> wall = group.vectors("wall");
+  if (flow.kind == WALLS)
+    flow.wall = {{wall.at(0), wall.at(1)}};
+  flow.cosine = group.reals("wave", "cosine");
+  if (flow.fill > NO_FILL || flow.intervals < 0 || flow.cosine.size() != 2 * (size_t)flow.intervals)
+    throw BadInput("this port has no such filling, or the wave has not two rows for each interval");
 }
 
 Model read_model(const Pack &pack)
@@ -247,6 +270,7 @@ Model read_model(const Pack &pack)
   model.spring = group.reals("vertex", "spring");
   model.bending = group.reals("vertex", "bending");
   model.constant_force = group.vectors("vertex", "force_x", "force_y", "force_z");
+  read_flow(group, model.flow);
   if (pack.groups.count({"start", 0}))
     read_run(pack, model);
   return model;
@@ -262,5 +286,8 @@ State read_state(const Pack &pack)
   state.solvent_velocity = start.vectors("solvent_velocity");
   state.vertex = start.points("vertex");
   state.vertex_velocity = start.vectors("vertex_velocity");
+  const Group &model = pack.group("model", 0);
+  if (model.has("boundary") && model.integer("boundary", "kind") == WALLS)
+    state.account.assign(4, {0, 0, 0});
   return state;
 }

@@ -1,10 +1,11 @@
 #include "solvent.h"
 
 #include <algorithm>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
-#include "bodies.h"
+#include "walls.h"
 #ifndef __CUDACC__
 #include "columns.h"
 #endif
@@ -31,6 +32,11 @@ void upload_columns(Array<int64_t> *place, Array<double> *velocity, Array<uint32
   id.upload(number.data(), n);
 }
 
+static CutCells cut_cells_of(const Model &model)
+{
+  return {model.cells[0], model.rows(), model.cells[2]};
+}
+
 Solvent::Solvent(const Model &model, const State &state, const Settings &settings)
     : model(model), settings(settings), n((int64_t)state.solvent.size()), cell_count(model.cell_count()),
       shards(shard_count())
@@ -55,6 +61,10 @@ Solvent::Solvent(const Model &model, const State &state, const Settings &setting
   vertex.resize(state.vertex.size()), vertex_velocity.resize(state.vertex.size());
   vertex_mass.resize(state.vertex.size());
   vertex_mass.upload(model.mass.data(), model.mass.size());
+  if (model.flow.kind == WALLS) {
+    filled.resize((size_t)cut_cells_of(model).count()), given.resize((size_t)(account_stride * shards));
+    given.clear();
+  }
   upload_columns(place, velocity, id, state);
   sort();
 }
@@ -65,18 +75,20 @@ Columns Solvent::columns()
           velocity[1].data(), velocity[2].data(), id.data()};
 }
 
-Grid Solvent::grid(Point shift) const
+Grid grid_of(const Model &model, Point shift)
 {
-  return {{model.cells[0], model.cells[1], model.cells[2]}, model.edge(), shift};
+  Point edge = model.edge();
+  edge.y = model.rows() << 40;
+  return {{model.cells[0], model.rows(), model.cells[2]}, edge, shift};
 }
 
 void Solvent::sort()
 {
   since_sort = 0;
   count.clear();
-  const Grid unshifted = grid({0, 0, 0});
+  const Grid unshifted = grid_of(model, {0, 0, 0});
   for_each(n, CountMembers{columns(), unshifted, count.data()});
-  for_each(model.cells[1] * model.cells[2], PlaceRows{count.data(), count.data() + cell_count, model.cells[0]});
+  for_each(model.rows() * model.cells[2], PlaceRows{count.data(), count.data() + cell_count, model.cells[0]});
   const Columns to = {sorted_place[0].data(),    sorted_place[1].data(),    sorted_place[2].data(),
                       sorted_velocity[0].data(), sorted_velocity[1].data(), sorted_velocity[2].data(),
                       sorted_id.data()};
@@ -92,35 +104,69 @@ Point grid_shift(const Model &model, uint64_t step)
   return {(int64_t)w.word[0] << 8, (int64_t)w.word[1] << 8, (int64_t)w.word[2] << 8};
 }
 
+// The interval that a collision ends.
+static int64_t interval_of(const Model &model, uint64_t step)
+{
+  return (int64_t)step / model.interval - 1;
+}
+
+Image Solvent::image_at(uint64_t step, Point shift) const
+{
+  const Flow &flow = model.flow;
+  return {shift.y, flow.offset(model.cells, model.time_step, model.interval, 2 * (int64_t)step - flow.early),
+          flow.rate_during(interval_of(model, step)) * (double)model.cells[1]};
+}
+
+// Calls `use` with the border of this box: of the flight to the collision of `step`, after the last collision.
+template <class Use> void Solvent::with_border(uint64_t step, Use use)
+{
+  const Flow &flow = model.flow;
+  if (flow.kind == WALLS) {
+    use(Walled{model.edge(), model.acceleration, flow.walls_at(2 * interval_of(model, step) + 1), flow.slip,
+               given.data()});
+  } else if (flow.kind == SHEAR) {
+    Sheared border = {model.edge(), image_at(step, grid_shift(model, step)), {}, false, 0.0};
+    if (last_step > 0) {
+      const int64_t ended = interval_of(model, last_step);
+      border.last = image_at(last_step, at_collision.shift);
+      border.kicks = flow.intervals > 0;
+      border.change = flow.rate_during(ended + 1) - flow.rate_during(ended);
+    }
+    use(border);
+  } else {
+    use(Periodic{model.edge()});
+  }
+}
+
 void Solvent::finish_turn()
 {
   if (pending)
-    for_each(n, TurnSolvent{columns(), at_collision, turn.data(), model.cosine, model.sine});
+    with_border(last_step, [&](const auto &border) {
+      for_each(n, TurnSolvent<std::decay_t<decltype(border)>>{columns(), at_collision, turn.data(), model.cosine,
+                                                             model.sine, border});
+    });
   pending = false;
 }
 
-void Solvent::fly_and_sum(double time, const Grid &next)
+template <class Border> void Solvent::pass(const Border &border, double time, const Grid &next)
 {
   const Flight flight = flight_of(model.acceleration, time);
   const Sums to = {sums.data(), cell_count, settings.transposed};
-  if (!settings.fused)
-    finish_turn();
-  if (since_sort >= settings.sort_every) {
-    finish_turn();
-    sort();
-  }
-  const FlySum fly = {columns(), flight, next, to};
-  const TurnFlySum<true> right = {columns(), at_collision, turn.data(), model.cosine, model.sine, flight, next, to};
-  const TurnFlySum<false> any = {columns(), at_collision, turn.data(), model.cosine, model.sine, flight, next, to};
+  const FlySum<Border> fly = {columns(), flight, border, next, to};
+  const TurnFlySum<Border, true> right = {columns(),  at_collision, turn.data(), model.cosine, model.sine, flight,
+                                          border, next,         to};
+  const TurnFlySum<Border, false> any = {columns(),  at_collision, turn.data(), model.cosine, model.sine, flight,
+                                         border, next,         to};
 #ifndef __CUDACC__
-  const Pass pass = {columns(), next, turn.data(), model.cosine, model.sine, flight, to, cell.data()};
+  const Pass<Border> lanes_too = {columns(),  border, next, turn.data(), model.cosine,
+                                  model.sine, flight, to,   cell.data()};
   const bool whole = !settings.one_by_one && cell_count < INT32_MAX;
   if (whole && pending && model.cosine == 0.0)
-    pass_over<true, true>(n, pass, right);
+    pass_over<true, true>(n, lanes_too, right);
   else if (whole && pending)
-    pass_over<true, false>(n, pass, any);
+    pass_over<true, false>(n, lanes_too, any);
   else if (whole)
-    pass_over<false, false>(n, pass, fly);
+    pass_over<false, false>(n, lanes_too, fly);
   else
 #endif
       if (pending && model.cosine == 0.0)
@@ -129,7 +175,41 @@ void Solvent::fly_and_sum(double time, const Grid &next)
     for_each(n, any);
   else
     for_each(n, fly);
+}
+
+void Solvent::fly_and_sum(uint64_t step, double time, const Grid &next)
+{
+  if (!settings.fused)
+    finish_turn();
+  if (since_sort >= settings.sort_every) {
+    finish_turn();
+    sort();
+  }
+  with_border(step, [&](const auto &border) { pass(border, time, next); });
   pending = false;
+}
+
+static Filling planar(Vector velocity, double mean)
+{
+  const double parts = std::ceil(mean / largest_mean);
+  return {velocity, (int)parts, mean / parts, exponential(-(mean / parts))};
+}
+
+FillCell filling_of(const Model &model, const WallPair &wall, Point shift, uint64_t step)
+{
+  const Flow &flow = model.flow;
+  const double below = (double)shift.y * lattice_unit;
+  return {cut_cells_of(model), nullptr, 1, model.cell_count(), nullptr, flow.slip ? NO_FILL : flow.fill, flow.per_cell,
+          {planar(wall.at[0], flow.per_cell * below), planar(wall.at[1], flow.per_cell * (1.0 - below))},
+          model.source(PHANTOM_NUMBER, step), model.source(PHANTOM_VELOCITY, step)};
+}
+
+void Solvent::fill_cut_cells(uint64_t step)
+{
+  FillCell fill =
+      filling_of(model, model.flow.walls_at(2 * interval_of(model, step) + 2), at_collision.shift, step);
+  fill.sums = sums.data(), fill.shards = shards, fill.filled = filled.data();
+  for_each(fill.cut.count(), fill);
 }
 
 void Solvent::solve(uint64_t step)
@@ -166,6 +246,10 @@ void Solvent::apply_thermostat(uint64_t step)
     for_each(cell_count, DrawFactor{turn.data(), to, shards, model.source(THERMOSTAT, step)});
     return;
   }
+  if (model.thermostat == RESCALE_LAYERS) {
+    for_each(model.rows(), LayerFactor{cut_cells_of(model), filled.data(), turn.data(), to, shards});
+    return;
+  }
   total.clear();
   for_each(cell_count, TotalRelative{turn.data(), to, shards, total.data()});
   for_each(cell_count, SetFactor{turn.data(), rescale_factor(total)});
@@ -181,7 +265,10 @@ void Solvent::collide_drawn(uint64_t step, State &state)
   for_each(vertices,
            DrawSumVertex{vertex.data(), vertex_velocity.data(), vertex_mass.data(), at_collision, to, of_vertex});
   solve(step);
-  for_each(n, GiveSolvent{columns(), at_collision, turn.data(), particle});
+  last_step = step;
+  with_border(step, [&](const auto &border) {
+    for_each(n, GiveSolvent<std::decay_t<decltype(border)>>{columns(), at_collision, turn.data(), particle, border});
+  });
   for_each(vertices,
            GiveVertex{vertex.data(), vertex_velocity.data(), vertex_mass.data(), at_collision, turn.data(), of_vertex});
   vertex_velocity.download(state.vertex_velocity.data(), state.vertex_velocity.size());
@@ -189,26 +276,34 @@ void Solvent::collide_drawn(uint64_t step, State &state)
 
 void Solvent::collide(uint64_t step, double time, State &state)
 {
-  const Grid next = grid(grid_shift(model, step));
+  const Grid next = grid_of(model, grid_shift(model, step));
   const int64_t vertices = (int64_t)vertex.size();
   if (vertices > 0) {
     vertex.upload(state.vertex.data(), state.vertex.size());
     vertex_velocity.upload(state.vertex_velocity.data(), state.vertex_velocity.size());
   }
   if (model.andersen) {
-    for_each(n, Fly{columns(), flight_of(model.acceleration, time), next});
+    with_border(step, [&](const auto &border) {
+      for_each(n, Fly<std::decay_t<decltype(border)>>{columns(), flight_of(model.acceleration, time), border});
+    });
     at_collision = next;
     collide_drawn(step, state);
   } else {
     if (!ahead)
-      fly_and_sum(time, next);
+      fly_and_sum(step, time, next);
     at_collision = next;
+    last_step = step;
     ahead = false;
+    if (model.flow.kind == WALLS)
+      fill_cut_cells(step);
     for_each(vertices, SumVertex{vertex.data(), vertex_velocity.data(), vertex_mass.data(), next,
                                  Sums{sums.data(), cell_count, 0}});
     solve(step);
     if (model.thermostat != NO_THERMOSTAT)
       apply_thermostat(step);
+    if (model.flow.kind == WALLS)
+      for_each((int64_t)filled.size(), AccountCell{cut_cells_of(model), filled.data(), turn.data(), model.cosine,
+                                                   model.sine, given.data()});
     pending = true;
     if (vertices > 0) {
       for_each(vertices,
@@ -227,7 +322,7 @@ void Solvent::fly_ahead(uint64_t step, double time)
 {
   if (model.andersen || n == 0)
     return;
-  fly_and_sum(time, grid(grid_shift(model, step)));
+  fly_and_sum(step, time, grid_of(model, grid_shift(model, step)));
   ahead = true;
 }
 
@@ -251,6 +346,13 @@ void Solvent::fetch(State &state)
 {
   finish_turn();
   download_columns(place, velocity, id, state);
+  std::vector<int64_t> parts(given.size());
+  given.download(parts.data(), parts.size());
+  for (size_t k = 0; k < parts.size(); k += account_stride)
+    for (size_t row = 0; row < 4; row++)
+      state.account[row] = state.account[row] + Point{parts[k + 3 * row], parts[k + 3 * row + 1], parts[k + 3 * row + 2]};
+  if (!parts.empty())
+    given.clear();
 }
 
 void download_columns(const Array<int64_t> *place, const Array<double> *velocity, const Array<uint32_t> &id,

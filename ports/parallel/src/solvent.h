@@ -2,6 +2,7 @@
 // cells.
 #pragma once
 
+#include "borders.h"
 #include "device.h"
 #include "model.h"
 
@@ -26,7 +27,13 @@ struct Columns {
 
 struct Grid {
   int64_t cells[3];
-  Point edge, shift;
+  Point edge, shift; // of all cells: between walls there is one more along y
+};
+
+// What fills a cut cell: so many virtual particles of mass 1, and the mean of their velocities.
+struct Virtual {
+  double number;
+  Vector velocity;
 };
 
 struct Settings {
@@ -43,6 +50,9 @@ void download_columns(const Array<int64_t> *place, const Array<double> *velocity
 // The factor of `rescale`: of each copy of the totals members - 1, relative / 2^32, relative mod 2^32.
 double rescale_factor(const Array<int64_t> &total);
 Point grid_shift(const Model &model, uint64_t step);
+Grid grid_of(const Model &model, Point shift);
+// What fills cut cells in the collision of a step; sums and `filled` are the caller's.
+struct FillCell filling_of(const Model &model, const WallPair &wall, Point shift, uint64_t step);
 
 class Solvent
 {
@@ -59,8 +69,11 @@ public:
 
 private:
   Columns columns();
-  Grid grid(Point shift) const;
-  void fly_and_sum(double time, const Grid &next);
+  template <class Use> void with_border(uint64_t step, Use use);
+  template <class Border> void pass(const Border &border, double time, const Grid &next);
+  void fly_and_sum(uint64_t step, double time, const Grid &next);
+  Image image_at(uint64_t step, Point shift) const;
+  void fill_cut_cells(uint64_t step);
   void solve(uint64_t step);
   void apply_thermostat(uint64_t step);
   void collide_drawn(uint64_t step, State &state);
@@ -76,6 +89,7 @@ private:
   bool ahead = false;   // the flight to the next collision has begun
   int64_t since_sort = 0;
   Grid at_collision = {};
+  uint64_t last_step = 0; // of the last collision
   Array<int64_t> place[3], sorted_place[3], count, relative, total;
   Array<double> velocity[3], sorted_velocity[3];
   Array<uint32_t> id, sorted_id;
@@ -85,4 +99,6 @@ private:
   Array<Point> vertex;
   Array<Vector> vertex_velocity;
   Array<double> vertex_mass;
+  Array<Virtual> filled;   // walls: what fills cut cells
+  Array<int64_t> given;    // walls: their account
 };
