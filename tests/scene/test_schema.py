@@ -79,6 +79,10 @@ class Schema(unittest.TestCase):
         self.refuse("does not have enough properties", lambda s: s.update(shear={}))
         self.refuse("should not be valid", lambda s: s["fibers"][0].update(bending=1, persistence_length=1))
 
+    def test_documents_hold_the_tables_of_the_program(self):
+        done = subprocess.run([ROOT / "tools/document-keys", "--check", os.environ["UNCROSS"]], capture_output=True, text=True, check=False)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
     def test_texts_and_defaults(self):
         solvent = self.schema["properties"]["solvent"]["properties"]
         self.assertEqual(solvent["rotation_angle"]["default"], 90)
