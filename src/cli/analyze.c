@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "cli/command.h"
 #include "files/folder.h"
 #include "files/output.h"
@@ -168,6 +169,17 @@ static enum exit_code analyze(struct scene *scene, struct trajectory *frames, bo
   return code;
 }
 
+/* The physics is the run's; what is observed may be set. */
+static bool sets_observables(const struct arguments *a, struct message *message)
+{
+  for (size_t k = 0; k < a->sets; k++)
+    if (strncmp(a->set[k], "observe.", strlen("observe.")) != 0)
+      return message_set(message,
+                         "--set %s: the run has been made; allowed: keys of observe, such as observe.dynamics.every=10",
+                         text_shown(a->set[k]));
+  return true;
+}
+
 enum exit_code command_analyze(const struct arguments *a)
 {
   const char *path = a->file[0], *folder = a->out;
@@ -179,7 +191,9 @@ enum exit_code command_analyze(const struct arguments *a)
   bool ours = text && trajectory_has_steps(frames);
   if (frames && !ours)
     message_set(&message, "%s: holds no scene or no steps; only trajectories that uncross wrote can be analyzed", path);
-  if (ours && scene_read_text(path, text, strlen(text), &scene, &message)) {
+  const struct scene_settings settings = {a->sets, a->set, a->sets};
+  if (ours && sets_observables(a, &message) &&
+      scene_read_text_set(path, text, strlen(text), &settings, &scene, &message)) {
     code = analyze(&scene, frames, a->skip_damaged, folder, &message);
     scene_free(&scene);
   }

@@ -37,6 +37,9 @@ const struct option_row option_rows[] = {
      .text = "print a script for Slurm's sbatch with a task for each run, and run none"},
     {"set", "KEY=VALUE", OF(RUN) | OF(CHECK) | OF(SWEEP), 0, OPTION_LIST, 0, AT(set), ONLY_VALUE,
      .text = "this value instead of the scene's, e.g. solvent.per_cell=10; may be given again and again"},
+    {"set", "observe.KEY=VALUE", OF(ANALYZE), 0, OPTION_LIST, 0, AT(set), ONLY_VALUE,
+     .text =
+         "this observable, e.g. observe.dynamics.every=10, whatever the run observed; may be given again and again"},
     {"units", "a0=50nm,T=300K", OF(CHECK) | OF(PLOT), 0, OPTION_TEXT, 0, AT(units), ONLY_VALUE,
      .text = "SI units beside; time by one of eta=1mPas, rho=1000kg/m3, mass=, t0= (docs/units.md)"},
     {"numbers", NULL, OF(CHECK), 0, OPTION_SWITCH, 0, AT(numbers), ONLY_VALUE,

@@ -303,6 +303,14 @@ bool scene_read_text(const char *path, const char *text, size_t size, struct sce
   return scene_read_source(&source, scene);
 }
 
+bool scene_read_text_set(const char *path, const char *text, size_t size, const struct scene_settings *settings,
+                         struct scene *scene, struct message *message)
+{
+  struct scene_source source = kept_text(path, text, size, message);
+  source.settings = settings;
+  return scene_read_source(&source, scene);
+}
+
 bool scene_read_text_numbers(const char *path, const char *text, size_t size, struct scene *scene,
                              struct message *message)
 {

@@ -68,6 +68,10 @@ bool scene_read_as(const char *path, const struct scene_settings *settings, uint
  * `path` serves messages only, and whether the snapshot that the scene may name can be read is not looked at. */
 bool scene_read_text(const char *path, const char *text, size_t size, struct scene *scene, struct message *message);
 
+/* The same with keys that are set on top of it. */
+bool scene_read_text_set(const char *path, const char *text, size_t size, const struct scene_settings *settings,
+                         struct scene *scene, struct message *message);
+
 /* The same without the model's lists (model_finish_numbers): the file may claim any number of fibers. */
 bool scene_read_text_numbers(const char *path, const char *text, size_t size, struct scene *scene,
                              struct message *message);

@@ -46,6 +46,26 @@ class Analyze(FolderTest):
         self.assertEqual((own, said), (again, ""))
         self.assertIn("conserved.csv", own)
 
+    def test_observables_may_be_set_after_the_run(self):
+        """The run that observed them has the same tables."""
+        own, _, _ = self.tables("asked", SCENE + ALONE["private"])
+        observed = SCENE.splitlines(True)[-1]
+        (self.dir / "bare.yaml").write_text(SCENE.replace(observed, "") + ALONE["private"] + "trajectory: {every: 5}\n")
+        self.assertEqual(uncross("run", self.dir / "bare.yaml", "--out", self.dir / "bare", "--quiet").returncode, 0)
+        words = [word for name in ("conserved", "temperature", "statics") for word in ("--set", f"observe.{name}.every=5")]
+        done = uncross("analyze", self.dir / "bare/trajectory.h5", "--out", self.dir / "set", *words)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        for name in own:
+            self.assertEqual((self.dir / "set" / name).read_bytes(), (self.dir / "asked" / name).read_bytes(), name)
+
+    def test_only_observables_may_be_set(self):
+        self.tables("run", SCENE + ALONE["private"])
+        for word, said in (("fibers.0.spring=7", "allowed: keys of observe"), ("observe.statics.every=0", "allowed"), ("observe.nothing.every=5", "nothing")):
+            done = uncross("analyze", self.dir / "run/trajectory.h5", "--out", self.dir / "none", "--set", word)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(said, done.stderr)
+            self.assertFalse((self.dir / "none").exists())
+
     def test_what_frames_lack_is_named(self):
         _, again, said = self.tables("still", SCENE + ALONE["private"], "false")
         self.assertEqual(again, {"statics-a.csv"})

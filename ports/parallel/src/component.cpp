@@ -110,7 +110,7 @@ void Worker::answer(const Event &event)
                     at_tick(f.w, f.w_rate, event.tick), v, contact)) {
     Event again = event;
     again.tick = (int32_t)first_contact(f, event.tick + 1);
-    mine->answered.push_back({event, false, {}, 0.0});
+    mine->answered.push_back({event, false, {}, 0.0, NO_IMPULSE, false});
     if (again.tick < ticks)
       push(again);
     return;
@@ -129,7 +129,9 @@ bool Worker::exchange(const Event &event, const int32_t vertex[4], const Contact
     ends.mass[k] = all->model.mass[vertex[k]];
   }
   double momentum;
-  if (impulse(ends, contact, all->start + all->time * ((double)event.tick * 0x1p-16), momentum) == NO_IMPULSE)
+  const Answer answer =
+      impulse(ends, contact, all->start + all->time * ((double)event.tick * 0x1p-16), momentum);
+  if (answer == NO_IMPULSE)
     return false;
   for (int k = 0; k < 4; k++) {
     bend(vertex[k], rate_of(all->time, ends.velocity[k]), event.tick);
@@ -137,7 +139,7 @@ bool Worker::exchange(const Event &event, const int32_t vertex[4], const Contact
     b.velocity = ends.velocity[k];
     b.contacts++;
   }
-  mine->answered.push_back({event, true, contact, momentum});
+  mine->answered.push_back({event, true, contact, momentum, answer, false});
   search_again(vertex, 4, event.tick);
   return true;
 }
@@ -170,7 +172,7 @@ void Worker::freeze(const Event &event, const int32_t vertex[4])
   }
   for (const int32_t j : members)
     bend(j, common, event.tick);
-  mine->answered.push_back({event, false, {}, 0.0});
+  mine->answered.push_back({event, false, {}, 0.0, NO_IMPULSE, true});
   search_again(members.data(), members.size(), event.tick);
 }
 

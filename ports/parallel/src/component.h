@@ -18,12 +18,14 @@ struct Event {
 
 bool is_earlier(const Event &a, const Event &b);
 
-// An event that was answered. told: by an impulse.
+// An event that was answered. told: by an impulse; rigid: by a cluster.
 struct Answered {
   Event event;
   bool told;
   Contact contact;
   double momentum;
+  Answer answer;
+  bool rigid;
 };
 
 // All places of a vertex in a drift, each straight piece of its path taken a tick further than it is flown.

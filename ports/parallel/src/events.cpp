@@ -137,6 +137,8 @@ bool EventDrift::fly(const Flights &flights, double straight)
   counts.events += (int64_t)found.size(), counts.components += (int64_t)components.size();
   for (const Component &component : components) {
     counts.largest = std::max(counts.largest, (int64_t)component.answered.size());
+    for (const Answered &each : component.answered)
+      counts.executed += each.told, counts.softened += each.answer == SOFTENED, counts.rigid += each.rigid;
     if (component.fails)
       throw Stopped("a vertex would move by half the shortest edge or more");
   }

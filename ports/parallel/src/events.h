@@ -18,6 +18,7 @@ struct ContactRow {
 // of pairs. With one thread a drift has one component.
 struct DriftCounts {
   int64_t events = 0, components = 0, largest = 0, joined = 0, lists = 0;
+  int64_t executed = 0, softened = 0, rigid = 0; // answers: by an impulse, by a weakened one, by a cluster
 };
 
 class EventDrift

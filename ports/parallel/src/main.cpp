@@ -1,10 +1,12 @@
 // A port of uncross for all cores and for a GPU.
+#include <algorithm>
 #include <chrono>
 #include <cinttypes>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <fstream>
 
 #include "operators.h"
 #include "run.h"
@@ -14,6 +16,7 @@ static const char usage[] = "usage: port PACK OUT           outputs of all opera
                             "       port --run START [option ...]          runs a start, prints the state hash\n"
                             "       port --solvent X,Y,Z [option ...]      the same of a solvent that is drawn here\n"
                             "options: --steps N  --warm N (steps before the clock)  --sort N\n"
+                            "         --every N --states FILE (the state after every N steps, as bytes)\n"
                             "         --apart (on a GPU each thread adds alone)  --unfused  --one-by-one\n"
                             "         --per-cell N  --interval N  --dt T  --seed S\n"
                             "         --degrees A  --thermostat 0, 1 or 2  --at-a\n";
@@ -55,7 +58,8 @@ static std::string trace(const Pack &pack)
 
 struct Options {
   const char *cells = nullptr;
-  int64_t steps = -1, warm = 0, per_cell = 5;
+  int64_t steps = -1, warm = 0, per_cell = 5, every = 0;
+  std::string states;
   Settings settings;
   Model model; // of a solvent that is drawn here
 };
@@ -86,6 +90,10 @@ static Options read_options(int count, char **word)
       const char *value = word[++k];
       if (name == "--steps")
         o.steps = std::atoll(value);
+      else if (name == "--every")
+        o.every = std::atoll(value);
+      else if (name == "--states")
+        o.states = value;
       else if (name == "--warm")
         o.warm = std::atoll(value);
       else if (name == "--sort")
@@ -114,6 +122,40 @@ static double now()
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+template <class Row> static void put(std::ofstream &to, const std::vector<Row> &rows)
+{
+  to.write((const char *)rows.data(), (std::streamsize)(rows.size() * sizeof(Row)));
+}
+
+// 13 whole numbers of 64 bits, then the rows: ports/parallel/run reads them.
+static void write_state(std::ofstream &to, const State &state)
+{
+  const CollisionCounts &n = state.counts;
+  put(to, std::vector<uint64_t>{state.step, state.lag, state.solvent.size(), state.vertex.size(), state.account.size(),
+                                state_hash(state), state_digest(state), (uint64_t)n.moves, (uint64_t)n.possible,
+                                (uint64_t)n.executed, (uint64_t)n.negative, (uint64_t)n.softened, (uint64_t)n.rigid});
+  put(to, state.solvent), put(to, state.solvent_velocity);
+  put(to, state.vertex), put(to, state.vertex_velocity), put(to, state.account);
+  to.flush();
+  if (!to)
+    throw std::runtime_error("a state could not be written");
+}
+
+static void run_to(Run &run, int64_t steps, const Options &o)
+{
+  if (o.every <= 0) {
+    run.steps(steps);
+    return;
+  }
+  std::ofstream to(o.states, std::ios::binary);
+  for (int64_t made = 0; made < steps;) {
+    const int64_t next = std::min(steps - made, o.every);
+    run.steps(next);
+    made += next;
+    write_state(to, run.now());
+  }
+}
+
 static void run_and_report(const Model &model, State &state, const Options &o)
 {
   Run run(model, state, o.settings);
@@ -121,7 +163,7 @@ static void run_and_report(const Model &model, State &state, const Options &o)
   run.steps(warm);
   device_wait();
   const double begin = now();
-  run.steps(steps - warm);
+  run_to(run, steps - warm, o);
   device_wait();
   const double seconds = now() - begin, particles = (double)state.solvent.size();
   const double collisions = (double)(steps - warm) / (double)model.interval;

@@ -29,6 +29,30 @@ uint64_t state_hash(const State &state)
   return hash.value();
 }
 
+uint64_t state_digest(const State &state)
+{
+  WordHash head;
+  for (uint64_t word : {(uint64_t)0, state.step, state.lag, (uint64_t)state.solvent.size(), (uint64_t)state.vertex.size()})
+    head.add(word);
+  if (!state.account.empty())
+    head.add(state.account.size());
+  uint64_t sum = head.value();
+  const auto add = [&](uint64_t kind, size_t number, Point p, const Vector *v) {
+    WordHash row;
+    row.add(kind), row.add(number), row.add(p);
+    if (v)
+      row.add(*v);
+    sum += row.value();
+  };
+  for (size_t i = 0; i < state.solvent.size(); i++)
+    add(1, i, state.solvent[i], &state.solvent_velocity[i]);
+  for (size_t i = 0; i < state.vertex.size(); i++)
+    add(2, i, state.vertex[i], &state.vertex_velocity[i]);
+  for (size_t i = 0; i < state.account.size(); i++)
+    add(4, i, state.account[i], nullptr);
+  return sum;
+}
+
 // The cell is floor(n h / 2^24) with the high 24 bits h; the low 40 bits are the place within it.
 static int64_t place_along(uint64_t integer, int64_t cells)
 {

@@ -50,6 +50,11 @@ struct Model {
   }
 };
 
+// Since a run's step 0, as `uncross` counts them: docs/files.md, "checkpoint.h5".
+struct CollisionCounts {
+  int64_t moves = 0, possible = 0, executed = 0, negative = 0, softened = 0, rigid = 0;
+};
+
 // Solvent by ids, vertices by numbers.
 struct State {
   uint64_t step = 0, lag = 0;
@@ -57,6 +62,7 @@ struct State {
   std::vector<Vector> solvent_velocity, vertex_velocity;
   // Of walls, what they have given in units of 2^-44: the lower and the upper one in hits, then both in collisions.
   std::vector<Point> account;
+  CollisionCounts counts;
 };
 
 // XXH64 of whole words, seed 0.
@@ -116,6 +122,8 @@ private:
 std::vector<uint32_t> permutation(const Source &source, uint32_t draw, uint32_t size);
 
 uint64_t state_hash(const State &state);
+// A sum of one hash for each row: docs/conventions.md, "The same bits".
+uint64_t state_digest(const State &state);
 
 // The start of a solvent without fibers, as uncross draws it: for boxes whose starts would be long texts.
 State draw_solvent(const Model &model);

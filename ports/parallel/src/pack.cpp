@@ -167,7 +167,7 @@ static void refuse_unknown(const Pack &pack)
     std::vector<std::string> tables;
   } known[] = {
       {"model", {"box", "numbers", "reals", "chain", "vertex", "boundary", "flow", "wall", "wave"}},
-      {"start", {"run", "counters", "rule", "collision", "switches", "solvent", "solvent_velocity", "vertex", "vertex_velocity"}}};
+      {"start", {"run", "counters", "rule", "collision", "switches", "solvent", "solvent_velocity", "vertex", "vertex_velocity", "account", "counts"}}};
   for (const auto &of : known)
     for (const auto &group : pack.groups) {
       if (group.first.first != of.name)
@@ -270,6 +270,10 @@ Model read_model(const Pack &pack)
   model.spring = group.reals("vertex", "spring");
   model.bending = group.reals("vertex", "bending");
   model.constant_force = group.vectors("vertex", "force_x", "force_y", "force_z");
+  for (const size_t rows : {model.next.size(), model.prev.size(), model.fiber.size(), model.bond_length.size(),
+                            model.spring.size(), model.bending.size(), model.constant_force.size()})
+    if (rows != model.mass.size())
+      throw BadInput("tables chain and vertex of the model of unlike lengths");
   read_flow(group, model.flow);
   if (pack.groups.count({"start", 0}))
     read_run(pack, model);
@@ -289,5 +293,11 @@ State read_state(const Pack &pack)
   const Group &model = pack.group("model", 0);
   if (model.has("boundary") && model.integer("boundary", "kind") == WALLS)
     state.account.assign(4, {0, 0, 0});
+  if (start.has("account")) // of a checkpoint: ports/parallel/run
+    state.account = start.points("account");
+  if (start.has("counts"))
+    state.counts = {start.integer("counts", "moves"),    start.integer("counts", "possible"),
+                    start.integer("counts", "executed"), start.integer("counts", "negative"),
+                    start.integer("counts", "softened"), start.integer("counts", "rigid")};
   return state;
 }

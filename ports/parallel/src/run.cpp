@@ -1,13 +1,19 @@
 #include "run.h"
 
 Run::Run(const Model &model, State &state, const Settings &settings)
-    : model(model), state(state), solvent(model, state, settings), fibers(model), contacts(model, fibers), sweep(model)
+    : model(model), state(state), solvent(model, state, settings), before(state.counts), fibers(model),
+      contacts(model, fibers), sweep(model)
 {
 }
 
 const State &Run::now()
 {
   solvent.fetch(state);
+  const DriftCounts &found = contacts.counts;
+  state.counts.possible = before.possible + found.executed + sweep.possible;
+  state.counts.executed = before.executed + found.executed + sweep.executed;
+  state.counts.negative = before.negative + sweep.negative;
+  state.counts.softened = before.softened + found.softened, state.counts.rigid = before.rigid + found.rigid;
   return state;
 }
 
@@ -59,6 +65,7 @@ void Run::drift(uint64_t number, double time, uint32_t which)
     sweep.move(time, permutation(model.source(VERTEX_ORDER, number), which, (uint32_t)model.vertices()), state.vertex,
                state.vertex_velocity, nullptr);
   state.lag += time == model.time_step ? 2 : 1;
+  state.counts.moves += model.forbidden ? (int64_t)state.vertex.size() : 0;
   told(number, "drift");
 }
 

@@ -38,6 +38,7 @@ private:
   State &state;
   Solvent solvent;
   uint64_t last = 0; // step of this call of `steps`
+  CollisionCounts before; // this run
   Fibers fibers;
   EventDrift contacts; // by the rule event-driven
   Sweep sweep;         // by the rule sequential, or where fibers may cross

@@ -154,6 +154,7 @@ void Sweep::move(double time, const std::vector<uint32_t> &order, std::vector<Po
       continue;
     }
     execute(hits[0], velocity);
+    possible += (int64_t)hits.size(), executed++, negative += hits[0].momentum < 0.0;
     if (rows)
       rows->insert(rows->end(), hits.begin(), hits.end());
   }

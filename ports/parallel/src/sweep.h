@@ -36,6 +36,7 @@ public:
   // Rows are appended.
   void move(double time, const std::vector<uint32_t> &order, std::vector<Point> &position,
             std::vector<Vector> &velocity, std::vector<SweepRow> *rows);
+  int64_t possible = 0, executed = 0, negative = 0; // crossings since the start: hits of refused moves, exchanges
 
 private:
   void hits_of(int32_t vertex, Point to, const std::vector<Point> &position, std::vector<SweepRow> &hits) const;
