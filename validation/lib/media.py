@@ -52,10 +52,15 @@ FLUIDS = {
     "la": Fluid("Lowe-Andersen, ρ = 3, Γ = 10", 10.0, "replace", "hat", 0.0, 0.02, "drift-split", 3.47, (0.5, 0.5, 30)),
     "la1": Fluid("Lowe-Andersen, ρ = 3, Γ = 1", 1.0, "replace", "hat", 0.0, 0.05, "drift-split", 3.0, (0.4, 1.0, 160)),
     "hat": Fluid("thermostat of DPD with the hat, ρ = 3, Γ = 1", 1.0, "relax", "hat", 0.0, 0.05, "drift-split", 3.0, (0.4, 1.0, 160)),
+    **{f"{key}{rate}": Fluid(f"{title}, ρ = 3, Γ = {rate}", float(rate), draw, "hat", 0.0, step, "drift-split", 3.0, (0.5, skip, pairs))
+       for key, title, draw in (("la", "Lowe-Andersen", "replace"), ("hat", "thermostat of DPD with the hat", "relax"))
+       for rate, step, skip, pairs in ((3, 0.03, 0.7, 60), (10, 0.02, 0.5, 60), (30, 0.006, 0.3, 60)) if (key, rate) != ("la", 10)},
     "dpd": Fluid("DPD, ρ = 3, a = 25, γ = 4.5", 9.0, "relax", "quadratic", 25.0, 0.04, "kick-split", 6.0, (0.4, 1.0, 8)),
 }
 # fluid: N: box, chains, steps, CPU hours
 SYSTEMS = {"la1": {1: (8, 60, 16000, 0.004)}, "hat": {1: (8, 60, 16000, 0.004)},
+           **{f"{key}{rate}": {1: (10, 100, steps, hours)} for key in ("la", "hat")
+              for rate, steps, hours in ((3, 12000, 0.004), (10, 20000, 0.006), (30, 50000, 0.015)) if (key, rate) != ("la", 10)},
            "la": {1: (10, 100, 10000, 0.003), 5: (8, 8, 55000, 0.006), 10: (10, 6, 60000, 0.013), 20: (12, 4, 45000, 0.016)},
            "dpd": {1: (8, 60, 8000, 0.002), 5: (8, 8, 16000, 0.004), 10: (10, 6, 16000, 0.007), 20: (10, 4, 20000, 0.009)}}
 SRD_BOX, SRD_CHAINS, SRD_STEPS = 12, 4, 200000  # of ten vertices
@@ -210,7 +215,7 @@ def free_verdicts(results):
     found = []
     for key, rate in (("la1", 1.0), ("la", 10.0)):
         fluid, (eta, d) = known(key, results), chaos(rate, FLUIDS[key].step)
-        paper = {"kind": "paper", "reason": "a particle flies 0.1 a0 between two collisions: pairs meet again and again"} if rate > 1.0 else {}
+        paper = {"kind": "paper", "reason": f"a particle collides {4.0 * math.pi * rate:.0f} times in t0, so it meets its partners again before they part"}
         where = f"Lowe-Andersen, ρ = 3, Γ = {rate:g}"
         pairs = ("viscosity", f"η of {where}", eta, fluid and (fluid.eta, fluid.eta_error)), \
             ("free", f"D of a vertex like a particle, {where}", d, fluid and (fluid.free, fluid.free_error)), \
@@ -224,20 +229,31 @@ def free_verdicts(results):
     return found
 
 
+# Of one rate: the thermostat of DPD with the hat, and Lowe-Andersen.
+LIMITS = {1: ("hat", "la1"), 3: ("hat3", "la3"), 10: ("hat10", "la"), 30: ("hat30", "la30")}
+
+
 def limit_verdicts(results):
     """Lowe and Andersen's fluid and that of a DPD thermostat with the hat, of one rate: the slides have them equal as dt -> 0. A pair
     that draws anew loses all of its velocity now and then, one that relaxes a little each time: the kinetic stress decays by
-    <1 - c>/3 - <(1 - c)^2>/15 per encounter, so that nu_kin/D is 5/8 in one and 1/2 in the other. D is the same."""
-    step, d = FLUIDS["hat"].step, 9.0 / (2.0 * math.pi * 3.0)
-    eta = (0.5 * d - 0.5 * step + math.pi * 3.0 / 75.0) / (0.625 * d - 0.5 * step + math.pi * 3.0 / 75.0)
-    relaxed = (d * step / -math.expm1(-step) - 0.5 * step) / (d - 0.5 * step)
-    one, other = known("hat", results), known("la1", results)
-    both = one is not None and other is not None
-    return [fill(Verdict("media.limit.viscosity", "η of the DPD thermostat with the hat over that of Lowe-Andersen, Γ = 1", eta,
-                         "molecular chaos; the ratio is known to 5 %", 0.05 * eta, rival=1.0),
-                 ratio((one.eta, one.eta_error), (other.eta, other.eta_error)) if both else None, 0.05 * eta),
-            fill(Verdict("media.limit.free", "the same of D", relaxed, "molecular chaos; the ratio is known to 3 %", 0.03),
-                 ratio((one.free, one.free_error), (other.free, other.free_error)) if both else None, 0.03)]
+    <1 - c>/3 - <(1 - c)^2>/15 per encounter, so that nu_kin/D is 5/8 in one and 1/2 in the other. D is the same. This is molecular
+    chaos, which ends where pairs meet again before they part."""
+    found = []
+    for rate, (relaxing, drawn) in LIMITS.items():
+        step, d, handed = FLUIDS[relaxing].step, 9.0 / (2.0 * math.pi * 3.0 * rate), math.pi * 3.0 * rate / 75.0
+        eta = (0.5 * d - 0.5 * step + handed) / (0.625 * d - 0.5 * step + handed)
+        relaxed = (d * rate * step / -math.expm1(-rate * step) - 0.5 * step) / (d - 0.5 * step)
+        one, other = known(relaxing, results), known(drawn, results)
+        both = one is not None and other is not None
+        end, paper = "" if rate == 1 else f".gamma{rate}", {"rival": 1.0} if rate == 1 else {
+            "kind": "paper", "reason": "pairs meet again before they part: a velocity that was drawn anew meets the partner from whom it has it"}
+        found += [fill(Verdict(f"media.limit.viscosity{end}", f"η of the DPD thermostat with the hat over that of Lowe-Andersen, Γ = {rate}", eta,
+                               "molecular chaos; the ratio is known to 5 %", 0.05 * eta, **paper),
+                       ratio((one.eta, one.eta_error), (other.eta, other.eta_error)) if both else None, 0.05 * eta),
+                  fill(Verdict(f"media.limit.free{end}", "the same of D", relaxed, "molecular chaos; the ratio is known to 3 %", 0.03,
+                               **({} if rate == 1 else paper)),
+                       ratio((one.free, one.free_error), (other.free, other.free_error)) if both else None, 0.03)]
+    return found
 
 
 def isotropy_verdicts(results):
