@@ -95,6 +95,8 @@ help:
 	@echo 'make packages        those packages, optimized little, and the binary interface, are checked: a stage of CI'
 	@echo 'make npm             the library of the page as an npm package: $(BUILD)/npm'
 	@echo 'make deb             Debian packages, looked at by lintian: $(BUILD)/deb'
+	@echo 'make site            documents, interfaces, changelog and the live page as one folder of static files: $(BUILD)/site; LIVE= leaves the live page out'
+	@echo 'make site-test       its links, and each page in headless Chromium on a phone and a desktop: width, other hosts, console, axe-core'
 	@echo 'make clean           removes $(BUILD)'
 	@echo 'variables            CC=gcc|clang  MARCH=native|x86-64|...  BUILD=folder  PLAIN=1 (no fast kernels, same results)'
 
@@ -200,6 +202,21 @@ live-test:
 	@$(MAKE) --no-print-directory npm
 	@node tests/live/package.mjs $(BUILD)
 	@node tests/live/page.mjs $(BUILD)
+
+# --- the site ---------------------------------------------------------------------------------------------------------
+
+# The documents as they are, both interfaces and the live page, as one folder of static files. LIVE= leaves the live page out.
+LIVE ?= 1
+.PHONY: site
+site:
+	@tools/install-dependencies run site $(if $(LIVE),live)
+	@$(MAKE) --no-print-directory libraries $(if $(LIVE),live)
+	@site/build '$(BUILD)' '$(VERSION)' $(LIVE)
+
+.PHONY: site-test
+site-test: site
+	@tests/site/links $(BUILD)/site
+	@node tests/site/pages.mjs $(BUILD)
 
 # Written anew only when it says something new, so that nothing is rebuilt for nothing; two makes at a time may both write it.
 $(BUILD)/build-info.inc: export PREFIX := $(PREFIX)

@@ -1,0 +1,30 @@
+"""Keys of scenes, as docs/scene.md lists them, for the search and the index: `crossing.rule` is found by its name."""
+import re
+
+from docutils import nodes
+from sphinx.util.nodes import make_id
+
+PAGE = "docs/scene"
+
+
+def note(app, doctree):
+    if app.env.docname != PAGE:
+        return
+    standard = app.env.get_domain("std")
+    for table in doctree.findall(nodes.table):
+        heads = [entry.astext() for entry in table.next_node(nodes.thead).findall(nodes.entry)]
+        if heads[:2] != ["key", "allowed"]:
+            continue
+        section = table.parent.next_node(nodes.title).astext()
+        for row in table.next_node(nodes.tbody).findall(nodes.row):
+            key = row.next_node(nodes.literal)
+            name = key.astext() if section == "Top level" else f"{section}.{key.astext()}"
+            row_id = make_id(app.env, doctree, "key", re.sub(r"[._]", "-", name))
+            key.parent["ids"].append(row_id)
+            standard.note_object("key", name, row_id, location=key)
+
+
+def setup(app):
+    app.add_object_type("key", "key", "single: %s (key of a scene)", objname="key of a scene")
+    app.connect("doctree-read", note)
+    return {"parallel_read_safe": True}

@@ -1,0 +1,30 @@
+"""What Debian's furo needs to work from any folder: its script and a style sheet are parts that other builds put together; and what axe-core asks for."""
+import pathlib
+import re
+
+NORMALIZE = pathlib.Path("/usr/share/javascript/normalize.css/normalize.css")
+
+
+def put_together(app, error):
+    if error is not None:
+        return
+    static = pathlib.Path(app.outdir) / "_static"
+    script, part = static / "scripts/furo.js", static / "scripts/gumshoe-patched.js"
+    text = script.read_text(encoding="utf-8")
+    if part.exists() and text.startswith("import Gumshoe"):
+        script.write_text(part.read_text(encoding="utf-8") + text.partition("\n")[2], encoding="utf-8")
+        part.unlink()
+    sheet = static / "styles/furo.css"
+    text = sheet.read_text(encoding="utf-8")
+    sheet.write_text(re.sub(r"@import url\(/javascript/normalize\.css/[^)]*\);", lambda _: NORMALIZE.read_text(encoding="utf-8"), text), encoding="utf-8")
+
+
+def headings(_app, _name, _template, context, _doctree):
+    for part in ("furo_navigation_tree",):
+        context[part] = context.get(part, "").replace('role="heading"', 'role="heading" aria-level="2"')
+
+
+def setup(app):
+    app.connect("build-finished", put_together)
+    app.connect("html-page-context", headings, priority=900)  # after furo's own
+    return {"parallel_read_safe": True}
