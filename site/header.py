@@ -7,6 +7,8 @@ import os
 import pathlib
 import re
 
+from docutils import nodes
+from docutils.statemachine import StringList
 from sphinx.util.docutils import SphinxDirective
 
 ROOT = pathlib.Path(os.environ["SITE_ROOT"])
@@ -64,7 +66,7 @@ class Header(SphinxDirective):
         self.env.note_dependency(str(path))
         text = path.read_text(encoding="ascii")
         head = re.match(r"/\*.*?\*/", text, re.S)[0]
-        lines = [words(head), ""]
+        lines = ["## For all functions", "", words(head), ""]
         body = text[text.index("/* --- "):]
         body = re.sub(r"#ifdef __cplusplus.*", "", body, flags=re.S)
         for section in re.split(r"^/\* --- ", body, flags=re.M)[1:]:
@@ -72,7 +74,6 @@ class Header(SphinxDirective):
             lines += [f"## {name.capitalize()}", ""]
             for block in re.split(r"\n\n+(?! \*)", rest.partition("\n")[2].strip("\n")):
                 comment = re.match(r"/\*.*?\*/", block, re.S)
-                first = True
                 declared = list(declarations(block[comment.end():] if comment else block))
                 for number, code in enumerate(declared):
                     kind, signature, below = described(code)
@@ -80,14 +81,9 @@ class Header(SphinxDirective):
                     if comment and number == len(declared) - 1:
                         lines += [words(comment[0]), ""]
                     lines += [*below, "```", ""]
-        return self.parse("\n".join(lines))
-
-    def parse(self, text):
-        from docutils import nodes
-        from docutils.statemachine import StringList
         holder = nodes.container()
-        self.state.nested_parse(StringList(text.split("\n"), source=self.arguments[0]), self.content_offset, holder, match_titles=True)
-        return holder.children
+        self.state.nested_parse(StringList("\n".join(lines).split("\n"), source=self.arguments[0]), self.content_offset, holder, match_titles=True)
+        return holder.children  # sections have gone to the page itself
 
 
 def setup(app):

@@ -88,7 +88,7 @@ class Links:
                 node.replace_self(nodes.reference("", "", node.deepcopy(), refuri=address, internal=True))
 
     def pages(self, app):
-        shown = HtmlFormatter(linenos=False, lineanchors="L", anchorlinenos=False)
+        shown = HtmlFormatter(linespans="L")
         waiting = sorted(self.wanted)
         done = set()
         while waiting:

@@ -16,12 +16,15 @@ def put_together(app, error):
         part.unlink()
     sheet = static / "styles/furo.css"
     text = sheet.read_text(encoding="utf-8")
+    # The colors of the dark theme, also where the reader's system asks for it: nested conditions got lost in Debian's build.
+    dark = re.search(r'@media not print \{\s*body\[data-theme="dark"\] (\{[^}]*\})', text)[1]
+    text += f'\n@media screen and (prefers-color-scheme: dark) {{ body:not([data-theme="light"]) {dark} }}\n'
     sheet.write_text(re.sub(r"@import url\(/javascript/normalize\.css/[^)]*\);", lambda _: NORMALIZE.read_text(encoding="utf-8"), text), encoding="utf-8")
 
 
 def headings(_app, _name, _template, context, _doctree):
-    for part in ("furo_navigation_tree",):
-        context[part] = context.get(part, "").replace('role="heading"', 'role="heading" aria-level="2"')
+    tree = "furo_navigation_tree"
+    context[tree] = context.get(tree, "").replace('role="heading"', 'role="heading" aria-level="2"')
 
 
 def setup(app):

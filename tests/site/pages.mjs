@@ -17,7 +17,7 @@ const TYPES = {'.html': 'text/html', '.js': 'text/javascript', '.mjs': 'text/jav
 const LOOKED_AT = ['index.html', 'README.html', 'docs/course.html', 'docs/scene.html', 'docs/equations.html', 'docs/claims/tube.html', 'interface/c.html', 'interface/python.html',
   'files/src/step.c.html', 'search.html'];
 /* What is looked for, and the page that must be among the first five found. */
-const SEARCHED = [['crossing.rule', 'docs/scene.html'], ['viscosity', 'docs/flow.html'], ['uncross_sim_advance', 'interface/c.html'], ['cross-links', 'README.html']];
+const SEARCHED = [['crossing.rule', 'docs/scene.html'], ['viscosity', 'docs/how-to.html'], ['uncross_sim_advance', 'interface/c.html'], ['cross-links', 'README.html']];
 
 const build = resolve(process.argv[2]), folder = join(build, 'site'), tally = new Tally();
 const packaged = createRequire(join(build, 'live-work/npm/package.json')), {chromium} = packaged('playwright-core');
@@ -57,6 +57,9 @@ try {
 
   for (const theme of ['light', 'dark']) {
     const context = await browser.newContext({viewport: DESKTOP, colorScheme: theme}), looked = await context.newPage();
+    await looked.goto(`${address}index.html`);
+    const paper = await looked.evaluate(() => getComputedStyle(document.body).backgroundColor.match(/\d+/g).slice(0, 3).reduce((sum, part) => sum + Number(part), 0));
+    tally.is(`the page is ${theme} (${paper})`, theme === 'dark' ? paper < 150 : paper > 600);
     for (const name of LOOKED_AT) {
       await looked.goto(address + name);
       await looked.addScriptTag({path: packaged.resolve('axe-core/axe.min.js')});
