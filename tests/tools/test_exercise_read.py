@@ -40,6 +40,10 @@ class Read(unittest.TestCase):
         self.assertEqual((name, value), ("s", 3.0))
         self.assertAlmostEqual(error, 1 / math.sqrt(31), delta=0.005)
 
+    def test_a_table_of_one_row(self):
+        self.table.write_text("RxRx,RxRx_error,samples\n167.5,2.5,40\n")
+        self.assertEqual(self.numbers("RxRx"), [("RxRx", 167.5, 2.5)])
+
     def test_what_is_not_there(self):
         for words, told in ((("x",), "there is no column x; there are time, g_cm, g_cm_error, s"), (("s", "--at", "7.5"), "there is no time 7.5; the nearest is"),
                             (("s", "--from", "50"), "there is no row from 50 on; the last is 41")):
