@@ -13,7 +13,7 @@ version = release = os.environ["SITE_VERSION"]
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "repository", "scene_keys", "header", "docstrings", "formulas", "theme"]
 include_patterns = ["*.md", "docs/**.md", "interface/*.md", "**/README.md"]
-exclude_patterns = ["build", "**/target", "**/node_modules", "docs/paper/paper.md", "docs/paper/method.md"]
+exclude_patterns = ["build", "**/target", "**/node_modules", "docs/paper"]
 myst_heading_anchors = 4
 myst_enable_extensions = ["dollarmath", "colon_fence"]
 nitpicky = True
