@@ -14,12 +14,16 @@ from sphinx.util.docutils import SphinxDirective
 ROOT = pathlib.Path(os.environ["SITE_ROOT"])
 
 
+# What is code in a sentence of the header.
+CODE = re.compile(r"(?<![\w`])(uncross_\w+(?:\(\))?|UNCROSS_\w+|\*error|[\w*]*\[[\w .+]+\](?:\[\d\])?)(?!`)")
+
+
 def words(comment):
     """A comment without its frame, for Markdown: each name stays as it is written."""
     text = re.sub(r"^/\*+ ?|\s*\*+/$", "", comment.strip())
-    lines = [re.sub(r"^\s*\* ?", "", line) if k else line for k, line in enumerate(text.split("\n"))]
-    text = re.sub(r"(?<![\w`])(uncross_\w+(?:\(\))?|UNCROSS_\w+|\*?error\b(?=,| )|[\w*]*\[[\w .+]+\](?:\[\d\])?)(?!`)", r"`\1`", "\n".join(lines).strip())
-    return re.sub(r"([*_<$])(?![^`\n]*`(?:[^`\n]*`[^`\n]*`)*[^`\n]*$)", r"\\\1", text) if "`" not in text else text
+    text = CODE.sub(r"`\1`", re.sub(r"\n\s*\* ?", "\n", text).strip())
+    parts = re.split(r"(`[^`]*`)", text)
+    return "".join(part if part.startswith("`") else re.sub(r"([*_<$])", r"\\\1", part) for part in parts)
 
 
 def declarations(code):
