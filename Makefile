@@ -105,7 +105,7 @@ help:
 TOP := $(BUILD)/src/cli/main.o
 
 # Commands that other programs do: src/cli/outer.c looks for them beside the program.
-OUTER   := uncross-check uncross-map uncross-export uncross-plot uncross-sweep uncross-name
+OUTER   := uncross-check uncross-map uncross-export uncross-plot uncross-sweep uncross-topology uncross-name
 HELPERS := $(OUTER:%=$(BUILD)/libexec/%)
 $(HELPERS): $(BUILD)/libexec/%:
 	@mkdir -p $(@D)
@@ -256,7 +256,7 @@ $(foreach h,$(CORE_HEADERS),644 $(h) include/uncross-core/$(h:src/%=%)
 644 $(BUILD)/install/uncross-core.pc @LIB@/pkgconfig/uncross-core.pc
 644 $(BUILD)/install/completion share/bash-completion/completions/uncross
 644 include/uncross.h lib/python3/dist-packages/uncross/uncross.h
-$(foreach f,$(wildcard python/uncross/*.py python/uncross_export/*.py python/uncross_units/*.py python/uncross_plot/*.py python/uncross_plot/*.jinja python/uncross_sweep/*.* python/uncross_name/*.py),644 $(f) lib/python3/dist-packages/$(f:python/%=%)
+$(foreach f,$(wildcard python/uncross/*.py python/uncross_export/*.py python/uncross_units/*.py python/uncross_plot/*.py python/uncross_plot/*.jinja python/uncross_sweep/*.* python/uncross_topology/*.py python/uncross_name/*.py),644 $(f) lib/python3/dist-packages/$(f:python/%=%)
 )
 $(foreach f,$(DOCUMENTS) $(REFERENCE) $(JUDGED) $(wildcard mistakes/*.yaml) $(wildcard ports/numpy/uncross_port/*.py ports/numpy/uncross_port/*.json),$(if $(filter $(f),$(RUNNABLE)),755,644) $(f) share/uncross/$(f)
 )

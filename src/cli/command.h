@@ -25,6 +25,7 @@ enum exit_code {
   EXIT_DIFFERS = 7,     /* oracle compare: different beyond it; oracle judge: different */
   EXIT_CANNOT_TELL = 8, /* oracle judge: observables missing, or blocks that do not suffice */
   EXIT_DAMAGED = 9,     /* verify: a file is not what was written */
+  EXIT_CROSSED = 10,    /* topology: bonds crossed each other */
   EXIT_CODES
 };
 
@@ -38,7 +39,7 @@ struct arguments {
   const char **set; /* [sets] "key=value" */
   size_t sets;
   bool has_steps, has_seed, resume, quiet, document, decimal, whole, skip_damaged, movie, compare, list, slurm, no_name,
-      numbers, help;
+      numbers, every_step, help;
   uint64_t steps, seed; /* instead of the scene's */
   const char *format;
   bool solvent, wrapped;
@@ -51,6 +52,8 @@ struct arguments {
   bool text, no_traces;
   uint64_t seconds, repeat, every;
   const char *units;
+  const char *bonds, *csv; /* files */
+  uint64_t chain, ring;    /* vertices of each */
 };
 
 /* Rows of the table of commands, in the order in which help shows them. */
@@ -64,6 +67,8 @@ enum command_code {
   COMMAND_EXPORT,
   COMMAND_FRAMES,
   COMMAND_LINKS,
+  COMMAND_TOPOLOGY,
+  COMMAND_CROSSINGS,
   COMMAND_ANALYZE,
   COMMAND_PLOT,
   COMMAND_SWEEP,
@@ -155,6 +160,7 @@ enum exit_code outer_run(const struct command *command, char **words);
 
 enum exit_code command_frames(const struct arguments *a);
 enum exit_code command_links(const struct arguments *a);
+enum exit_code command_crossings(const struct arguments *a);
 enum exit_code command_run(const struct arguments *a);
 enum exit_code command_analyze(const struct arguments *a);
 enum exit_code command_verify(const struct arguments *a);

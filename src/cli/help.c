@@ -18,6 +18,7 @@ static const char *const code_text[EXIT_CODES] = {
     [EXIT_CLOSE] = "oracle compare: different, but within the derived tolerances",
     [EXIT_DIFFERS] = "oracle compare: different beyond them, or something is missing; oracle judge: different",
     [EXIT_DAMAGED] = "verify: a file is damaged",
+    [EXIT_CROSSED] = "topology: bonds crossed each other between two frames",
     [EXIT_CANNOT_TELL] =
         "oracle judge: cannot tell, since observables are missing, or their blocks too few, equal or too uncertain",
 };

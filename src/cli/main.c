@@ -98,6 +98,16 @@ const struct command commands[COMMANDS] = {
                        "crossings and Alexander's polynomials of closed polygons, for programs (docs/topology.md)",
                        "Standard input has the polygons, as plain numbers, and which of them are asked for.\n",
                        command_links},
+    [COMMAND_TOPOLOGY] =
+        {"topology", "FILE", 1, MAY(EXIT_CROSSED) | WRITES,
+         "whether bonds crossed each other between the frames of any code's trajectory (docs/topology.md)",
+         "FILE is H5MD, a LAMMPS dump, (extended) XYZ, VTF, or a checkpoint. Vertices are taken to move straight from "
+         "frame\n"
+         "to frame; each meeting of two bonds is decided without rounding.\n",
+         NULL},
+    [COMMAND_CROSSINGS] = {"crossings", "", 0, WRITES,
+                           "meetings of bonds between two frames as plain numbers, for programs (docs/topology.md)",
+                           "Standard input has bonds, then frames in pairs.\n", command_crossings},
     [COMMAND_ANALYZE] = {"analyze", "TRAJECTORY", 1, WRITES,
                          "the observables of a trajectory's scene from its frames, as new tables", NULL,
                          command_analyze},
