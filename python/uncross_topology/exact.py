@@ -227,7 +227,7 @@ def meetings(p, q, w):
     on = dot(cross(w, q), n), dot(cross(w, p), n)
     bounds = [on[0], plus(square, on[0], -1), on[1], plus(square, on[1], -1)]
     # A first meeting is at t = 0, or where one of the conditions for it becomes an equation.
-    times_of = [f] if f else [[0, 1], *bounds, square, *(x for a, b in ((w, p), (w, q), (p, q)) for x in cross(a, b)), *_line(p, q, w), *_line(q, p, w)]
+    times_of = [f] if f else [[0, 1], *bounds, square, *(x for a, b in ((w, p), (w, q), (p, q)) for x in cross(a, b)), *_line(p, q, w), *_line(q, p, w), *w]
     crossings, touched = [], False
     for polynomial in times_of:
         for root in roots(polynomial) if polynomial else []:

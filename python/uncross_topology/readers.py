@@ -153,26 +153,13 @@ class Reader:
         """Along bonds at first, then from frame to frame."""
         position = frame.position.copy()
         if before:
-            position = before.position + self._nearest(position - before.position, frame)
+            position = before.position + nearest_image(position - before.position, frame)
         else:
-            walk(self.topology, lambda here, there: position.__setitem__(there, position[here] + self._nearest((frame.position[there] - position[here])[None], frame)[0]))
+            walk(self.topology, lambda here, there: position.__setitem__(there, position[here] + nearest_image((frame.position[there] - position[here])[None], frame)[0]))
         if not numpy.array_equal(position, frame.position):
             self._say("positions are wrapped into the box, without numbers of images: each was taken to be where it is nearest to its place in the frame "
                       "before (at first: to its neighbor along the bond); a vertex that moves half a box between two frames is read wrong")
         return frame._replace(position=position)
-
-    @staticmethod
-    def _nearest(way, frame):
-        """The image of these ways, [N][3], along each periodic edge."""
-        way = way.copy()
-        for axis in (2, 1, 0):
-            if frame.periodic[axis]:
-                turns = (2 * way[:, axis] + frame.edge[axis]) // (2 * frame.edge[axis])
-                way[:, axis] -= turns * frame.edge[axis]
-                if axis == 1:
-                    way[:, 0] -= turns * frame.offset
-        return way
-
 
 def look_at_bonds(path, frame, topology):
     bonds, edges = topology.bonds, [e for e, p in zip(frame.edge, frame.periodic) if p]
@@ -181,6 +168,18 @@ def look_at_bonds(path, frame, topology):
         if edges and frame.periodic[axis] and numpy.any(2 * way[:, axis] > frame.edge[axis]):
             a, b = topology.ids[bonds[numpy.argmax(way[:, axis])]]
             raise Refused(f"{path}: the bond {a} {b} is longer than half an edge of the box; it leads through the box, or numbers of images are wrong")
+
+
+def nearest_image(way, frame):
+    """Of ways [N][3]: the image that is the shortest along each periodic edge."""
+    way = way.copy()
+    for axis in (2, 1, 0):
+        if frame.periodic[axis]:
+            turns = (2 * way[:, axis] + frame.edge[axis]) // (2 * frame.edge[axis])
+            way[:, axis] -= turns * frame.edge[axis]
+            if axis == 1:
+                way[:, 0] -= turns * frame.offset
+    return way
 
 
 def nearest(way, edge):
@@ -229,12 +228,13 @@ class Lines:
         return Refused(f"{self.path}:{max(self.number, 1)}:1: {text}")
 
     def table(self, count, columns, what, wanted):
-        """Columns, by their places, of so many lines with so many words each: reals [count][wanted]."""
+        """Columns, by their places, of so many lines with so many words each: reals [count][wanted]. And the lines."""
         lines = self.rows(count, what)
-        with contextlib.suppress(ValueError, DeprecationWarning):
-            words = b" ".join(lines).split()
-            if len(words) == count * columns:
-                return numpy.array([words[k::columns] for k in wanted], dtype=float).T.reshape(count, len(wanted)), words
+        with contextlib.suppress(ValueError, IndexError):
+            if count == 0:
+                return numpy.zeros((0, len(wanted))), lines
+            if len(lines[0].split()) == columns:
+                return numpy.loadtxt(lines, usecols=wanted, ndmin=2, comments=None), lines
         begin = self.number - count
         for k, line in enumerate(lines, 1):
             words = line.split()
@@ -242,10 +242,8 @@ class Lines:
             if len(words) != columns:
                 raise self.wrong(f"{len(words)} columns; {what} have {columns}")
             for column in wanted:
-                with contextlib.suppress(ValueError):
-                    float(words[column])
-                    continue
-                raise self.wrong(f"column {column + 1} is no number")
+                if not is_number(words[column]):
+                    raise self.wrong(f"column {column + 1} is no number")
         raise self.wrong("no numbers")
 
 
@@ -254,9 +252,9 @@ def digits(word):
     return len(re.sub(rb"[eE].*|[^0-9]", b"", word).lstrip(b"0"))
 
 
-def rounding_of(words, position):
-    """Of decimal numbers: half of the last digit of the largest, if they have fewer than a double."""
-    most = max((digits(word) for word in words), default=DIGITS)
+def rounding_of(lines, columns, position):
+    """Of decimal numbers: half of the last digit of the largest, if they have fewer than a double. What the first lines have is taken for all."""
+    most = max((digits(words[k]) for words in (line.split() for line in lines[:1000]) for k in columns), default=DIGITS)
     largest = float(numpy.max(numpy.abs(position), initial=0.0))
     return 0.5 * 10.0 ** (math.floor(math.log10(largest)) + 1 - most) if most < DIGITS and largest > 0 else 0.0
 
@@ -311,11 +309,10 @@ def _atoms(file, about, names, count, low, edge, periodic, tilt):
         raise file.wrong(f"ATOMS have no positions; allowed: {', '.join(' '.join(columns) for columns in ways.values())}")
     flags = [name for name in ("ix", "iy", "iz") if name in names] if way[0] in ("x", "xs") else []
     ids = ["id"] if "id" in names else []
-    values, words = file.table(count, len(names), "atoms", [names.index(name) for name in (*way, *flags, *ids)])
+    values, lines = file.table(count, len(names), "atoms", [names.index(name) for name in (*way, *flags, *ids)])
     position = values[:, :3]
     if "rounding" not in about:
-        written = rounding_of([word for name in way for word in words[names.index(name)::len(names)]], position)
-        about["rounding"] = written * (max(edge) if "s" in way[0] else 1.0)
+        about["rounding"] = rounding_of(lines, [names.index(name) for name in way], position) * (max(edge) if "s" in way[0] else 1.0)
     if "s" in way[0]:
         position = position * edge + low
         position[:, 0] += values[:, 1] * tilt
@@ -356,8 +353,9 @@ def xyz(path, about):
         periodic = [word[:1] in "Tt1" for word in keys.get("pbc", "T T T").split()]
         extra = [name for name in ("id", "next") if name in columns]
         places = [columns["pos"] + k for k in range(3)] + [columns[name] for name in extra]
-        values, words = file.table(int(line), at if "properties" in keys else _width(file), "atoms", places)
-        about.setdefault("rounding", rounding_of([word for k in places[:3] for word in words[k::len(words) // max(int(line), 1)]], values[:, :3]))
+        values, lines = file.table(int(line), at if "properties" in keys else _width(file), "atoms", places)
+        if "rounding" not in about:
+            about["rounding"] = rounding_of(lines, places[:3], values[:, :3])
         ids = values[:, 3].astype(numpy.int64) if "id" in columns else None
         if "next" in columns and "pairs" not in about:
             following = values[:, -1].astype(numpy.int64)
@@ -408,7 +406,8 @@ def vtf(path, about):
         if len(rows) and (numpy.max(rows) >= len(position) or values.shape[1] != 3 + indexed):
             raise file.wrong("coordinates of an atom that is none, or not three of them")
         position[rows] = values[:, -3:]
-        about.setdefault("rounding", rounding_of([word for line in lines for word in line.split()[indexed:]], position))
+        if "rounding" not in about:
+            about["rounding"] = rounding_of(lines, range(indexed, indexed + 3), position)
         return Raw(None, None, None, box, [True] * 3, 0.0, position, None)
 
     while True:
@@ -417,7 +416,7 @@ def vtf(path, about):
         if lines is not None and words and (words[0][:1].isdigit() or words[0][:1] in b"+-."):
             lines.append(line)
             continue
-        if lines is not None and (words and words[0][:1] != b"#" or not line):
+        if lines and (words and words[0][:1] != b"#" or not line):
             try:
                 yield frame()
             except ValueError:
@@ -504,8 +503,11 @@ class Own:
                 if rate != before.rate:
                     self._say("the rate of shear changes: the images of the box are taken to slide evenly from frame to frame")
             position = on_lattice(numpy.array(f.position).reshape(-1, 3)[self.topology.ids])
-            before = Frame(f.step, f.time, edge, f.periodic, slide, rate, position)
-            yield before
+            frame = Frame(f.step, f.time, edge, f.periodic, slide, rate, position)
+            if before and f.leans:  # a run takes fibers that leave a sheared box along y back into it
+                frame = frame._replace(position=before.position + nearest_image(position - before.position, frame))
+            before = frame
+            yield frame
 
     def close(self):
         self.file.close()

@@ -95,8 +95,8 @@ static void reach(const struct interval *v, int axis, int64_t low, int64_t high,
     return;
   const int64_t a = v->edge[0][axis], b = v->edge[1][axis], least = a < b ? a : b, most = a < b ? b : a;
   const int64_t below = high - space->low[axis], above = space->high[axis] - low;
-  number[0] = -floored(below, below < 0 ? most : least) - 1;
-  number[1] = floored(above, above < 0 ? most : least) + 1;
+  number[0] = -floored(below, below < 0 ? most : least);
+  number[1] = floored(above, above < 0 ? most : least);
 }
 
 /* Adds the images of a bond in the box. */
@@ -233,7 +233,7 @@ static uint64_t enter(const struct search *search, const struct grid *g, uint32_
 static bool fill(struct search *search, const struct swept *space, uint32_t boxes, struct grid *g)
 {
   uint64_t entries;
-  double wide = 1.0;
+  double wide = 1.5;
   do {
     *g = make_grid(search, space, boxes, wide);
     const uint32_t cells = cell_number(g, g->cells[0] - 1, g->cells[1] - 1, g->cells[2] - 1) + 1;

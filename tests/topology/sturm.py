@@ -125,7 +125,7 @@ def meet(p0, p1, q0, q1, w0, w1):
         bounds = [dot(cross(w, q), n), dot(cross(w, p), n), dot(n, n)]
         ends = [dot(x, d) for d in (p, q) for x in (w, p, q, [add(a, b) for a, b in zip(w, q)], [add(a, b, -1) for a, b in zip(w, p)],
                                                     [add(add(a, b), c, -1) for a, b, c in zip(w, q, p)])]
-        polynomials = [*bounds, add(bounds[2], bounds[0], -1), add(bounds[2], bounds[1], -1), *ends, *cross(w, p), *cross(w, q), *n]
+        polynomials = [*bounds, add(bounds[2], bounds[0], -1), add(bounds[2], bounds[1], -1), *ends, *cross(w, p), *cross(w, q), *n, *w]
         where = [time for polynomial in polynomials if len(polynomial) > 1 for time in times(polynomial)] + times([F(0), F(1)]) + times([F(-1), F(1)])
     signs, touched = [], False
     for time in sorted(where, key=lambda time: time.low):
