@@ -27,7 +27,7 @@ lacks() { # lacks PATTERN: in what was said last
 
 gives 0 '^  uncross run SCENE --out DIR \[options\]  *runs' --help
 gives 0 '^  8  oracle judge: cannot tell' help
-for command in check map run sweep info schema export analyze plot 'oracle emit' 'oracle trace' 'oracle dump' 'oracle compare' 'oracle judge'; do
+for command in check map run sweep info schema export topology crossings analyze plot 'oracle emit' 'oracle trace' 'oracle dump' 'oracle compare' 'oracle judge'; do
   # shellcheck disable=SC2086
   gives 0 "^usage: uncross $command" $command --help
   cp "$dir/out" "$dir/first"
