@@ -1,4 +1,5 @@
-/* `uncross crossings`: meetings of bonds between two frames, for `uncross topology`. docs/topology.md describes the form.
+/* `uncross crossings`: meetings of bonds between two frames, for `uncross topology`. docs/topology.md describes the
+ * form.
  */
 #include <inttypes.h>
 #include <stdlib.h>
