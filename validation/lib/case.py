@@ -156,9 +156,9 @@ def again(run, seed):
 
 
 def evaluate(module, results, tier):
-    """The Outcome of a case. Its second runs take no part in a number: a verdict that the first runs leave in doubt is given, as
-    `second`, what the case says of the second runs. `FIRST_ONLY(name)` of a case tells which first runs then count no more,
-    besides those that a second run takes the place of."""
+    """The Outcome of a case. Its second runs take no part in a number. If the first runs leave a verdict in doubt, its `second` is the
+    value from the second runs. `FIRST_ONLY(name)` of a case tells which first runs then count no more, besides those that a second
+    run takes the place of."""
     first = {name: result for name, result in results.items() if not name.endswith(AGAIN)}
     second = {name.removesuffix(AGAIN): result for name, result in results.items() if name.endswith(AGAIN)}
     outcome = module.evaluate(first, tier)
