@@ -65,7 +65,6 @@ void alexander_free(struct alexander *a)
   free(a->row);
   free(a->column);
   free(a->open);
-  free(a->pivot);
   free(a->sum);
   *a = (struct alexander){0};
 }
@@ -76,8 +75,7 @@ static bool have_room(struct alexander *a, uint32_t size)
     return true;
   if (!memory_grow((void **)&a->row, size, sizeof *a->row) ||
       !memory_grow((void **)&a->column, size, sizeof *a->column) ||
-      !memory_grow((void **)&a->open, size, sizeof *a->open) ||
-      !memory_grow((void **)&a->pivot, size, sizeof *a->pivot) || !memory_grow((void **)&a->sum, size, sizeof *a->sum))
+      !memory_grow((void **)&a->open, size, sizeof *a->open) || !memory_grow((void **)&a->sum, size, sizeof *a->sum))
     return false;
   memset(a->row + a->room, 0, (size - a->room) * sizeof *a->row);
   memset(a->column + a->room, 0, (size - a->room) * sizeof *a->column);
@@ -224,20 +222,6 @@ static bool eliminate(struct alexander *a, uint32_t pivot_row, struct entry pivo
   return true;
 }
 
-/* Whether the permutation of rows to the columns of their pivots is odd; it is destroyed. */
-static bool is_odd(uint32_t *pivot, uint32_t size)
-{
-  bool odd = false;
-  for (uint32_t k = 0; k < size; k++)
-    while (pivot[k] != k) {
-      const uint32_t other = pivot[k];
-      pivot[k] = pivot[other];
-      pivot[other] = other;
-      odd = !odd;
-    }
-  return odd;
-}
-
 bool alexander_value(struct alexander *a, const struct diagram *d, uint64_t t, uint64_t prime, uint64_t *value)
 {
   const uint32_t size = d->crossings > 0 ? d->crossings - 1 : 0;
@@ -255,13 +239,10 @@ bool alexander_value(struct alexander *a, const struct diagram *d, uint64_t t, u
     }
     const struct entry pivot = *rarest_column(a, &a->row[row]);
     *value = times(*value, pivot.value, prime);
-    a->pivot[row] = pivot.column;
     a->open[place] = a->open[open - 1];
     if (!eliminate(a, row, pivot, &grown, prime))
       return false;
   }
   *value = times(*value, inverse(grown, prime), prime);
-  if (is_odd(a->pivot, size))
-    *value = prime - *value;
   return true;
 }

@@ -12,15 +12,14 @@ struct alexander {
   struct sparse_row *row;       /* [room] */
   struct sparse_column *column; /* [room] */
   uint32_t *open;               /* [room] rows without a pivot */
-  uint32_t *pivot;              /* [room] column of each row */
   struct entry *sum;            /* [room] */
 };
 
-/* The minor of Alexander's matrix without its last row and column, modulo a prime (above), at t in 1 .. prime - 1:
- * the polynomial Delta(t) up to a factor +-t^m, which is the same for all t. For several curves it is that of one
- * variable, 0 if they are split. From the rows of each crossing (J. W. Alexander, Trans. Am. Math. Soc. 30, 275
- * (1928)): with t for positive crossings (1 - t) over + t in - out, for negative ones (1 - t) over - in + t out. False
- * if memory is short. */
+/* The minor of Alexander's matrix without its last row and column, modulo a prime (above), at t in 1 .. prime - 1: the
+ * polynomial Delta(t) up to a factor +-t^m. For several curves it is that of one variable, 0 if they are split. From
+ * the rows of each crossing (J. W. Alexander, Trans. Am. Math. Soc. 30, 275 (1928)): (1 - t) over + t in - out of
+ * positive crossings, (1 - t) over - in + t out of negative ones. m is the same for all t, and so is the sign for t and
+ * 1/t, neither of them -1: pivots are taken in an order that zeros alone decide. False if memory is short. */
 bool alexander_value(struct alexander *a, const struct diagram *d, uint64_t t, uint64_t prime, uint64_t *value);
 void alexander_free(struct alexander *a);
 
