@@ -102,13 +102,28 @@ def linking(signs):
     return signs[:, 0]
 
 
+def find_linking(frame, polygons):
+    """Of all pairs and images whose boxes overlap: i, j, image, shift, what was answered, lk (0 where they touch)."""
+    i, j, image, shift = candidates(frame, polygons)
+    seen = diagram.ask(polygons, jobs_of_pairs(i, j, shift))
+    return i, j, image, shift, seen, linking(numpy.where(seen.status[:, None] == diagram.FINE, seen.signs, 0))
+
+
+def linking_numbers(frame, curves):
+    """{(curve, other, image): lk} of all pairs of closed curves with lk other than 0."""
+    rings = polygons_of(frame, curves)
+    numbers = list(rings)
+    if not numbers:
+        return {}
+    i, j, image, _, _, lk = find_linking(frame, list(rings.values()))
+    return {(numbers[i[k]], numbers[j[k]], tuple(image[k].tolist())): int(lk[k]) for k in numpy.nonzero(lk)[0]}
+
+
 def find_pairs(frame, polygons):
     """Pairs that are linked or may be: those with lk or det other than 0, and those that touch. And how many were judged."""
     if not polygons:
         return [], 0
-    i, j, image, shift = candidates(frame, polygons)
-    seen = diagram.ask(polygons, jobs_of_pairs(i, j, shift))
-    lk = linking(numpy.where(seen.status[:, None] == diagram.FINE, seen.signs, 0))
+    i, j, image, shift, seen, lk = find_linking(frame, polygons)
     open_ = numpy.nonzero((seen.status != diagram.FINE) | numpy.all(seen.above > 0, axis=1))[0]
     full = diagram.ask(polygons, jobs_of_pairs(i[open_], j[open_], shift[open_]), diagram.SCREEN)
     linked = (full.status != diagram.FINE) | (lk[open_] != 0) | numpy.any(full.value != 0, axis=1)
