@@ -12,7 +12,7 @@ import numpy
 from uncross_export import frames as own
 from uncross_sweep import escape
 
-from . import crossings, readers
+from . import crossings, links, readers
 from .frame import LATTICE_BITS, Refused
 
 DONE, TROUBLE, BAD_INPUT, NOT_WRITTEN, CROSSED = 0, 1, 2, 4, 10
@@ -223,6 +223,14 @@ def run(path, options):
     reader = table = None
     try:
         reader = readers.open_file(path, options)
+        if "--links" in options:
+            found = list(links.of_file(reader, options["--links"], options.get("--closure")))
+            for text in reader.said:
+                say(f"uncross: warning: {path}: {text}")
+            tell(found)
+            return DONE
+        if "--closure" in options:
+            raise Refused("--closure is of --links")
         table = Table(options.get("--csv"))
         survey = Survey(path, reader, options, table)
         survey.look()
@@ -255,6 +263,6 @@ def run(path, options):
 
 
 def main(words):
-    found, paths = getopt.gnu_getopt(words, "", ["bonds=", "chain=", "ring=", "every-step", "csv=", "quiet"])
+    found, paths = getopt.gnu_getopt(words, "", ["bonds=", "chain=", "ring=", "every-step", "csv=", "links=", "closure=", "quiet"])
     signal.signal(signal.SIGTERM, lambda number, _: sys.exit(128 + number))
     return run(paths[0], dict(found))

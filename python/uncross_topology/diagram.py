@@ -5,6 +5,8 @@ import subprocess
 
 import numpy
 
+from .crossings import Ended
+
 FINE, TOUCHED, SPECIAL, TOO_FAR, TOO_MANY = range(5)  # enum diagram_status, src/topology/diagram.h
 WORDS = {TOUCHED: "touches itself or another", SPECIAL: "touches itself or another, or comes too near to tell",
          TOO_FAR: "wider than 2^46 lattice units", TOO_MANY: "too many crossings"}
@@ -37,7 +39,9 @@ def ask(polygons, jobs, values=(), most=MOST):
     at = numpy.concatenate(polygons) if polygons else numpy.zeros((0, 3))
     parts = [head, at.astype(numpy.int64), numpy.array(values, dtype=numpy.uint64), numpy.asarray(jobs, dtype=numpy.int64)]
     done = subprocess.run([os.environ.get("UNCROSS", "uncross"), "links"], input=b"".join(part.tobytes() for part in parts),
-                          stdout=subprocess.PIPE, check=True)
+                          stdout=subprocess.PIPE, check=False)
+    if done.returncode:
+        raise Ended(done.returncode)
     words = numpy.frombuffer(done.stdout, dtype=numpy.int64).reshape(-1, 6 + len(values))
     return Answers(words[:, 0], words[:, 1], words[:, 2:4], words[:, 4:6], words[:, 6:].view(numpy.uint64))
 

@@ -225,7 +225,8 @@ def value(polynomial, status):
     """det in words."""
     if polynomial is None:
         return diagram.WORDS[status]
-    return "det above 2^60" if polynomial.det is None else f"det = {polynomial.det}"
+    rest = " (but Delta is not 0)" if polynomial.det == 0 and any(map(any, polynomial.values)) else ""
+    return "det above 2^60" if polynomial.det is None else f"det = {polynomial.det}{rest}"
 
 
 def lines(links):
@@ -251,3 +252,28 @@ def lines(links):
         yield f"chain {chain.curve}: " + ", ".join(f"{name} ({count} of {sum(chain.names.values())})" for name, count in chain.names.items())
     if links.knots or links.chains:
         yield "a name stands for all knots or links with its polynomial: mirror images and some others are not told apart (docs/topology.md)"
+
+
+def choose(reader, word):
+    """The frame that --links names, and its number."""
+    if word not in ("first", "last") and not word.isdecimal():
+        raise frames.Refused(f"--links {word}: not first, last, or the number of a frame, from 0")
+    number, found = -1, None
+    for number, found in enumerate(reader.frames()):
+        if word == "first" or word == str(number):
+            return number, found
+    if word != "last" or found is None:
+        raise frames.Refused(f"--links {word}: the file has {number + 1} frames, numbered from 0")
+    return number, found
+
+
+def of_file(reader, word, way):
+    """Lines about one frame of a file."""
+    curves = reader.topology.curves
+    if curves is None:
+        raise frames.Refused("a vertex has more than two bonds: branched molecules have no links; allowed: chains and rings")
+    if way not in (None, *closures.WAYS):
+        raise frames.Refused(f"--closure {way}: allowed: {', '.join(closures.WAYS)}")
+    number, frame = choose(reader, word)
+    yield f"frame {number}; curves are numbered from 0, chains before rings, each by its first vertex: {len(curves)}"
+    yield from lines(look(frame, curves, way))

@@ -53,7 +53,8 @@ struct arguments {
   uint64_t seconds, repeat, every;
   const char *units;
   const char *bonds, *csv; /* files */
-  uint64_t chain, ring;    /* vertices of each */
+  const char *links, *closure;
+  uint64_t chain, ring; /* vertices of each */
 };
 
 /* Rows of the table of commands, in the order in which help shows them. */

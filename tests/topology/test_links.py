@@ -13,7 +13,7 @@ import numpy
 
 sys.dont_write_bytecode = True
 sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent), str(pathlib.Path(__file__).resolve().parents[1])]
-from support import TOP, UNCROSS  # noqa: E402
+from support import TOP, UNCROSS, FolderTest, uncross  # noqa: E402
 
 sys.path.insert(0, str(TOP / "python"))
 os.environ["UNCROSS"] = str(UNCROSS)
@@ -120,6 +120,14 @@ class Links(unittest.TestCase):
             self.assertNotIn("unlinked", text)
         apart = on_lattice([shapes.torus(1, 1)[0], shapes.torus(1, 1)[0] + [1.2, 1, 1]])
         self.assertIn("all others: lk = 0 and det = 0", "\n".join(links.lines(links.look(*frame_of(apart)))))
+
+    def test_only_delta(self):
+        """A link with lk = 0 and det = 0 whose Delta is not 0: found among random braids by Burau's matrices."""
+        word = [-2, 1, 2, 1, 3, -1, -2, 3, 1, -2, 3, -1, 2, -1]
+        self.assertEqual(by_burau(word, 4).det, 0)
+        found = links.look(*frame_of(on_lattice(shapes.closed_braid(word, 4))))
+        self.assertEqual([(pair.lk, pair.polynomial) for pair in found.pairs], [(0, by_burau(word, 4))])
+        self.assertIn("lk = 0, det = 0 (but Delta is not 0)", "\n".join(links.lines(found)))
 
     def test_gauss_integral(self):
         """Random closed walks in a small box, each pair and image, own images too; in a sheared box as well."""
@@ -259,6 +267,36 @@ class Chains(unittest.TestCase):
         line = numpy.arange(10)[:, None] * numpy.array([3, 1, 2])
         frame, _ = frame_of([line * 2**31])
         self.assertEqual(links.look(frame, [frames.Curve(list(range(10)), False)], "sphere").chains[0].names, {"0_1": 1})
+
+
+class Command(FolderTest):
+    """`uncross topology --links` of XYZ: a Hopf link, and the same rings apart."""
+
+    def topology(self, *words):
+        path = self.dir / "rings.xyz"
+        with open(path, "w", encoding="ascii") as file:
+            for shift in 0, 7:
+                one, other = shapes.torus(2, 2, 40)
+                print(80, 'Lattice="9 0 0 0 9 0 0 0 9" Properties=species:S:1:pos:R:3', sep="\n", file=file)
+                for x, y, z in numpy.concatenate([one, other + [0, 0, shift]]).tolist():
+                    print("C", x, y, z, file=file)
+        return uncross("topology", path, *words)
+
+    def test_frames(self):
+        for word, linked in ("first", True), ("0", True), ("1", False), ("last", False):
+            done = self.topology("--ring", 40, "--links", word)
+            self.assertEqual((done.returncode, "lk = 1, det = 2, Hopf's link" in done.stdout), (0, linked), done)
+            self.assertIn("rings: 2; 0_1: 2\n", done.stdout)
+
+    def test_chains(self):
+        self.assertIn("closed so: both ends go straight, away", self.topology("--chain", 40, "--links", "0", "--closure", "sphere").stdout)
+        self.assertIn("rings: 0\n", self.topology("--chain", 40, "--links", "0").stdout)
+
+    def test_refusals(self):
+        for words, said in ((["--links", "2"], "the file has 2 frames"), (["--links", "all"], "not first, last"), (["--closure", "sphere"], "is of --links"),
+                            (["--links", "0", "--closure", "chord"], "allowed: sphere, directions")):
+            done = self.topology("--ring", 40, *words)
+            self.assertEqual((done.returncode, done.stdout, said in done.stderr), (2, "", True), done)
 
 
 class Program(unittest.TestCase):
