@@ -288,6 +288,12 @@ class Command(FolderTest):
             self.assertEqual((done.returncode, "lk = 1, det = 2, Hopf's link" in done.stdout), (0, linked), done)
             self.assertIn("rings: 2; 0_1: 2\n", done.stdout)
 
+    def test_no_box(self):
+        path = self.dir / "triangle.xyz"
+        path.write_text("3\nno box\nC 0 0 0\nC 1 0 0\nC 0 1 0\n")
+        done = uncross("topology", path, "--ring", 3, "--links", "0")
+        self.assertEqual((done.returncode, "rings: 1; 0_1: 1\n" in done.stdout), (0, True), done)
+
     def test_chains(self):
         self.assertIn("closed so: both ends go straight, away", self.topology("--chain", 40, "--links", "0", "--closure", "sphere").stdout)
         self.assertIn("rings: 0\n", self.topology("--chain", 40, "--links", "0").stdout)
