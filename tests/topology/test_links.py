@@ -156,6 +156,29 @@ class Links(unittest.TestCase):
                             expected[one, other, image] = round(number)
             self.assertEqual(lk, expected)
 
+    def test_candidates(self):
+        """All images whose boxes overlap, against a loop over many more: slides of less than an edge, and of turns, to both sides."""
+        rng = numpy.random.default_rng(7)
+        edge = 2**20
+        for offset in [int(x) for x in rng.uniform(-0.5, 0.5, size=12) * edge] + [0, 3 * edge + 7, -3 * edge - 7]:
+            low = rng.integers(-edge, edge, size=(6, 3))
+            polygons = [numpy.stack([a, a + rng.integers(edge // 2, edge, size=3), a]) for a in low]
+            frame, _ = frame_of(polygons, [edge] * 3, offset)
+            found = {(i, j, *image) for i, j, image in zip(*(part.tolist() for part in links.candidates(frame, polygons)[:2]),
+                                                           map(tuple, links.candidates(frame, polygons)[2].tolist()))}
+            cells = numpy.stack(numpy.meshgrid(*[numpy.arange(-5, 6)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+            cells[:, 0] -= cells[:, 1] * round(offset / edge)
+            shifts = numpy.array([frames.image(frame, cell) for cell in cells])
+            expected = set()
+            for i in range(6):
+                for j in range(i, 6):
+                    a, b = polygons[i], polygons[j]
+                    meet = numpy.all((a.min(0) <= b.max(0) + shifts) & (b.min(0) + shifts <= a.max(0)), axis=1)
+                    expected |= {(i, j, *cell) for cell in cells[meet].tolist() if i < j or tuple(cell) > (0, 0, 0)}
+            # of a ring's own images either of two may be taken
+            self.assertEqual({key if key[0] < key[1] else (*key[:2], *max(key[2:], tuple(-x for x in key[2:]))) for key in found},
+                             {key if key[0] < key[1] else (*key[:2], *max(key[2:], tuple(-x for x in key[2:]))) for key in expected}, offset)
+
     def test_images(self):
         """The multiset of linking numbers does not change if curves are moved by images, begun elsewhere or turned round."""
         rng = numpy.random.default_rng(5)
