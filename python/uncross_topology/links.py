@@ -62,8 +62,8 @@ def images_within(frame, extent):
     reach = [range(-1 - int(e) // edge, 2 + int(e) // edge) if periodic else range(1)
              for e, edge, periodic in zip(extent, frame.edge, frame.periodic)]
     for z, y in itertools.product(reach[2], reach[1]):
-        slid = -y * frame.offset // frame.edge[0] if frame.periodic[0] else 0
-        yield from ((x + slid, y, z) for x in range(reach[0].start, reach[0].stop + (slid != 0)))
+        turns, rest = divmod(-y * frame.offset, frame.edge[0]) if frame.periodic[0] else (0, 0)
+        yield from ((x + turns, y, z) for x in range(reach[0].start, reach[0].stop + (rest > 0)))
 
 
 def candidates(frame, polygons):
