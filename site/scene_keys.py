@@ -15,13 +15,16 @@ def note(app, doctree):
         heads = [entry.astext() for entry in table.next_node(nodes.thead).findall(nodes.entry)]
         if heads[:2] != ["key", "allowed"]:
             continue
-        section = table.parent.next_node(nodes.title).astext()
+        # Sections of one key may share a table: "observe.conserved, temperature".
+        first, *others = table.parent.next_node(nodes.title).astext().split(", ")
+        sections = [first] + [f"{first.rpartition('.')[0]}.{other}" for other in others]
         for row in table.next_node(nodes.tbody).findall(nodes.row):
             key = row.next_node(nodes.literal)
-            name = key.astext() if section == "Top level" else f"{section}.{key.astext()}"
-            row_id = make_id(app.env, doctree, "key", re.sub(r"[._]", "-", name))
-            key.parent["ids"].append(row_id)
-            standard.note_object("key", name, row_id, location=key)
+            for section in sections:
+                name = key.astext() if section == "Top level" else f"{section}.{key.astext()}"
+                row_id = make_id(app.env, doctree, "key", re.sub(r"[._]", "-", name))
+                key.parent["ids"].append(row_id)
+                standard.note_object("key", name, row_id, location=key)
 
 
 def setup(app):

@@ -2,7 +2,7 @@
  * Each page of the site in headless Chromium: no wider than a phone, nothing from another host, nothing in the console. On some pages,
  * light and dark, axe-core finds nothing serious. The search finds a key and a function by name.
  *
- * usage: node pages.mjs BUILD     ($CHROMIUM: the browser, else chromium)
+ * usage: node pages.mjs BUILD [PAGE ...]     (a look at the width of these alone; $CHROMIUM: the browser, else chromium)
  */
 import {createServer} from 'node:http';
 import {createRequire} from 'node:module';
@@ -17,7 +17,7 @@ const TYPES = {'.html': 'text/html', '.js': 'text/javascript', '.mjs': 'text/jav
 const LOOKED_AT = ['index.html', 'README.html', 'docs/course.html', 'docs/scene.html', 'docs/equations.html', 'docs/claims/tube.html', 'interface/c.html', 'interface/python.html',
   'files/src/step.c.html', 'search.html'];
 /* What is looked for, and the page that must be among the first five found. */
-const SEARCHED = [['crossing.rule', 'docs/scene.html'], ['viscosity', 'docs/how-to.html'], ['uncross_sim_advance', 'interface/c.html'], ['cross-links', 'README.html']];
+const SEARCHED = [['crossing.rule', 'docs/scene.html#key-crossing-rule'], ['observe.stress.every', 'docs/scene.html#key-observe-stress-every'], ['viscosity', 'docs/how-to.html'], ['uncross_sim_advance', 'interface/c.html'], ['cross-links', 'README.html']];
 
 const build = resolve(process.argv[2]), folder = join(build, 'site'), tally = new Tally();
 const packaged = createRequire(join(build, 'live-work/npm/package.json')), {chromium} = packaged('playwright-core');
@@ -33,7 +33,8 @@ const address = `http://127.0.0.1:${server.address().port}/`;
 
 const all = readdirSync(folder, {recursive: true}).filter(name => name.endsWith('.html') && !name.startsWith('live/') && statSync(join(folder, name)).isFile()).sort();
 /* Pages of files differ in their lines only, which scroll: one in eight is looked at. */
-const pages = all.filter((name, k) => !name.startsWith('files/') || k % 8 === 0 || LOOKED_AT.includes(name));
+const chosen = process.argv.slice(3);
+const pages = chosen.length > 0 ? chosen : all.filter((name, k) => !name.startsWith('files/') || k % 8 === 0 || LOOKED_AT.includes(name));
 
 const browser = await chromium.launch({executablePath: process.env.CHROMIUM ?? execFileSync('which', ['chromium'], {encoding: 'utf8'}).trim(), args: ['--no-sandbox']});
 try {
@@ -53,9 +54,10 @@ try {
       wide.push(`${name}: ${width} px: ${widest}`);
   }
   tally.equal(`no page is wider than ${PHONE.width} px`, wide.join('\n'), '');
-  tally.is(`${pages.length} of ${all.length} pages were seen`, pages.length > 90 && LOOKED_AT.every(name => pages.includes(name)));
+  if (chosen.length === 0)
+    tally.is(`${pages.length} of ${all.length} pages were seen`, pages.length > 90 && LOOKED_AT.every(name => pages.includes(name)));
 
-  for (const theme of ['light', 'dark']) {
+  for (const theme of chosen.length > 0 ? [] : ['light', 'dark']) {
     const context = await browser.newContext({viewport: DESKTOP, colorScheme: theme}), looked = await context.newPage();
     await looked.goto(`${address}index.html`);
     const paper = await looked.evaluate(() => getComputedStyle(document.body).backgroundColor.match(/\d+/g).slice(0, 3).reduce((sum, part) => sum + Number(part), 0));
@@ -70,7 +72,7 @@ try {
     await context.close();
   }
 
-  for (const [words, wanted] of SEARCHED) {
+  for (const [words, wanted] of chosen.length > 0 ? [] : SEARCHED) {
     await page.goto(`${address}search.html?q=${encodeURIComponent(words)}`);
     await page.waitForSelector('#search-results li a', {timeout: 15_000}).catch(() => {});
     const found = await page.$$eval('#search-results li a', links => links.slice(0, 5).map(a => a.href));
