@@ -46,7 +46,8 @@ try {
   for (const name of pages) {
     await page.goto(address + name);
     const {width, widest} = await page.evaluate(phone => {
-      const width = document.scrollingElement.scrollWidth;
+      /* the theme hides what is too wide in a box that scrolls as a whole */
+      const width = Math.max(...[document.scrollingElement, ...document.querySelectorAll('.page, .main, .content')].map(box => box.scrollWidth));
       const out = width <= phone ? [] : [...document.querySelectorAll('article *')].filter(e => e.getBoundingClientRect().right > phone && !e.closest('.table-wrapper, pre, .formula'));
       return {width, widest: out.slice(0, 2).map(e => e.outerHTML.slice(0, 120)).join(' | ')};
     }, PHONE.width);
