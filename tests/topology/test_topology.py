@@ -215,6 +215,7 @@ class Verdicts(Topology):
         self.assertIn("consistent with noncrossing between these frames; cannot be certified", self.look(0, "two.xyz", "--chain", "2").stdout)
         done = self.look(0, "two.xyz", "--chain", "2", "--every-step")
         self.assertIn("verdict: no crossing", done.stdout)
+        self.assertIn("2 frames, 2 bonds: 2 chains\n", done.stdout)  # none from chain to chain
         self.assertEqual(done.stderr, "")
 
     def test_touched_is_a_warning(self):
