@@ -107,6 +107,7 @@ class Special(unittest.TestCase):
 
     def test_ends(self):
         self.hold(self.through(-1, 1, 2), [], True)  # through a vertex
+        self.hold(self.through(-1, 2, 2), [], True)  # the same at t = 1/3, which no halving reaches
         self.hold(self.through(-1, 0), [], True)  # arrives at t = 1
         self.hold(self.through(0, 1), [], True)  # leaves at t = 0
 
