@@ -201,6 +201,9 @@ def verdict(survey, every_step):
         return "verdict: CROSSED: if vertices move straight in a step, this code lets bonds through"
     if crossed:
         return "verdict: CROSSED between these frames, by straight moves; they are not known to be of every step, so the code's own paths may have gone round"
+    if survey.strides[1].touched:
+        odd = survey.strides[1].odd
+        return f"verdict: TOUCHED: no crossing strictly within bonds and frames; {odd} odd pairs if ties are broken; whether bonds went through each other is not certified"
     if every_step and not survey.reader.rounding:
         return "verdict: no crossing; if vertices move straight in a step, none is possible"
     return "verdict: consistent with noncrossing between these frames; cannot be certified" + (
@@ -217,6 +220,13 @@ def tell(lines):
         os.kill(os.getpid(), signal.SIGPIPE)
     except OSError as error:
         raise Unwritten(f"standard output: cannot write: {error.strerror}") from None
+
+
+def remove(table):
+    """What was begun."""
+    if table and table.file:
+        with contextlib.suppress(OSError):
+            os.remove(table.path)
 
 
 def run(path, options):
@@ -251,12 +261,13 @@ def run(path, options):
         code, text = (code, "") if code > 0 else (TROUBLE, f"{path}: the program that reads it ended early")
     except OSError as error:
         code, text = BAD_INPUT, f"{error.filename or path}: {error.strerror or error}"
+    except BaseException:
+        remove(table)
+        raise
     finally:
         if reader:
             reader.close()
-    if table and table.file:
-        with contextlib.suppress(OSError):
-            os.remove(table.path)
+    remove(table)
     if text:
         say(f"uncross: {text}")
     return code

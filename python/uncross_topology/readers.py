@@ -15,12 +15,13 @@ import numpy
 
 from uncross_export import frames as own
 
-from .frame import Frame, Refused, Topology, curves, on_lattice
+from .frame import LATTICE_BITS, Frame, Refused, Topology, curves, on_lattice
 
 # A frame as a file has it. ids: None if rows are in order. edge: None without a box. tilt: of the second edge along x. position: real [N][3];
 # image: whole numbers [N][3], None if positions may be wrapped, or 0 if they are not.
 Raw = collections.namedtuple("Raw", "step time ids edge periodic tilt position image")
 
+SHORTEST = 2**20  # lattice units: of a bond, so that rounding is below 10^-6 of it
 DIGITS = 15  # as many are taken for a double
 NO_BONDS = ("{}: has no bonds; give them with --bonds FILE (LAMMPS data, or two numbers of atoms on each line), or say with --chain N or --ring N "
             "that each N atoms which follow one another are a chain or a ring")
@@ -49,6 +50,8 @@ def read_bonds(path):
             if len(words) != (4 if is_data else 2):
                 raise ValueError
             pairs.append([int(word) for word in words[-2:]])
+            if max(map(abs, pairs[-1])) >= 2**62:
+                raise ValueError
         except ValueError:
             raise Refused(f"{path}:{number}:1: no bond; allowed: {'number, type and two atoms' if is_data else 'two numbers of atoms'}") from None
     if not pairs:
@@ -111,6 +114,8 @@ class Reader:
 
     def _rows(self, ids):
         """Of the vertices, in the order of the topology."""
+        if not len(ids):
+            raise Refused(f"{self.path}: a frame has no atoms")
         order = numpy.argsort(ids, kind="stable")
         found = numpy.searchsorted(ids, self.topology.ids, sorter=order)
         rows = order[numpy.minimum(found, len(ids) - 1)]
@@ -136,7 +141,7 @@ class Reader:
             if before and (slide != before.offset or self.slides):  # as a file has it, modulo Lx
                 self.slides = True
                 slide = before.offset + nearest(slide - before.offset, edge[0])
-                self._say("the box leans by another length in each frame, which is known but for whole edges: the nearest was taken; a box that is sheared "
+                self._say("the box leans by another length in each frame. The file gives this length only up to whole edges of the box: the nearest was taken; a box that is sheared "
                           "by half an edge or more between two frames is read wrong")
             frame = Frame(raw.step, raw.time, edge, periodic, slide, None, position)
             if raw.image is None and any(periodic):
@@ -162,6 +167,9 @@ class Reader:
         return frame._replace(position=position)
 
 def look_at_bonds(path, frame, topology):
+    if numpy.median(numpy.abs(frame.position[topology.bonds[:, 1]] - frame.position[topology.bonds[:, 0]]).max(axis=1)) < SHORTEST:
+        raise Refused(f"{path}: most bonds are shorter than {SHORTEST} units of the lattice, 2^-{LATTICE_BITS} of a unit of length; scale the file's lengths "
+                      "so that a bond is about 1")
     bonds, edges = topology.bonds, [e for e, p in zip(frame.edge, frame.periodic) if p]
     way = numpy.abs(frame.position[bonds[:, 1]] - frame.position[bonds[:, 0]])
     for axis in range(3):
@@ -217,6 +225,12 @@ class Lines:
         self.number += 1
         return self.file.readline()
 
+    def whole(self, what):
+        word = self.line().strip()
+        if not word.isdigit() or len(word) > 18:
+            raise self.wrong(f"{what}: no whole number from 0 on")
+        return int(word)
+
     def rows(self, count, what):
         lines = list(itertools.islice(self.file, count))
         self.number += len(lines)
@@ -255,6 +269,8 @@ def digits(word):
 def rounding_of(lines, columns, position):
     """Of decimal numbers: half of the last digit of the largest, if they have fewer than a double. What the first lines have is taken for all."""
     most = max((digits(words[k]) for words in (line.split() for line in lines[:1000]) for k in columns), default=DIGITS)
+    if not numpy.all(numpy.isfinite(position)):
+        raise Refused("a coordinate is no number, or beyond all bounds")
     largest = float(numpy.max(numpy.abs(position), initial=0.0))
     return 0.5 * 10.0 ** (math.floor(math.log10(largest)) + 1 - most) if most < DIGITS and largest > 0 else 0.0
 
@@ -267,7 +283,7 @@ def is_number(word):
 
 def lammps(path, about):
     """A dump of style atom or custom."""
-    file, step, time = Lines(path), None, None
+    file, step, time, count, box = Lines(path), None, None, None, None
     while True:
         line = file.line()
         if not line:
@@ -277,11 +293,11 @@ def lammps(path, about):
         if item != b"ITEM" or not words:
             raise file.wrong("no ITEM of a LAMMPS dump")
         if words[0] == b"TIMESTEP":
-            step = int(file.table(1, 1, "TIMESTEP", [0])[0][0, 0])
+            step = file.whole("TIMESTEP")
         elif words[0] == b"TIME":
             time = float(file.table(1, 1, "TIME", [0])[0][0, 0])
         elif words[:2] == [b"NUMBER", b"OF"]:
-            count = int(file.table(1, 1, "NUMBER OF ATOMS", [0])[0][0, 0])
+            count = file.whole("NUMBER OF ATOMS")
         elif words[:2] == [b"BOX", b"BOUNDS"]:
             leans = words[2:5] == [b"xy", b"xz", b"yz"]
             bounds, _ = file.table(3, 3 if leans else 2, "BOX BOUNDS", range(3 if leans else 2))
@@ -292,8 +308,11 @@ def lammps(path, about):
             low, high = bounds[:, 0].copy(), bounds[:, 1].copy()
             low[0] -= min(0.0, tilt)
             high[0] -= max(0.0, tilt)
+            box = low, high - low, periodic, tilt
         elif words[0] == b"ATOMS":
-            yield Raw(step, time, *_atoms(file, about, words[1:], count, low, high - low, periodic, tilt))
+            if count is None or box is None:
+                raise file.wrong("ATOMS before NUMBER OF ATOMS and BOX BOUNDS")
+            yield Raw(step, time, *_atoms(file, about, words[1:], count, *box))
             time = None
         elif words[0] == b"UNITS":
             file.line()
@@ -336,8 +355,10 @@ def xyz(path, about):
     file = Lines(path)
     while True:
         line = file.line()
-        if not line.strip():
+        if not line:
             return
+        if not line.strip():
+            continue
         if not line.strip().isdigit():
             raise file.wrong("no number of atoms")
         keys = dict((a.lower(), b.strip('"')) for a, b in re.findall(r'(\w+)=("[^"]*"|\S+)', file.line().decode(errors="replace")))
@@ -351,6 +372,8 @@ def xyz(path, about):
             raise file.wrong("Properties have no pos")
         edge, tilt = _lattice(file, keys["lattice"].split()) if "lattice" in keys else (None, 0.0)
         periodic = [word[:1] in "Tt1" for word in keys.get("pbc", "T T T").split()]
+        if len(periodic) != 3:
+            raise file.wrong("pbc is not three words; allowed: pbc=\"T T T\"")
         extra = [name for name in ("id", "next") if name in columns]
         places = [columns["pos"] + k for k in range(3)] + [columns[name] for name in extra]
         values, lines = file.table(int(line), at if "properties" in keys else _width(file), "atoms", places)
@@ -403,7 +426,7 @@ def vtf(path, about):
         values = numpy.array([line.split()[:3 + indexed] for line in lines], dtype=float)
         position = numpy.full((max(atoms, len(values)), 3), numpy.nan) if position is None else position.copy()
         rows = values[:, 0].astype(int) if indexed else numpy.arange(len(values))
-        if len(rows) and (numpy.max(rows) >= len(position) or values.shape[1] != 3 + indexed):
+        if len(rows) and (numpy.min(rows) < 0 or numpy.max(rows) >= len(position) or values.shape[1] != 3 + indexed):
             raise file.wrong("coordinates of an atom that is none, or not three of them")
         position[rows] = values[:, -3:]
         if "rounding" not in about:

@@ -225,6 +225,39 @@ class Verdicts(Topology):
         self.assertIn("warning", done.stderr)
         self.assertIn("first touched: between frames 0 and 1, bonds 1 2 and 3 4", done.stdout)
 
+    def test_through_a_vertex_is_not_certified(self):
+        """A chain goes through a bond with its middle vertex: no verdict that none is possible."""
+        self.dir.joinpath("v.xyz").write_text("".join("5\n\n" + "".join(f"A {x} {y} 0\n" for x in (0, 1, 2)) + "B 1 0 -1\nB 1 0 1\n"
+                                                      for y in ("-0.40000000000000002", "0.40000000000000002")))
+        self.dir.joinpath("b").write_text("1 2\n2 3\n4 5\n")
+        done = self.look(0, "v.xyz", "--bonds", "b", "--every-step")
+        self.assertEqual(table(done.stdout)[1][1:5], [0, 1, 1, 2])
+        self.assertIn("verdict: TOUCHED", done.stdout)
+        self.assertNotIn("none is possible", done.stdout)
+
+    def test_short_bonds_are_refused(self):
+        self.dir.joinpath("si.xyz").write_text("".join(f"4\n\nA 0 0 0\nA 2e-9 0 0\nB 1e-9 -1e-9 {z}\nB 1e-9 1e-9 {z}\n" for z in ("1e-9", "-1e-9")))
+        self.assertIn("scale the file's lengths", self.look(2, "si.xyz", "--chain", "2").stderr)
+
+    def test_empty_lines_between_frames(self):
+        self.write("1.5", "0.5", "-0.5")
+        text = self.dir.joinpath("two.xyz").read_text()
+        self.dir.joinpath("two.xyz").write_text(text.replace("4\n\n", "\n4\n\n"))
+        self.assertEqual(table(self.look(10, "two.xyz", "--chain", "2").stdout)[1][:2], [2, 1])
+
+    def test_what_is_no_frame(self):
+        self.write("1.5", "0.5")
+        text = self.dir.joinpath("two.xyz").read_text()
+        step = "ITEM: TIMESTEP\n0\n"
+        for bad in (text.replace("1.5", "inf"), text.replace("4\n\n", '4\nLattice="9 0 0 0 9 0 0 0 9" pbc="T T"\n'), text + "0\n\n",
+                    step + "ITEM: ATOMS id x y z\n1 0 0 0\n", step + "ITEM: NUMBER OF ATOMS\n1\nITEM: ATOMS id x y z\n1 0 0 0\n",
+                    step + "ITEM: NUMBER OF ATOMS\n-5\n", "ITEM: TIMESTEP\nnan\n",
+                    "atom 0:3\nbond 0:1,2:3\ntimestep indexed\n-1 0 0 0\n"):
+            self.dir.joinpath("bad").write_text(bad)
+            self.assertRegex(self.look(2, "bad", *(() if bad.startswith("atom") else ("--chain", "2"))).stderr, "^uncross: .*\n$")
+        self.dir.joinpath("b").write_text("99999999999999999999 1\n")
+        self.assertIn("b:1:1: no bond", self.look(2, "two.xyz", "--bonds", "b").stderr)
+
     def test_crossed_twice_is_even(self):
         self.write("1.5", "-1.5", "0.5")
         done = self.look(10, "two.xyz", "--chain", "2")
