@@ -272,7 +272,7 @@ install: export INSTALLED := $(INSTALLED)
 
 # LIBDIR seen from PREFIX, in a shell: $$lib.
 LIB_BELOW = lib=$${LIBDIR\#"$$PREFIX"/}; \
-  case $$lib in /* | *[!A-Za-z0-9._+/-]*) echo 'uncross: LIBDIR is a folder below PREFIX, of letters, digits and . _ + - / below it' >&2; exit 1 ;; esac
+  case /$$lib/ in //* | */../* | *[!A-Za-z0-9._+/-]*) echo 'uncross: LIBDIR is a folder below PREFIX, of letters, digits and . _ + - / below it' >&2; exit 1 ;; esac
 
 .PHONY: install
 ifeq ($(origin MARCH),file)
@@ -316,7 +316,7 @@ DIST := $(BUILD)/dist/uncross-$(VERSION).tar.gz
 dist:
 	@mkdir -p $(BUILD)/dist
 	@git -c tar.umask=0022 archive --format=tar --prefix=uncross-$(VERSION)/ \
-	   --add-virtual-file="uncross-$(VERSION)/COMMIT:$$(git describe --always --abbrev=12)" HEAD | gzip -9n >$(DIST)
+	   --add-virtual-file="uncross-$(VERSION)/COMMIT:$$(git describe --always --abbrev=12)" -o $(DIST:.gz=) HEAD && gzip -9nf $(DIST:.gz=)
 	@[ -z "$$(git status --porcelain)" ] || echo 'dist: uncommitted changes are not in it'
 	@sha256sum $(DIST)
 

@@ -225,7 +225,7 @@ class Installed(unittest.TestCase):
         self.assertEqual(told, "/usr/lib/machine-os\n")
         make("uninstall", "/usr", destination)
         self.assertEqual([path for path in destination.rglob("*") if not path.is_dir()], [])
-        for bad in "/lib/machine-os", "/usr/a b":
+        for bad in "/lib/machine-os", "/usr/a b", "/usr/../elsewhere":
             self.assertIn("LIBDIR is a folder below PREFIX", make("install", "/usr", destination, f"LIBDIR={bad}", code=2, show=True))
 
     def test_flags(self):

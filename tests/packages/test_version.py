@@ -67,7 +67,7 @@ class Version(FolderTest):
         versions, _, dates = read(self.dir)
         self.assertEqual((set(versions.values()), dates), ({"7.8.9"}, {"2031-02-03"}))
         self.assertIn("## [Unreleased]\n\n## [7.8.9] - 2031-02-03\n", (self.dir / "CHANGELOG.md").read_text())
-        for words in ("1.0", "2031-02-03"), ("1.0.0", "3.2.2031"):
+        for words in ("1.0", "2031-02-03"), ("1.0.0", "3.2.2031"), ("1.0.0", "20310203"), ("1.0.0", "2031-02-30"):
             done = subprocess.run([TOP / "tools/set-version", *words], capture_output=True, text=True, check=False)
             self.assertEqual(done.returncode, 1)
             self.assertRegex(done.stderr, "^set-version: the (version|date) is '.*'; allowed: ")

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Packages in bare Debian systems: the steps of packaging/Containerfile, which build all packages in one root and install them in
 # another, where the tests of packaging/debian/tests run. The packages have the bytes of those that are made here, in another folder.
-# Needs root, debootstrap and a mirror, else it is skipped; BUILD (default build). Prints TAP.
+# Needs root, debootstrap and a clone, else it is skipped; then a mirror, as apt has it; BUILD (default build). Prints TAP.
 set -u
 build=$(realpath "${BUILD:-build}")
 top=$(cd "$(dirname "$0")/../.." && pwd)
@@ -42,8 +42,10 @@ for name in hash python; do
 done
 within "apt-get -qq -y --no-install-recommends install gcc libc6-dev pkgconf >/dev/null 2>&1 && tests/library" | sed 's/^/# /'
 ok "${PIPESTATUS[0]}" "packaging/debian/tests/library in the bare root"
-within "uncross map length=10um,persistence=17um --units T=300K,eta=1mPas >/dev/null && man -w uncross-run >/dev/null 2>&1 || test -e /usr/share/man/man1/uncross-run.1.gz"
-ok $? "commands in Python, man pages"
+mkdir "$dir/roots/last/tree/plotted"
+printf 'time,g,g_error\n1,2,0.1\n2,3,0.1\n' >"$dir/roots/last/tree/plotted/solvent.csv"
+within "uncross map length=10um,persistence=17um --units T=300K,eta=1mPas >/dev/null && uncross plot plotted/solvent.csv >/dev/null"
+ok $? "commands in Python: map, plot"
 
 make -s -C "$dir/context" dist BUILD=here >"$dir/log" 2>&1
 packaging/make-deb "$dir"/context/here/dist/*.tar.gz "$dir/another-folder/here" >"$dir/log" 2>&1 || tail -n 40 "$dir/log"
