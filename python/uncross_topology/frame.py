@@ -6,7 +6,7 @@ import collections
 import numpy
 
 LATTICE_BITS = 32
-REACH = 2**61  # lattice units: places from -REACH to REACH, so that differences fit in 64 bits
+REACH = 2**58  # lattice units: SEARCH_REACH of src/topology/search.h
 
 # step: int, or None; time: float, or None. On the lattice, as int: edge, three of the box; offset, by how much the image of a
 # sheared box beyond y = Ly has slid along x, with all its turns (not modulo Lx). periodic: three bools. rate: lattice units of
@@ -29,7 +29,7 @@ def on_lattice(values):
     """Real numbers of the file as int64: exact but for the one rounding to the lattice."""
     scaled = numpy.rint(numpy.ldexp(numpy.asarray(values, dtype=float), LATTICE_BITS))
     if not numpy.all(numpy.abs(scaled) < REACH):
-        raise Refused(f"a coordinate is no number, or beyond 2^{61 - LATTICE_BITS} units of length")
+        raise Refused(f"a coordinate is no number, or beyond 2^{58 - LATTICE_BITS} units of length")
     return scaled.astype(numpy.int64)
 
 

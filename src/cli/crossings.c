@@ -9,6 +9,8 @@
 #include "cli/command.h"
 #include "topology/search.h"
 
+#define MOST ((uint32_t)1 << 28) /* vertices */
+
 static bool read_all(void *to, size_t size, size_t count)
 {
   return fread(to, size, count, stdin) == count;
@@ -28,19 +30,27 @@ static void print(void *sink, const struct meeting *c, enum pair_verdict verdict
   }
 }
 
+static bool in_reach(int64_t x)
+{
+  return x >= -SEARCH_REACH && x <= SEARCH_REACH;
+}
+
 /* What is wrong with an interval, or NULL. */
 static const char *look(const struct interval *v)
 {
   for (int axis = 0; axis < 3; axis++)
     for (int t = 0; t < 2; t++)
-      if (v->periodic[axis] && (v->edge[t][axis] < 1 || v->edge[t][axis] > LATTICE_REACH))
-        return "an edge of the box is out of range";
+      if (v->periodic[axis] &&
+          (v->edge[t][axis] < 1 || v->edge[t][axis] > SEARCH_REACH || v->edge[t][axis] / 2 > v->edge[1 - t][axis]))
+        return "an edge of the box is out of range, or doubles";
+  if (!in_reach(v->offset[0]) || !in_reach(v->offset[1]))
+    return "an offset is out of range";
   if (!(v->near >= 0.0 && v->near < PAIR_REACH))
     return "the number of the near is out of range";
   for (int t = 0; t < 2; t++)
     for (uint32_t k = 0; k < v->vertices; k++) {
       const struct point x = v->position[t][k];
-      if (llabs(x.x) > LATTICE_REACH || llabs(x.y) > LATTICE_REACH || llabs(x.z) > LATTICE_REACH)
+      if (!in_reach(x.x) || !in_reach(x.y) || !in_reach(x.z))
         return "a position is out of range";
     }
   return NULL;
@@ -86,7 +96,7 @@ static const char *begin(struct interval *v, uint32_t (**bond)[2], struct point 
 {
   char line[64];
   if (!fgets(line, sizeof line, stdin) || sscanf(line, "%" SCNu32 "%" SCNu32, &v->vertices, &v->bonds) != 2 ||
-      v->vertices > INT32_MAX || v->bonds > INT32_MAX / 64 - 64)
+      v->vertices > MOST || v->bonds > MOST / 8)
     return "the first line is not how many vertices and bonds there are";
   *bond = memory_alloc(v->bonds + (size_t)1, sizeof **bond);
   for (int t = 0; t < 2; t++)

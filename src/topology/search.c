@@ -69,6 +69,12 @@ static bool overlap(const struct swept *a, const struct swept *b)
          a->low[2] <= b->high[2] && b->low[2] <= a->high[2];
 }
 
+static bool slides_within_reach(const struct interval *v, int64_t image)
+{
+  const double slide = fmax(fabs((double)v->offset[0]), fabs((double)v->offset[1]));
+  return fabs((double)image) * slide < (double)SEARCH_REACH;
+}
+
 /* The image of a bond that has its first vertex in the box. False if the slide of the images would take it out of
  * reach. */
 static bool home(const struct interval *v, uint32_t bond, int64_t image[3])
@@ -76,8 +82,7 @@ static bool home(const struct interval *v, uint32_t bond, int64_t image[3])
   struct point x = v->position[0][v->bond[bond][0]];
   image[2] = v->periodic[2] ? -floored(x.z, v->edge[0][2]) : 0;
   image[1] = v->periodic[1] ? -floored(x.y, v->edge[0][1]) : 0;
-  const double slide = fmax(fabs((double)v->offset[0]), fabs((double)v->offset[1]));
-  if (!(fabs((double)image[1]) * slide < 0x1p60))
+  if (!slides_within_reach(v, image[1]))
     return false;
   x.x += image[1] * v->offset[0];
   image[0] = v->periodic[0] ? -floored(x.x, v->edge[0][0]) : 0;
@@ -106,6 +111,9 @@ static enum search_verdict add_images(struct search *search, const struct interv
   int64_t x[2], y[2], z[2];
   reach(v, 2, own->low[2], own->high[2], space, z);
   reach(v, 1, own->low[1], own->high[1], space, y);
+  if (y[1] - y[0] >= (int64_t)SEARCH_MOST_BOXES(v->bonds) || !slides_within_reach(v, y[0]) ||
+      !slides_within_reach(v, y[1]))
+    return SEARCH_TOO_FAR;
   for (int64_t ny = y[0]; ny <= y[1]; ny++) {
     const int64_t first = ny * v->offset[0], last = ny * v->offset[1];
     reach(v, 0, own->low[0] + (first < last ? first : last), own->high[0] + (first < last ? last : first), space, x);
@@ -246,6 +254,8 @@ static bool fill(struct search *search, const struct swept *space, uint32_t boxe
     entries = enter(search, g, boxes, NULL);
     wide *= 2.0;
   } while (entries > 64 * (uint64_t)boxes && g->cells[0] * g->cells[1] * g->cells[2] > 1);
+  if (entries > UINT32_MAX)
+    return false;
   if (search->entry_room < entries) {
     if (!memory_grow((void **)&search->entry, entries, sizeof *search->entry))
       return false;

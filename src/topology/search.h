@@ -9,6 +9,9 @@
 #include "base/lattice.h"
 #include "topology/pair.h"
 
+/* Of positions, edges and offsets: with them sums of images stay below 2^62, if an edge does not double in an interval.
+ */
+#define SEARCH_REACH ((int64_t)1 << 58)
 #define SEARCH_MOST_BOXES(bonds) (64 * (size_t)(bonds) + 4096) /* swept boxes, with images */
 
 /* At [0] the first frame, at [1] the second. An image with whole numbers n is shifted by n edge, and by n.y offset
@@ -16,7 +19,7 @@
 struct interval {
   uint32_t vertices, bonds;
   const uint32_t (*bond)[2];
-  const struct point *position[2]; /* [vertices], unwrapped, within LATTICE_REACH */
+  const struct point *position[2]; /* [vertices], unwrapped, within SEARCH_REACH */
   int64_t edge[2][3];              /* above 0 where the axis is periodic */
   bool periodic[3];
   int64_t offset[2]; /* of the image beyond y = Ly along x, unreduced */

@@ -8,6 +8,7 @@ import math
 import os
 import pathlib
 import random
+import subprocess
 import sys
 import unittest
 
@@ -226,6 +227,22 @@ class Gas(unittest.TestCase):
             self.assertEqual(ours, second_code(bonds, first, last, edge))
             number += len(result.crossings)
         self.assertGreater(number, 60)
+
+    def test_numbers_that_nobody_has(self):
+        """Sums of images stay in 64 bits, loops over images end: `uncross crossings` says so in words, or that it is too far."""
+        wide, far, points = 2**40, 2**57, [(0, 0, 0), (2**30, 0, 0)]
+        for head, numbers, places, code, said in (
+                ("2147483647 0", "", [], 2, b"the first line"),
+                ("2 1", f"1 1 1 {2**61} {2**61} {2**61} 1 1 1 0 0 0", points, 2, b"an edge of the box"),
+                ("2 1", f"{wide} {wide} {wide} {wide} {3 * wide} {wide} 1 1 1 0 0 0", points, 2, b"doubles"),
+                ("2 1", f"{wide} {wide} {wide} {wide} {wide} {wide} 1 1 1 {-2**63} 0 0", points, 2, b"an offset"),
+                ("2 1", "1 1 1 1 1 1 1 1 1 0 0 0", points, 0, b"far"),
+                ("2 1", f"{wide} 1 {wide} {wide} 1 {wide} 0 1 0 {far} {far} 0", [(0, 0, 0), (0, far, 0)], 0, b"far"),
+                ("2 1", f"{wide} {wide} {wide} {wide} {wide} {wide} 1 1 1 {5 * wide} {6 * wide} 0", points, 0, b"done 0 0")):
+            data = head.encode() + b"\n" + numpy.array([0, 1], "<u4").tobytes() + numbers.encode() + b"\n" + 2 * numpy.array(places, "<i8").tobytes()
+            done = subprocess.run([UNCROSS, "crossings"], input=data, capture_output=True, timeout=20, check=False)
+            self.assertEqual(done.returncode, code, numbers)
+            self.assertIn(said, done.stderr if code else done.stdout, numbers)
 
 
 if __name__ == "__main__":
