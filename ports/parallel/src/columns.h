@@ -322,6 +322,12 @@ template <class Border> struct Pass {
   int32_t *cell;
 };
 
+// Another thread may look ahead at this cell, for what it prefetches; either of its numbers will do.
+template <class Border> void keep_cell(const Pass<Border> &pass, int64_t i, int32_t cell)
+{
+  __atomic_store_n(&pass.cell[i], cell, __ATOMIC_RELAXED);
+}
+
 // What 16 particles add to their cells.
 struct Addends {
   Cells cell;
@@ -345,7 +351,7 @@ bool pass_lanes(const Pass<Border> &pass, int64_t first, int shard, Addends &add
     Cells cell;
     for (int k = 0; k < lanes; k++) {
       cell.at[k] = pass.cell[first + k];
-      __builtin_prefetch(pass.turn + pass.cell[first + ahead + k]);
+      __builtin_prefetch(pass.turn + __atomic_load_n(&pass.cell[first + ahead + k], __ATOMIC_RELAXED));
     }
     Turns t;
     gather(pass.turn, cell, t);
@@ -358,7 +364,7 @@ bool pass_lanes(const Pass<Border> &pass, int64_t first, int shard, Addends &add
   if (!usual)
     return false;
   for (int k = 0; k < lanes; k++) {
-    pass.cell[first + k] = add.cell.at[k];
+    keep_cell(pass, first + k, add.cell.at[k]);
     __builtin_prefetch(pass.sums.at + shard * pass.sums.cell_count + add.cell.at[k], 1);
   }
   store(p.x, c.x + first), store(p.y, c.y + first), store(p.z, c.z + first);
@@ -380,7 +386,7 @@ template <bool turns, bool right_angle, class Border, class Body> struct PassBlo
       whole[k] = last <= n && pass_lanes<turns, right_angle>(pass, first, shard, add[k]);
       for (int64_t i = first; !whole[k] && i < last && i < n; i++) {
         body(i, shard);
-        pass.cell[i] = (int32_t)cell_of(pass.next, place_of(pass.c, i));
+        keep_cell(pass, i, (int32_t)cell_of(pass.next, place_of(pass.c, i)));
       }
     }
     for (int k = 0; k < together; k++)
