@@ -234,6 +234,8 @@ def run(path, options):
     try:
         reader = readers.open_file(path, options)
         if "--links" in options:
+            for name in {"--csv", "--every-step"} & set(options):
+                raise Refused(f"{name} is of crossings between frames; --links looks at one frame")
             found = list(links.of_file(reader, options["--links"], options.get("--closure")))
             for text in reader.said:
                 say(f"uncross: warning: {path}: {text}")

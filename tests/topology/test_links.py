@@ -323,6 +323,7 @@ class Command(FolderTest):
 
     def test_refusals(self):
         for words, said in ((["--links", "2"], "the file has 2 frames"), (["--links", "all"], "not first, last"), (["--closure", "sphere"], "is of --links"),
+                            (["--links", "0", "--every-step"], "--links looks at one frame"), (["--links", "0", "--csv", "none.csv"], "--links looks at one frame"),
                             (["--links", "0", "--closure", "chord"], "allowed: sphere, directions")):
             done = self.topology("--ring", 40, *words)
             self.assertEqual((done.returncode, done.stdout, said in done.stderr), (2, "", True), done)
