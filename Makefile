@@ -557,8 +557,8 @@ demo:
 	tools/demo $(BUILD)/uncross $(BUILD)/demo
 
 # The exact tests under other flags, in folders of their own. Physics tests are long and add nothing here; those of
-# validation/, of names and of units run little but Python.
-EXACT_TESTS := $(filter-out tests/physics/% tests/validation/% tests/stress/% tests/mutants/% tests/tools/% \
+# validation/, of packages, of names and of units run little but Python, or another build.
+EXACT_TESTS := $(filter-out tests/physics/% tests/validation/% tests/stress/% tests/mutants/% tests/tools/% tests/packages/% \
    tests/oracle/test_name% tests/api/%.py tests/cli/test_memory.py tests/cli/test_units.py, \
    $(sort $(shell find tests -name 'test_*.c' -o -name 'test_*.py' -o -name 'test_*.sh')))
 .PHONY: exact

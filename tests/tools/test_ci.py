@@ -91,7 +91,7 @@ class Ci(unittest.TestCase):
     def test_unknown_stage(self):
         status, line = self.ends("checks")
         self.assertEqual(status, 2)
-        self.assertIn("there are install build sanitize check validate lint mutants port counts fuzz live", line)
+        self.assertIn("there are install build sanitize check validate lint mutants port counts packages fuzz live site", line)
 
 
 if __name__ == "__main__":
