@@ -1,6 +1,7 @@
 /* `uncross crossings`: meetings of bonds between two frames, for `uncross topology`. docs/topology.md describes the
  * form.
  */
+#include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -56,26 +57,47 @@ static const char *look(const struct interval *v)
   return NULL;
 }
 
+/* The next whole number of a line. */
+static bool take(char **at, int64_t *number)
+{
+  char *end;
+  errno = 0;
+  *number = strtoll(*at, &end, 10);
+  const bool there = end != *at && errno == 0;
+  *at = end;
+  return there;
+}
+
+/* Three edges at both frames, three times 0 or 1, two offsets, the distance of the near. */
+static bool take_interval(char *at, struct interval *v)
+{
+  int64_t periodic;
+  bool ok = true;
+  for (int k = 0; k < 6; k++)
+    ok = ok && take(&at, &v->edge[k / 3][k % 3]);
+  for (int axis = 0; ok && axis < 3; axis++) {
+    ok = take(&at, &periodic);
+    v->periodic[axis] = periodic != 0;
+  }
+  ok = ok && take(&at, &v->offset[0]) && take(&at, &v->offset[1]);
+  char *end = at;
+  v->near = ok ? strtod(at, &end) : 0.0;
+  return ok && end != at;
+}
+
 /* Those of standard input, until it ends. What is wrong, or NULL. */
 static const char *answer(struct interval *v, struct point *position[2], struct search *search)
 {
   char line[512];
   while (fflush(stdout) == 0 && fgets(line, sizeof line, stdin)) {
-    int periodic[3];
     uint64_t looked_at, near;
-    const int numbers = sscanf(
-        line, "%" SCNd64 "%" SCNd64 "%" SCNd64 "%" SCNd64 "%" SCNd64 "%" SCNd64 "%d%d%d%" SCNd64 "%" SCNd64 "%lf",
-        &v->edge[0][0], &v->edge[0][1], &v->edge[0][2], &v->edge[1][0], &v->edge[1][1], &v->edge[1][2], &periodic[0],
-        &periodic[1], &periodic[2], &v->offset[0], &v->offset[1], &v->near);
-    if (numbers != 12)
+    if (!take_interval(line, v))
       return "a line is not the twelve numbers of an interval";
     for (int t = 0; t < 2; t++) {
       if (!read_all(position[t], sizeof *position[t], v->vertices))
         return "ends within an interval";
       v->position[t] = position[t];
     }
-    for (int axis = 0; axis < 3; axis++)
-      v->periodic[axis] = periodic[axis] != 0;
     const char *const wrong = look(v);
     if (wrong)
       return wrong;
@@ -94,10 +116,13 @@ static const char *answer(struct interval *v, struct point *position[2], struct 
 
 static const char *begin(struct interval *v, uint32_t (**bond)[2], struct point *position[2])
 {
-  char line[64];
-  if (!fgets(line, sizeof line, stdin) || sscanf(line, "%" SCNu32 "%" SCNu32, &v->vertices, &v->bonds) != 2 ||
-      v->vertices > MOST || v->bonds > MOST / 8)
+  char line[64], *at = line;
+  int64_t vertices, bonds;
+  if (!fgets(line, sizeof line, stdin) || !take(&at, &vertices) || !take(&at, &bonds) || vertices < 0 || bonds < 0 ||
+      vertices > MOST || bonds > MOST / 8)
     return "the first line is not how many vertices and bonds there are";
+  v->vertices = (uint32_t)vertices;
+  v->bonds = (uint32_t)bonds;
   *bond = memory_alloc(v->bonds + (size_t)1, sizeof **bond);
   for (int t = 0; t < 2; t++)
     position[t] = memory_alloc(v->vertices + (size_t)1, sizeof *position[t]);
