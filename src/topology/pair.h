@@ -30,12 +30,12 @@ struct crossing {
 
 /* Up to three crossings, in the order of time. PAIR_CROSSED: they are all meetings, and strictly inside bonds and
  * interval. */
-enum pair_verdict pair_decide(const struct pair *pair, struct crossing crossing[3], int *crossings);
+enum pair_verdict pair_decide(const struct pair *a, struct crossing crossing[3], int *crossings);
 
 /* Of bonds that share a vertex, from which p and q begin: PAIR_APART if they never fold, PAIR_UNSURE if they might. */
-enum pair_verdict pair_folds(const struct pair *pair);
+enum pair_verdict pair_folds(const struct pair *a);
 
 /* Whether inner points of the bonds are nearer than `near` lattice units at t = 0, up to rounding. */
-bool pair_is_near(const struct pair *pair, double near);
+bool pair_is_near(const struct pair *a, double near);
 
 #endif

@@ -46,8 +46,8 @@ enum search_verdict { SEARCH_DONE, SEARCH_NO_MEMORY, SEARCH_TOO_FAR };
 
 /* Calls `found` for each pair that is not apart. SEARCH_TOO_FAR: moves or bonds reach too many images. Counts the pairs
  * that are looked at, and those that are nearer than `near` at the first frame. */
-enum search_verdict search_pairs(struct search *search, const struct interval *interval, search_found *found,
-                                 void *sink, uint64_t *looked_at, uint64_t *near);
+enum search_verdict search_pairs(struct search *search, const struct interval *v, search_found *found, void *sink,
+                                 uint64_t *looked_at, uint64_t *near);
 void search_free(struct search *search);
 
 #endif
