@@ -35,6 +35,16 @@ bool memory_grow(void **list, size_t count, size_t size)
   return bigger;
 }
 
+bool memory_room(void **list, uint32_t *room, uint32_t count, size_t size)
+{
+  if (count <= *room)
+    return true;
+  if (!memory_grow(list, count, size))
+    return false;
+  *room = count;
+  return true;
+}
+
 bool memory_double(void **list, uint32_t *room, uint32_t first, size_t size)
 {
   const uint32_t twice = *room > 0 ? 2 * *room : first;

@@ -15,6 +15,9 @@ void *memory_alloc(size_t count, size_t size);
  * was, if memory is short. */
 bool memory_grow(void **list, size_t count, size_t size);
 
+/* Enlarges a list whose capacity *room is below `count`. Otherwise as memory_grow. */
+bool memory_room(void **list, uint32_t *room, uint32_t count, size_t size);
+
 /* Doubles the capacity *room of a list, or makes it `first` if it was 0. Otherwise as memory_grow. */
 bool memory_double(void **list, uint32_t *room, uint32_t first, size_t size);
 

@@ -246,14 +246,6 @@ static void make_arcs(struct diagram *d, const struct polygons *p)
 /* --- all of it -----------------------------------------------------------------------------------------------------
  */
 
-static bool have_room(uint32_t *room, void **list, uint32_t count, size_t size)
-{
-  if (count > *room && !memory_grow(list, count, size))
-    return false;
-  *room = count > *room ? count : *room;
-  return true;
-}
-
 static enum diagram_status look_along(struct diagram *d, const struct polygons *p, const int64_t n[3], bool own,
                                       uint32_t most)
 {
@@ -262,7 +254,7 @@ static enum diagram_status look_along(struct diagram *d, const struct polygons *
   enum diagram_status status = cross_all(d, p, own, most);
   if (status != DIAGRAM_FINE || !own)
     return status;
-  if (!have_room(&d->passage_room, (void **)&d->passage, 2 * d->crossings, sizeof *d->passage))
+  if (!memory_room((void **)&d->passage, &d->passage_room, 2 * d->crossings, sizeof *d->passage))
     return DIAGRAM_NO_MEMORY;
   status = sort_passages(d);
   if (status == DIAGRAM_FINE)
@@ -273,8 +265,8 @@ static enum diagram_status look_along(struct diagram *d, const struct polygons *
 enum diagram_status diagram_make(struct diagram *d, const struct polygons *p, bool own, uint32_t most)
 {
   const uint32_t vertices = p->first[p->members];
-  if (!have_room(&d->vertex_room, (void **)&d->flat, vertices, sizeof *d->flat) ||
-      !have_room(&d->chunk_room, (void **)&d->chunk, vertices / CHUNK + p->members, sizeof *d->chunk))
+  if (!memory_room((void **)&d->flat, &d->vertex_room, vertices, sizeof *d->flat) ||
+      !memory_room((void **)&d->chunk, &d->chunk_room, vertices / CHUNK + p->members, sizeof *d->chunk))
     return DIAGRAM_NO_MEMORY;
   enum diagram_status status = DIAGRAM_SPECIAL;
   for (int k = 0; k < DIRECTIONS && status == DIAGRAM_SPECIAL; k++)

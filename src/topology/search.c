@@ -141,11 +141,8 @@ static enum search_verdict add_images(struct search *search, const struct interv
 static enum search_verdict lay_out(struct search *search, const struct interval *v, struct swept *space,
                                    uint32_t *boxes)
 {
-  if (search->room < v->bonds) {
-    if (!memory_grow((void **)&search->box, v->bonds, sizeof *search->box))
-      return SEARCH_NO_MEMORY;
-    search->room = v->bonds;
-  }
+  if (!memory_room((void **)&search->box, &search->room, v->bonds, sizeof *search->box))
+    return SEARCH_NO_MEMORY;
   for (uint32_t k = 0; k < v->bonds; k++) {
     int64_t image[3];
     if (!home(v, k, image))
@@ -245,22 +242,15 @@ static bool fill(struct search *search, const struct swept *space, uint32_t boxe
   do {
     *g = make_grid(search, space, boxes, wide);
     const uint32_t cells = cell_number(g, g->cells[0] - 1, g->cells[1] - 1, g->cells[2] - 1) + 1;
-    if (search->cells_room < cells + 2) {
-      if (!memory_grow((void **)&search->first, cells + 2, sizeof *search->first))
-        return false;
-      search->cells_room = cells + 2;
-    }
+    if (!memory_room((void **)&search->first, &search->cells_room, cells + 2, sizeof *search->first))
+      return false;
     memset(search->first, 0, (cells + 2) * sizeof *search->first);
     entries = enter(search, g, boxes, NULL);
     wide *= 2.0;
   } while (entries > 64 * (uint64_t)boxes && g->cells[0] * g->cells[1] * g->cells[2] > 1);
-  if (entries > UINT32_MAX)
+  if (entries > UINT32_MAX ||
+      !memory_room((void **)&search->entry, &search->entry_room, (uint32_t)entries, sizeof *search->entry))
     return false;
-  if (search->entry_room < entries) {
-    if (!memory_grow((void **)&search->entry, entries, sizeof *search->entry))
-      return false;
-    search->entry_room = (uint32_t)entries;
-  }
   const uint32_t cells = cell_number(g, g->cells[0] - 1, g->cells[1] - 1, g->cells[2] - 1) + 1;
   for (uint32_t k = 0; k < cells; k++)
     search->first[k + 2] += search->first[k + 1];

@@ -46,7 +46,7 @@ class Read(unittest.TestCase):
 
     def test_what_is_not_there(self):
         for words, told in ((("x",), "there is no column x; there are time, g_cm, g_cm_error, s"), (("s", "--at", "7.5"), "there is no time 7.5; the nearest is"),
-                            (("s", "--from", "50"), "there is no row from 50 on; the last is 41")):
+                            (("g_cm", "--D", "12", "12"), "the two times are both 12"), (("s", "--from", "50"), "there is no row from 50 on; the last is 41")):
             done = self.run_it(*words)
             self.assertEqual(done.returncode, 2)
             self.assertIn(told, done.stderr)

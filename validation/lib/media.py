@@ -245,11 +245,12 @@ def limit_verdicts(results):
         relaxed = (d * rate * step / -math.expm1(-rate * step) - 0.5 * step) / (d - 0.5 * step)
         one, other = known(relaxing, results), known(drawn, results)
         both = one is not None and other is not None
+        known_to = 0.05 if rate == 1 else 0.0  # of the viscosities' ratio
         end, paper = "" if rate == 1 else f".gamma{rate}", {"rival": 1.0} if rate == 1 else {
-            "kind": "paper", "reason": "pairs meet again before they part: a velocity that was drawn anew meets the partner from whom it has it"}
+            "kind": "paper", "reason": "pairs meet again before they part, which molecular chaos leaves out"}
         found += [fill(Verdict(f"media.limit.viscosity{end}", f"η of the DPD thermostat with the hat over that of Lowe-Andersen, Γ = {rate}", eta,
-                               "molecular chaos; the ratio is known to 5 %", 0.05 * eta, **paper),
-                       ratio((one.eta, one.eta_error), (other.eta, other.eta_error)) if both else None, 0.05 * eta),
+                               "molecular chaos" + ("; the ratio is known to 5 %" if known_to else ""), known_to * eta, **paper),
+                       ratio((one.eta, one.eta_error), (other.eta, other.eta_error)) if both else None, known_to * eta),
                   fill(Verdict(f"media.limit.free{end}", "the same of D", relaxed, "molecular chaos; the ratio is known to 3 %", 0.03,
                                **({} if rate == 1 else paper)),
                        ratio((one.free, one.free_error), (other.free, other.free_error)) if both else None, 0.03)]

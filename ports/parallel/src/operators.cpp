@@ -213,10 +213,7 @@ static void nothing(const OperatorInput &, Writer &)
 
 static Operator operator_of(std::string_view name)
 {
-  static const struct {
-    std::string_view name;
-    Operator function;
-  } known[] = {{"model", nothing},
+  static const NamedOperator known[] = {{"model", nothing},
                {"random", random_numbers},
                {"permutation", any_permutation},
                {"order", order_of_vertices},
@@ -232,10 +229,10 @@ static Operator operator_of(std::string_view name)
                {"bend_force", force<BENDS>},
                {"force", force<ALL_FORCES>},
                {"kick", kick}};
-  for (const auto &each : known)
-    if (each.name == name)
-      return each.function;
-  return solvent_operator(name);
+  for (const Operator function : {operator_among(known, name), solvent_operator(name), flow_operator(name)})
+    if (function)
+      return function;
+  return nullptr;
 }
 
 std::string operators_of(const Pack &pack)

@@ -34,6 +34,18 @@ struct OperatorInput {
 };
 
 using Operator = void (*)(const OperatorInput &in, Writer &out);
-// Of the solvent; null if there is none of this name.
+struct NamedOperator {
+  std::string_view name;
+  Operator function;
+};
+// Null if there is none of this name.
+template <size_t n> Operator operator_among(const NamedOperator (&known)[n], std::string_view name)
+{
+  for (const NamedOperator &each : known)
+    if (each.name == name)
+      return each.function;
+  return nullptr;
+}
+// Of the solvent; of walls and shear. Null if there is none of this name.
 Operator solvent_operator(std::string_view name);
 Operator flow_operator(std::string_view name);

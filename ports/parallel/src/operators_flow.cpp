@@ -159,10 +159,7 @@ static void affine_kick(const OperatorInput &in, Writer &out)
 
 Operator flow_operator(std::string_view name)
 {
-  static const struct {
-    std::string_view name;
-    Operator function;
-  } known[] = {{"wall_motion", wall_motion},
+  static const NamedOperator known[] = {{"wall_motion", wall_motion},
                {"shear_motion", shear_motion},
                {"wall_stream", wall_stream},
                {"wall_bin", wall_bin},
@@ -172,8 +169,5 @@ Operator flow_operator(std::string_view name)
                {"enter", change_image<true>},
                {"leave", change_image<false>},
                {"affine_kick", affine_kick}};
-  for (const auto &each : known)
-    if (each.name == name)
-      return each.function;
-  return nullptr;
+  return operator_among(known, name);
 }

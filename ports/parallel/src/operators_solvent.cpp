@@ -224,10 +224,7 @@ static void swap(const OperatorInput &in, Writer &out)
 
 Operator solvent_operator(std::string_view name)
 {
-  static const struct {
-    std::string_view name;
-    Operator function;
-  } known[] = {{"stream", stream},
+  static const NamedOperator known[] = {{"stream", stream},
                {"shift", shift},
                {"bin", bin},
                {"sum", sum},
@@ -240,8 +237,5 @@ Operator solvent_operator(std::string_view name)
                {"rotate", rotate},
                {"give", give},
                {"swap", swap}};
-  for (const auto &each : known)
-    if (each.name == name)
-      return each.function;
-  return flow_operator(name);
+  return operator_among(known, name);
 }
