@@ -11,10 +11,21 @@
 #include "mpc/rules/andersen.h"
 #include "mpc/rules/spin.h"
 
-/* Places, as they are when the collision takes place: those of images where a border has moved members there. */
-static struct point place_of(const struct mpc *c, const struct solvent *s, uint32_t i)
+/* Positions of particles from place `first` of memory on, as they are when the collision takes place: those of images
+ * where a border has moved members there. Pointers, because an index that is a sum of 32 bits may wrap: compilers then
+ * gather each number on its own. */
+struct positions {
+  const int64_t *x, *y, *z;
+};
+
+static struct positions positions_from(const struct solvent *s, uint32_t first)
 {
-  return spin_place((struct point){s->x[i], s->y[i], s->z[i]}, c->shift);
+  return (struct positions){&s->x[first], &s->y[first], &s->z[first]};
+}
+
+static struct point place_of(const struct mpc *c, const struct positions *p, uint32_t k)
+{
+  return spin_place((struct point){p->x[k], p->y[k], p->z[k]}, c->shift);
 }
 
 /* The sums of all cells are three cache lines each: of 32^3 cells they do not fit the second level of a cache. So the
@@ -38,8 +49,9 @@ struct spin_block {
 static void fill_block(const struct solvent *s, const struct mpc *c, uint32_t first, uint32_t n,
                        const struct andersen_change *u, bool slow, struct spin_block *b)
 {
+  const struct positions at = positions_from(s, first);
   for (uint32_t k = 0; k < n; k++) {
-    const struct point y = place_of(c, s, first + k);
+    const struct point y = place_of(c, &at, k);
     b->x[k] = y.x, b->y[k] = y.y, b->z[k] = y.z;
   }
   for (uint32_t k = 0; slow && k < n; k++) {
@@ -161,11 +173,12 @@ static void apply_block(struct solvent *s, const struct mpc *c, uint32_t first, 
   const uint32_t *cell = &c->solvent_cell[first];
   const double *vx = &s->vx[first], *vy = &s->vy[first], *vz = &s->vz[first];
   const double *dx = &c->drawn[0][first], *dy = &c->drawn[1][first], *dz = &c->drawn[2][first];
+  const struct positions at = positions_from(s, first);
   struct andersen_change new;
   for (uint32_t k = 0; k < n; k++) {
     const struct cell_turn *t = &c->turn[cell[k]];
     const bool active = t->active != 0.0;
-    const struct vec3 v = spin_velocity(t, c->middle[cell[k]], place_of(c, s, first + k));
+    const struct vec3 v = spin_velocity(t, c->middle[cell[k]], place_of(c, &at, k));
     new.x[k] = active ? v.x + dx[k] : vx[k];
     new.y[k] = active ? v.y + dy[k] : vy[k];
     new.z[k] = active ? v.z + dz[k] : vz[k];
