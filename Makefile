@@ -77,7 +77,7 @@ help:
 	@echo 'make lint            formatting, warnings of gcc and clang, static checks, include floors, equation table'
 	@echo 'make port            the ports to NumPy and to all cores (ports/numpy, ports/parallel): oracle check, fresh packs and traces, planted bugs'
 	@echo 'make measure         builds the programs behind docs/accuracy.md'
-	@echo 'make bench           speed, scaling, run time against error: build/bench/bench.json; BENCH=speed,... chooses sections'
+	@echo 'make bench           speed, scenes, scaling, run time against error: build/bench/bench.json; BENCH=speed,... chooses sections'
 	@echo 'make bench-docs      the same, and its tables and figures into docs/'
 	@echo 'make bench-peers     against Debian'\''s LAMMPS, in turn: build/bench/peers.json'
 	@echo 'make peer            the solvent'\''s memory and diffusion beside LAMMPS (a quarter of an hour): reference-data/campaign/peer'
@@ -391,6 +391,12 @@ $(BUILD)/validation/%: validation/%.c $(READER) $(LIBRARY) Makefile | $(BUILD)/f
 	@mkdir -p $(@D)
 	@echo '  CC $<'
 	@$(CC) $(ALL_CFLAGS) -Itests $(DEPENDENCIES) $< $(READER) $(LIBRARY) $(TEST_LIBS) $(LIBS) -o $@
+
+# Benchmarks need nothing that the program does not need.
+$(BUILD)/validation/bench/%: validation/bench/%.c $(READER) $(LIBRARY) Makefile | $(BUILD)/found-run
+	@mkdir -p $(@D)
+	@echo '  CC $<'
+	@$(CC) $(ALL_CFLAGS) -Itests $(DEPENDENCIES) $< $(READER) $(LIBRARY) $(LIBS) -o $@
 
 .PHONY: tests
 tests: $(BUILD)/uncross $(BUILD)/uncross-faults $(LIBRARIES) $(TEST_PROGRAMS) $(BENCH_PROGRAMS)

@@ -15,10 +15,12 @@ import common
 import efficiency
 import precision
 import scaling
+import scenes
 import speed
 import tables
 
 BUILD = pathlib.Path(os.environ.get("BUILD", "build")).resolve()
+MEMBERS = 1000  # of each scene file of the made-up world, where a member and step takes 1 ns, and one more for each letter of the scene
 FIELDS = {"name", "value", "unit", "spread", "baseline"}
 
 
@@ -32,6 +34,8 @@ def seconds_of(text):
     """Of a step in a made-up world: 10 ns per solvent particle, 100 ns per vertex, 60 of them for crossings, 80 and 40 event-driven."""
     if text.startswith("triad="):
         return float(text[6:]) / 1e3 / 50.0  # 50 GB/s
+    if ".yaml" in text:
+        return 1e-9 * MEMBERS * (1 + len(text))
     s = scene_of(text)
     vertices = s["fibers"] * s["vertices"]
     return 1e-9 * (10 * s["per_cell"] * s["cells"]**3 + (40, 100, 80)[int(s["crossing"])] * vertices)
@@ -49,8 +53,9 @@ class MadeUp:
     def steps(self, rounds, _, *scenes):
         lines = [f"{r}\t{k}\t7\t{7 * seconds_of(scene) * (1 + 0.1 * r)}"
                  for r in range(int(rounds)) for k, scene in enumerate(scenes)]
+        lines += [f"members\t{k}\t{MEMBERS - 300}\t300" for k, scene in enumerate(scenes) if ".yaml" in scene]
         memory = sum(70 * s["per_cell"] * s["cells"]**3 + 90 * s["cells"]**3 for s in map(scene_of, scenes)
-                     ) if not scenes[0].startswith("triad") else 0
+                     ) if scenes[0].startswith("cells") or scenes[0].startswith("per_cell") else 0
         return "\n".join([*lines, f"peak\t{memory / 1024:.0f}"])
 
     def precision(self, scene, _):
@@ -72,7 +77,7 @@ def rows_of(module):
 
 class Rows(unittest.TestCase):
     def test_all_rows_have_their_fields_and_names_of_their_own(self):
-        rows = [row for module in (speed, scaling, precision, efficiency) for measure in module.ITEMS.values()
+        rows = [row for module in (speed, scenes, scaling, precision, efficiency) for measure in module.ITEMS.values()
                 for row in measure(MadeUp(), 1.0)]
         self.assertEqual(len({row["name"] for row in rows}), len(rows))
         for row in rows:
@@ -94,6 +99,14 @@ class Rows(unittest.TestCase):
         self.assertAlmostEqual(rows["detection/cL^3 = 1000 in 32^3, event-driven"]["value"], 40 * middle)
         self.assertAlmostEqual(rows["memory/solvent particle"]["value"], 70, delta=0.01)
         self.assertAlmostEqual(rows["memory/cell"]["value"], 90, delta=0.01)
+
+    def test_scenes(self):
+        rows, middle = rows_of(scenes), 1.4  # nine rounds
+        for name in ("AT+a", "DPD, 41472", "observers"):
+            scene, beside = map(len, scenes.ROWS[name])
+            self.assertAlmostEqual(rows[f"scenes/{name}"]["value"], middle * (1 + scene))
+            self.assertAlmostEqual(rows[f"scenes/{name}, ratio"]["value"], (1 + scene) / (1 + beside))
+        self.assertNotIn("scenes/SRD, ratio", rows)
 
     def test_scaling(self):
         rows = rows_of(scaling)
@@ -131,7 +144,7 @@ class Tables(unittest.TestCase):
             self.assertEqual(tables.with_error({"value": value, "spread": error}), text)
 
     def test_documents(self):
-        modules = (speed, scaling, precision, efficiency)
+        modules = (speed, scenes, scaling, precision, efficiency)
         rows = {name: row for module in modules for name, row in rows_of(module).items()}
         with tempfile.TemporaryDirectory() as name:
             root = pathlib.Path(name)
@@ -143,6 +156,10 @@ class Tables(unittest.TestCase):
             tables.write({name: row for name, row in rows.items() if not name.startswith("scaling/")}, root)
             speed_page, accuracy_page = ((root / page).read_text() for page in ("docs/speed.md", "docs/accuracy.md"))
         self.assertIn("| cL³ = 100 over its solvent alone | 1.5 | 1.3 | 1.39 |", speed_page)  # 1 + 6400 100/(10 163840)
+        over = rows["scenes/AT+a, ratio"]["value"]
+        self.assertIn(f"| AT+a | SRD | {tables.number(over)} |", speed_page)
+        self.assertIn("| observers | the same without |", speed_page)
+        self.assertIn("| thick fibers | cL³ = 1000, event-driven |", speed_page)
         self.assertIn("old scaling", speed_page)
         with tempfile.TemporaryDirectory() as name:  # a section that was not measured leaves its tables as they were
             root = pathlib.Path(name)
@@ -196,8 +213,8 @@ class Kept(unittest.TestCase):
 
 
 class Programs(unittest.TestCase):
-    def run_one(self, *command):
-        return common.run_program([BUILD / "validation/bench" / command[0], *command[1:]])
+    def run_one(self, *command, **where):
+        return common.run_program([BUILD / "validation/bench" / command[0], *command[1:]], **where)
 
     def test_steps(self):
         _, memory, text = self.run_one("steps", 2, 0.0, "triad=1", "cells=4", "cells=6,fibers=4,vertices=8")
@@ -206,6 +223,21 @@ class Programs(unittest.TestCase):
         self.assertTrue(all(int(line[2]) > 0 and float(line[3]) >= 0 for line in lines[:-1]))
         self.assertEqual(int(lines[1][2]), 200)  # 100 collisions, a whole period of sorting
         self.assertTrue(1 << 20 < 1024 * int(lines[-1][1]) <= memory + (1 << 20))
+
+    def test_scene_files(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scene = pathlib.Path(folder) / "a.yaml"
+            scene.write_text("box: [4, 4, 4]\ntime_step: 0.01\nsteps: 1\nsolvent: {per_cell: 5, collision_interval: 0.02}\n"
+                             "observe: {conserved: {every: 10}}\n")
+            command = ("steps", 1, 0.0, f"{scene} solvent.per_cell=7 seed=9", "cells=4", scene)
+            text = self.run_one(*command, environment={"TMPDIR": folder})[2]
+            lines = [line.split("\t") for line in text.splitlines()]
+            self.assertEqual([line[:3] for line in lines[:3]], [["1", "0", "200"], ["1", "1", "200"], ["1", "2", "200"]])
+            self.assertEqual(lines[3:5], [["members", "0", "448", "0"], ["members", "2", "320", "0"]])
+            self.assertEqual([path.name for path in pathlib.Path(folder).iterdir()], ["a.yaml"])  # its runs are removed
+            for wrong in (f"{scene} solvent.colour=7", f"{scene} seed", f"{folder}/b.yaml"):
+                done = subprocess.run([BUILD / "validation/bench/steps", "1", "0", wrong], capture_output=True, check=False)
+                self.assertEqual((done.returncode, done.stdout), (2, b""), wrong)
 
     def test_precision(self):
         text = self.run_one("precision", "cells=4,fibers=2,vertices=5,dt=0.02,bending=4", 80)[2]

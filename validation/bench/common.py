@@ -50,7 +50,7 @@ class Store:
         key = " ".join(command)
         if key not in self.items:
             say(key if len(key) < 110 else key[:107] + "...")
-            _, _, text = run_program([self.programs / command[0], *command[1:]])
+            _, _, text = run_program([self.programs / command[0], *command[1:]], cwd=HERE)  # scene files are found from there
             with self.lock:
                 self.items[key] = text
                 write_json(self.path, {"stamp": self.stamp, "items": self.items})

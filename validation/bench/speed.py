@@ -15,7 +15,7 @@ def blocks(store, rounds, seconds, scenes):
         fields = line.split("\t")
         if fields[0] == "peak":
             peak = 1024 * int(fields[1])
-        else:
+        elif fields[0] != "members":
             times[scenes[int(fields[1])]].append(float(fields[3]) / int(fields[2]))
     return times, peak
 

@@ -6,6 +6,7 @@ import common
 from efficiency import DIFFUSIONS, ESTIMATORS, VISCOSITIES
 from precision import ORDERS, SPLIT, STEPS
 from scaling import FIBERS, LENGTHS
+from scenes import ROWS
 from speed import BOXES, SWEEP_DENSITIES
 
 
@@ -108,6 +109,17 @@ def speed(rows):
                ["the rest of a step of fibers alone", *cells("phantoms/cL^3 = {} in 32^3", SWEEP_DENSITIES)]])])
 
 
+def beside(name):
+    """What the scene of a row is compared with, by the name of its own row; without one, the same scene without it."""
+    return next((other for other, (scene, _) in ROWS.items() if scene == ROWS[name][1]), "the same without")
+
+
+def scenes(rows):
+    return table(["scene", "over", "ratio", "ns per particle or vertex, and step"],
+                 [[name, beside(name) if f"scenes/{name}, ratio" in rows else "", with_error(rows.get(f"scenes/{name}, ratio")),
+                   with_error(rows[f"scenes/{name}"])] for name in ROWS]).replace("^3", "³")
+
+
 def scaling(rows):
     names = (("solvent, box", "solvent alone, 8³ to 64³ cells, against the edge", "3"),
              ("cL^3 = 300, box", "cL³ = 300 with its solvent, 16³ to 48³ cells, against the edge", "3"),
@@ -180,7 +192,7 @@ def efficiency(rows):
 
 # document, what makes the table, section of the bench without which there is none
 TABLES = {"wanted": ("docs/speed.md", wanted, "speed"), "speed": ("docs/speed.md", speed, "speed"),
-          "scaling": ("docs/speed.md", scaling, "scaling"), "precision": ("docs/accuracy.md", precision, "precision"),
+          "scenes": ("docs/speed.md", scenes, "scenes"), "scaling": ("docs/speed.md", scaling, "scaling"), "precision": ("docs/accuracy.md", precision, "precision"),
           "answer": ("docs/accuracy.md", answer, "precision"),
           "efficiency": ("docs/accuracy.md", efficiency, "efficiency")}
 
