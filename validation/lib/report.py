@@ -182,6 +182,8 @@ STANDING = """# Where the campaign stands
 
 **[The paper's figures, beside this program's](paper.md)**: what each figure and table of the paper shows, what this program shows, and why they differ where they do.
 
+**[Every row of the sources](rows.md)**: each figure, equation and claim of the paper, the slides and the dumbbell fluid, with its state, the verdict that decides, and what is absent with its cost.
+
 The campaign runs the paper's own systems. It has used {hours:.1f} of the {planned:.0f} core-hours that are planned. This page counts its
 [verdicts](../../validation/README.md#verdicts), and lists all that are not a pass.
 All numbers, those that pass too, stand in `reference-data/campaign/report.json`; `validation/run report --tier campaign` makes the page of it, `report.html` beside it.
