@@ -59,8 +59,21 @@ INLINE void store_records(double *records, reals column[4])
     store_reals(records + k * LANES, column[LANES == 2 ? k / 2 + 2 * (k % 2) : k]);
 }
 
-/* Adds a record of four words to another one, in one or two registers. */
+/* Adds a record of four words, or of four doubles, to another one, in one or two registers. */
 typedef uint64_t part __attribute__((vector_size(LANES > 2 ? 32 : 16)));
+typedef double real_part __attribute__((vector_size(LANES > 2 ? 32 : 16)));
+
+INLINE void add_real_record(double *to, const double *record)
+{
+  UNROLL
+  for (size_t k = 0; k < 32 / sizeof(real_part); k++) {
+    real_part sum, addend;
+    memcpy(&sum, (char *)to + k * sizeof sum, sizeof sum);
+    memcpy(&addend, (const char *)record + k * sizeof addend, sizeof addend);
+    sum += addend;
+    memcpy((char *)to + k * sizeof sum, &sum, sizeof sum);
+  }
+}
 
 INLINE void add_record(uint64_t *to, const double *record)
 {
@@ -150,14 +163,9 @@ INLINE void store_columns(double *records, uint32_t first, reals column[8])
   }
 }
 
-/* Columns of records of eight doubles: column[c] holds entry c of the records with these numbers, c from 0 to 3, or to
- * 7. */
-INLINE void load_columns(const double *records, const uint32_t number[LANES], reals *column, const int columns)
+/* Columns of records that begin at these addresses: column[c] holds entry c of each, c from 0 to 3, or to 7. */
+INLINE void load_columns_at(const double *const record[LANES], reals *column, const int columns)
 {
-  const double *record[LANES]; /* gcc makes an address for each half of a record, unless it is told that there is one */
-  UNROLL
-  for (int k = 0; k < LANES; k++)
-    record[k] = (const double *)((const char *)records + ((size_t)number[k] << 6));
   UNROLL
   for (int c = 0; c < columns; c += PART) {
     UNROLL
@@ -165,6 +173,16 @@ INLINE void load_columns(const double *records, const uint32_t number[LANES], re
       column[c + k] = load_parts(record[k] + c, record[k + LANES - PART] + c);
     exchange_rows(&column[c], PART);
   }
+}
+
+/* The same of records of eight doubles that have these numbers. */
+INLINE void load_columns(const double *records, const uint32_t number[LANES], reals *column, const int columns)
+{
+  const double *record[LANES]; /* gcc makes an address for each half of a record, unless it is told that there is one */
+  UNROLL
+  for (int k = 0; k < LANES; k++)
+    record[k] = (const double *)((const char *)records + ((size_t)number[k] << 6));
+  load_columns_at(record, column, columns);
 }
 
 #endif

@@ -7,15 +7,17 @@ static const bool free_inside[BOUNDARIES] = {
     [BOUNDARY_PERIODIC] = true, [BOUNDARY_WALL] = true, [BOUNDARY_SHEAR] = true};
 
 /* Collision rules with formulas for several particles at once. */
-static const bool has_lanes[RULES] = {[RULE_SRD] = true, [RULE_AT_A] = true};
+static const bool has_lanes[RULES] = {[RULE_SRD] = true, [RULE_AT_A] = true, [RULE_AT_PLUS_A] = true};
 
 struct kernel_parts kernel_parts_for(const struct model *m)
 {
-  const bool particles = model_has_solvent(m) && has_lanes[m->solvent.rule];
+  const bool spins = m->solvent.rule == RULE_AT_PLUS_A;
   const bool thin = m->solvent.particles < (uint64_t)box_cell_count(&m->box); /* most are alone, and are not turned */
   const bool enough = box_cell_count(&m->box) >= 8;                           /* cells for a register */
+  const bool crowd = m->solvent.per_cell > 256.0; /* sums in halves would be made anew */
+  const bool particles = model_has_solvent(m) && has_lanes[m->solvent.rule] && !(spins && (crowd || !enough));
   return (struct kernel_parts){.gather = particles && free_inside[m->box.boundary[1]],
-                               .solve = particles && enough && (!model_is_flat(m) || m->solvent.rule == RULE_AT_A),
+                               .solve = particles && enough && (!model_is_flat(m) || m->solvent.rule != RULE_SRD),
                                .turn = particles && !thin};
 }
 
@@ -31,7 +33,8 @@ struct kernel kernel_mix(const struct kernel *fast, const struct model *model)
                                   .solve = parts.solve ? fast->ways.solve : plain->solve,
                                   .energies = parts.turn ? fast->ways.energies : plain->energies,
                                   .canonical = parts.solve ? fast->ways.canonical : plain->canonical,
-                                  .turn = parts.turn ? fast->ways.turn : plain->turn}};
+                                  .turn = parts.turn ? fast->ways.turn : plain->turn,
+                                  .halves = model->solvent.rule == RULE_AT_PLUS_A && parts.gather && fast->ways.halves}};
 }
 
 struct kernel kernel_choose(const struct model *model)

@@ -13,6 +13,7 @@
 #include "mpc/grid.h"
 #include "mpc/overflow.h"
 #include "mpc/rule.h"
+#include "mpc/rules/spin.h"
 
 /* --- ways that suit every scene ----------------------------------------------------------------------------------- */
 
@@ -69,6 +70,29 @@ static void plain_turn(struct state *state, const struct model *model, const str
 
 /* --- sums of cells ------------------------------------------------------------------------------------------------ */
 
+/* Whether a cell has as many members as sums in halves cannot take: a power of two, so one bit of all loads says it. */
+static bool cells_are_crowded(const struct mpc *mpc)
+{
+  uint64_t loads = 0;
+  for (uint32_t k = 0; k < mpc->cells; k++)
+    loads |= mpc->sum[k].load;
+  return loads >= SPIN_HALVES_MOST * CELL_MEMBER;
+}
+
+/* All particles are in the sums. Sums in halves are made anew if a cell is crowded. They are made whole if others than
+ * particles will be added: vertices, virtual members. */
+static uint64_t leave_halves(const struct state *state, const struct model *model, struct mpc *mpc, uint64_t step)
+{
+  if (cells_are_crowded(mpc)) {
+    collide_clear(mpc);
+    return mpc->rule->add_particles(state, model, mpc, step, 0, state->solvent.n);
+  }
+  mpc->spin_in_halves = state->vertices == 0 && !mpc->border->fill && !mpc->obstacle;
+  for (uint32_t k = 0; !mpc->spin_in_halves && k < mpc->cells; k++)
+    spin_widen(&mpc->spin[k]);
+  return 0;
+}
+
 /* gather of collide.c, its passes block by block in one. */
 static bool gather(struct state *state, const struct model *model, struct mpc *mpc, uint64_t step, uint64_t *span,
                    struct fault *fault)
@@ -79,7 +103,8 @@ static bool gather(struct state *state, const struct model *model, struct mpc *m
   mpc->entered = 0;
   if (!mpc->sum_is_clear)
     collide_clear(mpc);
-  mpc->sum_is_clear = false;
+  mpc->sum_is_clear = mpc->spin_is_clear = false;
+  mpc->spin_in_halves = mpc->kernel.ways.halves;
   for (uint32_t i = 0; i < particles; i += COLLIDE_BLOCK) {
     const uint32_t n = particles - i < COLLIDE_BLOCK ? particles - i : COLLIDE_BLOCK;
     if (state->solvent_lag == 0)
@@ -87,6 +112,8 @@ static bool gather(struct state *state, const struct model *model, struct mpc *m
     else if (!mpc->kernel.ways.gather(state, model, mpc, step, i, n, span, fault))
       return false;
   }
+  if (mpc->spin_in_halves)
+    *span |= leave_halves(state, model, mpc, step);
   return collide_add_vertices(state, model, mpc, step, span, fault);
 }
 

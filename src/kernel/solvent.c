@@ -1,5 +1,5 @@
 /*
- * The fast kernel: SRD and AT-a. One source; the Makefile compiles it once for each instruction set (base/registers.h),
+ * The fast kernel: SRD, AT-a and AT+a. One source; the Makefile compiles it once for each instruction set (base/registers.h),
  * and choose.c takes the best one that the processor has. The formulas for several particles at once stand beside the
  * plain ones whose bits they give, in headers *_lanes.h; here are the loops. What is rare goes to the plain ones:
  * flights beyond the next image of the box, momenta beyond the range of lattice_round, the last particles if they do
@@ -18,6 +18,7 @@
 #include "mpc/rule.h"
 #include "mpc/rules/andersen.h"
 #include "mpc/rules/andersen_lanes.h"
+#include "mpc/rules/spin_lanes.h"
 #include "mpc/rules/srd.h"
 #include "mpc/rules/srd_lanes.h"
 #include "mpc/thermostat_lanes.h"
@@ -107,9 +108,11 @@ INLINE bool gather_all(struct state *state, const struct model *model, struct mp
     }
     for (uint32_t k = i; c->prefetch && k < i + m; k++)
       __builtin_prefetch(&c->sum[c->solvent_cell[k]], 1);
-    if (size < CELL_LANES_MOST)
+    if (size < CELL_LANES_MOST) {
       gather_add_lanes(c->sum, &c->solvent_cell[i], m, record);
-    else
+      if (draws && c->spin_in_halves)
+        spin_add_lanes(&state->solvent, c, i, m);
+    } else
       size = c->rule->add_particles(state, model, c, step, i, m);
     *span |= size;
   }
@@ -214,8 +217,32 @@ INLINE struct solved solve_all(const struct model *model, struct mpc *c, uint64_
   return all;
 }
 
+INLINE struct solved solve_spins(struct mpc *c, const bool clears)
+{
+  const uint32_t whole = c->cells - c->cells % LANES;
+  words counts[2] = {{0}, {0}};
+  for (uint32_t k = 0; k < whole; k += LANES)
+    spin_solve_lanes(c, k, clears, counts);
+  struct solved all = {.loads = any(counts[0]), .others = sum_of(counts[1])};
+  for (uint32_t k = whole; k < c->cells; k++) {
+    cell_count(&c->sum[k], &all);
+    spin_widen(&c->spin[k]);
+    spin_solve(&c->sum[k], &c->spin[k], &c->turn[k], &c->middle[k]);
+    c->spin[k] = (struct cell_spin){0};
+    if (clears)
+      c->sum[k] = (struct cell_sum){0};
+  }
+  c->sum_is_clear = clears;
+  c->spin_is_clear = true;
+  return all;
+}
+
 static struct solved solve_fast(const struct model *model, struct mpc *c, uint64_t step, bool last)
 {
+  if (c->spin_in_halves)
+    return last ? solve_spins(c, true) : solve_spins(c, false);
+  if (c->rule->spinning)
+    return kernel_short.ways.solve(model, c, step, last);
   if (c->rule->thermal)
     return last ? solve_all(model, c, step, false, true) : solve_all(model, c, step, false, false);
   return last ? solve_all(model, c, step, true, true) : solve_all(model, c, step, true, false);
@@ -256,7 +283,7 @@ static uint64_t energies_fast(const struct state *state, struct mpc *c, uint32_t
 /* --- turns ------------------------------------------------------------------------------------------------------- */
 
 INLINE void turn_whole(struct state *state, const struct model *model, const struct mpc *c, const bool draws,
-                       const bool quarter, const bool scaled)
+                       const bool spins, const bool quarter, const bool scaled)
 {
   const struct solvent *s = &state->solvent;
   const double cosine = model->solvent.cosine, sine = model->solvent.sine;
@@ -264,7 +291,9 @@ INLINE void turn_whole(struct state *state, const struct model *model, const str
   for (uint32_t first = 0; first < whole; first += CHUNK) {
     const uint32_t end = whole - first < CHUNK ? whole : first + CHUNK;
     members_prefetch_turns(c, end, s->n - end < CHUNK ? s->n - end : CHUNK);
-    for (uint32_t i = first; i < end && draws; i += LANES)
+    for (uint32_t i = first; i < end && spins; i += LANES)
+      spin_turn_lanes(s, c, i);
+    for (uint32_t i = first; i < end && draws && !spins; i += LANES)
       andersen_turn_lanes(s, c, i);
     for (uint32_t i = first; i < end && !draws; i += LANES) {
       reals column[8];
@@ -278,17 +307,21 @@ static void turn_fast(struct state *state, const struct model *model, const stru
 {
   const bool quarter = model->solvent.cosine == 0.0;
   const uint32_t n = state->solvent.n, whole = n - n % LANES;
-  if (c->rule->thermal)
-    turn_whole(state, model, c, true, false, false);
+  if (c->rule->spinning)
+    turn_whole(state, model, c, true, true, false, false);
+  else if (c->rule->thermal)
+    turn_whole(state, model, c, true, false, false, false);
   else if (quarter && scaled)
-    turn_whole(state, model, c, false, true, true);
+    turn_whole(state, model, c, false, false, true, true);
   else if (quarter)
-    turn_whole(state, model, c, false, true, false);
+    turn_whole(state, model, c, false, false, true, false);
   else if (scaled)
-    turn_whole(state, model, c, false, false, true);
+    turn_whole(state, model, c, false, false, false, true);
   else
-    turn_whole(state, model, c, false, false, false);
-  if (c->rule->thermal)
+    turn_whole(state, model, c, false, false, false, false);
+  if (c->rule->spinning)
+    spin_turn_from(state, c, whole);
+  else if (c->rule->thermal)
     andersen_turn_from(state, c, whole);
   else
     srd_turn_from(state, model, c, whole, scaled);
@@ -300,4 +333,5 @@ const struct kernel KERNEL = {.name = KERNEL_NAME,
                                        .solve = solve_fast,
                                        .energies = energies_fast,
                                        .canonical = thermostat_canonical_lanes,
-                                       .turn = turn_fast}};
+                                       .turn = turn_fast,
+                                       .halves = true}};

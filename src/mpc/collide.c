@@ -25,7 +25,7 @@ void collide_clear(struct mpc *c)
   memset(c->sum, 0, (size_t)c->cells * sizeof *c->sum);
   if (c->rule->spinning && !c->spin_is_clear)
     memset(c->spin, 0, (size_t)c->cells * sizeof *c->spin);
-  c->sum_is_clear = c->spin_is_clear = false; /* what follows adds to them */
+  c->sum_is_clear = c->spin_is_clear = c->spin_in_halves = false; /* what follows adds to them */
 }
 
 static uint32_t block_size(uint32_t n, uint32_t first)

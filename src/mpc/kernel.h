@@ -47,6 +47,9 @@ struct kernel_ways {
 
   /* apply of struct collision_rule. */
   void (*turn)(struct state *state, const struct model *model, const struct mpc *mpc, bool scaled);
+
+  /* gather may add to mpc->spin in halves (mpc->spin_in_halves), and solve takes them. */
+  bool halves;
 };
 
 struct kernel {

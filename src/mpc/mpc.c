@@ -53,7 +53,7 @@ static void list_needs(struct mpc *c, const struct model *m, bool everything, st
       {(void **)&c->drawn[2], drawing ? particles : 0, sizeof *c->drawn[2]},
       {(void **)&c->drawn_vertex, drawing ? colliding : 0, sizeof *c->drawn_vertex},
       {(void **)&c->spin, spinning, sizeof *c->spin},
-      {(void **)&c->middle, spinning, sizeof *c->middle},
+      {(void **)&c->middle, spinning > 0 ? spinning + 1 : 0, sizeof *c->middle},
   };
   memcpy(need, all, sizeof all);
 }

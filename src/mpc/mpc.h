@@ -59,8 +59,10 @@ struct mpc {
   struct vec3 *drawn_vertex; /* [vertices] the same */
   struct mpc_stress *stress; /* where to sum the stress (stress.h); NULL: nobody asks for it */
   struct cell_spin *spin;    /* [cells] sums of a rule with angular momentum (rules/spin.h), else NULL */
+  bool spin_in_halves;       /* they are in halves: of src/kernel/, from the first particle until cells are solved */
   bool spin_is_clear;        /* all of `spin` is 0: the rule clears each cell when it has solved it */
-  struct point *middle;      /* [cells] of the same rule: place in the cell next to its centre of mass, lattice units */
+  struct point *middle;      /* [cells + 1] of the same rule: place in the cell next to its centre of mass, lattice units.
+                              * The last one is read, and not used, where four words are read for three */
   bool prefetch;             /* sums and turns of cells are far in memory: they are asked for ahead of their use */
   uint32_t since_sort;       /* collisions since particles were last sorted by cell */
   bool sum_is_clear;         /* of src/kernel/: all of `sum` is 0, cleared when nobody needed it any more */

@@ -5,7 +5,9 @@
 #include "kernel/choose.h"
 #include "mpc/cell.h"
 #include "mpc/collide.h"
+#include "mpc/grid.h"
 #include "mpc/mpc.h"
+#include "mpc/rule.h"
 #include "mpc/sort.h"
 
 enum { STEP = 4 };
@@ -69,6 +71,8 @@ static void assert_same_turns(const struct mpc *a, const struct mpc *b, const ch
     assert_bits(&t->center, &u->center, 1, "centers");
     assert_bits(&t->axis, &u->axis, 1, "axes");
     assert_bits(&t->factor, &u->factor, 1, "factors");
+    if (a->rule->spinning)
+      assert_bits(&a->middle[k], &b->middle[k], 1, "lattice points next to centres of mass");
   }
 }
 
@@ -392,6 +396,99 @@ static struct model at_a_tiny(void)
   return drawn(tiny());
 }
 
+static struct model spinning(struct model m)
+{
+  m.solvent.rule = RULE_AT_PLUS_A;
+  return m;
+}
+
+static struct model at_plus_a(void)
+{
+  return spinning(dense());
+}
+
+static struct model at_plus_a_accelerated(void)
+{
+  return spinning(accelerated());
+}
+
+static struct model at_plus_a_plane(void)
+{
+  return spinning(plane());
+}
+
+static struct model at_plus_a_fibers(void)
+{
+  return spinning(with_fibers());
+}
+
+static struct model at_plus_a_walls(void)
+{
+  return spinning(between_walls());
+}
+
+static struct model at_plus_a_high_walls(void)
+{
+  return spinning(high_walls());
+}
+
+static struct model at_plus_a_slip(void)
+{
+  return spinning(high_slip());
+}
+
+static struct model at_plus_a_sheared(void)
+{
+  return spinning(sheared());
+}
+
+static struct model at_plus_a_high_sheared(void)
+{
+  return spinning(high_sheared());
+}
+
+static struct model at_plus_a_springs(void)
+{
+  return spinning(springs());
+}
+
+static struct model at_plus_a_thin(void)
+{
+  return spinning(thin());
+}
+
+static struct model at_plus_a_few(void)
+{
+  return spinning(few());
+}
+
+static struct model at_plus_a_swapped(void)
+{
+  return spinning(swapped());
+}
+
+static struct model at_plus_a_tiny(void)
+{
+  return spinning(tiny());
+}
+
+/* Two particles in each cell: most cells with company are on a line. */
+static struct model at_plus_a_pairs(void)
+{
+  struct model m = at_plus_a();
+  test_particles(&m, 401);
+  return m;
+}
+
+/* 19,000 particles, which the test of crowded cells brings together. */
+static struct model at_plus_a_many(void)
+{
+  struct model m = at_plus_a();
+  m.solvent.per_cell = 90.0;
+  test_particles(&m, 19001);
+  return m;
+}
+
 static const struct scene {
   const char *name;
   struct model (*make)(void);
@@ -432,7 +529,22 @@ static const struct scene {
               {"AT-a, few", at_a_few},
               {"AT-a, swap", at_a_swapped},
               {"AT-a, driven", at_a_driven},
-              {"AT-a, seven cells", at_a_tiny}};
+              {"AT-a, seven cells", at_a_tiny},
+              {"AT+a", at_plus_a},
+              {"AT+a, accelerated", at_plus_a_accelerated},
+              {"AT+a, plane", at_plus_a_plane},
+              {"AT+a, fibers", at_plus_a_fibers},
+              {"AT+a, walls", at_plus_a_walls},
+              {"AT+a, high walls", at_plus_a_high_walls},
+              {"AT+a, slip walls", at_plus_a_slip},
+              {"AT+a, sheared", at_plus_a_sheared},
+              {"AT+a, high and sheared", at_plus_a_high_sheared},
+              {"AT+a, dumbbells", at_plus_a_springs},
+              {"AT+a, thin", at_plus_a_thin},
+              {"AT+a, few", at_plus_a_few},
+              {"AT+a, swap", at_plus_a_swapped},
+              {"AT+a, seven cells", at_plus_a_tiny},
+              {"AT+a, pairs", at_plus_a_pairs}};
 
 /* --- tests ------------------------------------------------------------------------------------------------------- */
 
@@ -477,10 +589,10 @@ static void edges(const struct kernel *kernel)
 {
   static struct model (*const makes[])(void) = {
       dense,     accelerated,  at_a,           at_a_accelerated, rescaled, high_walls, high_walls_accelerated,
-      high_slip, high_sheared, at_a_high_walls};
+      high_slip, high_sheared, at_a_high_walls, at_plus_a, at_plus_a_pairs};
   static const double fixed[] = {0.0, -0.0, 0x1p-46, -0x1p-46, 0x1.8p-45, 0x1p-1060, 31.25, -31.25, 50.0, -50.0};
-  for (uint64_t k = 0; k < 80; k++) {
-    struct pair p = start(makes[k % 10], kernel, dice_seed(830) + k);
+  for (uint64_t k = 0; k < 96; k++) {
+    struct pair p = start(makes[k % 12], kernel, dice_seed(830) + k);
     struct dice d = {dice_seed(831) + k};
     struct solvent *s = &p.plain.state.solvent;
     int64_t *x[3] = {s->x, s->y, s->z};
@@ -505,6 +617,40 @@ static void bits_at_edges(void **unused)
   for_each_kernel(edges);
 }
 
+/* Members at one place, on one line, in the farthest corners of their cell, next to each other; so many in one cell that
+ * sums in halves could not tell the integer (spin.h), or just not so many. */
+static void special_cells(const struct kernel *kernel)
+{
+  for (uint64_t k = 0; k < 40; k++) {
+    struct pair p = start(k < 4 ? at_plus_a_many : k % 2 ? at_plus_a : at_plus_a_fibers, kernel, dice_seed(895) + k);
+    struct dice d = {dice_seed(896) + k};
+    struct solvent *s = &p.plain.state.solvent;
+    const struct point shift = grid_shift(&p.plain.model, STEP + k);
+    const int64_t low[3] = {LATTICE_CELL - shift.x, LATTICE_CELL - shift.y, LATTICE_CELL - shift.z};
+    const uint32_t crowd = k % 2 ? 2047 : 2048 + (uint32_t)dice_integer(&d, 0, 9000);
+    p.plain.state.solvent_lag = p.fast.state.solvent_lag = 0;
+    for (uint32_t i = 0; i < s->n; i++) {
+      int64_t *x[3] = {&s->x[i], &s->y[i], &s->z[i]};
+      const int64_t kind = (int64_t)(i / 8 % 5), along = dice_integer(&d, 0, LATTICE_CELL - 1);
+      for (int a = 0; a < 3; a++) {
+        const int64_t there = k >= 4 ? low[a] + LATTICE_CELL * (int64_t)(i / 8 / (a == 0 ? 1 : a == 1 ? 4 : 20) % 4)
+                                     : low[a] + LATTICE_CELL * (i >= crowd && a == 0);
+        const int64_t corner = dice_integer(&d, 0, 1) * (LATTICE_CELL - 1), near = 77 + dice_integer(&d, 0, 1);
+        *x[a] = there + (kind == 0 ? 12345 : kind == 1 ? along : kind == 2 ? corner : kind == 3 ? near : along / (a + 1));
+      }
+    }
+    copy_state(&p.fast.state, &p.plain.state);
+    assert_same_collision(&p, STEP + k, kernel->name);
+    end(&p);
+  }
+}
+
+static void bits_of_special_cells(void **unused)
+{
+  (void)unused;
+  for_each_kernel(special_cells);
+}
+
 /* One collision of both, from the state of the plain one; then the end of both. True if it has no fault. */
 static bool collide_once(struct pair *p, const char *name)
 {
@@ -526,10 +672,10 @@ static void wild(const struct kernel *kernel)
   static struct model (*const makes[])(void) = {
       accelerated,     dense,       at_a,      dense,      at_a_accelerated,       at_a,
       at_a_fibers,     rescaled,    canonical, high_walls, high_walls_accelerated, high_sheared,
-      at_a_high_walls, high_springs};
+      at_a_high_walls, high_springs, at_plus_a,  at_plus_a_accelerated};
   uint32_t all[2] = {0, 0};
-  for (uint64_t k = 0; k < 1400; k++) {
-    struct pair p = start(makes[k % 14], kernel, dice_seed(840) + k);
+  for (uint64_t k = 0; k < 1600; k++) {
+    struct pair p = start(makes[k % 16], kernel, dice_seed(840) + k);
     struct dice d = {dice_seed(841) + k};
     struct solvent *s = &p.plain.state.solvent;
     double *v[3] = {s->vx, s->vy, s->vz};
@@ -648,7 +794,7 @@ static struct model canonical_odd(void)
   return with_thermostat(odd(), THERMOSTAT_MAXWELL_BOLTZMANN);
 }
 
-static struct model (*const unread[])(void) = {dense, with_fibers, at_a, at_a_fibers, thin, even, odd};
+static struct model (*const unread[])(void) = {dense, with_fibers, at_a, at_a_fibers, thin, even, odd, at_plus_a, at_plus_a_pairs};
 static struct model (*const scaled[])(void) = {rescaled, rescaled_fibers, rescaled_thin};
 static struct model (*const redrawn[])(void) = {canonical, canonical_fibers, canonical_thin, canonical_odd};
 enum {
@@ -788,7 +934,10 @@ static void parts_by_scene(void **unused)
                 {at_a_thin, {true, true, false}},   {at_a_fibers, {true, true, true}},
                 {at_a_sheared, {true, true, true}}, {at_a_springs, {true, true, true}},
                 {at_a_plane, {true, true, true}},   {at_a_walls, {true, true, true}},
-                {at_a_tiny, {true, false, true}}};
+                {at_a_tiny, {true, false, true}},   {at_plus_a, {true, true, true}},
+                {at_plus_a_thin, {true, true, false}}, {at_plus_a_fibers, {true, true, true}},
+                {at_plus_a_walls, {true, true, true}}, {at_plus_a_plane, {true, true, true}},
+                {at_plus_a_tiny, {false, false, false}}};
   for (size_t k = 0; k < sizeof wanted / sizeof *wanted; k++) {
     struct model m = wanted[k].make();
     test_finish(&m);
@@ -798,8 +947,8 @@ static void parts_by_scene(void **unused)
     assert_int_equal(parts.turn, wanted[k].parts.turn);
     model_free(&m);
   }
-  struct model m = dense();
-  m.solvent.rule = RULE_AT_PLUS_A;
+  struct model m = at_plus_a_many();
+  m.solvent.per_cell = 300.0;
   test_finish(&m);
   assert_false(kernel_parts_for(&m).gather || kernel_parts_for(&m).solve || kernel_parts_for(&m).turn);
   model_free(&m);
@@ -829,6 +978,7 @@ int main(void)
       cmocka_unit_test(bits_of_all_scenes),
       cmocka_unit_test(asking_ahead_changes_nothing),
       cmocka_unit_test(bits_at_edges),
+      cmocka_unit_test(bits_of_special_cells),
       cmocka_unit_test(far_flights_and_faults_are_the_same),
       cmocka_unit_test(faults_near_boundaries_are_the_same),
       cmocka_unit_test(parts_by_scene),

@@ -65,13 +65,17 @@ static void fill_block(const struct solvent *s, const struct mpc *c, uint32_t fi
   }
 }
 
-static void add_spins(struct mpc *c, uint32_t first, uint32_t n, const struct spin_block *b)
+static void add_spins(struct mpc *c, uint32_t first, uint32_t n, const struct andersen_change *u,
+                      const struct spin_block *b)
 {
   const uint32_t *cell = &c->solvent_cell[first];
   for (uint32_t k = 0; k < n; k++) {
+    const struct point y = {b->x[k], b->y[k], b->z[k]}, p = {b->px[k], b->py[k], b->pz[k]};
     prefetch_spin(&c->spin[cell[k + AHEAD < n ? k + AHEAD : n - 1]]);
-    spin_add_particle(&c->spin[cell[k]], (struct point){b->x[k], b->y[k], b->z[k]},
-                      (struct point){b->px[k], b->py[k], b->pz[k]});
+    if (c->spin_in_halves)
+      spin_add_halves(&c->spin[cell[k]].halves, y, p, (struct vec3){u->x[k], u->y[k], u->z[k]});
+    else
+      spin_add_particle(&c->spin[cell[k]], y, p);
   }
 }
 
@@ -86,7 +90,7 @@ static uint64_t add_particles(const struct state *state, const struct model *mod
     andersen_draw_block(&state->solvent, model, c, step, i, m, &u);
     const uint64_t reach = members_add(c, i, m, u.x, u.y, u.z);
     fill_block(&state->solvent, c, i, m, &u, reach < (uint64_t)1 << 51, &b);
-    add_spins(c, i, m, &b);
+    add_spins(c, i, m, &u, &b);
     span |= reach;
   }
   return span;
@@ -188,11 +192,10 @@ static void apply_block(struct solvent *s, const struct mpc *c, uint32_t first, 
   memcpy(&s->vz[first], new.z, n * sizeof *new.z);
 }
 
-static void apply(struct state *state, const struct model *model, const struct mpc *c, bool scaled)
+void spin_turn_from(struct state *state, const struct mpc *c, uint32_t first)
 {
-  (void)model, (void)scaled; /* it is a thermostat by itself */
   struct solvent *s = &state->solvent;
-  for (uint32_t i = 0; i < s->n; i += ANDERSEN_BLOCK)
+  for (uint32_t i = first; i < s->n; i += ANDERSEN_BLOCK)
     apply_block(s, c, i, s->n - i < ANDERSEN_BLOCK ? s->n - i : ANDERSEN_BLOCK);
   for (uint32_t v = 0; v < state->vertices; v++) {
     const uint32_t cell = c->vertex_cell[v];
@@ -201,6 +204,12 @@ static void apply(struct state *state, const struct model *model, const struct m
     if (t->active != 0.0)
       state->velocity[v] = vec3_add(spin_velocity(t, c->middle[cell], y), c->drawn_vertex[v]);
   }
+}
+
+static void apply(struct state *state, const struct model *model, const struct mpc *c, bool scaled)
+{
+  (void)model, (void)scaled; /* it is a thermostat by itself */
+  spin_turn_from(state, c, 0);
 }
 
 const struct collision_rule at_plus_a_rule = {.name = "at+a",

@@ -1,6 +1,23 @@
 #include "mpc/rules/spin.h"
 
-#define LEAST_SHARE 1e-12 /* of the trace: an eigenvalue below it is taken as 0 */
+/* The integer whose lowest 64 bits are these, and that is less than 2^63 from near 2^64. */
+static spin_word whole_of(uint64_t low, double near)
+{
+  const int64_t high = llrint(near - (double)(low >> 12) * 0x1p-52);
+  return (spin_word)(uint64_t)high << 64 | low;
+}
+
+void spin_widen(struct cell_spin *s)
+{
+  const struct spin_halves h = s->halves;
+  const unsigned mass = 16; /* CELL_MASS_SCALE is 2^16 */
+  for (int k = 0; k < 3; k++) {
+    s->angular[k] = whole_of(h.angular[k], h.near_angular[k] * (CELL_MOMENTUM_SCALE * 0x1p-64));
+    s->first[k] = (spin_word)(spin_wide)(int64_t)h.first[k] << mass;
+  }
+  for (int k = 0; k < 6; k++)
+    s->second[k] = whole_of(h.second[k], h.near_second[k] * 0x1p-64) << mass;
+}
 
 /* A sum that is not negative as a double, to a relative 2^-51. The compiler's own conversion calls a function that
  * takes three times as long; a cell needs nine. */
@@ -44,7 +61,7 @@ struct vec3 spin_rate(const double c[6], struct vec3 l)
   const double determinant = xx * minor_x + xy * (yz * zx - xy * zz) + zx * (xy * yz - yy * zx);
   if (!(trace > 0.0))
     return (struct vec3){0, 0, 0};
-  if (!(determinant > LEAST_SHARE * 2.0 * trace * (minor_x + minor_y + minor_z)))
+  if (!(determinant > SPIN_LEAST_SHARE * 2.0 * trace * (minor_x + minor_y + minor_z)))
     return rate_of_line(c, trace, l);
   /* Pi = T D T^t, T lower triangular with ones on its diagonal */
   const double t21 = xy / xx, t31 = zx / xx, d2 = yy - t21 * xy, below = yz - t21 * zx, t32 = below / d2;

@@ -24,8 +24,32 @@
 __extension__ typedef __int128 spin_wide;
 __extension__ typedef unsigned __int128 spin_word; /* unsigned: sums may wrap, see overflow.h */
 
+/*
+ * The same sums in halves, of members of mass 1 only: each as an integer modulo 2^64, and once more in doubles. If these
+ * are off by less than 2^62 units, both together give the integer (spin_whole_of), and so the same bits. They are: of
+ * fewer than SPIN_HALVES_MOST = 2^11 members, N,
+ *
+ *   second    the sum is N 2^78 at most; N products and N sums are rounded, each to 2^-53 of it: less than 2^49
+ *   angular   the sum is 2^104 at most; so less than (N + 3) 2^51 < 2^62.1, half of which is the bound of the worst case
+ *             that all roundings go one way; and y/2 < 2^38 for each member, because u is taken for its rounded momentum
+ *
+ * So a member takes products of 64 bits and of doubles, which several members do at once (spin_lanes.h).
+ */
+struct spin_halves {
+  uint64_t angular[3], first[3], second[6]; /* modulo 2^64; units 2^-84, 2^-40, 2^-80: not those below, of any mass */
+  double near_angular[3], near_second[6];   /* units 2^-40, 2^-80 */
+  double unused[3];
+};
+
+#define SPIN_HALVES_MOST 2048
+
 struct cell_spin {
-  spin_word angular[3], first[3], second[6];
+  union {
+    struct {
+      spin_word angular[3], first[3], second[6];
+    };
+    struct spin_halves halves; /* in the same place, where mpc->spin_in_halves says so */
+  };
 };
 
 /* Where a lattice point is in its cell, relative to the middle of the cell, lattice units. */
@@ -91,6 +115,29 @@ static inline void spin_add_particle(struct cell_spin *s, struct point y, struct
   s->second[5] += spin_product(m.x, y.y);
 }
 
+/* Adds a member of mass 1 to sums in halves. u: its change of velocity, a0/t0, of which p is spin_momentum. */
+static inline void spin_add_halves(struct spin_halves *s, struct point y, struct point p, struct vec3 u)
+{
+  const uint64_t x[3] = {(uint64_t)y.x, (uint64_t)y.y, (uint64_t)y.z};
+  const uint64_t q[3] = {(uint64_t)p.x, (uint64_t)p.y, (uint64_t)p.z};
+  const double near[3] = {(double)y.x, (double)y.y, (double)y.z}, v[3] = {u.x, u.y, u.z};
+  for (int k = 0; k < 3; k++) {
+    const int a = (k + 1) % 3, b = (k + 2) % 3;
+    s->angular[k] += x[a] * q[b] - x[b] * q[a];
+    s->first[k] += x[k];
+    s->second[k] += x[k] * x[k];
+    s->second[3 + k] += x[a] * x[b];
+    s->near_angular[k] += near[a] * v[b] - near[b] * v[a];
+    s->near_second[k] += near[k] * near[k];
+    s->near_second[3 + k] += near[a] * near[b];
+  }
+}
+
+/* Sums in halves become sums of 128 bits, in the same place. */
+void spin_widen(struct cell_spin *s);
+
+#define SPIN_LEAST_SHARE 1e-12 /* of the trace: an eigenvalue below it is taken as 0 */
+
 /* Omega = Pi^-1 L, 1/t0, Pi = tr C - C, from C = sum m (y - X)(y - X), in the order of `second`, and the angular
  * momentum L (l) about X. Where all members are on one line (always, if there are two) Pi has no inverse; there the
  * part of Omega along the line is set to 0: it would turn nothing. That is if the least eigenvalue is below 1e-12 of
@@ -112,6 +159,10 @@ void spin_moments(const struct cell_sum *sum, const struct cell_spin *spin, stru
 /* Sets center, axis (Omega, 1/t0) and factor of a cell's turn, and the middle: the lattice point next to the centre of
  * mass. A member that is alone keeps its velocity. */
 void spin_solve(const struct cell_sum *sum, const struct cell_spin *spin, struct cell_turn *turn, struct point *middle);
+
+/* AT+a: new velocities of the particles from place `first` of memory on, and of all vertices, from what they drew and
+ * the turns of their cells. */
+void spin_turn_from(struct state *state, const struct mpc *mpc, uint32_t first);
 
 /* a - b in a0, exact below 2^51 lattice units; point_difference in a form that vectorises before AVX-512. */
 static inline double spin_difference(int64_t a, int64_t b)
