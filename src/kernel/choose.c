@@ -14,7 +14,7 @@ struct kernel_parts kernel_parts_for(const struct model *m)
   const bool spins = m->solvent.rule == RULE_AT_PLUS_A;
   const bool thin = m->solvent.particles < (uint64_t)box_cell_count(&m->box); /* most are alone, and are not turned */
   const bool enough = box_cell_count(&m->box) >= 8;                           /* cells for a register */
-  const bool crowd = m->solvent.per_cell > 256.0; /* sums in halves would be made anew */
+  const bool crowd = m->solvent.per_cell > 256.0;                             /* sums in halves would be made anew */
   const bool particles = model_has_solvent(m) && has_lanes[m->solvent.rule] && !(spins && (crowd || !enough));
   return (struct kernel_parts){.gather = particles && free_inside[m->box.boundary[1]],
                                .solve = particles && enough && (!model_is_flat(m) || m->solvent.rule != RULE_SRD),
@@ -27,14 +27,15 @@ struct kernel kernel_mix(const struct kernel *fast, const struct model *model)
   const struct kernel_ways *plain = &kernel_short.ways;
   if (fast == &kernel_plain)
     return kernel_plain;
-  return (struct kernel){.name = fast->name,
-                         .collide = fast->collide,
-                         .ways = {.gather = parts.gather ? fast->ways.gather : plain->gather,
-                                  .solve = parts.solve ? fast->ways.solve : plain->solve,
-                                  .energies = parts.turn ? fast->ways.energies : plain->energies,
-                                  .canonical = parts.solve ? fast->ways.canonical : plain->canonical,
-                                  .turn = parts.turn ? fast->ways.turn : plain->turn,
-                                  .halves = model->solvent.rule == RULE_AT_PLUS_A && parts.gather && fast->ways.halves}};
+  return (struct kernel){
+      .name = fast->name,
+      .collide = fast->collide,
+      .ways = {.gather = parts.gather ? fast->ways.gather : plain->gather,
+               .solve = parts.solve ? fast->ways.solve : plain->solve,
+               .energies = parts.turn ? fast->ways.energies : plain->energies,
+               .canonical = parts.solve ? fast->ways.canonical : plain->canonical,
+               .turn = parts.turn ? fast->ways.turn : plain->turn,
+               .halves = model->solvent.rule == RULE_AT_PLUS_A && parts.gather && fast->ways.halves}};
 }
 
 struct kernel kernel_choose(const struct model *model)

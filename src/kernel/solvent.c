@@ -1,9 +1,9 @@
 /*
- * The fast kernel: SRD, AT-a and AT+a. One source; the Makefile compiles it once for each instruction set (base/registers.h),
- * and choose.c takes the best one that the processor has. The formulas for several particles at once stand beside the
- * plain ones whose bits they give, in headers *_lanes.h; here are the loops. What is rare goes to the plain ones:
- * flights beyond the next image of the box, momenta beyond the range of lattice_round, the last particles if they do
- * not fill a register, and all that are near a wall or the boundary of a sheared box.
+ * The fast kernel: SRD, AT-a and AT+a. One source; the Makefile compiles it once for each instruction set
+ * (base/registers.h), and choose.c takes the best one that the processor has. The formulas for several particles at
+ * once stand beside the plain ones whose bits they give, in headers *_lanes.h; here are the loops. What is rare goes to
+ * the plain ones: flights beyond the next image of the box, momenta beyond the range of lattice_round, the last
+ * particles if they do not fill a register, and all that are near a wall or the boundary of a sheared box.
  */
 #include <string.h>
 
@@ -187,6 +187,27 @@ static void draw_again(const struct model *model, struct mpc *c, uint64_t step, 
                                               : random_axis_from(model->seed, RANDOM_ROTATION_AXIS, 2, step, list[k]);
 }
 
+/* The last cells, from `first` on, which do not fill a register: one at a time. */
+INLINE void solve_rest(const struct model *model, struct mpc *c, uint64_t step, uint32_t first, const bool turns,
+                       const bool spins, const bool clears, struct solved *all)
+{
+  for (uint32_t k = first; k < c->cells; k++) {
+    cell_count(&c->sum[k], all);
+    cell_solve(&c->sum[k], &c->turn[k]);
+    if (turns)
+      c->turn[k].axis = random_axis_from(model->seed, RANDOM_ROTATION_AXIS, 0, step, k);
+    if (spins) {
+      spin_widen(&c->spin[k]);
+      spin_solve(&c->sum[k], &c->spin[k], &c->turn[k], &c->middle[k]);
+      c->spin[k] = (struct cell_spin){0};
+    }
+    if (clears)
+      c->sum[k] = (struct cell_sum){0};
+  }
+  c->sum_is_clear = clears;
+  c->spin_is_clear = spins;
+}
+
 INLINE struct solved solve_all(const struct model *model, struct mpc *c, uint64_t step, const bool turns,
                                const bool clears)
 {
@@ -205,42 +226,26 @@ INLINE struct solved solve_all(const struct model *model, struct mpc *c, uint64_
   for (uint32_t k = 0; k < n; k++)
     c->turn[list[k]].axis = random_axis_from(model->seed, RANDOM_ROTATION_AXIS, 1, step, list[k]);
   struct solved all = {.loads = any(counts[0]), .others = sum_of(counts[1])};
-  for (uint32_t k = whole; k < c->cells; k++) {
-    cell_count(&c->sum[k], &all);
-    cell_solve(&c->sum[k], &c->turn[k]);
-    if (turns)
-      c->turn[k].axis = random_axis_from(seed, RANDOM_ROTATION_AXIS, 0, step, k);
-    if (clears)
-      c->sum[k] = (struct cell_sum){0};
-  }
-  c->sum_is_clear = clears;
+  solve_rest(model, c, step, whole, turns, false, clears, &all);
   return all;
 }
 
-INLINE struct solved solve_spins(struct mpc *c, const bool clears)
+/* The same for AT+a, of sums in halves. */
+INLINE struct solved solve_spins(const struct model *model, struct mpc *c, uint64_t step, const bool clears)
 {
   const uint32_t whole = c->cells - c->cells % LANES;
   words counts[2] = {{0}, {0}};
   for (uint32_t k = 0; k < whole; k += LANES)
     spin_solve_lanes(c, k, clears, counts);
   struct solved all = {.loads = any(counts[0]), .others = sum_of(counts[1])};
-  for (uint32_t k = whole; k < c->cells; k++) {
-    cell_count(&c->sum[k], &all);
-    spin_widen(&c->spin[k]);
-    spin_solve(&c->sum[k], &c->spin[k], &c->turn[k], &c->middle[k]);
-    c->spin[k] = (struct cell_spin){0};
-    if (clears)
-      c->sum[k] = (struct cell_sum){0};
-  }
-  c->sum_is_clear = clears;
-  c->spin_is_clear = true;
+  solve_rest(model, c, step, whole, false, true, clears, &all);
   return all;
 }
 
 static struct solved solve_fast(const struct model *model, struct mpc *c, uint64_t step, bool last)
 {
   if (c->spin_in_halves)
-    return last ? solve_spins(c, true) : solve_spins(c, false);
+    return last ? solve_spins(model, c, step, true) : solve_spins(model, c, step, false);
   if (c->rule->spinning)
     return kernel_short.ways.solve(model, c, step, last);
   if (c->rule->thermal)

@@ -61,12 +61,12 @@ struct mpc {
   struct cell_spin *spin;    /* [cells] sums of a rule with angular momentum (rules/spin.h), else NULL */
   bool spin_in_halves;       /* they are in halves: of src/kernel/, from the first particle until cells are solved */
   bool spin_is_clear;        /* all of `spin` is 0: the rule clears each cell when it has solved it */
-  struct point *middle;      /* [cells + 1] of the same rule: place in the cell next to its centre of mass, lattice units.
-                              * The last one is read, and not used, where four words are read for three */
-  bool prefetch;             /* sums and turns of cells are far in memory: they are asked for ahead of their use */
-  uint32_t since_sort;       /* collisions since particles were last sorted by cell */
-  bool sum_is_clear;         /* of src/kernel/: all of `sum` is 0, cleared when nobody needed it any more */
-  bool keeps_sums;           /* of src/kernel/, for tests: it never clears them */
+  struct point *middle; /* [cells + 1] of the same rule: place in the cell next to its centre of mass, lattice units.
+                         * The last one is read, and not used, where four words are read for three */
+  bool prefetch;        /* sums and turns of cells are far in memory: they are asked for ahead of their use */
+  uint32_t since_sort;  /* collisions since particles were last sorted by cell */
+  bool sum_is_clear;    /* of src/kernel/: all of `sum` is 0, cleared when nobody needed it any more */
+  bool keeps_sums;      /* of src/kernel/, for tests: it never clears them */
 };
 
 /* Allocates the scratch for the collisions of this model. `everything`: also what only other scenes need, for callers

@@ -587,9 +587,18 @@ static void asking_ahead_changes_nothing(void **unused)
 /* Places at the edges of box and cells, velocities that round at the half, zeros of both signs. */
 static void edges(const struct kernel *kernel)
 {
-  static struct model (*const makes[])(void) = {
-      dense,     accelerated,  at_a,           at_a_accelerated, rescaled, high_walls, high_walls_accelerated,
-      high_slip, high_sheared, at_a_high_walls, at_plus_a, at_plus_a_pairs};
+  static struct model (*const makes[])(void) = {dense,
+                                                accelerated,
+                                                at_a,
+                                                at_a_accelerated,
+                                                rescaled,
+                                                high_walls,
+                                                high_walls_accelerated,
+                                                high_slip,
+                                                high_sheared,
+                                                at_a_high_walls,
+                                                at_plus_a,
+                                                at_plus_a_pairs};
   static const double fixed[] = {0.0, -0.0, 0x1p-46, -0x1p-46, 0x1.8p-45, 0x1p-1060, 31.25, -31.25, 50.0, -50.0};
   for (uint64_t k = 0; k < 96; k++) {
     struct pair p = start(makes[k % 12], kernel, dice_seed(830) + k);
@@ -617,8 +626,8 @@ static void bits_at_edges(void **unused)
   for_each_kernel(edges);
 }
 
-/* Members at one place, on one line, in the farthest corners of their cell, next to each other; so many in one cell that
- * sums in halves could not tell the integer (spin.h), or just not so many. */
+/* Members at one place, on one line, in the farthest corners of their cell, next to each other; so many in one cell
+ * that sums in halves could not tell the integer (spin.h), or just not so many. */
 static void special_cells(const struct kernel *kernel)
 {
   for (uint64_t k = 0; k < 40; k++) {
@@ -633,10 +642,18 @@ static void special_cells(const struct kernel *kernel)
       int64_t *x[3] = {&s->x[i], &s->y[i], &s->z[i]};
       const int64_t kind = (int64_t)(i / 8 % 5), along = dice_integer(&d, 0, LATTICE_CELL - 1);
       for (int a = 0; a < 3; a++) {
-        const int64_t there = k >= 4 ? low[a] + LATTICE_CELL * (int64_t)(i / 8 / (a == 0 ? 1 : a == 1 ? 4 : 20) % 4)
+        const int64_t there = k >= 4 ? low[a] + LATTICE_CELL * (int64_t)(i / 8 /
+                                                                         (a == 0   ? 1
+                                                                          : a == 1 ? 4
+                                                                                   : 20) %
+                                                                         4)
                                      : low[a] + LATTICE_CELL * (i >= crowd && a == 0);
         const int64_t corner = dice_integer(&d, 0, 1) * (LATTICE_CELL - 1), near = 77 + dice_integer(&d, 0, 1);
-        *x[a] = there + (kind == 0 ? 12345 : kind == 1 ? along : kind == 2 ? corner : kind == 3 ? near : along / (a + 1));
+        *x[a] = there + (kind == 0   ? 12345
+                         : kind == 1 ? along
+                         : kind == 2 ? corner
+                         : kind == 3 ? near
+                                     : along / (a + 1));
       }
     }
     copy_state(&p.fast.state, &p.plain.state);
@@ -669,10 +686,22 @@ static void wild(const struct kernel *kernel)
                                        0x1p52,      -0x1p60, 1e300,  0x1p8, 63.9,   INFINITY, -INFINITY,
                                        (double)NAN, 0x1p7,   -0x1p7, 0x1p6, -0x1p6, 300.0};
   const int64_t kinds = sizeof wild_speeds / sizeof *wild_speeds;
-  static struct model (*const makes[])(void) = {
-      accelerated,     dense,       at_a,      dense,      at_a_accelerated,       at_a,
-      at_a_fibers,     rescaled,    canonical, high_walls, high_walls_accelerated, high_sheared,
-      at_a_high_walls, high_springs, at_plus_a,  at_plus_a_accelerated};
+  static struct model (*const makes[])(void) = {accelerated,
+                                                dense,
+                                                at_a,
+                                                dense,
+                                                at_a_accelerated,
+                                                at_a,
+                                                at_a_fibers,
+                                                rescaled,
+                                                canonical,
+                                                high_walls,
+                                                high_walls_accelerated,
+                                                high_sheared,
+                                                at_a_high_walls,
+                                                high_springs,
+                                                at_plus_a,
+                                                at_plus_a_accelerated};
   uint32_t all[2] = {0, 0};
   for (uint64_t k = 0; k < 1600; k++) {
     struct pair p = start(makes[k % 16], kernel, dice_seed(840) + k);
@@ -794,7 +823,8 @@ static struct model canonical_odd(void)
   return with_thermostat(odd(), THERMOSTAT_MAXWELL_BOLTZMANN);
 }
 
-static struct model (*const unread[])(void) = {dense, with_fibers, at_a, at_a_fibers, thin, even, odd, at_plus_a, at_plus_a_pairs};
+static struct model (*const unread[])(void) = {dense, with_fibers, at_a,      at_a_fibers,    thin,
+                                               even,  odd,         at_plus_a, at_plus_a_pairs};
 static struct model (*const scaled[])(void) = {rescaled, rescaled_fibers, rescaled_thin};
 static struct model (*const redrawn[])(void) = {canonical, canonical_fibers, canonical_thin, canonical_odd};
 enum {
@@ -924,19 +954,32 @@ static void parts_by_scene(void **unused)
   static const struct {
     struct model (*make)(void);
     struct kernel_parts parts;
-  } wanted[] = {{dense, {true, true, true}},        {accelerated, {true, true, true}},
-                {by_130, {true, true, true}},       {rescaled, {true, true, true}},
-                {thin, {true, true, false}},        {swapped, {true, true, true}},
-                {sheared, {true, true, true}},      {springs, {true, true, true}},
-                {plane, {true, false, true}},       {between_walls, {true, true, true}},
-                {with_fibers, {true, true, true}},  {tiny, {true, false, true}},
-                {at_a, {true, true, true}},         {at_a_accelerated, {true, true, true}},
-                {at_a_thin, {true, true, false}},   {at_a_fibers, {true, true, true}},
-                {at_a_sheared, {true, true, true}}, {at_a_springs, {true, true, true}},
-                {at_a_plane, {true, true, true}},   {at_a_walls, {true, true, true}},
-                {at_a_tiny, {true, false, true}},   {at_plus_a, {true, true, true}},
-                {at_plus_a_thin, {true, true, false}}, {at_plus_a_fibers, {true, true, true}},
-                {at_plus_a_walls, {true, true, true}}, {at_plus_a_plane, {true, true, true}},
+  } wanted[] = {{dense, {true, true, true}},
+                {accelerated, {true, true, true}},
+                {by_130, {true, true, true}},
+                {rescaled, {true, true, true}},
+                {thin, {true, true, false}},
+                {swapped, {true, true, true}},
+                {sheared, {true, true, true}},
+                {springs, {true, true, true}},
+                {plane, {true, false, true}},
+                {between_walls, {true, true, true}},
+                {with_fibers, {true, true, true}},
+                {tiny, {true, false, true}},
+                {at_a, {true, true, true}},
+                {at_a_accelerated, {true, true, true}},
+                {at_a_thin, {true, true, false}},
+                {at_a_fibers, {true, true, true}},
+                {at_a_sheared, {true, true, true}},
+                {at_a_springs, {true, true, true}},
+                {at_a_plane, {true, true, true}},
+                {at_a_walls, {true, true, true}},
+                {at_a_tiny, {true, false, true}},
+                {at_plus_a, {true, true, true}},
+                {at_plus_a_thin, {true, true, false}},
+                {at_plus_a_fibers, {true, true, true}},
+                {at_plus_a_walls, {true, true, true}},
+                {at_plus_a_plane, {true, true, true}},
                 {at_plus_a_tiny, {false, false, false}}};
   for (size_t k = 0; k < sizeof wanted / sizeof *wanted; k++) {
     struct model m = wanted[k].make();

@@ -25,23 +25,24 @@ __extension__ typedef __int128 spin_wide;
 __extension__ typedef unsigned __int128 spin_word; /* unsigned: sums may wrap, see overflow.h */
 
 /*
- * The same sums in halves, of members of mass 1 only: each as an integer modulo 2^64, and once more in doubles. If these
- * are off by less than 2^62 units, both together give the integer (spin_whole_of), and so the same bits. They are: of
- * fewer than SPIN_HALVES_MOST = 2^11 members, N,
+ * The same sums in halves, of members of mass 1 only: each as an integer modulo 2^64, and once more in doubles. If the
+ * doubles are off by less than 2^62 units, both together give the integer. They are, for N members, N < 2^11:
  *
- *   second    the sum is N 2^78 at most; N products and N sums are rounded, each to 2^-53 of it: less than 2^49
- *   angular   the sum is 2^104 at most; so less than (N + 3) 2^51 < 2^62.1, half of which is the bound of the worst case
- *             that all roundings go one way; and y/2 < 2^38 for each member, because u is taken for its rounded momentum
+ *   second    Sums are N 2^78 < 2^89 at most. N products and N sums are rounded, each by at most 2^-53 of 2^89: the
+ *             error is below 2^12 2^36 = 2^48.
+ *   angular   N times the largest momentum is below 2^63 (overflow.h), so products and sums are below 2^103. The
+ * products together are off by 2^-53 of that, so are the differences; N sums are off by as much each: (N + 2) 2^50. u
+ * is taken for the rounded momentum, which is off by 1/2: N 2^39. The error is below 2^61.1.
  *
- * So a member takes products of 64 bits and of doubles, which several members do at once (spin_lanes.h).
+ * So a member takes products of 64 bits and of doubles, and several members are added at once (spin_lanes.h).
  */
 struct spin_halves {
-  uint64_t angular[3], first[3], second[6]; /* modulo 2^64; units 2^-84, 2^-40, 2^-80: not those below, of any mass */
+  uint64_t angular[3], first[3], second[6]; /* modulo 2^64, units 2^-84, 2^-40, 2^-80 */
   double near_angular[3], near_second[6];   /* units 2^-40, 2^-80 */
   double unused[3];
 };
 
-#define SPIN_HALVES_MOST 2048
+#define SPIN_HALVES_MOST 2048 /* members: a power of two */
 
 struct cell_spin {
   union {

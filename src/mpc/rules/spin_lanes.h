@@ -1,6 +1,6 @@
 /*
- * AT+a of LANES members, and of LANES cells, at once (spin.h, spin.c, at_plus_a.c). Sums are in halves: their integers are
- * those of the plain sums, and what follows from these has the same operations in the same order.
+ * AT+a of LANES members, and of LANES cells, at once (spin.h, spin.c, at_plus_a.c). Sums are in halves: their integers
+ * are those of the plain sums, and what follows from these has the same operations in the same order.
  */
 #ifndef UNCROSS_MPC_RULES_SPIN_LANES_H
 #define UNCROSS_MPC_RULES_SPIN_LANES_H
@@ -112,8 +112,8 @@ struct vec3_lanes {
 
 INLINE struct vec3_lanes cross_lanes(struct vec3_lanes a, struct vec3_lanes b)
 {
-  return (struct vec3_lanes){{a.x[1] * b.x[2] - a.x[2] * b.x[1], a.x[2] * b.x[0] - a.x[0] * b.x[2],
-                              a.x[0] * b.x[1] - a.x[1] * b.x[0]}};
+  return (struct vec3_lanes){
+      {a.x[1] * b.x[2] - a.x[2] * b.x[1], a.x[2] * b.x[0] - a.x[0] * b.x[2], a.x[0] * b.x[1] - a.x[1] * b.x[0]}};
 }
 
 /* The upper half of the integer whose lower half is this, and that is less than 2^63 from near 2^64. */
