@@ -326,12 +326,50 @@ static void random_places_of_stated_shapes(void **unused)
   test_end(&r);
 }
 
+/* The end-to-end vector is Gaussian for Gaussian springs of any number, and for any springs if they are many. n
+ * independent bonds b without preferred direction have <R_x^4>/<R_x^2>^2 - 3 = (<b_x^4>/<b_x^2>^2 - 3)/n, with <b_x^2>
+ * = <l^2>/3 and <b_x^4> = <l^4>/5. */
+static void end_to_end_vectors_become_gaussian(void **unused)
+{
+  (void)unused;
+  enum { COUNT = 20000 };
+  static const struct chain stiff = {100, 0.5, 0}, soft = {3, 0, 0};
+  static const struct {
+    const struct chain *chain;
+    uint32_t bonds;
+    bool gaussian; /* within what COUNT of them can tell */
+  } rows[] = {{&stiff, 1, false}, {&stiff, 4, true}, {&stiff, 32, true}, {&soft, 1, true}, {&soft, 4, true}};
+  double *chance = malloc(COUNT * sizeof *chance);
+  for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+    const struct chain *c = rows[k].chain;
+    const uint32_t n = rows[k].bonds;
+    struct test_run r = many_chains(c, COUNT, n + 1, dice_seed(1208) + k);
+    const double l2 = bond_moment(c->k, c->l0, 2), l4 = bond_moment(c->k, c->l0, 4), square = n * l2 / 3.0;
+    struct tally fourth = {0};
+    for (uint32_t f = 0; f < COUNT; f++) {
+      struct vec3 end = {0, 0, 0};
+      for (uint32_t i = 0; i < n; i++)
+        end = vec3_add(end, fiber_bond(&r.state, &r.model, f * (n + 1) + i));
+      tally_add(&fourth, end.x * end.x * end.x * end.x / (square * square) - 3.0);
+      chance[f] = 0.5 * erfc(-end.x / sqrt(2.0 * square));
+    }
+    const double away = kolmogorov(chance, COUNT);
+    print_message("  %u bonds: fourth moment %.3f +- %.3f, distance from a Gaussian %.2f\n", n, tally_mean(&fourth),
+                  tally_error(&fourth), away);
+    assert_sigma(tally_mean(&fourth), tally_error(&fourth), (l4 / 5.0 / (l2 * l2 / 9.0) - 3.0) / n, 4.5);
+    assert_true((away < KOLMOGOROV_LIMIT) == rows[k].gaussian);
+    test_end(&r);
+  }
+  free(chance);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(mean_bond_lengths),
       cmocka_unit_test(bonds_and_bends_have_their_distributions),
       cmocka_unit_test(chains_have_their_size),
+      cmocka_unit_test(end_to_end_vectors_become_gaussian),
       cmocka_unit_test(places_and_velocities),
       cmocka_unit_test(straight_fibers),
       cmocka_unit_test(circles),
