@@ -142,6 +142,24 @@ def moduli(results, spring, word):
     return omega, (-storage[0], storage[1]), loss, len(values)
 
 
+def ratio_of_springs(results, spring, word):
+    """(omega, G'/G'' of the springs, error)."""
+    omega, values = harmonic(results[f"oscillation-K{spring:g}-{word}"], "sigma_xy_spring")
+    loss, storage = split(values)
+    return omega, *quotient((-storage[0], storage[1]), loss)
+
+
+def crossing(results, spring, words):
+    """The frequency at which G' of the springs is their G'': a power law between two frequencies; None without the runs."""
+    if any(f"oscillation-K{spring:g}-{word}" not in results for word in words):
+        return None
+    (low, first, first_error), (high, second, second_error) = (ratio_of_springs(results, spring, word) for word in words)
+    slope, share = math.log(second / first) / math.log(high / low), -math.log(first) / math.log(second / first)
+    error = math.hypot((1.0 - share) * first_error / first, share * second_error / second) / slope
+    value = low * (high / low) ** share
+    return value, value * error
+
+
 # --- walls ------------------------------------------------------------------------------------------------------------
 
 def between(result, column="vx"):
