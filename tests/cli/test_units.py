@@ -336,5 +336,30 @@ class Page(unittest.TestCase):
         self.near(ETA * math.sqrt(mass * kt) / a0 ** 2 / 0.89e-3, 0.36, 0.02)
 
 
+class Microtubule(unittest.TestCase):
+    """The scene of docs/units.md that a force drags, from the bending modulus and the definitions."""
+
+    def test_numbers(self):
+        scene = re.search(r"```yaml\n(# microtubule.yaml\n.*?)```", PAGE.read_text(encoding="utf-8"), re.S)[1]
+        kt, a0, persistence, eta = BOLTZMANN * 300, 500e-9, 5.2e-3, 0.85e-3
+        kappa, length, t0 = kt * persistence, 20 * a0, 3 * math.pi * eta * a0 ** 3 / kt
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "microtubule.yaml"
+            path.write_text(scene)
+            found = rows(run("check", path, "--units", "a0=500nm,T=300K,t0=241.8ms"))
+            bare = run("check", path)
+        self.assertLess(abs(t0 / 0.2418 - 1), 2e-4)
+        force = number(found["force on a vertex"][2])
+        self.assertLess(abs(21 * force * length ** 2 / kappa - 1), 1e-3)
+        for value, wanted in ((21 * force, 0.22e-12), (1e-12 * length ** 2 / kappa, 4.6), (82.5 * kt / 1.5e-6 * 21, 4.8e-12), (82.5 * 21 * 20 ** 2 / 3467, 200),
+                              (82.5 * kt / 1.5e-6 * 21 / 100 / 1.602176634e-19, 3.0e5), (persistence / a0, 10400), (persistence / 1.5e-6, 3467)):
+            self.assertLess(abs(value / wanted - 1), 0.025, wanted)
+        self.assertEqual(found["force on a vertex"][2], "10.255 fN")
+        self.assertIn("\n    force over bending                   B             0.999923", bare)
+        bending = number(found["time of bending"][2])
+        self.assertLess(abs(bending / (20 ** 4 / 10400 * 0.2418) - 1), 1e-3)
+        self.assertLess(abs(bending / 3.72 - 1), 2e-3)
+
+
 if __name__ == "__main__":
     unittest.main()
