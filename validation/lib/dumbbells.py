@@ -202,9 +202,9 @@ def wave(results, name):
     return omega, value, error * abs(value), profile.height
 
 
-def still(results, potential):
-    """(Fit of [1, density - 1] to the profile, y, measured density over the mean, its error)."""
-    name = "still-" + ("flat" if potential else "bare")
+def still(results, potential, name=None):
+    """(Fit of [1, density - 1] to the profile, y, measured density over the mean, its error), at rest or of another run."""
+    name = name or "still-" + ("flat" if potential else "bare")
     if name not in results:
         return None
     table, height = results[name].table("profile"), flow.scene_of(results[name])["box"][1]

@@ -251,12 +251,27 @@ def density_verdicts(results, potential):
     known = fluid.still(results, potential)
     if known:
         fit = known[0]
-        ratio = fit.value[1] / fit.value[0]
-        error = abs(ratio) * math.sqrt(fit.covariance[1, 1] / fit.value[1]**2 + fit.covariance[0, 0] / fit.value[0]**2
-                                       - 2.0 * fit.covariance[0, 1] / (fit.value[0] * fit.value[1]))
-        filled(shape, (ratio, error), agreed=0.05)
+        filled(shape, size_of(fit), agreed=0.05)
         filled(bulk, (fit.value[0] / N, fit.error[0] / N), agreed=0.01)
     return [shape, bulk]
+
+
+def size_of(fit):
+    """(size of density - 1 over the bulk's, error)."""
+    ratio = fit.value[1] / fit.value[0]
+    return ratio, abs(ratio) * math.sqrt(fit.covariance[1, 1] / fit.value[1]**2 + fit.covariance[0, 0] / fit.value[0]**2
+                                         - 2.0 * fit.covariance[0, 1] / (fit.value[0] * fit.value[1]))
+
+
+def sheared_density_verdicts(results):
+    """The paper: at low rates the profile is that at rest."""
+    found = []
+    for height in (10, 20):
+        verdict = Verdict(f"dumbbells.density.sheared.L{height}", f"size of ρ(y) − ρ_b over theory's at rest, without the potential of the walls, K 1, L {height}, sheared at Wi 0.55", 1.0,
+                          "Tao et al.: at low rates nearly as at rest", 0.05, kind="paper")
+        known = fluid.still(results, False, f"walls-K1-L{height}")
+        found.append(filled(verdict, known and size_of(known[0]), agreed=0.05))
+    return found
 
 
 def poiseuille_verdict(results):
@@ -401,7 +416,7 @@ def evaluate(results, tier):
     verdicts += [wall_verdict(results, name) for name in gaps] + [applied_verdict(results, name) for name in gaps]
     verdicts += density_verdicts(results, False) + density_verdicts(results, True)
     if not quick:
-        verdicts += [*(crossing_verdict(results, spring) for spring in CROSSINGS), amplitude_verdict(results)]
+        verdicts += [*(crossing_verdict(results, spring) for spring in CROSSINGS), amplitude_verdict(results), *sheared_density_verdicts(results)]
         verdicts += [linear_verdict(results), rigid_verdict(results), *thickening_verdicts(results), poiseuille_verdict(results)]
         for number in (0.3, 2, 5, 10):
             name = f"wi-{number:g}"
