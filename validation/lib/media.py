@@ -36,9 +36,9 @@ class Fluid:
                 + chain_lines(vertices, count, 1, self.spring, round(20.0 / self.step), every, memory)
                 + (f"trajectory: {{every: {frames}, velocities: false}}\n" if frames else ""))
 
-    def wave_run(self, name, hours):
+    def wave_run(self, name, hours, seed=1):
         return Run(name, program=["medium_wave", self.density, self.rate, self.draw, self.weight, self.repulsion, self.step,
-                                  *self.wave, 1, 10], hours=hours)
+                                  *self.wave, seed, 10], hours=hours)
 
 
 def chain_lines(vertices, count, mass, spring, first, every, memory):
@@ -55,12 +55,15 @@ FLUIDS = {
     **{f"{key}{rate}": Fluid(f"{title}, ρ = 3, Γ = {rate}", float(rate), draw, "hat", 0.0, step, "drift-split", 3.0, (0.5, skip, pairs))
        for key, title, draw in (("la", "Lowe-Andersen", "replace"), ("hat", "thermostat of DPD with the hat", "relax"))
        for rate, step, skip, pairs in ((3, 0.03, 0.7, 60), (10, 0.02, 0.5, 60), (30, 0.006, 0.3, 60)) if (key, rate) != ("la", 10)},
+    **{f"la-rho{density}": Fluid(f"Lowe-Andersen, ρ = {density}, Γ = 3", 3.0, "replace", "hat", 0.0, 0.02, "drift-split", 3.0, (0.5, 0.7, pairs), float(density))
+       for density, pairs in ((1, 180), (6, 15), (10, 10))},
     "dpd": Fluid("DPD, ρ = 3, a = 25, γ = 4.5", 9.0, "relax", "quadratic", 25.0, 0.04, "kick-split", 6.0, (0.4, 1.0, 8)),
 }
 # fluid: N: box, chains, steps, CPU hours
 SYSTEMS = {"la1": {1: (8, 60, 16000, 0.004)}, "hat": {1: (8, 60, 16000, 0.004)},
            **{f"{key}{rate}": {1: (10, 100, steps, hours)} for key in ("la", "hat")
               for rate, steps, hours in ((3, 12000, 0.004), (10, 20000, 0.006), (30, 50000, 0.015)) if (key, rate) != ("la", 10)},
+           "la-rho1": {1: (10, 33, 20000, 0.001)}, "la-rho6": {1: (8, 100, 6000, 0.006)}, "la-rho10": {1: (8, 100, 4000, 0.01)},
            "la": {1: (10, 100, 10000, 0.003), 5: (8, 8, 55000, 0.006), 10: (10, 6, 60000, 0.013), 20: (12, 4, 45000, 0.016)},
            "dpd": {1: (8, 60, 8000, 0.002), 5: (8, 8, 16000, 0.004), 10: (10, 6, 16000, 0.007), 20: (10, 4, 20000, 0.009)}}
 SRD_BOX, SRD_CHAINS, SRD_STEPS = 12, 4, 200000  # of ten vertices
@@ -204,10 +207,10 @@ def fill(verdict, pair, systematic=0.0, **options):
     return verdict
 
 
-def chaos(rate, step):
-    """(eta, D) of Lowe and Andersen's fluid of density 3 in molecular chaos."""
-    d = 9.0 / (2.0 * math.pi * 3.0 * rate)
-    return 3.0 * (0.625 * d - 0.5 * step + math.pi * 3.0 * rate / 75.0), d - 0.5 * step
+def chaos(rate, step, density=3.0):
+    """(eta, D) of Lowe and Andersen's fluid in molecular chaos."""
+    d = 9.0 / (2.0 * math.pi * density * rate)
+    return density * (0.625 * d - 0.5 * step + math.pi * density * rate / 75.0), d - 0.5 * step
 
 
 def free_verdicts(results):
@@ -226,6 +229,35 @@ def free_verdicts(results):
             allowed = (0.15 if rate == 1.0 else 0.05) * expected_value
             found.append(fill(Verdict(f"media.{name}.gamma{rate:g}", statement, expected_value,
                                       "molecular chaos, known to 15 % at Γ = 1", allowed, **paper), pair, allowed))
+    return found
+
+
+def cold_verdicts(results):
+    """The slides: at one Γ the viscosity does not depend on the temperature, and D is proportional to it. In units of a0 and 1/Γ the temperature of
+    a fluid is 1/Γ², its viscosity ν/Γ and its diffusion D/Γ. So Γ = 10 and 30 are one fluid at two temperatures, a factor of nine apart.
+    D has half a step added, which a finite step takes off."""
+    warm, cold = known("la", results), known("la30", results)
+    found = []
+    for name, of, wanted in (("viscosity", lambda one, step: (one.eta / 3.0, one.eta_error / 3.0), 0.0), ("free", lambda one, step: (one.free + 0.5 * step, one.free_error), 1.0)):
+        pair = None
+        if warm is not None and cold is not None:
+            value, error = ratio(of(warm, FLUIDS["la"].step), of(cold, FLUIDS["la30"].step))
+            pair = math.log(3.0 * value) / math.log(9.0), error / value / math.log(9.0)
+        found.append(fill(Verdict(f"media.cold.{name}", f"exponent of {'ν' if name == 'viscosity' else 'D'} against the temperature at equal Γ, Lowe-Andersen, Γ = 10 and 30",
+                                  wanted, "the slides (28)", 0.0, kind="paper", reason="the colder, the more often pairs meet again before they part"), pair))
+    return found
+
+
+def density_verdicts(results):
+    """The Schmidt number at other densities, against molecular chaos: the more partners a particle has, the seldomer it meets the same again."""
+    found = []
+    for density in (1, 6, 10):
+        key = f"la-rho{density}"
+        fluid, (eta, d) = known(key, results), chaos(3.0, FLUIDS[key].step, density)
+        pair = ratio((fluid.eta, fluid.eta_error), (density * fluid.free, density * fluid.free_error)) if fluid is not None else None
+        allowed = 0.05 * eta / d / density
+        found.append(fill(Verdict(f"media.schmidt.rho{density}", f"Schmidt number η/ρD of {FLUIDS[key].title}", eta / d / density, "molecular chaos, 5 %", allowed,
+                                  kind="paper", reason="pairs meet again before they part"), pair, allowed))
     return found
 
 
@@ -314,6 +346,9 @@ def warren(density):
     return density - 0.101 * 40.0 * density ** 2 + 0.202 * 25.0 * 0.75 ** 4 * (density ** 3 - 4.16 * density ** 2 + 18.0)
 
 
+SLOPE = (-1.5, 2.0, -0.5)  # of a parabola through three points, at the first
+
+
 def state_verdicts(results):
     """The pressure of DPD, (p - rho)/(a rho^2), against Groot and Warren's 0.101; many-body DPD against Warren's fit."""
     found = []
@@ -326,6 +361,13 @@ def state_verdicts(results):
         found.append(fill(Verdict(f"media.state.rho{density}", f"(p − ρkT)/aρ² of DPD, ρ = {density}, a = 25", 0.101,
                                   "Groot and Warren (1997), a fit for high densities: 1 %", 0.001, kind="paper",
                                   reason="the fit is one of high densities"), pair, 0.001))
+    pair = None
+    if all(name in results for name in ("dpd", "dpd-rho4", "dpd-rho5")):  # a parabola through three densities
+        pressures = [mean_of(results[name].table("pressure")["pressure"], 0.2) for name in ("dpd", "dpd-rho4", "dpd-rho5")]
+        pair = (sum(weight * p for weight, (p, _) in zip(SLOPE, pressures)) + SLOPE[0] / 125.0 - SLOPE[0] / 216.0,
+                math.hypot(*(weight * error for weight, (_, error) in zip(SLOPE, pressures))))
+    found.append(fill(Verdict("media.state.compressibility", "(1/kT) dp/dρ of DPD at ρ = 3, a = 25", 16.0, "that of water, for which aρ = 75 kT is chosen; 1 %", 0.16,
+                              kind="paper"), pair, 0.16))
     pair, density = None, 7
     if "many-rho7" in results:
         value, error = mean_of(results["many-rho7"].table("pressure")["pressure"], 0.3)
@@ -337,7 +379,7 @@ def state_verdicts(results):
 
 
 def verdicts(results):
-    return free_verdicts(results) + limit_verdicts(results) + isotropy_verdicts(results) + chain_verdicts(results) + srd_verdicts(results) + state_verdicts(results)
+    return free_verdicts(results) + cold_verdicts(results) + density_verdicts(results) + limit_verdicts(results) + isotropy_verdicts(results) + chain_verdicts(results) + srd_verdicts(results) + state_verdicts(results)
 
 
 # --- cost -------------------------------------------------------------------------------------------------------------
