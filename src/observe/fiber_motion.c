@@ -1,4 +1,5 @@
-/* The motion of one fiber between two times. */
+/* The motion of one fiber between two times: the plain way, a point at a time, and the fast one, by columns of doubles.
+ * Both make the same bits. */
 #include <math.h>
 
 #include "observe/dynamics.h"
@@ -25,7 +26,7 @@ static void displacements(const struct fiber_kind *kind, const struct point *ori
 }
 
 /* Squared distance of 0 from the segment (a, b); a and b may coincide. */
-static double squared_distance_to_segment(struct vec3 a, struct vec3 b)
+static inline double squared_distance_to_segment(struct vec3 a, struct vec3 b)
 {
   const struct vec3 e = vec3_sub(b, a);
   const double along = -vec3_dot(a, e), squared = vec3_dot(e, e);
@@ -35,6 +36,12 @@ static double squared_distance_to_segment(struct vec3 a, struct vec3 b)
     return vec3_dot(b, b);
   const struct vec3 nearest = vec3_add_scaled(a, along / squared, e);
   return vec3_dot(nearest, nearest);
+}
+
+/* How far from a place a bond may begin that comes nearer than its nearest vertex. */
+static double reach_of(double nearest, double longest)
+{
+  return sqrt(nearest) + longest;
 }
 
 /* A fiber's contour at the origin, and the length of its longest bond. */
@@ -68,7 +75,7 @@ static double distance_from(const struct contour *c, struct point place, struct 
     nearest = fmin(nearest, vec3_dot(relative[j], relative[j]));
   }
   *vertex = nearest;
-  const double reach = sqrt(nearest) + c->longest;
+  const double reach = reach_of(nearest, c->longest);
   double contour = nearest;
   for (uint32_t j = 0; j + 1 < n; j++)
     if (vec3_dot(relative[j], relative[j]) <= reach * reach)
@@ -90,12 +97,17 @@ static void tube(const struct fiber_kind *kind, const struct point *origin, cons
   motion->tube_third = sum / vertices;
 }
 
+static double axis_weight(const struct fiber_kind *kind, uint32_t j)
+{
+  return j - 0.5 * (kind->vertices - 1);
+}
+
 /* The regression axis: sum of (j - (n - 1)/2) r_j, the slope of a line through the vertices but for a factor. */
 static struct vec3 regression_axis(const struct fiber_kind *kind, const struct point *position)
 {
   struct vec3 axis = {0, 0, 0};
   for (uint32_t j = 1; j < kind->vertices; j++)
-    axis = vec3_add_scaled(axis, j - 0.5 * (kind->vertices - 1), point_difference(position[j], position[0]));
+    axis = vec3_add_scaled(axis, axis_weight(kind, j), point_difference(position[j], position[0]));
   return axis;
 }
 
@@ -105,25 +117,200 @@ static double cosine_between(struct vec3 a, struct vec3 b)
   return squares > 0.0 ? vec3_dot(a, b) / sqrt(squares) : 0.0;
 }
 
-static void end_to_end(const struct fiber_kind *kind, const struct point *origin, const struct point *now,
-                       struct fiber_motion *motion)
+/* R(0) and R(t). */
+static void set_end_to_end(struct vec3 then, struct vec3 here, struct fiber_motion *motion)
 {
-  const uint32_t last = kind->vertices - 1;
-  const struct vec3 then = point_difference(origin[last], origin[0]), here = point_difference(now[last], now[0]);
   const struct vec3 change = vec3_sub(here, then);
   motion->turned = 0.5 * vec3_dot(change, change);
   motion->square = 0.5 * (vec3_dot(then, then) + vec3_dot(here, here));
   motion->cosine = cosine_between(then, here);
+}
+
+static void end_to_end(const struct fiber_kind *kind, const struct point *origin, const struct point *now,
+                       struct fiber_motion *motion)
+{
+  const uint32_t last = kind->vertices - 1;
+  set_end_to_end(point_difference(origin[last], origin[0]), point_difference(now[last], now[0]), motion);
   motion->axis = cosine_between(regression_axis(kind, origin), regression_axis(kind, now));
 }
 
-struct fiber_motion fiber_motion(const struct fiber_kind *kind, const struct point *origin, const struct point *now,
-                                 struct vec3 drift, struct vec3 *scratch)
+struct fiber_motion fiber_motion_plain(const struct fiber_kind *kind, const struct point *origin,
+                                       const struct point *now, struct vec3 drift, struct vec3 *scratch)
 {
   struct fiber_motion motion = {.vertices = 0.0};
   displacements(kind, origin, now, drift, &motion);
   tube(kind, origin, now, drift, scratch, &motion);
   if (!kind->ring)
     end_to_end(kind, origin, now, &motion);
+  return motion;
+}
+
+/* --- by columns -------------------------------------------------------------------------------------------------- */
+
+/* Places less than LATTICE_NEAR from the fiber's first vertex at the origin are multiples of the lattice unit with at
+ * most 52 bits. So their differences are exact, and are those of the points. */
+enum { LANES = 4, MOST = 256 };
+
+/* a0, from the first vertex at the origin. */
+struct columns {
+  double x[MOST], y[MOST], z[MOST];
+};
+
+static struct vec3 at(const struct columns *c, uint32_t j)
+{
+  return (struct vec3){c->x[j], c->y[j], c->z[j]};
+}
+
+/* False if a place is too far. */
+static bool fill(const struct point *from, const struct point *place, uint32_t n, struct columns *c)
+{
+  const struct point zero = *from;
+  uint64_t far = 0;
+  for (uint32_t j = 0; j < n; j++) {
+    const struct point d = point_minus(place[j], zero);
+    far |= lattice_beyond(d.x) | lattice_beyond(d.y) | lattice_beyond(d.z);
+    c->x[j] = lattice_near(d.x) * LATTICE_UNIT;
+    c->y[j] = lattice_near(d.y) * LATTICE_UNIT;
+    c->z[j] = lattice_near(d.z) * LATTICE_UNIT;
+  }
+  return far == 0;
+}
+
+/* What makes n a multiple of LANES is infinitely far, and so never the nearest. */
+static uint32_t pad(struct columns *c, uint32_t n)
+{
+  uint32_t padded = n;
+  for (; padded % LANES != 0; padded++) {
+    c->x[padded] = INFINITY;
+    c->y[padded] = c->z[padded] = 0.0;
+  }
+  return padded;
+}
+
+static void column_displacements(const struct fiber_kind *kind, const struct columns *origin, const struct columns *now,
+                                 struct vec3 drift, struct fiber_motion *motion)
+{
+  const uint32_t n = kind->vertices;
+  struct vec3 sum = {0, 0, 0};
+  double squares = 0.0;
+  for (uint32_t j = 0; j < n; j++) {
+    const struct vec3 d = vec3_sub(vec3_sub(at(now, j), at(origin, j)), drift);
+    sum = vec3_add(sum, d);
+    squares += vec3_dot(d, d);
+  }
+  const uint32_t middle = dynamics_middle(kind);
+  const struct vec3 d = vec3_sub(vec3_sub(at(now, middle), at(origin, middle)), drift);
+  motion->middle = vec3_dot(d, d);
+  motion->moved = vec3_scale(1.0 / n, sum);
+  motion->vertices = squares / n;
+  motion->center = vec3_dot(motion->moved, motion->moved);
+}
+
+/* The contour at the origin, padded, and the length of its longest bond. */
+struct column_contour {
+  const struct fiber_kind *kind;
+  const struct columns *origin;
+  uint32_t padded;
+  struct vec3 drift;
+  double longest;
+};
+
+static struct column_contour column_contour_of(const struct fiber_kind *kind, const struct columns *o, uint32_t padded,
+                                               struct vec3 drift)
+{
+  double square[MOST], longest = 0.0;
+  for (uint32_t j = 0; j + 1 < kind->vertices; j++) {
+    const double x = o->x[j + 1] - o->x[j], y = o->y[j + 1] - o->y[j], z = o->z[j + 1] - o->z[j];
+    square[j] = x * x + y * y + z * z;
+  }
+  for (uint32_t j = 0; j + 1 < kind->vertices; j++)
+    longest = square[j] > longest ? square[j] : longest;
+  return (struct column_contour){kind, o, padded, drift, sqrt(longest)};
+}
+
+/* Where vertex j was, from a place. */
+static struct vec3 column_relative(const struct column_contour *c, struct vec3 place, uint32_t j)
+{
+  return vec3_add(vec3_sub(at(c->origin, j), place), c->drift);
+}
+
+/* fmin of two numbers. */
+static double least_of(double a, double b)
+{
+  return a < b ? a : b;
+}
+
+/* Squared distances of a place from all vertices, and the least of them. */
+static double column_squares(const struct column_contour *c, struct vec3 place, double *restrict square)
+{
+  const struct columns *o = c->origin;
+  const struct vec3 drift = c->drift;
+  double least[LANES] = {INFINITY, INFINITY, INFINITY, INFINITY};
+  for (uint32_t j = 0; j < c->padded; j++) {
+    const double x = o->x[j] - place.x + drift.x, y = o->y[j] - place.y + drift.y, z = o->z[j] - place.z + drift.z;
+    square[j] = x * x + y * y + z * z;
+  }
+  for (uint32_t j = 0; j < c->padded; j += LANES)
+    for (uint32_t l = 0; l < LANES; l++)
+      least[l] = least_of(square[j + l], least[l]);
+  return least_of(least_of(least[0], least[1]), least_of(least[2], least[3]));
+}
+
+/* distance_from. */
+static double column_distance_from(const struct column_contour *c, struct vec3 place, double *vertex)
+{
+  const uint32_t n = c->kind->vertices;
+  double square[MOST];
+  const double nearest = column_squares(c, place, square), reach = reach_of(nearest, c->longest), most = reach * reach;
+  double contour = nearest;
+  for (uint32_t j = 0; j + 1 < n; j++)
+    if (square[j] <= most)
+      contour = least_of(contour,
+                         squared_distance_to_segment(column_relative(c, place, j), column_relative(c, place, j + 1)));
+  if (c->kind->ring)
+    contour =
+        least_of(contour, squared_distance_to_segment(column_relative(c, place, n - 1), column_relative(c, place, 0)));
+  *vertex = nearest;
+  return contour;
+}
+
+static void column_tube(const struct column_contour *c, const struct columns *now, struct fiber_motion *motion)
+{
+  const uint32_t vertices = dynamics_third(c->kind);
+  double sum = 0.0, unused;
+  motion->tube_contour = column_distance_from(c, at(now, dynamics_middle(c->kind)), &motion->tube);
+  for (uint32_t k = 0; k < vertices; k++)
+    sum += column_distance_from(c, at(now, dynamics_third_vertex(c->kind, k)), &unused);
+  motion->tube_third = sum / vertices;
+}
+
+static void column_end_to_end(const struct fiber_kind *kind, const struct columns *origin, const struct columns *now,
+                              struct fiber_motion *motion)
+{
+  const uint32_t last = kind->vertices - 1;
+  const struct vec3 zero = at(now, 0), then = at(origin, last), here = vec3_sub(at(now, last), zero);
+  struct vec3 axis = {0, 0, 0}, axis_now = {0, 0, 0};
+  for (uint32_t j = 1; j <= last; j++) {
+    const double weight = axis_weight(kind, j);
+    axis = vec3_add_scaled(axis, weight, at(origin, j));
+    axis_now = vec3_add_scaled(axis_now, weight, vec3_sub(at(now, j), zero));
+  }
+  set_end_to_end(then, here, motion);
+  motion->axis = cosine_between(axis, axis_now);
+}
+
+struct fiber_motion fiber_motion(const struct fiber_kind *kind, const struct point *origin, const struct point *now,
+                                 struct vec3 drift, struct vec3 *scratch)
+{
+  const uint32_t n = kind->vertices;
+  struct fiber_motion motion = {.vertices = 0.0};
+  struct columns before, here;
+  if (n > MOST || !fill(origin, origin, n, &before) || !fill(origin, now, n, &here))
+    return fiber_motion_plain(kind, origin, now, drift, scratch);
+  const struct column_contour contour = column_contour_of(kind, &before, pad(&before, n), drift);
+  column_displacements(kind, &before, &here, drift, &motion);
+  column_tube(&contour, &here, &motion);
+  if (!kind->ring)
+    column_end_to_end(kind, &before, &here, &motion);
   return motion;
 }
