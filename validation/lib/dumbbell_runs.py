@@ -26,19 +26,20 @@ SCENE = """box: [{box}]
 dimensions: 2
 time_step: {dt}
 solvent: {{per_cell: {n}, collision_interval: {dt}, rule: {rule}, {thermostat}{force}}}
-dumbbells: {{spring: {spring}{potential}}}
+dumbbells: {{spring: {spring}{potential}{fraction}}}
 {boundary}
 observe: {{from: {start}, profile: {{every: {sample}, slabs: {slabs}}}, stress: {{every: {rows}}}, dumbbells: {{every: {sample}}}}}
 """
 
 
 def make(name, spring, boundary, steps, transient, box=(SIDE, SIDE), rule="at-a", dt=DT, potential=False, force=0.0, rows=None, slabs=None,
-         sample=None):
+         sample=None, fraction=1.0):
     start = round(transient / dt)
     rows = rows or max(1, steps // 128)
     start += -start % rows
     text = SCENE.format(box=f"{box[0]}, {box[1]}, 1", dt=dt, n=N, rule=rule, thermostat=RULES[rule], force=f", acceleration: [{force}, 0, 0]" if force else "",
-                        spring=spring, potential=f", depth: {POTENTIAL[0]}, range: {POTENTIAL[1]}" if potential else "", boundary=boundary,
+                        spring=spring, potential=f", depth: {POTENTIAL[0]}, range: {POTENTIAL[1]}" if potential else "",
+                        fraction=f", fraction: {fraction}" if fraction < 1.0 else "", boundary=boundary,
                         start=start, sample=sample or round(0.5 / dt), slabs=slabs or box[1], rows=rows)
     return Run(name, scene=text, steps=steps, hours=steps * box[0] * box[1] * N * COST[rule] / 3600.0)
 
@@ -52,6 +53,11 @@ def sheared(spring, steps, rule="at-a", dt=DT, rate=None, name=None):
     rate = rate or RATES[spring]
     return make(name or f"shear-K{spring:g}-{key(rule)}" + (f"-dt{dt:g}" if dt != DT else ""), spring, f"shear: {{rate: {rate}}}", steps,
                 5.0 * relaxation(spring, dt), rule=rule, dt=dt)
+
+
+def mixed(fraction, steps):
+    """K = 1; the other particles are points."""
+    return make(f"mixed-K1-{fraction:g}", 1, f"shear: {{rate: {RATES[1]}}}", steps, 5.0 * relaxation(1), fraction=fraction)
 
 
 def weissenberg(number, steps):
@@ -110,7 +116,7 @@ def campaign():
     found += [oscillating(word, periods, spring=5) for word, periods in (("fast", 64), ("fivefold", 96))]
     found += [walls(length, 300000) for length in (10, 20, 40)] + [walls(20, 300000, potential=True)]
     found += [oscillating_walls(word, length, periods) for word, length, periods in (("slow", 10, 32), ("slow", 20, 32), ("fast", 20, 64))]
-    found += [still(200000), still(200000, potential=True), poiseuille(300000)]
+    found += [still(200000), still(200000, potential=True), poiseuille(300000), mixed(0.5, 100000)]
     for run in found:
         run.goals, run.priority = ((run.steps // 4, 0),), 1  # all coarse before one is fine
     return found

@@ -91,6 +91,14 @@ def linear_verdict(results):
     return verdict
 
 
+def mixture_verdict(results):
+    """Half of the particles in dumbbells: half of the springs, each of which relaxes as before."""
+    verdict = Verdict("dumbbells.mixture", f"η_p with half of the particles in dumbbells over that with all, K 1, {WORDS}", 0.5, "n_d kT/ω_H with half of n_d; ω_H, which is that of a fluid of points, known to 5 %", 0.025)
+    box = fluid.sheared(results, 1)
+    half = fluid.Sheared(results["mixed-K1-0.5"]) if "mixed-K1-0.5" in results else None
+    return filled(verdict, box and half and fluid.quotient(half.springs, box.springs), systematic=0.025)
+
+
 def step_verdict(results, dt):
     """V6."""
     verdict = Verdict(f"dumbbells.dt{dt:g}", f"η dt_c at dt_c {dt:g} over that at {DT:g}, K 1, MPC-AT-a", 1.0, "Tao et al.: η is linear in 1/dt", 0.05, kind="paper",
@@ -416,7 +424,7 @@ def evaluate(results, tier):
     verdicts += [wall_verdict(results, name) for name in gaps] + [applied_verdict(results, name) for name in gaps]
     verdicts += density_verdicts(results, False) + density_verdicts(results, True)
     if not quick:
-        verdicts += [*(crossing_verdict(results, spring) for spring in CROSSINGS), amplitude_verdict(results), *sheared_density_verdicts(results)]
+        verdicts += [*(crossing_verdict(results, spring) for spring in CROSSINGS), amplitude_verdict(results), mixture_verdict(results), *sheared_density_verdicts(results)]
         verdicts += [linear_verdict(results), rigid_verdict(results), *thickening_verdicts(results), poiseuille_verdict(results)]
         for number in (0.3, 2, 5, 10):
             name = f"wi-{number:g}"
