@@ -9,7 +9,18 @@
 static void zero_and_aligned(void **unused)
 {
   (void)unused;
-  const size_t sizes[] = {0, 1, 63, 64, 65, 4096, 100000, (size_t)16 << 20, ((size_t)16 << 20) + 1, (size_t)40 << 20};
+  const size_t sizes[] = {0,
+                          1,
+                          63,
+                          64,
+                          65,
+                          4096,
+                          100000,
+                          (size_t)1 << 20,
+                          (size_t)3 << 20,
+                          (size_t)16 << 20,
+                          ((size_t)16 << 20) + 1,
+                          (size_t)40 << 20};
   for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++)
     for (int again = 0; again < 2; again++) { /* the second time in what the first left behind */
       unsigned char *p = memory_alloc(sizes[k], 1);
@@ -20,6 +31,19 @@ static void zero_and_aligned(void **unused)
       memset(p, 0xff, sizes[k]);
       free(p);
     }
+}
+
+/* Arrays of half a large page and more begin with one: else none of them is ever in a large page. */
+static void large_ones_begin_with_a_large_page(void **unused)
+{
+  (void)unused;
+  const size_t page = (size_t)2 << 20, sizes[] = {page / 2, page - 1, page, page + page / 2, 9 * page + 1};
+  for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++) {
+    void *p = memory_alloc(sizes[k], 1);
+    assert_non_null(p);
+    assert_true((uintptr_t)p % page == 0);
+    free(p);
+  }
 }
 
 static void too_much_is_nothing(void **unused)
@@ -59,6 +83,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(zero_and_aligned),
+      cmocka_unit_test(large_ones_begin_with_a_large_page),
       cmocka_unit_test(too_much_is_nothing),
       cmocka_unit_test(lists_double_and_keep),
   };

@@ -120,6 +120,13 @@ static struct totals check_lists(const struct test_run *r, uint64_t seed)
   return sum;
 }
 
+/* Where a fiber of these numbers is: in the box, or further away than a byte can count boxes. */
+static struct point taken_far(const struct model *m, uint32_t fiber, struct point p)
+{
+  const int32_t far[3][3] = {{0, 0, 0}, {150, -170, 300}, {-129, 128, 1}};
+  return point_image(p, far[fiber % 3], &m->box);
+}
+
 /* Bonds of all lengths up to half the shortest edge, rings and open fibers, in images far away. */
 static struct test_run random_bonds(int lx, int ly, int lz, uint32_t count, struct dice *d)
 {
@@ -134,8 +141,10 @@ static struct test_run random_bonds(int lx, int ly, int lz, uint32_t count, stru
   const double half = 0.5 * box_shortest_edge(&r.model.box), longest = fmin(half, 1.6);
   for (uint32_t v = 0; v < r.state.vertices; v++) {
     const uint32_t first = r.model.fiber_first[r.model.fiber_of[v]];
-    if (v == first)
+    if (v == first) {
+      r.state.position[v] = taken_far(&r.model, r.model.fiber_of[v], r.state.position[v]);
       continue;
+    }
     const bool ring = r.model.kind[r.model.fiber_kind_of[r.model.fiber_of[v]]].ring;
     double length = dice_between(d, 0.0, ring ? 0.5 : 0.999) * longest;
     r.state.position[v] =
