@@ -12,6 +12,12 @@
  * of 164,000 particles, fill 400 small pages, more than a processor remembers the places of (docs/speed.md). */
 #define LARGE_ARRAY (LARGE_PAGE / 2)
 
+/* The bytes of an array's large pages; a rest of less than half a page is in small ones. */
+static uint64_t in_large_pages(uint64_t bytes)
+{
+  return bytes < LARGE_ARRAY ? 0 : (bytes + LARGE_PAGE / 2) / LARGE_PAGE * LARGE_PAGE;
+}
+
 void *memory_alloc(size_t count, size_t size)
 {
   if (size > 0 && count > (SIZE_MAX - LARGE_PAGE) / size)
@@ -22,9 +28,8 @@ void *memory_alloc(size_t count, size_t size)
   if (!memory)
     return NULL;
 #ifdef MADV_HUGEPAGE
-  /* a wish; a rest of less than half a page is in small ones */
   if (edge == LARGE_PAGE)
-    (void)madvise(memory, (needed + LARGE_PAGE / 2) / LARGE_PAGE * LARGE_PAGE, MADV_HUGEPAGE);
+    (void)madvise(memory, in_large_pages(needed), MADV_HUGEPAGE); /* a wish */
 #endif
   memset(memory, 0, needed);
   return memory;
@@ -83,10 +88,16 @@ bool memory_to_spare(size_t bytes)
   return room != MAP_FAILED && munmap(room, bytes) == 0;
 }
 
+uint64_t memory_taken(uint64_t bytes)
+{
+  const uint64_t large = in_large_pages(bytes);
+  return large > bytes ? large : bytes;
+}
+
 uint64_t memory_bytes(const struct memory_need *need, size_t needs)
 {
   uint64_t bytes = 0;
   for (size_t k = 0; k < needs; k++)
-    bytes += (uint64_t)need[k].count * need[k].size;
+    bytes += memory_taken((uint64_t)need[k].count * need[k].size);
   return bytes;
 }

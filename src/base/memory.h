@@ -38,7 +38,10 @@ void memory_release(const struct memory_need *need, size_t needs);
  * called that does not bear to be refused memory. */
 bool memory_to_spare(size_t bytes);
 
-/* Bytes of all of them. */
+/* Bytes that an array of so many bytes takes: large pages are whole. */
+uint64_t memory_taken(uint64_t bytes);
+
+/* Bytes that all of them take. */
 uint64_t memory_bytes(const struct memory_need *need, size_t needs);
 
 #endif

@@ -81,8 +81,9 @@ uint64_t contact_bytes(const struct model *m)
   struct contact c = {0};
   struct memory_need need[NEEDS];
   list_needs(&c, m, false, need);
-  const size_t per_bond = sizeof(struct reference_position) + 3 * sizeof(uint32_t) + sizeof(struct grid_row);
-  return memory_bytes(need, NEEDS) + (crossing_rule_of(m)->forbids ? (uint64_t)m->bonds * per_bond : 0);
+  const uint64_t bonds = crossing_rule_of(m)->forbids ? m->bonds : 0;
+  return memory_bytes(need, NEEDS) + memory_taken(bonds * sizeof(struct reference_position)) +
+         3 * memory_taken(bonds * sizeof(uint32_t)) + memory_taken(bonds * sizeof(struct grid_row));
 }
 
 /* --- drift ------------------------------------------------------------------------------------------------------- */
