@@ -337,6 +337,16 @@ INLINE uint64_t negatives_of_64(const uint32_t *x)
   return all;
 }
 
+/* 0, 1, ... LANES - 1 */
+INLINE words lane_numbers(void)
+{
+  words x;
+  UNROLL
+  for (int k = 0; k < LANES; k++)
+    x[k] = (uint64_t)k;
+  return x;
+}
+
 /* Writes the low halves of those x whose mask is all ones from list[n] on, in the order of lanes, and returns the
  * length that the list has then. There is room for LANES of them. */
 INLINE uint32_t append(uint32_t *list, uint32_t n, words x, words mask)
@@ -344,6 +354,14 @@ INLINE uint32_t append(uint32_t *list, uint32_t n, words x, words mask)
 #if defined HAS_512
   const __mmask8 taken = _mm512_movepi64_mask((__m512i)mask);
   store_narrow(&list[n], (words)_mm512_maskz_compress_epi64(taken, (__m512i)x));
+  return n + (uint32_t)__builtin_popcount(taken);
+#elif defined HAS_256 /* a row has the places of the low halves that are taken */
+  static const uint32_t places[16][4] = {{0},          {0},          {2},          {0, 2},       {4},    {0, 4},
+                                         {2, 4},       {0, 2, 4},    {6},          {0, 6},       {2, 6}, {0, 2, 6},
+                                         {4, 6},       {0, 4, 6},    {2, 4, 6},    {0, 2, 4, 6}};
+  const uint32_t taken = (uint32_t)_mm256_movemask_pd((__m256d)mask);
+  const __m256i row = _mm256_castsi128_si256(_mm_loadu_si128((const __m128i *)places[taken]));
+  _mm_storeu_si128((__m128i *)&list[n], _mm256_castsi256_si128(_mm256_permutevar8x32_epi32((__m256i)x, row)));
   return n + (uint32_t)__builtin_popcount(taken);
 #else
   UNROLL

@@ -101,7 +101,7 @@ bool encounters_find(const struct model *model, struct medium *medium, uint64_t 
 {
   struct choosing how = {bath_draw_of(model->medium.draw), bath_weight_of(model->medium.weight),
                          model->medium.rate * model->time_step, step};
-  const struct near_search search = {model, medium, list_pairs, &how};
+  const struct near_search search = {.model = model, .medium = medium, .look = list_pairs, .context = &how};
   medium->encounters = 0;
   return near_find(&search);
 }

@@ -19,6 +19,7 @@ struct near_search {
   struct medium *medium;                                                    /* members_gather has filled it */
   bool (*look)(const struct near_search *search, struct near_pairs *pairs); /* false stops the search */
   void *context;
+  bool plain; /* the plain search: the same bits, for tests */
 };
 
 /* Shows all pairs with 0 < r < 1 to `look`, each once, in no particular order. False if it did. */

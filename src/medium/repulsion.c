@@ -94,7 +94,7 @@ static bool add_pushes(const struct near_search *s, struct near_pairs *p)
 static void over_pairs(const struct model *model, struct medium *m,
                        bool (*look)(const struct near_search *, struct near_pairs *), void *context)
 {
-  const struct near_search search = {model, m, look, context};
+  const struct near_search search = {.model = model, .medium = m, .look = look, .context = context};
   near_find(&search);
 }
 
