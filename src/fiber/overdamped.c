@@ -48,16 +48,47 @@ static struct chain chain_of(const struct model *m, uint32_t fiber, double *scra
                         .tensor = scratch + 5 * (size_t)n};
 }
 
-static void gather(const struct state *state, const struct model *m, const struct vec3 *force, uint64_t step,
-                   const struct chain *c)
+/* Normals of a block of vertices, of one fiber or several. */
+struct normals {
+  uint32_t first, end;
+  double x[RANDOM_UNIFORMS], y[RANDOM_UNIFORMS], z[RANDOM_UNIFORMS];
+};
+
+static void draw_normals(const struct model *m, uint64_t step, uint32_t first, struct normals *d)
+{
+  uint32_t vertex[RANDOM_UNIFORMS];
+  const uint32_t n = m->vertices - first < RANDOM_UNIFORMS ? m->vertices - first : RANDOM_UNIFORMS;
+  for (uint32_t k = 0; k < n; k++)
+    vertex[k] = first + k;
+  random_normal_three_columns(m->seed, RANDOM_BATH_VERTEX, 0, step, vertex, n, d->x, d->y, d->z);
+  d->first = first;
+  d->end = first + n;
+}
+
+/* xi of a fiber's vertices, which come after those before. */
+static void gather_noise(const struct model *m, uint64_t step, const struct chain *c, struct normals *d)
+{
+  for (uint32_t i = 0, v = c->first; i < c->n; i += 3, v++) {
+    if (v >= d->end)
+      draw_normals(m, step, v, d);
+    c->noise[i] = d->x[v - d->first];
+    c->noise[i + 1] = d->y[v - d->first];
+    c->noise[i + 2] = d->z[v - d->first];
+  }
+}
+
+/* Forces; and places, if a tensor or tensions need them. */
+static void gather(const struct state *state, const struct model *m, const struct vec3 *force, const struct chain *c)
 {
   for (uint32_t i = 0, v = c->first; i < c->n; i += 3, v++) {
     c->force[i] = force[v].x;
     c->force[i + 1] = force[v].y;
     c->force[i + 2] = force[v].z;
-    random_normal_three(random_at(m->seed, RANDOM_BATH_VERTEX, 0, step, v), &c->noise[i]);
-    c->place[i / 3] = point_difference(state->position[v], state->position[c->first]);
   }
+  if (m->medium.tensor == TENSOR_NONE && !m->medium.inextensible)
+    return;
+  for (uint32_t k = 0; k < c->n / 3; k++)
+    c->place[k] = point_difference(state->position[c->first + k], state->position[c->first]);
 }
 
 static double vertex_mobility(const struct model *m, uint32_t vertex)
@@ -111,6 +142,16 @@ static bool couple(const struct model *m, struct chain *c, uint64_t step, struct
   return true;
 }
 
+static double largest(struct vec3 d)
+{
+  return fmax(fabs(d.x), fmax(fabs(d.y), fabs(d.z)));
+}
+
+static inline bool is_within(struct vec3 d, double limit)
+{
+  return fabs(d.x) < limit && fabs(d.y) < limit && fabs(d.z) < limit;
+}
+
 static bool move(struct state *state, const struct model *m, const struct chain *c, uint64_t step, struct fault *fault)
 {
   const double drift = vertex_mobility(m, c->first) * m->time_step, jump = sqrt(2.0 * drift);
@@ -119,15 +160,13 @@ static bool move(struct state *state, const struct model *m, const struct chain 
     const struct vec3 d = {drift * c->pull[i] + jump * c->jump[i] + m->flow.x * m->time_step,
                            drift * c->pull[i + 1] + jump * c->jump[i + 1] + m->flow.y * m->time_step,
                            drift * c->pull[i + 2] + jump * c->jump[i + 2] + m->flow.z * m->time_step};
-    const double far = fmax(fabs(d.x), fmax(fabs(d.y), fabs(d.z)));
     struct point *p = &state->position[v];
-    if (!(far < limit))
-      return fault_record(fault, FAULT_VERTEX_MOVE, step, v, far, limit);
+    if (!is_within(d, limit))
+      return fault_record(fault, FAULT_VERTEX_MOVE, step, v, largest(d), limit);
     *p = (struct point){p->x + lattice_from_a0(d.x), p->y + lattice_from_a0(d.y), p->z + lattice_from_a0(d.z)};
     const struct vec3 r = point_in_a0(*p);
-    const double away = fmax(fabs(r.x), fmax(fabs(r.y), fabs(r.z)));
-    if (!(away < reach))
-      return fault_record(fault, FAULT_VERTEX_PLACE, step, v, away, reach);
+    if (!is_within(r, reach))
+      return fault_record(fault, FAULT_VERTEX_PLACE, step, v, largest(r), reach);
   }
   return true;
 }
@@ -136,11 +175,15 @@ bool overdamped_move(struct state *state, const struct model *m, const struct ve
                      uint64_t step, struct fault *fault)
 {
   bool ok = true;
+  struct normals normals;
+  normals.first = normals.end = 0;
   for (uint32_t f = 0; ok && f < m->fibers; f++) {
     struct chain chain = chain_of(m, f, scratch);
     if (model_is_held(m, chain.first))
       continue; /* it stands still */
-    gather(state, m, force, step, &chain);
+    gather(state, m, force, &chain);
+    if (!m->medium.inextensible)
+      gather_noise(m, step, &chain, &normals);
     ok = couple(m, &chain, step, fault) && move(state, m, &chain, step, fault);
   }
   return ok;

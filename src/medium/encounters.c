@@ -5,14 +5,6 @@
 
 enum { BLOCK = NEAR_BLOCK };
 
-/* What is the same for all pairs of a step. */
-struct choosing {
-  const struct bath_draw *draw;
-  bath_weight *weigh;
-  double x; /* rate dt */
-  uint64_t step;
-};
-
 /* Columns of a block of near pairs, beside their distances. */
 struct columns {
   double rate[BLOCK], loss[BLOCK], normal[BLOCK];
@@ -59,10 +51,9 @@ static bool make_room(struct medium *m, uint32_t more)
   return true;
 }
 
-/* Lists the chosen ones of up to BLOCK near pairs. */
-static bool list_pairs(const struct near_search *s, struct near_pairs *p)
+bool encounters_list(const struct near_search *s, struct near_pairs *p)
 {
-  const struct choosing *how = s->context;
+  const struct encounter_choice *how = s->context;
   struct medium *m = s->medium;
   struct columns c;
   if (!make_room(m, p->n))
@@ -97,11 +88,16 @@ double encounters_expected(const struct model *m)
   return bath_draw_of(m->medium.draw)->chooses && chosen < 1.0 ? chosen * pairs : pairs;
 }
 
+struct encounter_choice encounters_begin(const struct model *model, struct medium *medium, uint64_t step)
+{
+  medium->encounters = 0;
+  return (struct encounter_choice){bath_draw_of(model->medium.draw), bath_weight_of(model->medium.weight),
+                                   model->medium.rate * model->time_step, step};
+}
+
 bool encounters_find(const struct model *model, struct medium *medium, uint64_t step)
 {
-  struct choosing how = {bath_draw_of(model->medium.draw), bath_weight_of(model->medium.weight),
-                         model->medium.rate * model->time_step, step};
-  const struct near_search search = {.model = model, .medium = medium, .look = list_pairs, .context = &how};
-  medium->encounters = 0;
+  struct encounter_choice how = encounters_begin(model, medium, step);
+  const struct near_search search = {.model = model, .medium = medium, .look = encounters_list, .context = &how};
   return near_find(&search);
 }

@@ -15,7 +15,7 @@ static void list_needs(struct medium *medium, const struct model *m, struct memo
   const bool pairs = m->medium.kind == MEDIUM_PAIRS, repels = model_repels(m);
   const size_t members = pairs ? (size_t)m->solvent.particles + m->vertices : 0;
   const struct memory_need all[NEEDS] = {
-      {(void **)&medium->cell, members, sizeof *medium->cell},
+      {(void **)&medium->place, members, sizeof *medium->place},
       {(void **)&medium->first, pairs ? (size_t)box_cell_count(&m->box) + 1 : 0, sizeof *medium->first},
       {(void **)&medium->x, members, sizeof *medium->x},
       {(void **)&medium->y, members, sizeof *medium->y},
@@ -79,20 +79,40 @@ static bool act_pairs(void *room, const struct moment *now, const struct stage *
   return pairs_collide(now->state, now->model, room, now->step, now->fault);
 }
 
+static bool act_listed(void *room, const struct moment *now, const struct stage *stage)
+{
+  (void)stage;
+  pairs_act(now->state, room);
+  return true;
+}
+
+/* With kick-split, places are the same in the collision as for the forces before it: one search does for both. */
+static bool lists_with_forces(const struct model *m)
+{
+  return model_repels(m) && m->scheme == SCHEME_KICK_SPLIT;
+}
+
 typedef bool act(void *, const struct moment *, const struct stage *);
 
 static act *const baths[MEDIA] = {[MEDIUM_PRIVATE] = act_private, [MEDIUM_PAIRS] = act_pairs};
 
 void medium_plan_collision(struct plan *plan, const struct model *m, size_t room, const char *name)
 {
-  if (baths[m->medium.kind])
-    plan_append(plan, (struct stage){.name = name, .act = baths[m->medium.kind], .room = room});
+  act *const bath = lists_with_forces(m) ? act_listed : baths[m->medium.kind];
+  if (bath)
+    plan_append(plan, (struct stage){.name = name, .act = bath, .room = room});
 }
 
 static bool act_forces(void *room, const struct moment *now, const struct stage *stage)
 {
   (void)stage;
   return repulsion_forces(now->state, now->model, room, now->fault);
+}
+
+static bool act_forces_and_list(void *room, const struct moment *now, const struct stage *stage)
+{
+  (void)stage;
+  return repulsion_forces_and_encounters(now->state, now->model, room, now->step, now->fault);
 }
 
 static bool act_kick(void *room, const struct moment *now, const struct stage *stage)
@@ -104,7 +124,9 @@ static bool act_kick(void *room, const struct moment *now, const struct stage *s
 void medium_plan_forces(struct plan *plan, const struct model *m, size_t room, const char *name)
 {
   if (model_repels(m))
-    plan_append(plan, (struct stage){.name = name, .act = act_forces, .room = room});
+    plan_append(
+        plan,
+        (struct stage){.name = name, .act = lists_with_forces(m) ? act_forces_and_list : act_forces, .room = room});
 }
 
 void medium_plan_kick(struct plan *plan, const struct model *m, size_t room, double fraction, const char *name)

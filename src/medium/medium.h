@@ -36,7 +36,7 @@ struct encounter {
 struct medium {
   const struct fluid *fluid;
   uint32_t members;
-  uint32_t *cell;      /* [members] in the order of the state: particles as they stand in memory, then vertices */
+  uint32_t *place;     /* [members] of each in the order of the state: particles as they stand in memory, vertices */
   uint32_t *first;     /* [cells + 1] place of the first member of each cell */
   double *x, *y, *z;   /* [members] a0, in the box, exact */
   uint32_t *number;    /* [members] */
@@ -68,10 +68,16 @@ bool private_collide(struct state *state, const struct model *model, struct medi
 bool pairs_collide(struct state *state, const struct model *model, struct medium *medium, uint64_t step,
                    struct fault *fault);
 
+/* The same of encounters that are listed already (repulsion_forces_and_encounters), with the velocities of now. */
+void pairs_act(struct state *state, struct medium *medium);
+
 /* --- parts of pairs_collide, for tests --- */
 
 /* Fills the members' columns, sorted by cell, from the state. Particles must be in the box, and not late. */
 void members_gather(const struct state *state, const struct model *model, struct medium *medium);
+
+/* Gives the members the velocities that the state has now, in the order in memory that it had for members_gather. */
+void members_take_velocities(const struct state *state, struct medium *medium);
 
 /* Writes velocities back; particles are then in memory as the members are. */
 void members_scatter(struct state *state, const struct medium *medium);

@@ -23,8 +23,8 @@ static inline struct point vertex_at(const struct state *state, const struct box
                         lattice_fold(p.z, box->edge[2])};
 }
 
-/* The next place of a cell: first[cell] runs from the begin of the cell to that of the next. */
-static inline void put(struct medium *medium, uint32_t cell, struct point p, uint32_t number, struct mover mover)
+/* The next place of a cell: first[cell] runs from the begin of the cell to that of the next. Returns it. */
+static inline uint32_t put(struct medium *medium, uint32_t cell, struct point p, uint32_t number, struct mover mover)
 {
   const uint32_t place = medium->first[cell]++;
   medium->x[place] = (double)p.x * LATTICE_UNIT;
@@ -32,18 +32,19 @@ static inline void put(struct medium *medium, uint32_t cell, struct point p, uin
   medium->z[place] = (double)p.z * LATTICE_UNIT;
   medium->number[place] = number;
   medium->mover[place] = mover;
+  return place;
 }
 
-/* first[k] = members in cells before k */
+/* first[k] = members in cells before k; place[i] = cell of member i */
 static void count(const struct state *state, const struct box *box, struct medium *medium)
 {
   const struct solvent *s = &state->solvent;
   const uint32_t cells = (uint32_t)box_cell_count(box);
   memset(medium->first, 0, ((size_t)cells + 1) * sizeof *medium->first);
   for (uint32_t i = 0; i < s->n; i++)
-    medium->first[medium->cell[i] = cell_of(box, particle_at(s, i))]++;
+    medium->first[medium->place[i] = cell_of(box, particle_at(s, i))]++;
   for (uint32_t v = 0; v < state->vertices; v++)
-    medium->first[medium->cell[s->n + v] = cell_of(box, vertex_at(state, box, v))]++;
+    medium->first[medium->place[s->n + v] = cell_of(box, vertex_at(state, box, v))]++;
   uint32_t sum = 0;
   for (uint32_t k = 0; k <= cells; k++) {
     const uint32_t here = medium->first[k];
@@ -58,12 +59,22 @@ void members_gather(const struct state *state, const struct model *model, struct
   const struct box *box = &model->box;
   count(state, box, medium);
   for (uint32_t i = 0; i < s->n; i++)
-    put(medium, medium->cell[i], particle_at(s, i), s->id[i], (struct mover){solvent_velocity(s, i), 1.0});
+    medium->place[i] =
+        put(medium, medium->place[i], particle_at(s, i), s->id[i], (struct mover){solvent_velocity(s, i), 1.0});
   for (uint32_t v = 0; v < state->vertices; v++)
-    put(medium, medium->cell[s->n + v], vertex_at(state, box, v), s->n + v,
-        (struct mover){state->velocity[v], model->mass[v]});
+    medium->place[s->n + v] = put(medium, medium->place[s->n + v], vertex_at(state, box, v), s->n + v,
+                                  (struct mover){state->velocity[v], model->mass[v]});
   memmove(&medium->first[1], medium->first, (size_t)box_cell_count(box) * sizeof *medium->first);
   medium->first[0] = 0;
+}
+
+void members_take_velocities(const struct state *state, struct medium *medium)
+{
+  const struct solvent *s = &state->solvent;
+  for (uint32_t i = 0; i < s->n; i++)
+    medium->mover[medium->place[i]].velocity = solvent_velocity(s, i);
+  for (uint32_t v = 0; v < state->vertices; v++)
+    medium->mover[medium->place[s->n + v]].velocity = state->velocity[v];
 }
 
 void members_scatter(struct state *state, const struct medium *medium)

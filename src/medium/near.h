@@ -25,4 +25,22 @@ struct near_search {
 /* Shows all pairs with 0 < r < 1 to `look`, each once, in no particular order. False if it did. */
 bool near_find(const struct near_search *search);
 
+/* --- encounters in a search ----------------------------------------------------------------------------------------
+ */
+
+/* What is the same for all pairs of a step. */
+struct encounter_choice {
+  const struct bath_draw *draw;
+  bath_weight *weigh;
+  double x; /* rate dt */
+  uint64_t step;
+};
+
+/* Begins a step's list of encounters, empty. */
+struct encounter_choice encounters_begin(const struct model *model, struct medium *medium, uint64_t step);
+
+/* To be shown all near pairs, with that choice as the context: lists those on which the bath acts, and leaves others in
+ * `pairs`. False if memory is short. */
+bool encounters_list(const struct near_search *search, struct near_pairs *pairs);
+
 #endif

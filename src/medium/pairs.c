@@ -101,6 +101,13 @@ static void act_in_order(const struct medium *m)
   }
 }
 
+static void act_on_all(struct state *state, struct medium *medium)
+{
+  encounters_order(medium);
+  act_in_order(medium);
+  members_scatter(state, medium);
+}
+
 bool pairs_collide(struct state *state, const struct model *model, struct medium *medium, uint64_t step,
                    struct fault *fault)
 {
@@ -110,8 +117,12 @@ bool pairs_collide(struct state *state, const struct model *model, struct medium
   members_gather(state, model, medium);
   if (!encounters_find(model, medium, step))
     return fault_no_memory(fault, step);
-  encounters_order(medium);
-  act_in_order(medium);
-  members_scatter(state, medium);
+  act_on_all(state, medium);
   return true;
+}
+
+void pairs_act(struct state *state, struct medium *medium)
+{
+  members_take_velocities(state, medium);
+  act_on_all(state, medium);
 }

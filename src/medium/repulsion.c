@@ -90,12 +90,16 @@ static bool add_pushes(const struct near_search *s, struct near_pairs *p)
   return true;
 }
 
-/* Searches that always go on. */
-static void over_pairs(const struct model *model, struct medium *m,
+static bool add_pushes_and_list(const struct near_search *s, struct near_pairs *p)
+{
+  return add_pushes(s, p) && encounters_list(s, p);
+}
+
+static bool over_pairs(const struct model *model, struct medium *m,
                        bool (*look)(const struct near_search *, struct near_pairs *), void *context)
 {
   const struct near_search search = {.model = model, .medium = m, .look = look, .context = context};
-  near_find(&search);
+  return near_find(&search);
 }
 
 static void find_crowds(const struct model *model, struct medium *m)
@@ -106,28 +110,45 @@ static void find_crowds(const struct model *model, struct medium *m)
   over_pairs(model, m, add_crowd, NULL);
 }
 
-static void find_forces(const struct model *model, struct medium *m)
+/* With a choice, encounters are listed by the same search. False if memory is short for them. */
+static bool find_forces(const struct model *model, struct medium *m, struct encounter_choice *choice)
 {
   find_crowds(model, m);
   memset(m->push, 0, 3 * (size_t)m->members * sizeof *m->push);
-  over_pairs(model, m, add_pushes, NULL);
+  if (!over_pairs(model, m, choice ? add_pushes_and_list : add_pushes, choice))
+    return false;
   for (uint32_t k = 0; k < m->members; k++) {
     const int64_t *f = &m->push[3 * k];
     m->force[m->number[k]] = vec3_scale(REPULSION_UNIT, (struct vec3){(double)f[0], (double)f[1], (double)f[2]});
   }
+  return true;
 }
 
 /* --- a step --------------------------------------------------------------------------------------------------------
  */
 
-bool repulsion_forces(struct state *state, const struct model *model, struct medium *medium, struct fault *fault)
+/* Members at the places of now. */
+static bool gather_now(struct state *state, const struct model *model, struct medium *medium, struct fault *fault)
 {
   if (state->solvent_lag > 0 && !medium->fluid->stream(state, model, 0, state->solvent.n, fault))
     return false;
   state_streamed(state);
   members_gather(state, model, medium);
-  find_forces(model, medium);
   return true;
+}
+
+bool repulsion_forces(struct state *state, const struct model *model, struct medium *medium, struct fault *fault)
+{
+  return gather_now(state, model, medium, fault) && find_forces(model, medium, NULL);
+}
+
+bool repulsion_forces_and_encounters(struct state *state, const struct model *model, struct medium *medium,
+                                     uint64_t step, struct fault *fault)
+{
+  if (!gather_now(state, model, medium, fault))
+    return false;
+  struct encounter_choice choice = encounters_begin(model, medium, step);
+  return find_forces(model, medium, &choice) || fault_no_memory(fault, step);
 }
 
 void repulsion_kick(struct state *state, const struct model *model, const struct medium *medium, double fraction)
@@ -247,7 +268,7 @@ bool repulsion_measure(const struct state *state, const struct model *model, str
   if (ok) {
     members_gather(state, model, &medium);
     settle(model, &medium);
-    find_forces(model, &medium);
+    find_forces(model, &medium, NULL);
     over_pairs(model, &medium, add_sums, &summing);
     add_crowds(model, &medium, &summing);
     if (force)

@@ -23,6 +23,11 @@
  * too far. */
 bool repulsion_forces(struct state *state, const struct model *model, struct medium *medium, struct fault *fault);
 
+/* The same, and the encounters of step number `step` are listed by the same search: pairs_act acts on them while places
+ * are what they are. False if memory is short for the list, too. */
+bool repulsion_forces_and_encounters(struct state *state, const struct model *model, struct medium *medium,
+                                     uint64_t step, struct fault *fault);
+
 /* Advances the velocities of all members by fraction * dt under these forces. */
 void repulsion_kick(struct state *state, const struct model *model, const struct medium *medium, double fraction);
 
