@@ -1,7 +1,8 @@
 /* The bath of pairs: one pair exactly; which pairs are found; which are chosen; in which order. */
 #include "base/normal.h"
 #include "exact.h"
-#include "medium/medium.h"
+#include "medium/near.h"
+#include "medium/repulsion.h"
 #include "statistics.h"
 
 static struct model gas(int lx, int ly, int lz, double density, double probability)
@@ -150,6 +151,56 @@ static void every_pair_once(void **unused)
     assert_true(n > 300);
     free(found);
     free(at);
+    test_end(&r);
+  }
+}
+
+/* Pairs as they are shown, in the order in which they are. */
+struct shown {
+  uint32_t n;
+  struct {
+    uint32_t a, b;
+    double x, y, z, r;
+  } pair[200000];
+};
+
+static bool keep_pairs(const struct near_search *s, struct near_pairs *p)
+{
+  struct shown *shown = s->context;
+  for (uint32_t k = 0; k < p->n; k++, shown->n++) {
+    assert_true(shown->n < sizeof shown->pair / sizeof *shown->pair);
+    shown->pair[shown->n].a = p->a[k];
+    shown->pair[shown->n].b = p->b[k];
+    shown->pair[shown->n].x = p->x[k];
+    shown->pair[shown->n].y = p->y[k];
+    shown->pair[shown->n].z = p->z[k];
+    shown->pair[shown->n].r = p->r[k];
+  }
+  return true;
+}
+
+/* The plain search and the one that copies neighborhoods show the same pairs, to the bit and in the same order: where
+ * cells have few members, many, and more than a block or a neighborhood holds. In the first round some are at one place.
+ */
+static void plain_and_copied(void **unused)
+{
+  (void)unused;
+  static struct shown plain, copied;
+  const double density[] = {0.3, 3.0, 12.0, 30.0, 45.0};
+  for (int k = 0; k < 5; k++) {
+    struct model m = gas(3 + k % 2, 4, 3, density[k], 1.0);
+    m.seed = dice_seed(3109) + (uint64_t)k;
+    test_add_kind(&m, 3, 8)->bending = 0.0;
+    struct test_run r = test_start(m);
+    for (uint32_t v = 1; v < 5 && k == 0; v++)
+      r.state.position[v] = r.state.position[0];
+    members_gather(&r.state, &r.model, &r.work.medium);
+    plain.n = copied.n = 0;
+    assert_true(near_find(&(struct near_search){&r.model, &r.work.medium, keep_pairs, &plain, true}));
+    assert_true(near_find(&(struct near_search){&r.model, &r.work.medium, keep_pairs, &copied, false}));
+    assert_int_equal(plain.n, copied.n);
+    assert_true(plain.n > 20);
+    assert_memory_equal(plain.pair, copied.pair, plain.n * sizeof *plain.pair);
     test_end(&r);
   }
 }
@@ -336,17 +387,57 @@ static void momentum_and_flow(void **unused)
   test_end(&f);
 }
 
+static struct model repelling(int draw, int scheme)
+{
+  struct model m = gas(5, 4, 6, 3.0, 0.3);
+  m.scheme = (enum scheme)scheme;
+  m.medium.draw = (enum medium_draw)draw;
+  m.medium.repulsion = 25.0;
+  m.seed = dice_seed(3110);
+  m.crossing.forbidden = false;
+  test_add_kind(&m, 3, 6)->mass = 3.0;
+  return m;
+}
+
+/* kick-split lists encounters while it finds forces. The same steps with a search for each, to the bit: particles,
+ * vertices of another mass, all draws; and in the other schemes nothing is kept. */
+static void one_search_for_both(void **unused)
+{
+  (void)unused;
+  for (int kind = 0; kind < MEDIUM_DRAWS * SCHEMES; kind++) {
+    const int draw = kind % MEDIUM_DRAWS, scheme = kind / MEDIUM_DRAWS;
+    struct test_run r = test_start(repelling(draw, scheme)), s = test_start(repelling(draw, scheme));
+    for (int k = 0; k < 10; k++) {
+      test_steps(&r, 1);
+      for (uint32_t i = 0; i < s.work.plan[true].stages; i++) {
+        const struct stage *stage = &s.work.plan[true].stage[i];
+        const struct moment now = {&s.state, &s.model, &s.work.fault, NULL, s.state.step + 1};
+        if (stage->name && strcmp(stage->name, "collide") == 0)
+          assert_true(pairs_collide(&s.state, &s.model, &s.work.medium, now.step, now.fault));
+        else
+          assert_true(stage->act((char *)&s.work + stage->room, &now, stage));
+      }
+      s.state.step++;
+      assert_true(state_hash(&r.state) == state_hash(&s.state));
+    }
+    test_end(&r);
+    test_end(&s);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(one_pair),
       cmocka_unit_test(shardlow_in_two_halves),
       cmocka_unit_test(every_pair_once),
+      cmocka_unit_test(plain_and_copied),
       cmocka_unit_test(share_that_is_chosen),
       cmocka_unit_test(random_numbers_have_addresses),
       cmocka_unit_test(order_does_not_depend_on_the_list),
       cmocka_unit_test(order_has_no_direction),
       cmocka_unit_test(momentum_and_flow),
+      cmocka_unit_test(one_search_for_both),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
