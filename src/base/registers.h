@@ -356,9 +356,8 @@ INLINE uint32_t append(uint32_t *list, uint32_t n, words x, words mask)
   store_narrow(&list[n], (words)_mm512_maskz_compress_epi64(taken, (__m512i)x));
   return n + (uint32_t)__builtin_popcount(taken);
 #elif defined HAS_256 /* a row has the places of the low halves that are taken */
-  static const uint32_t places[16][4] = {{0},          {0},          {2},          {0, 2},       {4},    {0, 4},
-                                         {2, 4},       {0, 2, 4},    {6},          {0, 6},       {2, 6}, {0, 2, 6},
-                                         {4, 6},       {0, 4, 6},    {2, 4, 6},    {0, 2, 4, 6}};
+  static const uint32_t places[16][4] = {{0}, {0},    {2},    {0, 2},    {4},    {0, 4},    {2, 4},    {0, 2, 4},
+                                         {6}, {0, 6}, {2, 6}, {0, 2, 6}, {4, 6}, {0, 4, 6}, {2, 4, 6}, {0, 2, 4, 6}};
   const uint32_t taken = (uint32_t)_mm256_movemask_pd((__m256d)mask);
   const __m256i row = _mm256_castsi128_si256(_mm_loadu_si128((const __m128i *)places[taken]));
   _mm_storeu_si128((__m128i *)&list[n], _mm256_castsi256_si128(_mm256_permutevar8x32_epi32((__m256i)x, row)));

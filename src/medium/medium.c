@@ -124,9 +124,8 @@ static bool act_kick(void *room, const struct moment *now, const struct stage *s
 void medium_plan_forces(struct plan *plan, const struct model *m, size_t room, const char *name)
 {
   if (model_repels(m))
-    plan_append(
-        plan,
-        (struct stage){.name = name, .act = lists_with_forces(m) ? act_forces_and_list : act_forces, .room = room});
+    plan_append(plan, (struct stage){
+                          .name = name, .act = lists_with_forces(m) ? act_forces_and_list : act_forces, .room = room});
 }
 
 void medium_plan_kick(struct plan *plan, const struct model *m, size_t room, double fraction, const char *name)

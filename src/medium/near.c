@@ -190,7 +190,8 @@ static bool search_ranges(const struct near_search *s, const struct range *range
   return ok;
 }
 
-/* --- all cells ----------------------------------------------------------------------------------------------------- */
+/* --- all cells ----------------------------------------------------------------------------------------------------
+ */
 
 static bool search_cell(const struct near_search *s, int x, int y, int z, struct around *around, struct near *near)
 {

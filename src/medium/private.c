@@ -1,5 +1,5 @@
-/* Langevin and Andersen: each vertex has a bath of its own, which moves with the flow. Vertices are worked on in blocks,
- * so that their random numbers vectorise. */
+/* Langevin and Andersen: each vertex has a bath of its own, which moves with the flow. Vertices are worked on in
+ * blocks, so that their random numbers vectorise. */
 #include "base/normal.h"
 #include "medium/medium.h"
 
@@ -13,7 +13,8 @@ struct acting {
 };
 
 /* Those of vertices first .. first + n - 1 on which the bath acts. */
-static uint32_t choose(const struct model *model, const struct acting *how, uint32_t first, uint32_t n, uint32_t *vertex)
+static uint32_t choose(const struct model *model, const struct acting *how, uint32_t first, uint32_t n,
+                       uint32_t *vertex)
 {
   uint32_t word[4][BLOCK], *columns[4] = {word[0], word[1], word[2], word[3]}, chosen = 0;
   for (uint32_t k = 0; k < n; k++)
@@ -49,7 +50,8 @@ bool private_collide(struct state *state, const struct model *model, struct medi
                      struct fault *fault)
 {
   (void)medium, (void)fault;
-  struct acting how = {.draw = bath_draw_of(model->medium.draw), .x = model->medium.rate * model->time_step, .step = step};
+  struct acting how = {
+      .draw = bath_draw_of(model->medium.draw), .x = model->medium.rate * model->time_step, .step = step};
   uint32_t vertex[BLOCK];
   how.draw->lose(&how.x, 1, &how.loss);
   for (uint32_t first = 0; first < state->vertices; first += BLOCK) {

@@ -180,8 +180,7 @@ static bool keep_pairs(const struct near_search *s, struct near_pairs *p)
 }
 
 /* The plain search and the one that copies neighborhoods show the same pairs, to the bit and in the same order: where
- * cells have few members, many, and more than a block or a neighborhood holds. In the first round some are at one place.
- */
+ * cells have few members, many, and more than a block or a neighborhood holds. Some are at one place once. */
 static void plain_and_copied(void **unused)
 {
   (void)unused;
