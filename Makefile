@@ -245,6 +245,7 @@ define INSTALLED
 755 $(BUILD)/uncross bin/uncross
 $(foreach p,$(OUTER),755 tools/$(p) libexec/uncross/$(p)
 )
+644 tools/uncross_place.py libexec/uncross/uncross_place.py
 644 include/uncross.h include/uncross.h
 755 $(BUILD)/lib/$(SONAME) @LIB@/$(SONAME)
 link $(SONAME) @LIB@/libuncross.so

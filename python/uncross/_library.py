@@ -21,14 +21,18 @@ def declarations(header):
 
 
 def open_library(ffi, name):
-    """$UNCROSS_LIBRARY, or the library of the prefix that this package is installed in, or the system's."""
+    """$UNCROSS_LIBRARY; or the first that can be loaded of the libraries of the prefix that this package is installed in, whatever its
+    LIBDIR, and the system's."""
     chosen = os.environ.get("UNCROSS_LIBRARY")
-    beside = HERE.parents[2] / name
-    try:
-        return ffi.dlopen(chosen or (str(beside) if beside.exists() else name))
-    except OSError as why:
-        raise ImportError(f"uncross needs the library {name}, which `make install` or the package lib{name[3:].replace('.so.', '')} installs; "
-                          f"UNCROSS_LIBRARY may name it ({why})") from None
+    prefix = HERE.parents[3]
+    beside = [str(path) for below in ("lib", "lib*", "lib*/*") for path in sorted(prefix.glob(f"{below}/{name}"))]
+    for place in [chosen] if chosen else [*beside, name]:
+        try:
+            return ffi.dlopen(place)
+        except OSError as error:
+            why = error
+    raise ImportError(f"uncross needs the library {name}, which `make install` or the package lib{name[3:].replace('.so.', '')} installs; "
+                      f"UNCROSS_LIBRARY may name it ({why})")
 
 
 HEADER = (HERE / "uncross.h").read_text(encoding="ascii")

@@ -93,7 +93,7 @@ struct command {
   const char *summary; /* one line */
   const char *text;    /* more, for its own help; lines of at most 100 characters */
   /* NULL: another program does it, uncross-NAME, in PREFIX/libexec/uncross or tools/. It gets the words as they came,
-   * and the path of this program in $UNCROSS; `tools/install-dependencies NAME` installs what it needs. */
+   * and the path of this program in $UNCROSS. */
   enum exit_code (*act)(const struct arguments *arguments);
 };
 extern const struct command commands[COMMANDS];

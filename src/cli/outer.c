@@ -57,9 +57,7 @@ enum exit_code outer_run(const struct command *c, char **words)
   if (setenv("UNCROSS", ours, 1) == 0)
     execv(path, words);
   /* The file is there: so what is missing is the program of its first line. */
-  const bool interpreter = errno == ENOENT;
-  fprintf(stderr, "uncross: %s: cannot run %s: %s%s%s\n", c->name, text_shown(path),
-          interpreter ? "there is no /usr/bin/python3; it comes with `tools/install-dependencies " : strerror(errno),
-          interpreter ? c->name : "", interpreter ? "`" : "");
+  fprintf(stderr, "uncross: %s: cannot run %s: %s\n", c->name, text_shown(path),
+          errno == ENOENT ? "there is no /usr/bin/python3; `apt-get install python3` installs it" : strerror(errno));
   return EXIT_TROUBLE;
 }

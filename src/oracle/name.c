@@ -124,7 +124,7 @@ static bool ask(const char *const *words, const char *folder, char text[ORACLE_T
              message_set(message, "there is no program %s; make puts it there", text_shown(namer))) &&
             called_run(&call, &status, message);
   if (ok && status == CALLED_NO_PROGRAM)
-    ok = message_set(message, "%s cannot be run; `tools/install-dependencies name` installs what it needs",
+    ok = message_set(message, "%s cannot be run; it needs /usr/bin/python3, which `apt-get install python3` installs",
                      text_shown(namer));
   ok = ok && (status == 0 || message_set(message, "uncross-name ended with exit code %d", status));
   ok = ok && take_line(said, text, message);

@@ -216,6 +216,19 @@ class Installed(unittest.TestCase):
         self.assertRegex(told, r"\d")
         call(share / "reference-data/measure-observables", self.folder / "observables", "--runs", 2, "fibers", folder=self.folder)
 
+    def test_a_missing_package(self):
+        """Each command in Python that needs a package says which, in a line; those of this program have one name."""
+        hidden, alone = self.folder / "hidden", self.folder / "alone"
+        hidden.mkdir()
+        (hidden / "numpy.py").write_text("raise ModuleNotFoundError('gone', name='numpy')\n")
+        for part in "bin", "libexec":
+            shutil.copytree(self.prefix / part, alone / part)
+        for prefix, package, of, words in ((self.prefix, "numpy", "numpy", "sweep scene.yaml --out there"), (self.prefix, "numpy", "numpy", "topology file"),
+                                           (alone, "uncross_units", "uncross", "map length=1um --units T=300K,eta=1mPas"), (alone, "uncross_export", "uncross", "export file"),
+                                           (alone, "uncross_sweep", "uncross", "plot file")):
+            told = call(prefix / "bin/uncross", *words.split(), code=1, environment={"PYTHONPATH": str(hidden)}, show=True)
+            self.assertEqual(told, f"uncross: {words.split()[0]}: the Python package {package} is missing; `apt-get install python3-{of}` installs it\n")
+
     def test_another_folder_for_libraries(self):
         destination = self.folder / "multiarch"
         make("install", "/usr", destination, "LIBDIR=/usr/lib/machine-os")
@@ -223,6 +236,9 @@ class Installed(unittest.TestCase):
         self.assertEqual({path.name for path in libraries.iterdir()}, {"libuncross.so", "libuncross.so.0", "libuncross.a", "libuncross-core.a", "pkgconfig"})
         told = call("pkg-config", "--variable=libdir", "uncross", environment={"PKG_CONFIG_PATH": str(libraries / "pkgconfig")})
         self.assertEqual(told, "/usr/lib/machine-os\n")
+        loaded = call("/usr/bin/python3", "-c", "import uncross._library as loaded; print(loaded.lib.uncross_interface())",
+                      environment={"PYTHONPATH": str(destination / "usr/lib/python3/dist-packages"), "LD_LIBRARY_PATH": ""})
+        self.assertEqual(loaded, "0\n")
         make("uninstall", "/usr", destination)
         self.assertEqual([path for path in destination.rglob("*") if not path.is_dir()], [])
         for bad in "/lib/machine-os", "/usr/a b", "/usr/../elsewhere":

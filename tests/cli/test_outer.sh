@@ -47,7 +47,7 @@ chmod -x "$dir/prefix/libexec/uncross/uncross-plot"
 gives 1 "$none" "$dir/prefix/bin/uncross" plot one
 sed -i '1s|.*|#!/nowhere/python3|' "$dir/tree/build/libexec/uncross-plot"
 "$dir/tree/build/uncross" plot one >"$dir/out" 2>&1
-[ $? = 1 ] && grep -qF "there is no /usr/bin/python3; it comes with \`tools/install-dependencies plot\`" "$dir/out"
+[ $? = 1 ] && grep -qF "there is no /usr/bin/python3; \`apt-get install python3\` installs it" "$dir/out"
 ok $? "an interpreter that is not there: 1, and the command that installs it"
 gives 2 "uncross: plot: a file is missing; \`uncross plot --help\` lists what is allowed" "$dir/alone/bin/uncross" plot
 "$dir/alone/bin/uncross" plot one --fly >"$dir/out" 2>&1

@@ -190,7 +190,7 @@ class HookTest(Folder):
     def test_without_the_program(self):
         """The verdict stays; the line says what is missing."""
         path = self.broken("kick without the mass", "kick")
-        for text, said in ((None, "no name: there is no program "), ("#!/nowhere/python3\n", "`tools/install-dependencies name` installs what it needs"),
+        for text, said in ((None, "no name: there is no program "), ("#!/nowhere/python3\n", "it needs /usr/bin/python3, which `apt-get install python3` installs"),
                            ("#!/bin/sh\nexit 3\n", "no name: uncross-name ended with exit code 3"), ("#!/bin/sh\n", "no name: uncross-name says nothing"),
                            ("#!/bin/sh\nprintf 'a\\033[31mb\\nc\\n'\n", "a\\x1b[31mb")):
             program = self.stand_in(text)

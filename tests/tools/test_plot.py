@@ -648,8 +648,7 @@ class Folder(unittest.TestCase):
         code, told, error = uncross("plot", self.run_dir, "-o", self.dir / "hidden.html",
                                     environment={"PYTHONPATH": str(hidden), "PATH": "/usr/bin:/bin"})
         self.assertEqual((code, told), (1, ""))
-        self.assertEqual(error, "uncross: plot: needs python3-h5py; `tools/install-dependencies plot` installs what is missing "
-                         "(apt-get install python3-h5py)\n")
+        self.assertEqual(error, "uncross: plot: needs python3-h5py; `apt-get install python3-h5py` installs what is missing\n")
         group = re.search(r"\[plot\]=\"(.*)\"", (TOP / "tools/install-dependencies").read_text())[1].split()
         program = (TOP / "tools/uncross-plot").read_text()
         self.assertEqual(sorted(re.findall(r"python3-\w+", program.split("NEEDED")[1].split("}")[0])), sorted(group[1:]))

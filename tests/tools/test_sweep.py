@@ -264,7 +264,7 @@ class SweepTest(FolderTest):
         done = subprocess.run(list(map(str, self.words())), capture_output=True, text=True, check=False,
                               env=dict(os.environ, PYTHONPATH=str(self.dir)))
         self.assertEqual((done.returncode, done.stderr.count("\n")), (1, 1), done.stderr)
-        self.assertIn("numpy is missing; `tools/install-dependencies sweep` installs it", done.stderr)
+        self.assertIn("numpy is missing; `apt-get install python3-numpy` installs it", done.stderr)
 
     def test_a_run_that_stops(self):
         """Its exit code is in the table and the sweep's; the others are averaged."""
