@@ -36,7 +36,7 @@ void check_bead(bool exact, const struct model *m)
   const double around = walled  ? theory_bead_slit(size, b->center.y, m->box.cells[1])
                         : small ? theory_bead_box(size, edge)
                                 : 1.0;
-  sheet_heading("Bead (in the solvent alone)");
+  sheet_heading("Bead (in the fluid, with the viscosity above; without contacts)");
   sheet_row(exact, "mass", "M", b->mass, "m", "");
   sheet_row(exact, "slip length", "b", slip, "a0", "of a flat wall");
   sheet_row(exact, "hydrodynamic radius", "R_h", size, "a0", "R (1 + 2b/R)/(1 + 3b/R)");

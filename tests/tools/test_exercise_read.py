@@ -44,6 +44,15 @@ class Read(unittest.TestCase):
         self.table.write_text("RxRx,RxRx_error,samples\n167.5,2.5,40\n")
         self.assertEqual(self.numbers("RxRx"), [("RxRx", 167.5, 2.5)])
 
+    def test_change_and_scatter(self):
+        # s from 10 on is 4 at even times and 2 at odd ones, 41 the last: 2 - 4, and a scatter of 1.
+        for words, said in ((("s", "--change", "--from", "10"), "s  -2"), (("s", "--scatter", "--from", "10"), "s  1"), (("g_cm", "--change"), "g_cm  61.5")):
+            self.assertEqual(self.run_it(*words).stdout, said + "  (no error: take several seeds)\n")
+
+    def test_a_folder(self):
+        done = subprocess.run([TOP / "docs/exercises/read", self.folder.name, "s"], capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stderr), (2, f"read: {self.folder.name}: not a file but a folder, a pipe or a device; its tables are t.csv\n"))
+
     def test_what_is_not_there(self):
         for words, told in ((("x",), "there is no column x; there are time, g_cm, g_cm_error, s"), (("s", "--at", "7.5"), "there is no time 7.5; the nearest is"),
                             (("g_cm", "--D", "12", "12"), "the two times are both 12"), (("s", "--from", "50"), "there is no row from 50 on; the last is 41")):

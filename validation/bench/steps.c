@@ -5,8 +5,8 @@
  *
  *   cells=32,fibers=100       keys of scene.h: the main loop alone
  *   FILE.yaml KEY=VALUE ...   a scene file with settings, as for `uncross run --set`, in one argument: a run in a
- * folder of its own, below $TMPDIR, with all that the scene asks for; removed at the end triad=MB                  the
- * floor: c = a + s b over three arrays of so many megabytes in all
+ *                             folder of its own, below $TMPDIR, with all that the scene asks for; removed at the end
+ *   triad=MB                  the floor: c = a + s b over three arrays of so many megabytes in all
  *
  * Prints a line per block, tab-separated: round, number of the scene, steps, CPU seconds; for each scene file
  * "members", its number, and how many particles and vertices it has; and at last the most memory that the process had,
