@@ -17,7 +17,7 @@ const TYPES = {'.html': 'text/html', '.js': 'text/javascript', '.mjs': 'text/jav
 const LOOKED_AT = ['index.html', 'README.html', 'docs/course.html', 'docs/scene.html', 'docs/equations.html', 'docs/claims/tube.html', 'interface/c.html', 'interface/python.html',
   'files/src/step.c.html', 'search.html'];
 /* What is looked for, and the page that must be among the first five found. */
-const SEARCHED = [['crossing.rule', 'docs/scene.html#key-crossing-rule'], ['observe.stress.every', 'docs/scene.html#key-observe-stress-every'], ['viscosity', 'docs/how-to.html'], ['uncross_sim_advance', 'interface/c.html'], ['cross-links', 'README.html']];
+const SEARCHED = [['crossing.rule', 'docs/scene.html#key-crossing-rule'], ['observe.stress.every', 'docs/scene.html#key-observe-stress-every'], ['viscosity', 'docs/how-to.html'], ['uncross_sim_advance', 'interface/c.html'], ['cross-links', 'README.html'], ['crosslinks', 'README.html']];
 
 const build = resolve(process.argv[2]), folder = join(build, 'site'), tally = new Tally();
 const packaged = createRequire(join(build, 'live-work/npm/package.json')), {chromium} = packaged('playwright-core');
@@ -78,6 +78,19 @@ try {
     await page.waitForSelector('#search-results li a', {timeout: 15_000}).catch(() => {});
     const found = await page.$$eval('#search-results li a', links => links.slice(0, 5).map(a => a.href));
     tally.is(`search for ${words} has ${wanted} among ${found.map(url => relative(address, url)).join(', ')}`, found.some(url => url.includes(wanted)));
+  }
+  /* A link to a key arrives at its row, below the header, on a phone and a desktop; the front page opens the program that runs. */
+  for (const viewport of chosen.length > 0 ? [] : [PHONE, DESKTOP]) {
+    await page.setViewportSize(viewport);
+    await page.goto(`${address}docs/scene.html#key-crossing-rule`);
+    const [top, header, bottom] = await page.evaluate(() => {
+      const row = document.querySelector(':target').closest('tr').getBoundingClientRect();
+      return [row.top, document.querySelector('.mobile-header').getBoundingClientRect().bottom, innerHeight - row.bottom];
+    });
+    tally.is(`at ${viewport.width} px the row of a key begins at ${top}, below ${header}, and ends ${bottom} above the lower edge`, top >= header && bottom > 0);
+    await page.goto(`${address}index.html`);
+    await page.click('.shown a:has(> img)');
+    tally.is(`its picture opens ${relative(address, page.url())}`, page.url().startsWith(`${address}live/index.html`));
   }
   tally.equal('nothing is asked of other hosts', elsewhere.join('\n'), '');
   tally.equal('errors in the console', errors.join('\n'), '');
