@@ -7,8 +7,8 @@ ROOT = pathlib.Path(os.environ["SITE_ROOT"])
 sys.path[:0] = [str(ROOT / "site"), str(ROOT / "python")]
 
 project = "uncross"
-author = "the authors of uncross"
-copyright = "BSD-3-Clause"
+author = "uncross contributors"
+copyright = "uncross contributors, BSD-3-Clause"
 version = release = os.environ["SITE_VERSION"]
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "repository", "scene_keys", "header", "docstrings", "formulas", "theme"]
@@ -31,6 +31,7 @@ html_title = "uncross"
 html_static_path = [str(ROOT / "site/site.css"), str(ROOT / "site/site.js")]
 html_css_files = ["site.css"]
 html_js_files = ["site.js"]
+html_search_scorer = str(ROOT / "site/scorer.js")
 html_copy_source = False
 html_show_sphinx = False
 html_theme_options = {"footer_icons": []}

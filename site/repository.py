@@ -4,6 +4,7 @@ A picture or a file of bytes is copied. A folder's page lists what is in it. Pag
 """
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 from urllib.parse import unquote
@@ -19,6 +20,10 @@ from sphinx.util import logging
 ROOT = pathlib.Path(os.environ["SITE_ROOT"])
 # Inline code that is the path of such a file is a link, too.
 SHOWN = ("scenes/", "examples/", "docs/exercises/")
+# A source that the site has as a running page, made by `make live`.
+RUNNING = {"live/index.html"}
+# The text of a link that is a name of a file: on the site the title of its page says more.
+FILE_NAME = re.compile(r"[\w./-]+\.md")
 LARGEST = 300_000  # bytes that are shown as lines
 
 tell = logging.getLogger(__name__)
@@ -56,6 +61,8 @@ class Links:
             return None
         if target not in self.files and target not in self.folders:
             return None
+        if target in RUNNING:
+            return "../" * docname.count("/") + target
         self.wanted.add(target)
         if target in self.files and not is_text(ROOT / target):
             return "../" * docname.count("/") + "files/" + target
@@ -74,6 +81,8 @@ class Links:
                 node.replace_self(nodes.reference("", "", *node.children, refuri=address + (f"#{place}" if place else ""), internal=True))
             elif isinstance(node, addnodes.download_reference):
                 tell.warning("a link to a file that the repository does not have: %s", target, location=node)
+            elif FILE_NAME.fullmatch(node.astext()):
+                node["refexplicit"] = False  # MyST then writes the title
         for node in list(doctree.findall(nodes.literal)):
             if isinstance(node.parent, (nodes.reference, nodes.inline, nodes.title)):
                 continue

@@ -1,4 +1,5 @@
-"""Keys of scenes, as docs/scene.md lists them, for the search and the index: `crossing.rule` is found by its name."""
+"""Keys of scenes, as docs/scene.md lists them, for the search and the index: `crossing.rule` is found by its name. Each cell gets its column
+as a class, so that a phone shows a key as a card (site.css)."""
 import re
 
 from docutils import nodes
@@ -15,15 +16,20 @@ def note(app, doctree):
         heads = [entry.astext() for entry in table.next_node(nodes.thead).findall(nodes.entry)]
         if heads[:2] != ["key", "allowed"]:
             continue
+        table["classes"].append("keys")
         # Sections of one key may share a table: "observe.conserved, temperature".
         first, *others = table.parent.next_node(nodes.title).astext().split(", ")
         sections = [first] + [f"{first.rpartition('.')[0]}.{other}" for other in others]
         for row in table.next_node(nodes.tbody).findall(nodes.row):
             key = row.next_node(nodes.literal)
+            for head, entry in zip(heads, row.findall(nodes.entry)):
+                entry["classes"].append(f"of-{head}" if entry.astext() else "of-nothing")
+            place = row  # the row; where sections share it, its first cell has the other names
             for section in sections:
                 name = key.astext() if section == "Top level" else f"{section}.{key.astext()}"
                 row_id = make_id(app.env, doctree, "key", re.sub(r"[._]", "-", name))
-                key.parent["ids"].append(row_id)
+                place["ids"].append(row_id)
+                place = key.parent
                 standard.note_object("key", name, row_id, location=key)
 
 

@@ -22,12 +22,14 @@ def put_together(app, error):
     sheet.write_text(re.sub(r"@import url\(/javascript/normalize\.css/[^)]*\);", lambda _: NORMALIZE.read_text(encoding="utf-8"), text), encoding="utf-8")
 
 
-def headings(_app, _name, _template, context, _doctree):
-    tree = "furo_navigation_tree"
-    context[tree] = context.get(tree, "").replace('role="heading"', 'role="heading" aria-level="2"')
+def navigation(_app, name, _template, context, _doctree):
+    """Headings with a level; and the live page, which Sphinx does not know, before the page about it."""
+    tree = context.get("furo_navigation_tree", "").replace('role="heading"', 'role="heading" aria-level="2"')
+    running = f'<li class="toctree-l1"><a class="reference external" href="{"../" * name.count("/")}live/index.html">Live page</a></li>\n'
+    context["furo_navigation_tree"] = re.sub(r'(?=<li class="[^"]*"><a class="[^"]*" href="[^"]*">About the live page</a>)', lambda _: running, tree)
 
 
 def setup(app):
     app.connect("build-finished", put_together)
-    app.connect("html-page-context", headings, priority=900)  # after furo's own
+    app.connect("html-page-context", navigation, priority=900)  # after furo's own
     return {"parallel_read_safe": True}

@@ -146,9 +146,9 @@ class Equations(Tree):
         status, output = self.call("check-equations")
         self.assertEqual(status, 0, output)
         page = (self.root / "docs/equations.md").read_text()
-        self.assertIn("| (20) | meaning | code | [`src/mpc/flow.c: flow`](../src/mpc/flow.c) |", page)
-        self.assertIn("| (21) | meaning | code | [`src/fiber/bend.h: bend`](../src/fiber/bend.h) |", page)
-        self.assertIn("| (24) | meaning | code | [`src/fiber/bend.c: twist`](../src/fiber/bend.c) |", page)
+        self.assertIn("| (20) | meaning | [`flow.c: flow`](../src/mpc/flow.c) |", page)
+        self.assertIn("| (21) | meaning | [`bend.h: bend`](../src/fiber/bend.h) |", page)
+        self.assertIn("| (24) | meaning | [`bend.c: twist`](../src/fiber/bend.c) |", page)
 
     def test_code_without_home(self):
         self.replace("src/fiber/bend.h", "Padding 2009, Eq. (21)", "Eq. (21)")
@@ -196,7 +196,7 @@ class Equations(Tree):
         self.complain("Eq. (1) names a case without a page, docs/claims/tube.md")
         self.put("docs/claims/tube.md", "")
         self.assertEqual(self.call("check-equations", "--write")[0], 0)
-        self.assertIn("| [tube](claims/tube.md) |", (self.root / "docs/equations.md").read_text())
+        self.assertIn("<br>[tube](claims/tube.md) |", (self.root / "docs/equations.md").read_text())
 
     def test_stale_page(self):
         self.replace("docs/equations.tsv", "meaning", "another meaning")
