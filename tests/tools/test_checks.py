@@ -146,9 +146,9 @@ class Equations(Tree):
         status, output = self.call("check-equations")
         self.assertEqual(status, 0, output)
         page = (self.root / "docs/equations.md").read_text()
-        self.assertIn("| (20) | meaning | [`flow.c: flow`](../src/mpc/flow.c) |", page)
-        self.assertIn("| (21) | meaning | [`bend.h: bend`](../src/fiber/bend.h) |", page)
-        self.assertIn("| (24) | meaning | [`bend.c: twist`](../src/fiber/bend.c) |", page)
+        self.assertIn("| (20) | meaning | [`flow.c`](../src/mpc/flow.c)<br>`flow` |", page)
+        self.assertIn("| (21) | meaning | [`bend.h`](../src/fiber/bend.h)<br>`bend` |", page)
+        self.assertIn("| (24) | meaning | [`bend.c`](../src/fiber/bend.c)<br>`twist` |", page)
 
     def test_code_without_home(self):
         self.replace("src/fiber/bend.h", "Padding 2009, Eq. (21)", "Eq. (21)")
