@@ -1,6 +1,6 @@
 #ifndef UNCROSS_VERSION_H
 #define UNCROSS_VERSION_H
 
-#define UNCROSS_VERSION "0.1.0"
+#define UNCROSS_VERSION "1.0.0"
 
 #endif
