@@ -2,12 +2,13 @@
 without a value. Needs UNCROSS."""
 import json
 import pathlib
+import re
 import sys
 import unittest
 
 sys.dont_write_bytecode = True  # nothing is left in the source tree
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from support import FolderTest, uncross  # noqa: E402
+from support import TOP, FolderTest, uncross  # noqa: E402
 
 SCENE = "box: [4, 4, 4]\ntime_step: 0.01\nsteps: 2\nsolvent: {per_cell: 3, collision_interval: 0.02}\n"
 KEYS = {"dt": "time_step", "timestep": "time_step", "msd": "observe.dynamics", "density": "solvent.per_cell", "n_steps": "steps",
