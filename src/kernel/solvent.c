@@ -291,13 +291,14 @@ INLINE void turn_whole(struct state *state, const struct model *model, const str
                        const bool spins, const bool quarter, const bool scaled)
 {
   const struct solvent *s = &state->solvent;
+  const struct spin_columns columns = spin_columns_of(s, c);
   const double cosine = model->solvent.cosine, sine = model->solvent.sine;
   const uint32_t whole = s->n - s->n % LANES;
   for (uint32_t first = 0; first < whole; first += CHUNK) {
     const uint32_t end = whole - first < CHUNK ? whole : first + CHUNK;
     members_prefetch_turns(c, end, s->n - end < CHUNK ? s->n - end : CHUNK);
     for (uint32_t i = first; i < end && spins; i += LANES)
-      spin_turn_lanes(s, c, i);
+      spin_turn_lanes(&columns, c->turn, c->middle, i);
     for (uint32_t i = first; i < end && draws && !spins; i += LANES)
       andersen_turn_lanes(s, c, i);
     for (uint32_t i = first; i < end && !draws; i += LANES) {

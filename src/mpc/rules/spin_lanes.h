@@ -17,6 +17,24 @@ _Static_assert(sizeof(struct spin_halves) == 24 * sizeof(double) && sizeof(struc
 
 /* --- members ------------------------------------------------------------------------------------------------------ */
 
+/* Where members are in memory: copies of pointers, which nothing that is written can change. */
+struct spin_columns {
+  const int64_t *x[3];
+  double *v[3];
+  const double *drawn[3];
+  int64_t shift[3];
+  const uint32_t *cell;
+};
+
+INLINE struct spin_columns spin_columns_of(const struct solvent *s, const struct mpc *c)
+{
+  return (struct spin_columns){.x = {s->x, s->y, s->z},
+                               .v = {s->vx, s->vy, s->vz},
+                               .drawn = {c->drawn[0], c->drawn[1], c->drawn[2]},
+                               .shift = {c->shift.x, c->shift.y, c->shift.z},
+                               .cell = c->solvent_cell};
+}
+
 /* Coordinates in their cells, from 0 on: spin_place is relative to the middle. */
 INLINE words spin_within_lanes(const int64_t *x, int64_t shift)
 {
@@ -24,19 +42,17 @@ INLINE words spin_within_lanes(const int64_t *x, int64_t shift)
 }
 
 /* spin_add_halves: what the members from place i on add, record by record of four. */
-INLINE void spin_records_lanes(const struct solvent *s, const struct mpc *c, uint32_t i, double record[5][4 * LANES],
+INLINE void spin_records_lanes(const struct spin_columns *s, uint32_t i, double record[5][4 * LANES],
                                double last[LANES])
 {
-  const int64_t *const x[3] = {s->x, s->y, s->z}, shift[3] = {c->shift.x, c->shift.y, c->shift.z};
-  const double *const v[3] = {s->vx, s->vy, s->vz};
   words y[3], p[3];
   reals near[3], u[3];
   UNROLL
   for (int a = 0; a < 3; a++) {
-    const words within = spin_within_lanes(&x[a][i], shift[a]);
+    const words within = spin_within_lanes(&s->x[a][i], s->shift[a]);
     y[a] = within - (uint64_t)LATTICE_CELL / 2;
     near[a] = reals_from_small_less(within, (double)(LATTICE_CELL / 2));
-    u[a] = load_reals(&v[a][i]) - load_reals(&c->drawn[a][i]);
+    u[a] = load_reals(&s->v[a][i]) - load_reals(&s->drawn[a][i]);
     p[a] = round_to_words(CELL_MOMENTUM_SCALE * u[a]);
   }
   reals angular[4] = {(reals)(y[1] * p[2] - y[2] * p[1]), (reals)(y[2] * p[0] - y[0] * p[2]),
@@ -55,18 +71,20 @@ INLINE void spin_records_lanes(const struct solvent *s, const struct mpc *c, uin
 }
 
 /* Adds the members from place `first` on, n of them, a multiple of LANES, to the halves of their cells. */
-INLINE void spin_add_lanes(const struct solvent *s, const struct mpc *c, uint32_t first, uint32_t n)
+INLINE void spin_add_lanes(const struct solvent *solvent, const struct mpc *c, uint32_t first, uint32_t n)
 {
+  const struct spin_columns s = spin_columns_of(solvent, c);
+  struct cell_spin *const spin = c->spin;
   enum { AHEAD = 16 }; /* members: the three cache lines of a cell are asked for ahead */
   for (uint32_t i = first; i < first + n; i += LANES) {
     double record[5][4 * LANES], last[LANES];
     for (uint32_t k = i + AHEAD; k < i + AHEAD + LANES && k < first + n; k++)
       for (size_t line = 0; line < sizeof(struct cell_spin); line += 64)
-        __builtin_prefetch((const char *)&c->spin[c->solvent_cell[k]] + line, 1);
-    spin_records_lanes(s, c, i, record, last);
+        __builtin_prefetch((const char *)&spin[s.cell[k]] + line, 1);
+    spin_records_lanes(&s, i, record, last);
     UNROLL
     for (uint32_t slot = 0; slot < LANES; slot++) {
-      struct spin_halves *h = &c->spin[c->solvent_cell[i + slot_lane[slot]]].halves;
+      struct spin_halves *h = &spin[s.cell[i + slot_lane[slot]]].halves;
       UNROLL
       for (size_t k = 0; k < 3; k++)
         add_record((uint64_t *)h + 4 * k, &record[k][(size_t)4 * slot]);
@@ -79,28 +97,27 @@ INLINE void spin_add_lanes(const struct solvent *s, const struct mpc *c, uint32_
 }
 
 /* New velocities of the members from place i on. */
-INLINE void spin_turn_lanes(const struct solvent *s, const struct mpc *c, uint32_t i)
+INLINE void spin_turn_lanes(const struct spin_columns *s, const struct cell_turn *turns, const struct point *middles,
+                            uint32_t i)
 {
-  const int64_t *const x[3] = {s->x, s->y, s->z}, shift[3] = {c->shift.x, c->shift.y, c->shift.z};
-  double *const v[3] = {s->vx, s->vy, s->vz};
   const double *middle[LANES];
   reals turn[8], at[4], r[3];
-  load_columns((const double *)c->turn, &c->solvent_cell[i], turn, 8);
+  load_columns((const double *)turns, &s->cell[i], turn, 8);
   UNROLL
   for (int k = 0; k < LANES; k++)
-    middle[k] = (const double *)&c->middle[c->solvent_cell[i + (uint32_t)k]];
+    middle[k] = (const double *)&middles[s->cell[i + (uint32_t)k]];
   load_columns_at(middle, at, 4); /* the fourth one is of the next cell */
   UNROLL
   for (int a = 0; a < 3; a++) {
-    const words away = spin_within_lanes(&x[a][i], shift[a]) - (uint64_t)LATTICE_CELL / 2 - (words)at[a];
+    const words away = spin_within_lanes(&s->x[a][i], s->shift[a]) - (uint64_t)LATTICE_CELL / 2 - (words)at[a];
     const reals magic = (reals){0} + LATTICE_ROUND_MAGIC;
     r[a] = ((reals)((words)magic + away) - magic) * LATTICE_UNIT; /* spin_difference */
   }
   UNROLL
   for (int a = 0; a < 3; a++) {
     const int b = (a + 1) % 3, d = (a + 2) % 3;
-    const reals drawn = load_reals(&c->drawn[a][i]), turned = turn[a] + (turn[4 + b] * r[d] - turn[4 + d] * r[b]);
-    store_reals(&v[a][i], choose(turn[3] != 0.0, turned + drawn, load_reals(&v[a][i])));
+    const reals drawn = load_reals(&s->drawn[a][i]), turned = turn[a] + (turn[4 + b] * r[d] - turn[4 + d] * r[b]);
+    store_reals(&s->v[a][i], choose(turn[3] != 0.0, turned + drawn, load_reals(&s->v[a][i])));
   }
 }
 
