@@ -5,7 +5,7 @@
 #include "device.h"
 #include "flow.h"
 
-// A flight of given time: v t + ((0.5 a) t) t, and a t.
+// A flight of given time: v t + ((0.5 a) t) t, and a t; -0.0, which changes no number, where there is none.
 struct Flight {
   double time;
   Vector fall, gain;
@@ -13,7 +13,8 @@ struct Flight {
 
 inline Flight flight_of(Vector a, double time)
 {
-  return {time, time * (time * (0.5 * a)), time * a};
+  const auto gain = [=](double along) { return along * time != 0.0 ? time * along : -0.0; };
+  return {time, time * (time * (0.5 * a)), {gain(a.x), gain(a.y), gain(a.z)}};
 }
 
 ANYWHERE int64_t fold(int64_t x, int64_t edge)

@@ -1,316 +1,215 @@
-// The passes over particles on a CPU: 16 at a time in columns, which compilers turn into vector instructions. The
-// operations are those of the bodies, in the same order. Where a number is out of the usual range, the bodies do
-// the 16.
+// The passes over particles and cells on a CPU, `lanes` at a time in registers. The operations are those of the bodies,
+// in the same order. Where a number is out of the usual range, the bodies do these particles.
 #pragma once
 
 #include "bodies.h"
-
-constexpr int lanes = 16;
-
-struct Reals {
-  alignas(64) double at[lanes];
-};
-
-struct Wholes {
-  alignas(64) int64_t at[lanes];
-};
+#include "registers.h"
 
 struct Three {
-  Reals x, y, z;
+  reals x, y, z;
 };
 
 struct Places {
-  Wholes x, y, z;
+  wholes x, y, z;
 };
 
-struct Cells {
-  alignas(64) int32_t at[lanes];
-};
-
-inline void load(const double *from, Reals &to)
+INLINE Three operator+(const Three &a, const Three &b)
 {
-  for (int k = 0; k < lanes; k++)
-    to.at[k] = from[k];
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
-inline void load(const int64_t *from, Wholes &to)
+INLINE Three operator-(const Three &a, const Three &b)
 {
-  for (int k = 0; k < lanes; k++)
-    to.at[k] = from[k];
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
-inline void store(const Reals &from, double *to)
+INLINE Three operator*(reals s, const Three &a)
 {
-  for (int k = 0; k < lanes; k++)
-    to[k] = from.at[k];
+  return {s * a.x, s * a.y, s * a.z};
 }
-inline void store(const Wholes &from, int64_t *to)
+INLINE reals dot(const Three &a, const Three &b)
 {
-  for (int k = 0; k < lanes; k++)
-    to[k] = from.at[k];
+  return (a.x * b.x + a.y * b.y) + a.z * b.z;
+}
+INLINE Three cross(const Three &a, const Three &b)
+{
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-// `nearest` of factor x, if all sizes are below 2^51: the sum with 1.5 2^52 is rounded to a whole number.
-inline bool nearest_of(double factor, const Reals &x, Wholes &to)
+/* --- turn and flight -------------------------------------------------------------------------------------------- */
+
+static_assert(offsetof(CellTurn, axis) == 24 && offsetof(CellTurn, factor) == 48 && offsetof(CellTurn, active) == 56,
+              "two rows of four numbers");
+
+template <bool right_angle>
+INLINE Three turn_all(const CellTurn *turn, const int32_t *cell, double cosine, double sine, const Three &v)
 {
-  constexpr double magic = 0x1.8p52;
-  int64_t large = 0;
-  for (int k = 0; k < lanes; k++) {
-    const double scaled = factor * x.at[k];
-    large |= -(int64_t) !(std::fabs(scaled) < 0x1p51);
-    to.at[k] = (int64_t)(bits_of(scaled + magic) - bits_of(magic));
-  }
-  return large == 0;
+  const Square low = load_rows([=](int k) { return &turn[cell[k]].center.x; }),
+               high = load_rows([=](int k) { return &turn[cell[k]].axis.y; });
+  const Three center = {low.at[0], low.at[1], low.at[2]}, axis = {low.at[3], high.at[0], high.at[1]};
+  const Three w = v - center;
+  const reals along = dot(axis, w);
+  const Three turned = right_angle ? along * axis + cross(axis, w)
+                                   : (each(cosine) * w + (each(1.0 - cosine) * along) * axis) + each(sine) * cross(axis, w);
+  const Three changed = center + high.at[2] * turned;
+  const wholes alone = (wholes)((wholes)high.at[3] == 0);
+  return {choose(alone, v.x, changed.x), choose(alone, v.y, changed.y), choose(alone, v.z, changed.z)};
 }
 
-// `fold`, if no number is further out than one edge.
-inline bool fold_all(Wholes &x, int64_t edge)
+// A flight along one axis, which is not folded. A factor of 2^40 does not change how a product or a sum is rounded.
+INLINE void fly_along(double time, double fall, double gain, wholes &p, reals &v)
 {
-  int64_t out = 0;
-  for (int k = 0; k < lanes; k++) {
-    int64_t v = x.at[k];
-    v = v + (v < 0 ? edge : 0) - (v >= edge ? edge : 0);
-    out |= v | (edge - 1 - v);
-    x.at[k] = v;
-  }
-  return out >= 0;
+  p += nearest_of(v * (time * lattice_per_a0) + fall * lattice_per_a0);
+  v += gain;
 }
 
-inline bool cells_along(const Wholes &x, int64_t shift, int64_t edge, Cells &to)
+// The same, folded. Like the other flights here: negative where p is not where it has to be.
+INLINE wholes fly_folded(double time, double fall, double gain, int64_t edge, wholes &p, reals &v)
 {
-  Wholes shifted;
-  for (int k = 0; k < lanes; k++)
-    shifted.at[k] = x.at[k] + shift;
-  const bool usual = fold_all(shifted, edge);
-  for (int k = 0; k < lanes; k++)
-    to.at[k] = (int32_t)((uint64_t)shifted.at[k] >> 40);
-  return usual;
+  fly_along(time, fall, gain, p, v);
+  p = fold_once(p, edge);
+  return outside(p, edge - 1);
 }
 
-inline bool cells_of(const Grid &grid, const Places &p, Cells &to)
+INLINE wholes fly_xz(const Flight &f, Point edge, Places &p, Three &v)
 {
-  Cells x, y, z;
-  const bool usual = cells_along(p.x, grid.shift.x, grid.edge.x, x) & cells_along(p.y, grid.shift.y, grid.edge.y, y) &
-                     cells_along(p.z, grid.shift.z, grid.edge.z, z);
-  const int32_t nx = (int32_t)grid.cells[0], ny = (int32_t)grid.cells[1];
-  for (int k = 0; k < lanes; k++)
-    to.at[k] = (z.at[k] * ny + y.at[k]) * nx + x.at[k];
-  return usual;
+  return fly_folded(f.time, f.fall.x, f.gain.x, edge.x, p.x, v.x) |
+         fly_folded(f.time, f.fall.z, f.gain.z, edge.z, p.z, v.z);
 }
 
-struct Turns {
-  Three center, axis;
-  Reals factor;
-  Wholes active;
-};
-
-inline void gather(const CellTurn *turn, const Cells &cell, Turns &to)
+// A border's `leave`, and its `fly` and `enter`; negative where the border has to look at the particle.
+INLINE wholes leave_all(const Periodic &, const Places &, Three &)
 {
-  for (int k = 0; k < lanes; k++) {
-    const CellTurn &t = turn[cell.at[k]];
-    to.center.x.at[k] = t.center.x, to.center.y.at[k] = t.center.y, to.center.z.at[k] = t.center.z;
-    to.axis.x.at[k] = t.axis.x, to.axis.y.at[k] = t.axis.y, to.axis.z.at[k] = t.axis.z;
-    to.factor.at[k] = t.factor, to.active.at[k] = t.active;
-  }
+  return wholes{};
+}
+INLINE wholes fly_all(const Periodic &b, const Flight &f, Places &p, Three &v)
+{
+  return fly_xz(f, b.edge, p, v) | fly_folded(f.time, f.fall.y, f.gain.y, b.edge.y, p.y, v.y);
 }
 
-template <bool right_angle> void turn_all(const Turns &t, double cosine, double sine, Three &v)
+INLINE wholes leave_all(const Walled &, const Places &, Three &)
 {
-  for (int k = 0; k < lanes; k++) {
-    const Vector old = {v.x.at[k], v.y.at[k], v.z.at[k]};
-    const CellTurn cell = {{t.center.x.at[k], t.center.y.at[k], t.center.z.at[k]},
-                           {t.axis.x.at[k], t.axis.y.at[k], t.axis.z.at[k]},
-                           t.factor.at[k],
-                           1};
-    const Vector changed = after_turn(cell, right_angle ? 0.0 : cosine, sine, old);
-    const bool active = t.active.at[k] != 0;
-    v.x.at[k] = active ? changed.x : old.x;
-    v.y.at[k] = active ? changed.y : old.y;
-    v.z.at[k] = active ? changed.z : old.z;
-  }
+  return wholes{};
 }
-
-// A flight along one axis, which is not folded.
-inline bool fly_along(double time, double fall, double gain, Wholes &p, Reals &v)
+INLINE wholes fly_all(const Walled &b, const Flight &f, Places &p, Three &v)
 {
-  Reals way;
-  Wholes whole;
-  for (int k = 0; k < lanes; k++) {
-    way.at[k] = time * v.at[k] + fall;
-    v.at[k] = v.at[k] + gain;
-  }
-  const bool usual = nearest_of(lattice_per_a0, way, whole);
-  for (int k = 0; k < lanes; k++)
-    p.at[k] += whole.at[k];
-  return usual;
-}
-
-// Is each number from 0 to `most`?
-inline bool all_within(const Wholes &x, int64_t most)
-{
-  int64_t out = 0;
-  for (int k = 0; k < lanes; k++)
-    out |= x.at[k] | (most - x.at[k]);
-  return out >= 0;
-}
-
-inline bool fly_xz(const Flight &f, Point edge, Places &p, Three &v)
-{
-  return fly_along(f.time, f.fall.x, f.gain.x, p.x, v.x) & fold_all(p.x, edge.x) &
-         fly_along(f.time, f.fall.z, f.gain.z, p.z, v.z) & fold_all(p.z, edge.z);
-}
-
-// A border's `leave`, and its `fly` and `enter`, of 16 particles; false where the border has to look at one of them.
-inline bool leave_all(const Periodic &, const Places &, Three &)
-{
-  return true;
-}
-inline bool fly_all(const Periodic &b, const Flight &f, Places &p, Three &v)
-{
-  return fly_xz(f, b.edge, p, v) & fly_along(f.time, f.fall.y, f.gain.y, p.y, v.y) & fold_all(p.y, b.edge.y);
-}
-
-inline bool leave_all(const Walled &, const Places &, Three &)
-{
-  return true;
-}
-inline bool fly_all(const Walled &b, const Flight &f, Places &p, Three &v)
-{
-  const Reals along_y = v.y;
-  const bool usual = fly_xz(f, b.edge, p, v) & fly_along(f.time, 0.0, 0.0, p.y, v.y) & all_within(p.y, b.edge.y);
+  const reals along_y = v.y;
+  const wholes out = fly_xz(f, b.edge, p, v);
+  fly_along(f.time, 0.0, 0.0, p.y, v.y);
   v.y = along_y;
-  return usual;
+  return out | outside(p.y, b.edge.y);
 }
 
-inline bool leave_all(const Sheared &b, const Places &p, Three &v)
+INLINE wholes leave_all(const Sheared &b, const Places &p, Three &v)
 {
-  for (int k = 0; k < lanes && b.kicks; k++)
-    v.x.at[k] += b.affine(p.y.at[k]);
-  return all_within(p.y, b.edge.y - b.last.shift - 1);
+  if (b.kicks)
+    for (int k = 0; k < lanes; k++)
+      v.x[k] += b.affine(p.y[k]);
+  return outside(p.y, b.edge.y - b.last.shift - 1);
 }
-inline bool fly_all(const Sheared &b, const Flight &f, Places &p, Three &v)
+INLINE wholes fly_all(const Sheared &b, const Flight &f, Places &p, Three &v)
 {
-  return fly_xz(f, b.edge, p, v) & fly_along(f.time, f.fall.y, f.gain.y, p.y, v.y) &
-         all_within(p.y, b.edge.y - b.next.shift - 1);
-}
-
-inline void add_members(CellSum *to, const Cells &cell, const Places &momentum)
-{
-  constexpr int64_t load = ((int64_t)1 << load_bits) + (int64_t)mass_per_unit;
-  for (int k = 0; k < lanes; k++) {
-    CellSum &sum = to[cell.at[k]];
-    sum.x += momentum.x.at[k], sum.y += momentum.y.at[k], sum.z += momentum.z.at[k], sum.load += load;
-  }
+  const wholes out = fly_xz(f, b.edge, p, v);
+  fly_along(f.time, f.fall.y, f.gain.y, p.y, v.y);
+  return out | outside(p.y, b.edge.y - b.next.shift - 1);
 }
 
 /* --- cells ------------------------------------------------------------------------------------------------------ */
 
-struct WordLanes {
-  alignas(64) uint32_t at[4][lanes];
-};
-
-// Words of draw 0 of 16 entities.
-inline void words_of_all(const Source &source, uint32_t first, WordLanes &w)
+// Of places in the box; shifts are smaller than a cell.
+INLINE wholes cells_along(wholes x, int64_t shift, int64_t cells)
 {
-  for (int k = 0; k < lanes; k++) {
-    const Words one = words_of(source, 0, first + (uint32_t)k);
-    w.at[0][k] = one.word[0], w.at[1][k] = one.word[1], w.at[2][k] = one.word[2], w.at[3][k] = one.word[3];
+  const wholes at = (x + shift) >> 40;
+  return at & (wholes)(at != cells);
+}
+
+INLINE halves cells_of(const Grid &grid, const Places &p)
+{
+  const wholes x = cells_along(p.x, grid.shift.x, grid.cells[0]), y = cells_along(p.y, grid.shift.y, grid.cells[1]),
+               z = cells_along(p.z, grid.shift.z, grid.cells[2]);
+  const words row = multiply_low((words)z, (uint32_t)grid.cells[1]) + (words)y;
+  return __builtin_convertvector((wholes)(multiply_low(row, (uint32_t)grid.cells[0]) + (words)x), halves);
+}
+
+// Words of draw 0 of entities; each lane's low half is a word.
+INLINE void words_of_all(const Source &source, words entity, words w[4])
+{
+  uint32_t k0 = (uint32_t)source.seed, k1 = (uint32_t)(source.seed >> 32);
+  w[0] = entity, w[1] = words{} + source.purpose, w[2] = words{} + (uint32_t)source.step,
+  w[3] = words{} + (source.step >> 32);
+  for (int round = 0; round < 10; round++) {
+    const words p = multiply_low(w[0], 0xD2511F53u), q = multiply_low(w[2], 0xCD9E8D57u);
+    w[0] = (q >> 32) ^ (w[1] ^ k0), w[1] = q, w[2] = (p >> 32) ^ (w[3] ^ k1), w[3] = p;
+    k0 += 0x9E3779B9u, k1 += 0xBB67AE85u;
   }
 }
 
-// `axis_of` from the first pair of words of draw 0; `outside`: they give none.
-inline void axes_of(const uint32_t *first, const uint32_t *second, Three &axis, Wholes &outside)
+// (k + 0.5) 2^-31 of the signed low halves k. Bits 0x413 before 52 bits 2 (k + 2^31) + 1 are 2^20 + 1 more.
+INLINE reals in_square(words x)
 {
-  for (int k = 0; k < lanes; k++) {
-    const double u = ((double)(int32_t)first[k] + 0.5) * 0x1p-31, v = ((double)(int32_t)second[k] + 0.5) * 0x1p-31;
-    const double q = u * u + v * v, root = std::sqrt(q < 1.0 ? 1.0 - q : 0.0);
-    outside.at[k] = q < 1.0 ? 0 : 1;
-    axis.x.at[k] = 2.0 * u * root, axis.y.at[k] = 2.0 * v * root, axis.z.at[k] = 1.0 - 2.0 * q;
-  }
+  return (reals)(((x << 1) & 0x1fffffffe) ^ 0x4130000100000001) - (0x1p20 + 1.0);
 }
 
-inline void take_sums(const SolveCell &s, int64_t first, Places &momentum, Wholes &weight)
+// `axis_of` by draw 0; z <= -1 where it gives none.
+INLINE Three axes_of(const Source &source, words entity)
 {
-  CellSum sum[lanes];
-  CellSum *const from = s.sums + first;
+  words w[4];
+  words_of_all(source, entity, w);
+  const reals u0 = in_square(w[0]), v0 = in_square(w[1]), u1 = in_square(w[2]), v1 = in_square(w[3]);
+  const reals q0 = u0 * u0 + v0 * v0, q1 = u1 * u1 + v1 * v1;
+  const wholes first = (wholes)(q0 < 1.0);
+  const reals u = choose(first, u0, u1), v = choose(first, v0, v1), q = choose(first, q0, q1);
+  const reals root = square_root(1.0 - q);
+  return {2.0 * u * root, 2.0 * v * root, 1.0 - 2.0 * q};
+}
+
+// SolveCell of `lanes` cells.
+INLINE void solve_lanes(const SolveCell &s, int64_t first)
+{
+  Places p = {};
+  words weight = {};
+  for (int part = 0; part < s.shards; part++) {
+    CellSum *const from = s.sums + part * s.cell_count + first;
+    const Square sum = load_rows([=](int k) { return (const double *)(from + k); });
+    p.x += (wholes)sum.at[0], p.y += (wholes)sum.at[1], p.z += (wholes)sum.at[2], weight += (words)sum.at[3];
+    std::memset((void *)from, 0, lanes * sizeof *from);
+  }
+  words cell;
   for (int k = 0; k < lanes; k++)
-    sum[k] = from[k], from[k] = {0, 0, 0, 0};
-  for (int part = 1; part < s.shards; part++)
-    for (int k = 0; k < lanes; k++) {
-      CellSum &each = from[part * s.cell_count + k];
-      sum[k] = {sum[k].x + each.x, sum[k].y + each.y, sum[k].z + each.z, sum[k].load + each.load};
-      each = {0, 0, 0, 0};
-    }
-  for (int k = 0; k < lanes; k++) {
-    momentum.x.at[k] = sum[k].x, momentum.y.at[k] = sum[k].y, momentum.z.at[k] = sum[k].z;
-    weight.at[k] = sum[k].load;
-  }
-}
-
-// Whole numbers below 2^51 as doubles.
-inline bool as_reals(const Wholes &x, Reals &to)
-{
-  constexpr double magic = 0x1.8p52;
-  int64_t large = 0;
-  for (int k = 0; k < lanes; k++) {
-    const uint64_t above = (uint64_t)x.at[k] + 0x8000000000000; // from 0 to 2^52 - 1
-    large |= (int64_t)(above >> 52);
-    to.at[k] = from_bits((uint64_t)x.at[k] + bits_of(magic)) - magic;
-  }
-  return large == 0;
-}
-
-// SolveCell of 16 cells.
-inline void solve_lanes(const SolveCell &s, int64_t first)
-{
-  Places p;
-  Wholes weight, members, mass, outside, second_outside;
-  Three momentum, axis, second;
-  Reals whole_mass;
-  WordLanes words;
-  take_sums(s, first, p, weight);
-  for (int k = 0; k < lanes; k++) {
-    members.at[k] = (int64_t)((uint64_t)weight.at[k] >> load_bits);
-    mass.at[k] = weight.at[k] & (((int64_t)1 << load_bits) - 1);
-  }
-  bool usual = as_reals(mass, whole_mass);
-  usual = as_reals(p.x, momentum.x) & as_reals(p.y, momentum.y) & as_reals(p.z, momentum.z) & usual;
-  words_of_all(s.axes, (uint32_t)first, words);
-  axes_of(words.at[0], words.at[1], axis, outside);
-  axes_of(words.at[2], words.at[3], second, second_outside);
+    cell[k] = (uint64_t)(first + k);
+  const words members = weight >> load_bits, mass = weight & (((uint64_t)1 << load_bits) - 1);
+  const Three axis = axes_of(s.axes, cell);
+  const reals whole_mass = (reals)(mass | 0x4330000000000000) - 0x1p52; // below 2^52
+  const reals scale = (1.0 / momentum_per_unit) / (whole_mass * (1.0 / mass_per_unit));
+  const wholes many = (wholes)((wholes)members > 1);
   CellTurn *const to = s.turn + first;
-  for (int k = 0; k < lanes; k++) {
-    const double each = (1.0 / momentum_per_unit) / (whole_mass.at[k] * (1.0 / mass_per_unit));
-    const bool later = outside.at[k] != 0;
-    to[k].center = each * Vector{momentum.x.at[k], momentum.y.at[k], momentum.z.at[k]};
-    to[k].axis = {later ? second.x.at[k] : axis.x.at[k], later ? second.y.at[k] : axis.y.at[k],
-                  later ? second.z.at[k] : axis.z.at[k]};
-    to[k].factor = 1.0, to[k].active = members.at[k] < 2 ? 0 : members.at[k];
-    outside.at[k] &= second_outside.at[k];
-  }
-  for (int k = 0; k < lanes; k++)
-    if (outside.at[k])
-      to[k].axis = axis_of(s.axes, (uint32_t)(first + k));
-  for (int k = 0; k < lanes && !usual; k++)
-    to[k].center = ((1.0 / momentum_per_unit) / ((double)mass.at[k] * (1.0 / mass_per_unit))) *
-                   as_vector({p.x.at[k], p.y.at[k], p.z.at[k]});
+  store_rows({{scale * as_reals(p.x), scale * as_reals(p.y), scale * as_reals(p.z), axis.x}},
+             [=](int k) { return &to[k].center.x; });
+  store_rows({{axis.y, axis.z, each(1.0), (reals)((wholes)members & many)}}, [=](int k) { return &to[k].axis.y; });
+  const wholes again = (wholes)(axis.z <= -1.0) & many;
+  if (any_negative(again))
+    for (int k = 0; k < lanes; k++)
+      if (again[k])
+        to[k].axis = axis_of(s.axes, (uint32_t)(first + k));
 }
 
+// The body of a loop over blocks of cells.
 struct SolveBlock {
-  SolveCell one;
+  static constexpr int64_t size = 64;
+  SolveCell body;
   void operator()(int64_t block, int shard) const
   {
-    const int64_t first = block * lanes, last = first + lanes;
-    if (last <= one.cell_count)
-      solve_lanes(one, first);
-    else
-      for (int64_t cell = first; cell < one.cell_count; cell++)
-        one(cell, shard);
+    const SolveCell one = body;
+    const int64_t first = block * size, last = first + size;
+    for (int64_t cell = first; cell < last && last <= one.cell_count; cell += lanes)
+      solve_lanes(one, cell);
+    for (int64_t cell = first; cell < one.cell_count && last > one.cell_count; cell++)
+      one(cell, shard);
   }
 };
 
 /* --- the passes ------------------------------------------------------------------------------------------------- */
 
-// What a pass does with 16 particles: turn (if it turns), flight, sums. `cell` has the cells of the last collision, and
-// gets those of the next one.
+// What a pass does with particles: turn (if it turns), flight, sums. `cell` has the cells of the last collision, and gets
+// those of the next one.
 template <class Border> struct Pass {
   Columns c;
   Border border;
@@ -322,76 +221,77 @@ template <class Border> struct Pass {
   int32_t *cell;
 };
 
-// Another thread may look ahead at this cell, for what it prefetches; either of its numbers will do.
-template <class Border> void keep_cell(const Pass<Border> &pass, int64_t i, int32_t cell)
+// A wrong flight of 2^51 or more ends outside of such a box.
+constexpr int64_t most_cells = 1024;
+
+inline bool suits_lanes(const Grid &grid)
 {
-  __atomic_store_n(&pass.cell[i], cell, __ATOMIC_RELAXED);
+  return grid.cells[0] <= most_cells && grid.cells[1] <= most_cells && grid.cells[2] <= most_cells &&
+         grid.cells[0] * grid.cells[1] * grid.cells[2] < INT32_MAX;
 }
 
-// What 16 particles add to their cells.
-struct Addends {
-  Cells cell;
-  Places momentum;
-};
+constexpr int together = 64; // particles whose cells' turns are on the way before they are needed
 
-constexpr int together = 4; // times 16 particles: their cells' sums are on the way while others are computed
-constexpr int ahead = 2 * lanes;
-
-// False if something is out of the usual range; then nothing has changed.
+// Particles first to first + lanes - 1. False if something is out of the usual range; then nothing has changed.
 template <bool turns, bool right_angle, class Border>
-bool pass_lanes(const Pass<Border> &pass, int64_t first, int shard, Addends &add)
+INLINE bool pass_lanes(const Pass<Border> &pass, int64_t first, CellSum *add)
 {
   const Columns &c = pass.c;
-  bool usual = true;
-  Places p;
-  Three v;
-  load(c.x + first, p.x), load(c.y + first, p.y), load(c.z + first, p.z);
-  load(c.vx + first, v.x), load(c.vy + first, v.y), load(c.vz + first, v.z);
+  Places p = {load<wholes>(c.x + first), load<wholes>(c.y + first), load<wholes>(c.z + first)};
+  Three v = {load<reals>(c.vx + first), load<reals>(c.vy + first), load<reals>(c.vz + first)};
+  wholes out = {};
   if (turns) {
-    Cells cell;
-    for (int k = 0; k < lanes; k++) {
-      cell.at[k] = pass.cell[first + k];
-      __builtin_prefetch(pass.turn + __atomic_load_n(&pass.cell[first + ahead + k], __ATOMIC_RELAXED));
-    }
-    Turns t;
-    gather(pass.turn, cell, t);
-    turn_all<right_angle>(t, pass.cosine, pass.sine, v);
-    usual = leave_all(pass.border, p, v);
+    v = turn_all<right_angle>(pass.turn, pass.cell + first, pass.cosine, pass.sine, v);
+    out = leave_all(pass.border, p, v);
   }
-  usual = usual & fly_all(pass.border, pass.flight, p, v) & cells_of(pass.next, p, add.cell) &
-          nearest_of(momentum_per_unit, v.x, add.momentum.x) & nearest_of(momentum_per_unit, v.y, add.momentum.y) &
-          nearest_of(momentum_per_unit, v.z, add.momentum.z);
-  if (!usual)
+  out |= fly_all(pass.border, pass.flight, p, v);
+  constexpr int64_t load = ((int64_t)1 << load_bits) + (int64_t)mass_per_unit, most = (int64_t)1 << 51;
+  const wholes x = nearest_of(momentum_per_unit * v.x), y = nearest_of(momentum_per_unit * v.y),
+               z = nearest_of(momentum_per_unit * v.z);
+  const words large = ((words)(x + most) | (words)(y + most) | (words)(z + most)) >> 52;
+  if (any_negative(out | -(wholes)large))
     return false;
-  for (int k = 0; k < lanes; k++) {
-    keep_cell(pass, first + k, add.cell.at[k]);
-    __builtin_prefetch(pass.sums.at + shard * pass.sums.cell_count + add.cell.at[k], 1);
-  }
+  store(cells_of(pass.next, p), pass.cell + first);
   store(p.x, c.x + first), store(p.y, c.y + first), store(p.z, c.z + first);
   store(v.x, c.vx + first), store(v.y, c.vy + first), store(v.z, c.vz + first);
+  store_rows({{(reals)x, (reals)y, (reals)z, (reals)(wholes{} + load)}}, [=](int k) { return (double *)(add + k); });
   return true;
 }
 
 // The body of a loop over blocks of particles. `Body` is that for a single one.
 template <bool turns, bool right_angle, class Border, class Body> struct PassBlock {
-  Pass<Border> pass;
+  Pass<Border> its;
   Body body;
   int64_t n;
+
+  void one_by_one(int64_t first, int64_t last, int shard) const
+  {
+    for (int64_t i = first; i < last; i++) {
+      body(i, shard);
+      its.cell[i] = (int32_t)cell_of(its.next, place_of(its.c, i));
+    }
+  }
   void operator()(int64_t block, int shard) const
   {
-    Addends add[together];
-    bool whole[together];
-    for (int k = 0; k < together; k++) {
-      const int64_t first = (block * together + k) * lanes, last = first + lanes;
-      whole[k] = last <= n && pass_lanes<turns, right_angle>(pass, first, shard, add[k]);
-      for (int64_t i = first; !whole[k] && i < last && i < n; i++) {
-        body(i, shard);
-        keep_cell(pass, i, (int32_t)cell_of(pass.next, place_of(pass.c, i)));
-      }
+    const Pass<Border> pass = its;
+    const int64_t first = block * together, last = first + together;
+    if (last > n) {
+      one_by_one(first, n, shard);
+      return;
     }
-    for (int k = 0; k < together; k++)
-      if (whole[k])
-        add_members(pass.sums.at + shard * pass.sums.cell_count, add[k].cell, add[k].momentum);
+    alignas(64) CellSum add[together];
+    for (int k = 0; k < together && turns; k++)
+      __builtin_prefetch(pass.turn + pass.cell[first + k]);
+    for (int k = 0; k < together; k += lanes)
+      if (!pass_lanes<turns, right_angle>(pass, first + k, add + k)) {
+        one_by_one(first + k, first + k + lanes, shard);
+        std::memset((void *)(add + k), 0, lanes * sizeof *add);
+      }
+    CellSum *const to = pass.sums.at + shard * pass.sums.cell_count;
+    for (int k = 0; k < together; k++) {
+      int64_t *const its_sum = &to[pass.cell[first + k]].x;
+      store(load<whole_quad>(its_sum) + load<whole_quad>(&add[k].x), its_sum);
+    }
   }
 };
 
@@ -399,6 +299,5 @@ template <bool turns, bool right_angle, class Border, class Body> struct PassBlo
 template <bool turns, bool right_angle, class Border, class Body>
 void pass_over(int64_t n, const Pass<Border> &pass, const Body &body)
 {
-  constexpr int each = together * lanes;
-  for_each_block((n + each - 1) / each, PassBlock<turns, right_angle, Border, Body>{pass, body, n});
+  for_each_block((n + together - 1) / together, PassBlock<turns, right_angle, Border, Body>{pass, body, n});
 }

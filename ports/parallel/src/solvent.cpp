@@ -48,7 +48,7 @@ Solvent::Solvent(const Model &model, const State &state, const Settings &setting
   id.resize((size_t)n), sorted_id.resize((size_t)n);
   count.resize((size_t)cell_count + 1);
   if (!on_gpu) {
-    cell.resize((size_t)n + block_size); // some more: pass_lanes looks ahead
+    cell.resize((size_t)n);
     cell.clear();
   }
   sums.resize((size_t)(cell_count * shards));
@@ -160,7 +160,7 @@ template <class Border> void Solvent::pass(const Border &border, double time, co
 #ifndef __CUDACC__
   const Pass<Border> lanes_too = {columns(),  border, next, turn.data(), model.cosine,
                                   model.sine, flight, to,   cell.data()};
-  const bool whole = !settings.one_by_one && cell_count < INT32_MAX;
+  const bool whole = !settings.one_by_one && suits_lanes(next);
   if (whole && pending && model.cosine == 0.0)
     pass_over<true, true>(n, lanes_too, right);
   else if (whole && pending)
@@ -217,7 +217,7 @@ void Solvent::solve(uint64_t step)
   const SolveCell body = {sums.data(), shards, cell_count, turn.data(), model.source(ROTATION_AXIS, step)};
 #ifndef __CUDACC__
   if (!settings.one_by_one)
-    for_each_block((cell_count + lanes - 1) / lanes, SolveBlock{body});
+    for_each_block((cell_count + SolveBlock::size - 1) / SolveBlock::size, SolveBlock{body});
   else
 #endif
     for_each(cell_count, body);
