@@ -1,5 +1,6 @@
 // As many numbers of 64 bits as a register of the processor holds, in the vectors of g++ and clang: 8 with AVX-512, 4
-// with AVX2, else 2. + - * / & | ^ << >> act on each; a comparison gives all ones for true, 0 for false.
+// with AVX2, else 2. + - * / & | ^ << >> act on each; a comparison gives all ones for true, 0 for false. -DLANES=8 makes
+// vectors of 8 for any processor: for tests.
 #pragma once
 
 #include <cstring>
@@ -10,13 +11,16 @@
 #include <immintrin.h>
 #endif
 
+#ifndef LANES
 #if defined __AVX512F__
-constexpr int lanes = 8;
+#define LANES 8
 #elif defined __AVX2__
-constexpr int lanes = 4;
+#define LANES 4
 #else
-constexpr int lanes = 2;
+#define LANES 2
 #endif
+#endif
+constexpr int lanes = LANES;
 
 typedef double reals __attribute__((vector_size(8 * lanes)));
 typedef int64_t wholes __attribute__((vector_size(8 * lanes)));
@@ -72,7 +76,7 @@ INLINE reals choose(wholes mask, reals a, reals b)
 // x, and x + edge where x is negative, x - edge where it is edge or more: within one edge of the box, `fold`.
 INLINE wholes fold_once(wholes x, int64_t edge)
 {
-#if defined __AVX2__ && !defined __AVX512F__ // the sign chooses
+#if LANES == 4 && defined __AVX2__ // the sign chooses
   x = (wholes)_mm256_blendv_pd((__m256d)x, (__m256d)(x + edge), (__m256d)x);
   const wholes less = x - edge;
   return (wholes)_mm256_blendv_pd((__m256d)less, (__m256d)x, (__m256d)less);
@@ -90,7 +94,7 @@ INLINE wholes outside(wholes x, int64_t most)
 
 INLINE bool any_negative(wholes x)
 {
-#if defined __AVX2__ && !defined __AVX512F__
+#if LANES == 4 && defined __AVX2__
   return _mm256_movemask_pd((__m256d)x) != 0;
 #else
   int64_t all = 0;
@@ -103,11 +107,11 @@ INLINE bool any_negative(wholes x)
 // The low half of each word times m.
 INLINE words multiply_low(words x, uint32_t m)
 {
-#if defined __AVX512F__
+#if LANES == 8 && defined __AVX512F__
   return (words)_mm512_mul_epu32((__m512i)x, _mm512_set1_epi64(m));
-#elif defined __AVX2__
+#elif LANES == 4 && defined __AVX2__
   return (words)_mm256_mul_epu32((__m256i)x, _mm256_set1_epi64x(m));
-#elif defined __SSE2__
+#elif LANES == 2 && defined __SSE2__
   return (words)_mm_mul_epu32((__m128i)x, _mm_set1_epi64x(m));
 #else
   return (x & 0xffffffff) * m;
@@ -116,11 +120,11 @@ INLINE words multiply_low(words x, uint32_t m)
 
 INLINE reals square_root(reals x)
 {
-#if defined __AVX512F__
+#if LANES == 8 && defined __AVX512F__
   return (reals)_mm512_sqrt_pd((__m512d)x);
-#elif defined __AVX2__
+#elif LANES == 4 && defined __AVX2__
   return (reals)_mm256_sqrt_pd((__m256d)x);
-#elif defined __SSE2__
+#elif LANES == 2 && defined __SSE2__
   return (reals)_mm_sqrt_pd((__m128d)x);
 #else
   for (int k = 0; k < lanes; k++)
@@ -138,7 +142,7 @@ struct Square {
 
 INLINE Square turned_over(const Square &s)
 {
-#if defined __AVX512F__
+#if LANES == 8
 #define SHUFFLE(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
   const reals a = SHUFFLE(s.at[0], s.at[1], 0, 8, 2, 10, 4, 12, 6, 14),
               b = SHUFFLE(s.at[0], s.at[1], 1, 9, 3, 11, 5, 13, 7, 15),
@@ -146,7 +150,7 @@ INLINE Square turned_over(const Square &s)
               d = SHUFFLE(s.at[2], s.at[3], 1, 9, 3, 11, 5, 13, 7, 15);
   return {{SHUFFLE(a, c, 0, 1, 8, 9, 4, 5, 12, 13), SHUFFLE(b, d, 0, 1, 8, 9, 4, 5, 12, 13),
            SHUFFLE(a, c, 2, 3, 10, 11, 6, 7, 14, 15), SHUFFLE(b, d, 2, 3, 10, 11, 6, 7, 14, 15)}};
-#elif defined __AVX2__
+#elif LANES == 4
 #define SHUFFLE(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
   const reals a = SHUFFLE(s.at[0], s.at[1], 0, 4, 2, 6), b = SHUFFLE(s.at[0], s.at[1], 1, 5, 3, 7),
               c = SHUFFLE(s.at[2], s.at[3], 0, 4, 2, 6), d = SHUFFLE(s.at[2], s.at[3], 1, 5, 3, 7);
@@ -161,12 +165,12 @@ INLINE Square turned_over(const Square &s)
 template <class Row> INLINE Square load_rows(const Row &row)
 {
   Square s;
-#if defined __AVX512F__
+#if LANES == 8
   for (int k = 0; k < 4; k++) {
     const quad low = load<quad>(row(k)), high = load<quad>(row(k + 4));
     s.at[k] = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
   }
-#elif defined __AVX2__
+#elif LANES == 4
   for (int k = 0; k < 4; k++)
     s.at[k] = load<reals>(row(k));
 #else
@@ -179,12 +183,12 @@ template <class Row> INLINE Square load_rows(const Row &row)
 template <class Row> INLINE void store_rows(const Square &columns, const Row &row)
 {
   const Square s = turned_over(columns);
-#if defined __AVX512F__
+#if LANES == 8
   for (int k = 0; k < 4; k++) {
     store(__builtin_shufflevector(s.at[k], s.at[k], 0, 1, 2, 3), row(k));
     store(__builtin_shufflevector(s.at[k], s.at[k], 4, 5, 6, 7), row(k + 4));
   }
-#elif defined __AVX2__
+#elif LANES == 4
   for (int k = 0; k < 4; k++)
     store(s.at[k], row(k));
 #else
