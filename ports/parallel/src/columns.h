@@ -301,3 +301,60 @@ void pass_over(int64_t n, const Pass<Border> &pass, const Body &body)
 {
   for_each_block((n + together - 1) / together, PassBlock<turns, right_angle, Border, Body>{pass, body, n});
 }
+
+/* --- vertices --------------------------------------------------------------------------------------------------- */
+
+// Places along an axis of vertices, which may be many boxes away.
+struct VertexAxis {
+  int64_t edge, shift;
+  double inverse;
+
+  VertexAxis(int64_t edge, int64_t shift) : edge(edge), shift(shift), inverse(1.0 / (double)edge)
+  {
+  }
+  int32_t cell(int64_t x) const
+  {
+    const int64_t whole = x + shift, image = (int64_t)((double)whole * inverse);
+    return (int32_t)(fold(whole - image * edge, edge) >> 40);
+  }
+};
+
+// SumVertex and TurnVertex of `together` vertices, whose cells are on the way before they are needed.
+struct SumVertices {
+  SumVertex one;
+  int32_t *cell;
+  int64_t n;
+  void operator()(int64_t block, int shard) const
+  {
+    const Grid &grid = one.grid;
+    const VertexAxis x(grid.edge.x, grid.shift.x), y(grid.edge.y, grid.shift.y), z(grid.edge.z, grid.shift.z);
+    const int32_t nx = (int32_t)grid.cells[0], ny = (int32_t)grid.cells[1];
+    const int64_t first = block * together, last = first + together < n ? first + together : n;
+    for (int64_t i = first; i < last; i++) {
+      const Point p = one.p[i];
+      cell[i] = (z.cell(p.z) * ny + y.cell(p.y)) * nx + x.cell(p.x);
+      __builtin_prefetch(one.sums.at + shard * one.sums.cell_count + cell[i], 1);
+    }
+    for (int64_t i = first; i < last; i++)
+      add_member(one.sums, shard, cell[i], one.mass[i], one.v[i]);
+  }
+};
+
+struct TurnVertices {
+  TurnVertex one;
+  const int32_t *cell;
+  int64_t n;
+  void operator()(int64_t block, int) const
+  {
+    const int64_t first = block * together, last = first + together < n ? first + together : n;
+    for (int64_t i = first; i < last; i++)
+      __builtin_prefetch(one.turn + cell[i]);
+    for (int64_t i = first; i < last; i++)
+      one.v[i] = after_turn(one.turn[cell[i]], one.cosine, one.sine, one.v[i]);
+  }
+};
+
+template <class Body> void over_vertices(int64_t n, const Body &body)
+{
+  for_each_block((n + together - 1) / together, body);
+}

@@ -58,9 +58,14 @@ Solvent::Solvent(const Model &model, const State &state, const Settings &setting
     relative.resize((size_t)(cell_count * shards)), total.resize(3 * (size_t)total_shards());
     relative.clear();
   }
-  vertex.resize(state.vertex.size()), vertex_velocity.resize(state.vertex.size());
+  vertices.n = (int64_t)state.vertex.size();
+  if (on_gpu)
+    vertex.resize(state.vertex.size()), vertex_velocity.resize(state.vertex.size());
+  else
+    vertex_cell.resize(state.vertex.size());
   vertex_mass.resize(state.vertex.size());
   vertex_mass.upload(model.mass.data(), model.mass.size());
+  vertices.mass = vertex_mass.data();
   if (model.flow.kind == WALLS) {
     filled.resize((size_t)cut_cells_of(model).count()), given.resize((size_t)(account_stride * shards));
     given.clear();
@@ -240,8 +245,7 @@ void Solvent::apply_thermostat(uint64_t step)
 {
   const Relative to = {relative.data(), cell_count};
   for_each(n, RelativeSolvent{columns(), at_collision, turn.data(), to});
-  for_each((int64_t)vertex.size(),
-           RelativeVertex{vertex.data(), vertex_velocity.data(), vertex_mass.data(), at_collision, turn.data(), to});
+  for_each(vertices.n, RelativeVertex{vertices.p, vertices.v, vertices.mass, at_collision, turn.data(), to});
   if (model.thermostat == MAXWELL_BOLTZMANN) {
     for_each(cell_count, DrawFactor{turn.data(), to, shards, model.source(THERMOSTAT, step)});
     return;
@@ -256,38 +260,71 @@ void Solvent::apply_thermostat(uint64_t step)
 }
 
 // The rule at-a.
-void Solvent::collide_drawn(uint64_t step, State &state)
+void Solvent::collide_drawn(uint64_t step)
 {
   const Sums to = {sums.data(), cell_count, settings.transposed};
   const Source particle = model.source(DRAWN_PARTICLE, step), of_vertex = model.source(DRAWN_VERTEX, step);
-  const int64_t vertices = (int64_t)vertex.size();
   for_each(n, DrawSum{columns(), at_collision, to, particle});
-  for_each(vertices,
-           DrawSumVertex{vertex.data(), vertex_velocity.data(), vertex_mass.data(), at_collision, to, of_vertex});
+  for_each(vertices.n, DrawSumVertex{vertices.p, vertices.v, vertices.mass, at_collision, to, of_vertex});
   solve(step);
   last_step = step;
   with_border(step, [&](const auto &border) {
     for_each(n, GiveSolvent<std::decay_t<decltype(border)>>{columns(), at_collision, turn.data(), particle, border});
   });
-  for_each(vertices,
-           GiveVertex{vertex.data(), vertex_velocity.data(), vertex_mass.data(), at_collision, turn.data(), of_vertex});
-  vertex_velocity.download(state.vertex_velocity.data(), state.vertex_velocity.size());
+  for_each(vertices.n, GiveVertex{vertices.p, vertices.v, vertices.mass, at_collision, turn.data(), of_vertex});
+}
+
+// Vertices come from the host, or are there already.
+void Solvent::take_vertices(State &state)
+{
+  if (on_gpu && vertices.n > 0) {
+    vertex.upload(state.vertex.data(), state.vertex.size());
+    vertex_velocity.upload(state.vertex_velocity.data(), state.vertex_velocity.size());
+  }
+  vertices.p = on_gpu ? vertex.data() : state.vertex.data();
+  vertices.v = on_gpu ? vertex_velocity.data() : state.vertex_velocity.data();
+}
+
+void Solvent::give_vertices(State &state) const
+{
+  if (on_gpu && vertices.n > 0)
+    vertex_velocity.download(state.vertex_velocity.data(), state.vertex_velocity.size());
+}
+
+void Solvent::sum_vertices(const Grid &next)
+{
+  const SumVertex body = {vertices.p, vertices.v, vertices.mass, next, {sums.data(), cell_count, 0}};
+#ifndef __CUDACC__
+  if (!settings.one_by_one && suits_lanes(next)) {
+    over_vertices(vertices.n, SumVertices{body, vertex_cell.data(), vertices.n});
+    return;
+  }
+#endif
+  for_each(vertices.n, body);
+}
+
+void Solvent::turn_vertices()
+{
+  const TurnVertex body = {vertices.p, vertices.v, at_collision, turn.data(), model.cosine, model.sine};
+#ifndef __CUDACC__
+  if (!settings.one_by_one && suits_lanes(at_collision)) {
+    over_vertices(vertices.n, TurnVertices{body, vertex_cell.data(), vertices.n});
+    return;
+  }
+#endif
+  for_each(vertices.n, body);
 }
 
 void Solvent::collide(uint64_t step, double time, State &state)
 {
   const Grid next = grid_of(model, grid_shift(model, step));
-  const int64_t vertices = (int64_t)vertex.size();
-  if (vertices > 0) {
-    vertex.upload(state.vertex.data(), state.vertex.size());
-    vertex_velocity.upload(state.vertex_velocity.data(), state.vertex_velocity.size());
-  }
+  take_vertices(state);
   if (model.andersen) {
     with_border(step, [&](const auto &border) {
       for_each(n, Fly<std::decay_t<decltype(border)>>{columns(), flight_of(model.acceleration, time), border});
     });
     at_collision = next;
-    collide_drawn(step, state);
+    collide_drawn(step);
   } else {
     if (!ahead)
       fly_and_sum(step, time, next);
@@ -296,8 +333,7 @@ void Solvent::collide(uint64_t step, double time, State &state)
     ahead = false;
     if (model.flow.kind == WALLS)
       fill_cut_cells(step);
-    for_each(vertices, SumVertex{vertex.data(), vertex_velocity.data(), vertex_mass.data(), next,
-                                 Sums{sums.data(), cell_count, 0}});
+    sum_vertices(next);
     solve(step);
     if (model.thermostat != NO_THERMOSTAT)
       apply_thermostat(step);
@@ -305,12 +341,9 @@ void Solvent::collide(uint64_t step, double time, State &state)
       for_each((int64_t)filled.size(), AccountCell{cut_cells_of(model), filled.data(), turn.data(), model.cosine,
                                                    model.sine, given.data()});
     pending = true;
-    if (vertices > 0) {
-      for_each(vertices,
-               TurnVertex{vertex.data(), vertex_velocity.data(), next, turn.data(), model.cosine, model.sine});
-      vertex_velocity.download(state.vertex_velocity.data(), state.vertex_velocity.size());
-    }
+    turn_vertices();
   }
+  give_vertices(state);
   since_sort++;
   if (!model.hydrodynamics) {
     finish_turn();

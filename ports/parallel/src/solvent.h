@@ -76,10 +76,14 @@ private:
   void fill_cut_cells(uint64_t step);
   void solve(uint64_t step);
   void apply_thermostat(uint64_t step);
-  void collide_drawn(uint64_t step, State &state);
+  void collide_drawn(uint64_t step);
   void finish_turn();
   void sort();
   void swap_velocities(uint64_t step);
+  void take_vertices(State &state);
+  void give_vertices(State &state) const;
+  void sum_vertices(const Grid &next);
+  void turn_vertices();
 
   const Model &model;
   Settings settings;
@@ -96,8 +100,16 @@ private:
   Array<int32_t> cell; // of each particle at the last collision, for the passes of columns.h
   Array<CellSum> sums;
   Array<CellTurn> turn;
+  // Where vertices are in this collision: on a GPU copies.
+  struct {
+    Point *p = nullptr;
+    Vector *v = nullptr;
+    const double *mass = nullptr;
+    int64_t n = 0;
+  } vertices;
   Array<Point> vertex;
   Array<Vector> vertex_velocity;
+  Array<int32_t> vertex_cell; // at the last collision, for columns.h
   Array<double> vertex_mass;
   Array<Virtual> filled;   // walls: what fills cut cells
   Array<int64_t> given;    // walls: their account
