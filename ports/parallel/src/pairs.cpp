@@ -2,6 +2,22 @@
 
 #include <algorithm>
 
+#if defined __AVX__ && !defined __CUDACC__
+#include <immintrin.h>
+#endif
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+static bool alone()
+{
+#ifdef _OPENMP
+  return omp_get_max_threads() == 1;
+#else
+  return true;
+#endif
+}
+
 // The best s of the two lines, cut to the bond; the best t for it, cut; the best s for this t. Where bonds are nearly
 // parallel s and t are inexact, and the distance hardly depends on them.
 void PairColumns::measure()
@@ -24,13 +40,19 @@ static int64_t floor_divide(int64_t a, int64_t b)
   return a / b - (a % b < 0);
 }
 
-// Pairs that may be near are measured 64 at a time.
+// By one thread. Pairs that may be near are measured 64 at a time.
 struct PairList::Found {
   std::vector<Pair> pairs;
   std::vector<double> apart;
   PairColumns columns;
   Pair waiting[pair_lanes];
 };
+
+PairList::PairList(const Model &model) : model(model)
+{
+}
+
+PairList::~PairList() = default;
 
 void PairList::keep_near(Found &found) const
 {
@@ -43,19 +65,13 @@ void PairList::keep_near(Found &found) const
   found.columns.count = 0;
 }
 
-void PairList::add(int32_t bond, int32_t other, Point image, Found &found) const
+// p, q: the bonds; w: from the beginning of `bond` to that of the image of `other`.
+void PairList::add(int32_t bond, int32_t other, Point image, Vector p, Vector q, Vector w, Found &found) const
 {
-  if (bond > other) {
-    std::swap(bond, other);
-    image = {-image.x, -image.y, -image.z};
-  }
-  const int32_t end = model.next[bond], other_end = model.next[other];
-  if (bond == other_end || end == other || end == other_end)
-    return;
-  const Point edge = model.edge(), shift = {image.x * edge.x, image.y * edge.y, image.z * edge.z};
-  found.waiting[found.columns.count] = {bond, other, {(int32_t)image.x, (int32_t)image.y, (int32_t)image.z}};
-  found.columns.add(0, in_a0(reference[end] - reference[bond]), in_a0(reference[other_end] - reference[other]),
-                    in_a0(reference[other] + shift - reference[bond]));
+  const Pair pair = {bond, other, {(int32_t)image.x, (int32_t)image.y, (int32_t)image.z}},
+             turned = {other, bond, {(int32_t)-image.x, (int32_t)-image.y, (int32_t)-image.z}};
+  found.waiting[found.columns.count] = bond < other ? pair : turned;
+  found.columns.add(0, p, q, w);
   if (found.columns.count == pair_lanes)
     keep_near(found);
 }
@@ -64,6 +80,9 @@ void PairList::add(int32_t bond, int32_t other, Point image, Found &found) const
 
 void PairList::find_images(int32_t bond, int32_t other, double reach, Found &found) const
 {
+  const int32_t end = model.next[bond], other_end = model.next[other];
+  if (bond == other_end || end == other || end == other_end)
+    return;
   const Point between = middle[other] - middle[bond], edge = model.edge();
   const int64_t far = (int64_t)(reach * lattice_per_a0);
   const int64_t apart[3] = {between.x, between.y, between.z}, edges[3] = {edge.x, edge.y, edge.z};
@@ -74,45 +93,76 @@ void PairList::find_images(int32_t bond, int32_t other, double reach, Found &fou
     if (low[axis] > high[axis])
       return;
   }
+  const Vector p = in_a0(reference[end] - reference[bond]), q = in_a0(reference[other_end] - reference[other]);
   for (int64_t x = low[0]; x <= high[0]; x++)
     for (int64_t y = low[1]; y <= high[1]; y++)
-      for (int64_t z = low[2]; z <= high[2]; z++)
-        add(bond, other, {x, y, z}, found);
+      for (int64_t z = low[2]; z <= high[2]; z++) {
+        const Point shift = {x * edge.x, y * edge.y, z * edge.z};
+        add(bond, other, {x, y, z}, p, q, in_a0(reference[other] + shift - reference[bond]), found);
+      }
 }
 
 /* --- large ones: cells ------------------------------------------------------------------------------------------ */
 
-// Bonds in the order of their cells: middles within the box, a0, and what was added to them, in edges.
+// Bonds in the order of their cells, along x: first ends and middles within the box, a0, and what was added to them, in
+// edges.
 struct PairList::Sorted {
   int64_t cells[3];
   float width[3], longest_half;
-  std::vector<int32_t> bond, start; // start: of each cell
-  std::vector<float> x, y, z, half; // half: of the length
-  std::vector<Point> folds, cell;
+  std::vector<int32_t> bond, end, start; // start: of each cell
+  std::vector<float> x, y, z, half;      // of the middle; half of the length
+  std::vector<Vector> first, along;
+  std::vector<Point> folds;
 };
 
 constexpr int at_once = 8;
 
+// Bit k is set if the middle k of these, with half its length and `reach`, is near a place.
+static uint32_t those_near(const float *x, const float *y, const float *z, const float *half, const float *at, float reach)
+{
+  uint32_t near = 0;
+#if defined __AVX__ && !defined __CUDACC__
+  const auto apart = [](const float *from, float place) { return _mm256_sub_ps(_mm256_loadu_ps(from), _mm256_set1_ps(place)); };
+  const __m256 dx = apart(x, at[0]), dy = apart(y, at[1]), dz = apart(z, at[2]), far = apart(half, -reach);
+  const __m256 squares = _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(dx, dx), _mm256_mul_ps(dy, dy)), _mm256_mul_ps(dz, dz));
+  near = (uint32_t)_mm256_movemask_ps(_mm256_sub_ps(squares, _mm256_mul_ps(far, far)));
+#else
+  for (int k = 0; k < at_once; k++) {
+    const float dx = x[k] - at[0], dy = y[k] - at[1], dz = z[k] - at[2], far = half[k] + reach;
+    near |= (uint32_t)(dx * dx + dy * dy + dz * dz < far * far) << k;
+  }
+#endif
+  return near;
+}
+
 // Wrong by this at most, in boxes of up to 1000 a0: places in single precision.
 constexpr float middle_error = 2e-3f;
+constexpr int64_t parts_of_x = 2; // a cell is as wide as the reach along y and z, and a part of it along x
 
 void PairList::sort_bonds(Sorted &s) const
 {
   const size_t n = bonds.size();
   const Point edge = model.edge();
-  const auto cell_along = [](int64_t folded, int64_t edge, int64_t n) {
-    return std::min((int64_t)((double)folded / (double)edge * (double)n), n - 1);
+  const Vector inverse = {1.0 / (double)edge.x, 1.0 / (double)edge.y, 1.0 / (double)edge.z};
+  const auto cell_along = [](int64_t folded, double inverse, int64_t n) {
+    return std::min((int64_t)((double)folded * inverse * (double)n), n - 1);
   };
-  std::vector<Point> fold(n), cell(n);
+  const auto fold_of = [](int64_t x, int64_t edge, double inverse) {
+    const int64_t k = (int64_t)((double)x * inverse), left = x - k * edge;
+    return left >= 0 && left < edge ? -k : -floor_divide(x, edge);
+  };
+  std::vector<Point> &fold = s.folds;
+  std::vector<Point> unsorted(n);
   std::vector<int32_t> number(n);
 #pragma omp parallel for schedule(static)
   for (size_t k = 0; k < n; k++) {
     const Point r = middle[bonds[k]];
-    fold[k] = {-floor_divide(r.x, edge.x), -floor_divide(r.y, edge.y), -floor_divide(r.z, edge.z)};
-    cell[k] = {cell_along(r.x + fold[k].x * edge.x, edge.x, s.cells[0]),
-               cell_along(r.y + fold[k].y * edge.y, edge.y, s.cells[1]),
-               cell_along(r.z + fold[k].z * edge.z, edge.z, s.cells[2])};
-    number[k] = (int32_t)((cell[k].z * s.cells[1] + cell[k].y) * s.cells[0] + cell[k].x);
+    const Point f = {fold_of(r.x, edge.x, inverse.x), fold_of(r.y, edge.y, inverse.y), fold_of(r.z, edge.z, inverse.z)};
+    const int64_t x = cell_along(r.x + f.x * edge.x, inverse.x, s.cells[0]),
+                  y = cell_along(r.y + f.y * edge.y, inverse.y, s.cells[1]),
+                  z = cell_along(r.z + f.z * edge.z, inverse.z, s.cells[2]);
+    unsorted[k] = f;
+    number[k] = (int32_t)((z * s.cells[1] + y) * s.cells[0] + x);
   }
   s.start.assign(s.cells[0] * s.cells[1] * s.cells[2] + 1, 0);
   for (size_t k = 0; k < n; k++)
@@ -122,66 +172,92 @@ void PairList::sort_bonds(Sorted &s) const
   std::vector<int32_t> next(s.start.begin(), s.start.end() - 1);
   for (size_t k = 0; k < n; k++)
     number[k] = next[number[k]]++;
-  s.bond.resize(n), s.folds.resize(n), s.cell.resize(n);
+  s.bond.resize(n), s.end.resize(n), fold.resize(n), s.first.resize(n), s.along.resize(n);
   s.x.resize(n + at_once), s.y.resize(n + at_once), s.z.resize(n + at_once), s.half.resize(n + at_once);
 #pragma omp parallel for schedule(static)
   for (size_t k = 0; k < n; k++) {
     const int32_t to = number[k], i = bonds[k];
-    const Vector along = in_a0(reference[model.next[i]] - reference[i]);
-    const Vector at = in_a0(middle[i] + Point{fold[k].x * edge.x, fold[k].y * edge.y, fold[k].z * edge.z});
-    s.bond[to] = i, s.folds[to] = fold[k], s.cell[to] = cell[k];
+    const Point f = unsorted[k], added = {f.x * edge.x, f.y * edge.y, f.z * edge.z};
+    const Vector along = in_a0(reference[model.next[i]] - reference[i]), at = in_a0(middle[i] + added);
+    s.bond[to] = i, s.end[to] = model.next[i], fold[to] = f;
+    s.first[to] = in_a0(reference[i] + added), s.along[to] = along;
     s.x[to] = (float)at.x, s.y[to] = (float)at.y, s.z[to] = (float)at.z;
     s.half[to] = (float)(0.5 * std::sqrt(dot(along, along)));
   }
 }
 
-// Distance along an axis of a place from a cell.
-static float gap(float at, int64_t cell, float width)
+// A row of partners of a cell's bonds, in the order of the cells, and which image of it.
+struct PairList::Run {
+  int32_t from, to;
+  int y, z; // from the cell
+  Point image;
+};
+
+// Rows of partners after this cell, in the order of the cells: of two neighbors one has the other.
+int PairList::runs_around(const Sorted &s, int64_t x, int64_t y, int64_t z, Run *runs) const
 {
-  return std::max({(float)cell * width - at, at - (float)(cell + 1) * width, 0.0f});
+  static constexpr int row_y[5] = {0, 1, -1, 0, 1}, row_z[5] = {0, 0, 1, 1, 1};
+  const int64_t nx = s.cells[0], last = x + parts_of_x, begin = x - parts_of_x;
+  int count = 0;
+  for (int n = 0; n < 5; n++) {
+    const int64_t its_y = y + row_y[n], its_z = z + row_z[n];
+    const int64_t over_y = its_y < 0 ? -1 : its_y == s.cells[1], over_z = its_z == s.cells[2];
+    const int32_t *const start =
+        s.start.data() + ((its_z - over_z * s.cells[2]) * s.cells[1] + (its_y - over_y * s.cells[1])) * nx;
+    const auto add_run = [&](int64_t from, int64_t to, int64_t over_x) {
+      if (start[from] < start[to])
+        runs[count++] = {start[from], start[to], row_y[n], row_z[n], {over_x, over_y, over_z}};
+    };
+    const int64_t from = n == 0 ? x : begin;
+    add_run(std::max(from, (int64_t)0), std::min(last + 1, nx), 0);
+    if (from < 0)
+      add_run(nx + from, nx, -1);
+    if (last >= nx)
+      add_run(0, last + 1 - nx, 1);
+  }
+  return count;
 }
 
-// Partners of one bond, among those that come after it in the order of the cells. Cells of a row are next to each
-// other.
-void PairList::find_around(const Sorted &s, size_t k, Found &found) const
+void PairList::find_around(const Sorted &s, int64_t cell, Found &found) const
 {
+  const int32_t begin = s.start[cell], end = s.start[cell + 1];
+  if (begin == end)
+    return;
+  const int64_t nx = s.cells[0], x = cell % nx, y = cell / nx % s.cells[1], z = cell / nx / s.cells[1];
+  Run runs[15];
+  const int count = runs_around(s, x, y, z, runs);
   const Vector edge = in_a0(model.edge());
-  const float reach = s.half[k] + (float)skin + middle_error;
-  const auto look = [&](int64_t from, int64_t to, Point image) {
-    const float *const sx = s.x.data(), *const sy = s.y.data(), *const sz = s.z.data(), *const half = s.half.data();
-    const float x = s.x[k] - (float)(image.x * edge.x), y = s.y[k] - (float)(image.y * edge.y),
-                z = s.z[k] - (float)(image.z * edge.z);
-    for (int64_t m = std::max(from, (int64_t)k + 1); m < to; m += at_once) {
-      const int n = (int)std::min((int64_t)at_once, to - m);
-      int32_t close[at_once], any = 0;
-      for (int l = 0; l < at_once; l++) { // those beyond n are not looked at
-        const float dx = sx[m + l] - x, dy = sy[m + l] - y, dz = sz[m + l] - z, far = reach + half[m + l];
-        close[l] = dx * dx + dy * dy + dz * dz < far * far ? 1 : 0;
-        any |= close[l];
-      }
-      for (int l = 0; any && l < n; l++)
-        if (close[l])
-          add(s.bond[k], s.bond[m + l], s.folds[m + l] + image - s.folds[k], found);
+  for (int32_t k = begin; k < end; k++) {
+    const float reach = s.half[k] + (float)skin + middle_error, most = reach + s.longest_half;
+    const float above = (float)(y + 1) * s.width[1] - s.y[k], below = s.y[k] - (float)y * s.width[1],
+                behind = (float)(z + 1) * s.width[2] - s.z[k];
+    for (int n = 0; n < count; n++) {
+      const Run &run = runs[n];
+      const float dy = std::max((run.y > 0 ? above : run.y < 0 ? below : 0.0f) - middle_error, 0.0f),
+                  dz = std::max((run.z > 0 ? behind : 0.0f) - middle_error, 0.0f);
+      if (dy * dy + dz * dz < most * most)
+        look(s, k, run, {run.image.x * edge.x, run.image.y * edge.y, run.image.z * edge.z}, reach, found);
     }
-  };
-  const int64_t nx = s.cells[0];
-  const float most = reach + s.longest_half;
-  for (int n = 0; n < 9; n++) {
-    const int64_t y = s.cell[k].y + n % 3 - 1, z = s.cell[k].z + n / 3 - 1;
-    const float dy = gap(s.y[k], y, s.width[1]), dz = gap(s.z[k], z, s.width[2]),
-                left = most * most - dy * dy - dz * dz;
-    if (left < 0.0f)
-      continue;
-    const int64_t over_y = y < 0 ? -1 : y == s.cells[1], over_z = z < 0 ? -1 : z == s.cells[2];
-    const int64_t row = ((z - over_z * s.cells[2]) * s.cells[1] + (y - over_y * s.cells[1])) * nx;
-    const float far = std::sqrt(left) + middle_error;
-    const int64_t from = (int64_t)std::floor((s.x[k] - far) / s.width[0]);
-    const int64_t to = (int64_t)std::floor((s.x[k] + far) / s.width[0]) + 1;
-    look(s.start[row + std::max(from, (int64_t)0)], s.start[row + std::min(to, nx)], {0, over_y, over_z});
-    if (from < 0)
-      look(s.start[row + nx + from], s.start[row + nx], {-1, over_y, over_z});
-    if (to > nx)
-      look(s.start[row], s.start[row + to - nx], {1, over_y, over_z});
+  }
+}
+
+// Those of a row that are near bond k and come after it.
+void PairList::look(const Sorted &s, int32_t k, const Run &run, Vector shift, float reach, Found &found) const
+{
+  const float at[3] = {s.x[k] - (float)shift.x, s.y[k] - (float)shift.y, s.z[k] - (float)shift.z};
+  const float *const x = s.x.data(), *const y = s.y.data(), *const z = s.z.data(), *const half = s.half.data();
+  const int32_t bond = s.bond[k], end = s.end[k];
+  const bool own = run.y == 0 && run.z == 0 && run.image.x == 0;
+  for (int32_t m = own ? std::max(run.from, k + 1) : run.from; m < run.to; m += at_once) {
+    uint32_t near = those_near(x + m, y + m, z + m, half + m, at, reach);
+    if (run.to - m < at_once)
+      near &= (1u << (run.to - m)) - 1;
+    for (; near; near &= near - 1) {
+      const int32_t l = m + __builtin_ctz(near);
+      if (bond != s.end[l] && end != s.bond[l] && end != s.end[l])
+        add(bond, s.bond[l], s.folds[l] + run.image - s.folds[k], s.along[k], s.along[l],
+            (s.first[l] - s.first[k]) + shift, found);
+    }
   }
 }
 
@@ -203,28 +279,30 @@ void PairList::find()
     wide = wide && s.cells[axis] >= 3 && model.cells[axis] <= 1000;
   }
   if (wide) {
-    s.cells[0] *= 4; // a row is cut where the bond's reach ends
+    s.cells[0] *= parts_of_x;
     for (int axis = 0; axis < 3; axis++)
       s.width[axis] = (float)model.cells[axis] / (float)s.cells[axis];
     s.longest_half = (float)(0.5 * std::sqrt(longest)) + middle_error;
     sort_bonds(s);
   }
-  const size_t parts = wide ? 64 : 1;
-  std::vector<Found> found(parts); // in one order, whoever finds them
+  const int64_t work = wide ? (int64_t)s.start.size() - 1 : (int64_t)bonds.size(), parts = wide && !alone() ? 64 : 1;
+  found.resize((size_t)parts); // in one order, whoever finds them
 #pragma omp parallel for schedule(dynamic)
-  for (size_t part = 0; part < parts; part++) {
-    for (size_t k = part * bonds.size() / parts; k < (part + 1) * bonds.size() / parts; k++)
+  for (int64_t part = 0; part < parts; part++) {
+    Found &mine = found[(size_t)part];
+    mine.pairs.clear(), mine.apart.clear();
+    for (int64_t k = part * work / parts; k < (part + 1) * work / parts; k++)
       if (wide)
-        find_around(s, k, found[part]);
+        find_around(s, k, mine);
       else
-        for (size_t m = k + 1; m < bonds.size(); m++)
-          find_images(bonds[k], bonds[m], reach, found[part]);
-    keep_near(found[part]);
+        for (size_t m = (size_t)k + 1; m < bonds.size(); m++)
+          find_images(bonds[k], bonds[m], reach, mine);
+    keep_near(mine);
   }
-  pairs.clear(), apart.clear();
-  for (const Found &part : found) {
-    pairs.insert(pairs.end(), part.pairs.begin(), part.pairs.end());
-    apart.insert(apart.end(), part.apart.begin(), part.apart.end());
+  pairs.swap(found[0].pairs), apart.swap(found[0].apart);
+  for (size_t part = 1; part < found.size(); part++) {
+    pairs.insert(pairs.end(), found[part].pairs.begin(), found[part].pairs.end());
+    apart.insert(apart.end(), found[part].apart.begin(), found[part].apart.end());
   }
 }
 

@@ -41,9 +41,8 @@ struct PairColumns {
 class PairList
 {
 public:
-  explicit PairList(const Model &model) : model(model)
-  {
-  }
+  explicit PairList(const Model &model);
+  ~PairList();
 
   void build(const std::vector<Point> &position, double skin);
   // Square of the distance that this place of a vertex has from its reference, a0.
@@ -62,16 +61,20 @@ public:
 
 private:
   struct Sorted;
-  struct Found; // by one thread
+  struct Found;
+  struct Run;
   void find();
   void sort_bonds(Sorted &s) const;
-  void find_around(const Sorted &s, size_t k, Found &found) const;
+  int runs_around(const Sorted &s, int64_t x, int64_t y, int64_t z, Run *runs) const;
+  void find_around(const Sorted &s, int64_t cell, Found &found) const;
+  void look(const Sorted &s, int32_t k, const Run &run, Vector shift, float reach, Found &found) const;
   void find_images(int32_t bond, int32_t other, double reach, Found &found) const;
-  void add(int32_t bond, int32_t other, Point image, Found &found) const;
+  void add(int32_t bond, int32_t other, Point image, Vector p, Vector q, Vector w, Found &found) const;
   void keep_near(Found &found) const;
   void index();
 
   const Model &model;
   std::vector<int32_t> bonds;
   std::vector<Point> reference, middle;
+  std::vector<Found> found;
 };
