@@ -43,16 +43,21 @@ void EventDrift::drift(double time, double start, std::vector<Point> &r, std::ve
       renew_list(0.0);
     const Flights flights = {model, fibers, list,   r.data(), rate.data(),    v.data(),
                              time,  start,  margin, limit,    rows != nullptr};
-    double beyond = furthest();
+    double beyond = away + longest;
+    if (2.0 * beyond + margin > list.skin)
+      beyond = furthest();
     if (2.0 * beyond + margin > list.skin) {
       renew_list(0.0);
-      beyond = furthest();
+      beyond = longest;
     }
     while (!fly(flights, beyond)) { // a vertex comes too far for the list: again, with a wider one
       for (const Component &component : components)
         beyond = std::max(beyond, component.beyond);
       renew_list(beyond);
     }
+    away = beyond;
+    for (const Component &component : components)
+      away = std::max(away, component.beyond);
     if (rows)
       tell(*rows);
   }
@@ -105,6 +110,7 @@ void EventDrift::renew_list(double need)
   list.build(*position, std::max(usual_skin, 3.0 * need + margin));
   path.assign(position->size(), 0.0);
   due = list.apart;
+  away = 0.0;
   counts.lists++;
 }
 

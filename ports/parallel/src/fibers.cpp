@@ -45,21 +45,32 @@ void Fibers::bend(int32_t j, Vector before, Vector after, Vector &a, Vector &b) 
 }
 
 // Bonds and bends of one fiber in columns, which compilers turn into vector instructions. Bond k + 1 is that of the
-// fiber's vertex k; bond 0 is that of the vertex before the first one, in rings.
-struct Fibers::Columns {
-  std::vector<double> x[3], unit[3], length, each, pull[3], a[3], b[3];
+// fiber's vertex k; bond 0 is that of the vertex before the first one, in rings. Loops end with whole vectors; what is beyond
+// the last bond is not used.
+class Fibers::Columns
+{
+public:
+  enum Name { X, Y, Z, UNIT_X, UNIT_Y, UNIT_Z, LENGTH, EACH, PULL_X, PULL_Y, PULL_Z, A_X, A_Y, A_Z, B_X, B_Y, B_Z, NAMES };
 
-  void resize(size_t n)
+  void resize(int32_t bonds)
   {
-    for (int axis = 0; axis < 3; axis++)
-      for (std::vector<double> *column : {&x[axis], &unit[axis], &pull[axis], &a[axis], &b[axis]})
-        column->resize(n + 1);
-    length.resize(n + 1), each.resize(n + 1);
+    length = bonds + 8;
+    numbers.resize((size_t)NAMES * (size_t)length, 0.0);
   }
-  static Vector at(const std::vector<double> *column, size_t k)
+  double *of(int name)
   {
-    return {column[0][k], column[1][k], column[2][k]};
+    return numbers.data() + (ptrdiff_t)name * length;
   }
+  // Three columns from this one on.
+  Vector at(int name, int32_t k) const
+  {
+    const double *const x = numbers.data() + (ptrdiff_t)name * length + k;
+    return {x[0], x[length], x[2 * length]};
+  }
+  int32_t length = 0;
+
+private:
+  std::vector<double> numbers;
 };
 
 // Returns the square of the longest bond.
@@ -67,61 +78,75 @@ double Fibers::fill(int32_t begin, int32_t end, const std::vector<Point> &positi
 {
   const int32_t n = end - begin;
   const bool ring = model.prev[begin] >= 0, of_bends = model.bending[begin] != 0.0;
-  c.resize(n);
-  double *const x = c.x[0].data(), *const y = c.x[1].data(), *const z = c.x[2].data();
+  c.resize(n + 1);
+  double *const x = c.of(c.X), *const y = c.of(c.Y), *const z = c.of(c.Z);
   for (int32_t k = 0; k < n - 1; k++) {
     const Vector r = in_a0(position[begin + k + 1] - position[begin + k]);
     x[k + 1] = r.x, y[k + 1] = r.y, z[k + 1] = r.z;
   }
   const Vector last = ring ? in_a0(position[begin] - position[end - 1]) : Vector{0, 0, 0};
   x[0] = x[n] = last.x, y[0] = y[n] = last.y, z[0] = z[n] = last.z;
-  double *const length = c.length.data(), *const each = c.each.data();
+  for (int32_t k = n + 1; k < c.length; k++)
+    x[k] = y[k] = z[k] = 0.0;
+  const double spring = model.spring[begin], rest = model.bond_length[begin], kappa = model.bending[begin];
+  const bool root = rest != 0.0 || (of_step && of_bends); // within a step, kinds with bends take the root, whatever l0
+  double *const length = c.of(c.LENGTH), *const each = c.of(c.EACH);
+  double *const u = c.of(c.UNIT_X), *const v = c.of(c.UNIT_Y), *const w = c.of(c.UNIT_Z);
+  double *const px = c.of(c.PULL_X), *const py = c.of(c.PULL_Y), *const pz = c.of(c.PULL_Z);
   double longest = 0.0;
-  double *const u = c.unit[0].data(), *const v = c.unit[1].data(), *const w = c.unit[2].data();
-  for (int32_t k = 0; k <= n; k++) {
+  const int32_t begin_at = ring ? 0 : 1, end_at = begin_at + ((ring ? n + 1 : n - 1) + 3) / 4 * 4;
+  for (int32_t k = begin_at; k < end_at; k++) {
     const double square = (x[k] * x[k] + y[k] * y[k]) + z[k] * z[k];
     longest = square > longest ? square : longest;
     length[k] = std::sqrt(square), each[k] = 1.0 / length[k];
     u[k] = each[k] * x[k], v[k] = each[k] * y[k], w[k] = each[k] * z[k];
   }
-  const double spring = model.spring[begin], rest = model.bond_length[begin], kappa = model.bending[begin];
-  const bool root = rest != 0.0 || (of_step && of_bends); // within a step, kinds with bends take the root, whatever l0
-  double *const px = c.pull[0].data(), *const py = c.pull[1].data(), *const pz = c.pull[2].data();
-  for (int32_t k = 0; k <= n; k++) {
+  const double *const dx = root ? u : x, *const dy = root ? v : y, *const dz = root ? w : z;
+  for (int32_t k = begin_at; k < end_at; k++) {
     const double size = root ? spring * (length[k] - rest) : spring;
-    px[k] = size * (root ? u[k] : x[k]), py[k] = size * (root ? v[k] : y[k]), pz[k] = size * (root ? w[k] : z[k]);
+    px[k] = size * dx[k], py[k] = size * dy[k], pz[k] = size * dz[k];
   }
-  for (int32_t k = 0; k < n && of_bends; k++) {
+  double *const ax = c.of(c.A_X), *const ay = c.of(c.A_Y), *const az = c.of(c.A_Z);
+  double *const bx = c.of(c.B_X), *const by = c.of(c.B_Y), *const bz = c.of(c.B_Z);
+  const int32_t last_at = of_bends ? begin_at + ((ring ? n : n - 2) + 3) / 4 * 4 : 0;
+  for (int32_t k = begin_at; k < last_at; k++) {
     const Vector u0 = {u[k], v[k], w[k]}, u1 = {u[k + 1], v[k + 1], w[k + 1]};
     const double cosine = dot(u0, u1);
     const Vector before = (-kappa * each[k]) * (u1 - cosine * u0), after = (kappa * each[k + 1]) * (u0 - cosine * u1);
-    c.a[0][k] = before.x, c.a[1][k] = before.y, c.a[2][k] = before.z;
-    c.b[0][k] = after.x, c.b[1][k] = after.y, c.b[2][k] = after.z;
+    ax[k] = before.x, ay[k] = before.y, az[k] = before.z;
+    bx[k] = after.x, by[k] = after.y, bz[k] = after.z;
   }
+  if (of_bends && !ring) // lines have no bend at their ends; -0.0 changes no number that it is added to
+    ax[n - 1] = ay[n - 1] = az[n - 1] = bx[0] = by[0] = bz[0] = -0.0;
   return longest;
 }
 
-// In the order of the contract: the constant force, bonds, bends.
+// In the order of the contract: the constant force, bonds, bends, each from the first vertex on.
 void Fibers::add_forces(int32_t begin, int32_t end, const Columns &c, int parts, std::vector<Vector> &force) const
 {
-  for (int32_t j = begin; j < end; j++)
-    force[j] = parts == ALL_FORCES ? model.constant_force[j] : Vector{0, 0, 0};
-  for (int32_t j = begin; j < end && (parts & BONDS); j++) {
-    const int32_t next = model.next[j];
-    if (next < 0)
-      continue;
-    const Vector pull = Columns::at(c.pull, j - begin + 1);
-    force[j] = force[j] + pull;
-    force[next] = force[next] - pull;
+  const int32_t n = end - begin, last = n - 1;
+  const bool ring = model.prev[begin] >= 0, bonds = (parts & BONDS) != 0,
+             bends = (parts & BENDS) != 0 && model.bending[begin] != 0.0;
+  const auto pull = [&](int32_t k) { return c.at(c.PULL_X, k + 1); };
+  const auto before = [&](int32_t k) { return c.at(c.A_X, k); };
+  const auto after = [&](int32_t k) { return c.at(c.B_X, k); };
+  Vector *const f = force.data() + begin;
+  for (int32_t k = 0; k < n; k++)
+    f[k] = parts == ALL_FORCES ? model.constant_force[begin + k] : Vector{0, 0, 0};
+  for (int32_t k = 1; k < last && bonds; k++)
+    f[k] = (f[k] - pull(k - 1)) + pull(k);
+  for (int32_t k = 1; k < last && bends; k++)
+    f[k] = ((f[k] + after(k - 1)) - (before(k) + after(k))) + before(k + 1);
+  if (bonds && n > 1) {
+    f[0] = f[0] + pull(0), f[last] = f[last] - pull(last - 1);
+    if (ring)
+      f[last] = f[last] + pull(last), f[0] = f[0] - pull(last);
   }
-  for (int32_t j = begin; j < end && (parts & BENDS) && model.bending[begin] != 0.0; j++) {
-    const int32_t prev = model.prev[j], next = model.next[j];
-    if (prev < 0 || next < 0)
-      continue;
-    const Vector a = Columns::at(c.a, j - begin), b = Columns::at(c.b, j - begin);
-    force[prev] = force[prev] + a;
-    force[next] = force[next] + b;
-    force[j] = force[j] - (a + b);
+  if (bends && ring) {
+    f[0] = ((f[0] - (before(0) + after(0))) + before(1)) + after(last);
+    f[last] = ((f[last] + before(0)) + after(last - 1)) - (before(last) + after(last));
+  } else if (bends && n > 2) {
+    f[0] = f[0] + before(1), f[last] = f[last] + after(last - 1);
   }
 }
 

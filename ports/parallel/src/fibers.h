@@ -45,7 +45,7 @@ public:
   }
 
 private:
-  struct Columns; // of one fiber
+  class Columns; // of one fiber
   Vector bond(int32_t j, Vector r) const;
   void bend(int32_t j, Vector before, Vector after, Vector &a, Vector &b) const;
   double fill(int32_t first, int32_t last, const std::vector<Point> &position, bool of_step, Columns &c) const;
