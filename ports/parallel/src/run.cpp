@@ -34,7 +34,7 @@ void Run::one_step()
 {
   const uint64_t number = state.step + 1;
   const double dt = model.time_step;
-  const bool collides = number % (uint64_t)model.interval == 0;
+  const bool collides = model.interval > 0 && number % (uint64_t)model.interval == 0; // 0: no solvent
   if (collides && model.scheme == DRIFT_SPLIT) {
     drift(number, 0.5 * dt, 0);
     collide(number);
