@@ -643,7 +643,7 @@ static inline void contract_scratch_of(struct model model)
   contract_taken_memory.bytes = contract_taken_memory.arrays = 0;
   assert_true(medium_alloc(&b, m, fluid_of(m)));
   assert_bytes(medium_bytes(m), "medium");
-  assert_there(b.cell, pairs, "cell");
+  assert_there(b.place, pairs, "place");
   assert_there(b.first, pairs, "first");
   assert_there(b.x, pairs, "x");
   assert_there(b.number, pairs, "number");

@@ -117,7 +117,7 @@ static inline bool dpd_find(struct dpd *d)
   memcpy(d->given, d->push, bytes);
   d->links = d->close = 0;
   d->evaluation++;
-  const struct near_search search = {d->model, m, dpd_add_links, d};
+  const struct near_search search = {.model = d->model, .medium = m, .look = dpd_add_links, .context = d};
   return near_find(&search) || fault_no_memory(&d->work->fault, d->evaluation);
 }
 

@@ -147,7 +147,8 @@ static void find_virials(struct run *run, double *of)
 {
   const uint32_t n = run->state.solvent.n;
   struct virials virials = {&run->model, of};
-  const struct near_search search = {&run->model, &run->work.medium, add_virials, &virials};
+  const struct near_search search = {
+      .model = &run->model, .medium = &run->work.medium, .look = add_virials, .context = &virials};
   struct repulsion_sums sums;
   double sum = 0.0;
   memset(of, 0, n * sizeof *of);

@@ -51,7 +51,7 @@ INLINE void spin_records_lanes(const struct spin_columns *s, uint32_t i, double 
   for (int a = 0; a < 3; a++) {
     const words within = spin_within_lanes(&s->x[a][i], s->shift[a]);
     y[a] = within - (uint64_t)LATTICE_CELL / 2;
-    near[a] = reals_from_small_less(within, (double)(LATTICE_CELL / 2));
+    near[a] = reals_from_small_less(within, 0.5 * (double)LATTICE_CELL);
     u[a] = load_reals(&s->v[a][i]) - load_reals(&s->drawn[a][i]);
     p[a] = round_to_words(CELL_MOMENTUM_SCALE * u[a]);
   }
