@@ -228,10 +228,10 @@ ANYWHERE CirclePoint normal_pair(const Words &w)
   return {radius * at.cosine, radius * at.sine};
 }
 
-// Marsaglia's axis: words 0, 1 of draw 0, then words 2, 3, then the next draw.
-ANYWHERE Vector axis_of(const Source &source, uint32_t entity)
+// Marsaglia's axis: words 0, 1 of a draw, then words 2, 3, then the next draw.
+ANYWHERE Vector axis_of(const Source &source, uint32_t entity, uint32_t draw = 0)
 {
-  for (uint32_t draw = 0;; draw++) {
+  for (;; draw++) {
     const Words w = words_of(source, draw, entity);
     for (int k = 0; k < 4; k += 2) {
       const double u = ((double)(int32_t)w.word[k] + 0.5) * 0x1p-31;

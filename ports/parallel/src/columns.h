@@ -188,7 +188,7 @@ INLINE void solve_lanes(const SolveCell &s, int64_t first)
   if (any_negative(again))
     for (int k = 0; k < lanes; k++)
       if (again[k])
-        to[k].axis = axis_of(s.axes, (uint32_t)(first + k));
+        to[k].axis = axis_of(s.axes, (uint32_t)(first + k), 1);
 }
 
 // The body of a loop over blocks of cells.
