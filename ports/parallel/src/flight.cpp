@@ -40,9 +40,12 @@ int sign_of_volume(Point a, Point b, Point c)
   return sign_of(exact_volume(a, b, c));
 }
 
+namespace
+{
 struct Three {
   Point p, q, w;
 };
+} // namespace
 
 static Three at(const Flight3 &f, int64_t tick)
 {
