@@ -117,7 +117,7 @@ INLINE wholes fly_all(const Sheared &b, const Flight &f, Places &p, Three &v)
 // Of places in the box; shifts are smaller than a cell.
 INLINE wholes cells_along(wholes x, int64_t shift, int64_t cells)
 {
-  const wholes at = (x + shift) >> 40;
+  const wholes at = (wholes)((words)(x + shift) >> 40);
   return at & (wholes)(at != cells);
 }
 
@@ -173,6 +173,7 @@ INLINE void solve_lanes(const SolveCell &s, int64_t first)
     std::memset((void *)from, 0, lanes * sizeof *from);
   }
   words cell;
+  UNROLL
   for (int k = 0; k < lanes; k++)
     cell[k] = (uint64_t)(first + k);
   const words members = weight >> load_bits, mass = weight & (((uint64_t)1 << load_bits) - 1);
@@ -280,7 +281,9 @@ template <bool turns, bool right_angle, class Border, class Body> struct PassBlo
       return;
     }
     alignas(64) CellSum add[together];
-    for (int k = 0; k < together && turns; k++)
+    const int most = turns ? together : 0;
+    UNROLL
+    for (int k = 0; k < most; k++)
       __builtin_prefetch(pass.turn + pass.cell[first + k]);
     for (int k = 0; k < together; k += lanes)
       if (!pass_lanes<turns, right_angle>(pass, first + k, add + k)) {
@@ -288,6 +291,7 @@ template <bool turns, bool right_angle, class Border, class Body> struct PassBlo
         std::memset((void *)(add + k), 0, lanes * sizeof *add);
       }
     CellSum *const to = pass.sums.at + shard * pass.sums.cell_count;
+    UNROLL
     for (int k = 0; k < together; k++) {
       int64_t *const its_sum = &to[pass.cell[first + k]].x;
       store(load<whole_quad>(its_sum) + load<whole_quad>(&add[k].x), its_sum);

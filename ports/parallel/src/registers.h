@@ -31,6 +31,13 @@ typedef int64_t whole_quad __attribute__((vector_size(32)));
 
 #define INLINE inline __attribute__((always_inline))
 
+// Loops over lanes and rows are written out at any level of optimization: else registers are stored to be counted.
+#ifdef __clang__
+#define UNROLL _Pragma("unroll")
+#else
+#define UNROLL _Pragma("GCC unroll 8")
+#endif
+
 template <class Register, class Number> INLINE Register load(const Number *from)
 {
   Register x;
@@ -166,14 +173,17 @@ template <class Row> INLINE Square load_rows(const Row &row)
 {
   Square s;
 #if LANES == 8
+  UNROLL
   for (int k = 0; k < 4; k++) {
     const quad low = load<quad>(row(k)), high = load<quad>(row(k + 4));
     s.at[k] = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
   }
 #elif LANES == 4
+  UNROLL
   for (int k = 0; k < 4; k++)
     s.at[k] = load<reals>(row(k));
 #else
+  UNROLL
   for (int k = 0; k < 4; k++)
     s.at[k] = reals{row(0)[k], row(1)[k]};
 #endif
@@ -184,14 +194,17 @@ template <class Row> INLINE void store_rows(const Square &columns, const Row &ro
 {
   const Square s = turned_over(columns);
 #if LANES == 8
+  UNROLL
   for (int k = 0; k < 4; k++) {
     store(__builtin_shufflevector(s.at[k], s.at[k], 0, 1, 2, 3), row(k));
     store(__builtin_shufflevector(s.at[k], s.at[k], 4, 5, 6, 7), row(k + 4));
   }
 #elif LANES == 4
+  UNROLL
   for (int k = 0; k < 4; k++)
     store(s.at[k], row(k));
 #else
+  UNROLL
   for (int k = 0; k < 4; k++)
     row(0)[k] = s.at[k][0], row(1)[k] = s.at[k][1];
 #endif
