@@ -8,6 +8,7 @@ import importlib.util
 import os
 import pathlib
 import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -23,7 +24,8 @@ def uncross(*words, **how):
 
 
 def load(path):
-    """A script without .py in its name, as a module. Its `main` is not run."""
+    """A script without .py in its name, as a module. Its `main` is not run. It finds what stands beside it, as when it is run."""
+    sys.path.append(str(pathlib.Path(path).parent))
     name = pathlib.Path(path).name.replace("-", "_") + "_program"
     loader = importlib.machinery.SourceFileLoader(name, str(path))
     module = importlib.util.module_from_spec(importlib.util.spec_from_loader(name, loader))

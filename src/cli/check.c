@@ -174,7 +174,7 @@ static const double crossing_rate = 140.0;         /* per vertex and step, with 
 static const double crossing_density_rate = 135.0; /* ... and more for each unit of fiber length per volume */
 
 /* Times that rate: docs/speed.md, *Collision rules and boundaries*. */
-static const double rule_cost[] = {[RULE_SRD] = 1.0, [RULE_AT_A] = 2.0, [RULE_AT_PLUS_A] = 5.0};
+static const double rule_cost[] = {[RULE_SRD] = 1.0, [RULE_AT_A] = 2.0, [RULE_AT_PLUS_A] = 3.5};
 static const double boundary_cost[] = {[BOUNDARY_PERIODIC] = 1.0, [BOUNDARY_WALL] = 1.2, [BOUNDARY_SHEAR] = 1.1};
 
 static void report_cost(const struct scene *scene)

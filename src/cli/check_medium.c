@@ -122,7 +122,7 @@ void check_medium_vertex(bool exact, const struct model *m, const struct fiber_k
 static const double root_rate = 0.36 / 6.0; /* per cube of the rows: the root (fiber/mobility.c) */
 static const double tensor_rate = 2.0;      /* per square: the tensor, and products with it */
 static const double tension_rate = 10.0;    /* per square: the matrix of tensions (fiber/tension.c) */
-static const double brownian_rate = 110.0;  /* per vertex: three normal numbers, and the move */
+static const double brownian_rate = 20.0;   /* per vertex: three normal numbers, and the move */
 
 static double fiber_cost(const struct medium_model *b, const struct fiber_kind *k)
 {
@@ -146,6 +146,6 @@ double check_medium_cost(const struct model *m)
 {
   const double pairs = pairs_per_particle(m);
   const double chosen = bath_draw_of(m->medium.draw)->chooses ? m->medium.rate * m->time_step : 1.0;
-  const double forces = !model_repels(m) ? 0.0 : m->medium.many.repulsion != 0.0 ? 65.0 : 40.0;
-  return m->medium.kind == MEDIUM_PAIRS ? 100.0 + pairs * (25.0 + 100.0 * chosen + forces) : 0.0;
+  const double forces = !model_repels(m) ? 0.0 : m->medium.many.repulsion != 0.0 ? 40.0 : 20.0;
+  return m->medium.kind == MEDIUM_PAIRS ? 100.0 + pairs * (20.0 + 40.0 * chosen + forces) : 0.0;
 }
