@@ -81,7 +81,7 @@ class Paper(unittest.TestCase):
         """Open are persons, the public address and the archive, and nothing else."""
         text = (PAPER.parent / "checklist.md").read_text()
         points = re.findall(r"^\| ([^|]+) \| \*\*Open\*\*", text, re.M)
-        self.assertEqual(points, ["repository", "contribution and authorship", "disclosures that the journal asks of authors", "quality of writing", "archive"])
+        self.assertEqual(points, ["repository", "contribution and authorship", "disclosures that the journal asks of authors", "archive"])
 
 
 class Forms(unittest.TestCase):
