@@ -2,7 +2,6 @@
 
 #include <string.h>
 
-#include "base/memory.h"
 #include "fluid/fluid.h"
 #include "kernel/choose.h"
 #include "step.h"
@@ -50,17 +49,8 @@ void work_free(struct work *w)
   memset(w, 0, sizeof *w);
 }
 
-/* What the arrays of the state take. */
-static uint64_t state_taken(const struct model *m)
-{
-  const uint64_t particles = m->solvent.particles, pairs = m->dumbbells.pairs, vertices = m->vertices;
-  return 6 * memory_taken(particles * sizeof(double)) + memory_taken(particles * sizeof(uint32_t)) +
-         3 * memory_taken(pairs * sizeof(int64_t)) + memory_taken(pairs * sizeof(uint32_t)) +
-         memory_taken(vertices * sizeof(struct point)) + memory_taken(vertices * sizeof(struct vec3));
-}
-
 uint64_t work_bytes(const struct model *m)
 {
-  return state_taken(m) + mpc_bytes(m) + contact_bytes(m) + fiber_bytes(m) + medium_bytes(m) + medium_bytes_later(m) +
+  return state_memory(m) + mpc_bytes(m) + contact_bytes(m) + fiber_bytes(m) + medium_bytes(m) + medium_bytes_later(m) +
          bead_bytes(m);
 }

@@ -63,11 +63,27 @@ void state_free(struct state *s)
   memset(s, 0, sizeof *s);
 }
 
+static uint64_t as_it_is(uint64_t bytes)
+{
+  return bytes;
+}
+
+/* What `of` says of each array, in all. */
+static uint64_t over_arrays(const struct model *model, uint64_t (*of)(uint64_t bytes))
+{
+  const uint64_t particles = model->solvent.particles, pairs = model->dumbbells.pairs, vertices = model->vertices;
+  return 6 * of(particles * sizeof(double)) + of(particles * sizeof(uint32_t)) + 3 * of(pairs * sizeof(int64_t)) +
+         of(pairs * sizeof(uint32_t)) + of(vertices * sizeof(struct point)) + of(vertices * sizeof(struct vec3));
+}
+
 uint64_t state_bytes(const struct model *model)
 {
-  return (uint64_t)model->solvent.particles * (6 * sizeof(double) + sizeof(uint32_t)) +
-         (uint64_t)model->dumbbells.pairs * (3 * sizeof(int64_t) + sizeof(uint32_t)) +
-         (uint64_t)model->vertices * (sizeof(struct point) + sizeof(struct vec3));
+  return over_arrays(model, as_it_is);
+}
+
+uint64_t state_memory(const struct model *model)
+{
+  return over_arrays(model, memory_taken);
 }
 
 uint32_t state_lost_vertex(const struct state *s)

@@ -96,6 +96,9 @@ void state_free(struct state *state);
 /* Bytes of a state of this model. */
 uint64_t state_bytes(const struct model *model);
 
+/* The same with what its arrays take beyond that (memory_taken). */
+uint64_t state_memory(const struct model *model);
+
 /* The first vertex further from the origin than LATTICE_REACH; state->vertices if there is none. */
 uint32_t state_lost_vertex(const struct state *state);
 
