@@ -52,7 +52,7 @@ void EventDrift::drift(double time, double start, std::vector<Point> &r, std::ve
     }
     while (!fly(flights, beyond)) { // a vertex comes too far for the list: again, with a wider one
       for (const Component &component : components)
-        beyond = std::max(beyond, component.beyond);
+        beyond = std::max({beyond, longest, component.beyond}); // the new list begins at the start of this flight
       renew_list(beyond);
     }
     away = beyond;

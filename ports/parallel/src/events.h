@@ -65,5 +65,5 @@ private:
   std::vector<int32_t> owner;  // of each vertex: 1 + component that answers for it, or 0
   std::vector<int32_t> place;  // of each vertex in its owner's list
   double margin = 0;
-  double away = 0; // no vertex is further from its reference, a0
+  double away = 0; // upper bound of the distances of vertices from their references, a0
 };
