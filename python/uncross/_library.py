@@ -24,8 +24,8 @@ def open_library(ffi, name):
     """$UNCROSS_LIBRARY; or the first that can be loaded of the libraries of the prefix that this package is installed in, whatever its
     LIBDIR, and the system's."""
     chosen = os.environ.get("UNCROSS_LIBRARY")
-    prefix = HERE.parents[3]
-    beside = [str(path) for below in ("lib", "lib*", "lib*/*") for path in sorted(prefix.glob(f"{below}/{name}"))]
+    installed = HERE.parent.name in ("dist-packages", "site-packages")  # PREFIX/lib/python3.N/site-packages/uncross
+    beside = [str(path) for below in ("lib*", "lib*/*") if installed for path in sorted(HERE.parents[3].glob(f"{below}/{name}"))]
     for place in [chosen] if chosen else [*beside, name]:
         try:
             return ffi.dlopen(place)

@@ -1,6 +1,7 @@
 #include "kernel/choose.h"
 
 #include "kernel/collide.h"
+#include "mpc/rules/spin.h"
 
 /* Boundaries that leave particles alone that are clear of both ends of the box (enum course in solvent.c). */
 static const bool free_inside[BOUNDARIES] = {
@@ -14,7 +15,7 @@ struct kernel_parts kernel_parts_for(const struct model *m)
   const bool spins = m->solvent.rule == RULE_AT_PLUS_A;
   const bool thin = m->solvent.particles < (uint64_t)box_cell_count(&m->box); /* most are alone, and are not turned */
   const bool enough = box_cell_count(&m->box) >= 8;                           /* cells for a register */
-  const bool crowd = m->solvent.per_cell > 256.0;                             /* sums in halves would be made anew */
+  const bool crowd = m->solvent.per_cell > SPIN_HALVES_MOST / 8.0; /* else no cell has as many as halves cannot take */
   const bool particles = model_has_solvent(m) && has_lanes[m->solvent.rule] && !(spins && (crowd || !enough));
   return (struct kernel_parts){.gather = particles && free_inside[m->box.boundary[1]],
                                .solve = particles && enough && (!model_is_flat(m) || m->solvent.rule != RULE_SRD),

@@ -71,13 +71,13 @@ bool pairs_collide(struct state *state, const struct model *model, struct medium
 /* The same of encounters that are listed already (repulsion_forces_and_encounters), with the velocities of now. */
 void pairs_act(struct state *state, struct medium *medium);
 
+/* Gives the members the velocities that the state has now, in the order in memory that it had for members_gather. */
+void members_take_velocities(const struct state *state, struct medium *medium);
+
 /* --- parts of pairs_collide, for tests --- */
 
 /* Fills the members' columns, sorted by cell, from the state. Particles must be in the box, and not late. */
 void members_gather(const struct state *state, const struct model *model, struct medium *medium);
-
-/* Gives the members the velocities that the state has now, in the order in memory that it had for members_gather. */
-void members_take_velocities(const struct state *state, struct medium *medium);
 
 /* Writes velocities back; particles are then in memory as the members are. */
 void members_scatter(struct state *state, const struct medium *medium);

@@ -22,7 +22,8 @@ struct near_search {
   bool plain; /* the plain search: the same bits, for tests */
 };
 
-/* Shows all pairs with 0 < r < 1 to `look`, each once, in no particular order. False if it did. */
+/* Shows all pairs with 0 < r < 1 to `look`, each once, in blocks whose order is one for all ways to search: sums of
+ * doubles depend on it. False if `look` says so. */
 bool near_find(const struct near_search *search);
 
 /* --- encounters in a search ----------------------------------------------------------------------------------------

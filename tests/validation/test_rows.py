@@ -1,7 +1,5 @@
 """docs/claims/rows.tsv: no row of a source is silent, and none says what the report does not."""
 import contextlib
-import importlib.machinery
-import importlib.util
 import io
 import json
 import pathlib
@@ -10,11 +8,12 @@ import tempfile
 import unittest
 
 sys.dont_write_bytecode = True
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from support import load  # noqa: E402
+
 TREE = pathlib.Path(__file__).resolve().parents[2]
 TOOL = TREE / "docs/claims/rows"
-loader = importlib.machinery.SourceFileLoader("rows", str(TOOL))
-rows = importlib.util.module_from_spec(importlib.util.spec_from_loader("rows", loader))
-loader.exec_module(rows)
+rows = load(TOOL)
 
 
 def called(*words):

@@ -364,6 +364,7 @@ def state_verdicts(results):
     pair = None
     if all(name in results for name in ("dpd", "dpd-rho4", "dpd-rho5")):  # a parabola through three densities
         pressures = [mean_of(results[name].table("pressure")["pressure"], 0.2) for name in ("dpd", "dpd-rho4", "dpd-rho5")]
+        # kT/V of a momentum that is fixed: the box of ρ = 3 has 125 a0^3, the others 216 a0^3, and the weights add up to 0
         pair = (sum(weight * p for weight, (p, _) in zip(SLOPE, pressures)) + SLOPE[0] / 125.0 - SLOPE[0] / 216.0,
                 math.hypot(*(weight * error for weight, (_, error) in zip(SLOPE, pressures))))
     found.append(fill(Verdict("media.state.compressibility", "(1/kT) dp/dρ of DPD at ρ = 3, a = 25", 16.0, "that of water, for which aρ = 75 kT is chosen; 1 %", 0.16,

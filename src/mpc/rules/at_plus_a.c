@@ -89,7 +89,7 @@ static uint64_t add_particles(const struct state *state, const struct model *mod
     struct spin_block b;
     andersen_draw_block(&state->solvent, model, c, step, i, m, &u);
     const uint64_t reach = members_add(c, i, m, u.x, u.y, u.z);
-    fill_block(&state->solvent, c, i, m, &u, reach < (uint64_t)1 << 51, &b);
+    fill_block(&state->solvent, c, i, m, &u, reach < (uint64_t)LATTICE_NEAR, &b);
     add_spins(c, i, m, &u, &b);
     span |= reach;
   }

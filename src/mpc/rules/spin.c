@@ -1,5 +1,7 @@
 #include "mpc/rules/spin.h"
 
+#include "base/elementary.h"
+
 /* The integer whose lowest 64 bits are these, and that is less than 2^63 from near 2^64. */
 static spin_word whole_of(uint64_t low, double near)
 {

@@ -18,7 +18,7 @@
 #ifndef UNCROSS_MPC_RULES_SPIN_H
 #define UNCROSS_MPC_RULES_SPIN_H
 
-#include "base/elementary.h"
+#include "base/lattice.h"
 #include "mpc/cell.h"
 
 __extension__ typedef __int128 spin_wide;
@@ -30,9 +30,10 @@ __extension__ typedef unsigned __int128 spin_word; /* unsigned: sums may wrap, s
  *
  *   second    Sums are N 2^78 < 2^89 at most. N products and N sums are rounded, each by at most 2^-53 of 2^89: the
  *             error is below 2^12 2^36 = 2^48.
- *   angular   N times the largest momentum is below 2^63 (overflow.h), so products and sums are below 2^103. The
- * products together are off by 2^-53 of that, so are the differences; N sums are off by as much each: (N + 2) 2^50. u
- * is taken for the rounded momentum, which is off by 1/2: N 2^39. The error is below 2^61.1.
+ *   angular   N times the largest momentum is below 2^63 (overflow.h), so products and sums are below 2^103. All
+ *             products are off by 2^-53 of that, and so are the differences; N sums are off by as much each:
+ *             (N + 2) 2^50. u is taken for the rounded momentum, which is off by 1/2: N 2^39. The error is below
+ *             2^61.1.
  *
  * So a member takes products of 64 bits and of doubles, and several members are added at once (spin_lanes.h).
  */
@@ -42,7 +43,7 @@ struct spin_halves {
   double unused[3];
 };
 
-#define SPIN_HALVES_MOST 2048 /* members: a power of two */
+#define SPIN_HALVES_MOST 2048 /* members, a power of two: the limit of the proof. Tests see no wrong sum beyond it */
 
 struct cell_spin {
   union {
@@ -168,8 +169,7 @@ void spin_turn_from(struct state *state, const struct mpc *mpc, uint32_t first);
 /* a - b in a0, exact below 2^51 lattice units; point_difference in a form that vectorises before AVX-512. */
 static inline double spin_difference(int64_t a, int64_t b)
 {
-  const uint64_t bits = elementary_bits(LATTICE_ROUND_MAGIC) + (uint64_t)(a - b);
-  return (elementary_from_bits(bits) - LATTICE_ROUND_MAGIC) * LATTICE_UNIT;
+  return lattice_near(a - b) * LATTICE_UNIT;
 }
 
 /* center + Omega x (y - middle), a0/t0: the new velocity of the member at y, less the velocity drawn for it. */

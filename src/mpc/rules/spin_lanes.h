@@ -203,7 +203,7 @@ struct spin_lanes {
   reals second[6];
 };
 
-/* number: of the cells' records of eight. members: not 0; p: momenta as they are summed. */
+/* members: of empty cells 0, whose numbers are not used afterwards; p: momenta as they are summed. */
 INLINE void spin_moments_lanes(const struct mpc *c, const uint32_t cell[LANES], reals members, const words p[3],
                                const struct vec3_lanes *center, struct spin_lanes *m)
 {
