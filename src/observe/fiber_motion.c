@@ -252,7 +252,7 @@ static double column_squares(const struct column_contour *c, struct vec3 place, 
   }
   for (uint32_t j = 0; j < c->padded; j += LANES)
     for (uint32_t l = 0; l < LANES; l++)
-      least[l] = least_of(square[j + l], least[l]);
+      least[l] = least_of(square[j + l], least[l]); /* NOLINT(clang-analyzer-*): j < padded */
   return least_of(least_of(least[0], least[1]), least_of(least[2], least[3]));
 }
 
@@ -264,7 +264,7 @@ static double column_distance_from(const struct column_contour *c, struct vec3 p
   const double nearest = column_squares(c, place, square), reach = reach_of(nearest, c->longest), most = reach * reach;
   double contour = nearest;
   for (uint32_t j = 0; j + 1 < n; j++)
-    if (square[j] <= most) /* NOLINT(clang-analyzer-core.UndefinedBinaryOperatorResult): j < vertices <= padded */
+    if (square[j] <= most) /* NOLINT(clang-analyzer-*): j < vertices <= padded */
       contour = least_of(contour,
                          squared_distance_to_segment(column_relative(c, place, j), column_relative(c, place, j + 1)));
   if (c->kind->ring)
