@@ -258,6 +258,15 @@ class Verdicts(Topology):
         self.dir.joinpath("b").write_text("99999999999999999999 1\n")
         self.assertIn("b:1:1: no bond", self.look(2, "two.xyz", "--bonds", "b").stderr)
 
+    def test_signs_are_of_bonds_along_their_curve(self):
+        """A square ring goes over a long bond: in with one side, out with the other, and the net is 0. So it is whichever way the file lists bonds."""
+        ring = [(-1, -1), (1, -1), (1, 1), (-1, 1)]
+        text = "".join("6\n\n" + "".join(f"A {x + shift} {y} 0\n" for x, y in ring) + "B 0 0.25 -5\nB 0 0.125 5\n" for shift in (-2.5, -0.5, 1.75))
+        self.dir.joinpath("ring.xyz").write_text(text)
+        for bonds in "1 2\n2 3\n3 4\n4 1\n5 6\n", "2 1\n2 3\n4 3\n1 4\n6 5\n":
+            self.dir.joinpath("b").write_text(bonds)
+            self.assertEqual(table(self.look(10, "ring.xyz", "--bonds", "b").stdout)[1][1:5], [2, 0, 2, 0])
+
     def test_crossed_twice_is_even(self):
         self.write("1.5", "-1.5", "0.5")
         done = self.look(10, "two.xyz", "--chain", "2")
