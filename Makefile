@@ -155,7 +155,7 @@ SYMBOLS   := src/api/symbols.map
 LIBRARIES := $(addprefix $(BUILD)/lib/,libuncross.so libuncross.a libuncross-core.a)
 
 # Rooms without files: they need the C library and xxHash only.
-CORE_ROOMS   := base system wall mpc fluid medium fiber contact bead kernel theory start observe
+CORE_ROOMS   := base system wall mpc fluid medium fiber contact bead kernel topology theory start observe
 CORE_SOURCES := $(filter src/step.c src/work.c $(CORE_ROOMS:%=src/%/%),$(SOURCES))
 CORE_HEADERS := $(filter src/step.h src/work.h $(CORE_ROOMS:%=src/%/%),$(sort $(shell find src -name '*.h')))
 

@@ -131,6 +131,15 @@ COLUMNS = {
     "number": Column("vertices per volume", r"$\rho$", "$(a_0^{-3})$"),
     "along": Column("along the drive", r"$u_\parallel$", A),
     "away": Column("away from the axis", r"$u_\perp$", A),
+    # topology
+    "looked_at": Column("pairs of bonds looked at"),
+    "crossed": Column("crossings"),
+    "net": Column("net crossings"),
+    "odd_pairs": Column("pairs that crossed an odd number of times"),
+    "unsure": Column("pairs not decided"),
+    "rate": Column("crossings per bond and time", "", r"$(1/t_0)$"),
+    "first_time": Column("first crossing", "$t$", "$t_0$"),
+    "last_time": Column("last crossing", "$t$", "$t_0$"),
     # orientation
     "RxRx": Column("along the flow", r"$\langle R_x R_x\rangle$", A2),
     "RyRy": Column("across the flow", r"$\langle R_y R_y\rangle$", A2),
@@ -251,7 +260,7 @@ PANELS = {
 LAG_LABEL = "lag $t$ / $t_0$"
 TITLES = {"conserved": "Energy and momentum", "temperature": "Temperature", "collisions": "Contacts of bonds",
           "statics": "Size and shape", "dynamics": "Motion", "profile": "Profile across the flow", "stress": "Stress",
-          "dumbbells": "Shape of dumbbells", "orientation": "Orientation", "bead": "The bead", "wake": "The network around the bead",
+          "dumbbells": "Shape of dumbbells", "orientation": "Orientation", "bead": "The bead", "wake": "The network around the bead", "topology": "Crossings of bonds",
           "pressure": "Pressure and configurational temperature", "memory": "Memory"}
 
 

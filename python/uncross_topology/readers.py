@@ -76,7 +76,16 @@ def make_topology(pairs, path):
         raise Refused(f"{path}: a bond leads from an atom to itself")
     ids, rows = numpy.unique(pairs, return_inverse=True)
     bonds = rows.reshape(-1, 2).astype(numpy.int32)
-    return Topology(ids, bonds, curves(bonds, len(ids)))
+    found = curves(bonds, len(ids))
+    if found:  # a sign is of bonds that lead along their curve
+        after = numpy.full(len(ids), -1)
+        for curve in found:
+            after[curve.vertices[:-1]] = curve.vertices[1:]
+            if curve.closed:
+                after[curve.vertices[-1]] = curve.vertices[0]
+        turned = after[bonds[:, 0]] != bonds[:, 1]
+        bonds[turned] = bonds[turned][:, ::-1]
+    return Topology(ids, bonds, found)
 
 
 # --- what all other codes' files go through ---------------------------------------------------------------------------------

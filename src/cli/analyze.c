@@ -47,7 +47,7 @@ static void fit_plan(struct scene *scene, const struct trajectory *frames)
                                             [OBSERVE_MEMORY] = "collisions are not in the frames",
                                             [OBSERVE_PRESSURE] = "forces and contacts are not in the frames",
                                             [OBSERVE_WAKE] = "the bead is not in the frames"};
-  _Static_assert(OBSERVABLES == OBSERVE_WAKE + 1, "what frames lack of a new observable");
+  _Static_assert(OBSERVABLES == OBSERVE_TOPOLOGY + 1, "what frames lack of a new observable");
   for (int k = 0; k < OBSERVABLES; k++) {
     uint64_t *every = &scene->observe.every[k];
     const char *refused = meaning_refusal(&scene->model, (enum observable)k), *why = missing[k] ? missing[k] : refused;

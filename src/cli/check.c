@@ -172,10 +172,22 @@ static const double phantom_rate = 170.0;          /* per vertex and collision, 
 static const double vertex_rate = 25.0;            /* per vertex and step, crossable fibers */
 static const double crossing_rate = 140.0;         /* per vertex and step, with the search for crossings ... */
 static const double crossing_density_rate = 135.0; /* ... and more for each unit of fiber length per volume */
+static const double topology_rate = 700.0;         /* per bond and sample of observe.topology ... */
+static const double topology_density_rate = 100.0; /* ... and more for each unit of fiber length per volume */
 
 /* Times that rate: docs/speed.md, *Collision rules and boundaries*. */
 static const double rule_cost[] = {[RULE_SRD] = 1.0, [RULE_AT_A] = 2.0, [RULE_AT_PLUS_A] = 3.5};
 static const double boundary_cost[] = {[BOUNDARY_PERIODIC] = 1.0, [BOUNDARY_WALL] = 1.2, [BOUNDARY_SHEAR] = 1.1};
+
+/* observe.topology, the only observable that may take longer than the steps. */
+static void report_topology(const struct scene *scene)
+{
+  const uint64_t every = scene->observe.every[OBSERVE_TOPOLOGY];
+  const double bond = topology_rate + topology_density_rate * theory_line_density(&scene->model);
+  if (every > 0)
+    sheet_row(false, "time of observe.topology", "", 1e-9 * bond * scene->model.bonds * (double)(scene->steps / every),
+              "s", "more");
+}
 
 static void report_cost(const struct scene *scene)
 {
@@ -192,6 +204,7 @@ static void report_cost(const struct scene *scene)
   check_memory(scene);
   sheet_row(false, "steps per second", "", 1.0 / step, "1/s", "");
   sheet_row(false, "time", "", step * (double)scene->steps, "s", "");
+  report_topology(scene);
   printf("  from %.0f ns per solvent particle and collision, %.0f ns per vertex and step\n", solvent, vertex);
 }
 

@@ -126,6 +126,11 @@ static bool beside_frozen(const struct model *m)
   return m->frozen > 0;
 }
 
+static bool not_crossable(const struct model *m)
+{
+  return m->crossing.forbidden;
+}
+
 static bool long_and_bending(const struct model *m)
 {
   bool any = false;
@@ -166,10 +171,16 @@ static const struct {
     [DRIFT_SPLIT] = {"`order: drift-split`", drift_split},
     [THICK] = {"thick fibers that cannot cross", thick},
     [BESIDE_FROZEN] = {"frozen fibers", beside_frozen},
+    [NOT_CROSSABLE] = {"fibers that cannot cross", not_crossable},
     [LONG_AND_BENDING] = {"fibers that bend, longer than their persistence length", long_and_bending},
     [WITH_DUMBBELLS] = {"dumbbells", model_has_dumbbells},
     [WITH_A_BEAD] = {"bead", model_has_bead},
 };
+
+const char *meaning_words(enum circumstance where)
+{
+  return circumstances[where].words;
+}
 
 bool meaning_holds(enum circumstance where, const struct model *model)
 {
@@ -327,6 +338,18 @@ const struct meaning meanings[] = {
 
     {OBSERVE_WAKE, NO_NETWORK, REFUSED, NULL, "it looks at the fibers around a bead; allowed with both"},
     {OBSERVE_WAKE, ANYWHERE, MEANS, NULL, "of the laboratory"},
+
+    {OBSERVE_TOPOLOGY, NO_BONDS, REFUSED, NULL, "there are no bonds; allowed with some"},
+    {OBSERVE_TOPOLOGY, IN_A_PLANE, REFUSED, NULL,
+     "in a plane bonds meet and do not cross; allowed in three dimensions"},
+    {OBSERVE_TOPOLOGY, IN_SHEAR, REFUSED, NULL,
+     "a fiber that leaves a sheared box is replaced by an image; allowed without shear; with it: `uncross topology` of "
+     "a "
+     "trajectory"},
+    {OBSERVE_TOPOLOGY, NOT_CROSSABLE, MEANS, NULL,
+     "within a step paths bend at contacts, or vertices move one after another: an even number may be false"},
+    {OBSERVE_TOPOLOGY, BESIDE_FROZEN, MEANS, NULL, "without pairs of frozen bonds"},
+    {OBSERVE_TOPOLOGY, ANYWHERE, MEANS, NULL, "of straight moves from sample to sample"},
 };
 const size_t meaning_count = sizeof meanings / sizeof *meanings;
 
@@ -362,30 +385,4 @@ bool meaning_has_column(const struct model *model, enum observable which, const 
              !meaning_holds(m->where, model);
   }
   return there;
-}
-
-/* --- docs/observables.md ----------------------------------------------------------------------------------------- */
-
-static void write_columns(FILE *f, const char *columns)
-{
-  for (const char *c = columns ? columns : ""; *c; c += *c == ' ') {
-    const int length = (int)strcspn(c, " ");
-    fprintf(f, "%s`%.*s`", c == columns ? "" : ", ", length, c);
-    c += length;
-  }
-  fputs(columns ? "" : "all", f);
-}
-
-void meaning_document(FILE *f)
-{
-  static const char *const before[] = {[MEANS] = "", [LEFT_OUT] = "left out: ", [REFUSED] = "**refused**: "};
-  fputs("<!-- table: meanings -->\n| observable | where | columns | what is read |\n| --- | --- | --- | --- |\n", f);
-  for (size_t k = 0; k < meaning_count; k++) {
-    const struct meaning *m = &meanings[k];
-    fprintf(f, "| %s | %s | ", k == 0 || m->of != m[-1].of ? observable_names[m->of] : "",
-            circumstances[m->where].words);
-    write_columns(f, m->columns);
-    fprintf(f, " | %s%s |\n", before[m->verdict], m->text);
-  }
-  fputs("<!-- end of table -->\n", f);
 }

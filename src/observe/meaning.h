@@ -42,6 +42,7 @@ enum circumstance {
   DRIFT_SPLIT,
   THICK,
   BESIDE_FROZEN,
+  NOT_CROSSABLE,
   LONG_AND_BENDING, /* fibers that bend so much that they touch themselves, and no chains without bending */
   WITH_DUMBBELLS,
   WITH_A_BEAD,
@@ -65,6 +66,9 @@ struct meaning {
 /* The table. */
 extern const struct meaning meanings[];
 extern const size_t meaning_count;
+
+/* How docs/observables.md calls it. */
+const char *meaning_words(enum circumstance where);
 
 /* True if a model is so. */
 bool meaning_holds(enum circumstance where, const struct model *model);

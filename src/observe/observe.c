@@ -25,6 +25,7 @@ static const struct observer_type *const types[OBSERVABLES] = {
     [OBSERVE_MEMORY] = &memory_observer,
     [OBSERVE_PRESSURE] = &pressure_observer,
     [OBSERVE_WAKE] = &wake_observer,
+    [OBSERVE_TOPOLOGY] = &topology_observer,
 };
 
 const char *const observable_names[OBSERVABLES] = {
@@ -32,7 +33,7 @@ const char *const observable_names[OBSERVABLES] = {
     [OBSERVE_DYNAMICS] = "dynamics",   [OBSERVE_COLLISIONS] = "collisions",   [OBSERVE_PROFILE] = "profile",
     [OBSERVE_STRESS] = "stress",       [OBSERVE_DUMBBELLS] = "dumbbells",     [OBSERVE_ORIENTATION] = "orientation",
     [OBSERVE_BEAD] = "bead",           [OBSERVE_MEMORY] = "memory",           [OBSERVE_PRESSURE] = "pressure",
-    [OBSERVE_WAKE] = "wake",
+    [OBSERVE_WAKE] = "wake",           [OBSERVE_TOPOLOGY] = "topology",
 };
 
 enum { MAX_BLOCKS = 6 * OBSERVABLES };
@@ -112,7 +113,7 @@ uint64_t observers_bytes(const struct observe_plan *plan, const struct model *mo
   for (int k = 0; k < OBSERVABLES; k++) {
     const struct observer_size size = sized((enum observable)k, plan, model).size;
     kept += sizeof(double) * (size.reals + size.later) + sizeof(int64_t) * size.integers;
-    *scratch += sizeof(double) * size.scratch;
+    *scratch += sizeof(double) * size.scratch + size.passing;
   }
   return kept;
 }

@@ -28,6 +28,7 @@ enum observable {
   OBSERVE_BEAD,        /* time series: place, velocity and force of the bead */
   OBSERVE_PRESSURE,    /* time series: pressure tensor, potential energy, configurational temperature */
   OBSERVE_WAKE,        /* averages around the bead: density and displacement of vertices */
+  OBSERVE_TOPOLOGY,    /* counts: crossings of bonds from sample to sample */
   OBSERVABLES
 };
 
@@ -36,8 +37,8 @@ struct observe_plan {
   uint64_t every[OBSERVABLES]; /* steps between samples; 0: not asked for */
   uint64_t longest_lag;        /* of the dynamics, in steps; 0: 2^20 samples. Decides the size of its memory. */
   uint64_t slabs;              /* of the profile */
-  uint64_t from; /* step from which on averages (statics, dynamics, profile, dumbbells, orientation, memory, wake) are
-                    made; time series begin at 0 */
+  uint64_t from; /* step from which on averages (statics, dynamics, profile, dumbbells, orientation, memory, wake) and
+                    crossings (topology) are made; time series begin at 0 */
 };
 
 /* Names as scenes and files use them: "conserved", "temperature", ... */

@@ -13,9 +13,9 @@
 #include "observe/observe.h"
 
 /* Doubles and 64-bit integers that an observer remembers, and doubles that it needs while it samples. later: doubles
- * that earlier programs did not remember (struct observe_block). */
+ * that earlier programs did not remember (struct observe_block). passing: bytes that a sample takes and gives back. */
 struct observer_size {
-  size_t reals, later, integers, scratch;
+  size_t reals, later, integers, scratch, passing;
 };
 
 struct observer {
@@ -73,7 +73,7 @@ enum { OBSERVER_NAME_SIZE = MODEL_NAME_SIZE + 32 };
 
 extern const struct observer_type conserved_observer, temperature_observer, statics_observer, dynamics_observer,
     collisions_observer, profile_observer, stress_observer, dumbbells_observer, orientation_observer, bead_observer,
-    memory_observer, pressure_observer, wake_observer;
+    memory_observer, pressure_observer, wake_observer, topology_observer;
 
 /* Time of a state, in t0. */
 static inline double view_time(const struct view *view)

@@ -61,6 +61,9 @@ static const struct {
     {OBSERVE_WAKE, "a0", "distance along away"},
     {OBSERVE_WAKE, "1", "cosine samples"},
     {OBSERVE_WAKE, "1/a0^3", "number"},
+    {OBSERVE_TOPOLOGY, "1", "intervals looked_at crossed net odd_pairs unsure"},
+    {OBSERVE_TOPOLOGY, "1/t0", "rate"},
+    {OBSERVE_TOPOLOGY, "t0", "first_time last_time"},
 };
 
 enum { UNITS = sizeof units / sizeof *units, LONGEST_NAME = 64 };

@@ -48,11 +48,13 @@ static const struct key_table memory_table = {"observe.memory", NULL, ROWS(every
 static const struct key_table bead_observe_table = {"observe.bead", NULL, ROWS(every_keys)};
 static const struct key_table pressure_table = {"observe.pressure", NULL, ROWS(every_keys)};
 static const struct key_table wake_table = {"observe.wake", NULL, ROWS(every_keys)};
+static const struct key_table topology_table = {"observe.topology", NULL, ROWS(every_keys)};
 
 static const struct key observe_keys[] = {
     {"from", WHOLE64(0, INT64_MAX), IN_SCENE(observe.from), UNIT("steps"), OPTIONAL, ASIDE,
      TEXT("Step at which averages (`statics`, `dynamics`, `profile`, `dumbbells`, `orientation`, `memory`, `wake`) "
-          "begin, so that they leave a transient out. Time series begin at step 0 all the same. At most `steps`. If "
+          "and crossings (`topology`) begin, so that they leave a transient out. Time series begin at step 0 all the "
+          "same. At most `steps`. If "
           "absent: 0.")},
     {"from_time", NUMBER(0, 1e18), IN_SCENE(observe_from_time), UNIT("t0"), EXCLUDES("from"), OPTIONAL, ASIDE, DERIVES,
      TEXT("The same as a time: sets `from` to the first step that is not before it.")},
@@ -82,6 +84,8 @@ static const struct key observe_keys[] = {
      TEXT("Time series of the pressure tensor, of the potential energy and of the configurational temperature.")},
     {"wake", SECTION(wake_table), IN_SCENE(observe.every[OBSERVE_WAKE]), OPTIONAL, ONE_LINE,
      TEXT("Averages around the bead: density of vertices, and how they are displaced from sample to sample.")},
+    {"topology", SECTION(topology_table), IN_SCENE(observe.every[OBSERVE_TOPOLOGY]), OPTIONAL, ONE_LINE,
+     TEXT("Crossings of bonds from sample to sample; with `every: 1`, whether this run let bonds through.")},
 };
 static const struct key_table observe_table = {"observe", NULL, ROWS(observe_keys)};
 

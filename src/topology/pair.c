@@ -5,11 +5,13 @@
 
 #define DEEPEST 40 /* halvings of [0, 1] */
 #define WIDTH 0x1p-26
+#define FINE_WIDTH 0x1p-48 /* of the few whose lines meet near an end of a bond */
 
 /* A determinant has 6 products of three, each rounded at most 5 times: 31 u PQW. A coefficient of Bernstein is the
  * third of a sum of three: 64 u PQW with its own roundings. A halving takes three means of numbers up to 6 PQW: 19 u
- * PQW. */
-#define CUBIC_ERROR (1024 * 0x1p-53)
+ * PQW; a cut at a quarter twice as much. At most 48 and 16 of them: 1584 u PQW. */
+#define CUBIC_ERROR (2048 * 0x1p-53)
+#define MOST_QUARTERS 16
 
 /* (w x q).(p x q) has 12 products of four vectors, each known at t to 4 u of its largest component and multiplied and
  * added in 7 roundings: 288 u. Their derivative is below 12 * 4 * 2 = 96 products of the largest components. */
@@ -71,16 +73,34 @@ static void halve(const struct piece *f, struct piece half[2])
   half[1] = (struct piece){{middle, right, d, c[3]}, f->a + 0.5 * f->width, 0.5 * f->width};
 }
 
-/* The root in a piece with one, of which both ends have certain signs. */
-static void narrow(struct piece *f, double error)
+static double quarter(double a, double b)
+{
+  return 0.75 * a + 0.25 * b;
+}
+
+/* The last three quarters. */
+static struct piece without_quarter(const struct piece *f)
+{
+  const double *c = f->c, a = quarter(c[0], c[1]), b = quarter(c[1], c[2]), d = quarter(c[2], c[3]);
+  const double left = quarter(a, b), right = quarter(b, d);
+  return (struct piece){{quarter(left, right), right, d, c[3]}, f->a + 0.25 * f->width, 0.75 * f->width};
+}
+
+/* The root in a piece with one, of which both ends have certain signs. A root in the middle is left there by a cut at a
+ * quarter. */
+static void narrow(struct piece *f, double width, double error)
 {
   struct piece half[2];
   const int begin = sign_of(f->c[0], 0.0);
-  while (f->width > WIDTH) {
+  for (int quarters = 0; f->width > width;) {
     halve(f, half);
-    const int middle = sign_of(half[1].c[0], error);
-    if (middle == 0)
-      return;
+    int middle = sign_of(half[1].c[0], error);
+    if (middle == 0) {
+      half[1] = without_quarter(f);
+      middle = sign_of(half[1].c[0], error);
+      if (middle != begin || quarters++ == MOST_QUARTERS)
+        return;
+    }
     *f = half[middle == begin];
   }
 }
@@ -124,8 +144,12 @@ enum pair_verdict pair_decide(const struct pair *a, struct crossing crossing[3],
     if (c[0] == c[1] && c[0] == c[2] && c[0] == c[3])
       continue;
     if (c[0] != c[3] && (c[1] == c[0] || c[2] == c[3])) { /* one change of sign, whatever is not certain */
-      narrow(&f, error);
-      const enum pair_verdict verdict = within(a, &f, P, Q, W, &crossing[*crossings]);
+      narrow(&f, WIDTH, error);
+      enum pair_verdict verdict = within(a, &f, P, Q, W, &crossing[*crossings]);
+      if (verdict == PAIR_UNSURE) {
+        narrow(&f, FINE_WIDTH, error);
+        verdict = within(a, &f, P, Q, W, &crossing[*crossings]);
+      }
       if (verdict == PAIR_UNSURE)
         return verdict;
       *crossings += verdict == PAIR_CROSSED;

@@ -358,3 +358,10 @@ void search_free(struct search *search)
   free(search->entry);
   *search = (struct search){0};
 }
+
+uint64_t search_bytes(uint32_t bonds)
+{
+  const uint64_t boxes = 2 * (uint64_t)bonds; /* bonds near the faces have images */
+  return memory_taken(boxes * sizeof(struct swept)) + memory_taken(4 * boxes * sizeof(uint32_t)) +
+         memory_taken(8 * boxes * sizeof(uint32_t));
+}

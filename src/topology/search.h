@@ -50,4 +50,7 @@ enum search_verdict search_pairs(struct search *search, const struct interval *v
                                  uint64_t *looked_at, uint64_t *near);
 void search_free(struct search *search);
 
+/* Bytes that a search of so many bonds takes, if moves are short and the box is some bonds long. */
+uint64_t search_bytes(uint32_t bonds);
+
 #endif

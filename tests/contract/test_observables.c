@@ -470,6 +470,7 @@ static const struct {
     [DRIFT_SPLIT] = {CELLS "order: drift-split\n", ""},
     [THICK] = {CELLS "crossing: {rule: event-driven}\n", ", diameter: 0.1"},
     [BESIDE_FROZEN] = {CELLS, ", frozen: true"},
+    [NOT_CROSSABLE] = {CELLS, ""},
     [LONG_AND_BENDING] = {CELLS, ""},
     [WITH_DUMBBELLS] = {CELLS "dumbbells: {spring: 20}\n", ""},
     [WITH_A_BEAD] = {CELLS
