@@ -177,7 +177,8 @@ struct SolveCell {
     for (int k = 0; k < shards; k++) {
       CellSum *part = sums + k * cell_count + cell;
       s.x += part->x, s.y += part->y, s.z += part->z, s.load += part->load;
-      *part = {0, 0, 0, 0};
+      if (part->load != 0)
+        *part = {0, 0, 0, 0};
     }
     const int64_t members = s.load >> load_bits, mass = s.load - (members << load_bits);
     if (members < 2) {

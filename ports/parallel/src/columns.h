@@ -170,7 +170,11 @@ INLINE void solve_lanes(const SolveCell &s, int64_t first)
     CellSum *const from = s.sums + part * s.cell_count + first;
     const Square sum = load_rows([=](int k) { return (const double *)(from + k); });
     p.x += (wholes)sum.at[0], p.y += (wholes)sum.at[1], p.z += (wholes)sum.at[2], weight += (words)sum.at[3];
-    std::memset((void *)from, 0, lanes * sizeof *from);
+    if (any_negative(-(wholes)sum.at[3])) { // a line that is not written stays with both cores
+      UNROLL
+      for (int k = 0; k < lanes; k++)
+        store(whole_quad{}, &from[k].x);
+    }
   }
   words cell;
   UNROLL
