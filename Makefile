@@ -461,6 +461,24 @@ $(BUILD)/validation/measure/solvent_lammps: $(PEER)/solvent_lammps $(PEER)/solve
 	@mkdir -p $(@D)
 	@cp $^ $(@D)
 
+# Fibers that cannot cross beside LAMMPS' repulsive bonds and beads: claim `rivals`. Not in CI, which has no LAMMPS.
+RIVALS         := validation/cases/rivals
+RIVALS_PROGRAM := $(BUILD)/validation/measure/rivals
+.PHONY: bench-rivals
+bench-rivals:
+	tools/install-dependencies run measure validate peers
+	$(MAKE) -j2 $(BUILD)/uncross $(RIVALS_PROGRAM)
+	$(MAKE) -j2 MARCH=x86-64 BUILD=$(BUILD)/rivals/x86-64 $(BUILD)/rivals/x86-64/uncross
+	$(RIVALS)/plant $(BUILD)/rivals/plain 'forces left out'
+	validation/run makefile rivals --tier campaign --build $(BUILD) >$(BUILD)/rivals.mk
+	$(MAKE) -k -f $(BUILD)/rivals.mk all
+	validation/run harvest rivals --tier campaign --build $(BUILD)
+	$(RIVALS)/table
+
+$(RIVALS_PROGRAM): $(addprefix $(RIVALS)/,rivals methods.py measures.py fibers.lammps)
+	@mkdir -p $(@D)
+	@cp $^ $(@D)
+
 # The paper's claims (validation/README.md). Runs are targets of a fragment of make: what is finished is not run again,
 # what was interrupted goes on. A run that fails is a claim that the report calls missing.
 .PHONY: validate

@@ -1,4 +1,5 @@
 """docs/paper/paper.md has the form that the Journal of Open Source Software asks for: fields, sections, length, references; issue forms have theirs.
+docs/paper/method.md, a manuscript, has its references, and its numbers stand on the pages that it names.
 
 Needs python3-yaml; and pandoc (tools/install-dependencies packages) for the references, else that test is skipped.
 """
@@ -31,12 +32,12 @@ def entries(bib):
     return {key: dict(re.findall(r"^  (\w+) = \{(.*)\},?$", fields, re.M)) for key, fields in re.findall(r"^@\w+\{(\w+),\n(.*?)^\}", bib, re.M | re.S)}
 
 
-def resolve(text, bib):
+def resolve(text, bib, name="paper.bib"):
     """The text with its citations and references, and what pandoc complains of."""
-    with tempfile.TemporaryDirectory() as name:
-        folder = pathlib.Path(name)
+    with tempfile.TemporaryDirectory() as path:
+        folder = pathlib.Path(path)
         (folder / "paper.md").write_text(text)
-        (folder / "paper.bib").write_text(bib)
+        (folder / name).write_text(bib)
         done = subprocess.run(["pandoc", "--citeproc", "--to=plain", "--wrap=none", "paper.md"], cwd=folder, capture_output=True, text=True, check=False)
     return done.stdout, done.stderr
 
@@ -82,6 +83,33 @@ class Paper(unittest.TestCase):
         text = (PAPER.parent / "checklist.md").read_text()
         points = re.findall(r"^\| ([^|]+) \| \*\*Open\*\*", text, re.M)
         self.assertEqual(points, ["repository", "contribution and authorship", "disclosures that the journal asks of authors", "archive"])
+
+
+class Method(unittest.TestCase):
+    text = (PAPER.parent / "method.md").read_text(encoding="utf-8")
+    bib = (PAPER.parent / "method.bib").read_text(encoding="utf-8")
+
+    def test_length_and_references(self):
+        self.assertTrue(1500 <= len(split(self.text)[1].split()) <= 2500, len(self.text.split()))
+        found = entries(self.bib)
+        self.assertEqual(set(re.findall(r"@(\w+)", split(self.text)[1])), set(found))
+        for key, fields in found.items():
+            self.assertTrue({"author", "title", "year"} <= set(fields), key)
+            self.assertTrue(DOI.fullmatch(fields.get("doi", "")) or fields.get("url", "").startswith("https://"), key)
+
+    def test_numbers_stand_on_their_pages(self):
+        body, _, table = self.text.partition("# 8. Numbers and their commands")
+        rows = re.findall(r"^\| ([^|]+) \| \[[^]]+\]\(([^)]+)\) \| ([^|]+) \|$", table, re.M)
+        self.assertGreater(len(rows), 5)
+        for number, page, _ in rows:
+            self.assertIn(number, (PAPER.parent / page).resolve().read_text(encoding="utf-8"), page)
+            self.assertIn(number, body)
+
+    @unittest.skipUnless(shutil.which("pandoc"), "pandoc is not installed")
+    def test_it_builds(self):
+        told, complaints = resolve(self.text, self.bib, "method.bib")
+        self.assertEqual(complaints, "")
+        self.assertIn("Sirk", told)
 
 
 class Forms(unittest.TestCase):
