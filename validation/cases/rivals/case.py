@@ -1,12 +1,18 @@
 """Fibers that cannot cross, beside LAMMPS' repulsive bonds and beads: crossings, thickness, d^2(t), and what an error costs."""
+import importlib.util
 import json
 import math
+import pathlib
 
 import numpy
 
 from lib import figures, semidilute as sd, stats
 from lib.case import Figure, Outcome, Verdict
 from lib.runs import Run
+
+_spec = importlib.util.spec_from_file_location("rivals_measures", pathlib.Path(__file__).resolve().parent / "measures.py")
+MEASURES = importlib.util.module_from_spec(_spec)  # what the runs measure with: copied beside the programs, too
+_spec.loader.exec_module(MEASURES)
 
 TITLE = "Noncrossing fibers beside their rivals"
 PAPER = "Sec. I"
@@ -206,13 +212,7 @@ def compared(results, density):
 
 def bare_theory(time):
     """(d^2, square of the center's displacement) of fibers that feel nothing, Gamma = 1."""
-    import importlib.util
-    import pathlib
-    path = pathlib.Path(__file__).resolve().parent / "measures.py"
-    spec = importlib.util.spec_from_file_location("rivals_measures", path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    tube, center = module.free_motion([time], 64, sd.MASS, 1.0, 64.0, sd.BOND2)
+    tube, center = MEASURES.free_motion([time], 64, sd.MASS, 1.0, 64.0, sd.BOND2)
     return float(tube[0]), float(center[0])
 
 

@@ -92,6 +92,6 @@ def free_motion(times, vertices, mass, rate, stiffness, bond2):
             total += share * drift
             continue
         turn = numpy.sqrt(complex(force / mass - rate**2 / 4.0))
-        memory = (numpy.exp(-rate * t / 2.0) * (numpy.cos(turn * t) + rate / (2.0 * turn) * numpy.sin(turn * t))).real
+        memory = sum(0.5 * (1.0 + rate / (2.0j * root)) * numpy.exp((1j * root - 0.5 * rate) * t) for root in (turn, -turn)).real
         total += share * 2.0 / force * (1.0 - memory)
     return 2.0 * total, 3.0 * drift / vertices
