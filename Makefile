@@ -80,6 +80,7 @@ help:
 	@echo 'make bench           speed, scenes, scaling, run time against error: build/bench/bench.json; BENCH=speed,... chooses sections'
 	@echo 'make bench-docs      the same, and its tables and figures into docs/'
 	@echo 'make bench-peers     against Debian'\''s LAMMPS, in turn: build/bench/peers.json'
+	@echo 'make bench-rivals    noncrossing fibers beside LAMMPS'\'' repulsive bonds and beads, at equal error (two hours): docs/claims/rivals.md'
 	@echo 'make peer            the solvent'\''s memory and diffusion beside LAMMPS (a quarter of an hour): reference-data/campaign/peer'
 	@echo 'make validate        the paper'\''s claims on reduced systems (seven minutes): build/validate/report.html'
 	@echo 'make -j2 campaign    the same on the paper'\''s own systems, for hours or days; resumes; reference-data/campaign/'
@@ -471,7 +472,7 @@ bench-rivals:
 	$(MAKE) -j2 MARCH=x86-64 BUILD=$(BUILD)/rivals/x86-64 $(BUILD)/rivals/x86-64/uncross
 	$(RIVALS)/plant $(BUILD)/rivals/plain 'forces left out'
 	validation/run makefile rivals --tier campaign --build $(BUILD) >$(BUILD)/rivals.mk
-	$(MAKE) -k -f $(BUILD)/rivals.mk all
+	$(MAKE) -f $(BUILD)/rivals.mk all
 	validation/run harvest rivals --tier campaign --build $(BUILD)
 	$(RIVALS)/table
 

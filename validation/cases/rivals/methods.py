@@ -10,11 +10,13 @@ A method is a word with settings, "srp:range=0.1,barrier=10,dt=0.01":
 dt: time step (t0); build: native, or x86-64, of uncross.
 """
 import dataclasses
+import functools
 import pathlib
 import re
 import resource
 import string
 import subprocess
+import tempfile
 
 import h5py
 import numpy
@@ -73,9 +75,8 @@ def chain(vertices):
 
 
 def scene(method, count, seed, steps, often=1000):
-    text = SCENE.substitute(edge=EDGE, dt=method.dt, steps=steps, seed=seed, rate=RATE, rule=RULES.get(method.kind, RULES["events"]), count=count,
+    return SCENE.substitute(edge=EDGE, dt=method.dt, steps=steps, seed=seed, rate=RATE, rule=RULES.get(method.kind, RULES["events"]), count=count,
                             vertices=method.vertices, often=often, **chain(method.vertices))
-    return text
 
 
 class Failed(Exception):
@@ -154,7 +155,7 @@ def contacts_of(method):
 
 
 def run_lammps(method, count, seed, folder, steps, every, first):
-    start(method, count, seed, folder)
+    (folder / "start.data").write_text(start(count, seed, method.vertices))
     dump = f"dump frames vertices custom {every} frames.dump id xu yu zu\ndump_modify frames sort id format float %.17g delay {first}" if every else ""
     push = ""
     if method.kind == "wca":  # from lines to beads: moves are limited to a fiftieth of their size
@@ -170,13 +171,15 @@ def run_lammps(method, count, seed, folder, steps, every, first):
                bonds=folder / "start.data", trajectory=path if every else None)
 
 
-def start(method, count, seed, folder):
-    """start.data: an exact state of lines of no thickness, the same one for all methods of one seed and chain."""
-    own = Method("events", vertices=method.vertices)
-    (folder / "start.yaml").write_text(scene(own, count, seed, 1) + "trajectory: {every: 1}\n")
+@functools.lru_cache
+def start(count, seed, vertices):
+    """A data file of LAMMPS: an exact state of lines of no thickness, the same one for all methods of one seed and chain."""
     program = build_folder() / "uncross"
-    call([program, "run", folder / "start.yaml", "--out", folder / "start", "--quiet", "--steps", 0], folder)
-    (folder / "start.data").write_text(call([program, "export", folder / "start/trajectory.h5", "--format", "lammps", "--wrapped"], folder)[1])
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        (folder / "start.yaml").write_text(scene(Method("events", vertices=vertices), count, seed, 1) + "trajectory: {every: 1}\n")
+        call([program, "run", folder / "start.yaml", "--out", folder / "start", "--quiet", "--steps", 0], folder)
+        return call([program, "export", folder / "start/trajectory.h5", "--format", "lammps", "--wrapped"], folder)[1]
 
 
 def read_dump(path):
