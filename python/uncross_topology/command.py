@@ -98,6 +98,27 @@ def moment(first, last, t):
     return None if None in (first.time, last.time) else first.time + t * (last.time - first.time)
 
 
+class Page:
+    """A page about all of it, a file that must not exist. The packages that it needs are read before any frame."""
+
+    def __init__(self, path):
+        if os.path.lexists(path):
+            raise Refused(f"{path}: exists; nothing is written over")
+        from . import page
+        self.path, self.make = path, page.html
+
+    def write(self, text):
+        made = False
+        try:
+            with open(self.path, "x", encoding="utf-8", errors="backslashreplace") as file:
+                made = True
+                file.write(text)
+        except OSError as error:
+            if made:
+                os.remove(self.path)
+            raise Unwritten(f"{self.path}: cannot write: {error.strerror}") from None
+
+
 class Survey:
     """All frames of a file, one after the other."""
 
@@ -234,7 +255,7 @@ def run(path, options):
     try:
         reader = readers.open_file(path, options)
         if "--links" in options:
-            for name in {"--csv", "--every-step"} & set(options):
+            for name in {"--csv", "--every-step", "--page"} & set(options):
                 raise Refused(f"{name} is of crossings between frames; --links looks at one frame")
             found = list(links.of_file(reader, options["--links"], options.get("--closure")))
             for text in reader.said:
@@ -243,11 +264,14 @@ def run(path, options):
             return DONE
         if "--closure" in options:
             raise Refused("--closure is of --links")
+        page = Page(options["--page"]) if "--page" in options else None
         table = Table(options.get("--csv"))
         survey = Survey(path, reader, options, table)
         survey.look()
         every_step = survey.every_step(options)
         table.close()
+        if page:
+            page.write(page.make(survey, list(describe(survey)), verdict(survey, every_step), where))
         for text in reader.said:
             say(f"uncross: warning: {path}: {text}")
         tell([*describe(survey), *results(survey, every_step)])
@@ -276,6 +300,6 @@ def run(path, options):
 
 
 def main(words):
-    found, paths = getopt.gnu_getopt(words, "", ["bonds=", "chain=", "ring=", "every-step", "csv=", "links=", "closure=", "quiet"])
+    found, paths = getopt.gnu_getopt(words, "", ["bonds=", "chain=", "ring=", "every-step", "csv=", "page=", "links=", "closure=", "quiet"])
     signal.signal(signal.SIGTERM, lambda number, _: sys.exit(128 + number))
     return run(paths[0], dict(found))

@@ -52,7 +52,7 @@ struct arguments {
   bool text, no_traces;
   uint64_t seconds, repeat, every;
   const char *units;
-  const char *bonds, *csv; /* files */
+  const char *bonds, *csv, *page; /* files */
   const char *links, *closure;
   uint64_t chain, ring; /* vertices of each */
 };

@@ -113,6 +113,8 @@ const struct option_row option_rows[] = {
      .text = "the frames are of every step, which the file does not tell"},
     {"csv", "FILE", OF(TOPOLOGY), 0, OPTION_TEXT, 0, AT(csv), ONLY_VALUE,
      .text = "a line for each meeting of bonds, a file that must not exist"},
+    {"page", "FILE", OF(TOPOLOGY), 0, OPTION_TEXT, 0, AT(page), ONLY_VALUE,
+     .text = "a page with figures, the first crossing drawn, and linking numbers; an HTML file that must not exist"},
     {"links", "first|last|N", OF(TOPOLOGY), 0, OPTION_TEXT, 0, AT(links), ONLY_VALUE,
      .text = "links and knots of this frame instead of crossings; frames are numbered from 0"},
     {"closure", "sphere|directions", OF(TOPOLOGY), 0, OPTION_TEXT, 0, AT(closure), ONLY_VALUE,
