@@ -127,11 +127,11 @@ static void report_kind(bool exact, const struct model *m, const struct theory_s
   if (k->vertices < 2)
     return;
   report_statics(exact, m, k);
-  if (!model_is_overdamped(m) && !k->frozen)
+  if (!model_is_overdamped(m) && !fiber_stands(k))
     report_frequencies(exact, m, k);
   if (model_is_flat(m))
     return; /* what follows is of fibers in space */
-  if (model_has_solvent(m))
+  if (model_has_solvent(m) && fiber_held(k) == 0)
     report_dilute(exact, m, k);
   report_table_2(exact, m, k, mesh);
   report_flow(exact, m, k);

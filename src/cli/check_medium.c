@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "medium/bath.h"
+#include "system/fiber_kind.h"
 #include "theory/dumbbell.h"
 #include "theory/medium.h"
 #include "theory/theory.h"
@@ -137,7 +138,7 @@ double check_medium_vertex_cost(const struct model *m)
 {
   double sum = 0.0;
   for (uint32_t k = 0; model_is_overdamped(m) && k < m->kinds; k++)
-    sum += m->kind[k].frozen ? 0.0 : m->kind[k].count * fiber_cost(&m->medium, &m->kind[k]);
+    sum += fiber_stands(&m->kind[k]) ? 0.0 : m->kind[k].count * fiber_cost(&m->medium, &m->kind[k]);
   return m->vertices > 0 ? sum / m->vertices : 0.0;
 }
 

@@ -6,7 +6,7 @@
 
 #include "base/memory.h"
 #include "contact/drift.h"
-#include "contact/frozen.h"
+#include "contact/held.h"
 #include "contact/rule.h"
 #include "system/plan.h"
 
@@ -31,7 +31,7 @@ static void list_needs(struct contact *c, const struct model *m, bool everything
       {(void **)&c->candidates.first, noncrossing, sizeof *c->candidates.first},
       {(void **)&c->flights.version, at_once, sizeof *c->flights.version},
       {(void **)&c->flights.bend_of, at_once, sizeof *c->flights.bend_of},
-      {(void **)&c->aside, m->frozen ? m->vertices : 0, sizeof *c->aside},
+      {(void **)&c->aside, m->held ? m->vertices : 0, sizeof *c->aside},
   };
   memcpy(need, all, sizeof all);
 }
@@ -195,20 +195,20 @@ static bool act_drift(void *room, const struct moment *now, const struct stage *
   return contact_drift(now->state, now->model, room, stage->fraction, now->step, stage->drift, now->log, now->fault);
 }
 
-/* The same where fibers are frozen. */
-static bool act_drift_about_frozen(void *room, const struct moment *now, const struct stage *stage)
+/* The same where vertices are held. */
+static bool act_drift_about_held(void *room, const struct moment *now, const struct stage *stage)
 {
   struct contact *contact = room;
-  frozen_set_aside(now->state, now->model, contact->aside);
+  held_set_aside(now->state, now->model, contact->aside);
   const bool ok = act_drift(room, now, stage);
-  frozen_give_back(now->state, now->model, contact->aside);
+  held_give_back(now->state, now->model, contact->aside);
   return ok;
 }
 
 void contact_plan_drift(struct plan *plan, const struct model *model, size_t room, double fraction, uint32_t drift)
 {
   if (model->vertices > 0)
-    plan_append(plan, (struct stage){.act = model->frozen ? act_drift_about_frozen : act_drift,
+    plan_append(plan, (struct stage){.act = model->held ? act_drift_about_held : act_drift,
                                      .room = room,
                                      .fraction = fraction,
                                      .drift = drift});

@@ -189,7 +189,7 @@ struct contact {
   struct neighbor_list near; /* scratch */
   struct neighbors neighbors;
   struct timeline *beside; /* NULL: bonds are alone */
-  struct vec3 *aside;      /* [vertices] models with frozen fibers, else NULL: contact/frozen.h */
+  struct vec3 *aside;      /* [vertices] models with held vertices, else NULL: contact/held.h */
   uint64_t waited,
       called_back; /* number of moves so far that waited for their turn; of these, called back. For benchmarks */
 };

@@ -2,7 +2,7 @@
  * Rigid clusters: vertices that move rigidly for the rest of a drift. A common displacement crosses nothing, so this
  * ends the work on a contact that no impulse separates. Velocities stay.
  *
- * All members have one rate. What is held stands: if a member's fiber is frozen the rate is 0, and a body beside the
+ * All members have one rate. What is held stands: if a member is held the rate is 0, and a body beside the
  * bonds (struct timeline) that belongs to the cluster stands with it until the drift ends.
  */
 #ifndef UNCROSS_CONTACT_EVENT_RIGID_H

@@ -29,7 +29,7 @@ static inline double impulse_exchange(const struct impulse_end moving[2], const 
     approach += lever[k] * vec3_dot(*end[k].velocity, n);
     compliance += lever[k] * lever[k] * end[k].inverse_mass;
   }
-  const double impulse = 2.0 * approach / compliance;
+  const double impulse = compliance > 0.0 ? 2.0 * approach / compliance : 0.0; /* 0: they touch where both are held */
   for (int k = 0; k < 4; k++)
     *end[k].velocity = vec3_add_scaled(*end[k].velocity, -lever[k] * impulse * end[k].inverse_mass, n);
   return impulse;

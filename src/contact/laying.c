@@ -88,7 +88,7 @@ static bool never_meet(const struct model *m, uint32_t bond, uint32_t other, boo
   if (model_reach(m, bond, other) > 0)
     return bond == other || (!image && model_tube_is_blind(m, bond, other));
   return !laying_minds_lines(m) || model_is_flat(m) || model_share_vertex(m, bond, other) ||
-         (m->kind[m->fiber_kind_of[m->fiber_of[bond]]].frozen && m->kind[m->fiber_kind_of[m->fiber_of[other]]].frozen);
+         (model_bond_stands(m, bond) && model_bond_stands(m, other));
 }
 
 /* A bond against an entry of a cell of its own, in which it is this image of itself. */

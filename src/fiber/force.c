@@ -1,6 +1,7 @@
 #include "fiber/force.h"
 
 #include "base/lattice_lanes.h"
+#include "system/fiber_kind.h"
 
 /* Derivative of bond_energy; positive pulls the ends of the bond together. */
 static inline double bond_tension(const struct fiber_kind *k, double length)
@@ -271,12 +272,26 @@ static void kick_row(double *restrict velocity, const double *restrict force, si
     velocity[k] += scale * force[k];
 }
 
+/* Those of one fiber that are not held stand in a row. */
+static void kick_between_held(struct state *state, const struct model *model, uint32_t fiber, const struct vec3 *force,
+                              double dt)
+{
+  const struct fiber_kind *kind = &model->kind[model->fiber_kind_of[fiber]];
+  const uint32_t first = model->fiber_first[fiber] + 1, free = kind->vertices - fiber_held(kind);
+  if (free > 0)
+    kick_row(&state->velocity[first].x, &force[first].x, 3 * (size_t)free, dt * model->inverse_mass[first]);
+}
+
 /* Padding 2009, Eq. (8). All vertices of a kind have one mass, and fibers of a kind are mostly next to each other. */
 void fiber_kick(struct state *state, const struct model *model, const struct vec3 *force, double fraction)
 {
   const double dt = fraction * model->time_step;
   for (uint32_t fiber = 0, end; fiber < model->fibers; fiber = end) {
     end = fiber + 1;
+    if (model->kind[model->fiber_kind_of[fiber]].held != HELD_NONE) {
+      kick_between_held(state, model, fiber, force, dt);
+      continue;
+    }
     while (end < model->fibers && model->fiber_kind_of[end] == model->fiber_kind_of[fiber])
       end++;
     const uint32_t first = model->fiber_first[fiber];

@@ -6,6 +6,7 @@
 #include "base/normal.h"
 #include "fiber/mobility.h"
 #include "fiber/tension.h"
+#include "system/fiber_kind.h"
 
 static uint32_t longest_fiber(const struct model *m)
 {
@@ -93,7 +94,7 @@ static void gather(const struct state *state, const struct model *m, const struc
 
 static double vertex_mobility(const struct model *m, uint32_t vertex)
 {
-  return m->inverse_mass[vertex] / m->medium.rate;
+  return 1.0 / m->mass[vertex] / m->medium.rate;
 }
 
 /* Adds tensions to the forces. There is no noise. */
@@ -157,6 +158,8 @@ static bool move(struct state *state, const struct model *m, const struct chain 
   const double drift = vertex_mobility(m, c->first) * m->time_step, jump = sqrt(2.0 * drift);
   const double limit = model_longest_bond(m), reach = (double)LATTICE_REACH * LATTICE_UNIT;
   for (uint32_t i = 0, v = c->first; i < c->n; i += 3, v++) {
+    if (model_is_held(m, v))
+      continue;
     const struct vec3 d = {drift * c->pull[i] + jump * c->jump[i] + m->flow.x * m->time_step,
                            drift * c->pull[i + 1] + jump * c->jump[i + 1] + m->flow.y * m->time_step,
                            drift * c->pull[i + 2] + jump * c->jump[i + 2] + m->flow.z * m->time_step};
@@ -179,8 +182,8 @@ bool overdamped_move(struct state *state, const struct model *m, const struct ve
   normals.first = normals.end = 0;
   for (uint32_t f = 0; ok && f < m->fibers; f++) {
     struct chain chain = chain_of(m, f, scratch);
-    if (model_is_held(m, chain.first))
-      continue; /* it stands still */
+    if (fiber_stands(&m->kind[m->fiber_kind_of[f]]))
+      continue;
     gather(state, m, force, &chain);
     if (!m->medium.inextensible)
       gather_noise(m, step, &chain, &normals);

@@ -103,13 +103,13 @@ static struct center look_at_center(const struct model *m, const struct state *s
 }
 
 /* A snapshot's displacements are counted from the scene's flow, and its moves may be made in that frame: so it must
- * flow like that. What takes momentum up, a bath, walls, frozen fibers, takes any snapshot along. */
+ * flow like that. What takes momentum up, a bath, walls, held vertices, takes any snapshot along. */
 static bool flows_as_said(const struct scene *scene, const struct state *state, struct work *work,
                           struct message *message)
 {
   const struct model *m = &scene->model;
   const struct vec3 axes = start_conserved_axes(m);
-  if (m->frozen > 0 || vec3_norm(axes) == 0.0)
+  if (m->held > 0 || vec3_norm(axes) == 0.0)
     return true;
   const struct center c = look_at_center(m, state, work);
   const struct vec3 off = vec3_sub(c.velocity, m->flow);

@@ -17,7 +17,7 @@ static bool walls_go_together(const struct model *m)
 
 struct vec3 background_acceleration(const struct model *m)
 {
-  if (!model_keeps_momentum(m) || sticks(m) || m->frozen > 0)
+  if (!model_keeps_momentum(m) || sticks(m) || m->held > 0)
     return (struct vec3){0, 0, 0};
   struct vec3 a = vec3_scale(1.0 / (m->total_mass + m->bead.mass), theory_net_force(m));
   if (model_has_walls(m))

@@ -64,12 +64,12 @@ static bool no_bonds(const struct model *m)
   return m->bonds == 0;
 }
 
-/* That move something: those between frozen vertices do not. */
+/* That move something: those between held vertices do not. */
 static bool no_forces(const struct model *m)
 {
   bool none = !model_has_dumbbells(m) && !model_repels(m);
   for (uint32_t k = 0; k < m->kinds; k++)
-    none &= m->kind[k].frozen || m->kind[k].vertices < 2;
+    none &= fiber_stands(&m->kind[k]) || m->kind[k].vertices < 2;
   return none;
 }
 
@@ -123,7 +123,7 @@ static bool no_tubes(const struct model *m)
 
 static bool beside_frozen(const struct model *m)
 {
-  return m->frozen > 0;
+  return m->held > 0;
 }
 
 static bool not_crossable(const struct model *m)

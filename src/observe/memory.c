@@ -19,6 +19,7 @@
 #include "observe/dynamics.h"
 #include "observe/observer.h"
 #include "observe/tally.h"
+#include "system/fiber_kind.h"
 
 enum { VERTICES_CENTER, STRESS, QUANTITIES };
 enum { LONGEST = 4096, LAGS = 26, LEVELS = 20, STRESSES = 3 };
@@ -207,7 +208,7 @@ static bool summarise_memory(const struct observer *o, const struct model *m, co
     }
     snprintf(name, sizeof name, "memory-%s", m->kind[k].name);
     const struct observe_table table = {name, columns, COLUMNS, n, rows[0]};
-    ok = m->kind[k].frozen || to->take(to->context, &table); /* its vertices do not move */
+    ok = fiber_stands(&m->kind[k]) || to->take(to->context, &table); /* its vertices do not move */
     offset += tally_size(&shape);
   }
   return ok;

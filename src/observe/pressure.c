@@ -19,6 +19,7 @@
 #include "observe/background.h"
 #include "observe/handed_on.h"
 #include "observe/observer.h"
+#include "system/fiber_kind.h"
 
 struct sums {
   double flow[STRESS_COMPONENTS]; /* kT: of m w_a w_b + r_a F_b */
@@ -33,30 +34,39 @@ static void add_products(double sum[STRESS_COMPONENTS], double factor, struct ve
   sum[STRESS_ZZ] += factor * a.z * b.z;
 }
 
-/* Of the energy of a bond, in the coordinates of both ends: 2 [U'' + (d - 1) U'/r]. */
+/* Of the energy of a bond, in the coordinates of one end: U'' + (d - 1) U'/r. */
 static double bond_laplacian(const struct fiber_kind *k, int dimensions, double length)
 {
   const double slope = k->bond_length == 0.0 ? k->spring : k->spring * (1.0 - k->bond_length / length);
-  return 2.0 * (k->spring + (dimensions - 1) * slope);
+  return k->spring + (dimensions - 1) * slope;
 }
 
-/* Of kappa (1 - cos), in the coordinates of all three vertices; a, b: the bonds. */
-static double bend_laplacian(const struct fiber_kind *k, int dimensions, struct vec3 a, struct vec3 b)
+/* Of kappa (1 - cos), in the coordinates of those of the three vertices that are not held; a, b: the bonds. */
+static double bend_laplacian(const struct fiber_kind *k, int dimensions, struct vec3 a, struct vec3 b,
+                             const bool held[3])
 {
   const double aa = vec3_dot(a, a), bb = vec3_dot(b, b), product = sqrt(aa * bb), cosine = vec3_dot(a, b) / product;
-  return 2.0 * k->bending *
-         ((dimensions - 1) * cosine * (1.0 / aa + 1.0 / bb) + (dimensions - 2 + cosine * cosine) / product);
+  const double turn = (dimensions - 1) * cosine, both = (dimensions - 2 + cosine * cosine) / product;
+  const double of[3] = {turn / aa, turn * (1.0 / aa + 1.0 / bb) + 2.0 * both, turn / bb};
+  double all = 2.0 * k->bending * (turn * (1.0 / aa + 1.0 / bb) + both);
+  for (int i = 0; i < 3; i++)
+    all -= held[i] ? k->bending * of[i] : 0.0;
+  return all;
 }
 
 static void add_bonded(const struct model *model, const struct state *state, uint32_t v, struct sums *s)
 {
   const struct fiber_kind *k = &model->kind[model->fiber_kind_of[model->fiber_of[v]]];
-  if (model->next[v] < 0 || k->frozen)
+  if (model->next[v] < 0 || fiber_stands(k))
     return;
   const struct vec3 bond = fiber_bond(state, model, v);
-  s->laplacian += bond_laplacian(k, (int)model->dimensions, vec3_norm(bond));
-  if (k->bending != 0.0 && model->prev[v] >= 0)
-    s->laplacian += bend_laplacian(k, (int)model->dimensions, fiber_bond(state, model, (uint32_t)model->prev[v]), bond);
+  const bool here = model_is_held(model, v), there = model_is_held(model, (uint32_t)model->next[v]);
+  s->laplacian += (2.0 - here - there) * bond_laplacian(k, (int)model->dimensions, vec3_norm(bond));
+  if (k->bending == 0.0 || model->prev[v] < 0)
+    return;
+  const uint32_t prev = (uint32_t)model->prev[v];
+  const bool held[3] = {model_is_held(model, prev), here, there};
+  s->laplacian += bend_laplacian(k, (int)model->dimensions, fiber_bond(state, model, prev), bond, held);
 }
 
 /* bonded: forces of bonds and bends, and the constant one; pair: those of the medium's pairs, NULL without. */

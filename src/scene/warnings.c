@@ -170,7 +170,7 @@ static void warn_heating(struct teller *t, const struct scene *scene)
     return;
   double phase = 0.0;
   for (uint32_t k = 0; k < m->kinds; k++)
-    phase = fmax(phase, m->kind[k].frozen ? 0.0 : fiber_highest_frequency(&m->kind[k]) * m->time_step);
+    phase = fmax(phase, fiber_stands(&m->kind[k]) ? 0.0 : fiber_highest_frequency(&m->kind[k]) * m->time_step);
   const double time = (double)scene->steps * m->time_step;
   const double each =
       m->crossing.rule == CROSSING_SEQUENTIAL ? 0.7 * phase * phase : 0.09 * phase * phase * phase * phase;
@@ -192,7 +192,7 @@ static void warn_drift(struct teller *t, const struct scene *scene)
   const bool carries = background_differs(m) || (model_has_solvent(m) && vec3_norm(m->solvent.acceleration) > 0.0);
   uint32_t drifting = 0, first = 0, most = 0;
   for (uint32_t k = 0; k < m->kinds; k++)
-    if (!m->kind[k].frozen && (carries || vec3_norm(m->kind[k].force) > 0.0)) {
+    if (fiber_held(&m->kind[k]) == 0 && (carries || vec3_norm(m->kind[k].force) > 0.0)) {
       first = drifting++ ? first : k;
       most = m->kind[k].count > most ? m->kind[k].count : most;
     }
@@ -297,7 +297,7 @@ static void warn_load(struct teller *t, const struct model *m)
   if (!(factor > THEORY_HEAVY_LOAD))
     return;
   for (uint32_t k = 0; k < m->kinds; k++)
-    heaviest = fmax(heaviest, m->kind[k].frozen ? 0.0 : m->kind[k].mass);
+    heaviest = fmax(heaviest, fiber_stands(&m->kind[k]) ? 0.0 : m->kind[k].mass);
   const double eta = theory_model_viscosity(m), lighter = fmin(LIGHTEST * gamma / heaviest, 1.0);
   char light[128] = "";
   if (lighter < 0.99)

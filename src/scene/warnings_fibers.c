@@ -133,7 +133,7 @@ void warn_fibers(struct teller *t, const struct scene *scene, const struct theor
         "separate beads and not like a thread; the paper's is 0.5, twice the hydrodynamic radius (Sec. IV A); use 1 or "
         "less",
         k->name, k->bond_length);
-  if (!k->frozen)
+  if (!fiber_stands(k))
     (model_is_overdamped(m) ? warn_overdamped : warn_leap_frog)(t, m, k);
   if (model_has_solvent(m) && m->scheme == SCHEME_PAPER && !model_is_isothermal(m))
     warn(t,

@@ -8,6 +8,26 @@
 /* Number of bonds of one fiber: N_v - 1, for a ring N_v. */
 double fiber_bonds(const struct fiber_kind *kind);
 
+/* Whether vertex i of each fiber, from 0, is held: contact/held.h. */
+static inline bool fiber_holds(const struct fiber_kind *kind, uint32_t i)
+{
+  return kind->frozen || (kind->held != HELD_NONE && i == 0) || (kind->held == HELD_ENDS && i + 1 == kind->vertices);
+}
+
+/* How many vertices of each fiber are held. */
+static inline uint32_t fiber_held(const struct fiber_kind *kind)
+{
+  if (kind->frozen)
+    return kind->vertices;
+  return fiber_holds(kind, 0) + (kind->vertices > 1 && fiber_holds(kind, kind->vertices - 1));
+}
+
+/* Whether all are: the fiber stands. */
+static inline bool fiber_stands(const struct fiber_kind *kind)
+{
+  return fiber_held(kind) == kind->vertices;
+}
+
 /* A Gaussian chain that stands for a finer one keeps one of its sizes. The square of the other, or the same, over that
  * of the finer chain; 1 without a finer one. */
 double fiber_coarse_ratio(const struct fiber_kind *kind, enum fiber_size size);

@@ -1,4 +1,5 @@
 #include "system/model.h"
+#include "system/fiber_kind.h"
 #include "system/topology.h"
 
 #include <stdlib.h>
@@ -29,13 +30,13 @@ static void lay_fiber(struct model *m, uint32_t fiber, uint32_t first, uint32_t 
     m->next[v] = !last ? (int32_t)v + 1 : k->ring ? (int32_t)first : -1;
     m->prev[v] = i > 0 ? (int32_t)v - 1 : k->ring ? (int32_t)(first + k->vertices - 1) : -1;
     m->mass[v] = k->mass;
-    m->inverse_mass[v] = k->frozen ? 0.0 : 1.0 / k->mass;
+    m->inverse_mass[v] = fiber_holds(k, i) ? 0.0 : 1.0 / k->mass;
   }
 }
 
 void model_count(struct model *m)
 {
-  m->fibers = m->vertices = m->bonds = m->frozen = 0;
+  m->fibers = m->vertices = m->bonds = m->held = 0;
   m->thickness = 0;
   m->total_mass = m->solvent.particles;
   m->max_mass = 1.0;
@@ -43,7 +44,7 @@ void model_count(struct model *m)
     const struct fiber_kind *kind = &m->kind[k];
     m->fibers += kind->count;
     m->vertices += kind->count * kind->vertices;
-    m->frozen += kind->frozen ? kind->count * kind->vertices : 0;
+    m->held += kind->count * fiber_held(kind);
     m->bonds += kind->count * (kind->vertices - !kind->ring);
     m->total_mass += kind->mass * kind->vertices * kind->count;
     m->max_mass = kind->mass > m->max_mass ? kind->mass : m->max_mass;

@@ -31,13 +31,13 @@ struct model {
   /* Derived by model_finish. Vertices are numbered fiber by fiber, fibers kind by kind; bond j joins j and next[j]. */
   uint32_t fibers, vertices, bonds;
   int64_t thickness;       /* the largest diameter of all kinds, lattice units; 0: all fibers are thin */
-  uint32_t frozen;         /* of the vertices */
+  uint32_t held;           /* of the vertices */
   uint32_t *fiber_first;   /* [fibers + 1]: first vertex of each fiber */
   uint32_t *fiber_kind_of; /* [fibers] */
   uint32_t *fiber_of;      /* [vertices] */
   int32_t *next, *prev;    /* [vertices]: bonded neighbors along the fiber, -1 at an open end */
   double *mass;            /* [vertices] M */
-  double *inverse_mass;    /* [vertices] 1/M; 0 if frozen (model_is_held). What needs M takes mass */
+  double *inverse_mass;    /* [vertices] 1/M; 0 if held (model_is_held). What needs M takes mass */
   double max_mass;         /* of any member of a collision cell */
   double total_mass;       /* of solvent and vertices, without a bead */
   struct wave wave;        /* of the walls' or the shear's motion */
@@ -59,6 +59,12 @@ void model_free(struct model *model);
 static inline bool model_is_held(const struct model *model, uint32_t vertex)
 {
   return model->inverse_mass[vertex] == 0.0;
+}
+
+/* True for a bond between two such vertices. */
+static inline bool model_bond_stands(const struct model *model, uint32_t bond)
+{
+  return model_is_held(model, bond) && model_is_held(model, (uint32_t)model->next[bond]);
 }
 
 /* The bonds that end at a vertex: none, one or two. Returns their number. */

@@ -119,6 +119,14 @@ enum fiber_start {
   START_CIRCLE       /* evenly spaced on a circle, rings only */
 };
 
+/* Which vertices of a fiber are held while the others move. */
+enum held {
+  HELD_NONE,
+  HELD_FIRST, /* its first vertex */
+  HELD_ENDS,  /* its first and its last */
+  HELDS
+};
+
 /* The place of one fiber. */
 struct fiber_place {
   struct vec3 center;    /* a0: middle of the straight fiber or of the circle */
@@ -131,7 +139,8 @@ struct fiber_kind {
   uint32_t count;             /* fibers of this kind */
   uint32_t vertices;          /* N_v, per fiber */
   bool ring;                  /* the last vertex is bonded to the first */
-  bool frozen;                /* they stand still, but take part in collisions: contact/frozen.h */
+  bool frozen;                /* all vertices are held: contact/held.h */
+  enum held held;             /* or some of them */
   double mass;                /* M, in m; effective: rounded to a multiple of MODEL_MASS_UNIT */
   double bond_length;         /* l0, in a0 */
   double spring;              /* k = K/l0, in kT/a0^2: Eq. (1); given of the finer chain if there is one */

@@ -186,6 +186,21 @@ REFUSE(AT_FROZEN, "fibers.frozen", k->frozen &&has_walls(m),
        "frozen fibers together with walls; allowed: false, or a periodic box at rest")
 REFUSE(AT_FROZEN, "fibers.frozen", k->frozen &&model_is_sheared(m),
        "frozen fibers together with shear; allowed: false, or a periodic box at rest")
+REFUSE(AT_FROZEN, "fibers.held", k->frozen && k->held != HELD_NONE,
+       "all vertices of a frozen fiber are held; allowed: none")
+REFUSE(AT_FROZEN, "fibers.held", k->ring && k->held == HELD_ENDS, "a ring has no ends; allowed: none | first")
+REFUSE(AT_FROZEN, "fibers.held", k->held != HELD_NONE && !is_zero(k->force),
+       "held vertices together with a force; allowed: none, or a periodic box at rest")
+REFUSE(AT_FROZEN, "fibers.held", k->held != HELD_NONE && !is_zero(m->flow),
+       "held vertices together with a flow; allowed: none, or a periodic box at rest")
+REFUSE(AT_FROZEN, "fibers.held", k->held != HELD_NONE && has_walls(m),
+       "held vertices together with walls; allowed: none, or a periodic box at rest")
+REFUSE(AT_FROZEN, "fibers.held", k->held != HELD_NONE && is_sheared(m),
+       "held vertices together with shear; allowed: none, or a periodic box at rest")
+REFUSE(AT_FROZEN, "fibers.held", k->held != HELD_NONE && is_coupled(m),
+       "with a tensor the others would feel what holds them; allowed: none, or tensor: none")
+REFUSE(AT_FROZEN, "fibers.held", k->held != HELD_NONE && m->medium.inextensible,
+       "tensions know vertices that move only; allowed: none, or inextensible: false")
 REFUSE(AT_PLACES, "fibers.places", k->placed > 0 && k->start == START_EQUILIBRIUM,
        "fibers that start in equilibrium are placed at random; allowed with start: straight, or for rings")
 REFUSE(AT_PLANE, "fibers.force", model_is_flat(m) && k->force.z != 0.0,
@@ -234,6 +249,9 @@ REFUSE(AT_BEAD_FIBERS, "fibers.vertices", k->vertices < 2,
 REFUSE(AT_BEAD_FIBERS, "fibers.frozen",
        k->frozen && (m->bead.drive.spring != 0.0 || vec3_norm(m->bead.drive.force) != 0.0),
        "they do not take up the momentum of the drive; allowed with a bead that is driven: false")
+REFUSE(AT_BEAD_FIBERS, "fibers.held",
+       k->held != HELD_NONE && (m->bead.drive.spring != 0.0 || vec3_norm(m->bead.drive.force) != 0.0),
+       "they do not take up the momentum of the drive; allowed with a bead that is driven: none")
 REFUSE(AT_BEAD_FIBERS, "fibers.bond_length", !(longest_bond(k) <= LONGEST_BESIDE_BEAD),
        "a bond may be so long that it touches two images of the bead; allowed with a bead: bond, 8/sqrt(spring) and "
        "diameter of 3 a0 together")

@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "system/fiber_kind.h"
 #include "theory/dumbbell.h"
 #include "theory/medium.h"
 #include "theory/theory.h"
@@ -14,7 +15,7 @@ bool theory_is_loaded(const struct model *m)
 static double per_cell(const struct model *m, uint32_t kind)
 {
   const struct fiber_kind *k = &m->kind[kind];
-  return k->frozen ? 0.0 : (double)k->count * k->vertices / box_volume(&m->box);
+  return (double)k->count * (k->vertices - fiber_held(k)) / box_volume(&m->box);
 }
 
 double theory_load(const struct model *m)

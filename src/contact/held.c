@@ -1,6 +1,6 @@
-#include "contact/frozen.h"
+#include "contact/held.h"
 
-void frozen_set_aside(struct state *state, const struct model *model, struct vec3 *aside)
+void held_set_aside(struct state *state, const struct model *model, struct vec3 *aside)
 {
   for (uint32_t v = 0; v < state->vertices; v++)
     if (model_is_held(model, v)) {
@@ -9,7 +9,7 @@ void frozen_set_aside(struct state *state, const struct model *model, struct vec
     }
 }
 
-void frozen_give_back(struct state *state, const struct model *model, const struct vec3 *aside)
+void held_give_back(struct state *state, const struct model *model, const struct vec3 *aside)
 {
   for (uint32_t v = 0; v < state->vertices; v++)
     if (model_is_held(model, v))
