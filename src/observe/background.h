@@ -2,7 +2,7 @@
  * The motion that observables subtract: that of everything together, and the flow that the boundary asks for.
  *
  *   of everything   `flow`, and the acceleration F/M by a net force F, where nothing takes momentum up: in a periodic
- *                   box, and along slip walls. No-slip walls and frozen fibers take it up; there the background is
+ *                   box, and along slip walls. No-slip walls and held vertices take it up; there the background is
  *                   that of the walls, if both have one velocity, else it stands still. A bath has the velocity `flow`.
  *   of the boundary  in a sheared box the rate times the height over the middle.
  */

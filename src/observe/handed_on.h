@@ -6,7 +6,7 @@
  *
  * and in a time t to the pressure tensor (1/V t) times the sum over all contacts: the tubes of two fibers have g = (D_1
  * + D_2)/2 there, and thin lines 0. In a periodic box the image of the other bond counts that is touched. Thick
- * fibers are refused between walls and in sheared boxes (system/refusals_list.h). A bead or a frozen fiber takes
+ * fibers are refused between walls and in sheared boxes (system/refusals_list.h). A bead or a held vertex takes
  * momentum out of the sum, so meaning.c refuses or leaves out the columns that such contacts would enter.
  */
 #ifndef UNCROSS_OBSERVE_HANDED_ON_H

@@ -121,7 +121,7 @@ static bool no_tubes(const struct model *m)
   return !thick(m);
 }
 
-static bool beside_frozen(const struct model *m)
+static bool beside_held(const struct model *m)
 {
   return m->held > 0;
 }
@@ -170,7 +170,7 @@ static const struct {
     [INEXTENSIBLE] = {"inextensible", inextensible},
     [DRIFT_SPLIT] = {"`order: drift-split`", drift_split},
     [THICK] = {"thick fibers that cannot cross", thick},
-    [BESIDE_FROZEN] = {"frozen fibers", beside_frozen},
+    [BESIDE_HELD] = {"held vertices, or frozen fibers", beside_held},
     [NOT_CROSSABLE] = {"fibers that cannot cross", not_crossable},
     [LONG_AND_BENDING] = {"fibers that bend, longer than their persistence length", long_and_bending},
     [WITH_DUMBBELLS] = {"dumbbells", model_has_dumbbells},
@@ -243,13 +243,13 @@ const struct meaning meanings[] = {
      "the way across is bounded"},
     {OBSERVE_DYNAMICS, BETWEEN_WALLS, MEANS, "g g_cm g_middle", "along and across together"},
     {OBSERVE_DYNAMICS, ACCELERATED, MEANS, NULL, "about `flow` and the acceleration of everything"},
-    {OBSERVE_DYNAMICS, BESIDE_FROZEN, MEANS, NULL, "of the laboratory"},
+    {OBSERVE_DYNAMICS, BESIDE_HELD, MEANS, NULL, "of the laboratory"},
     {OBSERVE_DYNAMICS, IN_A_PLANE, MEANS, "D D_about_mean D_cumulative D_cumulative_about_mean", "g_cm/4t"},
     {OBSERVE_DYNAMICS, ANYWHERE, MEANS, NULL, "about `flow`"},
 
     {OBSERVE_COLLISIONS, NO_BONDS, LEFT_OUT, "rate_over_theory", "there is nothing that touches"},
     {OBSERVE_COLLISIONS, THICK, LEFT_OUT, "rate_over_theory", "the theory is that of lines"},
-    {OBSERVE_COLLISIONS, BESIDE_FROZEN, LEFT_OUT, "rate_over_theory", "the theory is that of fibers which all move"},
+    {OBSERVE_COLLISIONS, BESIDE_HELD, LEFT_OUT, "rate_over_theory", "the theory is that of fibers which all move"},
     {OBSERVE_COLLISIONS, LONG_AND_BENDING, MEANS, "rate_over_theory",
      "the theory has no contacts of such fibers with themselves: above 1 by as many as there are"},
     {OBSERVE_COLLISIONS, IN_SHEAR, MEANS, "rate_over_theory", "over the rate at rest"},
@@ -268,8 +268,8 @@ const struct meaning meanings[] = {
      "it sums what collisions of cells do; allowed without a medium; with this one: observe.pressure"},
     {OBSERVE_STRESS, PERMUTED, REFUSED, NULL,
      "velocities that are permuted carry momentum across the box; allowed with hydrodynamics: true"},
-    {OBSERVE_STRESS, BESIDE_FROZEN, REFUSED, NULL,
-     "momentum that frozen fibers take up is not in its stress; allowed without frozen fibers"},
+    {OBSERVE_STRESS, BESIDE_HELD, REFUSED, NULL,
+     "momentum that held vertices take up is not in its stress; allowed without them"},
     {OBSERVE_STRESS, NO_PARTICLES, LEFT_OUT, "sigma_xy_kinetic sigma_xy_collisional", "there are no particles"},
     {OBSERVE_STRESS, NO_WALLS, LEFT_OUT, "sigma_lower sigma_upper", "there are no walls"},
     {OBSERVE_STRESS, NO_FIBERS_NO_DUMBBELLS, LEFT_OUT, "sigma_xy_spring N1_spring", "there are no springs"},
@@ -308,7 +308,7 @@ const struct meaning meanings[] = {
     {OBSERVE_MEMORY, INEXTENSIBLE, REFUSED, NULL, NO_TENSION},
     {OBSERVE_MEMORY, OVERDAMPED, LEFT_OUT, "vertices center", "there are no velocities"},
     {OBSERVE_MEMORY, THICK, LEFT_OUT, "stress_memory", "what thick fibers hand on at a contact is not in it"},
-    {OBSERVE_MEMORY, BESIDE_FROZEN, MEANS, NULL, "of kinds that are not frozen; frozen ones have no table"},
+    {OBSERVE_MEMORY, BESIDE_HELD, MEANS, NULL, "of kinds that are not frozen; frozen ones have no table"},
     {OBSERVE_MEMORY, IN_A_PLANE, MEANS, "vertices center", "⟨v(0)·v(t)⟩/2"},
     {OBSERVE_MEMORY, IN_A_PLANE, MEANS, "stress_memory", "of xy alone"},
     {OBSERVE_MEMORY, ANYWHERE, MEANS, NULL, "about `flow`"},
@@ -320,8 +320,8 @@ const struct meaning meanings[] = {
      "or sliding walls; with them: observe.stress"},
     {OBSERVE_PRESSURE, NO_FORCES, LEFT_OUT, "configurational", "there is nothing to tell it from"},
     {OBSERVE_PRESSURE, NO_TUBES, LEFT_OUT, "pressure_contacts", "thin fibers hand on nothing at a contact"},
-    {OBSERVE_PRESSURE, BESIDE_FROZEN, LEFT_OUT, "pressure p_xx p_yy p_zz p_xy pressure_contacts",
-     "frozen fibers hold what pushes them"},
+    {OBSERVE_PRESSURE, BESIDE_HELD, LEFT_OUT, "pressure p_xx p_yy p_zz p_xy pressure_contacts",
+     "they hold what pushes them"},
     {OBSERVE_PRESSURE, BETWEEN_WALLS, LEFT_OUT, "force_square laplacian configurational",
      "walls push too, which is no force of the energy"},
     {OBSERVE_PRESSURE, IN_A_PLANE, LEFT_OUT, "p_zz", "nothing moves along z"},

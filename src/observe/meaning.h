@@ -41,7 +41,7 @@ enum circumstance {
   INEXTENSIBLE,
   DRIFT_SPLIT,
   THICK,
-  BESIDE_FROZEN,
+  BESIDE_HELD,
   NOT_CROSSABLE,
   LONG_AND_BENDING, /* fibers that bend so much that they touch themselves, and no chains without bending */
   WITH_DUMBBELLS,

@@ -22,7 +22,7 @@ bool contract_covers(const struct scene *scene, bool packs, struct message *mess
       {m->crossing.rejection != REJECTION_STAY || m->crossing.frame != FRAME_LABORATORY,
        "crossing.refusal or crossing.frame: not the paper's"},
       {m->medium.inextensible, "medium.inextensible: it is true"},
-      {m->held > 0, "fibers.frozen or fibers.held: vertices stand still"},
+      {m->held > 0, "fibers.frozen or fibers.held: vertices are held"},
   };
   for (size_t k = 0; k < sizeof outside / sizeof *outside; k++)
     if (outside[k].is)

@@ -116,6 +116,8 @@ class Load(FolderTest):
             self.assertFalse(words in told, words)
         mixed = self.check(scene + "  - {name: loose, count: 3000, vertices: 1, mass: 5}\n")
         self.assertAlmostEqual(self.number(mixed, "viscosity of the loaded fluid") / viscosity(5, 3000 / 12**3, 5)[1], 1.0, delta=1e-5)
+        chains = self.check(scene + "  - {name: held, count: 1000, vertices: 5, mass: 5, bond_length: 0.5, spring: 100, held: ends}\n")
+        self.assertAlmostEqual(self.number(chains, "viscosity of the loaded fluid") / viscosity(5, 3000 / 12**3, 5)[1], 1.0, delta=1e-5)
 
     def test_a_fluid_of_pairs(self):
         """A pair hands on momentum as its reduced mass: sum n_i n_j 2 mu_ij in place of rho^2, 1.736 vertices of mass 10 beside 3."""

@@ -1,4 +1,4 @@
-/* Frozen fibers (contact/frozen.h), under every crossing rule. */
+/* Frozen fibers (contact/held.h), under every crossing rule. */
 #include "contact/impulse.h"
 #include "contact/rings.h"
 #include "contact/rule.h"

@@ -7,9 +7,12 @@
  */
 #include "contract/contract.h"
 
-static bool is_frozen(const struct model *m, uint32_t v)
+/* Of a frozen fiber, or one of two ends that are held. */
+static bool is_held(const struct model *m, uint32_t v)
 {
-  return m->kind[m->fiber_kind_of[m->fiber_of[v]]].frozen;
+  const uint32_t fiber = m->fiber_of[v], i = v - m->fiber_first[fiber];
+  const struct fiber_kind *k = &m->kind[m->fiber_kind_of[fiber]];
+  return k->frozen || (k->held == HELD_ENDS && (i == 0 || i + 1 == k->vertices));
 }
 
 /* --- what is pressed ---------------------------------------------------------------------------------------------- */
@@ -30,21 +33,26 @@ static void lay_rods(struct model *m, uint32_t vertices, struct vec3 direction, 
     k->place[i] = (struct fiber_place){{2.0 + 4.0 * (i % 2), 2.0 + 4.0 * (i / 2), 4.0 + level}, direction};
 }
 
-/* Presses: a rod that stands still, a light one over it, and a heavy one that comes down. Other fibers fly about. */
-static struct model presses(struct choice c, double diameter)
+/* Presses: a rod that stands still, a light one over it, and a heavy one that comes down. Other fibers fly about. Or
+ * the rod is a bond whose ends are held, and so are the ends of those that fly about. */
+static struct model presses(struct choice c, double diameter, bool ends)
 {
   struct model m = test_model(8, 8, 8, 2, 0.001, 2);
   m.seed = dice_seed(3601);
-  lay_rods(&m, 4, (struct vec3){1, 0, 0}, 0.0);
+  lay_rods(&m, ends ? 2 : 4, (struct vec3){1, 0, 0}, 0.0);
   lay_rods(&m, 2, (struct vec3){0, 1, 0}, diameter + GAP);
   lay_rods(&m, 2, (struct vec3){1, 1, 0}, 2.0 * (diameter + GAP));
-  m.kind[FIXED].frozen = true;
+  m.kind[FIXED].frozen = !ends;
+  m.kind[FIXED].held = ends ? HELD_ENDS : HELD_NONE;
   m.kind[LIGHT].mass = 0x1p-8;
   m.kind[HEAVY].mass = 0x1p12;
   test_add_kind(&m, 12, 6);
+  m.kind[FREE].held = ends ? HELD_ENDS : HELD_NONE;
   for (int k = 0; k <= FREE; k++)
     m.kind[k].diameter = diameter;
   contract_choose(&m, c);
+  if (ends)
+    m.medium.tensor = TENSOR_NONE, m.medium.radius = 0.0;
   return m;
 }
 
@@ -65,8 +73,8 @@ static void press(struct test_run *r, const struct point *start)
 static void expect_still(const struct test_run *r, const struct point *before)
 {
   for (uint32_t v = 0; v < r->state.vertices; v++)
-    if (is_frozen(&r->model, v) && memcmp(&before[v], &r->state.position[v], sizeof before[v]) != 0)
-      fail_msg("%s, medium %d: frozen vertex %u has moved in step %lu", crossing_rule_of(&r->model)->name,
+    if (is_held(&r->model, v) && memcmp(&before[v], &r->state.position[v], sizeof before[v]) != 0)
+      fail_msg("%s, medium %d: held vertex %u has moved in step %lu", crossing_rule_of(&r->model)->name,
                (int)r->model.medium.kind, v, (unsigned long)r->state.step);
 }
 
@@ -100,11 +108,12 @@ static bool at_once(const struct crossing_rule *rule)
 }
 
 /* In every box that takes frozen fibers. */
-static void over_boxes(struct choice c, enum rejection rejection, double diameter, struct collision_counts *sum)
+static void over_boxes(struct choice c, enum rejection rejection, double diameter, bool ends,
+                       struct collision_counts *sum)
 {
   int taken = 0;
   for (int k = 0; k < BOXES; k++) {
-    struct model m = presses(c, diameter), trial = presses(c, diameter);
+    struct model m = presses(c, diameter, ends), trial = presses(c, diameter, ends);
     struct model_error error;
     trial.walls.kind = m.walls.kind = k == 1 ? WALL_SLIP : k == 2 ? WALL_NO_SLIP : WALL_ABSENT;
     trial.shear.rate = m.shear.rate = k == 3 ? 0.05 : 0.0;
@@ -121,9 +130,8 @@ static void over_boxes(struct choice c, enum rejection rejection, double diamete
   assert_true(taken > 0);
 }
 
-static void frozen_vertices_stand_under_every_rule(void **unused)
+static void stand_under_every_rule(bool ends)
 {
-  (void)unused;
   for (int rule = 0; rule < CROSSINGS; rule++) {
     const struct crossing_rule *row = crossing_rule_row(rule);
     struct collision_counts sum = {0};
@@ -131,11 +139,23 @@ static void frozen_vertices_stand_under_every_rule(void **unused)
       for (int rejection = 0; rejection < (row->in_turns ? REJECTIONS : 1); rejection++)
         for (int thick = 0; thick < (at_once(row) ? 2 : 1); thick++)
           if (medium != MEDIUM_OVERDAMPED || !row->forbids) /* no velocities, no contacts */
-            over_boxes((struct choice){.medium = medium, .crossing = rule}, rejection, thick ? 0.1 : 0.0, &sum);
+            over_boxes((struct choice){.medium = medium, .crossing = rule}, rejection, thick ? 0.1 : 0.0, ends, &sum);
     print_message("  %s: %lu contacts, %lu rigid\n", row->name, (unsigned long)sum.executed, (unsigned long)sum.rigid);
     assert_true(sum.executed > 300 || !row->forbids);
     assert_true(sum.rigid > 50 || !at_once(row));
   }
+}
+
+static void frozen_vertices_stand_under_every_rule(void **unused)
+{
+  (void)unused;
+  stand_under_every_rule(false);
+}
+
+static void held_ends_stand_under_every_rule(void **unused)
+{
+  (void)unused;
+  stand_under_every_rule(true);
 }
 
 /* --- in the bath ---------------------------------------------------------------------------------------------------
@@ -156,7 +176,7 @@ static void expect_warm(struct choice c)
   for (int n = 0; n < SAMPLES; n++) {
     test_steps(&r, 3);
     for (uint32_t v = 0; v < r.state.vertices; v++)
-      square[is_frozen(&r.model, v)] += r.model.mass[v] * vec3_dot(r.state.velocity[v], r.state.velocity[v]) / 3.0;
+      square[is_held(&r.model, v)] += r.model.mass[v] * vec3_dot(r.state.velocity[v], r.state.velocity[v]) / 3.0;
   }
   for (int k = 0; k < 2; k++) {
     const double of_one = square[k] / (60.0 * SAMPLES);
@@ -182,6 +202,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(frozen_vertices_stand_under_every_rule),
+      cmocka_unit_test(held_ends_stand_under_every_rule),
       cmocka_unit_test(frozen_vertices_are_as_warm_as_the_bath),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

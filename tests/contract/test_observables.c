@@ -469,7 +469,7 @@ static const struct {
     [INEXTENSIBLE] = {"medium: {kind: overdamped, rate: 1, inextensible: true}\ncrossing: {forbidden: false}\n", ""},
     [DRIFT_SPLIT] = {CELLS "order: drift-split\n", ""},
     [THICK] = {CELLS "crossing: {rule: event-driven}\n", ", diameter: 0.1"},
-    [BESIDE_FROZEN] = {CELLS, ", frozen: true"},
+    [BESIDE_HELD] = {CELLS, ", held: ends"},
     [NOT_CROSSABLE] = {CELLS, ""},
     [LONG_AND_BENDING] = {CELLS, ""},
     [WITH_DUMBBELLS] = {CELLS "dumbbells: {spring: 20}\n", ""},

@@ -184,9 +184,10 @@ static bool keep_row(void *context, enum observable which, size_t columns, const
 {
   double *row = context;
   const bool flat = which == OBSERVE_PRESSURE && columns == COLUMNS - 1; /* without p_zz */
-  assert_true(which != OBSERVE_PRESSURE || flat || columns == COLUMNS);
+  const bool held = which == OBSERVE_PRESSURE && columns == COLUMNS - XY; /* without a pressure */
+  assert_true(which != OBSERVE_PRESSURE || flat || held || columns == COLUMNS);
   for (size_t k = 0; k < columns && which == OBSERVE_PRESSURE; k++)
-    row[flat && k >= ZZ ? k + 1 : k] = values[k];
+    row[flat && k >= ZZ ? k + 1 : held && k >= PRESSURE ? k + XY : k] = values[k];
   if (which == OBSERVE_PRESSURE)
     return true;
   memcpy(row + COLUMNS, values, 2 * sizeof *values);
@@ -242,20 +243,25 @@ static void the_first_half_kick(void **unused)
   test_end(&free_run);
 }
 
-/* The Laplacian of bonds and bends: minus the divergence of their forces, by differences. */
+/* The Laplacian of bonds and bends, in the coordinates of what is not held: minus the divergence of their forces, by
+ * differences. */
 static void laplacian_of_fibers(void **unused)
 {
   (void)unused;
-  for (int flat = 0; flat < 2; flat++) {
+  for (int round = 0; round < 4; round++) {
+    const bool flat = round % 2, held = round / 2;
     struct model m = test_model(8, 8, flat ? 1 : 8, 0, 0.01, 0);
     m.medium = (struct medium_model){.kind = MEDIUM_PRIVATE, .rate = 1.0};
     m.dimensions = flat ? 2 : 3;
     m.crossing.forbidden = false;
     m.seed = dice_seed(3302);
-    test_add_kind(&m, 2, 6)->force = (struct vec3){1.0, -2.0, 0.0};
+    test_add_kind(&m, 2, 6)->force = held ? (struct vec3){0, 0, 0} : (struct vec3){1.0, -2.0, 0.0};
     test_add_kind(&m, 1, 5)->ring = true;
     struct fiber_kind *gauss = test_add_kind(&m, 1, 4);
     gauss->bond_length = gauss->bending = 0.0;
+    test_add_kind(&m, 1, 5)->held = held ? HELD_ENDS : HELD_NONE;
+    struct fiber_kind *pinned = test_add_kind(&m, 1, 5);
+    pinned->ring = true, pinned->held = held ? HELD_FIRST : HELD_NONE;
     struct test_run r = test_start(m);
     test_steps(&r, 200);
     const struct observe_plan plan = {.every[OBSERVE_PRESSURE] = 1};
@@ -266,7 +272,7 @@ static void laplacian_of_fibers(void **unused)
     const int64_t h = LATTICE_CELL >> 16;
     struct vec3 *force = r.work.fiber.force;
     for (uint32_t i = 0; i < r.state.vertices; i++)
-      for (int axis = 0; axis < (flat ? 2 : 3); axis++) {
+      for (int axis = 0; axis < (flat ? 2 : 3) && !model_is_held(&r.model, i); axis++) {
         const struct vec3 outer = r.model.kind[r.model.fiber_kind_of[r.model.fiber_of[i]]].force;
         assert_true(fiber_forces(&r.state, &r.model, force, 0, &r.work.fault));
         square += pow(along(force[i], axis) - along(outer, axis), 2);

@@ -112,7 +112,8 @@ class SwitchesTest(Folder):
                           (SOLVENT % "" + "bead: {radius: 1.5, center: [4, 4, 4]}\n", "bead: there is one"),
                           (SOLVENT % "" + FIBERS % "" + "shear: {rate: 0.1}\n", "fibers: there are some, in walls or shear"),
                           (SOLVENT % ", hydrodynamics: false, bath: phantoms" + FIBERS % "", "solvent.bath: it is phantoms"),
-                          (FIBERS % ", frozen: true" + EVENTS, "fibers.frozen: it is true"),
+                          (FIBERS % ", frozen: true" + EVENTS, "fibers.frozen or fibers.held: vertices are held"),
+                          (FIBERS % ", held: ends" + EVENTS, "fibers.frozen or fibers.held: vertices are held"),
                           (FIBERS % "" + "crossing: {rule: sequential, refusal: bounce}\n", "crossing.refusal or crossing.frame"),
                           (FIBERS % "" + "crossing: {rule: sequential, frame: flow}\n", "crossing.refusal or crossing.frame")):
             box = BOX.replace("[4, 4, 4]", "[4, 4, 1]" if "dimensions" in text else "[8, 8, 8]")

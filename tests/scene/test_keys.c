@@ -139,7 +139,7 @@ static void absent_values_stay(void **unused)
       "box: [9, 9, 9]\ntime_step: 0.01\nseed: 1\norder: kick-split\nflow: [0, 0, 0]\ndimensions: 3\nsolvent:\n"
       "  per_cell: 3\n  collision_interval: 0.01\n  rotation_angle: 90\n  rule: srd\n  thermostat: none\n"
       "  hydrodynamics: true\n  bath: particles\n  acceleration: [0, 0, 0]\n  profile: uniform\nfibers:\n  - name: a\n"
-      "    count: 1\n    vertices: 8\n    ring: false\n    frozen: false\n    mass: 5\n    bond_length: 0.5\n"
+      "    count: 1\n    vertices: 8\n    ring: false\n    frozen: false\n    held: none\n    mass: 5\n    bond_length: 0.5\n"
       "    spring: 100\n    bending: 0\n    diameter: 0\n    force: [0, 0, 0]\n    start: equilibrium\ncrossing:\n"
       "  forbidden: true\n  rule: sequential\n  exclusion: shared-vertex\n  refusal: stay\n  frame: laboratory\n"
       "steps: 0\nobserve:\n  dynamics: {every: 1, longest_lag: 0}\n"
