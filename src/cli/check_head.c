@@ -29,7 +29,8 @@ static void take(struct slowest *s, const char *what, const char *kind, double t
 static void look_at_kind(struct slowest *s, const struct model *m, const struct fiber_kind *k)
 {
   const double p = k->vertices > 1 ? theory_aspect_ratio(theory_length(k), THEORY_RADIUS) : 0.0;
-  if (k->ring || fiber_held(k) > 0 || k->vertices < 2 || model_is_flat(m) || !model_has_solvent(m) || !model_in_cells(m))
+  if (k->ring || fiber_held(k) > 0 || k->vertices < 2 || model_is_flat(m) || !model_has_solvent(m) ||
+      !model_in_cells(m))
     return;
   if (k->bending > 0.0 && p > 2.0)
     take(s, "in which a fiber turns", k->name, theory_rod_relaxation(theory_model_viscosity(m), theory_length(k), p));

@@ -1,10 +1,11 @@
 /*
- * Vertices that are held: those of frozen fibers, and single ones of others. They stand still and take part in the bath.
+ * Vertices that are held: those of frozen fibers, and single ones of others. They stand still and take part in the
+ * bath.
  *
- * A held vertex has a velocity like any other. Collisions change it, by momentum and mass, so that the fluid is as heavy
- * and as viscous as if the vertex moved. But it moves nothing: in a drift the velocity is set aside, and is 0. Its
- * inverse mass is 0 (system/model.h), so that no force changes it. A bond between two of them is a wall, from which a
- * fiber bounces: the velocity of the contact point of the moving bond reverses along the normal, kinetic energy is
+ * A held vertex has a velocity like any other. Collisions change it, by momentum and mass, so that the fluid is as
+ * heavy and as viscous as if the vertex moved. But it moves nothing: in a drift the velocity is set aside, and is 0.
+ * Its inverse mass is 0 (system/model.h), so that no force changes it. A bond between two of them is a wall, from which
+ * a fiber bounces: the velocity of the contact point of the moving bond reverses along the normal, kinetic energy is
  * conserved, and momentum goes to the obstacle and is lost. That holds under every crossing rule. A rigid cluster with
  * such a vertex stands (contact/event_rigid.h).
  *

@@ -279,7 +279,7 @@ static void kick_between_held(struct state *state, const struct model *model, ui
   const struct fiber_kind *kind = &model->kind[model->fiber_kind_of[fiber]];
   const uint32_t first = model->fiber_first[fiber] + 1, free = kind->vertices - fiber_held(kind);
   if (free > 0)
-    kick_row(&state->velocity[first].x, &force[first].x, 3 * (size_t)free, dt * model->inverse_mass[first]);
+    kick_row(&state->velocity[first].x, &force[first].x, 3 * (size_t)free, dt / kind->mass);
 }
 
 /* Padding 2009, Eq. (8). All vertices of a kind have one mass, and fibers of a kind are mostly next to each other. */

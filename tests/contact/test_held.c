@@ -112,8 +112,8 @@ static void a_taut_ring_is_twice_the_distance(void **unused)
       sum += vec3_norm(fiber_bond(&r.state, &r.model, 4 + i)) / SAMPLES;
   }
   const double thermal = expected * (1.0 + 1.0 / (spring * bond * bond));
-  print_message("  L %.4f, expected %.4f at this spring, %.4f without heat; softened %lu of %lu\n", sum, thermal, expected,
-                (unsigned long)r.state.counts.softened, (unsigned long)r.state.counts.executed);
+  print_message("  L %.4f, expected %.4f at this spring, %.4f without heat; softened %lu of %lu\n", sum, thermal,
+                expected, (unsigned long)r.state.counts.softened, (unsigned long)r.state.counts.executed);
   assert_close(sum, thermal, 0.02 * expected);
   assert_true(r.state.counts.rigid == 0 && r.state.counts.softened * 1000 < r.state.counts.executed);
   test_end(&r);
@@ -123,7 +123,8 @@ static void a_taut_ring_is_twice_the_distance(void **unused)
 
 enum { BATH_NOTHING, BATH_SRD, BATH_AT_A, BATH_AT_PLUS_A, BATH_HEAT, BATH_PRIVATE, BATH_PAIRS, BATH_OVERDAMPED, ALL };
 
-static const char *const bath_names[ALL] = {"none", "srd", "at-a", "at+a", "phantoms", "private", "pairs", "overdamped"};
+static const char *const bath_names[ALL] = {"none",     "srd",     "at-a",  "at+a",
+                                            "phantoms", "private", "pairs", "overdamped"};
 
 /* Chains with both ends held, chains and rings with one vertex held, chains that are free. */
 static struct model crowd(int bath, enum crossing_kind rule)
@@ -154,8 +155,8 @@ static struct model crowd(int bath, enum crossing_kind rule)
   return m;
 }
 
-/* Over 600 steps; and the velocities of held vertices are those of the bath: they are 1,560 components, so 6 % in M <v^2>
- * of each look, whose mean over 6 looks is asked. */
+/* Over 600 steps; and the velocities of held vertices are those of the bath: they are 1,560 components, so 6 % in M
+ * <v^2> of each look, whose mean over 6 looks is asked. */
 static void ends_stand_under_every_bath_and_rule(void **unused)
 {
   (void)unused;
@@ -170,7 +171,8 @@ static void ends_stand_under_every_bath_and_rule(void **unused)
         test_steps(&r, 100);
         expect_held(&r, before, bath_names[bath]);
         for (uint32_t v = 0; v < r.state.vertices; v++)
-          square += model_is_held(&r.model, v) ? r.model.mass[v] * vec3_dot(r.state.velocity[v], r.state.velocity[v]) : 0;
+          square +=
+              model_is_held(&r.model, v) ? r.model.mass[v] * vec3_dot(r.state.velocity[v], r.state.velocity[v]) : 0;
       }
       assert_int_equal(r.model.held, 12 * 4);
       assert_true(rule == CROSSING_FREE || r.state.counts.executed > 50);
@@ -242,7 +244,8 @@ static void heat_between_held_ends(void **unused)
       }
       const double expected = 1.0 / ((n == 0 ? 2.0 : 1.0) * 20.0), value = squares.mean;
       print_message("  %s, %d held: variance %.5f, expected %.5f\n", bath_names[bath], 2 - n, value, expected);
-      /* the overdamped step has a variance that is 1/(1 - x/2) too large, x = 2 k dt/zeta of the middle vertex: 2.1 % */
+      /* the overdamped step has a variance that is 1/(1 - x/2) too large, x = 2 k dt/zeta of the middle vertex: 2.1 %
+       */
       assert_close(value, expected, 0.035 * expected);
       test_end(&r);
     }
@@ -281,10 +284,12 @@ static void nothing_gives_way(void **unused)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(taut_bonds_move_no_post),          cmocka_unit_test(a_taut_ring_is_twice_the_distance),
-      cmocka_unit_test(ends_stand_under_every_bath_and_rule), cmocka_unit_test(springs_between_held_ends),
-      cmocka_unit_test(heat_between_held_ends),           cmocka_unit_test(held_vertices_are_counted),
-      cmocka_unit_test(nothing_gives_way)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(taut_bonds_move_no_post),
+                                     cmocka_unit_test(a_taut_ring_is_twice_the_distance),
+                                     cmocka_unit_test(ends_stand_under_every_bath_and_rule),
+                                     cmocka_unit_test(springs_between_held_ends),
+                                     cmocka_unit_test(heat_between_held_ends),
+                                     cmocka_unit_test(held_vertices_are_counted),
+                                     cmocka_unit_test(nothing_gives_way)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -183,7 +183,7 @@ enum { TIME, PRESSURE, XX, YY, ZZ, XY, POTENTIAL, SQUARE, LAPLACIAN, CONFIGURATI
 static bool keep_row(void *context, enum observable which, size_t columns, const double *values)
 {
   double *row = context;
-  const bool flat = which == OBSERVE_PRESSURE && columns == COLUMNS - 1; /* without p_zz */
+  const bool flat = which == OBSERVE_PRESSURE && columns == COLUMNS - 1;  /* without p_zz */
   const bool held = which == OBSERVE_PRESSURE && columns == COLUMNS - XY; /* without a pressure */
   assert_true(which != OBSERVE_PRESSURE || flat || held || columns == COLUMNS);
   for (size_t k = 0; k < columns && which == OBSERVE_PRESSURE; k++)
