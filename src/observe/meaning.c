@@ -348,7 +348,7 @@ const struct meaning meanings[] = {
      "trajectory"},
     {OBSERVE_TOPOLOGY, NOT_CROSSABLE, MEANS, NULL,
      "within a step paths bend at contacts, or vertices move one after another: an even number may be false"},
-    {OBSERVE_TOPOLOGY, BESIDE_FROZEN, MEANS, NULL, "without pairs of frozen bonds"},
+    {OBSERVE_TOPOLOGY, BESIDE_HELD, MEANS, NULL, "without pairs of bonds that stand"},
     {OBSERVE_TOPOLOGY, ANYWHERE, MEANS, NULL, "of straight moves from sample to sample"},
 };
 const size_t meaning_count = sizeof meanings / sizeof *meanings;
