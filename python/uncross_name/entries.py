@@ -5,8 +5,8 @@ import yaml
 
 WORDS = {"name", "text", "says", "twins", "with", "why", "rank"}
 PARTS = {"numpy": {"file", "line", "replacement", "also", "at", "pack", "trace", "exit", "operators"},
-         "c": {"name", "file", "old", "new", "tests", "claims", "needs"}}
-MUST = {"numpy": {"file", "line", "replacement", "at"}, "c": {"file", "old", "new"}}
+         "c": {"name", "file", "old", "new", "tests", "claims", "needs"}, "python": {"name", "file", "old", "new", "tests"}}
+MUST = {"numpy": {"file", "line", "replacement", "at"}, "c": {"file", "old", "new"}, "python": {"file", "old", "new", "tests"}}
 
 
 class Trouble(Exception):
@@ -20,7 +20,7 @@ def _check(entry, where):
     where = f"{where}: '{entry['name']}'"
     unknown = entry.keys() - WORDS - PARTS.keys()
     if unknown or not entry.keys() & PARTS.keys():
-        raise Trouble(f"{where}: {', '.join(sorted(unknown)) or 'no part'}; allowed: {', '.join(sorted(WORDS))}, and a part numpy, a part c, or both")
+        raise Trouble(f"{where}: {', '.join(sorted(unknown)) or 'no part'}; allowed: {', '.join(sorted(WORDS))}, and parts: numpy, c, python")
     for part, keys in PARTS.items():
         for one in [entry[part]] if part == "numpy" and part in entry else entry.get(part, []):
             wrong = (one.keys() - keys) | (MUST[part] - one.keys())
