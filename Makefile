@@ -241,7 +241,7 @@ DOCUMENTS := $(FRONT) $(shell find docs scenes examples -type f -not -path '*/.*
 # What `uncross oracle judge` holds a port against, and the table that a run makes for it (docs/judging.md).
 JUDGED    := $(wildcard reference-data/README.md reference-data/observables.csv reference-data/measure-observables reference-data/judge/*.yaml reference-data/judge/power/*)
 # What `uncross oracle check` holds a port against.
-REFERENCE := $(wildcard $(foreach n,pack.h5 pack.txt.gz start.h5 start.txt.gz trace.csv yaml,reference-data/*.$(n) reference-data/flow/*.$(n) reference-data/dumbbells/*.$(n) reference-data/media/*.$(n) reference-data/tubes/*.$(n) reference-data/beads/*.$(n)))
+REFERENCE := $(wildcard $(foreach n,pack.h5 pack.txt.gz start.h5 start.txt.gz trace.csv yaml,reference-data/*.$(n) reference-data/flow/*.$(n) reference-data/dumbbells/*.$(n) reference-data/media/*.$(n) reference-data/tubes/*.$(n) reference-data/beads/*.$(n) reference-data/topology/*.$(n)))
 define INSTALLED
 755 $(BUILD)/uncross bin/uncross
 $(foreach p,$(OUTER),755 tools/$(p) libexec/uncross/$(p)

@@ -17,7 +17,7 @@ PORT = pathlib.Path(uncross_port.__file__).resolve().parent
 FOLDER = PORT.parents[2] / "mistakes"
 # Modules in the order in which they import each other.
 MODULES = ("elementary", "random", "lattice", "pack", "solvent", "flow", "dumbbells", "media", "model", "fiber", "sweep", "tubes",
-           "events", "operators", "step")
+           "events", "topology", "operators", "step")
 
 
 MODEL = "from_tables"  # functions that every operator uses
@@ -54,7 +54,7 @@ def members(entry):
     """The entry; of a family, one for each of its numbers."""
     family = entry.get("with", {})
     for numbers in itertools.product(*family.values()):
-        yield _filled({key: value for key, value in entry.items() if key not in ("with", "c", "numpy")}, dict(zip(family, numbers)))
+        yield _filled({key: value for key, value in entry.items() if key not in ("with", "c", "numpy", "python")}, dict(zip(family, numbers)))
 
 
 def _mistake(entry):

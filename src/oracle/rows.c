@@ -6,6 +6,7 @@
 #include "contact/capsule.h"
 #include "contact/impulse.h"
 #include "contact/shape.h"
+#include "topology/pair.h"
 
 double oracle_condition(struct vec3 way, struct vec3 bond, struct vec3 standing, double time)
 {
@@ -40,6 +41,31 @@ bool oracle_run_tests(struct oracle_stage *g)
     t[k].hit = hit;
     t[k].condition = oracle_condition(point_difference(q->to, q->from), point_difference(q->pivot, q->from),
                                       point_difference(q->b, q->a), hit.time);
+  }
+  return true;
+}
+
+static struct vec3 vector_of(struct point x)
+{
+  return (struct vec3){(double)x.x, (double)x.y, (double)x.z};
+}
+
+bool oracle_run_meetings(struct oracle_stage *g)
+{
+  struct oracle_meeting *m = g->row;
+  for (uint32_t k = 0; k < g->rows; k++) {
+    struct pair pair;
+    struct crossing crossing[3];
+    int crossings;
+    for (int t = 0; t < 2; t++) {
+      pair.p[t] = vector_of(m[k].p[t]);
+      pair.q[t] = vector_of(m[k].q[t]);
+      pair.w[t] = vector_of(m[k].w[t]);
+    }
+    const enum pair_verdict verdict = pair_decide(&pair, crossing, &crossings);
+    m[k].class = verdict == PAIR_APART ? 0 : verdict == PAIR_CROSSED ? 1 : 2;
+    for (int i = 0; i < 3; i++)
+      m[k].sign[i] = verdict == PAIR_CROSSED && i < crossings ? crossing[i].sign : 0;
   }
   return true;
 }

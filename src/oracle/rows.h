@@ -30,6 +30,13 @@ struct oracle_test {
   double condition;        /* how much its data amplify rounding (docs/port/tolerances.md) */
 };
 
+/* Two bonds between two frames (topology/pair.h), in lattice units. */
+struct oracle_meeting {
+  struct point p[2], q[2], w[2];
+  int64_t class; /* 0 apart, 1 crossed, 2 touched, or what doubles cannot tell from it */
+  int64_t sign[3];
+};
+
 /* An exchange of momentum; the four vertices are moving vertex, pivot, and the standing bond's first and second end. */
 struct oracle_exchange {
   struct vec3 velocity[4]; /* a0/t0 */
@@ -82,6 +89,7 @@ struct oracle_entry {
 /* Operators on the rows of a stage. */
 bool oracle_run_permutations(struct oracle_stage *g);
 bool oracle_run_tests(struct oracle_stage *g);
+bool oracle_run_meetings(struct oracle_stage *g);
 bool oracle_run_exchanges(struct oracle_stage *g);
 bool oracle_run_searches(struct oracle_stage *g);
 bool oracle_run_tubes(struct oracle_stage *g);

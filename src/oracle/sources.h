@@ -34,6 +34,9 @@ extern const struct oracle_source from_test_from, from_test_to, from_test_pivot,
     from_exchange_b, from_exchange_masses, from_exchange_contact, from_exchange_normal, from_exchange_momentum,
     from_after_moving, from_after_pivot, from_after_a, from_after_b;
 
+extern const struct oracle_source from_meeting_p, from_meeting_q, from_meeting_w, from_meeting_p_last,
+    from_meeting_q_last, from_meeting_w_last, from_meeting_class, from_meeting_signs;
+
 extern const struct oracle_source from_search_p, from_search_q, from_search_w, from_search_p_rate, from_search_q_rate,
     from_search_w_rate, from_search_from, from_search_reach, from_search_tick, from_tubes_p, from_tubes_q, from_tubes_w,
     from_tubes_contact, from_tubes_normal;

@@ -26,6 +26,13 @@ static bool test_is_legal(const void *row)
   return are_near(q->from, &q->from, 5);
 }
 
+static bool meeting_is_legal(const void *row)
+{
+  const struct oracle_meeting *m = row;
+  const struct point zero = {0, 0, 0};
+  return are_near(zero, m->p, 2) && are_near(zero, m->q, 2) && are_near(zero, m->w, 2);
+}
+
 static bool search_is_legal(const void *row)
 {
   const struct oracle_search *s = row;
@@ -42,6 +49,7 @@ static const struct oracle_entity
     permuted = {.word = "entry", .count = count_permuted},
     permutations = {.word = "permutation", .count = count_rows, .size = sizeof(struct oracle_permutation)},
     tests = {.word = "test", .count = count_rows, .size = sizeof(struct oracle_test), .legal = test_is_legal},
+    meetings = {.word = "pair", .count = count_rows, .size = sizeof(struct oracle_meeting), .legal = meeting_is_legal},
     exchanges = {.word = "exchange", .count = count_rows, .size = sizeof(struct oracle_exchange)},
     searches = {.word = "search", .count = count_rows, .size = sizeof(struct oracle_search), .legal = search_is_legal},
     contacts = {.word = "contact", .count = count_rows, .size = sizeof(struct oracle_tubes), .legal = tubes_are_legal},
@@ -97,6 +105,16 @@ INTEGERS(crosses, tests, "crosses", TEST.crosses)
 #define HIT(h) (h).time, (h).s, (h).s_standing, (h).normal.x, (h).normal.y, (h).normal.z
 REALS(hit, tests, "time s s_standing normal_x normal_y normal_z", HIT(TEST.hit))
 REALS(test_condition, tests, "condition", TEST.condition)
+
+#define MEETING ((struct oracle_meeting *)g->row)[k]
+TAKEN_POINT(meeting_p, meetings, MEETING.p[0])
+TAKEN_POINT(meeting_q, meetings, MEETING.q[0])
+TAKEN_POINT(meeting_w, meetings, MEETING.w[0])
+TAKEN_POINT(meeting_p_last, meetings, MEETING.p[1])
+TAKEN_POINT(meeting_q_last, meetings, MEETING.q[1])
+TAKEN_POINT(meeting_w_last, meetings, MEETING.w[1])
+INTEGERS(meeting_class, meetings, "class", MEETING.class)
+INTEGERS(meeting_signs, meetings, "first second third", MEETING.sign[0], MEETING.sign[1], MEETING.sign[2])
 
 #define EXCHANGE ((struct oracle_exchange *)g->row)[k]
 #define FOUR(x) (x)[0], (x)[1], (x)[2], (x)[3]

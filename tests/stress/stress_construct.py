@@ -19,6 +19,9 @@ class Constructed(unittest.TestCase):
     def test_contact_search(self):
         check_constructed(self, "contacts", "contact_search")
 
+    def test_meetings(self):
+        check_constructed(self, "topology/meetings", "meeting")
+
     def test_touches(self):
         data = TOP / "reference-data"
         for scene in "tubes/mixed", "beads/company":

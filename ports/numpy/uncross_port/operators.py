@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from . import dumbbells, events, fiber, flow, media, random, solvent, tubes
+from . import dumbbells, events, fiber, flow, media, random, solvent, topology, tubes
 from . import model as models
 from . import sweep as sweeps
 from .pack import Tables
@@ -37,6 +37,12 @@ def crossing(model, step, given):
         time, s, s_standing, normal = sweeps.describe(*points) if found else (0.0, 0.0, 0.0, np.zeros(3))
         hit.append([time, s, s_standing, *normal])
     return {"crosses": column(np.array(crosses, np.int64)), "hit": np.array(hit, float).reshape(-1, 6)}
+
+
+def meeting(model, step, given):
+    found = [topology.bonds_meet(row[:3], row[3:]) for row in zip(*(given[name].tolist() for name in ("p", "q", "w", "p_last", "q_last", "w_last")))]
+    classes, signs = zip(*found) if found else ((), ())
+    return {"class": column(np.array(classes, np.int64)), "sign": np.array(signs, np.int64).reshape(-1, 3)}
 
 
 ENDS = "moving", "pivot", "a", "b"
@@ -370,6 +376,7 @@ OPERATORS = {
     "permutation": permutation,
     "order": order,
     "crossing": crossing,
+    "meeting": meeting,
     "exchange": exchange,
     "long_sweep": sweep,
     "sweep": sweep,
