@@ -4,6 +4,7 @@
 `uncross crossings` (C) and exact.py (integers) are held against sturm.py, which decides in another way, over the rationals. Places with 20
 bits are generic; those of whole numbers up to 7 and to 3 are mostly special. PAIRS=30000 for a longer look.
 """
+import itertools
 import os
 import pathlib
 import random
@@ -156,16 +157,17 @@ class Special(unittest.TestCase):
 
 
 class Chains(unittest.TestCase):
-    def chain(self, bent, where, closed=False):
-        """A chain of the places `bent`, all at rest, and a bond along y that falls through it at `where`."""
+    def chain(self, bent, where, closed=False, turn=lambda place: place):
+        """A chain of the places `bent`, all at rest, and a bond along y that falls through it at `where`; all turned or mirrored."""
         places = [STILL(*place) for place in bent] + [MOVES((*where, 4), (*where, -4)), MOVES((where[0], where[1] + 8, 4), (where[0], where[1] + 8, -4))]
         bonds = [[k, k + 1] for k in range(len(bent) - 1)] + ([[len(bent) - 1, 0]] if closed else []) + [[len(bent), len(bent) + 1]]
-        return found_in(bonds, places)
+        return found_in(bonds, [[turn(at) for at in place] for place in places])
 
     def test_through_a_vertex_counts_once(self):
         """Ties are broken the same way for the two bonds that share the vertex."""
-        for shift in range(-3, 4):
-            found = self.chain([(0, 0, 0), (4, shift, 0), (8, 0, 0)], (4, -4))
+        ways = list(itertools.product(itertools.permutations(range(3)), itertools.product((1, -1), repeat=3)))
+        for number, (axes, signs) in enumerate(ways):  # turned and mirrored, as a step to one side may be right by chance
+            found = self.chain([(0, 0, 0), (4, number % 7 - 3, 0), (8, 0, 0)], (4, -4), turn=lambda at: [sign * at[axis] for sign, axis in zip(signs, axes)])
             self.assertEqual(len(found.crossings), 0)
             self.assertEqual(len(found.touches), 2)
             self.assertEqual(sum(count for count, _ in found.count.values()), 1)
