@@ -245,6 +245,9 @@ def _result(run):
         words.append(f"energy {ended:.6g} kT, changed by {ended - begun:+.3g}")
     if record.get("collisions", {}).get("executed"):
         words.append(f"{record['collisions']['executed']} contacts answered")
+    crossings = run.table("topology")
+    if crossings is not None and crossings.rows:
+        words.append(f"{crossings.data['crossed'][0]:.0f} crossings of bonds in {crossings.data['intervals'][0]:.0f} intervals")
     for table in run.tables:
         if len(words) <= 6:
             words += _diffusion(run, table)

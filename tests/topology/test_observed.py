@@ -51,6 +51,8 @@ class Observed(FolderTest):
         self.assertAlmostEqual(row["first_time"], min(times), 7)
         self.assertAlmostEqual(row["last_time"], max(times), 7)
         self.assertGreater(row["rate_error"], 0)
+        self.assertEqual(uncross("plot", self.dir / "when", "--out", self.dir / "page.html").returncode, 0)
+        self.assertIn(f"{row['crossed']:.0f} crossings of bonds in 40 intervals", (self.dir / "page.html").read_text())
 
     def test_a_run_that_goes_on_is_the_same(self):
         text = PHANTOM + OBSERVED % 2
