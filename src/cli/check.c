@@ -182,11 +182,10 @@ static const double boundary_cost[] = {[BOUNDARY_PERIODIC] = 1.0, [BOUNDARY_WALL
 /* observe.topology, the only observable that may take longer than the steps. */
 static void report_topology(const struct scene *scene)
 {
-  const uint64_t every = scene->observe.every[OBSERVE_TOPOLOGY];
+  const uint64_t every = scene->observe.every[OBSERVE_TOPOLOGY], samples = every > 0 ? scene->steps / every : 0;
   const double bond = topology_rate + topology_density_rate * theory_line_density(&scene->model);
   if (every > 0)
-    sheet_row(false, "time of observe.topology", "", 1e-9 * bond * scene->model.bonds * (double)(scene->steps / every),
-              "s", "more");
+    sheet_row(false, "time of observe.topology", "", 1e-9 * bond * scene->model.bonds * (double)samples, "s", "more");
 }
 
 static void report_cost(const struct scene *scene)

@@ -4,6 +4,7 @@ import csv
 import json
 import os
 import pathlib
+import re
 import sys
 import unittest
 
@@ -78,6 +79,16 @@ class Observed(FolderTest):
             done = uncross("check", self.dir / "s.yaml")
             self.assertEqual(done.returncode, 2, done.stdout)
             self.assertIn("observe.topology: " + said, done.stderr)
+
+    def test_what_it_costs_is_told(self):
+        """Twice as many samples, twice the time; nothing of it where nobody asks."""
+        times = []
+        for text in OBSERVED % 1, OBSERVED % 2, "":
+            (self.dir / "s.yaml").write_text(FIBERS + text)
+            said = uncross("check", self.dir / "s.yaml").stdout
+            times += [float(value) for value in re.findall(r"time of observe.topology +([0-9.e-]+) s +more", said)]
+        self.assertEqual(len(times), 2)
+        self.assertAlmostEqual(times[0] / times[1], 2, 4)
 
     def test_the_state_is_the_same(self):
         """Who is looked at does not move."""
