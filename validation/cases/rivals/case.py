@@ -40,6 +40,7 @@ MOTION = {
     "events-1000": ("events", 1000, 100, (1,), 170, 6),
     "sequential-1000": ("sequential", 1000, 55, (1,), 120, 7),
     "srp-0.1-1000": ("srp:range=0.1", 1000, 52.5, (1,), 400, 7),
+    "wca-0.5-1000": ("wca:size=0.5", 1000, 52.5, (1,), 250, 8),
     "wca-0.25-1000": (f"wca:size=0.25,{FINE}", 1000, 52.5, (1,), 900, 9),
     "events-3000": ("events", 3000, 52.5, (1,), 600, 8),
 }
@@ -329,10 +330,10 @@ CAPTION = ("User CPU time of one core against the error of d² at 50 t0, cL³ = 
 def draw_cost(results):
     figure, axes = figures.plain(height=3.8)
     spread = scatter(results, 300)
-    for number, row in enumerate(row for row in compared(results, 300) if row.get("unbiased")):
+    for row in (row for row in compared(results, 300) if row.get("unbiased")):
         bias = abs(row["bias"][0])
         goal = numpy.geomspace(max(0.003, 1.01 * bias), 0.3, 200)
-        figures.line(axes, 100.0 * goal, [seconds_to(one, bias, spread, row["notes"][0]["fibers"], row["price"][0]) for one in goal], number, label=row["label"])
+        figures.line(axes, 100.0 * goal, [seconds_to(one, bias, spread, row["notes"][0]["fibers"], row["price"][0]) for one in goal], list(LABELS).index(row["key"]), label=row["label"])
     axes.axvline(100.0 * GOAL, color="#444444", linewidth=0.8, linestyle=":")
     axes.set(xscale="log", yscale="log", ylabel="user CPU time [s]", xlabel=r"error of $d^2$ at 50 $t_0$ [%]")
     figures.legend_above(axes, columns=3)
@@ -348,7 +349,7 @@ def draw_ratio(results):
     for number, row in enumerate(row for row in compared(results, 300) if row["key"] != "events" and row["ratio"]):
         curve = pooled(results, f"{row['key']}-300")
         pairs = [over(curve[lag], (reference[lag][0], 0.0, 0.0, 0.0)) for lag in lags if lag in curve]
-        figures.points(axes, [lag * 1.02**number for lag in lags if lag in curve], [pair[0] for pair in pairs], [pair[1] for pair in pairs], number, label=row["label"])
+        figures.points(axes, [lag * 1.02**number for lag in lags if lag in curve], [pair[0] for pair in pairs], [pair[1] for pair in pairs], list(LABELS).index(row["key"]), label=row["label"])
     axes.axhline(1.0, color="#444444", linewidth=0.8)
     axes.set(xscale="log", xlabel="$t$ [$t_0$]", ylabel="$d^2$ over event-driven")
     figures.legend_above(axes, columns=3)
