@@ -161,6 +161,8 @@ def program_hash(path):
 def command_of(run, folder, build):
     """What to execute in `folder`, the first word being a program of this build."""
     if run.program:
+        if run.program[0].endswith(".py"):
+            return [str(TREE / "validation/measure" / run.program[0]), str(folder), str(build), *map(str, run.program[1:])]
         return [str(build / "validation/measure" / run.program[0]), *map(str, run.program[1:])]
     command = [str(build / "uncross"), "run", str(folder / "scene.yaml"), "--out", str(folder), "--steps",
                str(run.steps), "--quiet"]
