@@ -143,7 +143,8 @@ def coil_verdict(name, point):
     value, error = point.strand()
     curve = float(primitive.uchida(point.x)) * point.kuhn
     allowed = abs(float(primitive.uchida(point.x / (1.0 + ALLOWED)) / primitive.uchida(point.x)) - 1.0)
-    return Verdict(f"primitive.length.{name.removeprefix('coil-')}", statement, 1.0, source, stats.tolerance(error / curve, systematic=allowed), value / curve, error / curve, kind="paper")
+    return Verdict(f"primitive.length.{name.removeprefix('coil-')}", statement, 1.0, source, stats.tolerance(error / curve, systematic=allowed), value / curve, error / curve, kind="paper",
+                   reason="the curve is from memory; and where a strand has few bonds, they are longer than half the mesh")
 
 
 def loose_verdict(coils):
@@ -197,7 +198,8 @@ def tube_verdicts(name, point):
     made = []
     for kind, top, bottom, power, allowed in (("plateau", "d2", "mean", 1.0, 0.1), ("static", "path", "mean", 0.5, 0.1)):
         value, error = stats.jackknife(numpy.stack([held[top], held[bottom]], axis=1), lambda mean, power=power: (mean[0] / mean[1]) ** power)
-        made.append(Verdict(f"primitive.tube.{kind}.{at}", said[kind][0], 1.0, said[kind][1], stats.tolerance(float(error), systematic=allowed), float(value), float(error), kind="paper"))
+        made.append(Verdict(f"primitive.tube.{kind}.{at}", said[kind][0], 1.0, said[kind][1], stats.tolerance(float(error), systematic=allowed), float(value), float(error), kind="paper",
+                            reason="without bending a path straightens over more than a deflection length, and draws its obstacles along" if kind == "static" else ""))
     return made
 
 
