@@ -94,7 +94,7 @@ static void gather(const struct state *state, const struct model *m, const struc
 
 static double vertex_mobility(const struct model *m, uint32_t vertex)
 {
-  return 1.0 / m->mass[vertex] / m->medium.rate;
+  return m->inverse_mass[vertex] / m->medium.rate;
 }
 
 /* Adds tensions to the forces. There is no noise. */
@@ -153,13 +153,13 @@ static inline bool is_within(struct vec3 d, double limit)
   return fabs(d.x) < limit && fabs(d.y) < limit && fabs(d.z) < limit;
 }
 
+/* All vertices but ends that are held. */
 static bool move(struct state *state, const struct model *m, const struct chain *c, uint64_t step, struct fault *fault)
 {
-  const double drift = vertex_mobility(m, c->first) * m->time_step, jump = sqrt(2.0 * drift);
+  const uint32_t skip = model_is_held(m, c->first), end = c->n - 3 * model_is_held(m, c->first + c->n / 3 - 1);
+  const double drift = vertex_mobility(m, c->first + skip) * m->time_step, jump = sqrt(2.0 * drift);
   const double limit = model_longest_bond(m), reach = (double)LATTICE_REACH * LATTICE_UNIT;
-  for (uint32_t i = 0, v = c->first; i < c->n; i += 3, v++) {
-    if (model_is_held(m, v))
-      continue;
+  for (uint32_t i = 3 * skip, v = c->first + skip; i < end; i += 3, v++) {
     const struct vec3 d = {drift * c->pull[i] + jump * c->jump[i] + m->flow.x * m->time_step,
                            drift * c->pull[i + 1] + jump * c->jump[i + 1] + m->flow.y * m->time_step,
                            drift * c->pull[i + 2] + jump * c->jump[i + 2] + m->flow.z * m->time_step};
