@@ -252,12 +252,5 @@ def put_event_drift(pack):
     pack.put("event_drift", "velocity", "x y z", drift.velocity)
 
 
+MODEL = SEED, BOX, 0, KINDS
 OPERATORS = {"contact_search": put_contact_search, "impulse": put_impulse, "event_drift": put_event_drift}
-
-
-def construct(operators):
-    pack = Pack()
-    pack.put_model(SEED, BOX, 0, KINDS)
-    for name in operators:
-        OPERATORS[name](pack)
-    return pack.text()

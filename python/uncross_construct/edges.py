@@ -297,12 +297,5 @@ def put_bin(pack):
     pack.put("bin", "vertex", "x y z", vertices)
 
 
+MODEL = SEED, BOX, PARTICLES, KINDS
 OPERATORS = {"permutation": put_permutation, "crossing": put_crossing, "exchange": put_exchange, "sweep": put_sweep, "bin": put_bin}
-
-
-def construct(operators):
-    pack = Pack()
-    pack.put_model(SEED, BOX, PARTICLES, KINDS)
-    for name in operators:
-        OPERATORS[name](pack)
-    return pack.text()

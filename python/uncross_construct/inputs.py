@@ -100,6 +100,15 @@ class Pack:
         return "\n".join(self.lines) + "\n"
 
 
+def construct(texts, operators):
+    """The text of a pack, by a module's MODEL and its OPERATORS of these names."""
+    pack = Pack()
+    pack.put_model(*texts.MODEL)
+    for name in operators:
+        texts.OPERATORS[name](pack)
+    return pack.text()
+
+
 def corner_of(slot):
     """Slots of one cell each, some apart."""
     return (2 * (slot % 2) + 1) * CELL, slot // 2 % 5 * CELL, slot // 10 * CELL + 8 * PART

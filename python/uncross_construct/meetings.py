@@ -90,12 +90,5 @@ def put_meeting(pack):
         pack.put("meeting", name, "x y z", [row[k] for row in rows.rows])
 
 
+MODEL = SEED, BOX, 0, KINDS
 OPERATORS = {"meeting": put_meeting}
-
-
-def construct(operators):
-    pack = Pack()
-    pack.put_model(SEED, BOX, 0, KINDS)
-    for name in operators:
-        OPERATORS[name](pack)
-    return pack.text()

@@ -344,8 +344,7 @@ const struct meaning meanings[] = {
      "in a plane bonds meet and do not cross; allowed in three dimensions"},
     {OBSERVE_TOPOLOGY, IN_SHEAR, REFUSED, NULL,
      "a fiber that leaves a sheared box is replaced by an image; allowed without shear; with it: `uncross topology` of "
-     "a "
-     "trajectory"},
+     "a trajectory"},
     {OBSERVE_TOPOLOGY, NOT_CROSSABLE, MEANS, NULL,
      "within a step paths bend at contacts, or vertices move one after another: an even number may be false"},
     {OBSERVE_TOPOLOGY, BESIDE_HELD, MEANS, NULL, "without pairs of bonds that stand"},

@@ -2,9 +2,9 @@
  * Crossings of bonds: from sample to sample all vertices are taken to move straight and evenly, and pairs of bonds are
  * decided by topology/pair.h. One table "topology" with one row; docs/topology.md says what such a number proves.
  *
- * Bonds that share a vertex cannot cross, and bonds that are both frozen do not move: neither is counted. A pair that
- * doubles cannot decide is counted as `unsure`; so is each bond of an interval that cannot be searched, since a vertex
- * is too far from the origin or too many images are within reach, or memory is short.
+ * Bonds that share a vertex cannot cross, and two bonds whose vertices are all held do not move: neither is counted. A
+ * pair that doubles cannot decide is counted as `unsure`; so is each bond of an interval that cannot be searched, since
+ * a vertex is too far from the origin or too many images are within reach, or memory is short.
  */
 #include <math.h>
 #include <string.h>
@@ -48,10 +48,9 @@ struct counting {
   const struct interval *interval;
 };
 
-static bool is_held(const struct counting *c, uint32_t bond)
+static bool stands(const struct counting *c, uint32_t bond)
 {
-  const uint32_t *v = c->interval->bond[bond];
-  return model_is_held(c->model, v[0]) && model_is_held(c->model, v[1]);
+  return model_bond_stands(c->model, c->interval->bond[bond][0]);
 }
 
 /* Of one image of the box, the other bond a neighbor along the fiber. */
@@ -73,7 +72,7 @@ static void count(void *sink, const struct meeting *m, enum pair_verdict verdict
 {
   const struct counting *c = sink;
   int64_t *n = c->o->integer;
-  if (share_vertex(c, m) || (is_held(c, m->bond[0]) && is_held(c, m->bond[1])))
+  if (share_vertex(c, m) || (stands(c, m->bond[0]) && stands(c, m->bond[1])))
     return;
   n[UNSURE] += verdict == PAIR_UNSURE;
   for (int k = 0; verdict == PAIR_CROSSED && k < crossings; k++) {

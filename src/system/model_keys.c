@@ -144,8 +144,7 @@ static const struct key fiber_keys[] = {
           "velocities of their own, which move nothing; a moving fiber meets them as if they were infinitely heavy.")},
     {"held", CHOICE(held_words), IN_KIND(held), ABSENT("none"),
      TEXT("Single vertices that stand still in the same way, while the rest of the fiber moves: the `first` one, or "
-          "both "
-          "`ends`, where they are at the start. See [contacts.md](contacts.md#fibers-that-stand-still).")},
+          "both `ends`, where they are at the start. See [contacts.md](contacts.md#fibers-that-stand-still).")},
     {"mass", NUMBER_ABOVE(0, 65536), IN_KIND(mass), UNIT("m"), SYMBOL("M"), FIRST_FORMAT,
      TEXT("Mass of a vertex, rounded to a multiple of 2^-16 m (1.5e-5), so that the mass of a cell is summed exactly. "
           "Should be about `per_cell`; a warning beyond a factor of 2.")},

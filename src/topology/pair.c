@@ -11,12 +11,15 @@
  * third of a sum of three: 64 u PQW with its own roundings. A halving takes three means of numbers up to 6 PQW: 19 u
  * PQW; a cut at a quarter twice as much. At most 48 and 16 of them: 1584 u PQW. */
 #define CUBIC_ERROR (2048 * 0x1p-53)
-#define MOST_QUARTERS 16
+#define MOST_QUARTERS 8 /* of each narrowing; a piece is narrowed twice at most */
 
 /* (w x q).(p x q) has 12 products of four vectors, each known at t to 4 u of its largest component and multiplied and
  * added in 7 roundings: 288 u. Their derivative is below 12 * 4 * 2 = 96 products of the largest components. */
 #define QUARTIC_ERROR (512 * 0x1p-53)
 #define QUARTIC_SLOPE 96.0
+
+/* How far off a piece may begin: after a cut at a quarter each of at most 64 cuts, and the middle, rounds it by u/2. */
+#define BEGINS_WITHIN 0x1p-47
 
 static double largest(const struct vec3 v[2])
 {
@@ -109,7 +112,7 @@ static void narrow(struct piece *f, double width, double error)
 static enum pair_verdict within(const struct pair *a, const struct piece *f, double P, double Q, double W,
                                 struct crossing *crossing)
 {
-  const double t = f->a + 0.5 * f->width, doubt = QUARTIC_ERROR + 0.5 * QUARTIC_SLOPE * f->width;
+  const double t = f->a + 0.5 * f->width, doubt = QUARTIC_ERROR + QUARTIC_SLOPE * (0.5 * f->width + BEGINS_WITHIN);
   const struct vec3 p = at(a->p, t), q = at(a->q, t), w = at(a->w, t), n = vec3_cross(p, q);
   const double N = vec3_dot(n, n), on[2] = {vec3_dot(vec3_cross(w, q), n), vec3_dot(vec3_cross(w, p), n)};
   const double doubt_N = doubt * P * P * Q * Q, doubt_on[2] = {doubt * W * Q * P * Q, doubt * W * P * P * Q};

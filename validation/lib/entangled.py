@@ -6,23 +6,20 @@ import functools
 import math
 
 import numpy
-from scipy import special
+
+from lib import primitive
 
 MASS, SPRING, REST = 5.0, 100.0, 0.5
 DENSITY = 112 * 383 / 16**3  # bonds per a0^3 of the long chains
-C_XI = 0.06  # of Uchida, Grest and Everaers, J. Chem. Phys. 128, 044902 (2008), from memory: good to some 20 % by three melts
 
 
 def bond_moments(spring=SPRING, rest=REST):
     """(<l>, <l^2>): moments of r^2 exp(-k (r - l0)^2/2), in closed form where the springs are stiff."""
-    s = 1.0 / spring
-    weight = rest**2 + s
-    return (rest**3 + 3.0 * rest * s) / weight, (rest**4 + 6.0 * rest**2 * s + 3.0 * s**2) / weight
+    return primitive.moments(rest, spring)
 
 
 def mean_cosine(persistence, rest=REST):
-    kappa = persistence / rest
-    return 1.0 / math.tanh(kappa) - 1.0 / kappa
+    return primitive.mean_cosine(persistence / rest)
 
 
 def bond_matrix(bonds, persistence):
@@ -59,9 +56,9 @@ def kuhn(persistence=0.5):
 
 
 def entanglement(density=DENSITY, persistence=0.5):
-    """N_e, bonds: L_e/l_K = X^(-2/5) + X^-2, X = 0.06 rho l_K^2, rho the contour per volume of so many bonds per volume."""
-    x = C_XI * density * bond_moments()[0] * kuhn(persistence)**2
-    return (x**-0.4 + x**-2.0) * kuhn(persistence) / bond_moments()[0]
+    """N_e, bonds, of so many bonds per volume, by a curve from memory."""
+    mean = bond_moments()[0]
+    return float(primitive.uchida(density * mean * kuhn(persistence)**2)) * kuhn(persistence) / mean
 
 
 def rouse_time(bonds, friction=MASS, persistence=0.5):

@@ -36,11 +36,15 @@ def moments(rest, spring):
     return (rest**3 + 3.0 * rest * s) / (rest**2 + s), (rest**4 + 6.0 * rest**2 * s + 3.0 * s**2) / (rest**2 + s)
 
 
+def mean_cosine(kappa):
+    """Of the angle between bonds whose energy is kappa (1 - cos)."""
+    return 1.0 / math.tanh(kappa) - 1.0 / kappa
+
+
 def coil(bonds, rest, spring, persistence):
     """(<R^2>, l_K) of an ideal chain, kappa = l_p/l0: <b_i.b_j> = <l>^2 c^|i - j|. l_K is <R^2> over the contour of a chain without end."""
     mean, square = moments(rest, spring)
-    kappa = persistence / rest
-    c = 1.0 / math.tanh(kappa) - 1.0 / kappa
+    c = mean_cosine(persistence / rest)
     exact = bonds * square + 2.0 * mean**2 * c / (1.0 - c) * (bonds - (1.0 - c**bonds) / (1.0 - c))
     return exact, (square + 2.0 * mean**2 * c / (1.0 - c)) / mean
 
