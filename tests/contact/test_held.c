@@ -114,7 +114,8 @@ static void a_taut_ring_is_twice_the_distance(void **unused)
   const double thermal = expected * (1.0 + 1.0 / (spring * bond * bond));
   print_message("  L %.4f, expected %.4f at this spring, %.4f without heat; softened %lu of %lu\n", sum, thermal,
                 expected, (unsigned long)r.state.counts.softened, (unsigned long)r.state.counts.executed);
-  assert_close(sum, thermal, 0.02 * expected);
+  /* Five seeds scatter by 0.005; the next order is (kT/kl^2)^2 = 0.05 %. Heat alone makes 2.2 %. */
+  assert_close(sum, thermal, 0.005 * expected);
   assert_true(r.state.counts.rigid == 0 && r.state.counts.softened * 1000 < r.state.counts.executed);
   test_end(&r);
 }
@@ -155,8 +156,9 @@ static struct model crowd(int bath, enum crossing_kind rule)
   return m;
 }
 
-/* Over 600 steps; and the velocities of held vertices are those of the bath: they are 1,560 components, so 6 % in M
- * <v^2> of each look, whose mean over 6 looks is asked. */
+/* Over 600 steps; and the velocities of held vertices are those of the bath. They have 144 components, so M <v^2> of a
+ * look is known to 12 %, and the mean of 6 looks to 5 %, as baths forget in between: four errors are allowed. Without a
+ * bath the velocities stay as they are. */
 static void ends_stand_under_every_bath_and_rule(void **unused)
 {
   (void)unused;
@@ -166,18 +168,21 @@ static void ends_stand_under_every_bath_and_rule(void **unused)
         continue; /* no velocities, no contacts */
       struct test_run r = test_start(crowd(bath, rule));
       struct point *before = places(&r);
-      double square = 0.0;
+      double square = 0.0, first = 0.0;
       for (int n = 0; n < 6; n++) {
         test_steps(&r, 100);
         expect_held(&r, before, bath_names[bath]);
         for (uint32_t v = 0; v < r.state.vertices; v++)
           square +=
               model_is_held(&r.model, v) ? r.model.mass[v] * vec3_dot(r.state.velocity[v], r.state.velocity[v]) : 0;
+        first = n == 0 ? square : first;
       }
       assert_int_equal(r.model.held, 12 * 4);
       assert_true(rule == CROSSING_FREE || r.state.counts.executed > 50);
-      if (bath != BATH_OVERDAMPED)
-        assert_close(square / (6.0 * 3.0 * r.model.held), 1.0, 0.35);
+      if (bath == BATH_NOTHING)
+        assert_close(square / first, 6.0, 1e-12);
+      else if (bath != BATH_OVERDAMPED)
+        assert_close(square / (6.0 * 3.0 * r.model.held), 1.0, 0.2);
       free(before);
       test_end(&r);
     }
@@ -244,8 +249,8 @@ static void heat_between_held_ends(void **unused)
       }
       const double expected = 1.0 / ((n == 0 ? 2.0 : 1.0) * 20.0), value = squares.mean;
       print_message("  %s, %d held: variance %.5f, expected %.5f\n", bath_names[bath], 2 - n, value, expected);
-      /* the overdamped step has a variance that is 1/(1 - x/2) too large, x = 2 k dt/zeta of the middle vertex: 2.1 %
-       */
+      /* 0.8 % by the scatter of five seeds. The overdamped step has a variance that is 1/(1 - x/2) too large, x = 2 k
+       * dt/zeta of the middle vertex: 2.1 % */
       assert_close(value, expected, 0.035 * expected);
       test_end(&r);
     }
