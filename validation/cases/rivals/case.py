@@ -172,20 +172,26 @@ def scatter(results, density):
     return curve[LAG][1] / curve[LAG][0] * math.sqrt(fibers * time / LAG)
 
 
-def narrowing(results, density, lag=LAG):
-    """(slope, error): d^2 of SRP over event-driven is 1 + slope times width, by least squares over its ranges; None without two."""
+def by_width(results, lag, density):
+    """Of the ranges of SRP that have run: (widths, d^2 over event-driven, errors, error of the reference, which is off for all alike)."""
     reference, points = pooled(results, f"events-{density}"), []
     for reach in ("0.1", "0.2", "0.4"):
         name = f"srp-{reach}-{density}"
         curve = pooled(results, name) if name in MOTION else None
         if curve and reference and lag in curve:
             points.append((thickness(results, name)[0], *over(curve[lag], (reference[lag][0], 0.0))))
-    if len(points) < 2:
+    own = reference[lag][1] / reference[lag][0] if points else None
+    return (*numpy.array(points).reshape(-1, 3).T, own)
+
+
+def narrowing(results, density, lag=LAG):
+    """(slope, error): d^2 of SRP over event-driven is 1 + slope times width, by least squares over its ranges; None without two."""
+    x, y, error, reference = by_width(results, lag, density)
+    if len(x) < 2:
         return None
-    x, y, error = map(numpy.array, zip(*points))
     weight = 1.0 / error**2
     slope = float((weight * x * (y - 1.0)).sum() / (weight * x * x).sum())
-    own = reference[lag][1] / reference[lag][0] * float((weight * x).sum() / (weight * x * x).sum())  # the reference is off for all alike
+    own = reference * float((weight * x).sum() / (weight * x * x).sum())
     return slope, math.hypot(1.0 / math.sqrt(float((weight * x * x).sum())), own)
 
 
@@ -285,18 +291,10 @@ def crossing_verdicts(results):
 
 def limit_of(results, lag, density=300):
     """(d^2 of SRP over that of event-driven fibers, both at no width: a line through the widths, error); None with fewer than three."""
-    reference = pooled(results, f"events-{density}")
-    points = []
-    for reach in ("0.1", "0.2", "0.4"):
-        name = f"srp-{reach}-{density}"
-        curve = pooled(results, name) if name in MOTION else None
-        if curve and reference and lag in curve:
-            points.append((thickness(results, name)[0], *over(curve[lag], (reference[lag][0], 0.0, 0.0, 0.0))))
-    if len(points) < 3:
+    x, y, error, own = by_width(results, lag, density)
+    if len(x) < 3:
         return None
-    x, y, error = map(numpy.array, zip(*points))
     fit = stats.line(x, y, error)
-    own = reference[lag][1] / reference[lag][0]
     return float(fit.value[0]), math.hypot(float(fit.error[0]), own), float(fit.value[1]), float(fit.error[1])
 
 
