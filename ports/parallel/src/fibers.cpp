@@ -93,15 +93,22 @@ double Fibers::fill(int32_t begin, int32_t end, const std::vector<Point> &positi
   double *const length = c.of(c.LENGTH), *const each = c.of(c.EACH);
   double *const u = c.of(c.UNIT_X), *const v = c.of(c.UNIT_Y), *const w = c.of(c.UNIT_Z);
   double *const px = c.of(c.PULL_X), *const py = c.of(c.PULL_Y), *const pz = c.of(c.PULL_Z);
-  double longest = 0.0;
   const int32_t begin_at = ring ? 0 : 1, end_at = begin_at + ((ring ? n + 1 : n - 1) + 3) / 4 * 4;
+#pragma omp simd
   for (int32_t k = begin_at; k < end_at; k++) {
-    const double square = (x[k] * x[k] + y[k] * y[k]) + z[k] * z[k];
-    longest = square > longest ? square : longest;
-    length[k] = std::sqrt(square), each[k] = 1.0 / length[k];
+    length[k] = std::sqrt((x[k] * x[k] + y[k] * y[k]) + z[k] * z[k]);
+    each[k] = 1.0 / length[k];
     u[k] = each[k] * x[k], v[k] = each[k] * y[k], w[k] = each[k] * z[k];
   }
+  double longest[4] = {0.0, 0.0, 0.0, 0.0};
+  for (int32_t k = begin_at; k < end_at; k += 4)
+    for (int lane = 0; lane < 4; lane++) {
+      const int32_t m = k + lane;
+      const double square = (x[m] * x[m] + y[m] * y[m]) + z[m] * z[m];
+      longest[lane] = square > longest[lane] ? square : longest[lane];
+    }
   const double *const dx = root ? u : x, *const dy = root ? v : y, *const dz = root ? w : z;
+#pragma omp simd
   for (int32_t k = begin_at; k < end_at; k++) {
     const double size = root ? spring * (length[k] - rest) : spring;
     px[k] = size * dx[k], py[k] = size * dy[k], pz[k] = size * dz[k];
@@ -109,6 +116,7 @@ double Fibers::fill(int32_t begin, int32_t end, const std::vector<Point> &positi
   double *const ax = c.of(c.A_X), *const ay = c.of(c.A_Y), *const az = c.of(c.A_Z);
   double *const bx = c.of(c.B_X), *const by = c.of(c.B_Y), *const bz = c.of(c.B_Z);
   const int32_t last_at = of_bends ? begin_at + ((ring ? n : n - 2) + 3) / 4 * 4 : 0;
+#pragma omp simd
   for (int32_t k = begin_at; k < last_at; k++) {
     const Vector u0 = {u[k], v[k], w[k]}, u1 = {u[k + 1], v[k + 1], w[k + 1]};
     const double cosine = dot(u0, u1);
@@ -118,7 +126,7 @@ double Fibers::fill(int32_t begin, int32_t end, const std::vector<Point> &positi
   }
   if (of_bends && !ring) // lines have no bend at their ends; -0.0 changes no number that it is added to
     ax[n - 1] = ay[n - 1] = az[n - 1] = bx[0] = by[0] = bz[0] = -0.0;
-  return longest;
+  return std::max(std::max(longest[0], longest[1]), std::max(longest[2], longest[3]));
 }
 
 // In the order of the contract: the constant force, bonds, bends, each from the first vertex on.
