@@ -40,12 +40,31 @@ static int64_t floor_divide(int64_t a, int64_t b)
   return a / b - (a % b < 0);
 }
 
+// Bonds in the order of their cells, along x. What the first test reads is in columns.
+struct PairList::Sorted {
+  struct Bond {
+    Vector first, along; // first: within the box, a0
+    int32_t number, end;
+    int32_t fold[3]; // what was added to `first`, in edges
+  };
+  int64_t cells[3];
+  float width[3], longest_half;
+  std::vector<int32_t> start;       // of each cell
+  std::vector<float> x, y, z, half; // of the middle, within the box, a0; half of the length
+  std::vector<Bond> bond;
+};
+
+// A pair of sorted bonds, and the image of the second one.
+struct PairList::Waiting {
+  int32_t k, l, image[3];
+};
+
 // By one thread. Pairs that may be near are measured 64 at a time.
 struct PairList::Found {
   std::vector<Pair> pairs;
   std::vector<double> apart;
   PairColumns columns;
-  Pair waiting[pair_lanes];
+  Waiting waiting[pair_lanes];
 };
 
 PairList::PairList(const Model &model) : model(model)
@@ -54,33 +73,39 @@ PairList::PairList(const Model &model) : model(model)
 
 PairList::~PairList() = default;
 
-void PairList::keep_near(Found &found) const
+void PairList::keep_near(const Sorted &s, Found &found) const
 {
   found.columns.measure();
-  for (int k = 0; k < found.columns.count; k++)
-    if (found.columns.apart[k] < skin) {
-      found.pairs.push_back(found.waiting[k]);
-      found.apart.push_back(found.columns.apart[k]);
-    }
+  for (int n = 0; n < found.columns.count; n++) {
+    if (!(found.columns.apart[n] < skin))
+      continue;
+    const Waiting &w = found.waiting[n];
+    const Sorted::Bond &a = s.bond[w.k], &b = s.bond[w.l];
+    const int32_t sign = a.number < b.number ? 1 : -1;
+    Pair pair = {std::min(a.number, b.number), std::max(a.number, b.number), {}};
+    for (int axis = 0; axis < 3; axis++)
+      pair.image[axis] = sign * (b.fold[axis] + w.image[axis] - a.fold[axis]);
+    found.pairs.push_back(pair);
+    found.apart.push_back(found.columns.apart[n]);
+  }
   found.columns.count = 0;
 }
 
-// p, q: the bonds; w: from the beginning of `bond` to that of the image of `other`.
-void PairList::add(int32_t bond, int32_t other, Point image, Vector p, Vector q, Vector w, Found &found) const
+// Bond l, whose image is moved by `shift`, beside bond k.
+void PairList::add(const Sorted &s, const Waiting &pair, Vector shift, Found &found) const
 {
-  const Pair pair = {bond, other, {(int32_t)image.x, (int32_t)image.y, (int32_t)image.z}},
-             turned = {other, bond, {(int32_t)-image.x, (int32_t)-image.y, (int32_t)-image.z}};
-  found.waiting[found.columns.count] = bond < other ? pair : turned;
-  found.columns.add(0, p, q, w);
+  const Sorted::Bond &a = s.bond[pair.k], &b = s.bond[pair.l];
+  found.waiting[found.columns.count] = pair;
+  found.columns.add(0, a.along, b.along, (b.first - a.first) + shift);
   if (found.columns.count == pair_lanes)
-    keep_near(found);
+    keep_near(s, found);
 }
 
 /* --- small boxes: all images ------------------------------------------------------------------------------------ */
 
-void PairList::find_images(int32_t bond, int32_t other, double reach, Found &found) const
+void PairList::find_images(const Sorted &s, int32_t k, int32_t l, double reach, Found &found) const
 {
-  const int32_t end = model.next[bond], other_end = model.next[other];
+  const int32_t bond = bonds[k], other = bonds[l], end = model.next[bond], other_end = model.next[other];
   if (bond == other_end || end == other || end == other_end)
     return;
   const Point between = middle[other] - middle[bond], edge = model.edge();
@@ -93,27 +118,13 @@ void PairList::find_images(int32_t bond, int32_t other, double reach, Found &fou
     if (low[axis] > high[axis])
       return;
   }
-  const Vector p = in_a0(reference[end] - reference[bond]), q = in_a0(reference[other_end] - reference[other]);
   for (int64_t x = low[0]; x <= high[0]; x++)
     for (int64_t y = low[1]; y <= high[1]; y++)
-      for (int64_t z = low[2]; z <= high[2]; z++) {
-        const Point shift = {x * edge.x, y * edge.y, z * edge.z};
-        add(bond, other, {x, y, z}, p, q, in_a0(reference[other] + shift - reference[bond]), found);
-      }
+      for (int64_t z = low[2]; z <= high[2]; z++)
+        add(s, {k, l, {(int32_t)x, (int32_t)y, (int32_t)z}}, in_a0(Point{x * edge.x, y * edge.y, z * edge.z}), found);
 }
 
 /* --- large ones: cells ------------------------------------------------------------------------------------------ */
-
-// Bonds in the order of their cells, along x: first ends and middles within the box, a0, and what was added to them, in
-// edges.
-struct PairList::Sorted {
-  int64_t cells[3];
-  float width[3], longest_half;
-  std::vector<int32_t> bond, end, start; // start: of each cell
-  std::vector<float> x, y, z, half;      // of the middle; half of the length
-  std::vector<Vector> first, along;
-  std::vector<Point> folds;
-};
 
 constexpr int at_once = 8;
 
@@ -151,8 +162,7 @@ void PairList::sort_bonds(Sorted &s) const
     const int64_t k = (int64_t)((double)x * inverse), left = x - k * edge;
     return left >= 0 && left < edge ? -k : -floor_divide(x, edge);
   };
-  std::vector<Point> &fold = s.folds;
-  std::vector<Point> unsorted(n);
+  std::vector<Point> fold(n);
   std::vector<int32_t> number(n);
 #pragma omp parallel for schedule(static)
   for (size_t k = 0; k < n; k++) {
@@ -161,7 +171,7 @@ void PairList::sort_bonds(Sorted &s) const
     const int64_t x = cell_along(r.x + f.x * edge.x, inverse.x, s.cells[0]),
                   y = cell_along(r.y + f.y * edge.y, inverse.y, s.cells[1]),
                   z = cell_along(r.z + f.z * edge.z, inverse.z, s.cells[2]);
-    unsorted[k] = f;
+    fold[k] = f;
     number[k] = (int32_t)((z * s.cells[1] + y) * s.cells[0] + x);
   }
   s.start.assign(s.cells[0] * s.cells[1] * s.cells[2] + 1, 0);
@@ -172,15 +182,14 @@ void PairList::sort_bonds(Sorted &s) const
   std::vector<int32_t> next(s.start.begin(), s.start.end() - 1);
   for (size_t k = 0; k < n; k++)
     number[k] = next[number[k]]++;
-  s.bond.resize(n), s.end.resize(n), fold.resize(n), s.first.resize(n), s.along.resize(n);
+  s.bond.resize(n);
   s.x.resize(n + at_once), s.y.resize(n + at_once), s.z.resize(n + at_once), s.half.resize(n + at_once);
 #pragma omp parallel for schedule(static)
   for (size_t k = 0; k < n; k++) {
     const int32_t to = number[k], i = bonds[k];
-    const Point f = unsorted[k], added = {f.x * edge.x, f.y * edge.y, f.z * edge.z};
+    const Point f = fold[k], added = {f.x * edge.x, f.y * edge.y, f.z * edge.z};
     const Vector along = in_a0(reference[model.next[i]] - reference[i]), at = in_a0(middle[i] + added);
-    s.bond[to] = i, s.end[to] = model.next[i], fold[to] = f;
-    s.first[to] = in_a0(reference[i] + added), s.along[to] = along;
+    s.bond[to] = {in_a0(reference[i] + added), along, i, model.next[i], {(int32_t)f.x, (int32_t)f.y, (int32_t)f.z}};
     s.x[to] = (float)at.x, s.y[to] = (float)at.y, s.z[to] = (float)at.z;
     s.half[to] = (float)(0.5 * std::sqrt(dot(along, along)));
   }
@@ -246,7 +255,7 @@ void PairList::look(const Sorted &s, int32_t k, const Run &run, Vector shift, fl
 {
   const float at[3] = {s.x[k] - (float)shift.x, s.y[k] - (float)shift.y, s.z[k] - (float)shift.z};
   const float *const x = s.x.data(), *const y = s.y.data(), *const z = s.z.data(), *const half = s.half.data();
-  const int32_t bond = s.bond[k], end = s.end[k];
+  const int32_t bond = s.bond[k].number, end = s.bond[k].end;
   const bool own = run.y == 0 && run.z == 0 && run.image.x == 0;
   for (int32_t m = own ? std::max(run.from, k + 1) : run.from; m < run.to; m += at_once) {
     uint32_t near = those_near(x + m, y + m, z + m, half + m, at, reach);
@@ -254,9 +263,8 @@ void PairList::look(const Sorted &s, int32_t k, const Run &run, Vector shift, fl
       near &= (1u << (run.to - m)) - 1;
     for (; near; near &= near - 1) {
       const int32_t l = m + __builtin_ctz(near);
-      if (bond != s.end[l] && end != s.bond[l] && end != s.end[l])
-        add(bond, s.bond[l], s.folds[l] + run.image - s.folds[k], s.along[k], s.along[l],
-            (s.first[l] - s.first[k]) + shift, found);
+      if (bond != s.bond[l].end && end != s.bond[l].number && end != s.bond[l].end)
+        add(s, {k, l, {(int32_t)run.image.x, (int32_t)run.image.y, (int32_t)run.image.z}}, shift, found);
     }
   }
 }
@@ -284,6 +292,9 @@ void PairList::find()
       s.width[axis] = (float)model.cells[axis] / (float)s.cells[axis];
     s.longest_half = (float)(0.5 * std::sqrt(longest)) + middle_error;
     sort_bonds(s);
+  } else {
+    for (const int32_t i : bonds)
+      s.bond.push_back({in_a0(reference[i]), in_a0(reference[model.next[i]] - reference[i]), i, model.next[i], {}});
   }
   const int64_t work = wide ? (int64_t)s.start.size() - 1 : (int64_t)bonds.size(), parts = wide && !alone() ? 64 : 1;
   found.resize((size_t)parts); // in one order, whoever finds them
@@ -296,8 +307,8 @@ void PairList::find()
         find_around(s, k, mine);
       else
         for (size_t m = (size_t)k + 1; m < bonds.size(); m++)
-          find_images(bonds[k], bonds[m], reach, mine);
-    keep_near(mine);
+          find_images(s, (int32_t)k, (int32_t)m, reach, mine);
+    keep_near(s, mine);
   }
   pairs.swap(found[0].pairs), apart.swap(found[0].apart);
   for (size_t part = 1; part < found.size(); part++) {

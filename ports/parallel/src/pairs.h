@@ -61,6 +61,7 @@ public:
 
 private:
   struct Sorted;
+  struct Waiting;
   struct Found;
   struct Run;
   void find();
@@ -68,9 +69,9 @@ private:
   int runs_around(const Sorted &s, int64_t x, int64_t y, int64_t z, Run *runs) const;
   void find_around(const Sorted &s, int64_t cell, Found &found) const;
   void look(const Sorted &s, int32_t k, const Run &run, Vector shift, float reach, Found &found) const;
-  void find_images(int32_t bond, int32_t other, double reach, Found &found) const;
-  void add(int32_t bond, int32_t other, Point image, Vector p, Vector q, Vector w, Found &found) const;
-  void keep_near(Found &found) const;
+  void find_images(const Sorted &s, int32_t k, int32_t l, double reach, Found &found) const;
+  void add(const Sorted &s, const Waiting &pair, Vector shift, Found &found) const;
+  void keep_near(const Sorted &s, Found &found) const;
   void index();
 
   const Model &model;
