@@ -18,6 +18,23 @@ static bool alone()
 #endif
 }
 
+// The vertices of this thread.
+struct Part {
+  int32_t first;
+  uint32_t count;
+};
+
+static Part own_part(int32_t n)
+{
+#ifdef _OPENMP
+  const int64_t thread = omp_get_thread_num(), threads = omp_get_num_threads();
+#else
+  const int64_t thread = 0, threads = 1;
+#endif
+  const int64_t first = thread * n / threads, end = (thread + 1) * n / threads;
+  return {(int32_t)first, (uint32_t)(end - first)};
+}
+
 // The best s of the two lines, cut to the bond; the best t for it, cut; the best s for this t. Where bonds are nearly
 // parallel s and t are inexact, and the distance hardly depends on them.
 void PairColumns::measure()
@@ -310,26 +327,57 @@ void PairList::find()
           find_images(s, (int32_t)k, (int32_t)m, reach, mine);
     keep_near(s, mine);
   }
-  pairs.swap(found[0].pairs), apart.swap(found[0].apart);
-  for (size_t part = 1; part < found.size(); part++) {
-    pairs.insert(pairs.end(), found[part].pairs.begin(), found[part].pairs.end());
-    apart.insert(apart.end(), found[part].apart.begin(), found[part].apart.end());
+  gather();
+}
+
+// All parts, in their order.
+void PairList::gather()
+{
+  if (found.size() == 1) {
+    pairs.swap(found[0].pairs), apart.swap(found[0].apart);
+    return;
+  }
+  std::vector<size_t> begin(found.size() + 1, 0);
+  for (size_t part = 0; part < found.size(); part++)
+    begin[part + 1] = begin[part] + found[part].pairs.size();
+  pairs.resize(begin.back()), apart.resize(begin.back());
+#pragma omp parallel for schedule(static)
+  for (size_t part = 0; part < found.size(); part++) {
+    std::copy(found[part].pairs.begin(), found[part].pairs.end(), pairs.begin() + (ptrdiff_t)begin[part]);
+    std::copy(found[part].apart.begin(), found[part].apart.end(), apart.begin() + (ptrdiff_t)begin[part]);
   }
 }
 
+// Each thread reads all pairs and writes the entries of its own bonds.
 void PairList::index()
 {
-  first.assign(model.vertices() + 1, 0);
-  for (const Pair &pair : pairs)
-    first[pair.bond + 1]++, first[pair.other + 1]++;
-  for (size_t j = 1; j < first.size(); j++)
-    first[j] += first[j - 1];
-  std::vector<int32_t> next(first.begin(), first.end() - 1);
+  const int32_t n = model.vertices();
+  first.assign((size_t)n + 1, 0);
   near.resize(2 * pairs.size());
-  for (size_t k = 0; k < pairs.size(); k++) {
-    const Pair &p = pairs[k];
-    near[next[p.bond]++] = {p.other, {p.image[0], p.image[1], p.image[2]}, (int32_t)k};
-    near[next[p.other]++] = {p.bond, {-p.image[0], -p.image[1], -p.image[2]}, (int32_t)k};
+  index_next.resize((size_t)n);
+#pragma omp parallel
+  {
+    const Part part = own_part(n);
+    const auto mine = [part](int32_t bond) { return (uint32_t)(bond - part.first) < part.count; };
+    for (const Pair &pair : pairs) {
+      if (mine(pair.bond))
+        first[pair.bond + 1]++;
+      if (mine(pair.other))
+        first[pair.other + 1]++;
+    }
+#pragma omp barrier
+#pragma omp single
+    for (int32_t j = 0; j < n; j++) {
+      first[j + 1] += first[j];
+      index_next[j] = first[j];
+    }
+    for (size_t k = 0; k < pairs.size(); k++) {
+      const Pair &p = pairs[k];
+      if (mine(p.bond))
+        near[index_next[p.bond]++] = {p.other, {p.image[0], p.image[1], p.image[2]}, (int32_t)k};
+      if (mine(p.other))
+        near[index_next[p.other]++] = {p.bond, {-p.image[0], -p.image[1], -p.image[2]}, (int32_t)k};
+    }
   }
 }
 

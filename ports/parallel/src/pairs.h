@@ -72,10 +72,11 @@ private:
   void find_images(const Sorted &s, int32_t k, int32_t l, double reach, Found &found) const;
   void add(const Sorted &s, const Waiting &pair, Vector shift, Found &found) const;
   void keep_near(const Sorted &s, Found &found) const;
+  void gather();
   void index();
 
   const Model &model;
-  std::vector<int32_t> bonds;
+  std::vector<int32_t> bonds, index_next;
   std::vector<Point> reference, middle;
   std::vector<Found> found;
 };
