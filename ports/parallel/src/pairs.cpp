@@ -343,8 +343,8 @@ void PairList::gather()
   pairs.resize(begin.back()), apart.resize(begin.back());
 #pragma omp parallel for schedule(static)
   for (size_t part = 0; part < found.size(); part++) {
-    std::copy(found[part].pairs.begin(), found[part].pairs.end(), pairs.begin() + (ptrdiff_t)begin[part]);
-    std::copy(found[part].apart.begin(), found[part].apart.end(), apart.begin() + (ptrdiff_t)begin[part]);
+    std::copy(found[part].pairs.begin(), found[part].pairs.end(), pairs.begin() + (int64_t)begin[part]);
+    std::copy(found[part].apart.begin(), found[part].apart.end(), apart.begin() + (int64_t)begin[part]);
   }
 }
 
