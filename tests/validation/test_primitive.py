@@ -142,6 +142,12 @@ class Case(unittest.TestCase):
                         ("stiff-3906", 3906)):
             self.assertLess(abs(found[name] / x - 1.0), 0.03, name)
 
+    def test_changed_points_are_the_same_system(self):
+        """Bonds of half the length: x and l_K stay, else unlike chains are compared."""
+        plain, fine = (PRIMITIVE.Point(name, "stages\nk\n90\nchains\nR2\n1\n") for name in ("coil-13", "coil-13-fine"))
+        for of in ("x", "kuhn", "rho"):
+            self.assertLess(abs(getattr(fine, of) / getattr(plain, of) - 1.0), 0.005, of)
+
     def test_verdicts(self):
         def words(text):
             return {v.id.removeprefix("primitive."): v.verdict for v in PRIMITIVE.evaluate({"known": result(text)}, "quick").verdicts}
