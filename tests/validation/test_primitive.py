@@ -15,6 +15,10 @@ sys.path.insert(0, str(TREE / "validation"))
 from lib import case, primitive  # noqa: E402
 
 PRIMITIVE = case.load("primitive")
+sys.path.insert(0, str(TREE / "tests"))
+from support import load  # noqa: E402
+
+MEASURE = load(TREE / "validation/measure/primitive.py")
 
 
 def walks(draw, steps, step, bonds):
@@ -130,23 +134,100 @@ def result(text):
     return types.SimpleNamespace(text=text, exists=True)
 
 
+def coil_text(name, strand, draw, scatter=0.0, rigid=0):
+    """Tables of a coil whose chains all have L_pp of strands of so many bonds, whatever their R^2; `scatter` is that of L_pp between chains."""
+    _, chains, vertices, rest, spring, persistence, *_ = PRIMITIVE.ALL[name]
+    exact = primitive.coil(vertices - 1, rest, spring, persistence)[0]
+    length = math.sqrt(((vertices - 1) / strand + 1.0) * exact) * (1.0 + scatter * draw.normal(size=chains))
+    springs = (90, 270, 810, 2430)
+    lines = ["stages", "k,drift,contacts,softened,rigid", *(f"{k},0.0005,1000000,100,{rigid}" for k in springs), "chains", "R2,contour,sigma2," + ",".join(f"L{k}" for k in springs)]
+    lines += [",".join(f"{x:.9g}" for x in (s, 1.0, 0.1, *(one * (1.0 + 5.0 / k) for k in springs))) for s, one in zip(exact * draw.chisquare(3, chains) / 3.0, length)]
+    return "\n".join(lines)
+
+
 class Case(unittest.TestCase):
+    def setUp(self):
+        self.draw = numpy.random.Generator(numpy.random.PCG64(43))
+
+    def made_up(self, power, **more):
+        """Verdicts of coils whose L_e goes with a power of x, 40 bonds at x = 2.09."""
+        results = {}
+        for name in ("coil-1", "coil-2", "coil-3", "coil-6", "coil-13", *more):
+            x = PRIMITIVE.Point(name, "stages\nk\n90\nchains\nR2\n1\n").x
+            results[name] = result(coil_text(name, more.get(name, 1.0) * 40.0 * (x / 2.09)**power, self.draw, 0.02))
+        return {v.id.removeprefix("primitive."): v for v in PRIMITIVE.evaluate(results, "campaign").verdicts}
+
+    def test_exponents(self):
+        """L_e of known powers gives them back, between neighbors too, and each is told from the other."""
+        for power, loosest in ((-2.0, "pass"), (-4.0 / 3.0, "not reproduced")):
+            found = self.made_up(power)
+            for name in ("exponent.loose", "exponent.loosest", "local.1", "local.2", "local.3", "local.6"):
+                self.assertLess(abs(found[name].measured - power), 4.4 * found[name].error, name)
+                self.assertLess(found[name].error, 0.2)
+            self.assertEqual(found["exponent.loosest"].verdict, loosest)
+
+    def test_forms(self):
+        """A curve of both powers: the right second power fits, and the other does not."""
+        x = numpy.array([1.0, 2.0, 3.0, 6.0, 13.0])
+        for n in (4.0 / 3.0, 2.0):
+            made = [types.SimpleNamespace(x=one, kuhn=1.0, strand=lambda one=one, n=n: ((one / 16.0)**-0.4 + (one / 16.0)**-n, 0.03 * (one / 16.0)**-n)) for one in x]
+            found = PRIMITIVE.forms(made)
+            self.assertLess(found[n].chi2, 1e-12)
+            self.assertGreater(min(fit.chi2 for power, fit in found.items() if power != n), 20.0)
+
+    def test_changes_are_seen(self):
+        """Half bonds with L_e of 1.5, and cooled slowly with L_pp 5 % shorter: both are seen; equal ones pass."""
+        same = self.made_up(-1.0, **{"coil-13-fine": 2.0, "coil-13-slow": 1.0})
+        self.assertEqual((same["bonds.13"].verdict, same["rate.13"].verdict, same["step.13"].verdict), ("pass", "pass", "undecided"))
+        other = self.made_up(-1.0, **{"coil-13-fine": 3.0, "coil-13-slow": 1.15})
+        self.assertEqual((other["bonds.13"].verdict, other["rate.13"].verdict), ("not reproduced", "not reproduced"))
+
+    def test_rigid_contacts_are_seen(self):
+        text = coil_text("coil-13", 12.0, self.draw)
+        for name, said in (("coil-13", "not reproduced"), ("coil-13-step0.1", "undecided")):
+            with self.subTest(name):
+                results = {name: result(coil_text(name, 12.0, self.draw, rigid=1)), **({} if name == "coil-13" else {"coil-6": result(coil_text("coil-6", 12.0, self.draw))})}
+                words = {v.id: v.verdict for v in PRIMITIVE.evaluate(results, "campaign").verdicts}
+                self.assertEqual(words["primitive.contacts.rigid"], said if name == "coil-13" else "pass")
+        self.assertIn("L2430", text)
+
     def test_runs(self):
         self.assertEqual([run.name for run in PRIMITIVE.runs("quick")], ["known"])
-        self.assertEqual([run.name for run in PRIMITIVE.runs("campaign")], ["known", *PRIMITIVE.POINTS])
+        self.assertEqual([run.name for run in PRIMITIVE.runs("campaign")], ["known", *PRIMITIVE.POINTS, *PRIMITIVE.CHANGED])
+        words = {run.name: run.program for run in PRIMITIVE.runs("campaign")}
+        self.assertEqual(words["coil-13-slow"], [*words["coil-13"], "pace=3"])
+        self.assertEqual(words["coil-13-step0.1"], words["coil-13"][:-1])
 
     def test_points(self):
         """More than three decades of rho l_K^2, and the table of the theory: 13.4, 6.18, 2.94, 2.09; 97, 125, 552, 962, 3906."""
-        found = {name: PRIMITIVE.Point(name, "stages\nk\n90\nchains\nR2\n1\n").x for name in PRIMITIVE.POINTS}
-        for name, x in (("coil-13", 13.4), ("coil-6", 6.18), ("coil-3", 2.94), ("coil-2", 2.09), ("stiff-97", 96.9), ("stiff-125", 125), ("stiff-552", 552), ("stiff-962", 962),
+        found = {name: PRIMITIVE.Point(name, "stages\nk\n90\nchains\nR2\n1\n").x for name in PRIMITIVE.ALL}
+        for name, x in (("coil-1", 1.04), ("coil-13", 13.4), ("coil-6", 6.18), ("coil-3", 2.94), ("coil-2", 2.09), ("stiff-97", 96.9), ("stiff-125", 125), ("stiff-552", 552), ("stiff-962", 962),
                         ("stiff-3906", 3906)):
             self.assertLess(abs(found[name] / x - 1.0), 0.03, name)
 
     def test_changed_points_are_the_same_system(self):
-        """Bonds of half the length: x and l_K stay, else unlike chains are compared."""
-        plain, fine = (PRIMITIVE.Point(name, "stages\nk\n90\nchains\nR2\n1\n") for name in ("coil-13", "coil-13-fine"))
-        for of in ("x", "kuhn", "rho"):
-            self.assertLess(abs(getattr(fine, of) / getattr(plain, of) - 1.0), 0.005, of)
+        """x and l_K are those of the plain point, within 0.1 % where the seed is another: else unlike chains would be compared. l_K of half bonds by the
+        sum over all pairs of bonds of a long chain."""
+        made = {name: PRIMITIVE.Point(name, "stages\nk\n90\nchains\nR2\n1\n") for name in PRIMITIVE.ALL}
+        for changed, plain, *_ in (*PRIMITIVE.SAME.values(), *PRIMITIVE.OTHER.values()):
+            for of in ("x", "kuhn", "rho"):
+                self.assertLess(abs(getattr(made[changed], of) / getattr(made[plain], of) - 1.0), 0.002, (changed, of))
+        kappa = 0.5793 / 0.25
+        cosine = numpy.linspace(-1.0, 1.0, 200001)
+        weight = numpy.exp(kappa * cosine)
+        c = (weight * cosine).sum() / weight.sum()
+        mean, square = primitive.moments(0.25, 400.0)
+        pairs = 2.0 * sum(mean**2 * c**n * (1.0 - n / 4000) for n in range(1, 400))
+        self.assertAlmostEqual((square + pairs) / mean, made["coil-13"].kuhn, delta=0.002)
+
+    def test_bonds_cut_in_two(self):
+        """The same polygon: equal contour and ends, twice the bonds."""
+        chains = self.draw.normal(size=(3, 7, 3)).cumsum(axis=1)
+        cut = MEASURE.split(chains)
+        self.assertEqual(cut.shape, (3, 13, 3))
+        numpy.testing.assert_allclose(primitive.lengths(cut), primitive.lengths(chains))
+        numpy.testing.assert_array_equal(cut[:, ::2], chains)
+        self.assertLess(numpy.abs(primitive.across(cut, numpy.repeat(chains, 1, axis=0)[:, [0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6]])).max(), 1e-20)
 
     def test_verdicts(self):
         def words(text):

@@ -72,21 +72,6 @@ def outward(a, corner, b):
     return -inside / numpy.linalg.norm(inside)
 
 
-def write_start(path, rows, bonds):
-    """A snapshot at rest."""
-    with h5py.File(path, "w") as file:
-        file.create_group("h5md").attrs["version"] = (1, 1)
-        group = file.create_group("particles/all")
-        box = group.create_group("box")
-        box.attrs["dimension"], box.attrs["boundary"] = 3, numpy.array([b"periodic"] * 3)
-        box["edges"] = numpy.full(3, float(BOX))
-        for name, value in (("position", rows), ("velocity", numpy.zeros_like(rows))):
-            group[f"{name}/value"], group[f"{name}/step"], group[f"{name}/time"] = value[None], [0], [0.0]
-        group["id"] = numpy.arange(len(rows))
-        file["connectivity/bonds"] = numpy.array(bonds)
-        file["connectivity/bonds"].attrs["particles_group"] = group.ref
-
-
 def measure(folder, build, seed, case, k):
     name, posts, long, lines, exact = case
     kinds, rows, bonds = [], [], []
@@ -100,14 +85,14 @@ def measure(folder, build, seed, case, k):
         first, count = len(rows), len(points)
         bonds += [(first + n, first + (n + 1) % count) for n in range(count - (not closed))]
         rows += list(points)
-    write_start(folder / f"{name}.h5", numpy.array(rows), bonds)
+    paths.write_start(folder / f"{name}.h5", BOX, numpy.array(rows), bonds)
     size = sum(len(points) for points, _, _ in lines)
     bond = exact / (size - sum(not closed for _, closed, _ in lines))
     dt = float(f"{DT / (k * bond):.3g}")
     rate = 2.0 * numpy.pi * k**0.5 / len(lines[0][0])
     steps = int(100.0 / rate / dt) // FRAMES * FRAMES
     told = paths.run(folder, build, f"{name}{k}", paths.SCENE.format(box=BOX, dt=dt, steps=steps, seed=seed, rate=rate, kinds="\n".join(kinds))
-                     + paths.LATER.format(before="", every=steps // FRAMES).replace("/checkpoint.h5", f"{name}.h5"))
+                     + paths.LATER.format(before=f"{name}.h5", every=steps // FRAMES))
     with h5py.File(folder / f"{name}{k}/trajectory.h5") as file:
         frames = file["particles/trajectory/position/value"][FRAMES // 10:]
     first, total = 2 * len(posts), 0.0

@@ -1,11 +1,12 @@
 #!/usr/bin/python3
 """Primitive paths of chains without width: their ends are held, and their bonds become ever stiffer springs without a rest length.
 
-usage: primitive.py FOLDER BUILD BOX CHAINS VERTICES BOND SPRING PERSISTENCE SEED LEAST MOST MOBILE TIME > output.txt
+usage: primitive.py FOLDER BUILD BOX CHAINS VERTICES BOND SPRING PERSISTENCE SEED LEAST MOST MOBILE TIME [NAME=VALUE ...] > output.txt
 
 The start is an exact sample of ideal chains, which is the equilibrium of chains that cannot cross. In FOLDER each spring k = 30, 90, 270 ... up to
-MOST has a run of its own, of the rule `event-driven` at kT = 1, from the end of the run before. Masses are 1. A run lasts as long as a wave needs
-along a chain, a third of it below LEAST, with a time step that resolves a bounce of a taut bond (DT). Runs that were interrupted go on.
+MOST has a run of its own, of the rule `event-driven` at kT = 1, from the end of the run before. Masses are 1. A run lasts `pace` times (1) as long as a
+wave needs along a chain, a third of it below LEAST. Its time step is `step` (0.1) of M v/f, which is half of the time for which a taut bond bounces. With
+`split` of 2 (1) each bond of the start is cut in two before the first of them: the same polygons, with twice the vertices. Runs that were interrupted go on.
 
 With MOBILE > 0, so many chains then move for TIME t0 by their own energy, their ends held, among the others, which are frozen where they were at the
 start: a tube that is held.
@@ -27,7 +28,8 @@ import numpy
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
 from lib import primitive  # noqa: E402
 
-FRAMES, DT, ENDS = 32, 0.1, 0.2  # ENDS: share of vertices left out at each end
+FRAMES, ENDS = 32, 0.2  # ENDS: share of vertices left out at each end
+OPTIONS = {"step": 0.1, "pace": 1.0, "split": 1.0}
 
 SCENE = """box: [{box}, {box}, {box}]
 time_step: {dt:.6g}
@@ -40,7 +42,7 @@ crossing: {{rule: event-driven}}
 checkpoint: {{seconds: 60}}
 """
 KIND = "  - {{name: {name}, count: {count}, vertices: {vertices}, mass: 1, bond_length: {bond:g}, spring: {spring:g}, {more}}}"
-LATER = """start: {{snapshot: {before}/checkpoint.h5}}
+LATER = """start: {{snapshot: {before}}}
 trajectory: {{every: {every}, velocities: false}}
 observe: {{temperature: {{every: {every}}}}}
 """
@@ -76,6 +78,28 @@ def frames(folder, vertices):
         return primitive.unfolded(file["particles/trajectory/position/value"][:], vertices)
 
 
+def write_start(path, box, rows, bonds):
+    """A snapshot at rest."""
+    with h5py.File(path, "w") as file:
+        file.create_group("h5md").attrs["version"] = (1, 1)
+        group = file.create_group("particles/all")
+        edges = group.create_group("box")
+        edges.attrs["dimension"], edges.attrs["boundary"] = 3, numpy.array([b"periodic"] * 3)
+        edges["edges"] = numpy.full(3, float(box))
+        for name, value in (("position", rows), ("velocity", numpy.zeros_like(rows))):
+            group[f"{name}/value"], group[f"{name}/step"], group[f"{name}/time"] = value[None], [0], [0.0]
+        group["id"] = numpy.arange(len(rows))
+        file["connectivity/bonds"] = numpy.array(bonds)
+        file["connectivity/bonds"].attrs["particles_group"] = group.ref
+
+
+def split(chains):
+    """The same polygons with a vertex in the middle of each bond."""
+    found = numpy.empty((len(chains), 2 * chains.shape[1] - 1, 3))
+    found[:, ::2], found[:, 1::2] = chains, 0.5 * (chains[:, 1:] + chains[:, :-1])
+    return found
+
+
 def nearest_ends(rows):
     """[vertices/2, chains x 2] of rows [chains, vertices]: vertex by vertex from either end."""
     half = rows.shape[1] // 2
@@ -90,7 +114,7 @@ def in_a_tube(folder, build, vertices, mobile, time, kind, scene):
     dt, looks = 0.01, 256
     steps = int(time / dt) // looks * looks
     run(folder, build, "held", SCENE.format(dt=dt, steps=steps, rate=1, kinds=kinds, **about)
-        + LATER.format(before="start", every=max(steps // looks, 1)))
+        + LATER.format(before="start/checkpoint.h5", every=max(steps // looks, 1)))
     return frames(folder / "held", vertices)[looks // 4:, :mobile]
 
 
@@ -99,6 +123,7 @@ def main(arguments):
     box, chains, vertices = (int(a) for a in arguments[2:5])
     bond, spring, persistence = (float(a) for a in arguments[5:8])
     seed, least, most, mobile, time = int(arguments[8]), float(arguments[9]), float(arguments[10]), int(arguments[11]), float(arguments[12])
+    option = {**OPTIONS, **{name: float(value) for name, value in (word.split("=") for word in arguments[13:])}}
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, stop)
     about = {"box": box, "seed": seed}
@@ -106,13 +131,18 @@ def main(arguments):
     alone = {"name": "chain", "count": chains, "vertices": vertices}
     run(folder, build, "start", SCENE.format(dt=0.01, steps=0, rate=1, kinds=KIND.format(**{**alone, **kind, "more": kind["more"] + "held: ends"}), **about))
     first = now = last_frame(folder / "start", vertices)
-    found, before, k = {}, "start", 30.0
+    found, before, k = {}, "start/checkpoint.h5", 30.0
+    if option["split"] == 2:
+        first = now = split(first)
+        vertices, before = first.shape[1], "split.h5"
+        alone["vertices"] = vertices
+        write_start(folder / before, box, first.reshape(-1, 3), [(n * vertices + m, n * vertices + m + 1) for n in range(chains) for m in range(vertices - 1)])
     print("stages\nk,dt,steps,time,L,drift,bond,contacts,softened,rigid,temperature,seconds")
     while k <= most:
         name = f"k{k:g}"
         longest = numpy.sqrt(numpy.mean(numpy.square(numpy.diff(now, axis=1)).sum(axis=-1)))
-        dt = float(f"{DT / (k * max(longest, 3.0**0.5 * k**-0.5)):.3g}")
-        steps = max(int(vertices / k**0.5 / dt / (1.0 if k >= least else 3.0)) // FRAMES, 20) * FRAMES
+        dt = float(f"{option['step'] / (k * max(longest, 3.0**0.5 * k**-0.5)):.3g}")
+        steps = max(int(option['pace'] * vertices / k**0.5 / dt / (1.0 if k >= least else 3.0)) // FRAMES, 20) * FRAMES
         scene = SCENE.format(dt=dt, steps=steps, rate=max(4.0 * numpy.pi * k**0.5 / vertices, 0.2),
                              kinds=KIND.format(bond=0, spring=k, more="held: ends", **alone), **about)
         told = run(folder, build, name, scene + LATER.format(before=before, every=steps // FRAMES))
@@ -127,7 +157,7 @@ def main(arguments):
         print(f"{k:g},{dt:.6g},{steps},{told['time']:.6g},{half.mean():.8g},{drift:.3g},{half.mean() / (vertices - 1):.6g},{hit['executed']},"
               f"{hit['softened']},{hit['rigid']},{warm:.5f},{told['wall_seconds']:.1f}", flush=True)
         found[k] = half.mean(axis=0)
-        now, before, k = paths[-1], name, 3.0 * k
+        now, before, k = paths[-1], f"{name}/checkpoint.h5", 3.0 * k
     middle = paths[-(FRAMES // 2):].mean(axis=0)
     square, contour, across = primitive.spans(first), primitive.lengths(first), primitive.across(first, middle)
     sigma2 = primitive.inner(across, ENDS)
@@ -149,6 +179,6 @@ def main(arguments):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 14:
+    if len(sys.argv) < 14 or any(word.partition("=")[0] not in OPTIONS for word in sys.argv[14:]):
         sys.exit(__doc__)
     main(sys.argv[1:])

@@ -11,32 +11,47 @@ from lib.runs import Run
 TITLE = "Primitive paths"
 PAPER = "not in the paper"
 
-# name: box, chains, vertices, l0, k, l_p, seed, LEAST, MOST, mobile, time of a held tube, hours (measure/primitive.py); cheapest and sharpest first.
+# name: box, chains, vertices, l0, k, l_p, seed, LEAST, MOST, mobile, time of a held tube, options, hours (measure/primitive.py); cheapest and sharpest first.
 # Of coils LEAST is the first spring that counts.
+SHORT = "step=0.025"  # with 0.1 and 0.05 a vertex of a coil meets others a thousand times in a drift now and then, and goes rigid
 POINTS = {
-    "stiff-962": (24, 340, 64, 0.5, 100, 16, 4106, 90, 270, 40, 100, 0.05),
-    "coil-13": (5, 45, 64, 0.5, 100, 0.5, 4101, 90, 810, 0, 0, 0.03),
-    "stiff-552": (15, 98, 128, 0.5, 100, 8, 4105, 90, 270, 14, 100, 0.04),
-    "coil-6": (8, 34, 160, 0.5, 100, 0.5, 4102, 90, 810, 0, 0, 0.04),
-    "stiff-3906": (24, 340, 64, 0.5, 100, 32, 4107, 90, 270, 40, 100, 0.03),
-    "coil-3": (12, 27, 320, 0.5, 100, 0.5, 4103, 90, 810, 0, 0, 0.05),
-    "stiff-97": (6, 42, 64, 0.5, 100, 2, 4108, 90, 270, 8, 100, 0.02),
-    "stiff-125": (12, 97, 64, 0.5, 100, 4, 4109, 90, 270, 16, 100, 0.02),
-    "coil-2": (14, 19, 512, 0.5, 100, 0.5, 4104, 90, 810, 0, 0, 0.06),
-    "coil-13-fine": (5, 45, 128, 0.25, 400, 0.5, 4110, 270, 2430, 0, 0, 0.08),
-    "coil-6-again": (8, 34, 160, 0.5, 100, 0.5, 4111, 90, 810, 0, 0, 0.04),
+    "stiff-962": (24, 340, 64, 0.5, 100, 16, 4106, 90, 270, 40, 100, "", 0.05),
+    "coil-13": (5, 45, 64, 0.5, 100, 0.5, 4101, 90, 810, 0, 0, SHORT, 0.01),
+    "stiff-552": (15, 98, 128, 0.5, 100, 8, 4105, 90, 270, 14, 100, SHORT, 0.04),
+    "coil-6": (8, 34, 160, 0.5, 100, 0.5, 4102, 90, 810, 0, 0, SHORT, 0.03),
+    "stiff-3906": (24, 340, 64, 0.5, 100, 32, 4107, 90, 270, 40, 100, "", 0.03),
+    "coil-3": (12, 27, 320, 0.5, 100, 0.5, 4103, 90, 810, 0, 0, SHORT, 0.06),
+    "stiff-97": (6, 42, 64, 0.5, 100, 2, 4108, 90, 270, 8, 100, "", 0.02),
+    "stiff-125": (12, 97, 64, 0.5, 100, 4, 4109, 90, 270, 16, 100, "", 0.02),
+    "coil-2": (14, 19, 512, 0.5, 100, 0.5, 4104, 90, 810, 0, 0, SHORT, 0.08),
+    "coil-1": (18, 16, 640, 0.5, 100, 0.5, 4112, 90, 810, 0, 0, SHORT, 0.1),
 }
+# The same with one thing changed. Where the seed is the same, the start is the same, too.
+CHANGED = {
+    "coil-13-slow": (5, 45, 64, 0.5, 100, 0.5, 4101, 90, 810, 0, 0, SHORT + " pace=3", 0.03),
+    "coil-13-step0.05": (5, 45, 64, 0.5, 100, 0.5, 4101, 90, 810, 0, 0, "step=0.05", 0.01),
+    "coil-13-step0.1": (5, 45, 64, 0.5, 100, 0.5, 4101, 90, 810, 0, 0, "", 0.01),
+    "coil-13-split": (5, 45, 64, 0.5, 100, 0.5, 4101, 270, 2430, 0, 0, SHORT + " split=2", 0.03),
+    "coil-13-fine": (5, 45, 127, 0.25, 400, 0.5793, 4110, 270, 2430, 0, 0, SHORT, 0.03),
+    "coil-6-seed": (8, 34, 160, 0.5, 100, 0.5, 4111, 90, 810, 0, 0, SHORT, 0.03),
+    "coil-13-wide": (8, 184, 64, 0.5, 100, 0.5, 4113, 90, 810, 0, 0, SHORT, 0.04),
+    "stiff-552-slow": (15, 98, 128, 0.5, 100, 8, 4105, 90, 270, 14, 300, SHORT + " pace=3", 0.04),
+    "stiff-552-wide": (20, 232, 128, 0.5, 100, 8, 4114, 90, 270, 33, 100, SHORT, 0.04),
+}
+ALL = {**POINTS, **CHANGED}
 KNOWN = {"posts": "a ring about two posts, over twice their distance", "links": "two linked rings, each pinned at its far end, over what symmetry says",
          "lattice": "a chain in a lattice of posts, over its polygon"}
 SOFT = 1e-3  # of contacts
 ALLOWED = 0.2  # of c_xi, by three melts
+TIGHT = ("stiff-552", "stiff-962", "stiff-3906")  # where L_d is below a quarter of l_p
 OF_TUBE = 0.2  # of sigma: 0.31 and 0.32 are two values of the prefactor, and fibers here are 2 to 4 persistence lengths of their tube
 
 
 def runs(tier):
     found = [Run("known", program=["known.py", 4120], hours=0.004)]
     if tier == "campaign":
-        found += [Run(name, program=["primitive.py", *point[:-1]], hours=point[-1], priority=number // 3) for number, (name, point) in enumerate(POINTS.items())]
+        found += [Run(name, program=["primitive.py", *point[:-2], *point[-2].split()], hours=point[-1], priority=number // 3)
+                  for number, (name, point) in enumerate(ALL.items())]
     return found
 
 
@@ -74,7 +89,7 @@ class Point:
     """A point of the campaign: what its tables say."""
 
     def __init__(self, name, text):
-        box, self.chains, self.vertices, rest, spring, self.persistence, _, self.least, *_ = POINTS[name]
+        box, self.chains, self.vertices, rest, spring, self.persistence, _, self.least, *_ = ALL[name]
         self.name, self.bonds, self.mean = name, self.vertices - 1, primitive.moments(rest, spring)[0]
         self.rho = self.chains * self.bonds * self.mean / box**3
         self.square, self.kuhn = primitive.coil(self.bonds, rest, spring, self.persistence)
@@ -114,25 +129,23 @@ class Point:
 
 
 def points(results):
-    found = {name: Point(name, results[name].text) for name in POINTS if name in results and results[name].exists}
+    found = {name: Point(name, results[name].text) for name in ALL if name in results and results[name].exists}
     return {name: point for name, point in found.items() if "chains" in point.tables}
 
 
 def network(found):
     """Verdicts of the campaign's points."""
-    made = []
-    for name in POINTS:
-        point = found.get(name)
-        if name.startswith("coil") and "-" not in name.removeprefix("coil-"):
-            made.append(coil_verdict(name, point))
-    coils = [p for n, p in found.items() if p.is_coil and "-" not in n.removeprefix("coil-")]
-    made.append(loose_verdict(coils))
-    made.append(fine_verdict(found.get("coil-13"), found.get("coil-13-fine")))
-    made += [width_verdict(name, found.get(name)) for name in ("stiff-552", "stiff-962", "stiff-3906")]
-    made.append(tight_verdict([p for p in found.values() if not p.is_coil]))
+    coils, stiff = ({name: found.get(name) for name in POINTS if name.startswith(word)} for word in ("coil", "stiff"))
+    made = [contact_verdict(found.values(), *words) for words in (("softened", SOFT), ("rigid", 0.0))]
+    made += [coil_verdict(name, point) for name, point in coils.items()]
+    made += [local_verdict(a, b, found, Point.strand) for a, b in (("coil-1", "coil-2"), ("coil-2", "coil-3"), ("coil-3", "coil-6"), ("coil-6", "coil-13"))]
+    made += loose_verdicts([p for p in coils.values() if p])
+    made += [width_verdict(name, found.get(name)) for name in TIGHT]
+    made += [local_verdict(a, b, found, Point.deflection) for a, b in (("stiff-125", "stiff-552"), ("stiff-552", "stiff-962"), ("stiff-962", "stiff-3906"))]
+    made += [tight_verdict("tight", "held tubes", [p for p in stiff.values() if p]), tight_verdict("tightest", "held tubes with L_d ≪ l_p", [found[name] for name in TIGHT if name in found])]
     for name in ("stiff-552", "stiff-962"):
         made += tube_verdicts(name, found.get(name))
-    return made
+    return made + changed_verdicts(found)
 
 
 def coil_verdict(name, point):
@@ -147,24 +160,100 @@ def coil_verdict(name, point):
                    reason="the curve is from memory; and where a strand has few bonds, they are longer than half the mesh")
 
 
-def loose_verdict(coils):
-    statement, source = "exponent of L_e/l_K in ρ l_K², loose coils", "the curve's own mean exponent there, from memory; rival −4/3: a fixed number of contacts per a³"
-    if len(coils) < 3:
-        return Verdict("primitive.exponent.loose", statement, -1.74, source, 0.2, kind="paper", rival=-4.0 / 3.0)
-    strands = [p.strand() for p in coils]
-    fit = stats.power([p.x for p in coils], [value / p.kuhn for (value, _), p in zip(strands, coils)], [error / p.kuhn for (_, error), p in zip(strands, coils)])
-    curve = stats.power([p.x for p in coils], [float(primitive.uchida(p.x)) for p in coils], [error / p.kuhn for (_, error), p in zip(strands, coils)])
-    return Verdict("primitive.exponent.loose", statement, float(curve.value[1]), source, stats.tolerance(float(fit.error[1])), float(fit.value[1]), float(fit.error[1]), kind="paper",
-                   rival=-4.0 / 3.0)
+def contact_verdict(points_found, kind, allowed):
+    """Of the contacts at the springs that count, those that were not plain: of all points, but not of those whose step is too long on purpose."""
+    used = [p for p in points_found if not p.name.startswith("coil-13-step")]
+    total, count = (sum(p.stages[name][p.counted].sum() for p in used) for name in ("contacts", kind))
+    return Verdict(f"primitive.contacts.{kind}", f"contacts of entangled chains that were {kind}, of all", 0.0, "a bounce is resolved", allowed, count / total if used else None, 0.0, kind="paper",
+                   reason=f"{count:.0f} of {total:.3g}" if used else "")
 
 
-def fine_verdict(coarse, fine):
-    statement, source = "L_e with bonds of half the length over L_e, ρ l_K² = 13", "vertices per strand do not matter; 2 %"
-    if coarse is None or fine is None:
-        return Verdict("primitive.bonds", statement, 1.0, source, 0.02, kind="paper")
-    (a, da), (b, db) = coarse.strand(), fine.strand()
-    error = b / a * math.hypot(da / a, db / b)
-    return Verdict("primitive.bonds", statement, 1.0, source, stats.tolerance(error, systematic=0.02), b / a, error, kind="paper")
+def local_verdict(a, b, found, of):
+    """The exponent between two neighboring points."""
+    coil = a.startswith("coil")
+    what, source = ("L_e/l_K", "the curve, from memory") if coil else ("L_d/l_K", "−2/5: binary collisions (Morse)")
+    names = [name.partition("-")[2] for name in (a, b)]
+    said = f"primitive.local.{names[0]}", f"exponent of {what} in ρ l_K² from {names[0]} to {names[1]}"
+    if a not in found or b not in found:
+        return Verdict(*said, -0.4 if not coil else -1.8, source, 0.2, kind="paper")
+    p, q = found[a], found[b]
+    value, error = local_exponent(p, q, of)
+    expected = math.log(float(primitive.uchida(q.x) / primitive.uchida(p.x))) / math.log(q.x / p.x) if coil else -0.4
+    return Verdict(*said, expected, source, stats.tolerance(error), value, error, kind="paper", reason=FROM_MEMORY if coil else "")
+
+
+def local_exponent(p, q, of):
+    """(value, error) between two points."""
+    (a, da), (b, db), decade = of(p), of(q), math.log(q.x / p.x)
+    return math.log(b / q.kuhn / (a / p.kuhn)) / decade, math.hypot(da / a, db / b) / decade
+
+
+FROM_MEMORY = "the curve is from memory"
+
+
+def loose_verdicts(coils):
+    """All coils against the curve's own mean exponent; the three loosest against the power of a thread with one length."""
+    curve = "the curve's own mean exponent there, from memory; rival −4/3: a fixed number of contacts per a³"
+    thread = "−2: packing length alone; rival −4/3: a fixed number of contacts per a³"
+    said = ("loose", "exponent of L_e/l_K in ρ l_K², coils", curve, -1.74), ("loosest", "the same, three loosest coils", thread, -2.0)
+    made = []
+    for (name, statement, source, expected), used in zip(said, (coils, sorted(coils, key=lambda p: p.x)[:3])):
+        if len(coils) < 4:
+            made.append(Verdict(f"primitive.exponent.{name}", statement, expected, source, 0.2, kind="paper", rival=-4.0 / 3.0))
+            continue
+        x, (values, errors) = [p.x for p in used], zip(*(p.strand() for p in used))
+        found = fit = stats.power(x, [v / p.kuhn for v, p in zip(values, used)], [e / p.kuhn for e, p in zip(errors, used)])
+        if name == "loose":
+            expected = float(stats.power(x, primitive.uchida(x), [float(primitive.uchida(p.x)) * e / v for v, e, p in zip(values, errors, used)]).value[1])
+        error = float(found.error[1])
+        made.append(Verdict(f"primitive.exponent.{name}", statement, expected, source, stats.tolerance(error), float(found.value[1]), error, kind="paper", rival=-4.0 / 3.0,
+                            reason=f"χ² of the power law {fit.chi2:.1f} with {fit.freedom} degrees of freedom"))
+    return made
+
+
+def forms(coils):
+    """exponent n -> Fit of L_e/l_K = A x^(-2/5) + B x^(-n), n = 4/3 and 2."""
+    x, (values, errors) = numpy.array([p.x for p in coils]), zip(*(p.strand() for p in coils))
+    kuhn = numpy.array([p.kuhn for p in coils])
+    return {n: stats.fit([x**-0.4, x**-n], numpy.array(values) / kuhn, numpy.array(errors) / kuhn) for n in (4.0 / 3.0, 2.0)}
+
+
+# name: (changed, point, what is compared, statement, source, allowed)
+LENGTH, WIDTH, PATH = (lambda p: p.lengths()), (lambda p: p.tables["held"]["mean"]), (lambda p: p.tables["chains"]["sigma2"])
+SAME = {
+    "step.13": ("coil-13-step0.1", "coil-13", LENGTH, 1.0, "L_pp with steps four times as long over L_pp, same start, ρ l_K² = 13", "1 %", 0.01),
+    "rate.13": ("coil-13-slow", "coil-13", LENGTH, 1.0, "L_pp of cooling three times as slow over L_pp, same start, ρ l_K² = 13", "1 %", 0.01),
+    "vertices.13": ("coil-13-split", "coil-13", LENGTH, 1.0, "L_pp with bonds cut in two over L_pp, same start, ρ l_K² = 13", "2 %", 0.02),
+    "rate.552": ("stiff-552-slow", "stiff-552", PATH, 0.5, "σ of the start about the path, cooling three times as slow, over σ, same start, ρ l_K² = 552", "2 %", 0.02),
+    "time.552": ("stiff-552-slow", "stiff-552", WIDTH, 0.5, "σ in a held tube in 300 t0 over σ in 100 t0, same start, ρ l_K² = 552", "2 %", 0.02),
+}
+OTHER = {
+    "bonds.13": ("coil-13-fine", "coil-13", Point.strand, "L_e with bonds of half the length and the same l_K over L_e, ρ l_K² = 13"),
+    "box.13": ("coil-13-wide", "coil-13", Point.strand, "L_e in a box of 8 over L_e in one of 5, ρ l_K² = 13"),
+    "seed.6": ("coil-6-seed", "coil-6", Point.strand, "L_e of another seed over L_e, ρ l_K² = 6"),
+    "box.552": ("stiff-552-wide", "stiff-552", Point.width, "σ in a held tube in a box of 20 over σ in one of 15, ρ l_K² = 552"),
+}
+
+
+def changed_verdicts(found):
+    """What must not matter: of the same start chain by chain, and of other starts."""
+    made = []
+    for name, (changed, plain, of, power, statement, source, allowed) in SAME.items():
+        said = f"primitive.{name}", statement, 1.0, f"nothing but what is resolved may matter; {source}"
+        if changed in found and plain in found:
+            value, error = stats.jackknife(numpy.stack([of(found[changed]), of(found[plain])], axis=1), lambda mean, power=power: (mean[0] / mean[1]) ** power)
+            made.append(Verdict(*said, stats.tolerance(float(error), systematic=allowed), float(value), float(error), kind="paper"))
+        else:
+            made.append(Verdict(*said, allowed, kind="paper"))
+    for name, (changed, plain, of, statement) in OTHER.items():
+        said = f"primitive.{name}", statement, 1.0, "nothing but l_K and ρ matters; 2 %"
+        if changed in found and plain in found:
+            (a, da), (b, db) = of(found[changed]), of(found[plain])
+            error = a / b * math.hypot(da / a, db / b)
+            made.append(Verdict(*said, stats.tolerance(error, systematic=0.02), a / b, error, kind="paper"))
+        else:
+            made.append(Verdict(*said, 0.02, kind="paper"))
+    return made
 
 
 def width_verdict(name, point):
@@ -176,15 +265,16 @@ def width_verdict(name, point):
     return Verdict(f"primitive.width.{at}", statement, 1.0, source, stats.tolerance(error / theory, systematic=OF_TUBE), value / theory, error / theory, kind="paper")
 
 
-def tight_verdict(stiff):
-    statement, source = "exponent of L_d/l_K in ρ l_K², stiff fibers, held tubes", "−2/5: binary collisions (Morse); rival −1/3: effective medium"
+def tight_verdict(name, which, stiff):
+    statement, source = f"exponent of L_d/l_K in ρ l_K², stiff fibers, {which}", "−2/5: binary collisions (Morse); rival −1/3: effective medium"
     stiff = [p for p in stiff if "held" in p.tables]
     if len(stiff) < 3:
-        return Verdict("primitive.exponent.tight", statement, -0.4, source, 0.03, kind="paper", rival=-1.0 / 3.0)
+        return Verdict(f"primitive.exponent.{name}", statement, -0.4, source, 0.03, kind="paper", rival=-1.0 / 3.0)
     found = [p.deflection() for p in stiff]
     fit = stats.power([p.x for p in stiff], [value / p.kuhn for (value, _), p in zip(found, stiff)], [error / p.kuhn for (_, error), p in zip(found, stiff)])
     error = float(fit.error[1]) * max(1.0, math.sqrt(fit.chi2 / max(fit.freedom, 1)))
-    return Verdict("primitive.exponent.tight", statement, -0.4, source, stats.tolerance(error), float(fit.value[1]), error, kind="paper", rival=-1.0 / 3.0)
+    return Verdict(f"primitive.exponent.{name}", statement, -0.4, source, stats.tolerance(error), float(fit.value[1]), error, kind="paper", rival=-1.0 / 3.0,
+                   reason=f"χ² of the power law {fit.chi2:.1f} with {fit.freedom} degrees of freedom")
 
 
 def tube_verdicts(name, point):
