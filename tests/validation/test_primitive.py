@@ -206,12 +206,12 @@ class Case(unittest.TestCase):
             self.assertLess(abs(found[name] / x - 1.0), 0.03, name)
 
     def test_changed_points_are_the_same_system(self):
-        """x and l_K are those of the plain point, within 0.1 % where the seed is another: else unlike chains would be compared. l_K of half bonds by the
+        """x and l_K are those of the plain point, within 0.5 % where the seed is another: else unlike chains would be compared. l_K of half bonds by the
         sum over all pairs of bonds of a long chain."""
         made = {name: PRIMITIVE.Point(name, "stages\nk\n90\nchains\nR2\n1\n") for name in PRIMITIVE.ALL}
         for changed, plain, *_ in (*PRIMITIVE.SAME.values(), *PRIMITIVE.OTHER.values()):
             for of in ("x", "kuhn", "rho"):
-                self.assertLess(abs(getattr(made[changed], of) / getattr(made[plain], of) - 1.0), 0.002, (changed, of))
+                self.assertLess(abs(getattr(made[changed], of) / getattr(made[plain], of) - 1.0), 0.005, (changed, of))
         kappa = 0.5793 / 0.25
         cosine = numpy.linspace(-1.0, 1.0, 200001)
         weight = numpy.exp(kappa * cosine)

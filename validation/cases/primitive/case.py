@@ -13,18 +13,18 @@ PAPER = "not in the paper"
 
 # name: box, chains, vertices, l0, k, l_p, seed, LEAST, MOST, mobile, time of a held tube, options, hours (measure/primitive.py); cheapest and sharpest first.
 # Of coils LEAST is the first spring that counts.
-SHORT = "step=0.025"  # with 0.1 and 0.05 a vertex of a coil meets others a thousand times in a drift now and then, and goes rigid
+SHORT = "step=0.025"  # with 0.1 more pairs of bonds that are pressed together go rigid
 POINTS = {
     "stiff-962": (24, 340, 64, 0.5, 100, 16, 4106, 90, 270, 40, 100, "", 0.05),
     "coil-13": (5, 45, 64, 0.5, 100, 0.5, 4101, 90, 810, 0, 0, SHORT, 0.01),
     "stiff-552": (15, 98, 128, 0.5, 100, 8, 4105, 90, 270, 14, 100, SHORT, 0.04),
     "coil-6": (8, 34, 160, 0.5, 100, 0.5, 4102, 90, 810, 0, 0, SHORT, 0.03),
     "stiff-3906": (24, 340, 64, 0.5, 100, 32, 4107, 90, 270, 40, 100, "", 0.03),
-    "coil-3": (12, 27, 320, 0.5, 100, 0.5, 4103, 90, 810, 0, 0, SHORT, 0.06),
+    "coil-3": (12, 27, 320, 0.5, 100, 0.5, 4103, 90, 810, 0, 0, "", 0.06),
     "stiff-97": (6, 42, 64, 0.5, 100, 2, 4108, 90, 270, 8, 100, "", 0.02),
     "stiff-125": (12, 97, 64, 0.5, 100, 4, 4109, 90, 270, 16, 100, "", 0.02),
-    "coil-2": (14, 19, 512, 0.5, 100, 0.5, 4104, 90, 810, 0, 0, SHORT, 0.08),
-    "coil-1": (18, 16, 640, 0.5, 100, 0.5, 4112, 90, 810, 0, 0, SHORT, 0.1),
+    "coil-2": (14, 19, 512, 0.5, 100, 0.5, 4104, 90, 810, 0, 0, "", 0.08),
+    "coil-1": (18, 16, 640, 0.5, 100, 0.5, 4112, 90, 810, 0, 0, "step=0.05", 0.12),
 }
 # The same with one thing changed. Where the seed is the same, the start is the same, too.
 CHANGED = {
@@ -33,10 +33,10 @@ CHANGED = {
     "coil-13-step0.1": (5, 45, 64, 0.5, 100, 0.5, 4101, 90, 810, 0, 0, "", 0.01),
     "coil-13-split": (5, 45, 64, 0.5, 100, 0.5, 4101, 270, 2430, 0, 0, SHORT + " split=2", 0.03),
     "coil-13-fine": (5, 45, 127, 0.25, 400, 0.5793, 4110, 270, 2430, 0, 0, SHORT, 0.03),
-    "coil-6-seed": (8, 34, 160, 0.5, 100, 0.5, 4111, 90, 810, 0, 0, SHORT, 0.03),
-    "coil-13-wide": (8, 184, 64, 0.5, 100, 0.5, 4113, 90, 810, 0, 0, SHORT, 0.04),
-    "stiff-552-slow": (15, 98, 128, 0.5, 100, 8, 4105, 90, 270, 14, 300, SHORT + " pace=3", 0.04),
-    "stiff-552-wide": (20, 232, 128, 0.5, 100, 8, 4114, 90, 270, 33, 100, SHORT, 0.04),
+    "coil-6-seed": (8, 34, 160, 0.5, 100, 0.5, 4111, 90, 810, 0, 0, "", 0.03),
+    "coil-13-wide": (7, 123, 64, 0.5, 100, 0.5, 4113, 90, 810, 0, 0, SHORT, 0.04),
+    "stiff-552-slow": (15, 98, 128, 0.5, 100, 8, 4105, 90, 270, 14, 200, SHORT + " pace=2", 0.04),
+    "stiff-552-wide": (18, 169, 128, 0.5, 100, 8, 4114, 90, 270, 24, 100, SHORT, 0.03),
 }
 ALL = {**POINTS, **CHANGED}
 KNOWN = {"posts": "a ring about two posts, over twice their distance", "links": "two linked rings, each pinned at its far end, over what symmetry says",
@@ -224,14 +224,14 @@ SAME = {
     "step.13": ("coil-13-step0.1", "coil-13", LENGTH, 1.0, "L_pp with steps four times as long over L_pp, same start, ρ l_K² = 13", "1 %", 0.01),
     "rate.13": ("coil-13-slow", "coil-13", LENGTH, 1.0, "L_pp of cooling three times as slow over L_pp, same start, ρ l_K² = 13", "1 %", 0.01),
     "vertices.13": ("coil-13-split", "coil-13", LENGTH, 1.0, "L_pp with bonds cut in two over L_pp, same start, ρ l_K² = 13", "2 %", 0.02),
-    "rate.552": ("stiff-552-slow", "stiff-552", PATH, 0.5, "σ of the start about the path, cooling three times as slow, over σ, same start, ρ l_K² = 552", "2 %", 0.02),
-    "time.552": ("stiff-552-slow", "stiff-552", WIDTH, 0.5, "σ in a held tube in 300 t0 over σ in 100 t0, same start, ρ l_K² = 552", "2 %", 0.02),
+    "rate.552": ("stiff-552-slow", "stiff-552", PATH, 0.5, "σ of the start about the path, cooling half as fast, over σ, same start, ρ l_K² = 552", "2 %", 0.02),
+    "time.552": ("stiff-552-slow", "stiff-552", WIDTH, 0.5, "σ in a held tube in 200 t0 over σ in 100 t0, same start, ρ l_K² = 552", "2 %", 0.02),
 }
 OTHER = {
     "bonds.13": ("coil-13-fine", "coil-13", Point.strand, "L_e with bonds of half the length and the same l_K over L_e, ρ l_K² = 13"),
-    "box.13": ("coil-13-wide", "coil-13", Point.strand, "L_e in a box of 8 over L_e in one of 5, ρ l_K² = 13"),
+    "box.13": ("coil-13-wide", "coil-13", Point.strand, "L_e in a box of 7 over L_e in one of 5, ρ l_K² = 13"),
     "seed.6": ("coil-6-seed", "coil-6", Point.strand, "L_e of another seed over L_e, ρ l_K² = 6"),
-    "box.552": ("stiff-552-wide", "stiff-552", Point.width, "σ in a held tube in a box of 20 over σ in one of 15, ρ l_K² = 552"),
+    "box.552": ("stiff-552-wide", "stiff-552", Point.width, "σ in a held tube in a box of 18 over σ in one of 15, ρ l_K² = 552"),
 }
 
 
@@ -315,29 +315,72 @@ def prose(made):
         used = point.counted
         hits, soft, rigid = (point.stages[name][used].sum() for name in ("contacts", "softened", "rigid"))
         lines.append(f"`{point.name}`: x = {point.x:.4g}; {hits:.3g} contacts at the springs that count, of which {soft / hits:.2g} were softened and {rigid:g} rigid; "
-                     f"the last quarter of the last run differs from the one before by {100 * point.stages['drift'][-1]:.2f} %.")
+                     f"the last quarter of the last run differs from the one before by {100 * point.stages['drift'][-1]:.2f} %. "
+                     + ("L_e {0:.2f} ± {1:.2f} a0".format(*point.strand()) if point.is_coil else "Start about its path: σ {0:.3f} ± {1:.3f} a0".format(*point.width("chains", "sigma2"))) + ".")
+    coils = [point for name, point in made.items() if name in POINTS and point.is_coil]
+    if len(coils) > 2:
+        lines.append("L_e/l_K = A x^(−2/5) + B x^(−n): " + "; ".join(
+            f"n = {n:.3g}: A {fit.value[0]:.2f} ± {fit.error[0]:.2f}, B {fit.value[1]:.0f} ± {fit.error[1]:.0f}, χ² {fit.chi2:.1f} with {fit.freedom} degrees of freedom"
+            for n, fit in forms(coils).items()) + ".")
     return "\n\n".join(lines)
 
 
+def with_errors(panel, points_shown, get, **look):
+    """Points at their x: get gives (value, error)."""
+    values = [get(p) for p in points_shown]
+    figures.points(panel, [p.x for p in points_shown], [v for v, _ in values], numpy.array([e for _, e in values]), **look)
+
+
+def over_kuhn(of):
+    def get(point):
+        value, error = of(point)
+        return value / point.kuhn, error / point.kuhn
+    return get
+
+
 def shown(made):
-    coils = [p for p in made.values() if p.is_coil]
-    stiff = [p for p in made.values() if not p.is_coil]
+    main = sorted((p for name, p in made.items() if name in POINTS), key=lambda p: p.x)
+    coils, stiff = [p for p in main if p.is_coil], [p for p in main if not p.is_coil]
     tubes = [p for p in stiff if "held" in p.tables]
 
     def curve():
         figure, panel = figures.plain(width=5.5, height=4.0)
-        x = numpy.geomspace(1.0, 1e4, 200)
+        x = numpy.geomspace(0.9, 1e4, 200)
         figures.theory(panel, x, primitive.uchida(x), label="Uchida, Grest and Everaers (from memory)")
-        for number, (group, label, get) in enumerate(((coils, "$L_e$ of coils, modified S-coil", lambda p: p.strand()),
-                                                      (tubes, "$L_d$ of held tubes", lambda p: p.deflection()),
-                                                      (stiff, "$L_d$ of starts about their paths", lambda p: p.deflection("chains", "sigma2")))):
+        for number, (group, label, of) in enumerate(((coils, "$L_e$ of coils, modified S-coil", Point.strand), (tubes, "$L_d$ of held tubes", Point.deflection),
+                                                     (stiff, "$L_d$ of starts about their paths", lambda p: p.deflection("chains", "sigma2")))):
             if group:
-                values = [get(p) for p in group]
-                figures.points(panel, [p.x for p in group], [v / p.kuhn for (v, _), p in zip(values, group)], numpy.array([e / p.kuhn for (_, e), p in zip(values, group)]),
-                               number=number, label=label)
+                with_errors(panel, group, over_kuhn(of), number=number, label=label)
         panel.set(xscale="log", yscale="log", xlabel="$\\rho\\, l_K^2$", ylabel="length over $l_K$")
+        figures.legend(panel)
+        return figure
+
+    def exponents():
+        figure, panel = figures.plain(width=5.5, height=3.4)
+        x = numpy.geomspace(0.9, 1e4, 200)
+        figures.theory(panel, x, primitive.uchida_slope(x), label="Uchida, Grest and Everaers (from memory)")
+        for value in (-2.0, -4.0 / 3.0, -2.0 / 5.0, -1.0 / 3.0):
+            panel.axhline(value, color=figures.PALE, linewidth=0.8, zorder=0)
+        for number, (group, of, label) in enumerate(((coils, Point.strand, "$L_e$ of coils"), ([p for p in tubes if p.x > 120], Point.deflection, "$L_d$ of held tubes"))):
+            pairs = list(zip(group, group[1:]))
+            if pairs:
+                found = [local_exponent(p, q, of) for p, q in pairs]
+                figures.points(panel, [math.sqrt(p.x * q.x) for p, q in pairs], [v for v, _ in found], numpy.array([e for _, e in found]), number=number, label=label)
+        panel.set(xscale="log", xlabel="$\\rho\\, l_K^2$", ylabel="local exponent of length over $l_K$")
+        figures.legend(panel)
+        return figure
+
+    def tube():
+        figure, panel = figures.plain(width=5.5, height=3.4)
+        for number, (label, of) in enumerate((("held tube, about the mean place", Point.width), ("held tube, $(d^2/4)^{1/2}$", lambda p: p.width("held", "d2")),
+                                              ("start about its cooled path", lambda p: p.width("chains", "sigma2")))):
+            with_errors(panel, tubes, lambda p, of=of: tuple(value / primitive.hinsch(p.rho, p.persistence) for value in of(p)), number=number, label=label)
+        panel.axhline(1.0, color=figures.INK, linewidth=0.8, zorder=0)
+        panel.set(xscale="log", yscale="log", xlabel="$\\rho\\, l_K^2$", ylabel="$\\sigma$ over Hinsch, Wilhelm and Frey")
         figures.legend(panel)
         return figure
     return [Figure("curve", "Entanglement length over Kuhn length against ρ l_K². Coils: modified S-coil of primitive paths, exact ⟨R²⟩. Stiff fibers: the deflection length of "
                    "a harmonic tube, σ² = L_d³/8 l_p, with the σ of chains in a tube that is held, and of starts about their cooled paths; L_d differs from L_e by a factor of "
-                   "order 1. Line: a formula from memory.", curve)]
+                   "order 1. Line: a formula from memory.", curve),
+            Figure("exponents", "Exponents between neighboring points of Figure 1, at the geometric mean of their ρ l_K². Pale lines: −2 and −4/3 (loose), −2/5 and −1/3 (tight).", exponents),
+            *([Figure("tube", "Static width beside the dynamic tube of the same chains, over 0.32 ξ^(6/5) l_p^(−1/5). d² is of two times in the held tube.", tube)] if tubes else [])]
