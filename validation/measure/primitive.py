@@ -14,7 +14,7 @@ start: a tube that is held.
 Prints tables. `stages`: the mean L_pp of the last half of a run, how much the last quarter differs from the one before, contacts, and those that were
 softened or rigid. `chains`: of each chain R^2, the contour, L_pp at each k, and sigma^2 of the start about the path at the largest k. `profile`: the
 same sigma^2 along the chain, by vertices from the nearer end, with its error from chains. `held`: of each mobile chain sigma^2 about the mean of
-places, sigma^2 of the start about the path, and a quarter of d^2 from the middle of the run to its end.
+places, sigma^2 of the start about the path, a quarter of d^2 from the middle of the run to its end, and sigma^2 of the start about the mean of places.
 """
 import json
 import pathlib
@@ -173,9 +173,10 @@ def main(arguments):
     mean, middle_of = paths.mean(axis=0), len(paths) // 2
     about_mean = numpy.mean([primitive.inner(primitive.beside(p, mean), ENDS) for p in paths], axis=0)
     twice = numpy.mean([primitive.inner(primitive.across(p, q), ENDS) for p, q in zip(paths[:middle_of], paths[middle_of:])], axis=0)
-    print("held\nmean,path,d2")
+    start = primitive.inner(primitive.beside(first[:mobile], mean), ENDS)
+    print("held\nmean,path,d2,start")
     for n in range(mobile):
-        print(f"{about_mean[n]:.6g},{sigma2[n]:.6g},{twice[n] / 2.0:.6g}")
+        print(f"{about_mean[n]:.6g},{sigma2[n]:.6g},{twice[n] / 2.0:.6g},{start[n]:.6g}")
 
 
 if __name__ == "__main__":
