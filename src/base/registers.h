@@ -297,6 +297,8 @@ INLINE int none(words x)
 {
 #if defined HAS_512
   return _mm512_test_epi64_mask((__m512i)x, (__m512i)x) == 0;
+#elif defined HAS_256
+  return _mm256_testz_si256((__m256i)x, (__m256i)x);
 #else
   return any(x) == 0;
 #endif

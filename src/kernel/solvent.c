@@ -259,6 +259,7 @@ static uint64_t energies_fast(const struct state *state, struct mpc *c, uint32_t
 {
   const struct solvent *s = &state->solvent;
   const uint32_t end = first + n, whole = end - n % LANES;
+  const uint32_t *cell = c->solvent_cell;
   uint64_t span = 0, *sum = (uint64_t *)c->relative; /* unsigned: see overflow.h */
   for (uint32_t i = first, m = 0; i < whole; i += m) {
     int64_t energy[CHUNK];
@@ -267,7 +268,7 @@ static uint64_t energies_fast(const struct state *state, struct mpc *c, uint32_t
     members_prefetch_turns(c, i + m, whole - i - m < CHUNK ? whole - i - m : CHUNK);
     for (uint32_t k = 0; k < m; k += LANES) {
       reals turn[4];
-      load_columns((const double *)c->turn, &c->solvent_cell[i + k], turn, 4);
+      load_columns((const double *)c->turn, &cell[i + k], turn, 4);
       const words e =
           cell_energy_lanes(turn, load_reals(&s->vx[i + k]), load_reals(&s->vy[i + k]), load_reals(&s->vz[i + k]));
       size |= e;
@@ -278,8 +279,11 @@ static uint64_t energies_fast(const struct state *state, struct mpc *c, uint32_t
       return span | kernel_short.ways.energies(state, c, i, end - i, total);
     if (total)
       *total += sum_of(sums);
-    for (uint32_t k = 0; k < m && !total; k++)
-      sum[c->solvent_cell[i + k]] += (uint64_t)energy[k];
+    for (uint32_t k = 0; k < m && !total; k += LANES) {
+      UNROLL
+      for (uint32_t lane = 0; lane < LANES; lane++)
+        sum[cell[i + k + lane]] += (uint64_t)energy[k + lane];
+    }
     span |= any(size);
   }
   return span | kernel_short.ways.energies(state, c, whole, end - whole, total);

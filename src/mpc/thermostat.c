@@ -33,11 +33,6 @@ double thermostat_gamma(uint64_t seed, uint64_t step, uint32_t cell, double shap
   return gamma_from(seed, step, cell, shape, 0);
 }
 
-double thermostat_gamma_again(uint64_t seed, uint64_t step, uint32_t cell, double shape)
-{
-  return gamma_from(seed, step, cell, shape, 2);
-}
-
 static void attempts(const double *restrict shape, const double *restrict normal, const double *restrict u, uint32_t n,
                      double *restrict gamma)
 {
@@ -54,7 +49,7 @@ void thermostat_gammas(uint64_t seed, uint64_t step, const uint32_t *cell, const
   attempts(shape, normal, u[2], n, gamma);
   for (uint32_t k = 0; k < n; k++)
     if (gamma[k] < 0.0)
-      gamma[k] = thermostat_gamma_again(seed, step, cell[k], shape[k]);
+      gamma[k] = gamma_from(seed, step, cell[k], shape[k], 2);
 }
 
 double cell_freedoms(const struct mpc *c, const struct model *model, uint32_t place)

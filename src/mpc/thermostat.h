@@ -35,9 +35,6 @@ double cell_freedoms(const struct mpc *mpc, const struct model *model, uint32_t 
 /* A Gamma(shape, 1) deviate for this cell and step, shape >= 1 (Marsaglia and Tsang, ACM TOMS 26, 363 (2000)). */
 double thermostat_gamma(uint64_t seed, uint64_t step, uint32_t cell, double shape);
 
-/* The same for a cell whose first attempt is rejected: from the second one on. */
-double thermostat_gamma_again(uint64_t seed, uint64_t step, uint32_t cell, double shape);
-
 /* thermostat_gamma of n cells, n <= RANDOM_UNIFORMS: gamma[n] of shape[n], to the bit, in loops that vectorise. */
 void thermostat_gammas(uint64_t seed, uint64_t step, const uint32_t *cell, const double *shape, uint32_t n,
                        double *gamma);
