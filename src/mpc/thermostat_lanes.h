@@ -28,9 +28,9 @@ INLINE reals thermostat_normal_lanes(reals u, reals v)
 }
 
 /* Gamma deviates of these shapes where the first attempt is certain to be taken; else -1. An attempt is taken if -ln u
- * is above -x^2/2 - d + d v - d ln v = 3 d (y^4/4 - y^5/5 + ...), v = (1 + y)^3. Whatever y > -1, that is at most
- * 3/4 d y^4 / min(1, 1 + y); and -ln u is at least 1 - u. So no logarithm is needed, but for one cell in a hundred. All
- * roundings of either side, times 1 + y, are below 2^-47 d. */
+ * is above d v - d - d ln v - x^2/2 = 3 d (y^4/4 - y^5/5 + ...), v = (1 + y)^3, y = c x. For y > -1 that is at most
+ * 3/4 d y^4 / min(1, 1 + y), and -ln u is at least 1 - u. So no logarithm is needed, but for one cell in a hundred at 5
+ * members. Roundings of both sides, times min(1, 1 + y), are below 2^-46 d where an attempt is certain. */
 INLINE reals thermostat_attempt_lanes(reals shape, reals normal, reals u)
 {
   const double doubt = 0x1p-40;

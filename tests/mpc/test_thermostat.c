@@ -4,7 +4,7 @@
 #include "mpc/collide.h"
 #include "mpc/grid.h"
 #include "mpc/rules/srd.h"
-#include "mpc/thermostat.h"
+#include "mpc/thermostat_lanes.h"
 
 /* Per cell: members, momentum, mass, twice the kinetic energy relative to v_cm; cells by floor division. */
 struct cell_state {
@@ -247,6 +247,31 @@ static void gamma_deviates_in_columns(void **unused)
   assert_true(again > 100);
 }
 
+/* The fast kernel takes an attempt without its logarithms only if they would take it: nowhere above the largest uniform
+ * deviate that is taken, exp(x^2/2 + d - d v + d ln v), but most of all attempts below it. */
+static void certain_attempts_are_taken(void **unused)
+{
+  (void)unused;
+  uint32_t certain = 0, all = 0;
+  for (uint32_t others = 1; others < 3000; others = others < 8 ? others + 1 : 3 * others)
+    for (int k = -6000; k <= 6000; k++) {
+      const double shape = (k & 1 ? 1.5 : 1.0) * others, d = shape - 1.0 / 3.0, x = 1e-3 * k;
+      const long double v = powl(1.0L + x / sqrtl(9.0L * d), 3.0L), last = 1.0L - 0x1p-53L;
+      const long double least = v > 0.0L ? expl(0.5L * x * x + d - d * v + d * logl(v)) : 0.0L; /* above it, rejected */
+      const long double above = least + 1e-13L * d, u[] = {above < last ? above : last, 0.5L};
+      for (int i = 0; i < 2; i++) {
+        const reals zero = {0}, gamma = thermostat_attempt_lanes(zero + shape, zero + x, zero + (double)u[i]);
+        if (i == 0 || u[i] >= least)
+          assert_true(gamma[0] == -1.0);
+        else if (gamma[0] != -1.0)
+          assert_close(gamma[0] / (double)(d * v), 1.0, 1e-9);
+        certain += i == 1 && gamma[0] > 0.0;
+        all += i;
+      }
+    }
+  assert_true(certain > 0.6 * all);
+}
+
 /* Everything at rest in its own cell's frame: nothing to scale, and nothing becomes NaN. */
 static void cold_cells_stay_finite(void **unused)
 {
@@ -418,17 +443,12 @@ static void equilibrium_is_maxwellian(void **unused)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(rescale_sets_the_sum),
-      cmocka_unit_test(layers_have_their_own_sums),
-      cmocka_unit_test(canonical_energies_are_gamma),
-      cmocka_unit_test(gamma_deviates),
-      cmocka_unit_test(gamma_deviates_have_addresses),
-      cmocka_unit_test(gamma_deviates_in_columns),
-      cmocka_unit_test(cold_cells_stay_finite),
-      cmocka_unit_test(energy_range_faults),
-      cmocka_unit_test(lone_members_have_no_energy),
-      cmocka_unit_test(hot_boxes_are_cooled),
-      cmocka_unit_test(rescale_is_the_same_in_any_order),
+      cmocka_unit_test(rescale_sets_the_sum),          cmocka_unit_test(layers_have_their_own_sums),
+      cmocka_unit_test(canonical_energies_are_gamma),  cmocka_unit_test(gamma_deviates),
+      cmocka_unit_test(gamma_deviates_have_addresses), cmocka_unit_test(gamma_deviates_in_columns),
+      cmocka_unit_test(certain_attempts_are_taken),    cmocka_unit_test(cold_cells_stay_finite),
+      cmocka_unit_test(energy_range_faults),           cmocka_unit_test(lone_members_have_no_energy),
+      cmocka_unit_test(hot_boxes_are_cooled),          cmocka_unit_test(rescale_is_the_same_in_any_order),
       cmocka_unit_test(equilibrium_is_maxwellian),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
