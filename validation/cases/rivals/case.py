@@ -101,9 +101,14 @@ def rows(result):
     return {words[0]: [float(word) for word in words[1:]] for words in lines}
 
 
+def seeds_of(name):
+    """None of what is not planned."""
+    return MOTION[name][3] if name in MOTION else ()
+
+
 def pooled(results, name):
     """{lag: (d^2, error, of the center, error)} over the seeds that there are, weighted by intervals; None without one."""
-    found = [rows(results[f"{name}-s{seed}"]) for seed in MOTION[name][3] if f"{name}-s{seed}" in results]
+    found = [rows(results[f"{name}-s{seed}"]) for seed in seeds_of(name) if f"{name}-s{seed}" in results]
     curve = {}
     for lag in found[0] if found else ():
         weights = numpy.array([one[lag][4] for one in found])
@@ -115,7 +120,7 @@ def pooled(results, name):
 
 def first_notes(results, name):
     """Values that the runs of a name agree on but for chance: means over seeds."""
-    found = [notes(results[f"{name}-s{seed}"]) for seed in MOTION[name][3] if f"{name}-s{seed}" in results]
+    found = [notes(results[f"{name}-s{seed}"]) for seed in seeds_of(name) if f"{name}-s{seed}" in results]
     return found or None
 
 
@@ -177,7 +182,7 @@ def by_width(results, lag, density):
     reference, points = pooled(results, f"events-{density}"), []
     for reach in ("0.1", "0.2", "0.4"):
         name = f"srp-{reach}-{density}"
-        curve = pooled(results, name) if name in MOTION else None
+        curve = pooled(results, name)
         if curve and reference and lag in curve:
             points.append((thickness(results, name)[0], *over(curve[lag], (reference[lag][0], 0.0))))
     own = reference[lag][1] / reference[lag][0] if points else None
@@ -225,11 +230,10 @@ def compared(results, density):
     found = []
     for key, label in LABELS.items():
         name = f"{key}-{density}"
-        if name not in MOTION:
-            continue
+        method = MOTION.get(name, MOTION[f"{key}-300"])[0]
         curve = pooled(results, name)
-        row = {"density": density, "key": key, "label": label, "method": MOTION[name][0], "leak": leak(results, f"{CROSSED.get(key, key)}-{density}"),
-               "width": thickness(results, name), "price": price(results, density, "events" if key == "plain" else MOTION[name][0]),
+        row = {"density": density, "key": key, "label": label, "method": method, "leak": leak(results, f"{CROSSED.get(key, key)}-{density}") or leak(results, f"{key}-{density}"),
+               "width": thickness(results, name), "price": price(results, density, "events" if key == "plain" and curve else method),
                "ratio": {lag: over(curve.get(lag), reference.get(lag)) for lag in (10.0, 25.0, LAG)} if curve and reference else {},
                "notes": first_notes(results, name)}
         if key == "events":
