@@ -115,31 +115,47 @@ static uint32_t below(uint64_t r, uint32_t n)
   return (uint32_t)((wide)r * n >> 64);
 }
 
-/* The step of a shuffle that fills place k, with 64 random bits as two words. */
-static inline void swap_at(uint32_t *order, uint32_t k, uint32_t low, uint32_t high)
+/* Integers 0 and 1 of the LANES entities from `first` on. */
+INLINE void shuffle_integers(uint64_t seed, enum random_purpose purpose, uint32_t draw, uint64_t step, uint32_t first,
+                             uint64_t integer[2][LANES])
 {
-  const uint32_t j = below((uint64_t)high << 32 | low, k + 1), swap = order[k];
-  order[k] = order[j];
-  order[j] = swap;
+  words lane, w[4];
+  for (uint32_t k = 0; k < LANES; k++)
+    lane[k] = first + k;
+  philox_words(seed, purpose, draw, step, lane, w);
+  const words even = w[1] << 32 | (w[0] & 0xffffffff), odd = w[3] << 32 | (w[2] & 0xffffffff);
+  memcpy(integer[0], &even, sizeof even);
+  memcpy(integer[1], &odd, sizeof odd);
+}
+
+/* The partners of a block are known before its first exchange, and asked for: of many entries they are far in memory. */
+void random_shuffle(uint64_t seed, enum random_purpose purpose, uint32_t draw, uint64_t step, uint32_t n,
+                    uint32_t *entry)
+{
+  uint32_t partner[2 * BLOCK];
+  for (uint32_t end = n / 2 + n % 2, first; end > 0; end = first) {
+    first = end < BLOCK ? 0 : end - BLOCK;
+    for (uint32_t e = 0; e < end - first; e += LANES) {
+      uint64_t integer[2][LANES];
+      shuffle_integers(seed, purpose, draw, step, first + e, integer);
+      for (uint32_t k = 0; k < 2 * LANES; k++) {
+        uint32_t *to = &partner[2 * e + k];
+        *to = below(integer[k % 2][k / 2], 2 * (first + e) + k + 1);
+        __builtin_prefetch(&entry[*to]);
+      }
+    }
+    for (uint32_t k = n < 2 * end ? n : 2 * end; k-- > 2 * first;) {
+      const uint32_t j = partner[k - 2 * first], swap = entry[k];
+      entry[k] = entry[j];
+      entry[j] = swap;
+    }
+  }
 }
 
 void random_permutation(uint64_t seed, enum random_purpose purpose, uint32_t draw, uint64_t step, uint32_t n,
                         uint32_t *order)
 {
-  uint32_t entity[BLOCK], w[4][BLOCK], *columns[4] = {w[0], w[1], w[2], w[3]};
   for (uint32_t k = 0; k < n; k++)
     order[k] = k;
-  for (uint32_t end = n / 2 + n % 2, first; end > 0; end = first) {
-    first = end < BLOCK ? 0 : end - BLOCK;
-    for (uint32_t k = 0; k < end - first; k++)
-      entity[k] = first + k;
-    random_columns(seed, purpose, draw, step, entity, end - first, columns);
-    for (uint32_t e = end - first; e-- > 0;) {
-      const uint32_t k = 2 * (first + e);
-      if (k + 1 < n)
-        swap_at(order, k + 1, w[2][e], w[3][e]);
-      if (k > 0)
-        swap_at(order, k, w[0][e], w[1][e]);
-    }
-  }
+  random_shuffle(seed, purpose, draw, step, n, order);
 }

@@ -124,9 +124,13 @@ static inline struct vec3 random_axis(uint64_t seed, enum random_purpose purpose
 void random_axes(uint64_t seed, enum random_purpose purpose, uint64_t step, const uint32_t *entity, uint32_t n,
                  struct vec3 *axis);
 
-/* A uniform random permutation of 0 .. n-1 (Fisher and Yates; Durstenfeld 1964): for k = n-1 down to 1, entries k and
+/* Shuffles n entries uniformly (Fisher and Yates; Durstenfeld 1964): for k = n-1 down to 1, entries k and
  * j = floor((k+1) R_k / 2^64) are exchanged, R_k = 64-bit integer (k mod 2) of entity k/2. Its bias, below n/2^64, is
  * not observable. */
+void random_shuffle(uint64_t seed, enum random_purpose purpose, uint32_t draw, uint64_t step, uint32_t n,
+                    uint32_t *entry);
+
+/* A uniform random permutation: 0 .. n-1, shuffled. */
 void random_permutation(uint64_t seed, enum random_purpose purpose, uint32_t draw, uint64_t step, uint32_t n,
                         uint32_t *order);
 

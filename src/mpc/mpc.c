@@ -24,7 +24,7 @@ static size_t count_cells(const struct model *m)
   return model_has_cells(m) ? cells : 0;
 }
 
-enum { NEEDS = 17 };
+enum { NEEDS = 18 };
 
 /* The single list of the scratch that the collisions of a model use. */
 static void list_needs(struct mpc *c, const struct model *m, bool everything, struct memory_need need[NEEDS])
@@ -47,6 +47,7 @@ static void list_needs(struct mpc *c, const struct model *m, bool everything, st
       {(void **)&c->filled, cut, sizeof *c->filled},
       {(void **)&c->order, particles, sizeof *c->order},
       {(void **)&c->slot, swapped, sizeof *c->slot},
+      {(void **)&c->slot_ids, swapped, sizeof *c->slot_ids},
       {(void **)&c->column, particles, sizeof *c->column},
       {(void **)&c->drawn[0], drawing ? particles : 0, sizeof *c->drawn[0]},
       {(void **)&c->drawn[1], drawing ? particles : 0, sizeof *c->drawn[1]},

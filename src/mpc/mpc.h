@@ -54,6 +54,7 @@ struct mpc {
   uint32_t *order;           /* [particles] sorting and velocity swap; in a collision, who entered (border.h) */
   uint32_t entered;          /* particles that did */
   uint32_t *slot;            /* [particles] velocity swap only, else NULL */
+  uint32_t *slot_ids;        /* [particles] the same: ids in memory order, of when slot was made */
   int64_t *column;           /* [particles] one column while it is permuted */
   double *drawn[3];          /* [particles] velocities that a thermal rule has drawn, else NULL */
   struct vec3 *drawn_vertex; /* [vertices] the same */

@@ -14,14 +14,28 @@ static void permute(void *column, const uint32_t *from, uint32_t n, int64_t *scr
     memcpy((char *)column + (size_t)k * sizeof *scratch, &scratch[from[k]], sizeof *scratch);
 }
 
+/* Makes mpc->slot of this memory, if ids have moved in it since the last time. They do so only where particles are
+ * sorted by cell. Both lists begin as zeros, which is right for a single particle. */
+static void find_slots(const struct state *state, struct mpc *c)
+{
+  const struct solvent *s = &state->solvent;
+  if (memcmp(c->slot_ids, s->id, (size_t)s->n * sizeof *s->id) == 0)
+    return;
+  memcpy(c->slot_ids, s->id, (size_t)s->n * sizeof *s->id);
+  state_solvent_slots(state, c->slot);
+}
+
+/* Particle id takes the velocity of particle order[id], order a random permutation. Shuffled are the places in memory of
+ * the particles, so that order[id] is looked up as one number. */
 void mpc_swap_velocities(struct state *state, const struct model *model, struct mpc *c, uint64_t step)
 {
   struct solvent *s = &state->solvent;
-  random_permutation(model->seed, RANDOM_VELOCITY_SWAP, 0, step, s->n, c->order);
-  state_solvent_slots(state, c->slot);
+  find_slots(state, c);
+  memcpy(c->order, c->slot, (size_t)s->n * sizeof *c->order);
+  random_shuffle(model->seed, RANDOM_VELOCITY_SWAP, 0, step, s->n, c->order);
   uint32_t *from = (uint32_t *)c->solvent_cell; /* not needed any more in this collision */
   for (uint32_t i = 0; i < s->n; i++)
-    from[i] = c->slot[c->order[s->id[i]]];
+    from[i] = c->order[s->id[i]];
   permute(s->vx, from, s->n, c->column);
   permute(s->vy, from, s->n, c->column);
   permute(s->vz, from, s->n, c->column);

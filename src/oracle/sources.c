@@ -145,7 +145,7 @@ INTEGERS(particle_cells, particles, "cell", MPC.solvent_cell[k])
 VECTOR(drawn_particles, particles, drawn(g, k))
 VECTOR(less_particles, particles, vec3_sub(solvent_velocity(&g->state->solvent, k), drawn(g, k)))
 POINT(particle_places, particles, spin_place(place(g, k), MPC.shift))
-INTEGERS(swaps, swaps, "particle", MPC.order[k])
+INTEGERS(swaps, swaps, "particle", g->state->solvent.id[MPC.order[k]])
 
 POINT(vectors, vectors, {g->state->dumbbells.x[k], g->state->dumbbells.y[k], g->state->dumbbells.z[k]})
 POINT(started_particles, started_particles, {g->fresh.solvent.x[k], g->fresh.solvent.y[k], g->fresh.solvent.z[k]})

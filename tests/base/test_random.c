@@ -181,6 +181,20 @@ static void permutation_is_as_defined(void **unused)
   random_permutation(77, RANDOM_VERTEX_ORDER, 0, 0, 0, NULL); /* nothing to do, nothing touched */
 }
 
+/* What is shuffled may be anything. */
+static void entries_are_shuffled_as_numbers_are(void **unused)
+{
+  (void)unused;
+  enum { N = 1001 };
+  uint32_t order[N], entry[N];
+  for (uint32_t k = 0; k < N; k++)
+    entry[k] = 7 * k + 3;
+  random_permutation(77, RANDOM_VELOCITY_SWAP, 0, 5, N, order);
+  random_shuffle(77, RANDOM_VELOCITY_SWAP, 0, 5, N, entry);
+  for (uint32_t k = 0; k < N; k++)
+    assert_int_equal(entry[k], 7 * order[k] + 3);
+}
+
 /* Counts of all n! orders; the naive shuffle (j among all n each time) gives 4/27 and 5/27 for n = 3 and fails. */
 static void permutations_are_equally_likely(void **unused)
 {
@@ -281,6 +295,7 @@ int main(void)
       cmocka_unit_test(axes_take_the_documented_words),
       cmocka_unit_test(columns_are_the_same),
       cmocka_unit_test(permutation_is_as_defined),
+      cmocka_unit_test(entries_are_shuffled_as_numbers_are),
       cmocka_unit_test(permutations_are_equally_likely),
       cmocka_unit_test(long_permutations_mix),
       cmocka_unit_test(addresses_are_distinct),

@@ -14,39 +14,49 @@ static struct model swapping(uint32_t particles)
   return m;
 }
 
-/* Particle id takes the velocity of particle order[id], wherever the two are in memory; ids, places, vertices stay. */
+/* Swaps, and looks at each particle. */
+static void swap_by_id(struct test_run *r, uint64_t step)
+{
+  const uint32_t n = r->state.solvent.n;
+  struct vec3 *v = malloc(n * sizeof *v), *after = malloc(n * sizeof *after);
+  struct point *x = malloc(n * sizeof *x);
+  uint32_t *order = malloc(n * sizeof *order), moved = 0;
+  for (uint32_t i = 0; i < n; i++) {
+    v[r->state.solvent.id[i]] = solvent_v(&r->state, i);
+    x[r->state.solvent.id[i]] = (struct point){r->state.solvent.x[i], r->state.solvent.y[i], r->state.solvent.z[i]};
+  }
+  struct vec3 vertex = r->state.velocity[5];
+  mpc_swap_velocities(&r->state, &r->model, &r->work.mpc, step);
+  random_permutation(r->model.seed, RANDOM_VELOCITY_SWAP, 0, step, n, order);
+  for (uint32_t i = 0; i < n; i++) {
+    uint32_t id = r->state.solvent.id[i];
+    after[id] = solvent_v(&r->state, i);
+    assert_memory_equal(&after[id], &v[order[id]], sizeof *v);
+    assert_true(r->state.solvent.x[i] == x[id].x && r->state.solvent.y[i] == x[id].y &&
+                r->state.solvent.z[i] == x[id].z);
+    moved += order[id] != id;
+  }
+  assert_true(n < 10 || moved > n / 2);
+  assert_memory_equal(&vertex, &r->state.velocity[5], sizeof vertex);
+  free(v);
+  free(after);
+  free(x);
+  free(order);
+}
+
+/* Particle id takes the velocity of particle order[id], wherever the two are in memory, also after they have moved in
+ * it; ids, places, vertices stay. */
 static void swap_is_defined_by_id(void **unused)
 {
   (void)unused;
   for (uint64_t k = 0; k < 50; k++) {
     struct dice d = {dice_seed(601) + k};
-    const uint32_t n = (uint32_t)dice_integer(&d, 1, 400);
-    struct test_run r = dice_run(swapping(n), &d);
-    struct vec3 *v = malloc(n * sizeof *v), *after = malloc(n * sizeof *after);
-    struct point *x = malloc(n * sizeof *x);
-    uint32_t *order = malloc(n * sizeof *order), moved = 0;
-    shuffle_memory(&r.state, &d);
-    for (uint32_t i = 0; i < n; i++) {
-      v[r.state.solvent.id[i]] = solvent_v(&r.state, i);
-      x[r.state.solvent.id[i]] = (struct point){r.state.solvent.x[i], r.state.solvent.y[i], r.state.solvent.z[i]};
+    struct test_run r = dice_run(swapping((uint32_t)dice_integer(&d, 1, 400)), &d);
+    for (uint64_t step = 31 + k; step < 34 + k; step++) {
+      shuffle_memory(&r.state, &d);
+      swap_by_id(&r, step);
+      swap_by_id(&r, step + 100);
     }
-    struct vec3 vertex = r.state.velocity[5];
-    mpc_swap_velocities(&r.state, &r.model, &r.work.mpc, 31 + k);
-    random_permutation(r.model.seed, RANDOM_VELOCITY_SWAP, 0, 31 + k, n, order);
-    for (uint32_t i = 0; i < n; i++) {
-      uint32_t id = r.state.solvent.id[i];
-      after[id] = solvent_v(&r.state, i);
-      assert_memory_equal(&after[id], &v[order[id]], sizeof *v);
-      assert_true(r.state.solvent.x[i] == x[id].x && r.state.solvent.y[i] == x[id].y &&
-                  r.state.solvent.z[i] == x[id].z);
-      moved += order[id] != id;
-    }
-    assert_true(n < 10 || moved > n / 2);
-    assert_memory_equal(&vertex, &r.state.velocity[5], sizeof vertex);
-    free(v);
-    free(after);
-    free(x);
-    free(order);
     test_end(&r);
   }
 }
