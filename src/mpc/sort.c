@@ -25,8 +25,7 @@ static void find_slots(const struct state *state, struct mpc *c)
   state_solvent_slots(state, c->slot);
 }
 
-/* Particle id takes the velocity of particle order[id], order a random permutation. Shuffled are the places in memory of
- * the particles, so that order[id] is looked up as one number. */
+/* What is shuffled are places in memory, in the order of ids: one look-up finds whose velocity a particle takes. */
 void mpc_swap_velocities(struct state *state, const struct model *model, struct mpc *c, uint64_t step)
 {
   struct solvent *s = &state->solvent;
