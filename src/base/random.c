@@ -128,7 +128,7 @@ INLINE void shuffle_integers(uint64_t seed, enum random_purpose purpose, uint32_
   memcpy(integer[1], &odd, sizeof odd);
 }
 
-/* The partners of a block are known before its first exchange, and asked for: of many entries they are far in memory. */
+/* The partners of a block are known before its first exchange, and asked for: where entries are many, they are far. */
 void random_shuffle(uint64_t seed, enum random_purpose purpose, uint32_t draw, uint64_t step, uint32_t n,
                     uint32_t *entry)
 {
