@@ -81,6 +81,7 @@ help:
 	@echo 'make bench-docs      the same, and its tables and figures into docs/'
 	@echo 'make bench-peers     against Debian'\''s LAMMPS, in turn: build/bench/peers.json'
 	@echo 'make bench-rivals    noncrossing fibers beside LAMMPS'\'' repulsive bonds and beads, at equal error (two hours): docs/claims/rivals.md'
+	@echo 'make bench-error     run time against error: CPU time to 1 % by time step, rule, thermostat, medium (a quarter of an hour): docs/claims/settings.md'
 	@echo 'make peer            the solvent'\''s memory and diffusion beside LAMMPS (a quarter of an hour): reference-data/campaign/peer'
 	@echo 'make validate        the paper'\''s claims on reduced systems (seven minutes): build/validate/report.html'
 	@echo 'make -j2 campaign    the same on the paper'\''s own systems, for hours or days; resumes; reference-data/campaign/'
@@ -479,6 +480,16 @@ bench-rivals:
 $(RIVALS_PROGRAM): $(addprefix $(RIVALS)/,rivals methods.py measures.py fibers.lammps)
 	@mkdir -p $(@D)
 	@cp $^ $(@D)
+
+# Run time against error: claim `settings`. Not in CI: its times count beside each other, so runs are made one at a time.
+.PHONY: bench-error
+bench-error:
+	tools/install-dependencies run measure validate
+	$(MAKE) -j2 $(BUILD)/uncross $(BUILD)/validation/measure/shear_decay
+	validation/run makefile settings --tier campaign --build $(BUILD) >$(BUILD)/settings.mk
+	$(MAKE) -j1 -f $(BUILD)/settings.mk all
+	validation/run harvest settings --tier campaign --build $(BUILD)
+	validation/cases/settings/table
 
 # The paper's claims (validation/README.md). Runs are targets of a fragment of make: what is finished is not run again,
 # what was interrupted goes on. A run that fails is a claim that the report calls missing.

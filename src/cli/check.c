@@ -3,6 +3,7 @@
 
 #include "base/text.h"
 #include "cli/check_bead.h"
+#include "cli/check_choice.h"
 #include "cli/check_dumbbells.h"
 #include "cli/check_fibers.h"
 #include "cli/check_flow.h"
@@ -188,23 +189,40 @@ static void report_topology(const struct scene *scene)
     sheet_row(false, "time of observe.topology", "", 1e-9 * bond * scene->model.bonds * (double)samples, "s", "more");
 }
 
+/* ns per solvent particle and collision, and per vertex and step. */
+static double solvent_cost(const struct model *m)
+{
+  const double cells = solvent_rate * rule_cost[m->solvent.rule] * boundary_cost[m->box.boundary[1]];
+  return model_in_cells(m) ? cells : check_medium_cost(m);
+}
+
+static double vertex_cost(const struct model *m)
+{
+  const bool search = m->crossing.forbidden && m->bonds > 0;
+  return check_medium_vertex_cost(m) +
+         (search ? crossing_rate + crossing_density_rate * theory_line_density(m) : vertex_rate);
+}
+
+/* Seconds of a step. */
+static double step_cost(const struct model *m)
+{
+  const double collisions = model_collides(m) ? 1.0 / m->solvent.interval_steps : 0.0;
+  const double phantoms = model_has_phantoms(m) ? phantom_rate * collisions : 0.0;
+  return 1e-9 * (solvent_cost(m) * m->solvent.particles * collisions + (vertex_cost(m) + phantoms) * m->vertices);
+}
+
 static void report_cost(const struct scene *scene)
 {
   const struct model *m = &scene->model;
-  const bool search = m->crossing.forbidden && m->bonds > 0;
-  const double vertex = check_medium_vertex_cost(m) +
-                        (search ? crossing_rate + crossing_density_rate * theory_line_density(m) : vertex_rate);
-  const double collisions = model_collides(m) ? 1.0 / m->solvent.interval_steps : 0.0;
-  const double phantoms = model_has_phantoms(m) ? phantom_rate * collisions : 0.0;
-  const double cells = solvent_rate * rule_cost[m->solvent.rule] * boundary_cost[m->box.boundary[1]];
-  const double solvent = model_in_cells(m) ? cells : check_medium_cost(m);
-  const double step = 1e-9 * (solvent * m->solvent.particles * collisions + (vertex + phantoms) * m->vertices);
+  const double step = step_cost(m);
   sheet_heading("Cost (an estimate; of time without observables and files)");
   check_memory(scene);
   sheet_row(false, "steps per second", "", 1.0 / step, "1/s", "");
   sheet_row(false, "time", "", step * (double)scene->steps, "s", "");
   report_topology(scene);
-  printf("  from %.0f ns per solvent particle and collision, %.0f ns per vertex and step\n", solvent, vertex);
+  printf("  from %.0f ns per solvent particle and collision, %.0f ns per vertex and step\n", solvent_cost(m),
+         vertex_cost(m));
+  check_choice(m, step_cost);
 }
 
 static void tell_warning(void *context, const char *text)

@@ -103,7 +103,7 @@ class Installed(unittest.TestCase):
     """`make -n` tells what a target would install and link where nothing has been built."""
 
     def test_what_is_linked_is_installed(self):
-        for target in ("demo", "check", "stress", "validate", "campaign", "measure", "bench", "peer", "bench-rivals"):
+        for target in ("demo", "check", "stress", "validate", "campaign", "measure", "bench", "peer", "bench-rivals", "bench-error"):
             with self.subTest(target), tempfile.TemporaryDirectory() as folder:
                 _, told = make("-n", "-k", f"BUILD={folder}/build", target)
                 asked = " ".join(re.findall(r"tools/install-dependencies (.*)", told)).split()

@@ -9,7 +9,7 @@ from lib import stats
 
 CASES = pathlib.Path(__file__).resolve().parent.parent / "cases"
 # The order of the report: the solvents, then single vertices and fibers in it, then many fibers.
-ORDER = ("solvent", "andersen", "flow", "dumbbells", "bead", "mobility", "chains", "rods", "fibers-flow", "galilean", "tube", "entangled", "primitive", "msd", "conservation", "thick", "media", "cost", "peer", "rivals")
+ORDER = ("solvent", "andersen", "flow", "dumbbells", "bead", "mobility", "chains", "rods", "fibers-flow", "galilean", "tube", "entangled", "primitive", "msd", "conservation", "thick", "media", "cost", "settings", "peer", "rivals")
 TIERS = ("quick", "campaign")
 AGAIN = "-again"  # what the name of a second run ends with
 VERDICTS = ("pass", "within allowance", "fail", "not reproduced", "undecided")
