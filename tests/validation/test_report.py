@@ -181,6 +181,19 @@ class MadeUp(unittest.TestCase):
             code = report.make(tier, every, ["made"], self.folder / "work", self.folder / "out")
         return code, json.loads((self.folder / "out/report.json").read_text())
 
+    def test_a_case_takes_the_place_of_what_it_was(self):
+        """The order is that of all cases; a case without runs has no place yet."""
+        def of(*cases, x):
+            return {"tier": "campaign", "claims": [{"claim": name, "measured": x} for name in cases], "sections": [{"id": name, "x": x} for name in cases],
+                    "runs": [{"run": f"{name}/{n}", "x": x} for name in cases for n in (2, 1)]}
+
+        order = ["a", "b", "c", "d"]
+        self.assertEqual(report.renewed(of("a", "b", "d", x=1), of("b", x=1), order), of("a", "b", "d", x=1))
+        self.assertEqual(report.renewed(of("a", "d", x=1), of("c", x=1), order), of("a", "c", "d", x=1))
+        found = report.renewed(of("a", "b", x=1), of("b", x=2), order)
+        self.assertEqual([row["measured"] for row in found["claims"]], [1, 2])
+        self.assertEqual([row["run"] for row in found["runs"]], ["a/2", "a/1", "b/2", "b/1"])
+
     def test_pass(self):
         code, said = self.report(1.25)
         self.assertEqual(code, 0)

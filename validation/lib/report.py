@@ -310,14 +310,30 @@ def all_sections(names, tier, results, jobs):
         return list(pool.map(make_one, names))
 
 
-def make(tier, all_runs, names, work, out, jobs=1):
-    """Writes the three files into `out`; 1 if a verdict is among its `failures`."""
+def renewed(old, new, order):
+    """A summary in which the cases of a newer one take the place of what they were. order: names of all cases."""
+    case_of = {"claims": lambda row: row["claim"], "sections": lambda row: row["id"], "runs": lambda row: row["run"].partition("/")[0]}
+    again = {part["id"] for part in new["sections"]}
+    found = {"tier": new["tier"]}
+    for key, case in case_of.items():
+        rows = [row for row in old[key] if case(row) not in again] + new[key]
+        found[key] = sorted(rows, key=lambda row: order.index(case(row)))
+    return found
+
+
+def make(tier, all_runs, names, work, out, jobs=1, renew=False):
+    """Writes the three files into `out`; 1 if a verdict is among its `failures`. renew: report.json keeps its other cases, and is the only file."""
     results = runs.results_of(all_runs, work)
     sections = all_sections(names, tier, results, jobs)
     sections = [part for part in sections if part["verdicts"] or part["runs"]]
     out = pathlib.Path(out)
     out.mkdir(parents=True, exist_ok=True)
-    (out / "report.json").write_text(json.dumps(summary(tier, sections), indent=1, ensure_ascii=False) + "\n")
+    found = summary(tier, sections)
+    if renew:
+        found = renewed(json.loads((out / "report.json").read_text()), found, cases.names())
+    (out / "report.json").write_text(json.dumps(found, indent=1, ensure_ascii=False) + "\n")
+    if renew:
+        return tell(tier, sections, out)
     (out / "report.xml").write_text(junit(tier, sections))
     (out / "report.html").write_text(page(tier, sections))
     return tell(tier, sections, out)
