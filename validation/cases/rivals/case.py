@@ -219,7 +219,7 @@ def seconds_to(error, bias, spread, fibers, cost):
 
 # Rows of the table: name of the motion's run -> (label, its crossings, its method in cost-*)
 LABELS = {"events": "event-driven", "sequential": "the paper's rule", "plain": "plain reversal (impulsive Verlet)", "srp-0.1": "SRP, range 0.1", "srp-0.2": "SRP, range 0.2",
-          "srp-0.4": "SRP, range 0.4", "wca-0.5": "WCA, size 0.5", "wca-0.25": "WCA, size 0.25, 127 beads"}
+          "srp-0.4": "SRP, range 0.4", "wca-0.5": "WCA, size 0.5", "wca-0.25": "WCA, size 0.25"}  # and bonds of half the length: 127 beads
 CROSSED = {"srp-0.1": "srp-0.1-10", "srp-0.2": "srp-0.2-10"}
 
 
