@@ -141,7 +141,7 @@ void random_shuffle(uint64_t seed, enum random_purpose purpose, uint32_t draw, u
       for (uint32_t k = 0; k < 2 * LANES; k++) {
         uint32_t *to = &partner[2 * e + k];
         *to = below(integer[k % 2][k / 2], 2 * (first + e) + k + 1);
-        __builtin_prefetch(&entry[*to]);
+        __builtin_prefetch(&entry[*to < n ? *to : 0]);
       }
     }
     for (uint32_t k = n < 2 * end ? n : 2 * end; k-- > 2 * first;) {

@@ -2,6 +2,7 @@
  * Both make the same bits. */
 #include <math.h>
 
+#include "base/registers.h"
 #include "observe/dynamics.h"
 
 /* Mean square displacements of vertices, centre of mass and middle vertex: Padding 2009, Eqs. (41) and (42). */
@@ -149,7 +150,8 @@ struct fiber_motion fiber_motion_plain(const struct fiber_kind *kind, const stru
 
 /* Places less than LATTICE_NEAR from the fiber's first vertex at the origin are multiples of the lattice unit with at
  * most 52 bits. So their differences are exact, and are those of the points. */
-enum { LANES = 4, MOST = 256 };
+enum { MOST = 256 };
+_Static_assert(MOST % LANES == 0, "columns fill registers");
 
 /* a0, from the first vertex at the origin. */
 struct columns {
@@ -241,46 +243,52 @@ static double least_of(double a, double b)
 }
 
 /* Squared distances of a place from all vertices, and the least of them. */
-static double column_squares(const struct column_contour *c, struct vec3 place, double *restrict square)
+static double column_squares(const struct column_contour *c, struct vec3 place, double *square)
 {
   const struct columns *o = c->origin;
-  const struct vec3 drift = c->drift;
-  double least[LANES] = {INFINITY, INFINITY, INFINITY, INFINITY};
-  for (uint32_t j = 0; j < c->padded; j++) {
-    const double x = o->x[j] - place.x + drift.x, y = o->y[j] - place.y + drift.y, z = o->z[j] - place.z + drift.z;
-    square[j] = x * x + y * y + z * z;
+  reals least = (reals){0} + INFINITY;
+  for (uint32_t j = 0; j < c->padded; j += LANES) {
+    const reals x = load_reals(&o->x[j]) - place.x + c->drift.x, y = load_reals(&o->y[j]) - place.y + c->drift.y,
+                z = load_reals(&o->z[j]) - place.z + c->drift.z, here = x * x + y * y + z * z;
+    store_reals(&square[j], here);
+    least = choose(here < least, here, least);
   }
-  for (uint32_t j = 0; j < c->padded; j += LANES)
-    for (uint32_t l = 0; l < LANES; l++)
-      least[l] = least_of(square[j + l], least[l]); /* NOLINT(clang-analyzer-*): j < padded */
-  return least_of(least_of(least[0], least[1]), least_of(least[2], least[3]));
+  double nearest = least[0];
+  for (int l = 1; l < LANES; l++)
+    nearest = least_of(least[l], nearest);
+  return nearest;
 }
 
-/* distance_from. */
+/* distance_from. What fills the columns up is not in reach. */
 static double column_distance_from(const struct column_contour *c, struct vec3 place, double *vertex)
 {
-  const uint32_t n = c->kind->vertices;
+  const uint32_t last = c->kind->vertices - 1;
   double square[MOST];
   const double nearest = column_squares(c, place, square), reach = reach_of(nearest, c->longest), most = reach * reach;
   double contour = nearest;
-  for (uint32_t j = 0; j + 1 < n; j++)
-    if (square[j] <= most) /* NOLINT(clang-analyzer-*): j < vertices <= padded */
-      contour = least_of(contour,
-                         squared_distance_to_segment(column_relative(c, place, j), column_relative(c, place, j + 1)));
+  for (uint32_t first = 0; first < last; first += LANES)
+    for (uint32_t near = zeros((words)(load_reals(&square[first]) > most)); near != 0; near &= near - 1) {
+      const uint32_t j = first + (uint32_t)__builtin_ctz(near);
+      if (j < last)
+        contour = least_of(contour,
+                           squared_distance_to_segment(column_relative(c, place, j), column_relative(c, place, j + 1)));
+    }
   if (c->kind->ring)
     contour =
-        least_of(contour, squared_distance_to_segment(column_relative(c, place, n - 1), column_relative(c, place, 0)));
+        least_of(contour, squared_distance_to_segment(column_relative(c, place, last), column_relative(c, place, 0)));
   *vertex = nearest;
   return contour;
 }
 
 static void column_tube(const struct column_contour *c, const struct columns *now, struct fiber_motion *motion)
 {
-  const uint32_t vertices = dynamics_third(c->kind);
+  const uint32_t vertices = dynamics_third(c->kind), middle = dynamics_middle(c->kind);
   double sum = 0.0, unused;
-  motion->tube_contour = column_distance_from(c, at(now, dynamics_middle(c->kind)), &motion->tube);
-  for (uint32_t k = 0; k < vertices; k++)
-    sum += column_distance_from(c, at(now, dynamics_third_vertex(c->kind, k)), &unused);
+  motion->tube_contour = column_distance_from(c, at(now, middle), &motion->tube);
+  for (uint32_t k = 0; k < vertices; k++) {
+    const uint32_t j = dynamics_third_vertex(c->kind, k);
+    sum += j == middle ? motion->tube_contour : column_distance_from(c, at(now, j), &unused);
+  }
   motion->tube_third = sum / vertices;
 }
 

@@ -24,9 +24,9 @@ SWAP = "solvent: {per_cell: 5, collision_interval: 0.02, hydrodynamics: false%s}
 
 
 class Choice(FolderTest):
-    def told(self, step, *parts, order="kick-split", box=14):
+    def told(self, step, *parts, order="kick-split", box=14, height=None):
         """(times, what to choose) or None, and the whole report."""
-        (self.dir / "scene.yaml").write_text(f"box: [{box}, {box}, {box}]\ntime_step: {step:g}\norder: {order}\nsteps: 100\n" + "\n".join(parts) + "\n")
+        (self.dir / "scene.yaml").write_text(f"box: [{box}, {box}, {height or box}]\ntime_step: {step:g}\norder: {order}\nsteps: 100\n" + "\n".join(parts) + "\n")
         done = uncross("check", self.dir / "scene.yaml")
         self.assertEqual(done.returncode, 0, done.stderr)
         found = re.findall(r"^  this scene takes (\S+) times as long as with (.*), where .* \(docs/claims/settings\.md\)$", done.stdout, re.M)
@@ -61,10 +61,10 @@ class Choice(FolderTest):
         for step, order, medium in ((0.01, "kick-split", liquid), (0.0125, "drift-split", liquid), (0.001, "drift-split", PAIRS.format(density=3, repulsion=30)),
                                     (0.001, "drift-split", PAIRS.format(density=4, repulsion=25)), (0.001, "drift-split", PAIRS.format(density=3, repulsion=0))):
             self.assertIsNone(self.told(step, medium, order=order), (step, order, medium))
-        omega = 2.0 * math.sqrt(100.0 / 1.0)  # 0.283/20 = 0.014: bonds decide
-        stiff = "fibers: [{name: chain, count: 2, vertices: 40, mass: 1, bond_length: 0, spring: 100}]\ncrossing: {forbidden: false}"
-        self.assertTrue(0.01 < 0.283 / omega < 0.02)
-        self.assertEqual(self.told(0.001, liquid, stiff, order="drift-split"), (10.0, "time_step: 0.01"))
+        self.assertEqual(self.told(0.0004, liquid, order="drift-split"), (100.0, "time_step: 0.04"))
+        for parts in ((liquid.replace("relax", "replace"),), (liquid.replace("rate: 9", "rate: 20"),), (liquid.replace("quadratic", "hat"),),
+                      (liquid, "fibers: [{name: light, count: 32, vertices: 1, mass: 0.01}]", FREE)):  # which would move too far
+            self.assertIsNone(self.told(0.001, *parts, order="drift-split"), parts)
 
     def test_swap(self):
         times, words = self.told(0.02, SWAP % "", LOOSE.format(count=32), box=8)
@@ -72,13 +72,18 @@ class Choice(FolderTest):
         self.assertAlmostEqual(times, 15 * 2560 / (32 * (170 + 25)) * (1.0 + 32 * 25 / (15 * 2560)), delta=0.06)
         self.assertEqual(self.told(0.02, SWAP % ", thermostat: rescale", LOOSE.format(count=32), box=8), (times, "solvent.bath: phantoms, thermostat: none"))
         self.assertIsNone(self.told(0.02, SWAP % "", LOOSE.format(count=2000), box=8))  # four in a cell: a phantom for each costs as much
+        for parts in ((SWAP % "",), (SWAP.replace("per_cell: 5", "per_cell: 1001") % "", LOOSE.format(count=32)), (SWAP % ", rule: at-a", LOOSE.format(count=32)),
+                      (SWAP % "", CHAINS.replace("crossing: {forbidden: false}", ""))):  # refused, refused, not measured, must not cross
+            self.assertIsNone(self.told(0.02, *parts, box=8), parts)
 
     def test_nothing_is_said_of_what_was_not_measured(self):
         held, closed = "solvent: {per_cell: 1, collision_interval: 0.02, thermostat: rescale}", "solvent: {per_cell: 1, collision_interval: 0.02}"
         self.assertEqual(self.told(0.001, held, FIBERS % "", FREE)[1], "time_step: 0.01")
         for parts in ((closed, FIBERS % "", FREE), (held, FIBERS % ""), (held, FIBERS.replace("1000", "10") % ", diameter: 0.1", "crossing: {rule: event-driven}"),
-                      (held, "walls: {kind: no-slip}", FIBERS % "", FREE), (held, "shear: {rate: 0.05}", FIBERS % "", FREE)):
+                      (held, "walls: {kind: no-slip}", FIBERS % "", FREE), (held, "shear: {rate: 0.05}", FIBERS % "", FREE),
+                      (held, FIBERS % ", held: ends", FREE), (held, FIBERS % ", force: [0, 0, 1]", FREE)):
             self.assertIsNone(self.told(0.001, *parts), parts)
+        self.assertIsNone(self.told(0.001, held, "dimensions: 2", FIBERS % "", FREE, height=1))
 
     def test_no_scene_that_comes_with_the_program_is_far(self):
         for scene in sorted((TOP / "scenes").glob("*.yaml")):

@@ -190,6 +190,7 @@ class MadeUp(unittest.TestCase):
         order = ["a", "b", "c", "d"]
         self.assertEqual(report.renewed(of("a", "b", "d", x=1), of("b", x=1), order), of("a", "b", "d", x=1))
         self.assertEqual(report.renewed(of("a", "d", x=1), of("c", x=1), order), of("a", "c", "d", x=1))
+        self.assertEqual(report.renewed(of("a", "gone", x=1), of("b", x=1), order), of("a", "b", x=1))
         found = report.renewed(of("a", "b", x=1), of("b", x=2), order)
         self.assertEqual([row["measured"] for row in found["claims"]], [1, 2])
         self.assertEqual([row["run"] for row in found["runs"]], ["a/2", "a/1", "b/2", "b/1"])

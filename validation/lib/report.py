@@ -316,7 +316,7 @@ def renewed(old, new, order):
     again = {part["id"] for part in new["sections"]}
     found = {"tier": new["tier"]}
     for key, case in case_of.items():
-        rows = [row for row in old[key] if case(row) not in again] + new[key]
+        rows = [row for row in old[key] if case(row) in order and case(row) not in again] + new[key]
         found[key] = sorted(rows, key=lambda row: order.index(case(row)))
     return found
 

@@ -26,7 +26,7 @@ POINTS = {
     "coil-2": (14, 19, 512, 0.5, 100, 0.5, 4104, 90, 810, 0, 0, "", 0.08),
     "coil-1": (14, 10, 480, 0.5, 100, 0.5, 4112, 90, 810, 0, 0, "", 0.04),
 }
-# The same with one thing changed. Where the seed and the box are the same, the start is the same, too. `coil-alone` is `coil-1` in a box where chains meet nothing but themselves.
+# The same with one thing changed. Where the seed and the box are the same, the start is the same, too. `coil-alone` is `coil-1` in a box where chains meet little but themselves.
 CHANGED = {
     "coil-alone": (60, 10, 480, 0.5, 100, 0.5, 4112, 90, 810, 0, 0, "", 0.03),
     "coil-13-slow": (5, 45, 64, 0.5, 100, 0.5, 4101, 90, 810, 0, 0, SHORT + " pace=3", 0.03),

@@ -233,6 +233,12 @@ FLUID = ("kinetic", "configurational", "pressure")
 EXACT = {("vertex", "private bath"): 1.0 / 5.0, ("chain", "private bath"): 1.0 / 50.0, ("kinetic", "density 3, a 25"): 1.0, ("configurational", "density 3, a 25"): 1.0}
 
 
+def leap_frog(x):
+    """How much too large D of a free particle is by leap-frog steps of x = Gamma dt, each followed by an exact bath: velocities are remembered by e^-x a step, so
+    D = (kT/M) dt (1/(1 - e^-x) - 1/2), by the sum of the geometric series of correlations."""
+    return x * (1.0 / -math.expm1(-x) - 0.5) - 1.0
+
+
 @dataclasses.dataclass
 class Row:
     """What a setting gives. time: of the run, t0; 1 for a program, whose time is its own. off: (distance from its family's answer, error), both over that
@@ -248,6 +254,8 @@ class Row:
     @property
     def late(self):
         """Is it known to be off by more than GOAL, so that no time mends it? Three errors: two would be exceeded by chance in some of so many rows."""
+        if self.setting.family == "private bath" and self.setting.quantity in ("vertex", "chain") and abs(leap_frog(self.setting.step)) > GOAL:
+            return True
         return self.off is not None and abs(self.off[0]) > GOAL and abs(self.off[0]) > 3.0 * self.off[1]
 
 
