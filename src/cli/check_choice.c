@@ -15,7 +15,7 @@
 #define PAIRS_STEP 0.04 /* t0, of pairs that repel each other with this strength or less, at this density or less: */
 #define REPULSION 25.0
 #define DENSITY 3.0
-#define RATE 9.0 /* 1/t0, of pairs that relax, or less */
+#define RATE 9.0        /* 1/t0, of pairs that relax, or less */
 #define DRIFT_SPLIT 1.4 /* a step of pairs, over one of kick-split */
 #define PER_CELL 1000.0 /* phantoms: more are refused */
 
@@ -46,21 +46,23 @@ static double highest_frequency(const struct model *m)
   return fastest;
 }
 
-/* Thin free fibers that may cross in a periodic box, and nothing else: other scenes were not measured. Contacts cost by the
- * t0, and without a bath they heat, and may need a short step. */
+/* Thin free fibers that may cross in a periodic box, and nothing else: other scenes were not measured. Contacts cost by
+ * the t0, and without a bath they heat, and may need a short step. */
 static bool was_measured(const struct model *m)
 {
   for (uint32_t k = 0; k < m->kinds; k++)
     if (vec3_norm(m->kind[k].force) > 0.0)
       return false;
-  return m->dimensions == 3 && m->held == 0 && !(m->crossing.forbidden && m->bonds > 0) && m->thickness == 0 && !model_has_bead(m) && !model_has_dumbbells(m) &&
-         m->box.boundary[1] == BOUNDARY_PERIODIC && !(vec3_norm(m->solvent.acceleration) > 0.0);
+  return m->dimensions == 3 && m->held == 0 && !(m->crossing.forbidden && m->bonds > 0) && m->thickness == 0 &&
+         !model_has_bead(m) && !model_has_dumbbells(m) && m->box.boundary[1] == BOUNDARY_PERIODIC &&
+         !(vec3_norm(m->solvent.acceleration) > 0.0);
 }
 
 static double longer_step(struct model *m, char words[WORDS])
 {
   const double fastest = highest_frequency(m);
-  if (!was_measured(m) || !model_is_isothermal(m) || !(fastest > 0.0) || model_is_overdamped(m) || m->medium.kind == MEDIUM_PAIRS)
+  if (!was_measured(m) || !model_is_isothermal(m) || !(fastest > 0.0) || model_is_overdamped(m) ||
+      m->medium.kind == MEDIUM_PAIRS)
     return 0.0;
   const double bath = m->medium.kind == MEDIUM_PRIVATE ? BATH / m->medium.rate : INFINITY;
   return with_step(m, fmin(PHASE / fastest, bath), words);
@@ -84,8 +86,8 @@ static double longer_step_of_pairs(struct model *m, char words[WORDS])
 
 static double phantoms(struct model *m, char words[WORDS])
 {
-  if (!was_measured(m) || m->vertices == 0 || !model_has_cells(m) || model_has_phantoms(m) || m->solvent.hydrodynamics ||
-      m->solvent.rule != RULE_SRD || m->solvent.per_cell > PER_CELL)
+  if (!was_measured(m) || m->vertices == 0 || !model_has_cells(m) || model_has_phantoms(m) ||
+      m->solvent.hydrodynamics || m->solvent.rule != RULE_SRD || m->solvent.per_cell > PER_CELL)
     return 0.0;
   m->solvent.bath = BATH_PHANTOMS;
   m->solvent.particles = 0;
@@ -116,7 +118,8 @@ void check_choice(const struct model *m, double (*cost)(const struct model *mode
     const double times = dearer > 0.0 ? cost(m) / m->time_step / (dearer * cost(&other) / other.time_step) : 0.0;
     if (times >= most) {
       most = times;
-      snprintf(best, sizeof best, "%.*f times as long as with %s, where %s", times < 9.95, times, words, choices[k].right);
+      snprintf(best, sizeof best, "%.*f times as long as with %s, where %s", times < 9.95, times, words,
+               choices[k].right);
     }
   }
   if (best[0] != '\0')
