@@ -103,7 +103,7 @@ class Table(unittest.TestCase):
     def test_the_table_is_whole(self):
         """Each stage of each scene stands in the committed table."""
         _, known = counts.read_table(counts.TABLE)
-        stages = {"solvent": 4, "semidilute": 6, "dense": 6, "dense-events": 6, "at-a": 4, "at-plus-a": 5, "couette": 6, "shear": 6,
+        stages = {"solvent": 4, "rescale": 5, "canonical": 7, "semidilute": 6, "dense": 6, "dense-events": 6, "at-a": 4, "at-plus-a": 5, "couette": 6, "shear": 6,
                   "dumbbells": 5, "bead": 7, "company": 12, "pairs": 5, "dpd": 5, "observers": 10, "private": 5, "andersen": 5, "overdamped": 3}
         self.assertEqual({s: sum(scene == s for scene, _ in known) for s in counts.SCENES}, stages)
 
