@@ -133,6 +133,7 @@ void random_shuffle(uint64_t seed, enum random_purpose purpose, uint32_t draw, u
                     uint32_t *entry)
 {
   uint32_t partner[2 * BLOCK];
+  _Static_assert(BLOCK % LANES == 0, "a block's partners fill registers");
   for (uint32_t end = n / 2 + n % 2, first; end > 0; end = first) {
     first = end < BLOCK ? 0 : end - BLOCK;
     for (uint32_t e = 0; e < end - first; e += LANES) {

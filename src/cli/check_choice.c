@@ -6,6 +6,7 @@
 
 #include "scene/warnings.h"
 #include "system/fiber_kind.h"
+#include "system/refusals.h"
 
 #define FAR 4.0 /* times the time of the better choice, by an estimate; three times, as measured */
 
@@ -17,7 +18,6 @@
 #define DENSITY 3.0
 #define RATE 9.0        /* 1/t0, of pairs that relax, or less */
 #define DRIFT_SPLIT 1.4 /* a step of pairs, over one of kick-split */
-#define PER_CELL 1000.0 /* phantoms: more are refused */
 
 enum { WORDS = 64 };
 
@@ -87,7 +87,7 @@ static double longer_step_of_pairs(struct model *m, char words[WORDS])
 static double phantoms(struct model *m, char words[WORDS])
 {
   if (!was_measured(m) || m->vertices == 0 || !model_has_cells(m) || model_has_phantoms(m) ||
-      m->solvent.hydrodynamics || m->solvent.rule != RULE_SRD || m->solvent.per_cell > PER_CELL)
+      m->solvent.hydrodynamics || m->solvent.rule != RULE_SRD || m->solvent.per_cell > MOST_PHANTOMS)
     return 0.0;
   m->solvent.bath = BATH_PHANTOMS;
   m->solvent.particles = 0;

@@ -7,10 +7,7 @@
 
 #include "system/fiber_kind.h"
 
-enum {
-  MOST_COUPLED = 1000, /* vertices of a fiber with a tensor: a matrix of 72 MB */
-  MOST_PHANTOMS = 1000 /* per cell: keeps their momentum within a part of its sum's range, see mpc/random_solvent.c */
-};
+enum { MOST_COUPLED = 1000 }; /* vertices of a fiber with a tensor: a matrix of 72 MB */
 
 #define LONGEST_BESIDE_BEAD 3.0 /* a0: of a bond, with 8 standard deviations of its length and its thickness */
 

@@ -9,6 +9,9 @@
 
 #include "system/model.h"
 
+/* Per cell: keeps the momentum of phantoms within a part of its sum's range, see mpc/random_solvent.c. */
+enum { MOST_PHANTOMS = 1000 };
+
 /* The moments at which a model is checked. Before each of them, what its rows read has been derived. */
 enum refusal_moment {
   AT_MEDIUM,      /* a medium is there */

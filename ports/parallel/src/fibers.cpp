@@ -44,7 +44,8 @@ void Fibers::bend(int32_t j, Vector before, Vector after, Vector &a, Vector &b) 
   b = (kappa * each1) * (u0 - c * u1);
 }
 
-// Bonds and bends of one fiber in columns, which compilers turn into vector instructions. Bond k + 1 is that of the
+// Bonds and bends of one fiber in columns, which compilers turn into vector instructions where `omp simd` says that columns
+// do not overlap. Bond k + 1 is that of the
 // fiber's vertex k; bond 0 is that of the vertex before the first one, in rings. Loops end with whole vectors; what is beyond
 // the last bond is not used.
 class Fibers::Columns
@@ -100,7 +101,7 @@ double Fibers::fill(int32_t begin, int32_t end, const std::vector<Point> &positi
     each[k] = 1.0 / length[k];
     u[k] = each[k] * x[k], v[k] = each[k] * y[k], w[k] = each[k] * z[k];
   }
-  double longest[4] = {0.0, 0.0, 0.0, 0.0};
+  double longest[4] = {0.0, 0.0, 0.0, 0.0}; // squares: the limit is one, and a root could be rounded to it
   for (int32_t k = begin_at; k < end_at; k += 4)
     for (int lane = 0; lane < 4; lane++) {
       const int32_t m = k + lane;
